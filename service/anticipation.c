@@ -30,11 +30,13 @@ void anticipation_arrived(struct anticipation *anticipation, int client, int64_t
 }
 
 bool anticipation_begin(struct anticipation *anticipation, int client, int64_t now_ns,
-                        int64_t max_ns, int64_t other_ns)
+                        int64_t max_ns, int64_t other_ns, bool leads)
 {
     const int64_t known_ns = anticipation->clients[client].think_ns;
     const int64_t think_ns = known_ns ? known_ns : FIRST_GUESS_NS;
-    if (max_ns <= 0 || think_ns > ANTICIPATION_THINK_NS || think_ns > other_ns)
+    const int64_t part_ns = other_ns / ANTICIPATION_PART;
+    if (max_ns <= 0 || (think_ns > ANTICIPATION_THINK_NS && think_ns > part_ns) ||
+        (think_ns > other_ns && !leads))
         return false;
     anticipation->client = client;
     anticipation->until_ns = now_ns + clock_earlier(ANTICIPATION_MAX_NS, max_ns);

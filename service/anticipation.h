@@ -15,9 +15,11 @@
 #include <stdint.h>
 
 /* The service does not wait for a client that takes longer than ANTICIPATION_THINK_NS on average to
- * send its next query. For others it waits up to ANTICIPATION_MAX_NS: a client whose core was busy
- * takes longer than usual, and work for another client usually delays it by more. */
-enum { ANTICIPATION_THINK_NS = 150000, ANTICIPATION_MAX_NS = 1000000 };
+ * send its next query, unless the work that would begin instead takes ANTICIPATION_PART times as
+ * long: a client on a busy machine takes long, but loses more to a certificate. For others it waits
+ * up to ANTICIPATION_MAX_NS: a client whose core was busy takes longer than usual, and work for
+ * another client usually delays it by more. */
+enum { ANTICIPATION_THINK_NS = 150000, ANTICIPATION_PART = 16, ANTICIPATION_MAX_NS = 1000000 };
 
 struct anticipation {
     int client;        /* the anticipated client; -1: none */
@@ -42,10 +44,12 @@ void anticipation_answered(struct anticipation *anticipation, int client, int64_
 void anticipation_arrived(struct anticipation *anticipation, int client, int64_t not_before_ns);
 
 /* Begins to wait for a client. On input: max_ns: upper limit of the wait; other_ns: what the work
- * that would begin instead usually takes. Returns false, and does nothing, if waiting does not pay:
- * max_ns is 0 or less, or the client's think time exceeds ANTICIPATION_THINK_NS or other_ns. */
+ * that would begin instead usually takes; leads: the client has used less than the others by more
+ * than a slice. Returns false, and does nothing, if waiting does not pay: max_ns is 0 or less, or
+ * the client's think time is too long (above), or exceeds other_ns though the client does not lead.
+ */
 bool anticipation_begin(struct anticipation *anticipation, int client, int64_t now_ns,
-                        int64_t max_ns, int64_t other_ns);
+                        int64_t max_ns, int64_t other_ns, bool leads);
 
 /* Returns whether the wait is not over. The time since the last poll is added to the wait, as
  * ANTICIPATION_POLL_NS at most: if it was longer, the system ran other programs. On input: a client

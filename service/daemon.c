@@ -22,8 +22,9 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Most batches read in a row, so that a flood of datagrams does not prevent answers. */
-enum { BATCHES_MAX = 4 };
+/* After this time the bus is read no further, so that a flood of datagrams does not prevent
+ * answers. */
+static const int64_t drain_ns = 200000;
 
 /* Interval at which signals and the watchdog are polled while queries are pending. */
 static const int64_t poll_ns = 10000000;
@@ -129,14 +130,15 @@ static void fail(struct daemon *daemon)
 
 static void drain(struct daemon *daemon)
 {
-    int datagrams = BUS_BATCH;
-    for (int i = 0; i < BATCHES_MAX && datagrams == BUS_BATCH; i++) {
+    const int64_t until_ns = clock_ns() + drain_ns;
+    int datagrams;
+    do {
         datagrams = bus_receive(daemon->bus, on_message, daemon->server);
         if (datagrams >= 0)
             server_end_batch(daemon->server, datagrams);
         else
             fail(daemon);
-    }
+    } while (datagrams == BUS_BATCH && clock_ns() < until_ns);
 }
 
 static void heartbeat_if_due(struct daemon *daemon)

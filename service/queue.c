@@ -40,11 +40,13 @@ struct queue_chunk {
     int32_t older, newer; /* neighbours in the FIFO: datagrams */
     int32_t size;         /* bytes of the datagram */
     int kind;
+    int64_t arrived_ns;
     uint64_t arrival; /* number of the queue_put() call that added it */
 };
 
 struct queue_client {
     int32_t chunks;                                   /* held */
+    int64_t waiting[QUEUE_FIFOS];                     /* datagrams */
     int32_t oldest[QUEUE_FIFOS], newest[QUEUE_FIFOS]; /* datagrams */
     int32_t equal_before, equal_after; /* neighbours among the clients that hold as many chunks */
 };
@@ -115,9 +117,10 @@ static int32_t take_chunk(struct queue *queue)
 
 /* Copies a datagram into free chunks and returns its index. It is in no FIFO yet. On input: enough
  * chunks are free. */
-static int32_t write_datagram(struct queue *queue, int kind, const unsigned char *bytes,
-                              size_t size)
+static int32_t write_datagram(struct queue *queue, const struct queue_datagram *datagram,
+                              const unsigned char *bytes)
 {
+    const size_t size = datagram->size;
     int32_t first = 0, *link = &first;
     for (size_t start = 0; start < size; start += QUEUE_CHUNK) {
         int32_t chunk = take_chunk(queue);
@@ -127,7 +130,9 @@ static int32_t write_datagram(struct queue *queue, int kind, const unsigned char
     }
     *link = 0;
     queue->chunk[first].size = (int32_t) size;
-    queue->chunk[first].kind = kind;
+    queue->chunk[first].kind = datagram->kind;
+    queue->chunk[first].arrived_ns = datagram->arrived_ns;
+    queue->chunk[first].arrival = ++queue->arrivals;
     return first;
 }
 
@@ -215,6 +220,7 @@ static void append(struct queue *queue, int32_t c, enum queue_fifo fifo, int32_t
     else
         client->oldest[fifo] = datagram;
     client->newest[fifo] = datagram;
+    client->waiting[fifo]++;
 }
 
 /* Removes a datagram from its FIFO. On input: its oldest or its newest. */
@@ -230,6 +236,7 @@ static void unlink_datagram(struct queue *queue, int32_t c, enum queue_fifo fifo
         queue->chunk[newer].older = older;
     else
         client->newest[fifo] = older;
+    client->waiting[fifo]--;
 }
 
 static void remove_datagram(struct queue *queue, int32_t c, enum queue_fifo fifo, int32_t datagram,
@@ -238,6 +245,7 @@ static void remove_datagram(struct queue *queue, int32_t c, enum queue_fifo fifo
     out->client = c - 1;
     out->kind = queue->chunk[datagram].kind;
     out->size = (size_t) queue->chunk[datagram].size;
+    out->arrived_ns = queue->chunk[datagram].arrived_ns;
     unlink_datagram(queue, c, fifo, datagram);
     read_datagram(queue, datagram, bytes);
     hold(queue, c, -chunks_of(out->size));
@@ -259,45 +267,48 @@ static enum queue_fifo newest_fifo(const struct queue *queue, int32_t c)
 
 /* ---- Interface ------------------------------------------------------------------------------- */
 
-enum queue_put_result queue_put(struct queue *queue, int client, enum queue_fifo fifo, int kind,
-                                const unsigned char *bytes, size_t size)
+enum queue_put_result queue_put(struct queue *queue, enum queue_fifo fifo,
+                                const struct queue_datagram *datagram, const unsigned char *bytes)
 {
-    assert(size >= 1 && size <= QUEUE_DATAGRAM_MAX);
-    const int32_t chunks = chunks_of(size), c = client + 1;
+    assert(datagram->size >= 1 && datagram->size <= QUEUE_DATAGRAM_MAX);
+    const int32_t chunks = chunks_of(datagram->size), c = datagram->client + 1;
     if (reclaimable(queue, queue->client[c].chunks + chunks, chunks) < chunks)
         return QUEUE_REFUSED;
     if (queue->counts.capacity - queue->counts.chunks < chunks)
         return QUEUE_FULL;
-    const int32_t datagram = write_datagram(queue, kind, bytes, size);
-    queue->chunk[datagram].arrival = ++queue->arrivals;
-    append(queue, c, fifo, datagram);
+    append(queue, c, fifo, write_datagram(queue, datagram, bytes));
     hold(queue, c, chunks);
     if (++queue->counts.datagrams > queue->counts.datagrams_most)
         queue->counts.datagrams_most = queue->counts.datagrams;
     return QUEUE_ADDED;
 }
 
-bool queue_has(const struct queue *queue, int client, enum queue_fifo fifo)
+const int64_t *queue_waiting(const struct queue *queue, int client)
 {
-    return queue->client[client + 1].oldest[fifo] != 0;
+    return queue->client[client + 1].waiting;
 }
 
 bool queue_pop(struct queue *queue, int client, enum queue_fifo fifo, struct queue_datagram *out,
                unsigned char bytes[QUEUE_DATAGRAM_MAX])
 {
     const int32_t c = client + 1;
-    if (!queue_has(queue, client, fifo))
+    if (queue->client[c].waiting[fifo] == 0)
         return false;
     remove_datagram(queue, c, fifo, queue->client[c].oldest[fifo], out, bytes);
     return true;
 }
 
-bool queue_evict(struct queue *queue, struct queue_datagram *out,
+int queue_largest(const struct queue *queue)
+{
+    return queue->top ? queue->level[queue->top] - 1 : -1;
+}
+
+bool queue_evict(struct queue *queue, int client, struct queue_datagram *out,
                  unsigned char bytes[QUEUE_DATAGRAM_MAX])
 {
-    if (!queue->top)
+    const int32_t c = client + 1;
+    if (queue->client[c].chunks == 0)
         return false;
-    const int32_t c = queue->level[queue->top];
     const enum queue_fifo fifo = newest_fifo(queue, c);
     remove_datagram(queue, c, fifo, queue->client[c].newest[fifo], out, bytes);
     return true;

@@ -41,13 +41,14 @@ struct queue;
 
 struct queue_datagram {
     int client;
-    int kind; /* as given to queue_put() */
+    int kind;
     size_t size;
+    int64_t arrived_ns;
 };
 
 enum queue_put_result {
     QUEUE_ADDED,
-    QUEUE_FULL,    /* not added yet: call queue_evict(), then queue_put() again */
+    QUEUE_FULL,    /* not added yet: evict from queue_largest(), then call queue_put() again */
     QUEUE_REFUSED, /* not added: the other clients do not hold enough more than the sender */
 };
 
@@ -63,25 +64,30 @@ struct queue_counts {
 struct queue *queue_create(size_t chunks, int clients);
 void queue_destroy(struct queue *queue);
 
-/* Copies a datagram to the end of a FIFO. On input: size from 1 to QUEUE_DATAGRAM_MAX; any kind.
+/* Copies a datagram to the end of a FIFO. On input: size from 1 to QUEUE_DATAGRAM_MAX; any kind and
+ * time, which queue_pop() and queue_evict() return.
  *
- * QUEUE_FULL and QUEUE_REFUSED change nothing. After QUEUE_FULL, if queue_evict() and queue_put()
- * alternate with no other call between them, the datagram is added after at most
+ * QUEUE_FULL and QUEUE_REFUSED change nothing. After QUEUE_FULL, if evictions and queue_put()
+ * alternate with no other change between them, the datagram is added after at most
  * QUEUE_DATAGRAM_MAX / QUEUE_CHUNK evictions. */
-enum queue_put_result queue_put(struct queue *queue, int client, enum queue_fifo fifo, int kind,
-                                const unsigned char *bytes, size_t size);
+enum queue_put_result queue_put(struct queue *queue, enum queue_fifo fifo,
+                                const struct queue_datagram *datagram, const unsigned char *bytes);
 
-/* Whether the FIFO has a datagram. */
-bool queue_has(const struct queue *queue, int client, enum queue_fifo fifo);
+/* Number of datagrams in each FIFO of a client. */
+const int64_t *queue_waiting(const struct queue *queue, int client);
 
 /* Removes the oldest datagram of a FIFO. On output: *out, and its out->size bytes. Returns false,
  * and changes nothing, if the FIFO is empty. */
 bool queue_pop(struct queue *queue, int client, enum queue_fifo fifo, struct queue_datagram *out,
                unsigned char bytes[QUEUE_DATAGRAM_MAX]);
 
-/* Removes the newest datagram of a client that holds most chunks; to be called after queue_put()
- * returned QUEUE_FULL. On output: as for queue_pop(). Returns false if the queue is empty. */
-bool queue_evict(struct queue *queue, struct queue_datagram *out,
+/* A client that holds most chunks, from which queue_evict() is to evict after QUEUE_FULL; -1: the
+ * queue is empty. */
+int queue_largest(const struct queue *queue);
+
+/* Removes the newest datagram of a client, of both FIFOs. On output: as for queue_pop(). Returns
+ * false if it has none. */
+bool queue_evict(struct queue *queue, int client, struct queue_datagram *out,
                  unsigned char bytes[QUEUE_DATAGRAM_MAX]);
 
 struct queue_counts queue_counts(const struct queue *queue);

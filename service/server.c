@@ -12,12 +12,14 @@
 #include "malformed.h"
 #include "queue.h"
 #include "process.h"
+#include "quota.h"
 #include "scheduler.h"
 #include "wire.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* [kind] Channel names without prefix, header reader (NULL: not queued), and FIFO of the queue. */
 static const struct {
@@ -64,10 +66,10 @@ struct server {
      * time that reading took. */
     int batch[BATCH_MAX], batch_count;
     int64_t batch_ns;
-    int64_t bus_empty_ns;                    /* when the bus was last empty */
-    int64_t serve_ns[SCHEDULER_CLIENTS + 1]; /* [client] average duration of serve() */
-    int last_client;                         /* the client served last; -1: none */
-    struct histogram compute_ns;             /* of all queries answered with FMB_OK */
+    int64_t bus_empty_ns;                      /* when the bus was last empty */
+    struct quota quota[SCHEDULER_CLIENTS + 1]; /* [client] */
+    int last_client;                           /* the client served last; -1: none */
+    struct histogram compute_ns;               /* of all queries answered with FMB_OK */
     struct wire_status status; /* counts so far; complete_status() sets the other fields */
     int64_t ready_ns, heartbeat_due_ns;
     struct malformed malformed;
@@ -86,18 +88,29 @@ struct server {
 
 /* ---- Results ---- */
 
-/* Publishes server->out, size bytes, and counts it. */
-static void publish_result(struct server *server, enum server_kind kind, size_t size,
-                           int32_t status)
+static void count_query(struct server *server, enum server_kind kind, bool answered)
 {
     server->status.received++;
     server->status.scenes += kind == SERVER_SCENES;
     server->status.definitions += kind == SERVER_DEFINITIONS;
-    if (!server->publish(server->user, server->result_channel[kind], server->out, size)) {
-        server->status.unsent++;
-        return;
-    }
-    server->status.answered++;
+    server->status.answered += answered;
+    server->status.unsent += !answered;
+}
+
+/* Publishes server->out, size bytes, and counts it. */
+static void publish_result(struct server *server, enum server_kind kind, size_t size,
+                           int32_t status)
+{
+    const bool sent =
+        server->publish(server->user, server->result_channel[kind], server->out, size);
+    count_query(server, kind, sent);
+    server->status.results[status] += sent;
+}
+
+/* Drops a query without a result. On input: FMB_EXPIRED or FMB_REFUSAL_UNSENT. */
+static void drop(struct server *server, int kind, enum fmb_status status)
+{
+    count_query(server, (enum server_kind) kind, false);
     server->status.results[status]++;
 }
 
@@ -117,25 +130,14 @@ static void publish_definition(struct server *server, const struct definition *r
                    result->status);
 }
 
-/* Number of pairs decided. Pairs that the broad phase separated count, though they have no verdict
- * in the result; pairs that the method cannot decide (verdict 0) do not. */
-static int64_t decided(const struct scene_result *result, int32_t first_pair)
-{
-    int64_t pairs = result->end_pair - first_pair;
-    for (int32_t i = 0; i < result->verdict_count; i++)
-        pairs -= result->verdict[i] == 0;
-    return pairs;
-}
-
-static void publish_scene(struct server *server, int32_t first_pair,
-                          const struct scene_result *result)
+/* On input: pairs: number of pairs decided. */
+static void publish_scene(struct server *server, int32_t pairs, const struct scene_result *result)
 {
     publish_result(server, SERVER_SCENES, wire_write_scene_result(result, server->out),
                    result->status);
-    if (result->status != FMB_OK)
-        return;
-    server->status.pairs += decided(result, first_pair);
-    histogram_add(&server->compute_ns, result->compute_ns);
+    server->status.pairs += pairs;
+    if (result->status == FMB_OK)
+        histogram_add(&server->compute_ns, result->compute_ns);
 }
 
 /* Notes a query that cannot be read. error: why it cannot; NULL: it can. */
@@ -152,8 +154,8 @@ static bool is_malformed(struct server *server, enum server_kind kind, size_t si
 /* Whether the client has a job or a query in the queue. */
 static bool has_work(const struct server *server, int client)
 {
-    return server->jobs.of_client[client] || queue_has(server->queue, client, QUEUE_SHORT) ||
-           queue_has(server->queue, client, QUEUE_SCENES);
+    const int64_t *waiting = queue_waiting(server->queue, client);
+    return server->jobs.of_client[client] || waiting[QUEUE_SHORT] || waiting[QUEUE_SCENES];
 }
 
 /* Makes a client that has work active, and any other idle. */
@@ -167,30 +169,83 @@ static void update_activity(struct server *server, int client)
     }
 }
 
+/* ---- Refusals ---- */
+
+static void refuse_pair(struct server *server, const unsigned char *bytes, size_t size,
+                        enum fmb_status status)
+{
+    const char *error = wire_read_pair_query(bytes, (uint32_t) size, &server->pair);
+    if (is_malformed(server, SERVER_PAIRS, size, error))
+        return;
+    answer_pair_refused(server->answerer, &server->pair, status, &server->pair_result);
+    publish_pair(server, &server->pair_result);
+}
+
+/* Refuses a scene or definition query. Needs only its header, which server_receive() has found to
+ * be valid. */
+static void refuse_other(struct server *server, enum server_kind kind, const unsigned char *bytes,
+                         size_t size, enum fmb_status status)
+{
+    struct query_header header;
+    kinds[kind].read_header(bytes, (uint32_t) size, &header);
+    if (kind == SERVER_SCENES) {
+        answer_scene_refused(server->answerer, &header, status, &server->refused);
+        publish_scene(server, 0, &server->refused);
+    } else {
+        answer_definition_refused(server->answerer, &header, status, &server->definition_result);
+        publish_definition(server, &server->definition_result);
+    }
+}
+
+/* Refuses a query; without a result, if its client has got as many as its quota allows. The time is
+ * charged to its client, not to the batch. */
+static void refuse(struct server *server, const struct queue_datagram *datagram,
+                   const unsigned char *bytes, enum fmb_status status)
+{
+    server->batch_ns += meter_read(&server->meter);
+    if (!quota_take_refusal(&server->quota[datagram->client], server->meter.wall_ns))
+        drop(server, datagram->kind, FMB_REFUSAL_UNSENT);
+    else if (datagram->kind == SERVER_PAIRS)
+        refuse_pair(server, bytes, datagram->size, status);
+    else
+        refuse_other(server, (enum server_kind) datagram->kind, bytes, datagram->size, status);
+    scheduler_charge(server->scheduler, datagram->client, meter_read(&server->meter));
+}
+
+/* Evicts the newest query of a client and refuses it as busy. Returns false if it has none. */
+static bool evict(struct server *server, int client)
+{
+    struct queue_datagram evicted;
+    if (!queue_evict(server->queue, client, &evicted, server->evicted))
+        return false;
+    refuse(server, &evicted, server->evicted, FMB_BUSY);
+    update_activity(server, client);
+    return true;
+}
+
 /* ---- Pairs and definitions ---- */
 
 /* Moves a pair query of bodies of several frames to the FIFO of scenes, since it needs a job. The
  * queue has capacity for it, from which it has just been popped; if it refuses the query all the
  * same, the client gets FMB_BUSY. */
-static void defer_pair(struct server *server, int client, size_t size)
+static void defer_pair(struct server *server, const struct queue_datagram *query)
 {
-    const enum queue_put_result result =
-        queue_put(server->queue, client, QUEUE_SCENES, SERVER_PAIRS, server->datagram, size);
-    if (result == QUEUE_ADDED)
+    if (queue_put(server->queue, QUEUE_SCENES, query, server->datagram) == QUEUE_ADDED)
         return;
     answer_pair_refused(server->answerer, &server->pair, FMB_BUSY, &server->pair_result);
     publish_pair(server, &server->pair_result);
 }
 
-static void process_pair(struct server *server, int client, size_t size)
+static void process_pair(struct server *server, const struct queue_datagram *query)
 {
     struct pair_result *result = &server->pair_result;
-    const char *error = wire_read_pair_query(server->datagram, (uint32_t) size, &server->pair);
-    if (is_malformed(server, SERVER_PAIRS, size, error))
+    const char *error =
+        wire_read_pair_query(server->datagram, (uint32_t) query->size, &server->pair);
+    if (is_malformed(server, SERVER_PAIRS, query->size, error))
         return;
     const int64_t begin_ns = server->clocks->wall_ns();
     if (!answer_pair(server->answerer, &server->pair, result)) {
-        defer_pair(server, client, size);
+        defer_pair(server, query);
         return;
     }
     result->compute_ns = server->clocks->wall_ns() - begin_ns;
@@ -207,10 +262,19 @@ static void process_definition(struct server *server, size_t size)
     publish_definition(server, &server->definition_result);
 }
 
+static void answer_short(struct server *server, const struct queue_datagram *query)
+{
+    if (query->kind == SERVER_PAIRS)
+        process_pair(server, query);
+    else
+        process_definition(server, query->size);
+}
+
 /* ---- Scenes, and pairs of bodies of several frames ---- */
 
 static void finish_job(struct server *server, struct job *job)
 {
+    quota_note(&server->quota[job->client], QUEUE_SCENES, job->used_ns);
     if (job->is_pair) {
         struct pair_result *result = pair_job_end(job->pair, server->answerer);
         result->compute_ns = job->used_ns;
@@ -218,7 +282,7 @@ static void finish_job(struct server *server, struct job *job)
     } else {
         struct scene_result *result = scene_job_result(job->scene);
         result->compute_ns = job->used_ns;
-        publish_scene(server, scene_job_query(job->scene)->first_pair, result);
+        publish_scene(server, scene_job_decided(job->scene), result);
     }
     jobs_give_back(&server->jobs, job);
 }
@@ -244,20 +308,17 @@ static void stop_longest_job(struct server *server, int for_client)
     update_activity(server, client);
 }
 
-/* Begins the job for the oldest datagram in the client's FIFO of scenes. NULL: the datagram is
- * malformed. */
-static struct job *begin_job(struct server *server, int client)
+/* Begins the job of a query from the client's FIFO of scenes. NULL: the query is malformed. */
+static struct job *begin_job(struct server *server, const struct queue_datagram *query)
 {
-    struct queue_datagram next;
     if (server->jobs.free == 0)
-        stop_longest_job(server, client);
-    queue_pop(server->queue, client, QUEUE_SCENES, &next, server->datagram);
-    struct job *job = jobs_take(&server->jobs, client);
-    job->is_pair = next.kind == SERVER_PAIRS;
+        stop_longest_job(server, query->client);
+    struct job *job = jobs_take(&server->jobs, query->client);
+    job->is_pair = query->kind == SERVER_PAIRS;
     const char *error =
-        job->is_pair ? pair_job_begin(job->pair, server->answerer, server->datagram, next.size)
-                     : scene_job_begin(job->scene, server->datagram, next.size);
-    if (!is_malformed(server, (enum server_kind) next.kind, next.size, error))
+        job->is_pair ? pair_job_begin(job->pair, server->answerer, server->datagram, query->size)
+                     : scene_job_begin(job->scene, server->datagram, query->size);
+    if (!is_malformed(server, (enum server_kind) query->kind, query->size, error))
         return job;
     jobs_give_back(&server->jobs, job);
     return NULL;
@@ -274,16 +335,10 @@ static bool step(struct server *server, struct job *job)
     return job->is_pair ? pair_job_step(job->pair) : scene_job_step(job->scene, server->answerer);
 }
 
-/* Steps the client's job, or begins its next one, for about max_ns nanoseconds: it ends with the
- * first step that reaches them. */
-static void advance_job(struct server *server, int client, int64_t max_ns)
+/* Steps a job for about max_ns nanoseconds: it ends with the first step that reaches them. */
+static void advance_job(struct server *server, struct job *job, int64_t max_ns)
 {
     const int64_t begin_ns = server->meter.wall_ns;
-    struct job *job = server->jobs.of_client[client];
-    if (!job)
-        job = begin_job(server, client);
-    if (!job)
-        return;
     bool complete = false;
     int64_t turn_ns = 0;
     while (!complete && turn_ns < max_ns) {
@@ -305,7 +360,7 @@ static void advance_job(struct server *server, int client, int64_t max_ns)
 static bool may_serve(const void *user, int client)
 {
     const struct server *server = user;
-    return server->jobs.of_client[client] || queue_has(server->queue, client, QUEUE_SHORT) ||
+    return server->jobs.of_client[client] || queue_waiting(server->queue, client)[QUEUE_SHORT] ||
            server->jobs.free > 0 || jobs_longest((struct jobs *) &server->jobs);
 }
 
@@ -318,25 +373,48 @@ static int64_t charge_of(int64_t used_ns)
     return used_ns > short_ns ? 2 * used_ns - short_ns : used_ns;
 }
 
+/* Evicts the newest queries of a client until its quota is kept. */
+static void keep_quota(struct server *server, int client)
+{
+    while (quota_exceeded(&server->quota[client], queue_waiting(server->queue, client),
+                          queue_counts(server->queue).clients))
+        evict(server, client);
+}
+
 /* Does one unit of work for the client and charges it: answers its oldest short query or, if it has
- * none, advances its job. */
+ * none, advances its job or begins the next one. A query that has waited too long is dropped. */
 static void serve(struct server *server, int client, int64_t job_max_ns)
 {
-    struct queue_datagram next;
+    struct job *job = server->jobs.of_client[client];
+    struct queue_datagram query;
     if (client != server->last_client)
         meter_base(&server->meter);
     server->last_client = client;
     scheduler_advance(server->scheduler);
-    if (!queue_pop(server->queue, client, QUEUE_SHORT, &next, server->datagram))
-        advance_job(server, client, job_max_ns);
-    else if (next.kind == SERVER_PAIRS)
-        process_pair(server, client, next.size);
-    else
-        process_definition(server, next.size);
+    const bool is_short = queue_pop(server->queue, client, QUEUE_SHORT, &query, server->datagram);
+    const bool begins = is_short || (!job && queue_pop(server->queue, client, QUEUE_SCENES, &query,
+                                                       server->datagram));
+    const bool expired = begins && server->clocks->wall_ns() - query.arrived_ns > QUOTA_AGE_NS;
+    if (expired)
+        drop(server, query.kind, FMB_EXPIRED);
+    else if (is_short)
+        answer_short(server, &query);
+    else if (job || (begins && (job = begin_job(server, &query))))
+        advance_job(server, job, job_max_ns);
     const int64_t used_ns = meter_read(&server->meter);
-    server->serve_ns[client] += (used_ns - server->serve_ns[client]) / 4;
+    if (is_short && !expired)
+        quota_note(&server->quota[client], QUEUE_SHORT, used_ns);
     scheduler_charge(server->scheduler, client, charge_of(used_ns));
+    keep_quota(server, client);
     update_activity(server, client);
+}
+
+/* Estimated time of the client's next query. */
+static int64_t next_ns(const struct server *server, int client)
+{
+    return quota_estimate(&server->quota[client], queue_waiting(server->queue, client)[QUEUE_SHORT]
+                                                      ? QUEUE_SHORT
+                                                      : QUEUE_SCENES);
 }
 
 /* Begins to anticipate the next query of the client just served. Requires that the client is idle,
@@ -350,8 +428,8 @@ static bool begin_anticipating(struct server *server, int client)
         return false;
     const int64_t lead_ns = scheduler_lead(server->scheduler, client);
     return anticipation_begin(&server->anticipation, client, server->meter.wall_ns,
-                              lead_ns + SCHEDULER_SLICE_NS,
-                              lead_ns > SCHEDULER_SLICE_NS ? INT64_MAX : server->serve_ns[next]);
+                              lead_ns + SCHEDULER_SLICE_NS, next_ns(server, next),
+                              lead_ns > SCHEDULER_SLICE_NS);
 }
 
 /* Returns whether to keep waiting for the anticipated client: its query has not arrived, the time
@@ -400,60 +478,23 @@ void server_resume(struct server *server)
 
 /* ---- Queries that arrive ---- */
 
-static void refuse_pair(struct server *server, const unsigned char *bytes, size_t size,
-                        enum fmb_status status)
-{
-    const char *error = wire_read_pair_query(bytes, (uint32_t) size, &server->pair);
-    if (is_malformed(server, SERVER_PAIRS, size, error))
-        return;
-    answer_pair_refused(server->answerer, &server->pair, status, &server->pair_result);
-    publish_pair(server, &server->pair_result);
-}
-
-/* Refuses a scene or definition query. Needs only its header, which server_receive() has found to
- * be valid. */
-static void refuse_other(struct server *server, enum server_kind kind, const unsigned char *bytes,
-                         size_t size, enum fmb_status status)
-{
-    struct query_header header;
-    kinds[kind].read_header(bytes, (uint32_t) size, &header);
-    if (kind == SERVER_SCENES) {
-        answer_scene_refused(server->answerer, &header, status, &server->refused);
-        publish_scene(server, 0, &server->refused);
-    } else {
-        answer_definition_refused(server->answerer, &header, status, &server->definition_result);
-        publish_definition(server, &server->definition_result);
-    }
-}
-
-/* Refuses a query. The time is charged to its client, not to the batch. */
-static void refuse(struct server *server, const struct queue_datagram *datagram,
-                   const unsigned char *bytes, enum fmb_status status)
-{
-    server->batch_ns += meter_read(&server->meter);
-    if (datagram->kind == SERVER_PAIRS)
-        refuse_pair(server, bytes, datagram->size, status);
-    else
-        refuse_other(server, (enum server_kind) datagram->kind, bytes, datagram->size, status);
-    scheduler_charge(server->scheduler, datagram->client, meter_read(&server->meter));
-}
-
 /* Puts a query into the queue, and refuses the queries that are evicted for it; or refuses the
- * query itself. */
-static void enqueue(struct server *server, const struct queue_datagram *datagram,
+ * query itself, if it exceeds its client's quota or share of the queue. */
+static void enqueue(struct server *server, const struct queue_datagram *query,
                     const unsigned char *bytes)
 {
-    enum queue_put_result result;
-    while ((result = queue_put(server->queue, datagram->client, kinds[datagram->kind].fifo,
-                               datagram->kind, bytes, datagram->size)) == QUEUE_FULL) {
-        struct queue_datagram evicted;
-        if (!queue_evict(server->queue, &evicted, server->evicted))
-            break;
-        refuse(server, &evicted, server->evicted, FMB_BUSY);
-        update_activity(server, evicted.client);
-    }
-    if (result == QUEUE_REFUSED)
-        refuse(server, datagram, bytes, FMB_BUSY);
+    const int client = query->client;
+    const enum queue_fifo fifo = kinds[query->kind].fifo;
+    enum queue_put_result result = QUEUE_REFUSED;
+    int64_t waiting[QUEUE_FIFOS];
+    memcpy(waiting, queue_waiting(server->queue, client), sizeof waiting);
+    waiting[fifo]++;
+    if (!quota_exceeded(&server->quota[client], waiting, queue_counts(server->queue).clients))
+        while ((result = queue_put(server->queue, fifo, query, bytes)) == QUEUE_FULL &&
+               evict(server, queue_largest(server->queue)))
+            continue;
+    if (result != QUEUE_ADDED)
+        refuse(server, query, bytes, FMB_BUSY);
 }
 
 /* Divides the time of a batch by the number of its datagrams, and charges each to its client. The
@@ -475,15 +516,18 @@ static void receive_query(struct server *server, enum server_kind kind, const un
     if (is_malformed(server, kind, size, error))
         return;
     const int client = scheduler_client(server->scheduler, header.client_id);
-    const struct queue_datagram datagram = {.client = client, .kind = kind, .size = size};
+    struct quota *quota = &server->quota[client];
+    if (client < SCHEDULER_CLIENTS && quota->client_id != header.client_id)
+        *quota = (struct quota){.client_id = header.client_id};
+    const struct queue_datagram query = {client, kind, size, server->clocks->wall_ns()};
     if (server->batch_count == BATCH_MAX)
         charge_batch(server, BATCH_MAX);
     server->batch[server->batch_count++] = client;
     anticipation_arrived(&server->anticipation, client, server->bus_empty_ns);
     if (size > QUERY_BYTES_MAX)
-        refuse(server, &datagram, bytes, FMB_OVER_LIMIT);
+        refuse(server, &query, bytes, FMB_OVER_LIMIT);
     else
-        enqueue(server, &datagram, bytes);
+        enqueue(server, &query, bytes);
     update_activity(server, client);
 }
 

@@ -5,8 +5,10 @@
  * least is served next. A client's pair and definition queries do not wait for its own scenes;
  * pairs of bodies of several frames do. Scenes are answered in steps; between them other clients
  * are served and the bus is read. If the queue is full, the client that holds most of it gets
- * FMB_BUSY for its newest query. If all jobs (jobs.h) are in use and another client needs one, the
- * job that has used most time ends: with the pairs answered so far, or as FMB_BUSY.
+ * FMB_BUSY for its newest query; so does a client whose waiting queries exceed its quota (quota.h).
+ * Queries that have waited too long, and refusals of a client that gets many, are counted and have
+ * no result. If all jobs (jobs.h) are in use and another client needs one, the job that has used
+ * most time ends: with the pairs answered so far, or as FMB_BUSY.
  *
  * One server may be used by one thread at a time; servers share no state. The caller's loop:
  *
@@ -52,9 +54,9 @@ const char *server_query_channel(const struct server *server, enum server_kind k
 const char *server_result_channel(const struct server *server, enum server_kind kind);
 
 /* Processes a message from the query channel of a kind. A query is queued; it is refused if it is
- * too long or the queue is full. A message that is malformed is counted and reported. A heartbeat
- * is checked for another service. On input: size bytes, untrusted, of any alignment; they are not
- * used after the call. */
+ * too long, exceeds its client's quota or the queue is full. A message that is malformed is counted
+ * and reported. A heartbeat is checked for another service. On input: size bytes, untrusted, of any
+ * alignment; they are not used after the call. */
 void server_receive(struct server *server, enum server_kind kind, const unsigned char *bytes,
                     size_t size);
 

@@ -300,7 +300,8 @@ struct fmb_client_heartbeat {
 #define X(name) int64_t name;
     FMB_CLIENT_COUNTERS(X)
 #undef X
-    int64_t results[FMB_STATUS_COUNT]; /* [status]: results sent */
+    int64_t results[FMB_STATUS_COUNT]; /* [status]: results sent; EXPIRED,
+                                          REFUSAL_UNSENT: queries without a result */
 };
 
 /* Callbacks. Messages whose callback is NULL are not received. */

@@ -29,7 +29,7 @@ struct scene_job {
     void *memory;                  /* owned; fmb_scene_bytes(&limits) bytes */
     struct used_body used[QUERY_PLACEMENTS_MAX];
     struct fmb_placement placement[QUERY_PLACEMENTS_MAX];
-    /* Bit bit_of(pair): the pair is ignored. Valid for listed pairs only; see check_ignored(). */
+    /* Bit bit_of(pair), see check_ignored() and count_ignored(); other bits have no meaning. */
     unsigned char ignored[QUERY_PLACEMENTS_MAX * QUERY_PLACEMENTS_MAX / 8 + 1];
     struct scene_result result;
     struct scene_query query;
@@ -73,6 +73,49 @@ struct scene_result *scene_job_result(struct scene_job *job)
 {
     assert(job->stage == COMPLETE);
     return &job->result;
+}
+
+/* Index of the bit of a pair, in either order, in scene_job.ignored. */
+static size_t bit_of(const unsigned pair[2])
+{
+    const unsigned lower = pair[0] < pair[1] ? pair[0] : pair[1];
+    const unsigned upper = pair[0] < pair[1] ? pair[1] : pair[0];
+    return (size_t) lower * QUERY_PLACEMENTS_MAX + upper;
+}
+
+/* Number of different ignored pairs among those from first_pair to end_pair, of all pairs or those
+ * across. scene_job.ignored: whether a pair was counted. */
+static int32_t count_ignored(struct scene_job *job)
+{
+    const struct scene_query *query = &job->query;
+    const int64_t n = query->placement_count, split = query->split;
+    int32_t count = 0;
+    for (int32_t i = 0; i < query->ignored_count / 2; i++)
+        job->ignored[bit_of(query->ignored[i]) / 8] = 0;
+    for (int32_t i = 0; i < query->ignored_count / 2; i++) {
+        const size_t bit = bit_of(query->ignored[i]);
+        const int64_t a = (int64_t) bit / QUERY_PLACEMENTS_MAX, b = bit % QUERY_PLACEMENTS_MAX;
+        const bool across = query->which == QUERY_PAIRS_ACROSS;
+        const int64_t number =
+            across ? a * (n - split) + b - split : a * (2 * n - a - 1) / 2 + b - a - 1;
+        if ((across && (a >= split || b < split)) || number < query->first_pair ||
+            number >= job->result.end_pair || job->ignored[bit / 8] >> bit % 8 & 1)
+            continue;
+        job->ignored[bit / 8] |= (unsigned char) (1u << bit % 8);
+        count++;
+    }
+    return count;
+}
+
+int32_t scene_job_decided(struct scene_job *job)
+{
+    const struct scene_result *result = scene_job_result(job);
+    if (result->status != FMB_OK)
+        return 0;
+    int32_t pairs = result->end_pair - job->query.first_pair;
+    for (int32_t i = 0; i < result->verdict_count; i++)
+        pairs -= result->verdict[i] == 0;
+    return result->names_pairs ? pairs - count_ignored(job) : pairs;
 }
 
 /* Releases the bodies of a query in progress, which ends it. */
@@ -163,14 +206,6 @@ static bool check_indices(struct check_context *context, const char *field,
             return false;
     }
     return true;
-}
-
-/* Index of the bit of a pair, in either order, in scene_job.ignored. */
-static size_t bit_of(const unsigned pair[2])
-{
-    const unsigned lower = pair[0] < pair[1] ? pair[0] : pair[1];
-    const unsigned upper = pair[0] < pair[1] ? pair[1] : pair[0];
-    return (size_t) lower * QUERY_PLACEMENTS_MAX + upper;
 }
 
 /* No listed pair may be ignored. Only the bits of listed pairs are read: they are cleared first, so

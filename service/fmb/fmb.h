@@ -84,7 +84,9 @@ enum { FMB_DIM_MAX = 3, FMB_COMPONENTS_MAX = FMB_DIM_MAX * FMB_DIM_MAX };
     X(BAD_ORIENTATION, 16, "an orientation that is no rotation")                          \
     X(BAD_SIZE, 17, "a box of negative size")                                             \
     X(NO_FRAMES, 18, "a body without frames")                                             \
-    X(BAD_MARGIN, 19, "the margin is negative or not finite")
+    X(BAD_MARGIN, 19, "the margin is negative or not finite")                             \
+    X(EXPIRED, 20, "waited too long, without a result")                                   \
+    X(REFUSAL_UNSENT, 21, "too often, without a result")
 
 enum fmb_status {
 #define X(name, number, text) FMB_##name = number,

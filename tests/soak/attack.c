@@ -14,11 +14,11 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { IDS_MAX = 64, FIRST_ID = 1000000 };
+enum { IDS_MAX = 64 };
 
 const struct attack attacks[] = {
-    {"certificates", 0, 4}, {"boxes", 0, 4},       {"bodies", 0, 4},
-    {"rate", 26000, 0},     {"definitions", 0, 4}, {"ids", 5000, 0},
+    {"certificates", 0, 4}, {"boxes", 0, 4},  {"bodies", 0, 4},    {"rate", 26000, 0},
+    {"definitions", 0, 4},  {"ids", 5000, 0}, {"flood", 26000, 0}, /* of certificates */
 };
 const int attack_count = sizeof attacks / sizeof *attacks;
 
@@ -34,6 +34,7 @@ struct attacker {
     const struct attack *attack;
     struct bus *bus;
     long ids;
+    int64_t first_id;
     int64_t sent; /* queries, which number them too */
     int64_t under_way[IDS_MAX];
     int64_t answered_ns[IDS_MAX];
@@ -120,7 +121,7 @@ static size_t write_definitions(const struct attacker *attacker, int64_t id)
 static void send_query(struct attacker *attacker, long i)
 {
     const char *name = attacker->attack->name, *channel = WIRE_PAIR_QUERY;
-    int64_t id = FIRST_ID + i;
+    int64_t id = attacker->first_id + i;
     size_t size;
     attacker->sent++;
     if (strcmp(name, "boxes") == 0) {
@@ -135,7 +136,7 @@ static void send_query(struct attacker *attacker, long i)
     } else if (strcmp(name, "ids") == 0) {
         size = write_pair(attacker, id + attacker->sent, false);
     } else {
-        size = write_pair(attacker, id, strcmp(name, "certificates") == 0);
+        size = write_pair(attacker, id, strcmp(name, "rate") != 0);
     }
     attacker->under_way[i]++;
     bus_publish(attacker->bus, channel, bytes, size);
@@ -155,7 +156,7 @@ static int64_t client_of(const struct bus_message *message)
 static void on_result(void *user, const struct bus_message *message)
 {
     struct attacker *attacker = user;
-    const int64_t i = client_of(message) - FIRST_ID;
+    const int64_t i = client_of(message) - attacker->first_id;
     if (i < 0 || i >= attacker->ids)
         return;
     attacker->under_way[i]--;
@@ -198,12 +199,13 @@ static void keep_rate(struct attacker *attacker)
     }
 }
 
-static _Noreturn void run(const struct attack *attack, long ids)
+static _Noreturn void run(const struct attack *attack, long ids, int64_t first_id, const char *url)
 {
     static struct attacker attacker;
     static const char *const results[] = {WIRE_PAIR_RESULT, WIRE_SCENE_RESULT, WIRE_DEFINITION};
     char why[BUS_WHY_MAX];
-    attacker = (struct attacker){.attack = attack, .ids = ids, .bus = bus_open(NULL, why)};
+    attacker = (struct attacker){
+        .attack = attack, .ids = ids, .first_id = first_id, .bus = bus_open(url, why)};
     attacker.sent = clock_utime() % 1000000000 * 1000; /* bodies that no run before had */
     for (int i = 0; i < 3 && attacker.bus && !attack->rate; i++)
         bus_listen(attacker.bus, results[i], why);
@@ -218,12 +220,12 @@ static _Noreturn void run(const struct attack *attack, long ids)
     exit(EXIT_SUCCESS);
 }
 
-pid_t attack_start(const struct attack *attack, long ids)
+pid_t attack_start(const struct attack *attack, long ids, int64_t first_id, const char *url)
 {
     const pid_t process = fork();
     if (process == 0) {
         prctl(PR_SET_PDEATHSIG, SIGKILL);
-        run(attack, ids);
+        run(attack, ids, first_id, url);
     }
     return process;
 }

@@ -1,12 +1,16 @@
 /* What does a client get beside others that cost the service as much as they can? The bus is that
  * of LCM_DEFAULT_URL.
  *
- * soak-fair ATTACK [--ids N] [--seconds S] [--scenes] [--window W]
+ * soak-fair ATTACK [--and ATTACK] [--ids N] [--seconds S] [--scenes] [--window W]
+ *           [--headroom H] [--service PID]
  *
- * The client has W queries under way (1), of pairs or of scenes of 40 bodies. In turn it runs alone
- * and beside the attack (attack.c) from N client ids (1), for S seconds in all (4). Prints a line
- * of JSON. Exit code 0: no answer was lost, and beside one id the client kept at least a third of
- * its rate alone, beside N at least 1 / (2 (N + 1)). */
+ * The client has W queries under way (1), of pairs or of scenes of 40 bodies. The attack, or each
+ * of the two (attack.c), comes from N client ids (1). In turn the attackers send to a port without
+ * a service and to the service, for S seconds in all (4): so they take the same share of the
+ * machine. Prints a line of JSON. Exit code 0: no answer was lost, and the client kept the promised
+ * share of its rate: a third beside one id, 0.4 / N beside N, divided by H (1). 77: it did not, but
+ * programs other than this one, the attackers and the service, which is the process PID, used more
+ * than a tenth of the machine. */
 #include "attack.h"
 #include "bus.h"
 #include "clock.h"
@@ -18,17 +22,23 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
+#include <unistd.h>
 
-enum { CLIENT = 77, BODIES = 40, ROUNDS = 8, WINDOW_MAX = 64 };
+enum { CLIENT = 77, FIRST_ID = 1000000, BODIES = 40, ROUNDS = 8, WINDOW_MAX = 64 };
+
+/* A bus on which there is no service. */
+static const char unserved[] = "udpm://239.255.76.67:7669?ttl=0";
 
 /* A query without an answer after so long counts as lost. */
 static const int64_t lost_ns = 2000000000;
 
 struct plan {
-    const struct attack *attack;
+    const struct attack *attack[2]; /* the second may be NULL */
     long ids, window;
-    double seconds;
+    long service;
+    double seconds, headroom;
     bool scenes;
 };
 
@@ -164,53 +174,119 @@ static void pause_ms(long ms)
     nanosleep(&pause, NULL);
 }
 
+struct usage {
+    double busy, all; /* seconds of all cores */
+    double own;       /* seconds of CPU of this trial */
+};
+
+static double seconds_of(const struct timeval *time)
+{
+    return (double) time->tv_sec + 1e-6 * (double) time->tv_usec;
+}
+
+/* Time of interrupts counts as idle: that of this trial's datagrams cannot be told from others. */
+static struct usage measure_usage(long service)
+{
+    const double tick = 1 / (double) sysconf(_SC_CLK_TCK);
+    double t[8] = {0}, user = 0, kernel = 0;
+    struct rusage self, children;
+    char path[64];
+    FILE *file = fopen("/proc/stat", "r");
+    if (file && fscanf(file, "cpu %lf %lf %lf %lf %lf %lf %lf %lf", t, t + 1, t + 2, t + 3, t + 4,
+                       t + 5, t + 6, t + 7) == 8)
+        fclose(file);
+    snprintf(path, sizeof path, "/proc/%ld/stat", service);
+    file = fopen(path, "r");
+    if (file && fscanf(file, "%*d %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %lf %lf", &user,
+                       &kernel) == 2)
+        fclose(file);
+    getrusage(RUSAGE_SELF, &self);
+    getrusage(RUSAGE_CHILDREN, &children);
+    struct usage usage = {.busy = tick * (t[0] + t[1] + t[2] + t[7])};
+    for (int i = 0; i < 8; i++)
+        usage.all += tick * t[i];
+    usage.own = tick * (user + kernel) + seconds_of(&self.ru_utime) + seconds_of(&self.ru_stime) +
+                seconds_of(&children.ru_utime) + seconds_of(&children.ru_stime);
+    return usage;
+}
+
+/* The client's rate while the attackers send to this bus. */
+static double measure_beside(struct client *client, const char *url)
+{
+    const struct plan *plan = client->plan;
+    const int count = plan->attack[1] ? 2 : 1;
+    pid_t process[2];
+    for (int i = 0; i < count; i++)
+        process[i] = attack_start(plan->attack[i], plan->ids, FIRST_ID * (i + 1), url);
+    pause_ms(50);
+    const double rate = measure(client, plan->seconds / (2 * ROUNDS));
+    for (int i = 0; i < count; i++)
+        attack_end(process[i]);
+    if (!url)
+        pause_ms(150); /* their last queries are answered */
+    return rate;
+}
+
 static int run_trial(struct client *client)
 {
     const struct plan *plan = client->plan;
-    const double slice = plan->seconds / (2 * ROUNDS);
+    const long ids = plan->ids * (plan->attack[1] ? 2 : 1);
+    const struct usage before = measure_usage(plan->service);
     double alone = 0, beside = 0;
     measure(client, 0.2);
     for (int round = 0; round < ROUNDS; round++) {
-        alone += measure(client, slice) / ROUNDS;
-        const pid_t process = attack_start(plan->attack, plan->ids);
-        pause_ms(50);
-        beside += measure(client, slice) / ROUNDS;
-        attack_end(process);
-        pause_ms(150); /* its last queries are answered */
+        alone += measure_beside(client, unserved) / ROUNDS;
+        beside += measure_beside(client, NULL) / ROUNDS;
     }
-    const double share = beside / alone,
-                 least = plan->ids == 1 ? 1. / 3 : 0.5 / ((double) plan->ids + 1);
+    const struct usage after = measure_usage(plan->service);
+    const double others =
+        (after.busy - before.busy - (after.own - before.own)) / (after.all - before.all);
+    const double share = beside / alone;
+    const double least = (ids == 1 ? 1. / 3 : 0.4 / (double) ids) / plan->headroom;
     printf(
-        "{\"attack\": \"%s\", \"ids\": %ld, \"client\": \"%s\", \"window\": %ld, "
+        "{\"attack\": \"%s%s%s\", \"ids\": %ld, \"client\": \"%s\", \"window\": %ld, "
         "\"alone_per_second\": %.0f, \"beside_per_second\": %.0f, \"share\": %.3f, "
-        "\"least\": %.3f, \"lost\": %" PRId64 ", \"failed\": %" PRId64 ", \"longest_ms\": %.1f}\n",
-        plan->attack->name, plan->ids, plan->scenes ? "scenes" : "pairs", plan->window, alone,
-        beside, share, least, client->lost, client->failed, 1e-6 * (double) client->longest_ns);
-    return share >= least && client->lost == 0 && client->failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+        "\"least\": %.3f, \"lost\": %" PRId64 ", \"failed\": %" PRId64
+        ", \"longest_ms\": %.1f, "
+        "\"others\": %.2f}\n",
+        plan->attack[0]->name, plan->attack[1] ? "+" : "",
+        plan->attack[1] ? plan->attack[1]->name : "", ids, plan->scenes ? "scenes" : "pairs",
+        plan->window, alone, beside, share, least, client->lost, client->failed,
+        1e-6 * (double) client->longest_ns, others);
+    if (share >= least && client->lost == 0 && client->failed == 0)
+        return EXIT_SUCCESS;
+    return others > 0.1 ? 77 : EXIT_FAILURE;
 }
 
 static bool parse(int argc, char **argv, struct plan *out)
 {
-    *out = (struct plan){.ids = 1, .window = 1, .seconds = 4};
-    if (argc < 2 || !(out->attack = attack_find(argv[1])))
+    *out = (struct plan){.ids = 1, .window = 1, .seconds = 4, .headroom = 1};
+    if (argc < 2 || !(out->attack[0] = attack_find(argv[1])))
         return false;
     for (int i = 2; i < argc; i++) {
         char none[] = "", *end = none;
         if (strcmp(argv[i], "--scenes") == 0)
             out->scenes = true;
+        else if (i + 1 < argc && strcmp(argv[i], "--and") == 0 &&
+                 (out->attack[1] = attack_find(argv[i + 1])))
+            i++;
         else if (i + 1 < argc && strcmp(argv[i], "--ids") == 0)
             out->ids = strtol(argv[++i], &end, 10);
         else if (i + 1 < argc && strcmp(argv[i], "--window") == 0)
             out->window = strtol(argv[++i], &end, 10);
         else if (i + 1 < argc && strcmp(argv[i], "--seconds") == 0)
             out->seconds = strtod(argv[++i], &end);
+        else if (i + 1 < argc && strcmp(argv[i], "--headroom") == 0)
+            out->headroom = strtod(argv[++i], &end);
+        else if (i + 1 < argc && strcmp(argv[i], "--service") == 0)
+            out->service = strtol(argv[++i], &end, 10);
         else
             return false;
         if (*end)
             return false;
     }
     return out->ids >= 1 && out->ids <= 64 && out->window >= 1 && out->window <= WINDOW_MAX &&
-           out->seconds > 0;
+           out->seconds > 0 && out->headroom > 0;
 }
 
 int main(int argc, char **argv)
@@ -219,7 +295,10 @@ int main(int argc, char **argv)
     struct plan plan;
     char why[BUS_WHY_MAX];
     if (!parse(argc, argv, &plan)) {
-        fputs("usage: soak-fair ATTACK [--ids N] [--seconds S] [--scenes] [--window W]\n", stderr);
+        fputs(
+            "usage: soak-fair ATTACK [--and ATTACK] [--ids N] [--seconds S] [--scenes] "
+            "[--window W] [--headroom H] [--service PID]\n",
+            stderr);
         return 2;
     }
     client.plan = &plan;

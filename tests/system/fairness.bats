@@ -1,27 +1,50 @@
 # Clients that cost the service as much as they can, beside one that does not. 'make soak' measures
-# what it gets; here it is enough that no answer is lost and that it gets a share, since other tests
-# run at the same time.
+# what it gets; here half of the promised share is enough, since other tests run at the same time.
 
 load service
 
+# share ATTACK [OPTIONS]: skips the test if the client did not get its share, and other programs used
+# more than a tenth of the machine.
+share() {
+    code=0
+    "$FMB_BUILD/soak-fair" "$@" --service "$fmbd" --headroom 2 --seconds 1 > "$BATS_TEST_TMPDIR/report" || code=$?
+    cat "$BATS_TEST_TMPDIR/report"
+    [ $code != 77 ] || skip "other programs kept the machine busy: $(cat "$BATS_TEST_TMPDIR/report")"
+    [ $code = 0 ]
+}
+
 @test "pairs get their answers beside each attack" {
     start_fmbd
-    for attack in certificates boxes bodies rate definitions ids; do
-        "$FMB_BUILD/soak-fair" $attack --seconds 1 > "$BATS_TEST_TMPDIR/report" || true
-        cat "$BATS_TEST_TMPDIR/report"
-        jq -e '.lost == 0 and .failed == 0 and .share > 0.05' "$BATS_TEST_TMPDIR/report"
+    for attack in certificates boxes bodies rate flood definitions ids; do
+        share $attack
     done
+    stop_fmbd
+}
+
+@test "pairs get their answers beside two and four clients that flood" {
+    start_fmbd
+    share rate --and certificates
+    share rate --and flood
+    share flood --ids 4
+    "$FMB" status --json | jq -e '.results.REFUSAL_UNSENT > .results.BUSY and .received == .answered + .unsent'
     stop_fmbd
 }
 
 @test "scenes get their answers beside each attack, and beside four ids" {
     start_fmbd
     for attack in certificates boxes bodies rate definitions; do
-        "$FMB_BUILD/soak-fair" $attack --scenes --ids 4 --seconds 1 > "$BATS_TEST_TMPDIR/report" || true
-        cat "$BATS_TEST_TMPDIR/report"
-        jq -e '.lost == 0 and .failed == 0 and .share > 0.02' "$BATS_TEST_TMPDIR/report"
+        share $attack --scenes --ids 4
     done
-    "$FMB" status --json | jq -e '.received == .answered + .unsent and .answered == ([.results[]] | add)'
+    "$FMB" status --json | jq -e '.received == .answered + .unsent and
+        .received == ([.results[]] | add)'
+    stop_fmbd
+}
+
+@test "queries of clients that are gone do not wait for longer than five seconds" {
+    start_fmbd
+    timeout -s INT 5 "$FMB_BUILD/soak-fair" flood --ids 4 --seconds 16 || [ $? = 124 ]
+    sleep 7
+    "$FMB" status --json | jq -e '.waiting == 0 and .results.BUSY > 0'
     stop_fmbd
 }
 

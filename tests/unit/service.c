@@ -1,5 +1,6 @@
 #include "service.h"
 
+#include "clock.h"
 #include "geometry_write.h"
 
 #include <setjmp.h>
@@ -19,7 +20,8 @@ static void add(struct service_result result)
     service.result[service.count++] = result;
     if (result.client_id >= SERVICE_CLIENTS)
         return;
-    service.now_ns += service.cost_ns[result.client_id];
+    service.now_ns +=
+        result.status == FMB_BUSY ? service.refusal_ns : service.cost_ns[result.client_id];
     service.answers[result.client_id]++;
     service.answered_ns[result.client_id] = service.now_ns;
 }
@@ -39,6 +41,7 @@ static void take_scene(const unsigned char *bytes, uint32_t size)
 {
     static struct scene_result result;
     assert_null(wire_read_scene_result(bytes, size, &result));
+    service.scene_compute_ns = result.compute_ns;
     add((struct service_result){SERVER_SCENES, result.client_id, result.sequence_number,
                                 result.status, result.end_pair});
 }
@@ -93,6 +96,7 @@ int service_open(void **state)
     (void) state;
     memset(&service, 0, sizeof service);
     service.now_ns = 1;
+    service.opened_ns = clock_ns();
     service.server = server_create(&options);
     return service.server ? 0 : -1;
 }
@@ -107,6 +111,7 @@ int service_close(void **state)
 void service_receive(enum server_kind kind, const unsigned char *bytes, size_t size)
 {
     server_receive(service.server, kind, bytes, size);
+    service.now_ns += service.batch_ns;
     server_end_batch(service.server, 1);
 }
 

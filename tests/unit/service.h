@@ -21,12 +21,15 @@ extern struct service {
     int64_t answers[SERVICE_CLIENTS], answered_ns[SERVICE_CLIENTS];
     struct pair_result pair; /* the last one; its certificate is a copy, "" where it has none */
     char certificate[QUERY_CERTIFICATE_MAX];
+    int64_t scene_compute_ns;  /* of the last scene */
     int32_t definition_bodies; /* of the last definition */
     struct wire_status status; /* the last heartbeat */
     /* The clocks: they stand still but for tick_ns at each reading, and cost_ns[client_id] while a
-     * result is published. */
-    int64_t now_ns, tick_ns, cost_ns[SERVICE_CLIENTS];
-    bool refuses; /* the bus does */
+     * result is published; refusal_ns if it is FMB_BUSY. */
+    int64_t now_ns, tick_ns, cost_ns[SERVICE_CLIENTS], refusal_ns;
+    int64_t batch_ns;  /* what it takes to read a batch */
+    int64_t opened_ns; /* clock_ns() before the server was created */
+    bool refuses;      /* the bus does */
 } service;
 
 int service_open(void **state);

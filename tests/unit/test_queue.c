@@ -43,19 +43,21 @@ static enum queue_fifo line_of(int kind)
 /* The kind says where the bytes were cut. */
 static enum queue_put_result put(struct queue *queue, int client, int kind, size_t size)
 {
-    return queue_put(queue, client, line_of(kind), kind, noise + kind, size);
+    const struct queue_datagram datagram = {client, kind, size, .arrived_ns = 1000 + kind};
+    return queue_put(queue, line_of(kind), &datagram, noise + kind);
 }
 
 static void keep(struct queue *queue, int client, int kind, size_t size)
 {
     assert_int_equal(put(queue, client, kind, size), QUEUE_ADDED);
-    assert_true(queue_has(queue, client, line_of(kind)));
+    assert_true(queue_waiting(queue, client)[line_of(kind)] > 0);
 }
 
 static void expect(const struct queue_datagram *got, int client, int kind, size_t size)
 {
     assert_int_equal(got->client, client);
     assert_int_equal(got->kind, kind);
+    assert_int_equal(got->arrived_ns, 1000 + kind);
     assert_int_equal(got->size, size);
     assert_memory_equal(got_bytes, noise + kind, size);
     assert_int_equal(got_bytes[size], GUARD);
@@ -73,7 +75,7 @@ static void expect_eviction(struct queue *queue, int client, int kind, size_t si
 {
     struct queue_datagram got;
     got_bytes[size] = GUARD;
-    assert_true(queue_evict(queue, &got, got_bytes));
+    assert_true(queue_evict(queue, queue_largest(queue), &got, got_bytes));
     expect(&got, client, kind, size);
 }
 
@@ -82,10 +84,10 @@ static void expect_empty(struct queue *queue)
     struct queue_datagram got;
     for (int client = 0; client < CLIENTS; client++)
         for (int line = 0; line < QUEUE_FIFOS; line++) {
-            assert_false(queue_has(queue, client, (enum queue_fifo) line));
+            assert_int_equal(queue_waiting(queue, client)[line], 0);
             assert_false(queue_pop(queue, client, (enum queue_fifo) line, &got, got_bytes));
         }
-    assert_false(queue_evict(queue, &got, got_bytes));
+    assert_false(queue_evict(queue, queue_largest(queue), &got, got_bytes));
     struct queue_counts counts = queue_counts(queue);
     assert_int_equal(counts.datagrams, 0);
     assert_int_equal(counts.chunks, 0);
@@ -123,7 +125,7 @@ static void test_lines_are_apart(void **state)
     keep(queue, 0, 31, 1);
     expect_pop(queue, 1, 11, 50);
     expect_pop(queue, 1, 13, 50);
-    assert_false(queue_has(queue, 1, QUEUE_SCENES));
+    assert_int_equal(queue_waiting(queue, 1)[QUEUE_SCENES], 0);
     expect_pop(queue, CLIENTS - 1, 20, 9000);
     keep(queue, 1, 15, 60);
     expect_pop(queue, 1, 10, 50);
@@ -187,7 +189,7 @@ static void test_the_biggest_holder_loses_its_newest(void **state)
     for (int i = 0; i < 3; i++) {
         struct queue_datagram evicted;
         assert_int_equal(put(queue, 3, 30 + i, 100), QUEUE_FULL);
-        assert_true(queue_evict(queue, &evicted, got_bytes));
+        assert_true(queue_evict(queue, queue_largest(queue), &evicted, got_bytes));
         assert_in_range(evicted.client, 1, 2);
         keep(queue, 3, 30 + i, 100);
     }
@@ -231,7 +233,7 @@ static enum queue_put_result press(struct queue *queue, int client, size_t size)
     while ((result = put(queue, client, 0, size)) == QUEUE_FULL) {
         struct queue_datagram evicted;
         assert_true(++evictions <= QUEUE_DATAGRAM_MAX / QUEUE_CHUNK);
-        assert_true(queue_evict(queue, &evicted, got_bytes));
+        assert_true(queue_evict(queue, queue_largest(queue), &evicted, got_bytes));
         assert_int_not_equal(evicted.client, MODEST);
     }
     return result;
@@ -371,7 +373,7 @@ static void evict_one(struct queue *queue, struct model *model, int sender)
 {
     struct queue_datagram evicted;
     memset(got_bytes, 0, sizeof got_bytes);
-    assert_true(queue_evict(queue, &evicted, got_bytes));
+    assert_true(queue_evict(queue, queue_largest(queue), &evicted, got_bytes));
     for (int c = 0; c < MODEL_CLIENTS; c++)
         assert_true(held(model, c) <= held(model, evicted.client));
     assert_true(clients_with(model, sender) * held(model, evicted.client) > model->capacity);

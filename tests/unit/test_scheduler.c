@@ -238,20 +238,20 @@ static void test_fast_clients_are_waited_for(void **state)
     anticipation_init(&expectation);
     assert_int_equal(expectation.client, -1);
     assert_true(
-        anticipation_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX)); /* not known yet */
+        anticipation_begin(&expectation, 5, 1000, INT64_MAX, 1000000, true)); /* not known yet */
     assert_int_equal(expectation.until_ns, 1000 + ANTICIPATION_MAX_NS);
     assert_int_equal(anticipation_end(&expectation, 1700), 700 / 2);
     assert_int_equal(expectation.client, -1);
     accustom(5, 20000, 50);
-    assert_true(anticipation_begin(&expectation, 5, 1000, 400, INT64_MAX));
+    assert_true(anticipation_begin(&expectation, 5, 1000, 400, 1000000, true));
     assert_int_equal(expectation.until_ns, 1400);
     assert_true(anticipation_poll(&expectation, 1399));
     assert_false(anticipation_poll(&expectation, 1400));
     assert_int_equal(anticipation_end(&expectation, 1400), 400 / 2);
-    anticipation_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX);
+    anticipation_begin(&expectation, 5, 1000, INT64_MAX, 1000000, true);
     assert_true(anticipation_poll(&expectation, 2000));
     assert_int_equal(anticipation_end(&expectation, 9000000), (1000 + ANTICIPATION_POLL_NS) / 2);
-    assert_false(anticipation_begin(&expectation, 5, 1000, 0, INT64_MAX));
+    assert_false(anticipation_begin(&expectation, 5, 1000, 0, 1000000, true));
 }
 
 /* Waiting pays only where the work of another client would take longer. */
@@ -260,8 +260,9 @@ static void test_waiting_is_weighed_against_work(void **state)
     (void) state;
     anticipation_init(&expectation);
     accustom(5, 20000, 50);
-    assert_false(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 10000));
-    assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 30000));
+    assert_false(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 10000, false));
+    assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 10000, true));
+    assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 30000, false));
 }
 
 static void test_slow_clients_are_not_waited_for(void **state)
@@ -269,12 +270,14 @@ static void test_slow_clients_are_not_waited_for(void **state)
     (void) state;
     anticipation_init(&expectation);
     accustom(5, 2 * ANTICIPATION_THINK_NS, 30);
-    assert_false(anticipation_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX));
+    assert_false(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 1000000, true));
+    assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX,
+                                   2 * ANTICIPATION_PART * ANTICIPATION_THINK_NS, false));
     accustom(5, ANTICIPATION_THINK_NS / 2, 30); /* it became fast */
-    assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX));
+    assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 1000000, true));
     accustom(5, INT64_MAX / 2, 1); /* one pause does not count for much */
     accustom(5, ANTICIPATION_THINK_NS / 2, 20);
-    assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX, INT64_MAX));
+    assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 1000000, true));
 }
 
 /* ---- Meter ---- */

@@ -1,4 +1,5 @@
 /* The server, by bytes and a callback: results, counts, hostile bytes. */
+#include "clock.h"
 #include "geometry_write.h"
 #include "hostile.h"
 #include "service.h"
@@ -8,6 +9,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -135,6 +137,88 @@ static void test_undecided_pairs_are_not_counted(void **state)
     assert_int_equal(service_status()->pairs, 1);
 }
 
+/* A grid of `placements` squares: all pairs, or the first `split` across the others. */
+static struct scene_query *squares(int32_t which, int32_t placements, int32_t split)
+{
+    static struct scene_query scene;
+    const struct pair_query pair = service_pair(21, 1);
+    scene = (struct scene_query){.client_id = 21,
+                                 .duration = 1,
+                                 .which = which,
+                                 .placement_count = placements,
+                                 .split = split};
+    for (int32_t i = 0; i < placements; i++) {
+        scene.placement[i] = pair.placement[0];
+        scene.placement[i].position[0] = 3 * (i % 10);
+        scene.placement[i].position[1] = 3 * (i / 10);
+    }
+    return &scene;
+}
+
+static void ignore(struct scene_query *scene, unsigned a, unsigned b)
+{
+    scene->ignored[scene->ignored_count / 2][0] = a;
+    scene->ignored[scene->ignored_count / 2][1] = b;
+    scene->ignored_count += 2;
+}
+
+/* Pairs that a scene adds to the count. */
+static int64_t pairs_counted(const struct scene_query *scene)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    const int64_t before = service_status()->pairs;
+    service_receive(SERVER_SCENES, bytes, wire_write_scene_query(scene, bytes));
+    service_settle();
+    assert_int_equal(service.result[service.count - 1].status, FMB_OK);
+    return service_status()->pairs - before;
+}
+
+static void test_ignored_pairs_are_not_counted(void **state)
+{
+    (void) state;
+    struct scene_query *scene = squares(QUERY_PAIRS_ALL, 3, 0);
+    ignore(scene, 0, 1);
+    ignore(scene, 2, 1);
+    assert_int_equal(pairs_counted(scene), 1);
+    ignore(scene, 1, 0); /* a repetition */
+    ignore(scene, 0, 1);
+    assert_int_equal(pairs_counted(scene), 1);
+    scene->first_pair = 1; /* (0, 1) comes before it */
+    assert_int_equal(pairs_counted(scene), 1);
+    scene->first_pair = 3;
+    assert_int_equal(pairs_counted(scene), 0);
+    ignore(scene, 0, 2);
+    scene->first_pair = 0;
+    assert_int_equal(pairs_counted(scene), 0);
+
+    scene = squares(QUERY_PAIRS_ACROSS, 139, 50);
+    for (unsigned a = 0; a < 50; a++)
+        for (unsigned b = 0; b < a; b++)
+            ignore(scene, b, a); /* not pairs of the scene */
+    assert_int_equal(pairs_counted(scene), 50 * 89);
+    for (unsigned a = 0; a < 50; a++)
+        ignore(scene, 138, a);
+    assert_int_equal(pairs_counted(scene), 50 * 88);
+    scene->first_pair = 89 * 49 + 80;
+    assert_int_equal(pairs_counted(scene), 8);
+
+    /* A listed pair cannot be ignored: all are counted. */
+    scene = squares(QUERY_PAIRS_LISTED, 4, 0);
+    scene->index_count = 4;
+    scene->pair[0][1] = 1;
+    scene->pair[1][1] = 2;
+    ignore(scene, 2, 3);
+    assert_int_equal(pairs_counted(scene), 2);
+}
+
+static void test_pairs_before_the_first_are_not_counted(void **state)
+{
+    (void) state;
+    struct scene_query *scene = squares(QUERY_PAIRS_ALL, 10, 0);
+    scene->first_pair = 40;
+    assert_int_equal(pairs_counted(scene), 5);
+}
+
 /* The bytes on stderr when a heartbeat of this server is heard. */
 static long said_of_heartbeat(int64_t server_id)
 {
@@ -155,6 +239,12 @@ static long said_of_heartbeat(int64_t server_id)
     return size;
 }
 
+static void sleep_ms(long ms)
+{
+    const struct timespec pause = {.tv_sec = ms / 1000, .tv_nsec = ms % 1000 * 1000000};
+    nanosleep(&pause, NULL);
+}
+
 /* Another service is reported once; the heartbeats that a server hears of its own are not. */
 static void test_another_service_is_reported(void **state)
 {
@@ -162,6 +252,17 @@ static void test_another_service_is_reported(void **state)
     assert_int_equal(said_of_heartbeat(11), 0);
     assert_true(said_of_heartbeat(12) > 50);
     assert_int_equal(said_of_heartbeat(12), 0);
+    sleep_ms(1100); /* another report could be made */
+    assert_int_equal(said_of_heartbeat(12), 0);
+    assert_true(said_of_heartbeat(13) > 50);
+}
+
+static void test_uptime_is_in_microseconds(void **state)
+{
+    (void) state;
+    sleep_ms(20);
+    const int64_t uptime_us = service_status()->uptime_us;
+    assert_in_range(uptime_us, 20000, (clock_ns() - service.opened_ns) / 1000);
 }
 
 static void test_results_that_the_bus_does_not_take_are_counted(void **state)
@@ -235,7 +336,10 @@ int main(void)
         TEST(test_definitions_are_given),
         TEST(test_status_counts),
         TEST(test_undecided_pairs_are_not_counted),
+        TEST(test_ignored_pairs_are_not_counted),
+        TEST(test_pairs_before_the_first_are_not_counted),
         TEST(test_another_service_is_reported),
+        TEST(test_uptime_is_in_microseconds),
         TEST(test_results_that_the_bus_does_not_take_are_counted),
         TEST(test_heartbeats_are_due_each_second),
         TEST(test_what_is_too_long_is_refused),

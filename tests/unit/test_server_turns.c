@@ -3,6 +3,7 @@
 #include "geometry_write.h"
 #include "gmp_allocations.h"
 #include "jobs.h"
+#include "quota.h"
 #include "service.h"
 
 #include <setjmp.h>
@@ -96,12 +97,13 @@ static void test_refusing_is_charged(void **state)
 {
     (void) state;
     service.cost_ns[CHEAP] = service.cost_ns[COSTLY] = 10 * US;
+    service.refusal_ns = 100 * US;
     for (int i = 0; i < 9000; i++)
         service_query_pair(COSTLY, i);
     for (int i = 0; i < 500; i++)
         service_query_pair(CHEAP, i);
     const int64_t refused = answers_to(COSTLY);
-    assert_true(refused > 1000);
+    assert_int_equal(refused, QUOTA_REFUSALS);
     work_for(4 * MS);
     assert_int_equal(answers_to(COSTLY), refused);
     assert_in_range(answers_to(CHEAP), 390, 410);
@@ -192,7 +194,7 @@ static void test_a_client_in_closed_loop_keeps_its_share(void **state)
     (void) state;
     service.cost_ns[CHEAP] = 10 * US;
     service.cost_ns[COSTLY] = 5 * MS;
-    for (int i = 0; i < 500; i++)
+    for (int i = 0; i < 150; i++)
         service_query_pair(COSTLY, i);
     /* Alone it would get 1 s / 30 us = 33,333. Beside the other it is charged 20 us for 30 us, the
      * other 9.95 ms for 5 ms: so it has 749 ms. */
@@ -212,6 +214,19 @@ static void test_a_slow_client_is_not_waited_for(void **state)
     /* One a millisecond, and half a millisecond of another's turn before each. */
     assert_in_range(answers_in_closed_loop(MS, 100 * MS), 60, 75);
     assert_in_range(answers_to(COSTLY) - before, 980, 1000);
+}
+
+/* The same client beside certificates: it loses more to one of them than the wait takes. */
+static void test_a_slow_client_is_waited_for_instead_of_long_work(void **state)
+{
+    (void) state;
+    service.cost_ns[CHEAP] = 10 * US;
+    service.cost_ns[COSTLY] = 10 * MS;
+    for (int i = 0; i < 100; i++)
+        service_query_pair(COSTLY, i);
+    work_for(600 * MS); /* what its queries take is known */
+    answers_in_closed_loop(400 * US, 100 * MS);
+    assert_true(answers_in_closed_loop(400 * US, 100 * MS) > 100);
 }
 
 static void test_waiting_ends(void **state)
@@ -352,22 +367,50 @@ static void test_a_full_queue_refuses_the_one_that_holds_most(void **state)
     enum { FLOOD = 9000, MODEST = 500 };
     for (int i = 0; i < FLOOD; i++)
         service_query_pair(COSTLY, i);
+    service_status();
     const int refused = service.count;
-    assert_in_range(refused, 500, FLOOD - 1000);
+    const int64_t unsent = service.status.unsent;
+    assert_int_equal(refused, QUOTA_REFUSALS);
+    assert_in_range(refused + unsent, 500, FLOOD - 1000);
     for (int i = 0; i < refused; i++) {
         assert_int_equal(service.result[i].status, FMB_BUSY);
         assert_int_equal(service.result[i].client_id, COSTLY);
     }
     for (int i = 0; i < MODEST; i++)
         service_query_pair(CHEAP, i);
-    assert_int_equal(service.count, refused + MODEST); /* evicted from COSTLY's */
+    assert_int_equal(service_status()->unsent, unsent + MODEST); /* evicted from COSTLY's */
     service_settle();
-    assert_int_equal(service.count, FLOOD + MODEST);
+    assert_int_equal(service.count, FLOOD - unsent);
     for (int i = 0; i < service.count; i++)
         assert_true(service.result[i].client_id == COSTLY || service.result[i].status == FMB_OK);
     assert_int_equal(answers_to(CHEAP), MODEST);
     assert_int_equal(service_status()->received, FLOOD + MODEST);
-    assert_int_equal(service.status.results[FMB_BUSY], refused + MODEST);
+    assert_int_equal(service.status.results[FMB_BUSY], refused);
+    assert_int_equal(service.status.results[FMB_REFUSAL_UNSENT], unsent + MODEST);
+    assert_int_equal(service.status.results[FMB_OK], service.count - refused);
+    assert_int_equal(service.status.answered, service.count);
+    assert_int_equal(service.status.unsent, unsent + MODEST);
+}
+
+/* Clients that fill the queue with one scene each. A further client takes the place of one of them,
+ * which then has no work: no turn is given to it, and the service does not wait for it. */
+static void test_a_client_whose_only_query_is_evicted_is_idle(void **state)
+{
+    (void) state;
+    enum { CROWD = 512, BODIES = 580 };
+    for (int64_t client = 1; client <= CROWD; client++) {
+        service.batch_ns = client < CROWD ? 2 * MS : 0; /* the last one has used least */
+        service_query_scene(client, 1, BODIES);
+    }
+    assert_int_equal(service.count, 0);
+    service.batch_ns = 2 * MS;
+    service_query_pair(CROWD + 1, 1);
+    assert_int_equal(service.count, 1);
+    assert_int_equal(service.result[0].client_id, CROWD);
+    assert_int_equal(service.result[0].status, FMB_BUSY);
+    service.tick_ns = 100 * US;
+    assert_int_equal(server_work(service.server), SERVER_WORKING);
+    assert_int_equal(service_status()->malformed, 0);
 }
 
 static void test_new_ids_without_end(void **state)
@@ -385,6 +428,226 @@ static void test_new_ids_without_end(void **state)
     }
     service_settle();
     expect_all_ok(IDS + (int) sent);
+}
+
+/* ---- Quotas ---- */
+
+static void test_queries_expire(void **state)
+{
+    (void) state;
+    service_query_pair(CHEAP, 1);
+    service.now_ns += QUOTA_AGE_NS;
+    service_settle();
+    expect_all_ok(1);
+    service_query_pair(CHEAP, 2);
+    service_query_scene(CHEAP, 3, 3);
+    service_query_definitions(CHEAP, 4);
+    service.now_ns += QUOTA_AGE_NS + 1;
+    service_query_pair(CHEAP, 5);
+    service_settle();
+    expect_all_ok(2);
+    assert_int_equal(service.result[1].sequence_number, 5);
+    assert_int_equal(service_status()->results[FMB_EXPIRED], 3);
+    assert_int_equal(service.status.received, 5);
+    assert_int_equal(service.status.answered, 2);
+    assert_int_equal(service.status.unsent, 3);
+    assert_int_equal(service.status.scenes, 1);
+    assert_int_equal(service.status.definitions, 1);
+}
+
+static void test_a_repeat_is_as_old_as_its_own_arrival(void **state)
+{
+    (void) state;
+    service_query_pair(CHEAP, 1);
+    service.now_ns += QUOTA_AGE_NS / 2;
+    service_query_pair(CHEAP, 1);
+    service.now_ns += QUOTA_AGE_NS / 2 + 1;
+    service_settle();
+    expect_all_ok(1);
+    assert_int_equal(service_status()->results[FMB_EXPIRED], 1);
+}
+
+/* The second pair waits for the job of the first. */
+static void test_what_has_begun_does_not_expire(void **state)
+{
+    (void) state;
+    service.tick_ns = US;
+    service_query_frames(CHEAP, 1, 900);
+    service_query_frames(CHEAP, 2, 900);
+    service_query_scene(OTHER, 1, 400);
+    for (int i = 0; i < 20; i++)
+        server_work(service.server);
+    assert_int_equal(service.count, 0);
+    service.now_ns += QUOTA_AGE_NS;
+    service_settle();
+    expect_all_ok(2);
+    place_of(CHEAP, 1);
+    place_of(OTHER, 1);
+    assert_int_equal(service_status()->results[FMB_EXPIRED], 1);
+}
+
+/* As soon as the service knows how long the queries of a client take, the newest are refused. */
+static void test_waiting_time_is_limited(void **state)
+{
+    (void) state;
+    enum { SENT = 400 };
+    service.cost_ns[COSTLY] = 20 * MS;
+    for (int i = 0; i < SENT; i++)
+        service_query_pair(COSTLY, i);
+    assert_int_equal(service_status()->waiting, SENT);
+    work_for(200 * MS);
+    assert_in_range(service_status()->waiting, 100, 150);
+    for (int i = 0; i < 200; i++) { /* it sends on */
+        work_for(20 * MS);
+        service_query_pair(COSTLY, SENT + i);
+    }
+    assert_in_range(service_status()->waiting * 20 * MS, QUOTA_CLIENT_NS / 2,
+                    QUOTA_CLIENT_NS * 5 / 4);
+    assert_int_equal(service.status.results[FMB_EXPIRED], 0);
+    /* The oldest were kept, and answered in order. */
+    int64_t number = -1, answered = 0;
+    for (int i = 0; i < service.count; i++)
+        if (service.result[i].status == FMB_OK) {
+            assert_true(service.result[i].sequence_number > number);
+            number = service.result[i].sequence_number;
+            answered++;
+            assert_true(answered > 100 || number == answered - 1);
+        }
+    assert_true(answered > 200);
+}
+
+static void test_waiting_time_of_scenes_is_limited(void **state)
+{
+    (void) state;
+    enum { KNOWN = 256, SENT = 100 };
+    service.tick_ns = 10 * MS;
+    for (int i = 0; i < KNOWN; i++) {
+        service_query_scene(CHEAP, i, 3);
+        service_settle();
+    }
+    expect_all_ok(KNOWN);
+    const int64_t scene_ns = service.scene_compute_ns;
+    assert_true(scene_ns > 20 * MS);
+    for (int i = 0; i < SENT; i++)
+        service_query_scene(CHEAP, KNOWN + i, 3);
+    assert_in_range(service_status()->waiting, QUOTA_CLIENT_NS / scene_ns,
+                    QUOTA_CLIENT_NS / scene_ns * 5 / 4);
+}
+
+/* What is dropped takes no time, and says nothing of what will be answered. */
+static void test_dropped_queries_are_not_in_the_estimate(void **state)
+{
+    (void) state;
+    enum { KNOWN = 256 };
+    service.cost_ns[COSTLY] = 20 * MS;
+    for (int i = 0; i < KNOWN; i++) {
+        service_query_pair(COSTLY, i);
+        service_settle();
+    }
+    for (int i = 0; i < 50; i++)
+        service_query_pair(COSTLY, KNOWN + i);
+    service.now_ns += QUOTA_AGE_NS + 1;
+    service_settle();
+    for (int i = 0; i < 100; i++)
+        service_query_pair(COSTLY, 2 * KNOWN + i);
+    assert_in_range(service_status()->waiting, 40, 60);
+}
+
+static void test_many_clients_share_the_waiting_time(void **state)
+{
+    (void) state;
+    enum { CLIENTS = 20, KNOWN = 256, SENT = 100 };
+    for (int i = 0; i < KNOWN + SENT; i++)
+        for (int64_t client = 10; client < 10 + CLIENTS; client++) {
+            service.cost_ns[client] = 10 * MS;
+            service_query_pair(client, i);
+            if (i < KNOWN)
+                service_settle();
+        }
+    assert_in_range(service_status()->waiting * 10 * MS, QUOTA_ALL_NS / 2, QUOTA_ALL_NS * 5 / 4);
+}
+
+static void test_the_only_waiting_query_is_taken(void **state)
+{
+    (void) state;
+    service.cost_ns[COSTLY] = 2 * QUOTA_CLIENT_NS;
+    for (int i = 0; i < 100; i++) {
+        service_query_pair(COSTLY, i);
+        service_settle();
+    }
+    expect_all_ok(100);
+    service_query_pair(COSTLY, 101);
+    service_query_pair(COSTLY, 102);
+    assert_int_equal(service.count, 101);
+    assert_int_equal(service.result[100].sequence_number, 102);
+    assert_int_equal(service.result[100].status, FMB_BUSY);
+}
+
+static void test_cheap_queries_may_wait_by_the_thousand(void **state)
+{
+    (void) state;
+    service.cost_ns[CHEAP] = 20 * US;
+    for (int i = 0; i < 8000; i++)
+        service_query_pair(CHEAP, i);
+    service_settle();
+    expect_all_ok(8000);
+}
+
+/* One query in a hundred takes 10 ms, the others 5 us: 105 us on average. */
+static void test_the_estimate_of_a_mixture(void **state)
+{
+    (void) state;
+    struct quota quota = {0};
+    int64_t most_ns = 0;
+    for (int i = 0; i < 10000; i++) {
+        quota_note(&quota, QUEUE_SHORT, i % 100 == 0 ? 10 * MS : 5 * US);
+        const int64_t ns = quota_estimate(&quota, QUEUE_SHORT);
+        most_ns = ns > most_ns ? ns : most_ns;
+    }
+    assert_true(most_ns < QUOTA_CLIENT_NS / 1500);
+    assert_int_equal(quota_estimate(&quota, QUEUE_SCENES), QUOTA_FLOOR_NS);
+    for (int i = 0; i < 256; i++)
+        quota_note(&quota, QUEUE_SHORT, 10 * MS);
+    assert_true(quota_estimate(&quota, QUEUE_SHORT) > 7 * MS);
+}
+
+static void test_a_new_id_has_a_quota_of_its_own(void **state)
+{
+    (void) state;
+    enum { EXPENSIVE = 8, CHEAPER = 25 };
+    for (int64_t id = 0; id < SCHEDULER_CLIENTS; id++)
+        for (int i = 0; i < EXPENSIVE; i++) {
+            service.tick_ns = 200 * MS;
+            service_query_pair(1000000 + id, i);
+            service_settle();
+        }
+    service.tick_ns = 0;
+    /* These take the entries of the others. */
+    for (int64_t id = 0; id < SCHEDULER_CLIENTS - 1; id++) {
+        for (int i = 0; i < CHEAPER; i++)
+            service_query_pair(2000000 + id, i);
+        service_settle();
+    }
+    expect_all_ok(SCHEDULER_CLIENTS * EXPENSIVE + (SCHEDULER_CLIENTS - 1) * CHEAPER);
+}
+
+static void test_refusals_are_limited(void **state)
+{
+    (void) state;
+    enum { SECONDS = 3, RATE = 5000 };
+    service.cost_ns[COSTLY] = 100 * MS;
+    for (int i = 0; i < SECONDS * RATE; i++) {
+        service.now_ns += 1000 * MS / RATE;
+        service_query_pair(COSTLY, i);
+        if (i == 100)
+            work_for(1000 * MS);
+    }
+    service_status();
+    const int64_t busy = service.status.results[FMB_BUSY];
+    assert_true(service.status.results[FMB_REFUSAL_UNSENT] > 10 * busy);
+    assert_in_range(busy * QUOTA_REFUSAL_NS, 1000 * MS,
+                    service.now_ns + QUOTA_REFUSALS * QUOTA_REFUSAL_NS);
+    assert_int_equal(service.status.received, service.status.answered + service.status.unsent);
 }
 
 /* ---- Pairs of bodies of several frames ---- */
@@ -591,6 +854,7 @@ int main(void)
         TEST(test_a_new_id_gains_nothing),
         TEST(test_a_client_in_closed_loop_keeps_its_share),
         TEST(test_a_slow_client_is_not_waited_for),
+        TEST(test_a_slow_client_is_waited_for_instead_of_long_work),
         TEST(test_waiting_ends),
         TEST(test_scenes_share_time),
         TEST(test_pairs_pass_long_scenes),
@@ -599,7 +863,20 @@ int main(void)
         TEST(test_the_last_job_stops_early),
         TEST(test_more_scenes_than_jobs),
         TEST(test_a_full_queue_refuses_the_one_that_holds_most),
+        TEST(test_a_client_whose_only_query_is_evicted_is_idle),
         TEST(test_new_ids_without_end),
+        TEST(test_queries_expire),
+        TEST(test_a_repeat_is_as_old_as_its_own_arrival),
+        TEST(test_what_has_begun_does_not_expire),
+        TEST(test_waiting_time_is_limited),
+        TEST(test_waiting_time_of_scenes_is_limited),
+        TEST(test_dropped_queries_are_not_in_the_estimate),
+        TEST(test_many_clients_share_the_waiting_time),
+        TEST(test_the_only_waiting_query_is_taken),
+        TEST(test_cheap_queries_may_wait_by_the_thousand),
+        TEST(test_the_estimate_of_a_mixture),
+        TEST(test_a_new_id_has_a_quota_of_its_own),
+        TEST(test_refusals_are_limited),
         TEST(test_a_pair_of_many_frames),
         TEST(test_pairs_of_many_frames_do_not_keep_all_jobs),
         TEST(test_scenes_of_many_frames_do_not_keep_all_jobs),
