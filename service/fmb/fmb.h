@@ -318,9 +318,9 @@ struct fmb_method {
  * fmb and sat are inexact and cannot decide flat frames.
  *
  * Cost: exact takes tens of microseconds for numbers of similar size. Its time is bounded for any
- * numbers (exact.c derives the bound): where the exponents span the whole range of doubles, about
- * 0.2 ms for a verdict and 1.5 ms with interval and box; a gap adds 0.1 ms. The same bounds hold
- * for certified. */
+ * numbers (exact.c derives the bound). The worst are exponents that span the whole range of
+ * doubles: up to 0.3 ms for a verdict and 1.5 ms with box and gap, and 1 ms and 6 ms if
+ * orientations have components 2^200 apart. The same bounds hold for certified. */
 
 /* Return a method from a static table, valid for the life of the program. Thread safe.
  * fmb_method_at() returns NULL if index is past the last method; fmb_method_by_name() and
@@ -761,7 +761,7 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  * their exponents span the whole range of doubles. If the numbers of the pair span at most 512
  * bits, its coordinates are chosen one after the other, each the simplest number on a line segment;
  * otherwise the point is the one that takes the least time to find.
- * Cost: 50 microseconds for numbers of similar size, 6 ms at most. Memory is allocated as by the
+ * Cost: 50 microseconds for numbers of similar size, 10 ms at most. Memory is allocated as by the
  * exact method. */
 enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
                                 double duration, char *text, size_t size, size_t *length);
