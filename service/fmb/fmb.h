@@ -248,11 +248,11 @@ enum fmb_want { FMB_WANT_BOX = 1, FMB_WANT_GAP = 2 };
  * swept over the window.
  *
  * Width. bounds[1] - bounds[0] is at most 1e-12 of the largest magnitude of a coordinate of any
- * vertex of either body over the window, or a few of the least doubles. (In a window shorter than
- * 2^-1000 s the time of the least distance may not be a double. bounds[1] then includes the
- * distance that the frames travel in the error of the time.) If the bodies touch, both bounds are
- * 0, and the direction proves 0 up to the same width. A bound whose magnitude exceeds the largest
- * double is infinite, with its sign.
+ * vertex of either body over the window, plus 32 of the least doubles, 2^-1074. (In a window
+ * shorter than 2^-1000 s the time of the least distance may not be a double. bounds[1] then
+ * includes the distance that the frames travel in the error of the time.) If the bodies touch, both
+ * bounds are 0, and the direction proves 0 up to the same width. A bound whose magnitude exceeds
+ * the largest double is infinite, with its sign.
  *
  * Order. The swapped pair has the same bounds, the negated direction and the points exchanged. If
  * two placements are equal in all numbers, both orders are the same pair and have the same gap. */
@@ -276,8 +276,9 @@ struct fmb_gap {
  *   exact      They are the smallest with ends that are doubles.
  *   certified  An end of a contact is at most 1e-12 T too far out. An end of a box is too far out
  *              by at most 1e-12 of the largest magnitude of a coordinate of any vertex of either
- *              body over the window. Ends that coincide with an end of a frame are exact, and so
- *              are small numbers in scenes of such numbers.
+ *              body over the window. Where that is less than the least double, 2^-1074, an end is
+ *              at most one double too far out. Ends that coincide with an end of a frame are exact,
+ *              and so are small numbers in scenes of such numbers.
  *
  * Both give the same bits for the swapped pair and on every machine; another version of the library
  * may give different bits within these limits. An end of a box whose magnitude exceeds the largest
