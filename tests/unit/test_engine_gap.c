@@ -949,6 +949,33 @@ static void touching_bodies_have_no_gap(void **state)
     assert_true(answer.gap.bounds[0] == 0 && answer.gap.bounds[1] == 0);
 }
 
+/* Frames at the same place whose numbers are the same after rounding: boxes of other centres, and
+ * simplices of other vertices. */
+static void what_rounds_away_has_an_order(void **state)
+{
+    (void) state;
+    static const double centre[2] = {0x1p-60, 0x1p-59};
+    for (int shape = 0; shape < 2; shape++) {
+        struct fmb_frame frame[2];
+        struct fmb_body body[2];
+        for (int s = 0; s < 2; s++) {
+            const double c = centre[s], at[6] = {c, c, c, 1, 1, 1};
+            const double vertex[12] = {-1, -1, -1, c, -1, -1, -1, c, -1, -1, -1, c};
+            frame[s] = frame_of(FMB_BOX, at);
+            if (shape == 1)
+                assert_int_equal(fmb_frame_make_vertices(3, FMB_TETRAHEDRON, vertex, 12, &frame[s]),
+                                 FMB_OK);
+            body[s] = body_of(&frame[s], 1);
+        }
+        assert_memory_equal(frame[0].component, frame[1].component, sizeof frame[0].component);
+        assert_memory_equal(frame[0].origin, frame[1].origin, sizeof frame[0].origin);
+        const struct pair pair = {.a = {.body = &body[0]}, .b = {.body = &body[1]}};
+        const struct pair swapped = {pair.b, pair.a, 0};
+        const struct fmb_gap gap = gap_of_pair(&pair).gap, other = gap_of_pair(&swapped).gap;
+        assert_true(gap_check_swapped(false, &gap, &other));
+    }
+}
+
 /* Bodies that share a frame, at the same place: the other frames tell the order of the pair. */
 static void a_shared_frame_has_an_order(void **state)
 {
@@ -1072,6 +1099,7 @@ int main(void)
         cmocka_unit_test(infinite_gaps),
         cmocka_unit_test(direction_and_points_belong_together),
         cmocka_unit_test(touching_bodies_have_no_gap),
+        cmocka_unit_test(what_rounds_away_has_an_order),
         cmocka_unit_test(a_shared_frame_has_an_order),
         cmocka_unit_test(tiny_edges),
         cmocka_unit_test(short_edges),
