@@ -64,11 +64,11 @@ $(test_programs) $(measures):
 unit_names := $(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c))
 unit_tests := $(unit_names:%=$(B)/tests/%)
 internal_tests := $(addprefix $(B)/tests/,test_bounds test_box_bounds test_limbs test_outward \
-	test_kernels test_placing)
+	test_kernels test_placing test_engine_work)
 comma := ,
 wraps = $(addprefix -Wl$(comma)--wrap=,$1)
 wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_addmul z_submul z_add z_sub \
-	z_fdiv_q z_tdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize))
+	z_fdiv_q z_tdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize) limbs_gap_sign limbs_slab)
 wraps_test_log_read := $(call wraps,pread64)
 wraps_test_log_write := $(call wraps,fsync)
 wraps_test_log_cut := $(call wraps,page_open page_take)

@@ -100,8 +100,9 @@ const char *scene_job_begin(struct scene_job *job, const unsigned char *bytes, s
 
 /* Checks the query; or finds a few bodies; or makes a few frames; or decides one block of pairs in
  * doubles, or one pair of frames in exact arithmetic. Usually takes microseconds, a millisecond for
- * the worst block. On input: a job that was begun; the same answerer in each step of a query, which
- * must exist until the query is complete or abandoned. Returns whether the result is complete. */
+ * the worst block, and milliseconds for the worst pair (fmb.h). On input: a job that was begun; the
+ * same answerer in each step of a query, which must exist until the query is complete or abandoned.
+ * Returns whether the result is complete. */
 bool scene_job_step(struct scene_job *job, struct answerer *answerer);
 
 /* Whether at least one pair has been answered. */

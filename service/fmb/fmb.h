@@ -250,11 +250,11 @@ enum fmb_want { FMB_WANT_BOX = 1, FMB_WANT_GAP = 2 };
  * swept over the window.
  *
  * Width. bounds[1] - bounds[0] is at most 1e-12 of the largest magnitude of a coordinate of any
- * vertex of either body over the window, or a few of the least doubles. (In a window shorter than
- * 2^-1000 s the time of the least distance may not be a double. bounds[1] then includes the
- * distance that the frames travel in the error of the time.) If the bodies touch, both bounds are
- * 0, and the direction proves 0 up to the same width. A bound whose magnitude exceeds the largest
- * double is infinite, with its sign.
+ * vertex of either body over the window, plus 32 of the least doubles, 2^-1074. (In a window
+ * shorter than 2^-1000 s the time of the least distance may not be a double. bounds[1] then
+ * includes the distance that the frames travel in the error of the time.) If the bodies touch, both
+ * bounds are 0, and the direction proves 0 up to the same width. A bound whose magnitude exceeds
+ * the largest double is infinite, with its sign.
  *
  * Order. The swapped pair has the same bounds, the negated direction and the points exchanged. If
  * two placements are equal in all numbers, both orders are the same pair and have the same gap. */
@@ -278,8 +278,9 @@ struct fmb_gap {
  *   exact      They are the smallest with ends that are doubles.
  *   certified  An end of a contact is at most 1e-12 T too far out. An end of a box is too far out
  *              by at most 1e-12 of the largest magnitude of a coordinate of any vertex of either
- *              body over the window. Ends that coincide with an end of a frame are exact, and so
- *              are small numbers in scenes of such numbers.
+ *              body over the window. Where that is less than the least double, 2^-1074, an end is
+ *              at most one double too far out. Ends that coincide with an end of a frame are exact,
+ *              and so are small numbers in scenes of such numbers.
  *
  * Both give the same bits for the swapped pair and on every machine; another version of the library
  * may give different bits within these limits. An end of a box whose magnitude exceeds the largest
@@ -320,9 +321,9 @@ struct fmb_method {
  * fmb and sat are inexact and cannot decide flat frames.
  *
  * Cost: exact takes tens of microseconds for numbers of similar size. Its time is bounded for any
- * numbers (exact.c derives the bound): where the exponents span the whole range of doubles, about
- * 0.2 ms for a verdict and 1.5 ms with interval and box; a gap adds 0.1 ms. The same bounds hold
- * for certified. */
+ * numbers (exact.c derives the bound). The worst are exponents that span the whole range of
+ * doubles: up to 0.3 ms for a verdict and 1.5 ms with box and gap, and 1 ms and 6 ms if
+ * orientations have components 2^200 apart. The same bounds hold for certified. */
 
 /* Return a method from a static table, valid for the life of the program. Thread safe.
  * fmb_method_at() returns NULL if index is past the last method; fmb_method_by_name() and
@@ -769,7 +770,7 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  * their exponents span the whole range of doubles. If the numbers of the pair span at most 512
  * bits, its coordinates are chosen one after the other, each the simplest number on a line segment;
  * otherwise the point is the one that takes the least time to find.
- * Cost: 50 microseconds for numbers of similar size, 6 ms at most. Memory is allocated as by the
+ * Cost: 50 microseconds for numbers of similar size, 10 ms at most. Memory is allocated as by the
  * exact method. */
 enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
                                 double duration, char *text, size_t size, size_t *length);

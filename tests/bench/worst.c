@@ -104,7 +104,7 @@ static void family_run(struct bench *bench, const char *name, size_t pairs)
  * The tests count the work of such pairs and hold it below a bound (test_engine_work.c); here it is
  * timed. */
 
-enum { CERTIFICATE_MAX = 1 << 20 };
+enum { CERTIFICATE_MAX = 1 << 20, EVERYTHING = FMB_WANT_BOX | FMB_WANT_GAP };
 
 static double timed(double start)
 {
@@ -119,27 +119,9 @@ static double time_of_body(const struct question *question)
     return timed(start) / 2; /* for both orders: four bodies; a pair has two */
 }
 
-static double time_of_answer(const struct question *question, unsigned want)
-{
-    struct trial trial;
-    struct fmb_answer answer;
-    trial_begin(question, &trial);
-    const double start = stopwatch_now();
-    pair_decide(fmb_method_default(), &trial.pair[0], want, &answer);
-    return timed(start);
-}
-
-static double time_of_verdict(const struct question *question)
-{
-    return time_of_answer(question, 0);
-}
-
-static double time_of_box(const struct question *question)
-{
-    return time_of_answer(question, FMB_WANT_BOX);
-}
-
-static double time_of_certificate(const struct question *question)
+/* In: certify: with a certificate. */
+static double time_of_answer(const struct question *question, const struct fmb_method *method,
+                             unsigned want, bool certify)
 {
     static char text[CERTIFICATE_MAX];
     struct trial trial;
@@ -147,30 +129,73 @@ static double time_of_certificate(const struct question *question)
     size_t length;
     trial_begin(question, &trial);
     const double start = stopwatch_now();
-    pair_decide(fmb_method_default(), &trial.pair[0], FMB_WANT_BOX, &answer);
-    pair_certificate(&trial.pair[0], text, sizeof text, &length);
+    pair_decide(method, &trial.pair[0], want, &answer);
+    if (certify)
+        pair_certificate(&trial.pair[0], text, sizeof text, &length);
     return timed(start);
 }
 
-static void search_run(struct bench *bench, const char *name, const char *key, climb_cost *cost,
-                       int climbs, bool posed)
+static double time_of_verdict(const struct question *question)
+{
+    return time_of_answer(question, fmb_method_default(), 0, false);
+}
+
+static double time_of_box(const struct question *question)
+{
+    return time_of_answer(question, fmb_method_default(), FMB_WANT_BOX, false);
+}
+
+static double time_of_all(const struct question *question)
+{
+    return time_of_answer(question, fmb_method_default(), EVERYTHING, false);
+}
+
+static double time_of_certificate(const struct question *question)
+{
+    return time_of_answer(question, fmb_method_default(), EVERYTHING, true);
+}
+
+static double time_of_exact_verdict(const struct question *question)
+{
+    return time_of_answer(question, fmb_method_by_name("exact"), 0, false);
+}
+
+static double time_of_exact_all(const struct question *question)
+{
+    return time_of_answer(question, fmb_method_by_name("exact"), EVERYTHING, false);
+}
+
+static double time_of_exact_certificate(const struct question *question)
+{
+    return time_of_answer(question, fmb_method_by_name("exact"), EVERYTHING, true);
+}
+
+struct search {
+    const char *name, *method, *key;
+    climb_cost *cost;
+    int climbs;
+};
+
+static void search_run(struct bench *bench, const struct search *search, bool posed)
 {
     const int steps = bench->quick ? 10 : 500;
     struct draw draw = {.state = bench->seed};
-    struct climber climber = {&draw, cost, -1074, 1023, posed};
+    struct climber climber = {&draw, search->cost, -1074, 1023, posed};
     struct question question;
-    bench_progress(name);
-    climb(&climber, bench->quick ? 1 : climbs, steps, &question);
-    double worst = cost(&question);
+    bench_progress(search->name);
+    climb(&climber, bench->quick ? 1 : search->climbs, steps, &question);
+    double worst = search->cost(&question);
     for (int again = 0; again < 8; again++) { /* what the machine adds is not there each time */
-        const double us = cost(&question);
+        const double us = search->cost(&question);
         worst = us < worst ? us : worst;
     }
     bench_progress(NULL);
-    printf("%-16s %-20s %10s %10s %10.1f\n", "", name, "", "", worst);
+    printf("%-16s %-20s %10s %10s %10.1f\n", search->method, search->name, "", posed ? "posed" : "",
+           worst);
     json_begin(&bench->json, NULL, '{');
     json_string(&bench->json, "name", "search");
-    json_string(&bench->json, "asked", key);
+    json_string(&bench->json, "method", search->method);
+    json_string(&bench->json, "asked", search->key);
     json_bool(&bench->json, "posed", posed);
     json_number(&bench->json, "worst_us", worst);
     json_end(&bench->json, '}');
@@ -190,12 +215,17 @@ void worst_run(struct bench *bench)
     json_end(&bench->json, ']');
     printf("search\n");
     json_begin(&bench->json, "searched", '[');
-    search_run(bench, "two bodies", "bodies", time_of_body, 10, false);
-    search_run(bench, "verdict", "verdict", time_of_verdict, 30, false);
-    search_run(bench, "interval and box", "box", time_of_box, 30, false);
-    search_run(bench, "with certificate", "certificate", time_of_certificate, 15, false);
-    search_run(bench, "posed verdict", "verdict", time_of_verdict, 30, true);
-    search_run(bench, "posed, all of it", "box", time_of_box, 30, true);
-    search_run(bench, "with certificate", "certificate", time_of_certificate, 15, true);
+    static const struct search searches[] = {
+        {"two bodies", "", "bodies", time_of_body, 10},
+        {"verdict", "certified", "verdict", time_of_verdict, 30},
+        {"interval and box", "certified", "box", time_of_box, 30},
+        {"and gap", "certified", "all", time_of_all, 30},
+        {"and certificate", "certified", "certificate", time_of_certificate, 15},
+        {"verdict", "exact", "verdict", time_of_exact_verdict, 30},
+        {"box and gap", "exact", "all", time_of_exact_all, 30},
+        {"and certificate", "exact", "certificate", time_of_exact_certificate, 15}};
+    for (int posed = 0; posed < 2; posed++)
+        for (size_t i = 0; i < sizeof searches / sizeof *searches; i++)
+            search_run(bench, &searches[i], posed);
     json_end(&bench->json, ']');
 }

@@ -84,7 +84,7 @@ static void step_pose(struct climber *climber, struct question *question)
     const struct solid *other = solid == &question->a ? &question->b : &question->a;
     double *q = &solid->orientation[draw_int(climber->draw, 0, orientation_count(solid) - 1)];
     const int axis = draw_int(climber->draw, 0, solid->dim - 1);
-    switch (draw_int(climber->draw, 0, 7)) {
+    switch (draw_int(climber->draw, 0, 8)) {
     case 0: draw_orientation(climber, solid); break;
     case 1: *q = nextafter(*q, draw_coin(climber->draw) ? INFINITY : -INFINITY); break;
     case 2: *q = ldexp(*q, draw_int(climber->draw, -100, 100)); break;
@@ -95,6 +95,7 @@ static void step_pose(struct climber *climber, struct question *question)
     case 4: solid->shape = draw_coin(climber->draw) ? FMB_BOX : FMB_CUBOID; break;
     case 5: solid->local[axis] = draw_number(climber); break;
     case 6: solid->local[axis] = draw_end(climber); break;
+    case 7: solid->by_vertices = !solid->by_vertices; break;
     default: *q = -*q; break;
     }
 }
@@ -132,7 +133,8 @@ static void draw_point(struct climber *climber, const struct solid *solid, doubl
     for (int i = 0; i < count; i++) {
         const double x = vertex ? draw_int(climber->draw, 0, 1) : 0.25;
         for (int axis = 0; axis < solid->dim; axis++)
-            point[axis] += x * solid->component[i][axis];
+            point[axis] +=
+                x * (solid->component[i][axis] - (solid->by_vertices ? solid->local[axis] : 0));
         if (x == 1 && solid->shape != FMB_CUBOID && solid->shape != FMB_BOX)
             break;
     }
@@ -265,6 +267,17 @@ static void make_legal_box(struct solid *solid)
             solid->component[i][axis] = i == axis ? fabs(solid->component[i][axis]) : 0;
 }
 
+/* Only a simplex has vertices, and their differences are doubles or rounded to one. */
+static void make_legal_vertices(struct solid *solid)
+{
+    if (solid->shape != FMB_TETRAHEDRON && solid->shape != FMB_FACE)
+        solid->by_vertices = false;
+    for (int i = 0; i < solid_count(solid); i++)
+        for (int axis = 0; axis < solid->dim; axis++)
+            if (!isfinite(solid->component[i][axis] - solid->local[axis]))
+                solid->by_vertices = false;
+}
+
 /* An orientation that is none goes. */
 static void make_legal_orientation(struct solid *solid)
 {
@@ -291,6 +304,7 @@ static void make_legal(struct question *question)
                     *number = copysign(0x1.fffffffffffffp+1023, *number);
             }
         make_legal_box(solids[f]);
+        make_legal_vertices(solids[f]);
         make_legal_orientation(solids[f]);
     }
 }

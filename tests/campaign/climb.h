@@ -13,7 +13,7 @@ struct climber {
     struct draw *draw;
     climb_cost *cost;
     int least, most; /* exponents, as far as steps do not lead out of them; -1074 and 1023: all */
-    bool posed;      /* with orientations, origins in body coordinates, and boxes */
+    bool posed;      /* with orientations, origins in body coordinates, boxes, and vertices */
 };
 
 /* Starts afresh `climbs` times, each with so many steps, and puts the question that cost most into

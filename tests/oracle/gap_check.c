@@ -409,7 +409,7 @@ static bool upper_holds(struct world *world, const struct fmb_gap *gap)
 
 /* ---- All of it ---- */
 
-/* The limit: 1e-12 of the largest coordinate of a vertex over the window, and 64 of the least
+/* The limit: 1e-12 of the largest coordinate of a vertex over the window, and 32 of the least
  * doubles. */
 static void add_limit(const struct fmb_placement *placement, const mpq_t duration, mpq_t out)
 {
@@ -440,7 +440,7 @@ static void set_limit(const struct pair *pair, mpq_t out)
     mpq_set_str(share, "1/1000000000000", 10);
     mpq_mul(out, out, share);
     mpq_set_d(at, 0x1p-1074);
-    mpq_set_ui(share, 64, 1);
+    mpq_set_ui(share, 32, 1);
     rational_add_product(out, 1, at, share);
     mpq_clears(at, share, NULL);
 }

@@ -62,6 +62,30 @@ static struct fmb_answer check(const struct question *question)
     return answer;
 }
 
+/* ---- Bodies ---- */
+
+static struct fmb_answer gap_of_pair(const struct pair *pair)
+{
+    struct fmb_answer answer;
+    assert_int_equal(pair_decide(fmb_method_default(), pair, FMB_WANT_GAP, &answer), FMB_OK);
+    return answer;
+}
+
+static struct fmb_frame frame_of(int shape, const double *numbers)
+{
+    struct fmb_frame frame;
+    const size_t count = shape == FMB_BOX ? 6 : 12;
+    assert_int_equal(fmb_frame_make(3, shape, numbers, count, &frame), FMB_OK);
+    return frame;
+}
+
+static struct fmb_body body_of(const struct fmb_frame *frames, size_t count)
+{
+    struct fmb_body body;
+    assert_int_equal(fmb_body_make_frames(frames, count, &body), FMB_OK);
+    return body;
+}
+
 /* ---- Random ---- */
 
 typedef double number_function(struct draw *draw);
@@ -124,6 +148,36 @@ static struct question draw_question(struct draw *draw)
             question.b.origin[axis] += number(draw);
     question.duration = draw_int(draw, 0, 2) ? 1 : draw_uniform(draw, 0, 3);
     return question;
+}
+
+/* Every length times a power of two, rounded where it is subnormal. */
+static void scale_lengths(struct solid *solid, int exponent)
+{
+    double(*lengths[])[FMB_DIM_MAX] = {solid->component, solid->component + 1, solid->component + 2,
+                                       &solid->origin,   &solid->velocity,     &solid->local};
+    for (size_t i = 0; i < COUNT(lengths); i++)
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            (*lengths[i])[axis] = ldexp((*lengths[i])[axis], exponent);
+}
+
+/* Lengths of which 1e-12 is less than any double: the enclosure is as wide as a few of the least
+ * doubles, and no wider than fmb.h states. */
+static void near_the_least_doubles(void **state)
+{
+    (void) state;
+    struct draw draw;
+    double widest = 0;
+    draw_begin(&draw, "near_the_least_doubles");
+    for (long i = draw_sample(1000); i > 0; i--) {
+        struct question question = draw_question(&draw);
+        const int exponent = draw_int(&draw, -1078, -1040);
+        scale_lengths(&question.a, exponent);
+        scale_lengths(&question.b, exponent);
+        const struct fmb_gap gap = check(&question).gap;
+        widest = fmax(widest, (gap.bounds[1] - gap.bounds[0]) / 0x1p-1074);
+    }
+    print_message("at most %g of the least doubles wide\n", widest);
+    assert_true(widest > 16);
 }
 
 static void random_pairs(void **state)
@@ -598,7 +652,185 @@ static void bodies_of_several_frames(void **state)
     assert_true(verdicts[FMB_SEPARATED] > 0 && verdicts[FMB_OVERLAPPING] > 0);
 }
 
+/* ---- Ties ---- */
+
+/* Boxes around a unit cube, on each side of each axis, as far away as the others or a few ulps
+ * farther: which of them gives the direction and the points depends neither on the order of the
+ * frames nor on that of the bodies. */
+static void ties_do_not_depend_on_any_order(void **state)
+{
+    (void) state;
+    enum { SIDES = 6 };
+    static const double cube[6] = {0, 0, 0, 1, 1, 1};
+    struct draw draw;
+    draw_begin(&draw, "ties_do_not_depend_on_any_order");
+    const struct fmb_frame middle = frame_of(FMB_BOX, cube);
+    const struct fmb_body a = body_of(&middle, 1);
+    for (long n = draw_sample(400); n > 0; n--) {
+        struct fmb_frame frame[SIDES];
+        struct fmb_gap first;
+        const bool ulps = draw_coin(&draw);
+        const int turned = draw_int(&draw, 0, 2);
+        for (int side = 0; side < SIDES; side++) {
+            double at[6] = {0, 0, 0, 1, 1, 1};
+            at[side / 2] = (side % 2 ? -1 : 1) * (2 + (ulps ? draw_int(&draw, 0, 3) * 0x1p-51 : 0));
+            frame[side] = frame_of(FMB_BOX, at);
+        }
+        struct pair pair = {.a = {.body = &a}};
+        if (turned > 0) {
+            pair.a.orientation_count = 4;
+            draw_vector(&draw, 4, turned == 1 ? whole : any, pair.a.orientation);
+            pair.a.orientation[0] += 5;
+        }
+        pair.b = pair.a;
+        for (int order = 0; order < 6; order++) {
+            for (int i = SIDES - 1; i > 0; i--) {
+                const int j = draw_int(&draw, 0, i);
+                const struct fmb_frame moved = frame[i];
+                frame[i] = frame[j];
+                frame[j] = moved;
+            }
+            const struct fmb_body b = body_of(frame, SIDES);
+            pair.b.body = &b;
+            const struct pair swapped = {pair.b, pair.a, 0};
+            const struct fmb_gap gap = gap_of_pair(&pair).gap, other = gap_of_pair(&swapped).gap;
+            assert_true(gap_check_swapped(false, &gap, &other));
+            if (order == 0)
+                first = gap;
+            assert_true(gap_check_same(&first, &gap));
+        }
+    }
+}
+
+/* Two pairs of cubes, as far apart along x, one with A on the left and one with A on the right: the
+ * same pair of frames gives the gap in both orders of the bodies. */
+static void a_tie_is_the_same_pair_in_both_orders(void **state)
+{
+    (void) state;
+    static const double at[2][2][6] = {{{0, 0, 0, 1, 1, 1}, {2, 9, 0, 1, 1, 1}},
+                                       {{2, 0, 0, 1, 1, 1}, {0, 9, 0, 1, 1, 1}}};
+    struct fmb_frame frame[2][2];
+    struct fmb_body body[2];
+    for (int s = 0; s < 2; s++) {
+        for (int i = 0; i < 2; i++)
+            frame[s][i] = frame_of(FMB_BOX, at[s][i]);
+        body[s] = body_of(frame[s], 2);
+    }
+    const struct pair pair = {.a = {.body = &body[0]}, .b = {.body = &body[1]}};
+    const struct pair swapped = {pair.b, pair.a, 0};
+    const struct fmb_gap gap = gap_of_pair(&pair).gap, other = gap_of_pair(&swapped).gap;
+    assert_true(gap.bounds[0] == 1 && gap.bounds[1] == 1);
+    assert_true(gap_check_swapped(false, &gap, &other));
+}
+
+/* Unit cubes that are as deep along several axes, at rest and moving along z: which axis is the
+ * direction, in doubles and in integers. */
+static void equal_depths_have_one_direction(void **state)
+{
+    (void) state;
+    static const struct {
+        const char *method;
+        double offset, speed, expected[3];
+    } cases[] = {{"certified", 0.5, 0, {1, 0, 0}}, {"certified", 0, 0, {1, 0, 0}},
+                 {"certified", 0.5, 1, {1, 0, 0}}, {"certified", 0, 1, {-1, 0, 0}},
+                 {"exact", 0.5, 0, {0, 0, 1}},     {"exact", 0, 0, {0, 0, -1}},
+                 {"exact", 0.5, 1, {0, 0, 1}},     {"exact", 0, 1, {0, 0, 1}}};
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        const double at = cases[i].offset;
+        struct question question = {unit_cube(0, 0, 0), unit_cube(at, at, at), 1};
+        question.b.moving = true;
+        question.b.velocity[2] = cases[i].speed;
+        const struct fmb_gap gap = check_by(&question, cases[i].method).gap;
+        assert_memory_equal(gap.direction, cases[i].expected, sizeof gap.direction);
+    }
+}
+
+/* ---- Raised bounds ---- */
+
+/* Tetrahedra that face each other along an axis, each body with a second one behind: the boxes give
+ * a better lower bound than the frames, and it is proven too, although the distance of the boxes
+ * rounds. */
+static void bounds_of_boxes_are_proven(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "bounds_of_boxes_are_proven");
+    for (long n = draw_sample(300); n > 0; n--) {
+        struct fmb_frame frame[2][2];
+        struct fmb_body body[2];
+        for (int s = 0; s < 2; s++) {
+            const double out = s ? 1 : -1;
+            for (int i = 0; i < 2; i++) {
+                const double number[12] = {
+                    out * (draw_uniform(&draw, 0, 1) + 3 * i), 0, 0, 0, 1, 0, 0, 0, 1, out, 0, 0};
+                frame[s][i] = frame_of(FMB_TETRAHEDRON, number);
+            }
+            body[s] = body_of(frame[s], 2);
+        }
+        const struct pair pair = {.a = {.body = &body[0]}, .b = {.body = &body[1]}};
+        check_bodies(&pair);
+    }
+}
+
 /* ---- Margins ---- */
+
+/* The pairs of placements that a scene with a margin reports; gaps: capacity for all pairs. */
+static int near_pairs(const struct fmb_placement *placement, unsigned count, double duration,
+                      double margin, struct fmb_gap *gaps)
+{
+    const struct fmb_scene scene = {.placements = placement,
+                                    .placement_count = count,
+                                    .duration = duration,
+                                    .which = FMB_PAIRS_ALL,
+                                    .margin = margin};
+    const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
+    void *memory = malloc(fmb_scene_bytes(&limits));
+    struct fmb_scene_state *running;
+    struct fmb_scene_answers answers;
+    int found = 0;
+    assert_int_equal(fmb_scene_begin(&scene, &limits, memory, &running), FMB_OK);
+    for (bool done = false; !done;) {
+        done = fmb_scene_step(running, &answers);
+        for (size_t k = 0; k < answers.count; k++)
+            gaps[found++] = answers.gaps[k];
+    }
+    free(memory);
+    return found;
+}
+
+/* Tetrahedra that face each other along an axis at a small distance, which their boxes give more
+ * accurately than the gap does: it is the lower bound of the gap that the margin is compared
+ * with. */
+static void a_margin_is_compared_with_the_lower_bound(void **state)
+{
+    (void) state;
+    struct draw draw;
+    draw_begin(&draw, "a_margin_is_compared_with_the_lower_bound");
+    for (long n = draw_sample(300); n > 0; n--) {
+        struct fmb_frame frame[2];
+        struct fmb_body body[2];
+        struct fmb_placement placement[2] = {{.body = &body[0]}, {.body = &body[1]}};
+        struct fmb_gap near;
+        const int axis = draw_int(&draw, 0, 2);
+        for (int s = 0; s < 2; s++) {
+            const double out = s ? 1 : -1;
+            double number[12] = {0, 0, 0, 0, 1, 0, 0, 0, 1, out, 0, 0};
+            for (int i = 0; i < 4; i++) { /* x to the axis */
+                const double x = number[3 * i];
+                number[3 * i] = number[3 * i + axis];
+                number[3 * i + axis] = x;
+            }
+            number[axis] = draw_uniform(&draw, 0, 0x1p-10) + s * 0x1p-10;
+            frame[s] = frame_of(FMB_TETRAHEDRON, number);
+            body[s] = body_of(&frame[s], 1);
+        }
+        const struct pair pair = {placement[0], placement[1], 0};
+        const double bound = gap_of_pair(&pair).gap.bounds[0];
+        assert_true(bound > 0);
+        assert_int_equal(near_pairs(placement, 2, 0, bound, &near), 1);
+        assert_int_equal(near_pairs(placement, 2, 0, nextafter(bound, 0), &near), 0);
+    }
+}
 
 /* 96 cubes in rows, each with an orientation of its own that libm computes from a quarter turn, so
  * that none is exactly one: neighbours are near or overlap by rounding, and all of them are found.
@@ -608,6 +840,7 @@ static void cubes_rolled_by_libm(void **state)
     (void) state;
     enum { SIDE = 4, LENGTH = 6, CUBES = SIDE * SIDE * LENGTH };
     static struct fmb_placement placement[CUBES];
+    static struct fmb_gap gaps[CUBES * (CUBES - 1) / 2];
     struct fmb_body cube;
     static const double size[3] = {1, 1, 1};
     assert_int_equal(fmb_body_make(3, FMB_BOX, size, 3, &cube), FMB_OK);
@@ -621,22 +854,10 @@ static void cubes_rolled_by_libm(void **state)
             .orientation_count = 4};
         placement[i].orientation[axis] = sin(angle / 2);
     }
-    const struct fmb_scene scene = {
-        .placements = placement, .placement_count = CUBES, .which = FMB_PAIRS_ALL, .margin = 1e-9};
-    const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
-    void *memory = malloc(fmb_scene_bytes(&limits));
-    struct fmb_scene_state *running;
-    struct fmb_scene_answers answers;
-    int found = 0, neighbours = 0;
-    assert_int_equal(fmb_scene_begin(&scene, &limits, memory, &running), FMB_OK);
-    for (bool done = false; !done;) {
-        done = fmb_scene_step(running, &answers);
-        for (size_t k = 0; k < answers.count; k++) {
-            assert_true(answers.gaps[k].bounds[0] > -1e-12 && answers.gaps[k].bounds[1] < 1e-12);
-            found++;
-        }
-    }
-    free(memory);
+    int neighbours = 0;
+    const int found = near_pairs(placement, CUBES, 0, 1e-9, gaps);
+    for (int k = 0; k < found; k++)
+        assert_true(gaps[k].bounds[0] > -1e-12 && gaps[k].bounds[1] < 1e-12);
     for (int i = 0; i < CUBES; i++)
         for (int j = 0; j < i; j++) {
             bool near = true;
@@ -687,28 +908,6 @@ static void infinite_gaps(void **state)
 
 /* ---- Single cases ---- */
 
-static struct fmb_answer gap_of_pair(const struct pair *pair)
-{
-    struct fmb_answer answer;
-    assert_int_equal(pair_decide(fmb_method_default(), pair, FMB_WANT_GAP, &answer), FMB_OK);
-    return answer;
-}
-
-static struct fmb_frame frame_of(int shape, const double *numbers)
-{
-    struct fmb_frame frame;
-    const size_t count = shape == FMB_BOX ? 6 : 12;
-    assert_int_equal(fmb_frame_make(3, shape, numbers, count, &frame), FMB_OK);
-    return frame;
-}
-
-static struct fmb_body body_of(const struct fmb_frame *frames, size_t count)
-{
-    struct fmb_body body;
-    assert_int_equal(fmb_body_make_frames(frames, count, &body), FMB_OK);
-    return body;
-}
-
 /* Three frames equally far from one: direction and points are those of the same two. */
 static void direction_and_points_belong_together(void **state)
 {
@@ -749,6 +948,33 @@ static void touching_bodies_have_no_gap(void **state)
     (void) state;
     assert_int_equal(answer.verdict, FMB_TOUCHING);
     assert_true(answer.gap.bounds[0] == 0 && answer.gap.bounds[1] == 0);
+}
+
+/* Frames at the same place whose numbers are the same after rounding: boxes of other centres, and
+ * simplices of other vertices. */
+static void what_rounds_away_has_an_order(void **state)
+{
+    (void) state;
+    static const double centre[2] = {0x1p-60, 0x1p-59};
+    for (int shape = 0; shape < 2; shape++) {
+        struct fmb_frame frame[2];
+        struct fmb_body body[2];
+        for (int s = 0; s < 2; s++) {
+            const double c = centre[s], at[6] = {c, c, c, 1, 1, 1};
+            const double vertex[12] = {-1, -1, -1, c, -1, -1, -1, c, -1, -1, -1, c};
+            frame[s] = frame_of(FMB_BOX, at);
+            if (shape == 1)
+                assert_int_equal(fmb_frame_make_vertices(3, FMB_TETRAHEDRON, vertex, 12, &frame[s]),
+                                 FMB_OK);
+            body[s] = body_of(&frame[s], 1);
+        }
+        assert_memory_equal(frame[0].component, frame[1].component, sizeof frame[0].component);
+        assert_memory_equal(frame[0].origin, frame[1].origin, sizeof frame[0].origin);
+        const struct pair pair = {.a = {.body = &body[0]}, .b = {.body = &body[1]}};
+        const struct pair swapped = {pair.b, pair.a, 0};
+        const struct fmb_gap gap = gap_of_pair(&pair).gap, other = gap_of_pair(&swapped).gap;
+        assert_true(gap_check_swapped(false, &gap, &other));
+    }
 }
 
 /* Bodies that share a frame, at the same place: the other frames tell the order of the pair. */
@@ -852,6 +1078,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_pairs),
+        cmocka_unit_test(near_the_least_doubles),
         cmocka_unit_test(shallow_pairs),
         cmocka_unit_test(hard_families),
         cmocka_unit_test(all_exponents),
@@ -863,11 +1090,17 @@ int main(void)
         cmocka_unit_test(nearly_parallel),
         cmocka_unit_test(batches_give_the_same),
         cmocka_unit_test(bodies_of_several_frames),
+        cmocka_unit_test(ties_do_not_depend_on_any_order),
+        cmocka_unit_test(a_tie_is_the_same_pair_in_both_orders),
+        cmocka_unit_test(equal_depths_have_one_direction),
+        cmocka_unit_test(bounds_of_boxes_are_proven),
+        cmocka_unit_test(a_margin_is_compared_with_the_lower_bound),
         cmocka_unit_test(cubes_rolled_by_libm),
         cmocka_unit_test(inexact_methods_have_none),
         cmocka_unit_test(infinite_gaps),
         cmocka_unit_test(direction_and_points_belong_together),
         cmocka_unit_test(touching_bodies_have_no_gap),
+        cmocka_unit_test(what_rounds_away_has_an_order),
         cmocka_unit_test(a_shared_frame_has_an_order),
         cmocka_unit_test(tiny_edges),
         cmocka_unit_test(short_edges),

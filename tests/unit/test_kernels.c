@@ -1447,7 +1447,7 @@ static void quick_decisions_need_no_wide_integers(void **state)
 {
     (void) state;
     struct draw draw;
-    long pairs = 0, open = 0, open_boxes = 0;
+    long pairs = 0, open = 0, open_boxes = 0, open_gaps = 0;
     gmp_count_allocations();
     draw_begin(&draw, "quick_decisions_need_no_wide_integers");
     for (long n = draw_sample(20000); n > 0; n--, pairs++) {
@@ -1456,9 +1456,12 @@ static void quick_decisions_need_no_wide_integers(void **state)
         (draw_int(&draw, 0, 7) ? pair_draw : pair_draw_stretched)(&draw, &cell, &question);
         open += expect_quick(&question, 0);
         open_boxes += expect_quick(&question, FMB_WANT_BOX);
+        open_gaps += expect_quick(&question, FMB_WANT_GAP);
     }
-    printf("# of %ld pairs, %ld left open, %ld with boxes\n", pairs, open, open_boxes);
+    printf("# of %ld pairs, %ld left open, %ld with boxes, %ld with gaps\n", pairs, open,
+           open_boxes, open_gaps);
     assert_true(open > 0 && open < open_boxes && open_boxes < pairs);
+    assert_true(open < open_gaps && open_gaps < pairs);
 }
 
 int main(void)

@@ -21,8 +21,8 @@
 
 /* ---- Numbers of a span ---- */
 
-/* The most bits of lengths for numbers of 2, 3, 4, 5, 6, 12 and LIMBS_MAX limbs. */
-static const int widest[] = {39, 61, 82, 103, 125, 253, 509};
+/* The most bits of lengths for numbers of 2, 3, 4, 5, 6 and LIMBS_MAX limbs. */
+static const int widest[] = {39, 61, 82, 103, 125, 253};
 enum { WIDTHS = sizeof widest / sizeof widest[0] };
 
 /* A multiple of 2^unit below 2^(unit + bits) in magnitude, often as large or as small as that
@@ -412,7 +412,7 @@ static void turned_slabs_are_gmp(void **state)
 {
     (void) state;
     struct draw draw;
-    long seen[3] = {0}, same = 0, limbs_of_pair[LIMBS_MAX + 1] = {0};
+    long seen[3] = {0}, same = 0, wider = 0, limbs_of_pair[LIMBS_MAX + 1] = {0};
     draw_begin(&draw, "turned_slabs_are_gmp");
     for (long n = draw_sample(40000); n > 0; n--) {
         const int dim = draw_int(&draw, 0, 3) ? 3 : 2;
@@ -426,7 +426,10 @@ static void turned_slabs_are_gmp(void **state)
         struct exact_pair exact;
         referee_ready(&question, &ready);
         const struct frame_pair frames = pair_frames(&ready.pair);
-        assert_true(limbs_prepare(&frames, limbs_span_of(&frames), &limbs));
+        if (!limbs_prepare(&frames, limbs_span_of(&frames), &limbs)) {
+            wider++;
+            continue;
+        }
         exact_pair_init(&exact, &frames, true);
         for (int k = 0; k < 6; k++)
             compare_posed(&question, &limbs, &exact, draw_normal(&draw, &question), seen);
@@ -434,13 +437,13 @@ static void turned_slabs_are_gmp(void **state)
         same += limbs.common != NULL;
         limbs_of_pair[limbs.limbs]++;
     }
-    printf("# %ld of equal orientations; gaps below 0 %ld, 0 %ld, above %ld; pairs by limbs", same,
-           seen[0], seen[1], seen[2]);
+    printf("# %ld of equal orientations; gaps below 0 %ld, 0 %ld, above %ld; wider %ld; by limbs",
+           same, seen[0], seen[1], seen[2], wider);
     for (int i = 0; i <= LIMBS_MAX; i++)
         printf(" %ld", limbs_of_pair[i]);
     printf("\n");
-    assert_true(same > 0 && seen[0] > 0 && seen[1] > 0 && seen[2] > 0);
-    for (int limbs = 2; limbs <= 18; limbs++)
+    assert_true(same > 0 && seen[0] > 0 && seen[1] > 0 && seen[2] > 0 && wider > 0);
+    for (int limbs = 2; limbs <= LIMBS_MAX; limbs++)
         assert_true(limbs_of_pair[limbs] > 0);
 }
 

@@ -8,8 +8,9 @@
  * on time: their slope is 0, and they clip nothing.
  *
  * If outer and inner are too far apart, the exact end is computed in fixed-width integers for each
- * slab whose inner end is beyond the outer end of all. The result is the tightest doubles,
- * whichever slab gives the end, since rounding preserves order. Edges of frames with errors that
+ * slab whose inner end is beyond the outer end of all by more than the limit. Where one of these
+ * gives the end, the result is the tightest double, since rounding preserves order; otherwise the
+ * outer end is within the limit. Edges of frames with errors that
  * are parallel as rounded need not be so as given, and any end may be that of their slab: its exact
  * end is always computed.
  *

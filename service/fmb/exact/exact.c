@@ -409,7 +409,14 @@ void exact_pair_clear(struct exact_pair *pair)
  *   that close, and the others have normals of W limbs.
  * - The box: see exact_box.c.
  *
- * A product of limbs takes half a nanosecond. test_engine_work.c counts the products. */
+ * A pair that is rotated has its lengths times n_a n_b, the squares of quaternions of up to 253
+ * bits: W <= 66, and limbs between that are not zero. Triple products are 28 vector products of 6
+ * products of W by W limbs, and 56 dot products of 3 products of W by 2 W: 504 W^2 = 2.2 million
+ * products of limbs. A point of a box takes 15 products of W by 3 W: 200,000, times the 77 vertices
+ * 15 million.
+ *
+ * A product of limbs takes half a nanosecond. test_engine_work.c counts the products, and searches
+ * for the pair that takes most: 3 million, rotated 8 million. */
 
 /* Returns tau, in windows, as seconds: an end of a contact (0: first, 1: last), rounded
  * outward. */

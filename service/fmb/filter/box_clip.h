@@ -56,11 +56,15 @@
  *
  * 1. Products, beside those of the exact normal of the frame as prepared. With the weight W of n as
  *    in box_search.h, coordinates of n are rounded twice, and a product n . w three times more: 5 u
- *    W . |w|; once more where w is a difference; twice more in the sum of three products, whose
- *    weight is the sum of theirs. D is computed once. Exactly, all n_k . c_k are equal and have the
- *    same monomials, so the bound for D holds with any k. Along an edge c_q - c_p, s + t d has the
- *    same n . c_p in s and in d, and is off by at most 8.1 u W . w, where w holds the larger
- *    magnitudes of c_p and c_q. Together at most 8.1 u W . (magnitudes of all vectors at hand).
+ *    W . |w|; twice more in the sum of three products, whose weight is the sum of theirs. D is
+ *    computed once. Exactly, all n_k . c_k are equal and have the same monomials, so the bound for
+ *    D holds with any k. Along an edge c_q - c_p, s has n . c_p, and d has n . c_q - n . c_p from
+ *    the same products; in a sum of three, these are subtracted before they are added. With p = W .
+ *    |c_p| and q = W . |c_q|, s + t d is off by at most 5 u ((1 - t) p + t q) for the products, 2 u
+ *    p for the sum in s, and 3 u t (p + q) for the difference and the sum in d. This is linear in
+ *    t: 7 u p at t = 0 and u (5 p + 8 q) at t = 1, so at most 8 u (p + q). (In terms of the larger
+ *    of p and q it is up to 13 u: the bound needs the sum over all components.) Together at most
+ *    8.1 u W . (the sum of the magnitudes of all vectors at hand).
  * 2. The offset is rounded 4 times, half the drift twice: 5 u times the magnitudes of what they are
  *    made of, and |n| is at most W.
  * 3. Sums and quotients: roundings of the products with n. s: 3 in sums, 2 more as a quotient. r +
@@ -120,7 +124,9 @@
  *    (E_s |a_k| + E_t |travel_A[k]|) / |X|. A crossing is possible if, within these errors, all
  *    parameters are in their ranges. So no crossing that is a vertex is lost, and the outer end of
  *    each is no less than the vertex. Quotients are rounded twice, and the distance from a range
- *    twice: 4 u.
+ *    twice: 4 u where |s| <= 1. Beyond 1, |s| is at most 4 u more than 1 + E_s / |X|, and its
+ *    excess is rounded by at most 4 u (E_s / |X| + 4 u). The constants of E_s, E_r and E_t are at
+ *    least 0.7 % larger than 7 and 8 need (13.1 for 13), which covers this, and 11.
  * 10. It is certain if each parameter is in its range by more than these errors. Then the true
  *    edges cross. First, as prepared: the range of s has the length 2 for a cuboid and 1 for a
  *    simplex, so |X| > E_s for a cuboid and |X| > 2 E_s for a simplex. The error of X is less: at
@@ -138,7 +144,8 @@
  *    that underflows (5), and nothing overflows: quotients are below 2^500. Where H is 0, there are
  *    no crossings.
  * 12. Positions: what the components are made of is rounded at most 16 times, travel 17 times, the
- *    origin 7 times: less than the slack.
+ *    origin 7 times: less than the slack where |s| and |t| are at most 1. What they are beyond 1
+ *    adds at most 17 u of the error of the position in 9, within the same 0.7 %.
  *
  * Where nothing rounds (slabs_exact.h), frames often touch, and inner spans are empty. Such lanes
  * are left to box_search.h, where determinants and products with n are then exact. */

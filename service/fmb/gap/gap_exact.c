@@ -23,6 +23,11 @@
  * < 18. A point of a frame is off by less than 5 units on an axis, and by less than 5 sqrt(3) < 9
  * in all. Integers of at most 620 bits are taken as doubles, cut off: a relative error below 2^-52;
  * quotients and roots of them are within 2^-49.
+ *
+ * Near the least doubles, L = 2^-1074, all of this is less than L. What is left are roundings: a
+ * bound by below() or above() is off by L and by half of it in ldexp(). The upper bound of a
+ * separated pair has 2 (2 L) for each of 6 coordinates of its witness points in addition, and 1.5 L
+ * for the time: in all at most 1.5 + 1.5 + 24 + 1.5, less than 29 L. fmb.h states 32 L.
  */
 #include "gap.h"
 

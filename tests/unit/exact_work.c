@@ -1,8 +1,11 @@
-#include "gmp_work.h"
+#include "exact_work.h"
 
 #include <gmp.h>
 
-double gmp_work;
+#include "limbs.h"
+
+double exact_work;
+long exact_slabs;
 
 static double larger(size_t x, size_t y)
 {
@@ -11,13 +14,13 @@ static double larger(size_t x, size_t y)
 
 static void count_product(mpz_srcptr x, mpz_srcptr y)
 {
-    gmp_work += (double) mpz_size(x) * (double) mpz_size(y);
+    exact_work += (double) mpz_size(x) * (double) mpz_size(y);
 }
 
 static void count_quotient(mpz_srcptr num, mpz_srcptr den)
 {
     if (mpz_size(num) >= mpz_size(den))
-        gmp_work += (double) (mpz_size(num) - mpz_size(den) + 1) * (double) mpz_size(den);
+        exact_work += (double) (mpz_size(num) - mpz_size(den) + 1) * (double) mpz_size(den);
 }
 
 static double size_of(mpq_srcptr x)
@@ -28,7 +31,7 @@ static double size_of(mpq_srcptr x)
 static void count_fractions(mpq_srcptr x, mpq_srcptr y)
 {
     const double size = size_of(x) > size_of(y) ? size_of(x) : size_of(y);
-    gmp_work += size * size;
+    exact_work += size * size;
 }
 
 #define PRODUCT(name)                                            \
@@ -48,7 +51,7 @@ PRODUCT(__gmpz_submul)
     void __wrap_##name(mpz_ptr out, mpz_srcptr x, mpz_srcptr y); \
     void __wrap_##name(mpz_ptr out, mpz_srcptr x, mpz_srcptr y)  \
     {                                                            \
-        gmp_work += larger(mpz_size(x), mpz_size(y));            \
+        exact_work += larger(mpz_size(x), mpz_size(y));          \
         __real_##name(out, x, y);                                \
     }
 SUM(__gmpz_add)
@@ -97,4 +100,31 @@ void __wrap___gmpz_tdiv_qr(mpz_ptr q, mpz_ptr r, mpz_srcptr num, mpz_srcptr den)
 {
     count_quotient(num, den);
     __real___gmpz_tdiv_qr(q, r, num, den);
+}
+
+/* A slab of n limbs: 3 normals of 6 products, 8 extents and origins, offset and drift of 3, and 6
+ * factors; n^2 each. */
+static void count_slab(const struct limbs_pair *pair)
+{
+    exact_work += (3 * 6 + (8 + 2) * 3 + 6) * (double) pair->limbs * pair->limbs;
+}
+
+int __real_limbs_gap_sign(struct limbs_pair *pair, struct slab_normal normal);
+int __wrap_limbs_gap_sign(struct limbs_pair *pair, struct slab_normal normal);
+int __wrap_limbs_gap_sign(struct limbs_pair *pair, struct slab_normal normal)
+{
+    count_slab(pair);
+    return __real_limbs_gap_sign(pair, normal);
+}
+
+void __real_limbs_slab(struct limbs_pair *pair, struct slab_normal normal, mpz_t low, mpz_t high,
+                       mpz_t start, mpz_t slope);
+void __wrap_limbs_slab(struct limbs_pair *pair, struct slab_normal normal, mpz_t low, mpz_t high,
+                       mpz_t start, mpz_t slope);
+void __wrap_limbs_slab(struct limbs_pair *pair, struct slab_normal normal, mpz_t low, mpz_t high,
+                       mpz_t start, mpz_t slope)
+{
+    count_slab(pair);
+    exact_slabs++;
+    __real_limbs_slab(pair, normal, low, high, start, slope);
 }
