@@ -744,6 +744,9 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  *                the point is in both frames.
  *   overlapping  At TIME the point is in the relative interiors of both frames. */
 
+/* The capacity that every certificate fits into, its terminating 0 included. */
+enum { FMB_CERTIFICATE_MAX = 16384 };
+
 /* Writes the certificate of the verdict of the exact method.
  *
  * In:  a, b      bodies of one frame each
@@ -756,11 +759,17 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  * Returns FMB_OK; FMB_OVER_LIMIT if the certificate does not fit; a status of fmb_decide();
  * FMB_CANNOT_DECIDE for bodies of several frames.
  *
- * Most certificates are shorter than 200 bytes. Coordinates of flat frames, and of frames that
- * touch, can have as many digits as the numbers of the pair require: up to some 60,000 bytes if
- * their exponents span the whole range of doubles. If the numbers of the pair span at most 512
- * bits, its coordinates are chosen one after the other, each the simplest number on a line segment;
- * otherwise the point is the one that takes the least time to find.
+ * A pair whose numbers span more than 512 bits has no certificate: the status is FMB_OK and the
+ * text is empty. The span is measured as follows. Let 2^e be the largest power of two of which
+ * every coordinate of every component, origin, position and v T of the pair is a multiple, and half
+ * of every size of a box. Let n be |q|^2 for the smallest integers q that are proportional to the
+ * orientation; 1 without one. Multiply the components and origins in the world, and v T, by the
+ * product of both n, or by one if they are equal. The pair spans at most 512 bits if the magnitude
+ * of each coordinate is then less than 2^(e + 512).
+ *
+ * Most certificates are shorter than 200 bytes; of frames that are flat or touch, some thousand are
+ * possible. The text is also empty if it would exceed the capacity above; no such pair is known.
+ * The coordinates are chosen one after the other, each the simplest number on a line segment.
  * Cost: 50 microseconds for numbers of similar size, 6 ms at most. Memory is allocated as by the
  * exact method. */
 enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
@@ -774,7 +783,8 @@ enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_
  *      text      any text ended by a 0
  *      size      capacity of why in bytes
  * Out: why       if false is returned, one line that states what is wrong; may be NULL if size is 0
- * Returns whether the text proves that this is the verdict of this pair.
+ * Returns whether the text proves that this is the verdict of this pair. An empty text proves
+ * nothing.
  * Cost: polynomial in the length of the text. Memory is allocated through GMP. */
 bool fmb_certificate_holds(const struct fmb_placement *a, const struct fmb_placement *b,
                            double duration, enum fmb_verdict verdict, const char *text, char *why,

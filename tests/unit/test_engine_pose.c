@@ -539,13 +539,14 @@ static void expect_meet(const struct crowd *crowd)
 
 static void expect_certificates(const struct crowd *crowd)
 {
-    enum { SIZE = 1 << 17 };
-    static char text[SIZE];
+    char text[FMB_CERTIFICATE_MAX];
     char why[200] = "";
     for (int i = 0; i < PAIRS; i++) {
         const struct pair *pair = &crowd->ready[i].pair;
         size_t length;
-        assert_int_equal(pair_certificate(pair, text, SIZE, &length), FMB_OK);
+        assert_int_equal(pair_certificate(pair, text, sizeof text, &length), FMB_OK);
+        if (length == 0) /* test_engine_certificate.c says which */
+            continue;
         for (int verdict = FMB_SEPARATED; verdict <= FMB_OVERLAPPING; verdict++)
             if (pair_certificate_holds(pair, (enum fmb_verdict) verdict, text, why, sizeof why) !=
                 (verdict == (int) crowd->answer[i].verdict)) {

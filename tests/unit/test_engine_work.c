@@ -13,7 +13,7 @@
 #include "gmp_work.h"
 #include "referee.h"
 
-enum { TEXT_SIZE = 1 << 18 };
+enum { TEXT_SIZE = FMB_CERTIFICATE_MAX };
 
 /* Products of limbs, half a nanosecond each: 2 ms for an answer, and 10 ms with a certificate, 2 of
  * them for the answer beside it; 0.1 ms for a gap. */
