@@ -266,7 +266,7 @@ static void take_answer(struct pair_job *job, const struct fmb_scene_answers *an
     const struct fmb_method *method = fmb_method_by_number(job->query.method);
     struct pair_result *result = &job->result;
     struct fmb_answer *answer = &result->answer;
-    if (answers->verdicts[0] == FMB_REFUSED) {
+    if (answers->verdicts[0] == 0) {
         refuse_method(method, FMB_CANNOT_DECIDE, result);
         return;
     }
