@@ -210,7 +210,7 @@ static void decide_all(struct mesh_search *search)
          clear_block(search)) {
         decide_candidates(search);
         if (query->report)
-            report_progress(search, place.leaf);
+            report_progress(search, cursor.leaf);
     }
 }
 
