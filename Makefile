@@ -4,7 +4,8 @@
 #   make deps-test test     installs what the tests need, then runs them
 #
 # Build:    all (default), examples, install, install-strip, uninstall, clean
-# Test:     test (12 minutes), test-fast (one), unit-tests; headers, format, format-check
+# Test:     test (12 minutes), test-fast (one), unit-tests; headers, layers, format,
+#           format-check
 # Longer:   validate, accuracy, soak, fuzz, fuzz-afl, fuzz-merge (deps-fuzz first)
 # Measure:  bench (deps-bench first, for other libraries), bench-bus, bench-replay, bench-mesh,
 #           report (deps-report first)
@@ -193,8 +194,10 @@ fast_math := tests/bench/gpr tests/bench/lean_sat tests/bench/seidel
 $(fast_math:%=$(O)/%.o): flags += -ffinite-math-only -fno-signed-zeros
 
 engine_folders := $(call fmb,number frame filter article tree exact gap certificate decide)
-engine_objects := $(many_kernels) $(box_refinements) $(single_kernels) \
-	$(filter-out %/many.o %/single.o %/box_refine.o,$(call objects_in,$(engine_folders)))
+kernels := $(many_kernels) $(box_refinements) $(single_kernels)
+engine_objects_in = $(if $(findstring filter,$1),$(kernels)) \
+	$(filter-out %/many.o %/single.o %/box_refine.o,$(call objects_in,$1))
+engine_objects := $(call engine_objects_in,$(engine_folders))
 
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
 $(message_headers:.h=.c) $(message_headers) &: $(message_files)
@@ -223,6 +226,20 @@ $(product): $(product_objects)
 $(engine) $(client) $(product):
 	@rm -f $@
 	$(AR) qcs $@ $^
+
+# Every layer links with the folders that it may include from, and nothing else: a call that points up
+# fails to link, also where its declaration stands below.
+engine_layers := $(filter-out service/fmb,$(engine_folders))
+wire_layers := msgs/codec msgs/bus service/common service/answer clients/lib
+.PHONY: layers
+layers: $(engine_layers:%=$(O)/%/layer.so) $(wire_layers:%=$(O)/%/layer.so)
+$(foreach l,$(engine_layers),$(eval $(O)/$l/layer.so: \
+	$(call engine_objects_in,$l $(filter $(engine_layers),$(see_$l)))))
+$(foreach l,$(wire_layers),$(eval $(O)/$l/layer.so: $(message_objects) $(engine) \
+	$(call objects_in,$l $(filter $(wire_layers),$(see_$l)))))
+%/layer.so: $(O)/service/fmb/names.o
+	$(CC) $(filter-out -pie,$(link_flags)) -shared -Wl,--no-undefined -o $@ $(filter %.o,$^) \
+		$(filter %.a,$^) -Wl,--as-needed $(libraries)
 
 # Libraries: one object that shows the names of the header alone, so that no program's names meet
 # ours; and names.o, which both have: a program that links both takes it once.

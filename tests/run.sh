@@ -161,7 +161,7 @@ list_all() {
 rm -rf "$log"
 mkdir -p "$log"
 rm -rf $release/tests $programs/tests $units/tests
-build PEERS=none format-check headers ${FMB_FAST:+fast-}tests
+build PEERS=none format-check headers layers ${FMB_FAST:+fast-}tests
 if [ -z "${FMB_FAST-}" ]; then
     build MODE=asan INSTRUCTIONS=sse2 tested-programs
     build MODE=fuzz unit-tests fuzzers replay-set
