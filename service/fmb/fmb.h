@@ -121,20 +121,11 @@ struct fmb_frame {
     int count;            /* number of components */
     bool flat;            /* the volume is exactly zero, as of every face; no inverse */
     bool inverted;        /* the inverse is present: not flat, and all its entries are finite */
-    bool in_range;        /* doubles can decide pairs with it in a placement not rotated */
-    bool sturdy;          /* doubles can decide pairs with it in any placement (frame.c) */
-    bool rounded;         /* some number of remainder is not 0 */
-    int bits[2];          /* all components are multiples of 2^bits[0] below 2^bits[1] */
-    unsigned long long summary; /* as in fmb_prepared, of this frame unrotated and at rest */
-    double radius;     /* bounds the distance of each vertex from the origin of the body; may be
-                          infinite */
-    double slack;      /* bounds the distance of each vertex from the one that origin and component,
-                          which may be rounded, give; 0: those are exact */
-    double turn_error; /* what a rotation that rounds adds to slack */
+    double radius;        /* bounds the distance of each vertex from the origin of the body; may be
+                             infinite */
     /* Of a box it is rounded: the exact origin is centre - size / 2. */
     double origin[FMB_DIM_MAX];
     double component[FMB_DIM_MAX][FMB_DIM_MAX]; /* [component][axis] */
-    double size[FMB_DIM_MAX];                   /* largest magnitude in each component */
     /* [axis][component], rounded: x_i = sum_axis inverse[axis][i] p[axis] for p = sum x_i c_i. The
      * article's invComp (Listing 1, PROJ). All 0 if not inverted. */
     double inverse[FMB_DIM_MAX][FMB_DIM_MAX];
@@ -142,6 +133,11 @@ struct fmb_frame {
      * exact components are component + remainder. */
     double remainder[FMB_DIM_MAX][FMB_DIM_MAX];
     double centre[FMB_DIM_MAX]; /* of a box; otherwise 0 */
+    /* Internal (prepared.h). */
+    bool in_range, sturdy, rounded;
+    int bits[2];
+    unsigned long long summary;
+    double slack, turn_error, size[FMB_DIM_MAX];
 };
 
 /* Makes a frame of numbers.
@@ -417,7 +413,7 @@ struct fmb_batch {
      * Otherwise a pair is left open if its verdict or contact (if wanted) needs integers of more
      * than 512 bits, or if its box or gap needs integers of any width. A pair that the filter in
      * doubles does not decide is also left open if 32 of the same 128 pairs have already been
-     * decided after the filter. Which pairs are left open does not depend on the instructions.
+     * decided after the filter. Which pairs are left open does not depend on the machine.
      * open[0] to open[*open_count - 1] are the positions in pairs of those left open, ascending.
      *
      * A pair that is left open may take as long as fmb_decide() of one pair; any other takes tens
