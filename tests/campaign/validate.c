@@ -91,7 +91,8 @@ static void check_certificate(struct draw *draw, const struct cell *cell, struct
         tally_broken(tally, &question, "not the verdict of the oracle");
     else if (status != FMB_OK)
         tally_broken(tally, &question, fmb_status_text(status));
-    else if (length > 0 && !pair_certificate_holds(&trial.pair[0], truth.verdict, text, why, sizeof why))
+    else if (length > 0 &&
+             !pair_certificate_holds(&trial.pair[0], truth.verdict, text, why, sizeof why))
         tally_broken(tally, &question, why);
     oracle_clear(&truth);
 }
