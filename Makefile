@@ -4,7 +4,8 @@
 #   make deps-test test     installs what the tests need, then runs them
 #
 # Build:    all (default), examples, install, install-strip, uninstall, clean
-# Test:     test (12 minutes), test-fast (one), unit-tests; headers, format, format-check
+# Test:     test (12 minutes), test-fast (one), unit-tests; headers, layers, format,
+#           format-check
 # Longer:   validate, accuracy, soak, fuzz, fuzz-afl, fuzz-merge (deps-fuzz first)
 # Measure:  bench (deps-bench first, for other libraries), bench-bus, bench-replay, bench-mesh,
 #           report (deps-report first)
@@ -12,7 +13,6 @@
 #
 # Variables:
 #   MODE=release|debug|asan|fuzz   optimised, for a debugger, with sanitizers, with fuzzers (clang)
-#   OPENMP=1                       batches may run on several threads (fmb_batch.threads)
 #   INSTRUCTIONS=sse2              leaves out the AVX2 and AVX-512 kernels, which compile slowly
 #   PEERS=none                     leaves out other libraries from the benchmarks
 #   WERROR=1                       warnings are errors
@@ -20,7 +20,6 @@
 
 VERSION := 0.1.0
 MODE ?= release
-OPENMP ?=
 INSTRUCTIONS ?=
 ifeq ($(origin CC),default)
 CC := $(if $(filter fuzz,$(MODE)),clang,gcc)
@@ -31,15 +30,11 @@ LIBDIR ?= $(PREFIX)/lib
 INSTALL ?= install
 OBJCOPY ?= objcopy
 
-# The default build lies in build/, others in build/VARIANT. OpenMP changes batch.o and its test
-# alone: objects that do not depend on it lie in O, those of unit tests in V.
+# The default build lies in build/, others in build/VARIANT.
 compiler := $(notdir $(firstword $(CC)))
-openmp_flag := $(if $(filter-out 0,$(OPENMP)),-fopenmp)
-objects := $(MODE)$(if $(filter-out gcc cc,$(compiler)),-$(compiler))$(INSTRUCTIONS:%=-%)
-variant := $(objects)$(openmp_flag:-f%=-%)
+variant := $(MODE)$(if $(filter-out gcc cc,$(compiler)),-$(compiler))$(INSTRUCTIONS:%=-%)
 B := $(if $(filter release,$(variant)),build,build/$(variant))
-O := build/obj/$(objects)
-V := build/obj/$(variant)
+O := build/obj/$(variant)
 GEN := build/msgs
 
 .PHONY: all
@@ -82,7 +77,7 @@ endif
 hardened := $(hardened_$(MODE))
 $(O)/service/fmb/%.o $(O)/kernels/%.o: hardened :=
 compile = $(CC) $(flags) $(hardened) $(whole) -MMD -MP -c $< -o $@
-link_user := $(mode_link_$(MODE)) $(hardened_link_$(MODE)) $(openmp_flag) $(CFLAGS) $(LDFLAGS)
+link_user := $(mode_link_$(MODE)) $(hardened_link_$(MODE)) $(CFLAGS) $(LDFLAGS)
 
 # The path of a query, from its bytes to those of its result, is faster by a tenth with -O3, and by
 # another tenth where gcc optimises the whole program. Tests and libraries link the same objects
@@ -193,19 +188,16 @@ $(box_refinements): $(O)/kernels/refine_%.o: service/fmb/filter/box_refine.c $(O
 	$(compile_kernel) $(not_inlined)
 
 $(O)/service/fmb/filter/instructions.o: flags += $(if $(INSTRUCTIONS),-DINSTRUCTIONS_MOST=2)
-$(O)/service/fmb/decide/batch_openmp.o: service/fmb/decide/batch.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile) $(sees) -fopenmp
 
 # Contenders of the benchmark meet no NaN: minima and maxima are one instruction each.
 fast_math := tests/bench/gpr tests/bench/lean_sat tests/bench/seidel
 $(fast_math:%=$(O)/%.o): flags += -ffinite-math-only -fno-signed-zeros
 
 engine_folders := $(call fmb,number frame filter article tree exact gap certificate decide)
-engine_objects := $(many_kernels) $(box_refinements) $(single_kernels) \
-	$(filter-out %/many.o %/single.o %/box_refine.o \
-	$(if $(openmp_flag),%/batch.o),$(call objects_in,$(engine_folders))) \
-	$(if $(openmp_flag),$(O)/service/fmb/decide/batch_openmp.o)
+kernels := $(many_kernels) $(box_refinements) $(single_kernels)
+engine_objects_in = $(if $(findstring filter,$1),$(kernels)) \
+	$(filter-out %/many.o %/single.o %/box_refine.o,$(call objects_in,$1))
+engine_objects := $(call engine_objects_in,$(engine_folders))
 
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
 $(message_headers:.h=.c) $(message_headers) &: $(message_files)
@@ -225,7 +217,7 @@ product_objects := $(filter-out %/main.o %/fmb.o,$(wire_objects) $(page_names:%=
 
 # Of unmerged archives the linker takes what a program needs; what stands before them on its command
 # line replaces the member of that name. Members of two folders may have one name.
-engine := $(O)/engine$(openmp_flag:-f%=-%).a
+engine := $(O)/engine.a
 client := $(O)/client.a
 product := $(O)/product.a
 $(engine): $(engine_objects)
@@ -234,6 +226,20 @@ $(product): $(product_objects)
 $(engine) $(client) $(product):
 	@rm -f $@
 	$(AR) qcs $@ $^
+
+# Every layer links with the folders that it may include from, and nothing else: a call that points up
+# fails to link, also where its declaration stands below.
+engine_layers := $(filter-out service/fmb,$(engine_folders))
+wire_layers := msgs/codec msgs/bus service/common service/answer clients/lib
+.PHONY: layers
+layers: $(engine_layers:%=$(O)/%/layer.so) $(wire_layers:%=$(O)/%/layer.so)
+$(foreach l,$(engine_layers),$(eval $(O)/$l/layer.so: \
+	$(call engine_objects_in,$l $(filter $(engine_layers),$(see_$l)))))
+$(foreach l,$(wire_layers),$(eval $(O)/$l/layer.so: $(message_objects) $(engine) \
+	$(call objects_in,$l $(filter $(wire_layers),$(see_$l)))))
+%/layer.so: $(O)/service/fmb/names.o
+	$(CC) $(filter-out -pie,$(link_flags)) -shared -Wl,--no-undefined -o $@ $(filter %.o,$^) \
+		$(filter %.a,$^) -Wl,--as-needed $(libraries)
 
 # Libraries: one object that shows the names of the header alone, so that no program's names meet
 # ours; and names.o, which both have: a program that links both takes it once.
@@ -253,7 +259,7 @@ $(B)/libfmb-client.a: $(client_objects) $(wire_objects) $(names)
 
 # The same as shared libraries, with the names of their headers alone.
 shared_libraries := $(B)/libfmb.so.0 $(B)/libfmb-client.so.0
-$(B)/libfmb.so.0: shared_needs := $(openmp_flag) -lgmp -lm
+$(B)/libfmb.so.0: shared_needs := -lgmp -lm
 $(B)/libfmb-client.so.0: shared_needs := -llcm -lglib-2.0 -lm
 $(shared_libraries): $(B)/%.so.0: $(B)/%.a
 	echo '{ local: fmb_client_raw_*; };' > $@.map
@@ -322,8 +328,8 @@ $(O)/page/%.o: build/page/%.c $(O)/settings
 
 # ---- Settings: everything is built again when flags or lists of files change ----
 
-settings := $(CC) $(flags) $(hardened) $(filter-out -fopenmp,$(link_flags) $(link_whole)) \
-	$(filter-out %/batch.o %/batch_openmp.o,$(engine_objects)) $(product_objects) $(client_objects)
+settings := $(CC) $(flags) $(hardened) $(link_flags) $(link_whole) \
+	$(engine_objects) $(product_objects) $(client_objects)
 $(O)/settings: Makefile tests/tests.mk FORCE
 	@mkdir -p $(@D)
 	@echo '$(subst ','\'',$(settings))' | cmp -s - $@ && \
@@ -395,8 +401,7 @@ install: all
 	$(INSTALL) -m 644 service/fmb/fmb.h clients/lib/fmb_client.h "$(DESTDIR)$(PREFIX)/include"
 	$(INSTALL) -m 644 $(message_files) "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes"
 	$(INSTALL) -m 644 LICENSE "$(DESTDIR)$(PREFIX)/share/doc/fmb"
-	$(fill_in) $(if $(openmp_flag),-e 's|^Libs.private:.*|& $(openmp_flag)|') service/fmb/fmb.pc.in \
-		> "$(DESTDIR)$(LIBDIR)/pkgconfig/fmb.pc"
+	$(fill_in) service/fmb/fmb.pc.in > "$(DESTDIR)$(LIBDIR)/pkgconfig/fmb.pc"
 	$(fill_in) clients/lib/fmb-client.pc.in > "$(DESTDIR)$(LIBDIR)/pkgconfig/fmb-client.pc"
 	$(subst %,%%,$(fill_in)) service/fmbd.service.in > "$(DESTDIR)$(PREFIX)/lib/systemd/system/fmbd.service"
 
@@ -447,4 +452,4 @@ endif
 
 .DELETE_ON_ERROR:
 .SECONDARY:
--include $(shell find $(O) $(V) -name '*.d' 2> /dev/null)
+-include $(shell find $(O) -name '*.d' 2> /dev/null)

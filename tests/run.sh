@@ -17,11 +17,9 @@ limit=600 # seconds a suite may take before it has failed
 # their users start them, where these suites take them furthest; kernels of one instruction set are
 # enough. Sanitizers of clang, instrumented for fuzzing: unit tests, with all kernels, fuzzers, and the
 # goldens, which another compiler must reproduce.
-# With OpenMP: the one suite that uses threads.
 release=build
 programs=build/asan-sse2
 units=build/fuzz-clang
-threads=build/release-openmp
 sanitized='system/service.bats system/daemon.bats system/record.bats system/replay_bus.bats'
 sanitized="$sanitized system/soak.bats cli/query.bats cli/record.bats cli/replay.bats cli/mesh.bats"
 
@@ -40,11 +38,11 @@ slow="$slow system/bus.bats cli/page.bats cli/mesh_page.bats cli/campaign.bats c
 run_suite() {
     kind=$1 build=$2 what=$3
     export FMB_BUILD="$build" CMOCKA_MESSAGE_OUTPUT=TAP
-    # Samples that fit into the time of a run; a suite alone draws all of its own. Sanitizers and
-    # threads look at paths, not at answers: fewer samples take them all.
+    # Samples that fit into the time of a run; a suite alone draws all of its own. Sanitizers look
+    # at paths, not at answers: fewer samples take them all.
     case $build in
     "$release") sample=${FMB_FAST:+1} sample=${sample:-0.7} ;;
-    "$programs" | "$threads") sample=1; export FMB_FAST=1 ;;
+    "$programs") sample=1; export FMB_FAST=1 ;;
     "$units") sample=0.5; export FMB_FAST=1; [ "$what" != test_kernels ] || sample=1 ;;
     esac
     export FMB_SAMPLE="${FMB_SAMPLE-$sample}"
@@ -176,17 +174,15 @@ list_all() {
     list_bats $programs $sanitized
     list_units $units
     list_bats $units fuzz/fuzz.bats cli/replay_set.bats
-    list_units $threads
 }
 
 rm -rf "$log"
 mkdir -p "$log"
-rm -rf $release/tests $programs/tests $units/tests $threads/tests
-build PEERS=none format-check headers ${FMB_FAST:+fast-}tests
+rm -rf $release/tests $programs/tests $units/tests
+build PEERS=none format-check headers layers ${FMB_FAST:+fast-}tests
 if [ -z "${FMB_FAST-}" ]; then
     build MODE=asan INSTRUCTIONS=sse2 tested-programs
     build MODE=fuzz unit-tests fuzzers replay-set
-    build OPENMP=1 $threads/tests/test_engine_batch
 fi
 list_all | awk -v first="$first" 'BEGIN { count = split(first, name) }
     { line[NR] = $0; what[NR] = $3 }

@@ -15,7 +15,8 @@ see_tests/robot := tests/encode tests/bus tests/bench tests/oracle service $(wir
 see_tests/hostile := $(GEN)
 see_tests/system := tests/hostile $(GEN)
 see_tests/mesh := clients/mesh clients/common tests/bench service/fmb
-see_tests/logs := tests/encode tests/campaign tests/oracle service/answer $(wire) service/fmb/frame $(GEN)
+see_tests/logs := tests/encode tests/campaign tests/oracle service/answer $(wire) \
+	$(call fmb,frame filter) $(GEN)
 see_tests/soak := tests/encode clients/lib $(wire)
 see_tests/page := tests/encode clients/page $(see_clients/replay)
 see_tests/replay := clients/replay $(see_clients/replay) tests/unit tests/bench
@@ -23,10 +24,6 @@ see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/unit 
 see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
 see_tests/unit := $(call fmb,number frame filter article tree exact gap decide) service clients \
 	$(see_clients) tests/encode tests/oracle tests/campaign tests/hostile tests/mesh $(GEN)
-
-$(V)/tests/unit/%.o: tests/unit/%.c $(O)/settings | $(message_headers)
-	@mkdir -p $(@D)
-	$(compile) $(sees) $(openmp_flag)
 
 # ---- Programs of tests and measurements: the name, and the main file in tests/ ----
 
@@ -46,13 +43,13 @@ measures := $(call program_names,$(measures)) $(B)/accuracy-planted
 # What the programs of tests share. Those that look into the engine link its objects, the others
 # the library.
 test_folders := $(addprefix tests/,encode oracle hostile campaign mesh bench bus robot soak logs page)
-shared := $(V)/shared.a
+shared := $(O)/shared.a
 $(shared): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in,$(test_folders))) \
-		$(patsubst tests/unit/%.c,$(V)/tests/unit/%.o,$(filter-out %/slab_truth.c %/slab_kernel.c \
+		$(patsubst tests/unit/%.c,$(O)/tests/unit/%.o,$(filter-out %/slab_truth.c %/slab_kernel.c \
 			tests/unit/test_%,$(wildcard tests/unit/*.c)))
 	@rm -f $@
 	$(AR) qcs $@ $^
-looks_inside := validate accuracy bench/bench bus/bench-bus
+looks_inside := validate accuracy bench/bench bus/bench-bus logs/generate
 $(looks_inside:%=$(B)/%) $(B)/accuracy-planted: $(shared) $(client) $(product) $(engine)
 $(filter-out $(looks_inside:%=$(B)/%),$(test_programs) $(measures)): \
 	$(shared) $(client) $(product) $(B)/libfmb.a
@@ -63,8 +60,9 @@ $(test_programs) $(measures):
 
 unit_names := $(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c))
 unit_tests := $(unit_names:%=$(B)/tests/%)
-internal_tests := $(addprefix $(B)/tests/,test_bounds test_box_bounds test_limbs test_outward \
-	test_kernels test_placing test_engine_work)
+internal_tests := $(addprefix $(B)/tests/,test_bounds test_box_bounds test_engine_batch \
+	test_engine_pose test_engine_tree test_engine_triangle test_limbs test_outward test_kernels \
+	test_placing test_engine_work)
 comma := ,
 wraps = $(addprefix -Wl$(comma)--wrap=,$1)
 wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_addmul z_submul z_add z_sub \
@@ -122,11 +120,11 @@ $(box_refinements_of_tests): $(O)/kernels/refine_boxes_%.o: service/fmb/filter/b
 	$(compile_box) $(not_inlined)
 $(B)/tests/test_box_bounds: $(box_kernels) $(box_refinements_of_tests)
 
-$(internal_tests): $(V)/tests/unit/slab_truth.o $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
+$(internal_tests): $(O)/tests/unit/slab_truth.o $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
 	kernel_fused.o kernel_planted.o) $(shared) $(client) $(product) $(engine)
 $(filter-out $(internal_tests),$(unit_tests)): $(shared) $(client) $(product) $(B)/libfmb.a
 $(unit_tests): libraries += -lcmocka
-$(unit_tests): $(B)/tests/%: $(V)/tests/unit/%.o | $(B)/netns
+$(unit_tests): $(B)/tests/%: $(O)/tests/unit/%.o | $(B)/netns
 	$(link)
 
 # ---- Fuzz targets: each a program that replays its corpus and, with MODE=fuzz, a fuzzer ----
@@ -181,14 +179,11 @@ capped_programs := $(foreach p,fmbd fmb generate,$(capped_sets:%=$(B)/capped/$p-
 $(capped_sets:%=$(O)/capped/%.o): $(O)/capped/%.o: service/fmb/filter/instructions.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) $(sees) -DINSTRUCTIONS_MOST=$(capped_most_$*)
-$(B)/capped/libfmb-plain.a: $(call single_kernels_of,plain)
-$(capped_sets:%=$(B)/capped/libfmb-%.a): $(B)/capped/libfmb-%.a: $(O)/capped/%.o \
-		$(filter-out %/instructions.o $(call single_kernels_of,plain),$(engine_objects))
-	$(call library,fmb_*)
 $(capped_sets:%=$(B)/capped/fmbd-%): $(O)/service/main.o
 $(capped_sets:%=$(B)/capped/fmb-%): $(O)/clients/fmb.o $(B)/libfmb-client.a
 $(capped_sets:%=$(B)/capped/generate-%): $(O)/tests/logs/generate.o $(shared)
-$(capped_programs): $(product) $(B)/capped/libfmb-$$(lastword $$(subst -, ,$$@)).a
+$(filter %-plain,$(capped_programs)): $(call single_kernels_of,plain)
+$(capped_programs): $(O)/capped/$$(lastword $$(subst -, ,$$@)).o $(product) $(engine)
 	$(link)
 
 # ---- Running the tests ----
@@ -203,7 +198,7 @@ replay-set: $(B)/fmb $(B)/logs/generate $(filter $(B)/capped/fmb-%,$(capped_prog
 # The script builds what it tests, in the modes that it says.
 ifneq ($(filter test check test-fast,$(MAKECMDGOALS)),)
 ifneq ($(variant),release)
-$(error 'make test' chooses modes and compilers itself: leave out MODE, CC and OPENMP)
+$(error 'make test' chooses modes and compilers itself: leave out MODE and CC)
 endif
 endif
 test check:

@@ -27,7 +27,7 @@ struct fmb_client {
     struct requests requests;
     struct scene_run run;
     struct fmb_client_answer answer; /* of the last single pair, with its texts */
-    char text[QUERY_TEXT_MAX], certificate[QUERY_CERTIFICATE_MAX];
+    char text[QUERY_TEXT_MAX], certificate[FMB_CERTIFICATE_MAX];
     char why[FMB_CLIENT_WHY_MAX];
     union { /* the message being decoded */
         struct scene_result scene;

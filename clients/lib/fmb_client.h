@@ -167,7 +167,7 @@ struct fmb_client_answer {
     int status;               /* FMB_OK, or why there is no verdict */
     const char *text;         /* text of the status, "" if FMB_OK. Valid during the callback */
     struct fmb_answer answer; /* all 0 unless FMB_OK; contact, box and gap as wanted */
-    /* NULL if not wanted, or of 60,000 characters or more. Valid during the callback. */
+    /* NULL if not wanted, or if the pair has none (fmb.h). Valid during the callback. */
     const char *certificate;
 };
 

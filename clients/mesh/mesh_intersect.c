@@ -202,16 +202,16 @@ static void report_progress(const struct mesh_search *search, uint64_t nodes)
 static void decide_all(struct mesh_search *search)
 {
     const struct mesh_query *query = search->query;
-    struct fmb_tree_place place = {0};
+    struct fmb_tree_cursor cursor = {0};
     for (clear_block(search);
          search->status == FMB_OK &&
-         fmb_tree_pairs(&search->tree[0], &search->tree[!mesh_is_self(query)], &place, search->face,
-                        BLOCK, &search->count) == FMB_OK &&
+         fmb_tree_pairs(&search->tree[0], &search->tree[!mesh_is_self(query)], &cursor,
+                        search->face, BLOCK, &search->count) == FMB_OK &&
          search->count > 0;
          clear_block(search)) {
         decide_candidates(search);
         if (query->report)
-            report_progress(search, place.leaf);
+            report_progress(search, cursor.leaf);
     }
 }
 

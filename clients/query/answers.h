@@ -36,8 +36,8 @@ bool answers_bus_scene(struct answers_bus *answers, const struct scene *scene, a
 enum { VERIFY_TEXT_MAX = 256 };
 
 /* Checks the certificate of an outcome against the numbers of the scene, so that the verdict need
- * not be trusted. If it does not hold, the outcome loses its answer, and gets an error, written
- * into text. whose: "the" or "the service's", for that error. */
+ * not be trusted. If there is none or it does not hold, the outcome loses its answer, and gets an
+ * error, written into text. whose: "the" or "the service's", for that error. */
 void verify_outcome(const struct scene *scene, const char *whose, struct outcome *outcome,
                     char text[VERIFY_TEXT_MAX]);
 

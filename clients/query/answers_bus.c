@@ -25,7 +25,6 @@ struct answers_bus {
 struct bus_scene {
     const struct scene *scene;
     struct scene_cursor delivered; /* pairs so far */
-    bool certificate;              /* wanted */
     answers_sink *sink;
     void *user;
 };
@@ -162,19 +161,10 @@ static void deliver_separated(const struct bus_scene *run, struct scene_pair pai
     run->sink(run->user, run->scene, &outcome);
 }
 
-static const char *error_of(const struct bus_scene *run, const struct fmb_client_answer *answer)
-{
-    if (answer->status != FMB_OK)
-        return answer->text;
-    if (run->certificate && !answer->certificate)
-        return "the certificate is too long for a message: use --local";
-    return NULL;
-}
-
 static void take_answer(void *user, const struct fmb_client_answer *answer)
 {
     struct bus_scene *run = user;
-    struct outcome outcome = {.error = error_of(run, answer)};
+    struct outcome outcome = {.error = answer->status == FMB_OK ? NULL : answer->text};
     while (scene_next_pair(run->scene, &run->delivered, &outcome.pair) &&
            (outcome.pair.a != answer->a || outcome.pair.b != answer->b))
         deliver_separated(run, outcome.pair);
@@ -263,8 +253,7 @@ static bool query(struct answers_bus *answers, struct bus_scene *run)
 bool answers_bus_scene(struct answers_bus *answers, const struct scene *scene, answers_sink *sink,
                        void *user)
 {
-    struct bus_scene run = {
-        .scene = scene, .certificate = answers->options.certificate, .sink = sink, .user = user};
+    struct bus_scene run = {.scene = scene, .sink = sink, .user = user};
     if (answers->client)
         return query(answers, &run);
     deliver_remaining(&run, "no bus");

@@ -1,34 +1,12 @@
 #include "answers.h"
 
-#include "allocate.h"
 #include "query.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-/* Memory for certificates, which grows as needed. */
-struct certificate_text {
-    char *at; /* owned */
-    size_t capacity;
-};
-
-/* Returns the certificate of a decided pair, in text; or NULL and the status. Most certificates
- * have a few dozen characters. */
-static const char *certificate(const struct fmb_placement *a, const struct fmb_placement *b,
-                               double duration, struct certificate_text *text,
-                               enum fmb_status *status)
-{
-    size_t length = 255;
-    do {
-        text->at = allocate_grow(text->at, &text->capacity, length + 1, 1);
-        *status = fmb_certificate(a, b, duration, text->at, text->capacity, &length);
-    } while (*status == FMB_OVER_LIMIT);
-    return *status == FMB_OK ? text->at : NULL;
-}
-
-/* Decides a pair. Returns the error; NULL: none. */
+/* Decides a pair. Its certificate is in text. Returns the error; NULL: none. */
 static const char *decide(const struct answers_options *options, const struct scene *scene,
-                          struct outcome *out, struct certificate_text *text)
+                          struct outcome *out, char text[FMB_CERTIFICATE_MAX])
 {
     const struct fmb_method *method = options->method ? options->method : fmb_method_default();
     const bool gap = options->gap || scene->margin > 0;
@@ -40,8 +18,11 @@ static const char *decide(const struct answers_options *options, const struct sc
     enum fmb_status status = fmb_decide(method, &a, &b, scene->duration, want, &out->answer);
     if (!options->gap)
         query_remove_far_gap(scene->margin, &out->answer);
-    if (options->certificate && status == FMB_OK)
-        out->certificate = certificate(&a, &b, scene->duration, text, &status);
+    if (options->certificate && status == FMB_OK) {
+        size_t length;
+        status = fmb_certificate(&a, &b, scene->duration, text, FMB_CERTIFICATE_MAX, &length);
+        out->certificate = length > 0 ? text : NULL;
+    }
     return status == FMB_OK ? NULL : fmb_status_text(status);
 }
 
@@ -50,15 +31,14 @@ void answers_local(const struct answers_options *options, const struct scene *sc
 {
     struct scene_cursor cursor = {0};
     struct outcome outcome;
-    struct certificate_text text = {.at = NULL};
+    char text[FMB_CERTIFICATE_MAX];
     while (scene_next_pair(scene, &cursor, &outcome.pair)) {
         outcome.certificate = NULL;
-        outcome.error = decide(options, scene, &outcome, &text);
+        outcome.error = decide(options, scene, &outcome, text);
         if (outcome.error)
             memset(&outcome.answer, 0, sizeof outcome.answer);
         sink(user, scene, &outcome);
     }
-    free(text.at);
 }
 
 void verify_outcome(const struct scene *scene, const char *whose, struct outcome *outcome,
@@ -67,9 +47,14 @@ void verify_outcome(const struct scene *scene, const char *whose, struct outcome
     const struct fmb_placement a = scene_placement(&scene->body[outcome->pair.a]);
     const struct fmb_placement b = scene_placement(&scene->body[outcome->pair.b]);
     char why[VERIFY_TEXT_MAX];
-    if (fmb_certificate_holds(&a, &b, scene->duration, outcome->answer.verdict,
+    if (outcome->certificate &&
+        fmb_certificate_holds(&a, &b, scene->duration, outcome->answer.verdict,
                               outcome->certificate, why, sizeof why))
         return;
-    snprintf(text, VERIFY_TEXT_MAX, "%s certificate does not hold: %.200s", whose, why);
+    if (outcome->certificate)
+        snprintf(text, VERIFY_TEXT_MAX, "%s certificate does not hold: %.200s", whose, why);
+    else
+        snprintf(text, VERIFY_TEXT_MAX,
+                 "no certificate: numbers that span more than 512 bits have none");
     *outcome = (struct outcome){.pair = outcome->pair, .error = text};
 }

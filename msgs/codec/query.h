@@ -28,9 +28,6 @@ enum { QUERY_BYTES_MAX = 63900 };
 /* Most bytes of a detail text, final 0 included. */
 enum { QUERY_TEXT_MAX = 160 };
 
-/* Most bytes of a certificate, final 0 included. */
-enum { QUERY_CERTIFICATE_MAX = 60000 };
-
 enum { QUERY_ORIENTATION_MAX = 4 };
 
 /* Fields that every query begins with. */

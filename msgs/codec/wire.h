@@ -9,7 +9,7 @@
  *
  * - A verdict is present if and only if the status is OK; an interval, if and only if the bodies
  *   touch or overlap. A box is present only if they do. Both are ordered. A certificate is present
- *   only with a verdict, is printable ASCII and shorter than QUERY_CERTIFICATE_MAX.
+ *   only with a verdict, is printable ASCII and shorter than FMB_CERTIFICATE_MAX.
  * - The bounds of a gap are ordered, and 0 for bodies that touch; its direction is finite. Witness
  *   points are present if and only if the bodies are separated. A NaN, where the message types have
  *   one, has the bits 7ff8000000000000 (Java's NaN).

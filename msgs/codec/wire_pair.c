@@ -12,7 +12,7 @@
 
 /* The fixed fields of a result, the most numbers that its lists can have, and its texts. */
 static_assert(8 + 6 * 8 + 2 * HANDLE_BYTES + 10 * 4 + 8 * (5 + 5 * FMB_DIM_MAX) + QUERY_TEXT_MAX +
-                      QUERY_CERTIFICATE_MAX + 8 <=
+                      FMB_CERTIFICATE_MAX + 8 <=
                   QUERY_BYTES_MAX,
               "a result is one datagram");
 
@@ -105,7 +105,7 @@ static void read_certificate(struct cursor *cursor, struct pair_result *out)
         return;
     if (out->status != FMB_OK)
         cursor_fail(cursor, "a certificate without a verdict");
-    if (length >= QUERY_CERTIFICATE_MAX)
+    if (length >= FMB_CERTIFICATE_MAX)
         cursor_fail(cursor, "a certificate that is too long");
     for (size_t i = 0; i < length && !cursor->error; i++)
         if (!cursor_is_printable(bytes[i]))

@@ -84,17 +84,17 @@ static bool add_bodies(struct answerer *answerer, const struct pair_query *query
     return true;
 }
 
-/* Adds the certificate to the result, unless it is too long. */
+/* Adds the certificate to the result, if there is one. */
 static void certify(struct answerer *answerer, const struct fmb_placement placement[2],
                     double duration, struct pair_result *result)
 {
     size_t length;
-    enum fmb_status status =
+    const enum fmb_status status =
         fmb_certificate(&placement[0], &placement[1], duration, answerer->certificate,
                         sizeof answerer->certificate, &length);
-    assert(status == FMB_OK || status == FMB_OVER_LIMIT);
-    if (status == FMB_OK)
-        result->certificate = answerer->certificate;
+    assert(status == FMB_OK);
+    (void) status;
+    result->certificate = length > 0 ? answerer->certificate : NULL;
 }
 
 static void refuse_method(const struct fmb_method *method, enum fmb_status status,
@@ -277,7 +277,7 @@ static void take_answer(struct pair_job *job, const struct fmb_scene_answers *an
     const struct fmb_method *method = fmb_method_by_number(job->query.method);
     struct pair_result *result = &job->result;
     struct fmb_answer *answer = &result->answer;
-    if (answers->verdicts[0] == FMB_REFUSED) {
+    if (answers->verdicts[0] == 0) {
         refuse_method(method, FMB_CANNOT_DECIDE, result);
         return;
     }

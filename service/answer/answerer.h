@@ -8,8 +8,8 @@
 struct answerer {
     struct cache *cache; /* owned */
     int64_t server_id;
-    struct query_bodies bodies;              /* of the pair query being answered */
-    char certificate[QUERY_CERTIFICATE_MAX]; /* of the last pair result that has one */
+    struct query_bodies bodies;            /* of the pair query being answered */
+    char certificate[FMB_CERTIFICATE_MAX]; /* of the last pair result that has one */
 };
 
 /* The body of a placement of a query in progress. */

@@ -64,28 +64,28 @@ extern "C" {
 enum { FMB_DIM_MAX = 3, FMB_COMPONENTS_MAX = FMB_DIM_MAX * FMB_DIM_MAX };
 
 /* Status codes. Their numbers are used in messages and logs: a retired number is never reused. */
-#define FMB_STATUS_MAP(X)                                                                 \
-    X(OK, 0, "ok")                                                                        \
-    X(UNKNOWN_BODY, 1, "unknown body")                                                    \
-    X(BUSY, 2, "busy")                                                                    \
-    X(OVER_LIMIT, 3, "over the limit")                                                    \
-    X(UNKNOWN_SHAPE, 4, "unknown shape")                                                  \
-    X(WRONG_DIMENSION, 5, "wrong dimension")                                              \
-    X(WRONG_COUNT, 6, "wrong count of numbers")                                           \
-    X(NOT_FINITE, 7, "not a finite number")                                               \
-    X(DIMENSIONS_DIFFER, 8, "a 2D body against a 3D one")                                 \
-    X(BAD_DURATION, 9, "the duration is negative, not finite, or missing")                \
-    X(BAD_ID, 10, "id out of range")                                                      \
-    X(UNKNOWN_METHOD, 11, "unknown method")                                               \
-    X(UNKNOWN_WANT, 12, "wants what this version does not give")                          \
-    X(CANNOT_DECIDE, 13, "this method cannot decide this pair")                           \
-    X(NOT_SUPPORTED, 14, "this machine, or this build, does not have what was asked for") \
-    X(BAD_PAIR, 15, "indices that name no two frames")                                    \
-    X(BAD_ORIENTATION, 16, "an orientation that is no rotation")                          \
-    X(BAD_SIZE, 17, "a box of negative size")                                             \
-    X(NO_FRAMES, 18, "a body without frames")                                             \
-    X(BAD_MARGIN, 19, "the margin is negative or not finite")                             \
-    X(EXPIRED, 20, "waited too long, without a result")                                   \
+#define FMB_STATUS_MAP(X)                                                  \
+    X(OK, 0, "ok")                                                         \
+    X(UNKNOWN_BODY, 1, "unknown body")                                     \
+    X(BUSY, 2, "busy")                                                     \
+    X(OVER_LIMIT, 3, "over the limit")                                     \
+    X(UNKNOWN_SHAPE, 4, "unknown shape")                                   \
+    X(WRONG_DIMENSION, 5, "wrong dimension")                               \
+    X(WRONG_COUNT, 6, "wrong count of numbers")                            \
+    X(NOT_FINITE, 7, "not a finite number")                                \
+    X(DIMENSIONS_DIFFER, 8, "a 2D body against a 3D one")                  \
+    X(BAD_DURATION, 9, "the duration is negative, not finite, or missing") \
+    X(BAD_ID, 10, "id out of range")                                       \
+    X(UNKNOWN_METHOD, 11, "unknown method")                                \
+    X(UNKNOWN_WANT, 12, "wants what this version does not give")           \
+    X(CANNOT_DECIDE, 13, "this method cannot decide this pair")            \
+    X(NOT_SUPPORTED, 14, "this version does not support it")               \
+    X(BAD_PAIR, 15, "indices that name no two frames")                     \
+    X(BAD_ORIENTATION, 16, "an orientation that is no rotation")           \
+    X(BAD_SIZE, 17, "a box of negative size")                              \
+    X(NO_FRAMES, 18, "a body without frames")                              \
+    X(BAD_MARGIN, 19, "the margin is negative or not finite")              \
+    X(EXPIRED, 20, "waited too long, without a result")                    \
     X(REFUSAL_UNSENT, 21, "too often, without a result")
 
 enum fmb_status {
@@ -123,20 +123,11 @@ struct fmb_frame {
     int count;            /* number of components */
     bool flat;            /* the volume is exactly zero, as of every face; no inverse */
     bool inverted;        /* the inverse is present: not flat, and all its entries are finite */
-    bool in_range;        /* doubles can decide pairs with it in a placement not rotated */
-    bool sturdy;          /* doubles can decide pairs with it in any placement (frame.c) */
-    bool rounded;         /* some number of remainder is not 0 */
-    int bits[2];          /* all components are multiples of 2^bits[0] below 2^bits[1] */
-    unsigned long long summary; /* as in fmb_prepared, of this frame unrotated and at rest */
-    double radius;     /* bounds the distance of each vertex from the origin of the body; may be
-                          infinite */
-    double slack;      /* bounds the distance of each vertex from the one that origin and component,
-                          which may be rounded, give; 0: those are exact */
-    double turn_error; /* what a rotation that rounds adds to slack */
+    double radius;        /* bounds the distance of each vertex from the origin of the body; may be
+                             infinite */
     /* Of a box it is rounded: the exact origin is centre - size / 2. */
     double origin[FMB_DIM_MAX];
     double component[FMB_DIM_MAX][FMB_DIM_MAX]; /* [component][axis] */
-    double size[FMB_DIM_MAX];                   /* largest magnitude in each component */
     /* [axis][component], rounded: x_i = sum_axis inverse[axis][i] p[axis] for p = sum x_i c_i. The
      * article's invComp (Listing 1, PROJ). All 0 if not inverted. */
     double inverse[FMB_DIM_MAX][FMB_DIM_MAX];
@@ -144,6 +135,11 @@ struct fmb_frame {
      * exact components are component + remainder. */
     double remainder[FMB_DIM_MAX][FMB_DIM_MAX];
     double centre[FMB_DIM_MAX]; /* of a box; otherwise 0 */
+    /* Internal (prepared.h). */
+    bool in_range, sturdy, rounded;
+    int bits[2];
+    unsigned long long summary;
+    double slack, turn_error, size[FMB_DIM_MAX];
 };
 
 /* Makes a frame of numbers.
@@ -360,8 +356,7 @@ enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pla
  *                               .pair_count = n, .duration = 1, .verdicts = verdicts};
  *     fmb_decide_batch(&batch);
  *
- * The answers are those of the method certified, bit for bit. They do not depend on the
- * instructions or on the number of threads. */
+ * The answers are those of the method certified, bit for bit. */
 
 /* A frame of a placed body: its rounded world coordinates and a bound on their error (prepared.h).
  * Filled by fmb_prepare() only. It points to the frame and the placement, which must stay valid and
@@ -380,7 +375,7 @@ struct fmb_prepared {
  *
  * In:  placement  must outlive the prepared frames
  * Out: out        [count]; all 0 if the status is not FMB_OK, and pairs with such frames are
- *                 refused
+ *                 invalid
  * Returns FMB_OK; a status of fmb_placement_check(); FMB_BAD_PAIR if the body has no such frames.
  * Cost: less than 30 ns a frame. */
 enum fmb_status fmb_prepare(const struct fmb_placement *placement, unsigned first, unsigned count,
@@ -393,23 +388,8 @@ enum fmb_status fmb_prepare(const struct fmb_placement *placement, unsigned firs
  * Out: *verdict  unchanged if the status is not FMB_OK
  * Returns FMB_OK; FMB_NOT_FINITE for a frame that is not prepared; FMB_DIMENSIONS_DIFFER;
  * FMB_BAD_DURATION. */
-enum fmb_status fmb_meet(const struct fmb_prepared *a, const struct fmb_prepared *b,
-                         double duration, enum fmb_verdict *verdict);
-
-/* Instruction sets that the batch is compiled for. FMB_BEST is the best one that this machine
- * supports, detected at run time. */
-enum fmb_instructions { FMB_BEST = 0, FMB_PLAIN = 1, FMB_SSE2 = 2, FMB_AVX2 = 3, FMB_AVX512 = 4 };
-
-/* Returns "best", "plain", "sse2", "avx2" or "avx512"; NULL for any other number. The string is
- * static. */
-const char *fmb_instructions_name(int instructions);
-
-/* Returns whether the library is compiled for these instructions and this machine has them. */
-bool fmb_instructions_supported(int instructions);
-
-/* Further values in the verdicts of a batch: a pair that was refused, and a pair that was left open
- * and is listed in fmb_batch.open. */
-enum { FMB_REFUSED = 0, FMB_LEFT_OPEN = 255 };
+enum fmb_status fmb_decide_prepared(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                                    double duration, enum fmb_verdict *verdict);
 
 /* In and out of fmb_decide_batch(). The caller owns all arrays. Frames and pairs are read only; the
  * others are written. */
@@ -420,14 +400,15 @@ struct fmb_batch {
     size_t pair_count;
     double duration; /* T of all pairs, seconds; 0 only if all frames are at rest, or if instant */
     bool instant;    /* the window is [0, 0] even if frames move; the duration is 0 */
-    /* [pair_count]: enum fmb_verdict, FMB_REFUSED or FMB_LEFT_OPEN. */
+    /* [pair_count]: enum fmb_verdict; 0 for a pair that is listed in open, and for an invalid pair:
+     * fmb_decide_prepared() of its frames returns why. */
     unsigned char *verdicts;
     /* [pair_count][first, last], seconds, or NULL; as fmb_answer.contact. NAN for pairs that are
-     * separated, refused or left open. */
+     * separated or have no verdict. */
     double (*contacts)[2];
     /* [pair_count][lower, upper][axis], or NULL; as fmb_answer.box. NAN for the same pairs. */
     double (*boxes)[2][FMB_DIM_MAX];
-    /* [pair_count], or NULL; as fmb_answer.gap. Bounds of NAN for pairs refused or left open. */
+    /* [pair_count], or NULL; as fmb_answer.gap. Bounds of NAN for pairs without a verdict. */
     struct fmb_gap *gaps;
     /* Both NULL; or [pair_count] positions and their count, which bound the time of a call.
      *
@@ -436,7 +417,7 @@ struct fmb_batch {
      * Otherwise a pair is left open if its verdict or contact (if wanted) needs integers of more
      * than 512 bits, or if its box or gap needs integers of any width. A pair that the filter in
      * doubles does not decide is also left open if 32 of the same 128 pairs have already been
-     * decided after the filter. Which pairs are left open does not depend on the instructions.
+     * decided after the filter. Which pairs are left open does not depend on the machine.
      * open[0] to open[*open_count - 1] are the positions in pairs of those left open, ascending.
      *
      * A pair that is left open may take as long as fmb_decide() of one pair; any other takes tens
@@ -444,22 +425,17 @@ struct fmb_batch {
      * gives its answer: the same bits as in a batch of all pairs with both NULL. */
     size_t *open;
     size_t *open_count;
-    enum fmb_instructions instructions; /* 0: the best */
-    /* 0 or 1: the calling thread only. More threads require a library built with OPENMP=1, and pay
-     * off in batches of some thousands of pairs. */
-    int threads;
 };
 
 /* Decides the pairs of a batch.
  *
  * Returns one of:
- *   FMB_OK             every pair was decided or left open
- *   status of a pair   the status of the first pair that was refused: FMB_DIMENSIONS_DIFFER,
- *                      FMB_NOT_FINITE (a frame that is not prepared), FMB_OVER_LIMIT (an index of
- *                      frame_count or more). All other pairs were decided or left open.
- *   status of a batch  FMB_BAD_DURATION (negative, not finite, 0 although a frame moves and
- *                      instant is not set, or not 0 although it is), or FMB_NOT_SUPPORTED for
- *                      instructions or threads that are not available. Nothing was written.
+ *   FMB_OK            every pair was decided or left open
+ *   FMB_BAD_DURATION  negative, not finite, 0 although a frame moves and instant is not set, or
+ *                     not 0 although it is; nothing was written
+ *   status of a pair  the status of the first invalid pair: FMB_DIMENSIONS_DIFFER, FMB_NOT_FINITE
+ *                     (a frame that is not prepared), FMB_OVER_LIMIT (an index of frame_count or
+ *                     more). All other pairs were decided or left open.
  * Thread safety: calls may run at the same time if they write to different arrays. */
 enum fmb_status fmb_decide_batch(const struct fmb_batch *batch);
 
@@ -471,16 +447,11 @@ enum fmb_status fmb_decide_batch(const struct fmb_batch *batch);
  *     struct fmb_tree tree;
  *     void *memory = malloc(fmb_tree_bytes(count));
  *     fmb_tree_build(frames, count, 1, memory, &tree);
- *     for (unsigned i = 0; i < count; i++) {
- *         fmb_tree_ask(&tree, &frames[i], i + 1, found, &n);
- *         ... decide the pairs of i and found[0] to found[n - 1] ...
- *     }
- *
- * or, several times faster and in an unspecified order that is the same in every run,
- *
- *     struct fmb_tree_place place = {0};
- *     while (fmb_tree_pairs(&tree, &tree, &place, pairs, capacity, &n) == FMB_OK && n > 0)
+ *     struct fmb_tree_cursor cursor = {0};
+ *     while (fmb_tree_pairs(&tree, &tree, &cursor, pairs, capacity, &n) == FMB_OK && n > 0)
  *         ... decide pairs[0] to pairs[n - 1] ...
+ *
+ * The order of the pairs is unspecified, but the same in every run.
  *
  * The box of a frame contains all its points at all times of the window. It is the smallest such
  * box if no sum of the frame's numbers rounds; otherwise it is larger by a few units in the last
@@ -541,51 +512,28 @@ enum fmb_status fmb_tree_build_boxes(const struct fmb_boxes *boxes, size_t count
  * Out: box  [lower, upper][axis] */
 void fmb_box_of(const struct fmb_prepared *frame, double duration, double box[2][FMB_DIM_MAX]);
 
-/* Updates the boxes of a tree for frames that have moved or changed since. Queries then return
- * exactly what those of a new tree return. They take longer the farther the frames are from their
- * places when the tree was built.
- *
- * In:  frames    [tree->frame_count], of one dimension
- *      duration  T of all later queries, seconds
- * Returns FMB_OK; or a status of fmb_tree_build(), and the tree is unchanged.
- * Cost: O(n). */
-enum fmb_status fmb_tree_refit(struct fmb_tree *tree, const struct fmb_prepared *frames,
-                               double duration);
-
-/* Finds the frames of a tree whose boxes overlap that of a given frame.
- *
- * In:  frame   prepared; of the tree or not
- *      from    only frames of this index or a higher one are returned
- * Out: out     capacity for tree->frame_count indices. out[0] to out[*count - 1] are those found,
- *              in ascending order, including the frame itself if it is one of the tree. The
- *              elements after them are unspecified.
- *      *count  0 if the status is not FMB_OK
- * Returns FMB_OK; FMB_NOT_FINITE for a frame that is not prepared; FMB_DIMENSIONS_DIFFER. */
-enum fmb_status fmb_tree_ask(const struct fmb_tree *tree, const struct fmb_prepared *frame,
-                             unsigned from, unsigned *out, size_t *count);
-
 /* The position of an enumeration by fmb_tree_pairs(). All 0: the beginning. */
-struct fmb_tree_place {
+struct fmb_tree_cursor {
     unsigned leaf, node;
     bool inside;
 };
 
 /* The least capacity that fmb_tree_pairs() accepts, in pairs. */
-enum { FMB_TREE_ROOM = 64 };
+enum { FMB_TREE_CAPACITY_MIN = 64 };
 
 /* Enumerates the pairs of a frame of a and a frame of b whose boxes overlap. If a == b, these are
  * the pairs of two different frames of the tree, each once and with the smaller index first. Each
  * call continues where the last one ended; the trees must not change in between.
  *
- * In:  capacity  pairs that out can hold, at least FMB_TREE_ROOM
- *      *place    all 0 in the first call, then as the last call left it
+ * In:  capacity  pairs that out can hold, at least FMB_TREE_CAPACITY_MIN
+ *      *cursor   all 0 in the first call, then as the last call left it
  * Out: out       out[0] to out[*count - 1] are pairs [index in a, index in b], each once. The
  *                elements after them are unspecified.
  *      *count    0 if and only if there are no more pairs or the status is not FMB_OK
  * Returns FMB_OK; FMB_DIMENSIONS_DIFFER; FMB_BAD_DURATION for trees of different windows;
- * FMB_OVER_LIMIT if capacity is less than FMB_TREE_ROOM. */
+ * FMB_OVER_LIMIT if capacity is less than FMB_TREE_CAPACITY_MIN. */
 enum fmb_status fmb_tree_pairs(const struct fmb_tree *a, const struct fmb_tree *b,
-                               struct fmb_tree_place *place, unsigned (*out)[2], size_t capacity,
+                               struct fmb_tree_cursor *cursor, unsigned (*out)[2], size_t capacity,
                                size_t *count);
 
 /* ---- Scenes ----
@@ -670,11 +618,11 @@ size_t fmb_scene_bytes(const struct fmb_scene_limits *limits);
  * valid until the next step. Arrays that were not wanted are unspecified. */
 struct fmb_scene_answers {
     size_t count;
-    const unsigned (*pairs)[2];    /* [count][a, b] */
-    const unsigned char *verdicts; /* [count], enum fmb_verdict; FMB_REFUSED: cannot decide */
-    const double (*contacts)[2];   /* [count][first, last], NAN: separated or refused */
+    const unsigned (*pairs)[2];            /* [count][a, b] */
+    const unsigned char *verdicts;         /* [count], enum fmb_verdict; 0: FMB_CANNOT_DECIDE */
+    const double (*contacts)[2];           /* [count][first, last], NAN: separated, or no verdict */
     const double (*boxes)[2][FMB_DIM_MAX]; /* [count][lower, upper][axis], NAN: the same pairs */
-    /* [count], if gaps are wanted or the margin is not 0. Bounds of NAN: refused; or, with
+    /* [count], if gaps are wanted or the margin is not 0. Bounds of NAN: no verdict; or, with
      * FMB_PAIRS_LISTED and gaps not wanted, separated and farther apart than the margin. */
     const struct fmb_gap *gaps;
 };
@@ -753,6 +701,9 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  *                the point is in both frames.
  *   overlapping  At TIME the point is in the relative interiors of both frames. */
 
+/* The capacity that every certificate fits into, its terminating 0 included. */
+enum { FMB_CERTIFICATE_MAX = 16384 };
+
 /* Writes the certificate of the verdict of the exact method.
  *
  * In:  a, b      bodies of one frame each
@@ -765,12 +716,18 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  * Returns FMB_OK; FMB_OVER_LIMIT if the certificate does not fit; a status of fmb_decide();
  * FMB_CANNOT_DECIDE for bodies of several frames.
  *
- * Most certificates are shorter than 200 bytes. Coordinates of flat frames, and of frames that
- * touch, can have as many digits as the numbers of the pair require: up to some 60,000 bytes if
- * their exponents span the whole range of doubles. If the numbers of the pair span at most 512
- * bits, its coordinates are chosen one after the other, each the simplest number on a line segment;
- * otherwise the point is the one that takes the least time to find.
- * Cost: 50 microseconds for numbers of similar size, 10 ms at most. Memory is allocated as by the
+ * A pair whose numbers span more than 512 bits has no certificate: the status is FMB_OK and the
+ * text is empty. The span is measured as follows. Let 2^e be the largest power of two of which
+ * every coordinate of every component, origin, position and v T of the pair is a multiple, and half
+ * of every size of a box. Let n be |q|^2 for the smallest integers q that are proportional to the
+ * orientation; 1 without one. Multiply the components and origins in the world, and v T, by the
+ * product of both n, or by one if they are equal. The pair spans at most 512 bits if the magnitude
+ * of each coordinate is then less than 2^(e + 512).
+ *
+ * Most certificates are shorter than 200 bytes; of frames that are flat or touch, some thousand are
+ * possible. The text is also empty if it would exceed the capacity above; no such pair is known.
+ * The coordinates are chosen one after the other, each the simplest number on a line segment.
+ * Cost: 50 microseconds for numbers of similar size, 6 ms at most. Memory is allocated as by the
  * exact method. */
 enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
                                 double duration, char *text, size_t size, size_t *length);
@@ -783,7 +740,8 @@ enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_
  *      text      any text ended by a 0
  *      size      capacity of why in bytes
  * Out: why       if false is returned, one line that states what is wrong; may be NULL if size is 0
- * Returns whether the text proves that this is the verdict of this pair.
+ * Returns whether the text proves that this is the verdict of this pair. An empty text proves
+ * nothing.
  * Cost: polynomial in the length of the text. Memory is allocated through GMP. */
 bool fmb_certificate_holds(const struct fmb_placement *a, const struct fmb_placement *b,
                            double duration, enum fmb_verdict verdict, const char *text, char *why,

@@ -46,18 +46,6 @@ const char *fmb_verdict_name(int verdict)
     return NULL;
 }
 
-const char *fmb_instructions_name(int instructions)
-{
-    switch (instructions) {
-    case FMB_BEST: return "best";
-    case FMB_PLAIN: return "plain";
-    case FMB_SSE2: return "sse2";
-    case FMB_AVX2: return "avx2";
-    case FMB_AVX512: return "avx512";
-    }
-    return NULL;
-}
-
 const char *fmb_version(void)
 {
     return FMB_VERSION;

@@ -65,9 +65,10 @@ void arena_close(struct arena *arena)
 static const char *instructions_of(const struct bench *bench)
 {
     int best = bench->instructions;
-    for (int set = FMB_PLAIN; bench->instructions == FMB_BEST && set <= FMB_AVX512; set++)
-        best = fmb_instructions_supported(set) ? set : best;
-    return fmb_instructions_name(best);
+    for (int set = INSTRUCTIONS_PLAIN;
+         bench->instructions == INSTRUCTIONS_BEST && set <= INSTRUCTIONS_AVX512; set++)
+        best = instructions_supported(set) ? set : best;
+    return instructions_name(best);
 }
 
 static void put_machine(const struct bench *bench, struct json_writer *json, bool pinned)

@@ -11,7 +11,7 @@ struct bench {
     struct race race;
     uint64_t seed;
     bool quick;
-    enum fmb_instructions instructions;
+    enum instructions instructions;
     const char *section; /* NULL: all */
     struct json_writer json;
 };

@@ -45,12 +45,11 @@ static int set_section(struct bench *bench, const char *name)
 
 static int set_instructions(struct bench *bench, const char *name)
 {
-    for (int set = FMB_BEST; fmb_instructions_name(set); set++)
-        if (strcmp(name, fmb_instructions_name(set)) == 0) {
-            bench->instructions = (enum fmb_instructions) set;
-            return fmb_instructions_supported(set)
-                       ? OPTIONS_RUN
-                       : wrong("not here, or not in this build: ", name);
+    for (int set = INSTRUCTIONS_BEST; instructions_name(set); set++)
+        if (strcmp(name, instructions_name(set)) == 0) {
+            bench->instructions = (enum instructions) set;
+            return instructions_supported(set) ? OPTIONS_RUN
+                                               : wrong("not here, or not in this build: ", name);
         }
     return wrong("no instructions ", name);
 }

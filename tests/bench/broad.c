@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tree.h"
+#include "aabb.h"
 
 enum { BLOCKS_MAX = 5, PAIRS_MAX = 1024 };
 
@@ -16,7 +16,6 @@ struct broad {
     void *memory;
     struct fmb_tree tree;
     struct end *end;            /* [count] */
-    unsigned *found;            /* [count] */
     unsigned (*pairs)[2];       /* [PAIRS_MAX] */
     unsigned char *verdicts;    /* [PAIRS_MAX] */
     size_t candidates, meeting; /* of the last that was run */
@@ -65,27 +64,12 @@ static void run_build(struct broad *broad)
     fmb_tree_build(broad->scene->prepared, broad->scene->count, 1, broad->memory, &broad->tree);
 }
 
-static void run_refit(struct broad *broad)
-{
-    fmb_tree_refit(&broad->tree, broad->scene->prepared, 1);
-}
-
-static void run_ask(struct broad *broad)
-{
-    broad->candidates = 0;
-    for (unsigned i = 0; i < broad->scene->count; i++) {
-        size_t count;
-        fmb_tree_ask(&broad->tree, &broad->scene->prepared[i], i + 1, broad->found, &count);
-        broad->candidates += count;
-    }
-}
-
 static void run_pairs(struct broad *broad)
 {
-    struct fmb_tree_place place = {0};
+    struct fmb_tree_cursor cursor = {0};
     broad->candidates = 0;
     for (size_t count = 1; count > 0; broad->candidates += count)
-        fmb_tree_pairs(&broad->tree, &broad->tree, &place, broad->pairs, PAIRS_MAX, &count);
+        fmb_tree_pairs(&broad->tree, &broad->tree, &cursor, broad->pairs, PAIRS_MAX, &count);
 }
 
 /* ---- Verdicts ---- */
@@ -106,11 +90,11 @@ static void decide(struct broad *broad, size_t count)
 /* From frames to verdicts. */
 static void run_whole(struct broad *broad)
 {
-    struct fmb_tree_place place = {0};
+    struct fmb_tree_cursor cursor = {0};
     broad->meeting = 0;
     run_build(broad);
     for (size_t count = 1; count > 0;) {
-        fmb_tree_pairs(&broad->tree, &broad->tree, &place, broad->pairs, PAIRS_MAX, &count);
+        fmb_tree_pairs(&broad->tree, &broad->tree, &cursor, broad->pairs, PAIRS_MAX, &count);
         decide(broad, count);
     }
 }
@@ -137,9 +121,10 @@ static const struct {
     const char *name, *key;
     void (*run)(struct broad *broad);
     size_t most; /* frames */
-} runs[] = {{"build", "build_ns", run_build, SIZE_MAX}, {"refit", "refit_ns", run_refit, SIZE_MAX},
-            {"ask", "ask_ns", run_ask, SIZE_MAX},       {"pairs", "pairs_ns", run_pairs, SIZE_MAX},
-            {"sweep", "sweep_ns", run_sweep, SIZE_MAX}, {"whole", "whole_ns", run_whole, SIZE_MAX},
+} runs[] = {{"build", "build_ns", run_build, SIZE_MAX},
+            {"pairs", "pairs_ns", run_pairs, SIZE_MAX},
+            {"sweep", "sweep_ns", run_sweep, SIZE_MAX},
+            {"whole", "whole_ns", run_whole, SIZE_MAX},
             {"every", "every_ns", run_every, 3000}};
 
 enum { RUNS = sizeof runs / sizeof *runs };
@@ -166,7 +151,7 @@ static void time_runs(const struct bench *bench, struct broad *broad, struct spr
             for (size_t round = 0; round < times_run && is_run(broad, k); round++)
                 runs[k].run(broad);
             times[k][block] = (stopwatch_now() - start) / ((double) count * (double) times_run);
-            candidates = runs[k].run == run_ask ? broad->candidates : candidates;
+            candidates = runs[k].run == run_pairs ? broad->candidates : candidates;
             meeting = runs[k].run == run_whole ? broad->meeting : meeting;
         }
         if (broad->candidates != candidates || broad->meeting != meeting) {
@@ -211,14 +196,12 @@ static void broad_of(struct bench *bench, const char *name, enum fmb_shape shape
     struct broad broad = {.scene = &scene,
                           .memory = scene_allocate(1, fmb_tree_bytes(count)),
                           .end = scene_allocate(count, sizeof *broad.end),
-                          .found = scene_allocate(count, sizeof *broad.found),
                           .pairs = scene_allocate(PAIRS_MAX, sizeof *broad.pairs),
                           .verdicts = scene_allocate(PAIRS_MAX, 1)};
     time_runs(bench, &broad, times);
     put(bench, name, &broad, times);
     free(broad.memory);
     free(broad.end);
-    free(broad.found);
     free(broad.pairs);
     free(broad.verdicts);
     scene_free(&scene);
@@ -232,8 +215,7 @@ void broad_run(struct bench *bench)
     printf(
         "\nWhich pairs may meet, frames in a cloud; candidates, and nanoseconds, of a frame. "
         "Tree:\n"
-        "build, refit, ask (each frame in turn), pairs (all at once). sweep: sorted along one "
-        "axis.\n"
+        "build, pairs. sweep: sorted along one axis.\n"
         "whole: tree, pairs and their verdicts; every: the verdicts of all pairs there are.\n\n");
     printf("%-16s %7s %8s", "", "frames", "pairs");
     for (int k = 0; k < RUNS; k++)

@@ -1,3 +1,4 @@
+#include "batch.h"
 #include "contender.h"
 
 #include <math.h>
@@ -41,9 +42,8 @@ static void run_batch(const struct work *work, bool contacts, bool boxes)
                                     .duration = 1,
                                     .verdicts = work->verdicts,
                                     .contacts = contacts ? work->contacts : NULL,
-                                    .boxes = boxes ? work->boxes : NULL,
-                                    .instructions = work->instructions};
-    sink += fmb_decide_batch(&batch);
+                                    .boxes = boxes ? work->boxes : NULL};
+    sink += batch_decide(&batch, work->instructions, INFINITY);
 }
 
 static void batch(const struct work *work)
@@ -64,7 +64,7 @@ static void batch_box(const struct work *work)
 static unsigned char meets(const struct fmb_prepared *a, const struct fmb_prepared *b)
 {
     enum fmb_verdict verdict;
-    return fmb_meet(a, b, 1, &verdict) == FMB_OK ? (unsigned char) verdict : 0;
+    return fmb_decide_prepared(a, b, 1, &verdict) == FMB_OK ? (unsigned char) verdict : 0;
 }
 
 static void single(const struct work *work)
@@ -300,7 +300,7 @@ void contender_help(void)
 {
     printf(
         "batch: fmb_decide_batch(), verdicts alone; +interval, +box: with these. single: "
-        "fmb_meet()\n"
+        "fmb_decide_prepared()\n"
         "of prepared frames; computed: prepared in the call. query: fmb_decide(), certified, with\n"
         "the interval of moving pairs. fmb, sat query, exact: the same by these methods; fmb with\n"
         "the inverse kept in the body; computed: in the call. sat: separating axes in plain "

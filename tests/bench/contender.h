@@ -3,6 +3,7 @@
 #define CONTENDER_H
 
 #include "bench_scene.h"
+#include "instructions.h"
 #include "stopwatch.h"
 
 /* Pairs to be asked, T = 1, and room for the answers of the batch. */
@@ -12,12 +13,12 @@ struct work {
     size_t count;
     const unsigned (*warm)[2]; /* [warm_count], other ones, asked untimed before */
     size_t warm_count;
-    enum fmb_instructions instructions; /* of the batch */
-    unsigned char *verdicts;            /* [count] */
-    double (*contacts)[2];              /* [count] */
-    double (*boxes)[2][FMB_DIM_MAX];    /* [count] */
-    struct peers *peers;                /* of the scene's bodies; NULL: they are not raced */
-    double *gaps;                       /* [count], theirs */
+    enum instructions instructions;  /* of the batch */
+    unsigned char *verdicts;         /* [count] */
+    double (*contacts)[2];           /* [count] */
+    double (*boxes)[2][FMB_DIM_MAX]; /* [count] */
+    struct peers *peers;             /* of the scene's bodies; NULL: they are not raced */
+    double *gaps;                    /* [count], theirs */
 };
 
 /* With room for the answers. work_free() frees that. */

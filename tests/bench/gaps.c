@@ -1,5 +1,6 @@
 /* What gaps cost: distance and depth of pairs at chosen gaps, beside other libraries, and how often
  * these are off. */
+#include "batch.h"
 #include "bench.h"
 
 #include <math.h>
@@ -12,7 +13,7 @@ enum { OWN_RUNS = 3, RUNS_MAX = 12, BLOCKS_MAX = 64 };
 
 /* Pairs that are timed come first, then those for warming up. */
 struct gaps {
-    enum fmb_instructions instructions;
+    enum instructions instructions;
     size_t timed, warm;
     struct gap_pairs pairs;
     unsigned char *verdict;
@@ -54,9 +55,8 @@ static void batch(struct gaps *gaps, size_t first, size_t count)
                                     .pair_count = count,
                                     .instant = true,
                                     .verdicts = gaps->verdict + first,
-                                    .gaps = gaps->gap + first,
-                                    .instructions = gaps->instructions};
-    fmb_decide_batch(&batch);
+                                    .gaps = gaps->gap + first};
+    batch_decide(&batch, gaps->instructions, INFINITY);
 }
 
 static void single(struct gaps *gaps, size_t first, size_t count)

@@ -13,16 +13,16 @@ static void instructions_of_cell(struct bench *bench, const struct cell *cell)
     struct arena arena;
     arena_open(bench, cell, true, &arena);
     printf("%-13s in contact", cell_text(cell, text));
-    for (int set = FMB_PLAIN; set <= FMB_AVX512; set++) {
-        if (!fmb_instructions_supported(set))
+    for (int set = INSTRUCTIONS_PLAIN; set <= INSTRUCTIONS_AVX512; set++) {
+        if (!instructions_supported(set))
             continue;
         const enum contender batch = CONTENDER_BATCH;
         struct spread times;
-        arena.work.instructions = (enum fmb_instructions) set;
+        arena.work.instructions = (enum instructions) set;
         race_run(&bench->race, &arena.work, &batch, 1, &times);
-        printf("   %s %.1f", fmb_instructions_name(set), times.median);
+        printf("   %s %.1f", instructions_name(set), times.median);
         json_begin(&bench->json, NULL, '{');
-        json_string(&bench->json, "name", fmb_instructions_name(set));
+        json_string(&bench->json, "name", instructions_name(set));
         json_string(&bench->json, "cell", text);
         json_bool(&bench->json, "contact", true);
         json_number(&bench->json, "ns", times.median);

@@ -191,7 +191,7 @@ static void rest_of_family(struct bench *bench, const char *name, const char *fa
         enum fmb_verdict verdict = FMB_SEPARATED;
         both.at[i][0] = i;
         both.at[i][1] = (unsigned) pairs + i;
-        fmb_meet(&scene.prepared[i], &scene.prepared[pairs + i], 1, &verdict);
+        fmb_decide_prepared(&scene.prepared[i], &scene.prepared[pairs + i], 1, &verdict);
         touching += verdict == FMB_TOUCHING;
     }
     struct work work = work_of(&scene, &both);

@@ -76,8 +76,7 @@ static void draw_hard(struct draw *draw, const struct cell *cell, struct questio
 /* Of a hard pair the exact method, the oracle and a certificate agree. */
 static void check_certificate(struct draw *draw, const struct cell *cell, struct tally *tally)
 {
-    enum { TEXT_MAX = 60000 };
-    char text[TEXT_MAX], why[TALLY_WHY_MAX];
+    char text[FMB_CERTIFICATE_MAX], why[TALLY_WHY_MAX];
     struct oracle_answer truth;
     struct question question;
     struct trial trial;
@@ -92,7 +91,8 @@ static void check_certificate(struct draw *draw, const struct cell *cell, struct
         tally_broken(tally, &question, "not the verdict of the oracle");
     else if (status != FMB_OK)
         tally_broken(tally, &question, fmb_status_text(status));
-    else if (!pair_certificate_holds(&trial.pair[0], truth.verdict, text, why, sizeof why))
+    else if (length > 0 &&
+             !pair_certificate_holds(&trial.pair[0], truth.verdict, text, why, sizeof why))
         tally_broken(tally, &question, why);
     oracle_clear(&truth);
 }

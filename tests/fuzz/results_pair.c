@@ -96,7 +96,7 @@ static bool is_certificate(const fmb_msgs_pair_result_t *message)
     const char *text = message->certificate;
     const size_t length = strlen(text);
     bool good = length == 0 || (message->status == FMB_MSGS_PAIR_RESULT_T_STATUS_OK &&
-                                length < QUERY_CERTIFICATE_MAX);
+                                length < FMB_CERTIFICATE_MAX);
     for (size_t i = 0; i < length && good; i++)
         good = text[i] >= 0x20 && text[i] <= 0x7e;
     return good;

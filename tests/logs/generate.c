@@ -8,6 +8,7 @@
  *
  * Exit codes: 0 made, 1 not, 2 wrong options. */
 #include "blast.h"
+#include "instructions.h"
 #include "kinds.h"
 #include "query.h"
 
@@ -151,9 +152,9 @@ static int list(void)
 
 static int tell_instructions(void)
 {
-    for (int set = FMB_PLAIN; set <= FMB_AVX512; set++)
-        if (fmb_instructions_supported(set))
-            printf("%s\n", fmb_instructions_name(set));
+    for (int set = INSTRUCTIONS_PLAIN; set <= INSTRUCTIONS_AVX512; set++)
+        if (instructions_supported(set))
+            printf("%s\n", instructions_name(set));
     return MADE;
 }
 

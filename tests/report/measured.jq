@@ -141,7 +141,7 @@ def others_part:
         [["certified / exact", "certified_ns", "exact_ns"]])
     + open_table(.broad; "Which pairs may meet";
         "Nanoseconds a frame, in clouds whose frames have about four neighbours after them. A tree "
-        + "of boxes: built, refit, asked frame by frame, asked for all pairs; sweep: sorted along "
+        + "of boxes: built, and enumerated by pairs; sweep: sorted along "
         + "one axis; whole: from frames to verdicts by the tree; every: the verdicts of all pairs.";
         [["sweep / pairs", "sweep_ns", "pairs_ns"]])
     + open_table(.worst; "The worst";

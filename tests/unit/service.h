@@ -20,7 +20,7 @@ extern struct service {
     /* Of each client: how many results, and when the last was published. */
     int64_t answers[SERVICE_CLIENTS], answered_ns[SERVICE_CLIENTS];
     struct pair_result pair; /* the last one; its certificate is a copy, "" where it has none */
-    char certificate[QUERY_CERTIFICATE_MAX];
+    char certificate[FMB_CERTIFICATE_MAX];
     int64_t scene_compute_ns;  /* of the last scene */
     int32_t definition_bodies; /* of the last definition */
     struct wire_status status; /* the last heartbeat */

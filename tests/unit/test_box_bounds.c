@@ -21,6 +21,7 @@
 #include "certified.h"
 #include "draw.h"
 #include "exact.h"
+#include "instructions.h"
 #include "question.h"
 #include "referee.h"
 #include "kernel.h"
@@ -76,9 +77,9 @@ static double ratio_of(const struct question *question)
     const struct frame_pair frames = pair_frames(&ready.pair);
     prepared_set(frames.a, &frame[0]);
     prepared_set(frames.b, &frame[1]);
-    assert_true(kernel_set_of(FMB_PLAIN, &set));
+    assert_true(kernel_set_of(INSTRUCTIONS_PLAIN, &set));
     kernel_function *const *kernels[] = {set.boxes, kernel_boxes_planted, kernel_boxes_bare};
-    if (fmb_meet(&frame[0], &frame[1], question->duration, &verdict) != FMB_OK ||
+    if (fmb_decide_prepared(&frame[0], &frame[1], question->duration, &verdict) != FMB_OK ||
         verdict == FMB_SEPARATED)
         return -1;
     for (int i = 0; i < KERNELS; i++)

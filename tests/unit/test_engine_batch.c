@@ -1,4 +1,4 @@
-/* Many pairs at once, through fmb.h alone: what fmb_decide_batch() and fmb_meet() say is what the
+/* Many pairs at once: what fmb_decide_batch() and fmb_decide_prepared() say is what the
  * method certified says, bit for bit, for each instruction set, in any order, at any address; and
  * that agrees with the exact method, and on samples with the oracle. */
 #include <setjmp.h>
@@ -15,6 +15,7 @@
 #include <limits.h>
 #include <math.h>
 
+#include "batch.h"
 #include "draw.h"
 #include "family.h"
 #include "gmp_allocations.h"
@@ -223,7 +224,7 @@ static void expect_guards(const struct guarded *guarded)
 
 /* How a batch is asked. */
 struct way {
-    int instructions, threads;
+    int instructions;
     bool contacts, boxes;
 };
 
@@ -254,14 +255,12 @@ static void ask(const struct world *world, const struct fmb_prepared *frames, co
                            .instant = world->duration == 0,
                            .verdicts = guarded_new(&out->verdicts, n),
                            .contacts = guarded_new(&out->contacts, n * sizeof *out->batch.contacts),
-                           .boxes = guarded_new(&out->boxes, n * sizeof *out->batch.boxes),
-                           .instructions = (enum fmb_instructions) way->instructions,
-                           .threads = way->threads};
+                           .boxes = guarded_new(&out->boxes, n * sizeof *out->batch.boxes)};
     if (!way->contacts)
         out->batch.contacts = NULL;
     if (!way->boxes)
         out->batch.boxes = NULL;
-    out->status = fmb_decide_batch(&out->batch);
+    out->status = batch_decide(&out->batch, (enum instructions) way->instructions, INFINITY);
     expect_guards(&out->verdicts);
     expect_guards(&out->contacts);
     expect_guards(&out->boxes);
@@ -283,8 +282,8 @@ static int count_allocations(void **state)
 static const char *way_text(const struct way *way)
 {
     static char text[80];
-    snprintf(text, sizeof text, "%s, %d threads%s%s", fmb_instructions_name(way->instructions),
-             way->threads, way->contacts ? ", contacts" : "", way->boxes ? ", boxes" : "");
+    snprintf(text, sizeof text, "%s%s%s", instructions_name(way->instructions),
+             way->contacts ? ", contacts" : "", way->boxes ? ", boxes" : "");
     return text;
 }
 
@@ -329,7 +328,7 @@ static size_t decide_open(const struct world *world, const struct fmb_batch *who
     for (size_t n = 0; n < count; n++) {
         const size_t i = whole->open[n];
         assert_true(i < world->count && (n == 0 || i > whole->open[n - 1]));
-        assert_int_equal(whole->verdicts[i], FMB_LEFT_OPEN);
+        assert_int_equal(whole->verdicts[i], 0);
         assert_true(!whole->contacts ||
                     (isnan(whole->contacts[i][0]) && isnan(whole->contacts[i][1])));
         for (int end = 0; end < 2 && whole->boxes; end++)
@@ -374,9 +373,9 @@ static size_t expect_two_steps(const struct world *world, const struct way *way)
 /* With all instructions of this machine, contacts and boxes wanted or not. */
 static void expect_all_ways(const struct world *world)
 {
-    for (int instructions = FMB_BEST; instructions <= FMB_AVX512; instructions++)
-        for (int wants = 0; fmb_instructions_supported(instructions) && wants < 4; wants++) {
-            const struct way way = {instructions, wants == 0, wants & 1, wants & 2};
+    for (int instructions = INSTRUCTIONS_BEST; instructions <= INSTRUCTIONS_AVX512; instructions++)
+        for (int wants = 0; instructions_supported(instructions) && wants < 4; wants++) {
+            const struct way way = {instructions, wants & 1, wants & 2};
             expect_asked(world, world->frame, &way);
             expect_two_steps(world, &way);
         }
@@ -390,10 +389,10 @@ static void expect_meet(const struct world *world)
         const enum fmb_verdict expected = (enum fmb_verdict) world->expected[i].verdict;
         const struct way way = {0};
         enum fmb_verdict there, back;
-        assert_int_equal(fmb_meet(a, b, world->duration, &there), FMB_OK);
-        assert_int_equal(fmb_meet(b, a, world->duration, &back), FMB_OK);
+        assert_int_equal(fmb_decide_prepared(a, b, world->duration, &there), FMB_OK);
+        assert_int_equal(fmb_decide_prepared(b, a, world->duration, &back), FMB_OK);
         if (there != expected || back != expected)
-            fail_at(world, &way, i, "fmb_meet() has another verdict");
+            fail_at(world, &way, i, "fmb_decide_prepared() has another verdict");
     }
 }
 
@@ -556,7 +555,8 @@ static bool is_separated(struct world *world, unsigned i)
 {
     enum fmb_verdict verdict;
     prepare(world, i + 1);
-    assert_int_equal(fmb_meet(&world->frame[i], &world->frame[i + 1], 1, &verdict), FMB_OK);
+    assert_int_equal(fmb_decide_prepared(&world->frame[i], &world->frame[i + 1], 1, &verdict),
+                     FMB_OK);
     return verdict == FMB_SEPARATED;
 }
 
@@ -630,10 +630,10 @@ static void what_is_left_open_does_not_depend_on_instructions(void **state)
         unsigned char plain[PAIRS_MAX], other[PAIRS_MAX];
         set_frames_near_bound(&draw, &cells[n % count], world);
         for (int contacts = 0; contacts < 2; contacts++) {
-            open += ask_open(world, &(struct way){FMB_PLAIN, 0, contacts, false}, plain);
-            for (int set = FMB_BEST; set <= FMB_AVX512; set++) {
-                const struct way way = {set, 0, contacts, false};
-                if (!fmb_instructions_supported(set))
+            open += ask_open(world, &(struct way){INSTRUCTIONS_PLAIN, contacts, false}, plain);
+            for (int set = INSTRUCTIONS_BEST; set <= INSTRUCTIONS_AVX512; set++) {
+                const struct way way = {set, contacts, false};
+                if (!instructions_supported(set))
                     continue;
                 ask_open(world, &way, other);
                 for (size_t i = 0; i < world->count; i++)
@@ -754,9 +754,10 @@ static void address_does_not_matter(void **state)
     for (size_t at = 0; at < 64; at += 8) {
         struct fmb_prepared *frames = (struct fmb_prepared *) (void *) (room + at);
         memcpy(frames, world->frame, sizeof world->frame);
-        for (int instructions = FMB_BEST; instructions <= FMB_AVX512; instructions++) {
-            const struct way way = {instructions, 0, at & 8, false};
-            if (fmb_instructions_supported(instructions))
+        for (int instructions = INSTRUCTIONS_BEST; instructions <= INSTRUCTIONS_AVX512;
+             instructions++) {
+            const struct way way = {instructions, at & 8, false};
+            if (instructions_supported(instructions))
                 expect_asked(world, frames, &way);
         }
         assert_memory_equal(frames, world->frame, sizeof world->frame); /* nothing is written */
@@ -834,7 +835,7 @@ static void refuse_some(struct draw *draw, int one_in, struct world *world)
     }
 }
 
-/* fmb_meet() of the same pairs, which leaves the verdict as it was where it refuses. */
+/* fmb_decide_prepared() of the same pairs, which leaves the verdict as it was where it refuses. */
 static void expect_meet_refuses(const struct world *world)
 {
     for (size_t i = 0; i < world->count; i++) {
@@ -842,12 +843,12 @@ static void expect_meet_refuses(const struct world *world)
         if (pair[0] >= FRAMES || pair[1] >= FRAMES)
             continue;
         const struct fmb_prepared *a = &world->frame[pair[0]], *b = &world->frame[pair[1]];
-        enum fmb_verdict verdict = (enum fmb_verdict) FMB_REFUSED;
-        const enum fmb_status status = fmb_meet(a, b, world->duration, &verdict);
+        enum fmb_verdict verdict = (enum fmb_verdict) 0;
+        const enum fmb_status status = fmb_decide_prepared(a, b, world->duration, &verdict);
         assert_int_equal(verdict, world->expected[i].verdict);
-        assert_int_equal(status, verdict != (enum fmb_verdict) FMB_REFUSED ? FMB_OK
-                                 : has_bad_frame(pair)                     ? FMB_NOT_FINITE
-                                                                           : FMB_DIMENSIONS_DIFFER);
+        assert_int_equal(status, verdict != (enum fmb_verdict) 0 ? FMB_OK
+                                 : has_bad_frame(pair)           ? FMB_NOT_FINITE
+                                                                 : FMB_DIMENSIONS_DIFFER);
     }
 }
 
@@ -912,28 +913,6 @@ static void expect_whole_refused(const struct world *world, const struct way *wa
     answers_free(&answers);
 }
 
-static void durations_that_are_none_are_refused(void **state)
-{
-    (void) state;
-    static const double bad[] = {NAN, -NAN, INFINITY, -INFINITY, -1, -0x1p-1074, -DBL_MAX};
-    const struct way way = {0, 0, true, true};
-    enum fmb_verdict verdict;
-    struct draw draw;
-    struct world *world = world_new();
-    draw_begin(&draw, "durations_that_are_none_are_refused");
-    draw_frames(&draw, NULL, 1, world);
-    draw_pairs(&draw, 10, world);
-    for (size_t i = 0; i < COUNT(bad); i++) {
-        world->duration = bad[i];
-        expect_whole_refused(world, &way, FMB_BAD_DURATION);
-        for (size_t k = 0; k < world->count; k++)
-            assert_int_equal(fmb_meet(&world->frame[world->pair[k][0]],
-                                      &world->frame[world->pair[k][1]], bad[i], &verdict),
-                             FMB_BAD_DURATION);
-    }
-    free(world);
-}
-
 static void frames_that_move_need_a_window(void **state)
 {
     (void) state;
@@ -963,26 +942,25 @@ static void frames_that_move_need_a_window(void **state)
             }
 }
 
-static void instructions_that_are_not_there_are_refused(void **state)
+static void durations_that_are_none_are_refused(void **state)
 {
     (void) state;
-    static const int others[] = {-1, FMB_AVX512 + 1, 1000, INT_MAX, INT_MIN};
+    static const double bad[] = {NAN, -NAN, INFINITY, -INFINITY, -1, -0x1p-1074, -DBL_MAX};
+    const struct way way = {0, true, true};
+    enum fmb_verdict verdict;
     struct draw draw;
     struct world *world = world_new();
-    draw_begin(&draw, "instructions_that_are_not_there_are_refused");
+    draw_begin(&draw, "durations_that_are_none_are_refused");
     draw_frames(&draw, NULL, 1, world);
     draw_pairs(&draw, 10, world);
-    assert_true(fmb_instructions_supported(FMB_BEST));
-    assert_true(fmb_instructions_supported(FMB_PLAIN));
-    for (int i = FMB_BEST; i <= FMB_AVX512; i++) {
-        const struct way way = {i, 0, true, true};
-        if (!fmb_instructions_supported(i))
-            expect_whole_refused(world, &way, FMB_NOT_SUPPORTED);
-    }
-    for (size_t i = 0; i < COUNT(others); i++) {
-        const struct way way = {others[i], 0, true, true};
-        assert_false(fmb_instructions_supported(others[i]));
-        expect_whole_refused(world, &way, FMB_NOT_SUPPORTED);
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        world->duration = bad[i];
+        expect_whole_refused(world, &way, FMB_BAD_DURATION);
+        for (size_t k = 0; k < world->count; k++)
+            assert_int_equal(
+                fmb_decide_prepared(&world->frame[world->pair[k][0]],
+                                    &world->frame[world->pair[k][1]], bad[i], &verdict),
+                FMB_BAD_DURATION);
     }
     free(world);
 }
@@ -991,132 +969,14 @@ static void instructions_have_names(void **state)
 {
     (void) state;
     static const int unknown[] = {-1, 5, 1000, INT_MAX, INT_MIN};
-    assert_string_equal(fmb_instructions_name(FMB_BEST), "best");
-    assert_string_equal(fmb_instructions_name(FMB_PLAIN), "plain");
-    assert_string_equal(fmb_instructions_name(FMB_SSE2), "sse2");
-    assert_string_equal(fmb_instructions_name(FMB_AVX2), "avx2");
-    assert_string_equal(fmb_instructions_name(FMB_AVX512), "avx512");
+    assert_string_equal(instructions_name(INSTRUCTIONS_BEST), "best");
+    assert_string_equal(instructions_name(INSTRUCTIONS_PLAIN), "plain");
+    assert_string_equal(instructions_name(INSTRUCTIONS_SSE2), "sse2");
+    assert_string_equal(instructions_name(INSTRUCTIONS_AVX2), "avx2");
+    assert_string_equal(instructions_name(INSTRUCTIONS_AVX512), "avx512");
     for (size_t i = 0; i < COUNT(unknown); i++)
-        assert_null(fmb_instructions_name(unknown[i]));
+        assert_null(instructions_name(unknown[i]));
 }
-
-/* ---- Tests: threads ---- */
-
-/* A library without threads says so, one with them does with any number what it does with one. */
-static void threads_are_there_or_refused(void **state)
-{
-    (void) state;
-    struct draw draw;
-    struct world *world = world_new();
-    draw_begin(&draw, "threads_are_there_or_refused");
-    draw_frames(&draw, NULL, 1, world);
-    draw_pairs(&draw, 400, world);
-    set_all_expected(world, 1000);
-    for (int threads = 0; threads <= 4; threads++) {
-        const struct way way = {FMB_BEST, threads, true, true};
-#ifdef _OPENMP
-        const bool there = true;
-#else
-        const bool there = threads <= 1;
-#endif
-        if (there)
-            expect_asked(world, world->frame, &way);
-        else
-            expect_whole_refused(world, &way, FMB_NOT_SUPPORTED);
-    }
-    free(world);
-}
-
-#ifdef _OPENMP
-
-/* So many that each thread gets some. */
-enum { CROWD = 30000 };
-
-struct crowd {
-    struct fmb_batch batch;
-    struct guarded verdicts, contacts, boxes;
-    enum fmb_status status;
-};
-
-static void crowd_ask(const struct world *world, const unsigned (*pairs)[2], int threads,
-                      bool boxes, struct crowd *out)
-{
-    out->batch = (struct fmb_batch){
-        .frames = world->frame,
-        .frame_count = FRAMES,
-        .pairs = pairs,
-        .pair_count = CROWD,
-        .duration = world->duration,
-        .instant = world->duration == 0,
-        .verdicts = guarded_new(&out->verdicts, CROWD),
-        .contacts = guarded_new(&out->contacts, CROWD * sizeof *out->batch.contacts),
-        .boxes = guarded_new(&out->boxes, CROWD * sizeof *out->batch.boxes),
-        .threads = threads};
-    if (!boxes)
-        out->batch.boxes = NULL;
-    out->status = fmb_decide_batch(&out->batch);
-}
-
-static void crowd_free(struct crowd *crowd)
-{
-    free(crowd->verdicts.all);
-    free(crowd->contacts.all);
-    free(crowd->boxes.all);
-}
-
-static bool same_bytes(const struct guarded *one, const struct guarded *other)
-{
-    return memcmp(one->all, other->all, one->size + 2 * GUARDS) == 0;
-}
-
-/* The pairs of the world over and over, a few of them refused; returns the status of the first of
- * these. */
-static enum fmb_status draw_crowd(struct draw *draw, const struct world *world,
-                                  unsigned (*pairs)[2])
-{
-    enum fmb_status status = FMB_OK;
-    const int one_in = 1 << draw_int(draw, 8, 14);
-    for (size_t i = 0; i < CROWD; i++) {
-        const bool refused = draw_int(draw, 1, one_in) == 1;
-        memcpy(pairs[i], world->pair[i % world->count], sizeof pairs[i]);
-        const enum fmb_status one = refused ? draw_refused(draw, world, pairs[i]) : FMB_OK;
-        status = status == FMB_OK ? one : status;
-    }
-    return status;
-}
-
-static void threads_change_nothing(void **state)
-{
-    (void) state;
-    struct draw draw;
-    struct world *world = world_new();
-    unsigned(*pairs)[2] = malloc(CROWD * sizeof *pairs);
-    assert_non_null(pairs);
-    draw_begin(&draw, "threads_change_nothing");
-    for (long n = draw_sample(3); n > 0; n--) {
-        draw_frames(&draw, NULL, 1, world);
-        draw_pairs(&draw, 300, world);
-        refuse_some(&draw, INT_MAX, world);
-        const enum fmb_status status = draw_crowd(&draw, world, pairs);
-        struct crowd one;
-        crowd_ask(world, (const unsigned(*)[2]) pairs, 1, n % 2 == 0, &one);
-        assert_int_equal(one.status, status);
-        for (int threads = 2; threads <= 4; threads++) {
-            struct crowd many;
-            crowd_ask(world, (const unsigned(*)[2]) pairs, threads, n % 2 == 0, &many);
-            assert_int_equal(many.status, status);
-            assert_true(same_bytes(&many.verdicts, &one.verdicts));
-            assert_true(same_bytes(&many.contacts, &one.contacts));
-            assert_true(same_bytes(&many.boxes, &one.boxes));
-            crowd_free(&many);
-        }
-        crowd_free(&one);
-    }
-    free(pairs);
-    free(world);
-}
-
-#endif
 
 int main(void)
 {
@@ -1134,12 +994,7 @@ int main(void)
         cmocka_unit_test(what_is_not_finite_is_not_prepared),
         cmocka_unit_test(durations_that_are_none_are_refused),
         cmocka_unit_test(frames_that_move_need_a_window),
-        cmocka_unit_test(instructions_that_are_not_there_are_refused),
         cmocka_unit_test(instructions_have_names),
-        cmocka_unit_test(threads_are_there_or_refused),
-#ifdef _OPENMP
-        cmocka_unit_test(threads_change_nothing),
-#endif
     };
     return cmocka_run_group_tests(tests, count_allocations, NULL);
 }

@@ -20,7 +20,7 @@
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
-enum { TEXT_SIZE = 1 << 18, WHY_SIZE = 200 };
+enum { TEXT_SIZE = FMB_CERTIFICATE_MAX, WHY_SIZE = 200 };
 
 static const enum fmb_verdict verdicts[] = {FMB_SEPARATED, FMB_TOUCHING, FMB_OVERLAPPING};
 
@@ -222,19 +222,63 @@ struct family {
     void (*draw_question)(struct draw *draw, struct question *question);
     bool all_verdicts; /* come up in a large sample */
     long usual;        /* count */
+    bool wide;         /* some span too many bits for a certificate; otherwise none */
 };
 
 static const struct family families[] = {
     {"small_world", small_world, true, 6000},
     {"flat", flat, true, 6000},
     {"flat_in_one_space", flat_in_one_space, true, 6000},
-    {"small_world_far_out", small_world_far_out, true, 4000},
+    {"small_world_far_out", small_world_far_out, true, 4000, true},
     {"ordinary_numbers", ordinary_numbers, false, 3000},
-    {"slivers", slivers, true, 3000},
-    {"sizes_mixed", sizes_mixed, false, 400},
-    {"subnormals", subnormals, true, 3000},
-    {"numbers_of_every_kind", numbers_of_every_kind, true, 400},
+    {"slivers", slivers, true, 3000, true},
+    {"sizes_mixed", sizes_mixed, false, 400, true},
+    {"subnormals", subnormals, true, 3000, true},
+    {"numbers_of_every_kind", numbers_of_every_kind, true, 400, true},
 };
+
+/* ---- Spans ---- */
+
+/* The exponents of the lowest and the highest bit of a sum of products of a pair that is not
+ * rotated, with the least of all lowest bits. */
+struct span {
+    int low, high;
+};
+
+static void span_add(struct span *span, double x, double y)
+{
+    int exponent_x, exponent_y;
+    const long long m = (long long) ldexp(frexp(fabs(x), &exponent_x), 53);
+    const long long n = (long long) ldexp(frexp(fabs(y), &exponent_y), 53);
+    const unsigned __int128 product = (unsigned __int128) m * (unsigned __int128) n;
+    const int unit = exponent_x + exponent_y - 106;
+    if (product == 0)
+        return;
+    int low = 0, high = 0;
+    while (!(product >> low & 1))
+        low++;
+    while (product >> high >> 1)
+        high++;
+    span->low = unit + low < span->low ? unit + low : span->low;
+    span->high = unit + high > span->high ? unit + high : span->high;
+}
+
+/* Whether fmb.h gives the pair no certificate. In: not rotated, no boxes. */
+static bool spans_too_much(const struct question *question)
+{
+    struct span span = {1 << 20, -(1 << 20)};
+    for (int side = 0; side < 2; side++) {
+        const struct solid *solid = side == 0 ? &question->a : &question->b;
+        for (int axis = 0; axis < solid->dim; axis++) {
+            for (int i = 0; i < solid_count(solid); i++)
+                span_add(&span, solid->component[i][axis], 1);
+            span_add(&span, solid->origin[axis], 1);
+            if (solid->moving)
+                span_add(&span, solid->velocity[axis], question->duration);
+        }
+    }
+    return span.high - span.low >= 512;
+}
 
 /* ---- What must be so of each pair ---- */
 
@@ -289,7 +333,7 @@ static void certificates_of_family_hold(void **state)
 {
     const struct family *family = *state;
     const long size = draw_sample(family->usual);
-    long count[4] = {0};
+    long count[4] = {0}, without = 0;
     size_t length, longest[4] = {0}, total[4] = {0};
     char *text = malloc(TEXT_SIZE);
     struct draw draw;
@@ -303,9 +347,16 @@ static void certificates_of_family_hold(void **state)
                                       {ready.pair.b, ready.pair.a, ready.pair.duration}};
         for (size_t i = 0; i < COUNT(orders); i++) {
             enum fmb_verdict verdict = make(&question, &orders[i], text, &length);
+            if (spans_too_much(&question) != (length == 0))
+                referee_fail(&question, "a certificate, or none, against what fmb.h says");
+            count[verdict]++;
+            if (length == 0) {
+                refute_other_verdicts(&question, &orders[i], 0, text);
+                without++;
+                continue;
+            }
             assert_certificate_holds(&question, &orders[i], verdict, text);
             refute_other_verdicts(&question, &orders[i], verdict, text);
-            count[verdict]++;
             total[verdict] += length;
             longest[verdict] = length > longest[verdict] ? length : longest[verdict];
         }
@@ -317,6 +368,8 @@ static void certificates_of_family_hold(void **state)
         if (family->all_verdicts && size >= 200) /* fewer may miss one by chance */
             assert_true(count[v] > 0);
     }
+    if (size >= 200)
+        assert_true(family->wide == (without > 0));
     free(text);
 }
 
@@ -493,6 +546,43 @@ static void what_is_made_of_flat_frames(void **state)
 
 /* ---- Sizes and refusals ---- */
 
+/* The widest span with a certificate, and one bit more: of numbers at rest, of v T, of a box, whose
+ * unit is half its size, and of a rotation, whose squared quaternion multiplies all numbers. */
+static void certificates_end_with_the_span(void **state)
+{
+    (void) state;
+    static const struct {
+        int shape;
+        bool moving, turned;
+        int exponent; /* of the farthest coordinate that has a certificate */
+    } cases[] = {{FMB_CUBOID, false, false, 511},
+                 {FMB_CUBOID, true, false, 511},
+                 {FMB_BOX, false, false, 510},
+                 {FMB_CUBOID, false, true, 509}};
+    static const double numbers[] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, size[] = {1, 1, 1};
+    for (size_t i = 0; i < COUNT(cases); i++)
+        for (int more = 0; more < 2; more++) {
+            const bool box = cases[i].shape == FMB_BOX;
+            const double far = ldexp(-1, cases[i].exponent + more);
+            struct fmb_body body;
+            char text[FMB_CERTIFICATE_MAX] = "#", why[WHY_SIZE];
+            size_t length = 1;
+            assert_int_equal(
+                fmb_body_make(3, cases[i].shape, box ? size : numbers, box ? 3 : 9, &body), FMB_OK);
+            const struct fmb_placement a = {.body = &body};
+            struct fmb_placement b = {.body = &body};
+            (cases[i].moving ? b.velocity : b.position)[1] = far;
+            b.orientation_count = cases[i].turned ? 4 : 0;
+            for (int k = 0; k < b.orientation_count; k++)
+                b.orientation[k] = 0.75;
+            assert_int_equal(fmb_certificate(&a, &b, 1, text, sizeof text, &length), FMB_OK);
+            assert_int_equal(strlen(text), length);
+            assert_true(more == (length == 0));
+            const enum fmb_verdict verdict = cases[i].moving ? FMB_OVERLAPPING : FMB_SEPARATED;
+            assert_true(fmb_certificate_holds(&a, &b, 1, verdict, text, why, sizeof why) == !more);
+        }
+}
+
 static void too_small_a_size_is_told(void **state)
 {
     (void) state;
@@ -551,6 +641,7 @@ int main(void)
     const struct CMUnitTest others[] = {
         cmocka_unit_test(what_is_made_of_cubes),
         cmocka_unit_test(what_is_made_of_flat_frames),
+        cmocka_unit_test(certificates_end_with_the_span),
         cmocka_unit_test(too_small_a_size_is_told),
         cmocka_unit_test(bad_pairs_are_refused),
         cmocka_unit_test(tampered_texts_prove_no_wrong_verdict),

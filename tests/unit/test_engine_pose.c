@@ -13,6 +13,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "batch.h"
 #include "draw.h"
 #include "question.h"
 #include "referee.h"
@@ -500,7 +501,7 @@ static bool same_or_none(const double *found, const double *expected, bool has, 
     return !has || memcmp(found, expected, count * sizeof *found) == 0;
 }
 
-static void expect_batch(const struct crowd *crowd, enum fmb_instructions instructions, bool times,
+static void expect_batch(const struct crowd *crowd, enum instructions instructions, bool times,
                          bool boxes)
 {
     unsigned char verdict[PAIRS];
@@ -512,9 +513,8 @@ static void expect_batch(const struct crowd *crowd, enum fmb_instructions instru
                                     .duration = 1,
                                     .verdicts = verdict,
                                     .contacts = times ? contact : NULL,
-                                    .boxes = boxes ? box : NULL,
-                                    .instructions = instructions};
-    assert_int_equal(fmb_decide_batch(&batch), FMB_OK);
+                                    .boxes = boxes ? box : NULL};
+    assert_int_equal(batch_decide(&batch, instructions, INFINITY), FMB_OK);
     for (int i = 0; i < PAIRS; i++) {
         const struct fmb_answer *answer = &crowd->answer[i];
         if (verdict[i] != answer->verdict)
@@ -530,22 +530,24 @@ static void expect_meet(const struct crowd *crowd)
 {
     for (int i = 0; i < PAIRS; i++) {
         enum fmb_verdict verdict;
-        assert_int_equal(fmb_meet(&crowd->frame[2 * i], &crowd->frame[2 * i + 1], 1, &verdict),
-                         FMB_OK);
+        assert_int_equal(
+            fmb_decide_prepared(&crowd->frame[2 * i], &crowd->frame[2 * i + 1], 1, &verdict),
+            FMB_OK);
         if (verdict != crowd->answer[i].verdict)
-            referee_fail(&crowd->question[i], "fmb_meet() has another verdict");
+            referee_fail(&crowd->question[i], "fmb_decide_prepared() has another verdict");
     }
 }
 
 static void expect_certificates(const struct crowd *crowd)
 {
-    enum { SIZE = 1 << 17 };
-    static char text[SIZE];
+    char text[FMB_CERTIFICATE_MAX];
     char why[200] = "";
     for (int i = 0; i < PAIRS; i++) {
         const struct pair *pair = &crowd->ready[i].pair;
         size_t length;
-        assert_int_equal(pair_certificate(pair, text, SIZE, &length), FMB_OK);
+        assert_int_equal(pair_certificate(pair, text, sizeof text, &length), FMB_OK);
+        if (length == 0) /* test_engine_certificate.c says which */
+            continue;
         for (int verdict = FMB_SEPARATED; verdict <= FMB_OVERLAPPING; verdict++)
             if (pair_certificate_holds(pair, (enum fmb_verdict) verdict, text, why, sizeof why) !=
                 (verdict == (int) crowd->answer[i].verdict)) {
@@ -563,9 +565,9 @@ static void every_way_to_ask_gives_the_same(void **state)
     draw_begin(&draw, "every_way_to_ask_gives_the_same");
     for (long n = draw_sample(40); n > 0; n--) {
         draw_crowd(&draw, n % 4 ? 3 : 2, &crowd);
-        for (int set = FMB_BEST; set <= FMB_AVX512; set++)
-            for (int wants = 0; wants < 4 && fmb_instructions_supported(set); wants++)
-                expect_batch(&crowd, (enum fmb_instructions) set, wants & 1, wants & 2);
+        for (int set = INSTRUCTIONS_BEST; set <= INSTRUCTIONS_AVX512; set++)
+            for (int wants = 0; wants < 4 && instructions_supported(set); wants++)
+                expect_batch(&crowd, (enum instructions) set, wants & 1, wants & 2);
         expect_meet(&crowd);
         expect_certificates(&crowd);
     }

@@ -400,8 +400,8 @@ static size_t find_all(const struct scene *scene, const struct fmb_prepared *fra
 static void expect_same(const struct scene *scene, struct planted *planted,
                         const struct fmb_prepared *frame, unsigned from)
 {
-    size_t count = 12345;
-    assert_int_equal(fmb_tree_ask(&planted->tree, frame, from, planted->found, &count), FMB_OK);
+    const struct aabb box = aabb_of(frame, scene->duration);
+    const size_t count = tree_query(&planted->tree, &box, from, planted->found);
     const size_t expected = find_all(scene, frame, from, planted->expected);
     assert_int_equal(count, expected);
     assert_memory_equal(planted->found, planted->expected, count * sizeof *planted->found);
@@ -425,11 +425,11 @@ static void count_pairs(struct draw *draw, const struct fmb_tree *a, const struc
 {
     enum { MOST = 200 };
     unsigned pairs[MOST + 1][2];
-    struct fmb_tree_place place = {0};
+    struct fmb_tree_cursor cursor = {0};
     for (size_t count = 1; count > 0;) {
-        const size_t room = (size_t) draw_int(draw, FMB_TREE_ROOM, MOST);
+        const size_t room = (size_t) draw_int(draw, FMB_TREE_CAPACITY_MIN, MOST);
         pairs[room][0] = UINT_MAX;
-        assert_int_equal(fmb_tree_pairs(a, b, &place, pairs, room, &count), FMB_OK);
+        assert_int_equal(fmb_tree_pairs(a, b, &cursor, pairs, room, &count), FMB_OK);
         assert_true(count <= room && pairs[room][0] == UINT_MAX);
         for (size_t k = 0; k < count; k++) {
             assert_true(pairs[k][0] < a->frame_count && pairs[k][1] < b->frame_count);
@@ -496,7 +496,7 @@ static size_t draw_count(struct draw *draw)
     }
 }
 
-/* And again when the frames have moved, from a scene of one kind to one of another. */
+/* Asked about their own frames, and about those of another scene. */
 static void trees_find_what_asking_every_frame_finds(void **state)
 {
     (void) state;
@@ -508,19 +508,17 @@ static void trees_find_what_asking_every_frame_finds(void **state)
         const size_t count = draw_count(&draw);
         const int dim = draw_int(&draw, 2, 3);
         const bool moving = draw_coin(&draw);
-        struct scene scene, moved;
+        struct scene scene, others;
         struct planted planted;
         scene_open(count, draw_duration(&draw), &scene);
-        scene_open(count, draw_duration(&draw), &moved);
+        scene_open(count, scene.duration, &others);
         scene_draw(&draw, first, dim, moving, &scene);
-        scene_draw(&draw, second, dim, moving, &moved);
+        scene_draw(&draw, second, dim, moving, &others);
         plant(&draw, &scene, &planted);
-        ask_about_some(&draw, &scene, &planted, &moved);
-        assert_int_equal(fmb_tree_refit(&planted.tree, moved.frame, moved.duration), FMB_OK);
-        ask_about_some(&draw, &moved, &planted, &scene);
+        ask_about_some(&draw, &scene, &planted, &others);
         uproot(&planted);
         scene_close(&scene);
-        scene_close(&moved);
+        scene_close(&others);
     }
 }
 
@@ -586,11 +584,11 @@ static void cubes_in_a_grid_have_their_neighbours(void **state)
     plant(&draw, &scene, &planted);
     for (int i = 0; i < CUBES; i++) {
         const int place[3] = {i / SIDE / SIDE, i / SIDE % SIDE, i % SIDE};
-        size_t count, expected = 1;
+        size_t expected = 1;
         for (int axis = 0; axis < 3; axis++)
             expected *= place[axis] == 0 || place[axis] == SIDE - 1 ? 2 : 3;
-        fmb_tree_ask(&planted.tree, &scene.frame[i], 0, planted.found, &count);
-        assert_int_equal(count, expected);
+        const struct aabb box = aabb_of(&scene.frame[i], 1);
+        assert_int_equal(tree_query(&planted.tree, &box, 0, planted.found), expected);
     }
     uproot(&planted);
     scene_close(&scene);
@@ -640,13 +638,13 @@ static void pairs_that_meet_are_found(void **state)
         draw_hard(&draw, draw_int(&draw, 2, 3), &scene);
         plant(&draw, &scene, &planted);
         for (unsigned i = 0; i < FRAMES; i++) {
-            size_t count;
-            assert_int_equal(
-                fmb_tree_ask(&planted.tree, &scene.frame[i], i + 1, planted.found, &count), FMB_OK);
+            const struct aabb box = aabb_of(&scene.frame[i], scene.duration);
+            const size_t count = tree_query(&planted.tree, &box, i + 1, planted.found);
             for (unsigned j = i + 1; j < (i % 2 ? i + 4 : i + 3) && j < FRAMES; j++) {
                 enum fmb_verdict verdict;
                 assert_int_equal(
-                    fmb_meet(&scene.frame[i], &scene.frame[j], scene.duration, &verdict), FMB_OK);
+                    fmb_decide_prepared(&scene.frame[i], &scene.frame[j], scene.duration, &verdict),
+                    FMB_OK);
                 assert_true(verdict == FMB_SEPARATED || is_found(planted.found, count, j));
                 meeting += verdict != FMB_SEPARATED;
                 apart += !is_found(planted.found, count, j);
@@ -837,7 +835,6 @@ static void what_cannot_be_asked_is_refused(void **state)
     struct scene flat, deep;
     struct planted planted;
     size_t count = 7;
-    unsigned found[4];
     draw_begin(&draw, "what_cannot_be_asked_is_refused");
     scene_open(4, 1, &flat);
     scene_open(4, 1, &deep);
@@ -847,7 +844,6 @@ static void what_cannot_be_asked_is_refused(void **state)
     struct fmb_tree *tree = &planted.tree, other;
     static const double bad[] = {-1, -0x1p-1074, INFINITY, NAN};
     for (size_t i = 0; i < COUNT(bad); i++) {
-        assert_int_equal(fmb_tree_refit(tree, deep.frame, bad[i]), FMB_BAD_DURATION);
         assert_int_equal(fmb_tree_build(deep.frame, 4, bad[i], NULL, &other), FMB_BAD_DURATION);
     }
     const struct fmb_prepared nobody = {0}, mixed[2] = {flat.frame[0], deep.frame[0]};
@@ -856,27 +852,20 @@ static void what_cannot_be_asked_is_refused(void **state)
     assert_int_equal(fmb_tree_build(one_missing, 2, 1, NULL, &other), FMB_NOT_FINITE);
     assert_int_equal(fmb_tree_build(&nobody, UINT_MAX, 1, NULL, &other), FMB_OVER_LIMIT);
     assert_int_equal(other.frame_count, 0);
-    assert_int_equal(fmb_tree_ask(tree, &flat.frame[0], 0, found, &count), FMB_DIMENSIONS_DIFFER);
-    assert_int_equal(count, 0);
-    assert_int_equal(fmb_tree_ask(tree, &nobody, 0, found, &count), FMB_NOT_FINITE);
-    ask_about_some(&draw, &deep, &planted, &deep); /* the tree is as it was */
-    struct fmb_tree_place place = {0};
-    unsigned pairs[FMB_TREE_ROOM][2];
-    assert_int_equal(fmb_tree_pairs(tree, tree, &place, pairs, FMB_TREE_ROOM - 1, &count),
+    struct fmb_tree_cursor cursor = {0};
+    unsigned pairs[FMB_TREE_CAPACITY_MIN][2];
+    assert_int_equal(fmb_tree_pairs(tree, tree, &cursor, pairs, FMB_TREE_CAPACITY_MIN - 1, &count),
                      FMB_OVER_LIMIT);
     other = *tree;
     other.dim = 2;
-    assert_int_equal(fmb_tree_pairs(tree, &other, &place, pairs, FMB_TREE_ROOM, &count),
+    assert_int_equal(fmb_tree_pairs(tree, &other, &cursor, pairs, FMB_TREE_CAPACITY_MIN, &count),
                      FMB_DIMENSIONS_DIFFER);
-    assert_int_equal(fmb_tree_refit(tree, deep.frame, 2), FMB_OK);
     other.dim = 3;
-    assert_int_equal(fmb_tree_pairs(tree, &other, &place, pairs, FMB_TREE_ROOM, &count),
+    other.duration = 2;
+    assert_int_equal(fmb_tree_pairs(tree, &other, &cursor, pairs, FMB_TREE_CAPACITY_MIN, &count),
                      FMB_BAD_DURATION);
     assert_int_equal(count, 0);
     assert_int_equal(fmb_tree_build(NULL, 0, 1, NULL, &other), FMB_OK);
-    assert_int_equal(fmb_tree_ask(&other, &flat.frame[0], 0, found, &count), FMB_OK);
-    assert_int_equal(count, 0);
-    assert_int_equal(fmb_tree_refit(&other, NULL, 1), FMB_OK);
     assert_true(fmb_tree_bytes(SIZE_MAX) == SIZE_MAX);
     assert_true(fmb_tree_bytes(SIZE_MAX / 64) == SIZE_MAX);
     assert_true(fmb_tree_bytes(UINT_MAX) == SIZE_MAX);

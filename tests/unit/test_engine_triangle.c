@@ -15,6 +15,7 @@
 #include <limits.h>
 #include <math.h>
 
+#include "batch.h"
 #include "draw.h"
 #include "fmb.h"
 #include "placed_pair.h"
@@ -311,14 +312,12 @@ static void assert_answer(const struct drawn *drawn, int turn, const char *metho
 
 static void assert_certificate(const struct drawn *drawn, int turn, enum fmb_verdict verdict)
 {
-    enum { SIZE = 1 << 18 };
-    static char text[SIZE];
-    char why[200] = "";
+    char text[FMB_CERTIFICATE_MAX], why[200] = "";
     size_t length;
     struct asked asked;
     set_asked(drawn, turn, &asked);
-    assert_int_equal(pair_certificate(&asked.pair, text, SIZE, &length), FMB_OK);
-    for (int other = FMB_SEPARATED; other <= FMB_OVERLAPPING; other++) {
+    assert_int_equal(pair_certificate(&asked.pair, text, sizeof text, &length), FMB_OK);
+    for (int other = FMB_SEPARATED; other <= FMB_OVERLAPPING && length > 0; other++) {
         const bool holds =
             pair_certificate_holds(&asked.pair, (enum fmb_verdict) other, text, why, sizeof why);
         if (holds != (other == (int) verdict)) {
@@ -495,7 +494,7 @@ static void assert_told(const struct fmb_answer *truth, const struct told *told,
 }
 
 static void ask_crowd(const struct crowd *crowd, const unsigned (*pairs)[2],
-                      enum fmb_instructions instructions, int wanted, struct told *out)
+                      enum instructions instructions, int wanted, struct told *out)
 {
     const struct fmb_batch batch = {.frames = crowd->prepared,
                                     .frame_count = CROWD,
@@ -504,11 +503,10 @@ static void ask_crowd(const struct crowd *crowd, const unsigned (*pairs)[2],
                                     .duration = crowd->duration,
                                     .verdicts = out->verdict,
                                     .contacts = wanted & 1 ? out->contact : NULL,
-                                    .boxes = wanted & 2 ? out->box : NULL,
-                                    .instructions = instructions};
+                                    .boxes = wanted & 2 ? out->box : NULL};
     memset(out, 0, sizeof *out);
     memset(out->verdict, 0xa5, sizeof out->verdict);
-    assert_int_equal(fmb_decide_batch(&batch), FMB_OK);
+    assert_int_equal(batch_decide(&batch, instructions, INFINITY), FMB_OK);
 }
 
 /* Whatever the instructions, the same bits. Returns the number of pairs with a face that is
@@ -526,13 +524,12 @@ static long assert_crowd(const struct crowd *crowd)
     }
     set_truth(crowd, truth);
     for (int wanted = 0; wanted < 4; wanted++) {
-        ask_crowd(crowd, (const unsigned(*)[2]) pairs, FMB_PLAIN, wanted, &told);
+        ask_crowd(crowd, (const unsigned(*)[2]) pairs, INSTRUCTIONS_PLAIN, wanted, &told);
         assert_told(truth, &told, wanted & 1, wanted & 2);
-        for (int set = FMB_BEST; set <= FMB_AVX512; set++) {
-            if (!fmb_instructions_supported(set))
+        for (int set = INSTRUCTIONS_BEST; set <= INSTRUCTIONS_AVX512; set++) {
+            if (!instructions_supported(set))
                 continue;
-            ask_crowd(crowd, (const unsigned(*)[2]) pairs, (enum fmb_instructions) set, wanted,
-                      &other);
+            ask_crowd(crowd, (const unsigned(*)[2]) pairs, (enum instructions) set, wanted, &other);
             assert_memory_equal(told.verdict, other.verdict, sizeof told.verdict);
             if (wanted) /* NAN is of the same bits too, since it is not computed */
                 assert_memory_equal(&told, &other, sizeof told);
@@ -541,9 +538,10 @@ static long assert_crowd(const struct crowd *crowd)
             continue;
         for (int k = 0; k < CROWD_PAIRS; k++) {
             enum fmb_verdict alone;
-            assert_int_equal(fmb_meet(&crowd->prepared[k / CROWD], &crowd->prepared[k % CROWD],
-                                      crowd->duration, &alone),
-                             FMB_OK);
+            assert_int_equal(
+                fmb_decide_prepared(&crowd->prepared[k / CROWD], &crowd->prepared[k % CROWD],
+                                    crowd->duration, &alone),
+                FMB_OK);
             assert_int_equal(alone, told.verdict[k]);
             rounded += crowd->body[k / CROWD].one.rounded || crowd->body[k % CROWD].one.rounded;
         }
@@ -756,11 +754,11 @@ static bool boxes_meet(const struct world *a, size_t i, const struct world *b, s
 /* How often each pair is told. */
 static void count_pairs(const struct fmb_tree *a, const struct fmb_tree *b, unsigned char *times)
 {
-    enum { ROOM = FMB_TREE_ROOM + 5 };
+    enum { ROOM = FMB_TREE_CAPACITY_MIN + 5 };
     unsigned pairs[ROOM][2];
-    struct fmb_tree_place place = {0};
+    struct fmb_tree_cursor cursor = {0};
     for (size_t count = 1; count > 0;) {
-        assert_int_equal(fmb_tree_pairs(a, b, &place, pairs, ROOM, &count), FMB_OK);
+        assert_int_equal(fmb_tree_pairs(a, b, &cursor, pairs, ROOM, &count), FMB_OK);
         for (size_t k = 0; k < count; k++)
             times[pairs[k][0] * b->frame_count + pairs[k][1]]++;
     }
@@ -842,12 +840,13 @@ static void boxes_in_the_plane(void **state)
     static const unsigned expected[2][2] = {{0, 2}, {1, 3}};
     const struct fmb_boxes boxes = {2, put_flat_box, at, NULL};
     struct fmb_tree tree;
-    struct fmb_tree_place place = {0};
-    unsigned pairs[FMB_TREE_ROOM][2];
+    struct fmb_tree_cursor cursor = {0};
+    unsigned pairs[FMB_TREE_CAPACITY_MIN][2];
     size_t count;
     void *memory = room(1, fmb_tree_bytes(4));
     assert_int_equal(fmb_tree_build_boxes(&boxes, 4, 1, memory, &tree), FMB_OK);
-    assert_int_equal(fmb_tree_pairs(&tree, &tree, &place, pairs, FMB_TREE_ROOM, &count), FMB_OK);
+    assert_int_equal(fmb_tree_pairs(&tree, &tree, &cursor, pairs, FMB_TREE_CAPACITY_MIN, &count),
+                     FMB_OK);
     assert_int_equal(count, 2);
     assert_memory_equal(pairs, expected, sizeof expected);
     free(memory);

@@ -14,7 +14,7 @@
 #include "family.h"
 #include "referee.h"
 
-enum { TEXT_SIZE = 1 << 18, EVERYTHING = FMB_WANT_BOX | FMB_WANT_GAP };
+enum { TEXT_SIZE = FMB_CERTIFICATE_MAX, EVERYTHING = FMB_WANT_BOX | FMB_WANT_GAP };
 
 static double work_of(const struct question *question, const char *method, unsigned want)
 {

@@ -18,6 +18,7 @@
 #include "draw.h"
 #include "family.h"
 #include "gmp_allocations.h"
+#include "instructions.h"
 #include "limbs.h"
 #include "pair_draw.h"
 #include "prepared.h"
@@ -44,16 +45,16 @@ struct subject {
     struct kernel_set set;
 };
 
-enum { SUBJECTS_MAX = FMB_AVX512 + 1 };
+enum { SUBJECTS_MAX = INSTRUCTIONS_AVX512 + 1 };
 
 /* Those of this machine; the first is plain. Returns how many. */
 static int subjects_of_machine(struct subject out[SUBJECTS_MAX])
 {
     int count = 0;
-    for (int i = FMB_PLAIN; i <= FMB_AVX512; i++) {
-        struct subject one = {.name = fmb_instructions_name(i)};
+    for (int i = INSTRUCTIONS_PLAIN; i <= INSTRUCTIONS_AVX512; i++) {
+        struct subject one = {.name = instructions_name(i)};
         const bool there = kernel_set_of(i, &one.set);
-        assert_int_equal(there, fmb_instructions_supported(i));
+        assert_int_equal(there, instructions_supported(i));
         if (there)
             out[count++] = one;
     }
@@ -546,7 +547,7 @@ static bool is_separated(const struct question *question, bool exact)
     referee_ready(question, &ready);
     assert_int_equal(fmb_prepare(&ready.pair.a, 0, 1, &a), FMB_OK);
     assert_int_equal(fmb_prepare(&ready.pair.b, 0, 1, &b), FMB_OK);
-    assert_true(kernel_set_of(FMB_PLAIN, &set));
+    assert_true(kernel_set_of(INSTRUCTIONS_PLAIN, &set));
     const enum kernel_kind kind = kernel_kind_of(&a, &b, question->duration, &swapped);
     const struct fmb_prepared *pairs[KERNEL_LANES][2] = {{swapped ? &b : &a, swapped ? &a : &b}};
     const struct kernel_call run = {pairs, 1, question->duration, outcome, NULL, NULL};

@@ -112,7 +112,7 @@ static struct pair_query pair(int dim, double at, double speed, int32_t want)
 /* Certificates stay good: each has a copy. */
 static struct pair_result answer(const struct pair_query *query)
 {
-    static char certificate[64][QUERY_CERTIFICATE_MAX];
+    static char certificate[64][FMB_CERTIFICATE_MAX];
     static int next;
     struct pair_result result;
     answer_pair(answerer, query, &result);
@@ -168,7 +168,7 @@ static void test_every_kind(void **state)
     assert_true(now.answer.has_gap);
     struct pair_result then = now;
     expect_same(0, &query, &then, &now);
-    char other[QUERY_CERTIFICATE_MAX];
+    char other[FMB_CERTIFICATE_MAX];
     strcpy(other, now.certificate);
     other[strlen(other) - 1] ^= 1; /* at its end alone */
     then.certificate = other;

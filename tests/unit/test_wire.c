@@ -540,9 +540,9 @@ static size_t write_certificate(char *certificate, int32_t status, int32_t verdi
 static void test_certificates_end_somewhere(void **state)
 {
     (void) state;
-    static char text[3 * QUERY_CERTIFICATE_MAX];
-    static unsigned char bytes[4 * QUERY_CERTIFICATE_MAX];
-    const size_t longest = QUERY_CERTIFICATE_MAX - 1;
+    static char text[3 * FMB_CERTIFICATE_MAX];
+    static unsigned char bytes[4 * FMB_CERTIFICATE_MAX];
+    const size_t longest = FMB_CERTIFICATE_MAX - 1;
     const size_t lengths[] = {1, longest, longest + 1, sizeof text - 1};
     struct pair_result result;
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {

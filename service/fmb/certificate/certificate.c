@@ -36,6 +36,7 @@
 #include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 #include <gmp.h>
 
@@ -224,31 +225,27 @@ static void find_normal(struct exact_pair *pair, int dim, enum fmb_verdict verdi
 /* ---- The text ---- */
 
 struct certificate_writer {
-    char *text;
-    size_t size;
-    size_t length; /* of all that was written, whether there was room or not */
-    char nowhere[1];
+    char text[FMB_CERTIFICATE_MAX];
+    size_t length; /* of all that was written, beyond the end of text too */
 };
 
-/* Where snprintf is to write next, and how much. */
-static char *room(struct certificate_writer *writer)
+static size_t used_of(const struct certificate_writer *writer)
 {
-    return writer->length < writer->size ? writer->text + writer->length : writer->nowhere;
-}
-
-static size_t room_size(const struct certificate_writer *writer)
-{
-    return writer->length < writer->size ? writer->size - writer->length : 0;
+    return writer->length < FMB_CERTIFICATE_MAX ? writer->length : FMB_CERTIFICATE_MAX;
 }
 
 static void write_text(struct certificate_writer *writer, const char *text)
 {
-    writer->length += (size_t) snprintf(room(writer), room_size(writer), "%s", text);
+    const size_t used = used_of(writer);
+    writer->length +=
+        (size_t) snprintf(writer->text + used, FMB_CERTIFICATE_MAX - used, "%s", text);
 }
 
 static void write_number(struct certificate_writer *writer, const mpq_t number)
 {
-    writer->length += (size_t) gmp_snprintf(room(writer), room_size(writer), "%Qd", number);
+    const size_t used = used_of(writer);
+    writer->length +=
+        (size_t) gmp_snprintf(writer->text + used, FMB_CERTIFICATE_MAX - used, "%Qd", number);
 }
 
 static void write_normal(struct certificate_writer *writer, struct exact_pair *exact, int dim,
@@ -261,11 +258,11 @@ static void write_normal(struct certificate_writer *writer, struct exact_pair *e
 }
 
 static void write_point(struct certificate_writer *writer, struct exact_pair *exact,
-                        const struct frame_pair *pair, bool touching)
+                        const struct frame_pair *pair)
 {
     struct certificate_point point;
     certificate_point_init(&point);
-    certificate_point_find(&point, exact, pair, touching);
+    certificate_point_find(&point, exact, pair);
     write_text(writer, " at ");
     write_number(writer, point.time);
     for (int axis = 0; axis < pair->a.frame->dim; axis++) {
@@ -276,16 +273,40 @@ static void write_point(struct certificate_writer *writer, struct exact_pair *ex
     certificate_point_clear(&point);
 }
 
+/* The span that fmb.h defines, in bits. Fractions of more would take milliseconds each to reduce.
+ */
+enum { SPAN_MAX = 512 };
+
+static bool is_wide(const mpz_t v[3])
+{
+    return mpz_sizeinbase(v[0], 2) > SPAN_MAX || mpz_sizeinbase(v[1], 2) > SPAN_MAX ||
+           mpz_sizeinbase(v[2], 2) > SPAN_MAX;
+}
+
+static bool pair_is_wide(const struct exact_pair *exact)
+{
+    bool wide = false;
+    for (int f = 0; f < 2; f++) {
+        const struct exact_frame *frame = &exact->frame[f];
+        wide = wide || is_wide(frame->origin) || is_wide(frame->displacement);
+        for (int i = 0; i < frame->count; i++)
+            wide = wide || is_wide(frame->component[i]);
+    }
+    return wide;
+}
+
 static void write_certificate(struct certificate_writer *writer, const struct frame_pair *pair)
 {
     struct exact_pair exact;
     exact_pair_init(&exact, pair, true);
-    const enum fmb_verdict verdict = exact_verdict(&exact, pair->duration, NULL);
-    write_text(writer, fmb_verdict_name(verdict));
-    if (verdict != FMB_OVERLAPPING)
-        write_normal(writer, &exact, pair->a.frame->dim, verdict);
-    if (verdict != FMB_SEPARATED)
-        write_point(writer, &exact, pair, verdict == FMB_TOUCHING);
+    if (!pair_is_wide(&exact)) {
+        const enum fmb_verdict verdict = exact_verdict(&exact, pair->duration, NULL);
+        write_text(writer, fmb_verdict_name(verdict));
+        if (verdict != FMB_OVERLAPPING)
+            write_normal(writer, &exact, pair->a.frame->dim, verdict);
+        if (verdict != FMB_SEPARATED)
+            write_point(writer, &exact, pair);
+    }
     exact_pair_clear(&exact);
 }
 
@@ -301,17 +322,19 @@ static enum fmb_status check(const struct fmb_placement *a, const struct fmb_pla
 enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
                                 double duration, char *text, size_t size, size_t *length)
 {
-    struct certificate_writer writer = {.text = text, .size = size};
+    struct certificate_writer writer = {.length = 0};
     enum fmb_status status = check(a, b, duration);
     if (status == FMB_OK) {
         const struct frame_pair pair = {
             {fmb_body_frame(a->body, 0), a}, {fmb_body_frame(b->body, 0), b}, duration};
         write_certificate(&writer, &pair);
-        if (writer.length >= size)
-            status = FMB_OVER_LIMIT;
     }
-    if (status != FMB_OK && size > 0)
-        text[0] = '\0';
-    *length = writer.length;
+    *length = writer.length < FMB_CERTIFICATE_MAX ? writer.length : 0;
+    if (*length >= size)
+        status = status == FMB_OK ? FMB_OVER_LIMIT : status;
+    else
+        memcpy(text, writer.text, *length);
+    if (size > 0)
+        text[*length < size ? *length : 0] = '\0';
     return status;
 }

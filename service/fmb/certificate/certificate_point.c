@@ -54,7 +54,10 @@ static void simplest_of_positive(mpq_t out, mpz_t a, mpz_t b, mpz_t c, mpz_t d)
     mpz_clears(term, last_num, last_den, NULL);
 }
 
-void simplest_between(mpq_t out, mpq_t low, mpq_t high)
+/* out := the simplest number strictly between low and high > low: 0 if it is one; otherwise one of
+ * the least denominator, and among these the closest to 0. low and high need not be in lowest
+ * terms; they are overwritten. */
+static void simplest_between(mpq_t out, mpq_t low, mpq_t high)
 {
     bool negative = mpq_sgn(high) <= 0;
     if (mpq_sgn(low) < 0 && mpq_sgn(high) > 0) {
@@ -102,7 +105,8 @@ static void hull_each(struct hull *hull, void (*call)(mpq_ptr))
     call(hull->product);
 }
 
-void certificate_scale(mpq_t x, long exponent)
+/* x := x 2^exponent. */
+static void scale(mpq_t x, long exponent)
 {
     if (exponent < 0)
         mpq_div_2exp(x, x, (mp_bitcnt_t) -exponent);
@@ -110,18 +114,19 @@ void certificate_scale(mpq_t x, long exponent)
         mpq_mul_2exp(x, x, (mp_bitcnt_t) exponent);
 }
 
-void certificate_set_scaled(mpq_t x, const mpz_t num, const mpz_t den, long exponent)
+/* x := num / den 2^exponent, in lowest terms. */
+static void set_scaled(mpq_t x, const mpz_t num, const mpz_t den, long exponent)
 {
     mpq_set_num(x, num);
     mpq_set_den(x, den);
     mpq_canonicalize(x);
-    certificate_scale(x, exponent);
+    scale(x, exponent);
 }
 
 static void set_seen(struct hull *hull, const struct exact_point *point)
 {
     for (int k = 0; k < COORDINATES; k++)
-        certificate_set_scaled(hull->seen[k], point->at[k], point->den, k == 0 ? 0 : hull->unit);
+        set_scaled(hull->seen[k], point->at[k], point->den, k == 0 ? 0 : hull->unit);
     mpq_mul(hull->seen[0], hull->seen[0], hull->duration);
 }
 
@@ -270,8 +275,8 @@ static void shorten_to_frame(struct chord *chord, const struct placed_frame *pla
         mpq_sub(chord->place[axis], chord->at[1 + axis], chord->place[axis]);
         mpq_mul(chord->way[axis], chord->number, chord->direction[0]);
         mpq_sub(chord->way[axis], chord->direction[1 + axis], chord->way[axis]);
-        certificate_scale(chord->place[axis], -exact->unit);
-        certificate_scale(chord->way[axis], -exact->unit);
+        scale(chord->place[axis], -exact->unit);
+        scale(chord->way[axis], -exact->unit);
         mpq_set_z(chord->number, exact->scale);
         mpq_mul(chord->place[axis], chord->place[axis], chord->number);
         mpq_mul(chord->way[axis], chord->way[axis], chord->number);
@@ -330,32 +335,9 @@ void certificate_point_clear(struct certificate_point *point)
         mpq_clear(point->place[axis]);
 }
 
-/* Most bits of a number of the pair, in its unit: beyond these, reducing fractions takes
- * milliseconds each. */
-enum { BITS_MAX = 512 };
-
-static bool is_wide(struct exact_pair *exact)
-{
-    for (int f = 0; f < 2; f++)
-        for (int axis = 0; axis < 3; axis++) {
-            struct exact_frame *frame = &exact->frame[f];
-            if (mpz_sizeinbase(frame->origin[axis], 2) > BITS_MAX ||
-                mpz_sizeinbase(frame->displacement[axis], 2) > BITS_MAX)
-                return true;
-            for (int i = 0; i < frame->count; i++)
-                if (mpz_sizeinbase(frame->component[i][axis], 2) > BITS_MAX)
-                    return true;
-        }
-    return false;
-}
-
 void certificate_point_find(struct certificate_point *point, struct exact_pair *exact,
-                            const struct frame_pair *pair, bool touching)
+                            const struct frame_pair *pair)
 {
-    if (is_wide(exact)) {
-        certificate_point_wide(point, exact, pair, touching);
-        return;
-    }
     struct hull hull = {.unit = exact->unit};
     hull_each(&hull, mpq_init);
     mpq_set_d(hull.duration, pair->duration);

@@ -15,8 +15,8 @@
  *   6. find_far()       skips gaps that are surely greater than wanted; put_gap() computes the
  *      put_gap()        others
  *
- * Blocks are independent of each other; threads share them out. Every step depends on the numbers
- * of a pair only, except the count of single decisions in a bounded batch (SINGLE_MAX). */
+ * Blocks are independent of each other. Every step depends on the numbers of a pair only, except
+ * the count of single decisions in a bounded batch (SINGLE_MAX). */
 #include "batch.h"
 
 #include "certified.h"
@@ -25,6 +25,7 @@
 #include "inlined.h"
 #include "kernel.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -34,6 +35,9 @@ enum { BLOCK = 128 };
 /* The largest number of pairs of a block that are decided one by one if the time of a call is
  * bounded. A pair that needs integers takes 1 to 10 us. */
 enum { SINGLE_MAX = 32 };
+
+/* The verdict of a pair that is left open, until it is listed. */
+enum { LEFT_OPEN = 255 };
 
 /* What all blocks of a batch share. */
 struct batch_job {
@@ -300,7 +304,7 @@ static void decide_single(struct batch_block *block, size_t k, unsigned want)
         certified_decide_prepared(pair[0], pair[1], batch->duration, want, batch->open != NULL,
                                   &answer) != FMB_OK) {
         put_nothing(batch, i);
-        batch->verdicts[i] = FMB_LEFT_OPEN;
+        batch->verdicts[i] = LEFT_OPEN;
         return;
     }
     batch->verdicts[i] = (unsigned char) answer.verdict;
@@ -317,8 +321,7 @@ static void put_verdict_single(struct batch_block *block, size_t k)
     enum fmb_verdict verdict = 0;
     if (may_decide_single(block))
         verdict = certified_unsure(pair[0], pair[1], batch->duration, 2, batch->open);
-    batch->verdicts[block->first + block->slot[k]] =
-        verdict ? (unsigned char) verdict : FMB_LEFT_OPEN;
+    batch->verdicts[block->first + block->slot[k]] = verdict ? (unsigned char) verdict : LEFT_OPEN;
 }
 
 static void put_verdicts(struct batch_block *block, size_t start, size_t end)
@@ -378,7 +381,7 @@ static void put_box_single(struct batch_block *block, size_t k)
     const size_t i = block->first + block->slot[k];
     if (batch->open) {
         put_nothing(batch, i);
-        batch->verdicts[i] = FMB_LEFT_OPEN;
+        batch->verdicts[i] = LEFT_OPEN;
     } else {
         const struct frame_pair frames = {{pair[0]->frame, pair[0]->placement},
                                           {pair[1]->frame, pair[1]->placement},
@@ -540,7 +543,7 @@ static void put_unfiltered(struct batch_block *block)
             decide_single(block, k, block->batch->boxes ? FMB_WANT_BOX : 0);
             continue;
         }
-        block->batch->verdicts[i] = FMB_REFUSED;
+        block->batch->verdicts[i] = 0;
         if (block->status == FMB_OK)
             block->status = refusal(block->pair[k]);
     }
@@ -605,7 +608,6 @@ static void put_gap(const struct batch_job *job, const struct batch_block *block
 {
     const size_t i = block->first + slot;
     const struct fmb_batch *batch = job->batch;
-    const struct fmb_gap none = {.bounds = {NAN, NAN}};
     struct fmb_gap *gap = &batch->gaps[i];
     unsigned char *verdict = &batch->verdicts[i];
     enum gap_outcome outcome = GAP_FAR;
@@ -615,11 +617,11 @@ static void put_gap(const struct batch_job *job, const struct batch_block *block
                          batch->open != NULL, gap);
     if (outcome == GAP_KNOWN)
         return;
-    *gap = none;
+    *gap = gap_none();
     if (outcome == GAP_FAR)
         return;
     put_nothing(batch, i);
-    *verdict = FMB_LEFT_OPEN;
+    *verdict = LEFT_OPEN;
 }
 
 static enum fmb_status decide_block(const struct batch_job *job, size_t first)
@@ -642,21 +644,17 @@ static enum fmb_status decide_block(const struct batch_job *job, size_t first)
 
 /* ---- All blocks ---- */
 
-#ifdef _OPENMP
-static const bool has_threads = true;
-#else
-static const bool has_threads = false;
-#endif
-
-/* Lists the pairs that the blocks left open, in ascending order. */
+/* Lists the pairs that the blocks left open, in ascending order, and clears their verdicts. */
 static void list_open(const struct fmb_batch *batch)
 {
     unsigned char *at = batch->verdicts;
     /* verdicts may be NULL if there are no pairs. */
     const unsigned char *const end = batch->pair_count > 0 ? at + batch->pair_count : at;
     size_t count = 0;
-    while (at < end && (at = memchr(at, FMB_LEFT_OPEN, (size_t) (end - at))))
-        batch->open[count++] = (size_t) (at++ - batch->verdicts);
+    while (at < end && (at = memchr(at, LEFT_OPEN, (size_t) (end - at)))) {
+        batch->open[count++] = (size_t) (at - batch->verdicts);
+        *at++ = 0;
+    }
     *batch->open_count = count;
 }
 
@@ -672,44 +670,32 @@ enum fmb_status fmb_decide_batch(const struct fmb_batch *batch)
 {
     if (batch->instant ? batch->duration != 0 : batch->duration == 0 && any_moves(batch))
         return FMB_BAD_DURATION;
-    return batch_decide(batch, INFINITY);
+    return batch_decide(batch, INSTRUCTIONS_BEST, INFINITY);
 }
 
-enum fmb_status batch_decide(const struct fmb_batch *batch, double farthest)
+enum fmb_status batch_decide(const struct fmb_batch *batch, enum instructions instructions,
+                             double farthest)
 {
     if (!prepared_is_duration(batch->duration))
         return FMB_BAD_DURATION;
     struct batch_job job = {.batch = batch, .farthest = farthest};
-    if (!kernel_set_of((int) batch->instructions, &job.kernels) ||
-        (batch->threads > 1 && !has_threads))
-        return FMB_NOT_SUPPORTED;
+    const bool supported = kernel_set_of((int) instructions, &job.kernels);
+    assert(supported);
+    (void) supported;
     for (int i = 0; i < BLOCK; i++)
         job.in_order[i] = (unsigned char) i;
-    const long blocks = (long) ((batch->pair_count + BLOCK - 1) / BLOCK);
-    long refused = blocks; /* the first block with a pair that was refused */
     enum fmb_status status = FMB_OK;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic, 16) num_threads(batch->threads > 1 ? batch->threads : 1)
-#endif
-    for (long b = 0; b < blocks; b++) {
-        const enum fmb_status of_block = decide_block(&job, (size_t) b * BLOCK);
-        if (of_block == FMB_OK)
-            continue;
-#ifdef _OPENMP
-#pragma omp critical
-#endif
-        if (b < refused) {
-            refused = b;
-            status = of_block;
-        }
+    for (size_t first = 0; first < batch->pair_count; first += BLOCK) {
+        const enum fmb_status of_block = decide_block(&job, first);
+        status = status == FMB_OK ? of_block : status;
     }
     if (batch->open)
         list_open(batch);
     return status;
 }
 
-enum fmb_status fmb_meet(const struct fmb_prepared *a, const struct fmb_prepared *b,
-                         double duration, enum fmb_verdict *verdict)
+enum fmb_status fmb_decide_prepared(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                                    double duration, enum fmb_verdict *verdict)
 {
     bool swapped;
     if (!prepared_is_duration(duration))

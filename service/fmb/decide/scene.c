@@ -379,7 +379,7 @@ static void keep_halfway(struct fmb_scene_state *state)
     block->body_count = 1;
     block->first += last;
     state->cursor.reach = reach_of(state, 0);
-    if (verdict == FMB_REFUSED || (verdict == FMB_OVERLAPPING && verdict_alone))
+    if (verdict == 0 || (verdict == FMB_OVERLAPPING && verdict_alone))
         state->halfway = false;
 }
 
@@ -443,7 +443,8 @@ static void decide_batch(struct fmb_scene_state *state, size_t first, size_t cou
         .gaps = has_gaps(scene) ? block->outcomes.gap + first : NULL,
         .open = open,
         .open_count = open_count};
-    const enum fmb_status status = batch_decide(&batch, farthest_of_frames(state));
+    const enum fmb_status status =
+        batch_decide(&batch, INSTRUCTIONS_BEST, farthest_of_frames(state));
     assert(status == FMB_OK);
     (void) status;
 }
@@ -496,7 +497,7 @@ static void include_gap(struct fmb_scene_state *state, size_t k, size_t n)
     const struct fmb_placement *a = &state->scene.placements[block->bodies[n][0]];
     const struct fmb_placement *b = &state->scene.placements[block->bodies[n][1]];
     const struct aabb *box = state->frames.frame_box;
-    if (isnan(one->bounds[0]))
+    if (!gap_is_known(one))
         return;
     if (a->body->frame_count == 1 && b->body->frame_count == 1)
         block->answers.gap[n] = *one;
@@ -515,11 +516,11 @@ static void include(struct fmb_scene_state *state, size_t k)
     const unsigned char verdict = one->verdict[k];
     if (has_gaps(&state->scene))
         include_gap(state, k, n);
-    if (verdict == FMB_SEPARATED || answers->verdict[n] == FMB_REFUSED)
+    if (verdict == FMB_SEPARATED || answers->verdict[n] == 0)
         return;
-    if (verdict == FMB_REFUSED) {
+    if (verdict == 0) {
         begin_answer(state, n);
-        answers->verdict[n] = FMB_REFUSED;
+        answers->verdict[n] = 0;
         return;
     }
     if (verdict > answers->verdict[n])
@@ -553,14 +554,12 @@ static size_t include_decided(struct fmb_scene_state *state)
 /* Clears the gap of a pair that has none, or is farther apart than the margin. */
 static void end_gap(const struct fmb_scene_state *state, unsigned char verdict, struct fmb_gap *gap)
 {
-    if (isnan(gap->bounds[0])) /* as set by the batch */
-        return;
-    const bool known = gap->bounds[0] < INFINITY || gap->direction[0] < INFINITY;
-    const bool wanted = verdict != FMB_SEPARATED || gap->bounds[0] <= farthest(state);
-    if (known && wanted && verdict != FMB_REFUSED)
+    const bool wanted =
+        verdict > FMB_SEPARATED || (verdict == FMB_SEPARATED && gap->bounds[0] <= farthest(state));
+    if (gap_is_known(gap) && wanted)
         gap_end((enum fmb_verdict) verdict, gap);
     else
-        *gap = (struct fmb_gap){.bounds = {NAN, NAN}};
+        *gap = gap_none();
 }
 
 static bool is_near(const struct fmb_scene_state *state, const struct fmb_gap *gap)

@@ -73,11 +73,6 @@ void exact_pair_clear(struct exact_pair *pair);
 /* Sets edges, offset and drift of a pair from its components, origins and displacements. */
 void exact_pair_complete(struct exact_pair *pair);
 
-/* Computes the inverse of a frame of dim components, the exact ones, component + remainder. Every
- * entry is the largest double that is not above the exact one, infinite beyond the range of
- * doubles. Returns false if the frame is exactly flat and has no inverse. */
-bool exact_inverse(struct fmb_frame *frame);
-
 /* Returns the vector of this number: [axis]. */
 mpz_t *exact_vector(struct exact_pair *pair, int number);
 

@@ -1,15 +1,17 @@
 /* Chooses the instruction set of the filter. The machine is queried at each call, so that there is
  * no state. */
+#include "instructions.h"
+
 #include "kernel.h"
 
-/* The largest of enum fmb_instructions that is used, as a number, since the preprocessor does not
+/* The largest of enum instructions that is used, as a number, since the preprocessor does not
  * know the enum. Tests build programs that use less than their machine has; 1, plain C only, is
  * what machines other than x86-64 have. Kernels of AVX2 and AVX-512 are linked only if this is
  * larger than 2. */
 #ifndef INSTRUCTIONS_MOST
 #define INSTRUCTIONS_MOST 4
 #endif
-_Static_assert(FMB_PLAIN == 1 && FMB_SSE2 == 2 && FMB_AVX512 == 4,
+_Static_assert(INSTRUCTIONS_PLAIN == 1 && INSTRUCTIONS_SSE2 == 2 && INSTRUCTIONS_AVX512 == 4,
                "INSTRUCTIONS_MOST is a number of the enum");
 
 #define KERNEL_DECLARE(name)                                                                \
@@ -34,7 +36,7 @@ KERNEL_DECLARE_SINGLE(sse2)
 KERNEL_DECLARE(avx2)
 KERNEL_DECLARE(avx512)
 KERNEL_DECLARE_SINGLE(avx2)
-#define KERNEL_SINGLE_BEST(kind) (has(FMB_AVX2) ? kind##_single_avx2 : kind##_single_sse2)
+#define KERNEL_SINGLE_BEST(kind) (has(INSTRUCTIONS_AVX2) ? kind##_single_avx2 : kind##_single_sse2)
 #else
 #define KERNEL_SINGLE_BEST(kind) kind##_single_sse2
 #endif
@@ -44,12 +46,12 @@ KERNEL_DECLARE_SINGLE(plain)
 #endif
 
 static const struct kernel_set sets[] = {
-    [FMB_PLAIN] = KERNEL_SET(plain),
+    [INSTRUCTIONS_PLAIN] = KERNEL_SET(plain),
 #if defined(__x86_64__) && INSTRUCTIONS_MOST > 1
-    [FMB_SSE2] = KERNEL_SET(sse2),
+    [INSTRUCTIONS_SSE2] = KERNEL_SET(sse2),
 #if INSTRUCTIONS_MOST > 2
-    [FMB_AVX2] = KERNEL_SET(avx2),
-    [FMB_AVX512] = KERNEL_SET(avx512),
+    [INSTRUCTIONS_AVX2] = KERNEL_SET(avx2),
+    [INSTRUCTIONS_AVX512] = KERNEL_SET(avx512),
 #endif
 #endif
 };
@@ -59,11 +61,11 @@ static bool has(int instructions)
     if (instructions > INSTRUCTIONS_MOST)
         return false;
     switch (instructions) {
-    case FMB_PLAIN: return true;
+    case INSTRUCTIONS_PLAIN: return true;
 #ifdef __x86_64__
-    case FMB_SSE2: return true;
-    case FMB_AVX2: return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    case FMB_AVX512:
+    case INSTRUCTIONS_SSE2: return true;
+    case INSTRUCTIONS_AVX2: return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    case INSTRUCTIONS_AVX512:
         return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                __builtin_cpu_supports("avx512vl");
 #endif
@@ -88,25 +90,37 @@ kernel_single_function *const *kernel_times_single(void)
 
 static int best(void)
 {
-    for (int instructions = FMB_AVX512; instructions > FMB_PLAIN; instructions--)
+    for (int instructions = INSTRUCTIONS_AVX512; instructions > INSTRUCTIONS_PLAIN; instructions--)
         if (has(instructions))
             return instructions;
-    return FMB_PLAIN;
+    return INSTRUCTIONS_PLAIN;
 }
 
 kernel_function *const *kernel_boxes_single(void)
 {
-    return sets[best() < FMB_AVX2 ? best() : FMB_AVX2].boxes;
+    return sets[best() < INSTRUCTIONS_AVX2 ? best() : INSTRUCTIONS_AVX2].boxes;
 }
 
-bool fmb_instructions_supported(int instructions)
+const char *instructions_name(int instructions)
 {
-    return instructions == FMB_BEST || has(instructions);
+    switch (instructions) {
+    case INSTRUCTIONS_BEST: return "best";
+    case INSTRUCTIONS_PLAIN: return "plain";
+    case INSTRUCTIONS_SSE2: return "sse2";
+    case INSTRUCTIONS_AVX2: return "avx2";
+    case INSTRUCTIONS_AVX512: return "avx512";
+    }
+    return NULL;
+}
+
+bool instructions_supported(int instructions)
+{
+    return instructions == INSTRUCTIONS_BEST || has(instructions);
 }
 
 bool kernel_set_of(int instructions, struct kernel_set *out)
 {
-    const int which = instructions == FMB_BEST ? best() : instructions;
+    const int which = instructions == INSTRUCTIONS_BEST ? best() : instructions;
     if (!has(which))
         return false;
     *out = sets[which];

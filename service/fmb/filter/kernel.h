@@ -154,7 +154,7 @@ struct kernel_set {
     kernel_function *const *verdicts, *const *exact, *const *times, *const *boxes;
 };
 
-/* Sets *out to the tables of an instruction set (enum fmb_instructions). Returns false if this
+/* Sets *out to the tables of an instruction set (enum instructions). Returns false if this
  * machine does not have it, or its kernels were not compiled. */
 bool kernel_set_of(int instructions, struct kernel_set *out);
 

@@ -9,7 +9,18 @@
  * each, then the flags below. A size is the 16 most significant bits of a double, rounded up.
  * Shifted to the top of 64 bits it is a double that is no smaller than the length of the component
  * (its 2-norm), whether rotated and rounded or not, and at most a fifteenth larger. It is 0 if the
- * component is 0 or does not exist. */
+ * component is 0 or does not exist.
+ *
+ * The internal fields of struct fmb_frame, which frame.c computes:
+ *
+ *   in_range    doubles can decide pairs with it in a placement not rotated
+ *   sturdy      doubles can decide pairs with it in any placement
+ *   rounded     some number of remainder is not 0
+ *   bits        all components are multiples of 2^bits[0] below 2^bits[1]
+ *   summary     as above, of this frame unrotated and at rest
+ *   slack       bounds the distance of each vertex from the one that origin and component, which
+ * may be rounded, give; 0: those are exact turn_error  what a rotation that rounds adds to slack
+ *   size        largest magnitude in each component */
 #ifndef FMB_PREPARED_H
 #define FMB_PREPARED_H
 

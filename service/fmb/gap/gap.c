@@ -262,7 +262,12 @@ void gap_exact_any_order(const struct frame_pair *pair, enum fmb_verdict verdict
 
 struct fmb_gap gap_none(void)
 {
-    return (struct fmb_gap){.bounds = {INFINITY, INFINITY}, .direction = {INFINITY}};
+    return (struct fmb_gap){.bounds = {NAN, NAN}};
+}
+
+bool gap_is_known(const struct fmb_gap *gap)
+{
+    return !isnan(gap->bounds[0]);
 }
 
 /* Raises the lower bound to the distance of the boxes on an axis, rounded down, if that is greater.
@@ -305,8 +310,9 @@ void gap_include(struct fmb_gap *all, const struct fmb_gap *one, const struct aa
         turn_round(&x);
         turn_round(&y);
     }
-    const double lower = interval_max(-x.bounds[0], -y.bounds[0]);
-    if (all->direction[0] == INFINITY || compare_gaps(&x, &y) < 0)
+    const bool first = !gap_is_known(all);
+    const double lower = first ? -x.bounds[0] : interval_max(-x.bounds[0], -y.bounds[0]);
+    if (first || compare_gaps(&x, &y) < 0)
         *all = raised;
     all->bounds[0] = 0 - lower;
 }
@@ -319,6 +325,6 @@ void gap_end(enum fmb_verdict verdict, struct fmb_gap *gap)
 
 double gap_reach(double upper, const struct aabb *a, const struct aabb *b)
 {
-    const double least = upper > 0 ? upper : 0;
+    const double least = isnan(upper) ? INFINITY : upper > 0 ? upper : 0;
     return least + 0x1p-38 * (aabb_max_coordinate(a) + aabb_max_coordinate(b)) + 0x1p-1070;
 }

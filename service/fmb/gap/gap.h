@@ -127,8 +127,9 @@ enum gap_outcome gap_of(const struct fmb_prepared *a, const struct fmb_prepared 
 /* Returns whether gaps of these placements are computed for the swapped pair. */
 bool gap_swaps(const struct fmb_placement *a, const struct fmb_placement *b);
 
-/* The neutral element of gap_include(). */
+/* Returns no gap: bounds of NAN. It is the neutral element of gap_include(). */
 struct fmb_gap gap_none(void);
+bool gap_is_known(const struct fmb_gap *gap);
 
 /* Combines two gaps of the same placements in all: the lesser lower bound, and the other fields
  * from the gap with the lesser upper bound, whose direction proves the lower bound too. The result
@@ -145,7 +146,8 @@ void gap_include(struct fmb_gap *all, const struct fmb_gap *one, const struct aa
  * although separated frames may contribute a lower bound below 0. */
 void gap_end(enum fmb_verdict verdict, struct fmb_gap *gap);
 
-/* Returns a distance for boxes of frames inside a and b, given bounds[1] of the least gap so far:
+/* Returns a distance for boxes of frames inside a and b, given bounds[1] of the least gap so far,
+ * NAN if there is none:
  * frames whose boxes are farther apart on an axis do not change the gap, and do not meet. */
 double gap_reach(double upper, const struct aabb *a, const struct aabb *b);
 

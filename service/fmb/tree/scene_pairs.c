@@ -94,10 +94,10 @@ static bool list_pairs(struct scene_pairs *pairs)
 {
     const size_t placements = pairs->scene->placement_count;
     const size_t room = scene_pairs_capacity(placements);
-    struct fmb_tree_place place = {0};
+    struct fmb_tree_cursor cursor = {0};
     size_t count = 0, more = 1;
     for (; more > 0; count += more)
-        if (fmb_tree_pairs(&pairs->tree, &pairs->tree, &place, pairs->pair + count, room - count,
+        if (fmb_tree_pairs(&pairs->tree, &pairs->tree, &cursor, pairs->pair + count, room - count,
                            &more) != FMB_OK)
             return false;
     memset(pairs->start, 0, (placements + 2) * sizeof *pairs->start);

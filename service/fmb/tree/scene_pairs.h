@@ -35,7 +35,7 @@ struct scene_pairs {
  * those of one placement are found at a time. */
 static inline size_t scene_pairs_capacity(size_t placements)
 {
-    return 8 * placements + FMB_TREE_ROOM;
+    return 8 * placements + FMB_TREE_CAPACITY_MIN;
 }
 
 /* Returns the number of pairs of a scene, those that cannot meet included. */

@@ -4,7 +4,6 @@
  *   Out    the indices of frames, or pairs of them, whose boxes overlap
  *   Build  set_nodes() divides the boxes from the root on, by split(); set_boxes() computes the
  *          boxes of the nodes from the leaves up
- *   Refit  new boxes of the frames in the same order, then set_boxes()
  *   Query  tree_query_unsorted() (tree.h), then tree_sort() for ascending indices
  *   Pairs  each leaf of one tree against the leaves of the other: pairs_of_leaves()
  *
@@ -31,7 +30,7 @@
 enum { CACHE_LINE = 64, FEW = 64, DEPTH_MAX = 78 };
 
 _Static_assert(sizeof(struct fmb_tree_node) == CACHE_LINE, "a node is a cache line");
-_Static_assert(TREE_LEAF *TREE_LEAF == FMB_TREE_ROOM,
+_Static_assert(TREE_LEAF *TREE_LEAF == FMB_TREE_CAPACITY_MIN,
                "there is capacity for all pairs of two leaves");
 
 static size_t leaves_of(size_t frames)
@@ -514,25 +513,6 @@ void fmb_box_of(const struct fmb_prepared *frame, double duration, double box[2]
     }
 }
 
-enum fmb_status fmb_tree_refit(struct fmb_tree *tree, const struct fmb_prepared *frames,
-                               double duration)
-{
-    const enum fmb_status status = check(frames, tree->frame_count, duration);
-    if (status != FMB_OK || tree->frame_count == 0)
-        return status;
-    tree->dim = dimension_of(frames);
-    tree->duration = duration;
-    for (size_t k = 0; k < tree->frame_count; k++) {
-        const struct fmb_prepared *ahead =
-            &frames[tree->order[k + 8 < tree->frame_count ? k + 8 : k]];
-        __builtin_prefetch(ahead); /* both cache lines */
-        __builtin_prefetch((const char *) ahead + CACHE_LINE);
-        tree->boxes[k].box = aabb_of(&frames[tree->order[k]], duration);
-    }
-    set_boxes(tree);
-    return FMB_OK;
-}
-
 /* ---- Queries ---- */
 
 static void sort_few(unsigned *number, size_t count)
@@ -597,21 +577,6 @@ size_t tree_query(const struct fmb_tree *tree, const struct aabb *box, unsigned 
     return count;
 }
 
-enum fmb_status fmb_tree_ask(const struct fmb_tree *tree, const struct fmb_prepared *frame,
-                             unsigned from, unsigned *out, size_t *count)
-{
-    *count = 0;
-    if (!(prepared_kind(frame) & PREPARED_VALID))
-        return FMB_NOT_FINITE;
-    if (tree->frame_count == 0)
-        return FMB_OK;
-    if (dimension_of(frame) != tree->dim)
-        return FMB_DIMENSIONS_DIFFER;
-    const struct aabb box = aabb_of(frame, tree->duration);
-    *count = tree_query(tree, &box, from, out);
-    return FMB_OK;
-}
-
 /* ---- Pairs ---- */
 
 /* A leaf, with its boxes in the form that aabb_overlaps() tests against. */
@@ -664,35 +629,35 @@ static enum fmb_status check_pairs(const struct fmb_tree *a, const struct fmb_tr
 {
     if (a->frame_count == 0 || b->frame_count == 0)
         return FMB_OK;
-    return a->dim != b->dim             ? FMB_DIMENSIONS_DIFFER
-           : a->duration != b->duration ? FMB_BAD_DURATION
-           : capacity < FMB_TREE_ROOM   ? FMB_OVER_LIMIT
-                                        : FMB_OK;
+    return a->dim != b->dim                   ? FMB_DIMENSIONS_DIFFER
+           : a->duration != b->duration       ? FMB_BAD_DURATION
+           : capacity < FMB_TREE_CAPACITY_MIN ? FMB_OVER_LIMIT
+                                              : FMB_OK;
 }
 
 /* Each leaf of the first tree is tested against the second tree. Within one tree it is tested from
  * itself on, so that each pair of leaves is tested once. */
 enum fmb_status fmb_tree_pairs(const struct fmb_tree *a, const struct fmb_tree *b,
-                               struct fmb_tree_place *place, unsigned (*out)[2], size_t capacity,
+                               struct fmb_tree_cursor *cursor, unsigned (*out)[2], size_t capacity,
                                size_t *count)
 {
     const enum fmb_status status = check_pairs(a, b, capacity);
     *count = 0;
     if (status != FMB_OK || b->frame_count == 0)
         return status;
-    for (; place->leaf < a->node_count; place->leaf++, place->inside = false) {
+    for (; cursor->leaf < a->node_count; cursor->leaf++, cursor->inside = false) {
         struct leaf_query query;
-        const struct fmb_tree_node *leaf = &a->nodes[place->leaf];
+        const struct fmb_tree_node *leaf = &a->nodes[cursor->leaf];
         if (!leaf->count)
             continue;
         set_leaf_query(a, leaf, &query);
-        unsigned at = place->inside ? place->node : a == b ? place->leaf : 0;
+        unsigned at = cursor->inside ? cursor->node : a == b ? cursor->leaf : 0;
         while ((leaf = tree_next_leaf(b, &query.all, 0, &at, NULL))) {
             *count += pairs_of_leaves(&query, b, leaf, out + *count);
-            if (capacity - *count >= FMB_TREE_ROOM)
+            if (capacity - *count >= FMB_TREE_CAPACITY_MIN)
                 continue;
-            place->node = at;
-            place->inside = true;
+            cursor->node = at;
+            cursor->inside = true;
             return FMB_OK;
         }
     }

@@ -69,7 +69,7 @@ INLINE size_t tree_query_unsorted(const struct fmb_tree *tree, const struct aabb
 /* Sorts numbers of at most most in ascending order, in place and in bounded time. */
 void tree_sort(unsigned *number, size_t count, unsigned most);
 
-/* tree_query_unsorted() with the indices in ascending order: fmb_tree_ask() for a box. */
+/* tree_query_unsorted() with the indices in ascending order. */
 size_t tree_query(const struct fmb_tree *tree, const struct aabb *box, unsigned from,
                   unsigned *out);
 

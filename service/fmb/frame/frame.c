@@ -2,8 +2,8 @@
  * checks of placements and durations. */
 #include "fmb.h"
 
-#include "exact.h"
 #include "integer.h"
+#include "inverse.h"
 #include "prepared.h"
 #include "rotation.h"
 #include "aabb.h"
@@ -99,7 +99,7 @@ static bool invert_in_doubles(struct fmb_frame *frame)
 
 static void invert(struct fmb_frame *frame)
 {
-    frame->flat = frame->count < frame->dim || (!invert_in_doubles(frame) && !exact_inverse(frame));
+    frame->flat = frame->count < frame->dim || (!invert_in_doubles(frame) && !inverse_set(frame));
     frame->inverted = !frame->flat && all_finite(frame->inverse[0], FMB_COMPONENTS_MAX);
     if (!frame->inverted)
         memset(frame->inverse, 0, sizeof frame->inverse);

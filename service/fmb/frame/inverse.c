@@ -1,5 +1,8 @@
-#include "exact.h"
+#include "inverse.h"
+
 #include "integer.h"
+
+#include <gmp.h>
 
 /* The components in integers; a frame in 2D gets the unit vector along z as third. Returns the
  * unit. */
@@ -24,7 +27,7 @@ static long set_components(const struct fmb_frame *frame, mpz_t out[3][3], mpz_t
 
 /* With k_0 = c_1 x c_2 and so on around: x_i = k_i . p / (c_2 . k_2). In integers, k is of one
  * degree less than the determinant, so that one unit is left below. */
-bool exact_inverse(struct fmb_frame *frame)
+bool inverse_set(struct fmb_frame *frame)
 {
     const int dim = frame->dim;
     mpz_t c[3][3], k[3][3], determinant, scratch[2];
