@@ -518,7 +518,9 @@ static void statuses(void **state)
     assert_int_equal(FMB_BAD_SIZE, 17);
     assert_int_equal(FMB_NO_FRAMES, 18);
     assert_int_equal(FMB_BAD_MARGIN, 19);
-    assert_int_equal(FMB_STATUS_COUNT, 20);
+    assert_int_equal(FMB_EXPIRED, 20);
+    assert_int_equal(FMB_REFUSAL_UNSENT, 21);
+    assert_int_equal(FMB_STATUS_COUNT, 22);
 #define X(name, number, text) assert_string_equal(fmb_status_text(number), text);
     FMB_STATUS_MAP(X)
 #undef X
