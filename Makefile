@@ -115,7 +115,7 @@ see_service/common := msgs/codec service/fmb
 see_service/answer := service/common msgs/codec service/fmb
 see_service := service/answer $(wire)
 see_clients/lib := $(wire) $(GEN)
-see_clients/common := clients/lib service/common service/fmb msgs/bus
+see_clients/common := clients/lib service/common msgs/codec service/fmb msgs/bus
 see_clients/query := clients/common clients/lib msgs/codec service/common service/fmb
 see_clients/log := clients/common clients/lib $(wire)
 see_clients/page := clients/log $(see_clients/log)
@@ -127,7 +127,7 @@ see_clients/demo :=
 see_clients/examples := clients/lib service/fmb
 
 # Before the rules whose prerequisites they are.
-message_names := body_t definition_query_t definition_t pair_query_t pair_result_t placement_t \
+message_names := body_t definition_query_t definition_t names_t pair_query_t pair_result_t placement_t \
 	scene_query_t scene_result_t status_t
 message_files := $(message_names:%=msgs/%.lcm)
 message_headers := $(message_names:%=$(GEN)/fmb_msgs_%.h)

@@ -99,7 +99,7 @@ static void print_count(const char *name, int64_t count, const char *what)
 
 static void print_text(const struct log_cut_counts *counts)
 {
-    char kept[NUMBER_TEXT_MAX], events[NUMBER_TEXT_MAX];
+    char kept[NUMBER_TEXT_MAX], events[NUMBER_TEXT_MAX], recorded[80];
     printf("kept %s of %s events; %.1f MB, of %.1f\n", number_grouped(counts->kept_events, kept),
            number_grouped(counts->events, events), 1e-6 * (double) counts->kept_bytes,
            1e-6 * (double) counts->bytes);
@@ -113,8 +113,9 @@ static void print_text(const struct log_cut_counts *counts)
     print_count("", counts->kept[LOG_OTHER], "on other channels");
     print_count("defined", counts->defined, "bodies in front of them");
     print_count("unknown", counts->unknown, "handles that the logs do not define");
-    print_count("version 1", counts->version_1,
-                "messages recorded by version 1, whose bodies are not known");
+    snprintf(recorded, sizeof recorded,
+             "messages recorded by version %d, whose bodies are not known", counts->old_version);
+    print_count("old", counts->old_messages, recorded);
     print_count("left out", counts->damaged_bytes, "damaged bytes");
 }
 
@@ -134,7 +135,8 @@ static void print_json(const struct log_cut_counts *counts, int code)
     json_integer(&json, "added_definitions", counts->definitions);
     json_integer(&json, "added_bodies", counts->defined);
     json_integer(&json, "unknown_handles", counts->unknown);
-    json_integer(&json, "version_1", counts->version_1);
+    json_integer(&json, "old_messages", counts->old_messages);
+    json_integer(&json, "old_version", counts->old_version);
     json_integer(&json, "damages", counts->damages);
     json_integer(&json, "damaged_bytes", counts->damaged_bytes);
     json_object_end(&json);

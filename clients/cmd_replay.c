@@ -80,9 +80,9 @@ static const char usage[] =
     "    parts\n"
     "\n"
     "Exit codes: 0 all the same; 1 something differs; 2 unusable: a log cannot be\n"
-    "read, is damaged ('fmb log cut' copies what is intact) or was recorded by\n"
-    "version 1, a message on the service's channels cannot be read, there is nothing\n"
-    "to compare, or the service on the bus does not answer all queries.\n";
+    "read, is damaged ('fmb log cut' copies what is intact) or was recorded by an\n"
+    "old version, a message on the service's channels cannot be read, there is\n"
+    "nothing to compare, or the service on the bus does not answer all queries.\n";
 
 struct replay_arguments {
     struct replay_options replay;

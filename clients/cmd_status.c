@@ -102,6 +102,8 @@ static void print_text(const struct fmb_client_heartbeat *status)
     number_print("pairs decided", status->pairs);
     print_refusals(status);
     number_print("not sent", status->unsent);
+    number_print("  expired", status->expired);
+    number_print("  refusals", status->refusals_unsent);
     number_print("malformed", status->malformed);
     number_print("waiting", status->waiting);
     number_print("  at most", status->most_waiting);

@@ -59,6 +59,7 @@ static void print_pair_json(const struct fmb_client_pair_result *result)
 {
     const struct outcome outcome = {.error = result->status == FMB_OK ? NULL : result->text,
                                     .answer = result->answer,
+                                    .names_frames = result->names_frames,
                                     .certificate = result->certificate};
     struct json_writer json = begin_json(result->utime, result->client_id, result->sequence_number,
                                          result->server_id, result->compute_ns);
@@ -100,7 +101,8 @@ static void write_scene_pairs(struct json_writer *json,
     json_begin(json, "pairs", '[');
     while (fmb_client_next_answer(result, &cursor, &answer)) {
         const struct outcome outcome = {.error = answer.status == FMB_OK ? NULL : answer.text,
-                                        .answer = answer.answer};
+                                        .answer = answer.answer,
+                                        .names_frames = result->names_frames};
         json_begin(json, NULL, '{');
         if (result->names_pairs) {
             json_integers(json, "placements", (const int64_t[]){answer.a, answer.b}, 2);

@@ -107,11 +107,11 @@ static void publish_result(struct server *server, enum server_kind kind, size_t 
     server->status.results[status] += sent;
 }
 
-/* Drops a query without a result. On input: FMB_EXPIRED or FMB_REFUSAL_UNSENT. */
-static void drop(struct server *server, int kind, enum fmb_status status)
+/* Drops a query without a result. On input: counter: in server->status, of the reason. */
+static void drop(struct server *server, int kind, int64_t *counter)
 {
     count_query(server, (enum server_kind) kind, false);
-    server->status.results[status]++;
+    ++*counter;
 }
 
 static void publish_pair(struct server *server, const struct pair_result *result)
@@ -204,7 +204,7 @@ static void refuse(struct server *server, const struct queue_datagram *datagram,
 {
     server->batch_ns += meter_read(&server->meter);
     if (!quota_take_refusal(&server->quota[datagram->client], server->meter.wall_ns))
-        drop(server, datagram->kind, FMB_REFUSAL_UNSENT);
+        drop(server, datagram->kind, &server->status.refusals_unsent);
     else if (datagram->kind == SERVER_PAIRS)
         refuse_pair(server, bytes, datagram->size, status);
     else
@@ -396,7 +396,7 @@ static void serve(struct server *server, int client, int64_t job_max_ns)
                                                        server->datagram));
     const bool expired = begins && server->clocks->wall_ns() - query.arrived_ns > QUOTA_AGE_NS;
     if (expired)
-        drop(server, query.kind, FMB_EXPIRED);
+        drop(server, query.kind, &server->status.expired);
     else if (is_short)
         answer_short(server, &query);
     else if (job || (begins && (job = begin_job(server, &query))))

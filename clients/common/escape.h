@@ -1,4 +1,4 @@
-/* Checks text in UTF-8, and escapes it for JSON, XML and terminals. */
+/* Escapes text in UTF-8 for JSON, XML and terminals. */
 #ifndef ESCAPE_H
 #define ESCAPE_H
 
@@ -15,9 +15,6 @@ enum escape { ESCAPE_JSON, ESCAPE_XML, ESCAPE_TERMINAL };
  * written in printable ASCII. In XML, control characters other than the line feed become U+FFFD
  * too. */
 void escape(FILE *out, enum escape form, const char *text, size_t size);
-
-/* Whether the text is valid UTF-8 without control characters. */
-bool escape_is_text(const char *text);
 
 /* Returns the number of characters of a valid text. */
 size_t escape_characters(const char *text);

@@ -8,12 +8,12 @@
 #include "json.h"
 
 #include "allocate.h"
-#include "escape.h"
 #include "fmb_client.h"
 #include "keyed_hash.h"
 #include "number.h"
 #include "text.h"
 #include "turned_box.h"
+#include "utf8.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
@@ -26,6 +26,7 @@ enum { ERROR_MAX = 320, QUOTED_MAX = 32 };
 
 static const double id_max = 9007199254740991.0; /* 2^53 - 1 */
 #define EXPECTED_ID "an integer from 1 to 9007199254740991"
+#define EXPECTED_GROUP "an integer other than 0, of magnitude up to 9007199254740991"
 
 struct json_reader {
     struct text text;
@@ -228,6 +229,8 @@ static bool read_shape(const struct place *at, int *out)
         if (strcmp(at->item->valuestring, fmb_shape_name(shape)) != 0)
             continue;
         *out = shape;
+        if (shape == FMB_HULL)
+            return refuse(at, "hulls are not supported by this version");
         return fmb_component_count(dim, shape) > 0 ||
                refuse(at, "there is no %s in %dD", fmb_shape_name(shape), dim);
     }
@@ -235,13 +238,26 @@ static bool read_shape(const struct place *at, int *out)
                   quoted(at->item->valuestring, text));
 }
 
-static bool read_components(const struct place *array, int shape, double *out)
+static bool read_components(const struct place *array, struct geometry_frame *out)
 {
     const int dim = array->reader->dim;
-    if (!check_array(array, (size_t) fmb_component_count(dim, shape), "vectors"))
+    if (!check_array(array, (size_t) fmb_component_count(dim, out->shape), "vectors"))
         return false;
     for (struct place at = first_element(array); at.item; next_element(&at))
-        if (!read_vector(&at, out + at.index * (size_t) dim))
+        if (!read_vector(&at, out->components + at.index * (size_t) dim))
+            return false;
+    return true;
+}
+
+static bool read_vertices(const struct place *array, struct geometry_frame *out)
+{
+    const int dim = array->reader->dim;
+    out->by_vertices = true;
+    if (!check_array(array, (size_t) fmb_component_count(dim, out->shape) + 1, "vertices"))
+        return false;
+    for (struct place at = first_element(array); at.item; next_element(&at))
+        if (!read_vector(
+                &at, at.index == 0 ? out->origin : out->components + (at.index - 1) * (size_t) dim))
             return false;
     return true;
 }
@@ -277,18 +293,20 @@ static bool read_orientation(const struct place *at, double out[4], int *count)
 }
 
 /* The keys of a frame come first: a body may be one. */
-enum { SHAPE, ORIGIN, COMPONENTS, SIZE, POSITION, ORIENTATION, FRAME_KEYS };
-enum { ID = FRAME_KEYS, NAME, VELOCITY, FRAMES, BODY_KEYS };
+enum { SHAPE, ORIGIN, COMPONENTS, VERTICES, SIZE, POSITION, ORIENTATION, FRAME_KEYS };
+enum { ID = FRAME_KEYS, NAME, GROUP, VELOCITY, FRAMES, BODY_KEYS };
 
 static const struct key body_keys[BODY_KEYS] = {
     [SHAPE] = {"shape", true},
     [ORIGIN] = {"origin", true},
     [COMPONENTS] = {"components", true},
+    [VERTICES] = {"vertices", true},
     [SIZE] = {"size", true},
     [POSITION] = {"position", true},
     [ORIENTATION] = {"orientation", true},
     [ID] = {"id", false},
     [NAME] = {"name", true},
+    [GROUP] = {"group", true},
     [VELOCITY] = {"velocity", true},
     [FRAMES] = {"frames", true},
 };
@@ -302,36 +320,38 @@ static bool check_absent(const struct place *member, const int *keys, int count,
     return true;
 }
 
-/* A frame being read: its shape, and its numbers as fmb_frame_make() takes them. */
-struct frame_numbers {
-    int shape;
-    double number[FMB_DIM_MAX + FMB_COMPONENTS_MAX]; /* origin, components | centre, size */
-    size_t count;
-};
-
-static bool read_box(const struct place *member, int dim, struct frame_numbers *out)
+static bool read_box(const struct place *member, struct geometry_frame *out)
 {
-    static const int others[] = {ORIGIN, COMPONENTS};
-    out->count = 2 * (size_t) dim;
-    return check_absent(member, others, 2, "a box") && check_present(&member[SIZE]) &&
-           read_size(&member[SIZE], out->number + dim);
+    static const int others[] = {ORIGIN, COMPONENTS, VERTICES};
+    return check_absent(member, others, 3, "a box") && check_present(&member[SIZE]) &&
+           read_size(&member[SIZE], out->components);
 }
 
-/* Reads a frame of components. */
-static bool read_parts(const struct place *member, int dim, struct frame_numbers *out)
+static bool read_parts(const struct place *member, struct geometry_frame *out)
 {
     static const int others[] = {SIZE};
-    out->count = (size_t) (dim + dim * fmb_component_count(dim, out->shape));
     return check_absent(member, others, 1, "a frame of components") &&
-           check_present(&member[COMPONENTS]) && maybe_vector(&member[ORIGIN], out->number) &&
-           read_components(&member[COMPONENTS], out->shape, out->number + dim);
+           check_present(&member[COMPONENTS]) && maybe_vector(&member[ORIGIN], out->origin) &&
+           read_components(&member[COMPONENTS], out);
 }
 
-static bool read_frame_numbers(const struct place *member, struct frame_numbers *out)
+static bool read_by_vertices(const struct place *member, struct geometry_frame *out)
 {
-    *out = (struct frame_numbers){.shape = 0};
-    return check_present(&member[SHAPE]) && read_shape(&member[SHAPE], &out->shape) &&
-           (out->shape == FMB_BOX ? read_box : read_parts)(member, member->reader->dim, out);
+    static const int others[] = {ORIGIN, COMPONENTS, SIZE};
+    if (out->shape == FMB_CUBOID)
+        return refuse(member->parent, "a cuboid has no \"vertices\"");
+    return check_absent(member, others, 3, "a frame of vertices") &&
+           read_vertices(&member[VERTICES], out);
+}
+
+static bool read_shape_and_numbers(const struct place *member, struct geometry_frame *out)
+{
+    *out = (struct geometry_frame){.shape = 0};
+    if (!check_present(&member[SHAPE]) || !read_shape(&member[SHAPE], &out->shape))
+        return false;
+    if (out->shape == FMB_BOX)
+        return read_box(member, out);
+    return (member[VERTICES].item ? read_by_vertices : read_parts)(member, out);
 }
 
 /* Whether a quaternion turns: any number beyond the first is not 0. */
@@ -344,20 +364,20 @@ static bool turns(const double *orientation, int count)
 }
 
 /* Reads the pose of a box in its body. A box that is turned there becomes a cuboid. */
-static bool read_box_pose(const struct place *member, struct frame_numbers *box)
+static bool read_box_pose(const struct place *member, struct geometry_frame *box)
 {
     const int dim = member->reader->dim;
-    double orientation[4] = {0}, centre_size[2 * FMB_DIM_MAX];
+    double orientation[4] = {0}, cuboid[GEOMETRY_FRAME_NUMBERS_MAX];
     int count;
-    if (!maybe_vector(&member[POSITION], box->number) ||
+    if (!maybe_vector(&member[POSITION], box->origin) ||
         !read_orientation(&member[ORIENTATION], orientation, &count))
         return false;
     if (!turns(orientation, count))
         return true;
-    memcpy(centre_size, box->number, sizeof centre_size);
-    turned_box(dim, centre_size, centre_size + dim, orientation, box->number);
+    turned_box(dim, box->origin, box->components, orientation, cuboid);
     box->shape = FMB_CUBOID;
-    box->count = (size_t) (dim + dim * dim);
+    memcpy(box->origin, cuboid, (size_t) dim * sizeof *cuboid);
+    memcpy(box->components, cuboid + dim, (size_t) (dim * dim) * sizeof *cuboid);
     return true;
 }
 
@@ -368,29 +388,27 @@ static bool accept(const struct place *at, enum fmb_status status)
 }
 
 /* Reads an element of "frames". */
-static bool read_frame(const struct place *at, struct fmb_frame *out)
+static bool read_frame(const struct place *at, struct geometry_frame *out)
 {
     static const int others[] = {POSITION, ORIENTATION};
     struct place member[FRAME_KEYS];
-    struct frame_numbers frame;
-    if (!read_object(at, body_keys, FRAME_KEYS, member) || !read_frame_numbers(member, &frame))
+    if (!read_object(at, body_keys, FRAME_KEYS, member) || !read_shape_and_numbers(member, out))
         return false;
-    if (frame.shape == FMB_BOX ? !read_box_pose(member, &frame)
-                               : !check_absent(member, others, 2, "a frame of components"))
-        return false;
-    return accept(at, fmb_frame_make(at->reader->dim, frame.shape, frame.number, frame.count, out));
+    return out->shape == FMB_BOX
+               ? read_box_pose(member, out)
+               : check_absent(member, others, 2,
+                              out->by_vertices ? "a frame of vertices" : "a frame of components");
 }
 
 /* ---- Bodies ---------------------------------------------------------------------------------- */
 
-/* Returns bytes in a message: 1 for each shape, and 8 for each number. */
-static size_t frames_bytes(const struct fmb_frame *frames, size_t count)
+/* Returns bytes in a message: 1 for each shape, 4 for each count, and 8 for each number. */
+static size_t frames_bytes(int dim, const struct geometry_frame *frames, size_t count)
 {
     size_t bytes = 0;
-    for (size_t i = 0; i < count; i++) {
-        const int vectors = frames[i].shape == FMB_BOX ? 2 : 1 + frames[i].count;
-        bytes += 1 + 8 * (size_t) (vectors * frames[i].dim);
-    }
+    for (size_t i = 0; i < count; i++)
+        bytes += 1 + (frames[i].by_vertices ? 4 : 0) +
+                 8 * (size_t) geometry_number_count(dim, frames[i].shape, 0);
     return bytes;
 }
 
@@ -399,15 +417,19 @@ static bool read_frames(const struct place *array, struct scene_body *out)
     if (!cJSON_IsArray(array->item))
         return refuse_kind(array, "an array");
     const size_t count = (size_t) cJSON_GetArraySize(array->item);
-    out->frames = allocate(count, sizeof *out->frames);
+    const int dim = array->reader->dim;
+    size_t bad;
+    out->given = allocate(count, sizeof *out->given);
     for (struct place at = first_element(array); at.item; next_element(&at))
-        if (!read_frame(&at, &out->frames[at.index]))
+        if (!read_frame(&at, &out->given[at.index]))
             return false;
-    const size_t bytes = frames_bytes(out->frames, count);
+    const size_t bytes = frames_bytes(dim, out->given, count);
     if (bytes > FMB_CLIENT_BODY_BYTES_MAX)
         return refuse(array, "%s: %zu bytes in a message, which has space for %d",
                       fmb_status_text(FMB_OVER_LIMIT), bytes, (int) FMB_CLIENT_BODY_BYTES_MAX);
-    return accept(array, fmb_body_make_frames(out->frames, count, &out->body));
+    const enum fmb_status status = scene_body_make(dim, count, out, &bad);
+    const struct place frame = {array->reader, array, NULL, NULL, bad};
+    return accept(bad < count ? &frame : array, status);
 }
 
 /* Reads a body that is one frame. Its "origin", if it has neither "position" nor "orientation", is
@@ -415,17 +437,19 @@ static bool read_frames(const struct place *array, struct scene_body *out)
 static bool read_only_frame(const struct place *member, struct scene_body *out)
 {
     const int dim = member->reader->dim;
-    struct frame_numbers frame;
-    if (!read_frame_numbers(member, &frame))
+    size_t bad;
+    out->given = allocate(1, sizeof *out->given);
+    struct geometry_frame *frame = out->given;
+    if (!read_shape_and_numbers(member, frame))
         return false;
-    if (frame.shape != FMB_BOX && !member[POSITION].item && !member[ORIENTATION].item) {
+    if (frame->shape != FMB_BOX && !frame->by_vertices && !member[POSITION].item &&
+        !member[ORIENTATION].item) {
         if (!check_present(&member[ORIGIN]))
             return false;
-        memcpy(out->position, frame.number, (size_t) dim * sizeof *frame.number);
-        memset(frame.number, 0, (size_t) dim * sizeof *frame.number);
+        memcpy(out->position, frame->origin, sizeof out->position);
+        memset(frame->origin, 0, sizeof frame->origin);
     }
-    return accept(member->parent,
-                  fmb_body_make(dim, frame.shape, frame.number, frame.count, &out->body));
+    return accept(member->parent, scene_body_make(dim, 1, out, &bad));
 }
 
 static bool read_name(const struct place *at, char out[SCENE_NAME_MAX + 1])
@@ -438,21 +462,35 @@ static bool read_name(const struct place *at, char out[SCENE_NAME_MAX + 1])
     if (strlen(name) > SCENE_NAME_MAX)
         return refuse(at, "expected at most %d bytes, found %zu", (int) SCENE_NAME_MAX,
                       strlen(name));
-    if (!escape_is_text(name))
+    if (!utf8_is_text(name))
         return refuse(at, "expected UTF-8 without control characters");
     strcpy(out, name);
     return true;
 }
 
+/* Reads an optional group. */
+static bool read_group(const struct place *at, int64_t *out)
+{
+    if (!at->item)
+        return true;
+    if (!cJSON_IsNumber(at->item))
+        return refuse_kind(at, EXPECTED_GROUP);
+    const double group = at->item->valuedouble;
+    if (group == 0 || group != floor(group) || fabs(group) > id_max)
+        return refuse(at, "expected " EXPECTED_GROUP);
+    *out = (int64_t) group;
+    return true;
+}
+
 static bool read_body(const struct place *at, struct scene_body *out)
 {
-    static const int of_frames[] = {SHAPE, ORIGIN, COMPONENTS, SIZE};
+    static const int of_frames[] = {SHAPE, ORIGIN, COMPONENTS, VERTICES, SIZE};
     struct place member[BODY_KEYS];
     if (!read_object(at, body_keys, BODY_KEYS, member) || !read_id(&member[ID], &out->id) ||
-        !read_name(&member[NAME], out->name))
+        !read_name(&member[NAME], out->name) || !read_group(&member[GROUP], &out->group))
         return false;
     const bool good = member[FRAMES].item
-                          ? check_absent(member, of_frames, 4, "a body of \"frames\"") &&
+                          ? check_absent(member, of_frames, 5, "a body of \"frames\"") &&
                                 read_frames(&member[FRAMES], out)
                           : read_only_frame(member, out);
     return good && maybe_vector(&member[POSITION], out->position) &&
@@ -552,6 +590,9 @@ static bool read_pairs(const struct place *pairs, const struct place *ignore,
     scene_sort_ignored(out);
     for (size_t i = 0; i < out->pair_count; i++) {
         const struct place at = {pairs->reader, pairs, NULL, NULL, i};
+        if (scene_is_within_group(out, out->pair[i]))
+            return refuse(&at, "both bodies are of group %lld",
+                          (long long) out->body[out->pair[i].a].group);
         if (scene_ignores(out, out->pair[i]))
             return refuse(&at, "\"ignore\" has this pair too");
     }
@@ -579,11 +620,12 @@ static bool read_from_0(const struct place *at, double *out)
     return read_number(at, out) && (*out >= 0 || refuse_value(at, *out, "a number of at least 0"));
 }
 
-enum { DIM, DURATION, MARGIN, BODIES, PAIRS, IGNORE, SCENE_KEYS };
+enum { LABEL, DIM, DURATION, MARGIN, BODIES, PAIRS, IGNORE, SCENE_KEYS };
 
 static const struct key scene_keys[SCENE_KEYS] = {
-    [DIM] = {"dim", false},       [DURATION] = {"duration", true}, [MARGIN] = {"margin", true},
-    [BODIES] = {"bodies", false}, [PAIRS] = {"pairs", true},       [IGNORE] = {"ignore", true},
+    [LABEL] = {"label", true},   [DIM] = {"dim", false},       [DURATION] = {"duration", true},
+    [MARGIN] = {"margin", true}, [BODIES] = {"bodies", false}, [PAIRS] = {"pairs", true},
+    [IGNORE] = {"ignore", true},
 };
 
 static bool read_scene(struct json_reader *reader, const cJSON *item, struct scene *out)
@@ -592,7 +634,8 @@ static bool read_scene(struct json_reader *reader, const cJSON *item, struct sce
     struct place member[SCENE_KEYS];
     out->duration = 1;
     if (!read_object(&root, scene_keys, SCENE_KEYS, member) ||
-        !read_dim(&member[DIM], &reader->dim) || !read_from_0(&member[DURATION], &out->duration) ||
+        !read_name(&member[LABEL], out->label) || !read_dim(&member[DIM], &reader->dim) ||
+        !read_from_0(&member[DURATION], &out->duration) ||
         !read_from_0(&member[MARGIN], &out->margin))
         return false;
     out->dim = reader->dim;

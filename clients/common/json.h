@@ -13,15 +13,20 @@
  *                  "components": [[1,0,0],[0,1,0],[0,0,1]]}],
  *      "ignore": [[1,3]]}
  *
+ * "vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]] may stand in place of origin and components of a
+ * tetrahedron (dim + 1 vertices) or face (3). A body may have "group": an integer other than 0, of
+ * magnitude up to 2^53 - 1; bodies of one group are never tested against each other. A scene may
+ * have "label", which is for people, like the names of bodies.
+ *
  * dim (2 or 3) and bodies are required, and each body's id. A body has frames, or is one frame
  * itself. A frame is a box of full size, or has components. All numbers are read as doubles, ids
  * too: 1e0 is the id 1. An integer beyond 2^53 - 1 is no id, since several texts read as the same
  * double. Keys may come in any order, each at most once. The values of missing keys:
  *
  * - duration: 1. margin: 0.
- * - pairs: all except those to ignore, in body order.
+ * - pairs: all except those to ignore and those within a group, in body order.
  * - position and origin: 0. (A body that is one frame of components needs one of position,
- *   orientation and origin.)
+ *   orientation and origin; one of vertices does not.)
  * - orientation: not turned. velocity: at rest.
  *
  * origin of a body that is one frame is its position, unless it has position or orientation too;

@@ -13,6 +13,7 @@ struct outcome {
     const char *error;        /* why the pair could not be decided; NULL: it was decided */
     struct fmb_answer answer; /* all 0 if there is an error */
     const char *certificate;  /* of the verdict; NULL: none */
+    bool names_frames;        /* a body has several frames: a gap names the two that have it */
 };
 
 /* For each scene, begin is called, then pair for each pair in the order of the query, then end. */
@@ -24,15 +25,18 @@ struct report {
 
 /* One line, one JSON object, for each scene; flushed at its end:
  *
- *     {"pairs": [{"a": 1, "b": 2, "verdict": "overlapping", "contact": [0, 1],
+ *     {"label": "shelf",
+ *      "pairs": [{"a": 1, "b": 2, "verdict": "overlapping", "contact": [0, 1],
  *                 "box": {"min": [0.5,0,0], "max": [1,1,1]},
- *                 "gap": [-0.25, -0.25], "direction": [0,0,1]},
+ *                 "gap": [-0.25, -0.25], "frames": [0, 3], "direction": [0,0,1]},
  *                {"a": 1, "b": 3, "verdict": "separated", "gap": [2, 2], "direction": [1,0,0],
  *                 "witness": {"time": 0, "a": [1,0,0], "b": [3,0,0]}}]}
  *
- * Doubles read back bit for bit. null is an infinite end of a box, outward; or an infinite bound of
- * a gap, positive where separated, else negative. A "certificate" comes last; a pair that could not
- * be decided has an "error" in place of the verdict. */
+ * label is that of the scene, where it has one. frames are the indices, from 0, of the frames of a
+ * and b that have the gap, where a or b has several. Doubles read back bit for bit. null is an
+ * infinite end of a box, outward; or an infinite bound of a gap, positive where separated, else
+ * negative. A "certificate" comes last; a pair that could not be decided has an "error" in place of
+ * the verdict. */
 struct report_json {
     struct report report;
     struct json_writer json;

@@ -8,9 +8,12 @@ static void write_interval(struct json_writer *json, const char *key, const doub
     json_end(json, ']');
 }
 
-static void write_gap(struct json_writer *json, int dim, const struct fmb_gap *gap)
+static void write_gap(struct json_writer *json, int dim, const struct fmb_gap *gap,
+                      bool names_frames)
 {
     write_interval(json, "gap", gap->bounds);
+    if (names_frames)
+        json_integers(json, "frames", (const int64_t[]){gap->frame[0], gap->frame[1]}, 2);
     json_numbers(json, "direction", gap->direction, dim);
     if (!gap->has_witness)
         return;
@@ -38,7 +41,7 @@ void report_answer_json(struct json_writer *json, int dim, const struct outcome 
         json_end(json, '}');
     }
     if (answer->has_gap)
-        write_gap(json, dim, &answer->gap);
+        write_gap(json, dim, &answer->gap, outcome->names_frames);
     if (outcome->certificate)
         json_string(json, "certificate", outcome->certificate);
 }
@@ -46,8 +49,9 @@ void report_answer_json(struct json_writer *json, int dim, const struct outcome 
 static void begin_scene(struct report *report, const struct scene *scene)
 {
     struct json_writer *json = &((struct report_json *) report)->json;
-    (void) scene;
     json_begin(json, NULL, '{');
+    if (scene->label[0])
+        json_string(json, "label", scene->label);
     json_begin(json, "pairs", '[');
 }
 
@@ -55,10 +59,13 @@ static void write_pair(struct report *report, const struct scene *scene,
                        const struct outcome *outcome)
 {
     struct json_writer *json = &((struct report_json *) report)->json;
+    const struct scene_body *a = &scene->body[outcome->pair.a], *b = &scene->body[outcome->pair.b];
+    struct outcome named = *outcome;
+    named.names_frames = a->body.frame_count > 1 || b->body.frame_count > 1;
     json_begin(json, NULL, '{');
-    json_integer(json, "a", scene->body[outcome->pair.a].id);
-    json_integer(json, "b", scene->body[outcome->pair.b].id);
-    report_answer_json(json, scene->dim, outcome);
+    json_integer(json, "a", a->id);
+    json_integer(json, "b", b->id);
+    report_answer_json(json, scene->dim, &named);
     json_end(json, '}');
 }
 

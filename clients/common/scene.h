@@ -3,17 +3,19 @@
 #ifndef SCENE_H
 #define SCENE_H
 
-#include "fmb.h"
+#include "geometry.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-enum { SCENE_NAME_MAX = 64 }; /* bytes */
+enum { SCENE_NAME_MAX = QUERY_NAME_MAX }; /* bytes */
 
 struct scene_body {
     int64_t id;                    /* 1 to 2^53-1, unique in the scene */
     char name[SCENE_NAME_MAX + 1]; /* UTF-8 without control characters; "": none */
+    int64_t group;                 /* 0: none */
+    struct geometry_frame *given;  /* owned, [body.frame_count]: the frames as they were given */
     struct fmb_body body;          /* of one frame, or of those in frames */
     struct fmb_frame *frames;      /* owned; NULL: one, inside body */
     double position[FMB_DIM_MAX];
@@ -22,7 +24,11 @@ struct scene_body {
     int orientation_count; /* 0, 4 (2D: 2) */
 };
 
-/* Returns a copy; the caller frees it with scene_body_clear(). */
+/* Makes body and frames of the frames in given, [count] of dimension dim. On output: FMB_OK; or the
+ * status of the engine, and *bad is the first frame that it refuses. */
+enum fmb_status scene_body_make(int dim, size_t count, struct scene_body *body, size_t *bad);
+
+/* Returns a copy without the frames as given; the caller frees it with scene_body_clear(). */
 struct scene_body scene_body_copy(const struct scene_body *body);
 void scene_body_clear(struct scene_body *body);
 
@@ -39,16 +45,18 @@ struct scene_pair {
 };
 
 struct scene {
-    int dim;         /* 2 or 3, of all bodies */
-    double duration; /* seconds, >= 0 */
+    char label[SCENE_NAME_MAX + 1]; /* as the name of a body */
+    int dim;                        /* 2 or 3, of all bodies */
+    double duration;                /* seconds, >= 0 */
     /* >= 0. If not 0, contacts have gaps, and so have separated pairs that are no farther apart. */
     double margin;
     size_t body_count;
     struct scene_body *body; /* owned */
-    bool all_pairs;          /* (i, j), i < j, in body order, except ignored; not stored */
+    bool all_pairs;          /* (i, j), i < j, in body order, except those left out; not stored */
     size_t pair_count;       /* of those listed; 0 with all_pairs */
     struct scene_pair *pair; /* owned; NULL with all_pairs */
-    /* With all_pairs: pairs that are left out, a < b, in the order of (a, b), each once. */
+    /* With all_pairs: pairs that are left out besides those within a group, a < b, in the order of
+     * (a, b), each once. */
     size_t ignored_count;
     struct scene_pair *ignored; /* owned */
 };
@@ -56,10 +64,13 @@ struct scene {
 /* Frees what the scene owns, and sets it to {0}, an empty scene. */
 void scene_clear(struct scene *scene);
 
-/* Brings the ignored pairs into the order above. On input each has two different indices. */
+/* Whether two bodies are of one group. */
+bool scene_is_within_group(const struct scene *scene, struct scene_pair pair);
+
+/* Brings the ignored pairs into the form above. On input each has two different indices. */
 void scene_sort_ignored(struct scene *scene);
 
-/* Whether the pair is among the ignored ones, in either order. */
+/* Whether the pair is among the ignored ones, in either order, or within a group. */
 bool scene_ignores(const struct scene *scene, struct scene_pair pair);
 
 uint64_t scene_count_pairs(const struct scene *scene);

@@ -4,11 +4,13 @@
 
 #include <math.h>
 
-static void write_components(struct json_writer *json, const struct fmb_frame *frame)
+/* Writes count vectors of dim numbers. */
+static void write_vectors(struct json_writer *json, const char *key, const double *numbers, int dim,
+                          int count)
 {
-    json_begin(json, "components", '[');
-    for (int i = 0; i < frame->count; i++)
-        json_numbers(json, NULL, frame->component[i], frame->dim);
+    json_begin(json, key, '[');
+    for (int i = 0; i < count; i++)
+        json_numbers(json, NULL, numbers + i * dim, dim);
     json_end(json, ']');
 }
 
@@ -27,66 +29,60 @@ static void write_vector(struct json_writer *json, const char *key, const double
         json_numbers(json, key, numbers, dim);
 }
 
-static void write_size(struct json_writer *json, const struct fmb_frame *box)
+/* Writes the members of a frame that do not depend on where its origin is. */
+static void write_shape(struct json_writer *json, int dim, const struct geometry_frame *frame)
 {
-    double size[FMB_DIM_MAX];
-    for (int axis = 0; axis < box->dim; axis++)
-        size[axis] = box->component[axis][axis];
-    json_numbers(json, "size", size, box->dim);
+    double vertices[GEOMETRY_FRAME_NUMBERS_MAX];
+    json_string(json, "shape", fmb_shape_name(frame->shape));
+    if (frame->shape == FMB_BOX)
+        json_numbers(json, "size", frame->components, dim);
+    else if (frame->by_vertices)
+        write_vectors(json, "vertices", vertices, dim,
+                      (int) geometry_frame_numbers(dim, frame, vertices) / dim);
+    else
+        write_vectors(json, "components", frame->components, dim,
+                      fmb_component_count(dim, frame->shape));
 }
 
-static void write_frame(struct json_writer *json, const struct fmb_frame *frame)
+static void write_frames(struct json_writer *json, const struct scene_body *body)
 {
-    const bool box = frame->shape == FMB_BOX;
-    json_begin(json, NULL, '{');
-    json_string(json, "shape", fmb_shape_name((int) frame->shape));
-    if (box)
-        write_size(json, frame);
-    write_vector(json, box ? "position" : "origin", box ? frame->centre : frame->origin,
-                 frame->dim);
-    if (!box)
-        write_components(json, frame);
-    json_end(json, '}');
-}
-
-static void write_frames(struct json_writer *json, const struct fmb_body *body)
-{
+    const int dim = body->body.dim;
     json_begin(json, "frames", '[');
-    for (unsigned i = 0; i < body->frame_count; i++)
-        write_frame(json, fmb_body_frame(body, i));
+    for (unsigned i = 0; i < body->body.frame_count; i++) {
+        const struct geometry_frame *frame = &body->given[i];
+        json_begin(json, NULL, '{');
+        write_shape(json, dim, frame);
+        if (!frame->by_vertices)
+            write_vector(json, frame->shape == FMB_BOX ? "position" : "origin", frame->origin, dim);
+        json_end(json, '}');
+    }
     json_end(json, ']');
 }
 
-/* A body of one frame whose origin or centre is 0 is written as that frame. A frame of components
- * then has the position of the body as its origin, unless the body is turned. */
-static void write_only_frame(struct json_writer *json, const struct scene_body *body)
+/* A body of one frame by vertices, or whose origin or centre is 0, is written as that frame. A
+ * frame of components then has the position of the body as its origin, unless the body is turned.
+ */
+static void write_body(struct json_writer *json, const struct scene_body *body)
 {
-    const struct fmb_frame *frame = fmb_body_frame(&body->body, 0);
-    json_string(json, "shape", fmb_shape_name((int) frame->shape));
-    if (frame->shape == FMB_BOX)
-        write_size(json, frame);
-    else if (body->orientation_count == 0)
-        json_numbers(json, "origin", body->position, frame->dim);
-    if (frame->shape == FMB_BOX || body->orientation_count > 0)
-        write_vector(json, "position", body->position, frame->dim);
-    if (frame->shape != FMB_BOX)
-        write_components(json, frame);
-}
-
-static void write_body(struct json_writer *json, int dim, const struct scene_body *body)
-{
-    const struct fmb_frame *first = fmb_body_frame(&body->body, 0);
-    const double *origin = first->shape == FMB_BOX ? first->centre : first->origin;
+    const struct geometry_frame *first = body->given;
+    const int dim = body->body.dim;
+    const bool only =
+        body->body.frame_count == 1 && (first->by_vertices || is_zero(first->origin, dim));
+    const bool components = only && first->shape != FMB_BOX && !first->by_vertices;
     json_begin(json, NULL, '{');
     json_integer(json, "id", body->id);
     if (body->name[0])
         json_string(json, "name", body->name);
-    if (body->body.frame_count == 1 && is_zero(origin, dim)) {
-        write_only_frame(json, body);
-    } else {
-        write_frames(json, &body->body);
+    if (body->group != 0)
+        json_integer(json, "group", body->group);
+    if (only)
+        write_shape(json, dim, first);
+    else
+        write_frames(json, body);
+    if (components && body->orientation_count == 0)
+        json_numbers(json, "origin", body->position, dim);
+    else
         write_vector(json, "position", body->position, dim);
-    }
     if (body->orientation_count > 0)
         json_numbers(json, "orientation", body->orientation, body->orientation_count);
     write_vector(json, "velocity", body->velocity, dim);
@@ -100,7 +96,7 @@ static void write_bodies(struct json_writer *json, const struct scene *scene)
     for (size_t i = 0; i < scene->body_count; i++) {
         if (i > 0)
             json_break(json, "\n            ");
-        write_body(json, scene->dim, &scene->body[i]);
+        write_body(json, &scene->body[i]);
     }
     json_end(json, ']');
 }
@@ -125,6 +121,8 @@ static void write_pairs(struct json_writer *json, const struct scene *scene, con
 void scene_json_write(FILE *out, const struct scene *scene)
 {
     struct json_writer json = json_object(out);
+    if (scene->label[0])
+        json_string(&json, "label", scene->label);
     json_integer(&json, "dim", scene->dim);
     json_number(&json, "duration", scene->duration);
     if (scene->margin > 0)

@@ -24,8 +24,10 @@ public final class PosedPair
         out.dim = 3;
         out.num_frames = 1;
         out.shapes = new byte[] {placement_t.SHAPE_BOX};
+        out.counts = new int[0];
         out.numbers = new double[] {0, 0, 0, size[0], size[1], size[2]}; // centre and size
         out.num_numbers = out.numbers.length;
+        out.name = "";
         out.position = position;
         out.num_orientation = orientation.length;
         out.orientation = orientation;

@@ -36,9 +36,10 @@ static void print_contact(void *user, const struct fmb_client_answer *answer)
 
 int main(void)
 {
-    const struct fmb_client_frame link[2] = {{FMB_BOX, {0, 0, 0}, {1, 0.2, 0.1}},
-                                             {FMB_BOX, {0.4, 0, 0}, {0.2, 0.3, 0.2}}};
-    const struct fmb_client_frame table = {FMB_BOX, {0, 0, 0}, {20, 20, 1}};
+    const struct fmb_client_frame link[2] = {
+        {.shape = FMB_BOX, .components = {1, 0.2, 0.1}},
+        {.shape = FMB_BOX, .origin = {0.4, 0, 0}, .components = {0.2, 0.3, 0.2}}};
+    const struct fmb_client_frame table = {.shape = FMB_BOX, .components = {20, 20, 1}};
     unsigned neighbours[LINKS - 1][2];
     char why[FMB_CLIENT_WHY_MAX];
     for (int i = 0; i < BODIES; i++)

@@ -54,6 +54,7 @@ static void show_pair(const struct fmb_client *client, const struct pair_result 
         .status = result->status,
         .text = text_of(result->status, result->detail),
         .dim = result->dim,
+        .names_frames = result->names_frames,
         .answer = result->answer,
         .certificate = result->certificate,
         .compute_ns = result->compute_ns,
@@ -81,6 +82,7 @@ static void show_scene(const struct fmb_client *client, const struct scene_resul
         .undecided = count[0],
         .compute_ns = result->compute_ns,
         .dim = result->dim,
+        .names_frames = result->names_frames,
         .internal = result,
     };
     client->watcher.scene(client->watcher.user, &out);

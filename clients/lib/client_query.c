@@ -53,12 +53,10 @@ static void keep_answer(void *user, const struct fmb_client_answer *answer)
 int fmb_client_query_pair(struct fmb_client *client, const struct fmb_client_placement pair[2],
                           double duration, unsigned want, struct fmb_client_answer *out)
 {
-    static const unsigned both[1][2] = {{0, 1}};
-    const struct fmb_client_scene scene = {.placements = pair,
+    struct fmb_client_placement placement[2] = {pair[0], pair[1]};
+    placement[0].group = placement[1].group = 0;
+    const struct fmb_client_scene scene = {.placements = placement,
                                            .placement_count = 2,
-                                           .which = FMB_CLIENT_LISTED,
-                                           .pairs = both,
-                                           .pair_count = 1,
                                            .duration = duration,
                                            .instant = duration == 0,
                                            .want = want};

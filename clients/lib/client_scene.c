@@ -1,5 +1,6 @@
 #include "client_scene.h"
 
+#include "utf8.h"
 #include "writer.h"
 
 #include <limits.h>
@@ -38,15 +39,36 @@ static bool check_numbers(struct scene_error *error, size_t placement, const cha
     return true;
 }
 
+static bool may_have_vertices(int shape)
+{
+    return shape == FMB_TETRAHEDRON || shape == FMB_FACE || shape == FMB_HULL;
+}
+
+/* The number of numbers of a frame; 0: there is no such frame. A hull has vertices. */
+static int numbers_of(int dim, const struct fmb_client_frame *frame)
+{
+    const bool fits = frame->vertices && frame->vertex_count <= FMB_CLIENT_BODY_BYTES_MAX;
+    return (int) geometry_number_count(dim, frame->shape, fits ? (int32_t) frame->vertex_count : 0);
+}
+
 static bool check_frame(struct scene_error *error, size_t placement, size_t i, int dim,
                         const struct fmb_client_frame *frame)
 {
     char field[64];
-    const int count = geometry_number_count(dim, frame->shape) - dim;
     const bool known = fmb_shape_name(frame->shape);
-    if (!known || count < 0)
-        return refuse(error, known ? FMB_WRONG_DIMENSION : FMB_UNKNOWN_SHAPE,
+    const int count = numbers_of(dim, frame) - dim;
+    if (!known || (frame->vertices && !may_have_vertices(frame->shape)))
+        return refuse(error, FMB_UNKNOWN_SHAPE, "placements[%zu].frames[%zu].shape", placement, i);
+    if (count < 0)
+        return refuse(error, frame->shape == FMB_HULL ? FMB_WRONG_COUNT : FMB_WRONG_DIMENSION,
                       "placements[%zu].frames[%zu].shape", placement, i);
+    if (frame->vertices) {
+        snprintf(field, sizeof field, "frames[%zu].vertices", i);
+        if (frame->vertex_count != (size_t) (count / dim + 1))
+            return refuse(error, FMB_WRONG_COUNT, "placements[%zu].frames[%zu].vertex_count",
+                          placement, i);
+        return check_numbers(error, placement, field, frame->vertices, count + dim);
+    }
     snprintf(field, sizeof field, "frames[%zu].origin", i);
     if (!check_numbers(error, placement, field, frame->origin, dim))
         return false;
@@ -101,6 +123,11 @@ static bool check_orientation(struct scene_error *error,
            refuse(error, FMB_BAD_ORIENTATION, "placements[%zu].orientation", i);
 }
 
+static bool is_text(const char *text)
+{
+    return strlen(text) <= QUERY_NAME_MAX && utf8_is_text(text);
+}
+
 static bool check_placement(struct scene_error *error, const struct fmb_client_scene *scene,
                             size_t i)
 {
@@ -111,6 +138,8 @@ static bool check_placement(struct scene_error *error, const struct fmb_client_s
         return refuse(error, FMB_WRONG_DIMENSION, "placements[%zu].dim", i);
     if (placement->dim != scene->placements[0].dim)
         return refuse(error, FMB_DIMENSIONS_DIFFER, "placements[%zu].dim", i);
+    if (placement->name && !is_text(placement->name))
+        return refuse(error, FMB_BAD_NAME, "placements[%zu].name", i);
     return check_frames(error, placement, i) &&
            check_numbers(error, i, "position", placement->position, placement->dim) &&
            check_orientation(error, placement, i) &&
@@ -149,6 +178,14 @@ static bool check_list(struct scene_error *error, const struct fmb_client_scene 
     return true;
 }
 
+static bool check_groups(struct scene_error *error, const struct fmb_client_scene *scene)
+{
+    for (size_t i = 0; i < scene->pair_count; i++)
+        if (client_scene_is_within_group(scene, scene->pairs[i]))
+            return refuse(error, FMB_BAD_PAIR, "pairs[%zu]", i);
+    return true;
+}
+
 static bool check_pairs(struct scene_error *error, const struct fmb_client_scene *scene)
 {
     const int which = (int) scene->which;
@@ -160,7 +197,8 @@ static bool check_pairs(struct scene_error *error, const struct fmb_client_scene
         return refuse(error, FMB_WRONG_COUNT,
                       which == FMB_CLIENT_LISTED ? "ignored_count" : "pair_count");
     return check_list(error, scene, "ignored", scene->ignored, scene->ignored_count) &&
-           check_list(error, scene, "pairs", scene->pairs, scene->pair_count);
+           check_list(error, scene, "pairs", scene->pairs, scene->pair_count) &&
+           (which != FMB_CLIENT_LISTED || check_groups(error, scene));
 }
 
 static bool check_settings(struct scene_error *error, const struct fmb_client_scene *scene)
@@ -171,6 +209,8 @@ static bool check_settings(struct scene_error *error, const struct fmb_client_sc
         return refuse(error, FMB_BAD_DURATION, "duration");
     if (!(scene->margin >= 0 && isfinite(scene->margin)))
         return refuse(error, FMB_BAD_MARGIN, "margin");
+    if (scene->label && strlen(scene->label) > QUERY_NAME_MAX)
+        return refuse(error, FMB_OVER_LIMIT, "label");
     return (scene->want & ~wants) == 0 || refuse(error, FMB_UNKNOWN_WANT, "want");
 }
 
@@ -187,8 +227,8 @@ size_t client_scene_geometry_bytes(const struct fmb_client_placement *placement)
 {
     size_t bytes = GEOMETRY_NONE_BYTES;
     for (size_t i = 0; i < placement->frame_count; i++)
-        bytes += 1 + sizeof(double) *
-                         (size_t) geometry_number_count(placement->dim, placement->frames[i].shape);
+        bytes += 1 + (placement->frames[i].vertices ? 4 : 0) +
+                 sizeof(double) * (size_t) numbers_of(placement->dim, &placement->frames[i]);
     return bytes;
 }
 
@@ -198,17 +238,27 @@ static size_t write_frames(const struct fmb_client_placement *of, unsigned char 
     const size_t size = client_scene_geometry_bytes(of);
     const int dim = of->dim;
     struct writer writer = {.at = out, .end = out + size};
+    int32_t counts = 0, numbers = 0;
     writer_int32(&writer, dim);
     writer_int32(&writer, (int32_t) of->frame_count);
-    for (size_t i = 0; i < of->frame_count; i++)
-        *writer_take(&writer, 1) = (unsigned char) of->frames[i].shape;
-    writer_int32(&writer,
-                 (int32_t) ((size - GEOMETRY_NONE_BYTES - of->frame_count) / sizeof(double)));
     for (size_t i = 0; i < of->frame_count; i++) {
         const struct fmb_client_frame *frame = &of->frames[i];
-        const int count = geometry_number_count(dim, frame->shape);
+        *writer_take(&writer, 1) = (unsigned char) geometry_code(frame->shape, frame->vertices);
+        counts += frame->vertices != NULL;
+        numbers += numbers_of(dim, frame);
+    }
+    writer_int32(&writer, counts);
+    for (size_t i = 0; i < of->frame_count; i++)
+        if (of->frames[i].vertices)
+            writer_int32(&writer, (int32_t) of->frames[i].vertex_count);
+    writer_int32(&writer, numbers);
+    for (size_t i = 0; i < of->frame_count; i++) {
+        const struct fmb_client_frame *frame = &of->frames[i];
+        const int count = numbers_of(dim, frame);
         for (int k = 0; k < count; k++)
-            writer_double(&writer, k < dim ? frame->origin[k] : frame->components[k - dim]);
+            writer_double(&writer, frame->vertices ? frame->vertices[k]
+                                   : k < dim       ? frame->origin[k]
+                                                   : frame->components[k - dim]);
     }
     return size;
 }
@@ -220,6 +270,8 @@ void client_scene_placement(const struct fmb_client_placement *of, unsigned char
     *out = (struct placement){.body_id = of->body_id,
                               .dim = of->dim,
                               .frame_count = (int32_t) of->frame_count,
+                              .name = of->name,
+                              .group = of->group,
                               .orientation_count = of->orientation_count};
     out->geometry = (struct geometry){geometry, write_frames(of, geometry)};
     memcpy(out->position, of->position, axes);
@@ -236,7 +288,14 @@ void client_scene_use_handle(struct placement *placement, const struct handle *h
     geometry_write_none(placement->dim, geometry);
     placement->geometry = (struct geometry){geometry, GEOMETRY_NONE_BYTES};
     placement->frame_count = 0;
+    placement->name = NULL;
     placement->handle = *handle;
+}
+
+bool client_scene_is_within_group(const struct fmb_client_scene *scene, const unsigned pair[2])
+{
+    const int64_t group = scene->placements[pair[0]].group;
+    return group != 0 && group == scene->placements[pair[1]].group;
 }
 
 /* Index of the first placement that is paired with placement a. */

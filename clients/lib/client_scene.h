@@ -3,7 +3,7 @@
 #define CLIENT_SCENE_H
 
 #include "fmb_client.h"
-#include "query.h"
+#include "geometry.h"
 
 /* Checks a scene. Returns FMB_OK and why is ""; or a status, and why names the place and the
  * reason.
@@ -23,11 +23,15 @@ void client_scene_placement(const struct fmb_client_placement *of, unsigned char
 void client_scene_use_handle(struct placement *placement, const struct handle *handle,
                              unsigned char geometry[GEOMETRY_NONE_BYTES]);
 
-/* Iterates over the pairs in order, including ignored ones; {0} at first. */
+/* Iterates over the pairs in order, including ignored ones and those within a group; {0} at first.
+ */
 struct client_scene_cursor {
     size_t next; /* listed pairs: index of the next one */
     size_t a, b; /* else: the next pair; b is 0 before the first */
 };
+
+/* Whether two placements are of one group. */
+bool client_scene_is_within_group(const struct fmb_client_scene *scene, const unsigned pair[2]);
 
 /* Returns true and the next pair, or false after the last one. */
 bool client_scene_next_pair(const struct fmb_client_scene *scene,

@@ -68,7 +68,8 @@ static size_t first_ignored(const struct division *division, const unsigned pair
 bool division_ignores(const struct division *division, const unsigned pair[2])
 {
     const size_t at = first_ignored(division, pair);
-    return at < division->ignored_count && compare(division->ignored[at], pair) == 0;
+    return (at < division->ignored_count && compare(division->ignored[at], pair) == 0) ||
+           client_scene_is_within_group(division->scene, pair);
 }
 
 int32_t division_ignored(const struct division *division, const struct part *part, int32_t max,
@@ -101,16 +102,26 @@ static bool uses_blocks(const struct fmb_client_scene *scene)
     return scene->which != FMB_CLIENT_LISTED && certified;
 }
 
-enum { PLACEMENTS_BYTES_MAX = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES };
+/* Bytes of a query without placements and pairs. */
+static size_t bytes_without(const struct fmb_client_scene *scene)
+{
+    return WIRE_SCENE_QUERY_BYTES + wire_text_bytes(scene->label);
+}
+
+/* Bytes that the placements of a query may have. */
+static size_t placements_bytes_max(const struct division *division)
+{
+    return QUERY_BYTES_MAX - bytes_without(division->scene);
+}
 
 /* Whether one query can have all placements. whole: they are sent with their frames. */
 static bool fit_into_one(const struct division *division, bool whole)
 {
-    const size_t count = division->scene->placement_count;
+    const size_t count = division->scene->placement_count, most = placements_bytes_max(division);
     size_t bytes = 0;
-    for (size_t i = 0; i < count && bytes <= PLACEMENTS_BYTES_MAX; i++)
+    for (size_t i = 0; i < count && bytes <= most; i++)
         bytes += whole ? division->body[i].bytes : division->body[i].least;
-    return bytes <= PLACEMENTS_BYTES_MAX && count <= QUERY_PLACEMENTS_MAX;
+    return bytes <= most && count <= QUERY_PLACEMENTS_MAX;
 }
 
 static void make_blocks(struct division *division)
@@ -118,7 +129,7 @@ static void make_blocks(struct division *division)
     const struct fmb_client_scene *scene = division->scene;
     const bool across = scene->which == FMB_CLIENT_ACROSS;
     const bool one = division->by_handle || fit_into_one(division, true);
-    const size_t capacity = one ? PLACEMENTS_BYTES_MAX : PLACEMENTS_BYTES_MAX / 2;
+    const size_t capacity = placements_bytes_max(division) / (one ? 1 : 2);
     size_t bytes = capacity + 1;
     for (size_t i = 0; i < scene->placement_count; i++) {
         const size_t more = division->by_handle ? division->body[i].least : division->body[i].bytes;
@@ -259,7 +270,7 @@ bool division_next(struct division *division, int32_t pairs_max, struct part *ou
     out->single = division->single;
     out->split = out->total = out->placement_count = 0;
     out->row = out->column = 0;
-    out->bytes = WIRE_SCENE_QUERY_BYTES;
+    out->bytes = bytes_without(division->scene);
     if (division->blocks)
         return next_block(division, out);
     return next_list(division, division->single ? 1 : pairs_max, out);

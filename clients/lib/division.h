@@ -51,7 +51,7 @@ void division_end(struct division *division);
  * last one. */
 bool division_next(struct division *division, int32_t pairs_max, struct part *out);
 
-/* Whether the pair is ignored. */
+/* Whether the pair is ignored or within a group. */
 bool division_ignores(const struct division *division, const unsigned pair[2]);
 
 /* Writes the ignored pairs of a part, as indices in the part. Returns their number, at most max; 0

@@ -105,6 +105,10 @@ struct fmb_client_frame {
     double origin[FMB_DIM_MAX];            /* of a box: its centre */
     double components[FMB_COMPONENTS_MAX]; /* [component * dim + axis]; of a box: [axis], its full
                                               size. All 0: the frame is a point */
+    /* NULL; or [vertex_count][dim] of a tetrahedron (in 2D a triangle), face or hull: the vertices
+     * of the frame are exactly these, and origin and components are not read. */
+    const double *vertices;
+    size_t vertex_count;
 };
 
 /* A rigid body, its pose and its velocity. */
@@ -117,10 +121,16 @@ struct fmb_client_placement {
     double velocity[FMB_DIM_MAX]; /* per second */
     double orientation[4];        /* w, x, y, z (2D: w, z); of any length but 0 */
     int orientation_count;        /* 0: not turned; 4 (2D: 2) */
+    /* For people: UTF-8 of at most 64 bytes without control characters, sent when the body is sent
+     * whole. NULL: none. */
+    const char *name;
+    int64_t
+        group; /* not 0: in a scene, placements of one group are not tested against each other */
 };
 
-/* The frames of a body have to fit into one datagram: each takes 1 byte and 8 for each of its
- * numbers, and all together at most this. (654 cuboids or 1295 boxes in 3D.) */
+/* The frames of a body have to fit into one datagram: each takes 1 byte, 8 for each of its numbers
+ * and 4 if it is given by vertices, and all together at most this. (654 cuboids or 1295 boxes in
+ * 3D.) */
 enum { FMB_CLIENT_BODY_BYTES_MAX = 63500 };
 
 enum fmb_client_which {
@@ -144,7 +154,8 @@ struct fmb_client_scene {
     const struct fmb_client_placement *placements; /* [placement_count], all of one dimension */
     size_t placement_count;                        /* less than 2^31 */
     enum fmb_client_which which;
-    /* LISTED: [pair_count][a, b], different indices of placements; otherwise none. */
+    /* LISTED: [pair_count][a, b], different indices of placements that are not of
+     * one group; otherwise none. */
     const unsigned (*pairs)[2];
     size_t pair_count;
     size_t split; /* ACROSS: at most placement_count; 0: no pairs. Otherwise 0 */
@@ -157,9 +168,10 @@ struct fmb_client_scene {
     /* Finite, not negative. Not 0: contacts and near pairs have their gaps, whether wanted or not.
      * A pair is near if it is separated and its lower bound is at most the margin. */
     double margin;
-    unsigned want; /* sum of FMB_CLIENT_WANT_ bits; 0: verdicts only */
-    int method;    /* fmb_method.number; 0: the default, never wrong and the fastest */
-    double within; /* time limit for the whole scene, seconds; 0: none but timeout and tries */
+    unsigned want;     /* sum of FMB_CLIENT_WANT_ bits; 0: verdicts only */
+    int method;        /* fmb_method.number; 0: the default, never wrong and the fastest */
+    const char *label; /* for people, at most 64 bytes, in each query of the scene; NULL: none */
+    double within;     /* time limit for the whole scene, seconds; 0: none but timeout and tries */
 };
 
 struct fmb_client_answer {
@@ -177,12 +189,12 @@ typedef void fmb_client_sink(void *user, const struct fmb_client_answer *answer)
  *
  * Returns FMB_OK: sink was called in the order of the pairs. With LISTED and with WANT_CERTIFICATE,
  * for each pair. Otherwise, with ALL and ACROSS, in the order of (a, b), for each pair that
- * touches, overlaps or is near: pairs left out are ignored, or separated and farther apart than the
- * margin. Pairs without an answer are passed with their status. Or returns a status of the whole
- * scene, and sink was not called: NO_FRAMES, UNKNOWN_SHAPE, WRONG_DIMENSION, DIMENSIONS_DIFFER,
- * WRONG_COUNT, NOT_FINITE, BAD_SIZE, BAD_ORIENTATION, BAD_ID, BAD_DURATION, BAD_MARGIN,
- * UNKNOWN_WANT, BAD_PAIR, OVER_LIMIT (2^31 placements, or a body of too many frames), NO_MEMORY,
- * NO_BUS or INSIDE. fmb_client_why() then names the place.
+ * touches, overlaps or is near: pairs left out are ignored, within a group, or separated and
+ * farther apart than the margin. Pairs without an answer are passed with their status. Or returns a
+ * status of the whole scene, and sink was not called: NO_FRAMES, UNKNOWN_SHAPE, WRONG_DIMENSION,
+ * DIMENSIONS_DIFFER, WRONG_COUNT, NOT_FINITE, BAD_SIZE, BAD_ORIENTATION, BAD_NAME, BAD_ID,
+ * BAD_DURATION, BAD_MARGIN, UNKNOWN_WANT, BAD_PAIR, OVER_LIMIT (2^31 placements, or a body of too
+ * many frames), NO_MEMORY, NO_BUS or INSIDE. fmb_client_why() then names the place.
  *
  * Memory: 40 bytes for each placement, 8 for each ignored pair; with ALL and ACROSS also 184
  * bytes for each of these pairs that waits for earlier ones: at most those of some 500 placements
@@ -196,9 +208,9 @@ typedef void fmb_client_sink(void *user, const struct fmb_client_answer *answer)
 int fmb_client_query(struct fmb_client *client, const struct fmb_client_scene *scene,
                      fmb_client_sink *sink, void *user);
 
-/* Queries one pair by the default method; the contact interval is always included. The service does
- * not queue it after this client's scenes. Returns out->status. text and certificate are valid
- * until the next call. */
+/* Queries one pair by the default method; the contact interval is always included. Groups are not
+ * considered. The service does not queue it after this client's scenes. Returns out->status. text
+ * and certificate are valid until the next call. */
 int fmb_client_query_pair(struct fmb_client *client, const struct fmb_client_placement pair[2],
                           double duration, unsigned want, struct fmb_client_answer *out);
 
@@ -231,8 +243,9 @@ struct fmb_client_pair_result {
     int64_t client_id, sequence_number, server_id;
     int64_t body_id[2];
     int status;
-    const char *text; /* as in fmb_client_answer */
-    int dim;          /* of box and gap; 0: there is neither */
+    const char *text;  /* as in fmb_client_answer */
+    int dim;           /* of box and gap; 0: there is neither */
+    bool names_frames; /* there is a gap, and a body has several frames */
     struct fmb_answer answer;
     const char *certificate; /* NULL: none */
     int64_t compute_ns;
@@ -251,6 +264,7 @@ struct fmb_client_scene_result {
     int64_t undecided; /* 0 where names_pairs */
     int64_t compute_ns;
     int dim;              /* of boxes and gaps; 0: there is neither */
+    bool names_frames;    /* there are gaps, and a body has several frames */
     const void *internal; /* for fmb_client_next_answer() */
 };
 
@@ -268,13 +282,15 @@ struct fmb_client_cursor {
 bool fmb_client_next_answer(const struct fmb_client_scene_result *result,
                             struct fmb_client_cursor *cursor, struct fmb_client_answer *out);
 
-/* Counters of a heartbeat, in the order of status_t.lcm, which defines them. */
+/* Counters of a heartbeat; status_t.lcm defines them. */
 #define FMB_CLIENT_COUNTERS(X) \
     X(uptime_us)               \
     X(receive_buffer)          \
     X(received)                \
     X(answered)                \
     X(unsent)                  \
+    X(expired)                 \
+    X(refusals_unsent)         \
     X(scenes)                  \
     X(definitions)             \
     X(pairs)                   \
@@ -300,8 +316,7 @@ struct fmb_client_heartbeat {
 #define X(name) int64_t name;
     FMB_CLIENT_COUNTERS(X)
 #undef X
-    int64_t results[FMB_STATUS_COUNT]; /* [status]: results sent; EXPIRED,
-                                          REFUSAL_UNSENT: queries without a result */
+    int64_t results[FMB_STATUS_COUNT]; /* [status]: results sent */
 };
 
 /* Callbacks. Messages whose callback is NULL are not received. */

@@ -33,7 +33,7 @@ static size_t contact_bytes(const struct fmb_client_scene *scene)
 {
     const size_t times = scene->want & FMB_CLIENT_WANT_TIMES ? 2 : 0;
     const size_t box = scene->want & FMB_CLIENT_WANT_BOX ? 2 * FMB_DIM_MAX : 0;
-    return 8 * (times + box) + (wants_gaps(scene) ? (size_t) wire_gap_bytes(FMB_DIM_MAX) : 0);
+    return 8 * (times + box) + (wants_gaps(scene) ? (size_t) wire_gap_bytes(FMB_DIM_MAX, true) : 0);
 }
 
 size_t part_result_bytes(const struct part *part, const struct fmb_client_scene *scene)
@@ -99,6 +99,32 @@ static bool fits_named(const struct matching *matching)
     return true;
 }
 
+static bool fits_frames(const struct fmb_client_placement *a, const struct fmb_client_placement *b,
+                        const struct fmb_gap *gap)
+{
+    return gap->frame[0] < a->frame_count && gap->frame[1] < b->frame_count;
+}
+
+/* Whether frames are named if and only if a body of the part has several and there are gaps; and
+ * all of them are frames of their bodies. On input: pairs that are in the query. */
+static bool fits_gaps(const struct matching *matching)
+{
+    const struct scene_result *result = matching->result;
+    const struct part *part = matching->part;
+    const struct fmb_client_placement *placements = matching->scene->placements;
+    bool several = false, good = true;
+    for (int32_t i = 0; i < part->placement_count && result->has_gaps; i++)
+        several = several || placements[part->placement[i]].frame_count > 1;
+    for (int32_t k = 0; k < result->verdict_count && several; k++) {
+        const uint16_t *listed = part->pair[matching->first + k];
+        const unsigned a = result->names_pairs ? result->pair[k][0] : listed[0];
+        const unsigned b = result->names_pairs ? result->pair[k][1] : listed[1];
+        good = good && fits_frames(&placements[part->placement[a]], &placements[part->placement[b]],
+                                   &result->gap[k]);
+    }
+    return good && result->names_frames == several;
+}
+
 static bool fits(const struct matching *matching)
 {
     const struct scene_result *result = matching->result;
@@ -116,7 +142,7 @@ static bool fits(const struct matching *matching)
     if (listed &&
         (result->names_pairs || result->verdict_count != result->end_pair - matching->first))
         return false;
-    return listed || fits_named(matching);
+    return (listed || fits_named(matching)) && fits_gaps(matching);
 }
 
 /* Makes space for more answers. A part has few results, so that no space for later ones is needed.
@@ -162,21 +188,27 @@ enum part_taken part_take_scene(const struct part *part, const struct fmb_client
 
 /* Whether the result has a gap if and only if it was wanted; and a box, which only a contact has,
  * and a certificate, only if they were wanted. */
-static bool fits_pair(const struct fmb_client_scene *scene, const struct pair_result *result)
+static bool fits_pair(const struct part *part, const struct fmb_client_scene *scene,
+                      const struct pair_result *result)
 {
     const struct fmb_answer *answer = &result->answer;
+    const struct fmb_client_placement *a = &scene->placements[part->placement[part->pair[0][0]]];
+    const struct fmb_client_placement *b = &scene->placements[part->placement[part->pair[0][1]]];
     if (answer->has_gap != wants_gaps(scene) ||
         (answer->has_box &&
          !(answer->verdict >= FMB_TOUCHING && scene->want & FMB_CLIENT_WANT_BOX)) ||
         (result->dim > 0 && result->dim != scene->placements[0].dim))
         return false;
+    if (result->names_frames != (answer->has_gap && (a->frame_count > 1 || b->frame_count > 1)) ||
+        !fits_frames(a, b, &answer->gap))
+        return false;
     return !result->certificate || scene->want & FMB_CLIENT_WANT_CERTIFICATE;
 }
 
-enum part_taken part_take_pair(const struct fmb_client_scene *scene,
+enum part_taken part_take_pair(const struct part *part, const struct fmb_client_scene *scene,
                                const struct pair_result *result, struct part_answers *answers)
 {
-    if (!fits_pair(scene, result))
+    if (!fits_pair(part, scene, result))
         return PART_MALFORMED;
     if (!reserve(answers, 1))
         return PART_NO_MEMORY;

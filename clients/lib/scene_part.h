@@ -57,7 +57,7 @@ int32_t part_pairs_before(const struct part *part, int32_t a);
 enum part_taken { PART_TAKEN, PART_MALFORMED, PART_NO_MEMORY };
 enum part_taken part_take_scene(const struct part *part, const struct fmb_client_scene *scene,
                                 const struct scene_result *result, struct part_answers *answers);
-enum part_taken part_take_pair(const struct fmb_client_scene *scene,
+enum part_taken part_take_pair(const struct part *part, const struct fmb_client_scene *scene,
                                const struct pair_result *result, struct part_answers *answers);
 
 #endif

@@ -83,6 +83,7 @@ static struct scene_query *begin_query(const struct part_run *part)
     const struct fmb_client_scene *scene = part->run->scene;
     struct scene_query *query = &part->run->query;
     query->utime = clock_utime();
+    query->label = scene->label;
     query->duration = scene->duration;
     query->method = scene->method;
     query->want = (int32_t) scene->want;
@@ -99,7 +100,7 @@ static size_t write_definitions(struct part_run *part, unsigned char *out)
 {
     struct scene_query *query = begin_query(part);
     unsigned char *geometry = part->run->geometry;
-    size_t left = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES;
+    size_t left = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES - wire_text_bytes(query->label);
     const bool may = part->unknown < UNKNOWN_MAX && part->definitions < part->part.placement_count;
     memset(part->whole, 0, sizeof part->whole);
     for (int32_t i = 0; i < part->part.placement_count && may; i++) {
@@ -125,7 +126,7 @@ static size_t write_scene(struct part_run *part, unsigned char *out)
     const struct part *of = &part->part;
     const bool listed = of->which == QUERY_PAIRS_LISTED;
     struct scene_query *query = begin_query(part);
-    const size_t max = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES -
+    const size_t max = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES - wire_text_bytes(query->label) -
                        (listed ? WIRE_PAIR_BYTES * (size_t) of->total : 0);
     const size_t bytes = write_placements(part, max, query->placement);
     if (bytes > max)
@@ -254,7 +255,7 @@ static enum request_taken take_answers(struct part_run *part, struct request *re
     }
     const enum part_taken taken =
         result->kind == FMB_CLIENT_PAIR
-            ? part_take_pair(run->scene, result->pair, answers)
+            ? part_take_pair(&part->part, run->scene, result->pair, answers)
             : part_take_scene(&part->part, run->scene, result->scene, answers);
     if (taken == PART_MALFORMED)
         return REQUEST_MALFORMED;

@@ -359,7 +359,9 @@ static void copy_event(struct cutter *cut, const struct log_event *event)
     const enum log_kind kind = log_kind_of(&cut->channels, event);
     counts->kept_events++;
     counts->kept[kind]++;
-    counts->version_1 += log_kind_is_version_1(kind, event);
+    const int old_version = log_kind_old_version(kind, event);
+    counts->old_messages += old_version > 0;
+    counts->old_version = old_version ? old_version : counts->old_version;
     copy(cut, event);
 }
 

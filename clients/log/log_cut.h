@@ -34,7 +34,8 @@ struct log_cut_counts {
     /* Definitions added, which do not count as kept; the bodies in them; handles in kept queries
      * that the logs do not define. */
     int64_t definitions, defined, unknown;
-    int64_t version_1; /* kept messages of version 1, whose bodies are not known */
+    int64_t old_messages; /* kept messages of an old version, whose bodies are not known */
+    int old_version;      /* the version of the last of them; 0: there are none */
     int64_t damages, damaged_bytes;
 };
 

@@ -4,6 +4,7 @@
 #include "escape.h"
 #include "json_write.h"
 #include "number.h"
+#include "utf8.h"
 #include "wire_type.h"
 
 #include <inttypes.h>
@@ -182,18 +183,20 @@ static void print_damage(FILE *out, const struct log_info *info)
         fprintf(out, "    and %s more\n", number_grouped(info->damages - DAMAGE_LINES, offset));
 }
 
-static bool has_version_1(const struct log_info *info)
+/* Returns the highest old version of a message; 0: there is none. */
+static int old_version(const struct log_info *info)
 {
+    int version = 0;
     for (unsigned i = 0; i < info->row_count; i++)
-        if (wire_type_is_version_1(info->row[i].type.fingerprint))
-            return true;
-    return false;
+        if (wire_type_old_version(info->row[i].type.fingerprint) > version)
+            version = wire_type_old_version(info->row[i].type.fingerprint);
+    return version;
 }
 
 /* Writes a name with control characters, or not in UTF-8, as channels are written. */
 static void print_path(FILE *out, const char *path)
 {
-    const bool plain = escape_is_text(path);
+    const bool plain = utf8_is_text(path);
     for (; *path; path++)
         fprintf(out,
                 plain || (cursor_is_printable((unsigned char) *path) && *path != '\\') ? "%c"
@@ -218,8 +221,9 @@ void log_report_text(FILE *out, const struct log_report *report)
         print_span(out, info);
         print_channels(out, info);
     }
-    if (has_version_1(info))
-        fputs("  recorded by version 1, whose messages this version does not read\n", out);
+    if (old_version(info))
+        fprintf(out, "  recorded by version %d, whose messages this version does not read\n",
+                old_version(info));
     if (info->damages > 0)
         print_damage(out, info);
     if (report->error)

@@ -49,8 +49,9 @@ const char *log_kind_ids(enum log_kind kind, const struct log_event *event,
     }
 }
 
-bool log_kind_is_version_1(enum log_kind kind, const struct log_event *event)
+int log_kind_old_version(enum log_kind kind, const struct log_event *event)
 {
-    return kind != LOG_OTHER && event->kept >= 8 &&
-           wire_type_is_version_1((int64_t) big_endian_64(event->data));
+    return kind != LOG_OTHER && event->kept >= 8
+               ? wire_type_old_version((int64_t) big_endian_64(event->data))
+               : 0;
 }

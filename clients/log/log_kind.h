@@ -60,7 +60,8 @@ static inline enum log_kind log_kind_result_of(enum log_kind query)
 const char *log_kind_ids(enum log_kind kind, const struct log_event *event,
                          struct query_header *out);
 
-/* Whether an event on a channel of the service is of a message type of version 1. */
-bool log_kind_is_version_1(enum log_kind kind, const struct log_event *event);
+/* The version of the message type of an event on a channel of the service, if it is an old one,
+ * such as 1; else 0. */
+int log_kind_old_version(enum log_kind kind, const struct log_event *event);
 
 #endif

@@ -175,9 +175,7 @@ static bool read_ids(struct query_search *search)
         .size = out->size,
         .kept = out->size < LOG_DATA_MAX ? out->size : LOG_DATA_MAX,
     };
-    const char *error = log_kind_is_version_1(search->kind, &event)
-                            ? "recorded by version 1, whose messages this version does not read"
-                            : log_kind_ids(search->kind, &event, &out->ids);
+    const char *error = log_kind_ids(search->kind, &event, &out->ids);
     if (error)
         refuse(search, error);
     return !error;

@@ -2,6 +2,7 @@
 
 #include "allocate.h"
 #include "scene.h"
+#include "utf8.h"
 #include "wire.h"
 
 #include <assert.h>
@@ -67,7 +68,8 @@ static size_t bytes_of(const struct logged_query *query)
     const bool pair = query->kind == LOG_PAIR_QUERY;
     const struct placement *placement = pair ? query->pair.placement : query->scene.placement;
     const int32_t count = pair ? 2 : query->scene.placement_count;
-    size_t bytes = pair ? WIRE_PAIR_QUERY_BYTES : WIRE_SCENE_QUERY_BYTES;
+    size_t bytes =
+        pair ? WIRE_PAIR_QUERY_BYTES : WIRE_SCENE_QUERY_BYTES + wire_text_bytes(query->scene.label);
     for (int32_t i = 0; i < count; i++)
         bytes += wire_placement_bytes(&placement[i]);
     if (!pair)
@@ -92,49 +94,11 @@ int64_t logged_query_pairs(const struct scene_query *query)
     return query->which == QUERY_PAIRS_ACROSS ? query->split * (n - query->split) : n * (n - 1) / 2;
 }
 
-int64_t logged_query_pair_number(const struct scene_query *query, unsigned a, unsigned b)
-{
-    const int64_t n = placement_count(query), first = a, second = b;
-    if (query->which == QUERY_PAIRS_ACROSS)
-        return first * (n - query->split) + second - query->split;
-    return first * n - first * (first + 1) / 2 + second - (first + 1);
-}
-
-/* ---- Pairs ---- */
-
-static void set_ignored(const struct scene_query *query, struct scene *scene)
-{
-    scene->ignored_count = (size_t) (query->ignored_count / 2);
-    scene->ignored = allocate(scene->ignored_count, sizeof *scene->ignored);
-    for (size_t k = 0; k < scene->ignored_count; k++)
-        scene->ignored[k] = (struct scene_pair){query->ignored[k][0], query->ignored[k][1]};
-    scene_sort_ignored(scene);
-}
-
-/* Whether the query has this pair of placements, in order. */
-static bool has_pair(const struct scene_query *query, const struct scene_pair *pair)
-{
-    return pair->a < pair->b && pair->b < (size_t) placement_count(query) &&
-           (query->which != QUERY_PAIRS_ACROSS ||
-            (pair->a < (size_t) query->split && pair->b >= (size_t) query->split));
-}
-
 int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair)
 {
-    struct scene scene = {.dim = 0};
-    int64_t pairs = (int64_t) end_pair - query->first_pair;
-    if (query->which == QUERY_PAIRS_LISTED || query->ignored_count < 2)
-        return pairs; /* no listed pair is ignored */
-    set_ignored(query, &scene);
-    for (size_t i = 0; i < scene.ignored_count; i++) {
-        const struct scene_pair *pair = &scene.ignored[i];
-        const int64_t number =
-            has_pair(query, pair)
-                ? logged_query_pair_number(query, (unsigned) pair->a, (unsigned) pair->b)
-                : -1;
-        pairs -= number >= query->first_pair && number < end_pair;
-    }
-    scene_clear(&scene);
+    struct query_marks *marks = allocate(1, sizeof *marks);
+    const int64_t pairs = query_pairs_decided(query, end_pair, marks);
+    free(marks);
     return pairs;
 }
 
@@ -144,29 +108,13 @@ int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pa
 static bool read_body(const struct geometry *geometry, struct scene_body *out)
 {
     struct geometry_reader reader = geometry_begin(geometry);
-    struct geometry_frame frame;
     const size_t count = (size_t) reader.frames_left;
-    const bool several = count > 1;
-    if (several)
-        out->frames = allocate(count, sizeof *out->frames);
-    for (size_t i = 0; i < count; i++) {
-        double numbers[GEOMETRY_FRAME_NUMBERS_MAX];
-        if (!geometry_next(&reader, &frame))
-            return false;
-        const int used = geometry_number_count(reader.dim, frame.shape);
-        memcpy(numbers, frame.origin, (size_t) reader.dim * sizeof *numbers);
-        memcpy(numbers + reader.dim, frame.components,
-               (size_t) (used - reader.dim) * sizeof *numbers);
-        const enum fmb_status status =
-            several
-                ? fmb_frame_make(reader.dim, frame.shape, numbers, (size_t) used, &out->frames[i])
-                : fmb_body_make(reader.dim, frame.shape, numbers, (size_t) used, &out->body);
-        if (status != FMB_OK)
-            return false;
-    }
-    if (reader.numbers_left > 0)
-        return false;
-    return !several ? count == 1 : fmb_body_make_frames(out->frames, count, &out->body) == FMB_OK;
+    size_t read = 0, bad;
+    out->given = allocate(count, sizeof *out->given);
+    while (read < count && geometry_next(&reader, &out->given[read]))
+        read++;
+    return read == count && reader.counts_left == 0 && reader.numbers_left == 0 &&
+           scene_body_make(reader.dim, count, out, &bad) == FMB_OK;
 }
 
 bool scene_takes(const struct geometry *geometry)
@@ -175,6 +123,13 @@ bool scene_takes(const struct geometry *geometry)
     const bool taken = read_body(geometry, &body);
     scene_body_clear(&body);
     return taken;
+}
+
+/* Copies a name or a label, unless a scene cannot have it. */
+static void copy_text(const char *text, char out[SCENE_NAME_MAX + 1])
+{
+    if (text && strlen(text) <= SCENE_NAME_MAX && utf8_is_text(text))
+        strcpy(out, text);
 }
 
 static void set_body(const struct placement *placement, struct scene_body *out)
@@ -186,6 +141,8 @@ static void set_body(const struct placement *placement, struct scene_body *out)
     memcpy(out->velocity, placement->velocity, sizeof out->velocity);
     memcpy(out->orientation, placement->orientation, sizeof out->orientation);
     out->orientation_count = placement->orientation_count;
+    out->group = placement->group;
+    copy_text(placement->name, out->name);
 }
 
 static int compare(const void *left, const void *right)
@@ -268,6 +225,15 @@ static void list_pairs(struct list *list, bool across, size_t split)
             add(list, a, b);
 }
 
+static void set_ignored(const struct scene_query *query, struct scene *scene)
+{
+    scene->ignored_count = (size_t) (query->ignored_count / 2);
+    scene->ignored = allocate(scene->ignored_count, sizeof *scene->ignored);
+    for (size_t k = 0; k < scene->ignored_count; k++)
+        scene->ignored[k] = (struct scene_pair){query->ignored[k][0], query->ignored[k][1]};
+    scene_sort_ignored(scene);
+}
+
 static void set_pairs(const struct scene_query *query, struct scene *scene)
 {
     struct list list = {.scene = scene, .skip = query->first_pair};
@@ -287,10 +253,12 @@ void scene_of_query(const struct logged_query *query, struct scene *out)
     if (query->kind == LOG_PAIR_QUERY) {
         out->duration = query->pair.duration;
         set_bodies(query->pair.placement, 2, out);
+        out->body[0].group = out->body[1].group = 0; /* which a pair query does not look at */
         return;
     }
     out->duration = query->scene.duration;
     out->margin = query->scene.margin;
+    copy_text(query->scene.label, out->label);
     set_bodies(query->scene.placement, (size_t) query->scene.placement_count, out);
     set_pairs(&query->scene, out);
 }

@@ -25,12 +25,8 @@ struct placement *logged_query_placements(struct logged_query *query, int32_t *c
 /* The number of pairs of a scene query, ignored ones included. */
 int64_t logged_query_pairs(const struct scene_query *query);
 
-/* The number of pairs from first_pair on and before end_pair, without ignored ones. */
+/* query_pairs_decided() with memory of its own. */
 int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair);
-
-/* The number of the pair (a, b) of placements, in lexicographic order, from 0. In: a PAIRS_ALL or
- * PAIRS_ACROSS query, and one of its pairs. */
-int64_t logged_query_pair_number(const struct scene_query *query, unsigned a, unsigned b);
 
 /* Encodes a query that was decoded. Returns its size; 0 if it exceeds a datagram, or the struct
  * does not hold all of it. */
@@ -39,11 +35,12 @@ size_t logged_query_write(const struct logged_query *query, unsigned char out[QU
 struct scene;
 
 /* Converts a query to a scene (scene.h) with the same bodies, and the same pairs in the same order.
- * The scene has no method and no wanted results. In: a query that the service accepts, with a
- * geometry for each placement. On output: *out, which the caller clears, with the pairs from
- * first_pair on: all pairs of a PAIRS_ALL query as such, others listed. Body i is placement i, and
- * keeps its id, unless it has none or an earlier placement has the same id: then it gets the lowest
- * free id. Exits with status 1 if memory is exhausted. */
+ * The scene has no method and no wanted results, and only a label that JSON can have; that of a
+ * pair has no groups. In: a query that the service accepts, with a geometry for each placement. On
+ * output: *out, which the caller clears, with the pairs from first_pair on: all pairs of a
+ * PAIRS_ALL query as such, others listed. Body i is placement i, and keeps its id, unless it has
+ * none or an earlier placement has the same id: then it gets the lowest free id. Exits with status
+ * 1 if memory is exhausted. */
 void scene_of_query(const struct logged_query *query, struct scene *out);
 
 /* Whether the engine accepts the frames of this body, so that a scene can contain it. */

@@ -1,5 +1,6 @@
 #include "page_event.h"
 
+#include "geometry.h"
 #include "keyed_hash.h"
 #include "logged_query.h"
 
@@ -59,10 +60,14 @@ void page_shapes_close(struct page_shapes *shapes)
 
 static void write_frame(struct json_writer *json, int dim, const struct geometry_frame *frame)
 {
+    double number[GEOMETRY_FRAME_NUMBERS_MAX];
+    const size_t count = geometry_frame_numbers(dim, frame, number);
     json_begin(json, NULL, '[');
     json_integer(json, NULL, frame->shape);
-    for (int i = 0; i < geometry_number_count(dim, frame->shape); i++)
-        json_number(json, NULL, i < dim ? frame->origin[i] : frame->components[i - dim]);
+    for (size_t i = 0; i < count; i++) /* the page has components, which may be rounded */
+        json_number(json, NULL,
+                    frame->by_vertices && i >= (size_t) dim ? number[i] - number[i % (size_t) dim]
+                                                            : number[i]);
     json_end(json, ']');
 }
 
@@ -124,7 +129,7 @@ static bool has_frames(const struct geometry *geometry, int dim)
     while (good && reader.frames_left > 0)
         good = geometry_next(&reader, &frame) && are_finite(frame.origin, FMB_DIM_MAX) &&
                are_finite(frame.components, FMB_COMPONENTS_MAX);
-    return good && reader.numbers_left == 0;
+    return good && reader.counts_left == 0 && reader.numbers_left == 0;
 }
 
 static bool is_drawable(const struct placement *placement)
@@ -354,10 +359,19 @@ static void write_pairs(const struct replayed *replayed, struct json_writer *out
 
 /* ---- The event ------------------------------------------------------------------------------- */
 
+static int64_t kind_of(const struct scene_query *scene)
+{
+    switch (scene->which) {
+    case QUERY_PAIRS_LISTED: return 1;
+    case QUERY_PAIRS_ALL: return 2;
+    default: return 1 + (int64_t) scene->which;
+    }
+}
+
 static void write_query(const struct replayed *replayed, struct json_writer *out)
 {
     const struct scene_query *scene = replayed->scene;
-    json_integer(out, "kind", scene ? 1 + (int64_t) scene->which : 0);
+    json_integer(out, "kind", scene ? kind_of(scene) : 0);
     json_number(out, "T", scene ? scene->duration : replayed->pair->duration);
     json_integer(out, "want", scene ? scene->want : replayed->pair->want);
     if (scene) {

@@ -36,7 +36,7 @@ enum { PAGE_PAIRS_MAX = 1000 };
  *
  *     n o t log is   number of the event, offset (bytes), time (microseconds since 1970), index of
  *                    the log, enum replay_outcome
- *     kind           0 of a pair, else 1 + QUERY_PAIRS_
+ *     kind           0 of a pair; of a scene 1 for listed pairs, 2 for all, 3 across
  *     T want         duration in seconds, wants
  *     margin         of a scene, if it has one
  *     first split    of a scene

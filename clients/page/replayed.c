@@ -85,7 +85,7 @@ static struct replayed_side side_of_named(const struct scene_query *query,
     if (has_verdict(place) && place->result->names_pairs &&
         place->result->pair[place->verdict][0] == a && place->result->pair[place->verdict][1] == b)
         return take(place);
-    const int64_t number = logged_query_pair_number(query, a, b);
+    const int64_t number = query_pair_number(query, a, b);
     side.answered = number >= query->first_pair && number < place->result->end_pair;
     side.answer.verdict = side.answered ? FMB_SEPARATED : 0;
     return side;

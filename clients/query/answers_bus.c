@@ -75,18 +75,17 @@ void answers_bus_close(struct answers_bus *answers)
 
 /* ---- The query ---- */
 
-/* Sets the numbers that the frame was made from. */
-static void set_frame(const struct fmb_frame *frame, struct fmb_client_frame *out)
+static struct fmb_client_frame frame_of(int dim, const struct geometry_frame *given,
+                                        double vertices[GEOMETRY_FRAME_NUMBERS_MAX])
 {
-    const bool box = frame->shape == FMB_BOX;
-    *out = (struct fmb_client_frame){.shape = (int) frame->shape};
-    memcpy(out->origin, box ? frame->centre : frame->origin, sizeof out->origin);
-    for (int i = 0; i < frame->count; i++)
-        if (box)
-            out->components[i] = frame->component[i][i];
-        else
-            memcpy(out->components + i * frame->dim, frame->component[i],
-                   (size_t) frame->dim * sizeof *out->components);
+    struct fmb_client_frame out = {.shape = given->shape};
+    memcpy(out.origin, given->origin, sizeof out.origin);
+    memcpy(out.components, given->components, sizeof out.components);
+    if (given->by_vertices) {
+        out.vertices = vertices;
+        out.vertex_count = geometry_frame_numbers(dim, given, vertices) / (size_t) dim;
+    }
+    return out;
 }
 
 static struct fmb_client_placement placement_of(const struct scene_body *body,
@@ -96,7 +95,9 @@ static struct fmb_client_placement placement_of(const struct scene_body *body,
                                        .dim = body->body.dim,
                                        .frames = frames,
                                        .frame_count = body->body.frame_count,
-                                       .orientation_count = body->orientation_count};
+                                       .orientation_count = body->orientation_count,
+                                       .name = body->name,
+                                       .group = body->group};
     memcpy(out.position, body->position, sizeof out.position);
     memcpy(out.velocity, body->velocity, sizeof out.velocity);
     memcpy(out.orientation, body->orientation, sizeof out.orientation);
@@ -105,8 +106,9 @@ static struct fmb_client_placement placement_of(const struct scene_body *body,
 
 /* The bodies of a scene for the library. */
 struct client_bodies {
-    struct fmb_client_placement *placement; /* owned, [body] */
-    struct fmb_client_frame *frame;         /* owned, of all bodies */
+    struct fmb_client_placement *placement;         /* owned, [body] */
+    struct fmb_client_frame *frame;                 /* owned, of all bodies */
+    double (*vertices)[GEOMETRY_FRAME_NUMBERS_MAX]; /* owned, of these frames */
 };
 
 static struct client_bodies client_bodies_of(const struct scene *scene)
@@ -115,13 +117,14 @@ static struct client_bodies client_bodies_of(const struct scene *scene)
     for (size_t i = 0; i < scene->body_count; i++)
         count += scene->body[i].body.frame_count;
     const struct client_bodies out = {allocate(scene->body_count, sizeof *out.placement),
-                                      allocate(count, sizeof *out.frame)};
-    struct fmb_client_frame *frame = out.frame;
+                                      allocate(count, sizeof *out.frame),
+                                      allocate(count, sizeof *out.vertices)};
+    size_t frame = 0;
     for (size_t i = 0; i < scene->body_count; i++) {
         const struct scene_body *body = &scene->body[i];
-        out.placement[i] = placement_of(body, frame);
-        for (unsigned k = 0; k < body->body.frame_count; k++)
-            set_frame(fmb_body_frame(&body->body, k), frame++);
+        out.placement[i] = placement_of(body, out.frame + frame);
+        for (unsigned k = 0; k < body->body.frame_count; k++, frame++)
+            out.frame[frame] = frame_of(scene->dim, &body->given[k], out.vertices[frame]);
     }
     return out;
 }
@@ -241,11 +244,13 @@ static bool query(struct answers_bus *answers, struct bus_scene *run)
         .margin = scene->margin,
         .want = want_of(options),
         .method = options->method ? options->method->number : 0,
+        .label = scene->label,
     };
     const int status = fmb_client_query(answers->client, &queried, take_answer, run);
     deliver_remaining(run, status == FMB_OK ? NULL : fmb_client_why(answers->client));
     free(bodies.placement);
     free(bodies.frame);
+    free(bodies.vertices);
     free(pair);
     return advise(answers);
 }

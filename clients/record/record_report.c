@@ -5,6 +5,7 @@
 #include "json_write.h"
 #include "number.h"
 #include "process.h"
+#include "utf8.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -168,7 +169,7 @@ void record_line_show(struct record_line *line, int64_t now_ns, const char *path
              number_grouped(events, number[0]),
              number_grouped((int64_t) ((double) (events - line->events) / seconds), number[1]),
              1e-6 * (double) (bytes - line->bytes) / seconds, number_grouped(lost, number[2]),
-             number_grouped(bytes / 1000000, number[3]), escape_is_text(path) ? path : "?");
+             number_grouped(bytes / 1000000, number[3]), utf8_is_text(path) ? path : "?");
     show(text);
     *line = (struct record_line){true, true, now_ns, events, bytes};
 }

@@ -147,7 +147,8 @@ static struct difference_side side_of_pair(const struct pair_result *result, int
 {
     return (struct difference_side){.status = result->status,
                                     .answer = answer_of(&result->answer, result->dim, dim),
-                                    .certificate = result->certificate};
+                                    .certificate = result->certificate,
+                                    .names_frames = result->names_frames};
 }
 
 enum replay_outcome compare_pairs(const struct compare_options *options,
@@ -171,11 +172,14 @@ enum replay_outcome compare_pairs(const struct compare_options *options,
 
 /* ---- Scenes ---- */
 
-static struct difference difference_of(const struct scene_query *query,
+static struct difference difference_of(const struct replayed *scene,
                                        const struct replayed_pair *pair)
 {
+    const struct scene_query *query = scene->scene;
     struct difference difference = {.dim = dim_of(&query->placement[0]),
-                                    .placement = {pair->a, pair->b}};
+                                    .placement = {pair->a, pair->b},
+                                    .then.names_frames = scene->scene_then->names_frames,
+                                    .now.names_frames = scene->scene_now->names_frames};
     for (int f = 0; f < 2; f++) {
         const unsigned i = difference.placement[f];
         if (i < (unsigned) query->placement_count && i < QUERY_PLACEMENTS_MAX)
@@ -196,7 +200,7 @@ static enum replay_outcome compare_answers(const struct compare_options *options
     struct replayed_pair pair;
     replayed_pairs_begin(scene, &pairs);
     while (replayed_pairs_next(&pairs, &pair)) {
-        struct difference difference = difference_of(scene->scene, &pair);
+        struct difference difference = difference_of(scene, &pair);
         if (pair.then.answered && pair.now.answered &&
             find_difference(options, scene->scene->duration, &difference)) {
             sink(user, &difference);
@@ -224,7 +228,7 @@ static bool is_consistent(const struct scene_query *query, const struct scene_re
         if (query->which == QUERY_PAIRS_ACROSS &&
             (pair[0] >= (unsigned) query->split || pair[1] < (unsigned) query->split))
             return false;
-        const int32_t number = (int32_t) logged_query_pair_number(query, pair[0], pair[1]);
+        const int32_t number = (int32_t) query_pair_number(query, pair[0], pair[1]);
         if (number <= before || number >= result->end_pair)
             return false;
         before = number;

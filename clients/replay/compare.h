@@ -29,6 +29,7 @@ struct difference_side {
     int32_t status;           /* as in the result */
     struct fmb_answer answer; /* all 0 if the status is not OK or the method cannot decide */
     const char *certificate;  /* NULL: none */
+    bool names_frames;        /* as in the result */
 };
 
 struct difference {

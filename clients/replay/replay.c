@@ -112,8 +112,8 @@ static void take_event(struct replay *replay, const struct log_event *event)
     tally->bytes += event->length;
     tally->statuses += kind == LOG_STATUS;
     tally->other_events += kind == LOG_OTHER;
-    if (log_kind_is_version_1(kind, event)) {
-        replay->version_1 = true;
+    if (log_kind_old_version(kind, event)) {
+        replay->old_version = log_kind_old_version(kind, event);
     } else if (log_kind_is_query(kind) || log_kind_is_result(kind)) {
         take_message(replay, kind, event);
     } else if (kind == LOG_DEFINITION) {
@@ -198,10 +198,10 @@ static void close_replay(struct replay *replay)
 
 /* ---- The run ---- */
 
-static void fail_version_1(struct replay *replay)
+static void fail_old_version(struct replay *replay)
 {
-    complain("%s: recorded by version 1, whose messages are others: replay it with that",
-             replay->options->log[replay->input.log]);
+    complain("%s: recorded by version %d, whose messages are others: replay it with that",
+             replay->options->log[replay->input.log], replay->old_version);
     replay->failed = true;
 }
 
@@ -216,9 +216,9 @@ static void read_logs(struct replay *replay)
         else
             take_damage(replay, &damage);
         replay->sink->progress(replay->sink->user, replay->input.passed);
-        if (replay->version_1)
-            fail_version_1(replay);
-        if (replay->version_1 || replay_has_ended(replay))
+        if (replay->old_version)
+            fail_old_version(replay);
+        if (replay->old_version || replay_has_ended(replay))
             return;
     }
     if (outcome == LOG_FAILED)
@@ -248,7 +248,7 @@ bool replay_run(const struct replay_options *options, const struct replay_sink *
     replay->tally = tally;
     if (open_replay(replay)) {
         read_logs(replay);
-        if (!replay->version_1)
+        if (!replay->old_version)
             finish(replay);
     } else {
         replay->failed = true;

@@ -39,9 +39,9 @@ struct replay_options {
 bool replay_extent(const struct replay_options *options, int64_t *size, int64_t *first_utime);
 
 /* Replays, and adds to tally[log_count]. Returns false if a file cannot be opened, read or written,
- * a log was recorded by version 1, or the bus cannot be opened; this was reported on stderr. Also
- * returns false if no service answers or a signal arrived: see tally[0].bus.end. Answers until then
- * are counted. For one thread at a time. */
+ * a log was recorded by an old version, or the bus cannot be opened; this was reported on stderr.
+ * Also returns false if no service answers or a signal arrived: see tally[0].bus.end. Answers until
+ * then are counted. For one thread at a time. */
 bool replay_run(const struct replay_options *options, const struct replay_sink *sink,
                 struct tally *tally);
 

@@ -23,7 +23,8 @@ static void write_side(struct json_writer *json, const char *key, int dim,
     const struct outcome outcome = {
         .error = decided ? NULL : fmb_status_text(side->status ? side->status : FMB_CANNOT_DECIDE),
         .answer = side->answer,
-        .certificate = side->certificate};
+        .certificate = side->certificate,
+        .names_frames = side->names_frames};
     json_begin(json, key, '{');
     report_answer_json(json, dim, &outcome);
     json_end(json, '}');

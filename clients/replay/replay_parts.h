@@ -33,7 +33,8 @@ struct replay {
     /* Queries to answer again, since their handles are now defined; linked by ->pending. */
     struct match_item *defined, **defined_end;
     int64_t first_utime;
-    bool started, failed, version_1;
+    bool started, failed;
+    int old_version; /* that recorded a message; 0: none did */
     struct logged_query query;
     struct definition definition;
     struct scene_query supply; /* without pairs */

@@ -40,18 +40,6 @@ int32_t cursor_bytes(struct cursor *cursor, unsigned char *out, int max)
     return count;
 }
 
-size_t cursor_take_string(struct cursor *cursor, const unsigned char **bytes)
-{
-    const unsigned char *at;
-    const int32_t size = cursor_list(cursor, 1, &at);
-    if (size == 0 || memchr(at, 0, (size_t) size) != at + size - 1) {
-        cursor_fail(cursor, "string without an end, or with two");
-        return 0;
-    }
-    *bytes = at;
-    return (size_t) size - 1;
-}
-
 bool cursor_is_printable(unsigned char byte)
 {
     return byte >= ' ' && byte < 0x7f;
@@ -59,10 +47,9 @@ bool cursor_is_printable(unsigned char byte)
 
 void cursor_string(struct cursor *cursor, char *out, size_t size)
 {
-    const unsigned char *bytes = NULL;
-    size_t length = cursor_take_string(cursor, &bytes);
-    size_t kept = length < size ? length : size - 1;
-    for (size_t i = 0; i < kept; i++)
-        out[i] = cursor_is_printable(bytes[i]) ? (char) bytes[i] : '?';
-    out[kept] = '\0';
+    const char *text = cursor_take_string(cursor);
+    size_t i = 0;
+    for (; text[i] && i < size - 1; i++)
+        out[i] = cursor_is_printable((unsigned char) text[i]) ? text[i] : '?';
+    out[i] = '\0';
 }

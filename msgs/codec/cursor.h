@@ -8,6 +8,7 @@
 #define CURSOR_H
 
 #include "big_endian.h"
+#include "wire_type.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -78,8 +79,9 @@ static inline struct cursor cursor_begin(const void *bytes, uint32_t size, int64
     cursor.end = cursor.at + (size <= INT32_MAX ? size : 0);
     if (size > INT32_MAX)
         cursor_fail(&cursor, "size out of range");
-    else if (cursor_int64(&cursor) != fingerprint)
-        cursor_fail(&cursor, "another message type, or another version of it");
+    const int64_t found = cursor_int64(&cursor);
+    if (!cursor.error && found != fingerprint)
+        cursor_fail(&cursor, wire_type_mismatch(found));
     return cursor;
 }
 
@@ -128,10 +130,17 @@ int32_t cursor_bytes(struct cursor *cursor, unsigned char *out, int max);
 /* The same for 16-bit integers; a negative one becomes a number above 2^31. */
 int32_t cursor_indices(struct cursor *cursor, unsigned *out, int max);
 
-/* Takes a string. Returns its length without the final 0, and in *bytes where it is in the message.
- * After an error returns 0, and *bytes is unchanged. A string without a final 0, or with a 0 before
- * it, is an error. */
-size_t cursor_take_string(struct cursor *cursor, const unsigned char **bytes);
+/* Takes a string. Returns where it is in the message; it ends with its only 0. A string without a
+ * final 0, or with a 0 before it, is an error. After an error returns "". */
+static inline const char *cursor_take_string(struct cursor *cursor)
+{
+    const unsigned char *bytes;
+    const int32_t size = cursor_list(cursor, 1, &bytes);
+    if (size > 0 && memchr(bytes, 0, (size_t) size) == bytes + size - 1)
+        return (const char *) bytes;
+    cursor_fail(cursor, "string without an end, or with two");
+    return "";
+}
 
 /* Reads a string into out, truncated to size bytes (1 or more), final 0 included. Bytes that are
  * not printable become '?'. */

@@ -20,6 +20,7 @@ static inline bool query_id_ok(int64_t id)
     return id >= 0 && id <= QUERY_ID_MAX;
 }
 
+/* Bits of want, of pairs and of scenes. */
 enum { QUERY_WANT_BOX = 1, QUERY_WANT_CERTIFICATE = 2, QUERY_WANT_TIMES = 4, QUERY_WANT_GAP = 8 };
 
 /* Most bytes of a query or result: one datagram, which LCM's Java sends unfragmented. */
@@ -28,7 +29,7 @@ enum { QUERY_BYTES_MAX = 63900 };
 /* Most bytes of a detail text, final 0 included. */
 enum { QUERY_TEXT_MAX = 160 };
 
-enum { QUERY_ORIENTATION_MAX = 4 };
+enum { QUERY_ORIENTATION_MAX = 4, QUERY_NAME_MAX = 64 /* bytes */ };
 
 /* Fields that every query begins with. */
 struct query_header {
@@ -45,12 +46,23 @@ struct query_header {
         };                                             \
     }
 
-/* A body in body coordinates, encoded: the fields dim to numbers of placement_t. Two bodies are the
- * same if and only if these bytes are (so -0 differs from 0); the handle is their hash. Not owned.
- */
+/* A body in body coordinates, encoded: the fields dim to numbers of placement_t (geometry.h reads
+ * them). Two bodies are the same if and only if these bytes are (so -0 differs from 0); the handle
+ * is their hash. Not owned. */
 struct geometry {
     const unsigned char *bytes;
     size_t size;
+};
+
+enum {
+    /* Bytes of a geometry without frames: dim, counts of frames, of counts, and of numbers. */
+    GEOMETRY_NONE_BYTES = 16,
+    /* Most numbers of a frame, and most bytes of a geometry of one frame. */
+    GEOMETRY_FRAME_NUMBERS_MAX = FMB_DIM_MAX + FMB_COMPONENTS_MAX,
+    GEOMETRY_FRAME_BYTES_MAX = GEOMETRY_NONE_BYTES + 1 + 4 + 8 * GEOMETRY_FRAME_NUMBERS_MAX,
+    /* Least bytes of a frame that is supported, a box in 2D; and hence most frames of a message. */
+    GEOMETRY_FRAME_BYTES_MIN = 1 + 8 * 4,
+    QUERY_FRAMES_MAX = QUERY_BYTES_MAX / GEOMETRY_FRAME_BYTES_MIN
 };
 
 /* A body with its pose and velocity. Counts are those of the message, 0 or more and not checked; if
@@ -60,10 +72,14 @@ struct placement {
     struct handle handle; /* all 0: none */
     int32_t dim;          /* 0 or more; not checked */
     int32_t frame_count;  /* 0 with a handle */
+    int32_t count_count;  /* frames by vertices; 0 with a handle */
     int32_t number_count; /* of all frames; 0 with a handle */
     int32_t orientation_count;
     int32_t velocity_count;
     struct geometry geometry; /* points into the message read, or to memory of the writer */
+    /* Ends with a 0; points like geometry; any bytes, not checked. NULL is the same as "". */
+    const char *name;
+    int64_t group; /* 0: none */
     double position[FMB_DIM_MAX];
     double orientation[QUERY_ORIENTATION_MAX];
     double velocity[FMB_DIM_MAX];
@@ -72,53 +88,9 @@ struct placement {
 /* Whether the body is given by its handle alone. */
 static inline bool placement_by_handle(const struct placement *placement)
 {
-    return placement->frame_count == 0 && placement->number_count == 0 &&
-           !handle_is_none(&placement->handle);
+    return placement->frame_count == 0 && placement->count_count == 0 &&
+           placement->number_count == 0 && !handle_is_none(&placement->handle);
 }
-
-/* One frame of a geometry, in body coordinates. */
-struct geometry_frame {
-    int shape;                  /* enum fmb_shape; not checked */
-    int count;                  /* of components */
-    double origin[FMB_DIM_MAX]; /* for a box, its centre */
-    /* [component * dim + axis]; for a box [axis], its full size */
-    double components[FMB_COMPONENTS_MAX];
-};
-
-enum {
-    /* Bytes of a geometry without frames: dim, count of frames, count of numbers. */
-    GEOMETRY_NONE_BYTES = 12,
-    /* Most numbers of a frame, and most bytes of a geometry of one frame. */
-    GEOMETRY_FRAME_NUMBERS_MAX = FMB_DIM_MAX + FMB_COMPONENTS_MAX,
-    GEOMETRY_FRAME_BYTES_MAX = GEOMETRY_NONE_BYTES + 1 + 8 * GEOMETRY_FRAME_NUMBERS_MAX,
-    /* Least bytes of a frame, those of a box in 2D; and hence most frames of a message. */
-    GEOMETRY_FRAME_BYTES_MIN = 1 + 8 * 4,
-    QUERY_FRAMES_MAX = QUERY_BYTES_MAX / GEOMETRY_FRAME_BYTES_MIN
-};
-
-/* Number of numbers of a frame in a geometry, including its origin or centre. 0: there is no such
- * shape in this dimension. */
-int geometry_number_count(int dim, int shape);
-
-/* Encodes the geometry of a placement that names its body by handle: dim, and no frames. */
-void geometry_write_none(int dim, unsigned char out[GEOMETRY_NONE_BYTES]);
-
-/* Iterator over the frames of a geometry. */
-struct geometry_reader {
-    int dim;                             /* not checked */
-    int32_t frames_left;                 /* 0 or more; not checked */
-    int32_t numbers_left;                /* 0 or more; not checked */
-    const unsigned char *shape, *number; /* the next ones, encoded */
-};
-
-/* Begins at the first frame. On input: a geometry that wire.h has decoded, or that was written by
- * the functions above. It must outlive the reader. */
-struct geometry_reader geometry_begin(const struct geometry *geometry);
-
-/* Reads the next frame. Returns false if there are no more; or if there is no such shape in this
- * dimension, or too few numbers are left. Numbers that are left after the last frame are ignored.
- */
-bool geometry_next(struct geometry_reader *reader, struct geometry_frame *out);
 
 struct pair_query {
     QUERY_HEADER;
@@ -137,6 +109,7 @@ struct pair_result {
     char detail[QUERY_TEXT_MAX]; /* "" if OK */
     int32_t method;              /* 0 if not OK */
     int32_t dim;                 /* of box and gap, 2 or 3; 0 if there is neither */
+    bool names_frames;           /* there is a gap, and a body has several frames */
     struct fmb_answer answer;    /* all 0 if not OK */
     const char *certificate;     /* NULL: none. Points into the answerer or the message */
     int64_t compute_ns;
@@ -144,18 +117,19 @@ struct pair_result {
 
 /* ---- Scenes ---- */
 
-enum { QUERY_PAIRS_LISTED = 0, QUERY_PAIRS_ALL = 1, QUERY_PAIRS_ACROSS = 2 };
+enum { QUERY_PAIRS_ALL = 0, QUERY_PAIRS_LISTED = 1, QUERY_PAIRS_ACROSS = 2 };
 
-/* Most valid placements, and most pairs listed, of a query of QUERY_BYTES_MAX: a placement takes 60
+/* Most valid placements, and most pairs listed, of a query of QUERY_BYTES_MAX: a placement takes 77
  * bytes (2D, by handle, at rest) or more, a pair 4. */
 enum {
-    QUERY_PLACEMENT_BYTES_MIN = 60,
+    QUERY_PLACEMENT_BYTES_MIN = 77,
     QUERY_PLACEMENTS_MAX = QUERY_BYTES_MAX / QUERY_PLACEMENT_BYTES_MIN,
     QUERY_PAIRS_MAX = QUERY_BYTES_MAX / 4
 };
 
 struct scene_query {
     QUERY_HEADER;
+    const char *label; /* any bytes; in memory as placement.name */
     double duration;
     int32_t method, want;
     double margin;
@@ -168,6 +142,19 @@ struct scene_query {
     unsigned pair[QUERY_PAIRS_MAX][2];
     unsigned ignored[QUERY_PAIRS_MAX][2];
 };
+
+/* The number of a pair of placements a < b that is among all pairs, or among those across. */
+int64_t query_pair_number(const struct scene_query *query, unsigned a, unsigned b);
+
+/* Memory of query_pairs_decided(): a bit for each pair of placements. */
+struct query_marks {
+    unsigned char bit[QUERY_PLACEMENTS_MAX * QUERY_PLACEMENTS_MAX / 8 + 1];
+};
+
+/* The number of pairs from first_pair on and before end_pair that are decided: neither ignored nor
+ * within a group. No listed pair is. */
+int64_t query_pairs_decided(const struct scene_query *query, int32_t end_pair,
+                            struct query_marks *marks);
 
 /* Capacity of a result: a named pair takes at least five bytes, a number eight. */
 enum {
@@ -191,6 +178,7 @@ struct scene_result {
     int32_t verdict_count; /* number of named pairs, or of answered pairs from first_pair on */
     int32_t contact_count; /* verdicts that touch or overlap */
     bool names_pairs, has_times, has_boxes, has_gaps;
+    bool names_frames;                          /* has_gaps, and a body has several frames */
     unsigned unknown[QUERY_PLACEMENTS_MAX];     /* [unknown_count] indices, ascending */
     struct handle handle[QUERY_PLACEMENTS_MAX]; /* [handle_count], in the order of placements */
     unsigned char verdict[QUERY_VERDICTS_MAX];
@@ -223,7 +211,8 @@ static inline bool query_same_gap(const struct fmb_gap *a, const struct fmb_gap 
            memcmp(a->bounds, b->bounds, sizeof a->bounds) == 0 &&
            memcmp(a->direction, b->direction, sizeof a->direction) == 0 &&
            memcmp(&a->time, &b->time, sizeof a->time) == 0 &&
-           memcmp(a->witness, b->witness, sizeof a->witness) == 0;
+           memcmp(a->witness, b->witness, sizeof a->witness) == 0 &&
+           memcmp(a->frame, b->frame, sizeof a->frame) == 0;
 }
 
 /* ---- Definitions ---- */
@@ -252,6 +241,18 @@ struct definition {
         struct handle handle;
         struct geometry geometry; /* points into the message read, or to memory of the writer */
     } body[QUERY_BODIES_MAX];
+};
+
+/* ---- Names ---- */
+
+/* Each takes at least 8 + 8 + 4 + 1 bytes, after 20 of the message. */
+enum { QUERY_NAMES_MAX = (QUERY_BYTES_MAX - 20) / 21 };
+
+struct names {
+    int64_t utime;
+    int32_t count;
+    int64_t client_id[QUERY_NAMES_MAX], body_id[QUERY_NAMES_MAX];
+    const char *name[QUERY_NAMES_MAX]; /* any bytes; in memory as placement.name */
 };
 
 #endif

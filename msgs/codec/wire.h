@@ -12,7 +12,8 @@
  *   only with a verdict, is printable ASCII and shorter than FMB_CERTIFICATE_MAX.
  * - The bounds of a gap are ordered, and 0 for bodies that touch; its direction is finite. Witness
  *   points are present if and only if the bodies are separated. A NaN, where the message types have
- *   one, has the bits 7ff8000000000000 (Java's NaN).
+ *   one, has the bits 7ff8000000000000 (Java's NaN). Indices of frames are not negative, and 0
+ *   where a gap is NaN.
  * - A scene has as many named pairs, times, boxes and gaps as its verdicts require. Named pairs are
  *   in order; those that are separated have a gap. Unknown bodies are present if and only if the
  *   status is UNKNOWN_BODY. If the status is not OK, there are no answers.
@@ -22,10 +23,12 @@
 #ifndef WIRE_H
 #define WIRE_H
 
+#include "geometry.h"
 #include "query.h"
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <string.h>
 
 /* Channel names, without a prefix (bus_channel()). */
 #define WIRE_PAIR_QUERY "FMB_PAIR_QUERY"
@@ -35,36 +38,37 @@
 #define WIRE_DEFINITION_QUERY "FMB_DEFINITION_QUERY"
 #define WIRE_DEFINITION "FMB_DEFINITION"
 #define WIRE_STATUS "FMB_STATUS"
+#define WIRE_NAMES "FMB_NAMES"
 
 /* Most bytes of a heartbeat. */
-enum { WIRE_STATUS_BYTES_MAX = 1400 };
+enum { WIRE_STATUS_BYTES_MAX = 2000 };
 
-/* The counters of the heartbeat, int64_t each, in the order of status_t.lcm: those before results,
- * and those after it. */
-#define WIRE_COUNTERS_BEFORE(X) \
-    X(uptime_us)                \
-    X(receive_buffer)           \
-    X(received)                 \
-    X(answered)                 \
-    X(unsent)                   \
-    X(scenes)                   \
-    X(definitions)              \
-    X(pairs)
-#define WIRE_COUNTERS_AFTER(X) \
-    X(malformed)               \
-    X(foreign)                 \
-    X(dropped)                 \
-    X(waiting)                 \
-    X(most_waiting)            \
-    X(bodies)                  \
-    X(frames)                  \
-    X(frame_capacity)          \
-    X(ids)                     \
-    X(hits)                    \
-    X(misses)                  \
-    X(evictions)               \
-    X(compute_p50_ns)          \
-    X(compute_p99_ns)          \
+/* The counters of the heartbeat, except those of results. */
+#define WIRE_COUNTERS(X) \
+    X(uptime_us)         \
+    X(receive_buffer)    \
+    X(received)          \
+    X(answered)          \
+    X(unsent)            \
+    X(expired)           \
+    X(refusals_unsent)   \
+    X(scenes)            \
+    X(definitions)       \
+    X(pairs)             \
+    X(malformed)         \
+    X(foreign)           \
+    X(dropped)           \
+    X(waiting)           \
+    X(most_waiting)      \
+    X(bodies)            \
+    X(frames)            \
+    X(frame_capacity)    \
+    X(ids)               \
+    X(hits)              \
+    X(misses)            \
+    X(evictions)         \
+    X(compute_p50_ns)    \
+    X(compute_p99_ns)    \
     X(compute_max_ns)
 
 /* The heartbeat (status_t.lcm). */
@@ -72,10 +76,9 @@ struct wire_status {
     int64_t utime, server_id;
     char version[32];
 #define X(name) int64_t name;
-    WIRE_COUNTERS_BEFORE(X)
-    int64_t results[FMB_STATUS_COUNT]; /* [status] */
-    WIRE_COUNTERS_AFTER(X)
+    WIRE_COUNTERS(X)
 #undef X
+    int64_t results[FMB_STATUS_COUNT]; /* [status] */
 };
 
 /* Readers. On input: size bytes of payload.
@@ -92,6 +95,7 @@ const char *wire_read_definition_query(const void *bytes, uint32_t size,
 const char *wire_read_definition(const void *bytes, uint32_t size, struct hasher *hasher,
                                  struct definition *out);
 const char *wire_read_status(const void *bytes, uint32_t size, struct wire_status *out);
+const char *wire_read_names(const void *bytes, uint32_t size, struct names *out);
 
 /* Reads answer k of a result. *contact: the number of contacts before it; updated. */
 void wire_scene_answer(const struct scene_result *result, int32_t k, int32_t *contact,
@@ -120,27 +124,37 @@ size_t wire_write_definition(const struct definition *definition,
                              unsigned char out[QUERY_BYTES_MAX]);
 size_t wire_write_status(const struct wire_status *status,
                          unsigned char out[WIRE_STATUS_BYTES_MAX]);
+size_t wire_write_names(const struct names *names, unsigned char out[QUERY_BYTES_MAX]);
 
 /* Sizes of messages without their lists. A pair query adds its placements; a scene query its
- * placements, and WIRE_PAIR_BYTES for each pair listed or ignored. A scene result (size with the
- * longest detail) adds 2 bytes for each unknown body, 16 for each handle, 1 for each verdict, 4 for
- * each named pair, and 8 for each number of times, boxes and gaps. A definition adds 16 bytes and
- * the geometry for each body. A pair result always fits. */
+ * label, its placements, and WIRE_PAIR_BYTES for each pair listed or ignored. A scene result (size
+ * with the longest detail) adds 2 bytes for each unknown body, 16 for each handle, 1 for each
+ * verdict, 4 for each named pair, 8 for each number of times and boxes, and wire_gap_bytes() for
+ * each gap. A definition adds 16 bytes and the geometry for each body; names 21 bytes and the name
+ * for each body. A pair result always fits. */
 enum {
     WIRE_PAIR_QUERY_BYTES = 8 + 3 * 8 + 8 + 2 * 4,
-    WIRE_SCENE_QUERY_BYTES = 8 + 3 * 8 + 8 + 2 * 4 + 8 + 3 * 4 + 3 * 4,
-    WIRE_SCENE_RESULT_BYTES = 8 + 4 * 8 + 4 + 4 + QUERY_TEXT_MAX + 4 + 10 * 4 + 8,
+    WIRE_SCENE_QUERY_BYTES = 8 + 3 * 8 + 4 + 1 + 8 + 2 * 4 + 8 + 3 * 4 + 3 * 4,
+    WIRE_SCENE_RESULT_BYTES = 8 + 4 * 8 + 4 + 4 + QUERY_TEXT_MAX + 4 + 11 * 4 + 8,
     WIRE_DEFINITION_BYTES = 8 + 4 * 8 + 4 + 4 + QUERY_TEXT_MAX + 8 + 4,
+    WIRE_NAMES_BYTES = 8 + 8 + 4,
     WIRE_PAIR_BYTES = 4
 };
+
+/* Bytes by which a name or a label lengthens a message. */
+static inline size_t wire_text_bytes(const char *text)
+{
+    return text ? strlen(text) : 0;
+}
 
 /* Bytes of an encoded placement. */
 size_t wire_placement_bytes(const struct placement *placement);
 
-/* Bytes of an encoded gap in a scene: bounds, direction, time and points. */
-static inline int32_t wire_gap_bytes(int dim)
+/* Bytes of an encoded gap in a scene: bounds, direction, time and points; frames if they are named.
+ */
+static inline int32_t wire_gap_bytes(int dim, bool names_frames)
 {
-    return 8 * (2 + dim + 1 + 2 * dim);
+    return 8 * (2 + dim + 1 + 2 * dim) + (names_frames ? 2 * 2 : 0);
 }
 
 #endif

@@ -36,13 +36,14 @@ size_t wire_write_definition_query(const struct definition_query *query,
  * checked. */
 static void read_body(struct cursor *cursor, struct hasher *hasher, struct query_body *out)
 {
-    int32_t dim, frames, numbers;
     struct cursor local = *cursor;
+    struct placement placement;
     wire_read_handle(&local, &out->handle);
-    wire_read_geometry(&local, &out->geometry, &dim, &frames, &numbers);
+    wire_read_geometry(&local, &placement);
+    out->geometry = placement.geometry;
     if (!local.error) {
         const struct handle handle = hasher_handle(hasher, out->geometry.bytes, out->geometry.size);
-        if (frames == 0)
+        if (placement.frame_count == 0)
             cursor_fail(&local, "a body without frames");
         if (!handle_equal(&handle, &out->handle))
             cursor_fail(&local, "a body that does not match its handle");

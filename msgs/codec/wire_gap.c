@@ -61,17 +61,28 @@ static bool set_gap(unsigned char verdict, const double *direction, const double
     return is_witness(witness, points);
 }
 
-int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t count,
-                   int32_t witnesses, struct fmb_gap *out)
+/* Sets the frames. Returns whether they are not negative, and 0 if there is no gap. */
+static bool set_frames(const unsigned char *bytes, struct fmb_gap *out)
 {
-    const unsigned char *bound, *direction, *witness;
+    const int most = query_has_gap(out) ? INT16_MAX : 0;
+    for (int f = 0; f < 2; f++)
+        out->frame[f] = big_endian_16(bytes + 2 * f);
+    return out->frame[0] <= (unsigned) most && out->frame[1] <= (unsigned) most;
+}
+
+int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t count,
+                   int32_t witnesses, bool *names_frames, struct fmb_gap *out)
+{
+    const unsigned char *bound, *direction, *witness, *frame;
     const int64_t bounds = cursor_list(cursor, 8, &bound);
     const int64_t directions = cursor_list(cursor, 8, &direction);
     const int64_t numbers = cursor_list(cursor, 8, &witness);
+    const int64_t frames = cursor_list(cursor, 2, &frame);
     const int dim = bounds == 0 ? 0 : directions == 2 * (int64_t) count ? 2 : 3;
     const int points = dim > 0 ? 1 + 2 * dim : 0;
     if (bounds != (dim > 0 ? 2 * (int64_t) count : 0) || count * (dim > 0) > QUERY_GAPS_MAX ||
-        directions != (int64_t) dim * count || numbers != (int64_t) points * witnesses)
+        directions != (int64_t) dim * count || numbers != (int64_t) points * witnesses ||
+        (frames > 0 && frames != (dim > 0 ? 2 * (int64_t) count : 0)))
         cursor_fail(cursor, "gaps that do not go with the verdicts");
     for (int32_t i = 0; i < count && dim > 0 && !cursor->error; i++) {
         double unit[FMB_DIM_MAX], point[1 + 2 * FMB_DIM_MAX];
@@ -81,9 +92,11 @@ int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t 
         take_numbers(bound + 16 * i, out[i].bounds, 2);
         take_numbers(direction + 8 * dim * i, unit, dim);
         take_numbers(witness + 8 * points * i, point, witnesses > 0 ? points : 0);
-        if (!set_gap(verdict[i], unit, point, dim, &out[i]))
+        if (!set_gap(verdict[i], unit, point, dim, &out[i]) ||
+            (frames > 0 && !set_frames(frame + 4 * i, &out[i])))
             cursor_fail(cursor, "a gap that is no gap");
     }
+    *names_frames = frames > 0;
     return dim;
 }
 
@@ -97,7 +110,7 @@ static void write_numbers(struct writer *writer, bool some, const double *number
 }
 
 void wire_write_gaps(struct writer *writer, const struct fmb_gap *gap, int32_t count,
-                     int32_t witnesses, int dim)
+                     int32_t witnesses, bool names_frames, int dim)
 {
     const int32_t gaps = dim > 0 ? count : 0, points = dim > 0 ? witnesses : 0;
     writer_int32(writer, 2 * gaps);
@@ -113,4 +126,8 @@ void wire_write_gaps(struct writer *writer, const struct fmb_gap *gap, int32_t c
         for (int side = 0; side < 2; side++)
             write_numbers(writer, some, gap[i].witness[side], dim);
     }
+    writer_int32(writer, names_frames ? 2 * gaps : 0);
+    for (int32_t i = 0; i < gaps && names_frames; i++)
+        for (int f = 0; f < 2; f++)
+            big_endian_put_16(writer_take(writer, 2), (uint16_t) gap[i].frame[f]);
 }

@@ -11,24 +11,21 @@
 #include <string.h>
 
 /* The fixed fields of a result, the most numbers that its lists can have, and its texts. */
-static_assert(8 + 6 * 8 + 2 * HANDLE_BYTES + 10 * 4 + 8 * (5 + 5 * FMB_DIM_MAX) + QUERY_TEXT_MAX +
-                      FMB_CERTIFICATE_MAX + 8 <=
+static_assert(8 + 6 * 8 + 2 * HANDLE_BYTES + 11 * 4 + 2 * 2 + 8 * (5 + 5 * FMB_DIM_MAX) +
+                      QUERY_TEXT_MAX + FMB_CERTIFICATE_MAX + 8 <=
                   QUERY_BYTES_MAX,
               "a result is one datagram");
 
 /* The constants of the message types are equal to those of the engine. */
-static_assert((int) FMB_CUBOID == FMB_MSGS_PLACEMENT_T_SHAPE_CUBOID &&
-                  (int) FMB_TETRAHEDRON == FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON &&
-                  (int) FMB_FACE == FMB_MSGS_PLACEMENT_T_SHAPE_FACE &&
-                  (int) FMB_BOX == FMB_MSGS_PLACEMENT_T_SHAPE_BOX,
-              "shapes");
 static_assert((int) FMB_SEPARATED == FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED &&
                   (int) FMB_TOUCHING == FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING &&
                   (int) FMB_OVERLAPPING == FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING,
               "verdicts");
 static_assert((int) QUERY_WANT_BOX == FMB_MSGS_PAIR_QUERY_T_WANT_BOX &&
                   (int) QUERY_WANT_CERTIFICATE == FMB_MSGS_PAIR_QUERY_T_WANT_CERTIFICATE &&
-                  (int) QUERY_WANT_GAP == FMB_MSGS_PAIR_QUERY_T_WANT_GAP,
+                  (int) QUERY_WANT_TIMES == FMB_MSGS_PAIR_QUERY_T_WANT_TIMES &&
+                  (int) QUERY_WANT_GAP == FMB_MSGS_PAIR_QUERY_T_WANT_GAP &&
+                  (int) FMB_WANT_BOX == QUERY_WANT_BOX && (int) FMB_WANT_GAP == QUERY_WANT_GAP,
               "wants");
 #define X(name, number, text) \
     static_assert((int) FMB_##name == FMB_MSGS_PAIR_RESULT_T_STATUS_##name, text);
@@ -90,7 +87,8 @@ static void read_contact(struct cursor *cursor, struct fmb_answer *out)
 static void read_gap(struct cursor *cursor, struct pair_result *out)
 {
     const unsigned char verdict = (unsigned char) out->answer.verdict;
-    const int dim = wire_read_gaps(cursor, &verdict, 1, verdict == FMB_SEPARATED, &out->answer.gap);
+    const int dim = wire_read_gaps(cursor, &verdict, 1, verdict == FMB_SEPARATED,
+                                   &out->names_frames, &out->answer.gap);
     out->answer.has_gap = dim > 0;
     if (dim > 0 && ((out->dim > 0 && out->dim != dim) || !query_has_gap(&out->answer.gap)))
         cursor_fail(cursor, "no gap, or one of another dimension than the box");
@@ -99,8 +97,8 @@ static void read_gap(struct cursor *cursor, struct pair_result *out)
 
 static void read_certificate(struct cursor *cursor, struct pair_result *out)
 {
-    const unsigned char *bytes = NULL;
-    size_t length = cursor_take_string(cursor, &bytes);
+    const char *text = cursor_take_string(cursor);
+    const size_t length = strlen(text);
     if (length == 0)
         return;
     if (out->status != FMB_OK)
@@ -108,9 +106,9 @@ static void read_certificate(struct cursor *cursor, struct pair_result *out)
     if (length >= FMB_CERTIFICATE_MAX)
         cursor_fail(cursor, "a certificate that is too long");
     for (size_t i = 0; i < length && !cursor->error; i++)
-        if (!cursor_is_printable(bytes[i]))
+        if (!cursor_is_printable((unsigned char) text[i]))
             cursor_fail(cursor, "a certificate that is not printable");
-    out->certificate = (const char *) bytes;
+    out->certificate = text;
 }
 
 const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_result *out)
@@ -175,8 +173,8 @@ size_t wire_write_pair_result(const struct pair_result *result, unsigned char ou
     writer_doubles(&writer, result->answer.contact, result->answer.has_contact ? 2 : 0);
     write_box(&writer, result);
     wire_write_gaps(&writer, &result->answer.gap, 1, result->answer.gap.has_witness,
-                    result->answer.has_gap ? result->dim : 0);
-    writer_string(&writer, result->certificate ? result->certificate : "");
+                    result->names_frames, result->answer.has_gap ? result->dim : 0);
+    wire_write_text(&writer, result->certificate);
     writer_int64(&writer, result->compute_ns);
     return writer_end(&writer, out);
 }

@@ -44,14 +44,14 @@ void wire_write_handles(struct writer *writer, const struct handle *handles, int
         memcpy(writer_take(writer, size), handles, size);
 }
 
-void wire_read_geometry(struct cursor *cursor, struct geometry *out, int32_t *dim, int32_t *frames,
-                        int32_t *numbers)
+void wire_read_geometry(struct cursor *cursor, struct placement *out)
 {
     const unsigned char *begin = cursor->at, *list;
-    *dim = cursor_int32(cursor);
-    *frames = cursor_list(cursor, 1, &list);
-    *numbers = cursor_list(cursor, 8, &list);
-    *out = (struct geometry){begin, (size_t) (cursor->at - begin)};
+    out->dim = cursor_int32(cursor);
+    out->frame_count = cursor_list(cursor, 1, &list);
+    out->count_count = cursor_list(cursor, 4, &list);
+    out->number_count = cursor_list(cursor, 8, &list);
+    out->geometry = (struct geometry){begin, (size_t) (cursor->at - begin)};
 }
 
 /* Reads count numbers. The first max are stored; if there are fewer, the remainder of out is 0. */
@@ -71,9 +71,11 @@ void wire_read_placement(struct cursor *cursor, struct placement *out)
     struct cursor local = *cursor;
     out->body_id = cursor_int64(&local);
     wire_read_handle(&local, &out->handle);
-    wire_read_geometry(&local, &out->geometry, &out->dim, &out->frame_count, &out->number_count);
+    wire_read_geometry(&local, out);
     if (out->dim < 0)
         cursor_fail(&local, "negative count");
+    out->name = cursor_take_string(&local);
+    out->group = cursor_int64(&local);
     read_numbers(&local, out->dim, out->position, FMB_DIM_MAX);
     out->orientation_count = cursor_count(&local, 8);
     read_numbers(&local, out->orientation_count, out->orientation, QUERY_ORIENTATION_MAX);
@@ -88,6 +90,8 @@ void wire_write_placement(struct writer *writer, const struct placement *placeme
     writer_int64(writer, placement->body_id);
     wire_write_handle(writer, &placement->handle);
     memcpy(writer_take(writer, geometry->size), geometry->bytes, geometry->size);
+    wire_write_text(writer, placement->name);
+    writer_int64(writer, placement->group);
     for (int axis = 0; axis < placement->dim; axis++)
         writer_double(writer, placement->position[axis]);
     writer_doubles(writer, placement->orientation, placement->orientation_count);
@@ -98,5 +102,6 @@ size_t wire_placement_bytes(const struct placement *placement)
 {
     const size_t numbers =
         (size_t) (placement->dim + placement->orientation_count + placement->velocity_count);
-    return 8 + HANDLE_BYTES + placement->geometry.size + 4 + 4 + sizeof(double) * numbers;
+    return 8 + HANDLE_BYTES + placement->geometry.size + 4 + wire_text_bytes(placement->name) + 1 +
+           8 + 4 + 4 + sizeof(double) * numbers;
 }

@@ -41,19 +41,25 @@ int32_t wire_read_handles(struct cursor *cursor, struct handle *out, int max);
 
 void wire_write_handles(struct writer *writer, const struct handle *handles, int32_t count);
 
-/* Reads the fields dim to numbers of a geometry. On output: *out points into the message; *frames
- * and *numbers are the counts. Neither is checked for consistency with dim. */
-void wire_read_geometry(struct cursor *cursor, struct geometry *out, int32_t *dim, int32_t *frames,
-                        int32_t *numbers);
+/* Reads the fields dim to numbers of a placement. On output: *out has these fields; its geometry
+ * points into the message. The counts are not checked for consistency. */
+void wire_read_geometry(struct cursor *cursor, struct placement *out);
 
-/* Reads the lists of gaps: bounds, directions, witnesses. There is a gap for each of count
+/* Writes a text; NULL is "". */
+static inline void wire_write_text(struct writer *writer, const char *text)
+{
+    writer_string(writer, text ? text : "");
+}
+
+/* Reads the lists of gaps: bounds, directions, witnesses, frames. There is a gap for each of count
  * verdicts, or for none; witnesses is the number of gaps with a witness in the encoding (it depends
- * on the message type, and is 0 or count). Returns the dimension of the gaps; 0: there are none. */
+ * on the message type, and is 0 or count). *names_frames: whether frames are present. Returns the
+ * dimension of the gaps; 0: there are none. */
 int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t count,
-                   int32_t witnesses, struct fmb_gap *out);
+                   int32_t witnesses, bool *names_frames, struct fmb_gap *out);
 
 /* Writes the lists of gaps. On input: as above; dim 0: there are none. */
 void wire_write_gaps(struct writer *writer, const struct fmb_gap *gap, int32_t count,
-                     int32_t witnesses, int dim);
+                     int32_t witnesses, bool names_frames, int dim);
 
 #endif

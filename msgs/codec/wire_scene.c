@@ -3,7 +3,6 @@
 
 #include "wire_placement.h"
 
-#include "fmb_msgs_pair_query_t.h"
 #include "fmb_msgs_scene_query_t.h"
 #include "fmb_msgs_scene_result_t.h"
 
@@ -15,14 +14,9 @@ static_assert((int) QUERY_PAIRS_LISTED == FMB_MSGS_SCENE_QUERY_T_PAIRS_LISTED &&
                   (int) QUERY_PAIRS_ALL == FMB_MSGS_SCENE_QUERY_T_PAIRS_ALL &&
                   (int) QUERY_PAIRS_ACROSS == FMB_MSGS_SCENE_QUERY_T_PAIRS_ACROSS,
               "which pairs");
-static_assert((int) QUERY_WANT_BOX == FMB_MSGS_SCENE_QUERY_T_WANT_BOX &&
-                  (int) QUERY_WANT_TIMES == FMB_MSGS_SCENE_QUERY_T_WANT_TIMES &&
-                  (int) QUERY_WANT_GAP == FMB_MSGS_SCENE_QUERY_T_WANT_GAP &&
-                  FMB_MSGS_SCENE_QUERY_T_WANT_TIMES != FMB_MSGS_PAIR_QUERY_T_WANT_CERTIFICATE,
-              "wants");
 
 /* Least bytes of a placement: one of dimension 0, which is read but not valid. */
-enum { PLACEMENT_BYTES_LEAST = 44 };
+enum { PLACEMENT_BYTES_LEAST = 61 };
 
 /* ---- Queries ---- */
 
@@ -52,6 +46,7 @@ const char *wire_read_scene_query(const void *bytes, uint32_t size, struct scene
 {
     struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_scene_query_t_get_hash());
     wire_read_ids(&cursor, &out->header);
+    out->label = cursor_take_string(&cursor);
     out->duration = cursor_double(&cursor);
     out->method = cursor_int32(&cursor);
     out->want = cursor_int32(&cursor);
@@ -69,6 +64,7 @@ size_t wire_write_scene_query(const struct scene_query *query, unsigned char out
 {
     struct writer writer = writer_begin(out, QUERY_BYTES_MAX, __fmb_msgs_scene_query_t_get_hash());
     wire_write_ids(&writer, &query->header);
+    wire_write_text(&writer, query->label);
     writer_double(&writer, query->duration);
     writer_int32(&writer, query->method);
     writer_int32(&writer, query->want);
@@ -168,7 +164,8 @@ static void read_boxes(struct cursor *cursor, struct scene_result *out)
 static void read_gaps(struct cursor *cursor, struct scene_result *out)
 {
     const int32_t count = out->verdict_count;
-    const int dim = wire_read_gaps(cursor, out->verdict, count, count, out->gap);
+    const int dim =
+        wire_read_gaps(cursor, out->verdict, count, count, &out->names_frames, out->gap);
     out->has_gaps = dim > 0;
     if (dim > 0 && out->dim > 0 && dim != out->dim)
         cursor_fail(cursor, "gaps of another dimension than the boxes");
@@ -241,7 +238,7 @@ size_t wire_write_scene_result(const struct scene_result *result,
     writer_doubles(&writer, result->times, result->has_times ? 2 * contacts : 0);
     writer_doubles(&writer, result->boxes, result->has_boxes ? 2 * result->dim * contacts : 0);
     wire_write_gaps(&writer, result->gap, result->verdict_count, result->verdict_count,
-                    result->has_gaps ? result->dim : 0);
+                    result->names_frames, result->has_gaps ? result->dim : 0);
     writer_int64(&writer, result->compute_ns);
     return writer_end(&writer, out);
 }

@@ -105,10 +105,14 @@ static void refuse_method(const struct fmb_method *method, enum fmb_status statu
              fmb_status_text(result->status));
 }
 
-static void set_dim(const struct pair_query *query, struct pair_result *result)
+/* Sets the fields that describe box and gap. */
+static void set_form(const struct pair_query *query, const struct used_body used[2],
+                     struct pair_result *result)
 {
-    const bool used = result->answer.has_box || result->answer.has_gap;
-    result->dim = used ? query->placement[0].dim : 0;
+    const bool has_dim = result->answer.has_box || result->answer.has_gap;
+    result->dim = has_dim ? query->placement[0].dim : 0;
+    result->names_frames =
+        result->answer.has_gap && (used[0].body->frame_count > 1 || used[1].body->frame_count > 1);
 }
 
 static void decide(struct answerer *answerer, struct pair_result *result,
@@ -117,8 +121,7 @@ static void decide(struct answerer *answerer, struct pair_result *result,
     const struct fmb_method *method = fmb_method_by_number(query->method);
     const struct fmb_placement placement[2] = {answerer_place(&query->placement[0], used[0].body),
                                                answerer_place(&query->placement[1], used[1].body)};
-    const unsigned want = (query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0) |
-                          (query->want & QUERY_WANT_GAP ? FMB_WANT_GAP : 0);
+    const unsigned want = (unsigned) query->want & (FMB_WANT_BOX | FMB_WANT_GAP);
     const enum fmb_status status =
         fmb_decide(method, &placement[0], &placement[1], query->duration, want, &result->answer);
     if (status != FMB_OK) {
@@ -126,7 +129,7 @@ static void decide(struct answerer *answerer, struct pair_result *result,
         return;
     }
     result->method = method->number;
-    set_dim(query, result);
+    set_form(query, used, result);
     if (query->want & QUERY_WANT_CERTIFICATE)
         certify(answerer, placement, query->duration, result);
 }
@@ -292,7 +295,7 @@ static void take_answer(struct pair_job *job, const struct fmb_scene_answers *an
     answer->has_gap = job->query.want & QUERY_WANT_GAP;
     if (answer->has_gap)
         answer->gap = answers->gaps[0];
-    set_dim(&job->query, result);
+    set_form(&job->query, job->used, result);
 }
 
 bool pair_job_step(struct pair_job *job)

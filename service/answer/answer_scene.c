@@ -23,14 +23,14 @@ struct scene_job {
     struct answerer *answerer; /* of the query in progress */
     int32_t next;              /* the next placement in FINDING and ADDING */
     int64_t frames;            /* of the placements before next in FINDING, then of all */
+    bool several_frames;       /* of a body */
     long capacity;             /* bytes of the result that are left for answers */
     struct fmb_scene scene;
     struct fmb_scene_state *state; /* in memory */
     void *memory;                  /* owned; fmb_scene_bytes(&limits) bytes */
     struct used_body used[QUERY_PLACEMENTS_MAX];
     struct fmb_placement placement[QUERY_PLACEMENTS_MAX];
-    /* Bit bit_of(pair), see check_ignored() and count_ignored(); other bits have no meaning. */
-    unsigned char ignored[QUERY_PLACEMENTS_MAX * QUERY_PLACEMENTS_MAX / 8 + 1];
+    struct query_marks marks; /* bit_of(pair) in check_ignored(); also of query_pairs_decided() */
     struct scene_result result;
     struct scene_query query;
     struct query_bodies bodies;
@@ -75,7 +75,7 @@ struct scene_result *scene_job_result(struct scene_job *job)
     return &job->result;
 }
 
-/* Index of the bit of a pair, in either order, in scene_job.ignored. */
+/* Index of the bit of a pair, in either order, in scene_job.marks. */
 static size_t bit_of(const unsigned pair[2])
 {
     const unsigned lower = pair[0] < pair[1] ? pair[0] : pair[1];
@@ -83,39 +83,15 @@ static size_t bit_of(const unsigned pair[2])
     return (size_t) lower * QUERY_PLACEMENTS_MAX + upper;
 }
 
-/* Number of different ignored pairs among those from first_pair to end_pair, of all pairs or those
- * across. scene_job.ignored: whether a pair was counted. */
-static int32_t count_ignored(struct scene_job *job)
-{
-    const struct scene_query *query = &job->query;
-    const int64_t n = query->placement_count, split = query->split;
-    int32_t count = 0;
-    for (int32_t i = 0; i < query->ignored_count / 2; i++)
-        job->ignored[bit_of(query->ignored[i]) / 8] = 0;
-    for (int32_t i = 0; i < query->ignored_count / 2; i++) {
-        const size_t bit = bit_of(query->ignored[i]);
-        const int64_t a = (int64_t) bit / QUERY_PLACEMENTS_MAX, b = bit % QUERY_PLACEMENTS_MAX;
-        const bool across = query->which == QUERY_PAIRS_ACROSS;
-        const int64_t number =
-            across ? a * (n - split) + b - split : a * (2 * n - a - 1) / 2 + b - a - 1;
-        if ((across && (a >= split || b < split)) || number < query->first_pair ||
-            number >= job->result.end_pair || job->ignored[bit / 8] >> bit % 8 & 1)
-            continue;
-        job->ignored[bit / 8] |= (unsigned char) (1u << bit % 8);
-        count++;
-    }
-    return count;
-}
-
 int32_t scene_job_decided(struct scene_job *job)
 {
     const struct scene_result *result = scene_job_result(job);
     if (result->status != FMB_OK)
         return 0;
-    int32_t pairs = result->end_pair - job->query.first_pair;
+    int64_t pairs = query_pairs_decided(&job->query, result->end_pair, &job->marks);
     for (int32_t i = 0; i < result->verdict_count; i++)
         pairs -= result->verdict[i] == 0;
-    return result->names_pairs ? pairs - count_ignored(job) : pairs;
+    return (int32_t) pairs;
 }
 
 /* Releases the bodies of a query in progress, which ends it. */
@@ -141,6 +117,7 @@ static void begin_result(const struct answerer *answerer, const struct query_hea
     result->unknown_count = result->handle_count = 0;
     result->verdict_count = result->contact_count = 0;
     result->names_pairs = result->has_times = result->has_boxes = result->has_gaps = false;
+    result->names_frames = false;
 }
 
 void answer_scene_refused(const struct answerer *answerer, const struct query_header *query,
@@ -216,14 +193,29 @@ static bool check_ignored(struct check_context *context, struct scene_job *job)
     if (query->ignored_count == 0)
         return true;
     for (int32_t i = 0; i < query->index_count / 2; i++)
-        job->ignored[bit_of(query->pair[i]) / 8] &=
+        job->marks.bit[bit_of(query->pair[i]) / 8] &=
             (unsigned char) ~(1u << bit_of(query->pair[i]) % 8);
     for (int32_t i = 0; i < query->ignored_count / 2; i++)
-        job->ignored[bit_of(query->ignored[i]) / 8] |=
+        job->marks.bit[bit_of(query->ignored[i]) / 8] |=
             (unsigned char) (1u << bit_of(query->ignored[i]) % 8);
     for (int32_t i = 0; i < query->index_count / 2; i++)
-        if (job->ignored[bit_of(query->pair[i]) / 8] >> bit_of(query->pair[i]) % 8 & 1)
+        if (job->marks.bit[bit_of(query->pair[i]) / 8] >> bit_of(query->pair[i]) % 8 & 1)
             return check_refuse_at(context, FMB_BAD_PAIR, "indices", 2 * i, "a pair to ignore");
+    return true;
+}
+
+/* No listed pair may be within a group. */
+static bool check_groups(struct check_context *context, const struct scene_query *query)
+{
+    const struct placement *placement = query->placement;
+    bool groups = false;
+    for (int32_t i = 0; i < query->placement_count; i++)
+        groups = groups || placement[i].group;
+    for (int32_t i = 0; groups && i < query->index_count / 2; i++) {
+        const int64_t group = placement[query->pair[i][0]].group;
+        if (group && group == placement[query->pair[i][1]].group)
+            return check_refuse_at(context, FMB_BAD_PAIR, "indices", 2 * i, "a pair of one group");
+    }
     return true;
 }
 
@@ -271,7 +263,7 @@ static bool check_which(struct check_context *context, const struct scene_query 
 {
     const struct fmb_method *method = fmb_method_by_number(query->method);
     const bool across = query->which == QUERY_PAIRS_ACROSS;
-    if (query->which < QUERY_PAIRS_LISTED || query->which > QUERY_PAIRS_ACROSS)
+    if (query->which < QUERY_PAIRS_ALL || query->which > QUERY_PAIRS_ACROSS)
         return check_refuse(context, FMB_UNKNOWN_WANT, "which", NULL);
     if (query->split < 0 || query->split > (across ? query->placement_count : 0))
         return check_refuse(context, FMB_BAD_PAIR, "split",
@@ -304,7 +296,7 @@ static bool check_scene(struct check_context *context, struct scene_job *job)
                          query->placement_count) &&
            check_indices(context, "ignored", query->ignored, query->ignored_count / 2,
                          query->placement_count) &&
-           check_ignored(context, job);
+           check_groups(context, query) && check_ignored(context, job);
 }
 
 static struct check_context context_of(struct scene_job *job)
@@ -326,6 +318,7 @@ static enum answer_stage check(struct scene_job *job)
     query_bodies_clear(&job->bodies);
     job->next = 0;
     job->frames = 0;
+    job->several_frames = false;
     return FINDING;
 }
 
@@ -411,6 +404,8 @@ static enum answer_stage add(struct scene_job *job)
             result->handle_count += placement->body_id != 0;
         }
         job->placement[i] = answerer_place(placement, job->used[i].body);
+        job->placement[i].group = placement->group;
+        job->several_frames = job->several_frames || job->used[i].body->frame_count > 1;
     }
     return job->next < job->query.placement_count ? ADDING : PREPARED;
 }
@@ -434,6 +429,7 @@ static enum answer_stage begin_pairs(struct scene_job *job)
     result->has_times = scene->contacts;
     result->has_boxes = scene->boxes;
     result->has_gaps = scene->gaps || scene->margin > 0;
+    result->names_frames = result->has_gaps && job->several_frames;
     const bool uses_dim = result->has_boxes || result->has_gaps;
     result->dim = uses_dim && query->placement_count > 0 ? query->placement[0].dim : 0;
     job->capacity = QUERY_BYTES_MAX - WIRE_SCENE_RESULT_BYTES - HANDLE_BYTES * result->handle_count;
@@ -454,7 +450,7 @@ static long size_of(const struct scene_result *result, unsigned char verdict)
     if (verdict >= FMB_TOUCHING && result->has_boxes)
         size += 2 * result->dim * (long) sizeof(double);
     if (result->has_gaps)
-        size += wire_gap_bytes(result->dim);
+        size += wire_gap_bytes(result->dim, result->names_frames);
     return size;
 }
 

@@ -1,5 +1,7 @@
 #include "body.h"
 
+#include "geometry.h"
+
 #include <assert.h>
 #include <stdint.h>
 #include <string.h>
@@ -12,10 +14,9 @@ int32_t body_frame_count(const struct geometry *geometry)
 static void make_frame(int dim, const struct geometry_frame *frame, struct fmb_frame *out)
 {
     double number[GEOMETRY_FRAME_NUMBERS_MAX];
-    const size_t count = (size_t) geometry_number_count(dim, frame->shape), origin = (size_t) dim;
-    memcpy(number, frame->origin, origin * sizeof *number);
-    memcpy(number + origin, frame->components, (count - origin) * sizeof *number);
-    const enum fmb_status status = fmb_frame_make(dim, frame->shape, number, count, out);
+    const size_t count = geometry_frame_numbers(dim, frame, number);
+    const enum fmb_status status = (frame->by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
+        dim, frame->shape, number, count, out);
     assert(status == FMB_OK);
     (void) status;
 }

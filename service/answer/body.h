@@ -2,7 +2,7 @@
 #ifndef BODY_H
 #define BODY_H
 
-#include "query.h"
+#include "geometry.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -24,7 +24,7 @@ struct body_maker {
  * requires an exact inverse: a portion takes at most 0.2 ms. */
 enum { BODY_PORTION = 16 };
 
-/* Begins to make a body. On input: a geometry whose frames fmb_frame_make() accepts; memory of
+/* Begins to make a body. On input: a geometry whose frames the engine accepts; memory of
  * BODY_BYTES() of its frames, aligned as a struct fmb_body. Both must outlive the maker. */
 void body_begin(struct body_maker *maker, const struct geometry *geometry, void *memory);
 
@@ -40,8 +40,8 @@ const struct fmb_body *body_make(const struct geometry *geometry, void *memory);
 void body_copy(const struct fmb_body *body, void *memory);
 
 /* The bodies of one query that it defines. The memory suffices for all bodies that one message can
- * define: a placement with n frames takes at least 60 + 33 n bytes of the message, and
- * BODY_BYTES(n) is less than (60 + 33 n) / 33 times the size of a frame. */
+ * define: a placement with n frames takes at least 77 + 33 n bytes of the message, and
+ * BODY_BYTES(n) is less than (77 + 33 n) / 33 times the size of a frame. */
 struct query_bodies {
     size_t used;             /* bytes of memory that finished bodies take */
     struct body_maker maker; /* of the next body; memory is NULL unless that is unfinished */

@@ -53,7 +53,7 @@ const struct cached *cache_find(struct cache *cache, const struct handle *handle
 const struct cached *cache_peek(const struct cache *cache, const struct handle *handle);
 
 /* Looks up a geometry, in time proportional to its bytes. On input: id, or 0 for none; a geometry
- * whose frames fmb_frame_make() accepts. Returns the body, pinned as by cache_find(), and counts a
+ * whose frames the engine accepts. Returns the body, pinned as by cache_find(), and counts a
  * hit. Returns NULL, and counts a miss, if it is not held. *handle: its handle in both cases. */
 const struct cached *cache_lookup(struct cache *cache, int64_t id, const struct geometry *geometry,
                                   struct handle *handle);

@@ -1,6 +1,8 @@
 #include "check.h"
 
 #include "cursor.h"
+#include "geometry.h"
+#include "utf8.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -63,19 +65,39 @@ static double number_at(const struct geometry_reader *reader, int32_t i)
     return cursor_double_at(reader->number + 8 * (size_t) i);
 }
 
+static int32_t vertices_at(const struct geometry_reader *reader, int32_t i)
+{
+    return (int32_t) big_endian_32(reader->count + 4 * (size_t) i);
+}
+
+/* A hull is refused last, so that what is wrong with a body does not depend on its support. */
 static bool check_shapes(struct check_context *context, const struct placement *placement)
 {
-    const unsigned char *shape = geometry_begin(&placement->geometry).shape;
+    const struct geometry_reader reader = geometry_begin(&placement->geometry);
     int64_t numbers = 0;
+    int32_t counts = 0, hull = -1;
     for (int32_t i = 0; i < placement->frame_count; i++) {
-        const int count = geometry_number_count(placement->dim, shape[i]);
-        if (count == 0)
-            return fmb_shape_name(shape[i])
-                       ? check_refuse(context, FMB_WRONG_DIMENSION, "dim", "a face is in 3D")
-                       : check_refuse_at(context, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
+        const int code = reader.shape[i];
+        const struct geometry_shape shape = geometry_shape(code);
+        const bool counted = shape.by_vertices && counts < placement->count_count;
+        const int32_t vertices = counted ? vertices_at(&reader, counts) : 1;
+        const int64_t count = geometry_number_count(placement->dim, code, vertices);
+        if (shape.shape == 0)
+            return check_refuse_at(context, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
+        if (count == 0 && shape.shape != FMB_HULL)
+            return check_refuse(context, FMB_WRONG_DIMENSION, "dim", "a face is in 3D");
+        if (counted && (count == 0 || count != (int64_t) placement->dim * vertices))
+            return check_refuse_at(context, FMB_WRONG_COUNT, "counts", counts,
+                                   "not a number of vertices of this shape");
         numbers += count;
+        counts += shape.by_vertices;
+        hull = shape.shape == FMB_HULL ? i : hull;
     }
-    return check_count(context, "num_numbers", numbers, placement->number_count);
+    if (!check_count(context, "num_counts", counts, placement->count_count) ||
+        !check_count(context, "num_numbers", numbers, placement->number_count))
+        return false;
+    return hull < 0 || check_refuse_at(context, FMB_NOT_SUPPORTED, "shapes", hull,
+                                       "hulls are not supported by this version");
 }
 
 static bool check_numbers(struct check_context *context, const struct placement *placement)
@@ -97,7 +119,7 @@ static bool check_sizes(struct check_context *context, const struct placement *p
         for (int32_t k = number + dim; reader.shape[i] == FMB_BOX && k < number + 2 * dim; k++)
             if (number_at(&reader, k) < 0)
                 return check_refuse_at(context, FMB_BAD_SIZE, "numbers", k, "a negative size");
-        number += geometry_number_count(dim, reader.shape[i]);
+        number += (int32_t) geometry_number_count(dim, reader.shape[i], 0);
     }
     return true;
 }
@@ -111,7 +133,8 @@ static bool check_definition(struct check_context *context, const struct placeme
     if (named && placement->frame_count > 0)
         return check_refuse(context, FMB_WRONG_COUNT, "num_frames", "both a handle and frames");
     if (named)
-        return check_count(context, "num_numbers", 0, placement->number_count);
+        return check_count(context, "num_counts", 0, placement->count_count) &&
+               check_count(context, "num_numbers", 0, placement->number_count);
     if (placement->frame_count == 0)
         return check_refuse(context, FMB_NO_FRAMES, "num_frames", "neither a handle nor frames");
     if (placement->frame_count > FRAMES_MAX)
@@ -144,6 +167,12 @@ static bool check_velocity(struct check_context *context, const struct placement
                           check_finite(context, "velocity", placement->velocity, count));
 }
 
+static bool check_name(struct check_context *context, const char *name)
+{
+    return !name || name[0] == '\0' || (strlen(name) <= QUERY_NAME_MAX && utf8_is_text(name)) ||
+           check_refuse(context, FMB_BAD_NAME, "name", NULL);
+}
+
 bool check_placement(struct check_context *context, const struct placement *placement)
 {
     const int dim = placement->dim;
@@ -154,6 +183,7 @@ bool check_placement(struct check_context *context, const struct placement *plac
     return (placement_by_handle(placement) ||
             (check_shapes(context, placement) && check_numbers(context, placement) &&
              check_sizes(context, placement))) &&
+           check_name(context, placement->name) &&
            check_finite(context, "position", placement->position, dim) &&
            check_orientation(context, placement) && check_velocity(context, placement);
 }

@@ -56,6 +56,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -85,8 +86,7 @@ enum { FMB_DIM_MAX = 3, FMB_COMPONENTS_MAX = FMB_DIM_MAX * FMB_DIM_MAX };
     X(BAD_SIZE, 17, "a box of negative size")                              \
     X(NO_FRAMES, 18, "a body without frames")                              \
     X(BAD_MARGIN, 19, "the margin is negative or not finite")              \
-    X(EXPIRED, 20, "waited too long, without a result")                    \
-    X(REFUSAL_UNSENT, 21, "too often, without a result")
+    X(BAD_NAME, 20, "a name that is not UTF-8 of at most 64 bytes without controls")
 
 enum fmb_status {
 #define X(name, number, text) FMB_##name = number,
@@ -100,16 +100,17 @@ enum fmb_status {
 const char *fmb_status_text(int status);
 
 /* The numbers of shapes and verdicts, and those of methods, are also used in messages and logs. */
-enum fmb_shape { FMB_CUBOID = 1, FMB_TETRAHEDRON = 2, FMB_FACE = 3, FMB_BOX = 4 };
+enum fmb_shape { FMB_CUBOID = 1, FMB_TETRAHEDRON = 2, FMB_FACE = 3, FMB_BOX = 4, FMB_HULL = 5 };
 enum fmb_verdict { FMB_SEPARATED = 1, FMB_TOUCHING = 2, FMB_OVERLAPPING = 3 };
 
-/* Return "cuboid", "tetrahedron", "face" or "box", and "separated", "touching" or "overlapping";
- * NULL for any other number. The strings are static. */
+/* Return "cuboid", "tetrahedron", "face", "box" or "hull", and "separated", "touching" or
+ * "overlapping"; NULL for any other number. The strings are static. */
 const char *fmb_shape_name(int shape);
 const char *fmb_verdict_name(int verdict);
 
 /* Returns the number of components of a frame of this shape and dimension (2 or 3): 2 for a face,
- * dim for the others. Returns 0 for a face in 2D, and if the shape or the dimension is unknown. */
+ * dim for the others. Returns 0 for a face in 2D, for a hull, which has none, and if the shape or
+ * the dimension is unknown. */
 int fmb_component_count(int dim, int shape);
 
 /* ---- Bodies ---- */
@@ -149,8 +150,8 @@ struct fmb_frame {
  *               first dim numbers may be omitted: the origin, or the centre, is then 0. May be NULL
  *               if count is 0.
  * Out: *out     unspecified if the status is not FMB_OK
- * Returns FMB_OK, FMB_WRONG_DIMENSION, FMB_UNKNOWN_SHAPE, FMB_WRONG_COUNT, FMB_NOT_FINITE, or
- * FMB_BAD_SIZE for a negative size. */
+ * Returns FMB_OK, FMB_WRONG_DIMENSION, FMB_UNKNOWN_SHAPE, FMB_WRONG_COUNT, FMB_NOT_FINITE,
+ * FMB_BAD_SIZE for a negative size, or FMB_NOT_SUPPORTED for a hull. */
 enum fmb_status fmb_frame_make(int dim, int shape, const double *numbers, size_t count,
                                struct fmb_frame *out);
 
@@ -161,8 +162,9 @@ enum fmb_status fmb_frame_make(int dim, int shape, const double *numbers, size_t
  * In:  vertices  [vertex][axis], finite
  *      count     the number of vertices times dim
  * Out: *out      unspecified if the status is not FMB_OK
- * Returns FMB_OK, FMB_WRONG_DIMENSION, FMB_UNKNOWN_SHAPE (neither tetrahedron nor face),
- * FMB_WRONG_COUNT, or FMB_NOT_FINITE (also if a difference exceeds the largest double). */
+ * Returns FMB_OK, FMB_WRONG_DIMENSION, FMB_UNKNOWN_SHAPE (a shape that has no vertices),
+ * FMB_WRONG_COUNT, FMB_NOT_FINITE (also if a difference exceeds the largest double), or
+ * FMB_NOT_SUPPORTED (a hull). */
 enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertices, size_t count,
                                         struct fmb_frame *out);
 
@@ -209,6 +211,8 @@ struct fmb_placement {
     double velocity[FMB_DIM_MAX]; /* per second */
     double orientation[4];        /* w, x, y, z (2D: w, z); of any length but 0 */
     int orientation_count;        /* 0: not rotated; 4 (2D: 2) */
+    int64_t
+        group; /* not 0: in a scene, placements of one group are not tested against each other */
 };
 
 /* Checks a placement. Every function that takes placements applies this check.
@@ -225,7 +229,8 @@ enum fmb_status fmb_placement_check(const struct fmb_placement *placement);
 
 /* ---- Two bodies ---- */
 
-enum fmb_want { FMB_WANT_BOX = 1, FMB_WANT_GAP = 2 };
+/* The numbers are also used in messages, which have more of them. */
+enum fmb_want { FMB_WANT_BOX = 1, FMB_WANT_GAP = 8 };
 
 /* An enclosure of the gap, the signed distance of two bodies over the window:
  *
@@ -235,7 +240,8 @@ enum fmb_want { FMB_WANT_BOX = 1, FMB_WANT_GAP = 2 };
  *                not overlap at any time of the window
  *
  * Of bodies of several frames it is the least gap of a pair of their frames, with its direction and
- * points.
+ * points; frame names that pair. Of several pairs with the same upper bound, points and direction,
+ * one is named.
  *
  * Lower bound. The direction n proves it: n . (b - a) >= bounds[0] |n| for all points a of the
  * first frame and b of the second at the same time of the window.
@@ -252,14 +258,16 @@ enum fmb_want { FMB_WANT_BOX = 1, FMB_WANT_GAP = 2 };
  * bounds are 0, and the direction proves 0 up to the same width. A bound whose magnitude exceeds
  * the largest double is infinite, with its sign.
  *
- * Order. The swapped pair has the same bounds, the negated direction and the points exchanged. If
- * two placements are equal in all numbers, both orders are the same pair and have the same gap. */
+ * Order. The swapped pair has the same bounds, the negated direction, and the points and frames
+ * exchanged. If two placements are equal in all numbers, both orders are the same pair and have the
+ * same gap. */
 struct fmb_gap {
     double bounds[2];               /* lower and upper */
     double direction[FMB_DIM_MAX];  /* from a to b, a unit vector up to rounding */
     bool has_witness;               /* the pair is separated: time and witness are set */
     double time;                    /* of the least distance, seconds, within [0, T] */
     double witness[2][FMB_DIM_MAX]; /* [0] in a, [1] in b, world coordinates */
+    unsigned frame[2]; /* [0] of a, [1] of b: the pair of frames; 0 for a body of one frame */
 };
 
 /* An answer.
@@ -553,13 +561,15 @@ enum fmb_status fmb_tree_pairs(const struct fmb_tree *a, const struct fmb_tree *
  *     }
  *
  * The answers are those of fmb_decide() for each pair, bit for bit. Frames of one body are never
- * tested against each other. Only exact arithmetic allocates memory.
+ * tested against each other, nor are placements of one group. Only exact arithmetic allocates
+ * memory.
  *
  * Thread safety: one state must not be used by two threads at the same time. Different states share
  * nothing. */
 
 /* Which pairs are decided. Pairs are numbered from 0. Listed pairs have their positions in the
- * list; the others are numbered in the order of (a, b), a < b, ignored pairs included. */
+ * list; the others are numbered in the order of (a, b), a < b, ignored pairs and those
+ * within a group included. */
 enum fmb_pairs {
     FMB_PAIRS_ALL = 0, /* each placement with each later one */
     FMB_PAIRS_LISTED = 1,
@@ -584,7 +594,8 @@ struct fmb_scene {
     double margin;
     enum fmb_pairs which;
     size_t split; /* FMB_PAIRS_ACROSS: at most placement_count; 0: no pairs. Otherwise 0 */
-    /* FMB_PAIRS_LISTED: [pair_count][a, b], indices of two different placements; otherwise none. */
+    /* FMB_PAIRS_LISTED: [pair_count][a, b], indices of two different placements that are not of one
+     * group; otherwise none. */
     const unsigned (*pairs)[2];
     size_t pair_count;
     /* [ignored_count][a, b], indices of two different placements in any order; repetitions are
@@ -643,7 +654,8 @@ struct fmb_scene_state;
  *   a status of fmb_placement_check()
  *   FMB_DIMENSIONS_DIFFER  placements of different dimensions
  *   FMB_BAD_PAIR           which is unknown; a pair has an index out of range or the same index
- *                          twice; split or first_pair is out of range
+ *                          twice; a listed pair is within a group; split or first_pair is out of
+ *                          range
  *   FMB_WRONG_COUNT        pairs without FMB_PAIRS_LISTED, or ignored pairs with it
  *   FMB_CANNOT_DECIDE      a method that is not certain, with gaps, with a margin, or without
  *                          FMB_PAIRS_LISTED

@@ -20,6 +20,7 @@ const char *fmb_shape_name(int shape)
     case FMB_TETRAHEDRON: return "tetrahedron";
     case FMB_FACE: return "face";
     case FMB_BOX: return "box";
+    case FMB_HULL: return "hull";
     }
     return NULL;
 }

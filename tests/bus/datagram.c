@@ -10,9 +10,9 @@ enum {
     SEQUENCE_AT = 24, /* after fingerprint, utime and client id */
     PAIR_PLACEMENTS_AT = WIRE_PAIR_QUERY_BYTES,
     SCENE_PLACEMENTS_AT = WIRE_SCENE_QUERY_BYTES - 2 * 4, /* before two more counts */
-    /* In a placement of one frame in 3D: after body id, handle, dim, two counts, shape and
-     * origin. */
-    COMPONENTS_AT = 8 + HANDLE_BYTES + 3 * 4 + 1 + 3 * 8
+    /* In a placement of one frame in 3D: after body id, handle, dim, three counts, shape
+     * and origin. */
+    COMPONENTS_AT = 8 + HANDLE_BYTES + 4 * 4 + 1 + 3 * 8
 };
 
 const char *form_name(enum form form)

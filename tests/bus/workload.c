@@ -43,7 +43,7 @@ static void set_whole(const struct fmb_placement *from, int64_t body_id, struct 
     *out = (struct placement){.body_id = body_id,
                               .dim = dim,
                               .frame_count = 1,
-                              .number_count = geometry_number_count(dim, frame->shape),
+                              .number_count = geometry_number_count(dim, frame->shape, 0),
                               .orientation_count = from->orientation_count,
                               .velocity_count = dim,
                               .geometry = {bytes, geometry_write(dim, &own, bytes)}};
@@ -134,8 +134,10 @@ static void set_handles(struct bus_bench *bench, struct scene_query *query)
     for (int first = 0; first < query->placement_count; first += at_a_time) {
         const int left = query->placement_count - first,
                   count = left < at_a_time ? left : at_a_time;
-        part = (struct scene_query){
-            .client_id = query->client_id, .duration = 1, .placement_count = count};
+        part = (struct scene_query){.client_id = query->client_id,
+                                    .duration = 1,
+                                    .which = QUERY_PAIRS_LISTED,
+                                    .placement_count = count};
         memcpy(part.placement, query->placement + first, (size_t) count * sizeof *part.placement);
         datagram_of_scene(&part, &datagram);
         query_once(bench, &datagram);

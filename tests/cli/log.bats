@@ -6,8 +6,8 @@ setup() {
     FMB=${FMB_BUILD:-build}/fmb
     cd "$BATS_TEST_DIRNAME/../.." || return
     log=$BATS_TEST_TMPDIR/a.log
-    pair_query=f9dadc6e7e54da5d
-    status=8cb2ead8b5dc3d8d
+    pair_query=fcf896d1538fd1a4
+    status=15fcba856d637fca
 }
 
 # bytes HEX
@@ -71,13 +71,13 @@ field() {
 }
 
 @test "all types of the service, and others by their fingerprint" {
-    for type in 5801f213322833f7 e2c4e2ab0ebcd9d9 6d5222ebc7de383d $pair_query da4c8b503074f8bc \
-        0b1ab3e2ae9b67cf f632860e1441ef51 12759c8650eac72e $status 0123456789abcdef 00; do
+    for type in 18fc974de94f47b6 e2c4e2ab0ebcd9d9 ef476d61362c5fba $pair_query 9dd6a8c2afceabd8 \
+        cbe2227b63ea25a1 abbd2c17d3792717 54e9a70f5ddb21bb $status c5646e8cb4490b7c 0123456789abcdef 00; do
         event 1 A $type
     done > "$log"
     info --json "$log"
     ended 0
-    [ "$(field '[.channels[] | .type] | sort')" = '[null,"0x0123456789abcdef","fmb_msgs.body_t","fmb_msgs.definition_query_t","fmb_msgs.definition_t","fmb_msgs.pair_query_t","fmb_msgs.pair_result_t","fmb_msgs.placement_t","fmb_msgs.scene_query_t","fmb_msgs.scene_result_t","fmb_msgs.status_t"]' ]
+    [ "$(field '[.channels[] | .type] | sort')" = '[null,"0x0123456789abcdef","fmb_msgs.body_t","fmb_msgs.definition_query_t","fmb_msgs.definition_t","fmb_msgs.names_t","fmb_msgs.pair_query_t","fmb_msgs.pair_result_t","fmb_msgs.placement_t","fmb_msgs.scene_query_t","fmb_msgs.scene_result_t","fmb_msgs.status_t"]' ]
     info "$log"
     grep -Eqx '  A +0x0123456789abcdef +1 +8 +8 +8  0.000 s  0.000 s' <<< "$output"
     grep -Eqx '  A +\(too short\) +1 +1 +1 +1  0.000 s  0.000 s' <<< "$output"
@@ -324,21 +324,29 @@ Try 'fmb log info --help'."
 Try 'fmb log info --help'."
 }
 
-# ---- Logs of version 1 -----------------------------------------------------------------------
+# ---- Logs of old versions --------------------------------------------------------------------
 
-@test "a log that version 1 recorded is recognised" {
-    # One pair query, of which the fingerprint is enough.
+# recognised VERSION FINGERPRINT: of a log of one pair query, of which the fingerprint is enough.
+recognised() {
     printf '\355\241\332\001\0\0\0\0\0\0\0\0\0\6\15\327\20\41\40\0\0\0\0\16\0\0\0\10%s' \
         FMB_PAIR_QUERY > "$BATS_TEST_TMPDIR/one.log"
-    printf '\27\4\43\35\274\164\247\54' >> "$BATS_TEST_TMPDIR/one.log"
+    bytes "$2" >> "$BATS_TEST_TMPDIR/one.log"
     run --separate-stderr "$FMB" log info "$BATS_TEST_TMPDIR/one.log"
     [ "$status" = 0 ]
-    [[ "$output" == *'fmb_msgs.pair_query_t (version 1)'* ]]
-    [[ "$output" == *'recorded by version 1'* ]]
-    run --separate-stderr "$FMB" log cut --json "$BATS_TEST_TMPDIR/one.log" -o "$BATS_TEST_TMPDIR/cut.log"
+    [[ "$output" == *"fmb_msgs.pair_query_t (version $1)"* ]]
+    [[ "$output" == *"recorded by version $1, whose"* ]]
+    run --separate-stderr "$FMB" log cut --json "$BATS_TEST_TMPDIR/one.log" -o "$BATS_TEST_TMPDIR/cut$1.log"
     [ "$status" = 0 ]
-    jq -e '.version_1 == 1 and .kept_events == 1' <<< "$output"
+    jq -e ".old_messages == 1 and .old_version == $1 and .kept_events == 1" <<< "$output"
+    rm "$BATS_TEST_TMPDIR/cut$1.log"
+    run "$FMB" log cut "$BATS_TEST_TMPDIR/one.log" -o "$BATS_TEST_TMPDIR/cut$1.log"
+    [[ "$output" == *"recorded by version $1, whose"* ]]
     run --separate-stderr "$FMB" log scene "$BATS_TEST_TMPDIR/one.log" --event 0
     [ "$status" = 1 ]
-    [[ "$stderr" == *'recorded by version 1'* ]]
+    [[ "$stderr" == *": a message of version $1, which this version does not read" ]]
+}
+
+@test "logs that old versions recorded are recognised" {
+    recognised 1 1704231dbc74a72c
+    recognised 2 f9dadc6e7e54da5d
 }

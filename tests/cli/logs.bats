@@ -120,7 +120,7 @@ capped_at() {
 
     "$GENERATE" --blast scenes 2 "$BATS_TEST_TMPDIR/blast.log"
     "$TELL" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
-    jq -es '[.[] | select(.status == 0) | .verdicts] | length == 2 and (.[1] | length == 14255)
+    jq -es '[.[] | select(.status == 0) | .verdicts] | length == 2 and (.[1] | length == 13828)
         and ([.[1][] | select(. == 3)] | length > 3000 and length < 12000)' "$BATS_TEST_TMPDIR/events"
     jq -es 'all(.[]; .channel != "FMB_SCENE_QUERY" or .size > 63800)' "$BATS_TEST_TMPDIR/events"
 }
@@ -128,8 +128,8 @@ capped_at() {
 @test "a blast is what was wanted: in one dimension, at rest, whole" {
     "$GENERATE" --blast pairs 50 --dim 2 --static --whole "$BATS_TEST_TMPDIR/blast.log"
     "$TELL" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
-    # 48 bytes, and of each placement 45 and 2 + 4 + 2 numbers.
-    jq -es '[.[] | select(.channel == "FMB_PAIR_QUERY").size] | unique == [266]' "$BATS_TEST_TMPDIR/events"
+    # 48 bytes, and of each placement 62 and 2 + 4 + 2 numbers.
+    jq -es '[.[] | select(.channel == "FMB_PAIR_QUERY").size] | unique == [300]' "$BATS_TEST_TMPDIR/events"
     "$GENERATE" --blast pairs 50 --dim 3 --moving --whole --seed 2 "$BATS_TEST_TMPDIR/other.log"
     "$TELL" "$BATS_TEST_TMPDIR/other.log" > "$BATS_TEST_TMPDIR/events"
     jq -es '[.[] | select(.channel == "FMB_PAIR_QUERY").size] | min > 330' "$BATS_TEST_TMPDIR/events"

@@ -70,7 +70,7 @@ xpath() {
     replay arm.log
     ended 0
     counts '.queries == 72 and .same == 72 and .differences == [] and .exit == 0'
-    counts '.events == 146 and .bytes == 67587 and .statuses == 2 and .results == 72'
+    counts '.events == 146 and .bytes == 75267 and .statuses == 2 and .results == 72'
     counts '.channels.FMB_PAIR_QUERY.queries == 48 and .channels.FMB_SCENE_QUERY.pairs == 408'
     counts '.compute | .then.count == 72 and .now.count == 72 and .unit == "ns"'
 }
@@ -108,7 +108,7 @@ xpath() {
     replay spoiled.log
     ended 1
     counts '.different == 2 and .different_in.verdict == 2 and .exit == 1 and .same == 70'
-    counts '.differences[0] | .event == 7 and .offset == 3896 and .time == 0.01 and .a == 3 and .b == 1'
+    counts '.differences[0] | .event == 7 and .offset == 4931 and .time == 0.01 and .a == 3 and .b == 1'
     counts '.differences[0] | .kind == "verdict" and .then.verdict == "overlapping"'
     counts '.differences[0].now.verdict == "touching" and .differences[0].log == "spoiled.log"'
 }
@@ -282,7 +282,7 @@ xpath() {
     tail -c +$((middle + 1)) arm.log > b.log
     replay a.log b.log
     ended 2
-    counts '.damages == 2 and .bytes == 67587 and .events == 145'
+    counts '.damages == 2 and .bytes == 75267 and .events == 145'
     [ "$stderr" = "fmb: a.log: offset $((middle - 11)): 11 bytes: the last event is cut off
 fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no event" ]
     junit a.log b.log arm.log
@@ -447,7 +447,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
         replay spoiled.log
         ended 2
         [[ $stderr == *'spoiled.log: offset '*': the last event is cut off' ]]
-        counts ".damages == 1 and .bytes == 67587 - $lost and .same >= 70"
+        counts ".damages == 1 and .bytes == 75267 - $lost and .same >= 70"
     done
 }
 
@@ -526,12 +526,14 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     done
 }
 
-@test "a log of version 1 is recognised" {
-    edit --version-1 4 arm.log
-    run --separate-stderr "$FMB" replay spoiled.log
-    ended 2
-    [[ $stderr == 'fmb: spoiled.log: recorded by version 1, '* ]]
-    [ "$(wc -l <<< "$stderr")" = 1 ]
+@test "a log of an old version is recognised" {
+    for version in 1 2; do
+        edit --old "$version" 4 arm.log
+        run --separate-stderr "$FMB" replay spoiled.log
+        ended 2
+        [[ $stderr == "fmb: spoiled.log: recorded by version $version, "* ]]
+        [ "$(wc -l <<< "$stderr")" = 1 ]
+    done
 }
 
 @test "what is reported reaches the terminal as it is meant" {

@@ -3,7 +3,7 @@
 #ifndef GEOMETRY_WRITE_H
 #define GEOMETRY_WRITE_H
 
-#include "query.h"
+#include "geometry.h"
 
 /* Bytes of a geometry of these frames. On input: dim; shapes of that dimension. The other fields of
  * the frames are not read. */

@@ -65,7 +65,7 @@ static bool same_answer(const struct fmb_answer *a, const struct fmb_answer *b)
 
 static unsigned want_of(int32_t want)
 {
-    return (want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0) | (want & QUERY_WANT_GAP ? FMB_WANT_GAP : 0);
+    return (unsigned) want & (FMB_WANT_BOX | FMB_WANT_GAP);
 }
 
 /* Gaps are given by methods that are never wrong. */
@@ -126,6 +126,8 @@ static void check_decided(const struct pair_query *query, const struct pair_resu
     FUZZ_CHECK(same_answer(&result->answer, &answer));
     FUZZ_CHECK(result->method == (status == FMB_OK ? method->number : 0));
     FUZZ_CHECK(result->dim == (answer.has_box || answer.has_gap ? query->placement[0].dim : 0));
+    FUZZ_CHECK(result->names_frames ==
+               (answer.has_gap && (made[0].body.frame_count > 1 || made[1].body.frame_count > 1)));
     if (result->certificate)
         check_certificate(place, query->duration, result->certificate);
     FUZZ_CHECK(!result->certificate || query->want & QUERY_WANT_CERTIFICATE);
@@ -247,6 +249,12 @@ static bool is_ignored(const struct scene_query *query, const unsigned pair[2])
     return false;
 }
 
+static bool is_within_group(const struct scene_query *query, const unsigned pair[2])
+{
+    const int64_t group = query->placement[pair[0]].group;
+    return group != 0 && group == query->placement[pair[1]].group;
+}
+
 static bool good_placements(const struct scene_query *query)
 {
     bool good = true;
@@ -271,7 +279,7 @@ static bool good_pairs(const struct scene_query *query)
     bool good = good_indices(query, (const unsigned(*)[2]) query->pair, query->index_count) &&
                 good_indices(query, (const unsigned(*)[2]) query->ignored, query->ignored_count);
     for (int32_t i = 0; good && i < query->index_count / 2; i++)
-        good = !is_ignored(query, query->pair[i]);
+        good = !is_ignored(query, query->pair[i]) && !is_within_group(query, query->pair[i]);
     return good;
 }
 
@@ -380,7 +388,8 @@ static void check_scene_pair(struct reading *reading, const unsigned pair[2])
     const struct fmb_placement b = model_place(&query->placement[pair[1]], &reading->made[pair[1]]);
     const unsigned want = want_of(query->want) | (wants_gaps(query) ? FMB_WANT_GAP : 0);
     struct fmb_answer answer;
-    if (query->which != QUERY_PAIRS_LISTED && is_ignored(query, pair))
+    if (query->which != QUERY_PAIRS_LISTED &&
+        (is_ignored(query, pair) || is_within_group(query, pair)))
         return;
     fmb_decide(fmb_method_by_number(query->method), &a, &b, query->duration, want, &answer);
     const bool contact = answer.verdict >= FMB_TOUCHING;
@@ -414,6 +423,10 @@ static void check_answers(const struct scene_query *query, const struct scene_re
                (query->which != QUERY_PAIRS_LISTED && result->verdict_count > 0));
     FUZZ_CHECK(result->has_times == (some && query->want & QUERY_WANT_TIMES));
     FUZZ_CHECK(result->has_gaps == (result->verdict_count > 0 && wants_gaps(query)));
+    bool several = false;
+    for (int32_t i = 0; i < query->placement_count; i++)
+        several = several || made[i].body.frame_count > 1;
+    FUZZ_CHECK(result->names_frames == (result->has_gaps && several));
     FUZZ_CHECK(result->has_boxes == (some && method->boxes && query->want & QUERY_WANT_BOX));
     for (int k = query->first_pair; k < result->end_pair; k++)
         check_scene_pair(&reading, pair[k]);

@@ -3,7 +3,8 @@
 struct walk {
     const uint8_t *bytes;
     size_t size, at;
-    size_t dim; /* the last dimension */
+    size_t dim;   /* the last dimension */
+    size_t count; /* the last count */
     bool good;
 };
 
@@ -65,13 +66,20 @@ static void skip_fields(struct walk *walk, const char *layout)
         case 'h': skip(walk, 1, 16); break;
         case 'B': skip_list(walk, 1); break;
         case 'H': skip_list(walk, 2); break;
+        case 'I': skip_list(walk, 4); break;
         case 'L': skip_list(walk, 8); break;
         case 's': skip_string(walk); break;
         case 'd': walk->dim = take_count(walk); break;
         case 'D': skip(walk, walk->dim, 8); break;
-        case 'P': skip_fields(walk, "lhdBLDLL"); break;
+        case 'c': walk->count = take_count(walk); break;
+        case 'C': skip(walk, walk->count, 8); break;
+        case 'S':
+            for (size_t i = 0; i < walk->count && walk->good; i++)
+                skip_string(walk);
+            break;
+        case 'P': skip_fields(walk, "lhdBILslDLL"); break;
         case 'M': skip_structs(walk, "P"); break;
-        case 'O': skip_structs(walk, "hiBL"); break;
+        case 'O': skip_structs(walk, "hiBIL"); break;
         default: walk->good = false; break;
         }
 }

@@ -2,9 +2,11 @@
  * nothing with the codec.
  *
  *     i l h    4 bytes, 8 bytes, 16 bytes
- *     B H L    a count and as many elements of 1, 2 or 8 bytes
+ *     B H I L  a count and as many elements of 1, 2, 4 or 8 bytes
  *     s        a string: its length with the final 0, then its bytes; only the last is 0
  *     d D      a dimension, not negative; as many elements of 8 bytes as the last dimension
+ *     c        a count, not negative
+ *     C S      as many elements of 8 bytes, or strings, as the last count
  *     P        a placement (placement_t.lcm)
  *     M        a count and as many placements
  *     O        a count and as many bodies (body_t.lcm) */
@@ -16,12 +18,13 @@
 #include <stdint.h>
 
 #define LAYOUT_PAIR_QUERY "lllliiPP"
-#define LAYOUT_PAIR_RESULT "llllllhhisiiLLLLLsl"
-#define LAYOUT_SCENE_QUERY "lllliiliiiMHH"
-#define LAYOUT_SCENE_RESULT "llllisiHBiBHLLLLLl"
+#define LAYOUT_PAIR_RESULT "llllllhhisiiLLLLLHsl"
+#define LAYOUT_SCENE_QUERY "lllsliiliiiMHH"
+#define LAYOUT_SCENE_RESULT "llllisiHBiBHLLLLLHl"
 #define LAYOUT_DEFINITION_QUERY "llllB"
 #define LAYOUT_DEFINITION "llllislO"
-#define LAYOUT_STATUS "llsllllllllLlllllllllllllll"
+#define LAYOUT_STATUS "llscSC"
+#define LAYOUT_NAMES "lcCCS"
 
 /* Whether an encoder of this type can have written the bytes. If so, the generated decoder reads
  * them safely; it reads out of bounds where a count is wrong. */

@@ -2,6 +2,7 @@
 
 #include "fuzz.h"
 
+#include <glib.h>
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +11,8 @@ bool model_by_handle(const struct placement *placement)
     bool any = false;
     for (int i = 0; i < HANDLE_BYTES; i++)
         any = any || placement->handle.bytes[i];
-    return any && placement->frame_count == 0 && placement->number_count == 0;
+    return any && placement->frame_count == 0 && placement->count_count == 0 &&
+           placement->number_count == 0;
 }
 
 /* ---- Bodies ---- */
@@ -23,12 +25,10 @@ static void make(const unsigned char *bytes, size_t size, struct model_made *out
     size_t count = 0;
     while (geometry_next(&reader, &frame)) {
         double number[GEOMETRY_FRAME_NUMBERS_MAX];
-        const int dim = reader.dim, numbers = geometry_number_count(dim, frame.shape);
-        for (int i = 0; i < numbers; i++)
-            number[i] = i < dim ? frame.origin[i] : frame.components[i - dim];
+        const size_t numbers = geometry_frame_numbers(reader.dim, &frame, number);
         FUZZ_CHECK(count < MODEL_FRAMES_MAX);
-        FUZZ_CHECK(fmb_frame_make(dim, frame.shape, number, (size_t) numbers,
-                                  &out->frame[count++]) == FMB_OK);
+        FUZZ_CHECK((frame.by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
+                       reader.dim, frame.shape, number, numbers, &out->frame[count++]) == FMB_OK);
     }
     FUZZ_CHECK(reader.frames_left == 0 && reader.numbers_left == 0);
     FUZZ_CHECK(fmb_body_make_frames(out->frame, count, &out->body) == FMB_OK);
@@ -93,9 +93,9 @@ static bool are_finite(const double *number, int count)
 
 double model_number(const struct placement *placement, int i)
 {
-    /* dim, the count of shapes, shapes, the count of numbers */
-    const unsigned char *at =
-        placement->geometry.bytes + 4 + 4 + placement->frame_count + 4 + 8 * i;
+    /* dim, the count of shapes, shapes, the count of counts, counts, the count of numbers */
+    const unsigned char *at = placement->geometry.bytes + 4 + 4 + placement->frame_count + 4 +
+                              4 * placement->count_count + 4 + 8 * i;
     uint64_t bits = 0;
     for (int b = 0; b < 8; b++)
         bits = bits << 8 | at[b];
@@ -104,10 +104,21 @@ double model_number(const struct placement *placement, int i)
     return number;
 }
 
-/* The numbers of a frame by the comments of placement_t.lcm; 0: no such shape. */
+/* Number i of the counts of a placement. */
+static int64_t count_at(const struct placement *placement, int i)
+{
+    const unsigned char *at =
+        placement->geometry.bytes + 4 + 4 + placement->frame_count + 4 + 4 * i;
+    return (int32_t) ((uint32_t) at[0] << 24 | (uint32_t) at[1] << 16 | (uint32_t) at[2] << 8 |
+                      at[3]);
+}
+
+/* The numbers of a frame by the comments of placement_t.lcm; 0: no such shape, or a hull. */
 static int numbers_of(int dim, int shape)
 {
     switch (shape) {
+    case 6: return dim * (dim + 1);
+    case 7: return dim == 3 ? 9 : 0;
     case FMB_CUBOID:
     case FMB_TETRAHEDRON: return dim + dim * dim;
     case FMB_FACE: return dim == 3 ? 9 : 0;
@@ -123,6 +134,7 @@ static bool good_frames(const struct placement *placement)
     bool good = placement->frame_count >= 1 &&
                 memcmp(placement->handle.bytes, none.bytes, HANDLE_BYTES) == 0;
     int64_t numbers = 0;
+    int counts = 0;
     for (int f = 0; good && f < placement->frame_count; f++) {
         const int shape = placement->geometry.bytes[8 + f], count = numbers_of(dim, shape);
         good = count > 0 && numbers + count <= placement->number_count;
@@ -130,9 +142,21 @@ static bool good_frames(const struct placement *placement)
             const double number = model_number(placement, (int) numbers + i);
             good = is_finite(number) && !(shape == FMB_BOX && i >= dim && number < 0);
         }
+        if (good && shape >= 6)
+            good = counts < placement->count_count && count_at(placement, counts++) * dim == count;
         numbers += count;
     }
-    return good && numbers == placement->number_count;
+    return good && numbers == placement->number_count && counts == placement->count_count;
+}
+
+/* Whether a name is UTF-8 of at most 64 bytes without control characters. */
+static bool good_name(const char *name)
+{
+    const size_t length = strlen(name);
+    bool good = length <= 64 && g_utf8_validate(name, (gssize) length, NULL);
+    for (const char *at = name; good && *at; at = g_utf8_next_char(at))
+        good = !g_unichar_iscntrl(g_utf8_get_char(at));
+    return good;
 }
 
 static bool good_orientation(const struct placement *placement)
@@ -155,7 +179,7 @@ bool model_good_placement(const struct placement *placement)
 {
     const int dim = placement->dim;
     return good_id(placement->body_id) && (dim == 2 || dim == 3) &&
-           (model_by_handle(placement) || good_frames(placement)) &&
+           (model_by_handle(placement) || good_frames(placement)) && good_name(placement->name) &&
            are_finite(placement->position, dim) && good_orientation(placement) &&
            (placement->velocity_count == 0 ||
             (placement->velocity_count == dim && are_finite(placement->velocity, dim)));

@@ -4,7 +4,7 @@
 #ifndef MODEL_H
 #define MODEL_H
 
-#include "query.h"
+#include "geometry.h"
 
 enum {
     MODEL_BODIES_MAX = 24,

@@ -8,6 +8,7 @@
  * verdict that are not separated. */
 struct results_gap {
     const double *bounds, *direction, *witness;
+    const int16_t *frames; /* 2, or NULL */
 };
 
 /* Whether all numbers are NaN, with the bits that stand for no number. */

@@ -52,6 +52,8 @@ bool results_is_gap(int verdict, int dim, const struct results_gap *gap)
         good = good && fabs(gap->direction[axis]) <= DBL_MAX;
     if (verdict == FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING)
         good = good && gap->bounds[0] == 0 && gap->bounds[1] == 0;
+    if (gap->frames)
+        good = good && gap->frames[0] >= 0 && gap->frames[1] >= 0;
     if (!gap->witness)
         return good && verdict >= FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING;
     for (int i = 1; i < 1 + 2 * dim; i++)
@@ -65,6 +67,8 @@ bool results_same_gap(const struct fmb_gap *read, int dim, const struct results_
     bool same = same_doubles(read->bounds, gap->bounds, 2) &&
                 same_doubles(read->direction, gap->direction, (size_t) dim) &&
                 read->has_witness == (gap->witness != NULL);
+    for (int f = 0; f < 2; f++)
+        same = same && (int) read->frame[f] == (gap->frames ? gap->frames[f] : 0);
     if (gap->witness)
         same = same && same_doubles(&read->time, gap->witness, 1) &&
                same_doubles(read->witness[0], gap->witness + 1, (size_t) dim) &&
@@ -76,7 +80,8 @@ static struct results_gap gap_of(const fmb_msgs_pair_result_t *message)
 {
     const bool separated = message->verdict == FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED;
     return (struct results_gap){message->gap, message->direction,
-                                separated ? message->witness : NULL};
+                                separated ? message->witness : NULL,
+                                message->num_gap_frames ? message->gap_frames : NULL};
 }
 
 static bool is_gap(const fmb_msgs_pair_result_t *message)
@@ -84,10 +89,11 @@ static bool is_gap(const fmb_msgs_pair_result_t *message)
     const int32_t dim = message->num_direction;
     const struct results_gap gap = gap_of(message);
     if (message->num_gap == 0)
-        return dim == 0 && message->num_witness == 0;
+        return dim == 0 && message->num_witness == 0 && message->num_gap_frames == 0;
     return message->num_gap == 2 && (dim == 2 || dim == 3) &&
            (message->num_box == 0 || message->num_box == 2 * dim) &&
            message->num_witness == (gap.witness ? 1 + 2 * dim : 0) &&
+           (message->num_gap_frames == 0 || message->num_gap_frames == 2) &&
            results_is_gap(message->verdict, dim, &gap);
 }
 
@@ -132,6 +138,7 @@ static bool same_answer(const struct pair_result *result, const fmb_msgs_pair_re
     const struct results_gap gap = gap_of(message);
     bool same = (int) answer->verdict == message->verdict && result->dim == dim &&
                 answer->has_gap == (message->num_gap > 0) &&
+                result->names_frames == (message->num_gap_frames > 0) &&
                 (!answer->has_gap || results_same_gap(&answer->gap, dim, &gap)) &&
                 answer->has_contact == (message->num_contact > 0) &&
                 answer->has_box == (message->num_box > 0) &&

@@ -55,14 +55,17 @@ static struct results_gap gap_of(const fmb_msgs_scene_result_t *message, int32_t
     const int32_t dim = dim_of_gaps(message), points = 1 + 2 * dim;
     return (struct results_gap){
         message->gaps + 2 * i, message->directions + dim * i,
-        message->verdicts[i] == SEPARATED ? message->witnesses + points * i : NULL};
+        message->verdicts[i] == SEPARATED ? message->witnesses + points * i : NULL,
+        message->num_gap_frames ? message->gap_frames + 2 * i : NULL};
 }
 
 /* Neither near nor a contact. */
 static bool is_far(const fmb_msgs_scene_result_t *message, int32_t i)
 {
     const int32_t dim = dim_of_gaps(message);
+    const int16_t *frames = message->num_gap_frames ? message->gap_frames + 2 * i : NULL;
     return message->verdicts[i] == SEPARATED && results_are_none(message->gaps + 2 * i, 2) &&
+           (!frames || (frames[0] == 0 && frames[1] == 0)) &&
            results_are_none(message->directions + dim * i, dim) &&
            results_are_none(message->witnesses + (1 + 2 * dim) * i, 1 + 2 * dim);
 }
@@ -71,12 +74,14 @@ static bool are_gaps(const fmb_msgs_scene_result_t *message)
 {
     const int64_t verdicts = message->num_verdicts;
     if (message->num_gaps == 0)
-        return message->num_directions == 0 && message->num_witnesses == 0;
+        return message->num_directions == 0 && message->num_witnesses == 0 &&
+               message->num_gap_frames == 0;
     if (message->num_gaps != 2 * verdicts || verdicts > QUERY_GAPS_MAX)
         return false;
     const int32_t dim = dim_of_gaps(message), points = 1 + 2 * dim;
     bool good = (dim == 2 || dim == 3) && message->num_directions == dim * verdicts &&
                 message->num_witnesses == points * verdicts &&
+                (message->num_gap_frames == 0 || message->num_gap_frames == 2 * verdicts) &&
                 (message->num_boxes == 0 || dim_of_boxes(message) == dim);
     for (int32_t i = 0; i < verdicts && good; i++) {
         const struct results_gap gap = gap_of(message, i);
@@ -198,7 +203,8 @@ static bool same_contacts(const struct scene_result *result, const fmb_msgs_scen
 
 static bool same_gaps(const struct scene_result *result, const fmb_msgs_scene_result_t *message)
 {
-    bool same = result->has_gaps == (message->num_gaps > 0);
+    bool same = result->has_gaps == (message->num_gaps > 0) &&
+                result->names_frames == (message->num_gap_frames > 0);
     for (int32_t i = 0; i < message->num_verdicts && result->has_gaps && same; i++) {
         const struct results_gap gap = gap_of(message, i);
         same = is_far(message, i) ? !query_has_gap(&result->gap[i])

@@ -1,5 +1,7 @@
 #include "same.h"
 
+#include "geometry.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,6 +18,8 @@ static int32_t numbers_of(int32_t dim, int shape)
     if (dim != 2 && dim != 3)
         return 0;
     switch (shape) {
+    case FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON_VERTICES: return dim * (dim + 1);
+    case FMB_MSGS_PLACEMENT_T_SHAPE_FACE_VERTICES: return dim == 3 ? 9 : 0;
     case FMB_MSGS_PLACEMENT_T_SHAPE_CUBOID:
     case FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON: return dim + dim * dim;
     case FMB_MSGS_PLACEMENT_T_SHAPE_FACE: return dim == 3 ? 9 : 0;
@@ -30,23 +34,28 @@ static bool same_frames(const struct geometry *geometry, const fmb_msgs_body_t *
     const int32_t dim = message->dim;
     struct geometry_reader reader = geometry_begin(geometry);
     struct geometry_frame frame;
-    int32_t number = 0, f = 0;
+    int32_t number = 0, f = 0, c = 0;
     for (; f < message->num_frames; f++) {
         const int shape = message->shapes[f];
+        const bool vertices = shape >= FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON_VERTICES;
         const int32_t count = numbers_of(dim, shape);
-        const bool fits = count > 0 && count <= message->num_numbers - number;
+        const bool fits = count > 0 && count <= message->num_numbers - number &&
+                          (!vertices || (c < message->num_counts &&
+                                         (int64_t) dim * message->counts[c++] == count));
         if (geometry_next(&reader, &frame) != fits)
             return false;
         if (!fits)
             return true;
-        if (reader.dim != dim || frame.shape != shape ||
+        const int by_components = !vertices ? shape : shape == 7 ? FMB_FACE : FMB_TETRAHEDRON;
+        if (reader.dim != dim || frame.shape != by_components || frame.by_vertices != vertices ||
             !same_doubles(frame.origin, message->numbers + number, (size_t) dim) ||
             !same_doubles(frame.components, message->numbers + number + dim,
                           (size_t) (count - dim)))
             return false;
         number += count;
     }
-    return !geometry_next(&reader, &frame) && reader.numbers_left == message->num_numbers - number;
+    return !geometry_next(&reader, &frame) && reader.counts_left == message->num_counts - c &&
+           reader.numbers_left == message->num_numbers - number;
 }
 
 /* Bytes of a body_t before its geometry: fingerprint and handle. */
@@ -77,12 +86,16 @@ bool same_placement(const struct placement *placement, const fmb_msgs_placement_
     const fmb_msgs_body_t body = {.dim = message->dim,
                                   .num_frames = message->num_frames,
                                   .shapes = message->shapes,
+                                  .num_counts = message->num_counts,
+                                  .counts = message->counts,
                                   .num_numbers = message->num_numbers,
                                   .numbers = message->numbers};
     return placement->body_id == message->body_id &&
            memcmp(placement->handle.bytes, message->handle, sizeof message->handle) == 0 &&
            placement->dim == message->dim && placement->frame_count == message->num_frames &&
+           placement->count_count == message->num_counts &&
            placement->number_count == message->num_numbers &&
+           strcmp(placement->name, message->name) == 0 && placement->group == message->group &&
            placement->orientation_count == message->num_orientation &&
            placement->velocity_count == message->num_velocity &&
            same_geometry(&placement->geometry, &body) &&

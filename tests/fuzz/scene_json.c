@@ -4,11 +4,11 @@
 #include "fuzz.h"
 
 #include "answers.h"
-#include "escape.h"
 #include "json.h"
 #include "pieces.h"
 #include "same.h"
 #include "scene_json.h"
+#include "utf8.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -57,7 +57,7 @@ static bool is_orientation(const double *orientation, int count, int dim)
 
 static bool is_body(const struct scene_body *body, int dim)
 {
-    bool good = body->id >= 1 && body->id < INT64_C(1) << 53 && escape_is_text(body->name) &&
+    bool good = body->id >= 1 && body->id < INT64_C(1) << 53 && utf8_is_text(body->name) &&
                 body->body.dim == dim && body->body.frame_count >= 1 &&
                 finite_numbers(body->position, dim) && finite_numbers(body->velocity, dim) &&
                 is_orientation(body->orientation, body->orientation_count, dim);
@@ -91,6 +91,12 @@ static bool is_pair(const struct scene *scene, struct scene_pair pair)
     return pair.a < scene->body_count && pair.b < scene->body_count && pair.a != pair.b;
 }
 
+static bool is_within_group(const struct scene *scene, struct scene_pair pair)
+{
+    const int64_t group = scene->body[pair.a].group;
+    return group != 0 && group == scene->body[pair.b].group;
+}
+
 static bool is_before(struct scene_pair left, struct scene_pair right)
 {
     return left.a < right.a || (left.a == right.a && left.b < right.b);
@@ -100,9 +106,10 @@ static void check_pairs(const struct scene *scene)
 {
     FUZZ_CHECK(scene->all_pairs ? scene->pair_count == 0 : scene->ignored_count == 0);
     for (size_t i = 0; i < scene->pair_count; i++)
-        FUZZ_CHECK(is_pair(scene, scene->pair[i]));
+        FUZZ_CHECK(is_pair(scene, scene->pair[i]) && !is_within_group(scene, scene->pair[i]));
     for (size_t i = 0; i < scene->ignored_count; i++) {
         FUZZ_CHECK(is_pair(scene, scene->ignored[i]) && scene->ignored[i].a < scene->ignored[i].b);
+        FUZZ_CHECK(!is_within_group(scene, scene->ignored[i]));
         FUZZ_CHECK(i == 0 || is_before(scene->ignored[i - 1], scene->ignored[i]));
     }
 }
@@ -119,6 +126,13 @@ static void check_scene(const struct scene *scene)
 
 /* ---- The same scene ---- */
 
+static bool same_given(const struct geometry_frame *a, const struct geometry_frame *b)
+{
+    return a->shape == b->shape && a->by_vertices == b->by_vertices &&
+           same_doubles(a->origin, b->origin, FMB_DIM_MAX) &&
+           same_doubles(a->components, b->components, FMB_COMPONENTS_MAX);
+}
+
 static bool same_frame(const struct fmb_frame *a, const struct fmb_frame *b)
 {
     bool same = a->dim == b->dim && a->shape == b->shape && a->count == b->count &&
@@ -131,14 +145,15 @@ static bool same_frame(const struct fmb_frame *a, const struct fmb_frame *b)
 
 static bool same_body(const struct scene_body *a, const struct scene_body *b)
 {
-    bool same = a->id == b->id && strcmp(a->name, b->name) == 0 && a->body.dim == b->body.dim &&
-                a->body.frame_count == b->body.frame_count &&
+    bool same = a->id == b->id && strcmp(a->name, b->name) == 0 && a->group == b->group &&
+                a->body.dim == b->body.dim && a->body.frame_count == b->body.frame_count &&
                 a->orientation_count == b->orientation_count &&
                 same_doubles(a->position, b->position, FMB_DIM_MAX) &&
                 same_doubles(a->velocity, b->velocity, FMB_DIM_MAX) &&
                 same_doubles(a->orientation, b->orientation, 4);
     for (unsigned i = 0; same && i < a->body.frame_count; i++)
-        same = same_frame(fmb_body_frame(&a->body, i), fmb_body_frame(&b->body, i));
+        same = same_given(&a->given[i], &b->given[i]) &&
+               same_frame(fmb_body_frame(&a->body, i), fmb_body_frame(&b->body, i));
     return same;
 }
 
@@ -152,10 +167,10 @@ static bool same_pairs(const struct scene_pair *a, const struct scene_pair *b, s
 
 static bool same_scene(const struct scene *a, const struct scene *b)
 {
-    bool same = a->dim == b->dim && same_doubles(&a->duration, &b->duration, 1) &&
-                a->margin == b->margin && a->body_count == b->body_count &&
-                a->all_pairs == b->all_pairs && a->pair_count == b->pair_count &&
-                a->ignored_count == b->ignored_count;
+    bool same = strcmp(a->label, b->label) == 0 && a->dim == b->dim &&
+                same_doubles(&a->duration, &b->duration, 1) && a->margin == b->margin &&
+                a->body_count == b->body_count && a->all_pairs == b->all_pairs &&
+                a->pair_count == b->pair_count && a->ignored_count == b->ignored_count;
     for (size_t i = 0; same && i < a->body_count; i++)
         same = same_body(&a->body[i], &b->body[i]);
     return same && same_pairs(a->pair, b->pair, a->pair_count) &&

@@ -8,6 +8,7 @@
 #include "fmb_msgs_scene_query_t.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static int32_t least(int32_t a, int32_t b)
 {
@@ -35,6 +36,7 @@ static bool same_query(const struct scene_query *query, const fmb_msgs_scene_que
 {
     return query->utime == message->utime && query->client_id == message->client_id &&
            query->sequence_number == message->sequence_number &&
+           strcmp(query->label, message->label) == 0 &&
            same_doubles(&query->duration, &message->duration, 1) &&
            query->method == message->method && query->want == message->want &&
            same_doubles(&query->margin, &message->margin, 1) && query->which == message->which &&
@@ -71,7 +73,8 @@ static void check_writer(const struct scene_query *query, const uint8_t *bytes, 
     if (!can_write(query, size))
         return;
     same_bytes(written, wire_write_scene_query(query, written), bytes, size);
-    size_t counted = WIRE_SCENE_QUERY_BYTES + (size_t) pairs * WIRE_PAIR_BYTES;
+    size_t counted =
+        WIRE_SCENE_QUERY_BYTES + wire_text_bytes(query->label) + (size_t) pairs * WIRE_PAIR_BYTES;
     for (int32_t i = 0; i < query->placement_count; i++)
         counted += wire_placement_bytes(&query->placement[i]);
     FUZZ_CHECK(counted == size);

@@ -46,7 +46,7 @@ static unsigned char *take_bytes(void)
 struct placement seeds_body(int64_t id, int shape, int dim, const double *components)
 {
     unsigned char *bytes = take_bytes();
-    const int numbers = geometry_number_count(dim, shape);
+    const int numbers = geometry_number_count(dim, shape, 0);
     struct geometry_frame frame = {.shape = shape};
     memcpy(frame.components, components, (size_t) (numbers - dim) * sizeof(double));
     return (struct placement){.body_id = id,
@@ -67,7 +67,7 @@ static struct placement several(int64_t id, int dim)
     for (int i = 0; i < 3; i++) {
         if (i > 0)
             memcpy(frames[i].components, edges[dim], (size_t) (dim * dim) * sizeof(double));
-        out.number_count += geometry_number_count(dim, frames[i].shape);
+        out.number_count += geometry_number_count(dim, frames[i].shape, 0);
     }
     out.geometry = (struct geometry){bytes, geometry_write_frames(dim, frames, 3, bytes)};
     return out;

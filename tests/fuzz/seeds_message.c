@@ -26,7 +26,9 @@ static void write_good(const char *type)
 
 static void write_placement(const char *name, fmb_msgs_placement_t placement)
 {
-    fmb_msgs_pair_query_t message = {.a = placement};
+    static char none[] = "";
+    placement.name = placement.name ? placement.name : none;
+    fmb_msgs_pair_query_t message = {.a = placement, .b.name = none};
     const int size = fmb_msgs_pair_query_t_encode(bytes, 0, sizeof bytes, &message);
     FUZZ_CHECK(size > 0);
     seeds_write("pair_query", name, bytes, (size_t) size);
@@ -37,6 +39,21 @@ static void write_other_placements(void)
 {
     static double many[40];
     static uint8_t shapes[3] = {FMB_MSGS_PLACEMENT_T_SHAPE_BOX, FMB_MSGS_PLACEMENT_T_SHAPE_FACE, 0};
+    static uint8_t vertices[3] = {FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON_VERTICES,
+                                  FMB_MSGS_PLACEMENT_T_SHAPE_HULL,
+                                  FMB_MSGS_PLACEMENT_T_SHAPE_FACE_VERTICES};
+    static int32_t counts[3] = {4, 2, 3};
+    static char name[] = "a\xc3\xa9\n\xff";
+    write_placement("vertices", (fmb_msgs_placement_t){.dim = 3,
+                                                       .num_frames = 3,
+                                                       .shapes = vertices,
+                                                       .num_counts = 3,
+                                                       .counts = counts,
+                                                       .num_numbers = 27,
+                                                       .numbers = many,
+                                                       .name = name,
+                                                       .group = -7,
+                                                       .position = many});
     write_placement("long-lists", (fmb_msgs_placement_t){.dim = 12,
                                                          .num_numbers = 9,
                                                          .numbers = many,
@@ -94,6 +111,9 @@ static void write_pair_results(void)
                                          .time = 0.5,
                                          .witness = {{1, 2, 3}, {-1, -HUGE_VAL, 0}}};
     write_pair_result("gap-apart", &result);
+    result.names_frames = true;
+    result.answer.gap.frame[1] = 300;
+    write_pair_result("gap-frames", &result);
     result = (struct pair_result){.status = FMB_BAD_ID, .detail = "client_id: not from 0"};
     write_pair_result("refused", &result);
     memset(result.detail, 'a', sizeof result.detail - 1);
@@ -119,6 +139,10 @@ static void write_scene_queries(void)
     *query = *seeds_scene(5, QUERY_PAIRS_ALL, QUERY_WANT_GAP);
     query->margin = 0.5;
     write_scene_query("margin", query);
+    query->label = "shelf \xe2\x82\xac \xff\n";
+    query->placement[1].name = "arm";
+    query->placement[1].group = query->placement[2].group = INT64_MAX;
+    write_scene_query("groups", query);
     *query = *seeds_scene(0, QUERY_PAIRS_ALL, 0);
     const struct placement placement = seeds_by_handle(seeds_placement(0, FMB_CUBOID, 2, 0, 0));
     query->placement_count = (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES) / QUERY_PLACEMENT_BYTES_MIN;
@@ -170,6 +194,11 @@ static void write_gaps(void)
         .bounds = {0.5, 1}, .direction = {0, 1}, .has_witness = true, .witness = {{1}, {2}}};
     result.gap[3].bounds[0] = result.gap[3].bounds[1] = NAN;
     write_scene_result("gaps-listed", &result);
+    result.names_frames = true;
+    result.gap[0].frame[0] = 1;
+    result.gap[2].frame[1] = 1000;
+    write_scene_result("gaps-frames", &result);
+    result.names_frames = false;
     result.names_pairs = true;
     result.verdict_count = 3;
     for (unsigned i = 0; i < 3; i++)
@@ -275,11 +304,20 @@ static void write_statuses(void)
     struct wire_status status = {.utime = 1, .server_id = 99, .version = "0.1.0", .waiting = 3};
     seeds_write("status", "ours", bytes, wire_write_status(&status, bytes));
     char version[] = "10.20.30-with-a-long-name-that-goes-on\tand-on";
-    int64_t many[40] = {3, 2, 1};
-    fmb_msgs_status_t message = {.version = version, .num_results = 40, .results = many};
+    char name[] = "received", unknown[] = "unknown";
+    char *names[257] = {name, unknown, name};
+    int64_t values[257] = {3, 2, 1};
+    for (int i = 3; i < 257; i++)
+        names[i] = unknown;
+    fmb_msgs_status_t message = {
+        .version = version, .num_counters = 3, .names = names, .values = values};
     const int size = fmb_msgs_status_t_encode(bytes, 0, sizeof bytes, &message);
     FUZZ_CHECK(size > 0);
     seeds_write("status", "newer", bytes, (size_t) size);
+    message.num_counters = 257;
+    const int large = fmb_msgs_status_t_encode(bytes, 0, sizeof bytes, &message);
+    FUZZ_CHECK(large > 0);
+    seeds_write("status", "many", bytes, (size_t) large);
 }
 
 void seeds_messages(void)

@@ -3,6 +3,7 @@
 #include "fmb_msgs_body_t.h"
 #include "fmb_msgs_definition_query_t.h"
 #include "fmb_msgs_definition_t.h"
+#include "fmb_msgs_names_t.h"
 #include "fmb_msgs_pair_query_t.h"
 #include "fmb_msgs_pair_result_t.h"
 #include "fmb_msgs_scene_query_t.h"
@@ -18,23 +19,23 @@
 #include <string.h>
 
 /* Layouts, after the fingerprint: l 8 bytes, i 4 bytes, n a count and its numbers of 8 bytes, h a
- * count and its numbers of 2, b a count and its bytes, d a dimension, c as many numbers as the last
- * dimension says, f a count and its placements, o a count and its bodies, s a string, p one that is
- * printable. */
-#define PLACEMENT "llldbncnn"
-#define BODY "lldbn"
+ * count and its numbers of 2, m of 4, b a count and its bytes, d a dimension, c as many numbers as
+ * the last dimension says, f a count and its placements, o a count and its bodies, s a string, p
+ * one that is printable, v a count, as many strings, and as many numbers of 8 bytes; w the same
+ * with two such lists of numbers, which come first. */
+#define PLACEMENT "llldbmnslcnn"
+#define BODY "lldbmn"
 static const struct {
     const char *type, *layout;
 } layouts[] = {
     {"pair_query", "llllii" PLACEMENT PLACEMENT},
-    {"pair_result", "llllllllllisiinnnnnpl"},
-    {"scene_query", "lllliiliiifhh"},
-    {"scene_result", "llllisihbibhnnnnnl"},
+    {"pair_result", "llllllllllisiinnnnnhpl"},
+    {"scene_query", "lllsliiliiifhh"},
+    {"scene_result", "llllisihbibhnnnnnhl"},
     {"definition_query", "llllb"},
     {"definition", "llllislo"},
-    {"status",
-     "llslllllllln"
-     "lllllllllllllll"},
+    {"status", "llsv"},
+    {"names", "lw"},
 };
 
 static const char *layout_of(const char *type)
@@ -56,6 +57,7 @@ static double cube[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 
 static fmb_msgs_placement_t good_placement(void)
 {
+    static char name[] = "b\xc3\xb6x";
     static double position[3] = {0.5, -1, 2}, velocity[3] = {1, 0, -0.25};
     return (fmb_msgs_placement_t){.body_id = 7,
                                   .dim = 3,
@@ -63,6 +65,7 @@ static fmb_msgs_placement_t good_placement(void)
                                   .shapes = shapes,
                                   .num_numbers = 12,
                                   .numbers = cube,
+                                  .name = name,
                                   .position = position,
                                   .num_velocity = 3,
                                   .velocity = velocity};
@@ -99,14 +102,18 @@ static size_t good_pair_result(unsigned char *out)
 /* The last body comes by its handle. */
 static size_t good_scene_query(unsigned char *out)
 {
+    char label[] = "shelf", none[] = "";
     int16_t index[4] = {0, 1, 2, 1};
     fmb_msgs_placement_t placements[3] = {good_placement(), good_placement(), good_placement()};
     memset(placements[2].handle, 0xa5, sizeof placements[2].handle);
+    placements[2].name = none;
     placements[2].num_frames = placements[2].num_numbers = placements[2].num_velocity = 0;
     fmb_msgs_scene_query_t query = {.client_id = 2,
                                     .sequence_number = 3,
+                                    .label = label,
                                     .duration = 1,
-                                    .want = FMB_MSGS_SCENE_QUERY_T_WANT_BOX,
+                                    .want = FMB_MSGS_PAIR_QUERY_T_WANT_BOX,
+                                    .which = FMB_MSGS_SCENE_QUERY_T_PAIRS_LISTED,
                                     .margin = 0.25,
                                     .num_placements = 3,
                                     .placements = placements,
@@ -125,6 +132,7 @@ static size_t good_scene_result(unsigned char *out)
     int16_t indices[6] = {0, 1, 0, 2, 1, 2};
     double gaps[6] = {0, 0, -0.5, -0.25, 1, 1}, directions[9] = {1, 0, 0, 0, -1, 0, 1, 0, 0};
     double witnesses[21];
+    int16_t frames[6] = {0, 1, 2, 0, 1, 1};
     for (int i = 0; i < 21; i++)
         witnesses[i] = i < 14 ? NAN : i - 14;
     double times[4] = {0, 0.5, 0.25, 0.25}, boxes[12] = {0, 0, 0, 1, 1, 1, -1, 2, 0, 1, 2, 3};
@@ -147,7 +155,9 @@ static size_t good_scene_result(unsigned char *out)
                                       .num_directions = 9,
                                       .directions = directions,
                                       .num_witnesses = 21,
-                                      .witnesses = witnesses};
+                                      .witnesses = witnesses,
+                                      .num_gap_frames = 6,
+                                      .gap_frames = frames};
     return (size_t) fmb_msgs_scene_result_t_encode(out, 0, HOSTILE_BYTES_MAX, &result);
 }
 
@@ -190,10 +200,22 @@ static size_t good_definition(unsigned char *out)
 static size_t good_status(unsigned char *out)
 {
     char version[] = "1.2.3";
-    int64_t results[14] = {5, 1};
+    char received[] = "received", result[] = "result_OK";
+    char *names[2] = {received, result};
+    int64_t values[2] = {5, 1};
     fmb_msgs_status_t status = {
-        .utime = 1, .version = version, .num_results = 14, .results = results};
+        .utime = 1, .version = version, .num_counters = 2, .names = names, .values = values};
     return (size_t) fmb_msgs_status_t_encode(out, 0, HOSTILE_BYTES_MAX, &status);
+}
+
+static size_t good_names(unsigned char *out)
+{
+    char table[] = "table", none[] = "";
+    char *names[2] = {table, none};
+    int64_t ids[2] = {5, 1};
+    fmb_msgs_names_t message = {
+        .utime = 1, .num_names = 2, .client_ids = ids, .body_ids = ids, .names = names};
+    return (size_t) fmb_msgs_names_t_encode(out, 0, HOSTILE_BYTES_MAX, &message);
 }
 
 static const struct {
@@ -207,6 +229,7 @@ static const struct {
     {"definition_query", good_definition_query},
     {"definition", good_definition},
     {"status", good_status},
+    {"names", good_names},
 };
 
 size_t hostile_good(const char *type, unsigned char out[HOSTILE_BYTES_MAX])
@@ -309,7 +332,13 @@ static size_t damage_list(struct damage *damage, char field, size_t at)
     for (size_t i = 0; (field == 'f' || field == 'o') && i < count; i++)
         at = damage_layout(damage, field == 'f' ? PLACEMENT : BODY, at);
     switch (field) {
+    case 'w': at += 2 * 8 * count; /* fall through */
+    case 'v':
+        for (size_t i = 0; i < count; i++)
+            at = damage_list(damage, 's', at);
+        return field == 'v' ? at + 8 * count : at;
     case 'n': return at + 8 * count;
+    case 'm': return at + 4 * count;
     case 'h': return at + 2 * count;
     case 'f':
     case 'o':
@@ -379,6 +408,7 @@ size_t hostile_each(const char *type, hostile_visit visit, void *context)
 size_t hostile_flood(const char *type, long long client_id, long long sequence_number,
                      unsigned char out[HOSTILE_BYTES_MAX])
 {
+    char label[] = "";
     int16_t index[400];
     fmb_msgs_placement_t bodies[2] = {good_placement(), good_placement()};
     fmb_msgs_pair_query_t pair = {.client_id = client_id,
@@ -388,8 +418,10 @@ size_t hostile_flood(const char *type, long long client_id, long long sequence_n
                                   .b = bodies[1]};
     fmb_msgs_scene_query_t scene = {.client_id = client_id,
                                     .sequence_number = sequence_number,
+                                    .label = label,
                                     .duration = 1,
                                     .method = FMB_MSGS_PAIR_QUERY_T_METHOD_EXACT,
+                                    .which = FMB_MSGS_SCENE_QUERY_T_PAIRS_LISTED,
                                     .num_placements = 2,
                                     .placements = bodies,
                                     .num_indices = 400,
@@ -407,6 +439,8 @@ static bool lie_handle(const fmb_msgs_placement_t *placement, uint8_t out[16])
     fmb_msgs_body_t body = {.dim = placement->dim,
                             .num_frames = placement->num_frames,
                             .shapes = placement->shapes,
+                            .num_counts = placement->num_counts,
+                            .counts = placement->counts,
                             .num_numbers = placement->num_numbers,
                             .numbers = placement->numbers};
     if (placement->body_id == 0 || placement->num_frames == 0)
@@ -469,7 +503,7 @@ size_t hostile_lie_scene(const void *query, size_t size, unsigned char out[HOSTI
         .verdicts = verdict,
         .num_indices = 2,
         .indices = pair,
-        .num_times = query_read.want & FMB_MSGS_SCENE_QUERY_T_WANT_TIMES ? 2 : 0,
+        .num_times = query_read.want & FMB_MSGS_PAIR_QUERY_T_WANT_TIMES ? 2 : 0,
         .times = times};
     fmb_msgs_scene_query_t_decode_cleanup(&query_read);
     int written = fmb_msgs_scene_result_t_encode(out, 0, HOSTILE_BYTES_MAX, &result);

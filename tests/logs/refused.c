@@ -13,7 +13,7 @@
 #define COUNT(array) ((int) (sizeof(array) / sizeof(array)[0]))
 
 /* Placements of nothing of which a scene is longer than one may be. */
-enum { A_CLIENT = 1618033, TOO_LONG = 1455 };
+enum { A_CLIENT = 1618033, TOO_LONG = 1050 };
 
 static const double zero[3] = {0}, one[3] = {1, 1, 1}, half[3] = {0.5, 0.5, 0.5};
 
@@ -45,6 +45,7 @@ static void set_geometry(struct placement *placement, int32_t dim, int32_t frame
     writer_int32(&writer, frames);
     for (int32_t i = 0; i < frames; i++)
         *writer_take(&writer, 1) = (unsigned char) shape;
+    writer_int32(&writer, 0); /* counts */
     writer_int32(&writer, numbers);
     for (int32_t i = 0; i < numbers; i++)
         writer_double(&writer, i < dim ? 0 : 1);
@@ -64,7 +65,7 @@ static void set_number(struct placement *placement, int i, double number)
     next = (next + 1) % COUNT(bytes);
     memcpy(&bits, &number, sizeof bits);
     memcpy(to, placement->geometry.bytes, placement->geometry.size);
-    big_endian_put_64(to + 13 + 8 * i, bits);
+    big_endian_put_64(to + 17 + 8 * i, bits);
     placement->geometry.bytes = to;
 }
 
@@ -114,7 +115,7 @@ static void no_shape(struct pair_query *query)
 
 static void shape_5(struct pair_query *query)
 {
-    set_geometry(&query->placement[1], 3, 1, 5, 12);
+    set_geometry(&query->placement[1], 3, 1, 99, 12);
 }
 
 static void dim_0(struct pair_query *query)
@@ -495,11 +496,12 @@ static void ask_spoilt_scenes(struct refusing *refusing)
 
 /* ---- Too much ---- */
 
-/* A scene of so many placements of nothing: each is 44 bytes of 0, of no body and no dimension.
- * After the count of placements come those of indices and of ignored ones, which are 0. */
+/* A scene of so many placements of nothing: each is 61 bytes of 0, of no body and no dimension, but
+ * for the length of its empty name. After the count of placements come those of indices and of
+ * ignored ones, which are 0. */
 static void ask_placements_of_nothing(struct refusing *refusing, int32_t placements)
 {
-    enum { PLACEMENT = 44, COUNTS = 12, LONGEST = QUERY_BYTES_MAX + 1000 };
+    enum { PLACEMENT = 61, NAME = 40, COUNTS = 12, LONGEST = QUERY_BYTES_MAX + 1000 };
     static unsigned char bytes[COUNTS + LONGEST];
     set_good_scene(refusing);
     nothing_placed(&refusing->scene);
@@ -508,6 +510,8 @@ static void ask_placements_of_nothing(struct refusing *refusing, int32_t placeme
                  more = PLACEMENT * (size_t) placements;
     memset(bytes + size, 0, more);
     big_endian_put_32(bytes + size - COUNTS, (uint32_t) placements);
+    for (int32_t i = 0; i < placements; i++)
+        bytes[size - COUNTS + 4 + PLACEMENT * (size_t) i + NAME + 3] = 1;
     instance_hear_scene(refusing->instance, bytes, size + more, &refusing->scene_result);
 }
 

@@ -332,7 +332,7 @@ static void add_uneven(struct sample_log *log)
 /* A placement by handle takes 68 bytes. */
 static void add_crowd(struct sample_log *log)
 {
-    enum { CROWD = 930 };
+    enum { CROWD = 720 };
     static struct scene_query query;
     memset(&query, 0, sizeof query);
     sample_begin(log, "crowd.log");
@@ -340,7 +340,7 @@ static void add_crowd(struct sample_log *log)
     query.placement_count = CROWD;
     query.want = QUERY_WANT_BOX;
     for (int i = 0; i < CROWD; i++) {
-        const double at[] = {i % 14 * 1.1, i / 14 % 10 * 1.05, i / 140 * 1.2};
+        const double at[] = {i % 14 * 0.9, i / 14 % 10 * 0.85, i / 140 * 1.0};
         query.placement[i] =
             sample_solid(i + 1, 3, i % 3 ? FMB_CUBOID : FMB_TETRAHEDRON, 0.8 + i % 5 * 0.1, at);
         sample_define(log, &query.placement[i]);

@@ -41,7 +41,7 @@ static struct placement as_sent(const struct placement *placement)
     if (handle_is_none(&out.handle))
         return out;
     geometry_write_none(out.dim, none[out.dim]);
-    out.frame_count = out.number_count = 0;
+    out.frame_count = out.count_count = out.number_count = 0;
     out.geometry = (struct geometry){none[out.dim], GEOMETRY_NONE_BYTES};
     return out;
 }

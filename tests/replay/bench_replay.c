@@ -66,7 +66,7 @@ static void prepare(const struct placement *placement, struct definitions *defin
     const int dim = reader.dim;
     if (!geometry_next(&reader, &frame))
         fail("a frame of the log is none");
-    const int count = geometry_number_count(dim, frame.shape);
+    const int count = geometry_number_count(dim, frame.shape, 0);
     memcpy(numbers, frame.origin, (size_t) dim * sizeof *numbers);
     memcpy(numbers + dim, frame.components, (size_t) (count - dim) * sizeof *numbers);
     placed->placement = (struct fmb_placement){.body = &placed->body,

@@ -46,7 +46,7 @@ static void set_whole(const struct fmb_placement *from, int body, struct placeme
         .body_id = 1 + body, .dim = 3, .frame_count = (int32_t) count, .orientation_count = 4};
     for (unsigned i = 0; i < count; i++) {
         frame[i] = frame_of(fmb_body_frame(from->body, i));
-        out->number_count += geometry_number_count(3, frame[i].shape);
+        out->number_count += geometry_number_count(3, frame[i].shape, 0);
     }
     out->geometry =
         (struct geometry){bytes[body], geometry_write_frames(3, frame, (int) count, bytes[body])};

@@ -106,7 +106,7 @@ ageing() {
     "$build/soak-fair" flood --seconds "$seconds" --headroom 1000 --ids 4 >> "$log"
     sleep 6
     counts=$("$build/fmb" status --json |
-        jq -c '{received, answered, unsent, waiting} + (.results | {OK, BUSY, EXPIRED, REFUSAL_UNSENT})')
+        jq -c '{received, answered, unsent, expired, refusals_unsent, waiting} + (.results | {OK, BUSY})')
     echo "$counts"
     echo "$counts" | jq -e '.waiting == 0 and .BUSY > 0' >> "$log"
 }

@@ -19,8 +19,8 @@ import lcm.lcm.LCMEncodable;
 
 public final class Largest
 {
-    /* 80 bytes, 165 for each cube and 4 for each pair. */
-    private static final int CUBES = 384, PAIRS = 115, LARGEST = 63900, TRIES = 20;
+    /* 86 bytes, 182 for each cube and 4 for each pair. */
+    private static final int CUBES = 349, PAIRS = 74, LARGEST = 63900, TRIES = 20;
     private static final long CLIENT_ID = 815;
 
     private static placement_t cube(int i)
@@ -32,6 +32,8 @@ public final class Largest
         cube.shapes = new byte[] {placement_t.SHAPE_CUBOID};
         cube.num_numbers = 12;
         cube.numbers = new double[] {0, 0, 0, 1 + i, 0, 0, 0, 1, 0, 0, 0, 1};
+        cube.counts = new int[0];
+        cube.name = "";
         cube.position = new double[] {0.75 * i, 0, 0};
         cube.orientation = cube.velocity = new double[0];
         return cube;
@@ -41,6 +43,8 @@ public final class Largest
     {
         scene_query_t query = new scene_query_t();
         query.client_id = CLIENT_ID;
+        query.label = "s";
+        query.which = scene_query_t.PAIRS_LISTED;
         query.num_placements = CUBES;
         query.placements = new placement_t[CUBES];
         for (int i = 0; i < CUBES; i++)

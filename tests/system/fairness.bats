@@ -26,7 +26,7 @@ share() {
     share rate --and certificates
     share rate --and flood
     share flood --ids 4
-    "$FMB" status --json | jq -e '.results.REFUSAL_UNSENT > .results.BUSY and .received == .answered + .unsent'
+    "$FMB" status --json | jq -e '.refusals_unsent > .results.BUSY and .received == .answered + .unsent'
     stop_fmbd
 }
 

@@ -12,20 +12,15 @@
 #include "fmb_msgs_scene_query_t.h"
 #include "fmb_msgs_scene_result_t.h"
 
-/* A scene query of 80 bytes, 165 for each cube and 4 for each pair. */
-enum {
-    CUBES = 384,
-    PAIRS = 115,
-    LARGEST = 80 + 165 * CUBES + 4 * PAIRS,
-    TRIES = 20,
-    WAIT_MS = 500
-};
+/* A scene query of 86 bytes, 182 for each cube and 4 for each pair. */
+enum { CUBES = 349, PAIRS = 74, LARGEST = 86 + 182 * CUBES + 4 * PAIRS, TRIES = 20, WAIT_MS = 500 };
 _Static_assert(LARGEST == 63900, "the largest query");
 
 static const int64_t client_id = 4711;
 
 static fmb_msgs_placement_t cube_at(int64_t id, double *position)
 {
+    static char none[] = "";
     static uint8_t shape = FMB_MSGS_PLACEMENT_T_SHAPE_CUBOID;
     static double numbers[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     return (fmb_msgs_placement_t){.body_id = id,
@@ -34,6 +29,7 @@ static fmb_msgs_placement_t cube_at(int64_t id, double *position)
                                   .shapes = &shape,
                                   .num_numbers = 12,
                                   .numbers = numbers,
+                                  .name = none,
                                   .position = position};
 }
 
@@ -81,8 +77,11 @@ static void send_scene(lcm_t *lcm)
     }
     for (int i = 0; i < 2 * PAIRS; i++)
         index[i] = (int16_t) (i / 2 + i % 2);
+    static char label[] = "s";
     const fmb_msgs_scene_query_t query = {.client_id = client_id,
                                           .sequence_number = 1,
+                                          .label = label,
+                                          .which = FMB_MSGS_SCENE_QUERY_T_PAIRS_LISTED,
                                           .num_placements = CUBES,
                                           .placements = placement,
                                           .num_indices = 2 * PAIRS,

@@ -271,7 +271,8 @@ static void draw_pairs(struct making *making)
 {
     const int n = scene.placement_count;
     scene.split = scene.first_pair = scene.index_count = 0;
-    scene.which = world_draw(making->world, 3);
+    static const int32_t which[] = {QUERY_PAIRS_LISTED, QUERY_PAIRS_ALL, QUERY_PAIRS_ACROSS};
+    scene.which = which[world_draw(making->world, 3)];
     if (scene.which == QUERY_PAIRS_ACROSS)
         scene.split = 1 + world_draw(making->world, n - 1);
     else if (scene.which == QUERY_PAIRS_ALL)

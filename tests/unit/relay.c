@@ -390,6 +390,12 @@ struct fmb_placement relay_place(const struct fmb_client_placement *placement,
         const int dim = placement->dim;
         const int count = fmb_component_count(dim, of->shape) * (of->shape == FMB_BOX ? 1 : dim);
         double number[FMB_DIM_MAX + FMB_COMPONENTS_MAX];
+        if (of->vertices) {
+            assert_int_equal(fmb_frame_make_vertices(dim, of->shape, of->vertices,
+                                                     of->vertex_count * (size_t) dim, &frames[i]),
+                             FMB_OK);
+            continue;
+        }
         memcpy(number, of->origin, (size_t) dim * sizeof *number);
         memcpy(number + dim, of->components, (size_t) count * sizeof *number);
         assert_int_equal(fmb_frame_make(dim, of->shape, number, (size_t) (dim + count), &frames[i]),
@@ -442,6 +448,9 @@ static bool are_far(const struct fmb_placement *a, const struct fmb_placement *b
 
 static bool is_ignored(const struct fmb_client_scene *scene, unsigned a, unsigned b)
 {
+    const int64_t group = scene->placements[a].group;
+    if (group != 0 && group == scene->placements[b].group)
+        return true;
     for (size_t i = 0; i < scene->ignored_count; i++) {
         const unsigned *pair = scene->ignored[i];
         if ((pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a))

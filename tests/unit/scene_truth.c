@@ -48,7 +48,7 @@ void scene_put_number(struct scene *scene, int32_t i, int k, double value)
 {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
-    big_endian_put_64(scene->geometry[i] + 4 + 4 + 1 + 4 + 8 * k, bits);
+    big_endian_put_64(scene->geometry[i] + 4 + 4 + 1 + 4 + 4 + 8 * k, bits);
 }
 
 void scene_name(struct placement *placement, const struct handle *handle)
@@ -156,7 +156,7 @@ static struct fmb_placement place(const struct placement *placement, struct trut
     size_t count = 0;
     for (; geometry_next(&reader, &frame); count++) {
         const size_t dim = (size_t) reader.dim;
-        const size_t numbers = (size_t) geometry_number_count(reader.dim, frame.shape);
+        const size_t numbers = (size_t) geometry_number_count(reader.dim, frame.shape, 0);
         double number[GEOMETRY_FRAME_NUMBERS_MAX];
         memcpy(number, frame.origin, dim * sizeof *number);
         memcpy(number + dim, frame.components, (numbers - dim) * sizeof *number);
@@ -269,6 +269,9 @@ static void assert_pair(struct reading *reading, const unsigned pair[2])
 
 static bool is_ignored(const struct scene_query *query, const unsigned pair[2])
 {
+    const int64_t group = query->placement[pair[0]].group;
+    if (group != 0 && group == query->placement[pair[1]].group)
+        return true;
     for (int32_t i = 0; i < query->ignored_count / 2; i++) {
         const unsigned *ignored = query->ignored[i];
         if ((ignored[0] == pair[0] && ignored[1] == pair[1]) ||

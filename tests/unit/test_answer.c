@@ -4,6 +4,7 @@
 #include "body.h"
 #include "geometry_write.h"
 #include "wire.h"
+#include "writer.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -70,7 +71,7 @@ static void set_frames(struct pair_query *query, int f, int dim,
     struct placement *placement = &query->placement[f];
     *placement = (struct placement){.body_id = f + 1, .dim = dim, .frame_count = count};
     for (int i = 0; i < count; i++)
-        placement->number_count += geometry_number_count(dim, frames[i].shape);
+        placement->number_count += geometry_number_count(dim, frames[i].shape, 0);
     assert_true(geometry_size(dim, frames, count) <= sizeof bytes[f]);
     placement->geometry =
         (struct geometry){bytes[f], geometry_write_frames(dim, frames, count, bytes[f])};
@@ -128,7 +129,7 @@ static void put_number(int f, int k, double value)
 {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
-    big_endian_put_64(bytes[f] + 4 + 4 + 1 + 4 + 8 * k, bits);
+    big_endian_put_64(bytes[f] + 4 + 4 + 1 + 4 + 4 + 8 * k, bits);
 }
 
 /* A geometry of any counts, all numbers 0. */
@@ -141,11 +142,12 @@ static void set_geometry(struct pair_query *query, int f, int32_t dim, int32_t f
     big_endian_put_32(at, (uint32_t) dim);
     big_endian_put_32(at + 4, (uint32_t) frames);
     memset(at + 8, shape, (size_t) frames);
-    big_endian_put_32(at + 8 + frames, (uint32_t) numbers);
+    big_endian_put_32(at + 8 + frames + 4, (uint32_t) numbers); /* after the number of counts */
     placement->dim = dim;
     placement->frame_count = frames;
     placement->number_count = numbers;
-    placement->geometry = (struct geometry){at, (size_t) (12 + frames + 8 * numbers)};
+    placement->geometry =
+        (struct geometry){at, (size_t) (GEOMETRY_NONE_BYTES + frames + 8 * numbers)};
 }
 
 /* As the server does it; a body of several frames takes a job. */
@@ -183,6 +185,9 @@ static void expect(const struct pair_query *query, enum fmb_status status, const
     assert_int_equal(after.misses, before.misses);
     assert_int_equal(after.evictions, before.evictions);
 }
+
+/* Ends the counts of a case. */
+enum { END = INT32_MIN };
 
 static void test_answer_and_echo(void **state)
 {
@@ -379,6 +384,174 @@ static void test_bad_counts(void **state)
     expect(&query, FMB_WRONG_COUNT, "b.num_orientation: expected 2 numbers, found 4");
 }
 
+/* Frames by vertices: of each, the number of its vertices. */
+static void set_vertices(struct pair_query *query, int f, int32_t dim, const int *codes,
+                         const int32_t *counts, int32_t frames, int32_t numbers)
+{
+    struct placement *placement = &query->placement[f];
+    struct writer writer = {.at = bytes[f], .end = bytes[f] + sizeof bytes[f]};
+    int32_t by_vertices = 0;
+    for (int32_t i = 0; counts[i] != END; i++)
+        by_vertices++;
+    writer_int32(&writer, dim);
+    writer_int32(&writer, frames);
+    for (int32_t i = 0; i < frames; i++)
+        *writer_take(&writer, 1) = (unsigned char) codes[i];
+    writer_int32(&writer, by_vertices);
+    for (int32_t i = 0; i < by_vertices; i++)
+        writer_int32(&writer, counts[i]);
+    writer_int32(&writer, numbers);
+    for (int32_t i = 0; i < numbers; i++)
+        writer_double(&writer, i * i % 7);
+    placement->dim = dim;
+    placement->frame_count = frames;
+    placement->count_count = by_vertices;
+    placement->number_count = numbers;
+    placement->geometry = (struct geometry){bytes[f], writer_end(&writer, bytes[f])};
+}
+
+static void test_counts_of_vertices(void **state)
+{
+    (void) state;
+    static const struct {
+        int32_t dim, frames;
+        int codes[3];
+        int32_t counts[4], numbers;
+        enum fmb_status status;
+        const char *detail;
+    } cases[] = {
+        {3, 3, {6, 4, 7}, {4, 3, END}, 27, FMB_OK, ""},
+        {2, 1, {6}, {3, END}, 6, FMB_OK, ""},
+        {3, 1, {6}, {END}, 12, FMB_WRONG_COUNT, "b.num_counts: expected 1 numbers, found 0"},
+        {3, 1, {4}, {2, END}, 6, FMB_WRONG_COUNT, "b.num_counts: expected 0 numbers, found 1"},
+        {3,
+         2,
+         {7, 6},
+         {3, 4, 4, END},
+         21,
+         FMB_WRONG_COUNT,
+         "b.num_counts: expected 2 numbers, found 3"},
+        {3,
+         2,
+         {7, 6},
+         {3, 5, END},
+         21,
+         FMB_WRONG_COUNT,
+         "b.counts[1]: not a number of vertices of this shape"},
+        {3,
+         1,
+         {6},
+         {INT32_MAX, END},
+         12,
+         FMB_WRONG_COUNT,
+         "b.counts[0]: not a number of vertices of this shape"},
+        {3, 1, {6}, {4, END}, 11, FMB_WRONG_COUNT, "b.num_numbers: expected 12 numbers, found 11"},
+        {2, 1, {7}, {3, END}, 6, FMB_WRONG_DIMENSION, "b.dim: a face is in 3D"},
+        {3, 1, {8}, {3, END}, 6, FMB_UNKNOWN_SHAPE, "b.shapes[0]: unknown shape"},
+        {3,
+         2,
+         {4, 5},
+         {1, END},
+         9,
+         FMB_NOT_SUPPORTED,
+         "b.shapes[1]: hulls are not supported by this version"},
+        {2,
+         1,
+         {5},
+         {1000, END},
+         2000,
+         FMB_NOT_SUPPORTED,
+         "b.shapes[0]: hulls are not supported by this version"},
+        {3,
+         1,
+         {5},
+         {0, END},
+         0,
+         FMB_WRONG_COUNT,
+         "b.counts[0]: not a number of vertices of this shape"},
+        {3,
+         1,
+         {5},
+         {-5, END},
+         0,
+         FMB_WRONG_COUNT,
+         "b.counts[0]: not a number of vertices of this shape"},
+        {3,
+         1,
+         {5},
+         {INT32_MAX, END},
+         3,
+         FMB_WRONG_COUNT,
+         "b.num_numbers: expected 6442450941 numbers, found 3"},
+        {3, 1, {5}, {END}, 3, FMB_WRONG_COUNT, "b.num_counts: expected 1 numbers, found 0"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct pair_query query = cases[i].dim == 2 ? squares() : cubes();
+        set_vertices(&query, 1, cases[i].dim, cases[i].codes, cases[i].counts, cases[i].frames,
+                     cases[i].numbers);
+        if (cases[i].status == FMB_OK)
+            assert_int_equal(answer_to(&query).status, FMB_OK);
+        else
+            expect(&query, cases[i].status, cases[i].detail);
+    }
+}
+
+/* With a handle there are no counts. */
+static void test_a_handle_has_no_counts(void **state)
+{
+    (void) state;
+    static const int32_t counts[] = {4, END};
+    struct pair_query query = cubes();
+    set_vertices(&query, 0, 3, NULL, counts, 0, 0);
+    query.placement[0].handle = (struct handle){{1}};
+    expect(&query, FMB_WRONG_COUNT, "a.num_counts: expected 0 numbers, found 1");
+}
+
+static void test_names(void **state)
+{
+    (void) state;
+    static const char good[] =
+        "0123456789012345678901234567890123456789012345678901234567890\xe2\x82\xac";
+    static const char *const bad[] = {
+        "0123456789012345678901234567890123456789012345678901234567890\xe2\x82\xac.",
+        "\xff",
+        "a\n",
+        "\x7f",
+        "\xc2\x85",
+        "\xed\xa0\x80",
+        "\xe2\x82",
+        "\xc0\x80"};
+    struct pair_query query = cubes();
+    const struct pair_result unnamed = answer_to(&query);
+    query.placement[0].name = good;
+    assert_int_equal(strlen(good), 64);
+    const struct pair_result named = answer_to(&query);
+    assert_int_equal(named.status, FMB_OK);
+    assert_memory_equal(&named.handle[0], &unnamed.handle[0], sizeof named.handle[0]);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        query = cubes();
+        query.placement[1].name = bad[i];
+        expect(&query, FMB_BAD_NAME,
+               "b.name: a name that is not UTF-8 of at most 64 bytes without controls");
+    }
+}
+
+/* A pair query does not look at groups: also where it takes a job. */
+static void test_groups_of_a_pair_do_not_matter(void **state)
+{
+    (void) state;
+    struct geometry_frame frames[2] = {unit_cube, unit_cube};
+    for (int count = 1; count <= 2; count++) {
+        struct pair_query query = cubes();
+        set_frames(&query, 0, 3, frames, count);
+        const struct pair_result before = answer_to(&query);
+        query.placement[0].group = query.placement[1].group = -7;
+        const struct pair_result after = answer_to(&query);
+        assert_int_equal(after.status, FMB_OK);
+        assert_int_equal(after.answer.verdict, before.answer.verdict);
+        assert_memory_equal(&after.handle, &before.handle, sizeof after.handle);
+    }
+}
+
 static void test_handle_or_frames(void **state)
 {
     (void) state;
@@ -404,7 +577,7 @@ static void test_bad_shapes_and_dimensions(void **state)
 {
     (void) state;
     for (int shape = 0; shape < 256; shape++) {
-        if (shape >= FMB_CUBOID && shape <= FMB_BOX)
+        if (shape >= FMB_CUBOID && shape <= 7)
             continue;
         struct pair_query query = cubes();
         bytes[0][8] = (unsigned char) shape;
@@ -546,6 +719,7 @@ static void test_bodies_of_several_frames(void **state)
                 assert_int_equal(result.status, FMB_OK);
                 assert_memory_equal(&result.answer, &expected, sizeof expected);
                 assert_int_equal(result.dim, expected.has_box || expected.has_gap ? 3 : 0);
+                assert_int_equal(result.names_frames, expected.has_gap);
                 assert_int_equal(handle_is_none(&result.handle[0]), by_handle);
                 for (int f = 0; f < 2 && !by_handle; f++)
                     name(&query.placement[f], &result.handle[f]);
@@ -811,6 +985,10 @@ int main(void)
         TEST(test_anonymous_bodies_are_not_kept),
         TEST(test_bad_numbers),
         TEST(test_bad_counts),
+        TEST(test_counts_of_vertices),
+        TEST(test_a_handle_has_no_counts),
+        TEST(test_names),
+        TEST(test_groups_of_a_pair_do_not_matter),
         TEST(test_handle_or_frames),
         TEST(test_bad_shapes_and_dimensions),
         TEST(test_bad_orientations),

@@ -166,7 +166,7 @@ static void test_pages(void **state)
     (void) state;
     static struct handle handle[CAPACITY];
     for (int dim = 2; dim <= 3; dim++) {
-        const size_t body_bytes = HANDLE_BYTES + (dim == 2 ? 61 : 109);
+        const size_t body_bytes = HANDLE_BYTES + (dim == 2 ? 65 : 113);
         const int each = (int) ((QUERY_BYTES_MAX - WIRE_DEFINITION_BYTES) / body_bytes);
         for (int n = 0; n < CAPACITY; n++)
             handle[n] = keep(dim, n);

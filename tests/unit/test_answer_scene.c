@@ -68,7 +68,9 @@ static size_t assert_fits(void)
         (size_t) result.verdict_count * (1 + (result.names_pairs ? WIRE_PAIR_BYTES : 0)) +
         (result.has_times ? 16 * contacts : 0) +
         (result.has_boxes ? 16 * (size_t) result.dim * contacts : 0) +
-        (result.has_gaps ? (size_t) wire_gap_bytes(result.dim) * (size_t) result.verdict_count : 0);
+        (result.has_gaps ? (size_t) wire_gap_bytes(result.dim, result.names_frames) *
+                               (size_t) result.verdict_count
+                         : 0);
     assert_true(size <= promised && promised <= QUERY_BYTES_MAX);
     const char *error = wire_read_scene_result(bytes, (uint32_t) size, &again);
     if (error)
@@ -135,7 +137,7 @@ static double draw_margin(struct draw *draw)
 static void answer_in_every_way(struct draw *draw, const char *method)
 {
     query->method = fmb_method_by_name(method)->number;
-    for (int32_t which = QUERY_PAIRS_LISTED; which <= QUERY_PAIRS_ACROSS; which++)
+    for (int32_t which = QUERY_PAIRS_ALL; which <= QUERY_PAIRS_ACROSS; which++)
         for (size_t w = 0; w < COUNT(wants); w++) {
             query->which = which;
             query->want = wants[w];
@@ -246,7 +248,7 @@ static void test_every_pair_can_be_the_first(void **state)
     (void) state;
     struct draw draw;
     draw_begin(&draw, "first pairs");
-    for (int32_t which = QUERY_PAIRS_LISTED; which <= QUERY_PAIRS_ACROSS; which++) {
+    for (int32_t which = QUERY_PAIRS_ALL; which <= QUERY_PAIRS_ACROSS; which++) {
         const int32_t last_split = which == QUERY_PAIRS_ACROSS ? 9 : 0;
         scene_draw_placements(&draw, 3, -1, 9, &scene);
         query->which = which;
@@ -324,12 +326,12 @@ static void test_parts_fill_their_datagrams(void **state)
     assert_int_equal(answer_all_parts(5 + 32), parts_of(12720, 5 + 32, 0));
     query->which = QUERY_PAIRS_LISTED;
     query->index_count = 0;
-    for (unsigned i = 0; i < 11000; i++) {
+    for (unsigned i = 0; i < 10800; i++) {
         query->pair[i][0] = i % 160;
         query->pair[i][1] = (i + 1 + i / 160) % 160;
         query->index_count += 2;
     }
-    assert_int_equal(answer_all_parts(1 + 32), parts_of(11000, 1 + 32, 0));
+    assert_int_equal(answer_all_parts(1 + 32), parts_of(10800, 1 + 32, 0));
     query->want = QUERY_WANT_GAP;
     query->index_count = 4000;
     assert_int_equal(answer_all_parts(1 + 72), parts_of(2000, 1 + 72, 0));
@@ -383,7 +385,7 @@ static void test_verdicts_of_listed_pairs_fit(void **state)
         for (int32_t i = 0; i < count; i++)
             size += wire_placement_bytes(&query->placement[i]);
         const int32_t pairs = (int32_t) ((QUERY_BYTES_MAX - size) / WIRE_PAIR_BYTES);
-        assert_true(pairs > (count == 2 ? 15800 : 6000));
+        assert_true(pairs > (count == 2 ? 15800 : 4900));
         for (int32_t i = 0; i < pairs; i++) {
             query->pair[i][0] = (unsigned) (i % count);
             query->pair[i][1] = (unsigned) ((i + 1) % count);
@@ -400,7 +402,7 @@ static void test_verdicts_of_listed_pairs_fit(void **state)
 static void test_empty_scenes(void **state)
 {
     (void) state;
-    for (int32_t which = QUERY_PAIRS_LISTED; which <= QUERY_PAIRS_ACROSS; which++)
+    for (int32_t which = QUERY_PAIRS_ALL; which <= QUERY_PAIRS_ACROSS; which++)
         for (int32_t count = 0; count <= 1; count++)
             for (int32_t split = 0; split <= (which == QUERY_PAIRS_ACROSS ? count : 0); split++) {
                 set_row(count);
@@ -451,12 +453,12 @@ static void expect(enum fmb_status status, const char *detail)
 static void test_bad_placements(void **state)
 {
     (void) state;
-    set_row(380);
+    set_row(340);
     scene_put_number(&scene, 3, 7, NAN);
     expect(FMB_NOT_FINITE, "placements[3].numbers[7]: not a finite number");
-    set_row(380);
-    query->placement[379].position[2] = -INFINITY;
-    expect(FMB_NOT_FINITE, "placements[379].position[2]: not a finite number");
+    set_row(340);
+    query->placement[339].position[2] = -INFINITY;
+    expect(FMB_NOT_FINITE, "placements[339].position[2]: not a finite number");
     set_row(7);
     query->placement[6].velocity_count = 3;
     query->placement[6].velocity[1] = INFINITY;
@@ -486,17 +488,24 @@ static void test_bad_placements(void **state)
 static void test_too_many_placements(void **state)
 {
     (void) state;
-    enum { HEAD = 8 + 3 * 8 + 8 + 2 * 4 + 8 + 3 * 4, COUNT_AT = HEAD, PLACEMENT = 44 };
+    enum {
+        HEAD = 8 + 3 * 8 + 5 + 8 + 2 * 4 + 8 + 3 * 4,
+        COUNT_AT = HEAD,
+        PLACEMENT = 61,
+        NAME = 40
+    };
     query->placement_count = 0;
     wire_write_scene_query(query, bytes);
     const size_t size = HEAD + 4 + (QUERY_PLACEMENTS_MAX + 1) * PLACEMENT + 8;
     memset(bytes + COUNT_AT, 0, size - COUNT_AT);
     bytes[COUNT_AT + 2] = (QUERY_PLACEMENTS_MAX + 1) >> 8;
     bytes[COUNT_AT + 3] = (QUERY_PLACEMENTS_MAX + 1) & 0xff;
+    for (size_t i = 0; i <= QUERY_PLACEMENTS_MAX; i++) /* an empty name has a length of 1 */
+        bytes[COUNT_AT + 4 + i * PLACEMENT + NAME + 3] = 1;
     assert_null(scene_job_begin(job, bytes, size));
     assert_true(scene_job_step(job, answerer));
     assert_int_equal(scene_job_result(job)->status, FMB_OVER_LIMIT);
-    assert_string_equal(scene_job_result(job)->detail, "num_placements: more than 1065");
+    assert_string_equal(scene_job_result(job)->detail, "num_placements: more than 829");
 }
 
 static void test_bad_counts(void **state)
@@ -507,7 +516,7 @@ static void test_bad_counts(void **state)
     query->index_count = 3;
     expect(FMB_WRONG_COUNT, "num_indices: not two for each pair");
     query->index_count = 2;
-    for (query->which = QUERY_PAIRS_ALL; query->which <= QUERY_PAIRS_ACROSS; query->which++)
+    for (query->which = QUERY_PAIRS_ALL; query->which <= QUERY_PAIRS_ACROSS; query->which += 2)
         expect(FMB_WRONG_COUNT, "num_indices: indices without PAIRS_LISTED");
     query->index_count = 0;
     query->which = QUERY_PAIRS_ALL;
@@ -585,7 +594,7 @@ static void test_ignored_pairs(void **state)
     for (long round = 0; round < draw_sample(24); round++) {
         const unsigned(*pair)[2];
         scene_draw_placements(&draw, 2 + round % 2, -1, 10, &scene);
-        query->which = QUERY_PAIRS_ALL + round % 4 / 2;
+        query->which = round % 4 / 2 ? QUERY_PAIRS_ACROSS : QUERY_PAIRS_ALL;
         query->split = query->which == QUERY_PAIRS_ACROSS ? 5 : 0;
         query->want = wants[round % (int) COUNT(wants)];
         query->margin = draw_margin(&draw);
@@ -594,11 +603,33 @@ static void test_ignored_pairs(void **state)
             const unsigned a = (unsigned) draw_int(&draw, 0, 9);
             set_ignored(i, a, (a + (unsigned) draw_int(&draw, 1, 9)) % 10);
         }
+        for (int32_t i = 0; i < query->placement_count; i++)
+            query->placement[i].group = draw_int(&draw, -1, 2);
+        query->label = round % 2 ? "any bytes\n\xff" : NULL;
         const int32_t total = scene_list(query, &pair);
         for (query->first_pair = 0; query->first_pair <= total; query->first_pair++)
             answer_and_check(query);
         query->first_pair = 0;
     }
+}
+
+/* A listed pair within a group is refused; the pairs of others are decided. */
+static void test_listed_pairs_within_a_group(void **state)
+{
+    (void) state;
+    set_row(5);
+    query->which = QUERY_PAIRS_LISTED;
+    query->index_count = 6;
+    for (unsigned i = 0; i < 3; i++) {
+        query->pair[i][0] = i + 1;
+        query->pair[i][1] = i;
+    }
+    query->placement[0].group = query->placement[4].group = INT64_MIN;
+    answer_and_check(query);
+    query->placement[3].group = query->placement[2].group = INT64_MIN;
+    expect(FMB_BAD_PAIR, "indices[4]: a pair of one group");
+    query->placement[3].group = 0;
+    answer_and_check(query);
 }
 
 /* A body of many frames, in 2D: boxes in a row. Returns its handle. */
@@ -915,7 +946,7 @@ static void test_answers_allocate_nothing(void **state)
         answer_to(query);
         assert_int_equal(result.status, FMB_UNKNOWN_BODY);
     }
-    set_heap(330, 3, true, true);
+    set_heap(300, 3, true, true);
     query->which = QUERY_PAIRS_ALL;
     query->split = query->index_count = 0;
     answer_to(query);
@@ -1050,8 +1081,7 @@ static void test_scenes_that_are_stopped(void **state)
         query->placement[36 + i].position[0] = 1e9; /* far from all */
     query->want = QUERY_WANT_BOX | QUERY_WANT_TIMES;
     for (size_t m = 0; m < COUNT(methods); m++)
-        for (query->which = QUERY_PAIRS_LISTED; query->which <= QUERY_PAIRS_ACROSS;
-             query->which++) {
+        for (query->which = QUERY_PAIRS_ALL; query->which <= QUERY_PAIRS_ACROSS; query->which++) {
             const unsigned(*pair)[2];
             query->method = fmb_method_by_name(methods[m])->number;
             query->index_count = 0;
@@ -1170,6 +1200,7 @@ int main(void)
         TEST(test_bad_pairs),
         TEST(test_bad_ignored_pairs),
         TEST(test_ignored_pairs),
+        TEST(test_listed_pairs_within_a_group),
         TEST(test_too_many_frames),
         TEST(test_bad_requests),
         TEST(test_refused_without_being_read),

@@ -1,4 +1,5 @@
 /* fmb query on the bus, where no service answers. */
+#include "allocate.h"
 #include "answers.h"
 #include "relay.h"
 #include "wire.h"
@@ -30,10 +31,13 @@ static void test_a_heartbeat_is_enough_to_go_on(void **state)
     (void) state;
     for (int alive = 0; alive < 2; alive++) {
         int pairs = 0;
-        struct fmb_body cube;
-        const double sides[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-        assert_int_equal(fmb_body_make(3, FMB_CUBOID, sides, 9, &cube), FMB_OK);
-        struct scene_body body[2] = {{.id = 1, .body = cube}, {.id = 2, .body = cube}};
+        struct scene_body body[2] = {{.id = 1}, {.id = 2}};
+        for (int i = 0; i < 2; i++) {
+            size_t bad;
+            body[i].given = allocate(1, sizeof *body[i].given);
+            *body[i].given = (struct geometry_frame){.shape = FMB_BOX, .components = {1, 1, 1}};
+            assert_int_equal(scene_body_make(3, 1, &body[i], &bad), FMB_OK);
+        }
         const struct scene scene = {
             .dim = 3, .duration = 1, .body = body, .body_count = 2, .all_pairs = true};
         const struct answers_options options = {.method = NULL};
@@ -47,6 +51,8 @@ static void test_a_heartbeat_is_enough_to_go_on(void **state)
         assert_int_equal(pairs, 1);
         answers_bus_close(answers);
         relay_close(relay);
+        for (int i = 0; i < 2; i++)
+            scene_body_clear(&body[i]);
     }
 }
 

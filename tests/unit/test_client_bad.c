@@ -906,6 +906,7 @@ static const struct {
 static void test_results_of_a_pair_fit_their_query(void **state)
 {
     (void) state;
+    static const struct part part = {.placement = {0, 2}, .pair = {{0, 1}}}; /* of one frame */
     struct fmb_client_scene scene = listed();
     for (size_t i = 0; i < sizeof pair_lies / sizeof *pair_lies; i++) {
         struct part_answers answers = {0};
@@ -916,10 +917,54 @@ static void test_results_of_a_pair_fit_their_query(void **state)
                        .has_gap = pair_lies[i].gap},
             .certificate = pair_lies[i].certificate ? "proof" : NULL};
         scene.want = pair_lies[i].want;
-        assert_int_equal(part_take_pair(&scene, &result, &answers),
+        assert_int_equal(part_take_pair(&part, &scene, &result, &answers),
                          pair_lies[i].good ? PART_TAKEN : PART_MALFORMED);
         assert_int_equal(answers.answered, pair_lies[i].good);
         part_answers_clear(&answers);
+    }
+}
+
+/* The frames that have a gap, of bodies of one frame and of three: named if and only if a body has
+ * several, and such that the body has. */
+static void test_frames_of_a_gap_fit_the_bodies(void **state)
+{
+    (void) state;
+    static const struct {
+        unsigned a, b; /* placements: 0 has one frame, 1 has three */
+        bool named;
+        unsigned frame[2];
+        bool good;
+    } cases[] = {
+        {0, 0, false, {0, 0}, true}, {0, 0, true, {0, 0}, false}, {0, 1, true, {0, 2}, true},
+        {0, 1, true, {0, 3}, false}, {0, 1, true, {1, 0}, false}, {0, 1, false, {0, 0}, false},
+        {1, 0, true, {2, 0}, true},  {1, 1, true, {2, 2}, true},  {1, 1, true, {3, 2}, false}};
+    struct fmb_client_scene scene = listed();
+    static struct scene_result named;
+    scene.want = FMB_CLIENT_WANT_GAP;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        static struct part part;
+        struct part_answers pair = {0}, all = {0};
+        struct pair_result result = {
+            .dim = 3,
+            .names_frames = cases[i].named,
+            .answer = {.verdict = FMB_OVERLAPPING,
+                       .has_gap = true,
+                       .gap = {.frame = {cases[i].frame[0], cases[i].frame[1]}}}};
+        part = (struct part){.which = QUERY_PAIRS_LISTED, .total = 1, .placement_count = 2};
+        part.placement[0] = cases[i].a;
+        part.placement[1] = cases[i].b;
+        part.pair[0][1] = 1;
+        named =
+            (struct scene_result){.end_pair = 1, .dim = 3, .verdict_count = 1, .contact_count = 1};
+        named.verdict[0] = FMB_OVERLAPPING;
+        named.has_gaps = true;
+        named.names_frames = cases[i].named;
+        named.gap[0] = result.answer.gap;
+        const enum part_taken taken = cases[i].good ? PART_TAKEN : PART_MALFORMED;
+        assert_int_equal(part_take_pair(&part, &scene, &result, &pair), taken);
+        assert_int_equal(part_take_scene(&part, &scene, &named, &all), taken);
+        part_answers_clear(&pair);
+        part_answers_clear(&all);
     }
 }
 
@@ -1512,6 +1557,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_forged_results_are_ignored),
         cmocka_unit_test(test_forged_gaps_are_ignored),
         cmocka_unit_test(test_results_of_a_pair_fit_their_query),
+        cmocka_unit_test(test_frames_of_a_gap_fit_the_bodies),
         cmocka_unit_test(test_the_right_result_after_forged_ones_is_taken),
         cmocka_unit_test(test_steps_of_one_pair_end),
         cmocka_unit_test(test_slow_services_get_fewer_pairs_a_query),

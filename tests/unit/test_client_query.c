@@ -293,6 +293,98 @@ static void test_certificates_of_all_pairs(void **state)
     relay_close(relay);
 }
 
+static void count_answer(void *user, const struct fmb_client_answer *answer)
+{
+    int *count = user;
+    assert_int_equal(answer->status, FMB_OK);
+    ++*count;
+}
+
+static void wrong(struct fmb_client *client, const struct fmb_client_scene *scene, int status,
+                  const char *place);
+
+/* The vertices of a tetrahedron or face, which its components would round. */
+static void use_vertices(struct fmb_client_frame *frame, int dim, double (*vertex)[FMB_DIM_MAX])
+{
+    double *numbers = vertex[0];
+    frame->vertex_count = (size_t) fmb_component_count(dim, frame->shape) + 1;
+    for (size_t k = 0; k < frame->vertex_count * (size_t) dim; k++)
+        numbers[k] =
+            k < (size_t) dim ? 1e5 + frame->origin[k] : frame->components[k - (size_t) dim];
+    frame->vertices = numbers;
+}
+
+/* Groups, names, a label, and frames by vertices, in queries of every kind. */
+static void test_groups_names_and_vertices(void **state)
+{
+    (void) state;
+    enum { BODIES = 300 };
+    static double vertex[3 * BODIES][FMB_DIM_MAX + 1][FMB_DIM_MAX];
+    struct relay *relay = relay_new();
+    relay_open(relay, 4000);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    for (int dim = 2; dim <= 3; dim++) {
+        struct fmb_client_placement *body = frames_of(BODIES, dim, dim == 2 ? 40 : 12, 1);
+        int used = 0;
+        for (int i = 0; i < BODIES; i++) {
+            body[i].group = i % 7 - 1;
+            body[i].name = i % 3 ? "link \xe2\x82\xac" : NULL;
+            for (size_t k = 0; k < body[i].frame_count; k++) {
+                struct fmb_client_frame *frame = (struct fmb_client_frame *) &body[i].frames[k];
+                if (frame->shape == FMB_TETRAHEDRON || frame->shape == FMB_FACE)
+                    use_vertices(frame, dim, vertex[used++]);
+            }
+        }
+        struct fmb_client_scene scene = scene_of(body, BODIES, FMB_CLIENT_ALL, ALL_WANTS);
+        scene.label = "0123456789012345678901234567890123456789012345678901234567890123";
+        for (int round = 0; round < 2; round++) { /* whole, then by handle */
+            scene.margin = round * 0.5;
+            scene.which = FMB_CLIENT_ALL;
+            relay_query(client, &scene);
+            scene.which = FMB_CLIENT_ACROSS;
+            scene.split = 100;
+            relay_query(client, &scene);
+            scene.split = 0;
+        }
+        static const unsigned pairs[3][2] = {{1, 2}, {8, 2}, {9, 2}}; /* two of group 1 */
+        scene.which = FMB_CLIENT_LISTED;
+        scene.pairs = pairs;
+        scene.pair_count = 2;
+        relay_query(client, &scene);
+        scene.pair_count = 3;
+        wrong(client, &scene, FMB_BAD_PAIR, "pairs[2]: ");
+        struct fmb_client_answer answer; /* which does not look at groups */
+        const struct fmb_client_placement both[2] = {body[9], body[2]};
+        assert_int_equal(fmb_client_query_pair(client, both, 1, 0, &answer), FMB_OK);
+        free(body);
+    }
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    fmb_client_close(client);
+    relay_close(relay);
+}
+
+/* Each pair a query of its own: no pair within a group is sent. */
+static void test_groups_where_pairs_are_listed(void **state)
+{
+    (void) state;
+    struct relay *relay = relay_new();
+    relay_open(relay, 1000);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    struct fmb_client_placement *body = frames_of(12, 3, 2, 1);
+    for (int i = 0; i < 12; i++) {
+        body[i].frame_count = 1;
+        body[i].group = i < 10 ? -3 : 0;
+    }
+    struct fmb_client_scene scene = scene_of(body, 12, FMB_CLIENT_ALL, FMB_CLIENT_WANT_CERTIFICATE);
+    int given = 0;
+    assert_int_equal(fmb_client_query(client, &scene, count_answer, &given), FMB_OK);
+    assert_int_equal(given, 12 * 11 / 2 - 10 * 9 / 2);
+    assert_int_equal(fmb_client_get_counts(client).queries, given);
+    fmb_client_close(client);
+    free(body);
+    relay_close(relay);
+}
+
 static void test_one_pair(void **state)
 {
     (void) state;
@@ -346,12 +438,30 @@ static void test_wrong_scenes_are_refused(void **state)
     relay_draw(good, 3, 3, 1, 1, 1);
     memcpy(frame, good, sizeof good);
     struct fmb_client_scene scene = scene_of(frame, 3, FMB_CLIENT_LISTED, 0);
-    relay_frame(&frame[2])->shape = 5;
+    relay_frame(&frame[2])->shape = 6;
     wrong(client, &scene, FMB_UNKNOWN_SHAPE, "placements[2].frames[0].shape: ");
-    *relay_frame(&frame[2]) = (struct fmb_client_frame){FMB_BOX, {0}, {1, -1, 1}};
+    *relay_frame(&frame[2]) = (struct fmb_client_frame){.shape = FMB_BOX, .components = {1, -1, 1}};
     wrong(client, &scene, FMB_BAD_SIZE, "placements[2].frames[0].components[1]: ");
     relay_frame(&frame[2])->components[1] = 1, frame[2].frame_count = 0;
     wrong(client, &scene, FMB_NO_FRAMES, "placements[2].frame_count: ");
+    static const double vertices[5][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, NAN}};
+    frame[2] = good[2];
+    struct fmb_client_frame by_vertices = {
+        .shape = FMB_CUBOID, .vertices = vertices[0], .vertex_count = 3};
+    frame[2].frames = &by_vertices, frame[2].frame_count = 1;
+    wrong(client, &scene, FMB_UNKNOWN_SHAPE, "placements[2].frames[0].shape: ");
+    by_vertices.shape = FMB_TETRAHEDRON;
+    wrong(client, &scene, FMB_WRONG_COUNT, "placements[2].frames[0].vertex_count: ");
+    by_vertices.vertex_count = 4;
+    wrong(client, &scene, FMB_NOT_FINITE, "placements[2].frames[0].vertices[11]: ");
+    by_vertices.shape = FMB_HULL, by_vertices.vertices = NULL;
+    wrong(client, &scene, FMB_WRONG_COUNT, "placements[2].frames[0].shape: ");
+    frame[2] = good[2], frame[2].name = "a\n";
+    wrong(client, &scene, FMB_BAD_NAME, "placements[2].name: ");
+    frame[2] = good[2];
+    scene.label = "01234567890123456789012345678901234567890123456789012345678901234";
+    wrong(client, &scene, FMB_OVER_LIMIT, "label: ");
+    scene.label = NULL;
     frame[2] = good[2], frame[2].orientation_count = 3;
     wrong(client, &scene, FMB_WRONG_COUNT, "placements[2].orientation_count: ");
     frame[2].orientation_count = 4, memset(frame[2].orientation, 0, sizeof frame[2].orientation);
@@ -534,6 +644,7 @@ static void open_world(struct world *world, size_t bodies)
     relay_open(world->relay, bodies);
     world->client = relay_client(world->relay, 5, 1);
     world->frame = frames_of(100, 3, 5, 1);
+    relay_draw(world->frame, 100, 3, 5, 1, 8); /* no two of these share a slot of held.h */
     world->scene = scene_of(world->frame, 100, FMB_CLIENT_ALL, ALL_WANTS);
 }
 
@@ -747,7 +858,7 @@ static void test_bodies_of_many_frames(void **state)
 /* Bytes of a message that a body takes which is at rest and not turned. */
 static size_t bytes_of(const struct fmb_client_placement *body)
 {
-    return 8 + HANDLE_BYTES + client_scene_geometry_bytes(body) + 4 + 4 +
+    return 8 + HANDLE_BYTES + client_scene_geometry_bytes(body) + 4 + 1 + 8 + 4 + 4 +
            sizeof(double) * (size_t) body->dim;
 }
 
@@ -773,10 +884,12 @@ static void test_pairs_that_just_fit_into_a_datagram(void **state)
         struct fmb_client_frame *frame = calloc((size_t) count, sizeof *frame);
         assert_non_null(frame);
         for (int i = 0; i < count; i++)
-            frame[i] =
-                i < (frames - BOX * count) / MORE
-                    ? (struct fmb_client_frame){FMB_CUBOID, {i, bytes}, {1, 0, 0, 0, 1, 0, 0, 0, 1}}
-                    : (struct fmb_client_frame){FMB_BOX, {i, bytes}, {1, 1, 1}};
+            frame[i] = i < (frames - BOX * count) / MORE
+                           ? (struct fmb_client_frame){.shape = FMB_CUBOID,
+                                                       .origin = {i, bytes},
+                                                       .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}}
+                           : (struct fmb_client_frame){
+                                 .shape = FMB_BOX, .origin = {i, bytes}, .components = {1, 1, 1}};
         for (int f = 0; f < 2; f++) {
             body[f].frames = frame + f * (count / 2);
             body[f].frame_count = (size_t) (f ? count - count / 2 : count / 2);
@@ -882,6 +995,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_every_method),
         cmocka_unit_test(test_near_pairs_of_many_bodies),
         cmocka_unit_test(test_certificates_of_all_pairs),
+        cmocka_unit_test(test_groups_names_and_vertices),
+        cmocka_unit_test(test_groups_where_pairs_are_listed),
         cmocka_unit_test(test_one_pair),
         cmocka_unit_test(test_wrong_scenes_are_refused),
         cmocka_unit_test(test_a_scene_left_zero_is_of_all_pairs),

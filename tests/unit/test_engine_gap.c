@@ -597,6 +597,8 @@ static void check_bodies(const struct pair *pair)
     const struct pair swapped = {pair->b, pair->a, pair->duration};
     assert_int_equal(pair_decide(fmb_method_default(), &swapped, FMB_WANT_GAP, &other), FMB_OK);
     assert_true(gap_check_swapped(false, &answer.gap, &other.gap));
+    assert_int_equal(answer.gap.frame[0], other.gap.frame[1]);
+    assert_int_equal(answer.gap.frame[1], other.gap.frame[0]);
     bool lower = false, upper = false;
     for (unsigned i = 0; i < pair->a.body->frame_count; i++)
         for (unsigned j = 0; j < pair->b.body->frame_count; j++) {
@@ -611,14 +613,43 @@ static void check_bodies(const struct pair *pair)
                              FMB_OK);
             assert_true(answer.gap.bounds[0] <= of_one.gap.bounds[1]);
             assert_true(answer.gap.bounds[1] <= of_one.gap.bounds[1]);
-            upper =
-                upper || (answer.gap.bounds[1] == of_one.gap.bounds[1] &&
-                          (answer.gap.bounds[1] == 0 || gap_check_upper(pair, i, j, &answer.gap)));
+            if (i == answer.gap.frame[0] && j == answer.gap.frame[1]) /* the pair that is named */
+                upper = (answer.gap.bounds[1] == of_one.gap.bounds[1] &&
+                         (answer.gap.bounds[1] == 0 || gap_check_upper(pair, i, j, &answer.gap)));
             lower = lower ||
                     (answer.gap.bounds[0] >= of_one.gap.bounds[0] &&
                      (answer.verdict == FMB_TOUCHING || gap_check_lower(pair, i, j, &answer.gap)));
         }
     assert_true(lower && upper);
+}
+
+/* Of pairs of frames with one gap, the same is named in both orders, and by a scene. */
+static void equal_gaps_name_one_pair_of_frames(void **state)
+{
+    (void) state;
+    static const double at[3] = {0, 4, 8}, cube[6] = {0, 0, 0, 1, 1, 1};
+    struct fmb_frame frame[2][3];
+    struct fmb_body body[2];
+    struct fmb_placement placement[2] = {{.body = &body[0]}, {.body = &body[1]}};
+    for (int s = 0; s < 2; s++) { /* the second row in the opposite order */
+        for (int i = 0; i < 3; i++) {
+            double numbers[6];
+            memcpy(numbers, cube, sizeof cube);
+            numbers[0] = at[s ? 2 - i : i];
+            assert_int_equal(fmb_frame_make(3, FMB_BOX, numbers, 6, &frame[s][i]), FMB_OK);
+        }
+        assert_int_equal(fmb_body_make_frames(frame[s], 3, &body[s]), FMB_OK);
+    }
+    placement[1].position[1] = 3;
+    const struct pair pair = {placement[0], placement[1], 0};
+    const struct pair swapped = {placement[1], placement[0], 0};
+    struct fmb_answer answer, other;
+    assert_int_equal(pair_decide(fmb_method_default(), &pair, FMB_WANT_GAP, &answer), FMB_OK);
+    assert_int_equal(pair_decide(fmb_method_default(), &swapped, FMB_WANT_GAP, &other), FMB_OK);
+    assert_true(answer.gap.bounds[0] == 2 && answer.gap.bounds[1] == 2);
+    assert_int_equal(answer.gap.frame[0] + answer.gap.frame[1], 2);
+    assert_int_equal(answer.gap.frame[0], other.gap.frame[1]);
+    assert_int_equal(answer.gap.frame[1], other.gap.frame[0]);
 }
 
 static void bodies_of_several_frames(void **state)
@@ -1095,6 +1126,7 @@ int main(void)
         cmocka_unit_test(equal_depths_have_one_direction),
         cmocka_unit_test(bounds_of_boxes_are_proven),
         cmocka_unit_test(a_margin_is_compared_with_the_lower_bound),
+        cmocka_unit_test(equal_gaps_name_one_pair_of_frames),
         cmocka_unit_test(cubes_rolled_by_libm),
         cmocka_unit_test(inexact_methods_have_none),
         cmocka_unit_test(infinite_gaps),

@@ -126,6 +126,8 @@ static void draw_world(struct draw *draw, size_t count, size_t most_frames, stru
             draw_two(draw, count, out->ignored[i]);
     }
     scene->instant = scene->duration == 0;
+    for (size_t i = 0; i < count && scene->which != FMB_PAIRS_LISTED && below(draw, 4) > 0; i++)
+        out->placement[i].group = below(draw, 3) - 1;
     if (below(draw, 2))
         scene->first_pair = draw_bits(draw) % (fmb_scene_pair_count(scene) + 1);
 }
@@ -134,6 +136,9 @@ static void draw_world(struct draw *draw, size_t count, size_t most_frames, stru
 
 static bool is_ignored(const struct fmb_scene *scene, unsigned a, unsigned b)
 {
+    const struct fmb_placement *placement = scene->placements;
+    if (placement[a].group != 0 && placement[a].group == placement[b].group)
+        return true;
     for (size_t i = 0; i < scene->ignored_count; i++)
         if ((scene->ignored[i][0] == a && scene->ignored[i][1] == b) ||
             (scene->ignored[i][0] == b && scene->ignored[i][1] == a))
@@ -228,6 +233,7 @@ static void check_gap(const struct fmb_scene *scene, const struct fmb_gap *got,
     assert_int_equal(got->has_witness, gap->has_witness);
     assert_memory_equal(&got->time, &gap->time, sizeof gap->time);
     assert_memory_equal(got->witness, gap->witness, sizeof gap->witness);
+    assert_memory_equal(got->frame, gap->frame, sizeof gap->frame);
 }
 
 static void check_answer(const struct fmb_scene *scene, const struct fmb_scene_answers *answers,
@@ -424,6 +430,11 @@ static void bad_scenes(void **state)
     assert_int_equal(begin(scene), FMB_BAD_PAIR);
     world.pair[3][1] = world.pair[3][0];
     assert_int_equal(begin(scene), FMB_BAD_PAIR);
+    draw_good(FMB_PAIRS_LISTED);
+    world.placement[world.pair[2][0]].group = world.placement[world.pair[2][1]].group = -1;
+    assert_int_equal(begin(scene), FMB_BAD_PAIR);
+    world.placement[world.pair[2][0]].group = 1;
+    assert_int_equal(begin(scene), FMB_OK);
     draw_good(FMB_PAIRS_LISTED);
     scene->first_pair = scene->pair_count + 1;
     assert_int_equal(begin(scene), FMB_BAD_PAIR);

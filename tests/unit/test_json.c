@@ -175,6 +175,44 @@ static void reads_poses_frames_names_and_ignored_pairs(void **state)
 }
 
 /* Against the same sums in long double, which are off by less than half a unit of a double. */
+/* Vertices stand in place of origin and components, groups leave pairs out. */
+static void reads_vertices_groups_and_labels(void **state)
+{
+    (void) state;
+    struct scene scene = read_one(
+        "{\"label\": \"shelf \\u20ac\", \"dim\": 3, \"bodies\": ["
+        "{\"id\": 1, \"group\": -7, \"shape\": \"tetrahedron\", \"position\": [1,0,0],"
+        " \"vertices\": [[0.1,-0,0],[1e16,0,0],[0,1,0],[0,0,1]]},"
+        "{\"id\": 2, \"group\": -7, \"frames\": ["
+        "{\"shape\": \"face\", \"vertices\": [[0,0,0],[1,0,0],[0,1,0]]},"
+        "{\"shape\": \"box\", \"size\": [1,1,1]}]},"
+        "{\"id\": 3, \"shape\": \"box\", \"size\": [1,1,1]},"
+        "{\"id\": 4, \"group\": 9007199254740991, \"shape\": \"box\", \"size\": [1,1,1]},"
+        "{\"id\": 5, \"group\": -7, \"shape\": \"box\", \"size\": [1,1,1]}],"
+        "\"ignore\": [[5,1],[3,4]]}");
+    struct scene_cursor cursor = {0};
+    struct scene_pair pair;
+    int pairs = 0;
+    assert_string_equal(scene.label, "shelf \xe2\x82\xac");
+    const struct fmb_frame *tetrahedron = fmb_body_frame(&scene.body[0].body, 0);
+    assert_int_equal(tetrahedron->shape, FMB_TETRAHEDRON);
+    assert_true(scene.body[0].given[0].by_vertices);
+    assert_true(tetrahedron->component[0][0] == 1e16 && tetrahedron->remainder[0][0] == -0.1);
+    assert_true(signbit(scene.body[0].given[0].origin[1]));
+    assert_true(scene.body[0].position[0] == 1);
+    assert_int_equal(scene.body[1].body.frame_count, 2);
+    assert_int_equal(scene.body[0].group, -7);
+    assert_int_equal(scene.body[3].group, 9007199254740991);
+    assert_int_equal(scene.ignored_count, 1); /* the other one is within a group */
+    while (scene_next_pair(&scene, &cursor, &pair)) {
+        assert_false(scene_ignores(&scene, pair));
+        pairs++;
+    }
+    assert_int_equal(pairs, 10 - 3 - 1);
+    assert_int_equal(scene_count_pairs(&scene), pairs);
+    scene_clear(&scene);
+}
+
 static void turned_boxes_are_rounded_once(void **state)
 {
     uint64_t seed = 5;
@@ -433,6 +471,8 @@ static void long_numbers_are_read_in_full(void **state)
 
 /* ---- What is refused ------------------------------------------------------------------------- */
 
+#define GROUP_EXPECTED "expected an integer other than 0, of magnitude up to 9007199254740991"
+#define VERTICES(x) "{\"shape\":\"face\",\"vertices\":[[-" x ",0,0],[" x ",1,0],[0,1,1]]}"
 #define ID_EXPECTED "expected an integer from 1 to 9007199254740991, found "
 
 static const struct {
@@ -517,6 +557,34 @@ static const struct {
     {SCENE("{\"id\":1,\"velocity\":null," CUBE "}"),
      "bodies[0].velocity: expected 3 numbers, found null"},
     {SCENE_PAIRS("{}"), "pairs: expected an array, found an object"},
+    {"{\"label\":\"a\\n\",\"dim\":3,\"bodies\":[]}",
+     "label: expected UTF-8 without control characters"},
+    {"{\"label\":7,\"dim\":3,\"bodies\":[]}", "label: expected a string, found a number"},
+    {SCENE("{\"id\":1,\"group\":0," CUBE "}"), "bodies[0].group: " GROUP_EXPECTED},
+    {SCENE("{\"id\":1,\"group\":0.5," CUBE "}"), "bodies[0].group: " GROUP_EXPECTED},
+    {SCENE("{\"id\":1,\"group\":9007199254740992," CUBE "}"), "bodies[0].group: " GROUP_EXPECTED},
+    {SCENE("{\"id\":1,\"group\":\"a\"," CUBE "}"),
+     "bodies[0].group: " GROUP_EXPECTED ", found a string"},
+    {"{\"dim\":3,\"bodies\":[{\"id\":1,\"group\":5," CUBE "},{\"id\":2,\"group\":5," CUBE
+     "}],\"pairs\":[[2,1]]}",
+     "pairs[0]: both bodies are of group 5"},
+    {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":[[0,0,0]]}"),
+     "bodies[0].shape: hulls are not supported by this version"},
+    {SCENE("{\"id\":1,\"shape\":\"face\",\"vertices\":[[0,0,0],[1,0,0]]}"),
+     "bodies[0].vertices: expected 3 vertices, found 2"},
+    {SCENE("{\"id\":1,\"shape\":\"tetrahedron\",\"vertices\":[[0,0,0],[1,0,0],[0,1,0],[0,1]]}"),
+     "bodies[0].vertices[3]: expected 3 numbers, found 2"},
+    {SCENE("{\"id\":1,\"shape\":\"tetrahedron\",\"vertices\":[],\"origin\":[0,0,0]}"),
+     "bodies[0]: a frame of vertices has no \"origin\""},
+    {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"vertices\":[]}"),
+     "bodies[0]: a cuboid has no \"vertices\""},
+    {SCENE("{\"id\":1,\"shape\":\"box\",\"size\":[1,1,1],\"vertices\":[]}"),
+     "bodies[0]: a box has no \"vertices\""},
+    {SCENE("{\"id\":1,\"frames\":[{\"shape\":\"face\",\"position\":[0,0,0],"
+           "\"vertices\":[[0,0,0],[1,0,0],[0,1,0]]}]}"),
+     "bodies[0].frames[0]: a frame of vertices has no \"position\""},
+    {SCENE("{\"id\":1,\"frames\":[" VERTICES("0") "," VERTICES("1e308") "]}"),
+     "bodies[0].frames[1]: not a finite number"},
     {SCENE_PAIRS("[1,2]"), "pairs[0]: expected 2 ids, found a number"},
     {SCENE_PAIRS("[[1,2],[1]]"), "pairs[1]: expected 2 ids, found 1"},
     {SCENE_PAIRS("[[1,2,1]]"), "pairs[0]: expected 2 ids, found 3"},
@@ -793,6 +861,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_every_field),
         cmocka_unit_test(reads_poses_frames_names_and_ignored_pairs),
+        cmocka_unit_test(reads_vertices_groups_and_labels),
         cmocka_unit_test(turned_boxes_are_rounded_once),
         cmocka_unit_test(missing_fields_have_defaults),
         cmocka_unit_test(empty_lists_are_scenes),

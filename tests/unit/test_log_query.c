@@ -468,6 +468,40 @@ static void numbers_read_back_as_the_same_bits(void **state)
     scene_clear(&scene);
 }
 
+/* Names, groups, the label, and frames by vertices are printed, and read as the same. */
+static void names_groups_and_vertices_are_kept(void **state)
+{
+    (void) state;
+    static unsigned char bytes[3][GEOMETRY_FRAME_BYTES_MAX];
+    const int64_t ids[] = {1, 2, 3};
+    const struct geometry_frame face = {.shape = FMB_FACE,
+                                        .by_vertices = true,
+                                        .origin = {0.1, -0.0, 0},
+                                        .components = {1e16, 0, 0, 0, 1, 3}};
+    set_placements(ids, 3);
+    struct scene_query *query = &found.query.scene;
+    query->label = "shelf \xe2\x82\xac";
+    for (int i = 0; i < 3; i++) {
+        query->placement[i] = (struct placement){.body_id = i + 1, .dim = 3, .frame_count = 1};
+        query->placement[i].geometry =
+            (struct geometry){bytes[i], geometry_write(3, &face, bytes[i])};
+    }
+    query->placement[0].name = "arm";
+    query->placement[0].group = query->placement[2].group = INT64_C(-4);
+    struct scene scene = scene_of_found();
+    assert_string_equal(scene.label, query->label);
+    assert_string_equal(scene.body[0].name, "arm");
+    assert_int_equal(scene.body[2].group, -4);
+    assert_int_equal(scene_count_pairs(&scene), 2);
+    assert_memory_equal(scene.body[1].given, &face, sizeof face);
+    scene_clear(&scene);
+    query->label = "a\nb";
+    scene = scene_of_found();
+    assert_string_equal(scene.label, "");
+    query->label = NULL;
+    scene_clear(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -479,6 +513,7 @@ int main(void)
         cmocka_unit_test(bodies_get_ids_that_are_free),
         cmocka_unit_test(pairs_are_those_of_the_query),
         cmocka_unit_test(numbers_read_back_as_the_same_bits),
+        cmocka_unit_test(names_groups_and_vertices_are_kept),
     };
     return cmocka_run_group_tests(tests, make_path, remove_path);
 }

@@ -775,6 +775,9 @@ static void ignored_pairs_are_not_counted(void **state)
     replayed_count(&scene, &result_then, count);
     assert_int_equal(count[FMB_SEPARATED], 2);
     assert_int_equal(count[FMB_TOUCHING], 1);
+    scene.placement[0].group = scene.placement[2].group = 7;
+    scene.placement[3].group = scene.placement[4].group = -7; /* after the last pair */
+    assert_int_equal(replayed_decided(&scene, &result_then), 2);
     result_then.status = FMB_BUSY;
     assert_int_equal(replayed_decided(&scene, &result_then), 0);
 
@@ -793,11 +796,16 @@ static void ignored_pairs_are_not_counted(void **state)
 /* The last pair differs, the one before it touches. */
 static void differing_pairs_are_kept_first(void **state)
 {
-    enum { BODIES = QUERY_PLACEMENTS_MAX };
+    enum { PAIRS = 1064 };
     (void) state;
-    make_scene(QUERY_PAIRS_LISTED, BODIES);
-    for (int i = 0; i < BODIES - 2; i++)
-        add_verdict(&result_then, 0, 0, i == BODIES - 3 ? FMB_TOUCHING : FMB_SEPARATED);
+    make_scene(QUERY_PAIRS_LISTED, 2);
+    scene.index_count = 2 * PAIRS;
+    for (unsigned i = 0; i < PAIRS; i++) {
+        scene.pair[i][0] = i;
+        scene.pair[i][1] = i + 1;
+    }
+    for (int i = 0; i < PAIRS - 1; i++)
+        add_verdict(&result_then, 0, 0, i == PAIRS - 2 ? FMB_TOUCHING : FMB_SEPARATED);
     result_now = result_then;
     add_verdict(&result_then, 0, 0, FMB_TOUCHING);
     add_verdict(&result_now, 0, 0, FMB_SEPARATED);
@@ -805,7 +813,7 @@ static void differing_pairs_are_kept_first(void **state)
     cJSON *data = data_of_one(&replayed);
     const cJSON *event = event_at(data, 0), *pairs = member(event, "pairs");
     assert_int_equal(cJSON_GetArraySize(pairs), PAGE_PAIRS_MAX);
-    assert_int_equal(number(event, "more"), BODIES - 1 - PAGE_PAIRS_MAX);
+    assert_int_equal(number(event, "more"), PAIRS - PAGE_PAIRS_MAX);
     expect_json(cJSON_GetArrayItem(pairs, 0), "[1063,1064,2,1]");
     expect_json(cJSON_GetArrayItem(pairs, 1), "[1062,1063,2]");
     expect_json(cJSON_GetArrayItem(pairs, 2), "[0,1,1]");

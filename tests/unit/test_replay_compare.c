@@ -786,6 +786,7 @@ static void test_the_most_pairs(void **state)
     (void) state;
     memset(&scene, 0, sizeof scene);
     scene.duration = 1;
+    scene.which = QUERY_PAIRS_LISTED;
     scene.placement_count = 2;
     for (int i = 0; i < 2; i++)
         scene.placement[i] = frame(0, 2, 0, 0);
@@ -812,7 +813,7 @@ enum { PLACEMENTS = 400 };
 static void test_the_most_placements(void **state)
 {
     (void) state;
-    for (int which = QUERY_PAIRS_ALL; which <= QUERY_PAIRS_ACROSS; which++) {
+    for (int which = QUERY_PAIRS_ALL; which <= QUERY_PAIRS_ACROSS; which += 2) {
         memset(&scene, 0, sizeof scene);
         scene.duration = 1;
         scene.which = which;

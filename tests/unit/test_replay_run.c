@@ -567,7 +567,9 @@ static void test_queries_beyond_all_limits(void **state)
     static const size_t sizes[] = {QUERY_BYTES_MAX, QUERY_BYTES_MAX + 1, LOG_DATA_MAX,
                                    LOG_DATA_MAX + 1, sizeof bytes};
     (void) state;
-    query.index_count = (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES) / 2;
+    query.label = "abc"; /* so that whole pairs fill the datagram */
+    query.which = QUERY_PAIRS_LISTED;
+    query.index_count = (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES - 3) / 2;
     for (int i = 0; i < 5; i++) {
         static unsigned char result_bytes[QUERY_BYTES_MAX];
         query.sequence_number = result.sequence_number = i;

@@ -125,6 +125,7 @@ static void test_undecided_pairs_are_not_counted(void **state)
     scene = (struct scene_query){.client_id = 21,
                                  .duration = 1,
                                  .method = fmb_method_by_name("fmb")->number,
+                                 .which = QUERY_PAIRS_LISTED,
                                  .placement_count = 3,
                                  .placement = {pair.placement[0], pair.placement[1]},
                                  .index_count = 4,
@@ -187,8 +188,11 @@ static void test_ignored_pairs_are_not_counted(void **state)
     assert_int_equal(pairs_counted(scene), 1);
     scene->first_pair = 3;
     assert_int_equal(pairs_counted(scene), 0);
-    ignore(scene, 0, 2);
     scene->first_pair = 0;
+    scene->placement[0].group = scene->placement[2].group = 5;
+    assert_int_equal(pairs_counted(scene), 0);
+    scene->placement[2].group = -5;
+    ignore(scene, 0, 2);
     assert_int_equal(pairs_counted(scene), 0);
 
     scene = squares(QUERY_PAIRS_ACROSS, 139, 50);

@@ -1,14 +1,17 @@
 /* The codec reads back what it writes, writes what lcm-gen's encoders write, and refuses everything
  * else. */
 #include "as_lcm.h"
+#include "big_endian.h"
 #include "geometry_write.h"
 #include "hostile.h"
 #include "sample_placement.h"
 #include "wire.h"
+#include "wire_type.h"
 
 #include "fmb_msgs_body_t.h"
 #include "fmb_msgs_definition_query_t.h"
 #include "fmb_msgs_definition_t.h"
+#include "fmb_msgs_names_t.h"
 #include "fmb_msgs_pair_query_t.h"
 #include "fmb_msgs_pair_result_t.h"
 #include "fmb_msgs_placement_t.h"
@@ -41,6 +44,7 @@ static const char *read_any(const char *type, const unsigned char *bytes, size_t
         struct definition_query definition_query;
         struct definition definition;
         struct wire_status status;
+        struct names names;
     } out;
     const char *error;
     assert_non_null(copy);
@@ -57,30 +61,33 @@ static const char *read_any(const char *type, const unsigned char *bytes, size_t
         error = wire_read_definition_query(copy, (uint32_t) size, &out.definition_query);
     else if (strcmp(type, "definition") == 0)
         error = wire_read_definition(copy, (uint32_t) size, hasher, &out.definition);
+    else if (strcmp(type, "names") == 0)
+        error = wire_read_names(copy, (uint32_t) size, &out.names);
     else
         error = wire_read_status(copy, (uint32_t) size, &out.status);
     free(copy);
     return error;
 }
 
-static const char *const types[] = {"pair_query",   "pair_result",      "scene_query",
-                                    "scene_result", "definition_query", "definition",
-                                    "status"};
+static const char *const types[] = {
+    "pair_query",       "pair_result", "scene_query", "scene_result",
+    "definition_query", "definition",  "status",      "names"};
 enum { TYPES = sizeof types / sizeof *types };
 
 /* A change of any field changes the fingerprint, and with it breaks every old client and log. */
 static void test_fingerprints_are_pinned(void **state)
 {
     (void) state;
-    assert_int_equal(__fmb_msgs_body_t_get_hash(), 0x5801f213322833f7u);
+    assert_int_equal(__fmb_msgs_body_t_get_hash(), 0x18fc974de94f47b6u);
     assert_int_equal(__fmb_msgs_definition_query_t_get_hash(), 0xe2c4e2ab0ebcd9d9u);
-    assert_int_equal(__fmb_msgs_definition_t_get_hash(), 0x6d5222ebc7de383du);
-    assert_int_equal(__fmb_msgs_pair_query_t_get_hash(), 0xf9dadc6e7e54da5du);
-    assert_int_equal(__fmb_msgs_pair_result_t_get_hash(), 0xda4c8b503074f8bcu);
-    assert_int_equal(__fmb_msgs_placement_t_get_hash(), 0x0b1ab3e2ae9b67cfu);
-    assert_int_equal(__fmb_msgs_scene_query_t_get_hash(), 0xf632860e1441ef51u);
-    assert_int_equal(__fmb_msgs_scene_result_t_get_hash(), 0x12759c8650eac72eu);
-    assert_int_equal(__fmb_msgs_status_t_get_hash(), 0x8cb2ead8b5dc3d8du);
+    assert_int_equal(__fmb_msgs_definition_t_get_hash(), 0xef476d61362c5fbau);
+    assert_int_equal(__fmb_msgs_names_t_get_hash(), 0xc5646e8cb4490b7cu);
+    assert_int_equal(__fmb_msgs_pair_query_t_get_hash(), 0xfcf896d1538fd1a4u);
+    assert_int_equal(__fmb_msgs_pair_result_t_get_hash(), 0x9dd6a8c2afceabd8u);
+    assert_int_equal(__fmb_msgs_placement_t_get_hash(), 0xcbe2227b63ea25a1u);
+    assert_int_equal(__fmb_msgs_scene_query_t_get_hash(), 0xabbd2c17d3792717u);
+    assert_int_equal(__fmb_msgs_scene_result_t_get_hash(), 0x54e9a70f5ddb21bbu);
+    assert_int_equal(__fmb_msgs_status_t_get_hash(), 0x15fcba856d637fcau);
 }
 
 static void expect_refused(void *context, const char *what, const unsigned char *bytes, size_t size)
@@ -206,10 +213,13 @@ static void test_long_lists_are_read(void **state)
     (void) state;
     static double many[500];
     static uint8_t shapes[300];
+    static int32_t counts[200];
     static unsigned char bytes[16384];
     fmb_msgs_placement_t placement = {.dim = 500,
                                       .num_frames = 300,
                                       .shapes = shapes,
+                                      .num_counts = 200,
+                                      .counts = counts,
                                       .num_numbers = 100,
                                       .numbers = many,
                                       .position = many,
@@ -217,17 +227,20 @@ static void test_long_lists_are_read(void **state)
                                       .orientation = many,
                                       .num_velocity = 10,
                                       .velocity = many};
-    fmb_msgs_pair_query_t message = {.a = placement};
+    char none[] = "";
+    placement.name = none;
+    fmb_msgs_pair_query_t message = {.a = placement, .b.name = none};
     int size = fmb_msgs_pair_query_t_encode(bytes, 0, sizeof bytes, &message);
     struct pair_query query;
     assert_true(size > 0);
     assert_null(wire_read_pair_query(bytes, (uint32_t) size, &query));
     assert_int_equal(query.placement[0].dim, 500);
     assert_int_equal(query.placement[0].frame_count, 300);
+    assert_int_equal(query.placement[0].count_count, 200);
     assert_int_equal(query.placement[0].number_count, 100);
     assert_int_equal(query.placement[0].orientation_count, 70);
     assert_int_equal(query.placement[0].velocity_count, 10);
-    assert_int_equal(query.placement[0].geometry.size, 4 + 4 + 300 + 4 + 800);
+    assert_int_equal(query.placement[0].geometry.size, 4 + 4 + 300 + 4 + 800 + 4 + 800);
     assert_int_equal(query.placement[1].dim, 0);
 }
 
@@ -237,12 +250,14 @@ static void test_geometry_round_trip(void **state)
 {
     (void) state;
     for (int dim = 2; dim <= 3; dim++)
-        for (int shape = FMB_CUBOID; shape <= FMB_BOX; shape++) {
+        for (int code = 1; code <= 7; code++) {
+            const int shape = geometry_shape(code).shape;
             unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
             struct geometry_frame read;
-            if (geometry_number_count(dim, shape) == 0)
+            if (geometry_number_count(dim, shape, 0) == 0)
                 continue;
-            const struct geometry_frame frame = sample_frame(dim, shape);
+            struct geometry_frame frame = sample_frame(dim, shape);
+            frame.by_vertices = geometry_shape(code).by_vertices;
             const struct geometry geometry = {bytes, geometry_write(dim, &frame, bytes)};
             assert_int_equal(geometry.size, geometry_size(dim, &frame, 1));
             struct geometry_reader reader = geometry_begin(&geometry);
@@ -255,13 +270,17 @@ static void test_geometry_round_trip(void **state)
 static void test_numbers_of_frames(void **state)
 {
     (void) state;
-    static const int counts[2][6] = {{0, 6, 6, 0, 4, 0}, {0, 12, 12, 9, 6, 0}};
-    for (int shape = 0; shape < 6; shape++) {
+    static const int counts[2][9] = {{0, 6, 6, 0, 4, 0, 6, 0, 0}, {0, 12, 12, 9, 6, 0, 12, 9, 0}};
+    for (int shape = 0; shape < 9; shape++) {
         for (int dim = 2; dim <= 3; dim++)
-            assert_int_equal(geometry_number_count(dim, shape), counts[dim - 2][shape]);
-        assert_int_equal(geometry_number_count(1, shape), 0);
-        assert_int_equal(geometry_number_count(4, shape), 0);
+            for (int vertices = 0; vertices < 6; vertices++)
+                assert_int_equal(geometry_number_count(dim, shape, vertices),
+                                 shape == FMB_HULL ? dim * vertices : counts[dim - 2][shape]);
+        assert_int_equal(geometry_number_count(1, shape, 4), 0);
+        assert_int_equal(geometry_number_count(4, shape, 4), 0);
     }
+    assert_int_equal(geometry_number_count(3, FMB_HULL, -1), 0);
+    assert_int_equal(geometry_number_count(3, FMB_HULL, INT32_MAX), INT64_C(3) * INT32_MAX);
 }
 
 /* As many frames as a message has space for, of all shapes. */
@@ -276,7 +295,7 @@ static void test_geometry_of_many_frames(void **state)
             static const int shapes[] = {FMB_CUBOID, FMB_BOX, FMB_TETRAHEDRON, FMB_BOX, FMB_BOX};
             frames[count] = sample_frame(dim, shapes[count % 5]);
             frames[count].origin[0] = count;
-            size += 1 + 8 * (size_t) geometry_number_count(dim, frames[count].shape);
+            size += 1 + 8 * (size_t) geometry_number_count(dim, frames[count].shape, 0);
         }
         count--;
         const struct geometry geometry = {bytes, geometry_write_frames(dim, frames, count, bytes)};
@@ -306,7 +325,8 @@ static void test_geometry_that_does_not_fit(void **state)
     const struct {
         size_t at;
         unsigned char byte;
-    } changes[] = {{3, 1}, {3, 4}, {0, 0x80}, {8, 0}, {8, 5}, {8, 255}, {12, 11}, {7, 0}};
+    } changes[] = {{3, 1},   {3, 4},   {0, 0x80}, {8, 0}, {8, 5},
+                   {8, 255}, {16, 11}, {7, 0},    {8, 6}, {8, 7}};
     for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
         memcpy(other, bytes, size);
         other[changes[i].at] = changes[i].byte;
@@ -317,6 +337,25 @@ static void test_geometry_that_does_not_fit(void **state)
     }
 }
 
+/* A tetrahedron whose count says more or fewer vertices than it has, or that has none. */
+static void test_a_frame_by_vertices_has_their_count(void **state)
+{
+    (void) state;
+    struct geometry_frame frame = sample_frame(3, FMB_TETRAHEDRON), read;
+    frame.by_vertices = true;
+    unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
+    const struct geometry geometry = {bytes, geometry_write(3, &frame, bytes)};
+    for (int count = 0; count < 256; count++) {
+        bytes[16] = (unsigned char) count;
+        struct geometry_reader reader = geometry_begin(&geometry);
+        assert_int_equal(geometry_next(&reader, &read), count == 4);
+    }
+    bytes[16] = 4;
+    struct geometry_reader reader = geometry_begin(&geometry);
+    reader.counts_left = 0;
+    assert_false(geometry_next(&reader, &read));
+}
+
 /* The second frame has one number less than it needs. */
 static void test_a_later_frame_that_does_not_fit(void **state)
 {
@@ -325,7 +364,7 @@ static void test_a_later_frame_that_does_not_fit(void **state)
     unsigned char bytes[SAMPLE_BYTES_MAX];
     struct geometry geometry = {bytes, geometry_write_frames(3, frames, 2, bytes)};
     struct geometry_frame read;
-    bytes[4 + 4 + 2 + 3]--;
+    bytes[4 + 4 + 2 + 4 + 3]--;
     struct geometry_reader reader = geometry_begin(&geometry);
     assert_true(geometry_next(&reader, &read));
     assert_false(geometry_next(&reader, &read));
@@ -734,22 +773,84 @@ static void test_status_round_trip(void **state)
     ASSERT_AS_LCM_WRITES(fmb_msgs_status_t, bytes, size);
 }
 
-/* A newer service may know more statuses, or a longer version. */
+/* A newer service may have more counters, in another order, and a longer version. */
 static void test_status_of_a_newer_service(void **state)
 {
     (void) state;
     char version[] = "10.20.30-with-a-long-name-that-goes-on-and-on";
-    int64_t results[40] = {3};
+    char text[][24] = {"result_CANNOT_DECIDE", "received_twice", "compute_max_ns", "", "received"};
+    char *names[] = {text[0], text[1], text[2], text[3], text[4]};
+    int64_t values[] = {3, 4, 6, 7, -8};
     fmb_msgs_status_t message = {
-        .version = version, .num_results = 40, .results = results, .compute_max_ns = 6};
+        .version = version, .num_counters = 5, .names = names, .values = values};
     unsigned char bytes[WIRE_STATUS_BYTES_MAX];
     struct wire_status status;
     int size = fmb_msgs_status_t_encode(bytes, 0, sizeof bytes, &message);
     assert_true(size > 0);
     assert_null(wire_read_status(bytes, (uint32_t) size, &status));
-    assert_int_equal(status.results[0], 3);
+    assert_int_equal(status.results[FMB_CANNOT_DECIDE], 3);
     assert_int_equal(status.compute_max_ns, 6);
+    assert_int_equal(status.received, -8);
+    assert_int_equal(status.answered, 0);
     assert_memory_equal(status.version, version, sizeof status.version - 1);
+}
+
+static void test_names_round_trip(void **state)
+{
+    (void) state;
+    static struct names names, read;
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    names = (struct names){.utime = 5, .count = 2, .client_id = {1, -1}, .body_id = {7, INT64_MAX}};
+    names.name[0] = "table";
+    names.name[1] = "\xff\n";
+    const size_t size = wire_write_names(&names, bytes);
+    assert_int_equal(size, WIRE_NAMES_BYTES + 2 * 21 + 5 + 2);
+    assert_null(wire_read_names(bytes, (uint32_t) size, &read));
+    assert_int_equal(read.utime, 5);
+    assert_int_equal(read.count, 2);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(read.client_id[i], names.client_id[i]);
+        assert_int_equal(read.body_id[i], names.body_id[i]);
+        assert_string_equal(read.name[i], names.name[i]);
+    }
+    ASSERT_AS_LCM_WRITES(fmb_msgs_names_t, bytes, size);
+    names.count = QUERY_NAMES_MAX;
+    for (int i = 0; i < names.count; i++)
+        names.name[i] = "";
+    assert_null(wire_read_names(bytes, (uint32_t) wire_write_names(&names, bytes), &read));
+    assert_int_equal(read.count, QUERY_NAMES_MAX);
+}
+
+/* Messages of old versions have their own words, so that logs and services can name the version. */
+static void test_old_versions_are_named(void **state)
+{
+    (void) state;
+    const struct {
+        uint64_t fingerprint;
+        int version;
+        const char *name, *mismatch;
+    } cases[] = {
+        {0x1704231dbc74a72c, 1, "fmb_msgs.pair_query_t (version 1)", "version 1"},
+        {0xf9dadc6e7e54da5d, 2, "fmb_msgs.pair_query_t (version 2)", "version 2"},
+        {0xf632860e1441ef51, 2, "fmb_msgs.scene_query_t (version 2)", "version 2"},
+        {0x8cb2ead8b5dc3d8d, 2, "fmb_msgs.status_t (version 2)", "version 2"},
+        {0x6d5222ebc7de383d, 2, "fmb_msgs.definition_t (version 2)", "version 2"},
+        {(uint64_t) __fmb_msgs_scene_query_t_get_hash(), 0, "fmb_msgs.scene_query_t", "another"},
+        {0xe2c4e2ab0ebcd9d9, 0, "fmb_msgs.definition_query_t", "another"},
+        {5, 0, NULL, "another"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const int64_t fingerprint = (int64_t) cases[i].fingerprint;
+        unsigned char bytes[8];
+        struct pair_query query;
+        big_endian_put_64(bytes, cases[i].fingerprint);
+        assert_int_equal(wire_type_old_version(fingerprint), cases[i].version);
+        if (cases[i].name)
+            assert_string_equal(wire_type_name(fingerprint), cases[i].name);
+        else
+            assert_null(wire_type_name(fingerprint));
+        assert_non_null(
+            strstr(wire_read_pair_query(bytes, sizeof bytes, &query), cases[i].mismatch));
+    }
 }
 
 static int set_up(void **state)
@@ -781,6 +882,7 @@ int main(void)
         cmocka_unit_test(test_geometry_of_many_frames),
         cmocka_unit_test(test_a_later_frame_that_does_not_fit),
         cmocka_unit_test(test_geometry_that_does_not_fit),
+        cmocka_unit_test(test_a_frame_by_vertices_has_their_count),
         cmocka_unit_test(test_handles_are_hashes_of_the_encoding),
         cmocka_unit_test(test_handles_tell_zeros_apart),
         cmocka_unit_test(test_definition_query_round_trip),
@@ -799,6 +901,8 @@ int main(void)
         cmocka_unit_test(test_intervals_and_boxes_are_such),
         cmocka_unit_test(test_status_round_trip),
         cmocka_unit_test(test_status_of_a_newer_service),
+        cmocka_unit_test(test_names_round_trip),
+        cmocka_unit_test(test_old_versions_are_named),
     };
     return cmocka_run_group_tests_name("wire", tests, set_up, tear_down);
 }

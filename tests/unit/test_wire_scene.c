@@ -90,7 +90,8 @@ static void set_query(int32_t placements, int32_t indices, int32_t ignored)
 static size_t size_of_query(void)
 {
     const size_t indices = (size_t) (query.index_count + query.ignored_count);
-    size_t size = WIRE_SCENE_QUERY_BYTES + indices * WIRE_PAIR_BYTES / 2;
+    size_t size =
+        WIRE_SCENE_QUERY_BYTES + wire_text_bytes(query.label) + indices * WIRE_PAIR_BYTES / 2;
     for (int32_t i = 0; i < query.placement_count; i++)
         size += wire_placement_bytes(&query.placement[i]);
     return size;
@@ -102,6 +103,7 @@ static void assert_same_query(void)
     assert_int_equal(query.utime, query_read.utime);
     assert_int_equal(query.client_id, query_read.client_id);
     assert_int_equal(query.sequence_number, query_read.sequence_number);
+    assert_string_equal(query.label ? query.label : "", query_read.label);
     assert_memory_equal(&query.duration, &query_read.duration, sizeof query.duration);
     assert_int_equal(query.method, query_read.method);
     assert_int_equal(query.want, query_read.want);
@@ -124,6 +126,7 @@ static void test_query_round_trip(void **state)
     for (int32_t placements = 0; placements < 40; placements++)
         for (int32_t indices = 0; indices < 7; indices++) { /* odd counts too: they may come */
             set_query(placements, indices, (indices + placements) % 4);
+            query.label = placements % 3 ? "shelf \xff\n" : NULL;
             const size_t size = wire_write_scene_query(&query, bytes);
             assert_int_equal(size, size_of_query());
             expect_read(read_query(size));
@@ -153,12 +156,15 @@ static void test_largest_queries(void **state)
     (void) state;
     const int placements = (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES) / QUERY_PLACEMENT_BYTES_MIN;
     set_query(0, (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES) / 2, 0);
+    query.label = "s"; /* the other bytes are even in number */
     assert_int_equal(wire_write_scene_query(&query, bytes), QUERY_BYTES_MAX);
     expect_read(read_query(QUERY_BYTES_MAX));
     assert_same_query();
+    query.label = NULL;
     set_query(placements, 0, 0);
     for (int i = 0; i < placements; i++) {
         query.placement[i] = sample_placement(4, geometries[i]); /* 2D, by handle, at rest */
+        query.placement[i].name = NULL;
         assert_int_equal(wire_placement_bytes(&query.placement[i]), QUERY_PLACEMENT_BYTES_MIN);
     }
     const size_t size = wire_write_scene_query(&query, bytes);
@@ -174,10 +180,11 @@ static void test_more_than_the_capacity(void **state)
     static fmb_msgs_placement_t placements[QUERY_PLACEMENTS_MAX + 200];
     static int16_t indices[2 * QUERY_PAIRS_MAX + 2];
     const int count = QUERY_PLACEMENTS_MAX + 200;
+    char none[] = "";
     for (int i = 0; i < count; i++)
-        placements[i] = (fmb_msgs_placement_t){.body_id = i};
+        placements[i] = (fmb_msgs_placement_t){.body_id = i, .name = none};
     fmb_msgs_scene_query_t message = {
-        .num_placements = count, .placements = placements, .indices = indices};
+        .label = none, .num_placements = count, .placements = placements, .indices = indices};
     int size = fmb_msgs_scene_query_t_encode(bytes, 0, sizeof bytes, &message);
     assert_true(size > 0);
     expect_read(read_query((size_t) size));
@@ -198,7 +205,7 @@ static void test_more_than_the_capacity(void **state)
 /* ---- Results ---- */
 
 /* What results have besides verdicts. */
-enum { NAMES = 1, TIMES = 2, BOXES = 4, GAPS = 8, FORMS = 16 };
+enum { NAMES = 1, TIMES = 2, BOXES = 4, GAPS = 8, FRAMES = 16, FORMS = 32 };
 
 /* A gap that goes with the verdict. Every seventh of separated pairs that are not named has none.
  */
@@ -223,6 +230,7 @@ static void set_gap(int dim, int32_t i)
         gap->witness[1][axis] = -axis;
     }
     gap->time = gap->has_witness ? 0.125 * i : 0;
+    gap->frame[i % 2] = result.names_frames ? (unsigned) i % (INT16_MAX + 1) : 0;
 }
 
 static void set_result(int dim, int32_t handles, int32_t verdicts, int form)
@@ -247,8 +255,8 @@ static void set_result(int dim, int32_t handles, int32_t verdicts, int form)
         result.contact_count += result.verdict[i] >= 2;
         if (!names)
             continue;
-        result.pair[i][0] = (unsigned) i / 900;
-        result.pair[i][1] = 100 + (unsigned) i % 900;
+        result.pair[i][0] = (unsigned) i / 700;
+        result.pair[i][1] = 100 + (unsigned) i % 700;
     }
     for (int32_t i = 0; i < result.contact_count && times; i++) {
         result.times[2 * i] = i % 3 ? 0.25 : 0;
@@ -260,6 +268,7 @@ static void set_result(int dim, int32_t handles, int32_t verdicts, int form)
     result.has_times = times && result.contact_count > 0;
     result.has_boxes = boxes && result.contact_count > 0;
     result.has_gaps = form & GAPS && verdicts > 0;
+    result.names_frames = result.has_gaps && form & FRAMES;
     for (int32_t i = 0; i < verdicts && result.has_gaps; i++)
         set_gap(dim, i);
     result.dim = result.has_boxes || result.has_gaps ? dim : 0;
@@ -273,7 +282,8 @@ static size_t bound_of_result(void)
            (result.names_pairs ? WIRE_PAIR_BYTES * verdicts : 0) +
            (result.has_times ? 16 * contacts : 0) +
            (result.has_boxes ? 16 * (size_t) result.dim * contacts : 0) +
-           (result.has_gaps ? (size_t) wire_gap_bytes(result.dim) * verdicts : 0);
+           (result.has_gaps ? (size_t) wire_gap_bytes(result.dim, result.names_frames) * verdicts
+                            : 0);
 }
 
 static void assert_same_result(void)
@@ -289,6 +299,7 @@ static void assert_same_result(void)
     assert_int_equal(result.end_pair, result_read.end_pair);
     assert_int_equal(result.compute_ns, result_read.compute_ns);
     assert_int_equal(result.dim, result_read.dim);
+    assert_int_equal(result.names_frames, result_read.names_frames);
     assert_int_equal(result.handle_count, result_read.handle_count);
     assert_int_equal(result.unknown_count, result_read.unknown_count);
     assert_int_equal(result.verdict_count, result_read.verdict_count);

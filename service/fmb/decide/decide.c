@@ -143,6 +143,8 @@ static enum fmb_status decide_chunks(struct frames *frames, const struct frame_c
             if (status != FMB_OK)
                 return status;
             include(&frames->all, &one, pair.a.frame->dim);
+            one.gap.frame[0] = a->first + i;
+            one.gap.frame[1] = b->first + j;
             if (one.has_gap)
                 gap_include(&frames->all.gap, &one.gap, &a->box[i], &b->box[j], frames->swaps);
         }

@@ -192,6 +192,18 @@ static bool has_gaps(const struct fmb_scene *scene)
     return scene->gaps || scene->margin > 0;
 }
 
+static bool is_any_within_group(const struct fmb_scene *scene)
+{
+    const struct fmb_placement *placement = scene->placements;
+    bool groups = false;
+    for (size_t i = 0; i < scene->placement_count; i++)
+        groups = groups || placement[i].group;
+    for (size_t k = 0; groups && k < scene->pair_count; k++)
+        if (scene_pairs_is_within_group(scene, scene->pairs[k][0], scene->pairs[k][1]))
+            return true;
+    return false;
+}
+
 static enum fmb_status check_pairs(const struct fmb_scene *scene)
 {
     const bool listed = scene->which == FMB_PAIRS_LISTED;
@@ -202,7 +214,7 @@ static enum fmb_status check_pairs(const struct fmb_scene *scene)
         return FMB_WRONG_COUNT;
     if (!are_pairs(scene->pairs, scene->pair_count, scene->placement_count) ||
         !are_pairs(scene->ignored, scene->ignored_count, scene->placement_count) ||
-        scene->first_pair > scene_pairs_total(scene))
+        is_any_within_group(scene) || scene->first_pair > scene_pairs_total(scene))
         return FMB_BAD_PAIR;
     const bool certain = !scene->method || scene->method->certain;
     return certain || (listed && !has_gaps(scene)) ? FMB_OK : FMB_CANNOT_DECIDE;
@@ -493,17 +505,20 @@ static void begin_block(struct fmb_scene_state *state)
 static void include_gap(struct fmb_scene_state *state, size_t k, size_t n)
 {
     struct scene_block *block = &state->block;
-    const struct fmb_gap *one = &block->outcomes.gap[k];
+    struct fmb_gap *one = &block->outcomes.gap[k];
     const struct fmb_placement *a = &state->scene.placements[block->bodies[n][0]];
     const struct fmb_placement *b = &state->scene.placements[block->bodies[n][1]];
     const struct aabb *box = state->frames.frame_box;
+    const unsigned *slot = block->frames[k];
     if (!gap_is_known(one))
         return;
-    if (a->body->frame_count == 1 && b->body->frame_count == 1)
+    if (a->body->frame_count == 1 && b->body->frame_count == 1) {
         block->answers.gap[n] = *one;
-    else
-        gap_include(&block->answers.gap[n], one, &box[block->frames[k][0]],
-                    &box[block->frames[k][1]], gap_swaps(a, b));
+        return;
+    }
+    one->frame[0] = (unsigned) (state->frames.slot[slot[0]].frame - fmb_body_frame(a->body, 0));
+    one->frame[1] = (unsigned) (state->frames.slot[slot[1]].frame - fmb_body_frame(b->body, 0));
+    gap_include(&block->answers.gap[n], one, &box[slot[0]], &box[slot[1]], gap_swaps(a, b));
 }
 
 /* Includes the answer of pair of frames k in that of its bodies. */

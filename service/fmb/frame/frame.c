@@ -312,6 +312,8 @@ enum fmb_status fmb_frame_make(int dim, int shape, const double *numbers, size_t
 {
     if (!fmb_shape_name(shape))
         return FMB_UNKNOWN_SHAPE;
+    if (shape == FMB_HULL)
+        return FMB_NOT_SUPPORTED;
     const int components = fmb_component_count(dim, shape);
     if (components == 0)
         return FMB_WRONG_DIMENSION;
@@ -349,6 +351,8 @@ enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertic
                                         struct fmb_frame *out)
 {
     const int components = fmb_component_count(dim, shape);
+    if (shape == FMB_HULL)
+        return FMB_NOT_SUPPORTED;
     if (shape != FMB_TETRAHEDRON && shape != FMB_FACE)
         return FMB_UNKNOWN_SHAPE;
     if (components == 0)

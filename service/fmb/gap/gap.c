@@ -84,6 +84,9 @@ static void turn_round(struct fmb_gap *gap)
     memcpy(first, gap->witness[0], sizeof first);
     memcpy(gap->witness[0], gap->witness[1], sizeof first);
     memcpy(gap->witness[1], first, sizeof first);
+    const unsigned frame = gap->frame[0];
+    gap->frame[0] = gap->frame[1];
+    gap->frame[1] = frame;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         gap->direction[axis] = 0 - gap->direction[axis];
 }
@@ -287,7 +290,7 @@ static void raise(struct fmb_gap *gap, const struct aabb *a, const struct aabb *
         }
 }
 
-/* Compares upper bounds, then the fields that belong to them. */
+/* Compares upper bounds, then the fields that belong to them, then the frames. */
 static int compare_gaps(const struct fmb_gap *x, const struct fmb_gap *y)
 {
     int order = compare(&x->bounds[1], &y->bounds[1], 1);
@@ -297,7 +300,11 @@ static int compare_gaps(const struct fmb_gap *x, const struct fmb_gap *y)
         order = compare(&x->time, &y->time, 1);
     if (order == 0)
         order = compare(x->witness[0], y->witness[0], 2 * FMB_DIM_MAX);
-    return order ? order : compare(x->direction, y->direction, FMB_DIM_MAX);
+    if (order == 0)
+        order = compare(x->direction, y->direction, FMB_DIM_MAX);
+    for (int side = 0; order == 0 && side < 2; side++)
+        order = (x->frame[side] > y->frame[side]) - (x->frame[side] < y->frame[side]);
+    return order;
 }
 
 void gap_include(struct fmb_gap *all, const struct fmb_gap *one, const struct aabb *a,

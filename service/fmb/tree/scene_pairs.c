@@ -67,21 +67,23 @@ static void list_ignored(struct scene_pairs *pairs)
     }
 }
 
-/* Removes the ignored ones of the partners found. */
+/* Removes the ignored ones of the partners found, and those of the same group. */
 static void remove_ignored(struct scene_pairs *pairs)
 {
     const struct fmb_scene *scene = pairs->scene;
     const unsigned a = pairs->a;
+    const unsigned first = scene->ignored_count > 0 ? pairs->head[a] : 0;
     size_t count = 0;
-    if (scene->ignored_count == 0 || pairs->head[a] == 0)
+    if (first == 0 && scene->placements[a].group == 0)
         return;
-    for (unsigned at = pairs->head[a]; at; at = pairs->link[at - 1]) {
+    for (unsigned at = first; at; at = pairs->link[at - 1]) {
         const unsigned *pair = scene->ignored[at - 1];
         pairs->mark[pair[0] == a ? pair[1] : pair[0]] = a + 1;
     }
     for (size_t i = 0; i < pairs->found_count; i++) {
         pairs->found[count] = pairs->found[i];
-        count += pairs->mark[pairs->found[i]] != a + 1;
+        count += !(first && pairs->mark[pairs->found[i]] == a + 1) &&
+                 !scene_pairs_is_within_group(scene, a, pairs->found[i]);
     }
     pairs->found_count = count;
 }

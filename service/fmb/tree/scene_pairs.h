@@ -1,5 +1,6 @@
 /* Enumerates the pairs of bodies of a scene, in the order of their numbers: all listed pairs; or,
- * with FMB_PAIRS_ALL and FMB_PAIRS_ACROSS, those whose boxes overlap and that are not ignored. */
+ * with FMB_PAIRS_ALL and FMB_PAIRS_ACROSS, those whose boxes overlap, and that are neither ignored
+ * nor within a group. */
 #ifndef FMB_SCENE_PAIRS_H
 #define FMB_SCENE_PAIRS_H
 
@@ -36,6 +37,14 @@ struct scene_pairs {
 static inline size_t scene_pairs_capacity(size_t placements)
 {
     return 8 * placements + FMB_TREE_CAPACITY_MIN;
+}
+
+/* Whether two placements are of one group. */
+static inline bool scene_pairs_is_within_group(const struct fmb_scene *scene, unsigned a,
+                                               unsigned b)
+{
+    const int64_t group = scene->placements[a].group;
+    return group != 0 && group == scene->placements[b].group;
 }
 
 /* Returns the number of pairs of a scene, those that cannot meet included. */

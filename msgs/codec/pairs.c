@@ -1,0 +1,64 @@
+/* The pairs of a scene query, by number. */
+#include "query.h"
+
+static int32_t stored_placements(const struct scene_query *query)
+{
+    return query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
+                                                         : QUERY_PLACEMENTS_MAX;
+}
+
+int64_t query_pair_number(const struct scene_query *query, unsigned a, unsigned b)
+{
+    const int64_t n = stored_placements(query), first = a, second = b;
+    if (query->which == QUERY_PAIRS_ACROSS)
+        return first * (n - query->split) + second - query->split;
+    return first * n - first * (first + 1) / 2 + second - (first + 1);
+}
+
+/* Pairs that are not decided, each counted once. */
+struct undecided {
+    const struct scene_query *query;
+    int32_t end_pair;
+    int64_t count; /* of those from first_pair to end_pair */
+    struct query_marks *marks;
+};
+
+static void count_undecided(struct undecided *undecided, const unsigned pair[2])
+{
+    const struct scene_query *query = undecided->query;
+    const unsigned n = (unsigned) stored_placements(query), split = (unsigned) query->split;
+    const unsigned a = pair[0] < pair[1] ? pair[0] : pair[1];
+    const unsigned b = pair[0] < pair[1] ? pair[1] : pair[0];
+    const bool across = query->which == QUERY_PAIRS_ACROSS;
+    if (a == b || b >= n || (across && (a >= split || b < split)))
+        return;
+    const unsigned bit = a * n + b;
+    const int64_t number = query_pair_number(query, a, b);
+    const bool counted = undecided->marks->bit[bit / 8] >> bit % 8 & 1;
+    undecided->marks->bit[bit / 8] |= (unsigned char) (1u << bit % 8);
+    undecided->count += !counted && number >= query->first_pair && number < undecided->end_pair;
+}
+
+static void count_grouped(struct undecided *undecided)
+{
+    const struct scene_query *query = undecided->query;
+    const unsigned n = (unsigned) stored_placements(query);
+    for (unsigned a = 0; a < n; a++)
+        for (unsigned b = a + 1; b < n && query->placement[a].group != 0; b++)
+            if (query->placement[a].group == query->placement[b].group)
+                count_undecided(undecided, (const unsigned[2]){a, b});
+}
+
+int64_t query_pairs_decided(const struct scene_query *query, int32_t end_pair,
+                            struct query_marks *marks)
+{
+    struct undecided undecided = {.query = query, .end_pair = end_pair, .marks = marks};
+    const size_t n = (size_t) stored_placements(query);
+    if (query->which != QUERY_PAIRS_LISTED) {
+        memset(marks->bit, 0, n * n / 8 + 1);
+        for (int32_t k = 0; k < query->ignored_count / 2; k++)
+            count_undecided(&undecided, query->ignored[k]);
+        count_grouped(&undecided);
+    }
+    return (int64_t) end_pair - query->first_pair - undecided.count;
+}
