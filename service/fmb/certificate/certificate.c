@@ -322,8 +322,9 @@ static enum fmb_status check(const struct fmb_placement *a, const struct fmb_pla
 enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
                                 double duration, char *text, size_t size, size_t *length)
 {
-    struct certificate_writer writer = {.length = 0};
+    struct certificate_writer writer;
     enum fmb_status status = check(a, b, duration);
+    writer.length = 0;
     if (status == FMB_OK) {
         const struct frame_pair pair = {
             {fmb_body_frame(a->body, 0), a}, {fmb_body_frame(b->body, 0), b}, duration};

@@ -18,8 +18,9 @@
  *   rounded     some number of remainder is not 0
  *   bits        all components are multiples of 2^bits[0] below 2^bits[1]
  *   summary     as above, of this frame unrotated and at rest
- *   slack       bounds the distance of each vertex from the one that origin and component, which
- * may be rounded, give; 0: those are exact turn_error  what a rotation that rounds adds to slack
+ *   slack       bounds the distance of each vertex from the rounded one of origin and component; 0:
+ *               those are exact
+ *   turn_error  what a rotation that rounds adds to slack
  *   size        largest magnitude in each component */
 #ifndef FMB_PREPARED_H
 #define FMB_PREPARED_H
