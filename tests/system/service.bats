@@ -34,6 +34,43 @@ load service
     stop_fmbd
 }
 
+# Neighbours share the vertices that they were given, though no difference of these is a double; and
+# a face whose edge is that of two tetrahedra touches both.
+shared='{"label": "mesh \u20ac", "dim": 3, "bodies": [
+    {"id": 1, "name": "left", "shape": "tetrahedron", "vertices": [[0.1,0.2,0.3],[1e9,0.7,0.1],[0.3,1e9,0.1],[0.1,0.1,1e9]]},
+    {"id": 2, "shape": "tetrahedron", "vertices": [[-1e9,0.2,0.3],[1e9,0.7,0.1],[0.3,1e9,0.1],[0.1,0.2,0.3]], "group": 7},
+    {"id": 3, "frames": [{"shape": "box", "size": [1,1,1], "position": [-5e9,0,0]},
+                         {"shape": "face", "vertices": [[0.1,0.2,0.3],[1e9,0.7,0.1],[0.3,-1e9,-7]]}]},
+    {"id": 4, "group": 7, "shape": "box", "size": [1,1,1], "position": [1e10,0,0]},
+    {"id": 5, "group": -1, "shape": "face", "position": [-3,0,0], "vertices": [[0,0,0],[1,0,0],[0,1,0]]},
+    {"id": 6, "group": 7, "shape": "box", "size": [3,3,3], "position": [1e10,1,0]}]}'
+
+@test "vertices, groups, labels and frames of gaps: the bus gives the answers of --local" {
+    start_fmbd
+    for options in '' --gap '--gap --box' --certificate; do
+        [ "$options" != --certificate ] || shared=$(jq -c 'del(.bodies[2])' <<< "$shared")
+        "$FMB" query --json $options <<< "$shared" > "$BATS_TEST_TMPDIR/bus"
+        "$FMB" query --json --local $options <<< "$shared" > "$BATS_TEST_TMPDIR/local"
+        cmp "$BATS_TEST_TMPDIR/bus" "$BATS_TEST_TMPDIR/local"
+        "$FMB" query --json $options <<< "$shared" | cmp - "$BATS_TEST_TMPDIR/local" # by handle
+        jq -e 'keys_unsorted[0] == "label" and .label == "mesh €"' "$BATS_TEST_TMPDIR/bus"
+        # Pairs within the group: 2 and 4, 2 and 6, 4 and 6.
+        jq -e '[.pairs[] | select(([.a, .b] - [2, 4, 6]) == [])] == []' "$BATS_TEST_TMPDIR/bus"
+    done
+    "$FMB" query --json --gap <<< "$shared" > /dev/null
+    stop_fmbd
+}
+
+@test "a gap names its frames where a body has several" {
+    run "$FMB" query --json --gap --local <<< "$shared"
+    [ "$status" = 0 ]
+    jq -e '[.pairs[] | select(.frames) | .a, .b] | unique | contains([3])' <<< "$output"
+    jq -e '[.pairs[] | select((.a == 3 or .b == 3) == has("frames"))] | length == 12' <<< "$output"
+    jq -e '.pairs[] | select(.a == 1 and .b == 3) | .verdict == "touching" and .gap == [0, 0] and .frames == [0, 1]' <<< "$output"
+    jq -e '.pairs[] | select(.a == 3 and .b == 4) | .frames[1] == 0' <<< "$output"
+    jq -e '.pairs[] | select(.a == 1 and .b == 2) | .verdict == "touching"' <<< "$output"
+}
+
 # grid_scene DIM MOVING: unit cuboids and the corners cut off such ones, on halves, so that all
 # verdicts occur.
 grid_scene() {
