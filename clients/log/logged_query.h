@@ -25,7 +25,7 @@ struct placement *logged_query_placements(struct logged_query *query, int32_t *c
 /* The number of pairs of a scene query, ignored ones included. */
 int64_t logged_query_pairs(const struct scene_query *query);
 
-/* The number of pairs from first_pair on and before end_pair, without ignored ones. */
+/* The number of pairs with numbers from query->first_pair to end_pair - 1, without ignored ones. */
 int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair);
 
 /* The number of the pair (a, b) of placements, in lexicographic order, from 0. In: a PAIRS_ALL or

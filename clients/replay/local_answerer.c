@@ -1,11 +1,10 @@
 #include "local_answerer.h"
 
-#include "replayed.h"
-
 #include "allocate.h"
 #include "answer.h"
 #include "clock.h"
 #include "process.h"
+#include "replayed.h"
 #include "wire.h"
 
 #include <stdlib.h>
