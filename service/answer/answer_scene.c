@@ -29,7 +29,8 @@ struct scene_job {
     void *memory;                  /* owned; fmb_scene_bytes(&limits) bytes */
     struct used_body used[QUERY_PLACEMENTS_MAX];
     struct fmb_placement placement[QUERY_PLACEMENTS_MAX];
-    /* Bit bit_of(pair), see check_ignored() and count_ignored(); other bits have no meaning. */
+    /* [bit_of(pair)] Used by check_ignored() and count_ignored(), which clear the bits they read.
+     */
     unsigned char ignored[QUERY_PLACEMENTS_MAX * QUERY_PLACEMENTS_MAX / 8 + 1];
     struct scene_result result;
     struct scene_query query;
@@ -83,8 +84,9 @@ static size_t bit_of(const unsigned pair[2])
     return (size_t) lower * QUERY_PLACEMENTS_MAX + upper;
 }
 
-/* Number of different ignored pairs among those from first_pair to end_pair, of all pairs or those
- * across. scene_job.ignored: whether a pair was counted. */
+/* Number of ignored pairs whose numbers are from first_pair to end_pair - 1, repetitions not
+ * counted. In: a query of all pairs or of those across. scene_job.ignored: whether a pair was
+ * counted. */
 static int32_t count_ignored(struct scene_job *job)
 {
     const struct scene_query *query = &job->query;
