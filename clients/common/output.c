@@ -159,8 +159,8 @@ char *output_beside(const char *path, const char *name)
     return out;
 }
 
-/* Returns the path after symbolic links; its file may not exist. The system has followed the links
- * before, so their number is finite. The caller frees it. */
+/* The file that a path names after its symbolic links, which may not exist. The system has followed
+ * them before, so their number is finite. The caller frees it. */
 static char *follow_links(const char *path)
 {
     char link[PATH_MAX], *at = output_beside("", path);

@@ -1,6 +1,7 @@
 #include "logged_query.h"
 
 #include "allocate.h"
+#include "query_pairs.h"
 #include "scene.h"
 #include "wire.h"
 
@@ -28,16 +29,9 @@ const char *logged_query_read(struct logged_query *out, enum log_kind kind,
                                   : wire_read_scene_query(bytes, size, &out->scene);
 }
 
-/* The number of placements in the struct. */
-static int32_t placement_count(const struct scene_query *query)
-{
-    return query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
-                                                         : QUERY_PLACEMENTS_MAX;
-}
-
 struct placement *logged_query_placements(struct logged_query *query, int32_t *count)
 {
-    *count = query->kind == LOG_PAIR_QUERY ? 2 : placement_count(&query->scene);
+    *count = query->kind == LOG_PAIR_QUERY ? 2 : query_stored_placements(&query->scene);
     return query->kind == LOG_PAIR_QUERY ? query->pair.placement : query->scene.placement;
 }
 
@@ -86,56 +80,10 @@ size_t logged_query_write(const struct logged_query *query, unsigned char out[QU
 
 int64_t logged_query_pairs(const struct scene_query *query)
 {
-    const int64_t n = placement_count(query);
+    const int64_t n = query_stored_placements(query);
     if (query->which == QUERY_PAIRS_LISTED)
         return query->index_count / 2;
     return query->which == QUERY_PAIRS_ACROSS ? query->split * (n - query->split) : n * (n - 1) / 2;
-}
-
-int64_t logged_query_pair_number(const struct scene_query *query, unsigned a, unsigned b)
-{
-    const int64_t n = placement_count(query), first = a, second = b;
-    if (query->which == QUERY_PAIRS_ACROSS)
-        return first * (n - query->split) + second - query->split;
-    return first * n - first * (first + 1) / 2 + second - (first + 1);
-}
-
-/* ---- Pairs ---- */
-
-static void set_ignored(const struct scene_query *query, struct scene *scene)
-{
-    scene->ignored_count = (size_t) (query->ignored_count / 2);
-    scene->ignored = allocate(scene->ignored_count, sizeof *scene->ignored);
-    for (size_t k = 0; k < scene->ignored_count; k++)
-        scene->ignored[k] = (struct scene_pair){query->ignored[k][0], query->ignored[k][1]};
-    scene_sort_ignored(scene);
-}
-
-/* Whether the query has this pair of placements, in order. */
-static bool has_pair(const struct scene_query *query, const struct scene_pair *pair)
-{
-    return pair->a < pair->b && pair->b < (size_t) placement_count(query) &&
-           (query->which != QUERY_PAIRS_ACROSS ||
-            (pair->a < (size_t) query->split && pair->b >= (size_t) query->split));
-}
-
-int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair)
-{
-    struct scene scene = {.dim = 0};
-    int64_t pairs = (int64_t) end_pair - query->first_pair;
-    if (query->which == QUERY_PAIRS_LISTED || query->ignored_count < 2)
-        return pairs; /* no listed pair is ignored */
-    set_ignored(query, &scene);
-    for (size_t i = 0; i < scene.ignored_count; i++) {
-        const struct scene_pair *pair = &scene.ignored[i];
-        const int64_t number =
-            has_pair(query, pair)
-                ? logged_query_pair_number(query, (unsigned) pair->a, (unsigned) pair->b)
-                : -1;
-        pairs -= number >= query->first_pair && number < end_pair;
-    }
-    scene_clear(&scene);
-    return pairs;
 }
 
 /* ---- As a scene: bodies ---- */
@@ -266,6 +214,15 @@ static void list_pairs(struct list *list, bool across, size_t split)
     for (size_t a = 0; a < (across ? split : count); a++)
         for (size_t b = across ? split : a + 1; b < count; b++)
             add(list, a, b);
+}
+
+static void set_ignored(const struct scene_query *query, struct scene *scene)
+{
+    scene->ignored_count = (size_t) (query->ignored_count / 2);
+    scene->ignored = allocate(scene->ignored_count, sizeof *scene->ignored);
+    for (size_t k = 0; k < scene->ignored_count; k++)
+        scene->ignored[k] = (struct scene_pair){query->ignored[k][0], query->ignored[k][1]};
+    scene_sort_ignored(scene);
 }
 
 static void set_pairs(const struct scene_query *query, struct scene *scene)

@@ -25,13 +25,6 @@ struct placement *logged_query_placements(struct logged_query *query, int32_t *c
 /* The number of pairs of a scene query, ignored ones included. */
 int64_t logged_query_pairs(const struct scene_query *query);
 
-/* The number of pairs with numbers from query->first_pair to end_pair - 1, without ignored ones. */
-int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair);
-
-/* The number of the pair (a, b) of placements, in lexicographic order, from 0. In: a PAIRS_ALL or
- * PAIRS_ACROSS query, and one of its pairs. */
-int64_t logged_query_pair_number(const struct scene_query *query, unsigned a, unsigned b);
-
 /* Encodes a query that was decoded. Returns its size; 0 if it exceeds a datagram, or the struct
  * does not hold all of it. */
 size_t logged_query_write(const struct logged_query *query, unsigned char out[QUERY_BYTES_MAX]);

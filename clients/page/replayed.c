@@ -1,8 +1,10 @@
 #include "replayed.h"
 
-#include "logged_query.h"
+#include "allocate.h"
+#include "query_pairs.h"
 #include "wire.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static const struct replayed_side no_answer;
@@ -85,7 +87,7 @@ static struct replayed_side side_of_named(const struct scene_query *query,
     if (has_verdict(place) && place->result->names_pairs &&
         place->result->pair[place->verdict][0] == a && place->result->pair[place->verdict][1] == b)
         return take(place);
-    const int64_t number = logged_query_pair_number(query, a, b);
+    const int64_t number = query_pair_number(query, a, b);
     side.answered = number >= query->first_pair && number < place->result->end_pair;
     side.answer.verdict = side.answered ? FMB_SEPARATED : 0;
     return side;
@@ -143,8 +145,9 @@ void replayed_count(const struct scene_query *query, const struct scene_result *
             count[result->verdict[i]]++;
     if (query->which == QUERY_PAIRS_LISTED)
         return;
-    const int64_t others =
-        logged_query_pairs_until(query, result->end_pair) - result->verdict_count;
+    unsigned char *set = allocate_unset(QUERY_PAIR_SET_BYTES);
+    const int64_t others = query_pairs_until(query, result->end_pair, set) - result->verdict_count;
+    free(set);
     count[FMB_SEPARATED] += others > 0 ? others : 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include "big_endian.h"
 #include "logged_query.h"
+#include "query_pairs.h"
 
 #include <math.h>
 #include <string.h>
@@ -219,12 +220,9 @@ static bool is_consistent(const struct scene_query *query, const struct scene_re
     int32_t before = query->first_pair - 1;
     for (int32_t i = 0; i < result->verdict_count; i++) {
         const unsigned *pair = result->names_pairs ? result->pair[i] : NULL;
-        if (!pair || pair[0] >= pair[1] || pair[1] >= (unsigned) query->placement_count)
+        if (!pair || !query_has_pair(query, pair[0], pair[1]))
             return false;
-        if (query->which == QUERY_PAIRS_ACROSS &&
-            (pair[0] >= (unsigned) query->split || pair[1] < (unsigned) query->split))
-            return false;
-        const int32_t number = (int32_t) logged_query_pair_number(query, pair[0], pair[1]);
+        const int32_t number = (int32_t) query_pair_number(query, pair[0], pair[1]);
         if (number <= before || number >= result->end_pair)
             return false;
         before = number;

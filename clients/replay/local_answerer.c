@@ -4,6 +4,7 @@
 #include "answer.h"
 #include "clock.h"
 #include "process.h"
+#include "query_pairs.h"
 #include "replayed.h"
 #include "wire.h"
 
@@ -135,8 +136,7 @@ static const char *decide_scene(struct local_answerer *local, const unsigned cha
     out->status = result->status;
     out->pairs = replayed_decided(query, result);
     out->placement = query->placement;
-    out->placement_count = query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
-                                                                         : QUERY_PLACEMENTS_MAX;
+    out->placement_count = query_stored_placements(query);
     out->size = wire_write_scene_result(result, local->bytes);
     return NULL;
 }

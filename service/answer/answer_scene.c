@@ -4,6 +4,7 @@
 #include "answerer.h"
 
 #include "check.h"
+#include "query_pairs.h"
 #include "wire.h"
 
 #include <assert.h>
@@ -29,9 +30,8 @@ struct scene_job {
     void *memory;                  /* owned; fmb_scene_bytes(&limits) bytes */
     struct used_body used[QUERY_PLACEMENTS_MAX];
     struct fmb_placement placement[QUERY_PLACEMENTS_MAX];
-    /* [bit_of(pair)] Used by check_ignored() and count_ignored(), which clear the bits they read.
-     */
-    unsigned char ignored[QUERY_PLACEMENTS_MAX * QUERY_PLACEMENTS_MAX / 8 + 1];
+    /* Set of pairs, see check_ignored() and query_pairs_until(). */
+    unsigned char ignored[QUERY_PAIR_SET_BYTES];
     struct scene_result result;
     struct scene_query query;
     struct query_bodies bodies;
@@ -76,48 +76,15 @@ struct scene_result *scene_job_result(struct scene_job *job)
     return &job->result;
 }
 
-/* Index of the bit of a pair, in either order, in scene_job.ignored. */
-static size_t bit_of(const unsigned pair[2])
-{
-    const unsigned lower = pair[0] < pair[1] ? pair[0] : pair[1];
-    const unsigned upper = pair[0] < pair[1] ? pair[1] : pair[0];
-    return (size_t) lower * QUERY_PLACEMENTS_MAX + upper;
-}
-
-/* Number of ignored pairs whose numbers are from first_pair to end_pair - 1, repetitions not
- * counted. In: a query of all pairs or of those across. scene_job.ignored: whether a pair was
- * counted. */
-static int32_t count_ignored(struct scene_job *job)
-{
-    const struct scene_query *query = &job->query;
-    const int64_t n = query->placement_count, split = query->split;
-    int32_t count = 0;
-    for (int32_t i = 0; i < query->ignored_count / 2; i++)
-        job->ignored[bit_of(query->ignored[i]) / 8] = 0;
-    for (int32_t i = 0; i < query->ignored_count / 2; i++) {
-        const size_t bit = bit_of(query->ignored[i]);
-        const int64_t a = (int64_t) bit / QUERY_PLACEMENTS_MAX, b = bit % QUERY_PLACEMENTS_MAX;
-        const bool across = query->which == QUERY_PAIRS_ACROSS;
-        const int64_t number =
-            across ? a * (n - split) + b - split : a * (2 * n - a - 1) / 2 + b - a - 1;
-        if ((across && (a >= split || b < split)) || number < query->first_pair ||
-            number >= job->result.end_pair || job->ignored[bit / 8] >> bit % 8 & 1)
-            continue;
-        job->ignored[bit / 8] |= (unsigned char) (1u << bit % 8);
-        count++;
-    }
-    return count;
-}
-
 int32_t scene_job_decided(struct scene_job *job)
 {
     const struct scene_result *result = scene_job_result(job);
     if (result->status != FMB_OK)
         return 0;
-    int32_t pairs = result->end_pair - job->query.first_pair;
+    int32_t pairs = (int32_t) query_pairs_until(&job->query, result->end_pair, job->ignored);
     for (int32_t i = 0; i < result->verdict_count; i++)
         pairs -= result->verdict[i] == 0;
-    return result->names_pairs ? pairs - count_ignored(job) : pairs;
+    return pairs;
 }
 
 /* Releases the bodies of a query in progress, which ends it. */
@@ -218,13 +185,14 @@ static bool check_ignored(struct check_context *context, struct scene_job *job)
     if (query->ignored_count == 0)
         return true;
     for (int32_t i = 0; i < query->index_count / 2; i++)
-        job->ignored[bit_of(query->pair[i]) / 8] &=
-            (unsigned char) ~(1u << bit_of(query->pair[i]) % 8);
+        job->ignored[query_pair_bit(query->pair[i]) / 8] &=
+            (unsigned char) ~(1u << query_pair_bit(query->pair[i]) % 8);
     for (int32_t i = 0; i < query->ignored_count / 2; i++)
-        job->ignored[bit_of(query->ignored[i]) / 8] |=
-            (unsigned char) (1u << bit_of(query->ignored[i]) % 8);
+        job->ignored[query_pair_bit(query->ignored[i]) / 8] |=
+            (unsigned char) (1u << query_pair_bit(query->ignored[i]) % 8);
     for (int32_t i = 0; i < query->index_count / 2; i++)
-        if (job->ignored[bit_of(query->pair[i]) / 8] >> bit_of(query->pair[i]) % 8 & 1)
+        if (job->ignored[query_pair_bit(query->pair[i]) / 8] >> query_pair_bit(query->pair[i]) % 8 &
+            1)
             return check_refuse_at(context, FMB_BAD_PAIR, "indices", 2 * i, "a pair to ignore");
     return true;
 }
