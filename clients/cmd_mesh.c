@@ -53,7 +53,7 @@ static const char usage[] =
     "                       (B) for the others\n"
     "  --html FILE          write a page that shows them, and the pairs: for any\n"
     "                       browser, with nothing to install or to fetch\n"
-    "  --force              FILE may exist already and be of another kind\n"
+    "  --force              overwrite FILE even if it is of another kind\n"
     "  -h, --help\n"
     "\n"
     "Two faces overlap if they have an inner point in common, and touch if they only\n"
@@ -246,7 +246,7 @@ static bool read_mesh(const char *path, const struct placed *placed, struct mesh
 
 typedef void write_function(FILE *out, const struct mesh_report *report);
 
-/* Writes a file, if it is wanted. */
+/* Writes a file if it is wanted. */
 static bool write_file(const struct output_options *options, write_function *write,
                        const struct mesh_report *report)
 {

@@ -37,7 +37,7 @@ static const char usage[] =
     "                   counts as not decided. The service then decides each pair by\n"
     "                   a query of its own, which takes longer\n"
     "  --svg FILE       draw the scenes into FILE; implies --box\n"
-    "  --force          FILE of --svg may exist already and be no picture\n"
+    "  --force          overwrite FILE of --svg even if it is no picture\n"
     "  --method NAME    how to decide: certified (the default: never wrong, and\n"
     "                   fast); exact (boxes and intervals to the last bit); or fmb or\n"
     "                   sat, which are inexact, for comparison\n"

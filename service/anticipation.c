@@ -34,8 +34,8 @@ bool anticipation_begin(struct anticipation *anticipation, int client, int64_t n
 {
     const int64_t known_ns = anticipation->clients[client].think_ns;
     const int64_t think_ns = known_ns ? known_ns : FIRST_GUESS_NS;
-    const int64_t part_ns = other_ns / ANTICIPATION_PART;
-    if (max_ns <= 0 || (think_ns > ANTICIPATION_THINK_NS && think_ns > part_ns) ||
+    if (max_ns <= 0 ||
+        (think_ns > ANTICIPATION_THINK_NS && think_ns > other_ns / ANTICIPATION_RATIO) ||
         (think_ns > other_ns && !leads))
         return false;
     anticipation->client = client;

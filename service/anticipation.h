@@ -14,12 +14,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The service does not wait for a client that takes longer than ANTICIPATION_THINK_NS on average to
- * send its next query, unless the work that would begin instead takes ANTICIPATION_PART times as
- * long: a client on a busy machine takes long, but loses more to a certificate. For others it waits
- * up to ANTICIPATION_MAX_NS: a client whose core was busy takes longer than usual, and work for
- * another client usually delays it by more. */
-enum { ANTICIPATION_THINK_NS = 150000, ANTICIPATION_PART = 16, ANTICIPATION_MAX_NS = 1000000 };
+/* The service does not wait for a client whose average think time exceeds ANTICIPATION_THINK_NS,
+ * unless the work that would begin instead takes ANTICIPATION_RATIO times as long: a client on a
+ * busy machine is slow to send, but a certificate for another client would delay it by more. Other
+ * clients are waited for up to ANTICIPATION_MAX_NS: a client whose core was busy takes longer than
+ * usual, and work for another client usually delays it by more. */
+enum { ANTICIPATION_THINK_NS = 150000, ANTICIPATION_RATIO = 16, ANTICIPATION_MAX_NS = 1000000 };
 
 struct anticipation {
     int client;        /* the anticipated client; -1: none */
@@ -44,9 +44,10 @@ void anticipation_answered(struct anticipation *anticipation, int client, int64_
 void anticipation_arrived(struct anticipation *anticipation, int client, int64_t not_before_ns);
 
 /* Begins to wait for a client. On input: max_ns: upper limit of the wait; other_ns: what the work
- * that would begin instead usually takes; leads: the client has used less than the others by more
- * than a slice. Returns false, and does nothing, if waiting does not pay: max_ns is 0 or less, or
- * the client's think time is too long (above), or exceeds other_ns though the client does not lead.
+ * that would begin instead usually takes; leads: the client has used less time than the others, by
+ * more than a slice. Returns false, and does nothing, if waiting does not pay: max_ns is 0 or less,
+ * or the client's think time is too long (above), or exceeds other_ns though the client does not
+ * lead.
  */
 bool anticipation_begin(struct anticipation *anticipation, int client, int64_t now_ns,
                         int64_t max_ns, int64_t other_ns, bool leads);

@@ -22,9 +22,8 @@
 #include <time.h>
 #include <unistd.h>
 
-/* After this time the bus is read no further, so that a flood of datagrams does not prevent
- * answers. */
-static const int64_t drain_ns = 200000;
+/* Longest time to read the bus in a row, so that a flood of datagrams does not prevent answers. */
+static const int64_t drain_max_ns = 200000;
 
 /* Interval at which signals and the watchdog are polled while queries are pending. */
 static const int64_t poll_ns = 10000000;
@@ -130,7 +129,7 @@ static void fail(struct daemon *daemon)
 
 static void drain(struct daemon *daemon)
 {
-    const int64_t until_ns = clock_ns() + drain_ns;
+    const int64_t until_ns = clock_ns() + drain_max_ns;
     int datagrams;
     do {
         datagrams = bus_receive(daemon->bus, on_message, daemon->server);

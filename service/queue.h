@@ -41,9 +41,9 @@ struct queue;
 
 struct queue_datagram {
     int client;
-    int kind;
-    size_t size;
-    int64_t arrived_ns;
+    int kind;           /* any value */
+    size_t size;        /* bytes */
+    int64_t arrived_ns; /* of any clock */
 };
 
 enum queue_put_result {
@@ -64,8 +64,8 @@ struct queue_counts {
 struct queue *queue_create(size_t chunks, int clients);
 void queue_destroy(struct queue *queue);
 
-/* Copies a datagram to the end of a FIFO. On input: size from 1 to QUEUE_DATAGRAM_MAX; any kind and
- * time, which queue_pop() and queue_evict() return.
+/* Copies a datagram to the end of a FIFO of its client. On input: size from 1 to
+ * QUEUE_DATAGRAM_MAX. queue_pop() and queue_evict() return the same *datagram and bytes.
  *
  * QUEUE_FULL and QUEUE_REFUSED change nothing. After QUEUE_FULL, if evictions and queue_put()
  * alternate with no other change between them, the datagram is added after at most
@@ -73,7 +73,7 @@ void queue_destroy(struct queue *queue);
 enum queue_put_result queue_put(struct queue *queue, enum queue_fifo fifo,
                                 const struct queue_datagram *datagram, const unsigned char *bytes);
 
-/* Number of datagrams in each FIFO of a client. */
+/* [fifo] Number of datagrams in each FIFO of a client. The array follows later changes. */
 const int64_t *queue_waiting(const struct queue *queue, int client);
 
 /* Removes the oldest datagram of a FIFO. On output: *out, and its out->size bytes. Returns false,
@@ -81,12 +81,12 @@ const int64_t *queue_waiting(const struct queue *queue, int client);
 bool queue_pop(struct queue *queue, int client, enum queue_fifo fifo, struct queue_datagram *out,
                unsigned char bytes[QUEUE_DATAGRAM_MAX]);
 
-/* A client that holds most chunks, from which queue_evict() is to evict after QUEUE_FULL; -1: the
- * queue is empty. */
+/* Returns a client that holds most chunks: after QUEUE_FULL, evict from it. -1: the queue is empty.
+ */
 int queue_largest(const struct queue *queue);
 
-/* Removes the newest datagram of a client, of both FIFOs. On output: as for queue_pop(). Returns
- * false if it has none. */
+/* Removes the newest datagram of a client, in whichever FIFO it is. On output: as for queue_pop().
+ * Returns false, and changes nothing, if the client has none. */
 bool queue_evict(struct queue *queue, int client, struct queue_datagram *out,
                  unsigned char bytes[QUEUE_DATAGRAM_MAX]);
 

@@ -4,7 +4,7 @@
 
 enum { SAMPLES_FIRST = 16, SAMPLES_MAX = 128 };
 
-void quota_note(struct quota *quota, enum queue_fifo fifo, int64_t ns)
+void quota_add_sample(struct quota *quota, enum queue_fifo fifo, int64_t ns)
 {
     if (quota->count[fifo] == 0) {
         quota->count[fifo] = SAMPLES_FIRST;
@@ -37,9 +37,9 @@ bool quota_exceeded(const struct quota *quota, const int64_t waiting[QUEUE_FIFOS
 
 bool quota_take_refusal(struct quota *quota, int64_t now_ns)
 {
-    const int64_t begin_ns = quota->refused_until_ns > now_ns ? quota->refused_until_ns : now_ns;
+    const int64_t begin_ns = quota->next_refusal_ns > now_ns ? quota->next_refusal_ns : now_ns;
     if (begin_ns - now_ns > (QUOTA_REFUSALS - 1) * QUOTA_REFUSAL_NS)
         return false;
-    quota->refused_until_ns = begin_ns + QUOTA_REFUSAL_NS;
+    quota->next_refusal_ns = begin_ns + QUOTA_REFUSAL_NS;
     return true;
 }

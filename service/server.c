@@ -197,7 +197,7 @@ static void refuse_other(struct server *server, enum server_kind kind, const uns
     }
 }
 
-/* Refuses a query; without a result, if its client has got as many as its quota allows. The time is
+/* Refuses a query; without a result if the quota of refusals of its client is used up. The time is
  * charged to its client, not to the batch. */
 static void refuse(struct server *server, const struct queue_datagram *datagram,
                    const unsigned char *bytes, enum fmb_status status)
@@ -274,7 +274,7 @@ static void answer_short(struct server *server, const struct queue_datagram *que
 
 static void finish_job(struct server *server, struct job *job)
 {
-    quota_note(&server->quota[job->client], QUEUE_SCENES, job->used_ns);
+    quota_add_sample(&server->quota[job->client], QUEUE_SCENES, job->used_ns);
     if (job->is_pair) {
         struct pair_result *result = pair_job_end(job->pair, server->answerer);
         result->compute_ns = job->used_ns;
@@ -373,8 +373,8 @@ static int64_t charge_of(int64_t used_ns)
     return used_ns > short_ns ? 2 * used_ns - short_ns : used_ns;
 }
 
-/* Evicts the newest queries of a client until its quota is kept. */
-static void keep_quota(struct server *server, int client)
+/* Evicts the newest queries of a client while its waiting queries exceed its quota. */
+static void enforce_quota(struct server *server, int client)
 {
     while (quota_exceeded(&server->quota[client], queue_waiting(server->queue, client),
                           queue_counts(server->queue).clients))
@@ -403,9 +403,9 @@ static void serve(struct server *server, int client, int64_t job_max_ns)
         advance_job(server, job, job_max_ns);
     const int64_t used_ns = meter_read(&server->meter);
     if (is_short && !expired)
-        quota_note(&server->quota[client], QUEUE_SHORT, used_ns);
+        quota_add_sample(&server->quota[client], QUEUE_SHORT, used_ns);
     scheduler_charge(server->scheduler, client, charge_of(used_ns));
-    keep_quota(server, client);
+    enforce_quota(server, client);
     update_activity(server, client);
 }
 

@@ -6,8 +6,8 @@
  * pairs of bodies of several frames do. Scenes are answered in steps; between them other clients
  * are served and the bus is read. If the queue is full, the client that holds most of it gets
  * FMB_BUSY for its newest query; so does a client whose waiting queries exceed its quota (quota.h).
- * Queries that have waited too long, and refusals of a client that gets many, are counted and have
- * no result. If all jobs (jobs.h) are in use and another client needs one, the job that has used
+ * Queries that have waited too long, and refusals beyond the quota of a client, get no result; they
+ * are counted. If all jobs (jobs.h) are in use and another client needs one, the job that has used
  * most time ends: with the pairs answered so far, or as FMB_BUSY.
  *
  * One server may be used by one thread at a time; servers share no state. The caller's loop:

@@ -3,9 +3,9 @@
 #
 #   N passed, N failed[, N skipped]
 #
-# A line before it says why tests were skipped, if any were. Exit code 0 only if none failed. With FMB_FAST set: the release build alone, smaller samples, and
-# without the suites that take long. Needs what 'make deps-test' installs. The output of each suite
-# stays in build/tests.log/.
+# A line before it gives the reasons of skipped tests. Exit code 0 only if none failed. With FMB_FAST
+# set: the release build alone, smaller samples, and without the suites that take long. Needs what
+# 'make deps-test' installs. The output of each suite stays in build/tests.log/.
 set -u
 cd "$(dirname "$0")/.." || exit
 
@@ -69,7 +69,8 @@ count_suite() {
         }' "$1"
 }
 
-# reasons FILE...: why tests were skipped by their TAP, in one line; a test without a reason is named.
+# reasons FILE...: reads TAP; prints the reasons of skipped tests in one line. A test that was skipped
+# without a reason is named.
 reasons() {
     cat "$@" | sed -nE '/^(not )?ok .*# *(skip|SKIP)/ {
         s/.*# *(skip|SKIP) +(.*[^ ]) *$/\2/; t print

@@ -71,7 +71,7 @@ bool args_error(const struct args *args, const char *format, ...)
 /* For take: reads optarg as an integer from low to high. Returns false after an error. */
 bool args_integer(const struct args *args, long low, long high, long *out);
 
-/* Checks --from and --to. Returns false after an error: no time is in the span. */
+/* Checks that --from is less than --to. Returns false after an error. */
 bool args_check_span(const struct args *args, double from, double to);
 
 /* Returns the URL of a bus for messages; valid as long as the options. */

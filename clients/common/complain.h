@@ -1,5 +1,5 @@
-/* Messages on stderr. Messages may contain names and
- * texts from outside: control characters are written as \xNN. */
+/* Messages on stderr. They may contain names and texts from outside: control characters are written
+ * as \xNN. */
 #ifndef COMPLAIN_H
 #define COMPLAIN_H
 
@@ -16,7 +16,7 @@ void complain_as(const char *command, const char *format, va_list list);
 /* Prints a text within a line. */
 void complain_text(const char *text);
 
-/* Writes what is left of standard output. Returns false after an error, which was reported. */
+/* Flushes standard output. Returns false after an error, which was reported. */
 bool output_flush(void);
 
 #endif

@@ -687,9 +687,9 @@ static enum json_outcome fail(struct json_reader *reader, enum json_outcome outc
 /* ---- Tokens ----
  *
  * cJSON accepts numbers such as 01, 1. and -.5, control characters in strings and outside of them,
- * and \u with other characters than hexadecimal digits; and it ends a string at \u0000. The
- * functions below move *at over a token and return true, or to the byte that makes it invalid. They
- * stop at the bracket that ends the object, which no string contains. */
+ * and \u before characters that are not hexadecimal digits; and it ends a string at \u0000. Each
+ * function below moves *at past a token and returns true, or moves it to the first invalid byte and
+ * returns false. The bracket that ends the object stops them, since it is outside all strings. */
 
 static bool skip_digits(const char **at)
 {
@@ -731,7 +731,8 @@ static bool skip_string(const char **at)
     return true;
 }
 
-/* Returns the first byte that makes a string, a number or white space invalid; or the end. */
+/* Returns the first byte at which a string, a number or white space is invalid; `end` if none is.
+ */
 static const char *tokens_end(const char *at, const char *end)
 {
     bool good = true;

@@ -33,11 +33,11 @@ void output_complain(const char *path, int error)
         complain("%s: %s%s", path, strerror(error), remedy(error));
 }
 
-/* ---- What exists ----------------------------------------------------------------------------- */
+/* ---- Existing files -------------------------------------------------------------------------- */
 
 enum { BEGIN_MAX = 64 };
 
-/* The first bytes of a kind that a file of this kind may replace. */
+/* The first bytes of a file of each kind. */
 static const struct {
     const char *name, *begin;
 } kinds[] = {
@@ -113,7 +113,7 @@ bool output_check(const struct output_options *options)
 
 /* ---- Temporary files ------------------------------------------------------------------------- */
 
-/* Those that have no other name yet. */
+/* Outputs that have a temporary name only. */
 static struct output *volatile unfinished;
 
 static void remove_temporaries(void)
@@ -128,24 +128,24 @@ static void on_signal(int number)
     raise(number); /* now with its default action */
 }
 
-/* Removes the temporary files when the process ends. With SIGXFSZ ignored, a file that may not grow
- * is an error. */
-static void prepare_for_end(void)
+/* Removes the temporary files when the process ends. With SIGXFSZ ignored, a write beyond the limit
+ * of file sizes is an error. */
+static void install_cleanup(void)
 {
-    static const int ends[] = {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM};
-    static bool prepared;
+    static const int signals[] = {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM};
+    static bool installed;
     struct sigaction action;
-    if (prepared)
+    if (installed)
         return;
-    prepared = true;
+    installed = true;
     atexit(remove_temporaries);
     signal(SIGXFSZ, SIG_IGN);
-    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
-        if (sigaction(ends[i], NULL, &action) != 0 || action.sa_handler != SIG_DFL)
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
+        if (sigaction(signals[i], NULL, &action) != 0 || action.sa_handler != SIG_DFL)
             continue;
         action.sa_handler = on_signal;
         action.sa_flags = (int) SA_RESETHAND;
-        sigaction(ends[i], &action, NULL);
+        sigaction(signals[i], &action, NULL);
     }
 }
 
@@ -174,10 +174,10 @@ static char *follow_links(const char *path)
     return at;
 }
 
-/* Registered before it exists, so that a signal finds it. */
+/* The output is registered before its file exists, so that on_signal() removes it at any time. */
 static int open_temporary(struct output *output, mode_t mode)
 {
-    prepare_for_end();
+    install_cleanup();
     output->target = follow_links(output->path);
     output->temporary = output_beside(output->target, ".fmb-XXXXXX");
     output->next = unfinished;
@@ -227,7 +227,7 @@ bool output_open(const struct output_options *options, struct output **out)
     *out = NULL;
     if (!options->path || !output_check(options))
         return !options->path;
-    fflush(stdout); /* the file may be standard output */
+    fflush(stdout); /* the output may be standard output */
     struct output *output = allocate(1, sizeof *output);
     output->path = options->path;
     const int fd = open_fd(output);

@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* The first bytes of a file decide its kind. Logs are recordings: an existing one is never of the
- * kind to be written. */
+/* The first bytes of an existing file determine its kind. Without --force, not even a log replaces
+ * a log, since that is a recording. */
 enum output_kind { OUTPUT_PICTURE, OUTPUT_PAGE, OUTPUT_REPORT, OUTPUT_MESH, OUTPUT_LOG };
 
 /* What applies to all files that a command writes. */
@@ -15,7 +15,7 @@ struct output_rules {
     bool force;         /* overwrites any file that is not read */
     char *const *input; /* [input_count] paths of the files that the command reads */
     int input_count;
-    const char *other_input; /* another one; NULL: none */
+    const char *other_input; /* path of one more; NULL: none */
 };
 
 struct output_options {
@@ -28,32 +28,35 @@ struct output {
     FILE *file;
     const char *path;
     /* Private: */
-    char *target, *temporary; /* owned; NULL: written directly */
+    /* Owned; NULL: the file is written directly. Path after symbolic links; path of the temporary
+     * file in the same folder. */
+    char *target, *temporary;
     struct output *volatile next;
 };
 
-/* Returns false after an error: the file must not be overwritten. */
+/* Checks whether the file may be written. Returns false after an error, which was reported. */
 bool output_check(const struct output_options *options);
 
 /* Checks and opens a file. A regular file is written under a temporary name in its folder; symbolic
  * links are followed. Devices, pipes and standard output are written directly. The temporary file
- * is removed if the process exits or is ended by a signal. In: path outlives the output. *out: NULL
- * if no file is wanted. Returns false after an error. */
+ * is removed if the process exits or is ended by a signal. In: options->path outlives the output.
+ * Out: *out: NULL if no file is wanted. Returns false after an error, which was reported. */
 bool output_open(const struct output_options *options, struct output **out);
 
-/* Closes the file. keep: gives it its name; otherwise it is removed, and a file that existed before
- * stays as it was. output may be NULL. Returns false if not all was written. */
+/* Closes the file. If keep is true, it gets its name; otherwise it is removed, and an existing file
+ * is unchanged. output may be NULL. Returns false after an error, which was reported: the file was
+ * not written. */
 bool output_close(struct output *output, bool keep);
 
-/* Opens a recording, which is written in place and so survives the end of the process. A file that
- * exists and is not empty is overwritten if force is true; otherwise it is an error (EEXIST).
- * Returns -1 on error: errno. */
+/* Opens a recording, which is written in place, so that it survives the end of the process. If the
+ * file exists and is not empty, it is overwritten if force is true; otherwise that is an error
+ * (EEXIST). Returns a descriptor; -1 on error: errno. */
 int output_open_in_place(const char *path, bool force);
 
 /* Reports why a file cannot be written, and what to do. error: a value of errno. */
 void output_complain(const char *path, int error);
 
-/* The path of a file in the folder of another path. An absolute name is the path. The caller frees
+/* Returns the path of `name` in the folder of `path`, or `name` if it is absolute. The caller frees
  * it. */
 char *output_beside(const char *path, const char *name);
 

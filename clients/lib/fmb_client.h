@@ -75,8 +75,8 @@ struct fmb_client_options {
     const char *url;
     const char *prefix; /* of the service's channels; NULL: none */
     /* Longest time before a query is sent again, seconds; 0: 0.5. The first repeat comes after
-     * milliseconds; later ones after as long while many queries are lost, else each after twice the
-     * time, up to this. */
+     * milliseconds. Later ones come at the same interval while many queries are lost; otherwise the
+     * interval doubles, up to this. */
     double timeout;
     int tries; /* a query is given up after this many timeouts; 0: 6 */
 };
@@ -148,8 +148,8 @@ enum {
     FMB_CLIENT_WANT_GAP = 8,   /* not with the methods fmb and sat */
 };
 
-/* A scene to query. The library keeps no pointer to it after the call. If all fields but the
- * placements are 0, they are at rest, and the verdicts of all pairs are wanted. */
+/* A scene to query. The library keeps no pointer to it after the call. With all fields 0 but the
+ * placements, which are then at rest, it is a query for the verdicts of all pairs. */
 struct fmb_client_scene {
     const struct fmb_client_placement *placements; /* [placement_count], all of one dimension */
     size_t placement_count;                        /* less than 2^31 */
@@ -158,7 +158,7 @@ struct fmb_client_scene {
      * one group; otherwise none. */
     const unsigned (*pairs)[2];
     size_t pair_count;
-    size_t split; /* ACROSS: at most placement_count; 0: no pairs. Otherwise 0 */
+    size_t split; /* ACROSS: at most placement_count, 0: no pairs; otherwise 0 */
     /* ALL and ACROSS: [ignored_count][a, b], pairs that are left out, in any order; repeats are
      * allowed. LISTED: none. */
     const unsigned (*ignored)[2];

@@ -22,10 +22,9 @@ struct fmb_client_raw_result {
     /* From 0 on: that of the result (enum fmb_status); BUSY after a minute of pauses, UNKNOWN_BODY
      * at once. Negative (enum fmb_client_status): there is no result, and bytes is NULL. */
     int status;
-    const unsigned char
-        *bytes; /* the message, well-formed; valid during the callback, as query is */
+    const unsigned char *bytes; /* the message, well-formed; valid during the callback */
     size_t size;
-    const unsigned char *query; /* as it was sent */
+    const unsigned char *query; /* as it was sent; valid during the callback */
     size_t query_size;
 };
 

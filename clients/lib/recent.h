@@ -29,7 +29,7 @@ struct recent {
     struct recent_result {
         bool used;
         bool comparable; /* end_pair and digest are set */
-        bool repeated;   /* the query was */
+        bool repeated;   /* the query was sent more than once */
         int kind;
         int64_t number;
         int32_t end_pair; /* of a scene */
@@ -41,8 +41,8 @@ struct recent {
 void recent_note(struct recent *recent, const struct request_result *result, int64_t number,
                  bool repeated);
 
-/* Whether a result is the second one of a query that was repeated: without need, if there is one
- * service. */
+/* Whether a result is a second one of a repeated query. With one service on the bus, that repeat
+ * was spurious. */
 bool recent_was_repeated(const struct recent *recent, const struct request_result *result);
 
 /* Whether a result contradicts the recorded one of the same query. Service, handles and compute

@@ -16,10 +16,10 @@ enum {
     MARGIN_MS = 8,
     FIRST_RETRY_MS = 10,
     FIRST_SCENE_RETRY_MS = 40,
-    /* Time that a result may come after those of later queries: after the first repeat that was
-     * needless, at most, and the part by which it decays with each result. */
-    REORDERING_FIRST_US = 100,
-    REORDERING_MOST_US = 1000 * MARGIN_MS,
+    /* The reordering window. A spurious repeat doubles it and adds the first constant, up to the
+     * second. Each result shortens it by 1 / REORDERING_DECAY of it. */
+    REORDERING_STEP_US = 100,
+    REORDERING_MAX_US = 1000 * MARGIN_MS,
     REORDERING_DECAY = 64,
     /* A default receive buffer has 212,992 bytes, and also holds datagrams of other senders. A
      * datagram takes at most twice its bytes there, plus a constant; the largest take 70,000. */
@@ -33,15 +33,15 @@ enum {
 
 static const int64_t ns_per_us = 1000, ns_per_ms = 1000000, ns_per_s = 1000000000;
 
-/* A repeat is free if the losses before it had at least this chance: the first 21 at heavy_loss, 4
- * if one query in fifty is lost, and the first one where none was. */
-static const double least_chance = 1.0 / (1 << 20);
-/* Largest share of lost queries that is believed. If more are repeated, the service is slow. */
-static const double heavy_loss = 0.5;
-/* Weight of a result in the shares of lost queries and of needless repeats. */
+/* Loss explains a repeat if the losses before it have at least this probability: 21 repeats if half
+ * of the queries are lost, 4 if one in fifty is, and 1 if none is. */
+static const double loss_chance_min = 1.0 / (1 << 20);
+/* A larger share of repeated queries is not explained by loss: the service is slow. */
+static const double loss_share_max = 0.5;
+/* Weight of a result in the moving averages. */
 static const double share_weight = 1.0 / 32;
-/* Repeats are useful if the share of needless ones is by so much less than half of all. */
-static const double needless_margin = 0.1;
+/* Repeats are useful if the share of spurious ones is less than half of all by this margin. */
+static const double spurious_margin = 0.1;
 
 const char *fmb_client_status_text(int status)
 {
@@ -122,7 +122,7 @@ static void publish(struct requests *requests, struct request *request)
     if (!transport->publish(transport->user, request->kind, request->query, request->size))
         requests->counts.unsent++;
     requests->counts.bytes += request->size;
-    request->pausing = request->overtaken = false;
+    request->pausing = request->presumed_lost = false;
     request->sent_at = clock_ns();
     request->deadline = request->sent_at + request->interval;
 }
@@ -146,40 +146,41 @@ void request_send(struct requests *requests, struct request *request)
     big_endian_put_64(request->query + NUMBER_AT, (uint64_t) request->number);
     request->interval = retry < requests->timeout_ns ? retry : requests->timeout_ns;
     request->repeated = false;
-    request->chance = 1;
+    request->loss_chance = 1;
     requests->counts.queries++;
     publish(requests, request);
     request->first_at = request->pending_at = request->sent_at;
     request->give_up_at = request->sent_at + total_timeout(requests);
 }
 
-static bool is_free(const struct request *request)
+static bool explained_by_loss(const struct request *request)
 {
-    return request->chance >= least_chance;
+    return request->loss_chance >= loss_chance_min;
 }
 
-/* Whether most repeats are useful. Where most are needless, because results come in another order,
- * a result may answer any sending of a query. */
-static bool are_useful(const struct request_pace *pace)
+/* Whether most repeats are useful. Where most are spurious, because results are reordered, a result
+ * may answer any sending of its query. */
+static bool repeats_are_useful(const struct request_pace *pace)
 {
-    return pace->needless + needless_margin < pace->lost / 2;
+    return pace->spurious_share + spurious_margin < pace->loss_share / 2;
 }
 
 static void repeat(struct requests *requests, struct request *request)
 {
-    const bool lost = request->overtaken || request->pausing;
-    const double share = requests->pace[request->kind].lost;
+    const struct request_pace *pace = &requests->pace[request->kind];
+    const bool lost_or_refused = request->presumed_lost || request->pausing;
     if (request->pausing) {
         request->give_up_at = clock_ns() + total_timeout(requests);
     } else {
-        if (!is_free(request))
+        if (!explained_by_loss(request))
             request->interval = clock_earlier(2 * request->interval, requests->timeout_ns);
-        request->chance *= share < heavy_loss ? share : heavy_loss;
+        request->loss_chance *=
+            pace->loss_share < loss_share_max ? pace->loss_share : loss_share_max;
     }
     request->repeated = true;
     requests->counts.repeated++;
     publish(requests, request);
-    if (lost && are_useful(&requests->pace[request->kind]))
+    if (lost_or_refused && repeats_are_useful(pace))
         request->pending_at = request->sent_at;
 }
 
@@ -200,12 +201,13 @@ static void note_received(struct requests *requests, enum fmb_client_kind kind)
     requests->pace[kind].received_at = requests->received_at;
 }
 
-/* A repeated query says nothing about the response time, unless none was measured since it was sent
- * first: then either it was lost, or retry is too short. At first retry is what the service needed;
- * later it doubles after this many in a row, since of lost queries so many seldom come in a row. */
+/* Adapts retry to a repeated query, whose response time is unknown. If none was measured since it
+ * was first sent, either it was lost or retry is too short. Before the first measurement, retry
+ * becomes twice the interval within which the result came. Later it doubles after UNMEASURED_MAX
+ * such results in a row: so many losses in a row are rare. */
 enum { UNMEASURED_MAX = 4 };
 
-static void note_repeated(struct request_pace *pace, const struct request *request)
+static void adapt_retry(struct request_pace *pace, const struct request *request)
 {
     if (request->first_at < pace->measured_at)
         return;
@@ -217,26 +219,27 @@ static void note_repeated(struct request_pace *pace, const struct request *reque
         pace->retry *= 2;
 }
 
-/* With the decay, about one repeat in a hundred results stays needless. */
-static void note_needless(struct request_pace *pace)
+/* Widens the reordering window. It decays, so about one spurious repeat in a hundred results
+ * remains. */
+static void adapt_to_spurious_repeat(struct request_pace *pace)
 {
-    const int64_t more = 2 * pace->reordering + REORDERING_FIRST_US * ns_per_us;
-    pace->reordering = clock_earlier(more, REORDERING_MOST_US * ns_per_us);
-    pace->needless += share_weight * (1 - pace->needless);
+    const int64_t wider = 2 * pace->reordering_window + REORDERING_STEP_US * ns_per_us;
+    pace->reordering_window = clock_earlier(wider, REORDERING_MAX_US * ns_per_us);
+    pace->spurious_share += share_weight * (1 - pace->spurious_share);
 }
 
-/* Which of the sendings of a repeated query a result answers is unknown. */
+/* Measures the response time, unless the query was repeated: the result may answer any sending. */
 static void measure(struct request_pace *pace, const struct request *request)
 {
     const int64_t now = clock_ns();
     const int64_t time = now - request->sent_at;
-    if (request->pending_at > pace->overtaken_at)
-        pace->overtaken_at = request->pending_at;
-    pace->lost += share_weight * ((request->chance < 1) - pace->lost);
-    pace->needless -= share_weight * pace->needless;
-    pace->reordering -= pace->reordering / REORDERING_DECAY;
+    if (request->pending_at > pace->newest_answered_at)
+        pace->newest_answered_at = request->pending_at;
+    pace->loss_share += share_weight * ((request->loss_chance < 1) - pace->loss_share);
+    pace->spurious_share -= share_weight * pace->spurious_share;
+    pace->reordering_window -= pace->reordering_window / REORDERING_DECAY;
     if (request->repeated) {
-        note_repeated(pace, request);
+        adapt_retry(pace, request);
         return;
     }
     pace->measured_at = now;
@@ -281,7 +284,7 @@ void requests_take(struct requests *requests, const struct request_result *resul
         requests->counts.contradicting += recent_contradicts(&requests->recent, result);
         note_service(requests);
         if (recent_was_repeated(&requests->recent, result))
-            note_needless(&requests->pace[result->kind]);
+            adapt_to_spurious_repeat(&requests->pace[result->kind]);
     } else if (result->status == FMB_BUSY && request->refusals < BUSY_MAX) {
         note_received(requests, result->kind);
         pause_request(request);
@@ -327,22 +330,22 @@ static void give_up(struct requests *requests, struct request *request)
     requests_give_up(requests, FMB_CLIENT_NO_SERVICE);
 }
 
-/* Notes that a request that was sent later has its result. */
-static void note_overtaken(const struct request_pace *pace, struct request *request, int64_t time)
+/* Presumes a request lost if one that was sent later has its result. */
+static void detect_loss(const struct request_pace *pace, struct request *request, int64_t time)
 {
-    if (request->pausing || request->overtaken || request->sent_at >= pace->overtaken_at)
+    if (request->pausing || request->presumed_lost || request->sent_at >= pace->newest_answered_at)
         return;
-    request->overtaken = true;
-    if (is_free(request))
-        request->deadline = time + pace->reordering;
+    request->presumed_lost = true;
+    if (explained_by_loss(request))
+        request->deadline = time + pace->reordering_window;
 }
 
 /* Whether the service may still have the request in its queue: results of other requests come in,
  * or one that was sent later is repeated first. */
 static bool is_queued(const struct request_pace *pace, const struct request *request, int64_t time)
 {
-    return !request->pausing &&
-           (time < pace->received_at + request->interval || request->sent_at < pace->newest_at);
+    return !request->pausing && (time < pace->received_at + request->interval ||
+                                 request->sent_at < pace->newest_sent_at);
 }
 
 /* Whether to give a request up. A caller that was away for long has not repeated the query: the
@@ -363,12 +366,12 @@ static void check_deadline(struct requests *requests, struct request *request, i
     const int64_t received_at = pace->received_at;
     if (!request->under_way)
         return;
-    note_overtaken(pace, request, time);
+    detect_loss(pace, request, time);
     if (time < request->deadline)
         return;
     if (is_overdue(requests, request, time))
         give_up(requests, request);
-    else if (!request->overtaken && is_queued(pace, request, time))
+    else if (!request->presumed_lost && is_queued(pace, request, time))
         request->deadline =
             request->interval + (received_at + request->interval > time ? received_at : time);
     else
@@ -377,15 +380,15 @@ static void check_deadline(struct requests *requests, struct request *request, i
         request->deadline = request->give_up_at;
 }
 
-static void note_newest(struct requests *requests)
+static void find_newest_sent(struct requests *requests)
 {
     for (int kind = 0; kind < FMB_CLIENT_KINDS; kind++)
-        requests->pace[kind].newest_at = 0;
+        requests->pace[kind].newest_sent_at = 0;
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++) {
         const struct request *request = &requests->request[i];
         struct request_pace *pace = &requests->pace[request->kind];
-        if (request->under_way && !request->pausing && request->sent_at > pace->newest_at)
-            pace->newest_at = request->sent_at;
+        if (request->under_way && !request->pausing && request->sent_at > pace->newest_sent_at)
+            pace->newest_sent_at = request->sent_at;
     }
 }
 
@@ -413,7 +416,7 @@ void requests_step(struct requests *requests, int other_fd, int64_t until)
     if (requests->count == 0)
         return;
     const int64_t time = clock_ns();
-    note_newest(requests);
+    find_newest_sent(requests);
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++)
         check_deadline(requests, &requests->request[i], time);
 }

@@ -4,16 +4,16 @@
  * same sequence number. A busy service is queried again after a pause. A second result of a query
  * is ignored, but compared with the first (recent.h).
  *
- * A service answers the queries of a client in their order, with few exceptions. So a query is
- * presumed lost, and is repeated, when one that was sent later has its result: at once, or, if such
- * repeats have proved to be needless (both results came), after a while as in RACK (RFC 8985). The
- * query that was sent last has none after it: it is repeated when no result has come for an
+ * A service answers the queries of a client in order, with few exceptions. So, as in RACK (RFC
+ * 8985), a query is presumed lost and is repeated when a query that was sent later has its result:
+ * at once, or after a reordering window if such repeats have been spurious (both results came). No
+ * query follows the one that was sent last. That one is repeated when no result has come for an
  * interval, which is some milliseconds more than the usual response time (struct request_pace). Its
  * result then shows which of the others were lost.
  *
- * Each query backs off by itself. Repeats that the share of lost queries makes likely are free.
- * Beyond them the service is presumed slow: the interval doubles with each repeat, up to the
- * client's timeout, and no query is repeated sooner.
+ * Each query backs off by itself. Repeats that the observed loss explains keep the interval. After
+ * them the service is presumed slow: the interval doubles with each repeat, up to the client's
+ * timeout, and a query that is presumed lost is not repeated before its interval ends.
  *
  * The number and the bytes of queries under way are limited, so that the receive buffers of both
  * ends can hold them.
@@ -60,11 +60,11 @@ struct request {
     int64_t deadline;   /* time to send it again, or to give it up */
     int64_t give_up_at; /* time to give it up at the latest */
     int64_t interval;   /* from sent_at to deadline */
-    double chance;      /* of as many losses in a row as it had repeats */
+    double loss_chance; /* probability that as many sendings in a row are lost as it had repeats */
     int refusals;       /* times that the service was busy */
     bool repeated;      /* sent more than once */
     bool pausing;       /* the deadline ends a pause after a refusal */
-    bool overtaken;     /* the deadline ends the time that a result may come late */
+    bool presumed_lost; /* since it was last sent, a query that was sent later got its result */
     size_t charge;      /* bytes that it takes of a receive buffer */
     size_t size;
     unsigned char query[QUERY_BYTES_MAX];
@@ -76,14 +76,15 @@ struct request {
 struct request_pace {
     int64_t mean, deviation; /* 0: none measured so far */
     int64_t retry;           /* first interval of the next query: from 8 ms to the timeout */
-    double lost;             /* share of results that came after a repeat; a moving average */
-    double needless;         /* share of results that came twice, after a repeat; likewise */
-    int unmeasured;          /* number of results in a row for which retry was too short */
-    int64_t measured_at;     /* time of the last measurement */
-    int64_t received_at;     /* time of the last result of a request under way */
-    int64_t overtaken_at;    /* newest pending_at of the requests that have results */
-    int64_t reordering;      /* time that a result may come after those of later queries */
-    int64_t newest_at;       /* newest sent_at of the requests under way */
+    /* Moving averages: share of results that came after a repeat, other than after a pause; share
+     * of results that came twice, so that the repeat was spurious. */
+    double loss_share, spurious_share;
+    int unmeasured;             /* number of results in a row for which retry was too short */
+    int64_t measured_at;        /* time of the last measurement */
+    int64_t received_at;        /* time of the last result of a request under way */
+    int64_t newest_answered_at; /* newest pending_at of the requests that have results */
+    int64_t newest_sent_at;     /* newest sent_at of the requests under way */
+    int64_t reordering_window;  /* from the result of a later query to the repeat of this one */
 };
 
 /* The functions by which requests reach the bus, from the owner of the requests. */

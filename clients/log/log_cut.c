@@ -293,7 +293,7 @@ static void append(struct cutter *cut, const struct log_event *event, const void
         fail_output(cut, errno);
 }
 
-/* An event that the reader does not keep as a whole. */
+/* An event that is larger than what the reader keeps. */
 struct large_event {
     struct cutter *cut;
     const struct log_event *event;

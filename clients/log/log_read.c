@@ -29,8 +29,8 @@
  *
  * Holes of sparse files contain no sync word, and searches skip them.
  *
- * Changes. Another program may change the file while it is read. So lengths are used as they were
- * checked, and never read from the file again. */
+ * Changes. Another program may change the file while it is read. So lengths are never read from the
+ * file again after they were checked. */
 #define _GNU_SOURCE /* SEEK_DATA */
 #define _FILE_OFFSET_BITS 64
 #include "log_read.h"
@@ -157,7 +157,7 @@ static inline bool is_sync(const unsigned char *bytes)
     return memcmp(bytes, sync_word, SYNC_BYTES) == 0;
 }
 
-/* In: the offset of a complete header in the buffer. On output: *out, its lengths. */
+/* In: the offset of a complete header in the buffer. Out: *out: its lengths. */
 static bool is_candidate(const struct log_reader *reader, int64_t offset, struct lengths *out)
 {
     const unsigned char *header = buffered(reader, offset);
@@ -233,7 +233,7 @@ static int64_t next_candidate(struct log_reader *reader, int64_t offset)
     return reader->none_end;
 }
 
-/* On output: true and *out, the lengths of the accepted candidate. */
+/* On output: *out: the lengths of the candidate, if it is accepted. */
 static bool is_accepted(struct log_reader *reader, int64_t offset, struct lengths *out)
 {
     if (reader->size - offset < LOG_HEADER_BYTES || !buffer(reader, offset, LOG_HEADER_BYTES) ||

@@ -15,8 +15,8 @@
  * the end of the file. It is also accepted if no other event begins inside it: the bytes after it
  * are then the damage. Bytes between accepted events are damage, and reported with their offset. So
  * each byte of a file is in exactly one event or damage, and data inside an accepted event, even a
- * whole log, is not read as events. All this holds for a file that does not change. If another
- * program changes it meanwhile, events may have any contents, but lengths within these limits.
+ * whole log, is not read as events. If another program changes the file meanwhile, events may have
+ * any contents, but their lengths are within these limits.
  *
  * Uses one buffer of fixed size, whatever the size of the file and of its events, and time linear
  * in the size of the file. Does not decode messages. */
@@ -80,7 +80,7 @@ void log_seek(struct log_reader *reader, int64_t offset);
 void log_rewind(struct log_reader *reader);
 
 /* Reads `count` bytes of the data of an event, from byte `from` on, including those not kept.
- * Returns false on error: errno. All later calls fail too, as those of log_next(). */
+ * Returns false on error: errno. After an error, all later calls and log_next() fail too. */
 bool log_read_data(struct log_reader *reader, const struct log_event *event, size_t from,
                    unsigned char *out, size_t count);
 

@@ -93,9 +93,9 @@ static size_t whole_events(const struct log_writer *writer, size_t done)
     }
 }
 
-/* Removes the `torn` bytes at the end of the file, which are no complete event; nothing is written
+/* Removes the last `torn` bytes of the file, which are an incomplete event. Nothing is written
  * after that. A file that another program truncated is not extended. Files that are not regular
- * cannot be truncated, and stay as they are. */
+ * cannot be truncated, and are left as they are. */
 static bool cut_back(struct log_writer *writer, size_t torn, int error)
 {
     struct stat file;

@@ -2,8 +2,9 @@
  * them.
  *
  * Appended events may stay in memory until log_flush() or log_finish(). After the first error
- * nothing more is written, and the file is truncated to its last complete event. All bytes are
- * appended to the file: if another program truncates it, complete events follow, without a hole. */
+ * nothing more is written, and the file is truncated to its last complete event. Recordings are
+ * written in append mode: if another program truncates one, complete events follow, without a hole.
+ */
 #ifndef LOG_WRITE_H
 #define LOG_WRITE_H
 
@@ -15,15 +16,15 @@
 
 struct log_writer;
 
-/* Begins a log in an empty file that is open (output.h). The writer owns fd, and the caller closes
- * it with log_finish(). fd < 0: returns NULL. */
+/* Begins a log in an open, empty file (output.h). The writer owns fd; the caller closes the writer
+ * with log_finish(). Returns NULL if fd is negative; errno is unchanged. */
 struct log_writer *log_begin(int fd);
 
-/* As log_begin(), for a file that the caller also closes with output_close(), after log_finish().
- * Returns NULL after an error, which was reported; and for NULL. */
+/* As log_begin(), for an output that the caller closes with output_close() after log_finish().
+ * Returns NULL if output is NULL, or after an error, which was reported. */
 struct log_writer *log_begin_output(const struct output *output);
 
-/* Most bytes of the data of an event that log_append() takes. */
+/* Largest event of log_append(): bytes of data. */
 enum { LOG_APPEND_MAX = 128 << 10 };
 
 /* Appends an event. Events are numbered from 0. In: utime: time of receipt, microseconds since
@@ -32,11 +33,11 @@ enum { LOG_APPEND_MAX = 128 << 10 };
 bool log_append(struct log_writer *writer, int64_t utime, const char *channel,
                 size_t channel_length, const void *data, size_t size);
 
-/* Provides `count` bytes of the data, from byte `from` on. Returns false on error: errno. */
+/* Provides `count` bytes of data, from byte `from` on. Returns false on error: errno. */
 typedef bool log_source(void *user, size_t from, unsigned char *out, size_t count);
 
-/* As log_append(), of up to INT32_MAX bytes, which the source provides piece by piece, in order. An
- * error of the source is one of the log. */
+/* As log_append(), for data of up to INT32_MAX bytes. The source provides them in pieces, in order.
+ * If it fails, this fails with its error. */
 bool log_append_large(struct log_writer *writer, int64_t utime, const char *channel,
                       size_t channel_length, size_t size, log_source *source, void *user);
 

@@ -29,16 +29,9 @@ const char *logged_query_read(struct logged_query *out, enum log_kind kind,
                                   : wire_read_scene_query(bytes, size, &out->scene);
 }
 
-/* The number of placements in the struct. */
-static int32_t placement_count(const struct scene_query *query)
-{
-    return query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
-                                                         : QUERY_PLACEMENTS_MAX;
-}
-
 struct placement *logged_query_placements(struct logged_query *query, int32_t *count)
 {
-    *count = query->kind == LOG_PAIR_QUERY ? 2 : placement_count(&query->scene);
+    *count = query->kind == LOG_PAIR_QUERY ? 2 : query_stored_placements(&query->scene);
     return query->kind == LOG_PAIR_QUERY ? query->pair.placement : query->scene.placement;
 }
 
@@ -88,7 +81,7 @@ size_t logged_query_write(const struct logged_query *query, unsigned char out[QU
 
 int64_t logged_query_pairs(const struct scene_query *query)
 {
-    const int64_t n = placement_count(query);
+    const int64_t n = query_stored_placements(query);
     if (query->which == QUERY_PAIRS_LISTED)
         return query->index_count / 2;
     return query->which == QUERY_PAIRS_ACROSS ? query->split * (n - query->split) : n * (n - 1) / 2;

@@ -28,8 +28,8 @@ struct answers_bus *answers_bus_open(const struct args_bus *bus,
                                      int retries);
 void answers_bus_close(struct answers_bus *answers);
 
-/* Returns false if later scenes need not be queried: there is no bus; or no service answered, and
- * none has sent as much as a heartbeat since the bus was opened. */
+/* Returns false if later scenes need not be queried: there is no bus; or no service has answered or
+ * sent a heartbeat since the bus was opened. */
 bool answers_bus_scene(struct answers_bus *answers, const struct scene *scene, answers_sink *sink,
                        void *user);
 

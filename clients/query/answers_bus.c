@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A service sends a heartbeat each second. */
-static const double heartbeat_s = 1.5;
+/* Longest time to wait for the first heartbeat. A service sends one each second. */
+static const double heartbeat_max_s = 1.5;
 
 struct answers_bus {
     struct args_bus bus;
@@ -17,7 +17,7 @@ struct answers_bus {
     struct fmb_client *client; /* NULL: could not be opened */
     double patience;           /* seconds until a query is given up */
     uint64_t advised;          /* outages that have been reported */
-    int64_t heartbeat_by;      /* time by which a service has sent a heartbeat; clock_ns() */
+    int64_t heartbeat_by;      /* end of the wait for a heartbeat; clock_ns() */
     bool heartbeat;            /* a service has sent one */
 };
 
@@ -29,7 +29,7 @@ struct bus_scene {
     void *user;
 };
 
-static void note_heartbeat(void *user, const struct fmb_client_heartbeat *heartbeat)
+static void on_heartbeat(void *user, const struct fmb_client_heartbeat *heartbeat)
 {
     struct answers_bus *answers = user;
     (void) heartbeat;
@@ -46,8 +46,8 @@ struct answers_bus *answers_bus_open(const struct args_bus *bus,
     answers->patience = timeout * (retries + 1);
     answers->client = args_open_client(
         bus, (struct fmb_client_options){.timeout = timeout, .tries = retries + 1});
-    answers->heartbeat_by = clock_ns() + (int64_t) (1e9 * heartbeat_s);
-    const struct fmb_client_watcher watcher = {.heartbeat = note_heartbeat, .user = answers};
+    answers->heartbeat_by = clock_ns() + (int64_t) (1e9 * heartbeat_max_s);
+    const struct fmb_client_watcher watcher = {.heartbeat = on_heartbeat, .user = answers};
     if (answers->client)
         fmb_client_watch(answers->client, &watcher);
     else
@@ -189,7 +189,7 @@ static void deliver_remaining(struct bus_scene *run, const char *error)
             deliver_separated(run, outcome.pair);
 }
 
-/* Whether anything has come from a service since the bus was opened. Waits for its heartbeat. */
+/* Whether a service has answered or sent a heartbeat since the bus was opened. Waits for one. */
 static bool service_seen(struct answers_bus *answers)
 {
     int64_t left_ns;

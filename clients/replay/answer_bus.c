@@ -68,8 +68,8 @@ struct answer_bus {
     int64_t begun_at, first_utime, server_id;
     unsigned polls;
     struct tally_bus counts;
-    struct logged_query query;    /* to be sent */
-    struct logged_query answered; /* of the result */
+    struct logged_query query;    /* the one to be sent */
+    struct logged_query answered; /* the one that a result answers */
     union {
         struct pair_result pair;
         struct scene_result scene;

@@ -1,11 +1,10 @@
 #include "local_answerer.h"
 
-#include "replayed.h"
-
 #include "allocate.h"
 #include "answer.h"
 #include "clock.h"
 #include "process.h"
+#include "replayed.h"
 #include "wire.h"
 
 #include <stdlib.h>
@@ -136,8 +135,7 @@ static const char *decide_scene(struct local_answerer *local, const unsigned cha
     out->status = result->status;
     out->pairs = replayed_decided(query, result);
     out->placement = query->placement;
-    out->placement_count = query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
-                                                                         : QUERY_PLACEMENTS_MAX;
+    out->placement_count = query_stored_placements(query);
     out->size = wire_write_scene_result(result, local->bytes);
     return NULL;
 }

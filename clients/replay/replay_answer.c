@@ -66,14 +66,14 @@ static void answer_here(struct replay *replay, struct match_item *query,
         pending_add(&replay->pending, &answered->undefined, query);
 }
 
-/* Excludes a query that cannot be read again: it gets no answer, and is not compared. */
+/* Excludes a query that cannot be read again: it is not answered or compared. */
 static void exclude(struct match_item *query)
 {
     query->place.in_range = false;
     match_drop(query);
 }
 
-/* A query that could be decoded before. */
+/* Fails because a query that was decoded before can no longer be: the log has changed. */
 static void fail_changed(struct replay *replay, struct match_item *query)
 {
     errno = EIO;

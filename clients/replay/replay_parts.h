@@ -23,7 +23,7 @@ struct replay {
     struct event_reader *rereader;
     struct log_reader *golden;     /* NULL: none */
     struct output *golden_file;    /* NULL: none */
-    struct log_writer *new_golden; /* of that file */
+    struct log_writer *new_golden; /* of golden_file */
     struct definitions *definitions;
     struct hasher *hasher;
     struct local_answerer *local; /* NULL: the service on the bus answers */

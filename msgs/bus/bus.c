@@ -44,7 +44,7 @@ struct bus {
     struct bus_url url;
     lcm_t *lcm;
     int fd;     /* -1 before bus_listen() */
-    bool trims; /* the filter of socket.h was attached */
+    bool trims; /* the filter of socket.h has been attached */
     int listener_count;
     struct bus_listener listeners[BUS_LISTENERS_MAX];
     struct mmsghdr datagrams[BUS_BATCH];
@@ -156,7 +156,7 @@ static bool channel_ok(const char *channel)
 static void trim_others(struct bus *bus)
 {
     const char *channels[BUS_LISTENERS_MAX];
-    const int unused = 0; /* without an argument the kernel detaches nothing */
+    const int unused = 0; /* the kernel refuses to detach without an argument */
     for (int i = 0; i < bus->listener_count; i++) {
         if (bus->listeners[i].every) {
             setsockopt(bus->fd, SOL_SOCKET, SO_DETACH_FILTER, &unused, sizeof unused);

@@ -44,10 +44,10 @@ struct bus *bus_open(const char *url, char why[BUS_WHY_MAX]);
 void bus_close(struct bus *bus); /* may be NULL */
 
 /* Begins to receive a channel (NULL: every channel), including messages that this bus publishes.
- * Messages that were sent before may be delivered, whole, or be counted as foreign.
- * The name is copied. At most BUS_LISTENERS_MAX calls; each gets the next listener number, from 0.
- * On output: true; or false, and why as for bus_open(): not a channel name, too many calls, or the
- * socket cannot be opened or bound. A call that fails adds no listener. */
+ * A message that was sent before the call is delivered whole, or counted as foreign, or not
+ * received. The name is copied. At most BUS_LISTENERS_MAX calls; each gets the next listener
+ * number, from 0. On output: true; or false, and why as for bus_open(): not a channel name, too
+ * many calls, or the socket cannot be opened or bound. A call that fails adds no listener. */
 bool bus_listen(struct bus *bus, const char *channel, char why[BUS_WHY_MAX]);
 
 /* A message. Pointers are valid during the callback; bytes may have any alignment. */

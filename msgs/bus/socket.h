@@ -30,9 +30,9 @@ uint32_t bus_socket_drops(int fd);
  * channel. A truncated datagram is still received and counted; one that a filter drops would count
  * as lost.
  *
- * The filter decides when a datagram arrives. If its channel is added to the filter while it waits
- * in the buffer, it stays truncated. No message is as short as a truncated datagram, so that it is
- * never taken for one. */
+ * The filter is applied when a datagram arrives. If the channel of a truncated datagram is added
+ * while the datagram waits in the buffer, the datagram remains truncated. It is not mistaken for a
+ * message: every message is longer. */
 
 enum {
     BUS_SOCKET_TRIM_FROM = 1024, /* smaller datagrams, UDP header included, are received whole */

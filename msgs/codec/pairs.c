@@ -1,7 +1,7 @@
 /* The pairs of a scene query, by number. */
 #include "query.h"
 
-static int32_t stored_placements(const struct scene_query *query)
+int32_t query_stored_placements(const struct scene_query *query)
 {
     return query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
                                                          : QUERY_PLACEMENTS_MAX;
@@ -9,7 +9,7 @@ static int32_t stored_placements(const struct scene_query *query)
 
 int64_t query_pair_number(const struct scene_query *query, unsigned a, unsigned b)
 {
-    const int64_t n = stored_placements(query), first = a, second = b;
+    const int64_t n = query_stored_placements(query), first = a, second = b;
     if (query->which == QUERY_PAIRS_ACROSS)
         return first * (n - query->split) + second - query->split;
     return first * n - first * (first + 1) / 2 + second - (first + 1);
@@ -26,7 +26,7 @@ struct undecided {
 static void count_undecided(struct undecided *undecided, const unsigned pair[2])
 {
     const struct scene_query *query = undecided->query;
-    const unsigned n = (unsigned) stored_placements(query), split = (unsigned) query->split;
+    const unsigned n = (unsigned) query_stored_placements(query), split = (unsigned) query->split;
     const unsigned a = pair[0] < pair[1] ? pair[0] : pair[1];
     const unsigned b = pair[0] < pair[1] ? pair[1] : pair[0];
     const bool across = query->which == QUERY_PAIRS_ACROSS;
@@ -42,7 +42,7 @@ static void count_undecided(struct undecided *undecided, const unsigned pair[2])
 static void count_grouped(struct undecided *undecided)
 {
     const struct scene_query *query = undecided->query;
-    const unsigned n = (unsigned) stored_placements(query);
+    const unsigned n = (unsigned) query_stored_placements(query);
     for (unsigned a = 0; a < n; a++)
         for (unsigned b = a + 1; b < n && query->placement[a].group != 0; b++)
             if (query->placement[a].group == query->placement[b].group)
@@ -53,7 +53,7 @@ int64_t query_pairs_decided(const struct scene_query *query, int32_t end_pair,
                             struct query_marks *marks)
 {
     struct undecided undecided = {.query = query, .end_pair = end_pair, .marks = marks};
-    const size_t n = (size_t) stored_placements(query);
+    const size_t n = (size_t) query_stored_placements(query);
     if (query->which != QUERY_PAIRS_LISTED) {
         memset(marks->bit, 0, n * n / 8 + 1);
         for (int32_t k = 0; k < query->ignored_count / 2; k++)

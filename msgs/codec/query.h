@@ -143,6 +143,9 @@ struct scene_query {
     unsigned ignored[QUERY_PAIRS_MAX][2];
 };
 
+/* The number of placements in the struct. */
+int32_t query_stored_placements(const struct scene_query *query);
+
 /* The number of a pair of placements a < b that is among all pairs, or among those across. */
 int64_t query_pair_number(const struct scene_query *query, unsigned a, unsigned b);
 

@@ -119,8 +119,8 @@ const struct scene_query *scene_job_query(const struct scene_job *job);
  * the job, and valid until the next scene_job_begin(). */
 struct scene_result *scene_job_result(struct scene_job *job);
 
-/* Number of pairs that got a verdict, those that the broad phase separated included. Ignored pairs
- * and pairs that the method cannot decide did not get one. On input: as for scene_job_result(). */
+/* Number of pairs that got a verdict, including those that the broad phase separated, without
+ * ignored pairs and pairs that the method cannot decide. On input: as for scene_job_result(). */
 int32_t scene_job_decided(struct scene_job *job);
 
 #endif

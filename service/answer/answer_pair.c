@@ -55,8 +55,8 @@ static bool check_certificate(struct check_context *context, const struct pair_q
     return true;
 }
 
-/* Finds the bodies given by handle. This ends before any body is added, so that a query that is
- * refused adds nothing to the cache. */
+/* Finds the bodies given by handle. It is complete before any body is added, so that a query that
+ * is refused adds nothing to the cache. */
 static bool find_bodies(struct answerer *answerer, struct check_context *context,
                         const struct pair_query *query, struct used_body out[2])
 {
@@ -69,8 +69,8 @@ static bool find_bodies(struct answerer *answerer, struct check_context *context
     return check_certificate(context, query, out);
 }
 
-/* Adds the bodies that have frames, a portion of them. On output: used, and handle of the bodies
- * with an id that have frames. Returns whether no body is left. */
+/* Adds the bodies that have frames, at most BODY_PORTION frames a call. On output: used, and the
+ * handles of those with an id. Returns whether all bodies are complete. */
 static bool add_bodies(struct answerer *answerer, const struct pair_query *query,
                        struct query_bodies *own, struct used_body used[2], struct handle handle[2])
 {

@@ -4,6 +4,7 @@
 #include "answerer.h"
 
 #include "check.h"
+#include "query_pairs.h"
 #include "wire.h"
 
 #include <assert.h>

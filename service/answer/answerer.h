@@ -22,11 +22,13 @@ struct used_body {
  * and its body, which must outlive the result. */
 struct fmb_placement answerer_place(const struct placement *placement, const struct fmb_body *body);
 
-/* The body of a checked placement that has frames. It is found in the cache, or made in *own, at
- * most *frames frames in one call, as body_continue(); and added to the cache, unless it is
- * anonymous or the cache has no memory for it. Returns no body if it is not finished: the next call
- * for this query must be for the same placement. *handle: the handle of a body with an id, which
- * must stay there until the body is finished; unchanged for an anonymous body. */
+/* Returns the body of a checked placement that has frames. It is found in the cache; or it is made
+ * in *own, at most *frames frames a call (body_continue()), and added to the cache unless it is
+ * anonymous or the cache has no memory for it. Returns .body NULL while it is not complete: the
+ * next call for this query must be for the same placement. On output: *handle: the handle of a body
+ * with an id, which the caller keeps there until the body is complete; unchanged for an anonymous
+ * body.
+ */
 struct used_body answerer_intern(struct answerer *answerer, const struct placement *placement,
                                  struct query_bodies *own, int32_t *frames, struct handle *handle);
 

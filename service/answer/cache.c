@@ -380,7 +380,7 @@ static int32_t take_entry(struct cache *cache, int32_t frames)
     return slot + 1;
 }
 
-/* body: NULL: it is made here. */
+/* body NULL: it is made here. */
 static void fill_record(struct cache_record *record, const struct handle *handle,
                         const struct geometry *geometry, const struct fmb_body *body)
 {

@@ -45,33 +45,33 @@ struct cached {
 
 /* Looks up a handle. Returns the body, pinned: it is valid until the caller releases it, once for
  * each call of cache_find(), cache_lookup(), cache_add() or cache_intern() that returned it, and is
- * then the most recently used.
- * Counts a hit. Returns NULL, and counts nothing, if it is not held. */
+ * then the most recently used. Counts a hit. Returns NULL, and counts nothing, if it is not held.
+ */
 const struct cached *cache_find(struct cache *cache, const struct handle *handle);
 
 /* The same without counting or pinning; valid until a body is added. */
 const struct cached *cache_peek(const struct cache *cache, const struct handle *handle);
 
 /* Looks up a geometry, in time proportional to its bytes. On input: id, or 0 for none; a geometry
- * whose frames the engine accepts. Returns the body, pinned as by cache_find(), and counts a
- * hit. Returns NULL, and counts a miss, if it is not held. *handle: its handle in both cases. */
+ * whose frames the engine accepts. On output: *handle: its handle. Returns the body, pinned
+ * as by cache_find(), and counts a hit; or NULL, and counts a miss, if it is not held. */
 const struct cached *cache_lookup(struct cache *cache, int64_t id, const struct geometry *geometry,
                                   struct handle *handle);
 
 /* Adds a body that cache_lookup() did not find, which may evict others. On input: its id, handle,
- * geometry and body, which are copied; body NULL: it is made here, in one piece. Returns the body,
- * pinned as by cache_find(); the one that is held if it was added since. Returns NULL if it cannot
+ * geometry and body, which are copied; body NULL: it is made here, in one step. Returns the body,
+ * pinned as by cache_find(); if it has been added since, the one that is held; NULL if it cannot
  * be added: it has more frames than the capacity, or pinned bodies leave no free memory of that
  * length. */
 const struct cached *cache_add(struct cache *cache, int64_t id, const struct handle *handle,
                                const struct geometry *geometry, const struct fmb_body *body);
 
-/* Finds a body, or makes it in one piece and adds it: cache_lookup(), then cache_add(). */
+/* Finds a body, or makes it in one step and adds it: cache_lookup(), then cache_add(). */
 const struct cached *cache_intern(struct cache *cache, int64_t id, const struct geometry *geometry,
                                   struct handle *handle);
 
-/* Unpins a body. On input: a body that one of the functions above returned pinned, and that was
- * not released since. */
+/* Unpins a body. On input: a body that one of the functions above returned pinned, not released
+ * since. */
 void cache_release(struct cache *cache, const struct cached *cached);
 
 /* Prefetches the memory that the look-up of a placement's body will touch. On input: any placement,

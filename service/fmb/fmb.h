@@ -252,9 +252,9 @@ enum fmb_want { FMB_WANT_BOX = 1, FMB_WANT_GAP = 8 };
  * swept over the window.
  *
  * Width. bounds[1] - bounds[0] is at most 1e-12 of the largest magnitude of a coordinate of any
- * vertex of either body over the window, plus 32 of the least doubles, 2^-1074. (In a window
- * shorter than 2^-1000 s the time of the least distance may not be a double. bounds[1] then
- * includes the distance that the frames travel in the error of the time.) If the bodies touch, both
+ * vertex of either body over the window, plus 32 * 2^-1074. (In a window shorter than 2^-1000 s the
+ * time of the least distance may not be a double. bounds[1] then includes the distance that the
+ * frames travel in the error of the time.) If the bodies touch, both
  * bounds are 0, and the direction proves 0 up to the same width. A bound whose magnitude exceeds
  * the largest double is infinite, with its sign.
  *
@@ -282,7 +282,7 @@ struct fmb_gap {
  *   exact      They are the smallest with ends that are doubles.
  *   certified  An end of a contact is at most 1e-12 T too far out. An end of a box is too far out
  *              by at most 1e-12 of the largest magnitude of a coordinate of any vertex of either
- *              body over the window. Where that is less than the least double, 2^-1074, an end is
+ *              body over the window. Where that is less than 2^-1074, the least double, an end is
  *              at most one double too far out. Ends that coincide with an end of a frame are exact,
  *              and so are small numbers in scenes of such numbers.
  *
@@ -325,9 +325,9 @@ struct fmb_method {
  * fmb and sat are inexact and cannot decide flat frames.
  *
  * Cost: exact takes tens of microseconds for numbers of similar size. Its time is bounded for any
- * numbers (exact.c derives the bound). The worst are exponents that span the whole range of
- * doubles: up to 0.3 ms for a verdict and 1.5 ms with box and gap, and 1 ms and 6 ms if
- * orientations have components 2^200 apart. The same bounds hold for certified. */
+ * numbers (exact.c derives the bound). The slowest pairs have exponents that span the whole
+ * range of doubles: up to 0.3 ms for a verdict and 1.5 ms with box and gap; if the components of
+ * orientations are 2^200 apart, 1 ms and 6 ms. The same bounds hold for certified. */
 
 /* Return a method from a static table, valid for the life of the program. Thread safe.
  * fmb_method_at() returns NULL if index is past the last method; fmb_method_by_name() and
@@ -576,9 +576,9 @@ enum fmb_pairs {
     FMB_PAIRS_ACROSS = 2 /* each of the first split placements with each of the others */
 };
 
-/* A query. The caller owns all arrays, which must stay valid and unchanged until the last step. If
- * all fields but the placements are 0, they are at rest, and the verdicts of all pairs are wanted.
- */
+/* A query. The caller owns all arrays, which must stay valid and unchanged until the last step.
+ * With all fields 0 but the placements, which are then at rest, it is for the verdicts of all
+ * pairs. */
 struct fmb_scene {
     const struct fmb_placement *placements; /* [placement_count], of one dimension */
     size_t placement_count;
@@ -593,7 +593,7 @@ struct fmb_scene {
      * no pair is near. */
     double margin;
     enum fmb_pairs which;
-    size_t split; /* FMB_PAIRS_ACROSS: at most placement_count; 0: no pairs. Otherwise 0 */
+    size_t split; /* FMB_PAIRS_ACROSS: at most placement_count, 0: no pairs; otherwise 0 */
     /* FMB_PAIRS_LISTED: [pair_count][a, b], indices of two different placements that are not of one
      * group; otherwise none. */
     const unsigned (*pairs)[2];

@@ -24,7 +24,7 @@ setup() {
            contains(["touch-face-face", "pose-whole-255", "pose-yaw"])' "$JSON"
     # tests/bench/README.md counts the same families and cells.
     count() { jq "[.cells[] | select($1)] | length" "$JSON"; }
-    has() { grep -qF -- "$1" tests/bench/README.md || { echo "README.md has not: $1"; false; }; }
+    has() { grep -qF -- "$1" tests/bench/README.md || { echo "not in README.md: $1"; false; }; }
     grouped() { sed -E ':a; s/^([0-9]+)([0-9]{3})/\1,\2/; ta' <<< "$1"; }
     families=$(jq '.families | length' "$JSON")
     posed=$(jq '[.families[] | select(.name | startswith("pose-"))] | length' "$JSON")

@@ -1,5 +1,5 @@
-# The files that commands write: no input is overwritten, no file of another kind and no log without
-# --force, and nothing is left of what failed. The rules themselves: tests/unit/test_output.c.
+# The files that commands write: no input is overwritten; a log, or a file of another kind, only with
+# --force; a command that fails leaves no file. The rules themselves: tests/unit/test_output.c.
 
 load ran
 
@@ -26,7 +26,7 @@ unchanged() {
     diff -r --exclude kept --exclude 'separate-stderr-*' . kept
 }
 
-@test "no option overwrites a file that the command reads, not by force" {
+@test "no option overwrites a file that the command reads, not even with --force" {
     for command in "${commands[@]}"; do
         for file in $(grep -oE '[a-z]+\.(json|obj|log)' <<< "$command"); do
             ln -s "$file" link
@@ -56,7 +56,7 @@ unchanged() {
     done
 }
 
-@test "a file of another kind, or a log, is overwritten by force alone" {
+@test "a log, or a file of another kind, is overwritten only with --force" {
     for command in "${commands[@]}"; do
         for old in kept/b.log kept/scene.json; do
             cp "$old" out
@@ -75,7 +75,7 @@ unchanged() {
     done
 }
 
-@test "a page, a picture, a report and a mesh replace their like; an empty file is replaced" {
+@test "any file replaces an empty one; pages, pictures, reports and meshes replace one of their kind" {
     for command in "${commands[@]}"; do
         : > out
         for time in 1 2; do
@@ -89,14 +89,14 @@ unchanged() {
     done
 }
 
-@test "golden results are written again by force" {
+@test "golden results are overwritten with --force" {
     "$FMB" replay --write-golden golden a.log > text
     cp golden before
     "$FMB" replay --write-golden golden --force a.log > text
     cmp golden before
 }
 
-@test "what fails leaves the old file as it was, and no other" {
+@test "a command that fails leaves the old file, and no temporary one" {
     mkdir there
     cp a.log there/cut.log
     dd if=a.log of=short.log bs=1000 count=60 status=none

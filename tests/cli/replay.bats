@@ -328,7 +328,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [ "$(jq .queries <<< "$output")" = $(($(jq .queries <<< "$at") + $(jq .queries <<< "$behind"))) ]
 }
 
-@test "a range without queries is nothing to compare" {
+@test "a time range without queries is unusable: there is nothing to compare" {
     for range in '--from 1000' '--from 0.2000001 --to 0.2000009'; do
         # shellcheck disable=SC2086
         replay $range arm.log

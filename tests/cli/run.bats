@@ -1,4 +1,4 @@
-# tests/run.sh: what it says of suites.
+# tests/run.sh: the summary of skipped tests.
 
 load ran
 

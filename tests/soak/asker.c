@@ -5,7 +5,7 @@
  *
  * N clients (1), a thread each, ask for S seconds (10), R queries a second all together (0: as many
  * as they can). Of P pairs each (1): one by a pair query, more by a scene; with --single 1 by a
- * pair query each, as many under way as the library keeps. About half of the pairs are in contact,
+ * pair query each, as many under way as the library allows. About half of the pairs are in contact,
  * some just touch, half of the frames move. Prints a line of JSON. Exit code 0: each query got its
  * answers, and each answer was that of libfmb, bit for bit. */
 #include "clock.h"

@@ -17,8 +17,8 @@ extern const int attack_count;
 /* The attack with this name; NULL: there is none. */
 const struct attack *attack_find(const char *name);
 
-/* Starts an attack with so many client ids, numbered from first_id, on the bus with this URL (NULL:
- * see bus_open()). Returns the process, to be ended with attack_end(). */
+/* Starts an attack from this number of client ids, numbered from first_id, on the bus with this URL
+ * (NULL: see bus_open()). Returns the process, to be ended with attack_end(). */
 pid_t attack_start(const struct attack *attack, long ids, int64_t first_id, const char *url);
 void attack_end(pid_t process);
 

@@ -5,12 +5,12 @@
  *           [--headroom H] [--service PID]
  *
  * The client has W queries under way (1), of pairs or of scenes of 40 bodies. The attack, or each
- * of the two (attack.c), comes from N client ids (1). In turn the attackers send to a port without
- * a service and to the service, for S seconds in all (4): so they take the same share of the
- * machine. Prints a line of JSON. Exit code 0: no answer was lost, and the client kept the promised
- * share of its rate: a third beside one id, 0.4 / N beside N, divided by H (1). 77: it did not, but
- * programs other than this one, the attackers and the service, which is the process PID, used more
- * than a tenth of the machine. */
+ * of the two (attack.c), comes from N client ids (1). The attackers send alternately to a port
+ * without a service and to the service, for S seconds in all (4), so that they use the same share
+ * of the machine in both. Prints a line of JSON. Exit code 0: no answer was lost, and the client
+ * kept the promised share of its rate: a third beside one id, 0.4 / N beside N, divided by H (1).
+ * 77: it did not, but other programs used more than a tenth of the machine. PID is the process of
+ * the service. */
 #include "attack.h"
 #include "bus.h"
 #include "clock.h"
@@ -184,7 +184,8 @@ static double seconds_of(const struct timeval *time)
     return (double) time->tv_sec + 1e-6 * (double) time->tv_usec;
 }
 
-/* Time of interrupts counts as idle: that of this trial's datagrams cannot be told from others. */
+/* The time of interrupts counts as idle, since those of this trial cannot be separated from others.
+ */
 static struct usage measure_usage(long service)
 {
     const double tick = 1 / (double) sysconf(_SC_CLK_TCK);

@@ -66,8 +66,8 @@ poison() {
     "$build/poison" short FMB_SCENE_QUERY
 }
 
-# share ATTACK [OPTIONS]: what a client gets beside an attack. What a machine busy with other programs
-# does not allow is no failure, but is said.
+# share ATTACK [OPTIONS]: the share of a client beside an attack. A share that is too small because
+# other programs kept the machine busy is reported as skipped, not as a failure.
 share() {
     "$build/soak-fair" "$@" --service "$fmbd" --seconds "$seconds"
     case $? in

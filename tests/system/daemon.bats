@@ -70,7 +70,7 @@ many_scenes() {
     for seed in $(seq "$1"); do random_scene 2 3 "$seed" | tr -d '\n'; echo; done
 }
 
-@test "nobody there: only the first of many scenes is waited for" {
+@test "without a service, only the first of many scenes is waited for" {
     many_scenes 200 > "$BATS_TEST_TMPDIR/scenes.json"
     run --separate-stderr timeout 60 "$FMB" query --json --timeout 0.5 --retries 1 "$BATS_TEST_TMPDIR/scenes.json"
     [ "$status" = 1 ]
@@ -79,7 +79,7 @@ many_scenes() {
     grep -q 'no fmbd answered .* within 1 s, and none sends a heartbeat: later scenes are not answered$' <<< "$stderr"
 }
 
-@test "a service that is started with the query, and one that is restarted in mid-stream" {
+@test "a query goes on when the service starts late, and when it is restarted" {
     many_scenes 40 > "$BATS_TEST_TMPDIR/scenes.json"
     "$FMB" query --json --local "$BATS_TEST_TMPDIR/scenes.json" > "$BATS_TEST_TMPDIR/local"
     "$FMBD" 2> "$BATS_TEST_TMPDIR/log" 3>&- &

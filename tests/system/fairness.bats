@@ -1,5 +1,5 @@
 # Clients that cost the service as much as they can, beside one that does not. 'make soak' measures
-# what it gets; here half of the promised share is enough, since other tests run at the same time.
+# its share; here half of the promised one is enough, since other tests run at the same time.
 
 load service
 

@@ -324,7 +324,7 @@ END
     [ $code = 1 ]
 }
 
-@test "a log that is truncated under traffic ends the recording, and what follows replays" {
+@test "a log that is truncated under traffic ends the recording, and its later events replay" {
     start_fmbd
     start_record --duration 30 "$log"
     poke_until_it_ends &

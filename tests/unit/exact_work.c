@@ -17,6 +17,11 @@ static void count_product(mpz_srcptr x, mpz_srcptr y)
     exact_work += (double) mpz_size(x) * (double) mpz_size(y);
 }
 
+static void count_sum(mpz_srcptr x, mpz_srcptr y)
+{
+    exact_work += larger(mpz_size(x), mpz_size(y));
+}
+
 static void count_quotient(mpz_srcptr num, mpz_srcptr den)
 {
     if (mpz_size(num) >= mpz_size(den))
@@ -34,41 +39,26 @@ static void count_fractions(mpq_srcptr x, mpq_srcptr y)
     exact_work += size * size;
 }
 
-#define PRODUCT(name)                                            \
-    void __real_##name(mpz_ptr out, mpz_srcptr x, mpz_srcptr y); \
-    void __wrap_##name(mpz_ptr out, mpz_srcptr x, mpz_srcptr y); \
-    void __wrap_##name(mpz_ptr out, mpz_srcptr x, mpz_srcptr y)  \
-    {                                                            \
-        count_product(x, y);                                     \
-        __real_##name(out, x, y);                                \
+/* Wraps a function of two operands, which count() adds to the work. */
+#define WRAP(name, type, count)                                           \
+    void __real_##name(type##_ptr out, type##_srcptr x, type##_srcptr y); \
+    void __wrap_##name(type##_ptr out, type##_srcptr x, type##_srcptr y); \
+    void __wrap_##name(type##_ptr out, type##_srcptr x, type##_srcptr y)  \
+    {                                                                     \
+        count(x, y);                                                      \
+        __real_##name(out, x, y);                                         \
     }
-PRODUCT(__gmpz_mul)
-PRODUCT(__gmpz_addmul)
-PRODUCT(__gmpz_submul)
-
-#define SUM(name)                                                \
-    void __real_##name(mpz_ptr out, mpz_srcptr x, mpz_srcptr y); \
-    void __wrap_##name(mpz_ptr out, mpz_srcptr x, mpz_srcptr y); \
-    void __wrap_##name(mpz_ptr out, mpz_srcptr x, mpz_srcptr y)  \
-    {                                                            \
-        exact_work += larger(mpz_size(x), mpz_size(y));          \
-        __real_##name(out, x, y);                                \
-    }
-SUM(__gmpz_add)
-SUM(__gmpz_sub)
-
-#define FRACTION(name)                                           \
-    void __real_##name(mpq_ptr out, mpq_srcptr x, mpq_srcptr y); \
-    void __wrap_##name(mpq_ptr out, mpq_srcptr x, mpq_srcptr y); \
-    void __wrap_##name(mpq_ptr out, mpq_srcptr x, mpq_srcptr y)  \
-    {                                                            \
-        count_fractions(x, y);                                   \
-        __real_##name(out, x, y);                                \
-    }
-FRACTION(__gmpq_mul)
-FRACTION(__gmpq_div)
-FRACTION(__gmpq_add)
-FRACTION(__gmpq_sub)
+WRAP(__gmpz_mul, mpz, count_product)
+WRAP(__gmpz_addmul, mpz, count_product)
+WRAP(__gmpz_submul, mpz, count_product)
+WRAP(__gmpz_add, mpz, count_sum)
+WRAP(__gmpz_sub, mpz, count_sum)
+WRAP(__gmpz_fdiv_q, mpz, count_quotient)
+WRAP(__gmpz_tdiv_q, mpz, count_quotient)
+WRAP(__gmpq_mul, mpq, count_fractions)
+WRAP(__gmpq_div, mpq, count_fractions)
+WRAP(__gmpq_add, mpq, count_fractions)
+WRAP(__gmpq_sub, mpq, count_fractions)
 
 void __real___gmpq_canonicalize(mpq_ptr x);
 void __wrap___gmpq_canonicalize(mpq_ptr x);
@@ -76,22 +66,6 @@ void __wrap___gmpq_canonicalize(mpq_ptr x)
 {
     count_fractions(x, x);
     __real___gmpq_canonicalize(x);
-}
-
-void __real___gmpz_fdiv_q(mpz_ptr out, mpz_srcptr num, mpz_srcptr den);
-void __wrap___gmpz_fdiv_q(mpz_ptr out, mpz_srcptr num, mpz_srcptr den);
-void __wrap___gmpz_fdiv_q(mpz_ptr out, mpz_srcptr num, mpz_srcptr den)
-{
-    count_quotient(num, den);
-    __real___gmpz_fdiv_q(out, num, den);
-}
-
-void __real___gmpz_tdiv_q(mpz_ptr out, mpz_srcptr num, mpz_srcptr den);
-void __wrap___gmpz_tdiv_q(mpz_ptr out, mpz_srcptr num, mpz_srcptr den);
-void __wrap___gmpz_tdiv_q(mpz_ptr out, mpz_srcptr num, mpz_srcptr den)
-{
-    count_quotient(num, den);
-    __real___gmpz_tdiv_q(out, num, den);
 }
 
 void __real___gmpz_tdiv_qr(mpz_ptr q, mpz_ptr r, mpz_srcptr num, mpz_srcptr den);
@@ -102,8 +76,8 @@ void __wrap___gmpz_tdiv_qr(mpz_ptr q, mpz_ptr r, mpz_srcptr num, mpz_srcptr den)
     __real___gmpz_tdiv_qr(q, r, num, den);
 }
 
-/* A slab of n limbs: 3 normals of 6 products, 8 extents and origins, offset and drift of 3, and 6
- * factors; n^2 each. */
+/* A slab of n limbs: 3 normals of 6 products; 8 extents and origins, offset and drift, of 3
+ * products each; and 6 factors. Each product costs n^2. */
 static void count_slab(const struct limbs_pair *pair)
 {
     exact_work += (3 * 6 + (8 + 2) * 3 + 6) * (double) pair->limbs * pair->limbs;

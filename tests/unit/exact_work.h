@@ -3,12 +3,12 @@
 #ifndef EXACT_WORK_H
 #define EXACT_WORK_H
 
-/* In products of limbs, about half a nanosecond each: n m for a product of n and m limbs, and for a
- * quotient of n limbs by m; n^2 for an operation on fractions of n limbs; n for a sum; and the most
- * that a slab in integers of fixed width takes. Grows from call to call. */
+/* The work so far, in products of limbs of about half a nanosecond each: n m for a product of n and
+ * m limbs, and for a division of n + m - 1 limbs by m; n^2 for an operation on fractions of n
+ * limbs; n for a sum; and an upper bound for a slab in integers of fixed width. */
 extern double exact_work;
 
-/* How many slabs of contacts were computed in integers of fixed width. */
+/* Number of slabs of contacts that were computed in integers of fixed width. */
 extern long exact_slabs;
 
 #endif

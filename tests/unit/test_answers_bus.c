@@ -25,8 +25,9 @@ static void count(void *user, const struct scene *scene, const struct outcome *o
     ++*(int *) user;
 }
 
-/* A service that is alive, be it too slow to answer in time, is queried for later scenes too. */
-static void test_a_heartbeat_is_enough_to_go_on(void **state)
+/* A service that sends heartbeats, even if it does not answer in time, is queried for later scenes.
+ */
+static void test_later_scenes_are_queried_if_there_is_a_heartbeat(void **state)
 {
     (void) state;
     for (int alive = 0; alive < 2; alive++) {
@@ -59,7 +60,7 @@ static void test_a_heartbeat_is_enough_to_go_on(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_heartbeat_is_enough_to_go_on),
+        cmocka_unit_test(test_later_scenes_are_queried_if_there_is_a_heartbeat),
     };
     (void) argc;
     relay_enter(argv);

@@ -92,7 +92,7 @@ static void receive_datagrams(struct bus *bus, int count)
     assert_int_equal(bus_receive(bus, on_message, &latest), 0);
 }
 
-/* One of the next datagrams is this message, the others are none. */
+/* One of the next datagrams is this message; the others are not delivered. */
 static void expect_message_among(struct bus *bus, int datagrams, const char *channel,
                                  const void *bytes, size_t size)
 {
@@ -297,7 +297,7 @@ static void test_no_free_descriptor_is_not_a_missing_route(void **state)
     char why[BUS_WHY_MAX] = "";
     struct rlimit limit;
     assert_int_equal(getrlimit(RLIMIT_NOFILE, &limit), 0);
-    const int next = dup(STDERR_FILENO); /* the lowest that is free */
+    const int next = dup(STDERR_FILENO); /* the lowest free descriptor */
     close(next);
     const struct rlimit none = {(rlim_t) next, limit.rlim_max};
     assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
@@ -438,7 +438,7 @@ static void test_foreign_channels_are_counted(void **state)
     bus_close(bus);
 }
 
-/* A large message that was truncated because its channel was not yet listened to is dropped. */
+/* A large message that arrived before its channel was added, and so was truncated, is dropped. */
 static void test_a_channel_added_later_delivers_whole_messages_only(void **state)
 {
     (void) state;

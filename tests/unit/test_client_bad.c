@@ -151,7 +151,7 @@ static void test_results_of_another_kind_are_ignored(void **state)
     relay_close(relay);
 }
 
-/* Before a pair is answered, results for another client come under the numbers of its queries. */
+/* Before a pair is answered, results for another client come with the same sequence numbers. */
 static void publish_results_of_another(struct relay *relay)
 {
     for (int number = 0; number < 20; number++) {
@@ -169,7 +169,7 @@ static void count_pairs(void *user, const struct fmb_client_pair_result *result)
     ++*(int *) user;
 }
 
-static void test_results_of_another_client_are_watched_only(void **state)
+static void test_results_of_another_client_reach_only_the_watcher(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -210,67 +210,74 @@ static enum request_taken note_status(void *user, struct request *request,
     return REQUEST_COMPLETE;
 }
 
-/* What follows in a request may be larger than it was when it began. */
+/* Requests without a bus. */
+static struct requests unsent;
+
+static void open_unsent(void)
+{
+    memset(&unsent, 0, sizeof unsent);
+    unsent.transport =
+        (struct request_transport){.publish = publish_nothing, .receive = receive_nothing};
+    unsent.timeout_ns = 1;
+    requests_forget_pace(&unsent);
+}
+
+/* Begins a request for `bytes` bytes, and sends a query of `size` bytes. */
+static struct request *send_unsent(enum fmb_client_kind kind, size_t bytes, size_t size,
+                                   int *status)
+{
+    assert_true(requests_ready(&unsent, bytes));
+    struct request *request = request_begin(&unsent, kind, bytes, note_status, status);
+    request->size = size;
+    request_send(&unsent, request);
+    return request;
+}
+
+/* A later query of a request may be larger than the first. */
 static void test_larger_queries_of_a_request_are_charged(void **state)
 {
     (void) state;
-    static struct requests requests = {
-        .transport = {.publish = publish_nothing, .receive = receive_nothing}, .timeout_ns = 1};
     int status;
-    requests_forget_pace(&requests);
+    open_unsent();
     for (int i = 0; i < 3; i++) {
-        assert_true(requests_ready(&requests, REQUEST_IDS_END));
-        struct request *request =
-            request_begin(&requests, FMB_CLIENT_SCENE, REQUEST_IDS_END, note_status, &status);
-        request->size = QUERY_BYTES_MAX;
-        request_send(&requests, request);
-        assert_int_equal(requests_ready(&requests, QUERY_BYTES_MAX), i == 0);
+        send_unsent(FMB_CLIENT_SCENE, REQUEST_IDS_END, QUERY_BYTES_MAX, &status);
+        assert_int_equal(requests_ready(&unsent, QUERY_BYTES_MAX), i == 0);
     }
-    assert_false(requests_ready(&requests, REQUEST_IDS_END));
+    assert_false(requests_ready(&unsent, REQUEST_IDS_END));
 }
 
-/* What a request takes of the window is given back when it ends. */
+/* A request releases its share of the window when it ends. */
 static void test_the_window_is_free_when_all_requests_have_ended(void **state)
 {
     (void) state;
-    static struct requests requests = {
-        .transport = {.publish = publish_nothing, .receive = receive_nothing}, .timeout_ns = 1};
     int status;
-    requests_forget_pace(&requests);
+    open_unsent();
     for (int i = 0; i < 10; i++) {
-        assert_true(requests_ready(&requests, QUERY_BYTES_MAX));
         struct request *request =
-            request_begin(&requests, FMB_CLIENT_SCENE, QUERY_BYTES_MAX, note_status, &status);
-        request->size = REQUEST_IDS_END;
-        request_send(&requests, request);
-        assert_true(requests_ready(&requests, QUERY_BYTES_MAX));
+            send_unsent(FMB_CLIENT_SCENE, QUERY_BYTES_MAX, REQUEST_IDS_END, &status);
+        assert_true(requests_ready(&unsent, QUERY_BYTES_MAX));
         if (i % 2)
-            request_end(&requests, request);
+            request_end(&unsent, request);
         else
-            requests_give_up(&requests, FMB_CLIENT_LATE);
+            requests_give_up(&unsent, FMB_CLIENT_LATE);
     }
-    assert_int_equal(requests.count, 0);
-    assert_int_equal(requests.charge, 0);
+    assert_int_equal(unsent.count, 0);
+    assert_int_equal(unsent.charge, 0);
 }
 
 /* In the end the refusal is the result. Its pauses, a minute in all, are not waited for. */
 static void test_a_service_that_stays_busy_is_given_up(void **state)
 {
     (void) state;
-    static struct requests requests = {
-        .transport = {.publish = publish_nothing, .receive = receive_nothing}, .timeout_ns = 1};
     const struct request_result busy = {
         .kind = FMB_CLIENT_DEFINITION, .status = FMB_BUSY, .detail = ""};
     int status = FMB_OK, refusals = 0;
-    requests_forget_pace(&requests);
-    struct request *request =
-        request_begin(&requests, FMB_CLIENT_DEFINITION, REQUEST_IDS_END, note_status, &status);
-    request->size = REQUEST_IDS_END;
-    request_send(&requests, request);
+    open_unsent();
+    send_unsent(FMB_CLIENT_DEFINITION, REQUEST_IDS_END, REQUEST_IDS_END, &status);
     for (; status == FMB_OK && refusals < 1000; refusals++)
-        requests_take(&requests, &busy);
+        requests_take(&unsent, &busy);
     assert_int_equal(status, FMB_BUSY);
-    assert_int_equal(requests.count, 0);
+    assert_int_equal(unsent.count, 0);
     assert_in_range(refusals, 100, 300);
 }
 
@@ -1064,25 +1071,33 @@ static void unknown_body(struct scene_result *result, int turn)
         unknown_although_whole(result, turn);
 }
 
-static void test_unknown_bodies_for_ever_are_sent_whole(void **state)
+/* Returns the number of queries that a scene of 100 pairs takes with these results, when its bodies
+ * have been sent before. */
+static uint64_t queries_with(relay_lie *lie)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
     struct fmb_client_scene scene = listed();
     scene.pair_count = 100;
     relay_query(client, &scene);
-    relay->lie = unknown_body;
+    relay->lie = lie;
     const uint64_t before = fmb_client_get_counts(client).queries;
     relay_query(client, &scene);
-    assert_int_equal(fmb_client_get_counts(client).queries, before + 2); /* by handle, then whole */
-    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    const struct fmb_client_counts counts = fmb_client_get_counts(client);
+    assert_int_equal(counts.malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
+    return counts.queries - before;
 }
 
-/* One more body in each result, while not all are sent whole. */
+static void test_unknown_bodies_for_ever_are_sent_whole(void **state)
+{
+    (void) state;
+    assert_int_equal(queries_with(unknown_body), 2); /* by handle, then whole */
+}
+
+/* Each result has one more unknown body, until all bodies are sent whole. */
 static void another_unknown_body(struct scene_result *result, int turn)
 {
     if (result->handle_count == 100)
@@ -1094,18 +1109,7 @@ static void another_unknown_body(struct scene_result *result, int turn)
 static void test_unknown_bodies_one_by_one_are_sent_whole(void **state)
 {
     (void) state;
-    struct relay *relay = relay_new();
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
-    struct fmb_client_scene scene = listed();
-    scene.pair_count = 100;
-    relay_query(client, &scene);
-    relay->lie = another_unknown_body;
-    const uint64_t before = fmb_client_get_counts(client).queries;
-    relay_query(client, &scene);
-    assert_int_equal(fmb_client_get_counts(client).queries, before + 3);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_int_equal(queries_with(another_unknown_body), 3);
 }
 
 /* Of two services on a bus, the one that holds no body answers first. */
@@ -1203,7 +1207,7 @@ static void test_wrong_handles_of_a_pair_are_malformed(void **state)
     }
 }
 
-/* Another body that takes the slot of one that is held is not held. */
+/* A body that replaces another one in its slot is not held. */
 static void test_a_new_body_in_a_slot_is_not_held(void **state)
 {
     (void) state;
@@ -1539,7 +1543,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_what_the_bus_loses_is_sent_again),
         cmocka_unit_test(test_messages_that_cannot_be_read_are_counted),
         cmocka_unit_test(test_results_of_another_kind_are_ignored),
-        cmocka_unit_test(test_results_of_another_client_are_watched_only),
+        cmocka_unit_test(test_results_of_another_client_reach_only_the_watcher),
         cmocka_unit_test(test_larger_queries_of_a_request_are_charged),
         cmocka_unit_test(test_the_window_is_free_when_all_requests_have_ended),
         cmocka_unit_test(test_a_service_that_stays_busy_is_given_up),

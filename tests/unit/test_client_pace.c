@@ -1,5 +1,5 @@
-/* The request engine over a simulated network, with a clock of its own: what it does where
- * datagrams are lost or delayed. Every run is the same, on any machine. */
+/* The request engine over a simulated network with loss and delay, and with a simulated clock.
+ * Every run is the same on any machine. */
 #include "clock.h"
 #include "query.h"
 #include "request.h"
@@ -46,10 +46,11 @@ enum { RESULTS_MAX = 1 << 16, QUERY_SIZE = 400, SEND_NS = 2000 };
 
 /* A service that answers one query after the other, in the order of their arrival. */
 static struct network {
-    double loss, late;           /* shares of datagrams, each way, and of results */
-    int64_t delay, service, lag; /* each way; of each query; of late results besides */
-    int64_t free_at;             /* when the service is, after the last query */
-    int status;                  /* of its results */
+    double loss, late;  /* share of datagrams lost each way; share of results that are late */
+    int64_t delay, lag; /* of each datagram; of late results in addition */
+    int64_t service;    /* time that the service takes for a query */
+    int64_t free_at;    /* time at which the service has answered all queries */
+    int status;         /* of its results */
     uint64_t random;
     uint64_t sent, waits; /* datagrams from the client; calls of wait() */
     size_t first, count;  /* results on their way, in the order of their arrival */
@@ -158,8 +159,8 @@ static enum request_taken take(void *user, struct request *request,
     return REQUEST_COMPLETE;
 }
 
-/* For so long, so many queries are under way: no more than these after the oldest without result,
- * as the parts of a scene are. */
+/* Sends queries for `duration`. At most `window` queries, counted from the oldest one without a
+ * result, are under way, as for the parts of a scene. */
 static void query_for(int64_t duration, int window)
 {
     const int64_t end = now + duration;
@@ -198,9 +199,9 @@ static int64_t median(void)
 
 static const double heavy_loss = 0.3;
 
-/* Half of the queries, or their results, are lost: 2.04 datagrams an answer are needed. With delay
- * each loss costs a round trip, and the window waits for its oldest query. */
-static void test_full_windows_keep_a_share_of_their_rate(void **state)
+/* Half of the queries, or their results, are lost, so that an answer takes 2.04 datagrams. With
+ * delay each loss costs a round trip, and the window waits for its oldest query. */
+static void test_a_full_window_keeps_a_share_of_its_rate_under_loss(void **state)
 {
     (void) state;
     static const struct {
@@ -221,7 +222,7 @@ static void test_full_windows_keep_a_share_of_their_rate(void **state)
     }
 }
 
-static void test_single_queries_are_repeated_soon(void **state)
+static void test_a_lost_single_query_is_repeated_soon(void **state)
 {
     (void) state;
     open_network(heavy_loss, 0, 100 * us);
@@ -232,7 +233,7 @@ static void test_single_queries_are_repeated_soon(void **state)
     assert_int_equal(load.given_up, 0);
 }
 
-/* A wait ends with a deadline, not before it: the client does not spin. */
+/* A wait does not end before a deadline or a result: the client does not spin. */
 static void test_a_wait_lasts_until_something_is_due(void **state)
 {
     (void) state;
@@ -243,7 +244,7 @@ static void test_a_wait_lasts_until_something_is_due(void **state)
 
 /* ---- Order ---- */
 
-/* One result in five comes after those of some later queries: fewer queries are repeated. */
+/* One result in five comes after those of some later queries. Fewer than that are repeated. */
 static void test_reordered_results_cause_few_repeats(void **state)
 {
     (void) state;
@@ -254,8 +255,8 @@ static void test_reordered_results_cause_few_repeats(void **state)
     assert_true((double) net.sent < 1.2 * (double) load.answers);
 }
 
-/* A few queries take long, as pairs of bodies of many frames do, for which the others do not wait.
- * They are repeated as if there were no others: once at once, and then at intervals that double. */
+/* A few queries take long, such as pairs of bodies of many frames; later ones are answered before
+ * them. They are repeated once immediately, and then at intervals that double. */
 static void test_slow_queries_that_are_overtaken_back_off(void **state)
 {
     (void) state;
@@ -270,8 +271,8 @@ static void test_slow_queries_that_are_overtaken_back_off(void **state)
 
 /* ---- Delay ---- */
 
-/* The network becomes slow: at first every query is repeated before its result comes. */
-static void test_a_longer_delay_is_learned(void **state)
+/* When the network becomes slow, at first every query is repeated before its result comes. */
+static void test_the_interval_adapts_to_a_longer_delay(void **state)
 {
     (void) state;
     for (int lossy = 0; lossy < 2; lossy++) {
@@ -294,7 +295,7 @@ static void test_a_longer_delay_is_learned(void **state)
 
 /* ---- A busy service ---- */
 
-/* However short the timeouts, it is queried for a minute, more and more rarely. */
+/* A busy service is queried for a minute, at growing intervals, whatever the timeout is. */
 static void test_a_busy_service_is_queried_for_a_minute(void **state)
 {
     (void) state;
@@ -316,9 +317,9 @@ static void count_statuses(void *user, const struct fmb_client_answer *answer)
     count[-answer->status]++;
 }
 
-/* The requests are given up, and the time for the scene ends, in the same step: that there is no
- * service says more than that it is late. */
-static void test_no_service_is_reported_although_it_is_late(void **state)
+/* If the requests are given up and the time for the scene ends in the same step, the status is that
+ * there is no service. */
+static void test_no_service_takes_precedence_over_late(void **state)
 {
     (void) state;
     enum { PAIRS = 3000 };
@@ -349,14 +350,14 @@ static void test_no_service_is_reported_although_it_is_late(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_full_windows_keep_a_share_of_their_rate),
-        cmocka_unit_test(test_single_queries_are_repeated_soon),
+        cmocka_unit_test(test_a_full_window_keeps_a_share_of_its_rate_under_loss),
+        cmocka_unit_test(test_a_lost_single_query_is_repeated_soon),
         cmocka_unit_test(test_a_wait_lasts_until_something_is_due),
         cmocka_unit_test(test_reordered_results_cause_few_repeats),
         cmocka_unit_test(test_slow_queries_that_are_overtaken_back_off),
-        cmocka_unit_test(test_a_longer_delay_is_learned),
+        cmocka_unit_test(test_the_interval_adapts_to_a_longer_delay),
         cmocka_unit_test(test_a_busy_service_is_queried_for_a_minute),
-        cmocka_unit_test(test_no_service_is_reported_although_it_is_late),
+        cmocka_unit_test(test_no_service_takes_precedence_over_late),
     };
     return cmocka_run_group_tests_name("client_pace", tests, NULL, NULL);
 }

@@ -512,7 +512,7 @@ static void test_wrong_scenes_are_refused(void **state)
     relay_close(relay);
 }
 
-/* ---- Fields left zero ---- */
+/* ---- Fields that are 0 ---- */
 
 static void count_meeting(void *user, const struct fmb_client_answer *answer)
 {
@@ -520,7 +520,7 @@ static void count_meeting(void *user, const struct fmb_client_answer *answer)
     *(int *) user += answer->answer.verdict >= FMB_TOUCHING;
 }
 
-static void test_a_scene_left_zero_is_of_all_pairs(void **state)
+static void test_a_scene_of_zeros_queries_all_pairs(void **state)
 {
     (void) state;
     static const struct fmb_client_frame cube = {.shape = FMB_BOX, .components = {1, 1, 1}};
@@ -569,7 +569,7 @@ static void test_bodies_that_move_need_a_window(void **state)
                                  FMB_OK);
                 assert_int_equal(contacts, 1);
             }
-    struct fmb_client_answer answer; /* here the duration is an argument */
+    struct fmb_client_answer answer; /* of a pair query, whose duration 0 is an instant */
     assert_int_equal(fmb_client_query_pair(client, placement, 0, 0, &answer), FMB_OK);
     assert_int_equal(answer.answer.verdict, FMB_OVERLAPPING);
     fmb_client_close(client);
@@ -999,7 +999,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_groups_where_pairs_are_listed),
         cmocka_unit_test(test_one_pair),
         cmocka_unit_test(test_wrong_scenes_are_refused),
-        cmocka_unit_test(test_a_scene_left_zero_is_of_all_pairs),
+        cmocka_unit_test(test_a_scene_of_zeros_queries_all_pairs),
         cmocka_unit_test(test_bodies_that_move_need_a_window),
         cmocka_unit_test(test_refusals_of_the_service_are_given),
         cmocka_unit_test(test_methods_without_gaps),

@@ -160,14 +160,14 @@ static void scale_lengths(struct solid *solid, int exponent)
             (*lengths[i])[axis] = ldexp((*lengths[i])[axis], exponent);
 }
 
-/* Lengths of which 1e-12 is less than any double: the enclosure is as wide as a few of the least
- * doubles, and no wider than fmb.h states. */
-static void near_the_least_doubles(void **state)
+/* Where 1e-12 of the lengths is less than the least double, the bounds are a few of the least
+ * doubles apart, and no farther than fmb.h states. */
+static void widths_near_the_least_doubles(void **state)
 {
     (void) state;
     struct draw draw;
     double widest = 0;
-    draw_begin(&draw, "near_the_least_doubles");
+    draw_begin(&draw, "widths_near_the_least_doubles");
     for (long i = draw_sample(1000); i > 0; i--) {
         struct question question = draw_question(&draw);
         const int exponent = draw_int(&draw, -1078, -1040);
@@ -685,9 +685,9 @@ static void bodies_of_several_frames(void **state)
 
 /* ---- Ties ---- */
 
-/* Boxes around a unit cube, on each side of each axis, as far away as the others or a few ulps
- * farther: which of them gives the direction and the points depends neither on the order of the
- * frames nor on that of the bodies. */
+/* Boxes around a unit cube, on each side of each axis, at the same distance or a few ulps farther.
+ * Which of them gives the direction and the points depends neither on the order of the frames nor
+ * on that of the bodies. */
 static void ties_do_not_depend_on_any_order(void **state)
 {
     (void) state;
@@ -733,8 +733,8 @@ static void ties_do_not_depend_on_any_order(void **state)
     }
 }
 
-/* Two pairs of cubes, as far apart along x, one with A on the left and one with A on the right: the
- * same pair of frames gives the gap in both orders of the bodies. */
+/* Two pairs of cubes at the same distance along x, one with A on the left and one with A on the
+ * right. The same pair of frames gives the gap in both orders of the bodies. */
 static void a_tie_is_the_same_pair_in_both_orders(void **state)
 {
     (void) state;
@@ -754,8 +754,8 @@ static void a_tie_is_the_same_pair_in_both_orders(void **state)
     assert_true(gap_check_swapped(false, &gap, &other));
 }
 
-/* Unit cubes that are as deep along several axes, at rest and moving along z: which axis is the
- * direction, in doubles and in integers. */
+/* Unit cubes with equal depths along several axes, at rest and moving along z. Doubles and integers
+ * choose the same axis as the direction. */
 static void equal_depths_have_one_direction(void **state)
 {
     (void) state;
@@ -778,8 +778,8 @@ static void equal_depths_have_one_direction(void **state)
 
 /* ---- Raised bounds ---- */
 
-/* Tetrahedra that face each other along an axis, each body with a second one behind: the boxes give
- * a better lower bound than the frames, and it is proven too, although the distance of the boxes
+/* Tetrahedra that face each other along an axis, each body with a second one farther away. The
+ * boxes give a better lower bound than the frames. It is proven too, although their distance
  * rounds. */
 static void bounds_of_boxes_are_proven(void **state)
 {
@@ -829,9 +829,8 @@ static int near_pairs(const struct fmb_placement *placement, unsigned count, dou
     return found;
 }
 
-/* Tetrahedra that face each other along an axis at a small distance, which their boxes give more
- * accurately than the gap does: it is the lower bound of the gap that the margin is compared
- * with. */
+/* Tetrahedra that face each other along an axis at a small distance. Their boxes give it more
+ * accurately than the gap, but the margin is compared with the lower bound of the gap. */
 static void a_margin_is_compared_with_the_lower_bound(void **state)
 {
     (void) state;
@@ -981,9 +980,9 @@ static void touching_bodies_have_no_gap(void **state)
     assert_true(answer.gap.bounds[0] == 0 && answer.gap.bounds[1] == 0);
 }
 
-/* Frames at the same place whose numbers are the same after rounding: boxes of other centres, and
- * simplices of other vertices. */
-static void what_rounds_away_has_an_order(void **state)
+/* Frames at the same position whose numbers differ but round to the same: boxes by their centres,
+ * simplices by their vertices. */
+static void frames_equal_after_rounding_have_an_order(void **state)
 {
     (void) state;
     static const double centre[2] = {0x1p-60, 0x1p-59};
@@ -1109,7 +1108,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_pairs),
-        cmocka_unit_test(near_the_least_doubles),
+        cmocka_unit_test(widths_near_the_least_doubles),
         cmocka_unit_test(shallow_pairs),
         cmocka_unit_test(hard_families),
         cmocka_unit_test(all_exponents),
@@ -1132,7 +1131,7 @@ int main(void)
         cmocka_unit_test(infinite_gaps),
         cmocka_unit_test(direction_and_points_belong_together),
         cmocka_unit_test(touching_bodies_have_no_gap),
-        cmocka_unit_test(what_rounds_away_has_an_order),
+        cmocka_unit_test(frames_equal_after_rounding_have_an_order),
         cmocka_unit_test(a_shared_frame_has_an_order),
         cmocka_unit_test(tiny_edges),
         cmocka_unit_test(short_edges),

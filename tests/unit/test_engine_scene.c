@@ -489,7 +489,7 @@ static struct fmb_scene two_cubes(double velocity)
     return (struct fmb_scene){.placements = placement, .placement_count = 2};
 }
 
-static void all_pairs_unless_others_are_given(void **state)
+static void all_pairs_are_the_default(void **state)
 {
     static const unsigned pair[1][2] = {{0, 1}};
     struct fmb_scene scene = two_cubes(0);
@@ -548,7 +548,7 @@ int main(void)
         cmocka_unit_test(extremes),
         cmocka_unit_test(bad_scenes),
         cmocka_unit_test(limits_hold),
-        cmocka_unit_test(all_pairs_unless_others_are_given),
+        cmocka_unit_test(all_pairs_are_the_default),
         cmocka_unit_test(bodies_that_move_need_a_window),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

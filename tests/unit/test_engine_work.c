@@ -41,7 +41,7 @@ static double work_of_exact(const struct question *question)
     return work_of(question, "exact", EVERYTHING);
 }
 
-/* What certified takes beyond exact: a step before GMP that costs more than GMP is none. */
+/* The work of certified beyond that of exact: a step before GMP must not cost more than GMP. */
 static double work_before_exact(const struct question *question)
 {
     return work_of_verdict(question) - work_of(question, "exact", 0);
@@ -100,14 +100,14 @@ static void work_is_bounded(void **state)
     assert_true(all > 0);
 }
 
-/* An end of a contact that doubles do not give is computed for the slabs that might have it only:
- * 6.5 slabs of 25. */
-static void few_slabs_may_have_an_end(void **state)
+/* An end of a contact that doubles do not give is computed only for the slabs that may have it: on
+ * average 6.5 of 25. */
+static void only_slabs_that_may_have_an_end_are_computed(void **state)
 {
     (void) state;
     long contacts = 0;
     struct draw draw;
-    draw_begin(&draw, "few_slabs_may_have_an_end");
+    draw_begin(&draw, "only_slabs_that_may_have_an_end_are_computed");
     for (size_t f = 0; family_at(f); f++) {
         const struct family *family = family_at(f);
         struct cell cells[CELL_OF_ALL_SHAPES];
@@ -124,7 +124,8 @@ static void few_slabs_may_have_an_end(void **state)
     assert_true(contacts > 0 && exact_slabs < 12 * contacts);
 }
 
-/* With all that can be wanted, 6 ms; 16 ms with a certificate, 6 of them for the answer. */
+/* Limits: 6 ms with everything wanted; 16 ms with a certificate, 6 ms of which are for the answer.
+ */
 int main(void)
 {
     static struct search searches[] = {{"bodies", work_of_body, {2e4, 2e4}, 8},
@@ -135,7 +136,8 @@ int main(void)
                                        {"gaps", work_of_gap, {2e5, 2e6}, 8},
                                        {"certificates", work_of_certificate, {16e6, 20e6}, 8}};
     enum { SEARCHES = sizeof searches / sizeof *searches };
-    struct CMUnitTest tests[SEARCHES + 1] = {cmocka_unit_test(few_slabs_may_have_an_end)};
+    struct CMUnitTest tests[SEARCHES + 1] = {
+        cmocka_unit_test(only_slabs_that_may_have_an_end_are_computed)};
     for (size_t i = 0; i < SEARCHES; i++)
         tests[1 + i] = (struct CMUnitTest) cmocka_unit_test_prestate(work_is_bounded, &searches[i]);
     return cmocka_run_group_tests(tests, NULL, NULL);

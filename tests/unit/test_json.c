@@ -411,7 +411,7 @@ static void assert_same_scenes(const struct scene *a, const struct scene *b)
     }
 }
 
-/* Read and written again. A size of -0 is 0 in the engine. */
+/* In a scene that is read, written and read again. A size of -0 is 0 in the engine. */
 static void the_sign_of_zero_is_kept(void **state)
 {
     static const char text[] =
@@ -681,8 +681,8 @@ static enum json_outcome outcome_of(const char *bytes, size_t size)
     return outcome;
 }
 
-/* All texts of up to four of these characters, by the grammar of RFC 8259. */
-static void numbers_are_those_of_json(void **state)
+/* All texts of up to four of these characters are compared with the grammar of RFC 8259. */
+static void numbers_follow_the_grammar_of_json(void **state)
 {
     static const char characters[] = "-+.0179eE";
     enum { COUNT = sizeof characters - 1, LONGEST = 4 };
@@ -712,7 +712,7 @@ static void numbers_are_those_of_json(void **state)
     assert_in_range(accepted, 700, 1100);
 }
 
-static void names_are_text(void **state)
+static void names_are_utf8_without_control_characters(void **state)
 {
     static const struct {
         const char *name;
@@ -745,8 +745,8 @@ static void names_are_text(void **state)
     }
 }
 
-/* In each position of a scene: white space may stand between tokens, other control characters
- * nowhere. */
+/* At each position of a scene: white space is accepted between tokens, other control characters are
+ * not accepted anywhere. */
 static void control_characters_are_refused(void **state)
 {
     static const char scene[] = SCENE(BODY(1));
@@ -874,8 +874,8 @@ int main(void)
         cmocka_unit_test(long_numbers_are_read_in_full),
         cmocka_unit_test(bad_scenes_are_refused),
         cmocka_unit_test(bad_texts_are_refused),
-        cmocka_unit_test(numbers_are_those_of_json),
-        cmocka_unit_test(names_are_text),
+        cmocka_unit_test(numbers_follow_the_grammar_of_json),
+        cmocka_unit_test(names_are_utf8_without_control_characters),
         cmocka_unit_test(control_characters_are_refused),
         cmocka_unit_test(brackets_in_strings_are_not_counted),
         cmocka_unit_test(an_object_without_end_is_refused),

@@ -23,7 +23,7 @@ static struct {
     size_t piece;         /* no more at once; 0: as much as there is */
     int error;            /* errno of all that follow; 0: none */
     bool interrupted;     /* every other call is, before it has read */
-    int64_t change_at;    /* before this call the file is changed; 0: never */
+    int64_t change_at;    /* the file is changed before this call; 0: never */
 } reads;
 
 static void change_file(void);
@@ -719,14 +719,14 @@ static void test_a_file_that_becomes_shorter(void **state)
     }
 }
 
-/* Lengths that are impossible, in place of those of the first event. */
+/* Overwrites the lengths of the first event with impossible ones. */
 static void change_file(void)
 {
     static const unsigned char lengths[8] = {0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff};
     assert_int_equal(pwrite(log_bytes_descriptor(), lengths, 8, LOG_HEADER_BYTES - 8), 8);
 }
 
-/* Reads to the end. Whatever the file has become, lengths are within their limits. */
+/* Reads to the end. Lengths are within their limits, whatever the file contains. */
 static void read_changed(struct log_reader *reader)
 {
     struct log_event event;
@@ -747,8 +747,8 @@ static void read_changed(struct log_reader *reader)
     assert_int_equal(at, whole.size);
 }
 
-/* The header of an event is in a buffer that is read again, since the bytes after it are damaged.
- * It changes before each of these reads. */
+/* The header of an event is read into the buffer several times, since the bytes after it are
+ * damaged. It changes before each of these reads. */
 static void test_a_file_that_changes(void **state)
 {
     (void) state;

@@ -400,8 +400,8 @@ static void test_a_truncated_file_is_noticed(void **state)
     assert_int_equal(log_finish(writer), ESTALE);
 }
 
-/* All that is written after a truncation is a log of its own, whatever error ends it. */
-static void test_a_truncated_file_gets_no_hole(void **state)
+/* The bytes written after a truncation are a whole log, whatever error ends it. */
+static void test_a_file_that_was_truncated_gets_no_hole(void **state)
 {
     (void) state;
     enum { BEFORE = 400, AFTER = 300 };
@@ -594,7 +594,7 @@ int main(void)
         cmocka_unit_test(test_large_events),
         cmocka_unit_test(test_a_deleted_file_is_noticed),
         cmocka_unit_test(test_a_truncated_file_is_noticed),
-        cmocka_unit_test(test_a_truncated_file_gets_no_hole),
+        cmocka_unit_test(test_a_file_that_was_truncated_gets_no_hole),
         cmocka_unit_test(test_several_files_divide_no_event),
         cmocka_unit_test(test_the_newest_files_are_kept),
         cmocka_unit_test(test_a_file_that_is_gone_is_not_kept),

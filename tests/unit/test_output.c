@@ -1,5 +1,5 @@
-/* Files that commands write: what stays, what is replaced, and what is left when a command ends
- * early. */
+/* Files that commands write: which existing files are replaced, and which files are left when a
+ * command ends early. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -66,7 +66,7 @@ static void assert_file(const char *name, const char *text)
     assert_string_equal(found, text);
 }
 
-/* A picture at this path, with these inputs. */
+/* Opens a picture at this path, in a command with this input. */
 static struct output *open_picture(const char *path, bool force, const char *input)
 {
     const struct output_rules rules = {.force = force, .other_input = input};
@@ -93,9 +93,9 @@ static mode_t mode_of(const char *path)
     return file.st_mode & 0777;
 }
 
-/* ---- What exists ---- */
+/* ---- Existing files ---- */
 
-static void test_no_file_is_wanted(void **state)
+static void test_without_a_path_no_file_is_opened(void **state)
 {
     struct output *output;
     (void) state;
@@ -104,7 +104,7 @@ static void test_no_file_is_wanted(void **state)
     assert_true(output_close(output, true));
 }
 
-static void test_a_picture_replaces_nothing_an_empty_file_and_a_picture(void **state)
+static void test_a_picture_replaces_an_empty_file_or_a_picture(void **state)
 {
     (void) state;
     write_picture("new", false);
@@ -115,7 +115,7 @@ static void test_a_picture_replaces_nothing_an_empty_file_and_a_picture(void **s
     assert_int_equal(count_files(), 3);
 }
 
-static void test_another_kind_is_replaced_by_force(void **state)
+static void test_only_force_replaces_another_kind(void **state)
 {
     static const char *const others[] = {"{\"dim\": 3}", "<sv", "<svgx", " <svg ", "x"};
     (void) state;
@@ -128,7 +128,7 @@ static void test_another_kind_is_replaced_by_force(void **state)
     assert_int_equal(count_files(), 1);
 }
 
-static void test_each_kind_replaces_its_like(void **state)
+static void test_each_kind_replaces_its_own_kind(void **state)
 {
     static const char *const text[] = {
         [OUTPUT_PICTURE] = "<svg x",
@@ -169,7 +169,7 @@ static void test_an_input_is_never_replaced(void **state)
     assert_false(output_check(&(struct output_options){"input", OUTPUT_LOG, &rules}));
 }
 
-/* ---- Links, modes, and what is no regular file ---- */
+/* ---- Links, modes, and files that are not regular ---- */
 
 static void test_symbolic_links_stay(void **state)
 {
@@ -190,7 +190,7 @@ static void test_symbolic_links_stay(void **state)
     assert_int_equal(unlink("folder/there") + unlink("folder/absent") + unlink("folder/link"), 0);
 }
 
-static void test_modes(void **state)
+static void test_new_files_follow_the_umask_and_others_keep_their_mode(void **state)
 {
     const mode_t mask = umask(027);
     (void) state;
@@ -203,7 +203,7 @@ static void test_modes(void **state)
     assert_int_equal(mode_of("old"), 0604);
 }
 
-static void test_what_cannot_be_opened(void **state)
+static void test_a_file_that_cannot_be_opened_is_an_error(void **state)
 {
     (void) state;
     assert_null(open_picture("no/such/folder", true, NULL));
@@ -225,9 +225,9 @@ static void test_a_device_is_written_directly(void **state)
     assert_true(S_ISCHR(device.st_mode));
 }
 
-/* ---- The end ---- */
+/* ---- Closing, and the end of the process ---- */
 
-static void test_what_is_dropped_leaves_the_old_file(void **state)
+static void test_an_output_that_is_not_kept_leaves_the_old_file(void **state)
 {
     (void) state;
     for (int old = 0; old < 2; old++) {
@@ -282,7 +282,7 @@ static void end_by_limit(struct output *output)
     exit(output_close(output, true) ? 0 : 1);
 }
 
-static void test_nothing_is_left_when_a_process_ends(void **state)
+static void test_no_temporary_file_is_left_when_a_process_ends(void **state)
 {
     static const int signals[] = {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM};
     (void) state;
@@ -315,19 +315,23 @@ static void test_ignored_signals_stay_ignored(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_no_file_is_wanted, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_a_picture_replaces_nothing_an_empty_file_and_a_picture,
-                                        setup, teardown),
-        cmocka_unit_test_setup_teardown(test_another_kind_is_replaced_by_force, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_each_kind_replaces_its_like, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_without_a_path_no_file_is_opened, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_a_picture_replaces_an_empty_file_or_a_picture, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(test_only_force_replaces_another_kind, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_each_kind_replaces_its_own_kind, setup, teardown),
         cmocka_unit_test_setup_teardown(test_an_input_is_never_replaced, setup, teardown),
         cmocka_unit_test_setup_teardown(test_symbolic_links_stay, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_modes, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_what_cannot_be_opened, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_new_files_follow_the_umask_and_others_keep_their_mode,
+                                        setup, teardown),
+        cmocka_unit_test_setup_teardown(test_a_file_that_cannot_be_opened_is_an_error, setup,
+                                        teardown),
         cmocka_unit_test_setup_teardown(test_a_device_is_written_directly, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_nothing_is_left_when_a_process_ends, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_no_temporary_file_is_left_when_a_process_ends, setup,
+                                        teardown),
         cmocka_unit_test_setup_teardown(test_ignored_signals_stay_ignored, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_what_is_dropped_leaves_the_old_file, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_an_output_that_is_not_kept_leaves_the_old_file, setup,
+                                        teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

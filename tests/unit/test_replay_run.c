@@ -323,8 +323,8 @@ static void test_a_verdict_is_compared_where_the_definition_comes_late(void **st
     replay_report_free(&report);
 }
 
-/* Overwrites bytes of the first event, a query, as soon as it was read. */
-static int64_t overwritten; /* offset */
+/* Overwrites bytes of the first event, a query, after it was read. */
+static int64_t overwritten; /* offset of these bytes */
 
 static void overwrite(void *user, int64_t bytes)
 {
@@ -334,7 +334,7 @@ static void overwrite(void *user, int64_t bytes)
     assert_int_equal(pwrite(file, "\xff\xff\xff\xff", 4, overwritten), 4);
 }
 
-static void ignore_difference(void *user, const struct located_difference *difference)
+static void refuse_difference(void *user, const struct located_difference *difference)
 {
     (void) user;
     (void) difference;
@@ -357,12 +357,13 @@ static void ignore_damage(void *user, int log, const struct log_damage *damage)
     (void) damage;
 }
 
-/* Its sync word, its lengths, its fingerprint; its result precedes the definition, or follows. */
+/* Its sync word, its lengths or its fingerprint changes. Its result precedes the definition, or
+ * only follows it. */
 static void test_a_query_that_changes_before_it_can_be_answered(void **state)
 {
     (void) state;
     static const int64_t offsets[] = {0, 20, 24, 28 + sizeof WIRE_PAIR_QUERY - 1};
-    const struct replay_sink sink = {ignore_difference, ignore_unreadable, ignore_damage, overwrite,
+    const struct replay_sink sink = {refuse_difference, ignore_unreadable, ignore_damage, overwrite,
                                      NULL};
     for (size_t i = 0; i < 2 * sizeof offsets / sizeof *offsets; i++) {
         const struct pair_query query = pair(1, by_handle(3, 2, 0), by_handle(4, 1, 2));

@@ -272,7 +272,7 @@ static void test_slow_clients_are_not_waited_for(void **state)
     accustom(5, 2 * ANTICIPATION_THINK_NS, 30);
     assert_false(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 1000000, true));
     assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX,
-                                   2 * ANTICIPATION_PART * ANTICIPATION_THINK_NS, false));
+                                   2 * ANTICIPATION_RATIO * ANTICIPATION_THINK_NS, false));
     accustom(5, ANTICIPATION_THINK_NS / 2, 30); /* it became fast */
     assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 1000000, true));
     accustom(5, INT64_MAX / 2, 1); /* one pause does not count for much */

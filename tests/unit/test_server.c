@@ -138,7 +138,7 @@ static void test_undecided_pairs_are_not_counted(void **state)
     assert_int_equal(service_status()->pairs, 1);
 }
 
-/* A grid of `placements` squares: all pairs, or the first `split` across the others. */
+/* A query of a grid of `placements` squares that are separated. split: for pairs across. */
 static struct scene_query *squares(int32_t which, int32_t placements, int32_t split)
 {
     static struct scene_query scene;
@@ -163,7 +163,7 @@ static void ignore(struct scene_query *scene, unsigned a, unsigned b)
     scene->ignored_count += 2;
 }
 
-/* Pairs that a scene adds to the count. */
+/* Returns the number of pairs that a scene adds to the status. */
 static int64_t pairs_counted(const struct scene_query *scene)
 {
     static unsigned char bytes[QUERY_BYTES_MAX];
@@ -256,7 +256,7 @@ static void test_another_service_is_reported(void **state)
     assert_int_equal(said_of_heartbeat(11), 0);
     assert_true(said_of_heartbeat(12) > 50);
     assert_int_equal(said_of_heartbeat(12), 0);
-    sleep_ms(1100); /* another report could be made */
+    sleep_ms(1100); /* after which a report is allowed again */
     assert_int_equal(said_of_heartbeat(12), 0);
     assert_true(said_of_heartbeat(13) > 50);
 }

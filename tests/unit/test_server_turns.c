@@ -216,15 +216,15 @@ static void test_a_slow_client_is_not_waited_for(void **state)
     assert_in_range(answers_to(COSTLY) - before, 980, 1000);
 }
 
-/* The same client beside certificates: it loses more to one of them than the wait takes. */
-static void test_a_slow_client_is_waited_for_instead_of_long_work(void **state)
+/* The same client beside certificates, one of which would delay it by more than the wait takes. */
+static void test_a_slow_client_is_anticipated_before_long_work(void **state)
 {
     (void) state;
     service.cost_ns[CHEAP] = 10 * US;
     service.cost_ns[COSTLY] = 10 * MS;
     for (int i = 0; i < 100; i++)
         service_query_pair(COSTLY, i);
-    work_for(600 * MS); /* what its queries take is known */
+    work_for(600 * MS); /* the time of its queries is then known */
     answers_in_closed_loop(400 * US, 100 * MS);
     assert_true(answers_in_closed_loop(400 * US, 100 * MS) > 100);
 }
@@ -392,8 +392,8 @@ static void test_a_full_queue_refuses_the_one_that_holds_most(void **state)
     assert_int_equal(service.status.unsent, unsent + MODEST);
 }
 
-/* Clients that fill the queue with one scene each. A further client takes the place of one of them,
- * which then has no work: no turn is given to it, and the service does not wait for it. */
+/* Clients fill the queue with one scene each. The query of a further client evicts one of these.
+ * The client of that scene is then idle: it gets no turn, and the service does not wait for it. */
 static void test_a_client_whose_only_query_is_evicted_is_idle(void **state)
 {
     (void) state;
@@ -455,7 +455,7 @@ static void test_queries_expire(void **state)
     assert_int_equal(service.status.definitions, 1);
 }
 
-static void test_a_repeat_is_as_old_as_its_own_arrival(void **state)
+static void test_a_repeat_expires_by_its_own_arrival(void **state)
 {
     (void) state;
     service_query_pair(CHEAP, 1);
@@ -468,7 +468,7 @@ static void test_a_repeat_is_as_old_as_its_own_arrival(void **state)
 }
 
 /* The second pair waits for the job of the first. */
-static void test_what_has_begun_does_not_expire(void **state)
+static void test_a_query_in_progress_does_not_expire(void **state)
 {
     (void) state;
     service.tick_ns = US;
@@ -486,7 +486,7 @@ static void test_what_has_begun_does_not_expire(void **state)
     assert_int_equal(service_status()->expired, 1);
 }
 
-/* As soon as the service knows how long the queries of a client take, the newest are refused. */
+/* When the time that the queries of a client take is known, the newest are refused. */
 static void test_waiting_time_is_limited(void **state)
 {
     (void) state;
@@ -497,7 +497,7 @@ static void test_waiting_time_is_limited(void **state)
     assert_int_equal(service_status()->waiting, SENT);
     work_for(200 * MS);
     assert_in_range(service_status()->waiting, 100, 150);
-    for (int i = 0; i < 200; i++) { /* it sends on */
+    for (int i = 0; i < 200; i++) { /* it continues to send */
         work_for(20 * MS);
         service_query_pair(COSTLY, SENT + i);
     }
@@ -534,7 +534,7 @@ static void test_waiting_time_of_scenes_is_limited(void **state)
                     QUOTA_CLIENT_NS / scene_ns * 5 / 4);
 }
 
-/* What is dropped takes no time, and says nothing of what will be answered. */
+/* Queries that are dropped take no time, and are no samples of the estimate. */
 static void test_dropped_queries_are_not_in_the_estimate(void **state)
 {
     (void) state;
@@ -567,7 +567,7 @@ static void test_many_clients_share_the_waiting_time(void **state)
     assert_in_range(service_status()->waiting * 10 * MS, QUOTA_ALL_NS / 2, QUOTA_ALL_NS * 5 / 4);
 }
 
-static void test_the_only_waiting_query_is_taken(void **state)
+static void test_the_only_waiting_query_is_never_refused(void **state)
 {
     (void) state;
     service.cost_ns[COSTLY] = 2 * QUOTA_CLIENT_NS;
@@ -583,7 +583,7 @@ static void test_the_only_waiting_query_is_taken(void **state)
     assert_int_equal(service.result[100].status, FMB_BUSY);
 }
 
-static void test_cheap_queries_may_wait_by_the_thousand(void **state)
+static void test_thousands_of_cheap_queries_may_wait(void **state)
 {
     (void) state;
     service.cost_ns[CHEAP] = 20 * US;
@@ -594,20 +594,20 @@ static void test_cheap_queries_may_wait_by_the_thousand(void **state)
 }
 
 /* One query in a hundred takes 10 ms, the others 5 us: 105 us on average. */
-static void test_the_estimate_of_a_mixture(void **state)
+static void test_the_estimate_of_mixed_queries_is_their_mean(void **state)
 {
     (void) state;
     struct quota quota = {0};
     int64_t most_ns = 0;
     for (int i = 0; i < 10000; i++) {
-        quota_note(&quota, QUEUE_SHORT, i % 100 == 0 ? 10 * MS : 5 * US);
+        quota_add_sample(&quota, QUEUE_SHORT, i % 100 == 0 ? 10 * MS : 5 * US);
         const int64_t ns = quota_estimate(&quota, QUEUE_SHORT);
         most_ns = ns > most_ns ? ns : most_ns;
     }
     assert_true(most_ns < QUOTA_CLIENT_NS / 1500);
     assert_int_equal(quota_estimate(&quota, QUEUE_SCENES), QUOTA_FLOOR_NS);
     for (int i = 0; i < 256; i++)
-        quota_note(&quota, QUEUE_SHORT, 10 * MS);
+        quota_add_sample(&quota, QUEUE_SHORT, 10 * MS);
     assert_true(quota_estimate(&quota, QUEUE_SHORT) > 7 * MS);
 }
 
@@ -622,7 +622,7 @@ static void test_a_new_id_has_a_quota_of_its_own(void **state)
             service_settle();
         }
     service.tick_ns = 0;
-    /* These take the entries of the others. */
+    /* These clients take the entries of the others. */
     for (int64_t id = 0; id < SCHEDULER_CLIENTS - 1; id++) {
         for (int i = 0; i < CHEAPER; i++)
             service_query_pair(2000000 + id, i);
@@ -727,7 +727,7 @@ static void test_long_jobs_do_not_keep_short_ones_waiting(void **state)
 
 /* ---- Making bodies ---- */
 
-/* Cuboids so flat that each inverse takes exact arithmetic. */
+/* Cuboids so flat that each inverse requires exact arithmetic. */
 enum { FLAT_MOST = 640 };
 static const struct geometry_frame *flat_cuboids(void)
 {
@@ -740,7 +740,8 @@ static const struct geometry_frame *flat_cuboids(void)
     return frame;
 }
 
-/* Bodies of so many of them each; id: of the first, 0: anonymous. */
+/* Places `count` bodies of `frames` flat cuboids each. id: of the first body; 0: they are
+ * anonymous. */
 static void place_flat_bodies(int count, int frames, int64_t id, struct placement *out)
 {
     static unsigned char geometry[FLAT_MOST * (GEOMETRY_NONE_BYTES + GEOMETRY_FRAME_BYTES_MAX)];
@@ -794,7 +795,7 @@ static void expect_short_spans(int count)
         server_work(service.server);
         const int64_t used_ns = service.now_ns - begin_ns;
         longest_ns = used_ns > longest_ns ? used_ns : longest_ns;
-        service.now_ns += US; /* else nothing ends an anticipation */
+        service.now_ns += US; /* otherwise an anticipation would not end */
         server_resume(service.server);
     }
     assert_true(service.now_ns - all_ns > MS); /* the clock runs */
@@ -803,7 +804,7 @@ static void expect_short_spans(int count)
     expect_all_ok(count);
 }
 
-static void test_making_bodies_is_done_in_short_spans(void **state)
+static void test_bodies_are_made_in_short_steps(void **state)
 {
     (void) state;
     mp_set_memory_functions(allocate_slowly, gmp_count_reallocate, gmp_release);
@@ -822,8 +823,8 @@ static void test_making_bodies_is_done_in_short_spans(void **state)
     mp_set_memory_functions(NULL, NULL, NULL);
 }
 
-/* Each of them makes the body, since neither finds it; the cache has it once. */
-static void test_two_clients_make_one_body_at_once(void **state)
+/* Neither finds the body, so that both make it. */
+static void test_a_body_that_two_clients_make_is_cached_once(void **state)
 {
     (void) state;
     service.tick_ns = 20 * US; /* turns end before bodies do */
@@ -854,7 +855,7 @@ int main(void)
         TEST(test_a_new_id_gains_nothing),
         TEST(test_a_client_in_closed_loop_keeps_its_share),
         TEST(test_a_slow_client_is_not_waited_for),
-        TEST(test_a_slow_client_is_waited_for_instead_of_long_work),
+        TEST(test_a_slow_client_is_anticipated_before_long_work),
         TEST(test_waiting_ends),
         TEST(test_scenes_share_time),
         TEST(test_pairs_pass_long_scenes),
@@ -866,23 +867,23 @@ int main(void)
         TEST(test_a_client_whose_only_query_is_evicted_is_idle),
         TEST(test_new_ids_without_end),
         TEST(test_queries_expire),
-        TEST(test_a_repeat_is_as_old_as_its_own_arrival),
-        TEST(test_what_has_begun_does_not_expire),
+        TEST(test_a_repeat_expires_by_its_own_arrival),
+        TEST(test_a_query_in_progress_does_not_expire),
         TEST(test_waiting_time_is_limited),
         TEST(test_waiting_time_of_scenes_is_limited),
         TEST(test_dropped_queries_are_not_in_the_estimate),
         TEST(test_many_clients_share_the_waiting_time),
-        TEST(test_the_only_waiting_query_is_taken),
-        TEST(test_cheap_queries_may_wait_by_the_thousand),
-        TEST(test_the_estimate_of_a_mixture),
+        TEST(test_the_only_waiting_query_is_never_refused),
+        TEST(test_thousands_of_cheap_queries_may_wait),
+        TEST(test_the_estimate_of_mixed_queries_is_their_mean),
         TEST(test_a_new_id_has_a_quota_of_its_own),
         TEST(test_refusals_are_limited),
         TEST(test_a_pair_of_many_frames),
         TEST(test_pairs_of_many_frames_do_not_keep_all_jobs),
         TEST(test_scenes_of_many_frames_do_not_keep_all_jobs),
         TEST(test_long_jobs_do_not_keep_short_ones_waiting),
-        TEST(test_making_bodies_is_done_in_short_spans),
-        TEST(test_two_clients_make_one_body_at_once),
+        TEST(test_bodies_are_made_in_short_steps),
+        TEST(test_a_body_that_two_clients_make_is_cached_once),
     };
     return cmocka_run_group_tests_name("server turns", tests, NULL, NULL);
 }

@@ -10,9 +10,8 @@
  * If outer and inner are too far apart, the exact end is computed in fixed-width integers for each
  * slab whose inner end is beyond the outer end of all by more than the limit. Where one of these
  * gives the end, the result is the tightest double, since rounding preserves order; otherwise the
- * outer end is within the limit. Edges of frames with errors that
- * are parallel as rounded need not be so as given, and any end may be that of their slab: its exact
- * end is always computed.
+ * outer end is within the limit. Edges of frames with errors that are parallel as rounded need not
+ * be so as given, and any end may be that of their slab: its exact end is always computed.
  *
  * The slabs do not give the times of two faces that stay in one plane: those along its normal are 0
  * at all times. If operations round, their errors are above 0, so that no inner value is good; then

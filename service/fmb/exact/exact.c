@@ -416,7 +416,7 @@ void exact_pair_clear(struct exact_pair *pair)
  * 15 million.
  *
  * A product of limbs takes half a nanosecond. test_engine_work.c counts the products, and searches
- * for the pair that takes most: 3 million, rotated 8 million. */
+ * for the slowest pair: 3 million, rotated 8 million. */
 
 /* Returns tau, in windows, as seconds: an end of a contact (0: first, 1: last), rounded
  * outward. */

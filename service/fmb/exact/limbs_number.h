@@ -10,9 +10,9 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Above 8 to 12 limbs GMP is as fast on average. It takes far less for the worst pairs, since it
+/* Above 8 to 12 limbs GMP is as fast on average, and far faster for the slowest pairs, since it
  * skips the zero limbs of numbers whose exponents are far apart: of the pairs that need 13 to 24
- * limbs, those that cost most took 0.7 ms here and 0.2 ms in GMP. (test_engine_work.c bounds the
+ * limbs, the slowest took 0.7 ms here and 0.2 ms in GMP. (test_engine_work.c bounds the
  * difference.) */
 enum { LIMBS_MAX = 12 };
 

@@ -126,7 +126,7 @@
  *    each is no less than the vertex. Quotients are rounded twice, and the distance from a range
  *    twice: 4 u where |s| <= 1. Beyond 1, |s| is at most 4 u more than 1 + E_s / |X|, and its
  *    excess is rounded by at most 4 u (E_s / |X| + 4 u). The constants of E_s, E_r and E_t are at
- *    least 0.7 % larger than 7 and 8 need (13.1 for 13), which covers this, and 11.
+ *    least 0.7 % larger than 7 and 8 need (13.1 for 13), which covers this and 11.
  * 10. It is certain if each parameter is in its range by more than these errors. Then the true
  *    edges cross. First, as prepared: the range of s has the length 2 for a cuboid and 1 for a
  *    simplex, so |X| > E_s for a cuboid and |X| > 2 E_s for a simplex. The error of X is less: at
@@ -144,8 +144,8 @@
  *    that underflows (5), and nothing overflows: quotients are below 2^500. Where H is 0, there are
  *    no crossings.
  * 12. Positions: what the components are made of is rounded at most 16 times, travel 17 times, the
- *    origin 7 times: less than the slack where |s| and |t| are at most 1. What they are beyond 1
- *    adds at most 17 u of the error of the position in 9, within the same 0.7 %.
+ *    origin 7 times: less than the slack where |s| and |t| are at most 1. Their excess
+ *    over 1 adds at most 17 u of the error of the position in 9, within the same 0.7 %.
  *
  * Where nothing rounds (slabs_exact.h), frames often touch, and inner spans are empty. Such lanes
  * are left to box_search.h, where determinants and products with n are then exact. */
