@@ -68,7 +68,7 @@ unchanged() {
             cmp out "$old"
             # shellcheck disable=SC2086
             "$FMB" $command out --force > text || { echo "$command"; false; }
-            ! cmp -s out "$old"
+            ! cmp -s out "$old" || false
             rm out text
             unchanged
         done
