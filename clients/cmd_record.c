@@ -199,6 +199,17 @@ static bool step(struct recording *recording, int signals, int64_t until_ns)
     return true;
 }
 
+/* Ends the recording if another program has deleted or truncated the file. The events that follow in
+ * a truncated file name bodies that its beginning defined. */
+static void check_file(struct recording *recording)
+{
+    if (recording->error || log_check(recording->parts.writer))
+        return;
+    const int error = errno;
+    record_bodies_define_again(recording->bodies, write_definition, recording);
+    recording->error = error;
+}
+
 /* Records until the recording is complete, the log fails, or a signal arrives. Returns false if the
  * bus has failed, which was reported. */
 static bool run(struct recording *recording, int signals)
@@ -222,8 +233,8 @@ static bool run(struct recording *recording, int signals)
             show_line(recording, now_ns);
             line_at_ns = now_ns + line_ns;
         }
-        if (now_ns >= check_at_ns && !recording->error) {
-            recording->error = log_check(recording->parts.writer) ? 0 : errno;
+        if (now_ns >= check_at_ns) {
+            check_file(recording);
             check_at_ns = now_ns + check_ns;
         }
     }
@@ -256,6 +267,7 @@ static int end_of_recording(struct recording *recording, bool good)
 {
     struct recorded *recorded = &recording->recorded;
     const int64_t end_ns = clock_ns();
+    check_file(recording);
     const int error = log_parts_finish(&recording->parts);
     if (!recording->error)
         recording->error = error;

@@ -20,7 +20,8 @@ static const char usage[] =
     "  --timeout SECONDS    longest time to wait (3)\n" ARGS_COMMON_USAGE
     "\n"
     "'own and foreign' (in JSON 'foreign') counts datagrams on channels that the\n"
-    "service does not receive, its own results and heartbeats included.\n"
+    "service does not receive, its own results included, and datagrams that are no\n"
+    "message.\n"
     "\n"
     "Exit codes: 0 printed, 1 no heartbeat came, 2 wrong usage.\n";
 

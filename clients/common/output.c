@@ -159,8 +159,8 @@ char *output_beside(const char *path, const char *name)
     return out;
 }
 
-/* The file that a path names after its symbolic links, which may not exist. The system has followed
- * them before, so their number is finite. The caller frees it. */
+/* The file that a path names after its symbolic links, which may not exist. On input: the system has
+ * followed them (no ELOOP), so their number is finite. The caller frees it. */
 static char *follow_links(const char *path)
 {
     char link[PATH_MAX], *at = output_beside("", path);
@@ -213,7 +213,7 @@ static int open_fd(struct output *output)
 {
     struct stat old;
     if (stat(output->path, &old) != 0)
-        return open_temporary(output, mode_of_new_files());
+        return errno == ENOENT ? open_temporary(output, mode_of_new_files()) : -1;
     const int standard = standard_fd(&old);
     if (standard >= 0)
         return dup(standard);

@@ -183,9 +183,8 @@ bool log_check(struct log_writer *writer)
         return fail(writer, 0);
     if (fstat(writer->fd, &file) != 0)
         return fail(writer, errno);
-    if (S_ISREG(file.st_mode) && (file.st_nlink == 0 || file.st_size < (off_t) writer->whole))
-        return fail(writer, ESTALE);
-    return true;
+    errno = ESTALE;
+    return !S_ISREG(file.st_mode) || (file.st_nlink > 0 && file.st_size >= (off_t) writer->whole);
 }
 
 /* ---- The end ----------------------------------------------------------------------------------
@@ -196,9 +195,7 @@ int log_finish_soon(struct log_writer *writer, int *disk)
     *disk = -1;
     if (!writer)
         return 0;
-    if (log_flush(writer))
-        log_check(writer);
-    const int error = writer->error;
+    const int error = log_flush(writer) && log_check(writer) ? 0 : errno;
     *disk = writer->fd;
     free(writer);
     return error;

@@ -48,7 +48,8 @@ bool log_flush(struct log_writer *writer);
 int64_t log_written(const struct log_writer *writer);
 
 /* Whether the file still exists, with all that was written. False after any error, and if another
- * program deleted or truncated the file (ESTALE). log_finish() checks this too. */
+ * program deleted or truncated the file (ESTALE; events can still be appended). log_finish() checks
+ * this too. */
 bool log_check(struct log_writer *writer);
 
 /* Bytes that an event takes in the file. */

@@ -350,6 +350,16 @@ void record_bodies_begin_file(struct record_bodies *bodies)
     set_clear(&bodies->defined);
 }
 
+bool record_bodies_define_again(struct record_bodies *bodies, definition_sink *sink, void *user)
+{
+    bodies->named.count = 0;
+    for (const struct handle_entry *entry = bodies->defined; entry; entry = entry->hh.next)
+        if (find_body(bodies, &entry->handle))
+            list_append(&bodies->named, &entry->handle);
+    record_bodies_begin_file(bodies);
+    return record_bodies_define(bodies, sink, user);
+}
+
 /* ---- Requests ---- */
 
 int64_t record_bodies_due(const struct record_bodies *bodies)

@@ -40,6 +40,10 @@ bool record_bodies_define(struct record_bodies *bodies, definition_sink *sink, v
 /* Begins a new file, which defines nothing yet. */
 void record_bodies_begin_file(struct record_bodies *bodies);
 
+/* As record_bodies_define(), of all known bodies that the file defined, for one that has lost its
+ * beginning. The last message counts as processed. */
+bool record_bodies_define_again(struct record_bodies *bodies, definition_sink *sink, void *user);
+
 /* The time when a request is due; INT64_MAX: none is, before the next message. */
 int64_t record_bodies_due(const struct record_bodies *bodies);
 

@@ -189,11 +189,13 @@ static void close_replay(struct replay *replay)
     definitions_close(replay->definitions);
     log_close(replay->golden);
     input_close(&replay->input);
+    const bool empty = replay->new_golden && log_written(replay->new_golden) == 0;
     const int error = log_finish(replay->new_golden);
     if (error)
         output_complain(replay->options->write_golden.path, error);
     replay->failed = replay->failed || error;
-    replay->failed = !output_close(replay->golden_file, !replay->failed) || replay->failed;
+    replay->failed =
+        !output_close(replay->golden_file, !replay->failed && !empty) || replay->failed;
 }
 
 /* ---- The run ---- */

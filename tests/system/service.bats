@@ -373,6 +373,14 @@ poison_all() {
     stop_fmbd
 }
 
+@test "on a quiet bus the datagrams of other channels are the results of the service" {
+    start_fmbd
+    random_scene 2 3 | "$FMB" query --json > /dev/null
+    for _ in 1 2 3; do status_of foreign > "$BATS_TEST_TMPDIR/foreign"; done
+    [ "$(cat "$BATS_TEST_TMPDIR/foreign")" = "$(status_of answered)" ]
+    stop_fmbd
+}
+
 @test "starts beside packets that crash liblcm" {
     ( while :; do poison_all; done ) 3>&- &
     started="${started-} $!"

@@ -208,6 +208,9 @@ static void test_a_file_that_cannot_be_opened_is_an_error(void **state)
     (void) state;
     assert_null(open_picture("no/such/folder", true, NULL));
     assert_null(open_picture(".", true, NULL));
+    assert_int_equal(symlink("loop", "loop"), 0);
+    assert_null(open_picture("loop", true, NULL));
+    assert_int_equal(unlink("loop"), 0);
     struct output *output = open_picture("", true, NULL);
     assert_false(output_close(output, true));
     assert_int_equal(count_files(), 0);

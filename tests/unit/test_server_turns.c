@@ -486,6 +486,23 @@ static void test_a_query_in_progress_does_not_expire(void **state)
     assert_int_equal(service_status()->expired, 1);
 }
 
+/* A pair of many frames waits in one FIFO, and then in another for the job of the one before it. */
+static void test_the_age_of_a_pair_of_many_frames(void **state)
+{
+    (void) state;
+    service.tick_ns = US;
+    service_query_frames(CHEAP, 1, 900);
+    service_query_frames(CHEAP, 2, 900);
+    service.now_ns += QUOTA_AGE_NS / 2;
+    for (int i = 0; i < 4; i++)
+        server_work(service.server);
+    assert_int_equal(service.count, 0);
+    service.now_ns += QUOTA_AGE_NS / 2;
+    service_settle();
+    expect_all_ok(1);
+    assert_int_equal(service_status()->expired, 1);
+}
+
 /* When the time that the queries of a client take is known, the newest are refused. */
 static void test_waiting_time_is_limited(void **state)
 {
@@ -869,6 +886,7 @@ int main(void)
         TEST(test_queries_expire),
         TEST(test_a_repeat_expires_by_its_own_arrival),
         TEST(test_a_query_in_progress_does_not_expire),
+        TEST(test_the_age_of_a_pair_of_many_frames),
         TEST(test_waiting_time_is_limited),
         TEST(test_waiting_time_of_scenes_is_limited),
         TEST(test_dropped_queries_are_not_in_the_estimate),
