@@ -4,7 +4,6 @@
 #include "answerer.h"
 
 #include "check.h"
-#include "query_pairs.h"
 #include "wire.h"
 
 #include <assert.h>
