@@ -199,8 +199,8 @@ static bool step(struct recording *recording, int signals, int64_t until_ns)
     return true;
 }
 
-/* Ends the recording if another program has deleted or truncated the file. The events that follow in
- * a truncated file name bodies that its beginning defined. */
+/* Ends the recording if another program has deleted or truncated the file. The events that follow
+ * in a truncated file name bodies that its beginning defined. */
 static void check_file(struct recording *recording)
 {
     if (recording->error || log_check(recording->parts.writer))

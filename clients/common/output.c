@@ -159,8 +159,8 @@ char *output_beside(const char *path, const char *name)
     return out;
 }
 
-/* The file that a path names after its symbolic links, which may not exist. On input: the system has
- * followed them (no ELOOP), so their number is finite. The caller frees it. */
+/* The file that a path names after its symbolic links, which may not exist. On input: the system
+ * has followed them (no ELOOP), so their number is finite. The caller frees it. */
 static char *follow_links(const char *path)
 {
     char link[PATH_MAX], *at = output_beside("", path);
