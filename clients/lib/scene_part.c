@@ -116,9 +116,9 @@ static bool fits_gaps(const struct matching *matching)
     for (int32_t i = 0; i < part->placement_count && result->has_gaps; i++)
         several = several || placements[part->placement[i]].frame_count > 1;
     for (int32_t k = 0; k < result->verdict_count && several; k++) {
-        const uint16_t *listed = part->pair[matching->first + k];
-        const unsigned a = result->names_pairs ? result->pair[k][0] : listed[0];
-        const unsigned b = result->names_pairs ? result->pair[k][1] : listed[1];
+        const bool named = result->names_pairs;
+        const unsigned a = named ? result->pair[k][0] : part->pair[matching->first + k][0];
+        const unsigned b = named ? result->pair[k][1] : part->pair[matching->first + k][1];
         good = good && fits_frames(&placements[part->placement[a]], &placements[part->placement[b]],
                                    &result->gap[k]);
     }

@@ -36,7 +36,7 @@ share() {
         share $attack --scenes --ids 4
     done
     "$FMB" status --json | jq -e '.received == .answered + .unsent and
-        .received == ([.results[]] | add)'
+        .answered == ([.results[]] | add)'
     stop_fmbd
 }
 
