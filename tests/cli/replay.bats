@@ -108,7 +108,7 @@ xpath() {
     replay spoiled.log
     ended 1
     counts '.different == 2 and .different_in.verdict == 2 and .exit == 1 and .same == 70'
-    counts '.differences[0] | .event == 7 and .offset == 4931 and .time == 0.01 and .a == 3 and .b == 1'
+    counts '.differences[0] | .event == 7 and .offset == 4979 and .time == 0.01 and .a == 3 and .b == 1'
     counts '.differences[0] | .kind == "verdict" and .then.verdict == "overlapping"'
     counts '.differences[0].now.verdict == "touching" and .differences[0].log == "spoiled.log"'
 }
