@@ -12,10 +12,6 @@
  * query, and match it as if it were recorded with that query. */
 #include "replay_parts.h"
 
-#include "big_endian.h"
-#include "wire.h"
-
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -111,7 +107,8 @@ void replay_close_pairs(struct replay *replay)
 
 /* ---- Numbers ---- */
 
-/* The group of the query in replay->query; NULL: of results without queries. */
+/* The group of a query; NULL: of results without queries. A label is in a query of at most
+ * QUERY_BYTES_MAX, whose other fields are longer than the numbers: replay->whole holds both. */
 static struct handle group_of(struct replay *replay, int64_t kind, const struct logged_query *query)
 {
     unsigned char *out = replay->whole;
