@@ -30,7 +30,12 @@ static const char usage[] =
     "bodies with an id that were sent whole, before or after the query.\n"
     "\n"
     "  --golden FILE        compare with the results in FILE, not with the recorded\n"
-    "                       ones\n"
+    "                       ones. A client without any result in FILE is paired with\n"
+    "                       one of FILE, by first appearance, and its queries by\n"
+    "                       their order within type, label and first pair (of pair\n"
+    "                       queries: both body ids); if FILE has results only,\n"
+    "                       within their type. Queries without a counterpart are\n"
+    "                       listed\n"
     "  --write-golden FILE  write the results, as an event log, to compare with later\n"
     "  --force              overwrite any FILE; a page that replaces a page, and a\n"
     "                       JUnit report that replaces one, need no --force\n"
@@ -68,7 +73,8 @@ static const char usage[] =
     "Memory, for logs of any size: some 300 bytes for each distinct body, and for\n"
     "each query that waits for its result some 500 bytes (a pair) or 250 and its\n"
     "result of at most 64 kB (a scene). A million pair queries before the first\n"
-    "result take 500 MB.\n"
+    "result take 500 MB. With a golden of other clients all queries wait for the end,\n"
+    "and take some 1 kB each.\n"
     "\n"
     "On several machines, by GNU parallel ($SLURM_ARRAY_TASK_ID for {} with Slurm):\n"
     "  parallel --sshloginfile machines fmb replay --json --from {} \\\n"
@@ -199,7 +205,7 @@ static const char *why_nothing(const struct replay_arguments *options, const str
 static int code_of(const struct replay_arguments *options, const struct tally *all)
 {
     const char *nothing = why_nothing(options, all);
-    if (tally_outcome(all, REPLAY_DIFFERENT) + tally_contradictions(all) > 0)
+    if (tally_outcome(all, REPLAY_DIFFERENT) + tally_contradictions(all) + tally_left_over(all) > 0)
         return ARGS_FAILED;
     if (nothing)
         complain(

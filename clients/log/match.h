@@ -32,12 +32,14 @@ struct match_item {
     bool in_table;     /* the item is in the table */
     bool has_recorded; /* the log has a result, at then */
     bool sent_whole;   /* sent with frames, after UNKNOWN_BODY */
+    bool left_over;    /* a recording by another client lacks this query */
     struct match_place then;
     unsigned char *now; /* owned; the new result; NULL: none yet */
     uint32_t now_size;
     struct match_item *pending; /* the next item that needs the same definition */
+    struct match_item *next;    /* the next item with the same key; NULL: none */
     /* Private: */
-    struct match_item *next, *last; /* items with the same key; last: only of the first item */
+    struct match_item *last; /* with the same key; only of the first item */
     UT_hash_handle hh;
 };
 

@@ -53,6 +53,7 @@ static bool take_next_golden(struct replay *replay)
            outcome == LOG_DAMAGE) {
         const enum log_kind kind =
             outcome == LOG_EVENT ? log_kind_of(&replay->channels, &event) : LOG_OTHER;
+        replay->golden_has_queries = replay->golden_has_queries || log_kind_is_query(kind);
         if (log_kind_is_result(kind)) {
             take_golden(replay, kind, &event);
             return true;
@@ -170,6 +171,7 @@ static bool open_replay(struct replay *replay)
         allocate_failed();
     replay->channels = log_channels(options->prefix);
     replay->defined_end = &replay->defined;
+    replay->unmatched_end = &replay->unmatched;
     replay->rereader = event_reader_open(options->log, options->log_count, options->golden);
     replay->match = match_open();
     return true;
@@ -184,6 +186,7 @@ static void close_replay(struct replay *replay)
     pending_free_list(replay->defined);
     pending_close(&replay->pending);
     match_close(replay->match);
+    replay_close_pairs(replay);
     event_reader_close(replay->rereader);
     hasher_destroy(replay->hasher);
     definitions_close(replay->definitions);

@@ -76,6 +76,7 @@ static void write_counts(struct json_writer *json, const struct tally_channel *c
     json_integer(json, "results_alone", channel->results_alone);
     json_integer(json, "second_results", channel->results_again);
     json_integer(json, "contradictions", channel->contradictions);
+    json_integer(json, "left_over", channel->left_over);
     json_integer(json, "unreadable_queries", channel->unreadable[0]);
     json_integer(json, "unreadable_results", channel->unreadable[1]);
     json_begin(json, "different_in", '{');

@@ -75,7 +75,8 @@ static void write_channel(FILE *out, const char *log, int index, int channel_ind
 
 static bool is_whole(const struct tally *tally)
 {
-    return tally->damages == 0 && tally_unreadable(tally) == 0 && tally_contradictions(tally) == 0;
+    return tally->damages == 0 && tally_unreadable(tally) == 0 &&
+           tally_contradictions(tally) == 0 && tally_left_over(tally) == 0;
 }
 
 /* Counts of a replay by a live service. */
@@ -113,8 +114,10 @@ static void write_log(FILE *out, const char *log, int index, struct listing *lis
         fprintf(out,
                 "      <error message=\"%" PRId64 " damaged places, %" PRId64
                 " messages that cannot be read, %" PRId64
-                " results that contradict earlier ones\"/>\n",
-                tally->damages, tally_unreadable(tally), tally_contradictions(tally));
+                " results that contradict earlier ones, %" PRId64
+                " queries in one recording only\"/>\n",
+                tally->damages, tally_unreadable(tally), tally_contradictions(tally),
+                tally_left_over(tally));
     fputs("    </testcase>\n", out);
     write_bus(out, log, tally);
     fputs("  </testsuite>\n", out);

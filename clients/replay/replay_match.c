@@ -26,7 +26,7 @@ void replay_compare_recorded(struct replay *replay, struct match_item *query)
 static void close_query(struct replay *replay, struct match_item *query)
 {
     match_remove(replay->match, query);
-    match_note(replay->match, query, &query->then);
+    replay_note_match(replay, query, &query->then);
     if (query->now || !query->place.in_range)
         replay_compare_recorded(replay, query);
 }
@@ -52,7 +52,7 @@ struct match_item *replay_begin_query(struct replay *replay, const struct messag
     item->has_recorded = true;
     match_remove(replay->match, first);
     match_free(first);
-    match_note(replay->match, item, &item->then);
+    replay_note_match(replay, item, &item->then);
     return item;
 }
 
@@ -73,7 +73,7 @@ static void compare_second(struct replay *replay, const struct message *result,
 }
 
 /* Keeps a result of a query that has no answer yet, or a transient result: the query stays in the
- * table. */
+ * table, unless it is repeated. */
 static void keep_result(struct replay *replay, struct match_item *query,
                         const struct message *result)
 {
@@ -81,7 +81,7 @@ static void keep_result(struct replay *replay, struct match_item *query,
     if (!query->has_recorded || !transient)
         query->then = result->place;
     query->has_recorded = true;
-    if (!transient)
+    if (!transient || query->next)
         close_query(replay, query);
 }
 
@@ -90,7 +90,7 @@ static void complete_query(struct replay *replay, struct match_item *query,
                            const struct message *result, bool is_compared)
 {
     match_remove(replay->match, query);
-    match_note(replay->match, query, &result->place);
+    replay_note_match(replay, query, &result->place);
     if (!is_compared)
         replay_compare(replay, query);
     match_free(query);
@@ -143,7 +143,13 @@ static void on_matched(void *user, struct match_item *query, struct match_item *
     struct replay *replay = user;
     if (query) {
         query->then = result->place;
+        replay_note_match(replay, query, &result->place);
         replay_compare_recorded(replay, query);
+    } else if (replay->golden) {
+        *replay->unmatched_end = result;
+        replay->unmatched_end = &result->pending;
+        *replay->unmatched_end = NULL;
+        return;
     } else {
         replay_channel(replay, &result->key, &result->place)->results_alone +=
             result->place.in_range;
@@ -165,9 +171,19 @@ void replay_finish_matches(struct replay *replay)
 {
     close_queries(replay);
     match_finish(replay->match, on_matched, replay);
-    for (struct match_item *query; (query = match_any(replay->match));) {
-        match_remove(replay->match, query);
-        replay_unrecorded(replay, query);
-        match_free(query);
+    if (replay->golden) {
+        replay_pair_results(replay, replay->unmatched);
+        close_queries(replay);
+    }
+    for (struct match_item *item; (item = match_any(replay->match));) {
+        match_remove(replay->match, item);
+        if (item->is_result) {
+            replay_channel(replay, &item->key, &item->place)->results_alone++;
+        } else {
+            replay_unrecorded(replay, item);
+            if (item->left_over && item->place.in_range)
+                replay_count_left_over(replay, &item->key, &item->place);
+        }
+        match_free(item);
     }
 }

@@ -1,6 +1,7 @@
 /* The state of a replay, and its parts. Private. Each part calls only those below it: replay.c
  * reads the logs, replay_answer.c answers queries, replay_match.c matches queries with their
- * results, and replay_compare.c compares results. */
+ * results,
+ * replay_pair.c those of different clients, and replay_compare.c compares results. */
 #ifndef REPLAY_PARTS_H
 #define REPLAY_PARTS_H
 
@@ -32,6 +33,11 @@ struct replay {
     struct pending_queries pending;
     /* Queries to answer again, since their handles are now defined; linked by ->pending. */
     struct match_item *defined, **defined_end;
+    /* With a golden log: the clients that have a result in it by their ids; its results without a
+     * query, linked by ->pending, at the end; whether it contains queries. */
+    struct replay_pair *matched_clients;
+    struct match_item *unmatched, **unmatched_end;
+    bool golden_has_queries;
     int64_t first_utime;
     bool started, failed;
     int old_version; /* that recorded a message; 0: none did */
@@ -87,6 +93,21 @@ void replay_take_result(struct replay *replay, const struct message *result);
 
 /* At the end: processes results that do not echo the time of their query, and unmatched items. */
 void replay_finish_matches(struct replay *replay);
+
+/* ---- replay_pair.c ---- */
+
+/* match_note(), for clients whose results are found by their ids. */
+void replay_note_match(struct replay *replay, const struct match_item *query,
+                       const struct match_place *result);
+void replay_close_pairs(struct replay *replay);
+
+/* At the end, with a golden log: matches its remaining results, a list linked by ->pending that
+ * this frees, with the queries in the table by their order, and sets left_over of these. */
+void replay_pair_results(struct replay *replay, struct match_item *first);
+
+/* Counts and reports a query that only one recording has. key: of the query. */
+void replay_count_left_over(struct replay *replay, const struct match_key *key,
+                            const struct match_place *place);
 
 /* ---- replay_compare.c ---- */
 

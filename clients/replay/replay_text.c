@@ -162,6 +162,8 @@ static void print_log(FILE *out, const struct tally *tally)
     if (tally_contradictions(tally) > 0)
         fprintf(out, "; %" PRId64 " results that contradict earlier ones",
                 tally_contradictions(tally));
+    if (tally_left_over(tally) > 0)
+        fprintf(out, "; %" PRId64 " queries in one recording only", tally_left_over(tally));
     if (tally->damages > 0)
         fprintf(out, "; %" PRId64 " damaged places, %" PRId64 " bytes", tally->damages,
                 tally->damaged_bytes);

@@ -21,6 +21,7 @@ void tally_add_channel(struct tally_channel *to, const struct tally_channel *fro
     to->results_alone += from->results_alone;
     to->results_again += from->results_again;
     to->contradictions += from->contradictions;
+    to->left_over += from->left_over;
     for (int i = 0; i < 2; i++)
         to->unreadable[i] += from->unreadable[i];
 }
@@ -78,4 +79,9 @@ int64_t tally_compared(const struct tally *tally)
 int64_t tally_contradictions(const struct tally *tally)
 {
     return tally->channel[TALLY_PAIRS].contradictions + tally->channel[TALLY_SCENES].contradictions;
+}
+
+int64_t tally_left_over(const struct tally *tally)
+{
+    return tally->channel[TALLY_PAIRS].left_over + tally->channel[TALLY_SCENES].left_over;
 }

@@ -15,6 +15,7 @@ struct tally_channel {
     int64_t results_alone;  /* without a query in the log, or long after its first result */
     int64_t results_again;  /* second results that agree with the first or depend on the moment */
     int64_t contradictions; /* second results that contradict the first */
+    int64_t left_over;      /* of different clients: queries in one recording only */
     int64_t unreadable[2];  /* [query, result] */
 };
 
@@ -61,6 +62,7 @@ int64_t tally_queries(const struct tally *tally);
 int64_t tally_outcome(const struct tally *tally, enum replay_outcome outcome);
 int64_t tally_unreadable(const struct tally *tally);
 int64_t tally_contradictions(const struct tally *tally);
+int64_t tally_left_over(const struct tally *tally);
 
 /* Number of queries compared: the same or different. */
 int64_t tally_compared(const struct tally *tally);

@@ -108,7 +108,8 @@ xpath() {
     replay spoiled.log
     ended 1
     counts '.different == 2 and .different_in.verdict == 2 and .exit == 1 and .same == 70'
-    counts '.differences[0] | .event == 7 and .offset == 4979 and .time == 0.01 and .a == 3 and .b == 1'
+    counts ".differences[0].offset == $("$EDIT" --offset 7 spoiled.log)"
+    counts '.differences[0] | .event == 7 and .time == 0.01 and .a == 3 and .b == 1'
     counts '.differences[0] | .kind == "verdict" and .then.verdict == "overlapping"'
     counts '.differences[0].now.verdict == "touching" and .differences[0].log == "spoiled.log"'
 }
@@ -418,6 +419,86 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     replay --golden arm.golden spoiled.log
     ended 0
     counts '.results == 72 and .results_alone > 20 and .no_result == 0'
+}
+
+@test "a recording by another client is compared in order" {
+    for log in arm clients blast moving; do
+        replay --golden $log.log $log.log
+        own=$(jq -c '[.queries, .same, .busy, .unknown_body, .not_defined, .no_result]' <<< "$output")
+        for other in '--client 5' '--sequence 100000' '--client 5 --sequence 100000' \
+            '--client 5 --delay 3' '--client 5 --utime 0' '--client 5 --repeat 3 --repeat-query 4'; do
+            edit $other $log.log
+            replay --golden spoiled.log $log.log
+            ended 0
+            counts ".left_over == 0 and $own == [.queries, .same, .busy, .unknown_body, .not_defined, .no_result]"
+            replay --golden $log.log spoiled.log
+            ended 0
+            counts ".left_over == 0"
+        done
+    done
+    edit --client 5 --sequence 7 --flip 3 --flip 60 arm.log
+    replay --golden spoiled.log arm.log
+    ended 1
+    counts '.different == 2 and .same == 70 and [.differences[].sequence_number] == [3,60]'
+    edit --client 5 --repeat 4 --flip 5 arm.log
+    replay --golden spoiled.log arm.log
+    ended 1
+    counts '.same == 72 and .contradictions == 1 and .left_over == 0'
+    # Results without their queries are compared in the order of their type.
+    "$FMB" replay --write-golden arm.golden spoiled.log || true
+    replay --golden arm.golden arm.log
+    ended 0
+    counts '.same == 72 and .left_over == 0'
+}
+
+@test "queries that only one of two recordings has are listed" {
+    "$EDIT" --client 5 --sequence 7 --drop 71 --drop-query 71 arm.log less.log
+    replay --golden less.log arm.log
+    ended 1
+    counts '.same == 71 and .no_result == 1 and .left_over == 1 and .different == 0'
+    [[ $stderr == *'arm.log: event '*': FMB_'*'_QUERY: has no counterpart in the other recording' ]]
+    replay --golden arm.log less.log
+    ended 1
+    counts '.same == 71 and .no_result == 0 and .left_over == 1 and .results_alone == 1'
+    [[ $stderr == *'arm.log: event '*': FMB_'*'_QUERY: has no counterpart in the other recording' ]]
+    run "$FMB" replay --golden arm.log less.log
+    ended 1
+    [[ $output == *'; 1 queries in one recording only'* ]]
+    junit --golden arm.log less.log
+    [ "$(xpath '//testsuite/@errors')" = 1 ]
+    # A query without a result has a counterpart all the same: the next ones do not move up.
+    "$EDIT" --client 5 --drop 3 arm.log mute.log
+    replay --golden mute.log arm.log
+    ended 0
+    counts '.same == 71 and .no_result == 1 and .left_over == 0'
+}
+
+@test "queries of another client are counted within type, label and first pair" {
+    # Two pair queries of different bodies, in the other order.
+    "$EDIT" --client 5 arm.log other.log
+    for part in '0 9' '11 13' '9 11' '13 146'; do
+        "$EDIT" --events $part other.log part.log
+        cat part.log >> turned.log
+    done
+    replay --golden turned.log arm.log
+    ended 0
+    counts '.same == 72 and .left_over == 0'
+    # The last query of its group is missing: the later ones of other pairs do not move up.
+    "$EDIT" --client 5 --drop-query 64 --drop 64 arm.log less.log
+    replay --golden less.log arm.log
+    ended 1
+    counts '.different == 0 and .same == 71 and .left_over == 1'
+    replay --from 0.05 --to 0.1 --golden other.log arm.log
+    ended 0
+    counts '.same == .queries and .queries > 5 and .queries < 40 and .left_over == 0'
+}
+
+@test "exact matches keep priority over the order" {
+    "$EDIT" --events 0 60 moving.log begin.log
+    "$EDIT" --events 40 1000 moving.log end.log
+    replay --golden begin.log end.log
+    ended 0
+    counts '.same == 10 and .no_result == 10 and .results_alone == 20 and .left_over == 0'
 }
 
 @test "golden results that cannot be read are named" {

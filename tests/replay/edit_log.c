@@ -1,4 +1,5 @@
 /* Copies an event log and spoils the copy: usage says how. */
+#include "big_endian.h"
 #include "log_draft.h"
 #include "log_kind.h"
 #include "wire.h"
@@ -22,7 +23,8 @@ static const char usage[] =
     "  --refuse N STATUS  result N has this status, and nothing else\n"
     "  --certify N TEXT   the certificate of result N\n"
     "  --drop N, --repeat N   result N is not there, or twice\n"
-    "  --drop-query N     query N is not there\n"
+    "  --drop-query N, --repeat-query N  query N is not there, or twice\n"
+    "  --client N, --sequence N  client ids or sequence numbers are larger by N\n"
     "  --delay K          results come K events later\n"
     "  --last, --first    all results come behind all queries, or before them\n"
     "  --utime N          result N does not echo the utime of its query\n"
@@ -336,6 +338,37 @@ static void repeat(char **argument)
 {
     const size_t at = number(is_result, argument[0]);
     insert(at, event[at]);
+    put(at, event[at].data, event[at].size);
+}
+
+static void repeat_query(char **argument)
+{
+    const size_t at = number(is_query, argument[0]);
+    insert(at, event[at]);
+    put(at, event[at].data, event[at].size);
+}
+
+/* Adds to the number at this offset of each query and result. */
+static void add(size_t offset, uint64_t addend)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (!is_query(i) && !is_result(i))
+            continue;
+        uint64_t sum = big_endian_64(event[i].data + offset) + addend;
+        for (size_t byte = 8; byte-- > 0; sum >>= 8)
+            event[i].data[offset + byte] = (unsigned char) sum;
+    }
+}
+
+/* A message begins with its fingerprint and its utime. */
+static void add_client(char **argument)
+{
+    add(16, (uint64_t) atoll(argument[0]));
+}
+
+static void add_sequence(char **argument)
+{
+    add(24, (uint64_t) atoll(argument[0]));
 }
 
 /* The order of events: by place, of results with so much added to it. */
@@ -435,17 +468,18 @@ static const struct edit {
     int arguments;
     void (*make)(char **argument);
 } edits[] = {
-    {"--flip", 1, flip},       {"--nudge", 2, nudge},
-    {"--busy", 1, busy},       {"--unknown", 1, unknown},
-    {"--certify", 2, certify}, {"--utime", 1, utime},
-    {"--drop", 1, drop},       {"--drop-query", 1, drop_query},
-    {"--repeat", 1, repeat},   {"--delay", 1, delay},
-    {"--last", 0, last},       {"--first", 0, first},
-    {"--clock", 2, set_clock}, {"--version", 1, version},
-    {"--shorten", 1, shorten}, {"--garbage", 1, garbage},
-    {"--prefix", 1, prefix},   {"--rename", 2, rename_channel},
-    {"--events", 2, some},     {"--refuse", 2, refuse},
-    {"--old", 2, old},
+    {"--flip", 1, flip},         {"--nudge", 2, nudge},
+    {"--busy", 1, busy},         {"--unknown", 1, unknown},
+    {"--certify", 2, certify},   {"--utime", 1, utime},
+    {"--drop", 1, drop},         {"--drop-query", 1, drop_query},
+    {"--repeat", 1, repeat},     {"--delay", 1, delay},
+    {"--last", 0, last},         {"--first", 0, first},
+    {"--clock", 2, set_clock},   {"--version", 1, version},
+    {"--shorten", 1, shorten},   {"--garbage", 1, garbage},
+    {"--prefix", 1, prefix},     {"--rename", 2, rename_channel},
+    {"--events", 2, some},       {"--refuse", 2, refuse},
+    {"--old", 2, old},           {"--repeat-query", 1, repeat_query},
+    {"--client", 1, add_client}, {"--sequence", 1, add_sequence},
 };
 
 static const struct edit *find_edit(const char *name)
