@@ -7,7 +7,7 @@
 
 struct part {
     bool single;   /* a pair query */
-    int32_t which; /* QUERY_PAIRS_ */
+    int32_t which; /* enum fmb_pairs */
     int32_t split; /* with ACROSS */
     int32_t total; /* of pairs */
     int32_t placement_count;

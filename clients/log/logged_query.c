@@ -89,9 +89,9 @@ size_t logged_query_write(const struct logged_query *query, unsigned char out[QU
 int64_t logged_query_pairs(const struct scene_query *query)
 {
     const int64_t n = placement_count(query);
-    if (query->which == QUERY_PAIRS_LISTED)
+    if (query->which == FMB_PAIRS_LISTED)
         return query->index_count / 2;
-    return query->which == QUERY_PAIRS_ACROSS ? query->split * (n - query->split) : n * (n - 1) / 2;
+    return query->which == FMB_PAIRS_ACROSS ? query->split * (n - query->split) : n * (n - 1) / 2;
 }
 
 int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair)
@@ -237,13 +237,13 @@ static void set_ignored(const struct scene_query *query, struct scene *scene)
 static void set_pairs(const struct scene_query *query, struct scene *scene)
 {
     struct list list = {.scene = scene, .skip = query->first_pair};
-    scene->all_pairs = query->which == QUERY_PAIRS_ALL && query->first_pair == 0;
+    scene->all_pairs = query->which == FMB_PAIRS_ALL && query->first_pair == 0;
     set_ignored(query, scene);
-    if (query->which == QUERY_PAIRS_LISTED)
+    if (query->which == FMB_PAIRS_LISTED)
         for (int32_t k = 0; k < query->index_count / 2; k++)
             add(&list, query->pair[k][0], query->pair[k][1]);
     else if (!scene->all_pairs)
-        list_pairs(&list, query->which == QUERY_PAIRS_ACROSS, (size_t) query->split);
+        list_pairs(&list, query->which == FMB_PAIRS_ACROSS, (size_t) query->split);
     scene->ignored_count = scene->all_pairs ? scene->ignored_count : 0;
 }
 

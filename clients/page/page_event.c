@@ -362,8 +362,8 @@ static void write_pairs(const struct replayed *replayed, struct json_writer *out
 static int64_t kind_of(const struct scene_query *scene)
 {
     switch (scene->which) {
-    case QUERY_PAIRS_LISTED: return 1;
-    case QUERY_PAIRS_ALL: return 2;
+    case FMB_PAIRS_LISTED: return 1;
+    case FMB_PAIRS_ALL: return 2;
     default: return 1 + (int64_t) scene->which;
     }
 }

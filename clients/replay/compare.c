@@ -214,7 +214,7 @@ static enum replay_outcome compare_answers(const struct compare_options *options
  * for results of this process. */
 static bool is_consistent(const struct scene_query *query, const struct scene_result *result)
 {
-    const bool names = query->which != QUERY_PAIRS_LISTED;
+    const bool names = query->which != FMB_PAIRS_LISTED;
     if (result->end_pair < query->first_pair || result->end_pair > logged_query_pairs(query))
         return false;
     if (!names)
@@ -225,7 +225,7 @@ static bool is_consistent(const struct scene_query *query, const struct scene_re
         const unsigned *pair = result->names_pairs ? result->pair[i] : NULL;
         if (!pair || pair[0] >= pair[1] || pair[1] >= (unsigned) query->placement_count)
             return false;
-        if (query->which == QUERY_PAIRS_ACROSS &&
+        if (query->which == FMB_PAIRS_ACROSS &&
             (pair[0] >= (unsigned) query->split || pair[1] < (unsigned) query->split))
             return false;
         const int32_t number = (int32_t) query_pair_number(query, pair[0], pair[1]);

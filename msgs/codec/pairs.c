@@ -10,7 +10,7 @@ static int32_t stored_placements(const struct scene_query *query)
 int64_t query_pair_number(const struct scene_query *query, unsigned a, unsigned b)
 {
     const int64_t n = stored_placements(query), first = a, second = b;
-    if (query->which == QUERY_PAIRS_ACROSS)
+    if (query->which == FMB_PAIRS_ACROSS)
         return first * (n - query->split) + second - query->split;
     return first * n - first * (first + 1) / 2 + second - (first + 1);
 }
@@ -29,7 +29,7 @@ static void count_undecided(struct undecided *undecided, const unsigned pair[2])
     const unsigned n = (unsigned) stored_placements(query), split = (unsigned) query->split;
     const unsigned a = pair[0] < pair[1] ? pair[0] : pair[1];
     const unsigned b = pair[0] < pair[1] ? pair[1] : pair[0];
-    const bool across = query->which == QUERY_PAIRS_ACROSS;
+    const bool across = query->which == FMB_PAIRS_ACROSS;
     if (a == b || b >= n || (across && (a >= split || b < split)))
         return;
     const unsigned bit = a * n + b;
@@ -54,7 +54,7 @@ int64_t query_pairs_decided(const struct scene_query *query, int32_t end_pair,
 {
     struct undecided undecided = {.query = query, .end_pair = end_pair, .marks = marks};
     const size_t n = (size_t) stored_placements(query);
-    if (query->which != QUERY_PAIRS_LISTED) {
+    if (query->which != FMB_PAIRS_LISTED) {
         memset(marks->bit, 0, n * n / 8 + 1);
         for (int32_t k = 0; k < query->ignored_count / 2; k++)
             count_undecided(&undecided, query->ignored[k]);

@@ -20,9 +20,6 @@ static inline bool query_id_ok(int64_t id)
     return id >= 0 && id <= QUERY_ID_MAX;
 }
 
-/* Bits of want, of pairs and of scenes. */
-enum { QUERY_WANT_BOX = 1, QUERY_WANT_CERTIFICATE = 2, QUERY_WANT_TIMES = 4, QUERY_WANT_GAP = 8 };
-
 /* Most bytes of a query or result: one datagram, which LCM's Java sends unfragmented. */
 enum { QUERY_BYTES_MAX = 63900 };
 
@@ -117,8 +114,6 @@ struct pair_result {
 
 /* ---- Scenes ---- */
 
-enum { QUERY_PAIRS_ALL = 0, QUERY_PAIRS_LISTED = 1, QUERY_PAIRS_ACROSS = 2 };
-
 /* Most valid placements, and most pairs listed, of a query of QUERY_BYTES_MAX: a placement takes 77
  * bytes (2D, by handle, at rest) or more, a pair 4. */
 enum {
@@ -133,7 +128,7 @@ struct scene_query {
     double duration;
     int32_t method, want;
     double margin;
-    int32_t which; /* QUERY_PAIRS_ */
+    int32_t which; /* enum fmb_pairs, not checked */
     int32_t split, first_pair;
     /* Counts of the message; if they exceed the arrays, the first elements are stored. */
     int32_t placement_count, index_count, ignored_count;

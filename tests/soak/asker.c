@@ -125,12 +125,11 @@ static void ask(struct asker *asker)
     const struct fmb_client_scene scene = {
         .placements = asker->placement,
         .placement_count = FRAMES,
-        .which = FMB_CLIENT_LISTED,
+        .which = FMB_PAIRS_LISTED,
         .pairs = (const unsigned(*)[2]) asker->pair,
         .pair_count = (size_t) asker->plan->pairs,
         .duration = 1,
-        .want = FMB_CLIENT_WANT_BOX | FMB_CLIENT_WANT_TIMES |
-                (asker->plan->single ? FMB_CLIENT_WANT_CERTIFICATE : 0),
+        .want = FMB_WANT_BOX | FMB_WANT_TIMES | (asker->plan->single ? FMB_WANT_CERTIFICATE : 0),
     };
     const int64_t begin = clock_ns();
     asker->seen = 0;
@@ -138,7 +137,7 @@ static void ask(struct asker *asker)
         const struct fmb_client_placement both[2] = {asker->placement[asker->pair[0][0]],
                                                      asker->placement[asker->pair[0][1]]};
         struct fmb_client_answer answer;
-        fmb_client_query_pair(asker->client, both, 1, FMB_CLIENT_WANT_BOX, &answer);
+        fmb_client_query_pair(asker->client, both, 1, FMB_WANT_BOX, &answer);
         answer.a = asker->pair[0][0];
         answer.b = asker->pair[0][1];
         take(asker, &answer);

@@ -85,7 +85,7 @@ static void draw(struct soak *soak)
     for (int i = 0; i < QUESTIONS; i++) {
         struct question *question = &soak->question[i];
         struct pair_query query = {
-            .client_id = soak->client_id, .duration = 1, .want = QUERY_WANT_BOX};
+            .client_id = soak->client_id, .duration = 1, .want = FMB_WANT_BOX};
         struct fmb_body body[2];
         unsigned char geometry[2][GEOMETRY_FRAME_BYTES_MAX];
         for (int f = 0; f < 2; f++)

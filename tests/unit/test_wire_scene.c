@@ -72,7 +72,7 @@ static void set_query(int32_t placements, int32_t indices, int32_t ignored)
     query.duration = 0.1;
     query.method = 2;
     query.want = 5;
-    query.which = QUERY_PAIRS_ACROSS;
+    query.which = FMB_PAIRS_ACROSS;
     query.split = 3;
     query.first_pair = 7;
     query.margin = 0.25;
