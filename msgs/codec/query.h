@@ -7,6 +7,7 @@
 #include "fmb.h"
 #include "handle.h"
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
@@ -208,6 +209,30 @@ static inline bool query_same_gap(const struct fmb_gap *a, const struct fmb_gap 
            memcmp(&a->time, &b->time, sizeof a->time) == 0 &&
            memcmp(a->witness, b->witness, sizeof a->witness) == 0 &&
            memcmp(a->frame, b->frame, sizeof a->frame) == 0;
+}
+
+/* Returns the parts of two answers that differ, a sum of FMB_WANT_TIMES, BOX and GAP: one answer
+ * lacks the part, or its numbers are not equal bit for bit (0 and -0 differ). */
+static inline unsigned query_parts_that_differ(const struct fmb_answer *a,
+                                               const struct fmb_answer *b)
+{
+    /* Flags and padding take 8 bytes in each struct. A new number changes a size. */
+    static_assert(sizeof *a == 8 + sizeof a->contact + sizeof a->box + sizeof a->gap &&
+                      sizeof a->gap == 8 + sizeof a->gap.bounds + sizeof a->gap.direction +
+                                           sizeof a->gap.time + sizeof a->gap.witness +
+                                           sizeof a->gap.frame,
+                  "a number that is not compared");
+    const bool times = a->has_contact != b->has_contact ||
+                       (a->has_contact && memcmp(a->contact, b->contact, sizeof a->contact) != 0);
+    const bool box =
+        a->has_box != b->has_box || (a->has_box && memcmp(a->box, b->box, sizeof a->box) != 0);
+    const bool gap = a->has_gap != b->has_gap || (a->has_gap && !query_same_gap(&a->gap, &b->gap));
+    return (times ? FMB_WANT_TIMES : 0) | (box ? FMB_WANT_BOX : 0) | (gap ? FMB_WANT_GAP : 0);
+}
+
+static inline bool query_same_answer(const struct fmb_answer *a, const struct fmb_answer *b)
+{
+    return a->verdict == b->verdict && query_parts_that_differ(a, b) == 0;
 }
 
 /* ---- Definitions ---- */

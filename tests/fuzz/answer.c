@@ -54,15 +54,6 @@ static void check_certificate(const struct fmb_placement place[2], double durati
         fmb_certificate_holds(&place[0], &place[1], duration, right.verdict, certificate, NULL, 0));
 }
 
-static bool same_answer(const struct fmb_answer *a, const struct fmb_answer *b)
-{
-    return a->verdict == b->verdict && a->has_contact == b->has_contact &&
-           a->has_box == b->has_box && same_doubles(a->contact, b->contact, 2) &&
-           same_doubles(a->box[0], b->box[0], FMB_DIM_MAX) &&
-           same_doubles(a->box[1], b->box[1], FMB_DIM_MAX) && a->has_gap == b->has_gap &&
-           query_same_gap(&a->gap, &b->gap);
-}
-
 static unsigned want_of(int32_t want)
 {
     return (unsigned) want & (FMB_WANT_BOX | FMB_WANT_GAP);
@@ -123,7 +114,7 @@ static void check_decided(const struct pair_query *query, const struct pair_resu
     const int32_t status = (int32_t) fmb_decide(method, &place[0], &place[1], query->duration,
                                                 want_of(query->want), &answer);
     FUZZ_CHECK(result->status == status);
-    FUZZ_CHECK(same_answer(&result->answer, &answer));
+    FUZZ_CHECK(query_same_answer(&result->answer, &answer));
     FUZZ_CHECK(result->method == (status == FMB_OK ? method->number : 0));
     FUZZ_CHECK(result->dim == (answer.has_box || answer.has_gap ? query->placement[0].dim : 0));
     FUZZ_CHECK(result->names_frames ==

@@ -10,7 +10,7 @@
  * answers, and each answer was that of libfmb, bit for bit. */
 #include "clock.h"
 #include "fmb_client.h"
-#include "same_answer.h"
+#include "query.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -116,7 +116,7 @@ static void take(void *user, const struct fmb_client_answer *answer)
     if (answer->status != FMB_OK)
         asker->unanswered++;
     else if (answer->a != pair[0] || answer->b != pair[1] ||
-             !same_answer(&answer->answer, &asker->answers[k]))
+             !query_same_answer(&answer->answer, &asker->answers[k]))
         asker->wrong++;
 }
 

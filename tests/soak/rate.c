@@ -7,7 +7,6 @@
 #include "clock.h"
 #include "geometry_write.h"
 #include "process.h"
-#include "same_answer.h"
 #include "wire.h"
 
 #include <inttypes.h>
@@ -130,8 +129,9 @@ static void on_result(void *user, const struct bus_message *message)
         return; /* answered before, or to be asked again */
     const int64_t took = clock_ns() - slot->first_ns;
     soak->longest_ns = took > soak->longest_ns ? took : soak->longest_ns;
-    soak->wrong += result.status != FMB_OK ||
-                   !same_answer(&result.answer, &soak->question[slot->number % QUESTIONS].answer);
+    soak->wrong +=
+        result.status != FMB_OK ||
+        !query_same_answer(&result.answer, &soak->question[slot->number % QUESTIONS].answer);
     slot->number = 0;
 }
 
