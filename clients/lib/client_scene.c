@@ -1,5 +1,6 @@
 #include "client_scene.h"
 
+#include "pair_number.h"
 #include "utf8.h"
 #include "writer.h"
 
@@ -297,12 +298,6 @@ bool client_scene_is_within_group(const struct fmb_client_scene *scene, const un
     return group != 0 && group == scene->placements[pair[1]].group;
 }
 
-/* Index of the first placement that is paired with placement a. */
-static size_t first_partner(const struct fmb_client_scene *scene, size_t a)
-{
-    return scene->which == FMB_PAIRS_ACROSS ? scene->split : a + 1;
-}
-
 bool client_scene_next_pair(const struct fmb_client_scene *scene,
                             struct client_scene_cursor *cursor, unsigned out[2])
 {
@@ -312,12 +307,9 @@ bool client_scene_next_pair(const struct fmb_client_scene *scene,
         memcpy(out, scene->pairs[cursor->next++], sizeof *scene->pairs);
         return true;
     }
-    const size_t firsts = scene->which == FMB_PAIRS_ACROSS ? scene->split : scene->placement_count;
-    if (cursor->b == 0)
-        cursor->b = first_partner(scene, cursor->a);
-    if (cursor->b >= scene->placement_count && ++cursor->a < firsts)
-        cursor->b = first_partner(scene, cursor->a);
-    if (cursor->a >= firsts || cursor->b >= scene->placement_count)
+    const struct pair_numbers numbers = {scene->which == FMB_PAIRS_ACROSS, scene->placement_count,
+                                         scene->split};
+    if (!pair_find(&numbers, &cursor->a, &cursor->b))
         return false;
     out[0] = (unsigned) cursor->a;
     out[1] = (unsigned) cursor->b++;

@@ -177,7 +177,7 @@ static bool next_block(struct division *division, struct part *out)
         out->split = out->placement_count;
         add_block(division, out->column, out);
     }
-    out->total = part_pairs_before(out, out->split ? out->split : out->placement_count);
+    out->total = part_pair_count(out);
     return true;
 }
 

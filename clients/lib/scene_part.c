@@ -1,5 +1,6 @@
 #include "scene_part.h"
 
+#include "pair_number.h"
 #include "wire.h"
 
 #include <stdio.h>
@@ -46,12 +47,16 @@ size_t part_result_bytes(const struct part *part, const struct fmb_client_scene 
     return bytes < QUERY_BYTES_MAX ? bytes : QUERY_BYTES_MAX;
 }
 
-int32_t part_pairs_before(const struct part *part, int32_t a)
+static struct pair_numbers numbers_of(const struct part *part)
 {
-    const int32_t n = part->placement_count;
-    if (part->which == FMB_PAIRS_ACROSS)
-        return a * (n - part->split);
-    return a * n - a * (a + 1) / 2;
+    return (struct pair_numbers){part->which == FMB_PAIRS_ACROSS, (size_t) part->placement_count,
+                                 (size_t) part->split};
+}
+
+int32_t part_pair_count(const struct part *part)
+{
+    const struct pair_numbers numbers = numbers_of(part);
+    return (int32_t) pairs_total(&numbers);
 }
 
 /* ---- Results ---- */
@@ -70,13 +75,11 @@ static int32_t number_of(const struct matching *matching, int32_t k)
     const struct part *part = matching->part;
     if (part->which == FMB_PAIRS_LISTED)
         return matching->first + k;
-    const unsigned placements = (unsigned) part->placement_count, split = (unsigned) part->split;
-    const unsigned a = matching->result->pair[k][0], b = matching->result->pair[k][1];
-    const bool across = part->which == FMB_PAIRS_ACROSS;
-    const unsigned partners = across ? split : a + 1;
-    if (a >= (across ? split : placements) || b < partners || b >= placements)
-        return -1;
-    return part_pairs_before(part, (int32_t) a) + (int32_t) (b - partners);
+    const struct pair_numbers numbers = numbers_of(part);
+    const unsigned *pair = matching->result->pair[k];
+    return pair_is_among(&numbers, pair[0], pair[1])
+               ? (int32_t) pair_number(&numbers, pair[0], pair[1])
+               : -1;
 }
 
 /* Whether each pair that the result names is in the query, comes once, in order, and is a contact

@@ -363,7 +363,7 @@ static void write_query(const struct replayed *replayed, struct json_writer *out
             json_number(out, "margin", scene->margin);
         json_integer(out, "first", scene->first_pair);
         json_integer(out, "split", scene->split);
-        json_integer(out, "total", logged_query_pairs(scene));
+        json_integer(out, "total", query_pair_count(scene));
     }
 }
 

@@ -210,7 +210,7 @@ static enum replay_outcome compare_answers(const struct compare_options *options
 static bool is_consistent(const struct scene_query *query, const struct scene_result *result)
 {
     const bool names = query->which != FMB_PAIRS_LISTED;
-    if (result->end_pair < query->first_pair || result->end_pair > logged_query_pairs(query))
+    if (result->end_pair < query->first_pair || result->end_pair > query_pair_count(query))
         return false;
     if (!names)
         return (!result->names_pairs || result->verdict_count == 0) &&
@@ -218,10 +218,7 @@ static bool is_consistent(const struct scene_query *query, const struct scene_re
     int32_t before = query->first_pair - 1;
     for (int32_t i = 0; i < result->verdict_count; i++) {
         const unsigned *pair = result->names_pairs ? result->pair[i] : NULL;
-        if (!pair || pair[0] >= pair[1] || pair[1] >= (unsigned) query->placement_count)
-            return false;
-        if (query->which == FMB_PAIRS_ACROSS &&
-            (pair[0] >= (unsigned) query->split || pair[1] < (unsigned) query->split))
+        if (!pair || !query_has_pair(query, pair[0], pair[1]))
             return false;
         const int32_t number = (int32_t) query_pair_number(query, pair[0], pair[1]);
         if (number <= before || number >= result->end_pair)

@@ -1,18 +1,37 @@
 /* The pairs of a scene query, by number. */
 #include "query.h"
 
+#include "pair_number.h"
+
 static int32_t stored_placements(const struct scene_query *query)
 {
     return query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
                                                          : QUERY_PLACEMENTS_MAX;
 }
 
+static struct pair_numbers numbers_of(const struct scene_query *query)
+{
+    return (struct pair_numbers){query->which == FMB_PAIRS_ACROSS,
+                                 (size_t) stored_placements(query), (size_t) query->split};
+}
+
 int64_t query_pair_number(const struct scene_query *query, unsigned a, unsigned b)
 {
-    const int64_t n = stored_placements(query), first = a, second = b;
-    if (query->which == FMB_PAIRS_ACROSS)
-        return first * (n - query->split) + second - query->split;
-    return first * n - first * (first + 1) / 2 + second - (first + 1);
+    const struct pair_numbers numbers = numbers_of(query);
+    return (int64_t) pair_number(&numbers, a, b);
+}
+
+int64_t query_pair_count(const struct scene_query *query)
+{
+    const struct pair_numbers numbers = numbers_of(query);
+    return query->which == FMB_PAIRS_LISTED ? query->index_count / 2
+                                            : (int64_t) pairs_total(&numbers);
+}
+
+bool query_has_pair(const struct scene_query *query, unsigned a, unsigned b)
+{
+    const struct pair_numbers numbers = numbers_of(query);
+    return pair_is_among(&numbers, a, b);
 }
 
 /* Pairs that are not decided, each counted once. */
@@ -26,11 +45,10 @@ struct undecided {
 static void count_undecided(struct undecided *undecided, const unsigned pair[2])
 {
     const struct scene_query *query = undecided->query;
-    const unsigned n = (unsigned) stored_placements(query), split = (unsigned) query->split;
+    const unsigned n = (unsigned) stored_placements(query);
     const unsigned a = pair[0] < pair[1] ? pair[0] : pair[1];
     const unsigned b = pair[0] < pair[1] ? pair[1] : pair[0];
-    const bool across = query->which == FMB_PAIRS_ACROSS;
-    if (a == b || b >= n || (across && (a >= split || b < split)))
+    if (!query_has_pair(query, a, b))
         return;
     const unsigned bit = a * n + b;
     const int64_t number = query_pair_number(query, a, b);

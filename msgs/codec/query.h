@@ -139,7 +139,12 @@ struct scene_query {
     unsigned ignored[QUERY_PAIRS_MAX][2];
 };
 
-/* The number of a pair of placements a < b that is among all pairs, or among those across. */
+/* The number of pairs, those that are not decided included. On input: split is 0 to the number of
+ * placements, as in the functions below. */
+int64_t query_pair_count(const struct scene_query *query);
+
+/* Whether (a, b), in this order, is among all pairs, or among those across; and its number. */
+bool query_has_pair(const struct scene_query *query, unsigned a, unsigned b);
 int64_t query_pair_number(const struct scene_query *query, unsigned a, unsigned b);
 
 /* Memory of query_pairs_decided(): a bit for each pair of placements. */

@@ -716,7 +716,7 @@ static void pairs_across_are_counted_across(void **state)
     add_verdict(&result_now, 1, 2, FMB_TOUCHING);
     add_verdict(&result_now, 1, 3, FMB_TOUCHING);
     expect_scene("[[1,2,1,2],[0,2,null,2],[1,3,null,2]]");
-    assert_int_equal(logged_query_pairs(&scene), 6);
+    assert_int_equal(query_pair_count(&scene), 6);
 }
 
 static void verdicts_of_a_scene_are_counted(void **state)
@@ -734,15 +734,15 @@ static void verdicts_of_a_scene_are_counted(void **state)
     assert_int_equal(count[FMB_SEPARATED], 3);
     assert_int_equal(count[FMB_TOUCHING], 1);
     assert_int_equal(count[FMB_OVERLAPPING], 1);
-    assert_int_equal(logged_query_pairs(&scene), 6);
+    assert_int_equal(query_pair_count(&scene), 6);
     replayed_count(&scene, NULL, count);
     assert_int_equal(count[FMB_SEPARATED], 0);
     make_scene(FMB_PAIRS_LISTED, 1);
     replayed_count(&scene, &result_then, count);
     assert_int_equal(count[FMB_SEPARATED], 0);
-    assert_int_equal(logged_query_pairs(&scene), 0);
+    assert_int_equal(query_pair_count(&scene), 0);
     make_scene(FMB_PAIRS_ALL, 0);
-    assert_int_equal(logged_query_pairs(&scene), 0);
+    assert_int_equal(query_pair_count(&scene), 0);
 }
 
 static void ignore(unsigned a, unsigned b)
