@@ -309,7 +309,7 @@ bool client_scene_next_pair(const struct fmb_client_scene *scene,
     }
     const struct pair_numbers numbers = {scene->which == FMB_PAIRS_ACROSS, scene->placement_count,
                                          scene->split};
-    if (!pair_find(&numbers, &cursor->a, &cursor->b))
+    if (!pair_find(numbers, &cursor->a, &cursor->b))
         return false;
     out[0] = (unsigned) cursor->a;
     out[1] = (unsigned) cursor->b++;

@@ -55,8 +55,7 @@ static struct pair_numbers numbers_of(const struct part *part)
 
 int32_t part_pair_count(const struct part *part)
 {
-    const struct pair_numbers numbers = numbers_of(part);
-    return (int32_t) pairs_total(&numbers);
+    return (int32_t) pairs_total(numbers_of(part));
 }
 
 /* ---- Results ---- */
@@ -77,8 +76,8 @@ static int32_t number_of(const struct matching *matching, int32_t k)
         return matching->first + k;
     const struct pair_numbers numbers = numbers_of(part);
     const unsigned *pair = matching->result->pair[k];
-    return pair_is_among(&numbers, pair[0], pair[1])
-               ? (int32_t) pair_number(&numbers, pair[0], pair[1])
+    return pair_is_among(numbers, pair[0], pair[1])
+               ? (int32_t) pair_number(numbers, pair[0], pair[1])
                : -1;
 }
 

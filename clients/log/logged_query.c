@@ -229,7 +229,7 @@ static void set_pairs(const struct scene_query *query, struct scene *scene)
         for (int32_t k = 0; k < query->index_count / 2; k++)
             add(&list, query->pair[k][0], query->pair[k][1]);
     else if (!scene->all_pairs)
-        for (size_t a = 0, b = 0; pair_find(&numbers, &a, &b); b++)
+        for (size_t a = 0, b = 0; pair_find(numbers, &a, &b); b++)
             add(&list, a, b);
     scene->ignored_count = scene->all_pairs ? scene->ignored_count : 0;
 }

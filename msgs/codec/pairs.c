@@ -17,21 +17,18 @@ static struct pair_numbers numbers_of(const struct scene_query *query)
 
 int64_t query_pair_number(const struct scene_query *query, unsigned a, unsigned b)
 {
-    const struct pair_numbers numbers = numbers_of(query);
-    return (int64_t) pair_number(&numbers, a, b);
+    return (int64_t) pair_number(numbers_of(query), a, b);
 }
 
 int64_t query_pair_count(const struct scene_query *query)
 {
-    const struct pair_numbers numbers = numbers_of(query);
     return query->which == FMB_PAIRS_LISTED ? query->index_count / 2
-                                            : (int64_t) pairs_total(&numbers);
+                                            : (int64_t) pairs_total(numbers_of(query));
 }
 
 bool query_has_pair(const struct scene_query *query, unsigned a, unsigned b)
 {
-    const struct pair_numbers numbers = numbers_of(query);
-    return pair_is_among(&numbers, a, b);
+    return pair_is_among(numbers_of(query), a, b);
 }
 
 /* Pairs that are not decided, each counted once. */

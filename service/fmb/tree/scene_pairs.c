@@ -17,14 +17,12 @@ static struct pair_numbers numbers_of(const struct fmb_scene *scene)
 
 unsigned long long scene_pairs_number(const struct fmb_scene *scene, unsigned a, unsigned b)
 {
-    const struct pair_numbers numbers = numbers_of(scene);
-    return pair_number(&numbers, a, b);
+    return pair_number(numbers_of(scene), a, b);
 }
 
 unsigned long long scene_pairs_total(const struct fmb_scene *scene)
 {
-    const struct pair_numbers numbers = numbers_of(scene);
-    return scene->which == FMB_PAIRS_LISTED ? scene->pair_count : pairs_total(&numbers);
+    return scene->which == FMB_PAIRS_LISTED ? scene->pair_count : pairs_total(numbers_of(scene));
 }
 
 unsigned long long scene_pairs_position(const struct scene_pairs *pairs)
@@ -35,8 +33,8 @@ unsigned long long scene_pairs_position(const struct scene_pairs *pairs)
         return pairs->next;
     if (pairs->given < pairs->found_count)
         return scene_pairs_number(scene, pairs->a, pairs->found[pairs->given]);
-    return pairs->a < pair_rows(&numbers) ? pairs_before(&numbers, pairs->a + 1)
-                                          : pairs_total(&numbers);
+    return pairs->a < pair_rows(numbers) ? pairs_before(numbers, pairs->a + 1)
+                                         : pairs_total(numbers);
 }
 
 /* ---- Ignored pairs ---- */
@@ -138,20 +136,20 @@ static void begin_search(struct scene_pairs *pairs, void *memory)
     const struct fmb_scene *scene = pairs->scene;
     const struct pair_numbers numbers = numbers_of(scene);
     pairs->first = scene->which == FMB_PAIRS_ACROSS ? (unsigned) scene->split : 0;
-    if (pair_rows(&numbers) == 0)
+    if (pair_rows(numbers) == 0)
         return;
     const struct fmb_boxes boxes = {
         .dim = scene->placements->body->dim, .at = box_at, .context = pairs};
     fmb_tree_build_boxes(&boxes, scene->placement_count - pairs->first, 0, memory, &pairs->tree);
     pairs->listed = scene->which == FMB_PAIRS_ALL && list_pairs(pairs);
     list_ignored(pairs);
-    while (pairs->a < pair_rows(&numbers) &&
-           pairs_before(&numbers, pairs->a + 1) <= scene->first_pair)
+    while (pairs->a < pair_rows(numbers) &&
+           pairs_before(numbers, pairs->a + 1) <= scene->first_pair)
         pairs->a++;
-    const unsigned long long before = pairs_before(&numbers, pairs->a);
-    if (pairs->a < pair_rows(&numbers))
-        find_partners(pairs, (unsigned) (pair_first_partner(&numbers, pairs->a) +
-                                         scene->first_pair - before));
+    const unsigned long long before = pairs_before(numbers, pairs->a);
+    if (pairs->a < pair_rows(numbers))
+        find_partners(
+            pairs, (unsigned) (pair_first_partner(numbers, pairs->a) + scene->first_pair - before));
 }
 
 void scene_pairs_begin(struct scene_pairs *pairs, const struct fmb_scene *scene,
@@ -172,14 +170,14 @@ static size_t next_found(struct scene_pairs *pairs, unsigned (*out)[2], size_t m
 {
     const struct pair_numbers numbers = numbers_of(pairs->scene);
     size_t count = 0;
-    while (count < max && pairs->a < pair_rows(&numbers)) {
+    while (count < max && pairs->a < pair_rows(numbers)) {
         if (pairs->given < pairs->found_count) {
             out[count][0] = pairs->a;
             out[count++][1] = pairs->found[pairs->given++];
         } else if (pairs->searches == SEARCHES_MAX) {
             break;
-        } else if (pairs->searches += !pairs->listed, ++pairs->a < pair_rows(&numbers)) {
-            find_partners(pairs, (unsigned) pair_first_partner(&numbers, pairs->a));
+        } else if (pairs->searches += !pairs->listed, ++pairs->a < pair_rows(numbers)) {
+            find_partners(pairs, (unsigned) pair_first_partner(numbers, pairs->a));
         }
     }
     return count;
