@@ -190,9 +190,9 @@ static void report_command(const struct log_query *query)
             query->number, query->offset, query->ids.client_id, query->ids.sequence_number);
     if (method != 0)
         fprintf(stderr, " --method %s", fmb_method_by_number(method)->name);
-    fprintf(stderr, "%s%s%s\n", want & QUERY_WANT_BOX ? " --box" : "",
-            want & QUERY_WANT_GAP ? " --gap" : "",
-            is_pair && want & QUERY_WANT_CERTIFICATE ? " --certificate" : "");
+    fprintf(stderr, "%s%s%s\n", want & FMB_WANT_BOX ? " --box" : "",
+            want & FMB_WANT_GAP ? " --gap" : "",
+            is_pair && want & FMB_WANT_CERTIFICATE ? " --certificate" : "");
 }
 
 /* ---- The command ---- */

@@ -1,6 +1,7 @@
 #include "scene.h"
 
 #include "allocate.h"
+#include "pair_number.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -148,17 +149,21 @@ static uint64_t count_grouped(const struct scene *scene)
 
 uint64_t scene_count_pairs(const struct scene *scene)
 {
-    uint64_t count = scene->body_count;
+    const struct pair_numbers all = {.n = scene->body_count};
     if (!scene->all_pairs)
         return scene->pair_count;
-    return count < 2 ? 0 : count * (count - 1) / 2 - scene->ignored_count - count_grouped(scene);
+    return pairs_total(all) - scene->ignored_count - count_grouped(scene);
 }
 
-/* Whether the pair is ignored. Ignored pairs are in the order of the iteration. */
-static bool is_next_ignored(const struct scene *scene, const struct scene_cursor *cursor)
+/* Whether the pair is ignored; advances past it. Ignored pairs are in the order of the iteration.
+ */
+static bool skip_ignored(const struct scene *scene, struct scene_cursor *cursor,
+                         struct scene_pair pair)
 {
-    return cursor->next < scene->ignored_count && scene->ignored[cursor->next].a == cursor->a &&
-           scene->ignored[cursor->next].b == cursor->b;
+    const bool ignored = cursor->next < scene->ignored_count &&
+                         compare_pairs(&scene->ignored[cursor->next], &pair) == 0;
+    cursor->next += ignored;
+    return ignored;
 }
 
 bool scene_next_pair(const struct scene *scene, struct scene_cursor *cursor, struct scene_pair *out)
@@ -169,13 +174,11 @@ bool scene_next_pair(const struct scene *scene, struct scene_cursor *cursor, str
         *out = scene->pair[cursor->next++];
         return true;
     }
-    do {
-        if (++cursor->b >= scene->body_count)
-            cursor->b = ++cursor->a + 1;
-        if (cursor->b >= scene->body_count)
-            return false;
-        *out = (struct scene_pair){cursor->a, cursor->b};
-    } while ((is_next_ignored(scene, cursor) && ++cursor->next) ||
-             scene_is_within_group(scene, *out));
-    return true;
+    const struct pair_numbers all = {.n = scene->body_count};
+    while (pair_find(all, &cursor->a, &cursor->b)) {
+        *out = (struct scene_pair){cursor->a, cursor->b++};
+        if (!skip_ignored(scene, cursor, *out) && !scene_is_within_group(scene, *out))
+            return true;
+    }
+    return false;
 }

@@ -78,7 +78,7 @@ uint64_t scene_count_pairs(const struct scene *scene);
 /* Iterates over the pairs in the order of the scene; {0} at first. */
 struct scene_cursor {
     size_t next; /* index of the next listed pair, or of the next ignored one */
-    size_t a, b; /* all pairs: the last pair */
+    size_t a, b; /* all pairs: of pair_find() */
 };
 
 /* Returns true and the next pair, or false after the last one. */

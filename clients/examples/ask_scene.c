@@ -30,10 +30,8 @@ int main(void)
         placement[i].dim = 3;
         placement[i].frame_count = 1;
     }
-    const struct fmb_client_scene scene = {.placements = placement,
-                                           .placement_count = 4,
-                                           .duration = 1,
-                                           .want = FMB_CLIENT_WANT_TIMES};
+    const struct fmb_client_scene scene = {
+        .placements = placement, .placement_count = 4, .duration = 1, .want = FMB_WANT_TIMES};
     char why[FMB_CLIENT_WHY_MAX];
     struct fmb_client *client = fmb_client_open(NULL, why, sizeof why);
     if (!client) {

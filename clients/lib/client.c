@@ -13,11 +13,6 @@
 static_assert((int) FMB_CLIENT_PREFIX_MAX == BUS_PREFIX_MAX &&
                   (int) FMB_CLIENT_WHY_MAX == BUS_WHY_MAX,
               "limits of the public header");
-static_assert((int) FMB_CLIENT_WANT_BOX == QUERY_WANT_BOX &&
-                  (int) FMB_CLIENT_WANT_CERTIFICATE == QUERY_WANT_CERTIFICATE &&
-                  (int) FMB_CLIENT_WANT_TIMES == QUERY_WANT_TIMES &&
-                  (int) FMB_CLIENT_WANT_GAP == QUERY_WANT_GAP,
-              "wants");
 
 enum {
     TRIES = 6,

@@ -36,7 +36,7 @@ static int query(struct fmb_client *client, const struct fmb_client_scene *scene
 int fmb_client_query(struct fmb_client *client, const struct fmb_client_scene *scene,
                      fmb_client_sink *sink, void *user)
 {
-    return query(client, scene, scene->want & FMB_CLIENT_WANT_CERTIFICATE, sink, user);
+    return query(client, scene, scene->want & FMB_WANT_CERTIFICATE, sink, user);
 }
 
 /* The sink of fmb_client_query_pair(): copies the answer and its texts into the client. */

@@ -1,5 +1,6 @@
 #include "client_scene.h"
 
+#include "pair_number.h"
 #include "utf8.h"
 #include "writer.h"
 
@@ -189,22 +190,21 @@ static bool check_groups(struct scene_error *error, const struct fmb_client_scen
 static bool check_pairs(struct scene_error *error, const struct fmb_client_scene *scene)
 {
     const int which = (int) scene->which;
-    if (which < FMB_CLIENT_ALL || which > FMB_CLIENT_ACROSS)
+    if (which < FMB_PAIRS_ALL || which > FMB_PAIRS_ACROSS)
         return refuse(error, FMB_UNKNOWN_WANT, "which");
-    if (scene->split > (which == FMB_CLIENT_ACROSS ? scene->placement_count : 0))
+    if (scene->split > (which == FMB_PAIRS_ACROSS ? scene->placement_count : 0))
         return refuse(error, FMB_BAD_PAIR, "split");
-    if (which == FMB_CLIENT_LISTED ? scene->ignored_count > 0 : scene->pair_count > 0)
+    if (which == FMB_PAIRS_LISTED ? scene->ignored_count > 0 : scene->pair_count > 0)
         return refuse(error, FMB_WRONG_COUNT,
-                      which == FMB_CLIENT_LISTED ? "ignored_count" : "pair_count");
+                      which == FMB_PAIRS_LISTED ? "ignored_count" : "pair_count");
     return check_list(error, scene, "ignored", scene->ignored, scene->ignored_count) &&
            check_list(error, scene, "pairs", scene->pairs, scene->pair_count) &&
-           (which != FMB_CLIENT_LISTED || check_groups(error, scene));
+           (which != FMB_PAIRS_LISTED || check_groups(error, scene));
 }
 
 static bool check_settings(struct scene_error *error, const struct fmb_client_scene *scene)
 {
-    const unsigned wants = FMB_CLIENT_WANT_BOX | FMB_CLIENT_WANT_CERTIFICATE |
-                           FMB_CLIENT_WANT_TIMES | FMB_CLIENT_WANT_GAP;
+    const unsigned wants = FMB_WANT_BOX | FMB_WANT_CERTIFICATE | FMB_WANT_TIMES | FMB_WANT_GAP;
     if (!(scene->duration >= 0 && isfinite(scene->duration)))
         return refuse(error, FMB_BAD_DURATION, "duration");
     if (!(scene->margin >= 0 && isfinite(scene->margin)))
@@ -298,27 +298,18 @@ bool client_scene_is_within_group(const struct fmb_client_scene *scene, const un
     return group != 0 && group == scene->placements[pair[1]].group;
 }
 
-/* Index of the first placement that is paired with placement a. */
-static size_t first_partner(const struct fmb_client_scene *scene, size_t a)
-{
-    return scene->which == FMB_CLIENT_ACROSS ? scene->split : a + 1;
-}
-
 bool client_scene_next_pair(const struct fmb_client_scene *scene,
                             struct client_scene_cursor *cursor, unsigned out[2])
 {
-    if (scene->which == FMB_CLIENT_LISTED) {
+    if (scene->which == FMB_PAIRS_LISTED) {
         if (cursor->next == scene->pair_count)
             return false;
         memcpy(out, scene->pairs[cursor->next++], sizeof *scene->pairs);
         return true;
     }
-    const size_t firsts = scene->which == FMB_CLIENT_ACROSS ? scene->split : scene->placement_count;
-    if (cursor->b == 0)
-        cursor->b = first_partner(scene, cursor->a);
-    if (cursor->b >= scene->placement_count && ++cursor->a < firsts)
-        cursor->b = first_partner(scene, cursor->a);
-    if (cursor->a >= firsts || cursor->b >= scene->placement_count)
+    const struct pair_numbers numbers = {scene->which == FMB_PAIRS_ACROSS, scene->placement_count,
+                                         scene->split};
+    if (!pair_find(numbers, &cursor->a, &cursor->b))
         return false;
     out[0] = (unsigned) cursor->a;
     out[1] = (unsigned) cursor->b++;

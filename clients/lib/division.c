@@ -99,7 +99,7 @@ static bool uses_blocks(const struct fmb_client_scene *scene)
 {
     const bool certified = scene->method == FMB_MSGS_PAIR_QUERY_T_METHOD_DEFAULT ||
                            scene->method == FMB_MSGS_PAIR_QUERY_T_METHOD_CERTIFIED;
-    return scene->which != FMB_CLIENT_LISTED && certified;
+    return scene->which != FMB_PAIRS_LISTED && certified;
 }
 
 /* Bytes of a query without placements and pairs. */
@@ -127,7 +127,7 @@ static bool fit_into_one(const struct division *division, bool whole)
 static void make_blocks(struct division *division)
 {
     const struct fmb_client_scene *scene = division->scene;
-    const bool across = scene->which == FMB_CLIENT_ACROSS;
+    const bool across = scene->which == FMB_PAIRS_ACROSS;
     const bool one = division->by_handle || fit_into_one(division, true);
     const size_t capacity = placements_bytes_max(division) / (one ? 1 : 2);
     size_t bytes = capacity + 1;
@@ -146,7 +146,7 @@ static void make_blocks(struct division *division)
 
 size_t division_first_column(const struct division *division, size_t row)
 {
-    return division->scene->which == FMB_CLIENT_ACROSS ? division->row_count : row;
+    return division->scene->which == FMB_PAIRS_ACROSS ? division->row_count : row;
 }
 
 static void add_placement(const struct division *division, unsigned placement, struct part *out)
@@ -172,12 +172,12 @@ static bool next_block(struct division *division, struct part *out)
     out->row = division->row;
     out->column = division->column++;
     add_block(division, out->row, out);
-    out->which = out->column == out->row ? QUERY_PAIRS_ALL : QUERY_PAIRS_ACROSS;
-    if (out->which == QUERY_PAIRS_ACROSS) {
+    out->which = out->column == out->row ? FMB_PAIRS_ALL : FMB_PAIRS_ACROSS;
+    if (out->which == FMB_PAIRS_ACROSS) {
         out->split = out->placement_count;
         add_block(division, out->column, out);
     }
-    out->total = part_pairs_before(out, out->split ? out->split : out->placement_count);
+    out->total = part_pair_count(out);
     return true;
 }
 
@@ -218,7 +218,7 @@ static bool next_list(struct division *division, int32_t pairs_max, struct part 
 {
     struct client_scene_cursor ahead = division->at;
     unsigned pair[2];
-    out->which = QUERY_PAIRS_LISTED;
+    out->which = FMB_PAIRS_LISTED;
     division->part++;
     while (out->total < pairs_max && client_scene_next_pair(division->scene, &ahead, pair)) {
         if (division_ignores(division, pair)) {

@@ -133,27 +133,12 @@ struct fmb_client_placement {
  * 3D.) */
 enum { FMB_CLIENT_BODY_BYTES_MAX = 63500 };
 
-enum fmb_client_which {
-    FMB_CLIENT_ALL = 0,    /* each placement with each later one */
-    FMB_CLIENT_LISTED = 1, /* the pairs listed */
-    FMB_CLIENT_ACROSS = 2, /* each of the first split placements with each of the others */
-};
-
-/* Bits of want. */
-enum {
-    FMB_CLIENT_WANT_BOX = 1,
-    /* A proof of each verdict (fmb.h). Each pair is then a separate query, which is slower. */
-    FMB_CLIENT_WANT_CERTIFICATE = 2,
-    FMB_CLIENT_WANT_TIMES = 4, /* contact intervals */
-    FMB_CLIENT_WANT_GAP = 8,   /* not with the methods fmb and sat */
-};
-
-/* A scene to query. The library keeps no pointer to it after the call. With all fields 0 but the
- * placements, which are then at rest, it is a query for the verdicts of all pairs. */
+/* A scene to query. The library keeps no pointer to it after the call. If all fields but the
+ * placements are 0, they are at rest, and the verdicts of all pairs are wanted. */
 struct fmb_client_scene {
     const struct fmb_client_placement *placements; /* [placement_count], all of one dimension */
     size_t placement_count;                        /* less than 2^31 */
-    enum fmb_client_which which;
+    enum fmb_pairs which;
     /* LISTED: [pair_count][a, b], different indices of placements that are not of
      * one group; otherwise none. */
     const unsigned (*pairs)[2];
@@ -168,7 +153,9 @@ struct fmb_client_scene {
     /* Finite, not negative. Not 0: contacts and near pairs have their gaps, whether wanted or not.
      * A pair is near if it is separated and its lower bound is at most the margin. */
     double margin;
-    unsigned want;     /* sum of FMB_CLIENT_WANT_ bits; 0: verdicts only */
+    /* Sum of FMB_WANT_ bits; 0: verdicts only. With CERTIFICATE each pair is a separate query,
+     * which is slower. */
+    unsigned want;
     int method;        /* fmb_method.number; 0: the default, never wrong and the fastest */
     const char *label; /* for people, at most 64 bytes, in each query of the scene; NULL: none */
     double within;     /* time limit for the whole scene, seconds; 0: none but timeout and tries */

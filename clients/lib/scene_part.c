@@ -1,5 +1,6 @@
 #include "scene_part.h"
 
+#include "pair_number.h"
 #include "wire.h"
 
 #include <stdio.h>
@@ -25,14 +26,14 @@ void part_answers_refuse(struct part_answers *answers, int status, const char *t
 
 static bool wants_gaps(const struct fmb_client_scene *scene)
 {
-    return scene->want & FMB_CLIENT_WANT_GAP || scene->margin > 0;
+    return scene->want & FMB_WANT_GAP || scene->margin > 0;
 }
 
 /* Returns the bytes of a contact: 8 for each number. */
 static size_t contact_bytes(const struct fmb_client_scene *scene)
 {
-    const size_t times = scene->want & FMB_CLIENT_WANT_TIMES ? 2 : 0;
-    const size_t box = scene->want & FMB_CLIENT_WANT_BOX ? 2 * FMB_DIM_MAX : 0;
+    const size_t times = scene->want & FMB_WANT_TIMES ? 2 : 0;
+    const size_t box = scene->want & FMB_WANT_BOX ? 2 * FMB_DIM_MAX : 0;
     return 8 * (times + box) + (wants_gaps(scene) ? (size_t) wire_gap_bytes(FMB_DIM_MAX, true) : 0);
 }
 
@@ -40,18 +41,21 @@ size_t part_result_bytes(const struct part *part, const struct fmb_client_scene 
 {
     if (part->single)
         return SINGLE_RESULT_BYTES;
-    const size_t named = part->which == QUERY_PAIRS_LISTED ? 0 : WIRE_PAIR_BYTES;
+    const size_t named = part->which == FMB_PAIRS_LISTED ? 0 : WIRE_PAIR_BYTES;
     const size_t bytes = WIRE_SCENE_RESULT_BYTES + HANDLE_BYTES * (size_t) part->placement_count +
                          (size_t) part->total * (1 + named + contact_bytes(scene));
     return bytes < QUERY_BYTES_MAX ? bytes : QUERY_BYTES_MAX;
 }
 
-int32_t part_pairs_before(const struct part *part, int32_t a)
+static struct pair_numbers numbers_of(const struct part *part)
 {
-    const int32_t n = part->placement_count;
-    if (part->which == QUERY_PAIRS_ACROSS)
-        return a * (n - part->split);
-    return a * n - a * (a + 1) / 2;
+    return (struct pair_numbers){part->which == FMB_PAIRS_ACROSS, (size_t) part->placement_count,
+                                 (size_t) part->split};
+}
+
+int32_t part_pair_count(const struct part *part)
+{
+    return (int32_t) pairs_total(numbers_of(part));
 }
 
 /* ---- Results ---- */
@@ -68,15 +72,13 @@ struct matching {
 static int32_t number_of(const struct matching *matching, int32_t k)
 {
     const struct part *part = matching->part;
-    if (part->which == QUERY_PAIRS_LISTED)
+    if (part->which == FMB_PAIRS_LISTED)
         return matching->first + k;
-    const unsigned placements = (unsigned) part->placement_count, split = (unsigned) part->split;
-    const unsigned a = matching->result->pair[k][0], b = matching->result->pair[k][1];
-    const bool across = part->which == QUERY_PAIRS_ACROSS;
-    const unsigned partners = across ? split : a + 1;
-    if (a >= (across ? split : placements) || b < partners || b >= placements)
-        return -1;
-    return part_pairs_before(part, (int32_t) a) + (int32_t) (b - partners);
+    const struct pair_numbers numbers = numbers_of(part);
+    const unsigned *pair = matching->result->pair[k];
+    return pair_is_among(numbers, pair[0], pair[1])
+               ? (int32_t) pair_number(numbers, pair[0], pair[1])
+               : -1;
 }
 
 /* Whether each pair that the result names is in the query, comes once, in order, and is a contact
@@ -129,14 +131,14 @@ static bool fits(const struct matching *matching)
 {
     const struct scene_result *result = matching->result;
     const struct part *part = matching->part;
-    const bool listed = part->which == QUERY_PAIRS_LISTED;
+    const bool listed = part->which == FMB_PAIRS_LISTED;
     if (result->end_pair <= matching->first || result->end_pair > part->total)
         return false;
-    const bool times = matching->scene->want & FMB_CLIENT_WANT_TIMES && result->contact_count > 0;
+    const bool times = matching->scene->want & FMB_WANT_TIMES && result->contact_count > 0;
     if (result->has_times != times)
         return false;
     if (result->has_gaps != (wants_gaps(matching->scene) && result->verdict_count > 0) ||
-        (result->has_boxes && !(matching->scene->want & FMB_CLIENT_WANT_BOX)) ||
+        (result->has_boxes && !(matching->scene->want & FMB_WANT_BOX)) ||
         (result->dim > 0 && result->dim != matching->scene->placements[0].dim))
         return false;
     if (listed &&
@@ -195,14 +197,13 @@ static bool fits_pair(const struct part *part, const struct fmb_client_scene *sc
     const struct fmb_client_placement *a = &scene->placements[part->placement[part->pair[0][0]]];
     const struct fmb_client_placement *b = &scene->placements[part->placement[part->pair[0][1]]];
     if (answer->has_gap != wants_gaps(scene) ||
-        (answer->has_box &&
-         !(answer->verdict >= FMB_TOUCHING && scene->want & FMB_CLIENT_WANT_BOX)) ||
+        (answer->has_box && !(answer->verdict >= FMB_TOUCHING && scene->want & FMB_WANT_BOX)) ||
         (result->dim > 0 && result->dim != scene->placements[0].dim))
         return false;
     if (result->names_frames != (answer->has_gap && (a->frame_count > 1 || b->frame_count > 1)) ||
         !fits_frames(a, b, &answer->gap))
         return false;
-    return !result->certificate || scene->want & FMB_CLIENT_WANT_CERTIFICATE;
+    return !result->certificate || scene->want & FMB_WANT_CERTIFICATE;
 }
 
 enum part_taken part_take_pair(const struct part *part, const struct fmb_client_scene *scene,
@@ -216,7 +217,7 @@ enum part_taken part_take_pair(const struct part *part, const struct fmb_client_
         return PART_NO_MEMORY;
     struct part_answer *out = &answers->answer[answers->count++];
     *out = (struct part_answer){.answer = result->answer};
-    if (!(scene->want & FMB_CLIENT_WANT_GAP))
+    if (!(scene->want & FMB_WANT_GAP))
         query_remove_far_gap(scene->margin, &out->answer);
     answers->answered = 1;
     return PART_TAKEN;

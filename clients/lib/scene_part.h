@@ -7,7 +7,7 @@
 
 struct part {
     bool single;   /* a pair query */
-    int32_t which; /* QUERY_PAIRS_ */
+    int32_t which; /* enum fmb_pairs */
     int32_t split; /* with ACROSS */
     int32_t total; /* of pairs */
     int32_t placement_count;
@@ -48,9 +48,8 @@ static inline bool part_is_near(const struct fmb_client_scene *scene, const stru
  * length. */
 size_t part_result_bytes(const struct part *part, const struct fmb_client_scene *scene);
 
-/* ALL and ACROSS: returns the number of pairs whose first placement comes before placement a of the
- * part. */
-int32_t part_pairs_before(const struct part *part, int32_t a);
+/* ALL and ACROSS: returns the number of pairs. */
+int32_t part_pair_count(const struct part *part);
 
 /* Adds the answers of a result with FMB_OK to those of the pairs before it. Returns MALFORMED if
  * the result does not match the query; nothing is added then, nor with NO_MEMORY. */

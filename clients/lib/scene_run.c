@@ -70,9 +70,9 @@ static size_t write_pair(struct part_run *part, unsigned char *out)
     struct pair_query query = {.utime = clock_utime(),
                                .duration = scene->duration,
                                .method = scene->method,
-                               .want = (int32_t) scene->want & ~QUERY_WANT_TIMES};
+                               .want = (int32_t) scene->want & ~FMB_WANT_TIMES};
     if (scene->margin > 0)
-        query.want |= QUERY_WANT_GAP;
+        query.want |= FMB_WANT_GAP;
     const size_t max = QUERY_BYTES_MAX - WIRE_PAIR_QUERY_BYTES;
     return write_placements(part, max, query.placement) <= max ? wire_write_pair_query(&query, out)
                                                                : 0;
@@ -88,7 +88,7 @@ static struct scene_query *begin_query(const struct part_run *part)
     query->method = scene->method;
     query->want = (int32_t) scene->want;
     query->margin = scene->margin;
-    query->which = QUERY_PAIRS_LISTED;
+    query->which = FMB_PAIRS_LISTED;
     query->split = query->first_pair = 0;
     query->placement_count = query->index_count = query->ignored_count = 0;
     return query;
@@ -124,7 +124,7 @@ static size_t write_definitions(struct part_run *part, unsigned char *out)
 static size_t write_scene(struct part_run *part, unsigned char *out)
 {
     const struct part *of = &part->part;
-    const bool listed = of->which == QUERY_PAIRS_LISTED;
+    const bool listed = of->which == FMB_PAIRS_LISTED;
     struct scene_query *query = begin_query(part);
     const size_t max = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES - wire_text_bytes(query->label) -
                        (listed ? WIRE_PAIR_BYTES * (size_t) of->total : 0);
@@ -261,7 +261,7 @@ static enum request_taken take_answers(struct part_run *part, struct request *re
         return REQUEST_MALFORMED;
     if (taken == PART_NO_MEMORY)
         return refuse(part, FMB_CLIENT_NO_MEMORY, NULL);
-    if (result->kind == FMB_CLIENT_SCENE && part->part.which == QUERY_PAIRS_LISTED)
+    if (result->kind == FMB_CLIENT_SCENE && part->part.which == FMB_PAIRS_LISTED)
         adapt_pairs(run, answers->answered - before, result->scene->compute_ns);
     part->done = answers->answered == part->part.total;
     if (part->done)

@@ -1,6 +1,7 @@
 #include "logged_query.h"
 
 #include "allocate.h"
+#include "pair_number.h"
 #include "scene.h"
 #include "utf8.h"
 #include "wire.h"
@@ -77,14 +78,6 @@ size_t logged_query_write(const struct logged_query *query, unsigned char out[QU
         return 0;
     return query->kind == LOG_PAIR_QUERY ? wire_write_pair_query(&query->pair, out)
                                          : wire_write_scene_query(&query->scene, out);
-}
-
-int64_t logged_query_pairs(const struct scene_query *query)
-{
-    const int64_t n = query_stored_placements(query);
-    if (query->which == QUERY_PAIRS_LISTED)
-        return query->index_count / 2;
-    return query->which == QUERY_PAIRS_ACROSS ? query->split * (n - query->split) : n * (n - 1) / 2;
 }
 
 int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair)
@@ -209,15 +202,6 @@ static void add(struct list *list, size_t a, size_t b)
     scene->pair[scene->pair_count++] = (struct scene_pair){a, b};
 }
 
-/* Of all pairs, or across. */
-static void list_pairs(struct list *list, bool across, size_t split)
-{
-    const size_t count = list->scene->body_count;
-    for (size_t a = 0; a < (across ? split : count); a++)
-        for (size_t b = across ? split : a + 1; b < count; b++)
-            add(list, a, b);
-}
-
 static void set_ignored(const struct scene_query *query, struct scene *scene)
 {
     scene->ignored_count = (size_t) (query->ignored_count / 2);
@@ -230,13 +214,16 @@ static void set_ignored(const struct scene_query *query, struct scene *scene)
 static void set_pairs(const struct scene_query *query, struct scene *scene)
 {
     struct list list = {.scene = scene, .skip = query->first_pair};
-    scene->all_pairs = query->which == QUERY_PAIRS_ALL && query->first_pair == 0;
+    const struct pair_numbers numbers = {query->which == FMB_PAIRS_ACROSS, scene->body_count,
+                                         (size_t) query->split};
+    scene->all_pairs = query->which == FMB_PAIRS_ALL && query->first_pair == 0;
     set_ignored(query, scene);
-    if (query->which == QUERY_PAIRS_LISTED)
+    if (query->which == FMB_PAIRS_LISTED)
         for (int32_t k = 0; k < query->index_count / 2; k++)
             add(&list, query->pair[k][0], query->pair[k][1]);
     else if (!scene->all_pairs)
-        list_pairs(&list, query->which == QUERY_PAIRS_ACROSS, (size_t) query->split);
+        for (size_t a = 0, b = 0; pair_find(numbers, &a, &b); b++)
+            add(&list, a, b);
     scene->ignored_count = scene->all_pairs ? scene->ignored_count : 0;
 }
 

@@ -22,9 +22,6 @@ const char *logged_query_read(struct logged_query *out, enum log_kind kind,
 /* The placements in the struct; *count of them. */
 struct placement *logged_query_placements(struct logged_query *query, int32_t *count);
 
-/* The number of pairs of a scene query, ignored ones included. */
-int64_t logged_query_pairs(const struct scene_query *query);
-
 /* query_pairs_decided() with memory of its own. */
 int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair);
 

@@ -291,28 +291,12 @@ static void write_side(struct json_writer *out, const struct replayed_side *side
     json_end(out, ']');
 }
 
-/* Equal, or both NaN. */
-static bool same_numbers(const double *a, const double *b, int count)
-{
-    for (int i = 0; i < count; i++)
-        if (!(a[i] == b[i] || (isnan(a[i]) && isnan(b[i]))))
-            return false;
-    return true;
-}
-
-static bool same(const struct fmb_answer *a, const struct fmb_answer *b)
-{
-    return a->verdict == b->verdict && a->has_contact == b->has_contact &&
-           a->has_box == b->has_box && a->has_gap == b->has_gap &&
-           same_numbers(a->contact, b->contact, 2) &&
-           same_numbers(a->box[0], b->box[0], 2 * FMB_DIM_MAX) && query_same_gap(&a->gap, &b->gap);
-}
-
 /* Whether both results answer the pair, differently. */
 static bool differs(const struct replayed_pair *pair)
 {
     return pair->then.answered && pair->now.answered &&
-           (pair->then.dim != pair->now.dim || !same(&pair->then.answer, &pair->now.answer));
+           (pair->then.dim != pair->now.dim ||
+            !query_same_answer(&pair->then.answer, &pair->now.answer));
 }
 
 static void write_pair(struct json_writer *out, const struct replayed_pair *pair)
@@ -362,8 +346,8 @@ static void write_pairs(const struct replayed *replayed, struct json_writer *out
 static int64_t kind_of(const struct scene_query *scene)
 {
     switch (scene->which) {
-    case QUERY_PAIRS_LISTED: return 1;
-    case QUERY_PAIRS_ALL: return 2;
+    case FMB_PAIRS_LISTED: return 1;
+    case FMB_PAIRS_ALL: return 2;
     default: return 1 + (int64_t) scene->which;
     }
 }
@@ -379,7 +363,7 @@ static void write_query(const struct replayed *replayed, struct json_writer *out
             json_number(out, "margin", scene->margin);
         json_integer(out, "first", scene->first_pair);
         json_integer(out, "split", scene->split);
-        json_integer(out, "total", logged_query_pairs(scene));
+        json_integer(out, "total", query_pair_count(scene));
     }
 }
 

@@ -129,7 +129,7 @@ bool replayed_pairs_next(struct replayed_pairs *pairs, struct replayed_pair *out
     const struct scene_query *scene = pairs->replayed->scene;
     if (!scene)
         return next_of_pair(pairs, out);
-    return scene->which == QUERY_PAIRS_LISTED ? next_listed(pairs, out) : next_named(pairs, out);
+    return scene->which == FMB_PAIRS_LISTED ? next_listed(pairs, out) : next_named(pairs, out);
 }
 
 void replayed_count(const struct scene_query *query, const struct scene_result *result,
@@ -141,7 +141,7 @@ void replayed_count(const struct scene_query *query, const struct scene_result *
     for (int32_t i = 0; i < result->verdict_count; i++)
         if (result->verdict[i] <= FMB_OVERLAPPING)
             count[result->verdict[i]]++;
-    if (query->which == QUERY_PAIRS_LISTED)
+    if (query->which == FMB_PAIRS_LISTED)
         return;
     const int64_t others =
         logged_query_pairs_until(query, result->end_pair) - result->verdict_count;

@@ -150,9 +150,8 @@ static unsigned (*copy_pairs(const struct scene *scene, bool listed, size_t *cou
 
 static unsigned want_of(const struct answers_options *options)
 {
-    return FMB_CLIENT_WANT_TIMES | (options->box ? FMB_CLIENT_WANT_BOX : 0) |
-           (options->certificate ? FMB_CLIENT_WANT_CERTIFICATE : 0) |
-           (options->gap ? FMB_CLIENT_WANT_GAP : 0);
+    return FMB_WANT_TIMES | (options->box ? FMB_WANT_BOX : 0) |
+           (options->certificate ? FMB_WANT_CERTIFICATE : 0) | (options->gap ? FMB_WANT_GAP : 0);
 }
 
 /* ---- The answers ---- */
@@ -234,7 +233,7 @@ static bool query(struct answers_bus *answers, struct bus_scene *run)
     const struct fmb_client_scene queried = {
         .placements = bodies.placement,
         .placement_count = scene->body_count,
-        .which = listed ? FMB_CLIENT_LISTED : FMB_CLIENT_ALL,
+        .which = listed ? FMB_PAIRS_LISTED : FMB_PAIRS_ALL,
         .pairs = (const unsigned(*)[2]) pair,
         .pair_count = listed ? count : 0,
         .ignored = (const unsigned(*)[2]) pair,

@@ -216,7 +216,7 @@ static size_t bytes_of(const struct answer_bus *bus, uint32_t size)
 {
     const struct scene_query *scene = &bus->query.scene;
     size_t bytes = 1024;
-    if (bus->query.kind == LOG_PAIR_QUERY && bus->query.pair.want & QUERY_WANT_CERTIFICATE)
+    if (bus->query.kind == LOG_PAIR_QUERY && bus->query.pair.want & FMB_WANT_CERTIFICATE)
         bytes = 4096;
     if (bus->query.kind == LOG_SCENE_QUERY)
         bytes += (size_t) scene->index_count / 2 + 100 * (size_t) scene->placement_count;

@@ -19,13 +19,9 @@ static bool same_bits(const double *a, const double *b, int count)
     return memcmp(a, b, (size_t) count * sizeof *a) == 0;
 }
 
-/* Whether each number has the same bits in both lists or differs by at most limit. Without a
- * tolerance only the bits count, so that 0 and -0 differ. */
-static bool within(const struct compare_options *options, const double *a, const double *b,
-                   int count, double limit)
+/* Whether each number has the same bits in both lists or differs by at most limit. */
+static bool within(const double *a, const double *b, int count, double limit)
 {
-    if (!(options->tolerance > 0))
-        return same_bits(a, b, count);
     for (int i = 0; i < count; i++)
         if (!same_bits(&a[i], &b[i], 1) && !(fabs(a[i] - b[i]) <= limit))
             return false;
@@ -44,27 +40,15 @@ enum { BOX_NUMBERS = 2 * FMB_DIM_MAX };
 
 /* ---- Answers ---- */
 
-static bool same_intervals(const struct compare_options *options, double duration,
-                           const struct fmb_answer *a, const struct fmb_answer *b)
-{
-    if (a->has_contact != b->has_contact)
-        return false;
-    return !a->has_contact ||
-           within(options, a->contact, b->contact, 2, options->tolerance * duration);
-}
+/* Whether parts that both answers have are equal within the tolerance, which is not 0. */
 
-static bool same_boxes(const struct compare_options *options, int dim, const struct fmb_answer *a,
-                       const struct fmb_answer *b)
+static bool close_boxes(double tolerance, int dim, const struct fmb_answer *a,
+                        const struct fmb_answer *b)
 {
-    if (a->has_box != b->has_box)
-        return false;
     const double most = largest(a->box[0], BOX_NUMBERS,
                                 largest(b->box[0], BOX_NUMBERS, 0)); /* numbers beyond dim are 0 */
-    const double limit = options->tolerance > 0 ? options->tolerance * most : 0;
-    for (int side = 0; side < 2 && a->has_box; side++)
-        if (!within(options, a->box[side], b->box[side], dim, limit))
-            return false;
-    return true;
+    return within(a->box[0], b->box[0], dim, tolerance * most) &&
+           within(a->box[1], b->box[1], dim, tolerance * most);
 }
 
 static double largest_of_gap(const struct fmb_gap *gap, double most)
@@ -72,15 +56,27 @@ static double largest_of_gap(const struct fmb_gap *gap, double most)
     return largest(gap->witness[0], BOX_NUMBERS, largest(gap->bounds, 2, most));
 }
 
-static bool same_gaps(const struct compare_options *options, const struct fmb_answer *a,
-                      const struct fmb_answer *b)
+static bool close_gaps(double tolerance, const struct fmb_gap *a, const struct fmb_gap *b)
 {
-    if (a->has_gap != b->has_gap)
-        return false;
-    if (!(options->tolerance > 0))
-        return query_same_gap(&a->gap, &b->gap);
-    const double most = largest_of_gap(&a->gap, largest_of_gap(&b->gap, 0));
-    return within(options, a->gap.bounds, b->gap.bounds, 2, options->tolerance * most);
+    const double most = largest_of_gap(a, largest_of_gap(b, 0));
+    return within(a->bounds, b->bounds, 2, tolerance * most);
+}
+
+/* Returns the parts that differ by more than the tolerance: a sum of FMB_WANT_ bits. */
+static unsigned parts_apart(const struct compare_options *options, double duration, int dim,
+                            const struct fmb_answer *a, const struct fmb_answer *b)
+{
+    const double tolerance = options->tolerance;
+    unsigned parts = query_parts_that_differ(a, b);
+    if (!(tolerance > 0))
+        return parts;
+    if (a->has_contact && b->has_contact && within(a->contact, b->contact, 2, tolerance * duration))
+        parts &= ~(unsigned) FMB_WANT_TIMES;
+    if (a->has_box && b->has_box && close_boxes(tolerance, dim, a, b))
+        parts &= ~(unsigned) FMB_WANT_BOX;
+    if (a->has_gap && b->has_gap && close_gaps(tolerance, &a->gap, &b->gap))
+        parts &= ~(unsigned) FMB_WANT_GAP;
+    return parts;
 }
 
 static bool same_certificates(const struct compare_options *options, const char *a, const char *b)
@@ -95,15 +91,16 @@ static bool find_difference(const struct compare_options *options, double durati
                             struct difference *out)
 {
     const struct fmb_answer *then = &out->then.answer, *now = &out->now.answer;
+    const unsigned parts = parts_apart(options, duration, out->dim, then, now);
     if (out->then.status != out->now.status)
         out->kind = DIFFERENT_STATUS;
     else if (then->verdict != now->verdict)
         out->kind = DIFFERENT_VERDICT;
-    else if (!same_intervals(options, duration, then, now))
+    else if (parts & FMB_WANT_TIMES)
         out->kind = DIFFERENT_INTERVAL;
-    else if (!same_boxes(options, out->dim, then, now))
+    else if (parts & FMB_WANT_BOX)
         out->kind = DIFFERENT_BOX;
-    else if (!same_gaps(options, then, now))
+    else if (parts & FMB_WANT_GAP)
         out->kind = DIFFERENT_GAP;
     else if (!same_certificates(options, out->then.certificate, out->now.certificate))
         out->kind = DIFFERENT_CERTIFICATE;
@@ -136,8 +133,6 @@ static struct fmb_answer answer_of(const struct fmb_answer *answer, int dim, int
     struct fmb_answer out = *answer;
     out.has_box = answer->has_box && dim == query_dim;
     out.has_gap = answer->has_gap && dim == query_dim;
-    if (!out.has_gap)
-        memset(&out.gap, 0, sizeof out.gap);
     return out;
 }
 
@@ -214,8 +209,8 @@ static enum replay_outcome compare_answers(const struct compare_options *options
  * for results of this process. */
 static bool is_consistent(const struct scene_query *query, const struct scene_result *result)
 {
-    const bool names = query->which != QUERY_PAIRS_LISTED;
-    if (result->end_pair < query->first_pair || result->end_pair > logged_query_pairs(query))
+    const bool names = query->which != FMB_PAIRS_LISTED;
+    if (result->end_pair < query->first_pair || result->end_pair > query_pair_count(query))
         return false;
     if (!names)
         return (!result->names_pairs || result->verdict_count == 0) &&
@@ -223,10 +218,7 @@ static bool is_consistent(const struct scene_query *query, const struct scene_re
     int32_t before = query->first_pair - 1;
     for (int32_t i = 0; i < result->verdict_count; i++) {
         const unsigned *pair = result->names_pairs ? result->pair[i] : NULL;
-        if (!pair || pair[0] >= pair[1] || pair[1] >= (unsigned) query->placement_count)
-            return false;
-        if (query->which == QUERY_PAIRS_ACROSS &&
-            (pair[0] >= (unsigned) query->split || pair[1] < (unsigned) query->split))
+        if (!pair || !query_has_pair(query, pair[0], pair[1]))
             return false;
         const int32_t number = (int32_t) query_pair_number(query, pair[0], pair[1]);
         if (number <= before || number >= result->end_pair)

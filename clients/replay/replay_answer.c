@@ -129,7 +129,7 @@ static void supply_service(struct replay *replay, const struct placement *placem
     struct scene_query *supply = &replay->supply;
     for (int32_t next = 0; next < count;) {
         size_t size = WIRE_SCENE_QUERY_BYTES;
-        supply->which = QUERY_PAIRS_LISTED; /* none */
+        supply->which = FMB_PAIRS_LISTED; /* none */
         for (supply->placement_count = 0; next < count; next++) {
             struct placement whole = placement[next];
             if (placement_by_handle(&whole))

@@ -1,18 +1,34 @@
 /* The pairs of a scene query, by number. */
 #include "query.h"
 
+#include "pair_number.h"
+
 int32_t query_stored_placements(const struct scene_query *query)
 {
     return query->placement_count < QUERY_PLACEMENTS_MAX ? query->placement_count
                                                          : QUERY_PLACEMENTS_MAX;
 }
 
+static struct pair_numbers numbers_of(const struct scene_query *query)
+{
+    return (struct pair_numbers){query->which == FMB_PAIRS_ACROSS,
+                                 (size_t) query_stored_placements(query), (size_t) query->split};
+}
+
 int64_t query_pair_number(const struct scene_query *query, unsigned a, unsigned b)
 {
-    const int64_t n = query_stored_placements(query), first = a, second = b;
-    if (query->which == QUERY_PAIRS_ACROSS)
-        return first * (n - query->split) + second - query->split;
-    return first * n - first * (first + 1) / 2 + second - (first + 1);
+    return (int64_t) pair_number(numbers_of(query), a, b);
+}
+
+int64_t query_pair_count(const struct scene_query *query)
+{
+    return query->which == FMB_PAIRS_LISTED ? query->index_count / 2
+                                            : (int64_t) pairs_total(numbers_of(query));
+}
+
+bool query_has_pair(const struct scene_query *query, unsigned a, unsigned b)
+{
+    return pair_is_among(numbers_of(query), a, b);
 }
 
 /* Pairs that are not decided, each counted once. */
@@ -26,11 +42,10 @@ struct undecided {
 static void count_undecided(struct undecided *undecided, const unsigned pair[2])
 {
     const struct scene_query *query = undecided->query;
-    const unsigned n = (unsigned) query_stored_placements(query), split = (unsigned) query->split;
+    const unsigned n = (unsigned) query_stored_placements(query);
     const unsigned a = pair[0] < pair[1] ? pair[0] : pair[1];
     const unsigned b = pair[0] < pair[1] ? pair[1] : pair[0];
-    const bool across = query->which == QUERY_PAIRS_ACROSS;
-    if (a == b || b >= n || (across && (a >= split || b < split)))
+    if (!query_has_pair(query, a, b))
         return;
     const unsigned bit = a * n + b;
     const int64_t number = query_pair_number(query, a, b);
@@ -54,7 +69,7 @@ int64_t query_pairs_decided(const struct scene_query *query, int32_t end_pair,
 {
     struct undecided undecided = {.query = query, .end_pair = end_pair, .marks = marks};
     const size_t n = (size_t) query_stored_placements(query);
-    if (query->which != QUERY_PAIRS_LISTED) {
+    if (query->which != FMB_PAIRS_LISTED) {
         memset(marks->bit, 0, n * n / 8 + 1);
         for (int32_t k = 0; k < query->ignored_count / 2; k++)
             count_undecided(&undecided, query->ignored[k]);

@@ -7,6 +7,7 @@
 #include "fmb.h"
 #include "handle.h"
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
@@ -19,9 +20,6 @@ static inline bool query_id_ok(int64_t id)
 {
     return id >= 0 && id <= QUERY_ID_MAX;
 }
-
-/* Bits of want, of pairs and of scenes. */
-enum { QUERY_WANT_BOX = 1, QUERY_WANT_CERTIFICATE = 2, QUERY_WANT_TIMES = 4, QUERY_WANT_GAP = 8 };
 
 /* Most bytes of a query or result: one datagram, which LCM's Java sends unfragmented. */
 enum { QUERY_BYTES_MAX = 63900 };
@@ -117,8 +115,6 @@ struct pair_result {
 
 /* ---- Scenes ---- */
 
-enum { QUERY_PAIRS_ALL = 0, QUERY_PAIRS_LISTED = 1, QUERY_PAIRS_ACROSS = 2 };
-
 /* Most valid placements, and most pairs listed, of a query of QUERY_BYTES_MAX: a placement takes 77
  * bytes (2D, by handle, at rest) or more, a pair 4. */
 enum {
@@ -133,7 +129,7 @@ struct scene_query {
     double duration;
     int32_t method, want;
     double margin;
-    int32_t which; /* QUERY_PAIRS_ */
+    int32_t which; /* enum fmb_pairs, not checked */
     int32_t split, first_pair;
     /* Counts of the message; if they exceed the arrays, the first elements are stored. */
     int32_t placement_count, index_count, ignored_count;
@@ -146,7 +142,12 @@ struct scene_query {
 /* The number of placements in the struct. */
 int32_t query_stored_placements(const struct scene_query *query);
 
-/* The number of a pair of placements a < b that is among all pairs, or among those across. */
+/* The number of pairs, those that are not decided included. On input: split is 0 to the number of
+ * placements, as in the functions below. */
+int64_t query_pair_count(const struct scene_query *query);
+
+/* Whether (a, b), in this order, is among all pairs, or among those across; and its number. */
+bool query_has_pair(const struct scene_query *query, unsigned a, unsigned b);
 int64_t query_pair_number(const struct scene_query *query, unsigned a, unsigned b);
 
 /* Memory of query_pairs_decided(): a bit for each pair of placements. */
@@ -216,6 +217,30 @@ static inline bool query_same_gap(const struct fmb_gap *a, const struct fmb_gap 
            memcmp(&a->time, &b->time, sizeof a->time) == 0 &&
            memcmp(a->witness, b->witness, sizeof a->witness) == 0 &&
            memcmp(a->frame, b->frame, sizeof a->frame) == 0;
+}
+
+/* Returns the parts of two answers that differ, a sum of FMB_WANT_TIMES, BOX and GAP: one answer
+ * lacks the part, or its numbers are not equal bit for bit (0 and -0 differ). */
+static inline unsigned query_parts_that_differ(const struct fmb_answer *a,
+                                               const struct fmb_answer *b)
+{
+    /* Flags and padding take 8 bytes in each struct. A new number changes a size. */
+    static_assert(sizeof *a == 8 + sizeof a->contact + sizeof a->box + sizeof a->gap &&
+                      sizeof a->gap == 8 + sizeof a->gap.bounds + sizeof a->gap.direction +
+                                           sizeof a->gap.time + sizeof a->gap.witness +
+                                           sizeof a->gap.frame,
+                  "a number that is not compared");
+    const bool times = a->has_contact != b->has_contact ||
+                       (a->has_contact && memcmp(a->contact, b->contact, sizeof a->contact) != 0);
+    const bool box =
+        a->has_box != b->has_box || (a->has_box && memcmp(a->box, b->box, sizeof a->box) != 0);
+    const bool gap = a->has_gap != b->has_gap || (a->has_gap && !query_same_gap(&a->gap, &b->gap));
+    return (times ? FMB_WANT_TIMES : 0) | (box ? FMB_WANT_BOX : 0) | (gap ? FMB_WANT_GAP : 0);
+}
+
+static inline bool query_same_answer(const struct fmb_answer *a, const struct fmb_answer *b)
+{
+    return a->verdict == b->verdict && query_parts_that_differ(a, b) == 0;
 }
 
 /* ---- Definitions ---- */

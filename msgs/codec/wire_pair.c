@@ -21,11 +21,10 @@ static_assert((int) FMB_SEPARATED == FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED &&
                   (int) FMB_TOUCHING == FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING &&
                   (int) FMB_OVERLAPPING == FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING,
               "verdicts");
-static_assert((int) QUERY_WANT_BOX == FMB_MSGS_PAIR_QUERY_T_WANT_BOX &&
-                  (int) QUERY_WANT_CERTIFICATE == FMB_MSGS_PAIR_QUERY_T_WANT_CERTIFICATE &&
-                  (int) QUERY_WANT_TIMES == FMB_MSGS_PAIR_QUERY_T_WANT_TIMES &&
-                  (int) QUERY_WANT_GAP == FMB_MSGS_PAIR_QUERY_T_WANT_GAP &&
-                  (int) FMB_WANT_BOX == QUERY_WANT_BOX && (int) FMB_WANT_GAP == QUERY_WANT_GAP,
+static_assert((int) FMB_WANT_BOX == FMB_MSGS_PAIR_QUERY_T_WANT_BOX &&
+                  (int) FMB_WANT_CERTIFICATE == FMB_MSGS_PAIR_QUERY_T_WANT_CERTIFICATE &&
+                  (int) FMB_WANT_TIMES == FMB_MSGS_PAIR_QUERY_T_WANT_TIMES &&
+                  (int) FMB_WANT_GAP == FMB_MSGS_PAIR_QUERY_T_WANT_GAP,
               "wants");
 #define X(name, number, text) \
     static_assert((int) FMB_##name == FMB_MSGS_PAIR_RESULT_T_STATUS_##name, text);

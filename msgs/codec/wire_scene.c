@@ -10,9 +10,9 @@
 #include <float.h>
 #include <string.h>
 
-static_assert((int) QUERY_PAIRS_LISTED == FMB_MSGS_SCENE_QUERY_T_PAIRS_LISTED &&
-                  (int) QUERY_PAIRS_ALL == FMB_MSGS_SCENE_QUERY_T_PAIRS_ALL &&
-                  (int) QUERY_PAIRS_ACROSS == FMB_MSGS_SCENE_QUERY_T_PAIRS_ACROSS,
+static_assert((int) FMB_PAIRS_LISTED == FMB_MSGS_SCENE_QUERY_T_PAIRS_LISTED &&
+                  (int) FMB_PAIRS_ALL == FMB_MSGS_SCENE_QUERY_T_PAIRS_ALL &&
+                  (int) FMB_PAIRS_ACROSS == FMB_MSGS_SCENE_QUERY_T_PAIRS_ACROSS,
               "which pairs");
 
 /* Least bytes of a placement: one of dimension 0, which is read but not valid. */

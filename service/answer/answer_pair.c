@@ -20,7 +20,7 @@ static bool check_pair(struct check_context *context, const struct pair_query *q
 {
     if (!check_ids(context, query->client_id, query->sequence_number) ||
         !check_request(context, query->duration, query->method, query->want,
-                       QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE | QUERY_WANT_GAP))
+                       FMB_WANT_BOX | FMB_WANT_CERTIFICATE | FMB_WANT_GAP))
         return false;
     for (int f = 0; f < 2; f++) {
         set_side(context, f);
@@ -48,7 +48,7 @@ static bool check_certificate(struct check_context *context, const struct pair_q
                               const struct used_body used[2])
 {
     context->part = NULL;
-    for (int f = 0; f < 2 && query->want & QUERY_WANT_CERTIFICATE; f++)
+    for (int f = 0; f < 2 && query->want & FMB_WANT_CERTIFICATE; f++)
         if (query->placement[f].frame_count > 1 || (used[f].body && used[f].body->frame_count > 1))
             return check_refuse(context, FMB_CANNOT_DECIDE, "want",
                                 "a certificate is for bodies of one frame");
@@ -130,7 +130,7 @@ static void decide(struct answerer *answerer, struct pair_result *result,
     }
     result->method = method->number;
     set_form(query, used, result);
-    if (query->want & QUERY_WANT_CERTIFICATE)
+    if (query->want & FMB_WANT_CERTIFICATE)
         certify(answerer, placement, query->duration, result);
 }
 
@@ -245,8 +245,8 @@ static void begin_scene(struct pair_job *job)
                                     .instant = query->duration == 0,
                                     .method = method,
                                     .contacts = true,
-                                    .boxes = query->want & QUERY_WANT_BOX && method->boxes,
-                                    .gaps = query->want & QUERY_WANT_GAP,
+                                    .boxes = query->want & FMB_WANT_BOX && method->boxes,
+                                    .gaps = query->want & FMB_WANT_GAP,
                                     .which = FMB_PAIRS_LISTED,
                                     .pairs = pair,
                                     .pair_count = 1};
@@ -292,7 +292,7 @@ static void take_answer(struct pair_job *job, const struct fmb_scene_answers *an
         memcpy(answer->contact, answers->contacts[0], sizeof answer->contact);
     if (answer->has_box)
         memcpy(answer->box, answers->boxes[0], sizeof answer->box);
-    answer->has_gap = job->query.want & QUERY_WANT_GAP;
+    answer->has_gap = job->query.want & FMB_WANT_GAP;
     if (answer->has_gap)
         answer->gap = answers->gaps[0];
     set_form(&job->query, job->used, result);

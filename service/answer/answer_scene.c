@@ -230,7 +230,7 @@ static bool check_counts(struct check_context *context, const struct scene_query
         return check_refuse(context, FMB_OVER_LIMIT, "num_placements", reason);
     if (query->index_count % 2)
         return check_refuse(context, FMB_WRONG_COUNT, "num_indices", "not two for each pair");
-    if (query->index_count > 0 && query->which != QUERY_PAIRS_LISTED)
+    if (query->index_count > 0 && query->which != FMB_PAIRS_LISTED)
         return check_refuse(context, FMB_WRONG_COUNT, "num_indices",
                             "indices without PAIRS_LISTED");
     if (query->ignored_count % 2)
@@ -242,15 +242,12 @@ static bool check_counts(struct check_context *context, const struct scene_query
  * checked. Ignored pairs of a listed scene are left out, since no listed pair may be ignored. */
 static struct fmb_scene scene_of(const struct scene_query *query)
 {
-    static const enum fmb_pairs which[] = {[QUERY_PAIRS_LISTED] = FMB_PAIRS_LISTED,
-                                           [QUERY_PAIRS_ALL] = FMB_PAIRS_ALL,
-                                           [QUERY_PAIRS_ACROSS] = FMB_PAIRS_ACROSS};
-    const bool listed = query->which == QUERY_PAIRS_LISTED;
+    const bool listed = query->which == FMB_PAIRS_LISTED;
     return (struct fmb_scene){.placement_count = (size_t) query->placement_count,
                               .duration = query->duration,
                               .instant = query->duration == 0,
                               .method = fmb_method_by_number(query->method),
-                              .which = which[query->which],
+                              .which = (enum fmb_pairs) query->which,
                               .split = (size_t) query->split,
                               .pairs = query->pair,
                               .pair_count = (size_t) query->index_count / 2,
@@ -262,8 +259,8 @@ static struct fmb_scene scene_of(const struct scene_query *query)
 static bool check_which(struct check_context *context, const struct scene_query *query)
 {
     const struct fmb_method *method = fmb_method_by_number(query->method);
-    const bool across = query->which == QUERY_PAIRS_ACROSS;
-    if (query->which < QUERY_PAIRS_ALL || query->which > QUERY_PAIRS_ACROSS)
+    const bool across = query->which == FMB_PAIRS_ACROSS;
+    if (query->which < FMB_PAIRS_ALL || query->which > FMB_PAIRS_ACROSS)
         return check_refuse(context, FMB_UNKNOWN_WANT, "which", NULL);
     if (query->split < 0 || query->split > (across ? query->placement_count : 0))
         return check_refuse(context, FMB_BAD_PAIR, "split",
@@ -271,7 +268,7 @@ static bool check_which(struct check_context *context, const struct scene_query 
     const struct fmb_scene scene = scene_of(query);
     if (query->first_pair < 0 || scene.first_pair > fmb_scene_pair_count(&scene))
         return check_refuse(context, FMB_BAD_PAIR, "first_pair", "there are not so many");
-    if (query->which != QUERY_PAIRS_LISTED && !method->certain)
+    if (query->which != FMB_PAIRS_LISTED && !method->certain)
         return check_refuse(context, FMB_CANNOT_DECIDE, "method", "listed pairs alone");
     return true;
 }
@@ -285,11 +282,11 @@ static bool check_margin(struct check_context *context, const struct scene_query
 static bool check_scene(struct check_context *context, struct scene_job *job)
 {
     const struct scene_query *query = &job->query;
-    const int32_t want = query->want | (query->margin > 0 ? QUERY_WANT_GAP : 0);
+    const int32_t want = query->want | (query->margin > 0 ? FMB_WANT_GAP : 0);
     return check_ids(context, query->client_id, query->sequence_number) &&
            check_margin(context, query) &&
            check_request(context, query->duration, query->method, want,
-                         QUERY_WANT_BOX | QUERY_WANT_TIMES | QUERY_WANT_GAP) &&
+                         FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP) &&
            check_counts(context, query) && check_which(context, query) &&
            check_placements(context, query) &&
            check_indices(context, "indices", query->pair, query->index_count / 2,
@@ -420,12 +417,12 @@ static enum answer_stage begin_pairs(struct scene_job *job)
     struct fmb_scene *scene = &job->scene;
     *scene = scene_of(query);
     scene->placements = job->placement;
-    scene->contacts = query->want & QUERY_WANT_TIMES;
-    scene->boxes = query->want & QUERY_WANT_BOX && scene->method->boxes;
-    scene->gaps = query->want & QUERY_WANT_GAP;
+    scene->contacts = query->want & FMB_WANT_TIMES;
+    scene->boxes = query->want & FMB_WANT_BOX && scene->method->boxes;
+    scene->gaps = query->want & FMB_WANT_GAP;
     scene->margin = query->margin;
     result->method = scene->method->number;
-    result->names_pairs = query->which != QUERY_PAIRS_LISTED;
+    result->names_pairs = query->which != FMB_PAIRS_LISTED;
     result->has_times = scene->contacts;
     result->has_boxes = scene->boxes;
     result->has_gaps = scene->gaps || scene->margin > 0;

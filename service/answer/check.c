@@ -219,6 +219,6 @@ bool check_request(struct check_context *context, double duration, int32_t metho
         return check_refuse(context, FMB_UNKNOWN_METHOD, "method", NULL);
     if ((want & ~wants) != 0)
         return check_refuse(context, FMB_UNKNOWN_WANT, "want", NULL);
-    return !(want & QUERY_WANT_GAP) || fmb_method_by_number(method)->certain ||
+    return !(want & FMB_WANT_GAP) || fmb_method_by_number(method)->certain ||
            check_refuse(context, FMB_CANNOT_DECIDE, "method", "gives no gaps");
 }

@@ -229,8 +229,13 @@ enum fmb_status fmb_placement_check(const struct fmb_placement *placement);
 
 /* ---- Two bodies ---- */
 
-/* The numbers are also used in messages, which have more of them. */
-enum fmb_want { FMB_WANT_BOX = 1, FMB_WANT_GAP = 8 };
+/* Bits of want. fmb_decide() accepts BOX and GAP. Messages and the client library accept all. */
+enum fmb_want {
+    FMB_WANT_BOX = 1,
+    FMB_WANT_CERTIFICATE = 2,
+    FMB_WANT_TIMES = 4, /* contact intervals */
+    FMB_WANT_GAP = 8    /* only of methods that are certain */
+};
 
 /* An enclosure of the gap, the signed distance of two bodies over the window:
  *

@@ -24,11 +24,11 @@ struct load {
 };
 
 static const struct load loads[] = {
-    {"100 bodies, listed", 100, false, QUERY_PAIRS_LISTED, 0},
-    {"500 bodies, listed", 500, false, QUERY_PAIRS_LISTED, 0},
-    {"500 bodies, listed, boxes", 500, false, QUERY_PAIRS_LISTED, QUERY_WANT_BOX},
-    {"400 moving, listed, times", 400, true, QUERY_PAIRS_LISTED, QUERY_WANT_TIMES},
-    {"500 bodies, all pairs", 500, false, QUERY_PAIRS_ALL, 0},
+    {"100 bodies, listed", 100, false, FMB_PAIRS_LISTED, 0},
+    {"500 bodies, listed", 500, false, FMB_PAIRS_LISTED, 0},
+    {"500 bodies, listed, boxes", 500, false, FMB_PAIRS_LISTED, FMB_WANT_BOX},
+    {"400 moving, listed, times", 400, true, FMB_PAIRS_LISTED, FMB_WANT_TIMES},
+    {"500 bodies, all pairs", 500, false, FMB_PAIRS_ALL, 0},
 };
 
 /* Queries a second, with so many under way. NAN: something was lost. */
@@ -87,8 +87,8 @@ static double engine_rate(const struct engine *engine)
         .pair_count = engine->pairs,
         .duration = 1,
         .verdicts = engine->verdicts,
-        .contacts = engine->load->want & QUERY_WANT_TIMES ? engine->times : NULL,
-        .boxes = engine->load->want & QUERY_WANT_BOX ? engine->boxes : NULL,
+        .contacts = engine->load->want & FMB_WANT_TIMES ? engine->times : NULL,
+        .boxes = engine->load->want & FMB_WANT_BOX ? engine->boxes : NULL,
     };
     const double begin = stopwatch_now();
     fmb_decide_batch(&batch);
@@ -197,7 +197,7 @@ static void run_load(struct bus_bench *bench, const struct load *load)
         workload_scene_draw(load->bodies, load->moving, PAIRS_DRAWN, bench->seed);
     const size_t pairs =
         workload_scene(bench, &scene, FORM_BY_HANDLE, load->which, load->want, &query);
-    const bool listed = load->which == QUERY_PAIRS_LISTED;
+    const bool listed = load->which == FMB_PAIRS_LISTED;
     struct engine engine = engine_of(&scene, load, listed ? pairs : 1);
     engine_rate(&engine);
     for (size_t i = 0; i < sizeof windows / sizeof *windows; i++) {

@@ -137,8 +137,7 @@ void oneway_run(struct bus_bench *bench)
     struct workload_scene scene = workload_scene_draw(500, false, 15000, bench->seed);
     workload_pair(bench, FORM_HELD, &query);
     rate_all(bench, "pair, whole", &query, 1, 10000);
-    const size_t pairs =
-        workload_scene(bench, &scene, FORM_BY_HANDLE, QUERY_PAIRS_LISTED, 0, &query);
+    const size_t pairs = workload_scene(bench, &scene, FORM_BY_HANDLE, FMB_PAIRS_LISTED, 0, &query);
     rate_all(bench, "scene of 500, by handle", &query, pairs, 1000);
     workload_scene_free(&scene);
 }

@@ -136,7 +136,7 @@ static void set_handles(struct bus_bench *bench, struct scene_query *query)
                   count = left < at_a_time ? left : at_a_time;
         part = (struct scene_query){.client_id = query->client_id,
                                     .duration = 1,
-                                    .which = QUERY_PAIRS_LISTED,
+                                    .which = FMB_PAIRS_LISTED,
                                     .placement_count = count};
         memcpy(part.placement, query->placement + first, (size_t) count * sizeof *part.placement);
         datagram_of_scene(&part, &datagram);
@@ -193,12 +193,12 @@ size_t workload_scene(struct bus_bench *bench, const struct workload_scene *scen
         set_whole(&scene->scene.placement[i], scene_bodies + i, &query.placement[i], geometry[i]);
     if (form == FORM_BY_HANDLE)
         set_handles(bench, &query);
-    if (which == QUERY_PAIRS_LISTED) {
+    if (which == FMB_PAIRS_LISTED) {
         const size_t space = space_for_pairs(&query), drawn = scene->pairs.count;
         list_pairs(&scene->pairs, space < drawn ? space : drawn, &query);
     }
     const size_t count = pairs_answered(bench, &query);
-    if (which == QUERY_PAIRS_LISTED)
+    if (which == FMB_PAIRS_LISTED)
         list_pairs(&scene->pairs, count, &query);
     datagram_of_scene(&query, out);
     if (form == FORM_NEW)

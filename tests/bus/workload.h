@@ -19,7 +19,7 @@ struct workload_scene {
 struct workload_scene workload_scene_draw(int bodies, bool moving, size_t pairs, uint64_t seed);
 void workload_scene_free(struct workload_scene *scene);
 
-/* The query of a scene. On input: which is QUERY_PAIRS_LISTED or QUERY_PAIRS_ALL; want its bits.
+/* The query of a scene. On input: which is FMB_PAIRS_LISTED or FMB_PAIRS_ALL; want its bits.
  * Listed are as many of the pairs as query and result have space for. Returns the number of pairs
  * of the query. */
 size_t workload_scene(struct bus_bench *bench, const struct workload_scene *scene, enum form form,

@@ -54,15 +54,6 @@ static void check_certificate(const struct fmb_placement place[2], double durati
         fmb_certificate_holds(&place[0], &place[1], duration, right.verdict, certificate, NULL, 0));
 }
 
-static bool same_answer(const struct fmb_answer *a, const struct fmb_answer *b)
-{
-    return a->verdict == b->verdict && a->has_contact == b->has_contact &&
-           a->has_box == b->has_box && same_doubles(a->contact, b->contact, 2) &&
-           same_doubles(a->box[0], b->box[0], FMB_DIM_MAX) &&
-           same_doubles(a->box[1], b->box[1], FMB_DIM_MAX) && a->has_gap == b->has_gap &&
-           query_same_gap(&a->gap, &b->gap);
-}
-
 static unsigned want_of(int32_t want)
 {
     return (unsigned) want & (FMB_WANT_BOX | FMB_WANT_GAP);
@@ -80,8 +71,8 @@ static bool is_good_pair(const struct pair_query *query)
 {
     return model_good_request(query->client_id, query->sequence_number, query->duration,
                               query->method, query->want,
-                              QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE | QUERY_WANT_GAP) &&
-           good_gaps(query->method, query->want & QUERY_WANT_GAP) &&
+                              FMB_WANT_BOX | FMB_WANT_CERTIFICATE | FMB_WANT_GAP) &&
+           good_gaps(query->method, query->want & FMB_WANT_GAP) &&
            model_good_placement(&query->placement[0]) &&
            model_good_placement(&query->placement[1]) &&
            query->placement[0].dim == query->placement[1].dim;
@@ -104,7 +95,7 @@ static enum fmb_status find_pair(struct model *model, const struct pair_query *q
     for (int f = 0; f < 2 && status == FMB_OK; f++)
         if (model_by_handle(&query->placement[f]))
             status = model_find(model, &query->placement[f], &made[f]);
-    for (int f = 0; f < 2 && status == FMB_OK && query->want & QUERY_WANT_CERTIFICATE; f++)
+    for (int f = 0; f < 2 && status == FMB_OK && query->want & FMB_WANT_CERTIFICATE; f++)
         if (frames_of(model, &query->placement[f]) > 1)
             status = FMB_CANNOT_DECIDE;
     for (int f = 0; f < 2 && status == FMB_OK; f++)
@@ -123,14 +114,14 @@ static void check_decided(const struct pair_query *query, const struct pair_resu
     const int32_t status = (int32_t) fmb_decide(method, &place[0], &place[1], query->duration,
                                                 want_of(query->want), &answer);
     FUZZ_CHECK(result->status == status);
-    FUZZ_CHECK(same_answer(&result->answer, &answer));
+    FUZZ_CHECK(query_same_answer(&result->answer, &answer));
     FUZZ_CHECK(result->method == (status == FMB_OK ? method->number : 0));
     FUZZ_CHECK(result->dim == (answer.has_box || answer.has_gap ? query->placement[0].dim : 0));
     FUZZ_CHECK(result->names_frames ==
                (answer.has_gap && (made[0].body.frame_count > 1 || made[1].body.frame_count > 1)));
     if (result->certificate)
         check_certificate(place, query->duration, result->certificate);
-    FUZZ_CHECK(!result->certificate || query->want & QUERY_WANT_CERTIFICATE);
+    FUZZ_CHECK(!result->certificate || query->want & FMB_WANT_CERTIFICATE);
 }
 
 static void check_echo(const struct pair_query *query, const struct pair_result *result)
@@ -219,7 +210,7 @@ static int list_pairs(const struct scene_query *query, unsigned out[PAIRS_MAX][2
 {
     const int placements = query->placement_count;
     int count = 0;
-    if (query->which == QUERY_PAIRS_LISTED) {
+    if (query->which == FMB_PAIRS_LISTED) {
         for (; count < query->index_count / 2; count++)
             if (count < PAIRS_MAX)
                 memcpy(out[count], query->pair[count], sizeof out[count]);
@@ -227,7 +218,7 @@ static int list_pairs(const struct scene_query *query, unsigned out[PAIRS_MAX][2
     }
     for (int a = 0; a < placements; a++)
         for (int b = a + 1; b < placements; b++) {
-            if (query->which == QUERY_PAIRS_ACROSS && (a >= query->split || b < query->split))
+            if (query->which == FMB_PAIRS_ACROSS && (a >= query->split || b < query->split))
                 continue;
             if (count < PAIRS_MAX) {
                 out[count][0] = (unsigned) a;
@@ -287,24 +278,24 @@ static bool good_which(const struct scene_query *query, int total)
 {
     if (query->first_pair < 0 || query->first_pair > total)
         return false;
-    if (query->which == QUERY_PAIRS_LISTED)
+    if (query->which == FMB_PAIRS_LISTED)
         return query->split == 0;
     return query->index_count == 0 && fmb_method_by_number(query->method)->certain &&
-           ((query->which == QUERY_PAIRS_ALL && query->split == 0) ||
-            (query->which == QUERY_PAIRS_ACROSS && query->split >= 0 &&
+           ((query->which == FMB_PAIRS_ALL && query->split == 0) ||
+            (query->which == FMB_PAIRS_ACROSS && query->split >= 0 &&
              query->split <= query->placement_count));
 }
 
 static bool wants_gaps(const struct scene_query *query)
 {
-    return query->want & QUERY_WANT_GAP || query->margin > 0;
+    return query->want & FMB_WANT_GAP || query->margin > 0;
 }
 
 static bool is_good_scene(const struct scene_query *query, int total)
 {
     return model_good_request(query->client_id, query->sequence_number, query->duration,
                               query->method, query->want,
-                              QUERY_WANT_BOX | QUERY_WANT_TIMES | QUERY_WANT_GAP) &&
+                              FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP) &&
            query->margin >= 0 && isfinite(query->margin) &&
            good_gaps(query->method, wants_gaps(query)) && good_which(query, total) &&
            good_placements(query) && good_pairs(query);
@@ -388,19 +379,19 @@ static void check_scene_pair(struct reading *reading, const unsigned pair[2])
     const struct fmb_placement b = model_place(&query->placement[pair[1]], &reading->made[pair[1]]);
     const unsigned want = want_of(query->want) | (wants_gaps(query) ? FMB_WANT_GAP : 0);
     struct fmb_answer answer;
-    if (query->which != QUERY_PAIRS_LISTED &&
+    if (query->which != FMB_PAIRS_LISTED &&
         (is_ignored(query, pair) || is_within_group(query, pair)))
         return;
     fmb_decide(fmb_method_by_number(query->method), &a, &b, query->duration, want, &answer);
     const bool contact = answer.verdict >= FMB_TOUCHING;
     const bool near = query->margin > 0 && answer.gap.bounds[0] <= query->margin;
-    if (query->which != QUERY_PAIRS_LISTED && !contact && !near)
+    if (query->which != FMB_PAIRS_LISTED && !contact && !near)
         return;
     const int n = reading->verdicts++;
     FUZZ_CHECK(n < result->verdict_count && result->verdict[n] == answer.verdict);
     if (result->names_pairs)
         FUZZ_CHECK(result->pair[n][0] == pair[0] && result->pair[n][1] == pair[1]);
-    if (wants_gaps(query) && (contact || near || query->want & QUERY_WANT_GAP))
+    if (wants_gaps(query) && (contact || near || query->want & FMB_WANT_GAP))
         FUZZ_CHECK(query_same_gap(&result->gap[n], &answer.gap));
     else if (result->has_gaps)
         FUZZ_CHECK(!query_has_gap(&result->gap[n]));
@@ -420,14 +411,14 @@ static void check_answers(const struct scene_query *query, const struct scene_re
                        : result->end_pair == total);
     const bool some = result->contact_count > 0;
     FUZZ_CHECK(result->names_pairs ==
-               (query->which != QUERY_PAIRS_LISTED && result->verdict_count > 0));
-    FUZZ_CHECK(result->has_times == (some && query->want & QUERY_WANT_TIMES));
+               (query->which != FMB_PAIRS_LISTED && result->verdict_count > 0));
+    FUZZ_CHECK(result->has_times == (some && query->want & FMB_WANT_TIMES));
     FUZZ_CHECK(result->has_gaps == (result->verdict_count > 0 && wants_gaps(query)));
     bool several = false;
     for (int32_t i = 0; i < query->placement_count; i++)
         several = several || made[i].body.frame_count > 1;
     FUZZ_CHECK(result->names_frames == (result->has_gaps && several));
-    FUZZ_CHECK(result->has_boxes == (some && method->boxes && query->want & QUERY_WANT_BOX));
+    FUZZ_CHECK(result->has_boxes == (some && method->boxes && query->want & FMB_WANT_BOX));
     for (int k = query->first_pair; k < result->end_pair; k++)
         check_scene_pair(&reading, pair[k]);
     FUZZ_CHECK(reading.verdicts == result->verdict_count &&

@@ -6,6 +6,7 @@
 #include "answers.h"
 #include "json.h"
 #include "pieces.h"
+#include "query.h"
 #include "same.h"
 #include "scene_json.h"
 #include "utf8.h"
@@ -201,15 +202,6 @@ static void check_written(const struct scene *scene)
 
 /* ---- Decided ---- */
 
-static bool same_answer(const struct fmb_answer *a, const struct fmb_answer *b)
-{
-    return a->verdict == b->verdict && a->has_contact == b->has_contact &&
-           a->has_box == b->has_box && same_doubles(a->contact, b->contact, 2) &&
-           same_doubles(a->box[0], b->box[0], FMB_DIM_MAX) &&
-           same_doubles(a->box[1], b->box[1], FMB_DIM_MAX) && a->has_gap == b->has_gap &&
-           same_doubles(a->gap.bounds, b->gap.bounds, 2);
-}
-
 static void check_outcome(void *user, const struct scene *scene, const struct outcome *outcome)
 {
     const struct fmb_placement a = scene_placement(&scene->body[outcome->pair.a]);
@@ -221,7 +213,7 @@ static void check_outcome(void *user, const struct scene *scene, const struct ou
     const unsigned want = FMB_WANT_BOX | (scene->margin > 0 ? FMB_WANT_GAP : 0);
     FUZZ_CHECK(fmb_decide(fmb_method_default(), &b, &a, scene->duration, want, &answer) == FMB_OK);
     query_remove_far_gap(scene->margin, &answer);
-    FUZZ_CHECK(same_answer(&outcome->answer, &answer));
+    FUZZ_CHECK(query_same_answer(&outcome->answer, &answer));
 }
 
 static void check_decided(const struct scene *scene)

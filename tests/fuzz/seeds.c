@@ -118,7 +118,7 @@ struct pair_query seeds_pair(struct placement a, struct placement b, int32_t met
                                .placement = {a, b}};
 }
 
-enum { BOX = QUERY_WANT_BOX, CERTIFICATE = QUERY_WANT_CERTIFICATE };
+enum { BOX = FMB_WANT_BOX, CERTIFICATE = FMB_WANT_CERTIFICATE };
 
 /* In place of a shape. */
 enum { SEVERAL = 0 };
@@ -183,15 +183,15 @@ const struct scene_query *seeds_scene(int placements, int32_t which, int32_t wan
     query.which = which;
     query.want = want;
     query.placement_count = placements;
-    query.split = which == QUERY_PAIRS_ACROSS ? placements / 2 : 0;
+    query.split = which == FMB_PAIRS_ACROSS ? placements / 2 : 0;
     for (int i = 0; i < placements; i++)
         query.placement[i] = seeds_placement(i, 1 + i % dim, dim, i * 0.5, i % 3 == 2);
-    query.index_count = which == QUERY_PAIRS_LISTED && placements > 0 ? 2 * (placements - 1) : 0;
+    query.index_count = which == FMB_PAIRS_LISTED && placements > 0 ? 2 * (placements - 1) : 0;
     for (int i = 0; i < query.index_count / 2; i++) {
         query.pair[i][0] = (unsigned) i;
         query.pair[i][1] = (unsigned) i + 1;
     }
-    query.ignored_count = which != QUERY_PAIRS_LISTED && placements > 3 ? 4 : 0;
+    query.ignored_count = which != FMB_PAIRS_LISTED && placements > 3 ? 4 : 0;
     query.ignored[0][0] = 2;
     query.ignored[0][1] = 3;
     query.ignored[1][0] = 1; /* these overlap */

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BOX = QUERY_WANT_BOX, TIMES = QUERY_WANT_TIMES };
+enum { BOX = FMB_WANT_BOX, TIMES = FMB_WANT_TIMES };
 
 static unsigned char bytes[QUERY_BYTES_MAX];
 
@@ -131,25 +131,25 @@ static void write_scene_query(const char *name, const struct scene_query *query)
 static void write_scene_queries(void)
 {
     write_good("scene_query");
-    write_scene_query("empty", seeds_scene(0, QUERY_PAIRS_ALL, 0));
-    write_scene_query("listed", seeds_scene(4, QUERY_PAIRS_LISTED, BOX | TIMES));
-    write_scene_query("all", seeds_scene(5, QUERY_PAIRS_ALL, BOX));
-    write_scene_query("across", seeds_scene(6, QUERY_PAIRS_ACROSS, TIMES));
+    write_scene_query("empty", seeds_scene(0, FMB_PAIRS_ALL, 0));
+    write_scene_query("listed", seeds_scene(4, FMB_PAIRS_LISTED, BOX | TIMES));
+    write_scene_query("all", seeds_scene(5, FMB_PAIRS_ALL, BOX));
+    write_scene_query("across", seeds_scene(6, FMB_PAIRS_ACROSS, TIMES));
     struct scene_query *query = fuzz_room(sizeof *query);
-    *query = *seeds_scene(5, QUERY_PAIRS_ALL, QUERY_WANT_GAP);
+    *query = *seeds_scene(5, FMB_PAIRS_ALL, FMB_WANT_GAP);
     query->margin = 0.5;
     write_scene_query("margin", query);
     query->label = "shelf \xe2\x82\xac \xff\n";
     query->placement[1].name = "arm";
     query->placement[1].group = query->placement[2].group = INT64_MAX;
     write_scene_query("groups", query);
-    *query = *seeds_scene(0, QUERY_PAIRS_ALL, 0);
+    *query = *seeds_scene(0, FMB_PAIRS_ALL, 0);
     const struct placement placement = seeds_by_handle(seeds_placement(0, FMB_CUBOID, 2, 0, 0));
     query->placement_count = (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES) / QUERY_PLACEMENT_BYTES_MIN;
     for (int i = 0; i < query->placement_count; i++)
         query->placement[i] = placement;
     write_scene_query("many-placements", query);
-    query->which = QUERY_PAIRS_LISTED;
+    query->which = FMB_PAIRS_LISTED;
     query->placement_count = 2;
     query->index_count = 2000;
     query->ignored_count = 4;

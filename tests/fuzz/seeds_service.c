@@ -10,10 +10,10 @@
 #include <string.h>
 
 enum {
-    BOX = QUERY_WANT_BOX,
-    CERTIFICATE = QUERY_WANT_CERTIFICATE,
-    TIMES = QUERY_WANT_TIMES,
-    GAP = QUERY_WANT_GAP
+    BOX = FMB_WANT_BOX,
+    CERTIFICATE = FMB_WANT_CERTIFICATE,
+    TIMES = FMB_WANT_TIMES,
+    GAP = FMB_WANT_GAP
 };
 
 static unsigned char bytes[QUERY_BYTES_MAX];
@@ -100,7 +100,7 @@ static void write_talks_about_handles(void)
 
 static void write_talks_about_gaps(void)
 {
-    static const int32_t which[] = {QUERY_PAIRS_LISTED, QUERY_PAIRS_ALL, QUERY_PAIRS_ACROSS};
+    static const int32_t which[] = {FMB_PAIRS_LISTED, FMB_PAIRS_ALL, FMB_PAIRS_ACROSS};
     struct scene_query *query = fuzz_room(sizeof *query);
     for (int shape = FMB_CUBOID; shape <= FMB_FACE; shape++)
         add_pair(seeds_pair(seeds_placement(1, shape, 3, 0, 0),
@@ -118,7 +118,7 @@ static void write_talks_about_gaps(void)
 
 static void write_talks_about_scenes(void)
 {
-    static const int32_t which[] = {QUERY_PAIRS_LISTED, QUERY_PAIRS_ALL, QUERY_PAIRS_ACROSS};
+    static const int32_t which[] = {FMB_PAIRS_LISTED, FMB_PAIRS_ALL, FMB_PAIRS_ACROSS};
     static const char *const names[][2] = {
         {"listed", "listed-2d"}, {"all", "all-2d"}, {"across", "across-2d"}};
     for (int i = 0; i < 3; i++) {
@@ -131,7 +131,7 @@ static void write_talks_about_scenes(void)
         end_talk(names[i][1]);
     }
     struct scene_query *query = fuzz_room(sizeof *query);
-    *query = *seeds_scene(4, QUERY_PAIRS_LISTED, BOX);
+    *query = *seeds_scene(4, FMB_PAIRS_LISTED, BOX);
     add_scene(query);
     query->method = 2;
     query->first_pair = 1;
@@ -280,7 +280,7 @@ static void write_replays_of_handles(void)
 
 static void write_replays_of_scenes(void)
 {
-    static const int32_t which[] = {QUERY_PAIRS_LISTED, QUERY_PAIRS_ALL, QUERY_PAIRS_ACROSS};
+    static const int32_t which[] = {FMB_PAIRS_LISTED, FMB_PAIRS_ALL, FMB_PAIRS_ACROSS};
     static const char *const names[] = {"scenes-listed", "scenes-all", "scenes-across"};
     for (int i = 0; i < 3; i++) {
         log_scene(seeds_scene(4, which[i], BOX | TIMES));

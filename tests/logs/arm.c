@@ -120,8 +120,8 @@ static void ask_scene(struct asker *asker, const struct solid *solid)
     static struct scene_query query;
     static struct scene_result result;
     query.duration = step_s;
-    query.want = QUERY_WANT_BOX | QUERY_WANT_TIMES;
-    query.which = QUERY_PAIRS_LISTED;
+    query.want = FMB_WANT_BOX | FMB_WANT_TIMES;
+    query.which = FMB_PAIRS_LISTED;
     query.placement_count = PARTS;
     query.index_count = 2 * PAIRS;
     memcpy(query.pair, pairs, sizeof pairs);
@@ -138,9 +138,9 @@ static void ask_pair(struct asker *asker, const struct solid *solid, int n)
 {
     const unsigned *pair = pairs[FIRST_ALONE + n % ALONE];
     struct pair_result result;
-    struct pair_query query = {.duration = step_s, .want = QUERY_WANT_BOX};
+    struct pair_query query = {.duration = step_s, .want = FMB_WANT_BOX};
     if (n % 4 == 0)
-        query.want |= QUERY_WANT_CERTIFICATE;
+        query.want |= FMB_WANT_CERTIFICATE;
     for (int f = 0; f < 2; f++)
         part_place(&solid[pair[f]], pair[f] + 1, &query.placement[f]);
     asker_pair(asker, &query, &result);

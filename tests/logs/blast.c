@@ -167,7 +167,7 @@ bool blast_scenes(struct tape *tape, const struct blast *blast)
     for (int i = 0; i < BLAST_FRAMES; i++)
         blasting->solid[i] = draw_solid(&blasting->draw, 3, i % 2 ? FMB_TETRAHEDRON : FMB_CUBOID);
     blasting->scene.duration = 1;
-    blasting->scene.which = QUERY_PAIRS_LISTED;
+    blasting->scene.which = FMB_PAIRS_LISTED;
     blasting->scene.placement_count = BLAST_FRAMES;
     for (int64_t n = 0; n < blast->count; n++)
         ask_scene(blasting);

@@ -40,7 +40,7 @@ static int64_t id_of(int client, int n)
 
 static struct pair_query pair_of(int client, int step, int a, int b)
 {
-    struct pair_query query = {.duration = 0.01, .want = step % 2 ? QUERY_WANT_BOX : 0};
+    struct pair_query query = {.duration = 0.01, .want = step % 2 ? FMB_WANT_BOX : 0};
     const struct solid solid[2] = {body(client, a, step), body(client, b, step)};
     part_place(&solid[0], id_of(client, a), &query.placement[0]);
     part_place(&solid[1], id_of(client, b), &query.placement[1]);
@@ -50,8 +50,8 @@ static struct pair_query pair_of(int client, int step, int a, int b)
 static void set_scene(int client, int step, struct scene_query *query)
 {
     query->duration = 0.01;
-    query->which = QUERY_PAIRS_ALL;
-    query->want = QUERY_WANT_TIMES;
+    query->which = FMB_PAIRS_ALL;
+    query->want = FMB_WANT_TIMES;
     query->placement_count = BODIES;
     query->index_count = query->split = query->first_pair = 0;
     for (int n = 0; n < BODIES; n++) {

@@ -65,7 +65,7 @@ static void begin_query(struct crowd *crowd, int32_t which, int32_t want, int wa
     query->duration = step_s;
     query->which = which;
     query->want = want;
-    query->split = which == QUERY_PAIRS_ACROSS ? walkers : 0;
+    query->split = which == FMB_PAIRS_ACROSS ? walkers : 0;
     query->first_pair = query->index_count = 0;
     query->placement_count = walkers + standing;
     for (int i = 0; i < walkers; i++)
@@ -78,8 +78,8 @@ static int32_t pairs_of(const struct scene_query *query)
 {
     const int32_t n = query->placement_count, split = query->split;
     switch (query->which) {
-    case QUERY_PAIRS_ALL: return n * (n - 1) / 2;
-    case QUERY_PAIRS_ACROSS: return split * (n - split);
+    case FMB_PAIRS_ALL: return n * (n - 1) / 2;
+    case FMB_PAIRS_ACROSS: return split * (n - split);
     default: return query->index_count / 2;
     }
 }
@@ -111,7 +111,7 @@ static void list_neighbours(struct crowd *crowd)
 /* The service has answered a part of the scene, and other clients wait: it stops there. */
 static void ask_and_be_broken_off(struct crowd *crowd)
 {
-    begin_query(crowd, QUERY_PAIRS_ACROSS, 0, WALKERS, STANDING);
+    begin_query(crowd, FMB_PAIRS_ACROSS, 0, WALKERS, STANDING);
     crowd->asker.instance->stop_after = 1;
     asker_scene(&crowd->asker, &crowd->query, &crowd->result);
     crowd->asker.instance->stop_after = 0;
@@ -121,20 +121,20 @@ static void ask_and_be_broken_off(struct crowd *crowd)
 
 static void ask_step(struct crowd *crowd, int step)
 {
-    begin_query(crowd, QUERY_PAIRS_ACROSS, QUERY_WANT_TIMES, 30, 20 + step);
+    begin_query(crowd, FMB_PAIRS_ACROSS, FMB_WANT_TIMES, 30, 20 + step);
     crowd->query.margin = 0.25;
     ask_to_the_end(crowd);
     crowd->query.margin = 0;
-    begin_query(crowd, QUERY_PAIRS_LISTED, QUERY_WANT_BOX | QUERY_WANT_TIMES, 25, 5);
+    begin_query(crowd, FMB_PAIRS_LISTED, FMB_WANT_BOX | FMB_WANT_TIMES, 25, 5);
     list_neighbours(crowd);
     ask_to_the_end(crowd);
 }
 
 static void ask_all(struct crowd *crowd, struct tape *tape)
 {
-    begin_query(crowd, QUERY_PAIRS_ACROSS, 0, WALKERS, STANDING);
+    begin_query(crowd, FMB_PAIRS_ACROSS, 0, WALKERS, STANDING);
     ask_to_the_end(crowd); /* tells everybody */
-    begin_query(crowd, QUERY_PAIRS_ALL, QUERY_WANT_BOX | QUERY_WANT_TIMES, WALKERS, STANDING);
+    begin_query(crowd, FMB_PAIRS_ALL, FMB_WANT_BOX | FMB_WANT_TIMES, WALKERS, STANDING);
     ask_to_the_end(crowd);
     for (int step = 0; step < STEPS; step++) {
         tape_reach(tape, (int64_t) (step + 1) * STEP_US);

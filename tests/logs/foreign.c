@@ -87,7 +87,7 @@ static void publish_mismatch(struct foreign *foreign)
 /* Bodies in a row, every other one of which moves. */
 static struct pair_query pair_of(int round, int a, int b)
 {
-    struct pair_query query = {.duration = 0.01, .want = QUERY_WANT_BOX};
+    struct pair_query query = {.duration = 0.01, .want = FMB_WANT_BOX};
     for (int f = 0; f < 2; f++) {
         const int n = f ? b : a;
         const double origin[3] = {0.6 * n, 0.1 * (round % 7), 0};

@@ -136,9 +136,9 @@ static bool take(int option, char **argv, struct options *out)
     case MOVING: out->blast.moving = 1; return true;
     case WHOLE: out->blast.by_handle = 0; return true;
     case BY_HANDLE: out->blast.by_handle = 1; return true;
-    case BOX: out->blast.want |= QUERY_WANT_BOX; return true;
-    case CERTIFICATE: out->blast.want |= QUERY_WANT_CERTIFICATE; return true;
-    case GAP: out->blast.want |= QUERY_WANT_GAP; return true;
+    case BOX: out->blast.want |= FMB_WANT_BOX; return true;
+    case CERTIFICATE: out->blast.want |= FMB_WANT_CERTIFICATE; return true;
+    case GAP: out->blast.want |= FMB_WANT_GAP; return true;
     default: return refuse("wrong option", argv[optind - 1]);
     }
 }

@@ -36,7 +36,7 @@ static int32_t draw_method(struct draw *draw)
 /* The inexact methods give none. */
 static int32_t draw_gap(struct draw *draw, int32_t method)
 {
-    return draw_coin(draw) && fmb_method_by_number(method)->certain ? QUERY_WANT_GAP : 0;
+    return draw_coin(draw) && fmb_method_by_number(method)->certain ? FMB_WANT_GAP : 0;
 }
 
 /* ---- One by one ---- */
@@ -57,9 +57,9 @@ static void ask_pair(struct hard *hard, const struct question *question)
     struct pair_result result;
     const bool again = draw_int(draw, 0, 7) == 0;
     if (draw_coin(draw))
-        query.want |= QUERY_WANT_BOX;
+        query.want |= FMB_WANT_BOX;
     if (draw_int(draw, 0, 3) == 0)
-        query.want |= QUERY_WANT_CERTIFICATE;
+        query.want |= FMB_WANT_CERTIFICATE;
     query.want |= draw_gap(draw, query.method);
     part_place(&question->a, again ? ++hard->body_id : 0, &query.placement[0]);
     part_place(&question->b, again ? ++hard->body_id : 0, &query.placement[1]);
@@ -92,9 +92,9 @@ static void begin_scene(struct hard *hard)
 {
     struct scene_query *query = &hard->scene;
     query->duration = 1;
-    query->which = QUERY_PAIRS_LISTED;
+    query->which = FMB_PAIRS_LISTED;
     query->method = draw_method(&hard->draw);
-    query->want = QUERY_WANT_BOX | draw_gap(&hard->draw, query->method);
+    query->want = FMB_WANT_BOX | draw_gap(&hard->draw, query->method);
     query->placement_count = query->index_count = 0;
 }
 

@@ -223,7 +223,7 @@ static void method_below_0(struct pair_query *query)
 
 static void wants_times(struct pair_query *query)
 {
-    query->want = QUERY_WANT_TIMES; /* which pairs always have */
+    query->want = FMB_WANT_TIMES; /* which pairs always have */
 }
 
 static void wants_all(struct pair_query *query)
@@ -234,7 +234,7 @@ static void wants_all(struct pair_query *query)
 static void wants_gap_of_fmb(struct pair_query *query)
 {
     query->method = 2;
-    query->want = QUERY_WANT_GAP;
+    query->want = FMB_WANT_GAP;
 }
 
 static void flat_for_fmb(struct pair_query *query)
@@ -299,7 +299,7 @@ static struct pair_query good_pair(struct refusing *refusing)
     struct pair_query query = {.client_id = A_CLIENT,
                                .sequence_number = refusing->next_number++,
                                .duration = 1,
-                               .want = QUERY_WANT_BOX};
+                               .want = FMB_WANT_BOX};
     const struct solid a = part_box(3, zero, one), b = part_box(3, half, one);
     part_place(&a, 0, &query.placement[0]);
     part_place(&b, 0, &query.placement[1]);
@@ -333,7 +333,7 @@ static void split_of_listed(struct scene_query *query)
 
 static void split_too_far(struct scene_query *query)
 {
-    query->which = QUERY_PAIRS_ACROSS;
+    query->which = FMB_PAIRS_ACROSS;
     query->index_count = 0;
     query->split = query->placement_count + 1;
 }
@@ -370,17 +370,17 @@ static void indices_odd(struct scene_query *query)
 
 static void indices_of_all(struct scene_query *query)
 {
-    query->which = QUERY_PAIRS_ALL;
+    query->which = FMB_PAIRS_ALL;
 }
 
 static void certificates(struct scene_query *query)
 {
-    query->want = QUERY_WANT_CERTIFICATE;
+    query->want = FMB_WANT_CERTIFICATE;
 }
 
 static void all_by_sat(struct scene_query *query)
 {
-    query->which = QUERY_PAIRS_ALL;
+    query->which = FMB_PAIRS_ALL;
     query->index_count = 0;
     query->method = 3;
 }
@@ -415,7 +415,7 @@ static void margin_for_sat(struct scene_query *query)
 static void gaps_of_fmb(struct scene_query *query)
 {
     query->method = 2;
-    query->want = QUERY_WANT_GAP;
+    query->want = FMB_WANT_GAP;
 }
 
 static void one_ignored(struct scene_query *query)
@@ -452,7 +452,7 @@ static void first_pair_at_the_end(struct scene_query *query)
 
 static void nothing_placed(struct scene_query *query)
 {
-    query->which = QUERY_PAIRS_ALL;
+    query->which = FMB_PAIRS_ALL;
     query->placement_count = query->index_count = 0;
 }
 
@@ -472,7 +472,7 @@ static void set_good_scene(struct refusing *refusing)
     query->client_id = A_CLIENT;
     query->sequence_number = refusing->next_number++;
     query->duration = 1;
-    query->which = QUERY_PAIRS_LISTED;
+    query->which = FMB_PAIRS_LISTED;
     query->placement_count = 4;
     query->index_count = 2 * 3;
     for (int i = 0; i < 4; i++) {
@@ -593,7 +593,7 @@ static void ask_extremes(struct refusing *refusing)
             query.method = methods[m];
             query.duration = i % 3 == 2 ? 0.0 : 1;
             if (m < 1)
-                query.want |= QUERY_WANT_CERTIFICATE;
+                query.want |= FMB_WANT_CERTIFICATE;
             instance_ask_pair(refusing->instance, &query, &result);
         }
 }

@@ -119,13 +119,13 @@ static void set_placements(const struct stack *stack, int step, struct scene_que
 
 static void ask_scene(struct asker *asker, const struct stack *stack, int step)
 {
-    static const int32_t wants[] = {0, QUERY_WANT_TIMES, QUERY_WANT_BOX,
-                                    QUERY_WANT_TIMES | QUERY_WANT_BOX | QUERY_WANT_GAP};
+    static const int32_t wants[] = {0, FMB_WANT_TIMES, FMB_WANT_BOX,
+                                    FMB_WANT_TIMES | FMB_WANT_BOX | FMB_WANT_GAP};
     static struct scene_query query;
     static struct scene_result result;
     query.duration = step_s;
     query.want = wants[step % 4];
-    query.which = QUERY_PAIRS_ALL;
+    query.which = FMB_PAIRS_ALL;
     query.margin = step % 2 ? 0 : step % 8 ? 1e-9 : 0.03125;
     set_placements(stack, step, &query);
     asker_scene(asker, &query, &result);
@@ -135,10 +135,10 @@ static void ask_scene(struct asker *asker, const struct stack *stack, int step)
 static void ask_pair(struct asker *asker, const struct stack *stack, int tower, int step)
 {
     const int level = 1 + step % (LEVELS - 1);
-    struct pair_query query = {.duration = step_s, .want = QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE};
+    struct pair_query query = {.duration = step_s, .want = FMB_WANT_BOX | FMB_WANT_CERTIFICATE};
     struct pair_result result;
     if (step % 2)
-        query.want |= QUERY_WANT_GAP;
+        query.want |= FMB_WANT_GAP;
     for (int f = 0; f < 2; f++) {
         const struct solid solid = level_at(stack, tower, level - f, step);
         part_place(&solid, body_of(tower, level - f) + 1, &query.placement[f]);

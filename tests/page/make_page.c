@@ -15,7 +15,7 @@
 
 static const double degree = 3.14159265358979323846 / 180;
 
-enum { WANT_ALL = QUERY_WANT_BOX | QUERY_WANT_TIMES };
+enum { WANT_ALL = FMB_WANT_BOX | FMB_WANT_TIMES };
 
 /* ---- Recorded results that differ ------------------------------------------------------------ */
 
@@ -59,7 +59,7 @@ static void record_missed(struct scene_result *then)
 
 static struct pair_query pair_of(struct placement a, struct placement b, double duration)
 {
-    return (struct pair_query){.duration = duration, .want = QUERY_WANT_BOX, .placement = {a, b}};
+    return (struct pair_query){.duration = duration, .want = FMB_WANT_BOX, .placement = {a, b}};
 }
 
 /* A square that passes a triangle in the plane. */
@@ -72,7 +72,7 @@ static void add_plane(struct sample_log *log)
         struct placement square = sample_solid(1, 2, FMB_CUBOID, 1, at);
         sample_move(&square, velocity);
         struct pair_query query = pair_of(square, triangle, 0.5);
-        query.want |= QUERY_WANT_GAP;
+        query.want |= FMB_WANT_GAP;
         sample_pair(log, &query);
         sample_wait(log, 0.05);
     }
@@ -167,7 +167,7 @@ static void add_scene(struct sample_log *log, int32_t which)
     query.duration = 1;
     query.want = WANT_ALL;
     query.which = which;
-    query.split = which == QUERY_PAIRS_ACROSS ? 2 : 0;
+    query.split = which == FMB_PAIRS_ACROSS ? 2 : 0;
     query.placement_count = 5;
     for (int i = 0; i < 5; i++) {
         const double at[] = {i * 0.75, i % 2, 0};
@@ -175,7 +175,7 @@ static void add_scene(struct sample_log *log, int32_t which)
             sample_solid(i < 2 ? 0 : 30 + i, 3, i % 2 ? FMB_TETRAHEDRON : FMB_CUBOID, 1, at);
     }
     sample_move(&query.placement[1], velocity);
-    if (which == QUERY_PAIRS_LISTED) {
+    if (which == FMB_PAIRS_LISTED) {
         query.index_count = 8;
         for (unsigned i = 0; i < 4; i++) {
             query.pair[i][0] = i;
@@ -194,10 +194,10 @@ static void add_mixed(struct sample_log *log)
     add_sizes(log);
     add_far(log);
     add_odd(log);
-    add_scene(log, QUERY_PAIRS_LISTED);
+    add_scene(log, FMB_PAIRS_LISTED);
     log->alter_scene = record_missed;
-    add_scene(log, QUERY_PAIRS_ALL);
-    add_scene(log, QUERY_PAIRS_ACROSS);
+    add_scene(log, FMB_PAIRS_ALL);
+    add_scene(log, FMB_PAIRS_ACROSS);
     log->log = "other \xc3\xa4 </script>.log";
     add_size(log, 1, 2, 1, 0);
 }
@@ -271,7 +271,7 @@ static void add_arm(struct sample_log *log)
         memset(&query, 0, sizeof query);
         query.duration = 4 * step;
         query.want = WANT_ALL;
-        query.which = QUERY_PAIRS_ALL;
+        query.which = FMB_PAIRS_ALL;
         arm_scene(i * step, 4 * step, &query);
         if (i == 37 || i == 38 || i == 161)
             log->alter_scene = record_missed;
@@ -336,9 +336,9 @@ static void add_crowd(struct sample_log *log)
     static struct scene_query query;
     memset(&query, 0, sizeof query);
     sample_begin(log, "crowd.log");
-    query.which = QUERY_PAIRS_ALL;
+    query.which = FMB_PAIRS_ALL;
     query.placement_count = CROWD;
-    query.want = QUERY_WANT_BOX;
+    query.want = FMB_WANT_BOX;
     for (int i = 0; i < CROWD; i++) {
         const double at[] = {i % 14 * 0.9, i / 14 % 10 * 0.85, i / 140 * 1.0};
         query.placement[i] =

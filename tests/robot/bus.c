@@ -59,7 +59,7 @@ static void set_query(const struct robot *robot, int state, const struct line *l
 {
     memset(out, 0, sizeof *out);
     out->client_id = line->client_id;
-    out->which = QUERY_PAIRS_ALL;
+    out->which = FMB_PAIRS_ALL;
     out->placement_count = ROBOT_BODIES;
     out->ignored_count = 2 * ROBOT_NEIGHBOURS;
     memcpy(out->ignored, robot->neighbour, sizeof robot->neighbour);

@@ -10,7 +10,7 @@
  * answers, and each answer was that of libfmb, bit for bit. */
 #include "clock.h"
 #include "fmb_client.h"
-#include "same_answer.h"
+#include "query.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -116,7 +116,7 @@ static void take(void *user, const struct fmb_client_answer *answer)
     if (answer->status != FMB_OK)
         asker->unanswered++;
     else if (answer->a != pair[0] || answer->b != pair[1] ||
-             !same_answer(&answer->answer, &asker->answers[k]))
+             !query_same_answer(&answer->answer, &asker->answers[k]))
         asker->wrong++;
 }
 
@@ -125,12 +125,11 @@ static void ask(struct asker *asker)
     const struct fmb_client_scene scene = {
         .placements = asker->placement,
         .placement_count = FRAMES,
-        .which = FMB_CLIENT_LISTED,
+        .which = FMB_PAIRS_LISTED,
         .pairs = (const unsigned(*)[2]) asker->pair,
         .pair_count = (size_t) asker->plan->pairs,
         .duration = 1,
-        .want = FMB_CLIENT_WANT_BOX | FMB_CLIENT_WANT_TIMES |
-                (asker->plan->single ? FMB_CLIENT_WANT_CERTIFICATE : 0),
+        .want = FMB_WANT_BOX | FMB_WANT_TIMES | (asker->plan->single ? FMB_WANT_CERTIFICATE : 0),
     };
     const int64_t begin = clock_ns();
     asker->seen = 0;
@@ -138,7 +137,7 @@ static void ask(struct asker *asker)
         const struct fmb_client_placement both[2] = {asker->placement[asker->pair[0][0]],
                                                      asker->placement[asker->pair[0][1]]};
         struct fmb_client_answer answer;
-        fmb_client_query_pair(asker->client, both, 1, FMB_CLIENT_WANT_BOX, &answer);
+        fmb_client_query_pair(asker->client, both, 1, FMB_WANT_BOX, &answer);
         answer.a = asker->pair[0][0];
         answer.b = asker->pair[0][1];
         take(asker, &answer);

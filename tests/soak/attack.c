@@ -75,7 +75,7 @@ static void set_plain(int64_t id, double x, double size, struct placement *out,
 static size_t write_pair(const struct attacker *attacker, int64_t id, bool costly)
 {
     struct pair_query query = {.client_id = id, .sequence_number = attacker->sent, .duration = 1};
-    query.want = costly ? QUERY_WANT_BOX | QUERY_WANT_CERTIFICATE : 0;
+    query.want = costly ? FMB_WANT_BOX | FMB_WANT_CERTIFICATE : 0;
     for (int i = 0; i < 2; i++)
         if (costly)
             set_costly(i, &query.placement[i], geometries[i]);
@@ -87,8 +87,8 @@ static size_t write_pair(const struct attacker *attacker, int64_t id, bool costl
 static size_t write_boxes(const struct attacker *attacker, int64_t id)
 {
     scene = (struct scene_query){.client_id = id, .sequence_number = attacker->sent, .duration = 1};
-    scene.want = QUERY_WANT_BOX | QUERY_WANT_TIMES;
-    scene.which = QUERY_PAIRS_ALL;
+    scene.want = FMB_WANT_BOX | FMB_WANT_TIMES;
+    scene.which = FMB_PAIRS_ALL;
     scene.placement_count = 300;
     for (int i = 0; i < scene.placement_count; i++)
         set_costly(i, &scene.placement[i], geometries[i]);

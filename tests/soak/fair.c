@@ -77,7 +77,7 @@ static void send_query(struct client *client, long slot)
     size_t size;
     if (client->plan->scenes) {
         scene = (struct scene_query){.client_id = CLIENT, .sequence_number = number, .duration = 1};
-        scene.which = QUERY_PAIRS_ALL;
+        scene.which = FMB_PAIRS_ALL;
         scene.placement_count = BODIES;
         for (int i = 0; i < BODIES; i++)
             set_cube(i, &scene.placement[i], geometries[i]);

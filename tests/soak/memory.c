@@ -59,7 +59,7 @@ static bool ask(struct soak *soak)
 static void set_bodies(struct soak *soak, int64_t first)
 {
     struct scene_query *query = &soak->query;
-    query->which = QUERY_PAIRS_ALL;
+    query->which = FMB_PAIRS_ALL;
     query->placement_count = BODIES;
     for (int i = 0; i < BODIES; i++) {
         const struct geometry_frame frame = {.shape = FMB_CUBOID,

@@ -7,7 +7,6 @@
 #include "clock.h"
 #include "geometry_write.h"
 #include "process.h"
-#include "same_answer.h"
 #include "wire.h"
 
 #include <inttypes.h>
@@ -85,7 +84,7 @@ static void draw(struct soak *soak)
     for (int i = 0; i < QUESTIONS; i++) {
         struct question *question = &soak->question[i];
         struct pair_query query = {
-            .client_id = soak->client_id, .duration = 1, .want = QUERY_WANT_BOX};
+            .client_id = soak->client_id, .duration = 1, .want = FMB_WANT_BOX};
         struct fmb_body body[2];
         unsigned char geometry[2][GEOMETRY_FRAME_BYTES_MAX];
         for (int f = 0; f < 2; f++)
@@ -130,8 +129,9 @@ static void on_result(void *user, const struct bus_message *message)
         return; /* answered before, or to be asked again */
     const int64_t took = clock_ns() - slot->first_ns;
     soak->longest_ns = took > soak->longest_ns ? took : soak->longest_ns;
-    soak->wrong += result.status != FMB_OK ||
-                   !same_answer(&result.answer, &soak->question[slot->number % QUESTIONS].answer);
+    soak->wrong +=
+        result.status != FMB_OK ||
+        !query_same_answer(&result.answer, &soak->question[slot->number % QUESTIONS].answer);
     slot->number = 0;
 }
 

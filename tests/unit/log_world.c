@@ -271,11 +271,11 @@ static void draw_pairs(struct making *making)
 {
     const int n = scene.placement_count;
     scene.split = scene.first_pair = scene.index_count = 0;
-    static const int32_t which[] = {QUERY_PAIRS_LISTED, QUERY_PAIRS_ALL, QUERY_PAIRS_ACROSS};
+    static const int32_t which[] = {FMB_PAIRS_LISTED, FMB_PAIRS_ALL, FMB_PAIRS_ACROSS};
     scene.which = which[world_draw(making->world, 3)];
-    if (scene.which == QUERY_PAIRS_ACROSS)
+    if (scene.which == FMB_PAIRS_ACROSS)
         scene.split = 1 + world_draw(making->world, n - 1);
-    else if (scene.which == QUERY_PAIRS_ALL)
+    else if (scene.which == FMB_PAIRS_ALL)
         scene.first_pair = world_draw(making->world, 2);
     else
         for (; scene.index_count < 8; scene.index_count += 2) {
@@ -295,7 +295,7 @@ static void send_scene(struct making *making, int client)
     scene.sequence_number = making->sequence++;
     scene.duration = 1;
     scene.method = 0;
-    scene.want = world_draw(world, 2) * QUERY_WANT_BOX + world_draw(world, 2) * QUERY_WANT_TIMES;
+    scene.want = world_draw(world, 2) * FMB_WANT_BOX + world_draw(world, 2) * FMB_WANT_TIMES;
     scene.placement_count = 2 + world_draw(world, PLACEMENTS_MAX - 1);
     for (int i = 0; i < scene.placement_count; i++)
         scene.placement[i] = draw_placement(making, client);
@@ -400,7 +400,7 @@ void world_make_large(int bodies, int scenes, struct log_world *out)
     scene.utime = scene.client_id = 9;
     scene.duration = 1;
     scene.method = scene.want = scene.split = scene.first_pair = scene.index_count = 0;
-    scene.which = QUERY_PAIRS_ALL;
+    scene.which = FMB_PAIRS_ALL;
     for (int first = 0, count; first < bodies; first += count) {
         count = first == 0 && bodies % WHOLE_AT_ONCE ? bodies % WHOLE_AT_ONCE : WHOLE_AT_ONCE;
         set_row(first, count);

@@ -463,8 +463,8 @@ static void decide(const struct fmb_client_scene *scene, const struct bodies *bo
                    const unsigned pair[2], struct relay_truth *out)
 {
     const struct fmb_placement *a = &bodies->placement[pair[0]], *b = &bodies->placement[pair[1]];
-    const bool all_gaps = scene->want & FMB_CLIENT_WANT_GAP;
-    const unsigned want = (scene->want & FMB_CLIENT_WANT_BOX ? FMB_WANT_BOX : 0) |
+    const bool all_gaps = scene->want & FMB_WANT_GAP;
+    const unsigned want = (scene->want & FMB_WANT_BOX ? FMB_WANT_BOX : 0) |
                           (all_gaps || scene->margin > 0 ? FMB_WANT_GAP : 0);
     struct fmb_answer answer = {.verdict = FMB_SEPARATED};
     if (is_ignored(scene, pair[0], pair[1]))
@@ -475,11 +475,11 @@ static void decide(const struct fmb_client_scene *scene, const struct bodies *bo
     const bool near = scene->margin > 0 && answer.has_gap && answer.gap.bounds[0] <= scene->margin;
     if (!all_gaps)
         query_remove_far_gap(scene->margin, &answer);
-    if (!(scene->want & FMB_CLIENT_WANT_TIMES)) {
+    if (!(scene->want & FMB_WANT_TIMES)) {
         answer.has_contact = false;
         memset(answer.contact, 0, sizeof answer.contact);
     }
-    if (scene->which == FMB_CLIENT_LISTED || answer.verdict != FMB_SEPARATED || near)
+    if (scene->which == FMB_PAIRS_LISTED || answer.verdict != FMB_SEPARATED || near)
         add(out, pair, &answer);
 }
 
@@ -492,11 +492,11 @@ void relay_truth_make(const struct fmb_client_scene *scene, struct relay_truth *
     *out = (struct relay_truth){.count = 0};
     for (unsigned i = 0; i < n; i++)
         bodies.placement[i] = relay_place(&scene->placements[i], &bodies.body[i]);
-    for (size_t i = 0; scene->which == FMB_CLIENT_LISTED && i < scene->pair_count; i++)
+    for (size_t i = 0; scene->which == FMB_PAIRS_LISTED && i < scene->pair_count; i++)
         decide(scene, &bodies, scene->pairs[i], out);
-    for (unsigned a = 0; scene->which != FMB_CLIENT_LISTED && a < n; a++)
+    for (unsigned a = 0; scene->which != FMB_PAIRS_LISTED && a < n; a++)
         for (unsigned b = a + 1; b < n; b++)
-            if (scene->which == FMB_CLIENT_ALL || (a < split && b >= split))
+            if (scene->which == FMB_PAIRS_ALL || (a < split && b >= split))
                 decide(scene, &bodies, (const unsigned[]){a, b}, out);
     for (unsigned i = 0; i < n; i++)
         relay_body_free(&bodies.body[i]);

@@ -102,13 +102,6 @@ void replay_report_free(struct replay_report *report)
 
 /* ---- Comparing ---- */
 
-static bool same_answer(const struct fmb_answer *a, const struct fmb_answer *b)
-{
-    return a->verdict == b->verdict && a->has_contact == b->has_contact &&
-           a->has_box == b->has_box && memcmp(a->contact, b->contact, sizeof a->contact) == 0 &&
-           memcmp(a->box, b->box, sizeof a->box) == 0;
-}
-
 static bool same_found(const struct located_difference *a, const struct located_difference *b)
 {
     const struct difference *x = &a->difference, *y = &b->difference;
@@ -118,8 +111,8 @@ static bool same_found(const struct located_difference *a, const struct located_
            memcmp(x->body_id, y->body_id, sizeof x->body_id) == 0 &&
            memcmp(x->placement, y->placement, sizeof x->placement) == 0 && x->dim == y->dim &&
            x->then.status == y->then.status && x->now.status == y->now.status &&
-           same_answer(&x->then.answer, &y->then.answer) &&
-           same_answer(&x->now.answer, &y->now.answer);
+           query_same_answer(&x->then.answer, &y->then.answer) &&
+           query_same_answer(&x->now.answer, &y->now.answer);
 }
 
 static const char *differ_in_channel(const struct tally_channel *a, const struct tally_channel *b)

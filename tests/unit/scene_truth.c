@@ -125,11 +125,11 @@ void scene_draw_pairs(struct draw *draw, int32_t count, struct scene_query *out)
 int32_t scene_list(const struct scene_query *query, const unsigned (**out)[2])
 {
     static unsigned list[QUERY_PLACEMENTS_MAX * QUERY_PLACEMENTS_MAX / 2][2];
-    const bool across = query->which == QUERY_PAIRS_ACROSS;
+    const bool across = query->which == FMB_PAIRS_ACROSS;
     const int32_t split = query->split, n = query->placement_count;
     int32_t count = 0;
     *out = (const unsigned(*)[2]) list;
-    if (query->which == QUERY_PAIRS_LISTED) {
+    if (query->which == FMB_PAIRS_LISTED) {
         *out = query->pair;
         return query->index_count / 2;
     }
@@ -172,7 +172,7 @@ static struct fmb_placement place(const struct placement *placement, struct trut
 
 static bool wants_gaps(const struct scene_query *query)
 {
-    return query->want & QUERY_WANT_GAP || query->margin > 0;
+    return query->want & FMB_WANT_GAP || query->margin > 0;
 }
 
 enum fmb_status scene_decide(const struct scene_query *query, const unsigned pair[2],
@@ -237,7 +237,7 @@ static bool is_near(const struct scene_query *query, const struct fmb_answer *an
 static void assert_gap(const struct reading *reading, const struct fmb_answer *answer, bool close)
 {
     const struct fmb_gap *gap = &reading->result->gap[reading->verdict];
-    if (close || reading->query->want & QUERY_WANT_GAP)
+    if (close || reading->query->want & FMB_WANT_GAP)
         assert_true(query_same_gap(gap, &answer->gap));
     else
         assert_true(isnan(gap->bounds[0]) && isnan(gap->bounds[1]));
@@ -290,9 +290,9 @@ void scene_assert(const struct scene_query *whole, const struct scene_result *re
     assert_string_equal(result->detail, "");
     assert_int_equal(result->status, FMB_OK);
     assert_int_equal(result->method, method->number);
-    assert_int_equal(result->names_pairs, whole->which != QUERY_PAIRS_LISTED);
-    assert_int_equal(result->has_times, (whole->want & QUERY_WANT_TIMES) != 0);
-    assert_int_equal(result->has_boxes, whole->want & QUERY_WANT_BOX && method->boxes);
+    assert_int_equal(result->names_pairs, whole->which != FMB_PAIRS_LISTED);
+    assert_int_equal(result->has_times, (whole->want & FMB_WANT_TIMES) != 0);
+    assert_int_equal(result->has_boxes, whole->want & FMB_WANT_BOX && method->boxes);
     assert_int_equal(result->has_gaps, wants_gaps(whole));
     assert_true(whole->first_pair <= result->end_pair && result->end_pair <= count);
     assert_true(result->end_pair > whole->first_pair || whole->first_pair == count);

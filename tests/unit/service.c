@@ -192,8 +192,8 @@ void service_query_frames_scene(int64_t client_id, int64_t sequence_number, int 
     query = (struct scene_query){.client_id = client_id,
                                  .sequence_number = sequence_number,
                                  .duration = 1,
-                                 .want = QUERY_WANT_TIMES,
-                                 .which = QUERY_PAIRS_ALL,
+                                 .want = FMB_WANT_TIMES,
+                                 .which = FMB_PAIRS_ALL,
                                  .placement_count = 2};
     query.placement[0] = query.placement[1] = grating(frames);
     service_receive(SERVER_SCENES, bytes, wire_write_scene_query(&query, bytes));
@@ -208,7 +208,7 @@ void service_query_scene(int64_t client_id, int64_t sequence_number, int32_t bod
                                  .sequence_number = sequence_number,
                                  .duration = 1,
                                  .method = fmb_method_by_name("exact")->number,
-                                 .which = QUERY_PAIRS_ALL,
+                                 .which = FMB_PAIRS_ALL,
                                  .placement_count = bodies};
     const struct geometry geometry = {geometries[0], geometry_write(2, &strip, geometries[0])};
     for (int32_t i = 0; i < bodies; i++)

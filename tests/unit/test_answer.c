@@ -194,7 +194,7 @@ static void test_answer_and_echo(void **state)
     (void) state;
     struct hasher *hasher = hasher_create();
     struct pair_query query = cubes();
-    query.want = QUERY_WANT_BOX;
+    query.want = FMB_WANT_BOX;
     struct pair_result result = answer_to(&query);
     assert_int_equal(result.status, FMB_OK);
     assert_string_equal(result.detail, "");
@@ -287,13 +287,13 @@ static void test_capacity_for_one(void **state)
 {
     (void) state;
     struct pair_query query = stretched(2);
-    query.want = QUERY_WANT_BOX;
+    query.want = FMB_WANT_BOX;
     const struct pair_result first = answer_to(&query);
     assert_int_equal(first.status, FMB_OK);
     assert_int_equal(counts().bodies, 1);
     for (int f = 0; f < 2; f++) {
         query = stretched(2);
-        query.want = QUERY_WANT_BOX;
+        query.want = FMB_WANT_BOX;
         if (f == 1) /* the first body is held */
             name(&query.placement[0], &first.handle[0]);
         const struct pair_result result = answer_to(&query);
@@ -670,8 +670,8 @@ static struct fmb_placement placement_of(struct query_bodies *own, const struct 
 static struct fmb_answer truth(const struct pair_query *query)
 {
     static struct query_bodies own[2];
-    const unsigned want = (query->want & QUERY_WANT_BOX ? FMB_WANT_BOX : 0) |
-                          (query->want & QUERY_WANT_GAP ? FMB_WANT_GAP : 0);
+    const unsigned want = (query->want & FMB_WANT_BOX ? FMB_WANT_BOX : 0) |
+                          (query->want & FMB_WANT_GAP ? FMB_WANT_GAP : 0);
     struct fmb_answer answer;
     const struct fmb_placement a = placement_of(&own[0], &query->placement[0]);
     const struct fmb_placement b = placement_of(&own[1], &query->placement[1]);
@@ -685,7 +685,7 @@ static struct fmb_answer truth(const struct pair_query *query)
 static struct pair_query gratings(int count, double spacing, double distance)
 {
     struct geometry_frame frames[300];
-    struct pair_query query = {.client_id = 4, .duration = 1, .want = QUERY_WANT_BOX};
+    struct pair_query query = {.client_id = 4, .duration = 1, .want = FMB_WANT_BOX};
     for (int i = 0; i < count; i++) {
         frames[i] = i % 5 == 4 ? unit_cube : box(0, 1);
         frames[i].origin[0] = spacing * i;
@@ -712,7 +712,7 @@ static void test_bodies_of_several_frames(void **state)
             query.duration = k % 2;
             query.method = method;
             if (fmb_method_by_number(method)->certain)
-                query.want |= QUERY_WANT_GAP;
+                query.want |= FMB_WANT_GAP;
             const struct fmb_answer expected = truth(&query);
             for (int by_handle = 0; by_handle < 2; by_handle++) {
                 const struct pair_result result = answer_to(&query);
@@ -788,12 +788,12 @@ static void test_certificates_of_several_frames(void **state)
 {
     (void) state;
     struct pair_query query = gratings(2, 2, 0);
-    query.want = QUERY_WANT_CERTIFICATE;
+    query.want = FMB_WANT_CERTIFICATE;
     expect(&query, FMB_CANNOT_DECIDE, "want: a certificate is for bodies of one frame");
     query.want = 0;
     const struct pair_result result = answer_to(&query);
     query = stretched(9);
-    query.want = QUERY_WANT_CERTIFICATE;
+    query.want = FMB_WANT_CERTIFICATE;
     name(&query.placement[1], &result.handle[1]);
     expect(&query, FMB_CANNOT_DECIDE, "want: a certificate is for bodies of one frame");
     query = gratings(3, 2, 0);
@@ -846,9 +846,9 @@ static void test_bad_requests(void **state)
     query.method = 77;
     expect(&query, FMB_UNKNOWN_METHOD, "method: unknown method");
     query = cubes();
-    query.want = QUERY_WANT_BOX | 1 << 20;
+    query.want = FMB_WANT_BOX | 1 << 20;
     expect(&query, FMB_UNKNOWN_WANT, "want: wants what this version does not give");
-    query.want = QUERY_WANT_GAP;
+    query.want = FMB_WANT_GAP;
     for (query.method = 2; query.method <= 3; query.method++)
         expect(&query, FMB_CANNOT_DECIDE, "method: gives no gaps");
 }
@@ -891,7 +891,7 @@ static void test_certificates(void **state)
         query.placement[1].position[0] = apart[i % 3];
         query.placement[0].velocity_count = i >= 3 ? 3 : 0;
         query.placement[0].velocity[1] = 0.25;
-        query.want = QUERY_WANT_CERTIFICATE;
+        query.want = FMB_WANT_CERTIFICATE;
         struct pair_result result = answer_to(&query);
         assert_int_equal(result.answer.verdict, verdict[i % 3]);
         assert_true(certified(&query, &result));
@@ -899,13 +899,13 @@ static void test_certificates(void **state)
         char text[200];
         assert_true(strlen(result.certificate) < sizeof text);
         strcpy(text, result.certificate);
-        query.want |= QUERY_WANT_BOX;
+        query.want |= FMB_WANT_BOX;
         result = answer_to(&query);
         assert_string_equal(result.certificate, text);
         assert_int_equal(result.answer.has_box, verdict[i % 3] != FMB_SEPARATED);
-        query.want = QUERY_WANT_BOX;
+        query.want = FMB_WANT_BOX;
         assert_null(answer_to(&query).certificate);
-        query.want = QUERY_WANT_CERTIFICATE;
+        query.want = FMB_WANT_CERTIFICATE;
         query.placement[0].position[0] = NAN;
         assert_null(answer_to(&query).certificate);
     }
@@ -916,7 +916,7 @@ static void test_certificate_by_handle(void **state)
 {
     (void) state;
     struct pair_query query = cubes();
-    query.want = QUERY_WANT_CERTIFICATE;
+    query.want = FMB_WANT_CERTIFICATE;
     struct pair_query by_handle = query;
     name(&by_handle.placement[1], &answer_to(&query).handle[1]);
     struct pair_result result = answer_to(&by_handle);
@@ -946,7 +946,7 @@ static void test_gaps(void **state)
     const double speed[] = {0, -2, -2.5, -7};
     for (int i = 0; i < 4; i++) {
         struct pair_query query = cubes();
-        query.want = QUERY_WANT_GAP;
+        query.want = FMB_WANT_GAP;
         query.placement[1].position[0] = 3;
         query.placement[1].velocity_count = 3;
         query.placement[1].velocity[0] = speed[i];
@@ -963,7 +963,7 @@ static void test_a_repeat_gets_the_same(void **state)
 {
     (void) state;
     struct pair_query query = cubes();
-    query.want = QUERY_WANT_BOX;
+    query.want = FMB_WANT_BOX;
     query.placement[0].velocity_count = 3;
     memcpy(query.placement[0].velocity, (const double[]){0.1, 0.7, 3}, 3 * sizeof(double));
     struct pair_result first = answer_to(&query), second = answer_to(&query);

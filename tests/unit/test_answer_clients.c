@@ -117,16 +117,16 @@ static void place(const struct client *client, struct placement *out)
 static void place_all(const struct client *client, struct scene_query *out)
 {
     out->duration = 1;
-    out->want = draw_int(&world.draw, 0, 1) * QUERY_WANT_BOX | QUERY_WANT_TIMES;
+    out->want = draw_int(&world.draw, 0, 1) * FMB_WANT_BOX | FMB_WANT_TIMES;
     out->method = one_in(16) ? fmb_method_by_name("exact")->number : 0;
-    out->which = draw_int(&world.draw, QUERY_PAIRS_LISTED, QUERY_PAIRS_ACROSS);
+    out->which = draw_int(&world.draw, FMB_PAIRS_LISTED, FMB_PAIRS_ACROSS);
     out->placement_count = draw_int(&world.draw, 2, PLACEMENTS);
     for (int32_t i = 0; i < out->placement_count; i++)
         place(client, &out->placement[i]);
     out->index_count = out->split = out->first_pair = 0;
-    if (out->which == QUERY_PAIRS_LISTED)
+    if (out->which == FMB_PAIRS_LISTED)
         scene_draw_pairs(&world.draw, 8, out);
-    if (out->which == QUERY_PAIRS_ACROSS)
+    if (out->which == FMB_PAIRS_ACROSS)
         out->split = draw_int(&world.draw, 0, out->placement_count);
 }
 
@@ -220,7 +220,7 @@ static void query_pair(struct client *client)
 {
     static struct scene_query whole;
     static const unsigned both[2] = {0, 1};
-    struct pair_query sent = {.want = QUERY_WANT_BOX, .duration = 1};
+    struct pair_query sent = {.want = FMB_WANT_BOX, .duration = 1};
     struct pair_result result;
     struct fmb_answer answer;
     whole.duration = 1;

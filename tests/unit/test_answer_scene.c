@@ -39,7 +39,7 @@ static int set_up(void **state)
     second_job = scene_job_create();
     memset(&scene, 0, sizeof scene);
     query->duration = 1;
-    query->which = QUERY_PAIRS_ALL;
+    query->which = FMB_PAIRS_ALL;
     return answerer && job && second_job ? 0 : -1;
 }
 
@@ -121,11 +121,11 @@ static struct cache_counts counts(void)
 enum { WANTS_WITHOUT_GAPS = 4 };
 static const int32_t wants[] = {
     0,
-    QUERY_WANT_BOX,
-    QUERY_WANT_TIMES,
-    QUERY_WANT_BOX | QUERY_WANT_TIMES,
-    QUERY_WANT_GAP,
-    QUERY_WANT_BOX | QUERY_WANT_TIMES | QUERY_WANT_GAP,
+    FMB_WANT_BOX,
+    FMB_WANT_TIMES,
+    FMB_WANT_BOX | FMB_WANT_TIMES,
+    FMB_WANT_GAP,
+    FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP,
 };
 
 static double draw_margin(struct draw *draw)
@@ -137,15 +137,15 @@ static double draw_margin(struct draw *draw)
 static void answer_in_every_way(struct draw *draw, const char *method)
 {
     query->method = fmb_method_by_name(method)->number;
-    for (int32_t which = QUERY_PAIRS_ALL; which <= QUERY_PAIRS_ACROSS; which++)
+    for (int32_t which = FMB_PAIRS_ALL; which <= FMB_PAIRS_ACROSS; which++)
         for (size_t w = 0; w < COUNT(wants); w++) {
             query->which = which;
             query->want = wants[w];
             query->margin = draw_margin(draw);
             query->index_count = query->split = 0;
-            if (which == QUERY_PAIRS_LISTED)
+            if (which == FMB_PAIRS_LISTED)
                 scene_draw_pairs(draw, 60, query);
-            if (which == QUERY_PAIRS_ACROSS)
+            if (which == FMB_PAIRS_ACROSS)
                 query->split = draw_int(draw, 0, query->placement_count);
             answer_and_check(query);
         }
@@ -191,14 +191,14 @@ static void test_answers_of_inexact_methods(void **state)
     draw_begin(&draw, "scenes, inexact");
     for (long round = 0; round < draw_sample(160); round++) {
         query->method = fmb_method_by_name(round % 2 ? "fmb" : "sat")->number;
-        query->which = QUERY_PAIRS_LISTED;
+        query->which = FMB_PAIRS_LISTED;
         query->want = wants[round / 2 % WANTS_WITHOUT_GAPS];
         scene_draw_placements(&draw, 2 + (int) (round / 8 % 2), -1, 12, &scene);
         scene_draw_pairs(&draw, 60, query);
         answer_and_check(query);
         for (int32_t i = 0; i < result.verdict_count; i++)
             undecided += result.verdict[i] == 0;
-        query->which = QUERY_PAIRS_ALL;
+        query->which = FMB_PAIRS_ALL;
         query->index_count = 0;
         answer_to(query);
         assert_int_equal(result.status, FMB_CANNOT_DECIDE);
@@ -215,7 +215,7 @@ static void test_no_contact_is_lost_anywhere(void **state)
     static const double scales[] = {0x1p-1074, 1e-308, 1e-300, 1, 1e150, 1e300, 0x1p1021};
     struct draw draw;
     draw_begin(&draw, "scenes of all sizes");
-    query->want = QUERY_WANT_BOX | QUERY_WANT_TIMES;
+    query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
     for (long round = 0; round < draw_sample(112); round++) {
         query->margin = draw_margin(&draw);
         const double scale = scales[round % (int) COUNT(scales)];
@@ -233,10 +233,10 @@ static void test_no_contact_is_lost_anywhere(void **state)
             scene_set(&scene, i, &solid, 0);
         }
         answer_and_check(query);
-        query->which = QUERY_PAIRS_ACROSS;
+        query->which = FMB_PAIRS_ACROSS;
         query->split = draw_int(&draw, 0, 20);
         answer_and_check(query);
-        query->which = QUERY_PAIRS_ALL;
+        query->which = FMB_PAIRS_ALL;
         query->split = 0;
     }
 }
@@ -248,13 +248,13 @@ static void test_every_pair_can_be_the_first(void **state)
     (void) state;
     struct draw draw;
     draw_begin(&draw, "first pairs");
-    for (int32_t which = QUERY_PAIRS_ALL; which <= QUERY_PAIRS_ACROSS; which++) {
-        const int32_t last_split = which == QUERY_PAIRS_ACROSS ? 9 : 0;
+    for (int32_t which = FMB_PAIRS_ALL; which <= FMB_PAIRS_ACROSS; which++) {
+        const int32_t last_split = which == FMB_PAIRS_ACROSS ? 9 : 0;
         scene_draw_placements(&draw, 3, -1, 9, &scene);
         query->which = which;
-        query->want = QUERY_WANT_BOX | QUERY_WANT_TIMES;
+        query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
         query->index_count = 0;
-        if (which == QUERY_PAIRS_LISTED)
+        if (which == FMB_PAIRS_LISTED)
             scene_draw_pairs(&draw, 40, query);
         for (query->split = 0; query->split <= last_split; query->split++) {
             const unsigned(*pair)[2];
@@ -317,14 +317,14 @@ static void test_parts_fill_their_datagrams(void **state)
 {
     (void) state;
     set_heap(100, 3, true, true);
-    query->want = QUERY_WANT_BOX | QUERY_WANT_TIMES;
+    query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
     assert_int_equal(answer_all_parts(5 + 16 + 48), parts_of(4950, 5 + 16 + 48, 100));
     set_heap(160, 2, false, false);
     query->want = 0;
     assert_int_equal(answer_all_parts(5), 1);
-    query->want = QUERY_WANT_BOX;
+    query->want = FMB_WANT_BOX;
     assert_int_equal(answer_all_parts(5 + 32), parts_of(12720, 5 + 32, 0));
-    query->which = QUERY_PAIRS_LISTED;
+    query->which = FMB_PAIRS_LISTED;
     query->index_count = 0;
     for (unsigned i = 0; i < 10800; i++) {
         query->pair[i][0] = i % 160;
@@ -332,7 +332,7 @@ static void test_parts_fill_their_datagrams(void **state)
         query->index_count += 2;
     }
     assert_int_equal(answer_all_parts(1 + 32), parts_of(10800, 1 + 32, 0));
-    query->want = QUERY_WANT_GAP;
+    query->want = FMB_WANT_GAP;
     query->index_count = 4000;
     assert_int_equal(answer_all_parts(1 + 72), parts_of(2000, 1 + 72, 0));
 }
@@ -346,8 +346,8 @@ static void test_a_datagram_is_filled_to_its_last_byte(void **state)
     const int32_t contacts = capacity / CONTACT_BYTES;
     const int32_t fit = contacts + capacity % CONTACT_BYTES;
     set_row(HANDLES);
-    query->want = QUERY_WANT_TIMES;
-    query->which = QUERY_PAIRS_LISTED;
+    query->want = FMB_WANT_TIMES;
+    query->which = FMB_PAIRS_LISTED;
     query->index_count = 2 * (fit + 1);
     for (int32_t i = 0; i <= fit; i++) {
         query->pair[i][0] = 0;
@@ -378,7 +378,7 @@ static void test_near_pairs_fill_their_datagrams(void **state)
 static void test_verdicts_of_listed_pairs_fit(void **state)
 {
     (void) state;
-    query->which = QUERY_PAIRS_LISTED;
+    query->which = FMB_PAIRS_LISTED;
     for (int32_t count = 2; count <= 350; count += 348) {
         set_heap(count, 2, false, true);
         size_t size = WIRE_SCENE_QUERY_BYTES;
@@ -402,13 +402,13 @@ static void test_verdicts_of_listed_pairs_fit(void **state)
 static void test_empty_scenes(void **state)
 {
     (void) state;
-    for (int32_t which = QUERY_PAIRS_ALL; which <= QUERY_PAIRS_ACROSS; which++)
+    for (int32_t which = FMB_PAIRS_ALL; which <= FMB_PAIRS_ACROSS; which++)
         for (int32_t count = 0; count <= 1; count++)
-            for (int32_t split = 0; split <= (which == QUERY_PAIRS_ACROSS ? count : 0); split++) {
+            for (int32_t split = 0; split <= (which == FMB_PAIRS_ACROSS ? count : 0); split++) {
                 set_row(count);
                 query->which = which;
                 query->split = split;
-                query->want = QUERY_WANT_BOX | QUERY_WANT_TIMES;
+                query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
                 answer_and_check(query);
                 assert_int_equal(result.end_pair, 0);
                 assert_int_equal(result.handle_count, count);
@@ -512,14 +512,14 @@ static void test_bad_counts(void **state)
 {
     (void) state;
     set_row(2);
-    query->which = QUERY_PAIRS_LISTED;
+    query->which = FMB_PAIRS_LISTED;
     query->index_count = 3;
     expect(FMB_WRONG_COUNT, "num_indices: not two for each pair");
     query->index_count = 2;
-    for (query->which = QUERY_PAIRS_ALL; query->which <= QUERY_PAIRS_ACROSS; query->which += 2)
+    for (query->which = FMB_PAIRS_ALL; query->which <= FMB_PAIRS_ACROSS; query->which += 2)
         expect(FMB_WRONG_COUNT, "num_indices: indices without PAIRS_LISTED");
     query->index_count = 0;
-    query->which = QUERY_PAIRS_ALL;
+    query->which = FMB_PAIRS_ALL;
     query->ignored_count = 1;
     expect(FMB_WRONG_COUNT, "num_ignored: not two for each pair");
 }
@@ -532,7 +532,7 @@ static void test_bad_pairs(void **state)
         int place;
     } bad[] = {{7, 0, 6}, {0, 7, 7}, {UINT32_MAX, 8, 6}, {6, (unsigned) INT16_MIN, 7}};
     set_row(7);
-    query->which = QUERY_PAIRS_LISTED;
+    query->which = FMB_PAIRS_LISTED;
     query->index_count = 80;
     for (int i = 0; i < 40; i++)
         query->pair[i][1] = 1;
@@ -570,7 +570,7 @@ static void test_bad_ignored_pairs(void **state)
     expect(FMB_BAD_PAIR, "ignored[2]: no placement has this index");
     set_ignored(1, 5, 5);
     expect(FMB_BAD_PAIR, "ignored[3]: a placement against itself");
-    query->which = QUERY_PAIRS_LISTED;
+    query->which = FMB_PAIRS_LISTED;
     query->index_count = 6;
     for (unsigned i = 0; i < 3; i++) {
         query->pair[i][0] = i + 3;
@@ -594,8 +594,8 @@ static void test_ignored_pairs(void **state)
     for (long round = 0; round < draw_sample(24); round++) {
         const unsigned(*pair)[2];
         scene_draw_placements(&draw, 2 + round % 2, -1, 10, &scene);
-        query->which = round % 4 / 2 ? QUERY_PAIRS_ACROSS : QUERY_PAIRS_ALL;
-        query->split = query->which == QUERY_PAIRS_ACROSS ? 5 : 0;
+        query->which = round % 4 / 2 ? FMB_PAIRS_ACROSS : FMB_PAIRS_ALL;
+        query->split = query->which == FMB_PAIRS_ACROSS ? 5 : 0;
         query->want = wants[round % (int) COUNT(wants)];
         query->margin = draw_margin(&draw);
         query->ignored_count = 2 * draw_int(&draw, 1, 30);
@@ -618,7 +618,7 @@ static void test_listed_pairs_within_a_group(void **state)
 {
     (void) state;
     set_row(5);
-    query->which = QUERY_PAIRS_LISTED;
+    query->which = FMB_PAIRS_LISTED;
     query->index_count = 6;
     for (unsigned i = 0; i < 3; i++) {
         query->pair[i][0] = i + 1;
@@ -687,28 +687,28 @@ static void test_bad_requests(void **state)
         expect(FMB_BAD_MARGIN, "margin: negative or not finite");
         query->margin = 0;
     }
-    query->which = QUERY_PAIRS_LISTED;
+    query->which = FMB_PAIRS_LISTED;
     for (query->method = 2; query->method <= 3; query->method++) {
-        query->want = QUERY_WANT_GAP;
+        query->want = FMB_WANT_GAP;
         expect(FMB_CANNOT_DECIDE, "method: gives no gaps");
         query->want = 0;
         query->margin = 0x1p-1074;
         expect(FMB_CANNOT_DECIDE, "method: gives no gaps");
         query->margin = 0;
     }
-    query->which = QUERY_PAIRS_ALL;
+    query->which = FMB_PAIRS_ALL;
     query->method = -1;
     expect(FMB_UNKNOWN_METHOD, "method: unknown method");
     query->method = 0;
-    for (query->want = 2; query->want <= 2 * QUERY_WANT_GAP; query->want *= 8)
+    for (query->want = 2; query->want <= 2 * FMB_WANT_GAP; query->want *= 8)
         expect(FMB_UNKNOWN_WANT, "want: wants what this version does not give");
     query->want = 0;
     for (query->which = -1; query->which <= 3; query->which += 4)
         expect(FMB_UNKNOWN_WANT, "which: wants what this version does not give");
-    query->which = QUERY_PAIRS_ALL;
+    query->which = FMB_PAIRS_ALL;
     query->split = 1;
     expect(FMB_BAD_PAIR, "split: not 0");
-    query->which = QUERY_PAIRS_ACROSS;
+    query->which = FMB_PAIRS_ACROSS;
     query->split = 3;
     expect(FMB_BAD_PAIR, "split: not from 0 to num_placements");
     query->split = INT32_MIN;
@@ -759,7 +759,7 @@ static void test_handles_mixed_with_whole_placements(void **state)
     (void) state;
     struct draw draw;
     draw_begin(&draw, "handles");
-    query->want = QUERY_WANT_BOX | QUERY_WANT_TIMES;
+    query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
     for (long round = 0; round < draw_sample(64); round++) {
         int handles = 0;
         scene_draw_placements(&draw, 2 + round % 2, -1, 12, &scene);
@@ -858,7 +858,7 @@ static void test_more_bodies_than_the_cache_holds(void **state)
 {
     (void) state;
     static struct handle handle[3 * BODIES];
-    query->want = QUERY_WANT_BOX;
+    query->want = FMB_WANT_BOX;
     for (int method = 0; method < 2; method++) {
         query->method = method ? fmb_method_by_name("exact")->number : 0;
         set_row(3 * BODIES);
@@ -936,9 +936,9 @@ static void test_answers_allocate_nothing(void **state)
             query->placement[i].body_id = draw_int(&draw, 0, 100);
         query->want = wants[round % 4];
         query->which = round % 3;
-        query->split = query->which == QUERY_PAIRS_ACROSS ? 20 : 0;
+        query->split = query->which == FMB_PAIRS_ACROSS ? 20 : 0;
         query->index_count = 0;
-        if (query->which == QUERY_PAIRS_LISTED)
+        if (query->which == FMB_PAIRS_LISTED)
             scene_draw_pairs(&draw, 500, query);
         answer_to(query);
         assert_int_equal(result.status, FMB_OK);
@@ -947,7 +947,7 @@ static void test_answers_allocate_nothing(void **state)
         assert_int_equal(result.status, FMB_UNKNOWN_BODY);
     }
     set_heap(300, 3, true, true);
-    query->which = QUERY_PAIRS_ALL;
+    query->which = FMB_PAIRS_ALL;
     query->split = query->index_count = 0;
     answer_to(query);
     assert_int_equal(result.status, FMB_OK);
@@ -962,7 +962,7 @@ static void evict_all(void)
     static struct scene evicting;
     static struct scene_result evicted;
     static int64_t stamp;
-    evicting.query = (struct scene_query){.duration = 1, .which = QUERY_PAIRS_ALL};
+    evicting.query = (struct scene_query){.duration = 1, .which = FMB_PAIRS_ALL};
     evicting.query.placement_count = BODIES;
     for (int32_t i = 0; i < BODIES; i++) {
         struct solid cube = unit_cube;
@@ -980,7 +980,7 @@ static void test_queries_between_steps_do_not_show(void **state)
     (void) state;
     struct draw draw;
     draw_begin(&draw, "steps");
-    query->want = QUERY_WANT_BOX | QUERY_WANT_TIMES;
+    query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
     for (int method = 0; method < 2; method++)
         for (long round = 0; round < draw_sample(8); round++) {
             int steps = 0;
@@ -1079,14 +1079,14 @@ static void test_scenes_that_are_stopped(void **state)
     set_heap(40, 3, true, false);
     for (int i = 0; i < 4; i++)
         query->placement[36 + i].position[0] = 1e9; /* far from all */
-    query->want = QUERY_WANT_BOX | QUERY_WANT_TIMES;
+    query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
     for (size_t m = 0; m < COUNT(methods); m++)
-        for (query->which = QUERY_PAIRS_ALL; query->which <= QUERY_PAIRS_ACROSS; query->which++) {
+        for (query->which = FMB_PAIRS_ALL; query->which <= FMB_PAIRS_ACROSS; query->which++) {
             const unsigned(*pair)[2];
             query->method = fmb_method_by_name(methods[m])->number;
             query->index_count = 0;
-            query->split = query->which == QUERY_PAIRS_ACROSS ? 10 : 0;
-            if (query->which == QUERY_PAIRS_LISTED)
+            query->split = query->which == FMB_PAIRS_ACROSS ? 10 : 0;
+            if (query->which == FMB_PAIRS_LISTED)
                 scene_draw_pairs(&draw, 100, query);
             const int32_t total = scene_list(query, &pair);
             int parts = 0;
@@ -1114,7 +1114,7 @@ static void test_scenes_that_are_stopped(void **state)
 static void set_slivers(int32_t count)
 {
     query->placement_count = count;
-    query->want = QUERY_WANT_BOX | QUERY_WANT_TIMES;
+    query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
     for (int32_t i = 0; i < count; i++) {
         struct solid solid = {
             .dim = 3,
@@ -1164,7 +1164,7 @@ static void test_steps_are_short(void **state)
         const char *method;
         int32_t want;
         int pairs;
-    } each[] = {{"certified", 0, 128}, {"certified", QUERY_WANT_BOX, 32}, {"exact", 0, 1}};
+    } each[] = {{"certified", 0, 128}, {"certified", FMB_WANT_BOX, 32}, {"exact", 0, 1}};
     set_heap(60, 2, false, false);
     for (size_t i = 0; i < COUNT(each); i++) {
         query->method = fmb_method_by_name(each[i].method)->number;

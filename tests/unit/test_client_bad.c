@@ -25,7 +25,7 @@
 
 #include <cmocka.h>
 
-enum { PLACEMENTS = 700, ALL_WANTS = FMB_CLIENT_WANT_BOX | FMB_CLIENT_WANT_TIMES };
+enum { PLACEMENTS = 700, ALL_WANTS = FMB_WANT_BOX | FMB_WANT_TIMES };
 
 static struct fmb_client_placement placement[PLACEMENTS];
 static unsigned list[2000][2];
@@ -36,7 +36,7 @@ static struct fmb_client_scene all_pairs(void)
     relay_draw(placement, PLACEMENTS, 3, 12, 1, 5);
     return (struct fmb_client_scene){.placements = placement,
                                      .placement_count = PLACEMENTS,
-                                     .which = FMB_CLIENT_ALL,
+                                     .which = FMB_PAIRS_ALL,
                                      .duration = 1,
                                      .want = ALL_WANTS};
 }
@@ -50,7 +50,7 @@ static struct fmb_client_scene listed(void)
         list[i][1] = (i + 1 + i / 100) % 100;
     }
     scene.placement_count = 100;
-    scene.which = FMB_CLIENT_LISTED;
+    scene.which = FMB_PAIRS_LISTED;
     scene.pairs = (const unsigned(*)[2]) list;
     scene.pair_count = 2000;
     return scene;
@@ -483,7 +483,7 @@ static void test_queries_in_line_are_not_repeated(void **state)
     struct fmb_client *client = relay_client(relay, 5, 1);
     struct fmb_client_scene scene = listed();
     scene.pair_count = 150;
-    scene.want = FMB_CLIENT_WANT_CERTIFICATE;
+    scene.want = FMB_WANT_CERTIFICATE;
     give_one_frame();
     tally = query(client, &scene);
     assert_int_equal(tally.good, 150);
@@ -587,7 +587,7 @@ static void test_a_caller_that_takes_long_gets_all_answers(void **state)
     struct fmb_client *client = relay_client(relay, 0.1, 4);
     struct fmb_client_scene scene = listed();
     scene.pair_count = 200;
-    scene.want = ALL_WANTS | FMB_CLIENT_WANT_CERTIFICATE;
+    scene.want = ALL_WANTS | FMB_WANT_CERTIFICATE;
     give_one_frame();
     relay_truth_make(&scene, &truth);
     assert_int_equal(fmb_client_query(client, &scene, check_slowly, &truth), FMB_OK);
@@ -611,7 +611,7 @@ static void test_what_is_under_way_is_limited(void **state)
         struct fmb_client *client = relay_client(relay, 1000, 1);
         if (small)
             scene = listed();
-        scene.want = small ? FMB_CLIENT_WANT_CERTIFICATE : 0;
+        scene.want = small ? FMB_WANT_CERTIFICATE : 0;
         scene.within = 0.005;
         query(client, &scene);
         const struct fmb_client_counts counts = fmb_client_get_counts(client);
@@ -947,7 +947,7 @@ static void test_frames_of_a_gap_fit_the_bodies(void **state)
         {1, 0, true, {2, 0}, true},  {1, 1, true, {2, 2}, true},  {1, 1, true, {3, 2}, false}};
     struct fmb_client_scene scene = listed();
     static struct scene_result named;
-    scene.want = FMB_CLIENT_WANT_GAP;
+    scene.want = FMB_WANT_GAP;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         static struct part part;
         struct part_answers pair = {0}, all = {0};
@@ -957,7 +957,7 @@ static void test_frames_of_a_gap_fit_the_bodies(void **state)
             .answer = {.verdict = FMB_OVERLAPPING,
                        .has_gap = true,
                        .gap = {.frame = {cases[i].frame[0], cases[i].frame[1]}}}};
-        part = (struct part){.which = QUERY_PAIRS_LISTED, .total = 1, .placement_count = 2};
+        part = (struct part){.which = FMB_PAIRS_LISTED, .total = 1, .placement_count = 2};
         part.placement[0] = cases[i].a;
         part.placement[1] = cases[i].b;
         part.pair[0][1] = 1;

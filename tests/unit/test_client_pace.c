@@ -334,7 +334,7 @@ static void test_no_service_takes_precedence_over_late(void **state)
         pair[i][1] = 1;
     struct fmb_client_scene scene = {.placements = placement,
                                      .placement_count = 2,
-                                     .which = FMB_CLIENT_LISTED,
+                                     .which = FMB_PAIRS_LISTED,
                                      .pairs = (const unsigned(*)[2]) pair,
                                      .pair_count = PAIRS};
     for (int late = 0; late < 2; late++) {

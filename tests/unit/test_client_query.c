@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-enum { ALL_WANTS = FMB_CLIENT_WANT_BOX | FMB_CLIENT_WANT_TIMES };
+enum { ALL_WANTS = FMB_WANT_BOX | FMB_WANT_TIMES };
 
 static struct fmb_client_placement *frames_of(size_t count, int dim, double size, int64_t first_id)
 {
@@ -26,7 +26,7 @@ static struct fmb_client_placement *frames_of(size_t count, int dim, double size
 }
 
 static struct fmb_client_scene scene_of(const struct fmb_client_placement *frame, size_t count,
-                                        enum fmb_client_which which, unsigned want)
+                                        enum fmb_pairs which, unsigned want)
 {
     return (struct fmb_client_scene){.placements = frame,
                                      .placement_count = count,
@@ -57,17 +57,17 @@ static void test_small_scenes_of_every_kind(void **state)
     struct fmb_client *client = relay_client(relay, 5, 1);
     for (size_t count = 0; count < 40; count += count < 4 ? 1 : 9)
         for (int dim = 2; dim <= 3; dim++)
-            for (unsigned want = 0; want <= (ALL_WANTS | FMB_CLIENT_WANT_GAP); want++) {
-                if (want & FMB_CLIENT_WANT_CERTIFICATE)
+            for (unsigned want = 0; want <= (ALL_WANTS | FMB_WANT_GAP); want++) {
+                if (want & FMB_WANT_CERTIFICATE)
                     continue;
                 struct fmb_client_placement *frame = frames_of(count, dim, 3, 1);
-                struct fmb_client_scene scene = scene_of(frame, count, FMB_CLIENT_ALL, want);
+                struct fmb_client_scene scene = scene_of(frame, count, FMB_PAIRS_ALL, want);
                 scene.margin = (want + count) % 2 ? 0.5 : 0;
                 relay_query(client, &scene);
-                scene.which = FMB_CLIENT_ACROSS;
+                scene.which = FMB_PAIRS_ACROSS;
                 for (scene.split = 0; scene.split <= count; scene.split += 1 + count / 3)
                     relay_query(client, &scene);
-                scene.which = FMB_CLIENT_LISTED;
+                scene.which = FMB_PAIRS_LISTED;
                 scene.split = 0;
                 scene.pair_count = count < 2 ? 0 : 2 * count;
                 unsigned(*pair)[2] = list_of(scene.pair_count, count);
@@ -90,7 +90,7 @@ static void test_all_pairs_of_many_bodies(void **state)
     relay_open(relay, 65536);
     struct fmb_client *client = relay_client(relay, 20, 1);
     struct fmb_client_placement *frame = frames_of(count, 3, cbrt(4.0 * (double) count), 1);
-    const struct fmb_client_scene scene = scene_of(frame, count, FMB_CLIENT_ALL, ALL_WANTS);
+    const struct fmb_client_scene scene = scene_of(frame, count, FMB_PAIRS_ALL, ALL_WANTS);
     relay_query(client, &scene);
     assert_true(fmb_client_get_counts(client).queries > 10);
     assert_int_equal(relay_dropped(relay), 0);
@@ -108,10 +108,10 @@ static void test_all_pairs_of_a_crowd(void **state)
     relay_open(relay, 65536);
     struct fmb_client *client = relay_client(relay, 20, 1);
     struct fmb_client_placement *frame = frames_of(count, 2, 2, 1);
-    struct fmb_client_scene scene = scene_of(frame, count, FMB_CLIENT_ALL, ALL_WANTS);
+    struct fmb_client_scene scene = scene_of(frame, count, FMB_PAIRS_ALL, ALL_WANTS);
     relay_query(client, &scene);
     assert_true(fmb_client_get_counts(client).queries > 30);
-    scene.which = FMB_CLIENT_ACROSS;
+    scene.which = FMB_PAIRS_ACROSS;
     scene.split = count / 3;
     relay_query(client, &scene);
     fmb_client_close(client);
@@ -128,7 +128,7 @@ static void test_many_pairs_listed(void **state)
     struct fmb_client *client = relay_client(relay, 20, 1);
     struct fmb_client_placement *frame = frames_of(frames, 3, 8, 1);
     unsigned(*pair)[2] = list_of(count, frames);
-    struct fmb_client_scene scene = scene_of(frame, frames, FMB_CLIENT_LISTED, 0);
+    struct fmb_client_scene scene = scene_of(frame, frames, FMB_PAIRS_LISTED, 0);
     scene.pairs = (const unsigned(*)[2]) pair;
     scene.pair_count = count;
     for (unsigned want = 0; want <= ALL_WANTS; want += ALL_WANTS) {
@@ -159,11 +159,11 @@ static enum fmb_status decide(struct giving *giving, struct fmb_answer *answer)
     const struct fmb_placement b = relay_place(&scene->placements[giving->b], &body[1]);
     if (++giving->b == scene->placement_count)
         giving->b = ++giving->a + 1;
-    const unsigned want = (scene->want & FMB_CLIENT_WANT_BOX ? FMB_WANT_BOX : 0) |
-                          (scene->margin > 0 ? FMB_WANT_GAP : 0);
+    const unsigned want =
+        (scene->want & FMB_WANT_BOX ? FMB_WANT_BOX : 0) | (scene->margin > 0 ? FMB_WANT_GAP : 0);
     const enum fmb_status status =
         fmb_decide(fmb_method_by_number(scene->method), &a, &b, scene->duration, want, answer);
-    if (!(scene->want & FMB_CLIENT_WANT_GAP))
+    if (!(scene->want & FMB_WANT_GAP))
         query_remove_far_gap(scene->margin, answer);
     relay_body_free(&body[0]);
     relay_body_free(&body[1]);
@@ -189,7 +189,7 @@ static void check_method(void *user, const struct fmb_client_answer *answer)
     assert_int_equal(answer->b, b);
     assert_int_equal(answer->status, status);
     assert_int_equal(answer->answer.verdict, should.verdict);
-    if (giving->scene->want & FMB_CLIENT_WANT_TIMES)
+    if (giving->scene->want & FMB_WANT_TIMES)
         assert_memory_equal(answer->answer.contact, should.contact, sizeof should.contact);
     assert_memory_equal(answer->answer.box, should.box, sizeof should.box);
     assert_true(query_same_gap(&answer->answer.gap, &should.gap));
@@ -206,7 +206,7 @@ static void test_every_method(void **state)
     struct fmb_client *client = relay_client(relay, 5, 1);
     struct fmb_client_placement *frame = frames_of(60, 3, 3, 1);
     for (size_t i = 0; fmb_method_at(i); i++) {
-        struct fmb_client_scene scene = scene_of(frame, 60, FMB_CLIENT_ALL, ALL_WANTS);
+        struct fmb_client_scene scene = scene_of(frame, 60, FMB_PAIRS_ALL, ALL_WANTS);
         struct giving giving = {.scene = &scene, .b = 1};
         scene.method = fmb_method_at(i)->number;
         assert_int_equal(fmb_client_query(client, &scene, check_method, &giving), FMB_OK);
@@ -227,7 +227,7 @@ static void test_near_pairs_of_many_bodies(void **state)
     relay_open(relay, 65536);
     struct fmb_client *client = relay_client(relay, 20, 1);
     struct fmb_client_placement *frame = frames_of(800, 3, 25, 1);
-    struct fmb_client_scene scene = scene_of(frame, 800, FMB_CLIENT_ALL, 0);
+    struct fmb_client_scene scene = scene_of(frame, 800, FMB_PAIRS_ALL, 0);
     scene.margin = 0.25;
     relay_query(client, &scene);
     assert_true(fmb_client_get_counts(client).queries > 3);
@@ -236,7 +236,7 @@ static void test_near_pairs_of_many_bodies(void **state)
     for (size_t i = 0; i < 60; i++)
         for (int axis = 0; axis < 3; axis++)
             frame[i].position[axis] /= 4;
-    for (scene.want = 0; scene.want <= FMB_CLIENT_WANT_GAP; scene.want += FMB_CLIENT_WANT_GAP) {
+    for (scene.want = 0; scene.want <= FMB_WANT_GAP; scene.want += FMB_WANT_GAP) {
         struct giving giving = {.scene = &scene, .b = 1};
         assert_int_equal(fmb_client_query(client, &scene, check_method, &giving), FMB_OK);
         assert_true(giving.separated > 0 && giving.given > 0);
@@ -281,7 +281,7 @@ static void test_certificates_of_all_pairs(void **state)
     for (int i = 0; i < 40; i++)
         frame[i].frame_count = 1; /* certificates are of those */
     struct fmb_client_scene scene =
-        scene_of(frame, 40, FMB_CLIENT_ALL, ALL_WANTS | FMB_CLIENT_WANT_CERTIFICATE);
+        scene_of(frame, 40, FMB_PAIRS_ALL, ALL_WANTS | FMB_WANT_CERTIFICATE);
     scene.margin = 0.25;
     struct giving giving = {.scene = &scene, .b = 1};
     assert_int_equal(fmb_client_query(client, &scene, check_certificate, &giving), FMB_OK);
@@ -335,19 +335,19 @@ static void test_groups_names_and_vertices(void **state)
                     use_vertices(frame, dim, vertex[used++]);
             }
         }
-        struct fmb_client_scene scene = scene_of(body, BODIES, FMB_CLIENT_ALL, ALL_WANTS);
+        struct fmb_client_scene scene = scene_of(body, BODIES, FMB_PAIRS_ALL, ALL_WANTS);
         scene.label = "0123456789012345678901234567890123456789012345678901234567890123";
         for (int round = 0; round < 2; round++) { /* whole, then by handle */
             scene.margin = round * 0.5;
-            scene.which = FMB_CLIENT_ALL;
+            scene.which = FMB_PAIRS_ALL;
             relay_query(client, &scene);
-            scene.which = FMB_CLIENT_ACROSS;
+            scene.which = FMB_PAIRS_ACROSS;
             scene.split = 100;
             relay_query(client, &scene);
             scene.split = 0;
         }
         static const unsigned pairs[3][2] = {{1, 2}, {8, 2}, {9, 2}}; /* two of group 1 */
-        scene.which = FMB_CLIENT_LISTED;
+        scene.which = FMB_PAIRS_LISTED;
         scene.pairs = pairs;
         scene.pair_count = 2;
         relay_query(client, &scene);
@@ -375,7 +375,7 @@ static void test_groups_where_pairs_are_listed(void **state)
         body[i].frame_count = 1;
         body[i].group = i < 10 ? -3 : 0;
     }
-    struct fmb_client_scene scene = scene_of(body, 12, FMB_CLIENT_ALL, FMB_CLIENT_WANT_CERTIFICATE);
+    struct fmb_client_scene scene = scene_of(body, 12, FMB_PAIRS_ALL, FMB_WANT_CERTIFICATE);
     int given = 0;
     assert_int_equal(fmb_client_query(client, &scene, count_answer, &given), FMB_OK);
     assert_int_equal(given, 12 * 11 / 2 - 10 * 9 / 2);
@@ -400,10 +400,9 @@ static void test_one_pair(void **state)
     assert_int_equal(answer.answer.verdict, FMB_TOUCHING);
     assert_null(answer.certificate);
     assert_false(answer.answer.has_gap);
-    assert_int_equal(fmb_client_query_pair(client, pair, 1, FMB_CLIENT_WANT_GAP, &answer), FMB_OK);
+    assert_int_equal(fmb_client_query_pair(client, pair, 1, FMB_WANT_GAP, &answer), FMB_OK);
     assert_true(answer.answer.has_gap && !answer.answer.gap.has_witness);
-    assert_int_equal(fmb_client_query_pair(client, pair, 1, FMB_CLIENT_WANT_CERTIFICATE, &answer),
-                     FMB_OK);
+    assert_int_equal(fmb_client_query_pair(client, pair, 1, FMB_WANT_CERTIFICATE, &answer), FMB_OK);
     assert_memory_equal(answer.certificate, "touching", 8);
     pair[1].position[1] = INFINITY;
     assert_int_equal(fmb_client_query_pair(client, pair, 1, 0, &answer), FMB_NOT_FINITE);
@@ -437,7 +436,7 @@ static void test_wrong_scenes_are_refused(void **state)
     struct fmb_client_placement frame[3], good[3];
     relay_draw(good, 3, 3, 1, 1, 1);
     memcpy(frame, good, sizeof good);
-    struct fmb_client_scene scene = scene_of(frame, 3, FMB_CLIENT_LISTED, 0);
+    struct fmb_client_scene scene = scene_of(frame, 3, FMB_PAIRS_LISTED, 0);
     relay_frame(&frame[2])->shape = 6;
     wrong(client, &scene, FMB_UNKNOWN_SHAPE, "placements[2].frames[0].shape: ");
     *relay_frame(&frame[2]) = (struct fmb_client_frame){.shape = FMB_BOX, .components = {1, -1, 1}};
@@ -490,14 +489,14 @@ static void test_wrong_scenes_are_refused(void **state)
     wrong(client, &scene, FMB_BAD_PAIR, "pairs[0]: ");
     scene.ignored = same, scene.ignored_count = 1, scene.pair_count = 0;
     wrong(client, &scene, FMB_WRONG_COUNT, "ignored_count: ");
-    scene.which = FMB_CLIENT_ALL, scene.ignored_count = 2;
+    scene.which = FMB_PAIRS_ALL, scene.ignored_count = 2;
     wrong(client, &scene, FMB_BAD_PAIR, "ignored[1]: ");
     scene.ignored_count = 0;
-    scene.which = FMB_CLIENT_ACROSS, scene.split = 4;
+    scene.which = FMB_PAIRS_ACROSS, scene.split = 4;
     wrong(client, &scene, FMB_BAD_PAIR, "split: ");
-    scene.which = (enum fmb_client_which) 3;
+    scene.which = (enum fmb_pairs) 3;
     wrong(client, &scene, FMB_UNKNOWN_WANT, "which: ");
-    scene.which = FMB_CLIENT_ALL, scene.want = 16;
+    scene.which = FMB_PAIRS_ALL, scene.want = 16;
     wrong(client, &scene, FMB_UNKNOWN_WANT, "want: ");
     scene.want = 0, scene.duration = -1;
     wrong(client, &scene, FMB_BAD_DURATION, "duration: ");
@@ -593,7 +592,7 @@ static void test_refusals_of_the_service_are_given(void **state)
     struct fmb_client *client = relay_client(relay, 5, 1);
     struct fmb_client_placement frame[5];
     relay_draw(frame, 5, 3, 1, 1, 1);
-    struct fmb_client_scene scene = scene_of(frame, 5, FMB_CLIENT_ALL, 0);
+    struct fmb_client_scene scene = scene_of(frame, 5, FMB_PAIRS_ALL, 0);
     scene.method = 77;
     assert_int_equal(fmb_client_query(client, &scene, count_refusals, &count), FMB_OK);
     assert_int_equal(count, 10);
@@ -617,7 +616,7 @@ static void test_methods_without_gaps(void **state)
     struct fmb_client *client = relay_client(relay, 5, 1);
     struct fmb_client_placement frame[5];
     relay_draw(frame, 5, 3, 1, 1, 1);
-    struct fmb_client_scene scene = scene_of(frame, 5, FMB_CLIENT_ALL, FMB_CLIENT_WANT_GAP);
+    struct fmb_client_scene scene = scene_of(frame, 5, FMB_PAIRS_ALL, FMB_WANT_GAP);
     scene.method = fmb_method_by_name("sat")->number;
     assert_int_equal(fmb_client_query(client, &scene, count_no_gaps, &count), FMB_OK);
     scene.want = 0;
@@ -645,7 +644,7 @@ static void open_world(struct world *world, size_t bodies)
     world->client = relay_client(world->relay, 5, 1);
     world->frame = frames_of(100, 3, 5, 1);
     relay_draw(world->frame, 100, 3, 5, 1, 8); /* no two of these share a slot of held.h */
-    world->scene = scene_of(world->frame, 100, FMB_CLIENT_ALL, ALL_WANTS);
+    world->scene = scene_of(world->frame, 100, FMB_PAIRS_ALL, ALL_WANTS);
 }
 
 static void close_world(struct world *world)
@@ -708,7 +707,7 @@ static void test_equal_ids_of_two_clients_do_not_matter(void **state)
     struct fmb_client_placement *others = frames_of(10, 3, 5, 41);
     for (int i = 0; i < 10; i++)
         relay_frame(&others[i])->components[0] += 7;
-    const struct fmb_client_scene scene = scene_of(others, 10, FMB_CLIENT_ALL, ALL_WANTS);
+    const struct fmb_client_scene scene = scene_of(others, 10, FMB_PAIRS_ALL, ALL_WANTS);
     relay_query(other, &scene);
     const struct fmb_client_counts counts = query_world(&world);
     assert_int_equal(counts.queries, 1);
@@ -796,10 +795,10 @@ static void test_ignored_pairs_are_left_out(void **state)
     world.scene.ignored = (const unsigned(*)[2]) pair;
     world.scene.ignored_count = PAIRS;
     query_world(&world);
-    world.scene.which = FMB_CLIENT_ACROSS;
+    world.scene.which = FMB_PAIRS_ACROSS;
     for (world.scene.split = 0; world.scene.split <= 100; world.scene.split += 25)
         query_world(&world);
-    world.scene.which = FMB_CLIENT_ALL, world.scene.split = 0; /* more than fit into one datagram */
+    world.scene.which = FMB_PAIRS_ALL, world.scene.split = 0; /* more than fit into one datagram */
     free(pair);
     unsigned(*all)[2] = malloc(100 * 100 * sizeof *all);
     size_t count = 0;
@@ -832,7 +831,7 @@ static void test_bodies_of_many_frames(void **state)
         placement[i].frames = frame + i * FRAMES;
         placement[i].frame_count = FRAMES;
     }
-    const struct fmb_client_scene scene = scene_of(placement, BODIES, FMB_CLIENT_ALL, ALL_WANTS);
+    const struct fmb_client_scene scene = scene_of(placement, BODIES, FMB_PAIRS_ALL, ALL_WANTS);
     relay_query(client, &scene);
     const struct fmb_client_counts first = fmb_client_get_counts(client);
     assert_in_range(first.whole, BODIES, 3 * BODIES); /* queries that are under way at once */
@@ -895,7 +894,7 @@ static void test_pairs_that_just_fit_into_a_datagram(void **state)
             body[f].frame_count = (size_t) (f ? count - count / 2 : count / 2);
         }
         assert_int_equal(bytes_of(&body[0]) + bytes_of(&body[1]), bytes);
-        struct fmb_client_scene scene = scene_of(body, 2, FMB_CLIENT_LISTED, 0);
+        struct fmb_client_scene scene = scene_of(body, 2, FMB_PAIRS_LISTED, 0);
         scene.pairs = pair;
         scene.pair_count = 1;
         const uint64_t before = fmb_client_get_counts(client).queries;
@@ -917,7 +916,7 @@ static void test_two_clients_in_a_process(void **state)
     open_world(&world, 1000);
     struct fmb_client *other = relay_client(world.relay, 5, 1);
     struct fmb_client_placement *others = frames_of(80, 2, 3, 1);
-    const struct fmb_client_scene scene = scene_of(others, 80, FMB_CLIENT_ALL, ALL_WANTS);
+    const struct fmb_client_scene scene = scene_of(others, 80, FMB_PAIRS_ALL, ALL_WANTS);
     for (int i = 0; i < 3; i++) {
         query_world(&world);
         relay_query(other, &scene);
@@ -962,7 +961,7 @@ static void test_clients_in_threads(void **state)
     struct thread thread[2];
     pthread_t id[2];
     struct fmb_client_placement *frame = frames_of(600, 3, 6, 1);
-    const struct fmb_client_scene scene = scene_of(frame, 600, FMB_CLIENT_ALL, ALL_WANTS);
+    const struct fmb_client_scene scene = scene_of(frame, 600, FMB_PAIRS_ALL, ALL_WANTS);
     struct relay_truth truth;
     relay_truth_make(&scene, &truth);
     for (int i = 0; i < 2; i++) {

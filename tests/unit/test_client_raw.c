@@ -244,7 +244,7 @@ static void query_scene(struct fmb_client *client, struct scene_result *out)
     static struct scene_query query;
     static unsigned char geometry[BODIES][GEOMETRY_FRAME_BYTES_MAX];
     unsigned char message[QUERY_BYTES_MAX];
-    query.which = QUERY_PAIRS_ALL;
+    query.which = FMB_PAIRS_ALL;
     query.placement_count = BODIES;
     for (int i = 0; i < BODIES; i++)
         query.placement[i] = cube_of(1 + i, geometry[i]);

@@ -125,7 +125,7 @@ static void test_scene(void **state)
         query->placement[i] = place(&body[i]);
     }
     query->placement_count = 2;
-    query->which = QUERY_PAIRS_ALL;
+    query->which = FMB_PAIRS_ALL;
     const uint32_t size = (uint32_t) wire_write_scene_query(query, world->bytes);
     assert_null(definitions_add_query(world->definitions, world->bytes, size));
     assert_found(world, &body[0]);

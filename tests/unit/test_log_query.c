@@ -142,7 +142,7 @@ static void on_scene_pair(void *user, const struct scene *scene, const struct ou
     const struct scene_query *query = &found.query.scene;
     struct walk *walk = user;
     const int32_t number = query->first_pair + walk->pair++;
-    if (query->which == QUERY_PAIRS_LISTED) {
+    if (query->which == FMB_PAIRS_LISTED) {
         assert_int_equal(outcome->pair.a, query->pair[number][0]);
         assert_int_equal(outcome->pair.b, query->pair[number][1]);
     }
@@ -400,7 +400,7 @@ static void bodies_get_ids_that_are_free(void **state)
     const int64_t ids[] = {0, 1, 1, 0, 3, QUERY_ID_MAX, QUERY_ID_MAX, 5};
     const int64_t expected[] = {2, 1, 4, 6, 3, QUERY_ID_MAX, 7, 5};
     set_placements(ids, 8);
-    found.query.scene.which = QUERY_PAIRS_ALL;
+    found.query.scene.which = FMB_PAIRS_ALL;
     struct scene scene = scene_of_found();
     assert_true(scene.all_pairs);
     for (int i = 0; i < 8; i++)
@@ -427,17 +427,17 @@ static void pairs_are_those_of_the_query(void **state)
     (void) state;
     const int64_t ids[] = {4, 3, 2, 1};
     set_placements(ids, 4);
-    found.query.scene.which = QUERY_PAIRS_ACROSS;
+    found.query.scene.which = FMB_PAIRS_ACROSS;
     found.query.scene.split = 2;
     assert_pairs((const size_t[][2]){{0, 2}, {0, 3}, {1, 2}, {1, 3}}, 4);
     found.query.scene.first_pair = 3;
     assert_pairs((const size_t[][2]){{1, 3}}, 1);
-    found.query.scene.which = QUERY_PAIRS_ALL;
+    found.query.scene.which = FMB_PAIRS_ALL;
     found.query.scene.split = 0;
     assert_pairs((const size_t[][2]){{1, 2}, {1, 3}, {2, 3}}, 3);
     found.query.scene.first_pair = 0;
     assert_pairs((const size_t[][2]){{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}, 6);
-    found.query.scene.which = QUERY_PAIRS_LISTED;
+    found.query.scene.which = FMB_PAIRS_LISTED;
     assert_pairs(NULL, 0);
     found.query.scene.index_count = 4;
     memcpy(found.query.scene.pair, (unsigned[2][2]){{3, 0}, {0, 3}}, 4 * sizeof(unsigned));

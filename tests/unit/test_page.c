@@ -149,7 +149,7 @@ static struct placement make_undefined(int64_t id, int dim)
 static struct pair_query pair_query(int dim)
 {
     return (struct pair_query){.duration = 1,
-                               .want = QUERY_WANT_BOX,
+                               .want = FMB_WANT_BOX,
                                .placement = {make_body(1, dim, 1, 0), make_body(2, dim, 1, 0.5)}};
 }
 
@@ -313,7 +313,7 @@ static void make_large_scene(int step)
 {
     memset(&scene, 0, sizeof scene);
     scene.duration = 1;
-    scene.which = QUERY_PAIRS_ALL;
+    scene.which = FMB_PAIRS_ALL;
     scene.placement_count = QUERY_PLACEMENTS_MAX;
     for (int i = 0; i < QUERY_PLACEMENTS_MAX; i++) {
         struct geometry_frame frame = {.shape = FMB_CUBOID};
@@ -588,11 +588,11 @@ static void make_scene(int32_t which, int32_t bodies)
     scene.placement_count = bodies;
     for (int i = 0; i < bodies; i++)
         scene.placement[i] = make_body(i + 1, 2, 1, i);
-    for (unsigned i = 0; which == QUERY_PAIRS_LISTED && i + 1 < (unsigned) bodies; i++) {
+    for (unsigned i = 0; which == FMB_PAIRS_LISTED && i + 1 < (unsigned) bodies; i++) {
         scene.pair[i][0] = i;
         scene.pair[i][1] = i + 1;
     }
-    scene.index_count = which == QUERY_PAIRS_LISTED ? 2 * (bodies - 1) : 0;
+    scene.index_count = which == FMB_PAIRS_LISTED ? 2 * (bodies - 1) : 0;
 }
 
 static void add_verdict(struct scene_result *result, unsigned a, unsigned b, int verdict)
@@ -612,7 +612,7 @@ static void expect_scene(const char *expected)
 static void listed_pairs_have_times_and_boxes(void **state)
 {
     (void) state;
-    make_scene(QUERY_PAIRS_LISTED, 5);
+    make_scene(FMB_PAIRS_LISTED, 5);
     add_verdict(&result_then, 0, 0, FMB_SEPARATED);
     add_verdict(&result_then, 0, 0, FMB_TOUCHING);
     add_verdict(&result_then, 0, 0, 0);
@@ -634,7 +634,7 @@ static void listed_pairs_have_times_and_boxes(void **state)
 static void named_pairs_have_gaps(void **state)
 {
     (void) state;
-    make_scene(QUERY_PAIRS_ALL, 3);
+    make_scene(FMB_PAIRS_ALL, 3);
     scene.margin = 0.5;
     add_verdict(&result_then, 0, 1, FMB_TOUCHING);
     add_verdict(&result_then, 0, 2, FMB_SEPARATED);
@@ -652,7 +652,7 @@ static void named_pairs_have_gaps(void **state)
 static void without_times_and_boxes_a_pair_is_its_verdict(void **state)
 {
     (void) state;
-    make_scene(QUERY_PAIRS_LISTED, 3);
+    make_scene(FMB_PAIRS_LISTED, 3);
     add_verdict(&result_then, 0, 0, FMB_TOUCHING);
     add_verdict(&result_then, 0, 0, FMB_OVERLAPPING);
     result_then.has_times = true;
@@ -668,7 +668,7 @@ static void without_times_and_boxes_a_pair_is_its_verdict(void **state)
 static void partial_results_answer_some_pairs(void **state)
 {
     (void) state;
-    make_scene(QUERY_PAIRS_LISTED, 5);
+    make_scene(FMB_PAIRS_LISTED, 5);
     scene.first_pair = 1;
     add_verdict(&result_then, 0, 0, FMB_SEPARATED);
     result_now = result_then;
@@ -686,7 +686,7 @@ static void partial_results_answer_some_pairs(void **state)
 static void pairs_not_named_are_separated(void **state)
 {
     (void) state;
-    make_scene(QUERY_PAIRS_ALL, 4); /* (0,1) (0,2) (0,3) (1,2) (1,3) (2,3) */
+    make_scene(FMB_PAIRS_ALL, 4); /* (0,1) (0,2) (0,3) (1,2) (1,3) (2,3) */
     result_then.names_pairs = true;
     result_then.end_pair = 6;
     result_now = result_then;
@@ -705,7 +705,7 @@ static void pairs_not_named_are_separated(void **state)
 static void pairs_across_are_counted_across(void **state)
 {
     (void) state;
-    make_scene(QUERY_PAIRS_ACROSS, 5); /* (0,2) (0,3) (0,4) (1,2) (1,3) (1,4) */
+    make_scene(FMB_PAIRS_ACROSS, 5); /* (0,2) (0,3) (0,4) (1,2) (1,3) (1,4) */
     scene.split = 2;
     scene.first_pair = 1;
     result_then.names_pairs = true;
@@ -716,14 +716,14 @@ static void pairs_across_are_counted_across(void **state)
     add_verdict(&result_now, 1, 2, FMB_TOUCHING);
     add_verdict(&result_now, 1, 3, FMB_TOUCHING);
     expect_scene("[[1,2,1,2],[0,2,null,2],[1,3,null,2]]");
-    assert_int_equal(logged_query_pairs(&scene), 6);
+    assert_int_equal(query_pair_count(&scene), 6);
 }
 
 static void verdicts_of_a_scene_are_counted(void **state)
 {
     int64_t count[FMB_OVERLAPPING + 1];
     (void) state;
-    make_scene(QUERY_PAIRS_ALL, 4);
+    make_scene(FMB_PAIRS_ALL, 4);
     scene.first_pair = 1;
     result_then.names_pairs = true;
     result_then.end_pair = 6;
@@ -734,15 +734,15 @@ static void verdicts_of_a_scene_are_counted(void **state)
     assert_int_equal(count[FMB_SEPARATED], 3);
     assert_int_equal(count[FMB_TOUCHING], 1);
     assert_int_equal(count[FMB_OVERLAPPING], 1);
-    assert_int_equal(logged_query_pairs(&scene), 6);
+    assert_int_equal(query_pair_count(&scene), 6);
     replayed_count(&scene, NULL, count);
     assert_int_equal(count[FMB_SEPARATED], 0);
-    make_scene(QUERY_PAIRS_LISTED, 1);
+    make_scene(FMB_PAIRS_LISTED, 1);
     replayed_count(&scene, &result_then, count);
     assert_int_equal(count[FMB_SEPARATED], 0);
-    assert_int_equal(logged_query_pairs(&scene), 0);
-    make_scene(QUERY_PAIRS_ALL, 0);
-    assert_int_equal(logged_query_pairs(&scene), 0);
+    assert_int_equal(query_pair_count(&scene), 0);
+    make_scene(FMB_PAIRS_ALL, 0);
+    assert_int_equal(query_pair_count(&scene), 0);
 }
 
 static void ignore(unsigned a, unsigned b)
@@ -756,7 +756,7 @@ static void ignored_pairs_are_not_counted(void **state)
 {
     int64_t count[FMB_OVERLAPPING + 1];
     (void) state;
-    make_scene(QUERY_PAIRS_ALL, 5); /* (0,1) to (0,4), (1,2) (1,3) (1,4), (2,3) ... */
+    make_scene(FMB_PAIRS_ALL, 5); /* (0,1) to (0,4), (1,2) (1,3) (1,4), (2,3) ... */
     scene.first_pair = 1;
     result_then.names_pairs = true;
     result_then.end_pair = 8;
@@ -781,7 +781,7 @@ static void ignored_pairs_are_not_counted(void **state)
     result_then.status = FMB_BUSY;
     assert_int_equal(replayed_decided(&scene, &result_then), 0);
 
-    make_scene(QUERY_PAIRS_ACROSS, 5); /* (0,2) (0,3) (0,4) (1,2) (1,3) (1,4) */
+    make_scene(FMB_PAIRS_ACROSS, 5); /* (0,2) (0,3) (0,4) (1,2) (1,3) (1,4) */
     scene.split = 2;
     result_then.names_pairs = true;
     result_then.end_pair = 6;
@@ -798,7 +798,7 @@ static void differing_pairs_are_kept_first(void **state)
 {
     enum { PAIRS = 1064 };
     (void) state;
-    make_scene(QUERY_PAIRS_LISTED, 2);
+    make_scene(FMB_PAIRS_LISTED, 2);
     scene.index_count = 2 * PAIRS;
     for (unsigned i = 0; i < PAIRS; i++) {
         scene.pair[i][0] = i;
@@ -824,7 +824,7 @@ static void differing_pairs_are_kept_first(void **state)
 static void results_that_do_not_match_the_query_are_harmless(void **state)
 {
     (void) state;
-    make_scene(QUERY_PAIRS_ALL, 2);
+    make_scene(FMB_PAIRS_ALL, 2);
     result_then.names_pairs = true;
     result_then.end_pair = INT32_MAX;
     add_verdict(&result_then, 3, 1064, FMB_OVERLAPPING);
@@ -836,13 +836,13 @@ static void results_that_do_not_match_the_query_are_harmless(void **state)
     expect_scene("[[3,1064,3,1]]");
     scene.placement_count = 0;
     scene.split = INT32_MIN;
-    scene.which = QUERY_PAIRS_ACROSS;
+    scene.which = FMB_PAIRS_ACROSS;
     expect_scene("[[3,1064,3,null]]");
     result_now.names_pairs = false;
     result_now.verdict_count = 5;
     scene.which = INT32_MIN;
     expect_scene("[[3,1064,3,1]]");
-    scene.which = QUERY_PAIRS_LISTED;
+    scene.which = FMB_PAIRS_LISTED;
     scene.index_count = 1;
     expect_scene("[]");
 }

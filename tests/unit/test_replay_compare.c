@@ -153,10 +153,10 @@ static void expect_same(double tolerance, const struct pair_query *query,
 }
 
 enum {
-    BOX = QUERY_WANT_BOX,
-    CERTIFICATE = QUERY_WANT_CERTIFICATE,
-    TIMES = QUERY_WANT_TIMES,
-    GAP = QUERY_WANT_GAP
+    BOX = FMB_WANT_BOX,
+    CERTIFICATE = FMB_WANT_CERTIFICATE,
+    TIMES = FMB_WANT_TIMES,
+    GAP = FMB_WANT_GAP
 };
 
 static void test_every_kind(void **state)
@@ -431,14 +431,14 @@ static unsigned requested[PAIRS_MAX][2];
 static int list_requested(void)
 {
     int count = 0;
-    if (scene.which == QUERY_PAIRS_LISTED) {
+    if (scene.which == FMB_PAIRS_LISTED) {
         for (; count < scene.index_count / 2; count++)
             memcpy(requested[count], scene.pair[count], sizeof requested[count]);
         return count;
     }
     for (int a = 0; a < scene.placement_count; a++)
         for (int b = a + 1; b < scene.placement_count; b++)
-            if (scene.which == QUERY_PAIRS_ALL || (a < scene.split && b >= scene.split)) {
+            if (scene.which == FMB_PAIRS_ALL || (a < scene.split && b >= scene.split)) {
                 assert_true(count < PAIRS_MAX);
                 requested[count][0] = (unsigned) a;
                 requested[count++][1] = (unsigned) b;
@@ -477,7 +477,7 @@ static void put_plain(const struct scene_result *result, int i, int *contact, st
 /* The answers of a result, by the number of their pair. False: it is none to this query. */
 static bool plain_of(const struct scene_result *result, int total, struct plain *out)
 {
-    const bool listed = scene.which == QUERY_PAIRS_LISTED;
+    const bool listed = scene.which == FMB_PAIRS_LISTED;
     int contact = 0, number = scene.first_pair - 1;
     if (result->end_pair < scene.first_pair || result->end_pair > total)
         return false;
@@ -569,9 +569,9 @@ static void check_scene(void)
 
 static void draw_pairs(int frames)
 {
-    scene.split = scene.which == QUERY_PAIRS_ACROSS ? (int32_t) draw((uint64_t) frames + 1) : 0;
+    scene.split = scene.which == FMB_PAIRS_ACROSS ? (int32_t) draw((uint64_t) frames + 1) : 0;
     scene.index_count = 0;
-    if (scene.which == QUERY_PAIRS_LISTED && frames > 1)
+    if (scene.which == FMB_PAIRS_LISTED && frames > 1)
         for (int pairs = (int) draw(40); scene.index_count < 2 * pairs; scene.index_count += 2) {
             unsigned *to = scene.pair[scene.index_count / 2];
             to[0] = (unsigned) draw((uint64_t) frames);
@@ -589,7 +589,7 @@ static void draw_scene(void)
     scene.duration = 1;
     scene.want = (int32_t) (draw(2) * BOX | draw(2) * TIMES);
     scene.which = (int32_t) draw(3);
-    scene.method = methods[draw(scene.which == QUERY_PAIRS_LISTED ? 6 : 4)];
+    scene.method = methods[draw(scene.which == FMB_PAIRS_LISTED ? 6 : 4)];
     if (scene.method < 2 || scene.method > 3) {
         scene.want |= draw(2) ? GAP : 0;
         scene.margin = 0.5 * (double) draw(3);
@@ -786,7 +786,7 @@ static void test_the_most_pairs(void **state)
     (void) state;
     memset(&scene, 0, sizeof scene);
     scene.duration = 1;
-    scene.which = QUERY_PAIRS_LISTED;
+    scene.which = FMB_PAIRS_LISTED;
     scene.placement_count = 2;
     for (int i = 0; i < 2; i++)
         scene.placement[i] = frame(0, 2, 0, 0);
@@ -813,11 +813,11 @@ enum { PLACEMENTS = 400 };
 static void test_the_most_placements(void **state)
 {
     (void) state;
-    for (int which = QUERY_PAIRS_ALL; which <= QUERY_PAIRS_ACROSS; which += 2) {
+    for (int which = FMB_PAIRS_ALL; which <= FMB_PAIRS_ACROSS; which += 2) {
         memset(&scene, 0, sizeof scene);
         scene.duration = 1;
         scene.which = which;
-        scene.split = which == QUERY_PAIRS_ACROSS ? 350 : 0;
+        scene.split = which == FMB_PAIRS_ACROSS ? 350 : 0;
         scene.placement_count = PLACEMENTS;
         for (int i = 0; i < PLACEMENTS; i++)
             scene.placement[i] = frame(i + 1, 2, 10 * i, 0);

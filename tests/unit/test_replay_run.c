@@ -569,7 +569,7 @@ static void test_queries_beyond_all_limits(void **state)
                                    LOG_DATA_MAX + 1, sizeof bytes};
     (void) state;
     query.label = "abc"; /* so that whole pairs fill the datagram */
-    query.which = QUERY_PAIRS_LISTED;
+    query.which = FMB_PAIRS_LISTED;
     query.index_count = (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES - 3) / 2;
     for (int i = 0; i < 5; i++) {
         static unsigned char result_bytes[QUERY_BYTES_MAX];
@@ -844,13 +844,13 @@ static void ask_scene(int ways, int64_t at, int client)
     query.client_id = client;
     query.sequence_number = ++world.number[client];
     query.duration = 1;
-    query.want = (int32_t) (draw(2) * QUERY_WANT_BOX | draw(2) * QUERY_WANT_TIMES);
+    query.want = (int32_t) (draw(2) * FMB_WANT_BOX | draw(2) * FMB_WANT_TIMES);
     query.which = (int32_t) draw(3);
     query.placement_count = (int32_t) draw(6);
-    query.split = query.which == QUERY_PAIRS_ACROSS ? query.placement_count / 2 : 0;
+    query.split = query.which == FMB_PAIRS_ACROSS ? query.placement_count / 2 : 0;
     for (int i = 0; i < query.placement_count; i++)
         query.placement[i] = draw_placement(client);
-    for (int i = 1; query.which == QUERY_PAIRS_LISTED && i < query.placement_count; i++) {
+    for (int i = 1; query.which == FMB_PAIRS_LISTED && i < query.placement_count; i++) {
         query.pair[query.index_count / 2][1] = (unsigned) i;
         query.index_count += 2;
     }

@@ -18,7 +18,7 @@ static void test_a_query_gets_one_result(void **state)
 {
     (void) state;
     struct pair_query query = service_pair(21, 1);
-    query.want = QUERY_WANT_BOX;
+    query.want = FMB_WANT_BOX;
     query.placement[1].position[0] = 0.25;
     service.tick_ns = 100;
     service_send_pair(&query);
@@ -41,11 +41,11 @@ static void test_certificates_are_given_where_wanted(void **state)
     struct pair_query query = service_pair(21, 1);
     for (int i = 0; i < 3; i++) {
         query.placement[1].position[0] = distance[i];
-        query.want = QUERY_WANT_BOX;
+        query.want = FMB_WANT_BOX;
         service_send_pair(&query);
         service_settle();
         assert_string_equal(service.certificate, "");
-        query.want = QUERY_WANT_CERTIFICATE;
+        query.want = FMB_WANT_CERTIFICATE;
         service_send_pair(&query);
         service_settle();
         assert_memory_equal(service.certificate, begin[i], strlen(begin[i]));
@@ -125,7 +125,7 @@ static void test_undecided_pairs_are_not_counted(void **state)
     scene = (struct scene_query){.client_id = 21,
                                  .duration = 1,
                                  .method = fmb_method_by_name("fmb")->number,
-                                 .which = QUERY_PAIRS_LISTED,
+                                 .which = FMB_PAIRS_LISTED,
                                  .placement_count = 3,
                                  .placement = {pair.placement[0], pair.placement[1]},
                                  .index_count = 4,
@@ -177,7 +177,7 @@ static int64_t pairs_counted(const struct scene_query *scene)
 static void test_ignored_pairs_are_not_counted(void **state)
 {
     (void) state;
-    struct scene_query *scene = squares(QUERY_PAIRS_ALL, 3, 0);
+    struct scene_query *scene = squares(FMB_PAIRS_ALL, 3, 0);
     ignore(scene, 0, 1);
     ignore(scene, 2, 1);
     assert_int_equal(pairs_counted(scene), 1);
@@ -195,7 +195,7 @@ static void test_ignored_pairs_are_not_counted(void **state)
     ignore(scene, 0, 2);
     assert_int_equal(pairs_counted(scene), 0);
 
-    scene = squares(QUERY_PAIRS_ACROSS, 139, 50);
+    scene = squares(FMB_PAIRS_ACROSS, 139, 50);
     for (unsigned a = 0; a < 50; a++)
         for (unsigned b = 0; b < a; b++)
             ignore(scene, b, a); /* not pairs of the scene */
@@ -207,7 +207,7 @@ static void test_ignored_pairs_are_not_counted(void **state)
     assert_int_equal(pairs_counted(scene), 8);
 
     /* A listed pair cannot be ignored: all are counted. */
-    scene = squares(QUERY_PAIRS_LISTED, 4, 0);
+    scene = squares(FMB_PAIRS_LISTED, 4, 0);
     scene->index_count = 4;
     scene->pair[0][1] = 1;
     scene->pair[1][1] = 2;
@@ -218,7 +218,7 @@ static void test_ignored_pairs_are_not_counted(void **state)
 static void test_pairs_before_the_first_are_not_counted(void **state)
 {
     (void) state;
-    struct scene_query *scene = squares(QUERY_PAIRS_ALL, 10, 0);
+    struct scene_query *scene = squares(FMB_PAIRS_ALL, 10, 0);
     scene->first_pair = 40;
     assert_int_equal(pairs_counted(scene), 5);
 }

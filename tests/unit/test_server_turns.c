@@ -782,7 +782,7 @@ static void send_flat_scene(int64_t client, int64_t number, int bodies, int fram
     static unsigned char bytes[QUERY_BYTES_MAX];
     query = (struct scene_query){.client_id = client,
                                  .sequence_number = number,
-                                 .which = QUERY_PAIRS_LISTED,
+                                 .which = FMB_PAIRS_LISTED,
                                  .placement_count = bodies};
     place_flat_bodies(bodies, frames, id, query.placement);
     service_receive(SERVER_SCENES, bytes, wire_write_scene_query(&query, bytes));

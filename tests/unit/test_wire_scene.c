@@ -72,7 +72,7 @@ static void set_query(int32_t placements, int32_t indices, int32_t ignored)
     query.duration = 0.1;
     query.method = 2;
     query.want = 5;
-    query.which = QUERY_PAIRS_ACROSS;
+    query.which = FMB_PAIRS_ACROSS;
     query.split = 3;
     query.first_pair = 7;
     query.margin = 0.25;
@@ -651,11 +651,41 @@ static void test_what_is_read_of_mutants_is_there(void **state)
         assert_true(accepted[i] > 1000 && refused[i] > 1000);
 }
 
+/* Only the padding, 1 byte after the flags and 7 after has_witness, does not count. */
+static void answers_that_differ_in_any_byte_are_not_the_same(void **state)
+{
+    (void) state;
+    const struct fmb_answer full = {.has_contact = true, .has_box = true, .has_gap = true};
+    size_t same = 0;
+    for (size_t i = 0; i < sizeof full; i++) {
+        struct fmb_answer other;
+        memcpy(&other, &full, sizeof full);
+        ((unsigned char *) &other)[i] ^= 1;
+        same += query_same_answer(&full, &other);
+    }
+    assert_int_equal(same, 8);
+    assert_true(query_same_answer(&full, &full));
+}
+
+/* Numbers of a part that neither answer has are not compared. */
+static void parts_that_no_answer_has_are_the_same(void **state)
+{
+    (void) state;
+    const struct fmb_answer none = {.verdict = FMB_SEPARATED};
+    struct fmb_answer other = none;
+    other.contact[0] = other.box[0][0] = other.gap.bounds[1] = 1;
+    assert_true(query_same_answer(&none, &other));
+    other.has_contact = other.has_gap = true;
+    assert_int_equal(query_parts_that_differ(&none, &other), FMB_WANT_TIMES | FMB_WANT_GAP);
+}
+
 #define TEST(name) cmocka_unit_test_setup(name, set_up)
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        TEST(answers_that_differ_in_any_byte_are_not_the_same),
+        TEST(parts_that_no_answer_has_are_the_same),
         TEST(test_query_round_trip),
         TEST(test_lists_of_every_length),
         TEST(test_largest_queries),

@@ -1,5 +1,6 @@
 #include "scene_pairs.h"
 
+#include "pair_number.h"
 #include "tree.h"
 
 #include <string.h>
@@ -8,46 +9,32 @@
  * microseconds. */
 enum { SEARCHES_MAX = 32 };
 
-/* Pairs (a, b) have a below rows() and b from first_partner() on. */
-static unsigned rows(const struct fmb_scene *scene)
+static struct pair_numbers numbers_of(const struct fmb_scene *scene)
 {
-    return (unsigned) (scene->which == FMB_PAIRS_ACROSS ? scene->split : scene->placement_count);
-}
-
-static unsigned first_partner(const struct fmb_scene *scene, unsigned a)
-{
-    return scene->which == FMB_PAIRS_ACROSS ? (unsigned) scene->split : a + 1;
-}
-
-/* The pairs of the placements before a: fewer than 2^63. */
-static unsigned long long pairs_before(const struct fmb_scene *scene, unsigned a)
-{
-    const unsigned long long n = scene->placement_count, i = a;
-    if (scene->which == FMB_PAIRS_ACROSS)
-        return i * (n - scene->split);
-    return i * n - i * (i + 1) / 2;
+    return (struct pair_numbers){scene->which == FMB_PAIRS_ACROSS, scene->placement_count,
+                                 scene->split};
 }
 
 unsigned long long scene_pairs_number(const struct fmb_scene *scene, unsigned a, unsigned b)
 {
-    return pairs_before(scene, a) + (b - first_partner(scene, a));
+    return pair_number(numbers_of(scene), a, b);
 }
 
 unsigned long long scene_pairs_total(const struct fmb_scene *scene)
 {
-    if (scene->which == FMB_PAIRS_LISTED)
-        return scene->pair_count;
-    return pairs_before(scene, rows(scene));
+    return scene->which == FMB_PAIRS_LISTED ? scene->pair_count : pairs_total(numbers_of(scene));
 }
 
 unsigned long long scene_pairs_position(const struct scene_pairs *pairs)
 {
     const struct fmb_scene *scene = pairs->scene;
+    const struct pair_numbers numbers = numbers_of(scene);
     if (scene->which == FMB_PAIRS_LISTED)
         return pairs->next;
     if (pairs->given < pairs->found_count)
         return scene_pairs_number(scene, pairs->a, pairs->found[pairs->given]);
-    return pairs->a < rows(scene) ? pairs_before(scene, pairs->a + 1) : scene_pairs_total(scene);
+    return pairs->a < pair_rows(numbers) ? pairs_before(numbers, pairs->a + 1)
+                                         : pairs_total(numbers);
 }
 
 /* ---- Ignored pairs ---- */
@@ -147,20 +134,22 @@ static void box_at(const void *context, unsigned index, double box[2][FMB_DIM_MA
 static void begin_search(struct scene_pairs *pairs, void *memory)
 {
     const struct fmb_scene *scene = pairs->scene;
+    const struct pair_numbers numbers = numbers_of(scene);
     pairs->first = scene->which == FMB_PAIRS_ACROSS ? (unsigned) scene->split : 0;
-    if (rows(scene) == 0)
+    if (pair_rows(numbers) == 0)
         return;
     const struct fmb_boxes boxes = {
         .dim = scene->placements->body->dim, .at = box_at, .context = pairs};
     fmb_tree_build_boxes(&boxes, scene->placement_count - pairs->first, 0, memory, &pairs->tree);
     pairs->listed = scene->which == FMB_PAIRS_ALL && list_pairs(pairs);
     list_ignored(pairs);
-    while (pairs->a < rows(scene) && pairs_before(scene, pairs->a + 1) <= scene->first_pair)
+    while (pairs->a < pair_rows(numbers) &&
+           pairs_before(numbers, pairs->a + 1) <= scene->first_pair)
         pairs->a++;
-    const unsigned long long before = pairs_before(scene, pairs->a);
-    if (pairs->a < rows(scene))
-        find_partners(pairs,
-                      first_partner(scene, pairs->a) + (unsigned) (scene->first_pair - before));
+    const unsigned long long before = pairs_before(numbers, pairs->a);
+    if (pairs->a < pair_rows(numbers))
+        find_partners(
+            pairs, (unsigned) (pair_first_partner(numbers, pairs->a) + scene->first_pair - before));
 }
 
 void scene_pairs_begin(struct scene_pairs *pairs, const struct fmb_scene *scene,
@@ -179,15 +168,16 @@ void scene_pairs_begin(struct scene_pairs *pairs, const struct fmb_scene *scene,
 
 static size_t next_found(struct scene_pairs *pairs, unsigned (*out)[2], size_t max)
 {
+    const struct pair_numbers numbers = numbers_of(pairs->scene);
     size_t count = 0;
-    while (count < max && pairs->a < rows(pairs->scene)) {
+    while (count < max && pairs->a < pair_rows(numbers)) {
         if (pairs->given < pairs->found_count) {
             out[count][0] = pairs->a;
             out[count++][1] = pairs->found[pairs->given++];
         } else if (pairs->searches == SEARCHES_MAX) {
             break;
-        } else if (pairs->searches += !pairs->listed, ++pairs->a < rows(pairs->scene)) {
-            find_partners(pairs, first_partner(pairs->scene, pairs->a));
+        } else if (pairs->searches += !pairs->listed, ++pairs->a < pair_rows(numbers)) {
+            find_partners(pairs, (unsigned) pair_first_partner(numbers, pairs->a));
         }
     }
     return count;

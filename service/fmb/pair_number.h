@@ -1,0 +1,69 @@
+/* The pairs of FMB_PAIRS_ALL and FMB_PAIRS_ACROSS, and the numbers of all pairs (fmb.h).
+ *
+ *   ALL     a = 0 to n - 1, each with b = a + 1 to n - 1
+ *   ACROSS  a = 0 to split - 1, each with b = split to n - 1
+ *
+ * Inline: the client library uses them too, and does not link libfmb. */
+#ifndef FMB_PAIR_NUMBER_H
+#define FMB_PAIR_NUMBER_H
+
+#include "fmb.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct pair_numbers {
+    bool across;
+    size_t n, split; /* number of placements; split: at most n, used if across */
+};
+
+/* The number of placements that come first in pairs: a is below it. */
+static inline size_t pair_rows(struct pair_numbers of)
+{
+    return of.across ? of.split : of.n;
+}
+
+/* The first b of placement a. */
+static inline size_t pair_first_partner(struct pair_numbers of, size_t a)
+{
+    return of.across ? of.split : a + 1;
+}
+
+/* The number of pairs of the placements before a: fewer than 2^63 for n < 2^32. In: a <= n. */
+static inline uint64_t pairs_before(struct pair_numbers of, size_t a)
+{
+    const uint64_t n = of.n, i = a;
+    return of.across ? i * (n - of.split) : i * n - i * (i + 1) / 2;
+}
+
+static inline uint64_t pairs_total(struct pair_numbers of)
+{
+    return pairs_before(of, pair_rows(of));
+}
+
+static inline bool pair_is_among(struct pair_numbers of, size_t a, size_t b)
+{
+    return a < pair_rows(of) && b >= pair_first_partner(of, a) && b < of.n;
+}
+
+/* In: a pair that is among them. */
+static inline uint64_t pair_number(struct pair_numbers of, size_t a, size_t b)
+{
+    return pairs_before(of, a) + (b - pair_first_partner(of, a));
+}
+
+/* Advances to the first pair, in order, whose first placement is *a and second at least *b, or
+ * whose first placement is later. *b is 0 at first. Returns false if there is none. */
+static inline bool pair_find(struct pair_numbers of, size_t *a, size_t *b)
+{
+    for (; *a < pair_rows(of); ++*a, *b = 0) {
+        if (*b < pair_first_partner(of, *a))
+            *b = pair_first_partner(of, *a);
+        if (*b < of.n)
+            return true;
+    }
+    return false;
+}
+
+#endif
