@@ -630,6 +630,18 @@ static void listed_pairs_have_times_and_boxes(void **state)
         "[1,2,[2,0,1,1,2,3,4]],[0,1,1],[2,3,0]]");
 }
 
+/* As in the replay's comparison, whose count the page shows. */
+static void times_that_differ_in_the_sign_of_zero_differ(void **state)
+{
+    (void) state;
+    make_scene(FMB_PAIRS_LISTED, 2);
+    add_verdict(&result_then, 0, 0, FMB_TOUCHING);
+    result_then.has_times = true;
+    result_now = result_then;
+    result_now.times[0] = -0.0;
+    expect_scene("[[0,1,[2,0,0],[2,-0,0]]]");
+}
+
 /* The second of the pairs that are named is near; of the third there is none. */
 static void named_pairs_have_gaps(void **state)
 {
@@ -866,6 +878,7 @@ int main(void)
         cmocka_unit_test(statuses_are_written),
         cmocka_unit_test(a_different_certificate_is_reported),
         cmocka_unit_test(listed_pairs_have_times_and_boxes),
+        cmocka_unit_test(times_that_differ_in_the_sign_of_zero_differ),
         cmocka_unit_test(named_pairs_have_gaps),
         cmocka_unit_test(without_times_and_boxes_a_pair_is_its_verdict),
         cmocka_unit_test(partial_results_answer_some_pairs),
