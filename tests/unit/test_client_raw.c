@@ -364,7 +364,8 @@ static void tap(void *user, const struct bus_message *message)
     static struct pair_result result;
     struct tapped *tapped = user;
     const uint32_t size = (uint32_t) message->size;
-    assert_int_equal(tapped->pair->called, 0); /* the engine reads it later */
+    /* The engine reads it later. Second messages of a repeated query come after its result. */
+    assert_true(tapped->pair->called == 0 || tapped->results > 0);
     if (!wire_read_pair_query(message->bytes, size, &query)) {
         assert_string_equal(message->channel, WIRE_PAIR_QUERY);
         assert_int_equal(query.client_id, tapped->client_id);
@@ -396,10 +397,12 @@ static void test_a_tap_gets_all_messages_first(void **state)
         finish(client);
         assert_int_equal(pair.called, 1);
         assert_int_equal(pair.status, FMB_OK);
-        assert_int_equal(tapped.queries, 1);
-        assert_int_equal(tapped.results, 1);
-        assert_int_equal(fmb_client_get_counts(client).malformed, 0);
-        assert_int_equal(fmb_client_raw_bus_counts(client).received, every ? 5 : 2);
+        const struct fmb_client_counts counts = fmb_client_get_counts(client);
+        assert_in_range(tapped.queries, 1, 1 + counts.repeated);
+        assert_in_range(tapped.results, 1, tapped.queries);
+        assert_int_equal(counts.malformed, 0);
+        assert_int_equal(fmb_client_raw_bus_counts(client).received,
+                         tapped.others + tapped.queries + tapped.results);
         fmb_client_close(client);
     }
     relay_close(relay);
