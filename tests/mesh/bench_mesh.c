@@ -88,11 +88,11 @@ static void bench_parts(const struct scene *scene, const char *name, enum mesh_a
 {
     struct mesh_query question = question_of(scene, as, self);
     struct mesh_intersection meeting, exact;
-    double build[ROUNDS], ask[ROUNDS];
+    double build[ROUNDS], query[ROUNDS];
     for (int round = 0; round < ROUNDS; round++) {
         meet(&question, &meeting);
         build[round] = (double) meeting.build_ns;
-        ask[round] = (double) meeting.query_ns;
+        query[round] = (double) meeting.query_ns;
         if (round < ROUNDS - 1)
             mesh_intersection_free(&meeting);
     }
@@ -101,7 +101,7 @@ static void bench_parts(const struct scene *scene, const char *name, enum mesh_a
     expect_same(&meeting, &exact);
     printf("%-12s  build %6.1f ms   ask %6.1f ms   candidates %7" PRIu64
            "   pairs %5zu (%zu touch)",
-           name, spread_of(build, ROUNDS).median / 1e6, spread_of(ask, ROUNDS).median / 1e6,
+           name, spread_of(build, ROUNDS).median / 1e6, spread_of(query, ROUNDS).median / 1e6,
            meeting.candidates, meeting.count, meeting.touching);
     if (self)
         printf("   beside each other %" PRIu64, meeting.sharing_edge + meeting.sharing_vertex);

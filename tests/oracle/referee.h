@@ -18,7 +18,7 @@ struct ready {
 void referee_ready(const struct question *question, struct ready *ready);
 
 /* The answer of the exact method, box wanted. */
-void referee_ask(const struct question *question, struct fmb_answer *answer);
+void referee_decide(const struct question *question, struct fmb_answer *answer);
 
 /* Same verdict, and the same bits of the interval and of the box where there are any. */
 bool referee_same(const struct fmb_answer *one, const struct fmb_answer *other);

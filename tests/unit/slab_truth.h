@@ -38,7 +38,7 @@ bool slab_truth_prepare(const struct pair *pair, struct slabs_pair *out);
 void slab_truth_set(struct slab_truth *truth, const struct pair *pair);
 
 /* On output: low to zero, of this slab of the pair that is set. */
-void slab_truth_ask(struct slab_truth *truth, struct slab_normal normal);
+void slab_truth_compute(struct slab_truth *truth, struct slab_normal normal);
 
 /* |value - exact| / bound, exact being one of low to rise, value and bound in the lengths of the
  * pair times 2^factor: 0 if value is exact; infinite if it is not and bound is 0. */
