@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-_Static_assert((int) BLAST_BODIES <= (int) LOG_CLIENT_BODIES_MAX, "one log_client knows them all");
+_Static_assert((int) BLAST_BODIES <= (int) LOG_CLIENT_BODIES_MAX, "one client knows them all");
 
 /* Where they are, so that some half of their pairs meet. */
 static const double component_most = 1, origin_most = 0.5, velocity_most = 1;
