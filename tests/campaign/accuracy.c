@@ -1,5 +1,5 @@
 /* The accuracy campaign: families of hard pairs, in every cell of dimension, motion and shapes,
- * asked of every method in both orders and held against the oracle, which shares no code with the
+ * decided by every method in both orders and held against the oracle, which shares no code with the
  * engine. */
 #include <errno.h>
 #include <stdio.h>

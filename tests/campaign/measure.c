@@ -7,7 +7,7 @@
 
 #include "gap_check.h"
 
-/* Pairs of a batch: the methods are timed over all of them, one after the other, each asked once,
+/* Pairs of a batch: the methods are timed over all of them, one after the other, each decided once,
  * so that no branch is predicted from having seen the pair before. */
 enum { BATCH = 250 };
 

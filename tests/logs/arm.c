@@ -1,6 +1,6 @@
 /* A robot arm that swings past a table with parts on it, at 100 Hz: in each step one scene with
- * times and boxes, and some pairs alone, some of them with certificates. Links move; the table, and
- * what rests on it, is laid out in multiples of 1/64 m, so that what rests touches. */
+ * times and boxes, and some single pairs, some of them with certificates. Links move; the table,
+ * and what rests on it, is laid out in multiples of 1/64 m, so that what rests touches. */
 #include "kinds.h"
 
 #include "log_client.h"
@@ -23,7 +23,7 @@ static const unsigned pairs[][2] = {
 };
 enum { PAIRS = sizeof pairs / sizeof *pairs };
 
-/* Asked alone: as many in each step, in turns. */
+/* Queried singly: as many in each step, in turns. */
 enum { FIRST_SINGLE = 7, SINGLE = PAIRS - FIRST_SINGLE, SINGLE_A_STEP = 2 };
 
 /* ---- The parts ---- */

@@ -18,7 +18,7 @@ struct clients {
     struct scene_result scene_result;
 };
 
-/* ---- What they ask about ---- */
+/* ---- Their queries ---- */
 
 /* Box or corner number n of a row, as a client's publisher has it: they differ from one to the next
  * in size, and share their ids. */
@@ -75,7 +75,7 @@ static void query_scene(struct clients *clients, int client, int step)
 
 /* ---- What happens ---- */
 
-/* They count alike, and results come when the next ones have asked; no handle is used before a
+/* They count alike, and results come after the next queries; no handle is used before a
  * result carries it. */
 static void query_in_turns(struct clients *clients, struct instance *instance)
 {

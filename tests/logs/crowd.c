@@ -1,7 +1,7 @@
 /* A crowd in the plane, of boxes and triangles turned every way, most of them moving: those who
  * walk across those who stand, all of them at once, and neighbours listed. Two answers have no room
  * for all that they find, or are broken off where the service has others waiting: then the query is
- * asked again from where the answer ended. */
+ * queried again from where the answer ended. */
 #include "kinds.h"
 
 #include "log_client.h"
@@ -133,7 +133,7 @@ static void query_step(struct crowd *crowd, int step)
 static void query_all(struct crowd *crowd, struct tape *tape)
 {
     begin_query(crowd, QUERY_PAIRS_ACROSS, 0, WALKERS, STANDING);
-    query_to_the_end(crowd); /* tells everybody */
+    query_to_the_end(crowd); /* defines every body */
     begin_query(crowd, QUERY_PAIRS_ALL, QUERY_WANT_BOX | QUERY_WANT_TIMES, WALKERS, STANDING);
     query_to_the_end(crowd);
     for (int step = 0; step < STEPS; step++) {

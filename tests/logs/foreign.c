@@ -1,5 +1,5 @@
 /* A bus on which others are too, and a logger that began late: results stand hundreds of events
- * behind their queries, or before them; bodies came whole before the log began; another instance of
+ * after their queries, or before them; bodies came whole before the log began; another instance of
  * the service answers the same numbers on channels with a prefix; and what others publish on
  * channels whose names look alike, or in a format that is none of the service's. */
 #include "kinds.h"
@@ -46,7 +46,7 @@ static void publish_other(struct foreign *foreign)
     tape_pass(foreign->tape, 200);
 }
 
-/* A message of another type; and a query that is cut off, one with more behind it, and one that
+/* A message of another type; and a query that is cut off, one with more after it, and one that
  * says that it has more frames than there are bytes. None is one that can be read. */
 static void publish_malformed(struct foreign *foreign)
 {
@@ -82,7 +82,7 @@ static void publish_mismatch(struct foreign *foreign)
     tape_pass(foreign->tape, 200);
 }
 
-/* ---- What is asked ---- */
+/* ---- Queries ---- */
 
 /* Bodies in a row, every other one of which moves. */
 static struct pair_query pair_of(int round, int a, int b)

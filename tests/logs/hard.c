@@ -1,6 +1,6 @@
 /* Pairs that are hard for a reason: of each family of the campaigns one for each cell that it has.
- * At rest those of a family are listed in one scene, with boxes; what moves is asked pair by pair,
- * since windows differ, and some once more, by handle and the other way round. Methods,
+ * At rest those of a family are listed in one scene, with boxes; what moves is queried pair by
+ * pair, since windows differ, and some once more, by handle and the other way round. Methods,
  * certificates, boxes and gaps are drawn. */
 #include "kinds.h"
 
@@ -12,7 +12,7 @@ static const uint64_t seed = 20240101;
 
 struct hard {
     struct log_client log_client;
-    struct draw draw; /* how to ask */
+    struct draw draw; /* how to query */
     int64_t body_id;  /* the last one given */
     struct scene_query scene;
     struct scene_result scene_result;

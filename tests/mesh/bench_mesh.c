@@ -81,7 +81,7 @@ static void expect_same(const struct mesh_intersection *x, const struct mesh_int
 static void meet(const struct mesh_query *question, struct mesh_intersection *out)
 {
     if (mesh_intersect(question, out) != FMB_OK)
-        fail("the meshes could not be asked");
+        fail("the meshes could not be queried");
 }
 
 static void bench_parts(const struct scene *scene, const char *name, enum mesh_as as, bool self)
@@ -99,7 +99,7 @@ static void bench_parts(const struct scene *scene, const char *name, enum mesh_a
     question.method = fmb_method_by_name("exact");
     meet(&question, &exact);
     expect_same(&meeting, &exact);
-    printf("%-12s  build %6.1f ms   ask %6.1f ms   candidates %7" PRIu64
+    printf("%-12s  build %6.1f ms   query %6.1f ms   candidates %7" PRIu64
            "   pairs %5zu (%zu touch)",
            name, spread_of(build, ROUNDS).median / 1e6, spread_of(query, ROUNDS).median / 1e6,
            meeting.candidates, meeting.count, meeting.touching);

@@ -1,5 +1,6 @@
-/* Placed bodies: pairs with orientations against the oracle, and the same by every way to ask; what
- * must not change where the whole scene turns, or a quaternion gets longer; bodies of many frames.
+/* Placed bodies: pairs with orientations against the oracle, and the same by every way to decide;
+ * what must not change where the whole scene turns, or a quaternion gets longer; bodies of many
+ * frames.
  */
 #include <setjmp.h>
 #include <stdarg.h>

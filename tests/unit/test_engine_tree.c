@@ -1,4 +1,4 @@
-/* Which pairs may meet: boxes against rational numbers, trees against asking every frame, whatever
+/* Which pairs may meet: boxes against rational numbers, trees against testing every frame, whatever
  * the scene; no pair that meets is lost; and what a tree costs is counted in nodes, not in time. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -136,7 +136,7 @@ static void draw_pool(struct draw *draw, point *pool)
     }
 }
 
-/* In no special position, so that doubles can mostly tell; edges round. */
+/* In no special position, so that doubles mostly decide; edges round. */
 static void draw_loose_pool(struct draw *draw, point *pool)
 {
     for (int i = 0; i < POOL; i++)
@@ -711,7 +711,7 @@ static void close_world(struct world *world)
 }
 
 /* The box over the window, at least: sum is rounded to one double that is beyond it or is next to
- * it. Returns 1 where what both trees may find is not told by doubles. */
+ * it. Returns 1 where what both trees may find is not decided by doubles. */
 static void sweep(const struct world *world, size_t i, mpq_t out[2][3], bool endless[2][3])
 {
     mpq_t way;
@@ -752,7 +752,7 @@ static bool boxes_meet(const struct world *a, size_t i, const struct world *b, s
     return meet;
 }
 
-/* How often each pair is told. */
+/* How often each pair is reported. */
 static void count_pairs(const struct fmb_tree *a, const struct fmb_tree *b, unsigned char *times)
 {
     enum { ROOM = FMB_TREE_CAPACITY_MIN + 5 };

@@ -63,7 +63,7 @@ static int subjects_of_machine(struct subject out[SUBJECTS_MAX])
     return count;
 }
 
-/* Of pairs alone. */
+/* Of single pairs. */
 struct single {
     const char *name;
     kernel_single_function *const *verdicts, *const *exact, *const *times;
@@ -74,10 +74,10 @@ enum { SINGLE_MAX = 2 };
 /* That of this machine, and what older ones have. Returns how many. */
 static int single_of_machine(struct single out[SINGLE_MAX])
 {
-    out[0] = (struct single){"alone", kernel_verdicts_single(), kernel_exact_single(),
+    out[0] = (struct single){"single", kernel_verdicts_single(), kernel_exact_single(),
                              kernel_times_single()};
 #if defined __x86_64__
-    out[1] = (struct single){"alone, sse2", kernel_single_sse2, kernel_exact_single_sse2,
+    out[1] = (struct single){"single, sse2", kernel_single_sse2, kernel_exact_single_sse2,
                              kernel_times_single_sse2};
     return 2;
 #else
@@ -220,7 +220,7 @@ static void align(struct draw *draw, struct question *question)
         question->b.velocity[axis] = question->a.velocity[axis];
 }
 
-/* A kernel that looks for zero normals may be asked a pair that has none. */
+/* A kernel that looks for zero normals may be given a pair that has none. */
 static bool is_of_kind(int found, int wanted)
 {
     return found == wanted ||
@@ -440,7 +440,7 @@ static void a_wrong_bound_is_found(void **state)
     }
 }
 
-/* ---- Pairs alone ---- */
+/* ---- Single pairs ---- */
 
 /* What a function leaves of all pairs of a pool, one by one: outcomes and, if it makes them, times
  * or boxes. */

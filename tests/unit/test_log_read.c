@@ -52,7 +52,7 @@ ssize_t __wrap_pread64(int fd, void *out, size_t count, off_t offset)
 
 enum { REPORT_MAX = 64 };
 
-/* All that was told of a small log. */
+/* All that was reported of a small log. */
 struct report {
     size_t count;
     struct {
@@ -82,7 +82,7 @@ static void check_event(const struct log_event *event, const unsigned char *byte
     assert_memory_equal(event->data, name + event->channel_length, event->kept);
 }
 
-/* From where the reader is to the end; what is told is one behind the other, nothing left out. */
+/* From where the reader is to the end; reports follow each other, nothing left out. */
 static struct report read_on(struct log_reader *reader, int64_t at, const unsigned char *bytes)
 {
     struct report report = {0};
@@ -414,7 +414,7 @@ static void test_lengths_that_lie(void **state)
         {0x7fffffff, 5, impossible, impossible},
         {5, 0x7fffffff, wrong, "the last event is cut off"},
         {5, 100000, wrong, "the last event is cut off"},
-        {5, 60, wrong, "the last event is cut off"}, /* into the event behind the next */
+        {5, 60, wrong, "the last event is cut off"}, /* into the event after the next */
         {40, 5, wrong, "the last event is cut off"},
         {5, 6, wrong, "the last event is cut off"}, /* one byte too far */
     };
@@ -433,7 +433,7 @@ static void test_lengths_that_lie(void **state)
         }
 }
 
-/* An event whose data is shorter than it says, and another log behind it: as when a recorder was
+/* An event whose data is shorter than it says, and another log after it: as when a recorder was
  * killed and began anew in the same file. */
 static void test_a_log_after_a_log_that_was_cut_off(void **state)
 {
@@ -476,7 +476,7 @@ static void test_a_log_in_a_message(void **state)
 
 static const off_t large = INT64_C(10) << 30;
 
-/* A small log, and a hole behind it. */
+/* A small log, and a hole after it. */
 static struct log_reader *open_hole(void)
 {
     char why[LOG_WHY_MAX];
@@ -533,7 +533,7 @@ static void test_a_hole_at_the_end(void **state)
     expect_hole(reader);
     assert_int_equal(log_next(reader, &event, &damage), LOG_END);
     log_close(reader);
-    reader = open_hole(); /* also where something is written far behind it later */
+    reader = open_hole(); /* also where something is written far after it later */
     assert_int_equal(pwrite(log_bytes_descriptor(), whole.bytes, whole.size, large + (1 << 20)),
                      whole.size);
     expect_hole(reader);

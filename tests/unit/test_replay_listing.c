@@ -1,4 +1,4 @@
-/* Which differences are told, and in which order: against all of them, sorted. */
+/* Which differences are listed, and in which order: against all of them, sorted. */
 #include "listing.h"
 
 #include <setjmp.h>
@@ -23,7 +23,7 @@ enum { PUT_MAX = 3000 };
 static struct located_difference put[PUT_MAX];
 static int listed_count;
 
-/* What is told next has to be put[listed_count]. */
+/* What is listed next has to be put[listed_count]. */
 static void on_listed(void *user, const struct located_difference *found)
 {
     const struct located_difference *expected = &put[listed_count++];
