@@ -100,7 +100,7 @@ endif
 # ---- Which folder may include from which: a wrong arrow fails to build ----
 
 fmb = service/fmb $(addprefix service/fmb/,$1)
-wire := msgs/codec msgs/bus service/common service/fmb
+wire := msgs/codec msgs/bus msgs/common service/fmb
 see_service/fmb/number := service/fmb
 see_service/fmb/frame := $(call fmb,number)
 see_service/fmb/filter := $(call fmb,number frame)
@@ -111,16 +111,16 @@ see_service/fmb/gap := $(call fmb,number frame exact)
 see_service/fmb/certificate := $(call fmb,number frame exact)
 see_service/fmb/decide := $(call fmb,number frame filter article tree exact gap)
 see_msgs/codec := service/fmb $(GEN)
-see_service/common := msgs/codec service/fmb
-see_service/answer := service/common msgs/codec service/fmb
+see_msgs/common := msgs/codec service/fmb
+see_service/answer := msgs/codec service/fmb
 see_service := service/answer $(wire)
 see_clients/lib := $(wire) $(GEN)
-see_clients/common := clients/lib service/common msgs/codec service/fmb msgs/bus
-see_clients/query := clients/common clients/lib msgs/codec service/common service/fmb
+see_clients/common := clients/lib msgs/common msgs/codec service/fmb msgs/bus
+see_clients/query := clients/common clients/lib msgs/codec msgs/common service/fmb
 see_clients/log := clients/common clients/lib $(wire)
 see_clients/page := clients/log $(see_clients/log)
 see_clients/record := clients/log $(see_clients/log)
-see_clients/mesh := clients/page clients/common service/common service/fmb
+see_clients/mesh := clients/page clients/common msgs/common service/fmb
 see_clients/replay := clients/page clients/log service/answer $(see_clients/log)
 see_clients := $(addprefix clients/,query record mesh replay) $(see_clients/replay)
 see_clients/demo :=
@@ -230,7 +230,7 @@ $(engine) $(client) $(product):
 # Every layer links with the folders that it may include from, and nothing else: a call that points up
 # fails to link, also where its declaration stands below.
 engine_layers := $(filter-out service/fmb,$(engine_folders))
-wire_layers := msgs/codec msgs/bus service/common service/answer clients/lib
+wire_layers := msgs/codec msgs/bus msgs/common service/answer clients/lib
 .PHONY: layers
 layers: $(engine_layers:%=$(O)/%/layer.so) $(wire_layers:%=$(O)/%/layer.so)
 $(foreach l,$(engine_layers),$(eval $(O)/$l/layer.so: \

@@ -27,9 +27,9 @@ see_tests/unit := $(call fmb,number frame filter article tree exact gap decide) 
 
 # ---- Programs of tests and measurements: the name, and the main file in tests/ ----
 
-test_programs := plain:system/plain poke:system/poke events:system/events poison:system/poison \
-	make-page:page/make_page edit-log:replay/edit_log logs/generate:logs/generate logs/tell:logs/tell \
-	mesh/make-mesh:mesh/make_mesh $(foreach s,asker memory rate blast fair relay,soak-$s:soak/$s)
+test_programs := plain:system/plain fake-peer:system/fake_peer events:system/events crash-liblcm:system/crash_liblcm \
+	make-page:page/make_page edit-log:replay/edit_log logs/generate:logs/generate logs/describe-log:logs/describe_log \
+	mesh/make-mesh:mesh/make_mesh $(foreach s,load memory rate blast fair relay,soak-$s:soak/$s)
 measures := validate:campaign/validate accuracy:campaign/accuracy bench/bench:bench/bench \
 	bus/bench-bus:bus/bench_bus bus/robot-bus:robot/bus bus/echo:bus/echo robot/robot:robot/robot \
 	replay/bench-replay:replay/bench_replay mesh/bench-mesh:mesh/bench_mesh
@@ -222,7 +222,7 @@ validate: $(B)/validate
 accuracy: $(B)/accuracy
 	$< --json $<.json
 # Some ten minutes, a minute for each trial or SECONDS=.
-soak: programs $(filter $(B)/soak-% %/poke %/poison,$(test_programs))
+soak: programs $(filter $(B)/soak-% %/fake-peer %/crash-liblcm,$(test_programs))
 	tests/soak/soak.sh $(B) $(SECONDS)
 
 # What the regression set is, made anew: the logs, and the results that they are compared with.

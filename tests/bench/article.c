@@ -6,21 +6,21 @@
 
 #include <string.h>
 
-enum asked {
+enum timed {
     FMB_TIME,
     FMB_CACHED_TIME,
     SAT_TIME,
     SAT_QUERY_TIME,
     CERTIFIED_TIME,
     QUERY_TIME,
-    ASKED
+    TIMED
 };
 
-static const enum contender asked[ASKED] = {CONTENDER_FMB_COMPUTED, CONTENDER_FMB,
+static const enum contender timed[TIMED] = {CONTENDER_FMB_COMPUTED, CONTENDER_FMB,
                                             CONTENDER_SAT,          CONTENDER_SAT_QUERY,
                                             CONTENDER_SINGLE,       CONTENDER_QUERY};
 
-static const char *const keys[ASKED] = {"fmb_ns",       "fmb_cached_ns", "sat_ns",
+static const char *const keys[TIMED] = {"fmb_ns",       "fmb_cached_ns", "sat_ns",
                                         "sat_query_ns", "certified_ns",  "certified_query_ns"};
 
 /* Table 1: FMB to SAT, [2D static, 3D static, 2D moving, 3D moving][CC, CT, TT][in contact,
@@ -31,7 +31,7 @@ static const double table_1[4][3][2] = {{{2.58, 1.22}, {1.86, 1.29}, {1.33, 1.32
                                         {{2.58, 0.71}, {1.37, 0.81}, {0.54, 0.95}}};
 
 struct means {
-    double ns[ASKED];
+    double ns[TIMED];
     double fmb_to_sat, fmb_to_sat_query, certified_to_sat;
 };
 
@@ -62,9 +62,9 @@ static double time_of(enum contender contender, const struct scene *scene, const
 static void add_pair(const struct scene *scene, const unsigned pair[2], double budget,
                      struct means *sum)
 {
-    double ns[ASKED];
-    for (int i = 0; i < ASKED; i++) {
-        ns[i] = time_of(asked[i], scene, pair, budget);
+    double ns[TIMED];
+    for (int i = 0; i < TIMED; i++) {
+        ns[i] = time_of(timed[i], scene, pair, budget);
         sum->ns[i] += ns[i];
     }
     sum->fmb_to_sat += ns[FMB_TIME] / ns[SAT_TIME];
@@ -87,7 +87,7 @@ static struct means means_of(const struct bench *bench, const struct cell *cell,
         add_pair(&arena.scene, (const unsigned[2]){at[1], at[0]}, budget, &means);
     }
     const double samples = 2 * (double) count;
-    for (int i = 0; i < ASKED; i++)
+    for (int i = 0; i < TIMED; i++)
         means.ns[i] /= samples;
     means.fmb_to_sat /= samples;
     means.fmb_to_sat_query /= samples;
@@ -103,7 +103,7 @@ static void put(struct json_writer *json, const struct cell *cell, bool in_conta
     bench_put_cell(json, cell);
     json_bool(json, "contact", in_contact);
     json_number(json, "article_ratio", article);
-    for (int i = 0; i < ASKED; i++)
+    for (int i = 0; i < TIMED; i++)
         json_number(json, keys[i], means->ns[i]);
     json_number(json, "fmb_to_sat", means->fmb_to_sat);
     json_number(json, "fmb_to_sat_query", means->fmb_to_sat_query);
@@ -124,7 +124,7 @@ static void cell_run(struct bench *bench, const struct cell *cell)
         printf("%-13s %-10s %9.2f %9.2f %9.2f %9.2f", cell_text(cell, text),
                contact ? "in contact" : "separated", article, means.fmb_to_sat_query,
                means.fmb_to_sat, means.certified_to_sat);
-        for (int i = 0; i < ASKED; i++)
+        for (int i = 0; i < TIMED; i++)
             printf(" %9.1f", means.ns[i]);
         putchar('\n');
         put(&bench->json, cell, contact, article, &means);

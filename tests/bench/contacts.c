@@ -11,7 +11,7 @@
 
 /* ---- Pairs ---- */
 
-enum { ALL = 0, BOXES_ALONE = 1, BUT_BOXES = 2 };
+enum { ALL = 0, ONLY_BOXES = 1, BUT_BOXES = 2 };
 
 /* How pairs are drawn: by a family; touching by features, in whole numbers; else random. Boxes in
  * any pose, and random pairs, with a gap are shifted to it. */
@@ -30,7 +30,7 @@ static const struct scenario {
                  {"touch, vertex", .which = BUT_BOXES, .touches = 1},
                  {"touch, edge", .which = BUT_BOXES, .touches = 2},
                  {"touch, face", .which = BUT_BOXES, .touches = 3},
-                 {"touch, turned", "pose-turns", .which = BOXES_ALONE},
+                 {"touch, turned", "pose-turns", .which = ONLY_BOXES},
                  {"grid, pitch 1", "grid-integer"},
                  {"grid, pitch 0.1", "grid-0.1"}};
 
@@ -47,7 +47,7 @@ static bool is_shifted(const struct scenario *scenario, const struct cell *cell)
 
 static bool has(const struct scenario *scenario, const struct cell *cell)
 {
-    return scenario->which != (is_boxes(cell) ? BUT_BOXES : BOXES_ALONE) &&
+    return scenario->which != (is_boxes(cell) ? BUT_BOXES : ONLY_BOXES) &&
            scenario->touches <= cell->dim &&
            !(is_shifted(scenario, cell) && (cell->dim == 2 || cell->moving));
 }

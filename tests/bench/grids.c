@@ -10,29 +10,29 @@
 
 /* ---- Grids ---- */
 
-enum { ASKED = 6 };
+enum { TIMED = 6 };
 
-static const enum contender asked[ASKED] = {CONTENDER_QUERY,     CONTENDER_BATCH,  CONTENDER_EXACT,
+static const enum contender timed[TIMED] = {CONTENDER_QUERY,     CONTENDER_BATCH,  CONTENDER_EXACT,
                                             CONTENDER_QUERY_BOX, CONTENDER_SINGLE, CONTENDER_SAT};
-static const char *const keys[ASKED] = {"certified_ns", "batch_ns",  "exact_ns",
+static const char *const keys[TIMED] = {"certified_ns", "batch_ns",  "exact_ns",
                                         "box_ns",       "single_ns", "sat_ns"};
 
 static void grid_run(struct bench *bench, const char *name, double pitch, int side)
 {
     struct race race = {bench->race.blocks < 5 ? bench->race.blocks : 5, 10 * bench->race.budget};
-    struct spread times[ASKED];
+    struct spread times[TIMED];
     struct scene scene = scene_of_grid(pitch, side);
     struct pairs pairs = pairs_of_grid(side);
     struct work work = work_of(&scene, &pairs);
     work.instructions = bench->instructions;
     bench_progress(name);
-    race_run(&race, &work, asked, ASKED, times);
+    race_run(&race, &work, timed, TIMED, times);
     bench_progress(NULL);
     printf("%-28s %7zu", name, pairs.count);
     json_begin(&bench->json, NULL, '{');
     json_string(&bench->json, "name", name);
     json_number(&bench->json, "pairs", (double) pairs.count);
-    for (int i = 0; i < ASKED; i++) {
+    for (int i = 0; i < TIMED; i++) {
         printf(" %10.1f", times[i].median);
         json_number(&bench->json, keys[i], times[i].median);
     }
@@ -47,7 +47,7 @@ static void grid_run(struct bench *bench, const char *name, double pitch, int si
 
 enum { TOUCHING = 4, KINDS = 2 };
 
-static const enum contender touching_asked[TOUCHING] = {CONTENDER_BATCH, CONTENDER_SINGLE,
+static const enum contender touching_timed[TOUCHING] = {CONTENDER_BATCH, CONTENDER_SINGLE,
                                                         CONTENDER_QUERY, CONTENDER_SAT};
 static const char *const touching_keys[TOUCHING] = {"batch_ns", "single_ns", "certified_ns",
                                                     "sat_ns"};
@@ -96,7 +96,7 @@ static void touching_kind_run(struct bench *bench, const char *kind, size_t coun
     }
     struct work work = work_of(&scene, &pairs);
     work.instructions = bench->instructions;
-    race_run(&race, &work, touching_asked, TOUCHING, times);
+    race_run(&race, &work, touching_timed, TOUCHING, times);
     json_begin(&bench->json, kind, '{');
     for (int i = 0; i < TOUCHING; i++) {
         printf(" %8.1f", times[i].median);
@@ -136,7 +136,7 @@ static void touching_run(struct bench *bench)
     printf("\nPairs that touch, where doubles do not round and where they do.\n\n%-14s", "");
     for (int kind = 0; kind < KINDS; kind++)
         for (int i = 0; i < TOUCHING; i++)
-            printf(" %8s", contender_name(touching_asked[i]));
+            printf(" %8s", contender_name(touching_timed[i]));
     putchar('\n');
     json_begin(&bench->json, "touching", '[');
     for (int i = 0; i < count; i++)

@@ -14,7 +14,7 @@ struct cost {
     double mean, kind, worst; /* of all; of the kind of pair that costs most; of one pair */
 };
 
-struct asked {
+struct operation {
     const char *name, *key;
     enum contender contender;
 };
@@ -79,19 +79,19 @@ static struct cost cost_of_family(const struct bench *bench, const struct family
 
 static void family_run(struct bench *bench, const char *name, size_t pairs)
 {
-    static const struct asked asked[] = {{"verdict", "verdict", CONTENDER_SINGLE},
-                                         {"with the interval", "interval", CONTENDER_QUERY},
-                                         {"and with the box", "box", CONTENDER_QUERY_BOX}};
-    for (size_t i = 0; i < sizeof asked / sizeof *asked; i++) {
+    static const struct operation operation[] = {{"verdict", "verdict", CONTENDER_SINGLE},
+                                                 {"with the interval", "interval", CONTENDER_QUERY},
+                                                 {"and with the box", "box", CONTENDER_QUERY_BOX}};
+    for (size_t i = 0; i < sizeof operation / sizeof *operation; i++) {
         bench_progress(name);
         const struct cost cost =
-            cost_of_family(bench, family_by_name(name), asked[i].contender, pairs);
+            cost_of_family(bench, family_by_name(name), operation[i].contender, pairs);
         bench_progress(NULL);
-        printf("%-16s %-20s %10.1f %10.1f %10.1f\n", i == 0 ? name : "", asked[i].name, cost.mean,
-               cost.kind, cost.worst);
+        printf("%-16s %-20s %10.1f %10.1f %10.1f\n", i == 0 ? name : "", operation[i].name,
+               cost.mean, cost.kind, cost.worst);
         json_begin(&bench->json, NULL, '{');
         json_string(&bench->json, "name", name);
-        json_string(&bench->json, "asked", asked[i].key);
+        json_string(&bench->json, "operation", operation[i].key);
         json_number(&bench->json, "mean_us", cost.mean);
         json_number(&bench->json, "kind_us", cost.kind);
         json_number(&bench->json, "worst_us", cost.worst);
@@ -195,7 +195,7 @@ static void search_run(struct bench *bench, const struct search *search, bool po
     json_begin(&bench->json, NULL, '{');
     json_string(&bench->json, "name", "search");
     json_string(&bench->json, "method", search->method);
-    json_string(&bench->json, "asked", search->key);
+    json_string(&bench->json, "operation", search->key);
     json_bool(&bench->json, "posed", posed);
     json_number(&bench->json, "worst_us", worst);
     json_end(&bench->json, '}');

@@ -1,5 +1,5 @@
 /* The accuracy campaign: families of hard pairs, in every cell of dimension, motion and shapes,
- * asked of every method in both orders and held against the oracle, which shares no code with the
+ * decided by every method in both orders and held against the oracle, which shares no code with the
  * engine. */
 #include <errno.h>
 #include <stdio.h>
@@ -97,7 +97,7 @@ static void run_cell(void *context, size_t job)
 }
 
 /* Returns the exit code. */
-static int tell(const struct campaign *campaign)
+static int print_report(const struct campaign *campaign)
 {
     const struct report report = {campaign->options, campaign->measure, campaign->measures};
     const char *json = campaign->options->json;
@@ -123,7 +123,7 @@ int main(int argc, char **argv)
         return EXIT_FOUND;
     }
     workers_do("accuracy", options.workers, campaign.measures, run_cell, &campaign);
-    code = tell(&campaign);
+    code = print_report(&campaign);
     free(campaign.measure);
     return code;
 }

@@ -7,7 +7,7 @@
 
 #include "gap_check.h"
 
-/* Pairs of a batch: the methods are timed over all of them, one after the other, each asked once,
+/* Pairs of a batch: the methods are timed over all of them, one after the other, each decided once,
  * so that no branch is predicted from having seen the pair before. */
 enum { BATCH = 250 };
 
@@ -39,15 +39,15 @@ static double ns_spent(void)
 }
 
 /* Puts all pairs of the batch to a method. Returns nanoseconds a query. */
-static double ask_all(struct batch *batch, int method, int asking)
+static double decide_all(struct batch *batch, int method, int mode)
 {
-    const struct fmb_method *asked = fmb_method_at((size_t) method);
-    const unsigned gap = asked->certain ? FMB_WANT_GAP : 0;
+    const struct fmb_method *chosen = fmb_method_at((size_t) method);
+    const unsigned gap = chosen->certain ? FMB_WANT_GAP : 0;
     const unsigned wants[ASKINGS] = {FMB_WANT_BOX, FMB_WANT_BOX | gap, 0, gap};
-    struct reply *reply = batch->reply[method][asking];
+    struct reply *reply = batch->reply[method][mode];
     const double start = ns_spent();
     for (int i = 0; i < batch->count; i++)
-        reply[i] = trial_ask(&batch->trial[i], asked, asking == SWAPPED, wants[asking]);
+        reply[i] = trial_decide(&batch->trial[i], chosen, mode == SWAPPED, wants[mode]);
     return (ns_spent() - start) / batch->count;
 }
 
@@ -170,11 +170,11 @@ void measure_cell(struct measure *measure, long pairs, uint64_t seed)
         }
         for (int m = 0; m < methods; m++) {
             double *at = ns + (size_t) (TIMES * m) * batches + n;
-            at[0] = ask_all(batch, m, BOXLESS);
-            at[batches] = ask_all(batch, m, IN_ORDER);
-            ask_all(batch, m, SWAPPED);
+            at[0] = decide_all(batch, m, BOXLESS);
+            at[batches] = decide_all(batch, m, IN_ORDER);
+            decide_all(batch, m, SWAPPED);
             if (fmb_method_at((size_t) m)->certain)
-                at[2 * batches] = ask_all(batch, m, GAP);
+                at[2 * batches] = decide_all(batch, m, GAP);
         }
         for (int i = 0; i < batch->count; i++)
             judge_pair(measure, batch, i, &truth);

@@ -56,8 +56,8 @@ void trial_begin(const struct question *question, struct trial *out)
     expect_ok(pair_check(&out->pair[0]), question);
 }
 
-struct reply trial_ask(const struct trial *trial, const struct fmb_method *method, int order,
-                       unsigned want)
+struct reply trial_decide(const struct trial *trial, const struct fmb_method *method, int order,
+                          unsigned want)
 {
     struct reply reply;
     memset(&reply, 0xa5, sizeof reply); /* what is not written shows */

@@ -33,8 +33,8 @@ struct reply {
     struct fmb_answer answer;
 };
 
-struct reply trial_ask(const struct trial *trial, const struct fmb_method *method, int order,
-                       unsigned want);
+struct reply trial_decide(const struct trial *trial, const struct fmb_method *method, int order,
+                          unsigned want);
 
 /* Same status, verdict and bits. */
 bool reply_same_verdict(const struct reply *one, const struct reply *other);

@@ -45,7 +45,7 @@ static void compare(const struct trial *trial, const struct fmb_method *method, 
 {
     struct reply reply[2];
     for (int order = 0; order < 2; order++) {
-        reply[order] = trial_ask(trial, method, order, 0);
+        reply[order] = trial_decide(trial, method, order, 0);
         const int said = reply[order].answer.verdict;
         tally->queries++;
         if (reply[order].status != FMB_OK)
@@ -85,7 +85,7 @@ static void check_certificate(struct draw *draw, const struct cell *cell, struct
     trial_begin(&question, &trial);
     oracle_init(&truth);
     oracle_decide(&trial.pair[0], 0, &truth);
-    const struct reply reply = trial_ask(&trial, fmb_method_by_name("exact"), 0, 0);
+    const struct reply reply = trial_decide(&trial, fmb_method_by_name("exact"), 0, 0);
     const enum fmb_status status = pair_certificate(&trial.pair[0], text, sizeof text, &length);
     if (reply.status != FMB_OK || reply.answer.verdict != truth.verdict)
         tally_broken(tally, &question, "not the verdict of the oracle");
@@ -134,7 +134,7 @@ static void validate_part(void *context, size_t job)
         else
             family_draw_random(&draw, cell, &question);
         trial_begin(&question, &trial);
-        const int truth = (int) trial_ask(&trial, exact, 0, 0).answer.verdict;
+        const int truth = (int) trial_decide(&trial, exact, 0, 0).answer.verdict;
         for (int m = 0; m < trial_methods(); m++)
             compare(&trial, fmb_method_at((size_t) m), truth, &validation->tally[job][m]);
         if (is_posed(at) && (n - 1) % CERTIFIED_ONE_IN == 0) {
@@ -144,7 +144,7 @@ static void validate_part(void *context, size_t job)
     }
 }
 
-/* ---- Telling ---- */
+/* ---- Report ---- */
 
 static void add_row(struct table *table, const struct validation *validation, int at,
                     const char *method, const struct tally *tally)

@@ -82,6 +82,12 @@ none() {
     done | none
 }
 
+@test "every suite is in the table of tests/README.md" {
+    quoted tests/README.md | sort -u > "$BATS_TEST_TMPDIR/quoted"
+    (cd tests && printf '%s\n' unit/test_*.c cli/*.bats system/*.bats fuzz/*.bats) |
+        grep -vxFf "$BATS_TEST_TMPDIR/quoted" | none
+}
+
 @test "every target of make in backticks is there" {
     # What make knows; it makes nothing, as there is no such target.
     MAKEFLAGS='' make -npq MODE=debug no-such-target > "$BATS_TEST_TMPDIR/known" 2> /dev/null || true

@@ -5,7 +5,7 @@ load ../logs/set
 
 setup() {
     GENERATE=$FMB_BUILD/logs/generate
-    TELL=$FMB_BUILD/logs/tell
+    DESCRIBE=$FMB_BUILD/logs/describe-log
     cd "$BATS_TEST_DIRNAME/../.." || return
 }
 
@@ -18,8 +18,8 @@ makes_the_set() {
 }
 
 # All events of the whole set, as lines of JSON.
-tell_all() {
-    for log in tests/logs/*.log; do "$TELL" "$log"; done
+describe_all() {
+    for log in tests/logs/*.log; do "$DESCRIBE" "$log"; done
 }
 
 # capped_at SET KNOWN...: the sets that the program capped at SET knows, the best one last.
@@ -56,7 +56,7 @@ capped_at() {
 
 @test "LCM's own reader reads each to its end, and each event that lcm-gen should decode" {
     for log in tests/logs/*.log; do
-        "$TELL" "$log" > "$BATS_TEST_TMPDIR/events"
+        "$DESCRIBE" "$log" > "$BATS_TEST_TMPDIR/events"
         jq -es '[.[].event] == [range(length)] and ([.[].utime] | . == sort)' "$BATS_TEST_TMPDIR/events"
         jq -es '[.[] | select(.channel | endswith("_RESULT"))] | length > 0 and all(has("status"))' \
             "$BATS_TEST_TMPDIR/events"
@@ -64,7 +64,7 @@ capped_at() {
 }
 
 @test "the set holds all verdicts, methods and statuses, of pairs and of scenes" {
-    tell_all > "$BATS_TEST_TMPDIR/events"
+    describe_all > "$BATS_TEST_TMPDIR/events"
     pairs='select(.channel == "FMB_PAIR_RESULT")'
     scenes='select(.channel == "FMB_SCENE_RESULT")'
     unique() { jq -cs "[.[] | $1] | unique" "$BATS_TEST_TMPDIR/events"; }
@@ -84,13 +84,13 @@ capped_at() {
 }
 
 @test "results come late, early and not at all; services start anew, and beside each other" {
-    "$TELL" tests/logs/foreign.log > "$BATS_TEST_TMPDIR/events"
+    "$DESCRIBE" tests/logs/foreign.log > "$BATS_TEST_TMPDIR/events"
     jq -es 'any(.[]; .channel == "LAB_FMB_PAIR_RESULT")' "$BATS_TEST_TMPDIR/events"
     [ "$(jq -s '[.[].channel] | unique | length' "$BATS_TEST_TMPDIR/events")" -gt 12 ]
     # The first of all is the result of a query from before.
     [ "$(head -n 1 "$BATS_TEST_TMPDIR/events" | jq -r .channel)" = FMB_PAIR_RESULT ]
 
-    "$TELL" tests/logs/clients.log > "$BATS_TEST_TMPDIR/events"
+    "$DESCRIBE" tests/logs/clients.log > "$BATS_TEST_TMPDIR/events"
     jq -es '[.[] | .server // empty] | unique == [500, 501, 502, 503, 600]' "$BATS_TEST_TMPDIR/events"
     jq -es 'any(.[]; .channel == "FMB_DEFINITION")' "$BATS_TEST_TMPDIR/events"
     # Of two services one holds a body, and the other one does not; then both.
@@ -103,7 +103,7 @@ capped_at() {
 }
 
 @test "where there was no room, the answer goes on from there" {
-    "$TELL" tests/logs/crowd.log > "$BATS_TEST_TMPDIR/events"
+    "$DESCRIBE" tests/logs/crowd.log > "$BATS_TEST_TMPDIR/events"
     # Full to the last contact, which takes 53 bytes.
     jq -es 'any(.[]; .size > 63600 and .size <= 63900)' "$BATS_TEST_TMPDIR/events"
     jq -es '[.[] | .end // empty] | (map(select(. == 9730)) | length == 1) and (max == 9730)
@@ -112,14 +112,14 @@ capped_at() {
 
 @test "a blast has as many queries as wanted, all of them answered" {
     "$GENERATE" --blast pairs 300 --box "$BATS_TEST_TMPDIR/blast.log"
-    "$TELL" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
+    "$DESCRIBE" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
     jq -es '[.[] | select(.status == 0)] | length == 300
         and ([.[].verdicts[0]] | unique == [1, 3])
         and ([.[].boxes] | unique == [0, 4, 6])' "$BATS_TEST_TMPDIR/events"
     jq -es 'length == 600' "$BATS_TEST_TMPDIR/events"
 
     "$GENERATE" --blast scenes 2 "$BATS_TEST_TMPDIR/blast.log"
-    "$TELL" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
+    "$DESCRIBE" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
     jq -es '[.[] | select(.status == 0) | .verdicts] | length == 2 and (.[1] | length == 13828)
         and ([.[1][] | select(. == 3)] | length > 3000 and length < 12000)' "$BATS_TEST_TMPDIR/events"
     jq -es 'all(.[]; .channel != "FMB_SCENE_QUERY" or .size > 63800)' "$BATS_TEST_TMPDIR/events"
@@ -127,15 +127,15 @@ capped_at() {
 
 @test "a blast is what was wanted: in one dimension, at rest, whole" {
     "$GENERATE" --blast pairs 50 --dim 2 --static --whole "$BATS_TEST_TMPDIR/blast.log"
-    "$TELL" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
+    "$DESCRIBE" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
     # 48 bytes, and of each placement 62 and 2 + 4 + 2 numbers.
     jq -es '[.[] | select(.channel == "FMB_PAIR_QUERY").size] | unique == [300]' "$BATS_TEST_TMPDIR/events"
     "$GENERATE" --blast pairs 50 --dim 3 --moving --whole --seed 2 "$BATS_TEST_TMPDIR/other.log"
-    "$TELL" "$BATS_TEST_TMPDIR/other.log" > "$BATS_TEST_TMPDIR/events"
+    "$DESCRIBE" "$BATS_TEST_TMPDIR/other.log" > "$BATS_TEST_TMPDIR/events"
     jq -es '[.[] | select(.channel == "FMB_PAIR_QUERY").size] | min > 330' "$BATS_TEST_TMPDIR/events"
     # One after the other they are a log, and no client is in both.
     cat "$BATS_TEST_TMPDIR/blast.log" "$BATS_TEST_TMPDIR/other.log" > "$BATS_TEST_TMPDIR/both.log"
-    "$TELL" "$BATS_TEST_TMPDIR/both.log" > "$BATS_TEST_TMPDIR/events"
+    "$DESCRIBE" "$BATS_TEST_TMPDIR/both.log" > "$BATS_TEST_TMPDIR/events"
     jq -es '[.[] | .client // empty] | length == 100 and (unique | length == 2)' "$BATS_TEST_TMPDIR/events"
 }
 

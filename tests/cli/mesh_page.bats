@@ -53,7 +53,7 @@ setup() {
 @test "one file that refers to nothing else, and lets nothing else run" {
     for page in small touching moving self empty large; do
         data $page.html | jq -e '.pairs | type == "array"' > /dev/null
-        is_alone $page.html
+        is_self_contained $page.html
     done
     has_policy small.html
 }

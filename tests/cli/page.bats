@@ -34,7 +34,7 @@ setup() {
 @test "one file that refers to nothing else" {
     for page in mixed arm many crowd uneven empty; do
         data $page.html | jq -e '.events | type == "array"' > /dev/null
-        is_alone $page.html
+        is_self_contained $page.html
     done
 }
 

@@ -1,9 +1,9 @@
 /* A robot arm that swings past a table with parts on it, at 100 Hz: in each step one scene with
- * times and boxes, and some pairs alone, some of them with certificates. Links move; the table, and
- * what rests on it, is laid out in multiples of 1/64 m, so that what rests touches. */
+ * times and boxes, and some single pairs, some of them with certificates. Links move; the table,
+ * and what rests on it, is laid out in multiples of 1/64 m, so that what rests touches. */
 #include "kinds.h"
 
-#include "asker.h"
+#include "log_client.h"
 #include "parts.h"
 
 #include <string.h>
@@ -23,8 +23,8 @@ static const unsigned pairs[][2] = {
 };
 enum { PAIRS = sizeof pairs / sizeof *pairs };
 
-/* Asked alone: as many in each step, in turns. */
-enum { FIRST_ALONE = 7, ALONE = PAIRS - FIRST_ALONE, ALONE_A_STEP = 2 };
+/* Queried singly: as many in each step, in turns. */
+enum { FIRST_SINGLE = 7, SINGLE = PAIRS - FIRST_SINGLE, SINGLE_A_STEP = 2 };
 
 /* ---- The parts ---- */
 
@@ -115,7 +115,7 @@ static void set_arm(const struct pose *pose, struct solid out[LINKS])
 
 /* ---- Asking ---- */
 
-static void ask_scene(struct asker *asker, const struct solid *solid)
+static void query_scene(struct log_client *log_client, const struct solid *solid)
 {
     static struct scene_query query;
     static struct scene_result result;
@@ -128,37 +128,37 @@ static void ask_scene(struct asker *asker, const struct solid *solid)
     for (int part = 0; part < PARTS; part++) {
         part_place(&solid[part], part + 1, &query.placement[part]);
         if (part >= STILL) /* it has turned: its frame is another */
-            asker_forget(asker, part + 1);
+            log_client_forget(log_client, part + 1);
     }
-    asker_scene(asker, &query, &result);
+    log_client_scene(log_client, &query, &result);
 }
 
 /* The handles of the links are known by now, from the scene. */
-static void ask_pair(struct asker *asker, const struct solid *solid, int n)
+static void query_pair(struct log_client *log_client, const struct solid *solid, int n)
 {
-    const unsigned *pair = pairs[FIRST_ALONE + n % ALONE];
+    const unsigned *pair = pairs[FIRST_SINGLE + n % SINGLE];
     struct pair_result result;
     struct pair_query query = {.duration = step_s, .want = FMB_WANT_BOX};
     if (n % 4 == 0)
         query.want |= FMB_WANT_CERTIFICATE;
     for (int f = 0; f < 2; f++)
         part_place(&solid[pair[f]], pair[f] + 1, &query.placement[f]);
-    asker_pair(asker, &query, &result);
+    log_client_pair(log_client, &query, &result);
 }
 
 static void swing(struct instance *instance, struct tape *tape)
 {
-    static struct asker asker;
+    static struct log_client log_client;
     struct solid solid[PARTS];
     struct pose pose = first_pose();
-    asker = (struct asker){.instance = instance, .client_id = 3141592653589793};
+    log_client = (struct log_client){.instance = instance, .client_id = 3141592653589793};
     set_still(solid);
     for (int step = 0; step < STEPS; step++) {
         tape_reach(tape, (int64_t) step * STEP_US);
         set_arm(&pose, &solid[STILL]);
-        ask_scene(&asker, solid);
-        for (int i = 0; i < ALONE_A_STEP; i++)
-            ask_pair(&asker, solid, ALONE_A_STEP * step + i);
+        query_scene(&log_client, solid);
+        for (int i = 0; i < SINGLE_A_STEP; i++)
+            query_pair(&log_client, solid, SINGLE_A_STEP * step + i);
         pose = next_pose(&pose);
         for (int axis = 0; axis < 3; axis++)
             solid[PUCK].origin[axis] += step_s * solid[PUCK].velocity[axis];

@@ -1,11 +1,11 @@
 #include "blast.h"
 
-#include "asker.h"
+#include "log_client.h"
 #include "parts.h"
 
 #include <stdlib.h>
 
-_Static_assert((int) BLAST_BODIES <= (int) ASKER_BODIES_MAX, "one asker knows them all");
+_Static_assert((int) BLAST_BODIES <= (int) LOG_CLIENT_BODIES_MAX, "one client knows them all");
 
 /* Where they are, so that some half of their pairs meet. */
 static const double component_most = 1, origin_most = 0.5, velocity_most = 1;
@@ -13,7 +13,7 @@ static const double component_most = 1, origin_most = 0.5, velocity_most = 1;
 struct blasting {
     const struct blast *blast;
     struct instance instance;
-    struct asker asker;
+    struct log_client log_client;
     struct draw draw;
     struct solid solid[BLAST_BODIES]; /* body 1 first; where they are changes from query to query */
     struct scene_query scene;
@@ -50,7 +50,8 @@ static struct blasting *begin(struct tape *tape, const struct blast *blast)
     struct draw *draw = &blasting->draw;
     struct instance_options options = {.prefix = "", .frames = 2 * BLAST_BODIES};
     options.server_id = draw_id(draw);
-    blasting->asker = (struct asker){.instance = &blasting->instance, .client_id = draw_id(draw)};
+    blasting->log_client =
+        (struct log_client){.instance = &blasting->instance, .client_id = draw_id(draw)};
     if (instance_open(&blasting->instance, tape, &options))
         return blasting;
     free(blasting);
@@ -121,8 +122,8 @@ bool blast_pairs(struct tape *tape, const struct blast *blast)
         draw_pair(blasting, &query);
         if (!choose(&blasting->draw, blast->by_handle, blast->by_handle < 0))
             for (int f = 0; f < 2; f++)
-                asker_forget(&blasting->asker, query.placement[f].body_id);
-        asker_pair(&blasting->asker, &query, &result);
+                log_client_forget(&blasting->log_client, query.placement[f].body_id);
+        log_client_pair(&blasting->log_client, &query, &result);
     }
     end(blasting);
     return true;
@@ -145,18 +146,18 @@ static void draw_pairs(struct draw *draw, int32_t count, struct scene_query *out
 
 /* With as many pairs as fit after the placements, which name their bodies by handle after the first
  * time. */
-static void ask_scene(struct blasting *blasting)
+static void query_scene(struct blasting *blasting)
 {
     struct scene_query *query = &blasting->scene;
     size_t left = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES;
     for (int i = 0; i < BLAST_FRAMES; i++) {
         struct placement *placement = &query->placement[i];
         draw_placement(blasting, i, false, placement);
-        asker_name(&blasting->asker, placement);
+        log_client_name(&blasting->log_client, placement);
         left -= wire_placement_bytes(placement);
     }
     draw_pairs(&blasting->draw, (int32_t) (left / WIRE_PAIR_BYTES), query);
-    asker_scene(&blasting->asker, query, &blasting->scene_result);
+    log_client_scene(&blasting->log_client, query, &blasting->scene_result);
 }
 
 bool blast_scenes(struct tape *tape, const struct blast *blast)
@@ -170,7 +171,7 @@ bool blast_scenes(struct tape *tape, const struct blast *blast)
     blasting->scene.which = FMB_PAIRS_LISTED;
     blasting->scene.placement_count = BLAST_FRAMES;
     for (int64_t n = 0; n < blast->count; n++)
-        ask_scene(blasting);
+        query_scene(blasting);
     end(blasting);
     return true;
 }

@@ -11,7 +11,7 @@
 struct blast {
     int64_t count; /* queries */
     /* Of all that is drawn, the ids of service and client among it: so logs of
-     * several seeds, one behind the other, are a log too. */
+     * several seeds, one after the other, are a log too. */
     uint64_t seed;
     int dim;       /* 2 or 3; 0: both */
     int moving;    /* 0, or 1; -1: both */
@@ -26,7 +26,7 @@ enum { BLAST_BODIES = 8192 };
 bool blast_pairs(struct tape *tape, const struct blast *blast);
 
 /* Scenes of BLAST_FRAMES bodies in 3D, one half cuboids and one half tetrahedra, at rest, by
- * handle, with as many pairs listed as fit into a datagram, verdicts alone. The first one has the
+ * handle, with as many pairs listed as fit into a datagram, verdicts only. The first one has the
  * bodies whole, and fewer pairs. Of the options count and seed. */
 enum { BLAST_FRAMES = 100 };
 bool blast_scenes(struct tape *tape, const struct blast *blast);

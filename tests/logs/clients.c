@@ -2,7 +2,7 @@
  * that asks again; a service that is busy, forgets bodies, and is started anew. */
 #include "kinds.h"
 
-#include "asker.h"
+#include "log_client.h"
 #include "parts.h"
 
 #include <string.h>
@@ -13,12 +13,12 @@ struct clients {
     struct tape *tape;
     struct instance instance[LIVES]; /* one life of the service after the other */
     struct instance other;           /* beside the last one */
-    struct asker asker[CLIENTS];
+    struct log_client log_client[CLIENTS];
     struct scene_query scene;
     struct scene_result scene_result;
 };
 
-/* ---- What they ask about ---- */
+/* ---- Their queries ---- */
 
 /* Box or corner number n of a row, as a client's publisher has it: they differ from one to the next
  * in size, and share their ids. */
@@ -60,47 +60,47 @@ static void set_scene(int client, int step, struct scene_query *query)
     }
 }
 
-static void ask_pair(struct clients *clients, int client, int step)
+static void query_pair(struct clients *clients, int client, int step)
 {
     struct pair_query query = pair_of(client, step, step % BODIES, (step + 1) % BODIES);
     struct pair_result result;
-    asker_pair(&clients->asker[client], &query, &result);
+    log_client_pair(&clients->log_client[client], &query, &result);
 }
 
-static void ask_scene(struct clients *clients, int client, int step)
+static void query_scene(struct clients *clients, int client, int step)
 {
     set_scene(client, step, &clients->scene);
-    asker_scene(&clients->asker[client], &clients->scene, &clients->scene_result);
+    log_client_scene(&clients->log_client[client], &clients->scene, &clients->scene_result);
 }
 
 /* ---- What happens ---- */
 
-/* They count alike, and results come when the next ones have asked; no handle is used before a
+/* They count alike, and results come after the next queries; no handle is used before a
  * result carries it. */
-static void ask_in_turns(struct clients *clients, struct instance *instance)
+static void query_in_turns(struct clients *clients, struct instance *instance)
 {
     instance->result_after_us = 400;
     for (int step = 0; step < STEPS; step++) {
         tape_reach(clients->tape, (int64_t) step * STEP_US);
         for (int client = 0; client < CLIENTS; client++)
-            ask_pair(clients, client, step);
+            query_pair(clients, client, step);
         tape_pass(clients->tape, STEP_US / 2);
-        ask_scene(clients, step % CLIENTS, step);
+        query_scene(clients, step % CLIENTS, step);
     }
     instance->result_after_us = 45;
 }
 
 /* The same number again, the same query: once by handle, and once whole. */
-static void ask_again(struct clients *clients, struct instance *instance, bool whole)
+static void query_again(struct clients *clients, struct instance *instance, bool whole)
 {
     struct pair_query query = pair_of(0, 1, 1, 2);
     struct pair_result result;
     if (whole)
         for (int n = 1; n <= 2; n++)
-            asker_forget(&clients->asker[0], id_of(0, n));
-    asker_pair(&clients->asker[0], &query, &result);
+            log_client_forget(&clients->log_client[0], id_of(0, n));
+    log_client_pair(&clients->log_client[0], &query, &result);
     for (int i = 0; i < 2; i++)
-        instance_ask_pair(instance, &query, &result);
+        instance_query_pair(instance, &query, &result);
 }
 
 /* Until there is room: the same number again. */
@@ -108,28 +108,28 @@ static void be_turned_away(struct clients *clients, struct instance *instance)
 {
     struct pair_query query = pair_of(1, 3, 3, 4);
     struct pair_result result;
-    query.client_id = clients->asker[1].client_id;
-    query.sequence_number = clients->asker[1].next_number++;
+    query.client_id = clients->log_client[1].client_id;
+    query.sequence_number = clients->log_client[1].next_number++;
     for (int i = 0; i < 2; i++)
         instance_turn_away_pair(instance, &query);
-    instance_ask_pair(instance, &query, &result);
+    instance_query_pair(instance, &query, &result);
 
     set_scene(2, 3, &clients->scene);
-    clients->scene.client_id = clients->asker[2].client_id;
-    clients->scene.sequence_number = clients->asker[2].next_number++;
+    clients->scene.client_id = clients->log_client[2].client_id;
+    clients->scene.sequence_number = clients->log_client[2].next_number++;
     instance_turn_away_scene(instance, &clients->scene);
-    instance_ask_scene(instance, &clients->scene, &clients->scene_result);
+    instance_query_scene(instance, &clients->scene, &clients->scene_result);
 }
 
 /* Never heard on the way; then some that the logger did not see either. */
 static void get_lost(struct clients *clients, struct instance *instance)
 {
     struct pair_query query = pair_of(0, 2, 5, 6);
-    query.client_id = clients->asker[0].client_id;
-    query.sequence_number = clients->asker[0].next_number++;
+    query.client_id = clients->log_client[0].client_id;
+    query.sequence_number = clients->log_client[0].next_number++;
     instance_miss_pair(instance, &query);
-    clients->asker[0].next_number += 7;
-    ask_scene(clients, 0, 2);
+    clients->log_client[0].next_number += 7;
+    query_scene(clients, 0, 2);
 }
 
 /* Client 1 publishes other bodies under the ids of client 0, and both are answered. The first query
@@ -144,8 +144,8 @@ static void share_ids(struct clients *clients)
             solid.component[0][0] = 2 + client;
             part_place(&solid, id_of(0, 7), &query.placement[0]);
             if (step + client == 1)
-                asker_forget(&clients->asker[client], id_of(0, 7));
-            asker_pair(&clients->asker[client], &query, &result);
+                log_client_forget(&clients->log_client[client], id_of(0, 7));
+            log_client_pair(&clients->log_client[client], &query, &result);
         }
 }
 
@@ -153,8 +153,9 @@ static void share_ids(struct clients *clients)
  * held. */
 static void define_bodies(struct clients *clients, struct instance *instance)
 {
-    const struct handle handle[] = {
-        clients->asker[1].handle[id_of(1, 3)], {{1, 2, 3}}, clients->asker[2].handle[id_of(2, 4)]};
+    const struct handle handle[] = {clients->log_client[1].handle[id_of(1, 3)],
+                                    {{1, 2, 3}},
+                                    clients->log_client[2].handle[id_of(2, 4)]};
     instance_define(instance, RECORDER, 1, NULL, 0);
     instance_define(instance, RECORDER, 100, handle, 3);
 }
@@ -166,7 +167,7 @@ static bool start(struct clients *clients, int life, size_t frames)
     if (!instance_open(&clients->instance[life], clients->tape, &options))
         return false;
     for (int client = 0; client < CLIENTS; client++)
-        clients->asker[client].instance = &clients->instance[life];
+        clients->log_client[client].instance = &clients->instance[life];
     return true;
 }
 
@@ -179,9 +180,9 @@ static void stop(struct clients *clients, int life)
 static void live_first(struct clients *clients)
 {
     struct instance *instance = &clients->instance[0];
-    ask_in_turns(clients, instance);
-    ask_again(clients, instance, false);
-    ask_again(clients, instance, true);
+    query_in_turns(clients, instance);
+    query_again(clients, instance, false);
+    query_again(clients, instance, true);
     be_turned_away(clients, instance);
     get_lost(clients, instance);
     share_ids(clients);
@@ -192,8 +193,8 @@ static void live_first(struct clients *clients)
 static void live_again(struct clients *clients)
 {
     for (int client = 0; client < CLIENTS; client++) {
-        ask_scene(clients, client, 5);
-        ask_pair(clients, client, 5);
+        query_scene(clients, client, 5);
+        query_pair(clients, client, 5);
     }
 }
 
@@ -202,7 +203,7 @@ static void live_small(struct clients *clients)
 {
     for (int step = 0; step < 4; step++)
         for (int client = 0; client < CLIENTS; client++)
-            ask_pair(clients, client, step);
+            query_pair(clients, client, step);
 }
 
 /* Two services on the same channels. The second one starts later, and does not hold what the first
@@ -216,8 +217,8 @@ static void live_beside_another(struct clients *clients)
             instance->other = &clients->other;
         if (step == 3)
             for (int n = 0; n < BODIES; n++)
-                asker_forget(&clients->asker[0], id_of(0, n));
-        ask_pair(clients, 0, step % 2);
+                log_client_forget(&clients->log_client[0], id_of(0, n));
+        query_pair(clients, 0, step % 2);
     }
     if (instance->other)
         instance_close(instance->other);
@@ -247,6 +248,7 @@ bool kind_clients(struct tape *tape)
     memset(&clients, 0, sizeof clients);
     clients.tape = tape;
     for (int client = 0; client < CLIENTS; client++)
-        clients.asker[client] = (struct asker){.client_id = 8000 + client, .next_number = 5};
+        clients.log_client[client] =
+            (struct log_client){.client_id = 8000 + client, .next_number = 5};
     return live(&clients);
 }

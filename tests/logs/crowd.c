@@ -1,10 +1,10 @@
 /* A crowd in the plane, of boxes and triangles turned every way, most of them moving: those who
  * walk across those who stand, all of them at once, and neighbours listed. Two answers have no room
  * for all that they find, or are broken off where the service has others waiting: then the query is
- * asked again from where the answer ended. */
+ * queried again from where the answer ended. */
 #include "kinds.h"
 
-#include "asker.h"
+#include "log_client.h"
 #include "parts.h"
 
 #include <string.h>
@@ -14,7 +14,7 @@ enum { STEPS = 2, STEP_US = 10000, WALKERS = 100, STANDING = 40, BODIES = WALKER
 static const double step_s = 0.01, field = 2, speed = 60; /* metres, and per second: in a hurry */
 
 struct crowd {
-    struct asker asker;
+    struct log_client log_client;
     struct draw draw;
     struct solid solid[BODIES]; /* who walks first; their ids are one more */
     struct scene_query query;
@@ -85,11 +85,11 @@ static int32_t pairs_of(const struct scene_query *query)
 }
 
 /* Until all pairs have been answered. */
-static void ask_to_the_end(struct crowd *crowd)
+static void query_to_the_end(struct crowd *crowd)
 {
     const int32_t end = pairs_of(&crowd->query);
     do {
-        asker_scene(&crowd->asker, &crowd->query, &crowd->result);
+        log_client_scene(&crowd->log_client, &crowd->query, &crowd->result);
         crowd->query.first_pair = crowd->result.end_pair;
     } while (crowd->result.status == FMB_OK && crowd->result.end_pair < end);
 }
@@ -109,39 +109,39 @@ static void list_neighbours(struct crowd *crowd)
 }
 
 /* The service has answered a part of the scene, and other clients wait: it stops there. */
-static void ask_and_be_broken_off(struct crowd *crowd)
+static void query_and_be_interrupted(struct crowd *crowd)
 {
     begin_query(crowd, FMB_PAIRS_ACROSS, 0, WALKERS, STANDING);
-    crowd->asker.instance->stop_after = 1;
-    asker_scene(&crowd->asker, &crowd->query, &crowd->result);
-    crowd->asker.instance->stop_after = 0;
+    crowd->log_client.instance->stop_after = 1;
+    log_client_scene(&crowd->log_client, &crowd->query, &crowd->result);
+    crowd->log_client.instance->stop_after = 0;
     crowd->query.first_pair = crowd->result.end_pair;
-    ask_to_the_end(crowd);
+    query_to_the_end(crowd);
 }
 
-static void ask_step(struct crowd *crowd, int step)
+static void query_step(struct crowd *crowd, int step)
 {
     begin_query(crowd, FMB_PAIRS_ACROSS, FMB_WANT_TIMES, 30, 20 + step);
     crowd->query.margin = 0.25;
-    ask_to_the_end(crowd);
+    query_to_the_end(crowd);
     crowd->query.margin = 0;
     begin_query(crowd, FMB_PAIRS_LISTED, FMB_WANT_BOX | FMB_WANT_TIMES, 25, 5);
     list_neighbours(crowd);
-    ask_to_the_end(crowd);
+    query_to_the_end(crowd);
 }
 
-static void ask_all(struct crowd *crowd, struct tape *tape)
+static void query_all(struct crowd *crowd, struct tape *tape)
 {
     begin_query(crowd, FMB_PAIRS_ACROSS, 0, WALKERS, STANDING);
-    ask_to_the_end(crowd); /* tells everybody */
+    query_to_the_end(crowd); /* defines every body */
     begin_query(crowd, FMB_PAIRS_ALL, FMB_WANT_BOX | FMB_WANT_TIMES, WALKERS, STANDING);
-    ask_to_the_end(crowd);
+    query_to_the_end(crowd);
     for (int step = 0; step < STEPS; step++) {
         tape_reach(tape, (int64_t) (step + 1) * STEP_US);
         walk(crowd);
-        ask_step(crowd, step);
+        query_step(crowd, step);
     }
-    ask_and_be_broken_off(crowd);
+    query_and_be_interrupted(crowd);
 }
 
 bool kind_crowd(struct tape *tape)
@@ -151,10 +151,10 @@ bool kind_crowd(struct tape *tape)
     struct instance instance;
     if (!instance_open(&instance, tape, &options))
         return false;
-    crowd.asker = (struct asker){.instance = &instance, .client_id = 0, .next_number = 1};
+    crowd.log_client = (struct log_client){.instance = &instance, .client_id = 0, .next_number = 1};
     crowd.draw.state = 160;
     draw_crowd(&crowd);
-    ask_all(&crowd, tape);
+    query_all(&crowd, tape);
     instance_beat(&instance);
     instance_close(&instance);
     return true;

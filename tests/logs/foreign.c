@@ -1,10 +1,10 @@
 /* A bus on which others are too, and a logger that began late: results stand hundreds of events
- * behind their queries, or before them; bodies came whole before the log began; another instance of
+ * after their queries, or before them; bodies came whole before the log began; another instance of
  * the service answers the same numbers on channels with a prefix; and what others publish on
  * channels whose names look alike, or in a format that is none of the service's. */
 #include "kinds.h"
 
-#include "asker.h"
+#include "log_client.h"
 #include "parts.h"
 
 #include <string.h>
@@ -15,7 +15,7 @@ enum { ROUNDS = 44, ROUND_US = 10000, BODIES = 10, FIRST_ROUNDS = 20, OTHERS = 7
 struct foreign {
     struct tape *tape;
     struct instance here, there;
-    struct asker asker, lab;
+    struct log_client log_client, lab;
     struct draw draw;
 };
 
@@ -46,7 +46,7 @@ static void publish_other(struct foreign *foreign)
     tape_pass(foreign->tape, 200);
 }
 
-/* A message of another type; and a query that is cut off, one with more behind it, and one that
+/* A message of another type; and a query that is cut off, one with more after it, and one that
  * says that it has more frames than there are bytes. None is one that can be read. */
 static void publish_malformed(struct foreign *foreign)
 {
@@ -82,7 +82,7 @@ static void publish_mismatch(struct foreign *foreign)
     tape_pass(foreign->tape, 200);
 }
 
-/* ---- What is asked ---- */
+/* ---- Queries ---- */
 
 /* Bodies in a row, every other one of which moves. */
 static struct pair_query pair_of(int round, int a, int b)
@@ -100,13 +100,13 @@ static struct pair_query pair_of(int round, int a, int b)
 }
 
 /* The same numbers of the same client, here and there, about different pairs. */
-static void ask_both(struct foreign *foreign, int round)
+static void query_both(struct foreign *foreign, int round)
 {
     const int n = round % BODIES, next = (n + 1) % BODIES, other = (n + 3) % BODIES;
     struct pair_query here = pair_of(round, n, next), there = pair_of(round, next, other);
     struct pair_result result;
-    asker_pair(&foreign->asker, &here, &result);
-    asker_pair(&foreign->lab, &there, &result);
+    log_client_pair(&foreign->log_client, &here, &result);
+    log_client_pair(&foreign->lab, &there, &result);
 }
 
 /* While bodies come whole, soon after; then in turns: so late that some hundreds of events are
@@ -122,7 +122,7 @@ static void run_round(struct foreign *foreign, int round)
     tape_reach(foreign->tape, (int64_t) (round + 1) * ROUND_US);
     foreign->here.result_after_us = delay_of(round);
     foreign->there.result_after_us = delay_of(round + 1);
-    ask_both(foreign, round);
+    query_both(foreign, round);
     for (int i = 0; i < OTHERS; i++)
         publish_other(foreign);
     if (round % 10 == 9) {
@@ -130,7 +130,7 @@ static void run_round(struct foreign *foreign, int round)
         instance_beat(&foreign->there);
     }
     if (round == 3)
-        instance_define(&foreign->here, RECORDER, 1, &foreign->asker.handle[1], 2);
+        instance_define(&foreign->here, RECORDER, 1, &foreign->log_client.handle[1], 2);
     if (round == ROUNDS / 2) {
         publish_malformed(foreign);
         publish_mismatch(foreign);
@@ -145,7 +145,7 @@ static void run_before_the_log(struct foreign *foreign)
         struct pair_query query = pair_of(n, n, n + 1);
         struct pair_result result;
         foreign->here.result_after_us = n ? 5000 : 45;
-        asker_pair(&foreign->asker, &query, &result);
+        log_client_pair(&foreign->log_client, &query, &result);
     }
     tape_begin_late(foreign->tape);
 }
@@ -156,7 +156,7 @@ static void run(struct foreign *foreign)
     for (int round = 0; round < ROUNDS; round++) {
         if (round == BODIES)
             for (int n = 0; n < 3; n++)
-                asker_forget(&foreign->asker, n + 1);
+                log_client_forget(&foreign->log_client, n + 1);
         run_round(foreign, round);
     }
 }
@@ -179,8 +179,9 @@ bool kind_foreign(struct tape *tape)
     memset(&foreign, 0, sizeof foreign);
     foreign.tape = tape;
     foreign.draw.state = 5;
-    foreign.asker = (struct asker){.instance = &foreign.here, .client_id = 60};
-    foreign.lab = (struct asker){.instance = &foreign.there, .client_id = 60, .next_number = 2};
+    foreign.log_client = (struct log_client){.instance = &foreign.here, .client_id = 60};
+    foreign.lab =
+        (struct log_client){.instance = &foreign.there, .client_id = 60, .next_number = 2};
     if (!open_both(&foreign))
         return false;
     run(&foreign);

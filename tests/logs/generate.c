@@ -150,7 +150,7 @@ static int list(void)
     return MADE;
 }
 
-static int tell_instructions(void)
+static int print_instructions(void)
 {
     for (int set = INSTRUCTIONS_PLAIN; set <= INSTRUCTIONS_AVX512; set++)
         if (instructions_supported(set))
@@ -221,7 +221,7 @@ int main(int argc, char **argv)
         if (option == LIST)
             return list();
         if (option == INSTRUCTIONS)
-            return tell_instructions();
+            return print_instructions();
         if (!take(option, argv, &options))
             return USAGE;
     }

@@ -1,18 +1,18 @@
 /* Pairs that are hard for a reason: of each family of the campaigns one for each cell that it has.
- * At rest those of a family are listed in one scene, with boxes; what moves is asked pair by pair,
- * since windows differ, and some once more, by handle and the other way round. Methods,
+ * At rest those of a family are listed in one scene, with boxes; what moves is queried pair by
+ * pair, since windows differ, and some once more, by handle and the other way round. Methods,
  * certificates, boxes and gaps are drawn. */
 #include "kinds.h"
 
-#include "asker.h"
+#include "log_client.h"
 #include "family.h"
 #include "parts.h"
 
 static const uint64_t seed = 20240101;
 
 struct hard {
-    struct asker asker;
-    struct draw draw; /* how to ask */
+    struct log_client log_client;
+    struct draw draw; /* how to query */
     int64_t body_id;  /* the last one given */
     struct scene_query scene;
     struct scene_result scene_result;
@@ -41,16 +41,16 @@ static int32_t draw_gap(struct draw *draw, int32_t method)
 
 /* ---- One by one ---- */
 
-static void ask_again(struct hard *hard, const struct pair_query *query)
+static void query_again(struct hard *hard, const struct pair_query *query)
 {
     struct pair_query swapped = *query;
     struct pair_result result;
     swapped.placement[0] = query->placement[1];
     swapped.placement[1] = query->placement[0];
-    asker_pair(&hard->asker, &swapped, &result);
+    log_client_pair(&hard->log_client, &swapped, &result);
 }
 
-static void ask_pair(struct hard *hard, const struct question *question)
+static void query_pair(struct hard *hard, const struct question *question)
 {
     struct draw *draw = &hard->draw;
     struct pair_query query = {.duration = question->duration, .method = draw_method(draw)};
@@ -63,9 +63,9 @@ static void ask_pair(struct hard *hard, const struct question *question)
     query.want |= draw_gap(draw, query.method);
     part_place(&question->a, again ? ++hard->body_id : 0, &query.placement[0]);
     part_place(&question->b, again ? ++hard->body_id : 0, &query.placement[1]);
-    asker_pair(&hard->asker, &query, &result);
+    log_client_pair(&hard->log_client, &query, &result);
     if (again)
-        ask_again(hard, &query);
+        query_again(hard, &query);
 }
 
 /* ---- Scenes ---- */
@@ -82,10 +82,10 @@ static void append_pair(struct scene_query *query, const struct question *questi
     query->index_count += 2;
 }
 
-static void ask_scene(struct hard *hard)
+static void query_scene(struct hard *hard)
 {
     if (hard->scene.placement_count > 0)
-        asker_scene(&hard->asker, &hard->scene, &hard->scene_result);
+        log_client_scene(&hard->log_client, &hard->scene, &hard->scene_result);
 }
 
 static void begin_scene(struct hard *hard)
@@ -100,7 +100,7 @@ static void begin_scene(struct hard *hard)
 
 /* ---- All ---- */
 
-static void ask_family(struct hard *hard, const struct family *family, int dim, bool moving)
+static void query_family(struct hard *hard, const struct family *family, int dim, bool moving)
 {
     struct cell cells[CELL_WITH_FACES];
     const int count = family_cells(family, cells);
@@ -110,14 +110,14 @@ static void ask_family(struct hard *hard, const struct family *family, int dim, 
             continue;
         const struct question question = draw_question(family, &cells[i]);
         if (moving)
-            ask_pair(hard, &question);
+            query_pair(hard, &question);
         else
             append_pair(&hard->scene, &question);
     }
-    ask_scene(hard);
+    query_scene(hard);
 }
 
-static bool ask_families(struct tape *tape, int dim, int motions)
+static bool query_families(struct tape *tape, int dim, int motions)
 {
     const struct instance_options options = {.prefix = "", .server_id = 2718281828, .frames = 1024};
     static struct hard hard;
@@ -125,11 +125,11 @@ static bool ask_families(struct tape *tape, int dim, int motions)
     if (!instance_open(&instance, tape, &options))
         return false;
     hard = (struct hard){
-        .asker = {.instance = &instance, .client_id = QUERY_ID_MAX, .next_number = 1000},
+        .log_client = {.instance = &instance, .client_id = QUERY_ID_MAX, .next_number = 1000},
         .draw = {seed}};
     for (int moving = 0; moving < 2; moving++)
         for (size_t i = 0; family_at(i) && motions >> moving & 1; i++)
-            ask_family(&hard, family_at(i), dim, moving);
+            query_family(&hard, family_at(i), dim, moving);
     instance_beat(&instance);
     instance_close(&instance);
     return true;
@@ -139,15 +139,15 @@ enum { AT_REST = 1, MOVING = 2 };
 
 bool kind_hard_plane(struct tape *tape)
 {
-    return ask_families(tape, 2, AT_REST | MOVING);
+    return query_families(tape, 2, AT_REST | MOVING);
 }
 
 bool kind_hard_space(struct tape *tape)
 {
-    return ask_families(tape, 3, AT_REST);
+    return query_families(tape, 3, AT_REST);
 }
 
 bool kind_hard_moving(struct tape *tape)
 {
-    return ask_families(tape, 3, MOVING);
+    return query_families(tape, 3, MOVING);
 }

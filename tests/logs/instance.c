@@ -180,16 +180,16 @@ bool instance_hear_definition(struct instance *instance, const unsigned char *by
 
 /* ---- Sending ---- */
 
-void instance_ask_pair(struct instance *instance, struct pair_query *query,
-                       struct pair_result *result)
+void instance_query_pair(struct instance *instance, struct pair_query *query,
+                         struct pair_result *result)
 {
     static unsigned char bytes[QUERY_BYTES_MAX];
     query->utime = tape_utime(instance->tape);
     instance_hear_pair(instance, bytes, wire_write_pair_query(query, bytes), result);
 }
 
-void instance_ask_scene(struct instance *instance, struct scene_query *query,
-                        struct scene_result *result)
+void instance_query_scene(struct instance *instance, struct scene_query *query,
+                          struct scene_result *result)
 {
     static unsigned char bytes[QUERY_BYTES_MAX];
     query->utime = tape_utime(instance->tape);

@@ -56,10 +56,10 @@ void instance_close(struct instance *instance);
 
 /* A query that comes now, and its result. The query's time is set, and the tape goes on a little.
  * Pointers in the result are valid until the next query. */
-void instance_ask_pair(struct instance *instance, struct pair_query *query,
-                       struct pair_result *result);
-void instance_ask_scene(struct instance *instance, struct scene_query *query,
-                        struct scene_result *result);
+void instance_query_pair(struct instance *instance, struct pair_query *query,
+                         struct pair_result *result);
+void instance_query_scene(struct instance *instance, struct scene_query *query,
+                          struct scene_result *result);
 
 /* The same where the result is BUSY. */
 void instance_turn_away_pair(struct instance *instance, struct pair_query *query);

@@ -1,4 +1,4 @@
-/* The kinds of logs, each in a file of its own: what is asked in it, from the beginning of a tape
+/* The kinds of logs, each in a file of its own: what is queried in it, from the beginning of a tape
  * to its end. */
 #ifndef KINDS_H
 #define KINDS_H

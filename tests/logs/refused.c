@@ -2,7 +2,7 @@
  * doubles, which it does not refuse. */
 #include "kinds.h"
 
-#include "asker.h"
+#include "log_client.h"
 #include "parts.h"
 #include "writer.h"
 
@@ -306,13 +306,13 @@ static struct pair_query good_pair(struct refusing *refusing)
     return query;
 }
 
-static void ask_spoilt_pairs(struct refusing *refusing)
+static void query_spoilt_pairs(struct refusing *refusing)
 {
     for (int i = 0; i < COUNT(spoilt_pairs); i++) {
         struct pair_query query = good_pair(refusing);
         struct pair_result result;
         spoilt_pairs[i](&query);
-        instance_ask_pair(refusing->instance, &query, &result);
+        instance_query_pair(refusing->instance, &query, &result);
     }
 }
 
@@ -485,12 +485,12 @@ static void set_good_scene(struct refusing *refusing)
     }
 }
 
-static void ask_spoilt_scenes(struct refusing *refusing)
+static void query_spoilt_scenes(struct refusing *refusing)
 {
     for (int i = 0; i < COUNT(spoilt_scenes); i++) {
         set_good_scene(refusing);
         spoilt_scenes[i](&refusing->scene);
-        instance_ask_scene(refusing->instance, &refusing->scene, &refusing->scene_result);
+        instance_query_scene(refusing->instance, &refusing->scene, &refusing->scene_result);
     }
 }
 
@@ -499,7 +499,7 @@ static void ask_spoilt_scenes(struct refusing *refusing)
 /* A scene of so many placements of nothing: each is 61 bytes of 0, of no body and no dimension, but
  * for the length of its empty name. After the count of placements come those of indices and of
  * ignored ones, which are 0. */
-static void ask_placements_of_nothing(struct refusing *refusing, int32_t placements)
+static void query_placements_of_nothing(struct refusing *refusing, int32_t placements)
 {
     enum { PLACEMENT = 61, NAME = 40, COUNTS = 12, LONGEST = QUERY_BYTES_MAX + 1000 };
     static unsigned char bytes[COUNTS + LONGEST];
@@ -517,7 +517,7 @@ static void ask_placements_of_nothing(struct refusing *refusing, int32_t placeme
 
 /* Four positions do not fit into a struct: the numbers that stand for two counts of 0 are the
  * fourth, and two more follow. */
-static void ask_in_four_dimensions(struct refusing *refusing)
+static void query_in_four_dimensions(struct refusing *refusing)
 {
     static unsigned char bytes[QUERY_BYTES_MAX];
     struct pair_query query = good_pair(refusing);
@@ -534,7 +534,7 @@ static void ask_in_four_dimensions(struct refusing *refusing)
 
 /* Of a client without an id; from a place where there are no bodies; and two that cannot be read:
  * one is cut off, one has half a handle. */
-static void ask_spoilt_definitions(struct refusing *refusing)
+static void query_spoilt_definitions(struct refusing *refusing)
 {
     static unsigned char bytes[QUERY_BYTES_MAX];
     static struct definition_query query;
@@ -576,7 +576,7 @@ static const struct {
 };
 
 /* Each by every method that decides, as the doubles' ends let it. */
-static void ask_extremes(struct refusing *refusing)
+static void query_extremes(struct refusing *refusing)
 {
     static const int32_t methods[] = {0, 1, 2, 3};
     for (int i = 0; i < COUNT(extremes); i++)
@@ -594,7 +594,7 @@ static void ask_extremes(struct refusing *refusing)
             query.duration = i % 3 == 2 ? 0.0 : 1;
             if (m < 1)
                 query.want |= FMB_WANT_CERTIFICATE;
-            instance_ask_pair(refusing->instance, &query, &result);
+            instance_query_pair(refusing->instance, &query, &result);
         }
 }
 
@@ -606,13 +606,13 @@ bool kind_refused(struct tape *tape)
     if (!instance_open(&instance, tape, &options))
         return false;
     refusing = (struct refusing){.instance = &instance};
-    ask_spoilt_pairs(&refusing);
-    ask_spoilt_scenes(&refusing);
-    ask_in_four_dimensions(&refusing);
-    ask_placements_of_nothing(&refusing, QUERY_PLACEMENTS_MAX + 1);
-    ask_placements_of_nothing(&refusing, TOO_LONG); /* for a query, not yet for a datagram */
-    ask_spoilt_definitions(&refusing);
-    ask_extremes(&refusing);
+    query_spoilt_pairs(&refusing);
+    query_spoilt_scenes(&refusing);
+    query_in_four_dimensions(&refusing);
+    query_placements_of_nothing(&refusing, QUERY_PLACEMENTS_MAX + 1);
+    query_placements_of_nothing(&refusing, TOO_LONG); /* for a query, not yet for a datagram */
+    query_spoilt_definitions(&refusing);
+    query_extremes(&refusing);
     instance_beat(&instance);
     instance_close(&instance);
     return true;

@@ -5,7 +5,7 @@
  * its levels touch but for rounding, are an ulp apart, or overlap by an ulp. One leans. */
 #include "kinds.h"
 
-#include "asker.h"
+#include "log_client.h"
 #include "parts.h"
 
 #include <math.h>
@@ -117,7 +117,7 @@ static void set_placements(const struct stack *stack, int step, struct scene_que
 
 /* ---- Asking ---- */
 
-static void ask_scene(struct asker *asker, const struct stack *stack, int step)
+static void query_scene(struct log_client *log_client, const struct stack *stack, int step)
 {
     static const int32_t wants[] = {0, FMB_WANT_TIMES, FMB_WANT_BOX,
                                     FMB_WANT_TIMES | FMB_WANT_BOX | FMB_WANT_GAP};
@@ -128,11 +128,12 @@ static void ask_scene(struct asker *asker, const struct stack *stack, int step)
     query.which = FMB_PAIRS_ALL;
     query.margin = step % 2 ? 0 : step % 8 ? 1e-9 : 0.03125;
     set_placements(stack, step, &query);
-    asker_scene(asker, &query, &result);
+    log_client_scene(log_client, &query, &result);
 }
 
 /* A level of a tower on that below. */
-static void ask_pair(struct asker *asker, const struct stack *stack, int tower, int step)
+static void query_pair(struct log_client *log_client, const struct stack *stack, int tower,
+                       int step)
 {
     const int level = 1 + step % (LEVELS - 1);
     struct pair_query query = {.duration = step_s, .want = FMB_WANT_BOX | FMB_WANT_CERTIFICATE};
@@ -143,24 +144,24 @@ static void ask_pair(struct asker *asker, const struct stack *stack, int tower, 
         const struct solid solid = level_at(stack, tower, level - f, step);
         part_place(&solid, body_of(tower, level - f) + 1, &query.placement[f]);
     }
-    asker_pair(asker, &query, &result);
+    log_client_pair(log_client, &query, &result);
 }
 
 bool kind_stack(struct tape *tape)
 {
     const struct instance_options options = {
         .prefix = "", .server_id = 9007199254740991, .frames = 64};
-    static struct asker asker;
+    static struct log_client log_client;
     struct instance instance;
     struct stack stack;
     if (!instance_open(&instance, tape, &options))
         return false;
-    asker = (struct asker){.instance = &instance, .client_id = 42};
+    log_client = (struct log_client){.instance = &instance, .client_id = 42};
     set_rest(&stack);
     for (int step = 0; step < STEPS; step++) {
         tape_reach(tape, (int64_t) step * STEP_US);
-        ask_scene(&asker, &stack, step);
-        ask_pair(&asker, &stack, step % TOWERS, step);
+        query_scene(&log_client, &stack, step);
+        query_pair(&log_client, &stack, step % TOWERS, step);
     }
     instance_beat(&instance);
     instance_close(&instance);

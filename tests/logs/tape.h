@@ -1,7 +1,7 @@
-/* A log of LCM events being made: told by its own clock, never by the machine's, so that the file
+/* A log of LCM events being made: timed by its own clock, never by the machine's, so that the file
  * is the same bytes whenever and wherever it is made.
  *
- * Failures are kept until tape_close(), which tells of them. */
+ * Failures are kept until tape_close(), which reports them. */
 #ifndef TAPE_H
 #define TAPE_H
 

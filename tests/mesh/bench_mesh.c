@@ -81,27 +81,27 @@ static void expect_same(const struct mesh_intersection *x, const struct mesh_int
 static void meet(const struct mesh_query *question, struct mesh_intersection *out)
 {
     if (mesh_intersect(question, out) != FMB_OK)
-        fail("the meshes could not be asked");
+        fail("the meshes could not be queried");
 }
 
 static void bench_parts(const struct scene *scene, const char *name, enum mesh_as as, bool self)
 {
     struct mesh_query question = question_of(scene, as, self);
     struct mesh_intersection meeting, exact;
-    double build[ROUNDS], ask[ROUNDS];
+    double build[ROUNDS], query[ROUNDS];
     for (int round = 0; round < ROUNDS; round++) {
         meet(&question, &meeting);
         build[round] = (double) meeting.build_ns;
-        ask[round] = (double) meeting.query_ns;
+        query[round] = (double) meeting.query_ns;
         if (round < ROUNDS - 1)
             mesh_intersection_free(&meeting);
     }
     question.method = fmb_method_by_name("exact");
     meet(&question, &exact);
     expect_same(&meeting, &exact);
-    printf("%-12s  build %6.1f ms   ask %6.1f ms   candidates %7" PRIu64
+    printf("%-12s  build %6.1f ms   query %6.1f ms   candidates %7" PRIu64
            "   pairs %5zu (%zu touch)",
-           name, spread_of(build, ROUNDS).median / 1e6, spread_of(ask, ROUNDS).median / 1e6,
+           name, spread_of(build, ROUNDS).median / 1e6, spread_of(query, ROUNDS).median / 1e6,
            meeting.candidates, meeting.count, meeting.touching);
     if (self)
         printf("   beside each other %" PRIu64, meeting.sharing_edge + meeting.sharing_vertex);

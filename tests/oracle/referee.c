@@ -44,8 +44,8 @@ struct never_wrong {
 static const struct never_wrong exact = {"exact", ORACLE_TIGHTEST};
 static const struct never_wrong certified = {"certified", ORACLE_DESIGN};
 
-static void ask(const struct never_wrong *method, const struct question *question,
-                const struct pair *pair, unsigned want, struct fmb_answer *answer)
+static void decide(const struct never_wrong *method, const struct question *question,
+                   const struct pair *pair, unsigned want, struct fmb_answer *answer)
 {
     memset(answer, 0xa5, sizeof *answer); /* what is not written shows */
     enum fmb_status status = pair_decide(fmb_method_by_name(method->name), pair, want, answer);
@@ -61,11 +61,11 @@ static void fail_of(const struct never_wrong *method, const struct question *que
     referee_fail(question, what);
 }
 
-void referee_ask(const struct question *question, struct fmb_answer *answer)
+void referee_decide(const struct question *question, struct fmb_answer *answer)
 {
     struct ready ready;
     referee_ready(question, &ready);
-    ask(&exact, question, &ready.pair, FMB_WANT_BOX, answer);
+    decide(&exact, question, &ready.pair, FMB_WANT_BOX, answer);
 }
 
 bool referee_same(const struct fmb_answer *one, const struct fmb_answer *other)
@@ -82,7 +82,7 @@ static void assert_truth(const struct never_wrong *method, const struct question
                          struct fmb_answer *answer)
 {
     char why[200];
-    ask(method, question, pair, FMB_WANT_BOX, answer);
+    decide(method, question, pair, FMB_WANT_BOX, answer);
     if (!oracle_agrees(truth, pair, answer, method->limit, why, sizeof why))
         fail_of(method, question, why);
 }
@@ -92,11 +92,11 @@ static void assert_consistent(const struct never_wrong *method, const struct que
 {
     const struct pair reversed = {pair->b, pair->a, pair->duration};
     struct fmb_answer boxless, swapped;
-    ask(method, question, &reversed, FMB_WANT_BOX, &swapped);
+    decide(method, question, &reversed, FMB_WANT_BOX, &swapped);
     if (!referee_same(answer, &swapped))
         fail_of(method, question, "differs the other way round");
 
-    ask(method, question, pair, 0, &boxless);
+    decide(method, question, pair, 0, &boxless);
     if (boxless.has_box)
         fail_of(method, question, "a box that nobody wanted");
     boxless.has_box = answer->has_box;

@@ -18,12 +18,12 @@ struct ready {
 void referee_ready(const struct question *question, struct ready *ready);
 
 /* The answer of the exact method, box wanted. */
-void referee_ask(const struct question *question, struct fmb_answer *answer);
+void referee_decide(const struct question *question, struct fmb_answer *answer);
 
 /* Same verdict, and the same bits of the interval and of the box where there are any. */
 bool referee_same(const struct fmb_answer *one, const struct fmb_answer *other);
 
-/* The methods that are never wrong, asked in both orders, with the box and without it, agree with
+/* The methods that are never wrong, queried in both orders, with the box and without it, agree with
  * the oracle (exact: ORACLE_TIGHTEST; certified: ORACLE_DESIGN) and each with itself, to the bit.
  * Returns the verdict. */
 enum fmb_verdict referee_assert(const struct question *question);

@@ -44,8 +44,8 @@ hash_of() {
         tr a-f A-F | basenc --base16 -d | base64
 }
 
-# is_alone FILE: the file refers to nothing else.
-is_alone() {
+# is_self_contained FILE: the file refers to nothing else.
+is_self_contained() {
     sed '/^<script type="application\/json"/,/^<\/script>/d' "$1" > rest
     [ "$(grep -c '<script>' rest)" = 1 ] || return
     [ "$(tail -n 1 rest)" = '</html>' ] || return

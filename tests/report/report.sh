@@ -36,6 +36,6 @@ if [ -f "$bus" ]; then need "$bus" bench-bus bus; else bus=/dev/null; fi
 
 mkdir -p "$out"
 draw speed-error.svg 'include "data"; include "speed_error";
-    $accuracy[0] | sum_up | speed_error_alone($picture_css)'
+    $accuracy[0] | sum_up | speed_error_file($picture_css)'
 draw index.html 'include "page"; page($bench[0]; $accuracy[0]; $bus[0]; $page_css + $picture_css)'
 echo "$out/index.html"

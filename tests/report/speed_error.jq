@@ -67,14 +67,14 @@ def box_excess:
               + if any(.families[].methods[].box; . != null and .p99 >= 1e18)
                 then ["(on the upper edge: infinite)"] else [] end] };
 
-# Alone, on a page that is white or dark and does not say which: colours that both can bear.
-def alone_colours:
+# For the picture in a file of its own, on a page that is white or dark: colours visible on both.
+def file_colours:
     { page: "none", ink: "#767d86", dim: "#767d86", grid: "#80808040", axis: "#767d86",
       band: "#80808020", certified: "#1f7fd1", exact: "#0d9373", fmb: "#d9600c", sat: "#b55fa8",
       other: "#808080" };
 
 # css: picture.css.
-def speed_error_alone($css):
-    ($css | gsub("var\\(--(?<name>[a-z]+)\\)"; alone_colours[.name])) as $style
+def speed_error_file($css):
+    ($css | gsub("var\\(--(?<name>[a-z]+)\\)"; file_colours[.name])) as $style
     | speed_error | scatter(960)
     | sub(">\n"; ">\n<style>\n\($style)</style>\n");

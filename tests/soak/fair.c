@@ -233,26 +233,26 @@ static int run_trial(struct client *client)
     const struct plan *plan = client->plan;
     const long ids = plan->ids * (plan->attack[1] ? 2 : 1);
     const struct usage before = measure_usage(plan->service);
-    double alone = 0, beside = 0;
+    double undisturbed = 0, beside = 0;
     measure(client, 0.2);
     for (int round = 0; round < ROUNDS; round++) {
-        alone += measure_beside(client, unserved) / ROUNDS;
+        undisturbed += measure_beside(client, unserved) / ROUNDS;
         beside += measure_beside(client, NULL) / ROUNDS;
     }
     const struct usage after = measure_usage(plan->service);
     const double others =
         (after.busy - before.busy - (after.own - before.own)) / (after.all - before.all);
-    const double share = beside / alone;
+    const double share = beside / undisturbed;
     const double least = (ids == 1 ? 1. / 3 : 0.4 / (double) ids) / plan->headroom;
     printf(
         "{\"attack\": \"%s%s%s\", \"ids\": %ld, \"client\": \"%s\", \"window\": %ld, "
-        "\"alone_per_second\": %.0f, \"beside_per_second\": %.0f, \"share\": %.3f, "
+        "\"undisturbed_per_second\": %.0f, \"beside_per_second\": %.0f, \"share\": %.3f, "
         "\"least\": %.3f, \"lost\": %" PRId64 ", \"failed\": %" PRId64
         ", \"longest_ms\": %.1f, "
         "\"others\": %.2f}\n",
         plan->attack[0]->name, plan->attack[1] ? "+" : "",
         plan->attack[1] ? plan->attack[1]->name : "", ids, plan->scenes ? "scenes" : "pairs",
-        plan->window, alone, beside, share, least, client->lost, client->failed,
+        plan->window, undisturbed, beside, share, least, client->lost, client->failed,
         1e-6 * (double) client->longest_ns, others);
     if (share >= least && client->lost == 0 && client->failed == 0)
         return EXIT_SUCCESS;

@@ -26,7 +26,7 @@ struct soak {
     struct scene_query query;
     struct scene_result result;
     bool answered;
-    int64_t asked_again;
+    int64_t repeated;
 };
 
 static void on_result(void *user, const struct bus_message *message)
@@ -40,14 +40,14 @@ static void on_result(void *user, const struct bus_message *message)
 }
 
 /* Until there is an answer. False: there was none. */
-static bool ask(struct soak *soak)
+static bool query(struct soak *soak)
 {
     unsigned char bytes[QUERY_BYTES_MAX];
     soak->query.sequence_number++;
     const size_t size = wire_write_scene_query(&soak->query, bytes);
     soak->answered = false;
     for (int i = 0; i < TRIES && !soak->answered; i++) {
-        soak->asked_again += i > 0;
+        soak->repeated += i > 0;
         bus_publish(soak->bus, WIRE_SCENE_QUERY, bytes, size);
         while (!soak->answered && bus_wait(soak->bus, -1, TRY_MS) > 0)
             bus_receive(soak->bus, on_result, soak);
@@ -79,7 +79,7 @@ static bool send_ids(struct soak *soak, int64_t done, int64_t count)
 {
     for (int64_t i = 0; i < count; i += BODIES) {
         set_bodies(soak, 1 + done + i);
-        if (!ask(soak))
+        if (!query(soak))
             return false;
     }
     return true;
@@ -94,7 +94,7 @@ static bool send_channels(struct soak *soak, int64_t done, int64_t count)
         char channel[BUS_CHANNEL_MAX];
         snprintf(channel, sizeof channel, "FOREIGN_%" PRId64, done + i);
         bus_publish(soak->bus, channel, "", 1);
-        if (i % 100 == 99 && !ask(soak))
+        if (i % 100 == 99 && !query(soak))
             return false;
     }
     return true;
@@ -126,7 +126,7 @@ static int run(struct soak *soak, const char *what, const char *pid, int64_t cou
         printf(", %ld", resident(pid));
         fflush(stdout);
     }
-    printf("], \"asked_again\": %" PRId64 ", \"good\": %s}\n", soak->asked_again,
+    printf("], \"repeated\": %" PRId64 ", \"good\": %s}\n", soak->repeated,
            good ? "true" : "false");
     return good ? EXIT_SUCCESS : EXIT_FAILURE;
 }

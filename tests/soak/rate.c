@@ -21,7 +21,7 @@ enum {
     SEQUENCE_AT = 24, /* of a query's bytes */
 };
 
-static const int64_t ask_again_ns = 500000000, give_up_ns = 10000000000;
+static const int64_t repeat_ns = 500000000, give_up_ns = 10000000000;
 
 struct question {
     size_t size;
@@ -40,7 +40,7 @@ struct soak {
     struct question question[QUESTIONS];
     struct under_way under_way[WINDOW]; /* [number % WINDOW] */
     int64_t oldest, next;               /* numbers under way, or answered among them */
-    int64_t asked_again, wrong, unanswered, late, longest_ns;
+    int64_t repeated, wrong, unanswered, late, longest_ns;
 };
 
 /* ---- Questions ---- */
@@ -110,7 +110,7 @@ static void send_query(struct soak *soak, struct under_way *slot, int64_t now)
     bus_publish(soak->bus, WIRE_PAIR_QUERY, question->bytes, question->size);
 }
 
-static void ask(struct soak *soak, int64_t now)
+static void send_new(struct soak *soak, int64_t now)
 {
     struct under_way *slot = &soak->under_way[soak->next % WINDOW];
     *slot = (struct under_way){.number = soak->next++, .first_ns = now};
@@ -126,7 +126,7 @@ static void on_result(void *user, const struct bus_message *message)
         return;
     struct under_way *slot = &soak->under_way[(uint64_t) result.sequence_number % WINDOW];
     if (slot->number != result.sequence_number || result.status == FMB_BUSY)
-        return; /* answered before, or to be asked again */
+        return; /* answered before, or to be repeated */
     const int64_t took = clock_ns() - slot->first_ns;
     soak->longest_ns = took > soak->longest_ns ? took : soak->longest_ns;
     soak->wrong +=
@@ -142,11 +142,11 @@ static void look_after(struct soak *soak, int64_t now)
         soak->oldest++;
     for (int64_t number = soak->oldest; number < soak->next; number++) {
         struct under_way *slot = &soak->under_way[number % WINDOW];
-        if (now - slot->first_ns < ask_again_ns && slot->number)
+        if (now - slot->first_ns < repeat_ns && slot->number)
             return;
-        if (slot->number == 0 || now - slot->last_ns < ask_again_ns)
+        if (slot->number == 0 || now - slot->last_ns < repeat_ns)
             continue;
-        soak->asked_again++;
+        soak->repeated++;
         send_query(soak, slot, now);
     }
 }
@@ -160,7 +160,7 @@ static void run(struct soak *soak, double rate, double seconds)
     while ((now = clock_ns()) < end + give_up_ns && (now < end || soak->oldest < soak->next)) {
         const int64_t due = 1 + (int64_t) (rate * 1e-9 * (double) (now - begin));
         if (now < end && soak->next < due && soak->next - soak->oldest < WINDOW)
-            ask(soak, now);
+            send_new(soak, now);
         while (bus_receive(soak->bus, on_result, soak) > 0)
             continue;
         if (now - looked_ns < 1000000)
@@ -191,9 +191,9 @@ int main(int argc, char **argv)
     run(&soak, rate, seconds);
     printf("{\"rate\": %.0f, \"seconds\": %.0f, \"queries\": %" PRId64
            ", \"not_sent_in_time\": %" PRId64 ", \"unanswered\": %" PRId64 ", \"wrong\": %" PRId64
-           ", \"asked_again\": %" PRId64 ", \"longest_ms\": %.1f}\n",
+           ", \"repeated\": %" PRId64 ", \"longest_ms\": %.1f}\n",
            rate, seconds, soak.next - 1, soak.late > 0 ? soak.late : 0, soak.unanswered, soak.wrong,
-           soak.asked_again, 1e-6 * (double) soak.longest_ns);
+           soak.repeated, 1e-6 * (double) soak.longest_ns);
     bus_close(soak.bus);
     return soak.next > 1 && soak.unanswered == 0 && soak.wrong == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

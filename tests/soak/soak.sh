@@ -1,5 +1,5 @@
 #!/bin/sh
-# soak.sh BUILD_DIR [SECONDS]: clients that know the answers ask a service to which bad things are
+# soak.sh BUILD_DIR [SECONDS]: clients that know the answers query a service to which bad things are
 # done. One line for each trial, what went on in build/soak/; exit code 0 only if no answer was lost
 # and none was wrong.
 set -u
@@ -14,7 +14,7 @@ rate=${FMB_SOAK_RATE:-25000}
 ids=${FMB_SOAK_IDS:-10000000}
 channels=${FMB_SOAK_CHANNELS:-300000}
 
-trials='rate pairs scenes crowd killed poisoned hostile lossy halved ids channels fair floods ageing'
+trials='rate pairs scenes crowd killed crash-packets hostile lossy halved ids channels fair floods ageing'
 
 mkdir -p "$out" || exit 1
 log=$out/$trial.log
@@ -61,9 +61,9 @@ restart() {
     start_fmbd
 }
 
-poison() {
-    "$build/poison" wrap FMB_PAIR_QUERY
-    "$build/poison" short FMB_SCENE_QUERY
+send_crash_packets() {
+    "$build/crash-liblcm" wrap FMB_PAIR_QUERY
+    "$build/crash-liblcm" short FMB_SCENE_QUERY
 }
 
 # share ATTACK [OPTIONS]: the share of a client beside an attack. A share that is too small because
@@ -113,13 +113,13 @@ ageing() {
 
 damage() {
     for type in pair_query scene_query definition_query pair_result scene_result definition status; do
-        "$build/poke" FMB_PAIR_QUERY $type
-        "$build/poke" FMB_SCENE_QUERY $type
+        "$build/fake-peer" FMB_PAIR_QUERY $type
+        "$build/fake-peer" FMB_SCENE_QUERY $type
     done
 }
 
-ask() {
-    "$build/soak-asker" --seconds "$seconds" "$@"
+load() {
+    "$build/soak-load" --seconds "$seconds" "$@"
 }
 
 # One datagram in a hundred is lost, one in a hundred overtaken: by the kernel, where it can.
@@ -138,14 +138,14 @@ run_trial() {
     start_fmbd
     case $trial in
     rate) "$build/soak-rate" "$rate" "$seconds" ;;
-    pairs) ask --clients 8 ;;
-    scenes) ask --clients 2 --pairs 900 ;;
-    crowd) ask --clients 16 --pairs 40 ;;
-    killed) start every 1 restart; ask --clients 4 --pairs 40 ;;
-    poisoned) start every 0.5 poison; ask --clients 4 --pairs 40 ;;
-    hostile) damage >> "$log" 2>&1; start every 0 damage; ask --clients 4 --pairs 40 ;;
-    lossy) lose_in_kernel || lose_in_relay 1 1; ask --clients 4 --pairs 40 ;;
-    halved) lose_in_relay 30 0; ask --clients 3 --pairs 500 --single 1 ;;
+    pairs) load --clients 8 ;;
+    scenes) load --clients 2 --pairs 900 ;;
+    crowd) load --clients 16 --pairs 40 ;;
+    killed) start every 1 restart; load --clients 4 --pairs 40 ;;
+    crash-packets) start every 0.5 send_crash_packets; load --clients 4 --pairs 40 ;;
+    hostile) damage >> "$log" 2>&1; start every 0 damage; load --clients 4 --pairs 40 ;;
+    lossy) lose_in_kernel || lose_in_relay 1 1; load --clients 4 --pairs 40 ;;
+    halved) lose_in_relay 30 0; load --clients 3 --pairs 500 --single 1 ;;
     ids) "$build/soak-memory" ids "$fmbd" "$ids" ;;
     channels) "$build/soak-memory" channels "$fmbd" "$channels" ;;
     fair) fair ;;

@@ -9,7 +9,7 @@ setup() {
 }
 
 # Processes that run the programs of this build, in this network namespace.
-left_behind() {
+remaining_processes() {
     for process in /proc/[0-9]*; do
         [ "$(readlink "$process/ns/net")" = "$(readlink /proc/self/ns/net)" ] || continue
         case $(readlink "$process/exe") in
@@ -21,17 +21,17 @@ left_behind() {
 # nothing_left: within some seconds.
 nothing_left() {
     for _ in $(seq 100); do
-        [ -z "$(left_behind)" ] && return
+        [ -z "$(remaining_processes)" ] && return
         sleep 0.05
     done
-    left_behind
+    remaining_processes
     return 1
 }
 
 # all_there: the benchmark, fmbd and the echo run, within some seconds.
 all_there() {
     for _ in $(seq 200); do
-        [ "$(left_behind | wc -l)" -ge 3 ] && return
+        [ "$(remaining_processes | wc -l)" -ge 3 ] && return
         sleep 0.05
     done
     return 1

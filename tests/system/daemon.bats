@@ -175,7 +175,7 @@ many_scenes() {
 }
 
 @test "a service manager is told when it is ready, alive and stopping" {
-    "$FMB_BUILD/poke" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/heard" 3>&- &
+    "$FMB_BUILD/fake-peer" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/heard" 3>&- &
     started="${started-} $!"
     wait_until test -S "$BATS_TEST_TMPDIR/notify"
     NOTIFY_SOCKET=$BATS_TEST_TMPDIR/notify WATCHDOG_USEC=400000 start_fmbd
@@ -188,7 +188,7 @@ many_scenes() {
 }
 
 @test "heartbeats and signs of life come while there is always work" {
-    "$FMB_BUILD/poke" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/heard" 3>&- &
+    "$FMB_BUILD/fake-peer" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/heard" 3>&- &
     started="${started-} $!" clients=
     wait_until test -S "$BATS_TEST_TMPDIR/notify"
     NOTIFY_SOCKET=$BATS_TEST_TMPDIR/notify WATCHDOG_USEC=400000 start_fmbd
@@ -213,7 +213,7 @@ many_scenes() {
 
 @test "heartbeats come while queries arrive faster than they are answered" {
     start_fmbd
-    "$FMB_BUILD/poke" flood scene_query 101 60 > /dev/null 3>&- &
+    "$FMB_BUILD/fake-peer" flood scene_query 101 60 > /dev/null 3>&- &
     flood=$!
     started="$started $flood"
     is_flooded() { [ "$(status_of received)" -gt 1000 ]; }
@@ -258,7 +258,7 @@ many_scenes() {
         wait_until "$FMB" status --timeout 0.2
         # Fill the pipe to the brim where nobody reads.
         [ $reader = gone ] || timeout 1 dd if=/dev/zero of="$BATS_TEST_TMPDIR/pipe" bs=4096 2> /dev/null || true
-        "$FMB_BUILD/poke" FMB_PAIR_QUERY status
+        "$FMB_BUILD/fake-peer" FMB_PAIR_QUERY status
         [ "$(status_of malformed)" -gt 100 ]
         stop_fmbd
     done

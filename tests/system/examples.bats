@@ -113,7 +113,7 @@ repeats() {
     client=$!
     started="$started $client"
     wait_until queries_at_least $((before + 4))
-    for type in pair_query pair_result status; do "$FMB_BUILD/poke" FMB_PAIR_RESULT $type; done
+    for type in pair_query pair_result status; do "$FMB_BUILD/fake-peer" FMB_PAIR_RESULT $type; done
     kill -CONT "$fmbd"
     wait $client
     [ "$(cat "$BATS_TEST_TMPDIR/answer")" = overlapping ]

@@ -50,7 +50,7 @@ share() {
 
 # flood TYPE CLIENT: for longer than a test takes, in the background.
 flood() {
-    "$FMB_BUILD/poke" flood "$1" "$2" 60 > /dev/null 3>&- &
+    "$FMB_BUILD/fake-peer" flood "$1" "$2" 60 > /dev/null 3>&- &
     started="${started-} $!"
 }
 

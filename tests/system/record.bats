@@ -42,7 +42,7 @@ has_events() {
     [ "$(count_events "$1" "$2")" -ge "$3" ]
 }
 
-ask() {
+query() {
     random_scene 3 12 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query "$@" "$BATS_TEST_TMPDIR/scene.json" > /dev/null
 }
@@ -63,9 +63,9 @@ is() {
     wait_until [ -e "$BATS_TEST_TMPDIR/witness" ]
     start_record "$log"
     "$FMB" status > /dev/null
-    ask
-    ask --certificate
-    ask --box
+    query
+    query --certificate
+    query --box
     "$FMB" status > /dev/null
     finish_record
     kill "$witness"
@@ -94,7 +94,7 @@ is() {
     start_fmbd
     before=$(date +%s%6N)
     start_record "$log"
-    ask
+    query
     finish_record
     after=$(date +%s%6N)
     "$FMB_BUILD/events" "$log" | awk -v before="$before" -v after="$after" '
@@ -107,8 +107,8 @@ is() {
 @test "lcm-logplayer plays a log, and another recording of that holds the same" {
     start_fmbd
     start_record "$log"
-    ask
-    ask --certificate
+    query
+    query --certificate
     finish_record
     stop_fmbd
     [ "$(events "$log" | wc -l)" -ge 134 ]
@@ -122,7 +122,7 @@ is() {
 @test "it ends on SIGINT and SIGTERM with all that came before" {
     for signal in INT TERM; do
         start_record "$log.$signal"
-        "$FMB_BUILD/poke" numbers 5 $(seq 1000)
+        "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
         finish_record $signal
         is '.events == 1000 and .received.pair_queries == 1000 and .lost == 0'
         [ "$(count_events FMB_PAIR_QUERY "$log.$signal")" = 1000 ]
@@ -132,7 +132,7 @@ is() {
 @test "what waits when it is to end is recorded too" {
     start_record "$log"
     kill -STOP "$record"
-    "$FMB_BUILD/poke" numbers 5 $(seq 100)
+    "$FMB_BUILD/fake-peer" numbers 5 $(seq 100)
     kill -INT "$record"
     kill -CONT "$record"
     wait "$record"
@@ -144,7 +144,7 @@ is() {
     record=$!
     started=$record
     wait_until grep -qs 'recording to' "$messages"
-    "$FMB_BUILD/poke" numbers 5 $(seq 1 1500) 1503
+    "$FMB_BUILD/fake-peer" numbers 5 $(seq 1 1500) 1503
     finish_record
     grep -Eqx "$log: 1,501 messages in [0-9.]+ s, [0-9,]+ bytes" "$report"
     grep -Eqx '  pair queries +1,501' "$report"
@@ -159,7 +159,7 @@ is() {
     record=$!
     started=$record
     wait_until grep -qs 'recording to' "$messages"
-    "$FMB_BUILD/poke" numbers 5 $(seq 100)
+    "$FMB_BUILD/fake-peer" numbers 5 $(seq 100)
     wait "$record"
     is '.events == 7'
     [ "$(events "$log" | wc -l)" = 7 ]
@@ -190,7 +190,7 @@ is() {
 
 @test "files of bounded size divide no event, and one behind the other they are the log" {
     start_record --split-mb 0.05 "$log"
-    "$FMB_BUILD/poke" numbers 5 $(seq 1000)
+    "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
     finish_record
     is '.events == 1000 and (.files | length) > 5'
     is ".files[0] == \"$log.000\" and .files[1] == \"$log.001\""
@@ -215,14 +215,14 @@ is() {
 
 @test "of several files the newest are kept" {
     start_record --split-mb 0.05 --max-files 2 "$log"
-    "$FMB_BUILD/poke" numbers 5 $(seq 1000)
+    "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
     finish_record
     is '.events == 1000 and (.files | length) == 2'
     [ "$(echo "$log".*)" = "$(jq -r '.files | join(" ")' "$report")" ]
     # The last ones: the newest event is that of the last number.
     newest=$(events "$(jq -r '.files[1]' "$report")" | tail -n 1)
     start_record "$log"
-    "$FMB_BUILD/poke" numbers 5 1000
+    "$FMB_BUILD/fake-peer" numbers 5 1000
     finish_record
     [ "$(events "$log")" = "$newest" ]
 }
@@ -246,10 +246,10 @@ feed_until_it_ends() {
         "$FMB" query --json - > /dev/null
 }
 
-poke_until_it_ends() {
+publish_until_it_ends() {
     local first=1
     while kill -0 "$record" 2> /dev/null && [ $first -lt 100000 ]; do
-        "$FMB_BUILD/poke" numbers 5 $(seq $first $((first + 499)))
+        "$FMB_BUILD/fake-peer" numbers 5 $(seq $first $((first + 499)))
         first=$((first + 500))
         sleep 0.05
     done
@@ -263,7 +263,7 @@ poke_until_it_ends() {
     record=$!
     started=$record
     wait_until grep -qs 'recording to' "$messages"
-    poke_until_it_ends
+    publish_until_it_ends
     failed 'File too large; no larger file is allowed there: write several'
     [ "$(stat -c %s "$log")" -le 102400 ]
     is '.events > 100'
@@ -288,7 +288,7 @@ END
         sleep 0.05
     done
     if [ ! -e "$messages" ]; then skip "no disk can be mounted: $(cat "$BATS_TEST_TMPDIR/err")"; fi
-    poke_until_it_ends
+    publish_until_it_ends
     cp "$BATS_TEST_TMPDIR/left_over" "$log"
     failed 'No space left on device; free space there, or write elsewhere'
     is '.events > 100'
@@ -302,7 +302,7 @@ END
 
 @test "a recording that is killed leaves what it had written soon" {
     start_record "$log"
-    "$FMB_BUILD/poke" numbers 5 $(seq 300)
+    "$FMB_BUILD/fake-peer" numbers 5 $(seq 300)
     wait_until has_events FMB_PAIR_QUERY "$log" 300
     kill -KILL "$record"
     wait "$record" || true
@@ -312,7 +312,7 @@ END
 @test "a log that is deleted or truncated ends the recording" {
     for what in 'rm' 'truncate -s 100'; do
         start_record --force "$log"
-        "$FMB_BUILD/poke" numbers 5 $(seq 100)
+        "$FMB_BUILD/fake-peer" numbers 5 $(seq 100)
         wait_until has_events FMB_PAIR_QUERY "$log" 100
         $what "$log"
         code=0
@@ -322,7 +322,7 @@ END
     done
     # Also right before the end.
     start_record --force "$log"
-    "$FMB_BUILD/poke" numbers 5 1
+    "$FMB_BUILD/fake-peer" numbers 5 1
     wait_until has_events FMB_PAIR_QUERY "$log" 1
     rm "$log"
     code=0
@@ -333,7 +333,7 @@ END
 @test "a log that is truncated under traffic ends the recording, and its later events replay" {
     start_fmbd
     random_scene 3 12 > "$BATS_TEST_TMPDIR/scene.json"
-    for traffic in 'poke FMB_PAIR_QUERY' 'feed FMB_SCENE_QUERY'; do
+    for traffic in 'publish FMB_PAIR_QUERY' 'feed FMB_SCENE_QUERY'; do
         start_record --force --duration 30 "$log"
         "${traffic% *}_until_it_ends" &
         started="$started $!"
@@ -451,7 +451,7 @@ resolves() {
     url=${LCM_DEFAULT_URL:-udpm://239.255.76.67:7667?ttl=0}
     start_record --lcm-url "$url&recv_buf_size=20000" "$log"
     kill -STOP "$record"
-    "$FMB_BUILD/poke" numbers 5 $(seq 1000)
+    "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
     kill -CONT "$record"
     finish_record
     is '.lost > 100 and .lost + .events == 1000 and .receive_buffer == 40000'
@@ -465,7 +465,7 @@ resolves() {
     started="$started $record"
     wait_until grep -qs 'recording to' "$messages"
     kill -STOP "$record"
-    "$FMB_BUILD/poke" numbers 5 $(seq 900)
+    "$FMB_BUILD/fake-peer" numbers 5 $(seq 900)
     kill -CONT "$record"
     finish_record
     recorded=$(awk '/pair queries/ { print $NF }' "$report")
@@ -477,9 +477,9 @@ resolves() {
     start_record "$log"
     sent=0
     for type in pair_query pair_result scene_query scene_result status; do
-        sent=$((sent + $("$FMB_BUILD/poke" FMB_PAIR_QUERY $type)))
-        sent=$((sent + $("$FMB_BUILD/poke" FMB_SCENE_RESULT $type)))
-        sent=$((sent + $("$FMB_BUILD/poke" FMB_STATUS $type)))
+        sent=$((sent + $("$FMB_BUILD/fake-peer" FMB_PAIR_QUERY $type)))
+        sent=$((sent + $("$FMB_BUILD/fake-peer" FMB_SCENE_RESULT $type)))
+        sent=$((sent + $("$FMB_BUILD/fake-peer" FMB_STATUS $type)))
     done
     finish_record
     is ".malformed == $sent and .events == $sent"
@@ -490,7 +490,7 @@ resolves() {
     record=$!
     started="$started $record"
     wait_until grep -qs 'recording to' "$messages"
-    sent=$("$FMB_BUILD/poke" FMB_PAIR_QUERY status)
+    sent=$("$FMB_BUILD/fake-peer" FMB_PAIR_QUERY status)
     finish_record
     grep -Eqx "  malformed +$sent" "$report"
 }
@@ -500,11 +500,11 @@ resolves() {
 @test "the channels of another prefix are another service's" {
     start_fmbd --prefix P
     start_record "$log"
-    ask --prefix P
+    query --prefix P
     finish_record
     is '.events == 0'
     start_record --prefix P "$log.P"
-    ask --prefix P
+    query --prefix P
     finish_record
     is '.received.scene_queries > 0 and .lost == 0'
     [ "$(count_events PFMB_SCENE_QUERY "$log.P")" = "$(jq .received.scene_queries "$report")" ]
@@ -515,9 +515,9 @@ resolves() {
     others=0
     for options in '--channel ONE|T.*O' '--all' ''; do
         start_record --force $options "$log"
-        one=$("$FMB_BUILD/poke" ONE status) two=$("$FMB_BUILD/poke" TWO status)
-        three=$("$FMB_BUILD/poke" THREE status)
-        "$FMB_BUILD/poke" numbers 5 1 2 4
+        one=$("$FMB_BUILD/fake-peer" ONE status) two=$("$FMB_BUILD/fake-peer" TWO status)
+        three=$("$FMB_BUILD/fake-peer" THREE status)
+        "$FMB_BUILD/fake-peer" numbers 5 1 2 4
         finish_record
         case $options in
         --all) others=$((one + two + three)) ;;
@@ -550,11 +550,11 @@ resolves() {
 
 @test "packets that crash LCM do nothing to it" {
     start_record "$log"
-    for poison in wrap short; do
-        "$FMB_BUILD/poison" $poison FMB_PAIR_QUERY
-        "$FMB_BUILD/poison" $poison OTHER
+    for packets in wrap short; do
+        "$FMB_BUILD/crash-liblcm" $packets FMB_PAIR_QUERY
+        "$FMB_BUILD/crash-liblcm" $packets OTHER
     done
-    "$FMB_BUILD/poke" numbers 5 1
+    "$FMB_BUILD/fake-peer" numbers 5 1
     finish_record
     is '.events == 1'
 }
@@ -570,7 +570,7 @@ resolves() {
     started=$script
     exec 9> "$BATS_TEST_TMPDIR/keys"
     wait_until grep -q 'recording to' "$BATS_TEST_TMPDIR/screen"
-    "$FMB_BUILD/poke" numbers 5 $(seq 1000) 1003
+    "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000) 1003
     wait_until grep -q "fmb: 1,001 messages, .*/s, .* MB/s, 0 lost, 0 MB: $BATS_TEST_TMPDIR" "$BATS_TEST_TMPDIR/screen"
     printf '\003' >&9
     wait "$script"
@@ -578,7 +578,7 @@ resolves() {
     is '.events == 1001'
     # Elsewhere: the test before this one could have been it.
     start_record "$log.2"
-    "$FMB_BUILD/poke" numbers 5 $(seq 1000)
+    "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
     wait_until has_events FMB_PAIR_QUERY "$log.2" 1000
     sleep 0.5
     finish_record

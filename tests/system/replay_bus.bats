@@ -281,10 +281,10 @@ event() {
     generate clients clients.log
     generate --blast pairs 300 --by-handle handles.log
     start_fmbd
-    "$FMB_BUILD/poke" flood pair_query 101 60 > /dev/null 3>&- &
+    "$FMB_BUILD/fake-peer" flood pair_query 101 60 > /dev/null 3>&- &
     flood=$!
     started="$started $flood"
-    "$FMB_BUILD/poke" FMB_PAIR_RESULT pair_result > /dev/null 3>&- &
+    "$FMB_BUILD/fake-peer" FMB_PAIR_RESULT pair_result > /dev/null 3>&- &
     started="$started $!"
     for i in 1 2 3; do
         "$FMB" replay --json --bus --retries 100 handles.log clients.log > replayed.$i 3>&- &

@@ -153,7 +153,7 @@ grid_scene() {
     cube='"shape": "cuboid", "components": [[1,0],[0,1]]'
     echo "{\"dim\": 2, \"bodies\": [{\"id\": 1, $cube, \"origin\": [0,0]}, {\"id\": 2, $cube, \"origin\": [2,0]}]}" > "$BATS_TEST_TMPDIR/scene.json"
     for certificate in 'overlapping at 0 (1/2 1/2)' 'separated + a0' 'nonsense'; do
-        "$FMB_BUILD/poke" lie "$certificate" 3>&- &
+        "$FMB_BUILD/fake-peer" lie "$certificate" 3>&- &
         started="${started-} $!"
         run "$FMB" query --json --timeout 0.2 --retries 50 "$BATS_TEST_TMPDIR/scene.json"
         [ "$status" = 0 ]
@@ -169,7 +169,7 @@ grid_scene() {
 
 @test "a missing certificate is an error that says so" {
     random_scene 2 2 > "$BATS_TEST_TMPDIR/scene.json"
-    "$FMB_BUILD/poke" lie '' 3>&- &
+    "$FMB_BUILD/fake-peer" lie '' 3>&- &
     started="${started-} $!"
     run "$FMB" query --timeout 0.2 --retries 50 --certificate "$BATS_TEST_TMPDIR/scene.json"
     [ "$status" = 1 ]
@@ -182,11 +182,11 @@ grid_scene() {
     watch=$!
     started="$started $watch"
     grid_scene 3 1 | sed 's/{/{"margin":0.75,/' > "$BATS_TEST_TMPDIR/scene.json"
-    asked() {
+    query_until_watched() {
         "$FMB" query --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
         ! kill -0 $watch 2> /dev/null
     }
-    wait_until asked
+    wait_until query_until_watched
     [ "$(jq -c '[.end_pair, .overlapping, .touching]' "$BATS_TEST_TMPDIR/watch")" = \
         "$(jq -c '[.pairs[].verdict] | [length, (map(select(. == "overlapping")) | length), (map(select(. == "touching")) | length)]' "$BATS_TEST_TMPDIR/bus")" ]
     jq -e --slurpfile bus "$BATS_TEST_TMPDIR/bus" \
@@ -202,11 +202,11 @@ grid_scene() {
         "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
         watch=$!
         started="$started $watch"
-        asked() {
+        query_until_watched() {
             "$FMB" query --box --json "$BATS_TEST_TMPDIR/$scene" > "$BATS_TEST_TMPDIR/bus"
             ! kill -0 $watch 2> /dev/null
         }
-        wait_until asked
+        wait_until query_until_watched
         # By their places in the query, which ids 1, 2, ... follow, or in its list.
         jq -e --slurpfile bus "$BATS_TEST_TMPDIR/bus" '
             [$bus[0].pairs | to_entries[] | select(.value | .verdict != "separated" or .gap or (has("contact")) or $scene == "listed")
@@ -225,11 +225,11 @@ grid_scene() {
         "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
         watch=$!
         started="$started $watch"
-        asked() {
+        query_until_watched() {
             "$FMB" query --method fmb --gap $options --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
             ! kill -0 $watch 2> /dev/null
         }
-        wait_until asked
+        wait_until query_until_watched
         jq -e --arg error "$(jq -r '.pairs[0].error' "$BATS_TEST_TMPDIR/bus")" \
             '.error == $error and .status > 0' "$BATS_TEST_TMPDIR/watch"
     done
@@ -242,11 +242,11 @@ grid_scene() {
     watch=$!
     started="$started $watch"
     random_scene 2 2 > "$BATS_TEST_TMPDIR/scene.json"
-    asked() {
+    query_until_watched() {
         "$FMB" query --certificate --gap --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
         ! kill -0 $watch 2> /dev/null
     }
-    wait_until asked
+    wait_until query_until_watched
     for member in certificate gap direction; do
         [ "$(jq -c .$member "$BATS_TEST_TMPDIR/watch")" = "$(jq -c ".pairs[0].$member" "$BATS_TEST_TMPDIR/bus")" ]
     done
@@ -307,13 +307,13 @@ grid_scene() {
     wait_until heard
     sent=0 to_watch=0 scenes_to_watch=0
     for type in pair_query pair_result scene_query scene_result definition_query definition status; do
-        sent=$((sent + $("$FMB_BUILD/poke" FMB_PAIR_QUERY $type)))
-        sent=$((sent + $("$FMB_BUILD/poke" FMB_SCENE_QUERY $type)))
-        sent=$((sent + $("$FMB_BUILD/poke" FMB_DEFINITION_QUERY $type)))
-        scenes_to_watch=$((scenes_to_watch + $("$FMB_BUILD/poke" FMB_SCENE_RESULT $type)))
-        to_watch=$((to_watch + $("$FMB_BUILD/poke" FMB_PAIR_RESULT $type)))
-        to_watch=$((to_watch + $("$FMB_BUILD/poke" FMB_SCENE_RESULT $type)))
-        "$FMB_BUILD/poke" FMB_STATUS $type
+        sent=$((sent + $("$FMB_BUILD/fake-peer" FMB_PAIR_QUERY $type)))
+        sent=$((sent + $("$FMB_BUILD/fake-peer" FMB_SCENE_QUERY $type)))
+        sent=$((sent + $("$FMB_BUILD/fake-peer" FMB_DEFINITION_QUERY $type)))
+        scenes_to_watch=$((scenes_to_watch + $("$FMB_BUILD/fake-peer" FMB_SCENE_RESULT $type)))
+        to_watch=$((to_watch + $("$FMB_BUILD/fake-peer" FMB_PAIR_RESULT $type)))
+        to_watch=$((to_watch + $("$FMB_BUILD/fake-peer" FMB_SCENE_RESULT $type)))
+        "$FMB_BUILD/fake-peer" FMB_STATUS $type
     done
     [ "$sent" -gt 4000 ]
     [ "$(status_of malformed)" = "$sent" ]
@@ -346,14 +346,14 @@ grid_scene() {
     stop_fmbd
 }
 
-# poison_all: packets that crash liblcm's receiver (1.3.1), on every channel of the service.
-poison_all() {
+# send_crash_packets: packets that crash liblcm's receiver (1.3.1), on every channel of the service.
+send_crash_packets() {
     for channel in FMB_PAIR_QUERY FMB_SCENE_QUERY FMB_DEFINITION_QUERY FMB_STATUS FMB_PAIR_RESULT \
         FMB_SCENE_RESULT; do
-        "$FMB_BUILD/poison" wrap $channel
-        "$FMB_BUILD/poison" short $channel
-        "$FMB_BUILD/poison" empty $channel
-        "$FMB_BUILD/poison" huge $channel
+        "$FMB_BUILD/crash-liblcm" wrap $channel
+        "$FMB_BUILD/crash-liblcm" short $channel
+        "$FMB_BUILD/crash-liblcm" empty $channel
+        "$FMB_BUILD/crash-liblcm" huge $channel
     done
 }
 
@@ -365,7 +365,7 @@ poison_all() {
     random_scene 3 60 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query --json --local "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/local"
     for _ in 1 2 3 4 5; do
-        poison_all
+        send_crash_packets
         "$FMB" query --json "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/local"
     done
     [ "$(status_of foreign)" -ge 100 ]
@@ -382,7 +382,7 @@ poison_all() {
 }
 
 @test "starts beside packets that crash liblcm" {
-    ( while :; do poison_all; done ) 3>&- &
+    ( while :; do send_crash_packets; done ) 3>&- &
     started="${started-} $!"
     # Each query is a start of its own, and waits for no heartbeat.
     random_scene 2 2 > "$BATS_TEST_TMPDIR/scene.json"

@@ -262,7 +262,7 @@ static void set_along_normal(struct slab_truth *truth)
     dot(truth, truth->drift, truth->slope);
 }
 
-void slab_truth_ask(struct slab_truth *truth, struct slab_normal normal)
+void slab_truth_compute(struct slab_truth *truth, struct slab_normal normal)
 {
     truth->factor = factor_of(truth, normal);
     set_normal(truth, normal);
@@ -307,7 +307,7 @@ double slab_truth_worst(struct slab_truth *truth, const struct slab_value *slab)
 {
     const double bound = slab->error;
     struct inequality side[2];
-    slab_truth_ask(truth, slab->normal);
+    slab_truth_compute(truth, slab->normal);
     const int factor = truth->factor;
     double worst = slab_truth_ratio(truth, truth->seen_low, factor, slab->low, bound);
     worst = fmax(worst, slab_truth_ratio(truth, truth->seen_high, factor, slab->high, bound));
@@ -323,7 +323,7 @@ double slab_truth_worst(struct slab_truth *truth, const struct slab_value *slab)
 }
 
 /* The gap along an axis: that of the slab across it. */
-static void ask_axis(struct slab_truth *truth, int axis)
+static void compute_axis(struct slab_truth *truth, int axis)
 {
     for (int i = 0; i < FMB_DIM_MAX; i++)
         mpz_set_ui(truth->normal[i], i == axis);
@@ -338,7 +338,7 @@ double slab_truth_axes(struct slab_truth *truth, double surely, double bound)
     mpz_t gap;
     mpz_init(gap);
     for (int axis = 0; axis < truth->dim; axis++) {
-        ask_axis(truth, axis);
+        compute_axis(truth, axis);
         if (axis == 0 || mpz_cmp(truth->gap, gap) > 0)
             mpz_set(gap, truth->gap);
     }

@@ -443,7 +443,7 @@ static int gap_sign(struct slab_truth *truth, const struct pair *pair, int axis)
 {
     const int dim = pair->a.body->dim, u = (axis + 1) % dim, v = (axis + 2) % dim;
     slab_truth_set(truth, pair);
-    slab_truth_ask(truth, (struct slab_normal){u, v});
+    slab_truth_compute(truth, (struct slab_normal){u, v});
     return mpz_sgn(truth->gap);
 }
 

@@ -759,7 +759,7 @@ static void separated_is_named(struct scene_result *result, int turn)
     result->end_pair = result->names_pairs ? result->end_pair : INT_MAX;
 }
 
-static void boxes_unasked(struct scene_result *result, int turn)
+static void boxes_unwanted(struct scene_result *result, int turn)
 {
     (void) turn;
     result->has_boxes = true;
@@ -795,7 +795,7 @@ static const struct {
     {"a handle more", a_handle_more, true, true},
     {"unknown although whole", unknown_although_whole, true, true},
     {"boxes of 2D", boxes_of_2d, true, true},
-    {"boxes unasked", boxes_unasked, true, false},
+    {"boxes unasked", boxes_unwanted, true, false},
     {"status of the library", status_of_the_library, true, true},
     {"no times", no_times, true, true},
     {"times of none", times_of_none, true, true},
@@ -861,7 +861,7 @@ static void gaps_of_2d(struct scene_result *result, int turn)
     result->dim = 2;
 }
 
-static void gaps_unasked(struct scene_result *result, int turn)
+static void gaps_unwanted(struct scene_result *result, int turn)
 {
     (void) turn;
     result->has_gaps = true;
@@ -872,13 +872,14 @@ static void gaps_unasked(struct scene_result *result, int turn)
 static void test_forged_gaps_are_ignored(void **state)
 {
     (void) state;
-    static relay_lie *const gap_lies[] = {no_gaps, too_far_apart, no_gap, gaps_of_2d, gaps_unasked};
+    static relay_lie *const gap_lies[] = {no_gaps, too_far_apart, no_gap, gaps_of_2d,
+                                          gaps_unwanted};
     for (size_t i = 0; i < sizeof gap_lies / sizeof *gap_lies; i++) {
         struct relay *relay = relay_new();
         struct fmb_client_scene scene = all_pairs();
         scene.placement_count = 200;
         scene.want = 0;
-        scene.margin = gap_lies[i] == gaps_unasked ? 0 : 0.5;
+        scene.margin = gap_lies[i] == gaps_unwanted ? 0 : 0.5;
         relay->lie = gap_lies[i];
         relay_open(relay, 2000);
         struct fmb_client *client = relay_client(relay, 0.1, 1);

@@ -152,19 +152,19 @@ static void draw_pairs(struct draw *draw, size_t count, struct world *world)
 /* ---- What is expected ---- */
 
 static void expect_right(const struct question *question, const struct pair *pair,
-                         const struct fmb_answer *answer, bool ask_oracle)
+                         const struct fmb_answer *answer, bool check_oracle)
 {
     struct fmb_answer exact;
     char why[200];
     assert_int_equal(pair_decide(fmb_method_by_name("exact"), pair, 0, &exact), FMB_OK);
     if (answer->verdict != exact.verdict)
         referee_fail(question, "the exact method has another verdict");
-    if (ask_oracle && !oracle_check(pair, FMB_WANT_BOX, answer, why, sizeof why))
+    if (check_oracle && !oracle_check(pair, FMB_WANT_BOX, answer, why, sizeof why))
         referee_fail(question, why);
 }
 
 /* As the method certified says of a pair that can be asked. */
-static void set_expected(const struct world *world, const unsigned pair[2], bool ask_oracle,
+static void set_expected(const struct world *world, const unsigned pair[2], bool check_oracle,
                          struct said *out)
 {
     const struct question question = question_of(world, pair);
@@ -174,7 +174,7 @@ static void set_expected(const struct world *world, const unsigned pair[2], bool
     referee_ready(&question, &ready);
     assert_int_equal(
         pair_decide(fmb_method_by_name("certified"), &ready.pair, FMB_WANT_BOX, &answer), FMB_OK);
-    expect_right(&question, &ready.pair, &answer, ask_oracle);
+    expect_right(&question, &ready.pair, &answer, check_oracle);
     out->verdict = (unsigned char) answer.verdict;
     if (answer.has_contact)
         memcpy(out->contact, answer.contact, sizeof out->contact);
@@ -242,8 +242,8 @@ static void answers_free(struct answers *answers)
 }
 
 /* frames: those of the world, wherever they lie. */
-static void ask(const struct world *world, const struct fmb_prepared *frames, const struct way *way,
-                struct answers *out)
+static void decide(const struct world *world, const struct fmb_prepared *frames,
+                   const struct way *way, struct answers *out)
 {
     const size_t n = world->count;
     out->batch =
@@ -311,11 +311,11 @@ static void expect_said(const struct world *world, const struct way *way,
     }
 }
 
-static void expect_asked(const struct world *world, const struct fmb_prepared *frames,
-                         const struct way *way)
+static void expect_decided(const struct world *world, const struct fmb_prepared *frames,
+                           const struct way *way)
 {
     struct answers answers;
-    ask(world, frames, way, &answers);
+    decide(world, frames, way, &answers);
     expect_said(world, way, &answers);
     answers_free(&answers);
 }
@@ -352,7 +352,7 @@ static size_t expect_two_steps(const struct world *world, const struct way *way)
     struct answers answers;
     struct guarded open;
     size_t count = world->count + 1;
-    ask(world, world->frame, way, &answers);
+    decide(world, world->frame, way, &answers);
     answers.batch.open = guarded_new(&open, world->count * sizeof *answers.batch.open);
     answers.batch.open_count = &count;
     memset(answers.verdicts.all + GUARDS, GUARD, answers.verdicts.size);
@@ -376,7 +376,7 @@ static void expect_all_ways(const struct world *world)
     for (int instructions = INSTRUCTIONS_BEST; instructions <= INSTRUCTIONS_AVX512; instructions++)
         for (int wants = 0; instructions_supported(instructions) && wants < 4; wants++) {
             const struct way way = {instructions, wants & 1, wants & 2};
-            expect_asked(world, world->frame, &way);
+            expect_decided(world, world->frame, &way);
             expect_two_steps(world, &way);
         }
 }
@@ -601,12 +601,12 @@ static void set_frames_near_bound(struct draw *draw, const struct cell *cell, st
     }
 }
 
-static size_t ask_open(const struct world *world, const struct way *way,
-                       unsigned char verdicts[PAIRS_MAX])
+static size_t decide_verdicts(const struct world *world, const struct way *way,
+                              unsigned char verdicts[PAIRS_MAX])
 {
     size_t open[PAIRS_MAX], count;
     struct answers answers;
-    ask(world, world->frame, way, &answers);
+    decide(world, world->frame, way, &answers);
     answers.batch.open = open;
     answers.batch.open_count = &count;
     assert_int_equal(fmb_decide_batch(&answers.batch), FMB_OK);
@@ -630,12 +630,13 @@ static void what_is_left_open_does_not_depend_on_instructions(void **state)
         unsigned char plain[PAIRS_MAX], other[PAIRS_MAX];
         set_frames_near_bound(&draw, &cells[n % count], world);
         for (int contacts = 0; contacts < 2; contacts++) {
-            open += ask_open(world, &(struct way){INSTRUCTIONS_PLAIN, contacts, false}, plain);
+            open +=
+                decide_verdicts(world, &(struct way){INSTRUCTIONS_PLAIN, contacts, false}, plain);
             for (int set = INSTRUCTIONS_BEST; set <= INSTRUCTIONS_AVX512; set++) {
                 const struct way way = {set, contacts, false};
                 if (!instructions_supported(set))
                     continue;
-                ask_open(world, &way, other);
+                decide_verdicts(world, &way, other);
                 for (size_t i = 0; i < world->count; i++)
                     if (other[i] != plain[i])
                         fail_at(world, &way, i, "another verdict");
@@ -758,7 +759,7 @@ static void address_does_not_matter(void **state)
              instructions++) {
             const struct way way = {instructions, at & 8, false};
             if (instructions_supported(instructions))
-                expect_asked(world, frames, &way);
+                expect_decided(world, frames, &way);
         }
         assert_memory_equal(frames, world->frame, sizeof world->frame); /* nothing is written */
     }
@@ -905,7 +906,7 @@ static void expect_whole_refused(const struct world *world, const struct way *wa
                                  enum fmb_status status)
 {
     struct answers answers;
-    ask(world, world->frame, way, &answers);
+    decide(world, world->frame, way, &answers);
     assert_int_equal(answers.status, status);
     assert_true(is_untouched(answers.verdicts.all, answers.verdicts.size + GUARDS));
     assert_true(is_untouched(answers.contacts.all, answers.contacts.size + GUARDS));

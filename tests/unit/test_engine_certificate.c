@@ -583,7 +583,7 @@ static void certificates_end_with_the_span(void **state)
         }
 }
 
-static void too_small_a_size_is_told(void **state)
+static void too_small_a_size_is_reported(void **state)
 {
     (void) state;
     const struct question question = cubes(1, false);
@@ -642,7 +642,7 @@ int main(void)
         cmocka_unit_test(what_is_made_of_cubes),
         cmocka_unit_test(what_is_made_of_flat_frames),
         cmocka_unit_test(certificates_end_with_the_span),
-        cmocka_unit_test(too_small_a_size_is_told),
+        cmocka_unit_test(too_small_a_size_is_reported),
         cmocka_unit_test(bad_pairs_are_refused),
         cmocka_unit_test(tampered_texts_prove_no_wrong_verdict),
         cmocka_unit_test(certificates_of_other_pairs_prove_no_wrong_verdict),

@@ -266,7 +266,7 @@ static void squares_by_hand_are_judged_right(void **state)
     assert_false(holds(&ready.pair, FMB_TOUCHING, "touching - z x b2 at 0 (1/2 1/2)"));
 }
 
-static void no_reason_need_be_told(void **state)
+static void the_reason_is_optional(void **state)
 {
     (void) state;
     const struct question question = cubes(3, false);
@@ -600,7 +600,7 @@ int main(void)
         cmocka_unit_test(squares_by_hand_are_judged_right),
         cmocka_unit_test(edges_of_tetrahedra_have_six_names),
         cmocka_unit_test(unknown_verdicts_are_not_proved),
-        cmocka_unit_test(no_reason_need_be_told),
+        cmocka_unit_test(the_reason_is_optional),
         cmocka_unit_test(points_are_where_the_oracle_says),
         cmocka_unit_test(normals_are_what_whole_numbers_say),
         cmocka_unit_test(random_bytes_prove_nothing),

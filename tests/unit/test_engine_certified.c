@@ -29,7 +29,7 @@ static void decide(const char *method, const struct question *question, const st
 }
 
 /* The certified answer, found right. */
-static void ask(const struct question *question, struct fmb_answer *answer)
+static void decide_checked(const struct question *question, struct fmb_answer *answer)
 {
     struct ready ready;
     struct fmb_answer exact;
@@ -109,8 +109,8 @@ static void swapped_is_the_same_to_the_bit(void **state)
         const struct question question = draw_either(&draw);
         const struct question swapped = question_swapped(&question);
         struct fmb_answer one, other;
-        ask(&question, &one);
-        ask(&swapped, &other);
+        decide_checked(&question, &one);
+        decide_checked(&swapped, &other);
         if (!referee_same(&one, &other))
             referee_fail(&question, "differs the other way round");
     }
@@ -120,7 +120,7 @@ static void expect_verdict(const struct question *question, const struct fmb_ans
                            const char *what)
 {
     struct fmb_answer found;
-    ask(question, &found);
+    decide_checked(question, &found);
     if (found.verdict != expected->verdict)
         referee_fail(question, what);
 }
@@ -150,7 +150,7 @@ static void axes_have_no_order(void **state)
     for (long n = draw_sample(8000); n > 0; n--) {
         struct question question = draw_either(&draw);
         struct fmb_answer answer;
-        ask(&question, &answer);
+        decide_checked(&question, &answer);
         change_vectors(&question, rotate_axes, draw_int(&draw, 0, 2));
         if (draw_coin(&draw))
             change_vectors(&question, exchange_axes, 0);
@@ -173,7 +173,7 @@ static void size_is_relative(void **state)
     for (long n = draw_sample(4000); n > 0; n--) {
         const struct question question = draw_either(&draw);
         struct fmb_answer answer;
-        ask(&question, &answer);
+        decide_checked(&question, &answer);
         for (int times = 0; times < 3; times++) {
             struct question scaled = question;
             change_vectors(&scaled, scale, draw_int(&draw, -950, 950));
@@ -191,7 +191,7 @@ static void time_can_be_scaled(void **state)
     for (long n = draw_sample(6000); n > 0; n--) {
         struct question question = draw_either(&draw);
         struct fmb_answer answer;
-        ask(&question, &answer);
+        decide_checked(&question, &answer);
         const int exponent = draw_int(&draw, -900, 900);
         question.duration = ldexp(question.duration, exponent);
         scale(question.a.velocity, FMB_DIM_MAX, -exponent);
@@ -208,7 +208,7 @@ static void place_does_not_matter(void **state)
     for (long n = draw_sample(8000); n > 0; n--) {
         struct question question = draw_question(&draw, whole);
         struct fmb_answer answer;
-        ask(&question, &answer);
+        decide_checked(&question, &answer);
         for (int axis = 0; axis < question.a.dim; axis++) {
             const double way = draw_int(&draw, -1, 1) * ldexp(1, draw_int(&draw, 0, 49));
             question.a.origin[axis] += way;
@@ -235,13 +235,13 @@ static void a_common_velocity_changes_no_times(void **state)
         struct question question = draw_question(&draw, whole);
         struct fmb_answer still, moved;
         question.a.moving = question.b.moving = true;
-        ask(&question, &still);
+        decide_checked(&question, &still);
         for (int axis = 0; axis < question.a.dim; axis++) {
             const double more = draw_int(&draw, -9, 9) * ldexp(1, draw_int(&draw, 0, 20));
             question.a.velocity[axis] += more;
             question.b.velocity[axis] += more;
         }
-        ask(&question, &moved);
+        decide_checked(&question, &moved);
         if (still.verdict != moved.verdict)
             referee_fail(&question, "another verdict with more velocity of both");
         if (still.has_contact)
@@ -260,14 +260,14 @@ static void time_runs_backwards(void **state)
         struct fmb_answer forth, back;
         const double T = question.duration;
         question.a.moving = question.b.moving = true;
-        ask(&question, &forth);
+        decide_checked(&question, &forth);
         for (int axis = 0; axis < question.a.dim; axis++) {
             question.a.origin[axis] += T * question.a.velocity[axis];
             question.b.origin[axis] += T * question.b.velocity[axis];
             question.a.velocity[axis] = -question.a.velocity[axis];
             question.b.velocity[axis] = -question.b.velocity[axis];
         }
-        ask(&question, &back);
+        decide_checked(&question, &back);
         if (forth.verdict != back.verdict)
             referee_fail(&question, "another verdict back in time");
         if (forth.has_contact)
@@ -507,8 +507,8 @@ static void case_with_a_name(void **state)
     const struct named *named = *state;
     const struct question swapped = question_swapped(&named->question);
     struct fmb_answer answer, other;
-    ask(&named->question, &answer);
-    ask(&swapped, &other);
+    decide_checked(&named->question, &answer);
+    decide_checked(&swapped, &other);
     if (!referee_same(&answer, &other))
         referee_fail(&named->question, "differs the other way round");
     if (answer.verdict != named->verdict)
@@ -533,7 +533,7 @@ static void windows_of_subnormals(void **state)
         scale(question.a.velocity, FMB_DIM_MAX, 1074 - exponent / 2 - draw_int(&draw, 0, 4));
         scale(question.b.velocity, FMB_DIM_MAX, 1074 - exponent / 2 - draw_int(&draw, 0, 4));
         struct fmb_answer answer;
-        ask(&question, &answer);
+        decide_checked(&question, &answer);
     }
 }
 

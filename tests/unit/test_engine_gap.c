@@ -24,7 +24,7 @@
 
 /* ---- Queries ---- */
 
-static struct fmb_answer ask(const struct question *question, const char *method)
+static struct fmb_answer decide(const struct question *question, const char *method)
 {
     struct ready ready;
     struct fmb_answer answer;
@@ -41,8 +41,8 @@ static struct fmb_answer check_by(const struct question *question, const char *m
     struct ready ready;
     char why[200] = "";
     const struct question swapped = question_swapped(question);
-    const struct fmb_answer answer = ask(question, method);
-    const struct fmb_answer other = ask(&swapped, method);
+    const struct fmb_answer answer = decide(question, method);
+    const struct fmb_answer other = decide(&swapped, method);
     referee_ready(question, &ready);
     if (!answer.has_gap || !gap_check(&ready.pair, answer.verdict, &answer.gap, why, sizeof why)) {
         print_message("%s: %s, verdict %d, [%.17g, %.17g] along %.17g %.17g %.17g\n", method, why,
@@ -208,7 +208,7 @@ static void shallow_pairs(void **state)
         question_draw_movers(&draw, &question);
         question.b.origin[0] += 3;
         for (int round = 0; round < 3; round++) {
-            const struct fmb_gap now = ask(&question, "certified").gap;
+            const struct fmb_gap now = decide(&question, "certified").gap;
             for (int axis = 0; axis < 3; axis++)
                 question.b.origin[axis] += (-1e-3 - now.bounds[0]) * now.direction[axis];
         }
@@ -335,7 +335,7 @@ static void known_gaps(void **state)
         const struct fmb_answer answer = check(&question);
         assert_int_equal(answer.verdict, cases[i].verdict);
         assert_true(answer.gap.bounds[0] <= cases[i].gap && cases[i].gap <= answer.gap.bounds[1]);
-        const struct fmb_answer certified = ask(&question, "certified");
+        const struct fmb_answer certified = decide(&question, "certified");
         if (cases[i].gap < 3) /* no root */
             assert_true(certified.gap.bounds[0] == certified.gap.bounds[1]);
     }
@@ -430,7 +430,7 @@ static void turn_any(struct draw *draw, struct solid *solid)
 static void bring_close(struct question *question, double target)
 {
     for (int step = 0; step < 2; step++) {
-        const struct fmb_gap gap = ask(question, "exact").gap;
+        const struct fmb_gap gap = decide(question, "exact").gap;
         for (int axis = 0; axis < question->a.dim; axis++)
             question->b.origin[axis] -= (gap.bounds[0] - target) * gap.direction[axis];
     }

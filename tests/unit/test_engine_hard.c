@@ -2,7 +2,7 @@
  * interval and box, tightest doubles, in both orders.
  *
  * Each family draws pairs from the seed that it prints (FMB_SEED gives one back); FMB_SAMPLE=10
- * asks ten times as many, FMB_FAST=1 an eighth. */
+ * draws ten times as many, FMB_FAST=1 an eighth. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

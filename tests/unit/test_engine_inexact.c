@@ -21,7 +21,8 @@
 
 static const char *const inexact[] = {"fmb", "sat"};
 
-static enum fmb_status ask(const char *method, const struct pair *pair, struct fmb_answer *answer)
+static enum fmb_status decide(const char *method, const struct pair *pair,
+                              struct fmb_answer *answer)
 {
     memset(answer, 0xa5, sizeof *answer);
     return pair_decide(fmb_method_by_name(method), pair, FMB_WANT_BOX, answer);
@@ -108,10 +109,10 @@ static void agree_on_ordinary_pairs(void **state)
         struct question question = draw_ordinary_pair(&draw, (int) (n % 16));
         struct fmb_answer exact, found;
         struct ready ready;
-        referee_ask(&question, &exact);
+        referee_decide(&question, &exact);
         referee_ready(&question, &ready);
         for (size_t i = 0; i < COUNT(inexact); i++) {
-            if (ask(inexact[i], &ready.pair, &found) != FMB_OK)
+            if (decide(inexact[i], &ready.pair, &found) != FMB_OK)
                 referee_fail(&question, "refused");
             if (found.verdict != exact.verdict)
                 referee_fail(&question, "another verdict");
@@ -140,10 +141,10 @@ static void unit_cubes_that_share_a_face_touch(void **state)
             struct fmb_answer exact, found;
             struct ready ready;
             question.b.origin[axis] = sign;
-            referee_ask(&question, &exact);
+            referee_decide(&question, &exact);
             referee_ready(&question, &ready);
             assert_int_equal(exact.verdict, FMB_TOUCHING);
-            assert_int_equal(ask("fmb", &ready.pair, &found), FMB_OK);
+            assert_int_equal(decide("fmb", &ready.pair, &found), FMB_OK);
             assert_int_equal(found.verdict, FMB_TOUCHING);
             assert_box_contains(&question, &exact, &found);
         }
@@ -177,7 +178,7 @@ static void what_overlaps_deeply_overlaps(void **state)
             struct fmb_answer found;
             struct ready ready;
             referee_ready(&question, &ready);
-            if (ask(inexact[i], &ready.pair, &found) != FMB_OK)
+            if (decide(inexact[i], &ready.pair, &found) != FMB_OK)
                 referee_fail(&question, "refused");
             if (found.verdict != FMB_OVERLAPPING)
                 referee_fail(&question, "another verdict");
@@ -211,7 +212,7 @@ static void say_so_of_flat_frames(void **state)
             struct fmb_answer answer;
             referee_ready(questions[q], &ready);
             for (size_t m = 0; m < COUNT(inexact); m++)
-                assert_int_equal(ask(inexact[m], &ready.pair, &answer), FMB_CANNOT_DECIDE);
+                assert_int_equal(decide(inexact[m], &ready.pair, &answer), FMB_CANNOT_DECIDE);
         }
     }
 }
@@ -273,7 +274,7 @@ static void say_so_of_numbers_out_of_range(void **state)
                 struct ready ready;
                 struct fmb_answer answer;
                 referee_ready(&question, &ready);
-                enum fmb_status status = ask(inexact[i], &ready.pair, &answer);
+                enum fmb_status status = decide(inexact[i], &ready.pair, &answer);
                 if (fabs(log10(sizes[s])) < 60)
                     assert_int_equal(status, FMB_OK);
                 if (status != FMB_CANNOT_DECIDE)
@@ -291,7 +292,7 @@ static void say_so_of_rows_that_overflow(void **state)
         {2, FMB_CUBOID, {{1e-200, 0}, {1e200, 1e200}}, {-5e199, -4e199}, {0}, false},
         1};
     struct fmb_answer exact;
-    referee_ask(&question, &exact);
+    referee_decide(&question, &exact);
     assert_int_equal(exact.verdict, FMB_SEPARATED);
     for (size_t i = 0; i < COUNT(inexact); i++) {
         struct ready ready;
@@ -311,7 +312,7 @@ static void say_so_of_boxes_that_overflow(void **state)
     struct ready ready;
     struct fmb_answer answer;
     referee_ready(&question, &ready);
-    assert_int_equal(ask("fmb", &ready.pair, &answer), FMB_CANNOT_DECIDE);
+    assert_int_equal(decide("fmb", &ready.pair, &answer), FMB_CANNOT_DECIDE);
 }
 
 /* In: a pair of frames that may be flat. Returns whether a method decided it. */
@@ -320,7 +321,7 @@ static bool harmless(const struct question *question, const char *method)
     struct ready ready;
     struct fmb_answer answer;
     referee_ready(question, &ready);
-    const enum fmb_status status = ask(method, &ready.pair, &answer);
+    const enum fmb_status status = decide(method, &ready.pair, &answer);
     if (status == FMB_CANNOT_DECIDE) {
         const struct fmb_answer nothing = {.has_box = false};
         assert_memory_equal(&answer, &nothing, sizeof answer);

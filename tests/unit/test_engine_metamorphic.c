@@ -190,9 +190,9 @@ static void answer_follows(void **state)
     for (long n = 0; n < size; n++) {
         struct question question = draw_question(&draw);
         struct fmb_answer expected, found;
-        referee_ask(&question, &expected);
+        referee_decide(&question, &expected);
         change->apply(&draw, &question, &expected);
-        referee_ask(&question, &found);
+        referee_decide(&question, &found);
         if (!referee_same(&expected, &found))
             referee_fail(&question, change->name);
     }
@@ -229,13 +229,13 @@ static void translation_moves_the_box(void **state)
         struct question question = draw_question(&draw);
         struct fmb_answer still, moved;
         double way[FMB_DIM_MAX] = {0};
-        referee_ask(&question, &still);
+        referee_decide(&question, &still);
         for (int axis = 0; axis < question.a.dim; axis++) {
             way[axis] = draw_int(&draw, -1, 1) * ldexp(1, draw_int(&draw, 0, 40));
             question.a.origin[axis] += way[axis];
             question.b.origin[axis] += way[axis];
         }
-        referee_ask(&question, &moved);
+        referee_decide(&question, &moved);
         expect_same_time(&question, &still, &moved);
         for (int end = 0; still.has_box && end < 2; end++)
             for (int axis = 0; axis < question.a.dim; axis++)
@@ -262,7 +262,7 @@ static void translation_moves_whole_boxes_exactly(void **state)
                 solids[side]->component[axis][axis] = draw_int(&draw, -5, 5);
         }
         struct fmb_answer expected, found;
-        referee_ask(&question, &expected);
+        referee_decide(&question, &expected);
         for (int axis = 0; axis < question.a.dim; axis++) {
             const double way = draw_int(&draw, -1, 1) * ldexp(1, draw_int(&draw, 0, 40));
             for (int side = 0; side < 2; side++) {
@@ -271,7 +271,7 @@ static void translation_moves_whole_boxes_exactly(void **state)
                     expected.box[side][axis] += way; /* here: the end */
             }
         }
-        referee_ask(&question, &found);
+        referee_decide(&question, &found);
         if (!referee_same(&expected, &found))
             referee_fail(&question, "moved box");
     }
@@ -287,13 +287,13 @@ static void common_velocity_changes_no_times(void **state)
         struct question question = draw_question(&draw);
         struct fmb_answer still, moved;
         question.a.moving = question.b.moving = true;
-        referee_ask(&question, &still);
+        referee_decide(&question, &still);
         for (int axis = 0; axis < question.a.dim; axis++) {
             double more = draw_int(&draw, -9, 9);
             question.a.velocity[axis] += more;
             question.b.velocity[axis] += more;
         }
-        referee_ask(&question, &moved);
+        referee_decide(&question, &moved);
         expect_same_time(&question, &still, &moved);
     }
 }
@@ -309,14 +309,14 @@ static void time_runs_backwards(void **state)
         const double T = question.duration;
         struct fmb_answer forth, back;
         question.a.moving = question.b.moving = true;
-        referee_ask(&question, &forth);
+        referee_decide(&question, &forth);
         for (int axis = 0; axis < question.a.dim; axis++) {
             question.a.origin[axis] += T * question.a.velocity[axis];
             question.b.origin[axis] += T * question.b.velocity[axis];
             question.a.velocity[axis] = -question.a.velocity[axis];
             question.b.velocity[axis] = -question.b.velocity[axis];
         }
-        referee_ask(&question, &back);
+        referee_decide(&question, &back);
         /* -t is rounded as t is, the other way. */
         for (int end = 0; forth.has_contact && end < 2; end++)
             if (!end_has_moved(-forth.contact[1 - end], back.contact[end], T, end == 0 ? -1 : 1))

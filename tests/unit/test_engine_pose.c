@@ -1,5 +1,6 @@
-/* Placed bodies: pairs with orientations against the oracle, and the same by every way to ask; what
- * must not change where the whole scene turns, or a quaternion gets longer; bodies of many frames.
+/* Placed bodies: pairs with orientations against the oracle, and the same by every way to decide;
+ * what must not change where the whole scene turns, or a quaternion gets longer; bodies of many
+ * frames.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -557,12 +558,12 @@ static void expect_certificates(const struct crowd *crowd)
     }
 }
 
-static void every_way_to_ask_gives_the_same(void **state)
+static void every_way_to_decide_gives_the_same(void **state)
 {
     (void) state;
     static struct crowd crowd;
     struct draw draw;
-    draw_begin(&draw, "every_way_to_ask_gives_the_same");
+    draw_begin(&draw, "every_way_to_decide_gives_the_same");
     for (long n = draw_sample(40); n > 0; n--) {
         draw_crowd(&draw, n % 4 ? 3 : 2, &crowd);
         for (int set = INSTRUCTIONS_BEST; set <= INSTRUCTIONS_AVX512; set++)
@@ -650,13 +651,13 @@ static void turn_box(const struct cube_turn *turn, double box[2][FMB_DIM_MAX])
         }
 }
 
-static void ask_both(const struct question *question, struct fmb_answer *exact,
-                     enum fmb_verdict *certified)
+static void decide_both(const struct question *question, struct fmb_answer *exact,
+                        enum fmb_verdict *certified)
 {
     struct ready ready;
     struct fmb_answer answer;
     referee_ready(question, &ready);
-    referee_ask(question, exact);
+    referee_decide(question, exact);
     assert_int_equal(pair_decide(fmb_method_default(), &ready.pair, FMB_WANT_BOX, &answer), FMB_OK);
     *certified = answer.verdict;
 }
@@ -680,11 +681,11 @@ static void expect_unchanged(const struct question *question, const struct quest
 {
     struct fmb_answer before, after;
     enum fmb_verdict certified;
-    ask_both(question, &before, &certified);
+    decide_both(question, &before, &certified);
     assert_int_equal(certified, before.verdict);
     if (turn && before.has_box)
         turn_box(turn, before.box);
-    ask_both(changed, &after, &certified);
+    decide_both(changed, &after, &certified);
     if (certified != before.verdict)
         referee_fail(changed, "certified has another verdict than before");
     if (!referee_same(&before, &after)) {
@@ -876,7 +877,7 @@ int main(void)
         cmocka_unit_test(boxes_are_apart_by_what_rounding_loses),
         cmocka_unit_test(boxes_hold_travels_that_underflow),
         cmocka_unit_test(boxes_of_small_numbers_are_plain),
-        cmocka_unit_test(every_way_to_ask_gives_the_same),
+        cmocka_unit_test(every_way_to_decide_gives_the_same),
         cmocka_unit_test(scenes_may_turn_by_quarters),
         cmocka_unit_test(quaternions_may_have_any_length),
         cmocka_unit_test(bodies_are_the_hulls_of_their_frames),

@@ -1,4 +1,4 @@
-/* Which pairs may meet: boxes against rational numbers, trees against asking every frame, whatever
+/* Which pairs may meet: boxes against rational numbers, trees against testing every frame, whatever
  * the scene; no pair that meets is lost; and what a tree costs is counted in nodes, not in time. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -408,8 +408,8 @@ static void expect_same(const struct scene *scene, struct planted *planted,
     assert_int_equal(planted->found[scene->count], UINT_MAX);
 }
 
-static void ask_about_some(struct draw *draw, const struct scene *scene, struct planted *planted,
-                           const struct scene *others)
+static void query_some(struct draw *draw, const struct scene *scene, struct planted *planted,
+                       const struct scene *others)
 {
     for (int n = 0; n < 40 && scene->count; n++) {
         const unsigned i = (unsigned) (draw_bits(draw) % scene->count);
@@ -455,11 +455,11 @@ static void expect_same_pairs(struct draw *draw, const struct scene *scene, stru
     free(times);
 }
 
-static void pairs_of_trees_are_what_asking_every_pair_finds(void **state)
+static void pairs_of_trees_are_what_testing_every_pair_finds(void **state)
 {
     (void) state;
     struct draw draw;
-    draw_begin(&draw, "pairs_of_trees_are_what_asking_every_pair_finds");
+    draw_begin(&draw, "pairs_of_trees_are_what_testing_every_pair_finds");
     for (long n = draw_sample(160); n > 0; n--) {
         struct scene scene, others;
         struct planted planted, second;
@@ -497,11 +497,11 @@ static size_t draw_count(struct draw *draw)
 }
 
 /* Asked about their own frames, and about those of another scene. */
-static void trees_find_what_asking_every_frame_finds(void **state)
+static void trees_find_what_testing_every_frame_finds(void **state)
 {
     (void) state;
     struct draw draw;
-    draw_begin(&draw, "trees_find_what_asking_every_frame_finds");
+    draw_begin(&draw, "trees_find_what_testing_every_frame_finds");
     for (long n = draw_sample(240); n > 0; n--) {
         drawing *first = drawings[n % (long) COUNT(drawings)];
         drawing *second = drawings[draw_int(&draw, 0, (int) COUNT(drawings) - 1)];
@@ -515,7 +515,7 @@ static void trees_find_what_asking_every_frame_finds(void **state)
         scene_draw(&draw, first, dim, moving, &scene);
         scene_draw(&draw, second, dim, moving, &others);
         plant(&draw, &scene, &planted);
-        ask_about_some(&draw, &scene, &planted, &others);
+        query_some(&draw, &scene, &planted, &others);
         uproot(&planted);
         scene_close(&scene);
         scene_close(&others);
@@ -770,7 +770,7 @@ static struct cost cost_of(struct draw *draw, drawing *how, size_t count)
     return (struct cost){(double) visits / (double) count, (double) found / (double) count};
 }
 
-static void asking_costs_no_more_than_a_few_nodes_a_level(void **state)
+static void queries_cost_no_more_than_a_few_nodes_a_level(void **state)
 {
     (void) state;
     static const struct {
@@ -785,7 +785,7 @@ static void asking_costs_no_more_than_a_few_nodes_a_level(void **state)
                   {"cloud and outliers", cloud_and_outliers},
                   {"clouds of every size", clouds_of_every_size}};
     struct draw draw;
-    draw_begin(&draw, "asking_costs_no_more_than_a_few_nodes_a_level");
+    draw_begin(&draw, "queries_cost_no_more_than_a_few_nodes_a_level");
     const size_t most = draw_sample(8) == 8 ? 16000 : 4000;
     for (size_t k = 0; k < COUNT(scenes); k++)
         for (size_t count = 1000; count <= most; count *= 4) {
@@ -828,14 +828,14 @@ static void boxes_with_one_centre_cost_what_is_found(void **state)
 
 /* ---- What is refused ---- */
 
-static void what_cannot_be_asked_is_refused(void **state)
+static void queries_that_are_not_supported_are_refused(void **state)
 {
     (void) state;
     struct draw draw;
     struct scene flat, deep;
     struct planted planted;
     size_t count = 7;
-    draw_begin(&draw, "what_cannot_be_asked_is_refused");
+    draw_begin(&draw, "queries_that_are_not_supported_are_refused");
     scene_open(4, 1, &flat);
     scene_open(4, 1, &deep);
     scene_draw(&draw, whole_numbers, 2, false, &flat);
@@ -880,13 +880,13 @@ int main(void)
         cmocka_unit_test(boxes_hold_their_frames_and_are_tight),
         cmocka_unit_test(sums_step_down_just_where_they_were_rounded_up),
         cmocka_unit_test(trees_of_every_small_number_are_sound),
-        cmocka_unit_test(trees_find_what_asking_every_frame_finds),
-        cmocka_unit_test(pairs_of_trees_are_what_asking_every_pair_finds),
+        cmocka_unit_test(trees_find_what_testing_every_frame_finds),
+        cmocka_unit_test(pairs_of_trees_are_what_testing_every_pair_finds),
         cmocka_unit_test(cubes_in_a_grid_have_their_neighbours),
         cmocka_unit_test(pairs_that_meet_are_found),
-        cmocka_unit_test(asking_costs_no_more_than_a_few_nodes_a_level),
+        cmocka_unit_test(queries_cost_no_more_than_a_few_nodes_a_level),
         cmocka_unit_test(boxes_with_one_centre_cost_what_is_found),
-        cmocka_unit_test(what_cannot_be_asked_is_refused),
+        cmocka_unit_test(queries_that_are_not_supported_are_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

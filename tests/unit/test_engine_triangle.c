@@ -136,7 +136,7 @@ static void draw_pool(struct draw *draw, point *pool)
     }
 }
 
-/* In no special position, so that doubles can mostly tell; edges round. */
+/* In no special position, so that doubles mostly decide; edges round. */
 static void draw_loose_pool(struct draw *draw, point *pool)
 {
     for (int i = 0; i < POOL; i++)
@@ -205,7 +205,7 @@ static void draw_pair(struct draw *draw, bool moving, struct drawn *out)
 
 /* ---- The engine ---- */
 
-struct asked {
+struct arranged {
     struct fmb_body body[2];
     struct pair pair;
 };
@@ -225,7 +225,7 @@ static void set_frame(const struct triangle *triangle, int first, struct fmb_bod
 /* turn: which vertex is the first of each, and which triangle is (from 9 on) the second. */
 enum { TURNS = 18 };
 
-static void set_asked(const struct drawn *drawn, int turn, struct asked *out)
+static void set_arranged(const struct drawn *drawn, int turn, struct arranged *out)
 {
     const int swapped = turn / 9;
     set_frame(&drawn->triangle[swapped], turn % 3, &out->body[0], &out->pair.a);
@@ -285,13 +285,13 @@ static bool is_near(double end, int which, double duration, const mpq_t exact)
 static void assert_answer(const struct drawn *drawn, int turn, const char *method,
                           const struct triangles_answer *truth)
 {
-    struct asked asked;
+    struct arranged arranged;
     struct fmb_answer answer;
     const bool exact = strcmp(method, "exact") == 0;
     const bool moving = drawn->triangle[0].moving || drawn->triangle[1].moving;
-    set_asked(drawn, turn, &asked);
+    set_arranged(drawn, turn, &arranged);
     memset(&answer, 0xa5, sizeof answer);
-    assert_int_equal(pair_decide(fmb_method_by_name(method), &asked.pair, FMB_WANT_BOX, &answer),
+    assert_int_equal(pair_decide(fmb_method_by_name(method), &arranged.pair, FMB_WANT_BOX, &answer),
                      FMB_OK);
     if (answer.verdict != truth->verdict)
         fail_of(drawn, turn, method, (int) answer.verdict, (int) truth->verdict);
@@ -314,12 +314,12 @@ static void assert_certificate(const struct drawn *drawn, int turn, enum fmb_ver
 {
     char text[FMB_CERTIFICATE_MAX], why[200] = "";
     size_t length;
-    struct asked asked;
-    set_asked(drawn, turn, &asked);
-    assert_int_equal(pair_certificate(&asked.pair, text, sizeof text, &length), FMB_OK);
+    struct arranged arranged;
+    set_arranged(drawn, turn, &arranged);
+    assert_int_equal(pair_certificate(&arranged.pair, text, sizeof text, &length), FMB_OK);
     for (int other = FMB_SEPARATED; other <= FMB_OVERLAPPING && length > 0; other++) {
         const bool holds =
-            pair_certificate_holds(&asked.pair, (enum fmb_verdict) other, text, why, sizeof why);
+            pair_certificate_holds(&arranged.pair, (enum fmb_verdict) other, text, why, sizeof why);
         if (holds != (other == (int) verdict)) {
             printf("# %s: %s\n", text, why);
             fail_of(drawn, turn, "certificate", holds, other);
@@ -335,9 +335,9 @@ struct tally {
 
 static void count_drawn(const struct drawn *drawn, enum fmb_verdict verdict, struct tally *tally)
 {
-    struct asked asked;
-    set_asked(drawn, 0, &asked);
-    tally->rounded += asked.body[0].one.rounded || asked.body[1].one.rounded;
+    struct arranged arranged;
+    set_arranged(drawn, 0, &arranged);
+    tally->rounded += arranged.body[0].one.rounded || arranged.body[1].one.rounded;
     tally->of_verdict[verdict]++;
 }
 
@@ -469,23 +469,23 @@ static void set_truth(const struct crowd *crowd, struct fmb_answer truth[CROWD_P
     triangles_clear(&oracle);
 }
 
-struct told {
+struct answers {
     unsigned char verdict[CROWD_PAIRS];
     double contact[CROWD_PAIRS][2], box[CROWD_PAIRS][2][FMB_DIM_MAX];
 };
 
-static void assert_told(const struct fmb_answer *truth, const struct told *told, bool contacts,
-                        bool boxes)
+static void assert_crowd_answers(const struct fmb_answer *truth, const struct answers *answers,
+                                 bool contacts, bool boxes)
 {
     for (int k = 0; k < CROWD_PAIRS; k++) {
-        assert_int_equal(told->verdict[k], truth[k].verdict);
+        assert_int_equal(answers->verdict[k], truth[k].verdict);
         for (int end = 0; end < 2; end++) {
             const int sign = end ? 1 : -1;
-            const double *box = told->box[k][end], *true_box = truth[k].box[end];
+            const double *box = answers->box[k][end], *true_box = truth[k].box[end];
             if (contacts && !truth[k].has_contact)
-                assert_true(isnan(told->contact[k][end]));
+                assert_true(isnan(answers->contact[k][end]));
             else if (contacts)
-                assert_true(sign * told->contact[k][end] >= sign * truth[k].contact[end]);
+                assert_true(sign * answers->contact[k][end] >= sign * truth[k].contact[end]);
             for (int axis = 0; axis < 3 && boxes; axis++)
                 assert_true(truth[k].has_box ? sign * box[axis] >= sign * true_box[axis]
                                              : isnan(box[axis]));
@@ -493,8 +493,8 @@ static void assert_told(const struct fmb_answer *truth, const struct told *told,
     }
 }
 
-static void ask_crowd(const struct crowd *crowd, const unsigned (*pairs)[2],
-                      enum instructions instructions, int wanted, struct told *out)
+static void decide_crowd(const struct crowd *crowd, const unsigned (*pairs)[2],
+                         enum instructions instructions, int wanted, struct answers *out)
 {
     const struct fmb_batch batch = {.frames = crowd->prepared,
                                     .frame_count = CROWD,
@@ -515,7 +515,7 @@ static void ask_crowd(const struct crowd *crowd, const unsigned (*pairs)[2],
 static long assert_crowd(const struct crowd *crowd)
 {
     static struct fmb_answer truth[CROWD_PAIRS];
-    static struct told told, other;
+    static struct answers answers, other;
     long rounded = 0;
     unsigned pairs[CROWD_PAIRS][2];
     for (unsigned k = 0; k < CROWD_PAIRS; k++) {
@@ -524,25 +524,26 @@ static long assert_crowd(const struct crowd *crowd)
     }
     set_truth(crowd, truth);
     for (int wanted = 0; wanted < 4; wanted++) {
-        ask_crowd(crowd, (const unsigned(*)[2]) pairs, INSTRUCTIONS_PLAIN, wanted, &told);
-        assert_told(truth, &told, wanted & 1, wanted & 2);
+        decide_crowd(crowd, (const unsigned(*)[2]) pairs, INSTRUCTIONS_PLAIN, wanted, &answers);
+        assert_crowd_answers(truth, &answers, wanted & 1, wanted & 2);
         for (int set = INSTRUCTIONS_BEST; set <= INSTRUCTIONS_AVX512; set++) {
             if (!instructions_supported(set))
                 continue;
-            ask_crowd(crowd, (const unsigned(*)[2]) pairs, (enum instructions) set, wanted, &other);
-            assert_memory_equal(told.verdict, other.verdict, sizeof told.verdict);
+            decide_crowd(crowd, (const unsigned(*)[2]) pairs, (enum instructions) set, wanted,
+                         &other);
+            assert_memory_equal(answers.verdict, other.verdict, sizeof answers.verdict);
             if (wanted) /* NAN is of the same bits too, since it is not computed */
-                assert_memory_equal(&told, &other, sizeof told);
+                assert_memory_equal(&answers, &other, sizeof answers);
         }
         if (wanted)
             continue;
         for (int k = 0; k < CROWD_PAIRS; k++) {
-            enum fmb_verdict alone;
+            enum fmb_verdict single;
             assert_int_equal(
                 fmb_decide_prepared(&crowd->prepared[k / CROWD], &crowd->prepared[k % CROWD],
-                                    crowd->duration, &alone),
+                                    crowd->duration, &single),
                 FMB_OK);
-            assert_int_equal(alone, told.verdict[k]);
+            assert_int_equal(single, answers.verdict[k]);
             rounded += crowd->body[k / CROWD].one.rounded || crowd->body[k % CROWD].one.rounded;
         }
     }
@@ -575,12 +576,12 @@ static void a_box_holds_all_vertices_at_all_times(void **state)
     draw_begin(&draw, "a_box_holds_all_vertices_at_all_times");
     mpq_inits(way, at, time, NULL);
     for (long n = draw_sample(20000); n > 0; n--) {
-        struct asked asked;
+        struct arranged arranged;
         struct fmb_prepared prepared;
         double box[2][FMB_DIM_MAX];
         draw_pair(&draw, draw_coin(&draw), &drawn);
-        set_asked(&drawn, draw_int(&draw, 0, TURNS / 2 - 1), &asked);
-        assert_int_equal(fmb_prepare(&asked.pair.a, 0, 1, &prepared), FMB_OK);
+        set_arranged(&drawn, draw_int(&draw, 0, TURNS / 2 - 1), &arranged);
+        assert_int_equal(fmb_prepare(&arranged.pair.a, 0, 1, &prepared), FMB_OK);
         fmb_box_of(&prepared, drawn.duration, box);
         const struct triangle *triangle = &drawn.triangle[0];
         for (int k = 0; k < 18; k++) { /* a corner, an axis, an end of the window */
@@ -606,12 +607,12 @@ static void a_box_is_tight(void **state)
     draw_begin(&draw, "a_box_is_tight");
     for (long n = draw_sample(20000); n > 0; n--) {
         struct drawn drawn;
-        struct asked asked;
+        struct arranged arranged;
         struct fmb_prepared prepared;
         double box[2][FMB_DIM_MAX];
         draw_pair(&draw, false, &drawn);
-        set_asked(&drawn, 0, &asked);
-        assert_int_equal(fmb_prepare(&asked.pair.a, 0, 1, &prepared), FMB_OK);
+        set_arranged(&drawn, 0, &arranged);
+        assert_int_equal(fmb_prepare(&arranged.pair.a, 0, 1, &prepared), FMB_OK);
         fmb_box_of(&prepared, 1, box);
         const double *v0 = drawn.triangle[0].vertex[0];
         double size = 0;
@@ -621,7 +622,7 @@ static void a_box_is_tight(void **state)
             const double(*v)[3] = (const double(*)[3]) drawn.triangle[0].vertex;
             const double least = fmin(v[0][axis], fmin(v[1][axis], v[2][axis]));
             const double most = fmax(v[0][axis], fmax(v[1][axis], v[2][axis]));
-            const double slack = asked.body[0].one.rounded ? 8 * 0x1p-52 * size + 0x1p-1073 : 0;
+            const double slack = arranged.body[0].one.rounded ? 8 * 0x1p-52 * size + 0x1p-1073 : 0;
             assert_true(box[0][axis] >= least - slack && box[1][axis] <= most + slack);
         }
     }
@@ -710,7 +711,7 @@ static void close_world(struct world *world)
 }
 
 /* The box over the window, at least: sum is rounded to one double that is beyond it or is next to
- * it. Returns 1 where what both trees may find is not told by doubles. */
+ * it. Returns 1 where what both trees may find is not decided by doubles. */
 static void sweep(const struct world *world, size_t i, mpq_t out[2][3], bool endless[2][3])
 {
     mpq_t way;
@@ -751,7 +752,7 @@ static bool boxes_meet(const struct world *a, size_t i, const struct world *b, s
     return meet;
 }
 
-/* How often each pair is told. */
+/* How often each pair is reported. */
 static void count_pairs(const struct fmb_tree *a, const struct fmb_tree *b, unsigned char *times)
 {
     enum { ROOM = FMB_TREE_CAPACITY_MIN + 5 };
@@ -964,7 +965,7 @@ static void pairs_at_the_ends_of_the_doubles(void **state)
     (void) state;
     struct draw draw;
     struct triangles_answer truth;
-    long asked = 0;
+    long arranged = 0;
     draw_begin(&draw, "pairs_at_the_ends_of_the_doubles");
     triangles_init(&truth);
     for (long n = draw_sample(1500); n > 0; n--) {
@@ -976,7 +977,7 @@ static void pairs_at_the_ends_of_the_doubles(void **state)
             for (int k = 0; k < 9; k++)
                 drawn.triangle[f].vertex[k / 3][k % 3] = pool[draw_int(&draw, 0, 5)];
         triangles_decide(drawn.triangle, 1, true, &truth);
-        asked += truth.verdict != FMB_SEPARATED;
+        arranged += truth.verdict != FMB_SEPARATED;
         for (int turn = 0; turn < TURNS; turn += 5) {
             assert_answer(&drawn, turn, "certified", &truth);
             assert_answer(&drawn, turn, "exact", &truth);
@@ -984,7 +985,7 @@ static void pairs_at_the_ends_of_the_doubles(void **state)
         assert_certificate(&drawn, draw_int(&draw, 0, TURNS - 1), truth.verdict);
     }
     triangles_clear(&truth);
-    assert_true(asked > 0);
+    assert_true(arranged > 0);
 }
 
 /* The first face is rotated into the plane z = 0, where the second lies. The integers are rows of

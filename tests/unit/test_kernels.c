@@ -63,22 +63,22 @@ static int subjects_of_machine(struct subject out[SUBJECTS_MAX])
     return count;
 }
 
-/* Of pairs alone. */
-struct alone {
+/* Of single pairs. */
+struct single {
     const char *name;
     kernel_single_function *const *verdicts, *const *exact, *const *times;
 };
 
-enum { ALONE_MAX = 2 };
+enum { SINGLE_MAX = 2 };
 
 /* That of this machine, and what older ones have. Returns how many. */
-static int single_of_machine(struct alone out[ALONE_MAX])
+static int single_of_machine(struct single out[SINGLE_MAX])
 {
-    out[0] = (struct alone){"alone", kernel_verdicts_single(), kernel_exact_single(),
-                            kernel_times_single()};
+    out[0] = (struct single){"single", kernel_verdicts_single(), kernel_exact_single(),
+                             kernel_times_single()};
 #if defined __x86_64__
-    out[1] = (struct alone){"alone, sse2", kernel_single_sse2, kernel_exact_single_sse2,
-                            kernel_times_single_sse2};
+    out[1] = (struct single){"single, sse2", kernel_single_sse2, kernel_exact_single_sse2,
+                             kernel_times_single_sse2};
     return 2;
 #else
     return 1;
@@ -220,7 +220,7 @@ static void align(struct draw *draw, struct question *question)
         question->b.velocity[axis] = question->a.velocity[axis];
 }
 
-/* A kernel that looks for zero normals may be asked a pair that has none. */
+/* A kernel that looks for zero normals may be given a pair that has none. */
 static bool is_of_kind(int found, int wanted)
 {
     return found == wanted ||
@@ -422,25 +422,25 @@ static void a_wrong_bound_is_found(void **state)
     struct draw draw;
     draw_begin(&draw, "a_wrong_bound_is_found");
     for (int kind = 0; kind < KERNEL_KINDS; kind++) {
-        long wrong = 0, asked = 0;
+        long wrong = 0, tested = 0;
         for (int n = 0; is_kind(kind) && n < 3000 && wrong == 0; n++) {
             struct pool pool;
             struct left left;
             draw_pool(&draw, pair_draw, kind, 1, &pool);
             run_all(kernel_wide_planted[kind], &pool, &left);
-            asked += pool.count;
+            tested += pool.count;
             for (int i = 0; i < pool.count; i++)
                 wrong +=
                     left.outcome[i] != SLABS_UNSURE && left.outcome[i] != pool.exact[i].verdict;
         }
         if (!is_kind(kind))
             continue;
-        printf("# %s: %ld wrong of %ld\n", kind_text(kind), wrong, asked);
+        printf("# %s: %ld wrong of %ld\n", kind_text(kind), wrong, tested);
         assert_true(wrong > 0);
     }
 }
 
-/* ---- Pairs alone ---- */
+/* ---- Single pairs ---- */
 
 /* What a function leaves of all pairs of a pool, one by one: outcomes and, if it makes them, times
  * or boxes. */
@@ -456,24 +456,24 @@ static void run_single(kernel_single_function *function, const struct pool *pool
     }
 }
 
-static void expect_alone(const struct alone *alone, const struct pool *pool, long *unsure)
+static void expect_single(const struct single *single, const struct pool *pool, long *unsure)
 {
-    const struct subject subject = {.name = alone->name};
+    const struct subject subject = {.name = single->name};
     struct left left;
-    run_single(alone->verdicts[pool->kind], pool, &left);
+    run_single(single->verdicts[pool->kind], pool, &left);
     expect_outcomes(&subject, pool, &left);
     *unsure += unsure_among(pool, &left);
     assert_true(is_untouched(left.contact, sizeof left.contact));
     assert_true(is_untouched(left.box, sizeof left.box));
 }
 
-static void no_outcome_alone_is_wrong(void **state)
+static void no_outcome_of_single_pairs_is_wrong(void **state)
 {
     (void) state;
     struct draw draw;
-    struct alone alone[ALONE_MAX];
-    const int count = single_of_machine(alone);
-    draw_begin(&draw, "no_outcome_alone_is_wrong");
+    struct single single[SINGLE_MAX];
+    const int count = single_of_machine(single);
+    draw_begin(&draw, "no_outcome_of_single_pairs_is_wrong");
     for (int kind = 0; kind < KERNEL_KINDS; kind++)
         for (long n = is_kind(kind) ? draw_sample(30) : 0; n > 0; n--) {
             struct pool hard, random;
@@ -481,8 +481,8 @@ static void no_outcome_alone_is_wrong(void **state)
             draw_pool(&draw, pair_draw, kind, draw_duration(&draw), &hard);
             draw_pool(&draw, family_draw_random, kind, 1, &random);
             for (int i = 0; i < count; i++) {
-                expect_alone(&alone[i], &hard, &of_hard);
-                expect_alone(&alone[i], &random, &of_random);
+                expect_single(&single[i], &hard, &of_hard);
+                expect_single(&single[i], &random, &of_random);
             }
             assert_int_equal(of_random, 0);
         }
@@ -519,7 +519,7 @@ static void expect_same_second_pass(struct draw *draw, const struct pool *pool,
                                     const struct subject *subject, int subjects,
                                     const struct left *whole)
 {
-    struct alone alone[ALONE_MAX];
+    struct single single[SINGLE_MAX];
     struct left left;
     for (int s = 0; s < subjects; s++) {
         run_all(subject[s].set.exact[pool->kind], pool, &left);
@@ -528,11 +528,11 @@ static void expect_same_second_pass(struct draw *draw, const struct pool *pool,
         run_all(subject[s].set.verdicts[pool->kind], pool, &left);
         expect_decided(subject[s].name, pool, &left, whole);
     }
-    for (int i = single_of_machine(alone) - 1; i >= 0; i--) {
-        run_single(alone[i].exact[pool->kind], pool, &left);
+    for (int i = single_of_machine(single) - 1; i >= 0; i--) {
+        run_single(single[i].exact[pool->kind], pool, &left);
         assert_memory_equal(left.outcome, whole->outcome, (size_t) pool->count);
-        run_single(alone[i].verdicts[pool->kind], pool, &left);
-        expect_decided(alone[i].name, pool, &left, whole);
+        run_single(single[i].verdicts[pool->kind], pool, &left);
+        expect_decided(single[i].name, pool, &left, whole);
     }
 }
 
@@ -731,10 +731,10 @@ static void expect_same_for_all(struct draw *draw, struct pool *pool, const stru
         if (is_symmetric(pool->kind))
             swap_pool(pool);
     }
-    struct alone alone[ALONE_MAX];
-    for (int i = single_of_machine(alone) - 1; i >= 0; i--) {
-        const struct subject as_subject = {.name = alone[i].name};
-        run_single(alone[i].times[pool->kind], pool, &part);
+    struct single single[SINGLE_MAX];
+    for (int i = single_of_machine(single) - 1; i >= 0; i--) {
+        const struct subject as_subject = {.name = single[i].name};
+        run_single(single[i].times[pool->kind], pool, &part);
         expect_same_times(&as_subject, pool, 0, pool->count, whole, &part);
     }
 }
@@ -1472,7 +1472,7 @@ int main(void)
         cmocka_unit_test(no_outcome_is_wrong),
         cmocka_unit_test(random_pairs_are_never_unsure),
         cmocka_unit_test(a_wrong_bound_is_found),
-        cmocka_unit_test(no_outcome_alone_is_wrong),
+        cmocka_unit_test(no_outcome_of_single_pairs_is_wrong),
         cmocka_unit_test(the_second_pass_decides_more_and_the_same_everywhere),
         cmocka_unit_test(near_a_bound_the_second_pass_decides_what_any_first_does),
         cmocka_unit_test(times_hold_the_exact_ones),

@@ -128,7 +128,7 @@ static int compare_slab(const struct question *question, struct limbs_pair *limb
     mpz_t low, high, start, slope;
     const int dim = question->a.dim;
     const long unit = dim * span.unit, of_truth = dim * truth->unit;
-    slab_truth_ask(truth, normal);
+    slab_truth_compute(truth, normal);
     const int expected = truth->zero ? -1 : mpz_sgn(truth->gap);
     if (limbs_gap_sign(limbs, normal) != expected)
         referee_fail(question, "the sign of a gap");

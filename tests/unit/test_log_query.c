@@ -216,7 +216,7 @@ static bool read_recorded(const struct world_event *event, enum log_kind kind)
 }
 
 /* The query that a result has, by the number of its event. */
-static int64_t ask_by_result(size_t event, const struct query_header *ids)
+static int64_t query_by_result(size_t event, const struct query_header *ids)
 {
     const struct log_query_options by_number = {.by = LOG_QUERY_NUMBER, .number = (int64_t) event};
     if (look_for(by_number) != LOG_QUERY_FOUND)
@@ -240,26 +240,26 @@ static int64_t ask_by_result(size_t event, const struct query_header *ids)
     return compared;
 }
 
-static int64_t ask_world(const struct log_world *world)
+static int64_t query_world(const struct log_world *world)
 {
     int64_t compared = 0;
     for (size_t i = 0; i < world->count; i++) {
         enum log_kind kind;
         const struct query_header ids = ids_of(&world->event[i], &kind);
         if (log_kind_is_result(kind) && read_recorded(&world->event[i], kind))
-            compared += ask_by_result(i, &ids);
+            compared += query_by_result(i, &ids);
     }
     return compared;
 }
 
-static void queries_alone_have_the_same_answers(void **state)
+static void single_queries_have_the_same_answers(void **state)
 {
     (void) state;
     struct log_world world;
     const struct world_options options = {.seed = 11, .steps = getenv("FMB_FAST") ? 15 : 60};
     world_make(&options, &world);
     world_write(&world, path);
-    assert_true(ask_world(&world) > 50);
+    assert_true(query_world(&world) > 50);
     world_clear(&world);
 }
 
@@ -269,7 +269,7 @@ static void large_scenes_have_the_same_answers(void **state)
     struct log_world world;
     world_make_large(700, 1, &world);
     world_write(&world, path);
-    assert_true(ask_world(&world) >= 700 * 699 / 2);
+    assert_true(query_world(&world) >= 700 * 699 / 2);
     world_clear(&world);
 }
 
@@ -505,7 +505,7 @@ static void names_groups_and_vertices_are_kept(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(queries_alone_have_the_same_answers),
+        cmocka_unit_test(single_queries_have_the_same_answers),
         cmocka_unit_test(large_scenes_have_the_same_answers),
         cmocka_unit_test(undefined_handles_are_reported),
         cmocka_unit_test(what_is_not_there_is_not_found),

@@ -50,15 +50,15 @@ ssize_t __wrap_pread64(int fd, void *out, size_t count, off_t offset)
 
 /* ---- What is read ---------------------------------------------------------------------------- */
 
-enum { TOLD_MAX = 64 };
+enum { REPORT_MAX = 64 };
 
-/* All that was told of a small log. */
-struct told {
+/* All that was reported of a small log. */
+struct report {
     size_t count;
     struct {
         const char *damage; /* NULL: an event */
         int64_t offset, length;
-    } item[TOLD_MAX];
+    } item[REPORT_MAX];
 };
 
 static struct log_reader *open_bytes(const void *bytes, size_t size)
@@ -82,53 +82,53 @@ static void check_event(const struct log_event *event, const unsigned char *byte
     assert_memory_equal(event->data, name + event->channel_length, event->kept);
 }
 
-/* From where the reader is to the end; what is told is one behind the other, nothing left out. */
-static struct told read_on(struct log_reader *reader, int64_t at, const unsigned char *bytes)
+/* From where the reader is to the end; reports follow each other, nothing left out. */
+static struct report read_on(struct log_reader *reader, int64_t at, const unsigned char *bytes)
 {
-    struct told told = {0};
+    struct report report = {0};
     struct log_event event;
     struct log_damage damage = {0};
     enum log_outcome outcome;
     while ((outcome = log_next(reader, &event, &damage)) != LOG_END) {
-        assert_true(told.count < TOLD_MAX && (outcome == LOG_EVENT || outcome == LOG_DAMAGE));
+        assert_true(report.count < REPORT_MAX && (outcome == LOG_EVENT || outcome == LOG_DAMAGE));
         const bool good = outcome == LOG_EVENT;
         if (good)
             check_event(&event, bytes);
-        told.item[told.count].damage = good ? NULL : damage.what;
-        told.item[told.count].offset = good ? event.offset : damage.offset;
-        told.item[told.count].length = good ? event.length : damage.length;
-        assert_int_equal(told.item[told.count].offset, at);
-        assert_true(told.item[told.count].length > 0);
-        at += told.item[told.count++].length;
+        report.item[report.count].damage = good ? NULL : damage.what;
+        report.item[report.count].offset = good ? event.offset : damage.offset;
+        report.item[report.count].length = good ? event.length : damage.length;
+        assert_int_equal(report.item[report.count].offset, at);
+        assert_true(report.item[report.count].length > 0);
+        at += report.item[report.count++].length;
     }
     assert_int_equal(at, log_size(reader));
     assert_int_equal(log_next(reader, &event, &damage), LOG_END);
-    return told;
+    return report;
 }
 
-static struct told read_bytes(const unsigned char *bytes, size_t size)
+static struct report read_bytes(const unsigned char *bytes, size_t size)
 {
     struct log_reader *reader = open_bytes(bytes, size);
-    const struct told told = read_on(reader, 0, bytes);
+    const struct report report = read_on(reader, 0, bytes);
     log_close(reader);
-    return told;
+    return report;
 }
 
-static bool tells(const struct told *told, size_t begin, size_t end)
+static bool reports_event(const struct report *report, size_t begin, size_t end)
 {
-    for (size_t i = 0; i < told->count; i++)
-        if (told->item[i].offset == (int64_t) begin)
-            return !told->item[i].damage && told->item[i].length == (int64_t) (end - begin);
+    for (size_t i = 0; i < report->count; i++)
+        if (report->item[i].offset == (int64_t) begin)
+            return !report->item[i].damage && report->item[i].length == (int64_t) (end - begin);
     return false;
 }
 
-static void expect_damage(const struct told *told, size_t i, size_t begin, size_t end,
+static void expect_damage(const struct report *report, size_t i, size_t begin, size_t end,
                           const char *what)
 {
-    assert_true(i < told->count && told->item[i].damage);
-    assert_string_equal(told->item[i].damage, what);
-    assert_int_equal(told->item[i].offset, begin);
-    assert_int_equal(told->item[i].length, end - begin);
+    assert_true(i < report->count && report->item[i].damage);
+    assert_string_equal(report->item[i].damage, what);
+    assert_int_equal(report->item[i].offset, begin);
+    assert_int_equal(report->item[i].length, end - begin);
 }
 
 /* ---- Good logs ------------------------------------------------------------------------------- */
@@ -197,10 +197,10 @@ static void test_the_longest(void **state)
         for (int s = 0; s < 5; s++)
             log_bytes_event(&whole, s, name, noise, sizes[s]);
     }
-    const struct told told = read_bytes(whole.bytes, whole.size);
-    assert_int_equal(told.count, 25);
-    for (size_t i = 0; i < told.count; i++)
-        assert_null(told.item[i].damage);
+    const struct report report = read_bytes(whole.bytes, whole.size);
+    assert_int_equal(report.count, 25);
+    for (size_t i = 0; i < report.count; i++)
+        assert_null(report.item[i].damage);
 }
 
 /* Mostly small ones, some with all that a datagram holds, some with more. */
@@ -278,14 +278,14 @@ static void test_every_truncation(void **state)
     (void) state;
     make_small();
     for (size_t size = 0; size < whole.size; size++) {
-        const struct told told = read_bytes(whole.bytes, size);
+        const struct report report = read_bytes(whole.bytes, size);
         size_t events = 0;
         while (whole.end[events] <= size)
-            assert_true(tells(&told, whole.begin[events], whole.end[events])), events++;
+            assert_true(reports_event(&report, whole.begin[events], whole.end[events])), events++;
         const bool cut = size > whole.begin[events];
-        assert_int_equal(told.count, events + cut);
+        assert_int_equal(report.count, events + cut);
         if (cut)
-            expect_damage(&told, events, whole.begin[events], size, "the last event is cut off");
+            expect_damage(&report, events, whole.begin[events], size, "the last event is cut off");
     }
 }
 
@@ -311,10 +311,10 @@ static void test_every_damaged_byte(void **state)
     for (size_t byte = 0; byte < whole.size; byte++)
         for (int flip = 0; flip < FLIPS; flip++) {
             whole.bytes[byte] ^= flips[flip];
-            const struct told told = read_bytes(whole.bytes, whole.size);
+            const struct report report = read_bytes(whole.bytes, whole.size);
             for (size_t i = 0; i < whole.count; i++)
                 assert_true((touches(byte, i) && is_structure(byte, i)) ||
-                            tells(&told, whole.begin[i], whole.end[i]));
+                            reports_event(&report, whole.begin[i], whole.end[i]));
             whole.bytes[byte] ^= flips[flip];
         }
 }
@@ -334,11 +334,11 @@ static void test_every_two_damaged_bytes(void **state)
         for (size_t two = one + 1; two < whole.size; two += step) {
             const unsigned char first = flips[one % FLIPS], second = flips[(one + two) % FLIPS];
             flip_two(one, two, first, second);
-            const struct told told = read_bytes(whole.bytes, whole.size);
+            const struct report report = read_bytes(whole.bytes, whole.size);
             flip_two(one, two, first, second);
             for (size_t i = 0; i < whole.count; i++)
                 assert_true(touches(one, i) || touches(two, i) ||
-                            tells(&told, whole.begin[i], whole.end[i]));
+                            reports_event(&report, whole.begin[i], whole.end[i]));
         }
 }
 
@@ -370,9 +370,9 @@ static void test_garbage_everywhere(void **state)
             log_bytes_add(&inner, whole.bytes, at);
             log_bytes_add(&inner, garbage[g].bytes, garbage[g].size);
             log_bytes_add(&inner, whole.bytes + at, whole.size - at);
-            const struct told told = read_bytes(inner.bytes, inner.size);
-            assert_int_equal(told.count, whole.count + 1);
-            expect_damage(&told, place, at, at + garbage[g].size, garbage[g].what);
+            const struct report report = read_bytes(inner.bytes, inner.size);
+            assert_int_equal(report.count, whole.count + 1);
+            expect_damage(&report, place, at, at + garbage[g].size, garbage[g].what);
         }
 }
 
@@ -385,11 +385,11 @@ static void test_garbage_between_all(void **state)
         log_bytes_event(&whole, i, "CHANNEL", "data", 4);
         log_bytes_add(&whole, "?", 1);
     }
-    const struct told told = read_bytes(whole.bytes, whole.size);
-    assert_int_equal(told.count, 18);
+    const struct report report = read_bytes(whole.bytes, whole.size);
+    assert_int_equal(report.count, 18);
     for (size_t i = 0; i < 9; i++) {
-        assert_true(tells(&told, whole.begin[i], whole.end[i]));
-        expect_damage(&told, 2 * i + 1, whole.end[i], whole.end[i] + 1, "no event");
+        assert_true(reports_event(&report, whole.begin[i], whole.end[i]));
+        expect_damage(&report, 2 * i + 1, whole.end[i], whole.end[i] + 1, "no event");
     }
 }
 
@@ -414,7 +414,7 @@ static void test_lengths_that_lie(void **state)
         {0x7fffffff, 5, impossible, impossible},
         {5, 0x7fffffff, wrong, "the last event is cut off"},
         {5, 100000, wrong, "the last event is cut off"},
-        {5, 60, wrong, "the last event is cut off"}, /* into the event behind the next */
+        {5, 60, wrong, "the last event is cut off"}, /* into the event after the next */
         {40, 5, wrong, "the last event is cut off"},
         {5, 6, wrong, "the last event is cut off"}, /* one byte too far */
     };
@@ -427,15 +427,15 @@ static void test_lengths_that_lie(void **state)
             const size_t end = whole.size;
             for (int more = 0; !last && more < 3; more++)
                 log_bytes_event(&whole, 50, "E", "data", 4);
-            const struct told told = read_bytes(whole.bytes, whole.size);
-            assert_int_equal(told.count, begun + (last ? 1 : 4));
-            expect_damage(&told, begun, at, end, last ? lies[i].what_last : lies[i].what);
+            const struct report report = read_bytes(whole.bytes, whole.size);
+            assert_int_equal(report.count, begun + (last ? 1 : 4));
+            expect_damage(&report, begun, at, end, last ? lies[i].what_last : lies[i].what);
         }
 }
 
-/* An event whose data is shorter than it says, and another log behind it: as when a recorder was
+/* An event whose data is shorter than it says, and another log after it: as when a recorder was
  * killed and began anew in the same file. */
-static void test_a_log_behind_a_log_that_was_cut_off(void **state)
+static void test_a_log_after_a_log_that_was_cut_off(void **state)
 {
     (void) state;
     make_small();
@@ -443,9 +443,9 @@ static void test_a_log_behind_a_log_that_was_cut_off(void **state)
         inner.size = 0;
         log_bytes_add(&inner, whole.bytes, size);
         log_bytes_add(&inner, whole.bytes, whole.size);
-        const struct told told = read_bytes(inner.bytes, inner.size);
-        assert_int_equal(told.count, 10);
-        expect_damage(&told, 4, whole.begin[4], size, told.item[4].damage);
+        const struct report report = read_bytes(inner.bytes, inner.size);
+        assert_int_equal(report.count, 10);
+        expect_damage(&report, 4, whole.begin[4], size, report.item[4].damage);
     }
 }
 
@@ -461,14 +461,14 @@ static void test_a_log_in_a_message(void **state)
         log_bytes_event(&whole, i, "OTHERS", "1", 1);
         log_bytes_event(&whole, i, "LOGS", inner.bytes, inner.size);
     }
-    struct told told = read_bytes(whole.bytes, whole.size);
-    assert_int_equal(told.count, 12);
+    struct report report = read_bytes(whole.bytes, whole.size);
+    assert_int_equal(report.count, 12);
     for (size_t i = 0; i < 12; i++)
-        assert_true(tells(&told, whole.begin[i], whole.end[i]));
+        assert_true(reports_event(&report, whole.begin[i], whole.end[i]));
     for (size_t size = whole.end[9] + 1; size < whole.end[10]; size++) {
-        told = read_bytes(whole.bytes, size);
-        assert_int_equal(told.count, 11);
-        expect_damage(&told, 10, whole.begin[10], size, "the last event is cut off");
+        report = read_bytes(whole.bytes, size);
+        assert_int_equal(report.count, 11);
+        expect_damage(&report, 10, whole.begin[10], size, "the last event is cut off");
     }
 }
 
@@ -476,7 +476,7 @@ static void test_a_log_in_a_message(void **state)
 
 static const off_t large = INT64_C(10) << 30;
 
-/* A small log, and a hole behind it. */
+/* A small log, and a hole after it. */
 static struct log_reader *open_hole(void)
 {
     char why[LOG_WHY_MAX];
@@ -533,7 +533,7 @@ static void test_a_hole_at_the_end(void **state)
     expect_hole(reader);
     assert_int_equal(log_next(reader, &event, &damage), LOG_END);
     log_close(reader);
-    reader = open_hole(); /* also where something is written far behind it later */
+    reader = open_hole(); /* also where something is written far after it later */
     assert_int_equal(pwrite(log_bytes_descriptor(), whole.bytes, whole.size, large + (1 << 20)),
                      whole.size);
     expect_hole(reader);
@@ -588,19 +588,19 @@ static void ones(void)
     log_bytes_add(&whole, bytes, sizeof bytes);
 }
 
-static void garbage_behind(void)
+static void garbage_after(void)
 {
     log_bytes_header(&whole, 0, 0, 1, 1000);
     log_bytes_add(&whole, noise, 1002);
 }
 
 /* Not much more is read than the file, in calls that are at most as many as there are headers. */
-static void test_work_grows_with_the_size_alone(void **state)
+static void test_work_grows_only_with_the_size(void **state)
 {
     (void) state;
-    static void (*const units[])(void) = {long_lie,      lies_into_the_buffer, sync_words,
-                                          first_bytes,   nested_headers,       ones,
-                                          garbage_behind};
+    static void (*const units[])(void) = {long_lie,     lies_into_the_buffer, sync_words,
+                                          first_bytes,  nested_headers,       ones,
+                                          garbage_after};
     struct log_event event;
     struct log_damage damage;
     make_noise(3);
@@ -638,7 +638,7 @@ static void test_seeking_finds_what_reading_found(void **state)
         log_bytes_add(&whole, "??\0", (size_t) i % 4);
     }
     struct log_reader *reader = open_bytes(whole.bytes, whole.size);
-    const struct told all = read_on(reader, 0, whole.bytes);
+    const struct report all = read_on(reader, 0, whole.bytes);
     for (size_t offset = whole.size + 1; offset-- > 0;) {
         size_t next = 0;
         while (next < all.count &&
@@ -646,8 +646,8 @@ static void test_seeking_finds_what_reading_found(void **state)
             next++;
         const int64_t at = next < all.count ? all.item[next].offset : (int64_t) whole.size;
         log_seek(reader, (int64_t) offset);
-        const struct told told = read_on(reader, at, whole.bytes);
-        assert_int_equal(told.count, all.count - next);
+        const struct report report = read_on(reader, at, whole.bytes);
+        assert_int_equal(report.count, all.count - next);
     }
     log_close(reader);
 }
@@ -856,11 +856,11 @@ int main(void)
         cmocka_unit_test(test_garbage_everywhere),
         cmocka_unit_test(test_garbage_between_all),
         cmocka_unit_test(test_lengths_that_lie),
-        cmocka_unit_test(test_a_log_behind_a_log_that_was_cut_off),
+        cmocka_unit_test(test_a_log_after_a_log_that_was_cut_off),
         cmocka_unit_test(test_a_log_in_a_message),
         cmocka_unit_test(test_a_hole_of_ten_gigabytes),
         cmocka_unit_test(test_a_hole_at_the_end),
-        cmocka_unit_test(test_work_grows_with_the_size_alone),
+        cmocka_unit_test(test_work_grows_only_with_the_size),
         cmocka_unit_test(test_seeking_finds_what_reading_found),
         cmocka_unit_test(test_seeking_in_a_log_of_many_buffers),
         cmocka_unit_test(test_what_is_written_later_is_not_read),

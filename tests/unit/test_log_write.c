@@ -524,7 +524,7 @@ static void test_a_file_that_is_gone_is_not_kept(void **state)
     log_parts_close(&parts);
 }
 
-static void test_one_file_alone(void **state)
+static void test_a_single_file(void **state)
 {
     (void) state;
     const struct log_parts_options options = several("alone", 0, false);
@@ -536,7 +536,7 @@ static void test_one_file_alone(void **state)
     assert_int_equal(size_of("alone.000"), 9);
 }
 
-static void test_files_of_before_are_overwritten_with_force_alone(void **state)
+static void test_files_of_before_are_overwritten_only_with_force(void **state)
 {
     (void) state;
     static const char *const others[] = {"run", "run.00", "run.0x1", "run.000.gz", "xrun.000"};
@@ -598,8 +598,8 @@ int main(void)
         cmocka_unit_test(test_several_files_divide_no_event),
         cmocka_unit_test(test_the_newest_files_are_kept),
         cmocka_unit_test(test_a_file_that_is_gone_is_not_kept),
-        cmocka_unit_test(test_one_file_alone),
-        cmocka_unit_test(test_files_of_before_are_overwritten_with_force_alone),
+        cmocka_unit_test(test_a_single_file),
+        cmocka_unit_test(test_files_of_before_are_overwritten_only_with_force),
         cmocka_unit_test(test_a_next_file_that_cannot_be_had),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

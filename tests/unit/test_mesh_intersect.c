@@ -684,7 +684,7 @@ static void tetrahedra_are_those_of_the_article(void **state)
 }
 
 /* One face of that size, and one of another mesh that is near it. */
-static enum fmb_status ask_of_size(double size, enum mesh_as as)
+static enum fmb_status intersect_of_size(double size, enum mesh_as as)
 {
     struct mesh mesh[2];
     struct mesh_intersection meeting;
@@ -706,14 +706,14 @@ static enum fmb_status ask_of_size(double size, enum mesh_as as)
     return status;
 }
 
-static void normals_beyond_the_doubles_are_told(void **state)
+static void normals_beyond_the_doubles_are_reported(void **state)
 {
     (void) state;
-    assert_int_equal(ask_of_size(1, MESH_TETRAHEDRA), FMB_OK);
-    assert_int_equal(ask_of_size(1e200, MESH_TETRAHEDRA), FMB_NOT_FINITE);
-    assert_int_equal(ask_of_size(DBL_MAX / 2, MESH_TETRAHEDRA), FMB_NOT_FINITE);
-    assert_int_equal(ask_of_size(DBL_MAX / 2, MESH_FACES), FMB_OK);
-    assert_int_equal(ask_of_size(0x1p-1074, MESH_FACES), FMB_OK);
+    assert_int_equal(intersect_of_size(1, MESH_TETRAHEDRA), FMB_OK);
+    assert_int_equal(intersect_of_size(1e200, MESH_TETRAHEDRA), FMB_NOT_FINITE);
+    assert_int_equal(intersect_of_size(DBL_MAX / 2, MESH_TETRAHEDRA), FMB_NOT_FINITE);
+    assert_int_equal(intersect_of_size(DBL_MAX / 2, MESH_FACES), FMB_OK);
+    assert_int_equal(intersect_of_size(0x1p-1074, MESH_FACES), FMB_OK);
 }
 
 /* ---- How far it is ---- */
@@ -871,7 +871,7 @@ static void steps_round_once(void **state)
     }
 }
 
-static void what_goes_too_far_is_told(void **state)
+static void what_goes_too_far_is_reported(void **state)
 {
     (void) state;
     static const double p[3] = {1, 0, -1}, half[3] = {DBL_MAX / 2, -DBL_MAX / 2, 0};
@@ -908,14 +908,14 @@ int main(void)
         cmocka_unit_test(a_closed_mesh_shares_edges_and_vertices),
         cmocka_unit_test(cases_of_two_faces),
         cmocka_unit_test(tetrahedra_are_those_of_the_article),
-        cmocka_unit_test(normals_beyond_the_doubles_are_told),
+        cmocka_unit_test(normals_beyond_the_doubles_are_reported),
         cmocka_unit_test(progress_goes_on_to_its_end),
         cmocka_unit_test(empty_meshes_meet_nothing),
         cmocka_unit_test(right_angles_are_exact),
         cmocka_unit_test(other_angles_are_near),
         cmocka_unit_test(steps_follow_each_other),
         cmocka_unit_test(steps_round_once),
-        cmocka_unit_test(what_goes_too_far_is_told),
+        cmocka_unit_test(what_goes_too_far_is_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

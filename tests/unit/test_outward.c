@@ -424,8 +424,9 @@ static bool box_of(const struct frame_pair *pair, double box[2][FMB_DIM_MAX])
 }
 
 /* *answer has the interval and the box of the exact method, which those of doubles replace. */
-static void ask_doubles(const struct ready *ready, const struct slabs_pair *slabs, bool rounds,
-                        struct dyadic_span span, struct fmb_answer *answer, bool good[2])
+static void decide_in_doubles(const struct ready *ready, const struct slabs_pair *slabs,
+                              bool rounds, struct dyadic_span span, struct fmb_answer *answer,
+                              bool good[2])
 {
     const struct frame_pair frames = pair_frames(&ready->pair);
     struct fmb_answer doubles = *answer;
@@ -452,8 +453,8 @@ static void compare(const struct question *question, const struct ready *ready, 
     const struct frame_pair frames = pair_frames(&ready->pair);
     const struct dyadic_span span = limbs_span_of(&frames);
     const bool rounds = may_round || !limbs_never_round(&slabs, span);
-    referee_ask(question, &answer);
-    ask_doubles(ready, &slabs, rounds, span, &answer, good);
+    referee_decide(question, &answer);
+    decide_in_doubles(ready, &slabs, rounds, span, &answer, good);
     if (!oracle_agrees(truth, &ready->pair, &answer, ORACLE_DESIGN, why, sizeof why))
         referee_fail(question, why);
     oracle_measure(truth, &ready->pair, &answer, &contact, &box);

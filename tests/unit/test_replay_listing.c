@@ -1,4 +1,4 @@
-/* Which differences are told, and in which order: against all of them, sorted. */
+/* Which differences are listed, and in which order: against all of them, sorted. */
 #include "listing.h"
 
 #include <setjmp.h>
@@ -21,12 +21,12 @@ static uint64_t draw(uint64_t below)
 enum { PUT_MAX = 3000 };
 
 static struct located_difference put[PUT_MAX];
-static int told_count;
+static int listed_count;
 
-/* What is told next has to be put[told_count]. */
-static void on_told(void *user, const struct located_difference *found)
+/* What is listed next has to be put[listed_count]. */
+static void on_listed(void *user, const struct located_difference *found)
 {
-    const struct located_difference *expected = &put[told_count++];
+    const struct located_difference *expected = &put[listed_count++];
     (void) user;
     assert_int_equal(found->place.log, expected->place.log);
     assert_int_equal(found->place.offset, expected->place.offset);
@@ -62,7 +62,7 @@ static int compare(const void *left, const void *right)
 
 static void check(int count, int64_t limit, int order)
 {
-    struct listing *told = listing_open(limit);
+    struct listing *listing = listing_open(limit);
     for (int i = 0; i < count; i++) {
         char text[32];
         put[i] = draw_found(i);
@@ -71,17 +71,17 @@ static void check(int count, int64_t limit, int order)
         struct located_difference found = put[i];
         snprintf(text, sizeof text, "certificate %d", i);
         found.difference.then.certificate = i % 2 ? text : NULL;
-        listing_put(told, &found);
+        listing_put(listing, &found);
     }
     qsort(put, (size_t) count, sizeof *put, compare);
     const int kept = count < limit ? count : (int) limit;
-    assert_int_equal(listing_beyond(told), count - kept);
+    assert_int_equal(listing_beyond(listing), count - kept);
     for (int times = 0; times < 2; times++) {
-        told_count = 0;
-        listing_each(told, on_told, NULL);
-        assert_int_equal(told_count, kept);
+        listed_count = 0;
+        listing_each(listing, on_listed, NULL);
+        assert_int_equal(listed_count, kept);
     }
-    listing_close(told);
+    listing_close(listing);
 }
 
 static void test_the_first_ones(void **state)
@@ -104,10 +104,10 @@ static void test_long_certificates(void **state)
     memset(text, 'x', sizeof text - 1);
     struct located_difference found = {.place = {.number = 1}};
     found.difference.then.certificate = text;
-    struct listing *told = listing_open(1);
-    listing_put(told, &found);
+    struct listing *listing = listing_open(1);
+    listing_put(listing, &found);
     text[0] = '\0'; /* it is copied */
-    listing_close(told);
+    listing_close(listing);
     listing_close(NULL);
 }
 

@@ -623,7 +623,7 @@ static void test_a_log_of_version_1(void **state)
 }
 
 /* What the help of fmb replay says: some 500 bytes for each pair query that waits. */
-static void test_memory_of_results_behind_all_queries(void **state)
+static void test_memory_of_results_after_all_queries(void **state)
 {
     const int64_t count = 100000;
     struct pair_query query = pair(0, whole(3, 2, 0), whole(2, 1, 2));
@@ -812,7 +812,7 @@ static void log_query(int ways, int64_t at, bool scene, const unsigned char *byt
         write_event(ways, scene ? WIRE_SCENE_QUERY : WIRE_PAIR_QUERY, bytes, size);
 }
 
-static void ask_pair(int ways, int64_t at, int client)
+static void log_pair_query(int ways, int64_t at, int client)
 {
     static unsigned char bytes[QUERY_BYTES_MAX], query_bytes[QUERY_BYTES_MAX];
     struct pair_query query =
@@ -836,7 +836,7 @@ static void ask_pair(int ways, int64_t at, int client)
         log_result(ways, at, false, bytes, size);
 }
 
-static void ask_scene(int ways, int64_t at, int client)
+static void log_scene_query(int ways, int64_t at, int client)
 {
     static unsigned char bytes[QUERY_BYTES_MAX], query_bytes[QUERY_BYTES_MAX];
     static struct scene_query query;
@@ -903,7 +903,7 @@ static void make_log(int ways, int64_t queries)
     const int64_t defined_at = (int64_t) draw((uint64_t) queries);
     make_world();
     for (int64_t at = ways & BEGIN_LATE ? -100 : 0; at < queries; at++) {
-        (draw(3) ? ask_pair : ask_scene)(ways, at, (int) draw(CLIENTS));
+        (draw(3) ? log_pair_query : log_scene_query)(ways, at, (int) draw(CLIENTS));
         log_delayed(ways, at);
         if (ways & DEFINED && at == defined_at)
             log_all_definitions();
@@ -1039,7 +1039,7 @@ int main(void)
         TEST(queries_beyond_all_limits),
         TEST(times_that_cannot_be),
         TEST(a_log_of_version_1),
-        TEST(memory_of_results_behind_all_queries),
+        TEST(memory_of_results_after_all_queries),
         TEST(worlds_spoiled_in_one_way),
         TEST(worlds_spoiled_in_many_ways),
     };

@@ -150,7 +150,7 @@ static void test_debt_is_kept(void **state)
     assert_int_equal(next(), debtor);
 }
 
-static void test_a_new_id_starts_behind(void **state)
+static void test_a_new_id_has_no_advantage_over_an_old_one(void **state)
 {
     (void) state;
     const int old = active_client(1);
@@ -339,7 +339,7 @@ int main(void)
         TEST(test_time_is_shared_equally),
         TEST(test_idling_earns_no_credit),
         TEST(test_debt_is_kept),
-        TEST(test_a_new_id_starts_behind),
+        TEST(test_a_new_id_has_no_advantage_over_an_old_one),
         TEST(test_known_clients_keep_their_number),
         TEST(test_the_one_that_was_idle_longest_is_forgotten),
         TEST(test_ids_without_end),

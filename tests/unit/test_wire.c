@@ -392,7 +392,7 @@ static void test_handles_are_hashes_of_the_encoding(void **state)
     assert_memory_equal(encoded + 8 + HANDLE_BYTES, bytes, size);
 }
 
-static void test_handles_tell_zeros_apart(void **state)
+static void test_handles_distinguish_zeros(void **state)
 {
     (void) state;
     unsigned char bytes[2][GEOMETRY_FRAME_BYTES_MAX];
@@ -884,7 +884,7 @@ int main(void)
         cmocka_unit_test(test_geometry_that_does_not_fit),
         cmocka_unit_test(test_a_frame_by_vertices_has_their_count),
         cmocka_unit_test(test_handles_are_hashes_of_the_encoding),
-        cmocka_unit_test(test_handles_tell_zeros_apart),
+        cmocka_unit_test(test_handles_distinguish_zeros),
         cmocka_unit_test(test_definition_query_round_trip),
         cmocka_unit_test(test_definition_round_trip),
         cmocka_unit_test(test_definitions_match_their_handles),

@@ -1,14 +1,19 @@
-/* What no service and no client sends. The bus is that of LCM_DEFAULT_URL.
+/* A peer on the bus that does what no service and no client does. The bus is that of
+ * LCM_DEFAULT_URL.
  *
- * poke CHANNEL TYPE: publishes every damaged message of the type on the channel, and prints how
- * many there were.
- * poke flood TYPE CLIENT SECONDS: publishes good queries, pair_query or scene_query, of this client
- * as fast as it can, and prints how many there were.
- * poke numbers CLIENT NUMBER...: publishes good pair queries of this client with these sequence
- * numbers.
- * poke listen PATH: prints the datagrams that a service manager gets at this socket, one a line;
- * until it is ended.
- * poke lie CERTIFICATE: a service that says of every pair, with this certificate, that it
+ * fake-peer CHANNEL TYPE: publishes every damaged message of the type on the channel, and prints
+ * how many there were.
+ *
+ * fake-peer flood TYPE CLIENT SECONDS: publishes good queries, pair_query or scene_query, of this
+ * client as fast as it can, and prints how many there were.
+ *
+ * fake-peer numbers CLIENT NUMBER...: publishes good pair queries of this client with these
+ * sequence numbers.
+ *
+ * fake-peer listen PATH: prints the datagrams that a service manager gets at this socket, one a
+ * line; until it is ended.
+ *
+ * fake-peer lie CERTIFICATE: a service that says of every pair, with this certificate, that it
  * overlaps, and of the first pair of every scene; until it is ended. */
 #include "hostile.h"
 
@@ -21,7 +26,7 @@
 #include <sys/un.h>
 #include <time.h>
 
-struct poke {
+struct sending {
     lcm_t *lcm;
     const char *channel;
     size_t failed;
@@ -30,19 +35,19 @@ struct poke {
 /* Slow enough that no buffer overflows: the receiver counts them all. */
 static void publish(void *context, const char *what, const unsigned char *bytes, size_t size)
 {
-    struct poke *poke = context;
+    struct sending *sending = context;
     const struct timespec pause = {.tv_nsec = 200000};
     (void) what;
-    if (lcm_publish(poke->lcm, poke->channel, bytes, (unsigned) size) != 0)
-        poke->failed++;
+    if (lcm_publish(sending->lcm, sending->channel, bytes, (unsigned) size) != 0)
+        sending->failed++;
     nanosleep(&pause, NULL);
 }
 
 static int damage(lcm_t *lcm, const char *channel, const char *type)
 {
-    struct poke poke = {.lcm = lcm, .channel = channel};
-    printf("%zu\n", hostile_each(type, publish, &poke));
-    return poke.failed != 0;
+    struct sending sending = {.lcm = lcm, .channel = channel};
+    printf("%zu\n", hostile_each(type, publish, &sending));
+    return sending.failed != 0;
 }
 
 static int flood(lcm_t *lcm, const char *type, long long client_id, long seconds)
@@ -128,11 +133,11 @@ int main(int argc, char **argv)
     const bool floods = strcmp(what, "flood") == 0, counts = strcmp(what, "numbers") == 0;
     if (counts ? argc < 4 : argc != (floods ? 5 : 3)) {
         fputs(
-            "usage: poke CHANNEL TYPE\n"
-            "       poke flood TYPE CLIENT SECONDS\n"
-            "       poke numbers CLIENT NUMBER...\n"
-            "       poke listen PATH\n"
-            "       poke lie CERTIFICATE\n",
+            "usage: fake-peer CHANNEL TYPE\n"
+            "       fake-peer flood TYPE CLIENT SECONDS\n"
+            "       fake-peer numbers CLIENT NUMBER...\n"
+            "       fake-peer listen PATH\n"
+            "       fake-peer lie CERTIFICATE\n",
             stderr);
         return 2;
     }

@@ -1,7 +1,7 @@
-/* Tells what is in an event log: tell FILE prints a line of JSON for each event, read with liblcm's
- * own reader, and results by lcm-gen's own decoders; nothing of the service's or its clients' is in
- * this program. Only for logs that can be trusted: liblcm's code cannot stand any others. Exit code
- * 1: it cannot be opened, or does not end where the file does. */
+/* Describes an event log: describe-log FILE prints a line of JSON for each event, read with
+ * liblcm's own reader, and results by lcm-gen's own decoders; nothing of the service's or its
+ * clients' is in this program. Only for logs that can be trusted: liblcm's code cannot stand any
+ * others. Exit code 1: it cannot be opened, or does not end where the file does. */
 #include "fmb_msgs_pair_result_t.h"
 #include "fmb_msgs_scene_result_t.h"
 
@@ -18,7 +18,7 @@ static bool ends_with(const char *text, const char *end)
     return length >= tail && strcmp(text + length - tail, end) == 0;
 }
 
-static void tell_pair_result(const lcm_eventlog_event_t *event)
+static void describe_pair_result(const lcm_eventlog_event_t *event)
 {
     fmb_msgs_pair_result_t result;
     if (fmb_msgs_pair_result_t_decode(event->data, 0, event->datalen, &result) != event->datalen)
@@ -33,7 +33,7 @@ static void tell_pair_result(const lcm_eventlog_event_t *event)
     fmb_msgs_pair_result_t_decode_cleanup(&result);
 }
 
-static void tell_scene_result(const lcm_eventlog_event_t *event)
+static void describe_scene_result(const lcm_eventlog_event_t *event)
 {
     fmb_msgs_scene_result_t result;
     if (fmb_msgs_scene_result_t_decode(event->data, 0, event->datalen, &result) != event->datalen)
@@ -51,14 +51,14 @@ static void tell_scene_result(const lcm_eventlog_event_t *event)
 }
 
 /* Channels have no characters that JSON would not take as they are. */
-static void tell(const lcm_eventlog_event_t *event)
+static void describe(const lcm_eventlog_event_t *event)
 {
     printf("{\"event\": %" PRId64 ", \"utime\": %" PRId64 ", \"channel\": \"%s\", \"size\": %d",
            event->eventnum, event->timestamp, event->channel, (int) event->datalen);
     if (ends_with(event->channel, "FMB_PAIR_RESULT"))
-        tell_pair_result(event);
+        describe_pair_result(event);
     else if (ends_with(event->channel, "FMB_SCENE_RESULT"))
-        tell_scene_result(event);
+        describe_scene_result(event);
     printf("}\n");
 }
 
@@ -73,12 +73,12 @@ int main(int argc, char **argv)
 {
     lcm_eventlog_t *log = argc == 2 ? lcm_eventlog_create(argv[1], "r") : NULL;
     if (!log) {
-        fprintf(stderr, "usage: tell FILE, a log that can be read\n");
+        fprintf(stderr, "usage: describe-log FILE, a log that can be read\n");
         return 1;
     }
     lcm_eventlog_event_t *event;
     while ((event = lcm_eventlog_read_next_event(log))) {
-        tell(event);
+        describe(event);
         lcm_eventlog_free_event(event);
     }
     const bool all = is_at_end(log);

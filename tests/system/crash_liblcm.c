@@ -1,14 +1,17 @@
 /* Packets that LCM's receiving thread does not survive (liblcm 1.3.1), sent to the group and port
  * of LCM_DEFAULT_URL, or LCM's usual ones.
  *
- * poison wrap CHANNEL: two fragments of a message, the second of which says that it begins 16 bytes
- * below 2^32: in 32 bits offset plus size wraps and seems to fit, in 64 bits the bytes go 4 GB
- * beyond the message.
- * poison empty CHANNEL: headers alone, short ones without a channel's end: negative sizes.
- * poison huge CHANNEL: a fragment of a message of 256 MB.
- * poison short CHANNEL: two good fragments, then one that ends in the middle of its header: what is
- * left of the second stands in for the rest, and the size without the header is taken for a huge
- * one, which wraps with the offset. */
+ * crash-liblcm wrap CHANNEL: two fragments of a message, the second of which says that it begins
+ * 16 bytes below 2^32: in 32 bits offset plus size wraps and seems to fit, in 64 bits the bytes go
+ * 4 GB beyond the message.
+ *
+ * crash-liblcm empty CHANNEL: headers alone, short ones without a channel's end: negative sizes.
+ *
+ * crash-liblcm huge CHANNEL: a fragment of a message of 256 MB.
+ *
+ * crash-liblcm short CHANNEL: two good fragments, then one that ends in the middle of its header:
+ * what is left of the second stands in for the rest, and the size without the header is taken for a
+ * huge one, which wraps with the offset. */
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <stdint.h>
@@ -68,7 +71,7 @@ static struct sockaddr_in bus_address(void)
     const char *url = getenv("LCM_DEFAULT_URL");
     struct sockaddr_in address = {.sin_family = AF_INET};
     if (url && sscanf(url, "udpm://%15[0-9.]:%5u", group, &port) != 2) {
-        fprintf(stderr, "poison: %s is not understood\n", url);
+        fprintf(stderr, "crash-liblcm: %s is not understood\n", url);
         exit(2);
     }
     address.sin_port = htons((uint16_t) port);
@@ -84,7 +87,7 @@ static int open_bus(void)
     int fd = socket(AF_INET, SOCK_DGRAM, 0);
     if (fd < 0 || setsockopt(fd, IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl) != 0 ||
         connect(fd, (const struct sockaddr *) &address, sizeof address) != 0) {
-        perror("poison: socket");
+        perror("crash-liblcm: socket");
         exit(1);
     }
     return fd;
@@ -93,7 +96,7 @@ static int open_bus(void)
 static void send_packet(int fd, const unsigned char *packet, size_t size)
 {
     if (send(fd, packet, size, 0) != (ssize_t) size) {
-        perror("poison: send");
+        perror("crash-liblcm: send");
         exit(1);
     }
 }
@@ -140,19 +143,19 @@ static void send_huge(int fd, const char *channel)
 static const struct {
     const char *name;
     void (*send)(int fd, const char *channel);
-} poisons[] = {
+} packets[] = {
     {"wrap", send_wrap}, {"short", send_short}, {"empty", send_empty}, {"huge", send_huge}};
 
 int main(int argc, char **argv)
 {
-    for (size_t i = 0; i < sizeof poisons / sizeof *poisons && argc == 3; i++) {
-        if (strcmp(argv[1], poisons[i].name) != 0 || strlen(argv[2]) > 63)
+    for (size_t i = 0; i < sizeof packets / sizeof *packets && argc == 3; i++) {
+        if (strcmp(argv[1], packets[i].name) != 0 || strlen(argv[2]) > 63)
             continue;
         const int fd = open_bus();
-        poisons[i].send(fd, argv[2]);
+        packets[i].send(fd, argv[2]);
         close(fd);
         return 0;
     }
-    fputs("usage: poison wrap|short|empty|huge CHANNEL\n", stderr);
+    fputs("usage: crash-liblcm wrap|short|empty|huge CHANNEL\n", stderr);
     return 2;
 }
