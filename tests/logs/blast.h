@@ -16,7 +16,7 @@ struct blast {
     int dim;       /* 2 or 3; 0: both */
     int moving;    /* 0, or 1; -1: both */
     int by_handle; /* bodies go by handle once it is known: 0, or 1; -1: one time in two */
-    int32_t want;  /* QUERY_WANT_ bits, of pairs */
+    int32_t want;  /* FMB_WANT_ bits, of pairs */
     int bodies;    /* from 2 to BLAST_BODIES: of each dimension half as many; 0: BLAST_BODIES */
 };
 
