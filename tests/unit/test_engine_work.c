@@ -130,7 +130,7 @@ int main(void)
 {
     static struct search searches[] = {{"bodies", work_of_body, {2e4, 2e4}, 8},
                                        {"verdicts", work_of_verdict, {4e5, 3e6}, 8},
-                                       {"steps before exact", work_before_exact, {4e5, 4e5}, 32},
+                                       {"steps before exact", work_before_exact, {4e5, 4e5}, 96},
                                        {"all", work_of_all, {4e6, 12e6}, 8},
                                        {"exact", work_of_exact, {4e6, 12e6}, 8},
                                        {"gaps", work_of_gap, {2e5, 2e6}, 8},
