@@ -25,9 +25,8 @@
 /* A query that has waited for longer since its arrival is dropped. A repeat has its own arrival. */
 #define QUOTA_AGE_NS INT64_C(5000000000)
 
-/* The most compute time that the waiting queries of one client may take; and those of all clients,
- * each of which gets an equal part of it. With one query a second, which is the least that a client
- * with one waiting query gets beside many, 4 s are answered before they are QUOTA_AGE_NS old. */
+/* The most compute time that the waiting queries of one client may take; and those of all clients
+ * together, in equal parts. 4 s of work are answered before any of it is QUOTA_AGE_NS old. */
 #define QUOTA_CLIENT_NS INT64_C(1000000000)
 #define QUOTA_ALL_NS INT64_C(4000000000)
 

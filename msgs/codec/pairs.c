@@ -64,12 +64,20 @@ static void count_grouped(struct undecided *undecided)
                 count_undecided(undecided, (const unsigned[2]){a, b});
 }
 
+static bool has_undecided(const struct scene_query *query)
+{
+    bool grouped = false;
+    for (int32_t i = 0; i < query_stored_placements(query) && !grouped; i++)
+        grouped = query->placement[i].group != 0;
+    return query->which != FMB_PAIRS_LISTED && (query->ignored_count > 1 || grouped);
+}
+
 int64_t query_pairs_decided(const struct scene_query *query, int32_t end_pair,
                             struct query_marks *marks)
 {
     struct undecided undecided = {.query = query, .end_pair = end_pair, .marks = marks};
     const size_t n = (size_t) query_stored_placements(query);
-    if (query->which != FMB_PAIRS_LISTED) {
+    if (has_undecided(query)) {
         memset(marks->bit, 0, n * n / 8 + 1);
         for (int32_t k = 0; k < query->ignored_count / 2; k++)
             count_undecided(&undecided, query->ignored[k]);

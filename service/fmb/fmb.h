@@ -734,9 +734,9 @@ enum { FMB_CERTIFICATE_MAX = 16384 };
  * FMB_CANNOT_DECIDE for bodies of several frames.
  *
  * A pair whose numbers span more than 512 bits has no certificate: the status is FMB_OK and the
- * text is empty. The span is measured as follows. Let 2^e be the largest power of two of which
- * every coordinate of every component, origin, position and v T of the pair is a multiple, and half
- * of every size of a box. Let n be |q|^2 for the smallest integers q that are proportional to the
+ * text is empty. The span is measured as follows. Let 2^e be the largest power of two that divides
+ * every coordinate of every component, origin, position and v T of the pair, and half of every size
+ * of a box. Let n be |q|^2 for the smallest integers q that are proportional to the
  * orientation; 1 without one. Multiply the components and origins in the world, and v T, by the
  * product of both n, or by one if they are equal. The pair spans at most 512 bits if the magnitude
  * of each coordinate is then less than 2^(e + 512).

@@ -326,7 +326,7 @@ Try 'fmb log info --help'."
 
 # ---- Logs of old versions --------------------------------------------------------------------
 
-# recognised VERSION FINGERPRINT: of a log of one pair query, of which the fingerprint is enough.
+# recognised VERSION FINGERPRINT: of a log of one pair query; its fingerprint is enough.
 recognised() {
     printf '\355\241\332\001\0\0\0\0\0\0\0\0\0\6\15\327\20\41\40\0\0\0\0\16\0\0\0\10%s' \
         FMB_PAIR_QUERY > "$BATS_TEST_TMPDIR/one.log"

@@ -1,7 +1,7 @@
 /* Packets that LCM's receiving thread does not survive (liblcm 1.3.1), sent to the group and port
  * of LCM_DEFAULT_URL, or LCM's usual ones.
  *
- * crash-liblcm wrap CHANNEL: two fragments of a message, the second of which says that it begins
+ * crash-liblcm wrap CHANNEL: two fragments of a message; the second one says that it begins
  * 16 bytes below 2^32: in 32 bits offset plus size wraps and seems to fit, in 64 bits the bytes go
  * 4 GB beyond the message.
  *

@@ -175,20 +175,20 @@ many_scenes() {
 }
 
 @test "a service manager is told when it is ready, alive and stopping" {
-    "$FMB_BUILD/fake-peer" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/heard" 3>&- &
+    "$FMB_BUILD/fake-peer" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/received" 3>&- &
     started="${started-} $!"
     wait_until test -S "$BATS_TEST_TMPDIR/notify"
     NOTIFY_SOCKET=$BATS_TEST_TMPDIR/notify WATCHDOG_USEC=400000 start_fmbd
-    alive() { [ "$(grep -c '^WATCHDOG=1$' "$BATS_TEST_TMPDIR/heard")" -ge 3 ]; }
+    alive() { [ "$(grep -c '^WATCHDOG=1$' "$BATS_TEST_TMPDIR/received")" -ge 3 ]; }
     wait_until alive
     stop_fmbd
-    [ "$(head -n 1 "$BATS_TEST_TMPDIR/heard")" = READY=1 ]
-    stopping() { [ "$(tail -n 1 "$BATS_TEST_TMPDIR/heard")" = STOPPING=1 ]; }
+    [ "$(head -n 1 "$BATS_TEST_TMPDIR/received")" = READY=1 ]
+    stopping() { [ "$(tail -n 1 "$BATS_TEST_TMPDIR/received")" = STOPPING=1 ]; }
     wait_until stopping
 }
 
 @test "heartbeats and signs of life come while there is always work" {
-    "$FMB_BUILD/fake-peer" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/heard" 3>&- &
+    "$FMB_BUILD/fake-peer" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/received" 3>&- &
     started="${started-} $!" clients=
     wait_until test -S "$BATS_TEST_TMPDIR/notify"
     NOTIFY_SOCKET=$BATS_TEST_TMPDIR/notify WATCHDOG_USEC=400000 start_fmbd
@@ -201,7 +201,7 @@ many_scenes() {
         started="$started $!" clients="$clients $!"
     done
     sleep 0.5
-    signs() { grep -c '^WATCHDOG=1$' "$BATS_TEST_TMPDIR/heard"; }
+    signs() { grep -c '^WATCHDOG=1$' "$BATS_TEST_TMPDIR/received"; }
     before=$(signs)
     "$FMB" status > /dev/null
     "$FMB" status > /dev/null

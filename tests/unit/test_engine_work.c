@@ -124,7 +124,7 @@ static void only_slabs_that_may_have_an_end_are_computed(void **state)
     assert_true(contacts > 0 && exact_slabs < 12 * contacts);
 }
 
-/* Limits: 6 ms with everything wanted; 16 ms with a certificate, 6 ms of which are for the answer.
+/* Limits: 6 ms with everything wanted; 16 ms with a certificate, 6 ms for the answer included.
  */
 int main(void)
 {

@@ -216,7 +216,7 @@ static void test_a_slow_client_is_not_waited_for(void **state)
     assert_in_range(answers_to(COSTLY) - before, 980, 1000);
 }
 
-/* The same client beside certificates, one of which would delay it by more than the wait takes. */
+/* The same client beside certificates. Each would delay it by more than the wait takes. */
 static void test_a_slow_client_is_anticipated_before_long_work(void **state)
 {
     (void) state;
