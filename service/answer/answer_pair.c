@@ -239,17 +239,16 @@ static void begin_scene(struct pair_job *job)
     const struct fmb_method *method = fmb_method_by_number(query->method);
     for (int f = 0; f < 2; f++)
         job->placement[f] = answerer_place(&query->placement[f], job->used[f].body);
-    const struct fmb_scene scene = {.placements = job->placement,
-                                    .placement_count = 2,
-                                    .duration = query->duration,
-                                    .instant = query->duration == 0,
-                                    .method = method,
-                                    .contacts = true,
-                                    .boxes = query->want & FMB_WANT_BOX && method->boxes,
-                                    .gaps = query->want & FMB_WANT_GAP,
-                                    .which = FMB_PAIRS_LISTED,
-                                    .pairs = pair,
-                                    .pair_count = 1};
+    const struct fmb_scene scene = {
+        .placements = job->placement,
+        .placement_count = 2,
+        .duration = query->duration,
+        .instant = query->duration == 0,
+        .method = method,
+        .want = FMB_WANT_TIMES | (query->want & ~(unsigned) FMB_WANT_CERTIFICATE),
+        .which = FMB_PAIRS_LISTED,
+        .pairs = pair,
+        .pair_count = 1};
     const enum fmb_status status = fmb_scene_begin(&scene, &limits, job->memory, &job->scene);
     assert(status == FMB_OK);
     (void) status;

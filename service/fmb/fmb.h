@@ -211,8 +211,11 @@ struct fmb_placement {
     double velocity[FMB_DIM_MAX]; /* per second */
     double orientation[4];        /* w, x, y, z (2D: w, z); of any length but 0 */
     int orientation_count;        /* 0: not rotated; 4 (2D: 2) */
-    int64_t
-        group; /* not 0: in a scene, placements of one group are not tested against each other */
+    /* Not 0: in a scene, placements of one group are not tested against each other. */
+    int64_t group;
+    /* Not read by the engine; the client library and its messages use them. */
+    int64_t id;       /* of the body, 1 to 2^53 - 1; 0: anonymous */
+    const char *name; /* for people: UTF-8, at most 64 bytes, no control characters; NULL: none */
 };
 
 /* Checks a placement. Every function that takes placements applies this check.
@@ -229,11 +232,12 @@ enum fmb_status fmb_placement_check(const struct fmb_placement *placement);
 
 /* ---- Two bodies ---- */
 
-/* Bits of want. fmb_decide() accepts BOX and GAP. Messages and the client library accept all. */
+/* Bits of want. fmb_decide() and fmb_scene_begin() accept all but CERTIFICATE; messages and the
+ * client library accept all. */
 enum fmb_want {
     FMB_WANT_BOX = 1,
     FMB_WANT_CERTIFICATE = 2,
-    FMB_WANT_TIMES = 4, /* contact intervals */
+    FMB_WANT_TIMES = 4, /* contact intervals; fmb_decide() always gives them */
     FMB_WANT_GAP = 8    /* only of methods that are certain */
 };
 
@@ -591,8 +595,9 @@ struct fmb_scene {
     bool instant;    /* the window is [0, 0] even if placements move; the duration is 0 */
     /* NULL: the default. A method that is not certain requires FMB_PAIRS_LISTED. */
     const struct fmb_method *method;
-    bool contacts, boxes; /* wanted, of pairs that meet */
-    bool gaps;            /* wanted, of all pairs in the answers */
+    /* Sum of FMB_WANT_ bits; 0: verdicts only. Times and boxes are of pairs that meet, gaps of all
+     * pairs in the answers. */
+    unsigned want;
     /* Separated pairs whose lower bound of the gap is at most the margin are near. They are
      * included in the answers, and they and the pairs that meet have gaps. Finite, not negative; 0:
      * no pair is near. */
@@ -608,6 +613,7 @@ struct fmb_scene {
     const unsigned (*ignored)[2];
     size_t ignored_count;
     unsigned long long first_pair; /* the first pair to decide; at most the number of pairs */
+    const char *label; /* for people, not read by the engine: at most 64 bytes; NULL: none */
 };
 
 /* Capacities of the memory of a scene. */
@@ -631,7 +637,7 @@ struct fmb_scene_limits fmb_scene_limits_of(const struct fmb_scene *scene);
 size_t fmb_scene_bytes(const struct fmb_scene_limits *limits);
 
 /* The answers of one step. The arrays belong to the memory of the scene or to the query, and are
- * valid until the next step. Arrays that were not wanted are unspecified. */
+ * valid until the next step. Arrays that were not wanted are NULL. */
 struct fmb_scene_answers {
     size_t count;
     const unsigned (*pairs)[2];            /* [count][a, b] */
@@ -655,7 +661,7 @@ struct fmb_scene_state;
  *   FMB_OVER_LIMIT         the scene is not within limits, or limits->slots is below the minimum
  *   FMB_BAD_DURATION       negative, not finite, 0 although a placement moves and instant is not
  *                          set, or not 0 although it is
- *   FMB_BAD_MARGIN
+ *   FMB_BAD_MARGIN, FMB_UNKNOWN_WANT
  *   a status of fmb_placement_check()
  *   FMB_DIMENSIONS_DIFFER  placements of different dimensions
  *   FMB_BAD_PAIR           which is unknown; a pair has an index out of range or the same index

@@ -21,7 +21,7 @@ static void run(struct margins *margins, int k, double margin)
 {
     struct fmb_scene_state *state;
     struct fmb_scene_answers answers;
-    margins->scene.gaps = k == GAPS;
+    margins->scene.want = k == GAPS ? FMB_WANT_GAP : 0;
     margins->scene.margin = k == MARGIN ? margin : 0;
     margins->meet = margins->near = 0;
     bool done = fmb_scene_begin(&margins->scene, &margins->limits, margins->memory, &state);

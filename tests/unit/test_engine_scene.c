@@ -104,14 +104,14 @@ static void draw_world(struct draw *draw, size_t count, size_t most_frames, stru
     out->count = count;
     draw_placements(draw, most_frames, out);
     struct fmb_scene *scene = &out->scene;
-    *scene = (struct fmb_scene){.placements = out->placement,
-                                .placement_count = count,
-                                .duration = below(draw, 3),
-                                .contacts = below(draw, 2),
-                                .boxes = below(draw, 2),
-                                .gaps = below(draw, 3) == 0,
-                                .margin = below(draw, 3) ? 0 : 0.25 * below(draw, 12),
-                                .which = (enum fmb_pairs) below(draw, 3)};
+    *scene = (struct fmb_scene){
+        .placements = out->placement,
+        .placement_count = count,
+        .duration = below(draw, 3),
+        .want = (unsigned) (below(draw, 2) * FMB_WANT_TIMES + below(draw, 2) * FMB_WANT_BOX +
+                            (below(draw, 3) == 0) * FMB_WANT_GAP),
+        .margin = below(draw, 3) ? 0 : 0.25 * below(draw, 12),
+        .which = (enum fmb_pairs) below(draw, 3)};
     if (scene->which == FMB_PAIRS_ACROSS)
         scene->split = (size_t) below(draw, (int) count + 1);
     if (scene->which == FMB_PAIRS_LISTED && count > 1) {
@@ -176,7 +176,7 @@ struct truth {
 
 static bool wants_gaps(const struct fmb_scene *scene)
 {
-    return scene->gaps || scene->margin > 0;
+    return scene->want & FMB_WANT_GAP || scene->margin > 0;
 }
 
 static bool is_near(const struct fmb_scene *scene, const struct fmb_answer *answer)
@@ -197,10 +197,9 @@ static size_t find_truth(const struct fmb_scene *scene, struct truth *out)
             continue;
         truth->number = number;
         memcpy(truth->pair, pair, sizeof pair);
-        fmb_decide(method, &scene->placements[pair[0]], &scene->placements[pair[1]],
-                   scene->duration,
-                   (scene->boxes ? FMB_WANT_BOX : 0) | (wants_gaps(scene) ? FMB_WANT_GAP : 0),
-                   &truth->answer);
+        fmb_decide(
+            method, &scene->placements[pair[0]], &scene->placements[pair[1]], scene->duration,
+            (scene->want & FMB_WANT_BOX) | (wants_gaps(scene) ? FMB_WANT_GAP : 0), &truth->answer);
         count += scene->which == FMB_PAIRS_LISTED || truth->answer.verdict != FMB_SEPARATED ||
                  is_near(scene, &truth->answer);
     }
@@ -223,8 +222,8 @@ static void check_gap(const struct fmb_scene *scene, const struct fmb_gap *got,
                       const struct fmb_answer *truth)
 {
     const struct fmb_gap *gap = &truth->gap;
-    if (!truth->has_gap ||
-        (truth->verdict == FMB_SEPARATED && !scene->gaps && gap->bounds[0] > scene->margin)) {
+    if (!truth->has_gap || (truth->verdict == FMB_SEPARATED && !(scene->want & FMB_WANT_GAP) &&
+                            gap->bounds[0] > scene->margin)) {
         assert_true(isnan(got->bounds[0]) && isnan(got->bounds[1]));
         return;
     }
@@ -241,8 +240,8 @@ static void check_answer(const struct fmb_scene *scene, const struct fmb_scene_a
 {
     assert_memory_equal(answers->pairs[k], truth->pair, sizeof truth->pair);
     assert_int_equal(answers->verdicts[k], truth->answer.verdict);
-    assert_true(scene->contacts == !!answers->contacts);
-    assert_true(scene->boxes == !!answers->boxes);
+    assert_true(!!(scene->want & FMB_WANT_TIMES) == !!answers->contacts);
+    assert_true(!!(scene->want & FMB_WANT_BOX) == !!answers->boxes);
     assert_true(wants_gaps(scene) == !!answers->gaps);
     if (answers->gaps)
         check_gap(scene, &answers->gaps[k], &truth->answer);
@@ -355,9 +354,9 @@ static void every_method(void **state)
         draw_world(&draw, 8, n % 2 ? 1 : 5, &world);
         world.scene.method = fmb_method_at((size_t) n / 2 % 4);
         if (!world.scene.method->boxes)
-            world.scene.boxes = false;
+            world.scene.want &= ~(unsigned) FMB_WANT_BOX;
         if (!world.scene.method->certain)
-            world.scene.margin = world.scene.gaps = 0;
+            world.scene.margin = 0, world.scene.want &= ~(unsigned) FMB_WANT_GAP;
         if (!world.scene.method->certain && world.scene.which != FMB_PAIRS_LISTED)
             continue;
         check_scene(&world.scene, 0);
@@ -456,9 +455,12 @@ static void bad_scenes(void **state)
     scene->method = fmb_method_by_name("fmb");
     assert_int_equal(begin(scene), FMB_CANNOT_DECIDE);
     draw_good(FMB_PAIRS_LISTED);
-    scene->gaps = true;
+    scene->want |= FMB_WANT_GAP;
     scene->method = fmb_method_by_name("sat");
     assert_int_equal(begin(scene), FMB_CANNOT_DECIDE);
+    draw_good(FMB_PAIRS_ALL);
+    scene->want |= FMB_WANT_CERTIFICATE;
+    assert_int_equal(begin(scene), FMB_UNKNOWN_WANT);
     static const double margins[] = {-0x1p-1074, INFINITY, NAN};
     for (int i = 0; i < 3; i++) {
         draw_good(FMB_PAIRS_ALL);

@@ -183,7 +183,7 @@ enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pla
     enum fmb_status status = placements_check(a, b, duration);
     if (status != FMB_OK)
         return status;
-    if (want & ~(unsigned) (FMB_WANT_BOX | FMB_WANT_GAP))
+    if (want & ~(unsigned) (FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP))
         return FMB_UNKNOWN_WANT;
     if (want & FMB_WANT_GAP && !method->certain)
         return FMB_CANNOT_DECIDE;

@@ -189,7 +189,7 @@ static bool are_pairs(const unsigned (*restrict pair)[2], size_t count, size_t p
 /* Whether pairs in the answers have gaps: all, or those that meet or are near. */
 static bool has_gaps(const struct fmb_scene *scene)
 {
-    return scene->gaps || scene->margin > 0;
+    return scene->want & FMB_WANT_GAP || scene->margin > 0;
 }
 
 static bool is_any_within_group(const struct fmb_scene *scene)
@@ -229,6 +229,8 @@ static enum fmb_status check(const struct fmb_scene *scene, const struct fmb_sce
         return FMB_BAD_DURATION;
     if (!(scene->margin >= 0) || !isfinite(scene->margin))
         return FMB_BAD_MARGIN;
+    if (scene->want & ~(unsigned) (FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP))
+        return FMB_UNKNOWN_WANT;
     const enum fmb_status status = check_placements(scene);
     if (status != FMB_OK)
         return status;
@@ -277,7 +279,9 @@ enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
         state->scene.method = fmb_method_default();
     state->stage = PLACING;
     state->batched = state->scene.method == fmb_method_default();
-    state->slow = scene->boxes || scene->gaps;
+    if (!state->scene.method->boxes)
+        state->scene.want &= ~(unsigned) FMB_WANT_BOX;
+    state->slow = scene->want & (FMB_WANT_BOX | FMB_WANT_GAP);
     lay_out(limits, base, state);
     begin_frames(state, limits);
     struct scene_block *block = &state->block;
@@ -326,7 +330,7 @@ static void fill_direct(struct fmb_scene_state *state)
 /* The largest gap of a pair of bodies that is of interest. */
 static double farthest(const struct fmb_scene_state *state)
 {
-    return is_listed(state) && state->scene.gaps ? INFINITY : state->scene.margin;
+    return is_listed(state) && state->scene.want & FMB_WANT_GAP ? INFINITY : state->scene.margin;
 }
 
 /* The largest gap of a pair of frames of the block that is of interest. The width of an enclosure
@@ -384,7 +388,7 @@ static void keep_halfway(struct fmb_scene_state *state)
     const size_t last = block->body_count - 1;
     const unsigned char verdict = block->answers.verdict[last];
     const bool verdict_alone =
-        !state->scene.contacts && !state->scene.boxes && !has_gaps(&state->scene) &&
+        !state->scene.want && !has_gaps(&state->scene) &&
         state->scene.method->certain; /* an inexact method may still refuse a pair of frames */
     memmove(block->out[0], block->out[last], sizeof block->out[0]);
     copy_answer(&block->answers, 0, &block->answers, last);
@@ -450,8 +454,8 @@ static void decide_batch(struct fmb_scene_state *state, size_t first, size_t cou
         .pair_count = count,
         .duration = scene->duration,
         .verdicts = block->outcomes.verdict + first,
-        .contacts = scene->contacts ? block->outcomes.contact + first : NULL,
-        .boxes = scene->boxes ? block->outcomes.box + first : NULL,
+        .contacts = scene->want & FMB_WANT_TIMES ? block->outcomes.contact + first : NULL,
+        .boxes = scene->want & FMB_WANT_BOX ? block->outcomes.box + first : NULL,
         .gaps = has_gaps(scene) ? block->outcomes.gap + first : NULL,
         .open = open,
         .open_count = open_count};
@@ -471,7 +475,7 @@ static void decide_single(struct fmb_scene_state *state)
         {a->frame, a->placement}, {b->frame, b->placement}, state->scene.duration};
     struct fmb_answer answer = {0};
     const unsigned want =
-        (state->scene.boxes ? FMB_WANT_BOX : 0) | (has_gaps(&state->scene) ? FMB_WANT_GAP : 0);
+        (state->scene.want & FMB_WANT_BOX) | (has_gaps(&state->scene) ? FMB_WANT_GAP : 0);
     if (state->scene.method->decide(&pair, want, &answer) != FMB_OK)
         answer = (struct fmb_answer){.gap.bounds = {NAN, NAN}};
     block->outcomes.verdict[0] = (unsigned char) answer.verdict;
@@ -541,11 +545,11 @@ static void include(struct fmb_scene_state *state, size_t k)
     if (verdict > answers->verdict[n])
         answers->verdict[n] = verdict;
     /* fmin() and fmax() return the other operand if one is NAN. */
-    if (state->scene.contacts) {
+    if (state->scene.want & FMB_WANT_TIMES) {
         answers->contact[n][0] = fmin(answers->contact[n][0], one->contact[k][0]);
         answers->contact[n][1] = fmax(answers->contact[n][1], one->contact[k][1]);
     }
-    for (int axis = 0; state->scene.boxes && axis < FMB_DIM_MAX; axis++) {
+    for (int axis = 0; state->scene.want & FMB_WANT_BOX && axis < FMB_DIM_MAX; axis++) {
         answers->box[n][0][axis] = fmin(answers->box[n][0][axis], one->box[k][0][axis]);
         answers->box[n][1][axis] = fmax(answers->box[n][1][axis], one->box[k][1][axis]);
     }
@@ -614,9 +618,12 @@ static void hand_out(struct fmb_scene_state *state, struct fmb_scene_answers *ou
     out->count = state->answered;
     out->pairs = block->bodies + first;
     out->verdicts = answers->verdict + first;
-    out->contacts = state->scene.contacts ? (const double(*)[2]) answers->contact + first : NULL;
+    out->contacts =
+        state->scene.want & FMB_WANT_TIMES ? (const double(*)[2]) answers->contact + first : NULL;
     out->gaps = has_gaps(&state->scene) ? answers->gap + first : NULL;
-    out->boxes = state->scene.boxes ? (const double(*)[2][FMB_DIM_MAX]) answers->box + first : NULL;
+    out->boxes = state->scene.want & FMB_WANT_BOX
+                     ? (const double(*)[2][FMB_DIM_MAX]) answers->box + first
+                     : NULL;
 }
 
 static unsigned long long number_of(const struct fmb_scene_state *state, size_t n)
