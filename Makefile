@@ -9,6 +9,7 @@
 # Longer:   validate, accuracy, soak, fuzz, fuzz-afl, fuzz-merge (deps-fuzz first)
 # Measure:  bench (deps-bench first, for other libraries), bench-bus, bench-replay, bench-mesh,
 #           report (deps-report first)
+# Port:     aarch64: fmb for AArch64, which 'make test' then emulates (deps-aarch64 first)
 # Rewrite:  logs, goldens: the regression logs, and the results that they are compared with
 #
 # Variables:
@@ -429,7 +430,8 @@ packages_deps-fuzz := $(packages_deps) clang libclang-rt-14-dev llvm afl++
 packages_deps-bench := libccd-dev libfcl-dev libbullet-dev libode-dev libbox2d-dev libcgal-dev \
 	libmpfr-dev pkg-config
 packages_deps-report := jq
-deps := deps deps-test deps-fuzz deps-bench deps-report
+packages_deps-aarch64 := gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
+deps := deps deps-test deps-fuzz deps-bench deps-report deps-aarch64
 
 as_root = $$([ $$(id -u) = 0 ] || echo sudo)
 .PHONY: $(deps)
@@ -443,6 +445,7 @@ $(deps):
 	[ -z "$$missing" ] || { $(as_root) apt-get update -q && \
 		$(as_root) env DEBIAN_FRONTEND=noninteractive \
 			apt-get install -q -y --no-install-recommends $$missing; }
+	$(unpack_$@)
 
 # In 'make deps demo' the packages come first, and in 'make clean all' the cleaning, whatever
 # -j says.

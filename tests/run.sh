@@ -184,6 +184,7 @@ build PEERS=none format-check headers layers ${FMB_FAST:+fast-}tests
 if [ -z "${FMB_FAST-}" ]; then
     build MODE=asan INSTRUCTIONS=sse2 tested-programs
     build MODE=fuzz unit-tests fuzzers replay-set
+    [ ! -d build/aarch64/usr ] || build aarch64
 fi
 list_all | awk -v first="$first" 'BEGIN { count = split(first, name) }
     { line[NR] = $0; what[NR] = $3 }

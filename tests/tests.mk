@@ -186,6 +186,24 @@ $(filter %-plain,$(capped_programs)): $(call single_kernels_of,plain)
 $(capped_programs): $(O)/capped/$$(lastword $$(subst -, ,$$@)).o $(product) $(engine)
 	$(link)
 
+# ---- AArch64: compiled here, and emulated ----
+
+# Its libraries are unpacked into a folder of the build: installed, some would replace this machine's.
+arm := aarch64-linux-gnu
+arm_root := $(CURDIR)/build/aarch64
+arm_libraries := $(arm_root)/usr/lib/$(arm)
+arm_includes := $(addprefix $(arm_root)/usr/include/,. $(arm))
+arm_build := build/release-$(arm)-gcc
+arm_programs := $(arm_build)/fmb $(arm_build)/logs/generate
+unpack_deps-aarch64 := tests/unpack_aarch64.sh $(arm_root)
+.PHONY: aarch64
+aarch64:
+	@command -v $(arm)-gcc qemu-aarch64 > /dev/null && [ -d $(arm_libraries) ] || { \
+		echo "make $@: 'make deps-aarch64' first" >&2; exit 1; }
+	+$(MAKE) CC=$(arm)-gcc AR=$(arm)-ar OBJCOPY=$(arm)-objcopy \
+		CPPFLAGS='$(arm_includes:%=-isystem %)' \
+		LDFLAGS='-L$(arm_libraries) -Wl,-rpath-link,$(arm_libraries)' $(arm_programs)
+
 # ---- Running the tests ----
 
 .PHONY: tests fast-tests tested-programs unit-tests replay-set test test-fast check

@@ -9,14 +9,6 @@ setup() {
     cd "$BATS_TEST_DIRNAME/../.." || return
 }
 
-# makes_the_set GENERATE: what is committed.
-makes_the_set() {
-    for log in tests/logs/*.log; do
-        "$1" "$(name_of "$log")" "$BATS_TEST_TMPDIR/made.log"
-        cmp "$BATS_TEST_TMPDIR/made.log" "$log"
-    done
-}
-
 # All events of the whole set, as lines of JSON.
 describe_all() {
     for log in tests/logs/*.log; do "$DESCRIBE" "$log"; done

@@ -8,27 +8,6 @@ setup() {
     cd "$BATS_TEST_DIRNAME/../.." || return
 }
 
-# as_it_was FMB LOG OPTIONS...
-as_it_was() {
-    fmb=$1 log=$2
-    shift 2
-    code=0
-    "$fmb" replay --json "$@" "$log" > "$BATS_TEST_TMPDIR/said" 2> "$BATS_TEST_TMPDIR/log" || code=$?
-    [ $code = "$(code_of "$log")" ] && jq -e '.different == 0 and .same > 0' "$BATS_TEST_TMPDIR/said" > /dev/null ||
-        { echo "$fmb replay $* $log: $code"; cat "$BATS_TEST_TMPDIR/said" "$BATS_TEST_TMPDIR/log"; return 1; }
-}
-
-# replays_the_set FMB
-replays_the_set() {
-    for log in tests/logs/*.log; do
-        as_it_was "$1" "$log"
-        as_it_was "$1" "$log" --golden "${log%.log}.golden" \
-            --force --write-golden "$BATS_TEST_TMPDIR/golden"
-        cmp "$BATS_TEST_TMPDIR/golden" "${log%.log}.golden"
-    done
-    "$1" replay --prefix LAB_ tests/logs/foreign.log
-}
-
 @test "all is as it was" {
     replays_the_set "$FMB_BUILD/fmb"
 }
