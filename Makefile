@@ -14,7 +14,7 @@
 #
 # Variables:
 #   MODE=release|debug|asan|fuzz   optimised, for a debugger, with sanitizers, with fuzzers (clang)
-#   INSTRUCTIONS=sse2              leaves out the AVX2 and AVX-512 kernels, which compile slowly
+#   INSTRUCTIONS=two               leaves out the AVX2 and AVX-512 kernels, which compile slowly
 #   PEERS=none                     leaves out other libraries from the benchmarks
 #   WERROR=1                       warnings are errors
 #   CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX, LIBDIR, DESTDIR   as usual
@@ -55,8 +55,8 @@ mode_flags_fuzz := $(mode_flags_asan) -fsanitize=fuzzer-no-link
 ifeq ($(mode_flags_$(MODE)),)
 $(error MODE is release, debug, asan or fuzz)
 endif
-ifneq ($(filter-out sse2,$(INSTRUCTIONS)),)
-$(error INSTRUCTIONS is sse2 or empty)
+ifneq ($(filter-out two,$(INSTRUCTIONS)),)
+$(error INSTRUCTIONS is two or empty)
 endif
 mode_link_asan := -fsanitize=address,undefined
 mode_link_fuzz := $(mode_link_asan)
@@ -76,7 +76,7 @@ ifeq ($(findstring _FORTIFY_SOURCE,$(CPPFLAGS) $(CFLAGS)),)
 hardened_release += -D_FORTIFY_SOURCE=2
 endif
 hardened := $(hardened_$(MODE))
-$(O)/service/fmb/%.o $(O)/kernels/%.o: hardened :=
+$(O)/service/fmb/%.o: hardened :=
 compile = $(CC) $(flags) $(hardened) $(whole) -MMD -MP -c $< -o $@
 link_user := $(mode_link_$(MODE)) $(hardened_link_$(MODE)) $(CFLAGS) $(LDFLAGS)
 
@@ -145,48 +145,22 @@ $(O)/%.o: %.c $(O)/settings | $(message_headers)
 
 objects_in = $(patsubst %.c,$(O)/%.o,$(wildcard $(addsuffix /*.c,$1)))
 
-# The filter's kernels: filter/many.c (many pairs) and filter/single.c (one pair), once for each
-# instruction set and job: verdicts, with fused operations; and without, since their bits are
-# promised, the second pass, times and boxes. The machine answers where no compiler is there:
+# The filter's kernels: a file of service/fmb/filter for each job and instruction set. Bits of verdicts
+# are not promised: they may use fused operations. The machine answers where no compiler is there:
 # 'make deps' has still to install it.
 x86 := $(filter x86_64%,$(shell $(CC) -dumpmachine 2> /dev/null || uname -m))
-sets := plain $(if $(x86),sse2 $(if $(INSTRUCTIONS),,avx2 avx512))
-single_sets := $(if $(x86),sse2 $(if $(INSTRUCTIONS),,avx2),plain)
-# Where there are others, plain C is there to be compared with: it is not worth what inlining takes.
-not_inlined := -DINLINED_NOT -Wno-unknown-warning-option -Wno-maybe-uninitialized
-set_plain := -DLANES=1 $(if $(x86),$(not_inlined))
-set_sse2 := -DLANES=2
-set_avx2 := -DLANES=4 -mavx2 -mfma
-set_avx512 := -DLANES=8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
-set_single_plain := $(set_plain)
-set_single_sse2 := -DLANES=2
-set_single_avx2 := -DLANES=2 -mavx2 -mfma
-kernel_of = $(addprefix $(O)/kernels/,$(addsuffix .o,$1))
-many_kernels := $(call kernel_of,$(foreach s,$(sets),$s exact_$s times_$s boxes_$s))
-box_refinements := $(call kernel_of,$(foreach s,$(sets),refine_boxes_$s))
-single_kernels_of = $(call kernel_of,$(foreach s,$1,single_$s exact_single_$s times_single_$s))
-single_kernels := $(call single_kernels_of,$(single_sets))
-kernel_set = $(set_$(subst exact_,,$(subst times_,,$(subst boxes_,,$*))))
-kernel_job = $(or $(if $(findstring exact_,$*),-DKERNEL_EXACT),$(if $(findstring times_,$*),-DKERNEL_TIMES), \
-	$(if $(findstring boxes_,$*),-DKERNEL_BOXES),-ffp-contract=fast)
-$(many_kernels): $(O)/kernels/%.o: service/fmb/filter/many.c $(O)/settings
-$(sort $(single_kernels) $(call single_kernels_of,plain)): \
-	$(O)/kernels/%.o: service/fmb/filter/single.c $(O)/settings
-# With -O1, kernels of boxes are as fast and compile in half the time.
-ifeq ($(MODE)$(filter gcc%,$(compiler)),releasegcc)
-$(O)/kernels/boxes_%.o: flags += -O1 -fschedule-insns2 -Wno-maybe-uninitialized
-endif
+filter := $(O)/service/fmb/filter
+# Vectors are passed between functions of one file alone.
+$(filter)/%.o $(O)/tests/unit/kernels/%.o $(O)/slabs/%.o: flags += -Wno-psabi
+$(filter)/%_avx2.o: flags += -mavx2 -mfma
+$(filter)/%_avx512.o: flags += -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
+verdict_kernels := $(patsubst %.c,$(O)/%.o,$(wildcard $(addprefix service/fmb/filter/,verdicts_*.c single_*.c)))
+$(verdict_kernels): flags += -ffp-contract=fast
+left_out := $(if $(x86),$(if $(INSTRUCTIONS),%_avx2.o %_avx512.o),%_avx2.o %_avx512.o)
 # gcc 12 does not compile kernels of boxes with sanitizers otherwise (internal compiler error).
 ifeq ($(MODE)$(filter gcc%,$(compiler)),asangcc)
-$(O)/kernels/%.o: flags += -fno-tree-dominator-opts
+$(filter)/boxes_%.o: flags += -fno-tree-dominator-opts
 endif
-compile_kernel = $(compile) $(sees) -DKERNEL_NAME=$* -Wno-psabi $(kernel_set) $(kernel_job)
-$(sort $(many_kernels) $(single_kernels) $(call single_kernels_of,plain)): $(O)/kernels/%.o:
-	@mkdir -p $(@D)
-	$(compile_kernel)
-$(box_refinements): $(O)/kernels/refine_%.o: service/fmb/filter/box_refine.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile_kernel) $(not_inlined)
 
 $(O)/service/fmb/filter/instructions.o: flags += $(if $(INSTRUCTIONS),-DINSTRUCTIONS_MOST=2)
 
@@ -195,9 +169,7 @@ fast_math := tests/bench/gpr tests/bench/lean_sat tests/bench/seidel
 $(fast_math:%=$(O)/%.o): flags += -ffinite-math-only -fno-signed-zeros
 
 engine_folders := $(call fmb,number frame filter article tree exact gap certificate decide)
-kernels := $(many_kernels) $(box_refinements) $(single_kernels)
-engine_objects_in = $(if $(findstring filter,$1),$(kernels)) \
-	$(filter-out %/many.o %/single.o %/box_refine.o,$(call objects_in,$1))
+engine_objects_in = $(filter-out $(left_out),$(call objects_in,$1))
 engine_objects := $(call engine_objects_in,$(engine_folders))
 
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)

@@ -18,7 +18,7 @@ limit=600 # seconds a suite may take before it has failed
 # enough. Sanitizers of clang, instrumented for fuzzing: unit tests, with all kernels, fuzzers, and the
 # goldens, which another compiler must reproduce.
 release=build
-programs=build/asan-sse2
+programs=build/asan-two
 units=build/fuzz-clang
 sanitized='system/service.bats system/daemon.bats system/record.bats system/replay_bus.bats'
 sanitized="$sanitized system/soak.bats cli/query.bats cli/record.bats cli/replay.bats cli/mesh.bats"
@@ -182,7 +182,7 @@ mkdir -p "$log"
 rm -rf $release/tests $programs/tests $units/tests
 build PEERS=none format-check headers layers ${FMB_FAST:+fast-}tests
 if [ -z "${FMB_FAST-}" ]; then
-    build MODE=asan INSTRUCTIONS=sse2 tested-programs
+    build MODE=asan INSTRUCTIONS=two tested-programs
     build MODE=fuzz unit-tests fuzzers replay-set
     [ ! -d build/aarch64/usr ] || build aarch64
 fi

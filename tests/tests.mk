@@ -22,6 +22,7 @@ see_tests/page := tests/encode clients/page $(see_clients/replay)
 see_tests/replay := clients/replay $(see_clients/replay) tests/unit tests/bench
 see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/unit tests/hostile $(GEN)
 see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
+see_tests/unit/kernels := $(call fmb,number frame filter)
 see_tests/unit := $(call fmb,number frame filter article tree exact gap decide) service clients \
 	$(see_clients) tests/encode tests/oracle tests/campaign tests/hostile tests/mesh $(GEN)
 
@@ -76,8 +77,7 @@ wraps_test_bus := $(call wraps,bus_socket_drops sched_yield)
 # slabs.c and the kernels of test_bounds are there three times: as they are, with fused operations
 # (which a compiler makes only where it optimises), and with a wrong bound. They are optimised and
 # without sanitizers in all modes, which have seen the same code elsewhere.
-compile_bare = $(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) $(sees) -DINLINED_NOT \
-	-Wno-unknown-warning-option -Wno-maybe-uninitialized -Wno-psabi
+compile_bare = $(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) $(sees) -DINLINED_NOT
 renamed = $(foreach name,$2,-D$(name)=$1_$(name))
 slabs_fused := -ffp-contract=fast $(if $(x86),-mfma)
 slabs_planted := -DSLABS_ROUNDING=0x1p-54
@@ -91,34 +91,13 @@ $(O)/slabs/kernel.o $(O)/slabs/kernel_fused.o $(O)/slabs/kernel_planted.o: $(O)/
 	$(compile_bare) -DLANES=1 $(slabs_$(*:kernel_%=%)) $(if $(filter kernel_%,$*), \
 		$(call renamed,$(*:kernel_%=%),slab_kernel_list slab_kernel_axes slab_kernel_times))
 
-# Kernels of eight lanes in vectors that every machine has; and with a wrong bound.
-set_wide := -DLANES=8
-wide_kernels := $(call kernel_of,wide exact_wide times_wide boxes_wide)
-$(wide_kernels): $(O)/kernels/%.o: service/fmb/filter/many.c $(O)/settings
+# Kernels of eight lanes in vectors that every machine has; and with bounds that are wrong.
+tested_kernels := $(patsubst %.c,$(O)/%.o,$(wildcard tests/unit/kernels/*.c))
+$(tested_kernels): $(O)/%.o: %.c $(O)/settings
 	@mkdir -p $(@D)
-	$(compile_bare) -DKERNEL_NAME=$* $(kernel_set) $(kernel_job)
-$(O)/kernels/refine_boxes_wide.o: service/fmb/filter/box_refine.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile_bare) -DKERNEL_NAME=boxes_wide $(set_wide) -DKERNEL_BOXES $(not_inlined)
-$(O)/kernels/wide_planted.o: service/fmb/filter/many.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile_bare) -DKERNEL_NAME=wide_planted $(set_wide) -ffp-contract=fast -DSLABS_ROUNDING=0x1p-58
-$(B)/tests/test_kernels: $(wide_kernels) $(addprefix $(O)/kernels/,refine_boxes_wide.o wide_planted.o)
-
-# Kernels of boxes with bounds that are a sixteenth of theirs, and with none.
-box_kernels := $(call kernel_of,boxes_planted boxes_bare)
-box_unit_planted := 0x1p-57
-box_unit_bare := 0x1p-200
-box_refinements_of_tests := $(call kernel_of,refine_boxes_planted refine_boxes_bare)
-compile_box = $(compile_bare) -DLANES=1 -DKERNEL_BOXES -DKERNEL_NAME=boxes_$* -DBOX_UNIT=$(box_unit_$*)
-$(box_kernels): $(O)/kernels/boxes_%.o: service/fmb/filter/many.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile_box)
-$(box_refinements_of_tests): $(O)/kernels/refine_boxes_%.o: service/fmb/filter/box_refine.c \
-		$(O)/settings
-	@mkdir -p $(@D)
-	$(compile_box) $(not_inlined)
-$(B)/tests/test_box_bounds: $(box_kernels) $(box_refinements_of_tests)
+	$(compile_bare) $(if $(findstring verdicts,$@),-ffp-contract=fast)
+$(B)/tests/test_kernels: $(filter $(O)/tests/unit/kernels/verdicts_%,$(tested_kernels))
+$(B)/tests/test_box_bounds: $(filter $(O)/tests/unit/kernels/boxes_%,$(tested_kernels))
 
 $(internal_tests): $(O)/tests/unit/slab_truth.o $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
 	kernel_fused.o kernel_planted.o) $(shared) $(client) $(product) $(engine)
@@ -171,9 +150,9 @@ fuzz fuzz-afl fuzz-merge:
 
 # ---- Programs that take no more of the machine than their name says ----
 
-capped_sets := plain $(if $(x86),sse2 avx2)
+capped_sets := plain $(if $(x86),two $(if $(INSTRUCTIONS),,avx2))
 capped_most_plain := 1
-capped_most_sse2 := 2
+capped_most_two := 2
 capped_most_avx2 := 3
 capped_programs := $(foreach p,fmbd fmb generate,$(capped_sets:%=$(B)/capped/$p-%))
 $(capped_sets:%=$(O)/capped/%.o): $(O)/capped/%.o: service/fmb/filter/instructions.c $(O)/settings
@@ -182,7 +161,6 @@ $(capped_sets:%=$(O)/capped/%.o): $(O)/capped/%.o: service/fmb/filter/instructio
 $(capped_sets:%=$(B)/capped/fmbd-%): $(O)/service/main.o
 $(capped_sets:%=$(B)/capped/fmb-%): $(O)/clients/fmb.o $(B)/libfmb-client.a
 $(capped_sets:%=$(B)/capped/generate-%): $(O)/tests/logs/generate.o $(shared)
-$(filter %-plain,$(capped_programs)): $(call single_kernels_of,plain)
 $(capped_programs): $(O)/capped/$$(lastword $$(subst -, ,$$@)).o $(product) $(engine)
 	$(link)
 

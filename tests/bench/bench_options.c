@@ -22,7 +22,7 @@ static void help(void)
         printf(" %s", sections[i]);
     printf(
         "\n"
-        "  --instructions NAME  of the batch: best plain sse2 avx2 avx512\n"
+        "  --instructions NAME  of the batch: best plain two avx2 avx512\n"
         "  --json FILE          writes what is measured there too\n"
         "  --quick              little of everything, to see that it works\n"
         "  --help               prints this\n\n");

@@ -36,13 +36,13 @@ capped_at() {
     makes_the_set "$FMB_BUILD/capped/generate-plain"
 }
 
-@test "with SSE2 it makes them too" {
-    capped_at sse2 plain sse2
-    makes_the_set "$FMB_BUILD/capped/generate-sse2"
+@test "with two lanes it makes them too" {
+    capped_at two plain two
+    makes_the_set "$FMB_BUILD/capped/generate-two"
 }
 
 @test "with AVX2 it makes them too" {
-    capped_at avx2 plain sse2 avx2
+    capped_at avx2 plain two avx2
     makes_the_set "$FMB_BUILD/capped/generate-avx2"
 }
 

@@ -16,9 +16,9 @@ setup() {
     replays_the_set "$FMB_BUILD/capped/fmb-plain"
 }
 
-@test "all is as it was with SSE2" {
-    need_set sse2
-    replays_the_set "$FMB_BUILD/capped/fmb-sse2"
+@test "all is as it was with two lanes" {
+    need_set two
+    replays_the_set "$FMB_BUILD/capped/fmb-two"
 }
 
 @test "all is as it was with AVX2" {

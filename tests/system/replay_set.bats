@@ -25,9 +25,9 @@ replays_the_set() {
     replays_the_set "$FMB_BUILD/capped/fmbd-plain"
 }
 
-@test "the service answers as it did with SSE2" {
-    need_set sse2
-    replays_the_set "$FMB_BUILD/capped/fmbd-sse2"
+@test "the service answers as it did with two lanes" {
+    need_set two
+    replays_the_set "$FMB_BUILD/capped/fmbd-two"
 }
 
 @test "the service answers as it did with AVX2" {

@@ -1,4 +1,4 @@
-/* What many.c is made of, once more, so that what is attacked is what runs. */
+/* What many.h is made of, once more, so that what is attacked is what runs. */
 #include "kernel_lanes.h"
 
 #include "slab_kernel.h"

@@ -22,7 +22,8 @@ typedef double slab_kernel_axes_function(const struct frame_pair *pair, double *
 void slab_kernel_times(double low, double high, double swing, double error, double enter[2],
                        double leave[2]);
 
-/* Compiled as many.c is; with fused operations; with a bound that is wrong (tests.mk). */
+/* Compiled as kernels of verdicts are; with fused operations; with a bound that is wrong
+ * (tests.mk). */
 slab_kernel_function slab_kernel_list, fused_slab_kernel_list, planted_slab_kernel_list;
 slab_kernel_axes_function slab_kernel_axes, fused_slab_kernel_axes, planted_slab_kernel_axes;
 

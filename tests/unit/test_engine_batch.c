@@ -972,7 +972,7 @@ static void instructions_have_names(void **state)
     static const int unknown[] = {-1, 5, 1000, INT_MAX, INT_MIN};
     assert_string_equal(instructions_name(INSTRUCTIONS_BEST), "best");
     assert_string_equal(instructions_name(INSTRUCTIONS_PLAIN), "plain");
-    assert_string_equal(instructions_name(INSTRUCTIONS_SSE2), "sse2");
+    assert_string_equal(instructions_name(INSTRUCTIONS_TWO), "two");
     assert_string_equal(instructions_name(INSTRUCTIONS_AVX2), "avx2");
     assert_string_equal(instructions_name(INSTRUCTIONS_AVX512), "avx512");
     for (size_t i = 0; i < COUNT(unknown); i++)

@@ -28,15 +28,9 @@
 #include "slab_kernel.h"
 #include "solids.h"
 
-/* many.c with LANES=8 and plain vectors; and with a bound on errors that is wrong (tests.mk). */
-extern kernel_function *const kernel_wide[KERNEL_KINDS],
-    *const kernel_exact_wide[KERNEL_KINDS], *const kernel_times_wide[KERNEL_KINDS],
-                                                *const kernel_boxes_wide[KERNEL_KINDS],
-                                                    *const kernel_wide_planted[KERNEL_KINDS];
-#if defined __x86_64__
-extern kernel_single_function *const kernel_single_sse2[KERNEL_KINDS],
-    *const kernel_exact_single_sse2[KERNEL_KINDS], *const kernel_times_single_sse2[KERNEL_KINDS];
-#endif
+/* Of tests/unit/kernels. */
+extern kernel_function *const kernel_verdicts_wide[KERNEL_KINDS],
+    *const kernel_verdicts_planted[KERNEL_KINDS];
 
 /* ---- Subjects ---- */
 
@@ -58,31 +52,10 @@ static int subjects_of_machine(struct subject out[SUBJECTS_MAX])
         if (there)
             out[count++] = one;
     }
-    out[count++] = (struct subject){
-        "wide", {kernel_wide, kernel_exact_wide, kernel_times_wide, kernel_boxes_wide}};
+    out[count] = out[0];
+    out[count].name = "wide";
+    out[count++].set.verdicts = kernel_verdicts_wide;
     return count;
-}
-
-/* Of single pairs. */
-struct single {
-    const char *name;
-    kernel_single_function *const *verdicts, *const *exact, *const *times;
-};
-
-enum { SINGLE_MAX = 2 };
-
-/* That of this machine, and what older ones have. Returns how many. */
-static int single_of_machine(struct single out[SINGLE_MAX])
-{
-    out[0] = (struct single){"single", kernel_verdicts_single(), kernel_exact_single(),
-                             kernel_times_single()};
-#if defined __x86_64__
-    out[1] = (struct single){"single, sse2", kernel_single_sse2, kernel_exact_single_sse2,
-                             kernel_times_single_sse2};
-    return 2;
-#else
-    return 1;
-#endif
 }
 
 /* ---- Sizes ---- */
@@ -148,7 +121,7 @@ static void sizes_are_lengths_or_a_little_more(void **state)
 
 static bool is_kind(int kind)
 {
-    return kernel_wide[kind] != NULL;
+    return kernel_verdicts_wide[kind] != NULL;
 }
 
 static void set_shapes(int kind, enum fmb_shape shape[2])
@@ -427,7 +400,7 @@ static void a_wrong_bound_is_found(void **state)
             struct pool pool;
             struct left left;
             draw_pool(&draw, pair_draw, kind, 1, &pool);
-            run_all(kernel_wide_planted[kind], &pool, &left);
+            run_all(kernel_verdicts_planted[kind], &pool, &left);
             tested += pool.count;
             for (int i = 0; i < pool.count; i++)
                 wrong +=
@@ -442,37 +415,27 @@ static void a_wrong_bound_is_found(void **state)
 
 /* ---- Single pairs ---- */
 
-/* What a function leaves of all pairs of a pool, one by one: outcomes and, if it makes them, times
- * or boxes. */
 static void run_single(kernel_single_function *function, const struct pool *pool, struct left *out)
 {
-    memset(out, GUARD, sizeof *out);
-    for (int i = 0; i < pool->count; i++) {
-        double numbers[2 * FMB_DIM_MAX];
-        memset(numbers, GUARD, sizeof numbers);
-        out->outcome[i] = (unsigned char) function(&pool->frame[i][0], &pool->frame[i][1],
-                                                   pool->duration, numbers);
-        memcpy(out->contact[i], numbers, sizeof out->contact[i]);
-    }
+    for (int i = 0; i < pool->count; i++)
+        out->outcome[i] =
+            (unsigned char) function(&pool->frame[i][0], &pool->frame[i][1], pool->duration);
 }
 
-static void expect_single(const struct single *single, const struct pool *pool, long *unsure)
+static void expect_single(const struct subject *subject, const struct pool *pool, long *unsure)
 {
-    const struct subject subject = {.name = single->name};
     struct left left;
-    run_single(single->verdicts[pool->kind], pool, &left);
-    expect_outcomes(&subject, pool, &left);
+    run_single(subject->set.single[pool->kind], pool, &left);
+    expect_outcomes(subject, pool, &left);
     *unsure += unsure_among(pool, &left);
-    assert_true(is_untouched(left.contact, sizeof left.contact));
-    assert_true(is_untouched(left.box, sizeof left.box));
 }
 
 static void no_outcome_of_single_pairs_is_wrong(void **state)
 {
     (void) state;
     struct draw draw;
-    struct single single[SINGLE_MAX];
-    const int count = single_of_machine(single);
+    struct subject subject[SUBJECTS_MAX];
+    const int count = subjects_of_machine(subject);
     draw_begin(&draw, "no_outcome_of_single_pairs_is_wrong");
     for (int kind = 0; kind < KERNEL_KINDS; kind++)
         for (long n = is_kind(kind) ? draw_sample(30) : 0; n > 0; n--) {
@@ -481,8 +444,8 @@ static void no_outcome_of_single_pairs_is_wrong(void **state)
             draw_pool(&draw, pair_draw, kind, draw_duration(&draw), &hard);
             draw_pool(&draw, family_draw_random, kind, 1, &random);
             for (int i = 0; i < count; i++) {
-                expect_single(&single[i], &hard, &of_hard);
-                expect_single(&single[i], &random, &of_random);
+                expect_single(&subject[i], &hard, &of_hard);
+                expect_single(&subject[i], &random, &of_random);
             }
             assert_int_equal(of_random, 0);
         }
@@ -519,7 +482,6 @@ static void expect_same_second_pass(struct draw *draw, const struct pool *pool,
                                     const struct subject *subject, int subjects,
                                     const struct left *whole)
 {
-    struct single single[SINGLE_MAX];
     struct left left;
     for (int s = 0; s < subjects; s++) {
         run_all(subject[s].set.exact[pool->kind], pool, &left);
@@ -527,12 +489,8 @@ static void expect_same_second_pass(struct draw *draw, const struct pool *pool,
         expect_same_in_parts(draw, subject[s].set.exact[pool->kind], pool, whole);
         run_all(subject[s].set.verdicts[pool->kind], pool, &left);
         expect_decided(subject[s].name, pool, &left, whole);
-    }
-    for (int i = single_of_machine(single) - 1; i >= 0; i--) {
-        run_single(single[i].exact[pool->kind], pool, &left);
-        assert_memory_equal(left.outcome, whole->outcome, (size_t) pool->count);
-        run_single(single[i].verdicts[pool->kind], pool, &left);
-        expect_decided(single[i].name, pool, &left, whole);
+        run_single(subject[s].set.single[pool->kind], pool, &left);
+        expect_decided(subject[s].name, pool, &left, whole);
     }
 }
 
@@ -731,12 +689,6 @@ static void expect_same_for_all(struct draw *draw, struct pool *pool, const stru
         if (is_symmetric(pool->kind))
             swap_pool(pool);
     }
-    struct single single[SINGLE_MAX];
-    for (int i = single_of_machine(single) - 1; i >= 0; i--) {
-        const struct subject as_subject = {.name = single[i].name};
-        run_single(single[i].times[pool->kind], pool, &part);
-        expect_same_times(&as_subject, pool, 0, pool->count, whole, &part);
-    }
 }
 
 static void times_hold_the_exact_ones(void **state)
@@ -748,7 +700,7 @@ static void times_hold_the_exact_ones(void **state)
     draw_begin(&draw, "times_hold_the_exact_ones");
     for (int kind = KERNEL_DRIFTS; kind < KERNEL_KINDS; kind++) {
         struct seen hard = {0}, random = {0};
-        if (!kernel_times_wide[kind])
+        if (!subject[0].set.times[kind])
             continue;
         for (long n = draw_sample(60); n > 0; n--) {
             struct pool pool;
@@ -958,7 +910,7 @@ static void boxes_hold_the_exact_ones(void **state)
     draw_begin(&draw, "boxes_hold_the_exact_ones");
     for (int kind = 0; kind < KERNEL_KINDS; kind++) {
         struct seen hard = {0}, random = {0};
-        if (!kernel_boxes_wide[kind])
+        if (!subject[0].set.boxes[kind])
             continue;
         for (long n = draw_sample(kind & KERNEL_FACE ? 120 : 32); n > 0; n--) {
             struct pool pool;
@@ -1383,12 +1335,12 @@ static void expect_stretched(struct draw *draw, int kind, const struct subject *
         run_all(subject[s].set.verdicts[kind], &pool, &left);
         expect_outcomes(&subject[s], &pool, &left);
     }
-    if (kernel_times_wide[kind]) {
+    if (subject[0].set.times[kind]) {
         run_all(subject[0].set.times[kind], &pool, &whole);
         count_times(&pool, &whole, &seen);
         expect_same_for_all(draw, &pool, subject, subjects, &whole);
     }
-    if (kernel_boxes_wide[kind]) {
+    if (subject[0].set.boxes[kind]) {
         draw_box_pool(draw, pair_draw_stretched, kind, &pool);
         run_all(subject[0].set.boxes[kind], &pool, &whole);
         count_boxes(&pool, &whole, &seen);

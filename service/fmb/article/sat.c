@@ -85,9 +85,17 @@ enum fmb_status sat_decide(const struct frame_pair *frames, unsigned want,
     if (frames->a.frame->flat || frames->b.frame->flat || kind >= KERNEL_KINDS)
         return FMB_CANNOT_DECIDE;
     double contact[2] = {0, duration + 0.0}; /* never -0 */
-    const enum slabs_outcome outcome =
-        (kind & KERNEL_DRIFTS ? kernel_times_single() : kernel_verdicts_single())[kind](
-            &frame[swapped], &frame[!swapped], duration, contact);
+    const struct kernel_set *kernels = kernel_set_best();
+    const struct fmb_prepared *first = &frame[swapped], *second = &frame[!swapped];
+    enum slabs_outcome outcome;
+    if (kind & KERNEL_DRIFTS) {
+        struct kernel_one out;
+        kernel_run_one(kernels->times[kind], first, second, duration, false, &out);
+        outcome = (enum slabs_outcome) out.outcome[0];
+        memcpy(contact, out.contact[0], sizeof contact);
+    } else {
+        outcome = kernels->single[kind](first, second, duration);
+    }
     if (outcome == SLABS_UNSURE || (outcome == SLABS_OVERLAPPING && isnan(contact[0])))
         return decide_by_list(&frame[0], &frame[1], duration, answer);
     answer->verdict = (enum fmb_verdict) outcome;

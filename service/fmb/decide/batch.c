@@ -705,7 +705,7 @@ enum fmb_status fmb_decide_prepared(const struct fmb_prepared *a, const struct f
         return refusal((const struct fmb_prepared *const[2]){a, b});
     enum slabs_outcome outcome = SLABS_UNSURE;
     if (kind != KERNEL_UNUSABLE)
-        outcome = kernel_verdicts_single()[kind](swapped ? b : a, swapped ? a : b, duration, NULL);
+        outcome = kernel_set_best()->single[kind](swapped ? b : a, swapped ? a : b, duration);
     *verdict = outcome == SLABS_UNSURE ? certified_unsure(a, b, duration, 1, false)
                                        : (enum fmb_verdict) outcome;
     return FMB_OK;

@@ -134,13 +134,13 @@ static bool set_kind(struct certified *certified, const struct fmb_prepared *a,
     return certified->kind < KERNEL_KINDS;
 }
 
-/* Runs the kernel of its kind on this single pair. */
+/* Runs a kernel of many pairs on this one. */
 static enum slabs_outcome call_kernel(const struct certified *certified,
-                                      kernel_single_function *const *functions, double *out)
+                                      kernel_function *const *kernels, struct kernel_one *out)
 {
-    return functions[certified->kind](certified->frame[certified->swapped],
-                                      certified->frame[!certified->swapped],
-                                      certified->pair->duration, out);
+    kernel_run_one(kernels[certified->kind], certified->frame[certified->swapped],
+                   certified->frame[!certified->swapped], certified->pair->duration, false, out);
+    return (enum slabs_outcome) out->outcome[0];
 }
 
 static bool are_faces(const struct certified *certified)
@@ -165,7 +165,8 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
 {
     if (certified->kind >= KERNEL_KINDS)
         return verdict_exact(certified);
-    const enum slabs_outcome outcome = call_kernel(certified, kernel_exact_single(), NULL);
+    struct kernel_one out;
+    const enum slabs_outcome outcome = call_kernel(certified, kernel_set_best()->exact, &out);
     const bool touching = outcome == SLABS_TOUCHING;
     certified->path = CERTIFIED_SECOND;
     if (outcome == SLABS_UNSURE || (touching && are_faces(certified)))
@@ -178,10 +179,18 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
  * as in struct kernel_call. */
 static enum fmb_verdict verdict_of(struct certified *certified, double contact[2])
 {
-    kernel_single_function *const *functions =
-        contact ? kernel_times_single() : kernel_verdicts_single();
+    const struct kernel_set *kernels = kernel_set_best();
+    enum slabs_outcome outcome;
     certified->path = CERTIFIED_FILTER;
-    const enum slabs_outcome outcome = call_kernel(certified, functions, contact);
+    if (contact) {
+        struct kernel_one out;
+        outcome = call_kernel(certified, kernels->times, &out);
+        memcpy(contact, out.contact[0], sizeof out.contact[0]);
+    } else {
+        outcome = kernels->single[certified->kind](certified->frame[certified->swapped],
+                                                   certified->frame[!certified->swapped],
+                                                   certified->pair->duration);
+    }
     certified->by_filter = outcome != SLABS_UNSURE;
     return outcome == SLABS_UNSURE ? verdict_of_unsure(certified) : (enum fmb_verdict) outcome;
 }
@@ -256,19 +265,13 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
 bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                    bool in_contact, double box[2][FMB_DIM_MAX])
 {
-    const struct fmb_prepared *pairs[KERNEL_LANES][2];
-    double boxes[KERNEL_LANES][2][FMB_DIM_MAX];
+    struct kernel_one out;
     bool swapped;
     const enum kernel_kind kind = kernel_box_kind(a, b, duration, &swapped);
-    const struct kernel_call call = {
-        .pairs = pairs, .count = 1, .duration = duration, .boxes = boxes, .in_contact = in_contact};
-    for (int lane = 0; lane < KERNEL_LANES; lane++) {
-        pairs[lane][0] = swapped ? b : a;
-        pairs[lane][1] = swapped ? a : b;
-    }
-    kernel_boxes_single()[kind](&call);
-    memcpy(box, boxes[0], sizeof boxes[0]);
-    return !isnan(boxes[0][0][0]);
+    kernel_run_one(kernel_set_best()->boxes[kind], swapped ? b : a, swapped ? a : b, duration,
+                   in_contact, &out);
+    memcpy(box, out.box[0], sizeof out.box[0]);
+    return !isnan(box[0][0]);
 }
 
 /* Returns false if doubles do not give the box. */

@@ -17,7 +17,7 @@
  *   5. find_ends(): ends from the least bounds; put_box(): cut_to_extent() cuts the box to both
  *      frames
  *   6. are_near(): whether inner ends are as near as the limit
- *   7. all of it once more (box_refine.c) where they are not, or a vertex that is not certain was
+ *   7. all of it once more (box_refine.h) where they are not, or a vertex that is not certain was
  *      left out
  *
  * The method, and the proof of both ends, follow. Frames are seen about the middle of the

@@ -4,55 +4,50 @@
 
 #include "kernel.h"
 
+#include <assert.h>
+
 /* The largest of enum instructions that is used, as a number, since the preprocessor does not
- * know the enum. Tests build programs that use less than their machine has; 1, plain C only, is
- * what machines other than x86-64 have. Kernels of AVX2 and AVX-512 are linked only if this is
- * larger than 2. */
+ * know the enum. Tests build programs that use less than their machine has. Kernels of AVX2 and
+ * AVX-512 are linked only if this is larger than 2. */
 #ifndef INSTRUCTIONS_MOST
+#ifdef __x86_64__
 #define INSTRUCTIONS_MOST 4
-#endif
-_Static_assert(INSTRUCTIONS_PLAIN == 1 && INSTRUCTIONS_SSE2 == 2 && INSTRUCTIONS_AVX512 == 4,
-               "INSTRUCTIONS_MOST is a number of the enum");
-
-#define KERNEL_DECLARE(name)                                                                \
-    extern kernel_function *const kernel_##name[KERNEL_KINDS],                              \
-        *const kernel_exact_##name[KERNEL_KINDS], *const kernel_times_##name[KERNEL_KINDS], \
-                                                      *const kernel_boxes_##name[KERNEL_KINDS];
-#define KERNEL_DECLARE_SINGLE(name)                                          \
-    extern kernel_single_function *const kernel_single_##name[KERNEL_KINDS], \
-        *const kernel_exact_single_##name[KERNEL_KINDS],                     \
-            *const kernel_times_single_##name[KERNEL_KINDS];
-#define KERNEL_SET(name)                                                             \
-    {                                                                                \
-        kernel_##name, kernel_exact_##name, kernel_times_##name, kernel_boxes_##name \
-    }
-
-KERNEL_DECLARE(plain)
-
-#if defined(__x86_64__) && INSTRUCTIONS_MOST > 1
-KERNEL_DECLARE(sse2)
-KERNEL_DECLARE_SINGLE(sse2)
-#if INSTRUCTIONS_MOST > 2
-KERNEL_DECLARE(avx2)
-KERNEL_DECLARE(avx512)
-KERNEL_DECLARE_SINGLE(avx2)
-#define KERNEL_SINGLE_BEST(kind) (has(INSTRUCTIONS_AVX2) ? kind##_single_avx2 : kind##_single_sse2)
 #else
-#define KERNEL_SINGLE_BEST(kind) kind##_single_sse2
+#define INSTRUCTIONS_MOST 2
 #endif
-#else
-KERNEL_DECLARE_SINGLE(plain)
-#define KERNEL_SINGLE_BEST(kind) kind##_single_plain
 #endif
+static_assert(INSTRUCTIONS_PLAIN == 1 && INSTRUCTIONS_TWO == 2 && INSTRUCTIONS_AVX512 == 4,
+              "INSTRUCTIONS_MOST is a number of the enum");
 
+extern kernel_function *const kernel_verdicts_plain[KERNEL_KINDS],
+    *const kernel_exact_plain[KERNEL_KINDS],
+        *const kernel_times_plain[KERNEL_KINDS],
+            *const kernel_boxes_plain[KERNEL_KINDS],
+                *const kernel_verdicts_two[KERNEL_KINDS],
+                    *const kernel_exact_two[KERNEL_KINDS],
+                        *const kernel_times_two[KERNEL_KINDS],
+                            *const kernel_boxes_two[KERNEL_KINDS],
+                                *const kernel_verdicts_avx2[KERNEL_KINDS],
+                                    *const kernel_exact_avx2[KERNEL_KINDS],
+                                        *const kernel_times_avx2[KERNEL_KINDS],
+                                            *const kernel_boxes_avx2[KERNEL_KINDS],
+                                                *const kernel_verdicts_avx512[KERNEL_KINDS];
+extern kernel_single_function *const kernel_single_plain[KERNEL_KINDS],
+    *const kernel_single_two[KERNEL_KINDS], *const kernel_single_avx2[KERNEL_KINDS];
+
+/* AVX-512 is worth its kernels for verdicts alone. */
 static const struct kernel_set sets[] = {
-    [INSTRUCTIONS_PLAIN] = KERNEL_SET(plain),
-#if defined(__x86_64__) && INSTRUCTIONS_MOST > 1
-    [INSTRUCTIONS_SSE2] = KERNEL_SET(sse2),
-#if INSTRUCTIONS_MOST > 2
-    [INSTRUCTIONS_AVX2] = KERNEL_SET(avx2),
-    [INSTRUCTIONS_AVX512] = KERNEL_SET(avx512),
+    [INSTRUCTIONS_PLAIN] = {kernel_verdicts_plain, kernel_exact_plain, kernel_times_plain,
+                            kernel_boxes_plain, kernel_single_plain},
+#if INSTRUCTIONS_MOST >= 2
+    [INSTRUCTIONS_TWO] = {kernel_verdicts_two, kernel_exact_two, kernel_times_two, kernel_boxes_two,
+                          kernel_single_two},
 #endif
+#if INSTRUCTIONS_MOST > 2
+    [INSTRUCTIONS_AVX2] = {kernel_verdicts_avx2, kernel_exact_avx2, kernel_times_avx2,
+                           kernel_boxes_avx2, kernel_single_avx2},
+    [INSTRUCTIONS_AVX512] = {kernel_verdicts_avx512, kernel_exact_avx2, kernel_times_avx2,
+                             kernel_boxes_avx2, kernel_single_avx2},
 #endif
 };
 
@@ -61,9 +56,9 @@ static bool has(int instructions)
     if (instructions > INSTRUCTIONS_MOST)
         return false;
     switch (instructions) {
-    case INSTRUCTIONS_PLAIN: return true;
+    case INSTRUCTIONS_PLAIN:
+    case INSTRUCTIONS_TWO: return true;
 #ifdef __x86_64__
-    case INSTRUCTIONS_SSE2: return true;
     case INSTRUCTIONS_AVX2: return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     case INSTRUCTIONS_AVX512:
         return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
@@ -71,21 +66,6 @@ static bool has(int instructions)
 #endif
     }
     return false;
-}
-
-kernel_single_function *const *kernel_verdicts_single(void)
-{
-    return KERNEL_SINGLE_BEST(kernel);
-}
-
-kernel_single_function *const *kernel_exact_single(void)
-{
-    return KERNEL_SINGLE_BEST(kernel_exact);
-}
-
-kernel_single_function *const *kernel_times_single(void)
-{
-    return KERNEL_SINGLE_BEST(kernel_times);
 }
 
 static int best(void)
@@ -96,9 +76,9 @@ static int best(void)
     return INSTRUCTIONS_PLAIN;
 }
 
-kernel_function *const *kernel_boxes_single(void)
+const struct kernel_set *kernel_set_best(void)
 {
-    return sets[best() < INSTRUCTIONS_AVX2 ? best() : INSTRUCTIONS_AVX2].boxes;
+    return &sets[best()];
 }
 
 const char *instructions_name(int instructions)
@@ -106,7 +86,7 @@ const char *instructions_name(int instructions)
     switch (instructions) {
     case INSTRUCTIONS_BEST: return "best";
     case INSTRUCTIONS_PLAIN: return "plain";
-    case INSTRUCTIONS_SSE2: return "sse2";
+    case INSTRUCTIONS_TWO: return "two";
     case INSTRUCTIONS_AVX2: return "avx2";
     case INSTRUCTIONS_AVX512: return "avx512";
     }

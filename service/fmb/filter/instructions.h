@@ -8,12 +8,12 @@
 enum instructions {
     INSTRUCTIONS_BEST = 0,
     INSTRUCTIONS_PLAIN = 1,
-    INSTRUCTIONS_SSE2 = 2,
+    INSTRUCTIONS_TWO = 2, /* two lanes: SSE2, and every machine but x86-64 */
     INSTRUCTIONS_AVX2 = 3,
     INSTRUCTIONS_AVX512 = 4
 };
 
-/* Returns "best", "plain", "sse2", "avx2" or "avx512"; NULL for any other number. */
+/* Returns "best", "plain", "two", "avx2" or "avx512"; NULL for any other number. */
 const char *instructions_name(int instructions);
 
 /* Returns whether the kernels are compiled for these instructions and this machine has them. */

@@ -1,8 +1,8 @@
 /* The kernels of the filter: prepared frames in, outcomes, times of contact or boxes out. A kernel
- * decides pairs of one kind, as many side by side as its instruction set has lanes. many.c (many
- * pairs) and single.c (one pair) are compiled once for each instruction set and job (Makefile,
- * kernel_lanes.h). Only the first pass uses fused operations: the bits of all other jobs are
- * promised. No function here has shared state. */
+ * decides pairs of one kind, as many side by side as its instruction set has lanes. Each job and
+ * instruction set has a file (verdicts_avx2.c) that includes many.h (many pairs) or single.h (one
+ * pair). Only the first pass uses fused operations: the bits of all other jobs are promised. No
+ * function here has shared state. */
 #ifndef FMB_KERNEL_H
 #define FMB_KERNEL_H
 
@@ -138,12 +138,17 @@ enum { KERNEL_LANES = 8 };
 
 typedef void kernel_function(const struct kernel_call *call);
 
+/* Kernels of a single pair, for its verdict. */
+typedef enum slabs_outcome kernel_single_function(const struct fmb_prepared *a,
+                                                  const struct fmb_prepared *b, double duration);
+
 /* Tables of kernels, [KERNEL_KINDS], NULL for combinations of bits that do not exist.
  *
  *     verdicts  the first pass, of all kinds: writes outcomes
  *     exact     the second pass, of all kinds: writes outcomes
  *     times     of the kinds that drift: writes outcomes and contacts
  *     boxes     of all kinds of kernel_box_kind(): writes boxes
+ *     single    the first pass for a single pair, of all kinds
  *
  * The second pass is for pairs that another kernel leaves unsure. It decides all that verdicts
  * decides, and in addition pairs that touch along coordinate axes, and pairs whose numbers do not
@@ -152,25 +157,40 @@ typedef void kernel_function(const struct kernel_call *call);
  * planes are parallel. */
 struct kernel_set {
     kernel_function *const *verdicts, *const *exact, *const *times, *const *boxes;
+    kernel_single_function *const *single;
 };
 
 /* Sets *out to the tables of an instruction set (enum instructions). Returns false if this
  * machine does not have it, or its kernels were not compiled. */
 bool kernel_set_of(int instructions, struct kernel_set *out);
 
-/* Kernels of a single pair, in the instruction set that takes least time for it. Bits that are
- * promised are the same as those of many pairs. out: [first, last] of the contact, from times; NULL
- * from the others. */
-typedef enum slabs_outcome kernel_single_function(const struct fmb_prepared *a,
-                                                  const struct fmb_prepared *b, double duration,
-                                                  double *out);
+/* The tables of the best instruction set that this machine has. */
+const struct kernel_set *kernel_set_best(void);
 
-kernel_single_function *const *kernel_verdicts_single(void);
-kernel_single_function *const *kernel_exact_single(void);
-kernel_single_function *const *kernel_times_single(void);
+/* What a kernel of many pairs writes for one of them. */
+struct kernel_one {
+    unsigned char outcome[KERNEL_LANES];
+    double contact[KERNEL_LANES][2], box[KERNEL_LANES][2][FMB_DIM_MAX];
+};
 
-/* Boxes of a single pair: kernels of many pairs, of the instruction set that takes least time for
- * one. */
-kernel_function *const *kernel_boxes_single(void);
+/* Runs a kernel of many pairs on one; element 0 of each array is its own. In: a and b in the order
+ * that the kernel takes. */
+static inline void kernel_run_one(kernel_function *kernel, const struct fmb_prepared *a,
+                                  const struct fmb_prepared *b, double duration, bool in_contact,
+                                  struct kernel_one *out)
+{
+    const struct fmb_prepared *pairs[KERNEL_LANES][2];
+    for (int lane = 0; lane < KERNEL_LANES; lane++) {
+        pairs[lane][0] = a;
+        pairs[lane][1] = b;
+    }
+    kernel(&(struct kernel_call){.pairs = pairs,
+                                 .count = 1,
+                                 .duration = duration,
+                                 .outcomes = out->outcome,
+                                 .contacts = out->contact,
+                                 .boxes = out->box,
+                                 .in_contact = in_contact});
+}
 
 #endif

@@ -15,7 +15,7 @@ struct box_refinement {
     lanes box[2][3];
 };
 
-/* The second pass of search_box(), then clip_box() for moving pairs with a cuboid (box_refine.c).
+/* The second pass of search_box(), then clip_box() for moving pairs with a cuboid (box_refine.h).
  */
 void KERNEL_PASTE(refine, KERNEL_NAME)(struct box_refinement *refinement);
 
@@ -41,7 +41,7 @@ INLINE lanes_mask join_boxes(const struct kernel_traits traits, lanes_mask more,
 /* Finds boxes in up to three ways, until all that can be are good:
  *
  *     two cuboids in 2D, or at rest   search_box(), clip_box(), second pass of search_box()
- *     with a cuboid in 3D, moving     search_box(), second pass, clip_box() (box_refine.c)
+ *     with a cuboid in 3D, moving     search_box(), second pass, clip_box() (box_refine.h)
  *     others without a face           clip_box(), search_box(), second pass
  *     faces                           search_box(), second pass
  *

@@ -1,4 +1,4 @@
-/* A kernel of the filter: what many.c (many pairs) and single.c (a single pair) share.
+/* A kernel of the filter: what many.h (many pairs) and single.h (a single pair) share.
  *
  *   In     prepared frames (prepared.h), read as arrays of doubles, and the duration of the window
  *   Out    for each lane an outcome (enum slabs_outcome); times of contact or boxes where requested
@@ -11,12 +11,13 @@
  *   4. evaluate_pair()    evaluates the slabs (slabs_evaluate.h) into a struct slabs_result
  *   5. outcomes_of()      separated, touching, overlapping, or unsure; times_of(): seconds
  *
- * Macros that the build sets select the job. None: the first pass, verdicts. KERNEL_EXACT: the
- * second pass (kernel_exact.h). KERNEL_TIMES: verdicts and times. KERNEL_BOXES: boxes
- * (kernel_box.h, box_refine.c). The bits of the last three are promised. At the end of this file
- * KERNEL_FUNCTIONS defines one function for each kind of pair (dimension, shapes, motion:
+ * Macros that the includer of many.h defines select the job. None: the first pass, verdicts.
+ * KERNEL_EXACT: the second pass (kernel_exact.h). KERNEL_TIMES: verdicts and times. KERNEL_BOXES:
+ * boxes (kernel_box.h, box_refine.h). The bits of the last three are promised. At the end of this
+ * file KERNEL_FUNCTIONS defines one function for each kind of pair (dimension, shapes, motion:
  * kernel.h), with the traits as a constant. KERNEL_TABLE lists these functions in the order of the
- * kinds, in a table whose name ends in KERNEL_NAME.
+ * kinds, in a table whose name ends in KERNEL_NAME. A file that defines INLINED_NOT is neither
+ * inlined nor unrolled (inlined.h).
  *
  * Order of the headers; each includes only headers before it: slabs.h, pair_lanes.h (a pair in
  * lanes), slabs_lanes.h (one slab), slabs_2d.h and slabs_3d.h (all slabs), slabs_evaluate.h, this

@@ -94,6 +94,7 @@
  * pair spans too many bits for integers (limbs_prepare), so that its slabs are never decided one by
  * one. Along axes with known signs (slabs_exact.h) the velocities are equal, and nothing
  * underflows. */
+#define INLINED_NOT
 #include "slabs.h"
 
 #include "prepared.h"

@@ -1,5 +1,10 @@
-/* Kernels of many pairs, LANES of them at a time. */
-#include "kernel_box.h"
+/* Kernels of many pairs, LANES of them at a time. The includer defines LANES, KERNEL_NAME and the
+ * job (kernel_lanes.h). */
+#ifdef KERNEL_BOXES
+#include "box_refine.h"
+#else
+#include "kernel_exact.h"
+#endif
 
 INLINE void gather_side(const struct kernel_call *call, const struct kernel_traits traits,
                         size_t first, int which, struct frame_lanes *out)

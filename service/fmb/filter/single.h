@@ -1,15 +1,13 @@
-/* Kernels of a single pair. With two lanes the pair is in both: an instruction takes as long for
- * two doubles as for one, and the vector instructions include minima and maxima. If both frames
- * have the same shape, the second lane holds the pair with its frames swapped, so that half of the
- * slabs do for all of them (kernel_traits.mirrored). */
-#include "kernel_exact.h"
+/* The first pass for a single pair. The includer defines LANES and KERNEL_NAME. With two lanes the
+ * pair is in both: an instruction takes as long for two doubles as for one, and the vector
+ * instructions include minima and maxima. If both frames have the same shape, the second lane holds
+ * the pair with its frames swapped, so that half of the slabs do for all of them
+ * (kernel_traits.mirrored). */
+#include "kernel_lanes.h"
 
-/* Excluded: times and the second pass, which have the same bits as those of a batch, which is not
- * mirrored. */
 INLINE bool is_mirrored(const struct kernel_traits traits)
 {
-    return LANES == 2 && !traits.swap_invariant && !traits.exact &&
-           traits.simplex[0] == traits.simplex[1] && traits.face[0] == traits.face[1];
+    return LANES == 2 && traits.simplex[0] == traits.simplex[1] && traits.face[0] == traits.face[1];
 }
 
 /* x in the first lane, y in the second. */
@@ -59,7 +57,7 @@ INLINE void gather_mirrored(const struct kernel_traits traits, const struct fmb_
 INLINE lanes in_all_lanes(double x)
 {
     lanes out = side_by_side(x, x);
-#if LANES == 2
+#if LANES == 2 && defined(__x86_64__)
     __asm__("" : "+x"(out));
 #endif
     return out;
@@ -83,17 +81,6 @@ INLINE void gather_frame(const struct kernel_traits traits, const struct fmb_pre
         out->velocity[axis] = in_all_lanes(velocity_of(traits, frame)[axis]);
 }
 
-#ifdef KERNEL_TIMES
-
-INLINE void put_first(lanes x, double *out)
-{
-    memcpy(out, &x, sizeof *out);
-}
-
-#endif
-
-#ifndef KERNEL_EXACT
-
 /* From lanes that hold the same pair. Mirrored, each lane knows half of the slabs: one that
  * separates is enough, and both have to overlap. */
 INLINE enum slabs_outcome outcome_of(const struct kernel_traits traits, struct outcomes outcomes)
@@ -105,11 +92,8 @@ INLINE enum slabs_outcome outcome_of(const struct kernel_traits traits, struct o
                                        : SLABS_UNSURE;
 }
 
-#endif
-
 INLINE enum slabs_outcome evaluate_single(struct kernel_traits traits, const struct fmb_prepared *a,
-                                          const struct fmb_prepared *b, double duration,
-                                          double *out)
+                                          const struct fmb_prepared *b, double duration)
 {
     struct frame_lanes frame[2];
     struct pair_lanes pair;
@@ -121,29 +105,16 @@ INLINE enum slabs_outcome evaluate_single(struct kernel_traits traits, const str
         gather_frame(traits, b, &frame[1]);
     }
     set_pair(traits, &frame[0], &frame[1], duration, &pair);
-#ifdef KERNEL_EXACT
-    (void) out;
-    return outcome_at(exact_outcomes(traits, &frame[0], &frame[1], duration, &pair), 0);
-#else
     struct slabs_result result;
     evaluate_pair(traits, &pair, &result);
-#ifdef KERNEL_TIMES
-    lanes times[2];
-    times_of(&pair, &result, duration, times);
-    put_first(times[0], &out[0]);
-    put_first(times[1], &out[1]);
-#else
-    (void) out;
-#endif
     return outcome_of(traits, outcomes_of(&pair, &result));
-#endif
 }
 
 #define KERNEL_FUNCTION(name, traits)                                                          \
     static enum slabs_outcome name(const struct fmb_prepared *a, const struct fmb_prepared *b, \
-                                   double duration, double *out)                               \
+                                   double duration)                                            \
     {                                                                                          \
-        return evaluate_single(traits, a, b, duration, out);                                   \
+        return evaluate_single(traits, a, b, duration);                                        \
     }
 
 KERNEL_FUNCTIONS(KERNEL_FUNCTION)

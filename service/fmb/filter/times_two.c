@@ -1,0 +1,6 @@
+/* Times of contact of two pairs at a time: SSE2, and every machine but x86-64. */
+#define LANES 2
+#define INLINED_NOT
+#define KERNEL_TIMES
+#define KERNEL_NAME times_two
+#include "many.h"

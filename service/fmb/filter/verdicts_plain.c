@@ -1,0 +1,5 @@
+/* Verdicts, in plain C: what the other sets are compared with. */
+#define LANES 1
+#define INLINED_NOT
+#define KERNEL_NAME verdicts_plain
+#include "many.h"
