@@ -77,7 +77,7 @@ wraps_test_bus := $(call wraps,bus_socket_drops sched_yield)
 # slabs.c and the kernels of test_bounds are there three times: as they are, with fused operations
 # (which a compiler makes only where it optimises), and with a wrong bound. They are optimised and
 # without sanitizers in all modes, which have seen the same code elsewhere.
-compile_bare = $(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) $(sees) -DINLINED_NOT
+compile_bare = $(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) $(sees)
 renamed = $(foreach name,$2,-D$(name)=$1_$(name))
 slabs_fused := -ffp-contract=fast $(if $(x86),-mfma)
 slabs_planted := -DSLABS_ROUNDING=0x1p-54

@@ -1,4 +1,5 @@
 /* What many.h is made of, once more, so that what is attacked is what runs. */
+#define INLINED_NOT
 #include "kernel_lanes.h"
 
 #include "slab_kernel.h"
