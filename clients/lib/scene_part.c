@@ -276,7 +276,6 @@ static int32_t number_of(const struct part *part, const struct scene_result *res
 static bool fits_pairs(const struct part *part, const struct scene_result *result)
 {
     int32_t before = part->answers.answered - 1;
-    const double margin = part->run->scene->margin;
     for (int32_t k = 0; k < result->verdict_count; k++) {
         unsigned pair[2];
         const int32_t number = number_of(part, result, k, pair);
@@ -284,7 +283,7 @@ static bool fits_pairs(const struct part *part, const struct scene_result *resul
         if (number <= before || number >= result->end_pair)
             return false;
         if (part->which != FMB_PAIRS_LISTED && result->verdict[k] == FMB_SEPARATED &&
-            !(gap && margin > 0 && gap->bounds[0] <= margin))
+            !(gap && part_is_near(part->run->scene, gap)))
             return false;
         if (gap && !fits_frames(part, pair, gap))
             return false;
