@@ -131,8 +131,8 @@ typedef void fmb_client_sink(void *user, const struct fmb_client_answer *answer)
  *
  * Memory: 44 bytes for each placement, 4 for each ignored pair; with ALL and ACROSS also 192
  * bytes for each of these pairs that waits for earlier ones: at most those of some 500 placements
- * with all others. The client keeps a copy of the frames of up to 16,384 bodies, and of those of
- * the last scene.
+ * with all others. The client keeps a copy of the frames of up to 16,384 bodies, or of twice
+ * as many as a scene has, and of those of the last scene.
  *
  * A query without a result after timeout * tries seconds is given up (NO_ANSWER). If no result of
  * any query came in that time, all remaining pairs are given up (NO_SERVICE): start an fmbd. From
