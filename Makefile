@@ -115,7 +115,7 @@ see_msgs/codec := service/fmb $(GEN)
 see_msgs/common := msgs/codec service/fmb
 see_service/answer := msgs/codec service/fmb
 see_service := service/answer $(wire)
-see_clients/lib := $(wire) $(GEN)
+see_clients/lib := $(wire)
 see_clients/common := clients/lib msgs/common msgs/codec service/fmb msgs/bus
 see_clients/query := clients/common clients/lib msgs/codec msgs/common service/fmb
 see_clients/log := clients/common clients/lib $(wire)
@@ -125,7 +125,7 @@ see_clients/mesh := clients/page clients/common msgs/common service/fmb
 see_clients/replay := clients/page clients/log service/answer $(see_clients/log)
 see_clients := $(addprefix clients/,query record mesh replay) $(see_clients/replay)
 see_clients/demo :=
-see_clients/examples := clients/lib service/fmb
+see_clients/examples := clients/lib msgs/codec service/fmb
 
 # Before the rules whose prerequisites they are.
 message_names := body_t definition_query_t definition_t names_t pair_query_t pair_result_t placement_t \
@@ -215,25 +215,25 @@ $(foreach l,$(wire_layers),$(eval $(O)/$l/layer.so: $(message_objects) $(engine)
 		$(filter %.a,$^) -Wl,--as-needed $(libraries)
 
 # Libraries: one object that shows the names of the header alone, so that no program's names meet
-# ours; and names.o, which both have: a program that links both takes it once.
-names := $(O)/service/fmb/names.o
+# ours.
 define library
 	@mkdir -p $(@D)
-	$(CC) -r -nostdlib -fno-lto -o $(@:.a=.o) $(filter-out $(names),$^)
+	$(CC) -r -nostdlib -fno-lto -o $(@:.a=.o) $^
 	$(OBJCOPY) --wildcard --keep-global-symbol='$(1)' -R '.gnu.*lto*' $(@:.a=.o)
 	rm -f $@
-	$(AR) rcs $@ $(@:.a=.o) $(names)
+	$(AR) rcs $@ $(@:.a=.o)
 	rm $(@:.a=.o)
 endef
 $(B)/libfmb.a: $(engine_objects)
 	$(call library,fmb_*)
-$(B)/libfmb-client.a: $(client_objects) $(wire_objects) $(names)
+$(B)/libfmb-client.a: $(client_objects) $(wire_objects)
 	$(call library,fmb_client_*)
 
 # The same as shared libraries, with the names of their headers alone.
 shared_libraries := $(B)/libfmb.so.0 $(B)/libfmb-client.so.0
 $(B)/libfmb.so.0: shared_needs := -lgmp -lm
-$(B)/libfmb-client.so.0: shared_needs := -llcm -lglib-2.0 -lm
+$(B)/libfmb-client.so.0: shared_needs := $(B)/libfmb.so.0 -llcm -lglib-2.0 -lm
+$(B)/libfmb-client.so.0: $(B)/libfmb.so.0
 $(shared_libraries): $(B)/%.so.0: $(B)/%.a
 	echo '{ local: fmb_client_raw_*; };' > $@.map
 	$(CC) $(filter-out -pie,$(link_flags)) -shared -Wl,-soname,$(@F) -Wl,--version-script,$@.map -o $@ \
@@ -371,7 +371,8 @@ install: all
 	for name in $(basename $(notdir $(shared_libraries))); do \
 		ln -sf $$name.0 "$(DESTDIR)$(LIBDIR)/$$name" || exit; done
 	$(if $(DESTDIR),,$(if $(filter /usr/lib% /usr/local/lib%,$(LIBDIR)),[ $$(id -u) != 0 ] || ldconfig))
-	$(INSTALL) -m 644 service/fmb/fmb.h clients/lib/fmb_client.h "$(DESTDIR)$(PREFIX)/include"
+	$(INSTALL) -m 644 service/fmb/fmb.h msgs/codec/fmb_counters.h clients/lib/fmb_client.h \
+		"$(DESTDIR)$(PREFIX)/include"
 	$(INSTALL) -m 644 $(message_files) "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes"
 	$(INSTALL) -m 644 LICENSE "$(DESTDIR)$(PREFIX)/share/doc/fmb"
 	$(fill_in) service/fmb/fmb.pc.in > "$(DESTDIR)$(LIBDIR)/pkgconfig/fmb.pc"
@@ -382,8 +383,8 @@ install-strip: strip_option := -s
 install-strip: install
 
 uninstall:
-	cd "$(DESTDIR)$(PREFIX)" && rm -rf bin/fmbd bin/fmb include/fmb.h include/fmb_client.h \
-		share/fmb share/doc/fmb lib/systemd/system/fmbd.service
+	cd "$(DESTDIR)$(PREFIX)" && rm -rf bin/fmbd bin/fmb include/fmb.h include/fmb_counters.h \
+		include/fmb_client.h share/fmb share/doc/fmb lib/systemd/system/fmbd.service
 	cd "$(DESTDIR)$(LIBDIR)" && rm -f libfmb.a libfmb-client.a \
 		libfmb.so libfmb.so.0 libfmb-client.so libfmb-client.so.0 pkgconfig/fmb.pc \
 		pkgconfig/fmb-client.pc

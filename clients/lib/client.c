@@ -182,7 +182,7 @@ static const char *on_status(struct fmb_client *client, const struct bus_message
     struct fmb_client_heartbeat out = {
         .utime = status.utime, .server_id = status.server_id, .version = status.version};
 #define X(name) out.name = status.name;
-    FMB_CLIENT_COUNTERS(X)
+    FMB_COUNTERS(X)
 #undef X
     memcpy(out.results, status.results, sizeof out.results);
     if (client->watcher.heartbeat)
@@ -349,6 +349,7 @@ static bool set_options(struct fmb_client *client, const struct fmb_client_optio
     bus_channel(client->query_channel[FMB_CLIENT_DEFINITION], prefix, WIRE_DEFINITION_QUERY);
     client->requests.timeout_ns = (int64_t) (timeout * ns_per_s);
     client->requests.tries = options->tries ? options->tries : TRIES;
+    client->run.within = options->within;
     return true;
 }
 

@@ -75,56 +75,16 @@ void answers_bus_close(struct answers_bus *answers)
 
 /* ---- The query ---- */
 
-static struct fmb_client_frame frame_of(int dim, const struct geometry_frame *given,
-                                        double vertices[GEOMETRY_FRAME_NUMBERS_MAX])
+/* Returns the placements of a scene, which the caller frees. They point into it. */
+static struct fmb_placement *placements_of(const struct scene *scene)
 {
-    struct fmb_client_frame out = {.shape = given->shape};
-    memcpy(out.origin, given->origin, sizeof out.origin);
-    memcpy(out.components, given->components, sizeof out.components);
-    if (given->by_vertices) {
-        out.vertices = vertices;
-        out.vertex_count = geometry_frame_numbers(dim, given, vertices) / (size_t) dim;
-    }
-    return out;
-}
-
-static struct fmb_client_placement placement_of(const struct scene_body *body,
-                                                const struct fmb_client_frame *frames)
-{
-    struct fmb_client_placement out = {.body_id = body->id,
-                                       .dim = body->body.dim,
-                                       .frames = frames,
-                                       .frame_count = body->body.frame_count,
-                                       .orientation_count = body->orientation_count,
-                                       .name = body->name,
-                                       .group = body->group};
-    memcpy(out.position, body->position, sizeof out.position);
-    memcpy(out.velocity, body->velocity, sizeof out.velocity);
-    memcpy(out.orientation, body->orientation, sizeof out.orientation);
-    return out;
-}
-
-/* The bodies of a scene for the library. */
-struct client_bodies {
-    struct fmb_client_placement *placement;         /* owned, [body] */
-    struct fmb_client_frame *frame;                 /* owned, of all bodies */
-    double (*vertices)[GEOMETRY_FRAME_NUMBERS_MAX]; /* owned, of these frames */
-};
-
-static struct client_bodies client_bodies_of(const struct scene *scene)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < scene->body_count; i++)
-        count += scene->body[i].body.frame_count;
-    const struct client_bodies out = {allocate(scene->body_count, sizeof *out.placement),
-                                      allocate(count, sizeof *out.frame),
-                                      allocate(count, sizeof *out.vertices)};
-    size_t frame = 0;
+    struct fmb_placement *out = allocate(scene->body_count, sizeof *out);
     for (size_t i = 0; i < scene->body_count; i++) {
         const struct scene_body *body = &scene->body[i];
-        out.placement[i] = placement_of(body, out.frame + frame);
-        for (unsigned k = 0; k < body->body.frame_count; k++, frame++)
-            out.frame[frame] = frame_of(scene->dim, &body->given[k], out.vertices[frame]);
+        out[i] = scene_placement(body);
+        out[i].id = body->id;
+        out[i].name = body->name;
+        out[i].group = body->group;
     }
     return out;
 }
@@ -226,12 +186,13 @@ static bool query(struct answers_bus *answers, struct bus_scene *run)
 {
     const struct answers_options *options = &answers->options;
     const struct scene *scene = run->scene;
-    const struct client_bodies bodies = client_bodies_of(scene);
-    const bool listed = !scene->all_pairs || options->gap;
+    struct fmb_placement *placements = placements_of(scene);
+    const bool listed =
+        !scene->all_pairs || options->gap || (options->method && !options->method->certain);
     size_t count;
     unsigned(*pair)[2] = copy_pairs(scene, listed, &count);
-    const struct fmb_client_scene queried = {
-        .placements = bodies.placement,
+    const struct fmb_scene queried = {
+        .placements = placements,
         .placement_count = scene->body_count,
         .which = listed ? FMB_PAIRS_LISTED : FMB_PAIRS_ALL,
         .pairs = (const unsigned(*)[2]) pair,
@@ -242,14 +203,12 @@ static bool query(struct answers_bus *answers, struct bus_scene *run)
         .instant = scene->duration == 0,
         .margin = scene->margin,
         .want = want_of(options),
-        .method = options->method ? options->method->number : 0,
+        .method = options->method,
         .label = scene->label,
     };
     const int status = fmb_client_query(answers->client, &queried, take_answer, run);
     deliver_remaining(run, status == FMB_OK ? NULL : fmb_client_why(answers->client));
-    free(bodies.placement);
-    free(bodies.frame);
-    free(bodies.vertices);
+    free(placements);
     free(pair);
     return advise(answers);
 }

@@ -3,7 +3,7 @@
  *   ALL     a = 0 to n - 1, each with b = a + 1 to n - 1
  *   ACROSS  a = 0 to split - 1, each with b = split to n - 1
  *
- * Inline: the client library uses them too, and does not link libfmb. */
+ * Inline: other folders use them too, and libfmb shows the names of fmb.h only. */
 #ifndef FMB_PAIR_NUMBER_H
 #define FMB_PAIR_NUMBER_H
 
@@ -17,6 +17,13 @@ struct pair_numbers {
     bool across;
     size_t n, split; /* number of placements; split: at most n, used if across */
 };
+
+/* In: which is not FMB_PAIRS_LISTED. */
+static inline struct pair_numbers pair_numbers_of(const struct fmb_scene *scene)
+{
+    return (struct pair_numbers){scene->which == FMB_PAIRS_ACROSS, scene->placement_count,
+                                 scene->split};
+}
 
 /* The number of placements that come first in pairs: a is below it. */
 static inline size_t pair_rows(struct pair_numbers of)

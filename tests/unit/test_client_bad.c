@@ -1,5 +1,6 @@
 /* The client library over a bus that loses, repeats and delays, with a service that is busy, gone,
  * slow, or forges results. */
+#include "client.h"
 #include "clock.h"
 #include "hostile.h"
 #include "fmb_client_raw.h"
@@ -27,23 +28,23 @@
 
 enum { PLACEMENTS = 700, ALL_WANTS = FMB_WANT_BOX | FMB_WANT_TIMES };
 
-static struct fmb_client_placement placement[PLACEMENTS];
+static struct fmb_placement placement[PLACEMENTS];
 static unsigned list[2000][2];
 
 /* Cut into some 15 queries. */
-static struct fmb_client_scene all_pairs(void)
+static struct fmb_scene all_pairs(void)
 {
     relay_draw(placement, PLACEMENTS, 3, 12, 1, 5);
-    return (struct fmb_client_scene){.placements = placement,
-                                     .placement_count = PLACEMENTS,
-                                     .which = FMB_PAIRS_ALL,
-                                     .duration = 1,
-                                     .want = ALL_WANTS};
+    return (struct fmb_scene){.placements = placement,
+                              .placement_count = PLACEMENTS,
+                              .which = FMB_PAIRS_ALL,
+                              .duration = 1,
+                              .want = ALL_WANTS};
 }
 
-static struct fmb_client_scene listed(void)
+static struct fmb_scene listed(void)
 {
-    struct fmb_client_scene scene = all_pairs();
+    struct fmb_scene scene = all_pairs();
     relay_draw(placement, 100, 3, 4, 1, 5);
     for (unsigned i = 0; i < 2000; i++) {
         list[i][0] = i % 100;
@@ -54,13 +55,6 @@ static struct fmb_client_scene listed(void)
     scene.pairs = (const unsigned(*)[2]) list;
     scene.pair_count = 2000;
     return scene;
-}
-
-/* Certificates are for bodies of one frame. */
-static void give_one_frame(void)
-{
-    for (int i = 0; i < PLACEMENTS; i++)
-        placement[i].frame_count = 1;
 }
 
 /* ---- A bad bus ---- */
@@ -76,7 +70,7 @@ static void test_what_the_bus_loses_is_sent_again(void **state)
     relay->busy = 11;
     relay_open(relay, 200);
     struct fmb_client *client = relay_client(relay, 0.05, 30);
-    struct fmb_client_scene scene = all_pairs();
+    struct fmb_scene scene = all_pairs();
     for (int i = 0; i < 3; i++)
         relay_query(client, &scene);
     scene = listed();
@@ -110,7 +104,7 @@ static void test_messages_that_cannot_be_read_are_counted(void **state)
     struct fmb_client *client = relay_client(relay, 5, 1);
     assert_int_equal(fmb_client_watch(client, &watcher), FMB_OK);
     const size_t count = hostile_each("scene_result", publish, relay);
-    const struct fmb_client_scene scene = listed();
+    const struct fmb_scene scene = listed();
     relay_query(client, &scene);
     assert_true(count > 300);
     assert_int_equal(fmb_client_get_counts(client).malformed, count);
@@ -141,7 +135,7 @@ static void test_results_of_another_kind_are_ignored(void **state)
     struct fmb_client_answer answer;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    const struct fmb_client_scene scene = all_pairs();
+    const struct fmb_scene scene = all_pairs();
     assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
     deceived = client;
     relay->before = publish_pair_results;
@@ -335,7 +329,7 @@ static void count(void *user, const struct fmb_client_answer *answer)
         tally->none[-answer->status]++;
 }
 
-static struct tally query(struct fmb_client *client, const struct fmb_client_scene *scene)
+static struct tally query(struct fmb_client *client, const struct fmb_scene *scene)
 {
     struct tally tally = {0};
     assert_int_equal(fmb_client_query(client, scene, count, &tally), FMB_OK);
@@ -358,7 +352,7 @@ static void test_a_service_that_comes_back_is_found(void **state)
     relay->deaf = true;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, timeout, tries);
-    const struct fmb_client_scene scene = listed();
+    const struct fmb_scene scene = listed();
     int64_t start = clock_ns();
     assert_int_equal(query(client, &scene).none[-FMB_CLIENT_NO_SERVICE], 2000);
     assert_true(seconds_since(start) >= tries * timeout);
@@ -401,8 +395,8 @@ static void test_a_repeat_finds_the_service(void **state)
     relay->deaf = true;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 0.3, 1);
-    const struct fmb_client_scene scene = listed();
-    struct fmb_client_scene one = scene;
+    const struct fmb_scene scene = listed();
+    struct fmb_scene one = scene;
     one.pair_count = 1;
     assert_int_equal(query(client, &one).none[-FMB_CLIENT_NO_SERVICE], 1);
     relay->queries = 0;
@@ -420,7 +414,7 @@ static void test_no_service_costs_the_time_of_one_query(void **state)
     relay_open(relay, 10);
     struct fmb_client *client = relay_client(relay, 0.05, 2);
     static const unsigned ignored[2][2] = {{0, 1}, {PLACEMENTS - 1, 3}};
-    struct fmb_client_scene scene = all_pairs();
+    struct fmb_scene scene = all_pairs();
     scene.ignored = ignored;
     scene.ignored_count = 2;
     const int64_t start = clock_ns();
@@ -481,10 +475,10 @@ static void test_queries_in_line_are_not_repeated(void **state)
     struct tally tally;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    struct fmb_client_scene scene = listed();
+    struct fmb_scene scene = listed();
     scene.pair_count = 150;
     scene.want = FMB_WANT_CERTIFICATE;
-    give_one_frame();
+    relay_use_first_frames(placement, PLACEMENTS); /* certificates are of those */
     tally = query(client, &scene);
     assert_int_equal(tally.good, 150);
     assert_in_range(fmb_client_get_counts(client).repeated, 1, 30);
@@ -542,7 +536,7 @@ static void test_the_others_have_no_answer(void **state)
     struct relay_truth truth;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 0.3, 1);
-    struct fmb_client_scene scene = listed();
+    struct fmb_scene scene = listed();
     relay_truth_make(&scene, &truth);
     assert_int_equal(fmb_client_query(client, &scene, relay_check, &truth), FMB_OK);
     assert_true(truth.given > 0 && truth.failed > 0);
@@ -558,12 +552,14 @@ static void test_the_time_for_all_ends_it(void **state)
     struct relay *relay = relay_new();
     relay->deaf = true;
     relay_open(relay, 10);
-    struct fmb_client *client = relay_client(relay, 1000, 100);
-    struct fmb_client_scene scene = listed();
-    scene.within = 0.05;
+    const struct fmb_client_options options = {
+        .url = relay->url, .timeout = 1000, .tries = 100, .within = 0.05};
+    struct fmb_client *client = fmb_client_open(&options, NULL, 0);
+    const struct fmb_scene scene = listed();
+    assert_non_null(client);
     assert_int_equal(query(client, &scene).none[-FMB_CLIENT_LATE], 2000);
     relay->deaf = false;
-    scene.within = 1000;
+    client->run.within = 1000;
     relay_query(client, &scene);
     fmb_client_close(client);
     relay_close(relay);
@@ -585,10 +581,10 @@ static void test_a_caller_that_takes_long_gets_all_answers(void **state)
     struct relay_truth truth;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 0.1, 4);
-    struct fmb_client_scene scene = listed();
+    struct fmb_scene scene = listed();
     scene.pair_count = 200;
     scene.want = ALL_WANTS | FMB_WANT_CERTIFICATE;
-    give_one_frame();
+    relay_use_first_frames(placement, PLACEMENTS); /* certificates are of those */
     relay_truth_make(&scene, &truth);
     assert_int_equal(fmb_client_query(client, &scene, check_slowly, &truth), FMB_OK);
     assert_int_equal(truth.failed, 0);
@@ -603,7 +599,7 @@ static void test_a_caller_that_takes_long_gets_all_answers(void **state)
 static void test_what_is_under_way_is_limited(void **state)
 {
     (void) state;
-    struct fmb_client_scene scene = all_pairs();
+    struct fmb_scene scene = all_pairs();
     for (int small = 0; small < 2; small++) {
         struct relay *relay = relay_new();
         relay->deaf = true;
@@ -612,7 +608,7 @@ static void test_what_is_under_way_is_limited(void **state)
         if (small)
             scene = listed();
         scene.want = small ? FMB_WANT_CERTIFICATE : 0;
-        scene.within = 0.005;
+        client->run.within = 0.005;
         query(client, &scene);
         const struct fmb_client_counts counts = fmb_client_get_counts(client);
         assert_true(small ? counts.queries > 30 && counts.queries <= 64 : counts.queries == 2);
@@ -808,7 +804,7 @@ static void test_forged_results_are_ignored(void **state)
     (void) state;
     for (size_t i = 0; i < sizeof lies / sizeof *lies; i++)
         for (int of_list = 0; of_list < 2; of_list++) {
-            struct fmb_client_scene scene = of_list ? listed() : all_pairs();
+            struct fmb_scene scene = of_list ? listed() : all_pairs();
             if (!(of_list ? lies[i].list : lies[i].named))
                 continue;
             struct relay *relay = relay_new();
@@ -876,7 +872,7 @@ static void test_forged_gaps_are_ignored(void **state)
                                           gaps_unwanted};
     for (size_t i = 0; i < sizeof gap_lies / sizeof *gap_lies; i++) {
         struct relay *relay = relay_new();
-        struct fmb_client_scene scene = all_pairs();
+        struct fmb_scene scene = all_pairs();
         scene.placement_count = 200;
         scene.want = 0;
         scene.margin = gap_lies[i] == gaps_unwanted ? 0 : 0.5;
@@ -911,13 +907,38 @@ static const struct {
     {FMB_SEPARATED, false, false, true, 0, false},
 };
 
+/* Returns a part with one pair of these placements of a scene, which has no answer yet. */
+static struct part *part_of(const struct fmb_scene *scene, unsigned a, unsigned b)
+{
+    static struct requests requests;
+    static struct scene_run run = {.requests = &requests};
+    static struct division_body body[PLACEMENTS];
+    static struct part part;
+    run.scene = scene;
+    run.division.body = body;
+    part_answers_clear(&part.answers);
+    part = (struct part){.run = &run, .which = FMB_PAIRS_LISTED, .total = 1, .placement_count = 2};
+    part.placement[0] = a;
+    part.placement[1] = b;
+    part.pair[0][1] = 1;
+    return &part;
+}
+
+/* Passes a result to a part. Returns whether it was taken. */
+static bool takes(struct part *part, const struct request_result *result)
+{
+    static struct request request;
+    const enum request_taken taken = part_take(part, &request, result);
+    assert_int_equal(part->done, taken == REQUEST_COMPLETE);
+    assert_int_equal(part->answers.answered, part->done);
+    return part->done;
+}
+
 static void test_results_of_a_pair_fit_their_query(void **state)
 {
     (void) state;
-    static const struct part part = {.placement = {0, 2}, .pair = {{0, 1}}}; /* of one frame */
-    struct fmb_client_scene scene = listed();
+    struct fmb_scene scene = listed();
     for (size_t i = 0; i < sizeof pair_lies / sizeof *pair_lies; i++) {
-        struct part_answers answers = {0};
         const struct pair_result result = {
             .dim = 3,
             .answer = {.verdict = pair_lies[i].verdict,
@@ -925,10 +946,8 @@ static void test_results_of_a_pair_fit_their_query(void **state)
                        .has_gap = pair_lies[i].gap},
             .certificate = pair_lies[i].certificate ? "proof" : NULL};
         scene.want = pair_lies[i].want;
-        assert_int_equal(part_take_pair(&part, &scene, &result, &answers),
-                         pair_lies[i].good ? PART_TAKEN : PART_MALFORMED);
-        assert_int_equal(answers.answered, pair_lies[i].good);
-        part_answers_clear(&answers);
+        const struct request_result taken = {.kind = FMB_CLIENT_PAIR, .pair = &result};
+        assert_int_equal(takes(part_of(&scene, 0, 2), &taken), pair_lies[i].good);
     }
 }
 
@@ -946,33 +965,26 @@ static void test_frames_of_a_gap_fit_the_bodies(void **state)
         {0, 0, false, {0, 0}, true}, {0, 0, true, {0, 0}, false}, {0, 1, true, {0, 2}, true},
         {0, 1, true, {0, 3}, false}, {0, 1, true, {1, 0}, false}, {0, 1, false, {0, 0}, false},
         {1, 0, true, {2, 0}, true},  {1, 1, true, {2, 2}, true},  {1, 1, true, {3, 2}, false}};
-    struct fmb_client_scene scene = listed();
+    struct fmb_scene scene = listed();
     static struct scene_result named;
     scene.want = FMB_WANT_GAP;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        static struct part part;
-        struct part_answers pair = {0}, all = {0};
-        struct pair_result result = {
+        const struct pair_result result = {
             .dim = 3,
             .names_frames = cases[i].named,
             .answer = {.verdict = FMB_OVERLAPPING,
                        .has_gap = true,
                        .gap = {.frame = {cases[i].frame[0], cases[i].frame[1]}}}};
-        part = (struct part){.which = FMB_PAIRS_LISTED, .total = 1, .placement_count = 2};
-        part.placement[0] = cases[i].a;
-        part.placement[1] = cases[i].b;
-        part.pair[0][1] = 1;
         named =
             (struct scene_result){.end_pair = 1, .dim = 3, .verdict_count = 1, .contact_count = 1};
         named.verdict[0] = FMB_OVERLAPPING;
         named.has_gaps = true;
         named.names_frames = cases[i].named;
         named.gap[0] = result.answer.gap;
-        const enum part_taken taken = cases[i].good ? PART_TAKEN : PART_MALFORMED;
-        assert_int_equal(part_take_pair(&part, &scene, &result, &pair), taken);
-        assert_int_equal(part_take_scene(&part, &scene, &named, &all), taken);
-        part_answers_clear(&pair);
-        part_answers_clear(&all);
+        const struct request_result pair = {.kind = FMB_CLIENT_PAIR, .pair = &result};
+        const struct request_result all = {.kind = FMB_CLIENT_SCENE, .scene = &named};
+        assert_int_equal(takes(part_of(&scene, cases[i].a, cases[i].b), &pair), cases[i].good);
+        assert_int_equal(takes(part_of(&scene, cases[i].a, cases[i].b), &all), cases[i].good);
     }
 }
 
@@ -994,7 +1006,7 @@ static void test_the_right_result_after_forged_ones_is_taken(void **state)
     relay->lie = lies_at_first;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 0.01, 1000);
-    struct fmb_client_scene scene = all_pairs();
+    struct fmb_scene scene = all_pairs();
     scene.placement_count = 400;
     relay_query(client, &scene);
     assert_true(fmb_client_get_counts(client).malformed > 0);
@@ -1021,7 +1033,7 @@ static void test_steps_of_one_pair_end(void **state)
     relay->double_result = 1;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    struct fmb_client_scene scene = listed();
+    struct fmb_scene scene = listed();
     scene.pair_count = 300;
     relay_query(client, &scene);
     assert_int_equal(fmb_client_get_counts(client).queries, 300);
@@ -1049,7 +1061,7 @@ static void test_slow_services_get_fewer_pairs_a_query(void **state)
     relay->lie = for_ever;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    const struct fmb_client_scene scene = listed();
+    const struct fmb_scene scene = listed();
     relay_query(client, &scene);
     uint64_t before = fmb_client_get_counts(client).queries;
     relay_query(client, &scene);
@@ -1079,7 +1091,7 @@ static uint64_t queries_with(relay_lie *lie)
     struct relay *relay = relay_new();
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    struct fmb_client_scene scene = listed();
+    struct fmb_scene scene = listed();
     scene.pair_count = 100;
     relay_query(client, &scene);
     relay->lie = lie;
@@ -1121,7 +1133,7 @@ static void test_an_answer_counts_more_than_an_unknown_body(void **state)
     struct fmb_client_answer answer;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    const struct fmb_client_scene scene = listed();
+    const struct fmb_scene scene = listed();
     relay_query(client, &scene);
     assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
     relay_add_service(relay, 2000);
@@ -1208,24 +1220,35 @@ static void test_wrong_handles_of_a_pair_are_malformed(void **state)
     }
 }
 
-/* A body that replaces another one in its slot is not held. */
-static void test_a_new_body_in_a_slot_is_not_held(void **state)
+/* The table is full, and a scene begins; only if the scene is small, the table is cleared. */
+static void test_bodies_are_kept_until_the_table_is_full(void **state)
 {
     (void) state;
     static struct held held;
+    static struct requests requests;
+    static struct scene_run run = {.requests = &requests, .held = &held};
+    static struct fmb_placement bodies[HELD_MAX];
+    static const double size[3] = {1, 1, 1};
+    struct fmb_body box;
+    struct fmb_scene scene = {.placements = bodies, .which = FMB_PAIRS_LISTED};
     uint64_t number = 0;
     const struct geometry geometry = {(const unsigned char *) &number, sizeof number};
+    assert_int_equal(fmb_body_make(3, FMB_BOX, size, 3, &box), FMB_OK);
+    for (int i = 0; i < HELD_MAX; i++)
+        bodies[i].body = &box;
     held.hasher = hasher_create();
-    struct held_body *first = held_find(&held, &geometry), *other = NULL;
+    struct held_body *first = held_find(&held, &geometry);
     first->held = true;
-    assert_ptr_equal(held_find(&held, &geometry), first);
-    assert_true(first->held);
-    while (other != first) {
-        number++;
-        other = held_find(&held, &geometry);
+    for (int more = -1; more < 2; more++) {
+        scene.placement_count = more == 0 ? HELD_MAX / 2 : 0;
+        for (number = held.count; held.count < (size_t) (HELD_MAX + more); number++)
+            assert_false(held_find(&held, &geometry)->held);
+        number = 0;
+        assert_ptr_equal(held_find(&held, &geometry), first);
+        assert_true(first->held);
+        assert_int_equal(scene_run(&run, &scene, false, NULL, NULL), FMB_OK);
+        assert_int_equal(held.count, more == 1 ? 0 : HELD_MAX + more);
     }
-    assert_false(first->held);
-    held_clear(&held);
     hasher_destroy(held.hasher);
 }
 
@@ -1286,7 +1309,7 @@ static void test_contradicting_second_results_are_counted(void **state)
         relay->second_lie = second[i].lie;
         relay_open(relay, 2000);
         struct fmb_client *client = relay_client(relay, 5, 1);
-        struct fmb_client_scene scene = listed();
+        struct fmb_scene scene = listed();
         scene.want = 0;
         relay_query(client, &scene);
         const uint64_t results = fmb_client_get_counts(client).answered;
@@ -1369,7 +1392,7 @@ static void test_many_open_descriptors(void **state)
     for (int i = 0; i < COUNT; i++)
         assert_true((fd[i] = dup(STDERR_FILENO)) >= 0);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    const struct fmb_client_scene scene = listed();
+    const struct fmb_scene scene = listed();
     relay_query(client, &scene);
     assert_true(fmb_client_fileno(client) > 1024);
     fmb_client_close(client);
@@ -1385,7 +1408,7 @@ static void test_a_child_that_closes_harms_nothing(void **state)
     int status;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    const struct fmb_client_scene scene = listed();
+    const struct fmb_scene scene = listed();
     relay_query(client, &scene);
     const pid_t child = fork();
     if (child == 0) {
@@ -1404,7 +1427,7 @@ static void test_a_child_that_closes_harms_nothing(void **state)
 
 struct within {
     struct fmb_client *client;
-    const struct fmb_client_scene *scene;
+    const struct fmb_scene *scene;
     size_t called;
 };
 
@@ -1428,7 +1451,7 @@ static void test_no_call_within_a_callback(void **state)
     (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 2000);
-    const struct fmb_client_scene scene = listed();
+    const struct fmb_scene scene = listed();
     struct within within = {.client = relay_client(relay, 5, 1), .scene = &scene};
     assert_int_equal(fmb_client_query(within.client, &scene, query_within, &within), FMB_OK);
     assert_int_equal(within.called, 2000);
@@ -1444,7 +1467,7 @@ struct watching {
 static void on_pair(void *user, const struct fmb_client_pair_result *result)
 {
     assert_int_equal(result->status, FMB_OK);
-    assert_int_equal(result->body_id[0], placement[0].body_id);
+    assert_int_equal(result->body_id[0], placement[0].id);
     ((struct watching *) user)->pairs++;
 }
 
@@ -1488,7 +1511,7 @@ static void test_watching(void **state)
     relay_open(relay, 2000);
     struct fmb_client *other = relay_client(relay, 5, 1), *watch = relay_client(relay, 5, 1);
     assert_int_equal(fmb_client_watch(watch, &watcher), FMB_OK);
-    struct fmb_client_scene scene = all_pairs();
+    struct fmb_scene scene = all_pairs();
     struct fmb_client_answer answer;
     scene.placement_count = 100;
     relay_truth_make(&scene, &truth);
@@ -1571,7 +1594,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_an_answer_counts_more_than_an_unknown_body),
         cmocka_unit_test(test_a_late_answer_to_the_query_by_handle_is_taken),
         cmocka_unit_test(test_wrong_handles_of_a_pair_are_malformed),
-        cmocka_unit_test(test_a_new_body_in_a_slot_is_not_held),
+        cmocka_unit_test(test_bodies_are_kept_until_the_table_is_full),
         cmocka_unit_test(test_contradicting_second_results_are_counted),
         cmocka_unit_test(test_contradicting_results_of_pairs_are_counted),
         cmocka_unit_test(test_old_results_contradict_nothing),
