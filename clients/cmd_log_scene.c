@@ -162,19 +162,18 @@ static bool check_query(struct log_query *query)
 
 /* ---- Reports on stderr ---- */
 
-static void report_ids(struct logged_query *query, const struct scene *scene)
+static void report_ids(struct logged_query *query, const struct fmb_placement *printed)
 {
     int32_t count;
     const struct placement *placement = logged_query_placements(query, &count);
     for (int32_t i = 0; i < count; i++) {
-        if (placement[i].body_id == scene->body[i].id)
+        if (placement[i].body_id == printed[i].id)
             continue;
         if (placement[i].body_id == 0)
-            complain("placement %d, which has no id, is body %" PRId64 "", (int) i,
-                     scene->body[i].id);
+            complain("placement %d, which has no id, is body %" PRId64 "", (int) i, printed[i].id);
         else
             complain("placement %d, one more of body %" PRId64 ", is body %" PRId64 "", (int) i,
-                     placement[i].body_id, scene->body[i].id);
+                     placement[i].body_id, printed[i].id);
     }
 }
 
@@ -199,10 +198,10 @@ static void report_command(const struct log_query *query)
 
 static int print_scene(struct log_query *query)
 {
-    struct scene scene;
+    struct owned_scene scene;
     scene_of_query(&query->query, &scene);
     scene_json_write(stdout, &scene);
-    report_ids(&query->query, &scene);
+    report_ids(&query->query, scene.scene.placements);
     report_command(query);
     scene_clear(&scene);
     return output_flush() ? ARGS_ANSWERED : ARGS_USAGE;

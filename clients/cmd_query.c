@@ -67,8 +67,8 @@ static const char usage[] =
     "wrong usage, or input that cannot be read or is not a scene.\n";
 
 struct query_options {
-    bool local, json;
-    struct answers_options wanted;
+    bool local, json, box, gap, certificate;
+    const struct fmb_method *method; /* NULL: the default, of this process or of the service */
     struct output_options svg;
     double timeout;
     long retries;
@@ -105,56 +105,62 @@ struct query_run {
     const struct query_options *options;
     const struct args_bus *bus_options;
     const char *input_name;
+    const struct fmb_scene *scene;
     struct report *report[2]; /* the printed one, and the picture or NULL */
     struct answers_bus *bus;  /* NULL: not opened yet */
     struct progress progress;
     bool undecided; /* a pair has no verdict */
 };
 
-static void take_outcome(void *user, const struct scene *scene, const struct outcome *outcome)
+static void take_answer(void *user, const struct fmb_client_answer *answer)
 {
     struct query_run *run = user;
-    struct outcome checked = *outcome;
+    struct fmb_client_answer checked = *answer;
     char refutation[VERIFY_TEXT_MAX];
-    if (run->options->wanted.certificate && !outcome->error)
-        verify_outcome(scene, run->options->local ? "the" : "the service's", &checked, refutation);
-    for (int i = 0; i < 2; i++)
-        if (run->report[i])
-            run->report[i]->pair(run->report[i], scene, &checked);
-    run->undecided = run->undecided || checked.error;
+    if (run->options->certificate && answer->status == FMB_OK)
+        verify_answer(run->scene, run->options->local ? "the" : "the service's", &checked,
+                      refutation);
+    for (int i = 0; i < 2 && run->report[i]; i++)
+        run->report[i]->pair(run->report[i], &checked);
+    run->undecided = run->undecided || checked.status != FMB_OK;
     progress_to(&run->progress, run->progress.done + 1, run->progress.total);
 }
 
 /* The bus is opened for the first scene: an invalid one is reported without a bus. Returns false if
  * later scenes need not be queried. */
-static bool answer_scene(struct query_run *run, const struct scene *scene)
+static bool answer_scene(struct query_run *run, struct owned_scene *owner)
 {
     const struct query_options *options = run->options;
+    struct fmb_scene *scene = &owner->scene;
     bool more = true;
-    for (int i = 0; i < 2; i++)
-        if (run->report[i])
-            run->report[i]->begin(run->report[i], scene);
+    scene->method = options->method;
+    scene->want = FMB_WANT_TIMES | (options->box ? FMB_WANT_BOX : 0) |
+                  (options->gap ? FMB_WANT_GAP : 0) |
+                  (options->certificate ? FMB_WANT_CERTIFICATE : 0);
+    run->scene = scene;
+    for (int i = 0; i < 2 && run->report[i]; i++) {
+        run->report[i]->scene = owner;
+        run->report[i]->begin(run->report[i]);
+    }
     run->progress = progress_begin("pairs", (int64_t) scene_count_pairs(scene));
     if (isatty(STDOUT_FILENO)) /* the answers themselves show the progress */
         run->progress.enabled = false;
     if (!options->local && !run->bus)
-        run->bus = answers_bus_open(run->bus_options, &options->wanted, options->timeout,
-                                    (int) options->retries);
+        run->bus = answers_bus_open(run->bus_options, options->timeout, (int) options->retries);
     if (options->local)
-        answers_local(&options->wanted, scene, take_outcome, run);
+        answers_local(scene, take_answer, run);
     else
-        more = answers_bus_scene(run->bus, scene, take_outcome, run);
+        more = answers_bus_scene(run->bus, scene, take_answer, run);
     progress_end(&run->progress);
-    for (int i = 0; i < 2; i++)
-        if (run->report[i])
-            run->report[i]->end(run->report[i], scene);
+    for (int i = 0; i < 2 && run->report[i]; i++)
+        run->report[i]->end(run->report[i]);
     return more;
 }
 
 static int answer_scenes(struct query_run *run, int fd)
 {
     struct json_reader *reader = json_open(fd);
-    struct scene scene;
+    struct owned_scene scene;
     enum json_outcome outcome;
     bool more = true;
     while (more && (outcome = json_next(reader, &scene)) == JSON_SCENE) {
@@ -187,7 +193,7 @@ static int run_query(const struct query_options *options, const struct args_bus 
                      const char *file, int fd)
 {
     struct report_json json = report_json(stdout);
-    struct report_text text = report_text(stdout, options->wanted.box, options->wanted.gap);
+    struct report_text text = report_text(stdout, options->box, options->gap);
     struct svg *svg = options->svg.path ? svg_open() : NULL;
     struct query_run run = {
         .options = options,
@@ -208,14 +214,13 @@ int cmd_query(int argc, char **argv)
     struct output_rules rules = {.force = false};
     struct query_options options = {
         .svg = {.kind = OUTPUT_PICTURE, .rules = &rules}, .timeout = 0.5, .retries = 5};
-    struct answers_options *wanted = &options.wanted;
     const struct args_option own[] = {
         {"local", ARGS_FLAG, .out = &options.local},
         {"json", ARGS_FLAG, .out = &options.json},
-        {"box", ARGS_FLAG, .out = &wanted->box},
-        {"gap", ARGS_FLAG, .out = &wanted->gap},
-        {"certificate", ARGS_FLAG, .out = &wanted->certificate},
-        {"method", ARGS_OTHER, &wanted->method, .take = take_method},
+        {"box", ARGS_FLAG, .out = &options.box},
+        {"gap", ARGS_FLAG, .out = &options.gap},
+        {"certificate", ARGS_FLAG, .out = &options.certificate},
+        {"method", ARGS_OTHER, &options.method, .take = take_method},
         {"svg", ARGS_TEXT, .out = &options.svg.path},
         {"force", ARGS_FLAG, .out = &rules.force},
         {"timeout", ARGS_NUMBER, &options.timeout, .low = 0.001, .high = 3600},
@@ -226,7 +231,7 @@ int cmd_query(int argc, char **argv)
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    wanted->box = wanted->box || options.svg.path;
+    options.box = options.box || options.svg.path;
     const bool named = args.operand_count > 0 && strcmp(args.operands[0], "-") != 0;
     const char *file = named ? args.operands[0] : NULL;
     int fd = file ? open(file, O_RDONLY) : STDIN_FILENO;

@@ -57,17 +57,17 @@ static struct json_writer begin_json(int64_t utime, int64_t client_id, int64_t s
 
 static void print_pair_json(const struct fmb_client_pair_result *result)
 {
-    const struct outcome outcome = {.error = result->status == FMB_OK ? NULL : result->text,
-                                    .answer = result->answer,
-                                    .names_frames = result->names_frames,
-                                    .certificate = result->certificate};
+    const struct fmb_client_answer answer = {.status = result->status,
+                                             .text = result->text,
+                                             .answer = result->answer,
+                                             .certificate = result->certificate};
     struct json_writer json = begin_json(result->utime, result->client_id, result->sequence_number,
                                          result->server_id, result->compute_ns);
     json_integer(&json, "a", result->body_id[0]);
     json_integer(&json, "b", result->body_id[1]);
-    if (outcome.error)
+    if (result->status != FMB_OK)
         json_integer(&json, "status", result->status);
-    report_answer_json(&json, result->dim, &outcome);
+    report_answer_json(&json, result->dim, result->names_frames, &answer);
     json_object_end(&json);
 }
 
@@ -100,16 +100,12 @@ static void write_scene_pairs(struct json_writer *json,
     struct fmb_client_answer answer;
     json_begin(json, "pairs", '[');
     while (fmb_client_next_answer(result, &cursor, &answer)) {
-        const struct outcome outcome = {.error = answer.status == FMB_OK ? NULL : answer.text,
-                                        .answer = answer.answer,
-                                        .names_frames = result->names_frames};
         json_begin(json, NULL, '{');
-        if (result->names_pairs) {
+        if (result->names_pairs)
             json_integers(json, "placements", (const int64_t[]){answer.a, answer.b}, 2);
-        } else {
+        else
             json_integer(json, "pair", answer.a);
-        }
-        report_answer_json(json, result->dim, &outcome);
+        report_answer_json(json, result->dim, result->names_frames, &answer);
         json_end(json, '}');
     }
     json_end(json, ']');

@@ -17,26 +17,43 @@ struct svg {
 /* ---- The data of a panel ----------------------------------------------------------------------
  */
 
-static void add_to_bounds(struct panel *panel, const struct scene_body *body)
+static void add_to_bounds(struct panel *panel, const struct fmb_placement *body)
 {
-    for (unsigned frame = 0; frame < body->body.frame_count; frame++)
+    for (unsigned frame = 0; frame < body->body->frame_count; frame++)
         for (int end = 0; end < 2; end++) {
             struct outline outline = outline_make(body, frame, end ? panel->duration : 0);
             view_add(&panel->bounds, &outline, panel->dim);
         }
 }
 
-static void keep_scene(struct panel *panel, const struct scene *scene)
+static struct fmb_placement copy_placement(struct owned_scene *memory,
+                                           const struct fmb_placement *placement)
 {
-    panel->dim = scene->dim;
+    struct fmb_placement copy = *placement;
+    struct fmb_body *body = scene_allocate(memory, 1, sizeof *body);
+    *body = *placement->body;
+    if (body->frames) {
+        struct fmb_frame *frames = scene_allocate(memory, body->frame_count, sizeof *frames);
+        body->frames = memcpy(frames, body->frames, body->frame_count * sizeof *frames);
+    }
+    copy.body = body;
+    copy.name = scene_text(memory, placement->name);
+    return copy;
+}
+
+static void keep_scene(struct panel *panel, const struct owned_scene *owner)
+{
+    const struct fmb_scene *scene = &owner->scene;
+    const size_t count = scene->placement_count;
+    panel->dim = owner->dim;
     panel->duration = scene->duration;
-    panel->body_count = scene->body_count < SVG_BODIES_MAX ? scene->body_count : SVG_BODIES_MAX;
-    panel->bodies_left_out = scene->body_count - panel->body_count;
-    panel->body = allocate(panel->body_count, sizeof *panel->body);
-    panel->verdict = allocate(panel->body_count, sizeof *panel->verdict);
+    panel->body_count = count < SVG_BODIES_MAX ? count : SVG_BODIES_MAX;
+    panel->bodies_left_out = count - panel->body_count;
+    panel->body = scene_allocate(&panel->memory, panel->body_count, sizeof *panel->body);
+    panel->verdict = scene_allocate(&panel->memory, panel->body_count, sizeof *panel->verdict);
     panel->bounds = view_nothing();
     for (size_t i = 0; i < panel->body_count; i++) {
-        panel->body[i] = scene_body_copy(&scene->body[i]);
+        panel->body[i] = copy_placement(&panel->memory, &scene->placements[i]);
         add_to_bounds(panel, &panel->body[i]);
     }
 }
@@ -47,30 +64,27 @@ static void note_verdict(struct panel *panel, size_t body, enum fmb_verdict verd
         panel->verdict[body] = verdict;
 }
 
-static void keep_outcome(struct panel *panel, const struct outcome *outcome)
+static void keep_answer(struct panel *panel, const struct fmb_client_answer *of)
 {
-    const struct fmb_answer *answer = &outcome->answer;
+    const struct fmb_answer *answer = &of->answer;
     panel->count[answer->verdict]++;
-    note_verdict(panel, outcome->pair.a, answer->verdict);
-    note_verdict(panel, outcome->pair.b, answer->verdict);
+    note_verdict(panel, of->a, answer->verdict);
+    note_verdict(panel, of->b, answer->verdict);
     if (!answer->has_box)
         return;
-    if (panel->box_count == SVG_BOXES_MAX || outcome->pair.a >= panel->body_count ||
-        outcome->pair.b >= panel->body_count) {
+    if (panel->box_count == SVG_BOXES_MAX || of->a >= panel->body_count ||
+        of->b >= panel->body_count) {
         panel->boxes_left_out++;
         return;
     }
     panel->box =
         allocate_grow(panel->box, &panel->box_capacity, panel->box_count + 1, sizeof *panel->box);
-    panel->box[panel->box_count++] = (struct panel_box){outcome->pair, *answer};
+    panel->box[panel->box_count++] = (struct panel_box){of->a, of->b, *answer};
 }
 
 static void clear_panel(struct panel *panel)
 {
-    for (size_t i = 0; i < panel->body_count; i++)
-        scene_body_clear(&panel->body[i]);
-    free(panel->body);
-    free(panel->verdict);
+    scene_clear(&panel->memory);
     free(panel->box);
 }
 
@@ -87,34 +101,31 @@ static bool same_bodies(const struct panel *panel, const struct panel *first)
 
 /* ---- The report ------------------------------------------------------------------------------ */
 
-static void svg_begin(struct report *report, const struct scene *scene)
+static void svg_begin(struct report *report)
 {
     struct svg *svg = (struct svg *) report;
     if (svg->panel_count + svg->panels_left_out < SVG_PANELS_MAX)
-        keep_scene(&svg->panel[svg->panel_count++], scene);
+        keep_scene(&svg->panel[svg->panel_count++], report->scene);
     else
         svg->panels_left_out++;
 }
 
-static void svg_pair(struct report *report, const struct scene *scene,
-                     const struct outcome *outcome)
+static void svg_pair(struct report *report, const struct fmb_client_answer *answer)
 {
     struct svg *svg = (struct svg *) report;
-    (void) scene;
     if (svg->panels_left_out == 0)
-        keep_outcome(&svg->panel[svg->panel_count - 1], outcome);
+        keep_answer(&svg->panel[svg->panel_count - 1], answer);
 }
 
-static void svg_end(struct report *report, const struct scene *scene)
+static void svg_end(struct report *report)
 {
     (void) report;
-    (void) scene;
 }
 
 struct svg *svg_open(void)
 {
     struct svg *svg = allocate(1, sizeof *svg);
-    svg->report = (struct report){svg_begin, svg_pair, svg_end};
+    svg->report = (struct report){svg_begin, svg_pair, svg_end, NULL};
     return svg;
 }
 

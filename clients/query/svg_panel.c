@@ -181,7 +181,7 @@ static size_t frame_count(const struct panel *panel)
 {
     size_t count = 0;
     for (size_t i = 0; i < panel->body_count; i++)
-        count += panel->body[i].body.frame_count;
+        count += panel->body[i].body->frame_count;
     return count;
 }
 
@@ -191,7 +191,7 @@ static struct facet *make_facets(const struct drawing *drawing, size_t *count)
     struct facet *facets = allocate(frame_count(panel) * OUTLINE_FACES_MAX, sizeof *facets);
     *count = 0;
     for (size_t body = 0; body < panel->body_count; body++)
-        for (unsigned frame = 0; frame < panel->body[body].body.frame_count; frame++) {
+        for (unsigned frame = 0; frame < panel->body[body].body->frame_count; frame++) {
             struct outline outline = outline_make(&panel->body[body], frame, 0);
             for (int face = 0; face < outline.face_count; face++) {
                 struct facet *facet = &facets[*count];
@@ -207,8 +207,8 @@ static struct facet *make_facets(const struct drawing *drawing, size_t *count)
 /* Returns the middle of the frames of a body at a time. */
 static struct point middle_of(const struct drawing *drawing, size_t body, double time)
 {
-    const struct scene_body *of = &drawing->panel->body[body];
-    const unsigned count = of->body.frame_count;
+    const struct fmb_placement *of = &drawing->panel->body[body];
+    const unsigned count = of->body->frame_count;
     double centre[FMB_DIM_MAX] = {0};
     for (unsigned frame = 0; frame < count; frame++) {
         struct outline outline = outline_make(of, frame, time);
@@ -218,7 +218,7 @@ static struct point middle_of(const struct drawing *drawing, size_t body, double
     return view_point(&drawing->view, centre);
 }
 
-static void write_label(const struct drawing *drawing, const struct scene_body *body)
+static void write_label(const struct drawing *drawing, const struct fmb_placement *body)
 {
     char text[SCENE_LABEL_MAX];
     const char *label = scene_label(body, text);
@@ -258,7 +258,7 @@ static void draw_facets(const struct drawing *drawing)
 
 /* ---- Motion ---------------------------------------------------------------------------------- */
 
-static bool is_moving(const struct panel *panel, const struct scene_body *body)
+static bool is_moving(const struct panel *panel, const struct fmb_placement *body)
 {
     bool still = true;
     for (int axis = 0; axis < panel->dim; axis++)
@@ -286,7 +286,7 @@ static void draw_ghost(const struct drawing *drawing, size_t body, unsigned fram
 
 static void draw_motion(const struct drawing *drawing, size_t body)
 {
-    for (unsigned frame = 0; frame < drawing->panel->body[body].body.frame_count; frame++)
+    for (unsigned frame = 0; frame < drawing->panel->body[body].body->frame_count; frame++)
         draw_ghost(drawing, body, frame);
     struct point from = middle_of(drawing, body, 0);
     struct point to = middle_of(drawing, body, drawing->panel->duration);
@@ -301,12 +301,12 @@ static const double ring_below_px = 7;
 
 static void draw_box_title(const struct drawing *drawing, const struct panel_box *box)
 {
-    const struct scene_body *body = drawing->panel->body;
+    const struct fmb_placement *body = drawing->panel->body;
     char text[REPORT_TEXT_MAX];
     fputs("<title>", drawing->out);
-    write_label(drawing, &body[box->pair.a]);
+    write_label(drawing, &body[box->a]);
     fputs(" and ", drawing->out);
-    write_label(drawing, &body[box->pair.b]);
+    write_label(drawing, &body[box->b]);
     fprintf(drawing->out, ": %s", verdict_text(box->answer.verdict));
     if (box->answer.has_contact) {
         report_contact_text(&box->answer, text);

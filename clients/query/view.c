@@ -43,14 +43,14 @@ static void set_faces(const struct fmb_frame *frame, struct outline *out)
 }
 
 /* R(q) of fmb.h, [row][column]; numbers of any size. */
-static void set_rotation(const struct scene_body *body, double out[3][3])
+static void set_rotation(const struct fmb_placement *placement, double out[3][3])
 {
-    const double *given = body->orientation;
+    const double *given = placement->orientation;
     double largest = 0, q[4] = {1, 0, 0, 0}, norm = 0;
-    for (int i = 0; i < body->orientation_count; i++)
+    for (int i = 0; i < placement->orientation_count; i++)
         largest = fmax(largest, fabs(given[i]));
-    for (int i = 0; i < body->orientation_count; i++)
-        q[body->orientation_count == 2 ? 3 * i : i] = given[i] / largest;
+    for (int i = 0; i < placement->orientation_count; i++)
+        q[placement->orientation_count == 2 ? 3 * i : i] = given[i] / largest;
     for (int i = 0; i < 4; i++)
         norm += q[i] * q[i];
     const double w = q[0], *v = q + 1;
@@ -72,26 +72,26 @@ static void set_corner(const struct fmb_frame *frame, int k, double out[FMB_DIM_
     }
 }
 
-struct outline outline_make(const struct scene_body *body, unsigned index, double time)
+struct outline outline_make(const struct fmb_placement *placement, unsigned index, double time)
 {
-    const struct fmb_frame *frame = fmb_body_frame(&body->body, index);
+    const struct fmb_frame *frame = fmb_body_frame(placement->body, index);
     struct outline outline;
     double rotation[3][3], corner[FMB_DIM_MAX];
     memset(&outline, 0, sizeof outline);
     set_faces(frame, &outline);
-    set_rotation(body, rotation);
+    set_rotation(placement, rotation);
     outline.corner_count = is_cuboid(frame) ? 1 << frame->count : frame->count + 1;
     for (int k = 0; k < outline.corner_count; k++) {
         set_corner(frame, k, corner);
         for (int axis = 0; axis < frame->dim; axis++) {
             const double *row = rotation[axis];
-            double at = body->position[axis];
-            if (body->orientation_count == 0)
+            double at = placement->position[axis];
+            if (placement->orientation_count == 0)
                 at += corner[axis];
             else
                 at += row[0] * corner[0] + row[1] * corner[1] + row[2] * corner[2];
             if (time > 0)
-                at += time * body->velocity[axis];
+                at += time * placement->velocity[axis];
             outline.corner[k][axis] = at;
             outline.centre[axis] += at / outline.corner_count;
         }

@@ -7,7 +7,7 @@
 #ifndef VIEW_H
 #define VIEW_H
 
-#include "scene.h"
+#include "fmb.h"
 
 /* ---- The corners and faces of a frame, in doubles: for pictures only ---- */
 
@@ -27,7 +27,7 @@ struct outline {
 };
 
 /* Returns frame `index` of a body at a time, in seconds. */
-struct outline outline_make(const struct scene_body *body, unsigned index, double time);
+struct outline outline_make(const struct fmb_placement *placement, unsigned index, double time);
 
 /* Returns an axis-aligned box. */
 struct outline outline_box(int dim, const double low[FMB_DIM_MAX], const double high[FMB_DIM_MAX]);
