@@ -2,9 +2,9 @@
 #include "commands.h"
 
 #include "allocate.h"
-#include "answer.h"
 #include "args.h"
 #include "complain.h"
+#include "local_answerer.h"
 #include "log_query.h"
 #include "progress.h"
 #include "scene_json.h"
@@ -77,87 +77,23 @@ static bool check_options(const struct args *args, struct log_scene_options *opt
     return true;
 }
 
-/* ---- Whether the service accepts the query ---- */
-
-/* Adds the bodies that the query names by handle to the cache, as far as the service accepts them.
- */
-static void keep_bodies(struct answerer *answerer, struct logged_query *query)
+/* Whether the service accepts the query. A pair that its method cannot decide is accepted. */
+static bool check_query(const struct log_query *query)
 {
-    int32_t count;
-    const struct placement *placement = logged_query_placements(query, &count);
-    struct cache *cache = answerer_cache(answerer);
-    struct handle handle;
-    for (int32_t i = 0; i < count; i++) {
-        if (!placement_by_handle(&placement[i]) || !scene_takes(&placement[i].geometry))
-            continue;
-        const struct cached *kept = cache_intern(cache, 0, &placement[i].geometry, &handle);
-        if (kept)
-            cache_release(cache, kept);
+    if (query->size > QUERY_BYTES_MAX) {
+        complain("event %" PRId64 ": the service refuses it: longer than %d bytes", query->number,
+                 QUERY_BYTES_MAX);
+        return false;
     }
-}
-
-/* A query is accepted even if its method cannot decide the pair. */
-static bool accepts_pair(struct answerer *answerer, const struct log_query *query,
-                         char detail[QUERY_TEXT_MAX])
-{
-    struct pair_result single, *result = &single;
-    struct pair_job *job = pair_job_create();
-    if (!job)
-        allocate_failed();
-    if (!answer_pair(answerer, &query->query.pair, result)) {
-        pair_job_begin(job, answerer, query->bytes, query->size);
-        while (!pair_job_step(job))
-            continue;
-        result = pair_job_end(job, answerer);
-    }
-    snprintf(detail, QUERY_TEXT_MAX, "%s", result->detail);
-    const bool accepted = result->status == FMB_OK || result->status == FMB_CANNOT_DECIDE;
-    pair_job_destroy(job);
+    struct local_answerer *answerer = local_answerer_open(FMB_FRAMES_MAX, query->definitions);
+    struct new_result result;
+    local_answer(answerer, query->query.kind, query->bytes, (uint32_t) query->size, &result);
+    const bool accepted = result.status == FMB_OK || (query->query.kind == LOG_PAIR_QUERY &&
+                                                      result.status == FMB_CANNOT_DECIDE);
+    if (!accepted)
+        complain("event %" PRId64 ": the service refuses it: %s", query->number, result.detail);
+    local_answerer_close(answerer);
     return accepted;
-}
-
-/* The query is accepted if its first pairs are answered. */
-static bool accepts_scene(struct answerer *answerer, const struct log_query *query,
-                          char detail[QUERY_TEXT_MAX])
-{
-    struct scene_job *job = scene_job_create();
-    if (!job)
-        allocate_failed();
-    bool accepted = scene_job_begin(job, query->bytes, query->size) == NULL;
-    while (accepted && !scene_job_has_answers(job) && !scene_job_step(job, answerer))
-        continue;
-    if (accepted && !scene_job_has_answers(job)) {
-        const struct scene_result *result = scene_job_result(job);
-        accepted = result->status == FMB_OK;
-        snprintf(detail, QUERY_TEXT_MAX, "%s", result->detail);
-    }
-    scene_job_destroy(job);
-    return accepted;
-}
-
-static bool is_accepted(struct log_query *query, char detail[QUERY_TEXT_MAX])
-{
-    const struct answerer_options options = {.frames = FMB_FRAMES_MAX, .secret = {1, 1}};
-    struct answerer *answerer = answerer_create(&options);
-    if (!answerer)
-        allocate_failed();
-    struct logged_query *any = &query->query;
-    keep_bodies(answerer, any);
-    const bool accepted = any->kind == LOG_PAIR_QUERY ? accepts_pair(answerer, query, detail)
-                                                      : accepts_scene(answerer, query, detail);
-    answerer_destroy(answerer);
-    return accepted;
-}
-
-static bool check_query(struct log_query *query)
-{
-    char detail[QUERY_TEXT_MAX] = "";
-    if (query->size > QUERY_BYTES_MAX)
-        snprintf(detail, sizeof detail, "longer than %d bytes", QUERY_BYTES_MAX);
-    else if (is_accepted(query, detail))
-        return true;
-    complain("event %" PRId64 ": the service refuses it: %s", query->number, detail);
-    return false;
 }
 
 /* ---- Reports on stderr ---- */
