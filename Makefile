@@ -242,25 +242,25 @@ $(foreach l,$(wire_layers),$(eval $(O)/$l/layer.so: $(message_objects) $(engine)
 		$(filter %.a,$^) -Wl,--as-needed $(libraries)
 
 # Libraries: one object that shows the names of the header alone, so that no program's names meet
-# ours; and names.o, which both have: a program that links both takes it once.
-names := $(O)/service/fmb/names.o
+# ours.
 define library
 	@mkdir -p $(@D)
-	$(CC) -r -nostdlib -fno-lto -o $(@:.a=.o) $(filter-out $(names),$^)
+	$(CC) -r -nostdlib -fno-lto -o $(@:.a=.o) $^
 	$(OBJCOPY) --wildcard --keep-global-symbol='$(1)' -R '.gnu.*lto*' $(@:.a=.o)
 	rm -f $@
-	$(AR) rcs $@ $(@:.a=.o) $(names)
+	$(AR) rcs $@ $(@:.a=.o)
 	rm $(@:.a=.o)
 endef
 $(B)/libfmb.a: $(engine_objects)
 	$(call library,fmb_*)
-$(B)/libfmb-client.a: $(client_objects) $(wire_objects) $(names)
+$(B)/libfmb-client.a: $(client_objects) $(wire_objects)
 	$(call library,fmb_client_*)
 
 # The same as shared libraries, with the names of their headers alone.
 shared_libraries := $(B)/libfmb.so.0 $(B)/libfmb-client.so.0
 $(B)/libfmb.so.0: shared_needs := -lgmp -lm
-$(B)/libfmb-client.so.0: shared_needs := -llcm -lglib-2.0 -lm
+$(B)/libfmb-client.so.0: shared_needs := $(B)/libfmb.so.0 -llcm -lglib-2.0 -lm
+$(B)/libfmb-client.so.0: $(B)/libfmb.so.0
 $(shared_libraries): $(B)/%.so.0: $(B)/%.a
 	echo '{ local: fmb_client_raw_*; };' > $@.map
 	$(CC) $(filter-out -pie,$(link_flags)) -shared -Wl,-soname,$(@F) -Wl,--version-script,$@.map -o $@ \

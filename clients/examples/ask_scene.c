@@ -7,8 +7,8 @@
 
 static void print_contact(void *user, const struct fmb_client_answer *answer)
 {
-    const struct fmb_client_placement *placement = user;
-    const int64_t a = placement[answer->a].body_id, b = placement[answer->b].body_id;
+    const struct fmb_placement *placement = user;
+    const int64_t a = placement[answer->a].id, b = placement[answer->b].id;
     if (answer->status)
         printf("%d and %d: %s\n", (int) a, (int) b, answer->text);
     else
@@ -18,19 +18,17 @@ static void print_contact(void *user, const struct fmb_client_answer *answer)
 
 int main(void)
 {
-    const struct fmb_client_frame table = {.shape = FMB_BOX, .components = {9, 9, 1}};
-    const struct fmb_client_frame cube = {.shape = FMB_BOX, .components = {1, 1, 1}};
-    struct fmb_client_placement placement[4] = {
-        {.body_id = 1, .frames = &table, .position = {4.5, 4.5, -0.5}},
-        {.body_id = 2, .frames = &cube, .position = {1.5, 1.5, 0.5}},
-        {.body_id = 3, .frames = &cube, .position = {3, 1.5, 0.5}},
-        {.body_id = 4, .frames = &cube, .position = {3.75, 1.5, 2.5}, .velocity = {0, 0, -2}},
+    static const double table_size[3] = {9, 9, 1}, cube_size[3] = {1, 1, 1};
+    struct fmb_body table, cube;
+    fmb_body_make(3, FMB_BOX, table_size, 3, &table);
+    fmb_body_make(3, FMB_BOX, cube_size, 3, &cube);
+    struct fmb_placement placement[4] = {
+        {.body = &table, .id = 1, .position = {4.5, 4.5, -0.5}},
+        {.body = &cube, .id = 2, .position = {1.5, 1.5, 0.5}},
+        {.body = &cube, .id = 3, .position = {3, 1.5, 0.5}},
+        {.body = &cube, .id = 4, .position = {3.75, 1.5, 2.5}, .velocity = {0, 0, -2}},
     };
-    for (int i = 0; i < 4; i++) {
-        placement[i].dim = 3;
-        placement[i].frame_count = 1;
-    }
-    const struct fmb_client_scene scene = {
+    const struct fmb_scene scene = {
         .placements = placement, .placement_count = 4, .duration = 1, .want = FMB_WANT_TIMES};
     char why[FMB_CLIENT_WHY_MAX];
     struct fmb_client *client = fmb_client_open(NULL, why, sizeof why);

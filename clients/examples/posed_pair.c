@@ -9,14 +9,14 @@
 int main(void)
 {
     /* Full sizes, about the origin of the body. */
-    const struct fmb_client_frame table = {.shape = FMB_BOX, .components = {2, 1, 0.25}};
-    const struct fmb_client_frame tool = {.shape = FMB_BOX, .components = {0.5, 0.5, 1}};
-    const struct fmb_client_placement pair[2] = {
-        {.body_id = 1, .dim = 3, .frames = &table, .frame_count = 1, .position = {0, 0, 0.125}},
-        {.body_id = 2,
-         .dim = 3,
-         .frames = &tool,
-         .frame_count = 1,
+    static const double table_size[3] = {2, 1, 0.25}, tool_size[3] = {0.5, 0.5, 1};
+    struct fmb_body table, tool;
+    fmb_body_make(3, FMB_BOX, table_size, 3, &table);
+    fmb_body_make(3, FMB_BOX, tool_size, 3, &tool);
+    const struct fmb_placement pair[2] = {
+        {.body = &table, .id = 1, .position = {0, 0, 0.125}},
+        {.body = &tool,
+         .id = 2,
          .position = {1.25, 0, 0.625},
          .orientation_count = 4, /* w, x, y, z; of any length */
          .orientation = {0.92388, 0, 0, 0.382683}},

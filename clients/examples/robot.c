@@ -9,7 +9,7 @@
 
 enum { LINKS = 10, BODIES = LINKS + 1, STATES = 30 };
 
-static struct fmb_client_placement placement[BODIES]; /* links; the table */
+static struct fmb_placement placement[BODIES]; /* links; the table */
 
 /* All joints bend by the same angle. Each link begins where the one before it ends. */
 static void pose(double bend)
@@ -36,24 +36,25 @@ static void print_contact(void *user, const struct fmb_client_answer *answer)
 
 int main(void)
 {
-    const struct fmb_client_frame link[2] = {
-        {.shape = FMB_BOX, .components = {1, 0.2, 0.1}},
-        {.shape = FMB_BOX, .origin = {0.4, 0, 0}, .components = {0.2, 0.3, 0.2}}};
-    const struct fmb_client_frame table = {.shape = FMB_BOX, .components = {20, 20, 1}};
+    static const double boxes[2][6] = {{0, 0, 0, 1, 0.2, 0.1}, {0.4, 0, 0, 0.2, 0.3, 0.2}};
+    static const double table_size[3] = {20, 20, 1};
+    struct fmb_frame frame[2];
+    struct fmb_body link, table;
     unsigned neighbours[LINKS - 1][2];
     char why[FMB_CLIENT_WHY_MAX];
+    for (int i = 0; i < 2; i++)
+        fmb_frame_make(3, FMB_BOX, boxes[i], 6, &frame[i]);
+    fmb_body_make_frames(frame, 2, &link);
+    fmb_body_make(3, FMB_BOX, table_size, 3, &table);
     for (int i = 0; i < BODIES; i++)
-        placement[i] = (struct fmb_client_placement){.body_id = i + 1,
-                                                     .dim = 3,
-                                                     .frames = i < LINKS ? link : &table,
-                                                     .frame_count = i < LINKS ? 2 : 1};
+        placement[i] = (struct fmb_placement){.body = i < LINKS ? &link : &table, .id = i + 1};
     placement[LINKS].position[2] = -1;
     for (unsigned i = 0; i + 1 < LINKS; i++)
         neighbours[i][0] = i, neighbours[i][1] = i + 1;
-    const struct fmb_client_scene scene = {.placements = placement,
-                                           .placement_count = BODIES,
-                                           .ignored = (const unsigned(*)[2]) neighbours,
-                                           .ignored_count = LINKS - 1};
+    const struct fmb_scene scene = {.placements = placement,
+                                    .placement_count = BODIES,
+                                    .ignored = (const unsigned(*)[2]) neighbours,
+                                    .ignored_count = LINKS - 1};
     struct fmb_client *client = fmb_client_open(NULL, why, sizeof why);
     int status = client ? FMB_OK : FMB_CLIENT_NO_BUS;
     for (int state = 0; state < STATES && status == FMB_OK; state++) {

@@ -349,6 +349,7 @@ static bool set_options(struct fmb_client *client, const struct fmb_client_optio
     bus_channel(client->query_channel[FMB_CLIENT_DEFINITION], prefix, WIRE_DEFINITION_QUERY);
     client->requests.timeout_ns = (int64_t) (timeout * ns_per_s);
     client->requests.tries = options->tries ? options->tries : TRIES;
+    client->run.within = options->within;
     return true;
 }
 

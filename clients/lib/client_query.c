@@ -17,7 +17,7 @@ static int fail(struct fmb_client *client, int status)
 }
 
 /* single: each pair is a separate query. */
-static int query(struct fmb_client *client, const struct fmb_client_scene *scene, bool single,
+static int query(struct fmb_client *client, const struct fmb_scene *scene, bool single,
                  fmb_client_sink *sink, void *user)
 {
     if (client->inside)
@@ -33,7 +33,7 @@ static int query(struct fmb_client *client, const struct fmb_client_scene *scene
     return status == FMB_OK ? status : fail(client, status);
 }
 
-int fmb_client_query(struct fmb_client *client, const struct fmb_client_scene *scene,
+int fmb_client_query(struct fmb_client *client, const struct fmb_scene *scene,
                      fmb_client_sink *sink, void *user)
 {
     return query(client, scene, scene->want & FMB_WANT_CERTIFICATE, sink, user);
@@ -50,16 +50,16 @@ static void keep_answer(void *user, const struct fmb_client_answer *answer)
         client->answer.certificate = strcpy(client->certificate, answer->certificate);
 }
 
-int fmb_client_query_pair(struct fmb_client *client, const struct fmb_client_placement pair[2],
+int fmb_client_query_pair(struct fmb_client *client, const struct fmb_placement pair[2],
                           double duration, unsigned want, struct fmb_client_answer *out)
 {
-    struct fmb_client_placement placement[2] = {pair[0], pair[1]};
+    struct fmb_placement placement[2] = {pair[0], pair[1]};
     placement[0].group = placement[1].group = 0;
-    const struct fmb_client_scene scene = {.placements = placement,
-                                           .placement_count = 2,
-                                           .duration = duration,
-                                           .instant = duration == 0,
-                                           .want = want};
+    const struct fmb_scene scene = {.placements = placement,
+                                    .placement_count = 2,
+                                    .duration = duration,
+                                    .instant = duration == 0,
+                                    .want = want};
     *out = (struct fmb_client_answer){.b = 1, .text = ""};
     out->status = query(client, &scene, true, keep_answer, client);
     if (out->status == FMB_OK)

@@ -2,8 +2,6 @@
 
 #include "wire.h"
 
-#include "fmb_msgs_pair_query_t.h"
-
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,7 +34,7 @@ static int compare(const void *left, const void *right)
 
 static void set_ignored(struct division *division)
 {
-    const struct fmb_client_scene *scene = division->scene;
+    const struct fmb_scene *scene = division->scene;
     for (size_t i = 0; i < scene->ignored_count; i++) {
         const unsigned *pair = scene->ignored[i];
         division->ignored[i][0] = pair[0] < pair[1] ? pair[0] : pair[1];
@@ -69,7 +67,8 @@ bool division_ignores(const struct division *division, const unsigned pair[2])
 {
     const size_t at = first_ignored(division, pair);
     return (at < division->ignored_count && compare(division->ignored[at], pair) == 0) ||
-           client_scene_is_within_group(division->scene, pair);
+           client_scene_is_within_group(division->scene, pair) ||
+           client_scene_is_before_first(division->scene, pair);
 }
 
 int32_t division_ignored(const struct division *division, const struct part *part, int32_t max,
@@ -95,15 +94,14 @@ int32_t division_ignored(const struct division *division, const struct part *par
 
 /* Whether the parts of the scene may be ALL or ACROSS. The service accepts that only for some
  * methods, which are fast enough. For others pairs are listed. */
-static bool uses_blocks(const struct fmb_client_scene *scene)
+static bool uses_blocks(const struct fmb_scene *scene)
 {
-    const bool certified = scene->method == FMB_MSGS_PAIR_QUERY_T_METHOD_DEFAULT ||
-                           scene->method == FMB_MSGS_PAIR_QUERY_T_METHOD_CERTIFIED;
+    const bool certified = !scene->method || scene->method == fmb_method_default();
     return scene->which != FMB_PAIRS_LISTED && certified;
 }
 
 /* Bytes of a query without placements and pairs. */
-static size_t bytes_without(const struct fmb_client_scene *scene)
+static size_t bytes_without(const struct fmb_scene *scene)
 {
     return WIRE_SCENE_QUERY_BYTES + wire_text_bytes(scene->label);
 }
@@ -126,7 +124,7 @@ static bool fit_into_one(const struct division *division, bool whole)
 
 static void make_blocks(struct division *division)
 {
-    const struct fmb_client_scene *scene = division->scene;
+    const struct fmb_scene *scene = division->scene;
     const bool across = scene->which == FMB_PAIRS_ACROSS;
     const bool one = division->by_handle || fit_into_one(division, true);
     const size_t capacity = placements_bytes_max(division) / (one ? 1 : 2);
@@ -235,11 +233,13 @@ static bool next_list(struct division *division, int32_t pairs_max, struct part 
 
 /* ---- Division ---- */
 
-bool division_begin(const struct fmb_client_scene *scene, bool single, bool whole,
-                    struct held *held, unsigned char *scratch, struct division *out)
+bool division_begin(const struct fmb_scene *scene, bool single, bool whole, struct held *held,
+                    unsigned char *scratch, struct division *out)
 {
-    *out = (struct division){
-        .scene = scene, .single = single, .blocks = !single && uses_blocks(scene)};
+    *out = (struct division){.scene = scene,
+                             .single = single,
+                             .blocks = !single && uses_blocks(scene),
+                             .at.next = (size_t) scene->first_pair};
     const size_t count = scene->placement_count;
     out->body = calloc(count + 1, sizeof *out->body);
     out->ignored = calloc(scene->ignored_count + 1, sizeof *out->ignored);

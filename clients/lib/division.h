@@ -26,7 +26,7 @@ struct division_body {
 };
 
 struct division {
-    const struct fmb_client_scene *scene;
+    const struct fmb_scene *scene;
     struct division_body *body; /* owned, [placement_count] */
     unsigned (*ignored)[2]; /* owned, [ignored_count]: a < b, in the order of (a, b), each once */
     size_t ignored_count;
@@ -43,15 +43,15 @@ struct division {
 /* On input: a checked scene, which must outlive the division. single: each pair is a separate
  * query. whole: without the exception above. scratch: memory for QUERY_BYTES_MAX bytes of geometry.
  * Returns false if out of memory. The caller calls division_end() in either case. */
-bool division_begin(const struct fmb_client_scene *scene, bool single, bool whole,
-                    struct held *held, unsigned char *scratch, struct division *out);
+bool division_begin(const struct fmb_scene *scene, bool single, bool whole, struct held *held,
+                    unsigned char *scratch, struct division *out);
 void division_end(struct division *division);
 
 /* Returns true and the next part, of at most pairs_max pairs if they are listed; or false after the
  * last one. */
 bool division_next(struct division *division, int32_t pairs_max, struct part *out);
 
-/* Whether the pair is ignored or within a group. */
+/* Whether the pair is not decided: it is ignored, within a group, or before first_pair. */
 bool division_ignores(const struct division *division, const unsigned pair[2]);
 
 /* Writes the ignored pairs of a part, as indices in the part. Returns their number, at most max; 0

@@ -1,12 +1,14 @@
 /* libfmb-client: queries an fmbd on an LCM bus: which bodies meet, when, in which boxes, and how
- * far apart the others are.
+ * far apart the others are. The scenes are those of fmb.h, and so are the answers, bit for bit.
  *
- *     const struct fmb_client_frame cube = {.shape = FMB_BOX, .components = {1, 1, 1}};
- *     struct fmb_client_placement placement[2] = {
- *         {.body_id = 1, .dim = 3, .frames = &cube, .frame_count = 1},
- *         {.body_id = 2, .dim = 3, .frames = &cube, .frame_count = 1, .position = {0.5, 0, 0},
- *          .orientation_count = 4, .orientation = {1, 0, 0, 1}}};
- *     struct fmb_client_scene scene = {
+ *     static const double size[3] = {1, 1, 1};
+ *     struct fmb_body cube;
+ *     fmb_body_make(3, FMB_BOX, size, 3, &cube);
+ *     const struct fmb_placement placement[2] = {
+ *         {.body = &cube, .id = 1},
+ *         {.body = &cube, .id = 2, .position = {0.5, 0, 0}, .orientation_count = 4,
+ *          .orientation = {1, 0, 0, 1}}};
+ *     const struct fmb_scene scene = {
  *         .placements = placement, .placement_count = 2, .duration = 1};
  *     char why[FMB_CLIENT_WHY_MAX];
  *     struct fmb_client *client = fmb_client_open(NULL, why, sizeof why);
@@ -16,9 +18,7 @@
  * (sink is a function of the caller that receives the answers; clients/examples/ask_scene.c is a
  * complete program.)
  *
- * fmb.h defines frames, poses, verdicts, intervals, boxes and gaps. The answers are those of
- * libfmb, bit for bit. Link with pkg-config's fmb-client (liblcm and GLib); libfmb and GMP are not
- * needed, but may be linked too.
+ * Link with pkg-config's fmb-client: libfmb, GMP, liblcm and GLib.
  *
  * A scene may have any number of bodies and pairs. The library divides it into queries of one
  * datagram each, keeps several under way (no more than a default receive buffer holds), repeats
@@ -78,7 +78,8 @@ struct fmb_client_options {
      * milliseconds. Later ones come at the same interval while many queries are lost; otherwise the
      * interval doubles, up to this. */
     double timeout;
-    int tries; /* a query is given up after this many timeouts; 0: 6 */
+    int tries;     /* a query is given up after this many timeouts; 0: 6 */
+    double within; /* time limit for each scene, seconds; 0: none but timeout and tries */
 };
 
 /* Bytes of an error text, final 0 included: one or two lines without a final line feed. */
@@ -99,67 +100,10 @@ bool fmb_client_prefix_ok(const char *prefix);
 
 /* ---- Queries ---- */
 
-/* A frame in body coordinates. Numbers beyond those of the shape and dim are not read. */
-struct fmb_client_frame {
-    int shape;                             /* enum fmb_shape */
-    double origin[FMB_DIM_MAX];            /* of a box: its centre */
-    double components[FMB_COMPONENTS_MAX]; /* [component * dim + axis]; of a box: [axis], its full
-                                              size. All 0: the frame is a point */
-    /* NULL; or [vertex_count][dim] of a tetrahedron (in 2D a triangle), face or hull: the vertices
-     * of the frame are exactly these, and origin and components are not read. */
-    const double *vertices;
-    size_t vertex_count;
-};
-
-/* A rigid body, its pose and its velocity. */
-struct fmb_client_placement {
-    int64_t body_id;                       /* 1 to 2^53 - 1; 0: anonymous, always sent whole */
-    int dim;                               /* 2 or 3 */
-    const struct fmb_client_frame *frames; /* [frame_count], at least one */
-    size_t frame_count;
-    double position[FMB_DIM_MAX]; /* world coordinates of the body's origin at time 0 */
-    double velocity[FMB_DIM_MAX]; /* per second */
-    double orientation[4];        /* w, x, y, z (2D: w, z); of any length but 0 */
-    int orientation_count;        /* 0: not turned; 4 (2D: 2) */
-    /* For people: UTF-8 of at most 64 bytes without control characters, sent when the body is sent
-     * whole. NULL: none. */
-    const char *name;
-    int64_t
-        group; /* not 0: in a scene, placements of one group are not tested against each other */
-};
-
 /* The frames of a body have to fit into one datagram: each takes 1 byte, 8 for each of its numbers
- * and 4 if it is given by vertices, and all together at most this. (654 cuboids or 1295 boxes in
- * 3D.) */
+ * and 4 if it is sent by its vertices (fmb_frame_numbers()), and all together at most this. (654
+ * cuboids or 1295 boxes in 3D.) */
 enum { FMB_CLIENT_BODY_BYTES_MAX = 63500 };
-
-/* A scene to query. The library keeps no pointer to it after the call. If all fields but the
- * placements are 0, they are at rest, and the verdicts of all pairs are wanted. */
-struct fmb_client_scene {
-    const struct fmb_client_placement *placements; /* [placement_count], all of one dimension */
-    size_t placement_count;                        /* less than 2^31 */
-    enum fmb_pairs which;
-    /* LISTED: [pair_count][a, b], different indices of placements that are not of
-     * one group; otherwise none. */
-    const unsigned (*pairs)[2];
-    size_t pair_count;
-    size_t split; /* ACROSS: at most placement_count, 0: no pairs; otherwise 0 */
-    /* ALL and ACROSS: [ignored_count][a, b], pairs that are left out, in any order; repeats are
-     * allowed. LISTED: none. */
-    const unsigned (*ignored)[2];
-    size_t ignored_count;
-    double duration; /* seconds, finite; 0 only if all placements are at rest, or if instant */
-    bool instant;    /* the window is [0, 0] even if placements move; the duration is 0 */
-    /* Finite, not negative. Not 0: contacts and near pairs have their gaps, whether wanted or not.
-     * A pair is near if it is separated and its lower bound is at most the margin. */
-    double margin;
-    /* Sum of FMB_WANT_ bits; 0: verdicts only. With CERTIFICATE each pair is a separate query,
-     * which is slower. */
-    unsigned want;
-    int method;        /* fmb_method.number; 0: the default, never wrong and the fastest */
-    const char *label; /* for people, at most 64 bytes, in each query of the scene; NULL: none */
-    double within;     /* time limit for the whole scene, seconds; 0: none but timeout and tries */
-};
 
 struct fmb_client_answer {
     unsigned a, b;            /* indices of placements, in the order of the pair */
@@ -172,16 +116,17 @@ struct fmb_client_answer {
 
 typedef void fmb_client_sink(void *user, const struct fmb_client_answer *answer);
 
-/* Queries the service, passes the answers to sink, and returns when all are delivered.
+/* Queries the service, passes the answers to sink, and returns when all are delivered. Keeps no
+ * pointer to the scene. What fmb_scene_begin() refuses is refused here too, with the same status,
+ * except FMB_WANT_CERTIFICATE: then each pair is a separate query, which is slower.
  *
  * Returns FMB_OK: sink was called in the order of the pairs. With LISTED and with WANT_CERTIFICATE,
  * for each pair. Otherwise, with ALL and ACROSS, in the order of (a, b), for each pair that
  * touches, overlaps or is near: pairs left out are ignored, within a group, or separated and
  * farther apart than the margin. Pairs without an answer are passed with their status. Or returns a
- * status of the whole scene, and sink was not called: NO_FRAMES, UNKNOWN_SHAPE, WRONG_DIMENSION,
- * DIMENSIONS_DIFFER, WRONG_COUNT, NOT_FINITE, BAD_SIZE, BAD_ORIENTATION, BAD_NAME, BAD_ID,
- * BAD_DURATION, BAD_MARGIN, UNKNOWN_WANT, BAD_PAIR, OVER_LIMIT (2^31 placements, or a body of too
- * many frames), NO_MEMORY, NO_BUS or INSIDE. fmb_client_why() then names the place.
+ * status of the whole scene, and sink was not called: one of fmb_scene_check(), BAD_NAME, BAD_ID,
+ * OVER_LIMIT (2^31 placements, a body of too many frames, or a label of more than 64 bytes),
+ * NO_MEMORY, NO_BUS or INSIDE. fmb_client_why() then names the place.
  *
  * Memory: 40 bytes for each placement, 8 for each ignored pair; with ALL and ACROSS also 184
  * bytes for each of these pairs that waits for earlier ones: at most those of some 500 placements
@@ -192,16 +137,16 @@ typedef void fmb_client_sink(void *user, const struct fmb_client_answer *answer)
  * then on, until a result comes, each call sends one query and waits one timeout for its result
  * before it gives up the others too. A result that does not match its query is ignored, and counted
  * as malformed. */
-int fmb_client_query(struct fmb_client *client, const struct fmb_client_scene *scene,
+int fmb_client_query(struct fmb_client *client, const struct fmb_scene *scene,
                      fmb_client_sink *sink, void *user);
 
 /* Queries one pair by the default method; the contact interval is always included. Groups are not
  * considered. The service does not queue it after this client's scenes. Returns out->status. text
  * and certificate are valid until the next call. */
-int fmb_client_query_pair(struct fmb_client *client, const struct fmb_client_placement pair[2],
+int fmb_client_query_pair(struct fmb_client *client, const struct fmb_placement pair[2],
                           double duration, unsigned want, struct fmb_client_answer *out);
 
-/* Returns what is wrong with the last scene: "placements[3].position[1]: not a finite number"; or
+/* Returns what is wrong with the last scene: "placements[3]: not a finite number"; or
  * "". Valid until the next call that is not const. */
 const char *fmb_client_why(const struct fmb_client *client);
 

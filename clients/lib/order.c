@@ -59,7 +59,7 @@ static const struct part_answer *find(struct part_answers *answers, int32_t numb
 static void deliver_list(const struct order *order, const struct part *part,
                          struct part_answers *answers)
 {
-    const struct fmb_client_scene *scene = order->division->scene;
+    const struct fmb_scene *scene = order->division->scene;
     const bool all = scene->which == FMB_PAIRS_LISTED || part->single;
     for (int32_t number = 0; number < part->total; number++) {
         const unsigned pair[2] = {part->placement[part->pair[number][0]],

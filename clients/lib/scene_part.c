@@ -24,20 +24,20 @@ void part_answers_refuse(struct part_answers *answers, int status, const char *t
              text && *text ? text : fmb_client_status_text(status));
 }
 
-static bool wants_gaps(const struct fmb_client_scene *scene)
+static bool wants_gaps(const struct fmb_scene *scene)
 {
     return scene->want & FMB_WANT_GAP || scene->margin > 0;
 }
 
 /* Returns the bytes of a contact: 8 for each number. */
-static size_t contact_bytes(const struct fmb_client_scene *scene)
+static size_t contact_bytes(const struct fmb_scene *scene)
 {
     const size_t times = scene->want & FMB_WANT_TIMES ? 2 : 0;
     const size_t box = scene->want & FMB_WANT_BOX ? 2 * FMB_DIM_MAX : 0;
     return 8 * (times + box) + (wants_gaps(scene) ? (size_t) wire_gap_bytes(FMB_DIM_MAX, true) : 0);
 }
 
-size_t part_result_bytes(const struct part *part, const struct fmb_client_scene *scene)
+size_t part_result_bytes(const struct part *part, const struct fmb_scene *scene)
 {
     if (part->single)
         return SINGLE_RESULT_BYTES;
@@ -63,7 +63,7 @@ int32_t part_pair_count(const struct part *part)
 /* A result, and the part that it should match. */
 struct matching {
     const struct part *part;
-    const struct fmb_client_scene *scene;
+    const struct fmb_scene *scene;
     const struct scene_result *result;
     int32_t first; /* pair that the result begins with */
 };
@@ -101,10 +101,10 @@ static bool fits_named(const struct matching *matching)
     return true;
 }
 
-static bool fits_frames(const struct fmb_client_placement *a, const struct fmb_client_placement *b,
+static bool fits_frames(const struct fmb_placement *a, const struct fmb_placement *b,
                         const struct fmb_gap *gap)
 {
-    return gap->frame[0] < a->frame_count && gap->frame[1] < b->frame_count;
+    return gap->frame[0] < a->body->frame_count && gap->frame[1] < b->body->frame_count;
 }
 
 /* Whether frames are named if and only if a body of the part has several and there are gaps; and
@@ -113,10 +113,10 @@ static bool fits_gaps(const struct matching *matching)
 {
     const struct scene_result *result = matching->result;
     const struct part *part = matching->part;
-    const struct fmb_client_placement *placements = matching->scene->placements;
+    const struct fmb_placement *placements = matching->scene->placements;
     bool several = false, good = true;
     for (int32_t i = 0; i < part->placement_count && result->has_gaps; i++)
-        several = several || placements[part->placement[i]].frame_count > 1;
+        several = several || placements[part->placement[i]].body->frame_count > 1;
     for (int32_t k = 0; k < result->verdict_count && several; k++) {
         const bool named = result->names_pairs;
         const unsigned a = named ? result->pair[k][0] : part->pair[matching->first + k][0];
@@ -139,7 +139,7 @@ static bool fits(const struct matching *matching)
         return false;
     if (result->has_gaps != (wants_gaps(matching->scene) && result->verdict_count > 0) ||
         (result->has_boxes && !(matching->scene->want & FMB_WANT_BOX)) ||
-        (result->dim > 0 && result->dim != matching->scene->placements[0].dim))
+        (result->dim > 0 && result->dim != matching->scene->placements[0].body->dim))
         return false;
     if (listed &&
         (result->names_pairs || result->verdict_count != result->end_pair - matching->first))
@@ -165,7 +165,7 @@ static bool is_stored(const struct scene_result *result, int32_t k)
            (result->has_gaps && query_has_gap(&result->gap[k]));
 }
 
-enum part_taken part_take_scene(const struct part *part, const struct fmb_client_scene *scene,
+enum part_taken part_take_scene(const struct part *part, const struct fmb_scene *scene,
                                 const struct scene_result *result, struct part_answers *answers)
 {
     const struct matching matching = {part, scene, result, answers->answered};
@@ -190,23 +190,24 @@ enum part_taken part_take_scene(const struct part *part, const struct fmb_client
 
 /* Whether the result has a gap if and only if it was wanted; and a box, which only a contact has,
  * and a certificate, only if they were wanted. */
-static bool fits_pair(const struct part *part, const struct fmb_client_scene *scene,
+static bool fits_pair(const struct part *part, const struct fmb_scene *scene,
                       const struct pair_result *result)
 {
     const struct fmb_answer *answer = &result->answer;
-    const struct fmb_client_placement *a = &scene->placements[part->placement[part->pair[0][0]]];
-    const struct fmb_client_placement *b = &scene->placements[part->placement[part->pair[0][1]]];
+    const struct fmb_placement *a = &scene->placements[part->placement[part->pair[0][0]]];
+    const struct fmb_placement *b = &scene->placements[part->placement[part->pair[0][1]]];
     if (answer->has_gap != wants_gaps(scene) ||
         (answer->has_box && !(answer->verdict >= FMB_TOUCHING && scene->want & FMB_WANT_BOX)) ||
-        (result->dim > 0 && result->dim != scene->placements[0].dim))
+        (result->dim > 0 && result->dim != scene->placements[0].body->dim))
         return false;
-    if (result->names_frames != (answer->has_gap && (a->frame_count > 1 || b->frame_count > 1)) ||
+    if (result->names_frames !=
+            (answer->has_gap && (a->body->frame_count > 1 || b->body->frame_count > 1)) ||
         !fits_frames(a, b, &answer->gap))
         return false;
     return !result->certificate || scene->want & FMB_WANT_CERTIFICATE;
 }
 
-enum part_taken part_take_pair(const struct part *part, const struct fmb_client_scene *scene,
+enum part_taken part_take_pair(const struct part *part, const struct fmb_scene *scene,
                                const struct pair_result *result, struct part_answers *answers)
 {
     if (!fits_pair(part, scene, result))

@@ -39,14 +39,14 @@ void part_answers_clear(struct part_answers *answers);
 void part_answers_refuse(struct part_answers *answers, int status, const char *text);
 
 /* Whether a separated pair is near. */
-static inline bool part_is_near(const struct fmb_client_scene *scene, const struct fmb_gap *gap)
+static inline bool part_is_near(const struct fmb_scene *scene, const struct fmb_gap *gap)
 {
     return scene->margin > 0 && gap->bounds[0] <= scene->margin;
 }
 
 /* Returns an upper bound of the bytes of a result, for a pair query with a certificate of usual
  * length. */
-size_t part_result_bytes(const struct part *part, const struct fmb_client_scene *scene);
+size_t part_result_bytes(const struct part *part, const struct fmb_scene *scene);
 
 /* ALL and ACROSS: returns the number of pairs. */
 int32_t part_pair_count(const struct part *part);
@@ -54,9 +54,9 @@ int32_t part_pair_count(const struct part *part);
 /* Adds the answers of a result with FMB_OK to those of the pairs before it. Returns MALFORMED if
  * the result does not match the query; nothing is added then, nor with NO_MEMORY. */
 enum part_taken { PART_TAKEN, PART_MALFORMED, PART_NO_MEMORY };
-enum part_taken part_take_scene(const struct part *part, const struct fmb_client_scene *scene,
+enum part_taken part_take_scene(const struct part *part, const struct fmb_scene *scene,
                                 const struct scene_result *result, struct part_answers *answers);
-enum part_taken part_take_pair(const struct part *part, const struct fmb_client_scene *scene,
+enum part_taken part_take_pair(const struct part *part, const struct fmb_scene *scene,
                                const struct pair_result *result, struct part_answers *answers);
 
 #endif

@@ -63,13 +63,18 @@ static size_t write_placements(struct part_run *part, size_t max, struct placeme
     return bytes;
 }
 
+static int32_t method_of(const struct fmb_scene *scene)
+{
+    return scene->method ? scene->method->number : 0;
+}
+
 /* Writes a pair query. Returns its size, or 0 if it is too large. */
 static size_t write_pair(struct part_run *part, unsigned char *out)
 {
-    const struct fmb_client_scene *scene = part->run->scene;
+    const struct fmb_scene *scene = part->run->scene;
     struct pair_query query = {.utime = clock_utime(),
                                .duration = scene->duration,
-                               .method = scene->method,
+                               .method = method_of(scene),
                                .want = (int32_t) scene->want & ~FMB_WANT_TIMES};
     if (scene->margin > 0)
         query.want |= FMB_WANT_GAP;
@@ -80,12 +85,12 @@ static size_t write_pair(struct part_run *part, unsigned char *out)
 
 static struct scene_query *begin_query(const struct part_run *part)
 {
-    const struct fmb_client_scene *scene = part->run->scene;
+    const struct fmb_scene *scene = part->run->scene;
     struct scene_query *query = &part->run->query;
     query->utime = clock_utime();
     query->label = scene->label;
     query->duration = scene->duration;
-    query->method = scene->method;
+    query->method = method_of(scene);
     query->want = (int32_t) scene->want;
     query->margin = scene->margin;
     query->which = FMB_PAIRS_LISTED;
@@ -350,11 +355,11 @@ static void wait_for_results(struct scene_run *run)
         requests_give_up(run->requests, FMB_CLIENT_LATE);
 }
 
-static void begin(struct scene_run *run, const struct fmb_client_scene *scene,
+static void begin(struct scene_run *run, const struct fmb_scene *scene,
                   const struct division *division)
 {
     const double most = 1e9; /* seconds: some 30 years are no limit */
-    const double within = scene->within > 0 && scene->within < most ? scene->within : most;
+    const double within = run->within > 0 && run->within < most ? run->within : most;
     if (run->pairs_max == 0 || run->method != scene->method || run->want != scene->want)
         run->pairs_max = PAIRS_FIRST;
     run->divide_again = false;
@@ -366,7 +371,7 @@ static void begin(struct scene_run *run, const struct fmb_client_scene *scene,
     run->until = clock_ns() + (int64_t) (within * 1e9);
 }
 
-static int run_division(struct scene_run *run, const struct fmb_client_scene *scene,
+static int run_division(struct scene_run *run, const struct fmb_scene *scene,
                         struct division *division, fmb_client_sink *sink, void *user)
 {
     struct order order;
@@ -383,7 +388,7 @@ static int run_division(struct scene_run *run, const struct fmb_client_scene *sc
     return FMB_OK;
 }
 
-int scene_run(struct scene_run *run, const struct fmb_client_scene *scene, bool single,
+int scene_run(struct scene_run *run, const struct fmb_scene *scene, bool single,
               fmb_client_sink *sink, void *user)
 {
     int status;

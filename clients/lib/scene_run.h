@@ -23,14 +23,15 @@ struct part_run {
     bool whole[QUERY_PLACEMENTS_MAX], whole_earlier[QUERY_PLACEMENTS_MAX];
 };
 
-/* The owner sets requests and held; all else is 0 at first. */
+/* The owner sets requests, held and within; all else is 0 at first. */
 struct scene_run {
     struct requests *requests;
     struct held *held;
-    const struct fmb_client_scene *scene;
+    const struct fmb_scene *scene;
     const struct division *division;
     int status;            /* not 0: the remaining pairs are given up with it */
-    int64_t until;         /* time limit of the whole scene; clock_ns() */
+    double within;         /* time limit for a scene, seconds; 0: none */
+    int64_t until;         /* end of that time; clock_ns() */
     uint64_t oldest, next; /* parts: first not delivered, first not begun */
     bool has_next;         /* the next part is in its slot already */
     bool divide_again;     /* the only part has to be divided: nothing is delivered */
@@ -38,7 +39,7 @@ struct scene_run {
     /* Most pairs listed in a query, so that the queries under way are decided within half a
      * timeout; estimated from the compute times of results, for this method and want. */
     int32_t pairs_max;
-    int method;
+    const struct fmb_method *method;
     unsigned want;
     struct scene_query query; /* being written */
     /* The encoded frames of its placements, and of one more; and the encoding of no frames. */
@@ -47,7 +48,7 @@ struct scene_run {
 
 /* Queries the pairs of a checked scene and passes the answers to sink, in their order. single: each
  * pair is a query of its own. Returns FMB_OK or FMB_CLIENT_NO_MEMORY. */
-int scene_run(struct scene_run *run, const struct fmb_client_scene *scene, bool single,
+int scene_run(struct scene_run *run, const struct fmb_scene *scene, bool single,
               fmb_client_sink *sink, void *user);
 
 #endif

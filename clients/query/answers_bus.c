@@ -61,86 +61,6 @@ void answers_bus_close(struct answers_bus *answers)
     free(answers);
 }
 
-/* ---- The query ---- */
-
-/* Returns o + c + r, a double: two-sum. */
-static double vertex_of(double o, double c, double r)
-{
-    const double sum = o + c, part = sum - o;
-    return sum + ((o - (sum - part)) + (c - part) + r);
-}
-
-/* Returns the numbers that a frame was made from. The vertices are written into out. */
-static struct fmb_client_frame frame_of(const struct fmb_frame *frame, double *vertices)
-{
-    const int dim = frame->dim;
-    struct fmb_client_frame out = {.shape = (int) frame->shape};
-    bool by_vertices = false;
-    memcpy(out.origin, frame->shape == FMB_BOX ? frame->centre : frame->origin, sizeof out.origin);
-    memcpy(vertices, frame->origin, (size_t) dim * sizeof *vertices);
-    for (int i = 0; i < frame->count; i++)
-        for (int axis = 0; axis < dim; axis++) {
-            const double c = frame->component[i][axis], r = frame->remainder[i][axis];
-            by_vertices = by_vertices || r != 0;
-            vertices[(i + 1) * dim + axis] = vertex_of(frame->origin[axis], c, r);
-            if (frame->shape != FMB_BOX)
-                out.components[i * dim + axis] = c;
-            else if (axis == i)
-                out.components[i] = c;
-        }
-    if (by_vertices) {
-        out.vertices = vertices;
-        out.vertex_count = (size_t) frame->count + 1;
-    }
-    return out;
-}
-
-static int query(struct fmb_client *client, const struct fmb_scene *scene, fmb_client_sink *sink,
-                 void *user)
-{
-    size_t count = 0, next = 0;
-    for (size_t i = 0; i < scene->placement_count; i++)
-        count += scene->placements[i].body->frame_count;
-    struct fmb_client_placement *placement = allocate(scene->placement_count, sizeof *placement);
-    struct fmb_client_frame *frame = allocate(count, sizeof *frame);
-    double(*vertices)[GEOMETRY_FRAME_NUMBERS_MAX] = allocate(count, sizeof *vertices);
-    for (size_t i = 0; i < scene->placement_count; i++) {
-        const struct fmb_placement *from = &scene->placements[i];
-        placement[i] = (struct fmb_client_placement){.body_id = from->id,
-                                                     .dim = from->body->dim,
-                                                     .frames = frame + next,
-                                                     .frame_count = from->body->frame_count,
-                                                     .orientation_count = from->orientation_count,
-                                                     .name = from->name,
-                                                     .group = from->group};
-        memcpy(placement[i].position, from->position, sizeof from->position);
-        memcpy(placement[i].velocity, from->velocity, sizeof from->velocity);
-        memcpy(placement[i].orientation, from->orientation, sizeof from->orientation);
-        for (unsigned k = 0; k < from->body->frame_count; k++, next++)
-            frame[next] = frame_of(fmb_body_frame(from->body, k), vertices[next]);
-    }
-    const struct fmb_client_scene queried = {
-        .placements = placement,
-        .placement_count = scene->placement_count,
-        .which = scene->which,
-        .pairs = scene->pairs,
-        .pair_count = scene->pair_count,
-        .ignored = scene->ignored,
-        .ignored_count = scene->ignored_count,
-        .duration = scene->duration,
-        .instant = scene->instant,
-        .margin = scene->margin,
-        .want = scene->want,
-        .method = scene->method ? scene->method->number : 0,
-        .label = scene->label,
-    };
-    const int status = fmb_client_query(client, &queried, sink, user);
-    free(placement);
-    free(frame);
-    free(vertices);
-    return status;
-}
-
 /* ---- The answers ---- */
 
 /* A scene, and the state of its answers. */
@@ -218,7 +138,7 @@ static unsigned (*list_pairs(const struct fmb_scene *scene, size_t *count))[2]
 }
 
 /* Of all pairs the library answers only contacts and near ones. So pairs are listed if each gets a
- * gap. */
+ * gap, and for a method that takes listed pairs only. */
 bool answers_bus_scene(struct answers_bus *answers, const struct fmb_scene *scene,
                        fmb_client_sink *sink, void *user)
 {
@@ -229,13 +149,14 @@ bool answers_bus_scene(struct answers_bus *answers, const struct fmb_scene *scen
         deliver(&run, FMB_CLIENT_NO_BUS, "no bus", NULL);
         return false;
     }
-    if (scene->which == FMB_PAIRS_ALL && scene->want & FMB_WANT_GAP) {
+    if (scene->which == FMB_PAIRS_ALL &&
+        (scene->want & FMB_WANT_GAP || (scene->method && !scene->method->certain))) {
         pair = list_pairs(scene, &queried.pair_count);
         queried.which = FMB_PAIRS_LISTED;
         queried.pairs = (const unsigned(*)[2]) pair;
         queried.ignored_count = 0;
     }
-    const int status = query(answers->client, &queried, take_answer, &run);
+    const int status = fmb_client_query(answers->client, &queried, take_answer, &run);
     deliver(&run, status, fmb_client_why(answers->client), NULL);
     free(pair);
     return advise(answers, scene->want & FMB_WANT_CERTIFICATE ? "PAIR" : "SCENE");

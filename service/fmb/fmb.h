@@ -168,6 +168,18 @@ enum fmb_status fmb_frame_make(int dim, int shape, const double *numbers, size_t
 enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertices, size_t count,
                                         struct fmb_frame *out);
 
+/* Returns the numbers that a frame was made of.
+ *
+ * Out: *by_vertices  whether they are its vertices, as fmb_frame_make_vertices() takes them; else
+ *                    they are those of fmb_frame_make(), the first dim included. A frame that was
+ *                    made of vertices has vertices only if a component is rounded; otherwise its
+ *                    origin and components describe it as well.
+ *      numbers       [FMB_FRAME_NUMBERS_MAX], the first ones set; or NULL. A zero may have another
+ *                    sign.
+ * Returns how many there are. A frame made of them gives the same answers, bit for bit. */
+enum { FMB_FRAME_NUMBERS_MAX = FMB_DIM_MAX + FMB_COMPONENTS_MAX };
+size_t fmb_frame_numbers(const struct fmb_frame *frame, bool *by_vertices, double *numbers);
+
 /* A rigid body: one or more frames in body coordinates. Filled by one of the functions below only;
  * it may be copied. A body of one frame may contain it; other frames belong to the caller. */
 struct fmb_body {
@@ -651,14 +663,13 @@ struct fmb_scene_answers {
 
 struct fmb_scene_state;
 
-/* Checks a scene and begins it.
+/* Checks a scene.
  *
- * In:  memory  fmb_scene_bytes(limits) bytes at any address; owned by the caller, in use until the
- *              last step
- * Out: *out    the state, in memory; unchanged if the status is not FMB_OK
+ * In:  size  capacity of why in bytes
+ * Out: why   if the status is not FMB_OK, one line that names the place and the reason:
+ *            "placements[3]: not a finite number"; may be NULL if size is 0
  * Returns one of:
  *   FMB_OK
- *   FMB_OVER_LIMIT         the scene is not within limits, or limits->slots is below the minimum
  *   FMB_BAD_DURATION       negative, not finite, 0 although a placement moves and instant is not
  *                          set, or not 0 although it is
  *   FMB_BAD_MARGIN, FMB_UNKNOWN_WANT
@@ -670,6 +681,16 @@ struct fmb_scene_state;
  *   FMB_WRONG_COUNT        pairs without FMB_PAIRS_LISTED, or ignored pairs with it
  *   FMB_CANNOT_DECIDE      a method that is not certain, with gaps, with a margin, or without
  *                          FMB_PAIRS_LISTED
+ * Cost: O(placements + pairs). */
+enum fmb_status fmb_scene_check(const struct fmb_scene *scene, char *why, size_t size);
+
+/* Checks a scene and begins it.
+ *
+ * In:  memory  fmb_scene_bytes(limits) bytes at any address; owned by the caller, in use until the
+ *              last step
+ * Out: *out    the state, in memory; unchanged if the status is not FMB_OK
+ * Returns FMB_OK; FMB_OVER_LIMIT if the scene is not within limits, or limits->slots is below the
+ * minimum; or a status of fmb_scene_check().
  * Cost: O(placements + frames + pairs). */
 enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
                                 const struct fmb_scene_limits *limits, void *memory,

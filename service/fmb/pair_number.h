@@ -3,7 +3,7 @@
  *   ALL     a = 0 to n - 1, each with b = a + 1 to n - 1
  *   ACROSS  a = 0 to split - 1, each with b = split to n - 1
  *
- * Inline: the client library uses them too, and does not link libfmb. */
+ * Inline: other folders use them too, and libfmb shows the names of fmb.h only. */
 #ifndef FMB_PAIR_NUMBER_H
 #define FMB_PAIR_NUMBER_H
 

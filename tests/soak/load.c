@@ -37,8 +37,7 @@ struct worker {
     pthread_t thread;
     struct fmb_client *client;
     uint64_t random;
-    struct fmb_client_placement placement[FRAMES];
-    struct fmb_client_frame frame[FRAMES];
+    struct fmb_placement placement[FRAMES];
     struct fmb_body body[FRAMES];
     unsigned (*pair)[2];        /* owned: [plan->pairs] */
     struct fmb_answer *answers; /* owned: what libfmb says of them */
@@ -65,27 +64,18 @@ static double coordinate(struct worker *worker, int i, double size)
 
 static void draw_frame(struct worker *worker, int i)
 {
-    struct fmb_client_placement *placement = &worker->placement[i];
-    struct fmb_client_frame *frame = &worker->frame[i];
-    *frame =
-        (struct fmb_client_frame){.shape = uniform(worker) < 0.5 ? FMB_CUBOID : FMB_TETRAHEDRON};
-    *placement = (struct fmb_client_placement){
-        .body_id = 1 + worker->number * FRAMES + i, .dim = 3, .frames = frame, .frame_count = 1};
+    struct fmb_placement *placement = &worker->placement[i];
+    const int shape = uniform(worker) < 0.5 ? FMB_CUBOID : FMB_TETRAHEDRON;
+    double components[9] = {0};
+    *placement =
+        (struct fmb_placement){.body = &worker->body[i], .id = 1 + worker->number * FRAMES + i};
     const bool moving = uniform(worker) < 0.5;
     for (int axis = 0; axis < 3; axis++) {
         placement->position[axis] = coordinate(worker, i, 4);
         placement->velocity[axis] = moving ? coordinate(worker, i, 2) : 0;
-        frame->components[4 * axis] = 1 + fabs(coordinate(worker, i, 2));
+        components[4 * axis] = 1 + fabs(coordinate(worker, i, 2));
     }
-    fmb_body_make(3, frame->shape, frame->components, 9, &worker->body[i]);
-}
-
-static struct fmb_placement placement_of(const struct worker *worker, unsigned i)
-{
-    struct fmb_placement placement = {.body = &worker->body[i]};
-    memcpy(placement.position, worker->placement[i].position, sizeof placement.position);
-    memcpy(placement.velocity, worker->placement[i].velocity, sizeof placement.velocity);
-    return placement;
+    fmb_body_make(3, shape, components, 9, &worker->body[i]);
 }
 
 static void draw_pair(struct worker *worker, long k)
@@ -93,8 +83,8 @@ static void draw_pair(struct worker *worker, long k)
     unsigned *pair = worker->pair[k];
     pair[0] = (unsigned) (uniform(worker) * FRAMES);
     pair[1] = (pair[0] + 1 + (unsigned) (uniform(worker) * (FRAMES - 1))) % FRAMES;
-    const struct fmb_placement a = placement_of(worker, pair[0]), b = placement_of(worker, pair[1]);
-    fmb_decide(fmb_method_default(), &a, &b, 1, FMB_WANT_BOX, &worker->answers[k]);
+    fmb_decide(fmb_method_default(), &worker->placement[pair[0]], &worker->placement[pair[1]], 1,
+               FMB_WANT_BOX, &worker->answers[k]);
 }
 
 /* Half of the bodies turn now and then: their ids get other components. */
@@ -122,7 +112,7 @@ static void take(void *user, const struct fmb_client_answer *answer)
 
 static void query(struct worker *worker)
 {
-    const struct fmb_client_scene scene = {
+    const struct fmb_scene scene = {
         .placements = worker->placement,
         .placement_count = FRAMES,
         .which = FMB_PAIRS_LISTED,
@@ -134,8 +124,8 @@ static void query(struct worker *worker)
     const int64_t begin = clock_ns();
     worker->seen = 0;
     if (worker->plan->pairs == 1) {
-        const struct fmb_client_placement both[2] = {worker->placement[worker->pair[0][0]],
-                                                     worker->placement[worker->pair[0][1]]};
+        const struct fmb_placement both[2] = {worker->placement[worker->pair[0][0]],
+                                              worker->placement[worker->pair[0][1]]};
         struct fmb_client_answer answer;
         fmb_client_query_pair(worker->client, both, 1, FMB_WANT_BOX, &answer);
         answer.a = worker->pair[0][0];

@@ -16,10 +16,9 @@ setup() {
     export PKG_CONFIG_PATH=$root/lib/pkgconfig LD_LIBRARY_PATH=$root/lib
 }
 
-@test "the example queries a scene: compiled against what is installed, with neither libfmb nor GMP" {
+@test "the examples query scenes: compiled against what is installed" {
     $compiler -std=c99 -Wall -Wextra -Werror $flags clients/examples/ask_scene.c \
         $(pkg-config --static --cflags --libs fmb-client) -o "$BATS_TEST_TMPDIR/ask_scene"
-    [ -z "$(ldd "$BATS_TEST_TMPDIR/ask_scene" | grep gmp)" ]
     start_fmbd
     run "$BATS_TEST_TMPDIR/ask_scene"
     [ "$status" = 0 ]
@@ -68,9 +67,7 @@ END
 @test "the client's library shows its own names alone" {
     nm -g --defined-only "$root/lib/libfmb-client.a" | awk 'NF == 3 { print $3 }' > "$BATS_TEST_TMPDIR/names"
     grep -qx fmb_client_query "$BATS_TEST_TMPDIR/names"
-    grep -qx fmb_status_text "$BATS_TEST_TMPDIR/names"
-    [ -z "$(grep -v '^fmb_\|asan' "$BATS_TEST_TMPDIR/names")" ]
-    [ -z "$(grep fmb_msgs "$BATS_TEST_TMPDIR/names")" ]
+    [ -z "$(grep -v '^fmb_client_\|asan' "$BATS_TEST_TMPDIR/names")" ]
 }
 
 @test "shared libraries have a soname, and show the names of their headers alone" {
@@ -80,10 +77,8 @@ END
         objdump -p "$file" | grep -q "SONAME *lib$name.so.0\$"
         header=$root/include/${name/-/_}.h
         nm -D --defined-only "$file" | awk '$2 != "A" { print $3 }' > "$BATS_TEST_TMPDIR/names"
-        grep -qx fmb_status_text "$BATS_TEST_TMPDIR/names"
-        for shown in $(cat "$BATS_TEST_TMPDIR/names"); do
-            grep -q "[ *]$shown(" "$header" "$root/include/fmb.h"
-        done
+        grep -qx "${name/-/_}_status_text" "$BATS_TEST_TMPDIR/names"
+        for shown in $(cat "$BATS_TEST_TMPDIR/names"); do grep -q "[ *]$shown(" "$header"; done
     done
 }
 

@@ -310,111 +310,97 @@ static double draw(unsigned *state, double low, double high)
     return low + (high - low) * (*state >> 8) / (double) (1 << 24);
 }
 
-/* Frames of bodies, reachable until the program ends. */
-static struct fmb_client_frame *new_frames(size_t count)
+/* Memory that stays reachable until the program ends. */
+static void *keep(size_t size)
 {
     static struct block {
         struct block *next;
-        struct fmb_client_frame frame[];
+        max_align_t bytes[];
     } * blocks;
-    struct block *block = calloc(1, sizeof *block + count * sizeof *block->frame);
+    struct block *block = calloc(1, sizeof *block + size);
     assert_non_null(block);
     block->next = blocks;
     blocks = block;
-    return block->frame;
-}
-
-struct fmb_client_frame *relay_frame(const struct fmb_client_placement *placement)
-{
-    return (struct fmb_client_frame *) placement->frames; /* of new_frames() */
+    return block->bytes;
 }
 
 /* whole: its components are unit vectors, its origin 0. */
-static void draw_frame(struct fmb_client_frame *out, int dim, int shape, bool whole, unsigned *seed)
+static void draw_frame(struct fmb_frame *out, int dim, int shape, bool whole, unsigned *seed)
 {
     const int count = fmb_component_count(dim, shape) * (shape == FMB_BOX ? 1 : dim);
-    *out = (struct fmb_client_frame){.shape = shape};
+    double number[FMB_FRAME_NUMBERS_MAX] = {0};
     for (int k = 0; k < count; k++) {
         const double drawn = draw(seed, shape == FMB_BOX ? 0 : -1, 1);
-        out->components[k] = whole ? shape == FMB_BOX || k / dim == k % dim : drawn;
+        number[dim + k] = whole ? shape == FMB_BOX || k / dim == k % dim : drawn;
     }
     for (int k = 0; k < dim && !whole; k++)
-        out->origin[k] = draw(seed, -0.5, 0.5);
+        number[k] = draw(seed, -0.5, 0.5);
+    assert_int_equal(fmb_frame_make(dim, shape, number, (size_t) (dim + count), out), FMB_OK);
 }
 
-static void draw_place(struct fmb_client_placement *out, double size, bool whole, unsigned *seed)
+const struct fmb_body *relay_body(const struct fmb_frame *frames, size_t count)
+{
+    struct fmb_body *body = keep(sizeof *body + count * sizeof *frames);
+    struct fmb_frame *copy = memcpy(body + 1, frames, count * sizeof *frames);
+    assert_int_equal(fmb_body_make_frames(copy, count, body), FMB_OK);
+    return body;
+}
+
+const struct fmb_body *relay_change(const struct fmb_body *body, int number, double value)
+{
+    double numbers[FMB_FRAME_NUMBERS_MAX];
+    struct fmb_frame frame;
+    bool by_vertices;
+    const size_t count = fmb_frame_numbers(fmb_body_frame(body, 0), &by_vertices, numbers);
+    const int shape = (int) fmb_body_frame(body, 0)->shape;
+    numbers[number] = value;
+    assert_false(by_vertices);
+    assert_int_equal(fmb_frame_make(body->dim, shape, numbers, count, &frame), FMB_OK);
+    return relay_body(&frame, 1);
+}
+
+static void draw_place(struct fmb_placement *out, double size, bool whole, unsigned *seed)
 {
     const bool moving = draw(seed, 0, 1) < 0.5 && !whole;
-    for (int k = 0; k < out->dim; k++) {
+    for (int k = 0; k < out->body->dim; k++) {
         out->position[k] = draw(seed, 0, size);
         out->velocity[k] = moving ? draw(seed, -1, 1) : 0;
     }
     /* Some are at whole places, and touch. */
-    for (int k = 0; k < out->dim && whole; k++)
+    for (int k = 0; k < out->body->dim && whole; k++)
         out->position[k] = floor(out->position[k]);
-    out->orientation_count = draw(seed, 0, 1) < 0.5 ? 0 : out->dim == 2 ? 2 : 4;
+    out->orientation_count = draw(seed, 0, 1) < 0.5 ? 0 : out->body->dim == 2 ? 2 : 4;
     for (int k = 0; k < out->orientation_count; k++)
         out->orientation[k] = whole ? k == 0 : draw(seed, -2, 2);
 }
 
-void relay_draw(struct fmb_client_placement *out, size_t count, int dim, double size,
-                int64_t first_id, unsigned seed)
+void relay_draw(struct fmb_placement *out, size_t count, int dim, double size, int64_t first_id,
+                unsigned seed)
 {
     static const int shapes[] = {FMB_CUBOID, FMB_TETRAHEDRON, FMB_BOX};
-    struct fmb_client_frame *frame = new_frames(3 * count);
     for (size_t i = 0; i < count; i++) {
+        const size_t frames = i % 5 == 1 ? 3 : 1;
         const bool whole = i % 3 == 0;
-        out[i] = (struct fmb_client_placement){.body_id = first_id ? first_id + (int64_t) i : 0,
-                                               .dim = dim,
-                                               .frames = frame,
-                                               .frame_count = i % 5 == 1 ? 3 : 1};
-        for (size_t k = 0; k < out[i].frame_count; k++) {
+        struct fmb_frame frame[3];
+        for (size_t k = 0; k < frames; k++) {
             int shape = shapes[(int) draw(&seed, 0, 2.999)];
             if (dim == 3 && i % 20 == 7) /* few: they are slow to decide */
                 shape = FMB_FACE;
-            draw_frame(frame++, dim, shape, whole, &seed);
+            draw_frame(&frame[k], dim, shape, whole, &seed);
         }
+        out[i] = (struct fmb_placement){.body = relay_body(frame, frames),
+                                        .id = first_id ? first_id + (int64_t) i : 0};
         draw_place(&out[i], size, whole, &seed);
     }
 }
 
+void relay_use_first_frames(struct fmb_placement *placements, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        placements[i].body = relay_body(fmb_body_frame(placements[i].body, 0), 1);
+}
+
 /* ---- Truth ---- */
-
-struct fmb_placement relay_place(const struct fmb_client_placement *placement,
-                                 struct fmb_body *body)
-{
-    struct fmb_frame *frames = malloc(placement->frame_count * sizeof *frames);
-    assert_non_null(frames);
-    for (size_t i = 0; i < placement->frame_count; i++) {
-        const struct fmb_client_frame *of = &placement->frames[i];
-        const int dim = placement->dim;
-        const int count = fmb_component_count(dim, of->shape) * (of->shape == FMB_BOX ? 1 : dim);
-        double number[FMB_DIM_MAX + FMB_COMPONENTS_MAX];
-        if (of->vertices) {
-            assert_int_equal(fmb_frame_make_vertices(dim, of->shape, of->vertices,
-                                                     of->vertex_count * (size_t) dim, &frames[i]),
-                             FMB_OK);
-            continue;
-        }
-        memcpy(number, of->origin, (size_t) dim * sizeof *number);
-        memcpy(number + dim, of->components, (size_t) count * sizeof *number);
-        assert_int_equal(fmb_frame_make(dim, of->shape, number, (size_t) (dim + count), &frames[i]),
-                         FMB_OK);
-    }
-    assert_int_equal(fmb_body_make_frames(frames, placement->frame_count, body), FMB_OK);
-    if (body->frames != frames) /* a single frame is held in the body */
-        free(frames);
-    struct fmb_placement out = {.body = body, .orientation_count = placement->orientation_count};
-    memcpy(out.position, placement->position, sizeof out.position);
-    memcpy(out.velocity, placement->velocity, sizeof out.velocity);
-    memcpy(out.orientation, placement->orientation, sizeof out.orientation);
-    return out;
-}
-
-void relay_body_free(struct fmb_body *body)
-{
-    free((void *) body->frames);
-}
 
 static void add(struct relay_truth *truth, const unsigned pair[2], const struct fmb_answer *answer)
 {
@@ -426,16 +412,10 @@ static void add(struct relay_truth *truth, const unsigned pair[2], const struct 
     truth->pair[truth->count++] = (struct relay_pair){pair[0], pair[1], *answer};
 }
 
-/* The bodies of a scene. */
-struct bodies {
-    struct fmb_body *body;
-    struct fmb_placement *placement;
-};
-
 /* Whether the pair is surely farther apart than the margin: no vertex is as far from a body's
  * position as its radius. */
 static bool are_far(const struct fmb_placement *a, const struct fmb_placement *b,
-                    const struct fmb_client_scene *scene)
+                    const struct fmb_scene *scene)
 {
     double distance = 0, speed = 0;
     for (int axis = 0; axis < a->body->dim; axis++) {
@@ -446,7 +426,7 @@ static bool are_far(const struct fmb_placement *a, const struct fmb_placement *b
            a->body->radius + b->body->radius + scene->duration * speed + scene->margin + 0.001;
 }
 
-static bool is_ignored(const struct fmb_client_scene *scene, unsigned a, unsigned b)
+static bool is_ignored(const struct fmb_scene *scene, unsigned a, unsigned b)
 {
     const int64_t group = scene->placements[a].group;
     if (group != 0 && group == scene->placements[b].group)
@@ -459,10 +439,9 @@ static bool is_ignored(const struct fmb_client_scene *scene, unsigned a, unsigne
     return false;
 }
 
-static void decide(const struct fmb_client_scene *scene, const struct bodies *bodies,
-                   const unsigned pair[2], struct relay_truth *out)
+static void decide(const struct fmb_scene *scene, const unsigned pair[2], struct relay_truth *out)
 {
-    const struct fmb_placement *a = &bodies->placement[pair[0]], *b = &bodies->placement[pair[1]];
+    const struct fmb_placement *a = &scene->placements[pair[0]], *b = &scene->placements[pair[1]];
     const bool all_gaps = scene->want & FMB_WANT_GAP;
     const unsigned want = (scene->want & FMB_WANT_BOX ? FMB_WANT_BOX : 0) |
                           (all_gaps || scene->margin > 0 ? FMB_WANT_GAP : 0);
@@ -484,24 +463,19 @@ static void decide(const struct fmb_client_scene *scene, const struct bodies *bo
 }
 
 /* The pairs in their order, counted here by other means than the library's. */
-void relay_truth_make(const struct fmb_client_scene *scene, struct relay_truth *out)
+void relay_truth_make(const struct fmb_scene *scene, struct relay_truth *out)
 {
     const unsigned n = (unsigned) scene->placement_count, split = (unsigned) scene->split;
-    const struct bodies bodies = {calloc(n + 1, sizeof *bodies.body),
-                                  calloc(n + 1, sizeof *bodies.placement)};
+    const bool listed = scene->which == FMB_PAIRS_LISTED;
+    unsigned long long number = 0;
     *out = (struct relay_truth){.count = 0};
-    for (unsigned i = 0; i < n; i++)
-        bodies.placement[i] = relay_place(&scene->placements[i], &bodies.body[i]);
-    for (size_t i = 0; scene->which == FMB_PAIRS_LISTED && i < scene->pair_count; i++)
-        decide(scene, &bodies, scene->pairs[i], out);
-    for (unsigned a = 0; scene->which != FMB_PAIRS_LISTED && a < n; a++)
+    for (size_t i = scene->first_pair; listed && i < scene->pair_count; i++)
+        decide(scene, scene->pairs[i], out);
+    for (unsigned a = 0; !listed && a < n; a++)
         for (unsigned b = a + 1; b < n; b++)
             if (scene->which == FMB_PAIRS_ALL || (a < split && b >= split))
-                decide(scene, &bodies, (const unsigned[]){a, b}, out);
-    for (unsigned i = 0; i < n; i++)
-        relay_body_free(&bodies.body[i]);
-    free(bodies.body);
-    free(bodies.placement);
+                if (number++ >= scene->first_pair)
+                    decide(scene, (const unsigned[]){a, b}, out);
 }
 
 void relay_truth_clear(struct relay_truth *truth)
@@ -532,7 +506,7 @@ void relay_check(void *user, const struct fmb_client_answer *answer)
     assert_true(query_same_gap(&is->gap, &should->gap));
 }
 
-void relay_query(struct fmb_client *client, const struct fmb_client_scene *scene)
+void relay_query(struct fmb_client *client, const struct fmb_scene *scene)
 {
     struct relay_truth truth;
     relay_truth_make(scene, &truth);

@@ -87,18 +87,19 @@ struct fmb_client *relay_client(struct relay *relay, double timeout, int tries);
 /* ---- Scenes, and what libfmb decides ---- */
 
 /* Bodies of all shapes, of one dimension, some of them moving, turned, or of several frames; ids
- * from first_id on, 0: none. size: of the space they are in, per axis. Their frames stay until the
+ * from first_id on, 0: none. size: of the space they are in, per axis. Bodies stay until the
  * program ends. */
-void relay_draw(struct fmb_client_placement *out, size_t count, int dim, double size,
-                int64_t first_id, unsigned seed);
+void relay_draw(struct fmb_placement *out, size_t count, int dim, double size, int64_t first_id,
+                unsigned seed);
 
-/* The first frame of a body of relay_draw(), to be changed. */
-struct fmb_client_frame *relay_frame(const struct fmb_client_placement *placement);
+/* Returns a body of these frames. */
+const struct fmb_body *relay_body(const struct fmb_frame *frames, size_t count);
 
-/* The same placement for libfmb. *body is to be cleared by relay_body_free(). */
-struct fmb_placement relay_place(const struct fmb_client_placement *placement,
-                                 struct fmb_body *body);
-void relay_body_free(struct fmb_body *body);
+/* Returns a body of the first frame of this one, with another number (fmb_frame_numbers()). */
+const struct fmb_body *relay_change(const struct fmb_body *body, int number, double value);
+
+/* Reduces each body to its first frame. */
+void relay_use_first_frames(struct fmb_placement *placements, size_t count);
 
 /* All answers that fmb_client_query() has to give, in their order, by fmb_decide(). */
 struct relay_truth {
@@ -111,7 +112,7 @@ struct relay_truth {
     size_t failed; /* those with a status */
 };
 
-void relay_truth_make(const struct fmb_client_scene *scene, struct relay_truth *out);
+void relay_truth_make(const struct fmb_scene *scene, struct relay_truth *out);
 void relay_truth_clear(struct relay_truth *truth);
 
 /* A sink: fails the test where an answer is not the next one, to the bit; those with a status are
@@ -119,7 +120,7 @@ void relay_truth_clear(struct relay_truth *truth);
 void relay_check(void *truth, const struct fmb_client_answer *answer);
 
 /* Queries the scene, and checks all answers. */
-void relay_query(struct fmb_client *client, const struct fmb_client_scene *scene);
+void relay_query(struct fmb_client *client, const struct fmb_scene *scene);
 
 /* A smaller number where tests are to be fast. */
 size_t relay_size(size_t size, size_t fast);

@@ -1,5 +1,6 @@
 /* The client library over a bus that loses, repeats and delays, with a service that is busy, gone,
  * slow, or forges results. */
+#include "client.h"
 #include "clock.h"
 #include "hostile.h"
 #include "fmb_client_raw.h"
@@ -27,23 +28,23 @@
 
 enum { PLACEMENTS = 700, ALL_WANTS = FMB_WANT_BOX | FMB_WANT_TIMES };
 
-static struct fmb_client_placement placement[PLACEMENTS];
+static struct fmb_placement placement[PLACEMENTS];
 static unsigned list[2000][2];
 
 /* Cut into some 15 queries. */
-static struct fmb_client_scene all_pairs(void)
+static struct fmb_scene all_pairs(void)
 {
     relay_draw(placement, PLACEMENTS, 3, 12, 1, 5);
-    return (struct fmb_client_scene){.placements = placement,
-                                     .placement_count = PLACEMENTS,
-                                     .which = FMB_PAIRS_ALL,
-                                     .duration = 1,
-                                     .want = ALL_WANTS};
+    return (struct fmb_scene){.placements = placement,
+                              .placement_count = PLACEMENTS,
+                              .which = FMB_PAIRS_ALL,
+                              .duration = 1,
+                              .want = ALL_WANTS};
 }
 
-static struct fmb_client_scene listed(void)
+static struct fmb_scene listed(void)
 {
-    struct fmb_client_scene scene = all_pairs();
+    struct fmb_scene scene = all_pairs();
     relay_draw(placement, 100, 3, 4, 1, 5);
     for (unsigned i = 0; i < 2000; i++) {
         list[i][0] = i % 100;
@@ -54,13 +55,6 @@ static struct fmb_client_scene listed(void)
     scene.pairs = (const unsigned(*)[2]) list;
     scene.pair_count = 2000;
     return scene;
-}
-
-/* Certificates are for bodies of one frame. */
-static void give_one_frame(void)
-{
-    for (int i = 0; i < PLACEMENTS; i++)
-        placement[i].frame_count = 1;
 }
 
 /* ---- A bad bus ---- */
@@ -76,7 +70,7 @@ static void test_what_the_bus_loses_is_sent_again(void **state)
     relay->busy = 11;
     relay_open(relay, 200);
     struct fmb_client *client = relay_client(relay, 0.05, 30);
-    struct fmb_client_scene scene = all_pairs();
+    struct fmb_scene scene = all_pairs();
     for (int i = 0; i < 3; i++)
         relay_query(client, &scene);
     scene = listed();
@@ -110,7 +104,7 @@ static void test_messages_that_cannot_be_read_are_counted(void **state)
     struct fmb_client *client = relay_client(relay, 5, 1);
     assert_int_equal(fmb_client_watch(client, &watcher), FMB_OK);
     const size_t count = hostile_each("scene_result", publish, relay);
-    const struct fmb_client_scene scene = listed();
+    const struct fmb_scene scene = listed();
     relay_query(client, &scene);
     assert_true(count > 300);
     assert_int_equal(fmb_client_get_counts(client).malformed, count);
@@ -141,7 +135,7 @@ static void test_results_of_another_kind_are_ignored(void **state)
     struct fmb_client_answer answer;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    const struct fmb_client_scene scene = all_pairs();
+    const struct fmb_scene scene = all_pairs();
     assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
     deceived = client;
     relay->before = publish_pair_results;
@@ -335,7 +329,7 @@ static void count(void *user, const struct fmb_client_answer *answer)
         tally->none[-answer->status]++;
 }
 
-static struct tally query(struct fmb_client *client, const struct fmb_client_scene *scene)
+static struct tally query(struct fmb_client *client, const struct fmb_scene *scene)
 {
     struct tally tally = {0};
     assert_int_equal(fmb_client_query(client, scene, count, &tally), FMB_OK);
@@ -358,7 +352,7 @@ static void test_a_service_that_comes_back_is_found(void **state)
     relay->deaf = true;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, timeout, tries);
-    const struct fmb_client_scene scene = listed();
+    const struct fmb_scene scene = listed();
     int64_t start = clock_ns();
     assert_int_equal(query(client, &scene).none[-FMB_CLIENT_NO_SERVICE], 2000);
     assert_true(seconds_since(start) >= tries * timeout);
@@ -401,8 +395,8 @@ static void test_a_repeat_finds_the_service(void **state)
     relay->deaf = true;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 0.3, 1);
-    const struct fmb_client_scene scene = listed();
-    struct fmb_client_scene one = scene;
+    const struct fmb_scene scene = listed();
+    struct fmb_scene one = scene;
     one.pair_count = 1;
     assert_int_equal(query(client, &one).none[-FMB_CLIENT_NO_SERVICE], 1);
     relay->queries = 0;
@@ -420,7 +414,7 @@ static void test_no_service_costs_the_time_of_one_query(void **state)
     relay_open(relay, 10);
     struct fmb_client *client = relay_client(relay, 0.05, 2);
     static const unsigned ignored[2][2] = {{0, 1}, {PLACEMENTS - 1, 3}};
-    struct fmb_client_scene scene = all_pairs();
+    struct fmb_scene scene = all_pairs();
     scene.ignored = ignored;
     scene.ignored_count = 2;
     const int64_t start = clock_ns();
@@ -481,10 +475,10 @@ static void test_queries_in_line_are_not_repeated(void **state)
     struct tally tally;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    struct fmb_client_scene scene = listed();
+    struct fmb_scene scene = listed();
     scene.pair_count = 150;
     scene.want = FMB_WANT_CERTIFICATE;
-    give_one_frame();
+    relay_use_first_frames(placement, PLACEMENTS); /* certificates are of those */
     tally = query(client, &scene);
     assert_int_equal(tally.good, 150);
     assert_in_range(fmb_client_get_counts(client).repeated, 1, 30);
@@ -542,7 +536,7 @@ static void test_the_others_have_no_answer(void **state)
     struct relay_truth truth;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 0.3, 1);
-    struct fmb_client_scene scene = listed();
+    struct fmb_scene scene = listed();
     relay_truth_make(&scene, &truth);
     assert_int_equal(fmb_client_query(client, &scene, relay_check, &truth), FMB_OK);
     assert_true(truth.given > 0 && truth.failed > 0);
@@ -558,12 +552,14 @@ static void test_the_time_for_all_ends_it(void **state)
     struct relay *relay = relay_new();
     relay->deaf = true;
     relay_open(relay, 10);
-    struct fmb_client *client = relay_client(relay, 1000, 100);
-    struct fmb_client_scene scene = listed();
-    scene.within = 0.05;
+    const struct fmb_client_options options = {
+        .url = relay->url, .timeout = 1000, .tries = 100, .within = 0.05};
+    struct fmb_client *client = fmb_client_open(&options, NULL, 0);
+    const struct fmb_scene scene = listed();
+    assert_non_null(client);
     assert_int_equal(query(client, &scene).none[-FMB_CLIENT_LATE], 2000);
     relay->deaf = false;
-    scene.within = 1000;
+    client->run.within = 1000;
     relay_query(client, &scene);
     fmb_client_close(client);
     relay_close(relay);
@@ -585,10 +581,10 @@ static void test_a_caller_that_takes_long_gets_all_answers(void **state)
     struct relay_truth truth;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 0.1, 4);
-    struct fmb_client_scene scene = listed();
+    struct fmb_scene scene = listed();
     scene.pair_count = 200;
     scene.want = ALL_WANTS | FMB_WANT_CERTIFICATE;
-    give_one_frame();
+    relay_use_first_frames(placement, PLACEMENTS); /* certificates are of those */
     relay_truth_make(&scene, &truth);
     assert_int_equal(fmb_client_query(client, &scene, check_slowly, &truth), FMB_OK);
     assert_int_equal(truth.failed, 0);
@@ -603,7 +599,7 @@ static void test_a_caller_that_takes_long_gets_all_answers(void **state)
 static void test_what_is_under_way_is_limited(void **state)
 {
     (void) state;
-    struct fmb_client_scene scene = all_pairs();
+    struct fmb_scene scene = all_pairs();
     for (int small = 0; small < 2; small++) {
         struct relay *relay = relay_new();
         relay->deaf = true;
@@ -612,7 +608,7 @@ static void test_what_is_under_way_is_limited(void **state)
         if (small)
             scene = listed();
         scene.want = small ? FMB_WANT_CERTIFICATE : 0;
-        scene.within = 0.005;
+        client->run.within = 0.005;
         query(client, &scene);
         const struct fmb_client_counts counts = fmb_client_get_counts(client);
         assert_true(small ? counts.queries > 30 && counts.queries <= 64 : counts.queries == 2);
@@ -808,7 +804,7 @@ static void test_forged_results_are_ignored(void **state)
     (void) state;
     for (size_t i = 0; i < sizeof lies / sizeof *lies; i++)
         for (int of_list = 0; of_list < 2; of_list++) {
-            struct fmb_client_scene scene = of_list ? listed() : all_pairs();
+            struct fmb_scene scene = of_list ? listed() : all_pairs();
             if (!(of_list ? lies[i].list : lies[i].named))
                 continue;
             struct relay *relay = relay_new();
@@ -876,7 +872,7 @@ static void test_forged_gaps_are_ignored(void **state)
                                           gaps_unwanted};
     for (size_t i = 0; i < sizeof gap_lies / sizeof *gap_lies; i++) {
         struct relay *relay = relay_new();
-        struct fmb_client_scene scene = all_pairs();
+        struct fmb_scene scene = all_pairs();
         scene.placement_count = 200;
         scene.want = 0;
         scene.margin = gap_lies[i] == gaps_unwanted ? 0 : 0.5;
@@ -915,7 +911,7 @@ static void test_results_of_a_pair_fit_their_query(void **state)
 {
     (void) state;
     static const struct part part = {.placement = {0, 2}, .pair = {{0, 1}}}; /* of one frame */
-    struct fmb_client_scene scene = listed();
+    struct fmb_scene scene = listed();
     for (size_t i = 0; i < sizeof pair_lies / sizeof *pair_lies; i++) {
         struct part_answers answers = {0};
         const struct pair_result result = {
@@ -946,7 +942,7 @@ static void test_frames_of_a_gap_fit_the_bodies(void **state)
         {0, 0, false, {0, 0}, true}, {0, 0, true, {0, 0}, false}, {0, 1, true, {0, 2}, true},
         {0, 1, true, {0, 3}, false}, {0, 1, true, {1, 0}, false}, {0, 1, false, {0, 0}, false},
         {1, 0, true, {2, 0}, true},  {1, 1, true, {2, 2}, true},  {1, 1, true, {3, 2}, false}};
-    struct fmb_client_scene scene = listed();
+    struct fmb_scene scene = listed();
     static struct scene_result named;
     scene.want = FMB_WANT_GAP;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -994,7 +990,7 @@ static void test_the_right_result_after_forged_ones_is_taken(void **state)
     relay->lie = lies_at_first;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 0.01, 1000);
-    struct fmb_client_scene scene = all_pairs();
+    struct fmb_scene scene = all_pairs();
     scene.placement_count = 400;
     relay_query(client, &scene);
     assert_true(fmb_client_get_counts(client).malformed > 0);
@@ -1021,7 +1017,7 @@ static void test_steps_of_one_pair_end(void **state)
     relay->double_result = 1;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    struct fmb_client_scene scene = listed();
+    struct fmb_scene scene = listed();
     scene.pair_count = 300;
     relay_query(client, &scene);
     assert_int_equal(fmb_client_get_counts(client).queries, 300);
@@ -1049,7 +1045,7 @@ static void test_slow_services_get_fewer_pairs_a_query(void **state)
     relay->lie = for_ever;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    const struct fmb_client_scene scene = listed();
+    const struct fmb_scene scene = listed();
     relay_query(client, &scene);
     uint64_t before = fmb_client_get_counts(client).queries;
     relay_query(client, &scene);
@@ -1079,7 +1075,7 @@ static uint64_t queries_with(relay_lie *lie)
     struct relay *relay = relay_new();
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    struct fmb_client_scene scene = listed();
+    struct fmb_scene scene = listed();
     scene.pair_count = 100;
     relay_query(client, &scene);
     relay->lie = lie;
@@ -1121,7 +1117,7 @@ static void test_an_answer_counts_more_than_an_unknown_body(void **state)
     struct fmb_client_answer answer;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    const struct fmb_client_scene scene = listed();
+    const struct fmb_scene scene = listed();
     relay_query(client, &scene);
     assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
     relay_add_service(relay, 2000);
@@ -1286,7 +1282,7 @@ static void test_contradicting_second_results_are_counted(void **state)
         relay->second_lie = second[i].lie;
         relay_open(relay, 2000);
         struct fmb_client *client = relay_client(relay, 5, 1);
-        struct fmb_client_scene scene = listed();
+        struct fmb_scene scene = listed();
         scene.want = 0;
         relay_query(client, &scene);
         const uint64_t results = fmb_client_get_counts(client).answered;
@@ -1369,7 +1365,7 @@ static void test_many_open_descriptors(void **state)
     for (int i = 0; i < COUNT; i++)
         assert_true((fd[i] = dup(STDERR_FILENO)) >= 0);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    const struct fmb_client_scene scene = listed();
+    const struct fmb_scene scene = listed();
     relay_query(client, &scene);
     assert_true(fmb_client_fileno(client) > 1024);
     fmb_client_close(client);
@@ -1385,7 +1381,7 @@ static void test_a_child_that_closes_harms_nothing(void **state)
     int status;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    const struct fmb_client_scene scene = listed();
+    const struct fmb_scene scene = listed();
     relay_query(client, &scene);
     const pid_t child = fork();
     if (child == 0) {
@@ -1404,7 +1400,7 @@ static void test_a_child_that_closes_harms_nothing(void **state)
 
 struct within {
     struct fmb_client *client;
-    const struct fmb_client_scene *scene;
+    const struct fmb_scene *scene;
     size_t called;
 };
 
@@ -1428,7 +1424,7 @@ static void test_no_call_within_a_callback(void **state)
     (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 2000);
-    const struct fmb_client_scene scene = listed();
+    const struct fmb_scene scene = listed();
     struct within within = {.client = relay_client(relay, 5, 1), .scene = &scene};
     assert_int_equal(fmb_client_query(within.client, &scene, query_within, &within), FMB_OK);
     assert_int_equal(within.called, 2000);
@@ -1444,7 +1440,7 @@ struct watching {
 static void on_pair(void *user, const struct fmb_client_pair_result *result)
 {
     assert_int_equal(result->status, FMB_OK);
-    assert_int_equal(result->body_id[0], placement[0].body_id);
+    assert_int_equal(result->body_id[0], placement[0].id);
     ((struct watching *) user)->pairs++;
 }
 
@@ -1488,7 +1484,7 @@ static void test_watching(void **state)
     relay_open(relay, 2000);
     struct fmb_client *other = relay_client(relay, 5, 1), *watch = relay_client(relay, 5, 1);
     assert_int_equal(fmb_client_watch(watch, &watcher), FMB_OK);
-    struct fmb_client_scene scene = all_pairs();
+    struct fmb_scene scene = all_pairs();
     struct fmb_client_answer answer;
     scene.placement_count = 100;
     relay_truth_make(&scene, &truth);

@@ -326,22 +326,21 @@ static void test_no_service_takes_precedence_over_late(void **state)
     static struct scene_run run;
     static struct held held;
     static unsigned pair[PAIRS][2];
-    const struct fmb_client_frame frame = {.shape = FMB_BOX, .components = {1, 1, 1}};
-    const struct fmb_client_placement placement[2] = {
-        {.dim = 3, .frames = &frame, .frame_count = 1},
-        {.dim = 3, .frames = &frame, .frame_count = 1}};
+    static const double size[3] = {1, 1, 1};
+    struct fmb_body box;
+    const struct fmb_placement placement[2] = {{.body = &box}, {.body = &box}};
+    assert_int_equal(fmb_body_make(3, FMB_BOX, size, 3, &box), FMB_OK);
     for (int i = 0; i < PAIRS; i++)
         pair[i][1] = 1;
-    struct fmb_client_scene scene = {.placements = placement,
-                                     .placement_count = 2,
-                                     .which = FMB_PAIRS_LISTED,
-                                     .pairs = (const unsigned(*)[2]) pair,
-                                     .pair_count = PAIRS};
+    const struct fmb_scene scene = {.placements = placement,
+                                    .placement_count = 2,
+                                    .which = FMB_PAIRS_LISTED,
+                                    .pairs = (const unsigned(*)[2]) pair,
+                                    .pair_count = PAIRS};
     for (int late = 0; late < 2; late++) {
         int count[8] = {0};
         open_network(1, 0, 0);
-        scene.within = late ? 2 : 3;
-        run = (struct scene_run){.requests = &net.requests, .held = &held};
+        run = (struct scene_run){.requests = &net.requests, .held = &held, .within = late ? 2 : 3};
         assert_int_equal(scene_run(&run, &scene, true, count_statuses, count), FMB_OK);
         assert_int_equal(count[late ? -FMB_CLIENT_LATE : -FMB_CLIENT_NO_SERVICE], PAIRS);
     }

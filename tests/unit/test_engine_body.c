@@ -224,6 +224,93 @@ static void vertices_are_exact(void **state)
     assert_true(count[0][0] > 0 && count[0][1] > 0 && count[1][0] > 0 && count[1][1] > 0);
 }
 
+/* ---- The numbers of a frame ---- */
+
+/* Whether a frame gives these numbers, and is made of them again. */
+static void expect_numbers(const struct fmb_frame *frame, const double *given, size_t count)
+{
+    double numbers[FMB_FRAME_NUMBERS_MAX];
+    struct fmb_frame again;
+    bool by_vertices;
+    assert_int_equal(fmb_frame_numbers(frame, &by_vertices, NULL), count);
+    assert_int_equal(fmb_frame_numbers(frame, &by_vertices, numbers), count);
+    assert_int_equal(by_vertices, frame->rounded);
+    for (size_t k = 0; given && k < count; k++)
+        assert_true(numbers[k] == given[k]);
+    assert_int_equal((by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
+                         frame->dim, frame->shape, numbers, count, &again),
+                     FMB_OK);
+    assert_memory_equal(&again, frame, sizeof again);
+}
+
+static void frames_give_the_numbers_they_were_made_of(void **state)
+{
+    (void) state;
+    static const int shapes[] = {FMB_CUBOID, FMB_TETRAHEDRON, FMB_FACE, FMB_BOX};
+    struct draw draw;
+    draw_begin(&draw, "frames_give_the_numbers_they_were_made_of");
+    for (int n = 0; n < 4000; n++) {
+        const int dim = draw_int(&draw, 2, 3), shape = shapes[draw_int(&draw, 0, dim == 3 ? 3 : 1)];
+        const int components = fmb_component_count(dim, shape);
+        const size_t count = (size_t) (dim + components * (shape == FMB_BOX ? 1 : dim));
+        double numbers[FMB_FRAME_NUMBERS_MAX];
+        struct fmb_frame frame;
+        for (size_t k = 0; k < count; k++)
+            numbers[k] = 0.1 * draw_int(&draw, shape == FMB_BOX ? 0 : -9, 9) + 0.0;
+        assert_int_equal(fmb_frame_make(dim, shape, numbers, count, &frame), FMB_OK);
+        expect_numbers(&frame, numbers, count);
+    }
+}
+
+static double draw_of_exponent(struct draw *draw, int exponent)
+{
+    const double ends[] = {1, 1 + 0x1p-52, 2 - 0x1p-52};
+    const int end = draw_int(draw, 0, 5);
+    const double mantissa = end < 3 ? ends[end] : 1 + 0x1p-30 * draw_int(draw, 0, 1 << 30);
+    return ldexp(draw_coin(draw) ? mantissa : -mantissa, exponent);
+}
+
+/* Returns whether a face with this coordinate of its first vertex gives its vertices. */
+static bool gives_vertices(const double vertices[9])
+{
+    double numbers[FMB_FRAME_NUMBERS_MAX];
+    struct fmb_frame frame;
+    if (fmb_frame_make_vertices(3, FMB_FACE, vertices, 9, &frame) != FMB_OK)
+        return false; /* a component overflows */
+    expect_numbers(&frame, frame.rounded ? vertices : NULL, 9);
+    bool by_vertices;
+    fmb_frame_numbers(&frame, &by_vertices, numbers);
+    return by_vertices;
+}
+
+/* Vertices of all exponents, against a first vertex of all that matter for the rounding of the
+ * difference, and of some others. */
+static void vertices_are_recovered_exactly(void **state)
+{
+    (void) state;
+    enum { LEAST = -1074, MOST = 1023, NEAR = 56 };
+    struct draw draw;
+    long rounded = 0;
+    draw_begin(&draw, "vertices_are_recovered_exactly");
+    for (int first = LEAST; first <= MOST; first++)
+        for (int n = -NEAR; n <= NEAR; n++) {
+            double vertices[9];
+            int near = first + n;
+            near = near < LEAST ? LEAST : near > MOST ? MOST : near;
+            for (int axis = 0; axis < 3; axis++) {
+                vertices[axis] = draw_of_exponent(&draw, first);
+                vertices[3 + axis] = draw_of_exponent(&draw, near);
+                vertices[6 + axis] = draw_of_exponent(&draw, draw_int(&draw, LEAST, MOST));
+            }
+            rounded += gives_vertices(vertices);
+        }
+    assert_true(rounded > 100000);
+    /* The sum of the first vertex and the component exceeds the largest double. */
+    const double overflow[9] = {0x3p970, 0, 0, DBL_MAX, 1, 0, DBL_MAX, 0, 1};
+    assert_true(overflow[0] + (overflow[3] - overflow[0]) == INFINITY);
+    assert_true(gives_vertices(overflow));
+}
+
 /* ---- Bodies ---- */
 
 static void bodies_of_one_frame_hold_it(void **state)
@@ -509,6 +596,8 @@ int main(void)
         cmocka_unit_test(an_origin_left_out_is_0),
         cmocka_unit_test(vertices_that_are_refused),
         cmocka_unit_test(vertices_are_exact),
+        cmocka_unit_test(frames_give_the_numbers_they_were_made_of),
+        cmocka_unit_test(vertices_are_recovered_exactly),
         cmocka_unit_test(bodies_of_one_frame_hold_it),
         cmocka_unit_test(no_vertex_is_beyond_the_radius),
         cmocka_unit_test(thin_frames_are_not_sturdy),

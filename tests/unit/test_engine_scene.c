@@ -420,62 +420,74 @@ static void draw_good(enum fmb_pairs which)
     assert_int_equal(begin(&world.scene), FMB_OK);
 }
 
+static void expect_refusal(const struct fmb_scene *scene, enum fmb_status status, const char *place)
+{
+    char why[100];
+    assert_int_equal(begin(scene), status);
+    assert_int_equal(fmb_scene_check(scene, why, sizeof why), status);
+    assert_memory_equal(why, place, strlen(place));
+}
+
 static void bad_scenes(void **state)
 {
     struct fmb_scene *scene = &world.scene;
     (void) state;
     draw_good(FMB_PAIRS_LISTED);
     world.pair[3][1] = 5;
-    assert_int_equal(begin(scene), FMB_BAD_PAIR);
+    expect_refusal(scene, FMB_BAD_PAIR, "pairs[3]: ");
     world.pair[3][1] = world.pair[3][0];
-    assert_int_equal(begin(scene), FMB_BAD_PAIR);
+    expect_refusal(scene, FMB_BAD_PAIR, "pairs[3]: ");
     draw_good(FMB_PAIRS_LISTED);
     world.placement[world.pair[2][0]].group = world.placement[world.pair[2][1]].group = -1;
-    assert_int_equal(begin(scene), FMB_BAD_PAIR);
+    expect_refusal(scene, FMB_BAD_PAIR, "pairs["); /* this one, or one that is equal */
     world.placement[world.pair[2][0]].group = 1;
     assert_int_equal(begin(scene), FMB_OK);
     draw_good(FMB_PAIRS_LISTED);
     scene->first_pair = scene->pair_count + 1;
-    assert_int_equal(begin(scene), FMB_BAD_PAIR);
+    expect_refusal(scene, FMB_BAD_PAIR, "first_pair: ");
     draw_good(FMB_PAIRS_LISTED);
     scene->split = 1;
-    assert_int_equal(begin(scene), FMB_BAD_PAIR);
+    expect_refusal(scene, FMB_BAD_PAIR, "split: ");
     draw_good(FMB_PAIRS_LISTED);
     scene->ignored = scene->pairs;
     scene->ignored_count = 1;
-    assert_int_equal(begin(scene), FMB_WRONG_COUNT);
+    expect_refusal(scene, FMB_WRONG_COUNT, "ignored_count: ");
     draw_good(FMB_PAIRS_ALL);
     scene->pairs = scene->ignored;
     scene->pair_count = 1;
-    assert_int_equal(begin(scene), FMB_WRONG_COUNT);
+    expect_refusal(scene, FMB_WRONG_COUNT, "pair_count: ");
     draw_good(FMB_PAIRS_ALL);
     world.ignored[0][0] = 7;
-    assert_int_equal(begin(scene), FMB_BAD_PAIR);
+    expect_refusal(scene, FMB_BAD_PAIR, "ignored[0]: ");
     draw_good(FMB_PAIRS_ALL);
+    scene->which = (enum fmb_pairs) 3;
+    expect_refusal(scene, FMB_BAD_PAIR, "which: ");
+    draw_good(FMB_PAIRS_ALL);
+    scene->margin = 0, scene->want = 0;
     scene->method = fmb_method_by_name("fmb");
-    assert_int_equal(begin(scene), FMB_CANNOT_DECIDE);
+    expect_refusal(scene, FMB_CANNOT_DECIDE, "method: ");
     draw_good(FMB_PAIRS_LISTED);
     scene->want |= FMB_WANT_GAP;
     scene->method = fmb_method_by_name("sat");
-    assert_int_equal(begin(scene), FMB_CANNOT_DECIDE);
+    expect_refusal(scene, FMB_CANNOT_DECIDE, "method: ");
     draw_good(FMB_PAIRS_ALL);
     scene->want |= FMB_WANT_CERTIFICATE;
-    assert_int_equal(begin(scene), FMB_UNKNOWN_WANT);
+    expect_refusal(scene, FMB_UNKNOWN_WANT, "want: ");
     static const double margins[] = {-0x1p-1074, INFINITY, NAN};
     for (int i = 0; i < 3; i++) {
         draw_good(FMB_PAIRS_ALL);
         scene->margin = margins[i];
-        assert_int_equal(begin(scene), FMB_BAD_MARGIN);
+        expect_refusal(scene, FMB_BAD_MARGIN, "margin: ");
     }
     draw_good(FMB_PAIRS_ALL);
     scene->duration = -1;
-    assert_int_equal(begin(scene), FMB_BAD_DURATION);
+    expect_refusal(scene, FMB_BAD_DURATION, "duration: ");
     draw_good(FMB_PAIRS_ALL);
     world.placement[2].position[1] = NAN;
-    assert_int_equal(begin(scene), FMB_NOT_FINITE);
+    expect_refusal(scene, FMB_NOT_FINITE, "placements[2]: ");
     draw_good(FMB_PAIRS_ALL);
     world.placement[2].body = NULL;
-    assert_int_equal(begin(scene), FMB_NO_FRAMES);
+    expect_refusal(scene, FMB_NO_FRAMES, "placements[2]: ");
 }
 
 /* Two cubes that overlap at time 0 and move apart, or are at rest. */

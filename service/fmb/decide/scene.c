@@ -24,6 +24,7 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 enum {
     CACHE_LINE = 64,
@@ -154,36 +155,62 @@ struct fmb_scene_limits fmb_scene_limits_of(const struct fmb_scene *scene)
 
 /* ---- Checking ---- */
 
-static enum fmb_status check_placements(const struct fmb_scene *scene)
+/* Memory for the text of an error. */
+struct why {
+    char *text;
+    size_t size;
+};
+
+/* detail: NULL: the text of the status. */
+static enum fmb_status refuse(struct why why, enum fmb_status status, const char *field,
+                              const char *detail)
 {
+    snprintf(why.text, why.size, "%s: %s", field, detail ? detail : fmb_status_text(status));
+    return status;
+}
+
+static enum fmb_status refuse_element(struct why why, enum fmb_status status, const char *array,
+                                      size_t i)
+{
+    snprintf(why.text, why.size, "%s[%zu]: %s", array, i, fmb_status_text(status));
+    return status;
+}
+
+/* *moving: whether a placement moves. */
+static enum fmb_status check_placements(const struct fmb_scene *scene, struct why why, bool *moving)
+{
+    *moving = false;
     for (size_t i = 0; i < scene->placement_count; i++) {
-        const enum fmb_status status = fmb_placement_check(&scene->placements[i]);
+        const struct fmb_placement *placement = &scene->placements[i];
+        enum fmb_status status = fmb_placement_check(placement);
+        if (status == FMB_OK && placement->body->dim != scene->placements[0].body->dim)
+            status = FMB_DIMENSIONS_DIFFER;
         if (status != FMB_OK)
-            return status;
-        if (scene->placements[i].body->dim != scene->placements[0].body->dim)
-            return FMB_DIMENSIONS_DIFFER;
+            return refuse_element(why, status, "placements", i);
+        *moving = *moving || placement_moves(placement, placement->body->dim);
     }
     return FMB_OK;
 }
 
-/* In: placements that have been checked. */
-static bool any_moves(const struct fmb_scene *scene)
-{
-    for (size_t i = 0; i < scene->placement_count; i++)
-        if (placement_moves(&scene->placements[i], scene->placements[i].body->dim))
-            return true;
-    return false;
-}
-
-/* Has no branches, so that compilers vectorize it. */
-static bool are_pairs(const unsigned (*restrict pair)[2], size_t count, size_t placements)
+static bool is_pair(const unsigned pair[2], size_t placements)
 {
     const unsigned end = (unsigned) placements;
-    unsigned bad = 0;
-    for (size_t i = 0; i < count; i++)
-        bad |= (unsigned) (pair[i][0] >= end) | (unsigned) (pair[i][1] >= end) |
-               (unsigned) (pair[i][0] == pair[i][1]);
-    return !bad;
+    return (pair[0] < end) & (pair[1] < end) & (pair[0] != pair[1]);
+}
+
+/* The first loop has no branches, so that compilers vectorize it. */
+static enum fmb_status check_indices(const unsigned (*restrict pair)[2], size_t count,
+                                     size_t placements, struct why why, const char *array)
+{
+    bool good = true;
+    size_t i = 0;
+    for (size_t k = 0; k < count; k++)
+        good &= is_pair(pair[k], placements);
+    if (good)
+        return FMB_OK;
+    while (is_pair(pair[i], placements))
+        i++;
+    return refuse_element(why, FMB_BAD_PAIR, array, i);
 }
 
 /* Whether pairs in the answers have gaps: all, or those that meet or are near. */
@@ -192,7 +219,7 @@ static bool has_gaps(const struct fmb_scene *scene)
     return scene->want & FMB_WANT_GAP || scene->margin > 0;
 }
 
-static bool is_any_within_group(const struct fmb_scene *scene)
+static enum fmb_status check_groups(const struct fmb_scene *scene, struct why why)
 {
     const struct fmb_placement *placement = scene->placements;
     bool groups = false;
@@ -200,43 +227,58 @@ static bool is_any_within_group(const struct fmb_scene *scene)
         groups = groups || placement[i].group;
     for (size_t k = 0; groups && k < scene->pair_count; k++)
         if (scene_pairs_is_within_group(scene, scene->pairs[k][0], scene->pairs[k][1]))
-            return true;
-    return false;
+            return refuse_element(why, FMB_BAD_PAIR, "pairs", k);
+    return FMB_OK;
 }
 
-static enum fmb_status check_pairs(const struct fmb_scene *scene)
+static enum fmb_status check_pairs(const struct fmb_scene *scene, struct why why)
 {
     const bool listed = scene->which == FMB_PAIRS_LISTED;
-    if ((unsigned) scene->which > FMB_PAIRS_ACROSS ||
-        scene->split > (scene->which == FMB_PAIRS_ACROSS ? scene->placement_count : 0))
-        return FMB_BAD_PAIR;
+    const size_t placements = scene->placement_count;
+    if ((unsigned) scene->which > FMB_PAIRS_ACROSS)
+        return refuse(why, FMB_BAD_PAIR, "which", NULL);
+    if (scene->split > (scene->which == FMB_PAIRS_ACROSS ? placements : 0))
+        return refuse(why, FMB_BAD_PAIR, "split", NULL);
     if (listed ? scene->ignored_count > 0 : scene->pair_count > 0)
-        return FMB_WRONG_COUNT;
-    if (!are_pairs(scene->pairs, scene->pair_count, scene->placement_count) ||
-        !are_pairs(scene->ignored, scene->ignored_count, scene->placement_count) ||
-        is_any_within_group(scene) || scene->first_pair > scene_pairs_total(scene))
-        return FMB_BAD_PAIR;
-    const bool certain = !scene->method || scene->method->certain;
-    return certain || (listed && !has_gaps(scene)) ? FMB_OK : FMB_CANNOT_DECIDE;
+        return refuse(why, FMB_WRONG_COUNT, listed ? "ignored_count" : "pair_count", NULL);
+    enum fmb_status status =
+        check_indices(scene->pairs, scene->pair_count, placements, why, "pairs");
+    if (status == FMB_OK)
+        status = check_indices(scene->ignored, scene->ignored_count, placements, why, "ignored");
+    if (status == FMB_OK)
+        status = check_groups(scene, why);
+    if (status == FMB_OK && scene->first_pair > scene_pairs_total(scene))
+        status = refuse(why, FMB_BAD_PAIR, "first_pair", NULL);
+    if (status != FMB_OK || !scene->method || scene->method->certain)
+        return status;
+    if (has_gaps(scene))
+        return refuse(why, FMB_CANNOT_DECIDE, "method", "gives no gaps");
+    return listed ? FMB_OK : refuse(why, FMB_CANNOT_DECIDE, "method", "listed pairs only");
 }
 
-static enum fmb_status check(const struct fmb_scene *scene, const struct fmb_scene_limits *limits)
+enum fmb_status fmb_scene_check(const struct fmb_scene *scene, char *text, size_t size)
 {
-    if (scene->placement_count > limits->placements || scene->ignored_count > limits->ignored ||
-        limits->slots < FMB_SCENE_SLOTS_MIN || fmb_scene_bytes(limits) == SIZE_MAX)
-        return FMB_OVER_LIMIT;
+    const struct why why = {text, size};
+    bool moving;
     if (!prepared_is_duration(scene->duration))
-        return FMB_BAD_DURATION;
+        return refuse(why, FMB_BAD_DURATION, "duration", NULL);
     if (!(scene->margin >= 0) || !isfinite(scene->margin))
-        return FMB_BAD_MARGIN;
+        return refuse(why, FMB_BAD_MARGIN, "margin", NULL);
     if (scene->want & ~(unsigned) (FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP))
-        return FMB_UNKNOWN_WANT;
-    const enum fmb_status status = check_placements(scene);
+        return refuse(why, FMB_UNKNOWN_WANT, "want", NULL);
+    const enum fmb_status status = check_placements(scene, why, &moving);
     if (status != FMB_OK)
         return status;
-    if (scene->instant ? scene->duration != 0 : scene->duration == 0 && any_moves(scene))
-        return FMB_BAD_DURATION;
-    return frames_of(scene) > limits->frames ? FMB_OVER_LIMIT : check_pairs(scene);
+    if (scene->instant ? scene->duration != 0 : scene->duration == 0 && moving)
+        return refuse(why, FMB_BAD_DURATION, "duration", NULL);
+    return check_pairs(scene, why);
+}
+
+static bool is_within(const struct fmb_scene *scene, const struct fmb_scene_limits *limits)
+{
+    return scene->placement_count <= limits->placements &&
+           scene->ignored_count <= limits->ignored && limits->slots >= FMB_SCENE_SLOTS_MIN &&
+           fmb_scene_bytes(limits) < SIZE_MAX && frames_of(scene) <= limits->frames;
 }
 
 /* ---- Beginning ---- */
@@ -266,7 +308,8 @@ enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
                                 const struct fmb_scene_limits *limits, void *memory,
                                 struct fmb_scene_state **out)
 {
-    const enum fmb_status status = check(scene, limits);
+    const enum fmb_status status =
+        is_within(scene, limits) ? fmb_scene_check(scene, NULL, 0) : FMB_OVER_LIMIT;
     if (status != FMB_OK)
         return status;
     char *base = memory;

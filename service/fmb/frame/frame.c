@@ -347,6 +347,32 @@ static double difference_error(double x, double y, double difference)
     return fabs(x) >= fabs(y) ? (x - difference) - y : x - (difference + y);
 }
 
+/* Returns the double x of which difference = x - y, rounded, and its error are known: y +
+ * difference + error.
+ *
+ * Derivation. Let d be the difference and e its error, both of any sign; if y < 0, change all
+ * signs. Sums of magnitude below 2^-1021 are exact; beyond, halves are doubles. Rounding is
+ * monotonic. By Sterbenz's lemma u - v is exact if v / 2 <= u <= 2 v.
+ *
+ *   d and y of opposite signs, y > 0, so x < y.
+ *     |d| <= 2 y. If |d| >= y / 2, y + d is exact by the lemma. Otherwise x >= y / 2, x - y is
+ *     exact, e = 0, and y + d is x. In both cases (y + d) + e rounds x, a double.
+ *     |d| > 2 y. Then x < -y, so |d| = |x| + y, rounded, is between |x| and 2 |x|. x - d, which is
+ *     y + e, is exact by the lemma, and d + (y + e) rounds x.
+ *   d and y of one sign, y > 0, so x > y.
+ *     x <= 2 y. x - y is exact, e = 0, and d + y is x.
+ *     x > 2 y. Then d is between x / 2 and x, x - d = y + e is exact, and d + (y + e) rounds x.
+ *   d or y is 0. The other one is +-x, and e = 0.
+ *
+ * No intermediate result overflows: each is rounded from x, from x - d, or from a sum of opposite
+ * signs. */
+static double difference_undo(double y, double difference, double error)
+{
+    const bool opposite = (y < 0) != (difference < 0);
+    return opposite && fabs(difference) <= 2 * fabs(y) ? (y + difference) + error
+                                                       : difference + (y + error);
+}
+
 enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertices, size_t count,
                                         struct fmb_frame *out)
 {
@@ -375,6 +401,27 @@ enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertic
         }
     complete(out);
     return FMB_OK;
+}
+
+size_t fmb_frame_numbers(const struct fmb_frame *frame, bool *by_vertices, double *numbers)
+{
+    const size_t dim = (size_t) frame->dim;
+    const bool box = frame->shape == FMB_BOX;
+    *by_vertices = frame->rounded;
+    if (numbers)
+        memcpy(numbers, box ? frame->centre : frame->origin, dim * sizeof *numbers);
+    for (size_t i = 0; numbers && i < (size_t) frame->count; i++)
+        for (size_t axis = 0; axis < dim; axis++) {
+            const double c = frame->component[i][axis];
+            if (box)
+                numbers[dim + i] = frame->component[i][i];
+            else
+                numbers[dim * (1 + i) + axis] =
+                    frame->rounded
+                        ? difference_undo(frame->origin[axis], c, frame->remainder[i][axis])
+                        : c;
+        }
+    return dim + (size_t) frame->count * (box ? 1 : dim);
 }
 
 /* ---- Bodies ---- */
