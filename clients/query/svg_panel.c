@@ -172,7 +172,7 @@ static struct facet make_facet(const struct view *view, const struct outline *ou
         return facet;
     facet.light = view_light(view, outline->corner[of->corner[0]], outline->corner[of->corner[1]],
                              outline->corner[of->corner[2]]);
-    if (outline->face_count > 1)
+    if (!outline->flat)
         facet.front = is_front(&facet, middle, view_point(view, outline->centre));
     return facet;
 }

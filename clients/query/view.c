@@ -30,72 +30,27 @@ static bool adds(const struct fmb_frame *frame, int corner, int component)
     return corner == component + 1;
 }
 
-static void set_faces(const struct fmb_frame *frame, struct outline *out)
-{
-    bool solid = frame->dim == 3 && frame->shape != FMB_FACE;
-    if (is_cuboid(frame)) {
-        out->face = solid ? cuboid_3d : cuboid_2d;
-        out->face_count = solid ? 6 : 1;
-    } else {
-        out->face = solid ? tetrahedron_3d : triangle;
-        out->face_count = solid ? 4 : 1;
-    }
-}
-
-/* R(q) of fmb.h, [row][column]; numbers of any size. */
-static void set_rotation(const struct fmb_placement *placement, double out[3][3])
-{
-    const double *given = placement->orientation;
-    double largest = 0, q[4] = {1, 0, 0, 0}, norm = 0;
-    for (int i = 0; i < placement->orientation_count; i++)
-        largest = fmax(largest, fabs(given[i]));
-    for (int i = 0; i < placement->orientation_count; i++)
-        q[placement->orientation_count == 2 ? 3 * i : i] = given[i] / largest;
-    for (int i = 0; i < 4; i++)
-        norm += q[i] * q[i];
-    const double w = q[0], *v = q + 1;
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        out[i][i] = (w * w + v[i] * v[i] - v[j] * v[j] - v[k] * v[k]) / norm;
-        out[i][j] = 2 * (v[i] * v[j] - w * v[k]) / norm;
-        out[j][i] = 2 * (v[i] * v[j] + w * v[k]) / norm;
-    }
-}
-
-/* Corner k of the frame, in body coordinates. */
-static void set_corner(const struct fmb_frame *frame, int k, double out[FMB_DIM_MAX])
-{
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        out[axis] = frame->origin[axis];
-        for (int i = 0; i < frame->count; i++)
-            out[axis] += adds(frame, k, i) ? frame->component[i][axis] : 0;
-    }
-}
-
 struct outline outline_make(const struct fmb_placement *placement, unsigned index, double time)
 {
     const struct fmb_frame *frame = fmb_body_frame(placement->body, index);
+    const bool cuboid = is_cuboid(frame), solid = frame->dim == 3 && frame->shape != FMB_FACE;
+    const int dim = frame->dim;
+    struct fmb_prepared world; /* origin and components */
     struct outline outline;
-    double rotation[3][3], corner[FMB_DIM_MAX];
     memset(&outline, 0, sizeof outline);
-    set_faces(frame, &outline);
-    set_rotation(placement, rotation);
-    outline.corner_count = is_cuboid(frame) ? 1 << frame->count : frame->count + 1;
-    for (int k = 0; k < outline.corner_count; k++) {
-        set_corner(frame, k, corner);
-        for (int axis = 0; axis < frame->dim; axis++) {
-            const double *row = rotation[axis];
-            double at = placement->position[axis];
-            if (placement->orientation_count == 0)
-                at += corner[axis];
-            else
-                at += row[0] * corner[0] + row[1] * corner[1] + row[2] * corner[2];
-            if (time > 0)
-                at += time * placement->velocity[axis];
+    outline.face = cuboid ? (solid ? cuboid_3d : cuboid_2d) : solid ? tetrahedron_3d : triangle;
+    outline.face_count = !solid ? 1 : cuboid ? 6 : 4;
+    outline.flat = frame->flat;
+    outline.corner_count = cuboid ? 1 << frame->count : frame->count + 1;
+    fmb_prepare(placement, index, 1, &world);
+    for (int k = 0; k < outline.corner_count; k++)
+        for (int axis = 0; axis < dim; axis++) {
+            double at = world.number[axis] + (time > 0 ? time * placement->velocity[axis] : 0);
+            for (int i = 0; i < frame->count; i++)
+                at += adds(frame, k, i) ? world.number[(i + 1) * dim + axis] : 0;
             outline.corner[k][axis] = at;
             outline.centre[axis] += at / outline.corner_count;
         }
-    }
     return outline;
 }
 

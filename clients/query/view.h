@@ -20,6 +20,7 @@ struct outline_face {
 
 struct outline {
     int corner_count, face_count;                    /* in 2D: one face, the frame itself */
+    bool flat;                                       /* no face is turned away from the viewer */
     double corner[OUTLINE_CORNERS_MAX][FMB_DIM_MAX]; /* world; z = 0 in 2D; infinite where beyond
                                                         the largest double */
     double centre[FMB_DIM_MAX];                      /* of the corners */

@@ -312,11 +312,34 @@ static void turned_bodies_are_drawn_turned(void **state)
     }
 }
 
+/* All faces of a flat frame are filled, in any orientation. */
+static void flat_boxes_are_filled(void **state)
+{
+    static const double size[] = {1, 2, 0};
+    (void) state;
+    for (int i = 0; i < 100; i++) {
+        struct fmb_body body;
+        const struct fmb_placement placement = {.body = &body,
+                                                .position = {0.1, i, 0.3},
+                                                .orientation = {1, 0.1 * i, 0.7, -0.3 * i},
+                                                .orientation_count = 4,
+                                                .id = 1};
+        const struct owned_scene scene = {
+            .dim = 3, .scene = {.placements = &placement, .placement_count = 1, .duration = 1}};
+        assert_int_equal(fmb_body_make(3, FMB_BOX, size, 3, &body), FMB_OK);
+        char *text = draw_one(&scene);
+        assert_int_equal(count(text, "class=\"back\""), 0);
+        assert_int_equal(count(text, "<title>1: not tested</title>"), 6);
+        free(text);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shows_frames_ids_motion_and_boxes),
         cmocka_unit_test(turned_bodies_are_drawn_turned),
+        cmocka_unit_test(flat_boxes_are_filled),
         cmocka_unit_test(any_numbers_can_be_drawn),
         cmocka_unit_test(infinite_boxes_and_sums_can_be_drawn),
         cmocka_unit_test(empty_scenes_and_no_scene_can_be_drawn),
