@@ -76,27 +76,12 @@ struct query_options {
 
 /* ---- Options --------------------------------------------------------------------------------- */
 
-enum { METHOD_NAMES_MAX = 80 };
-
-/* Returns the names of the methods: "exact, fmb and sat". */
-static const char *method_names(char out[METHOD_NAMES_MAX])
-{
-    size_t used = 0;
-    for (size_t i = 0; fmb_method_at(i) && used < METHOD_NAMES_MAX; i++) {
-        const char *separator = i == 0 ? "" : fmb_method_at(i + 1) ? ", " : " and ";
-        used += (size_t) snprintf(out + used, METHOD_NAMES_MAX - used, "%s%s", separator,
-                                  fmb_method_at(i)->name);
-    }
-    return out;
-}
-
 static bool take_method(const struct args *args, void *out)
 {
-    char names[METHOD_NAMES_MAX];
     const struct fmb_method **method = out;
     *method = fmb_method_by_name(optarg);
     return *method ||
-           args_error(args, "--method: there are %s, not '%s'", method_names(names), optarg);
+           args_error(args, "--method: there are certified, exact, fmb and sat, not '%s'", optarg);
 }
 
 /* ---- Answers --------------------------------------------------------------------------------- */

@@ -244,10 +244,8 @@ static bool read_dim(const struct place *at, void *out)
     const double dim = at->item->valuedouble;
     if (!cJSON_IsNumber(at->item))
         return refuse_kind(at, "2 or 3");
-    if (dim != 2 && dim != 3)
-        return refuse_value(at, dim, "2 or 3");
     *(int *) out = (int) dim;
-    return true;
+    return dim == 2 || dim == 3 || refuse_value(at, dim, "2 or 3");
 }
 
 static bool read_id(const struct place *at, void *out)
@@ -257,10 +255,8 @@ static bool read_id(const struct place *at, void *out)
         return refuse_kind(at, EXPECTED_ID);
     if (id > id_max) /* its digits are lost */
         return refuse(at, "expected " EXPECTED_ID ", found a larger number");
-    if (!(id >= 1 && id == floor(id)))
-        return refuse_value(at, id, EXPECTED_ID);
     *(int64_t *) out = (int64_t) id;
-    return true;
+    return (id >= 1 && id == floor(id)) || refuse_value(at, id, EXPECTED_ID);
 }
 
 static bool read_group(const struct place *at, void *out)
@@ -268,10 +264,9 @@ static bool read_group(const struct place *at, void *out)
     const double group = at->item->valuedouble;
     if (!cJSON_IsNumber(at->item))
         return refuse_kind(at, EXPECTED_GROUP);
-    if (group == 0 || group != floor(group) || fabs(group) > id_max)
-        return refuse(at, "expected " EXPECTED_GROUP);
     *(int64_t *) out = (int64_t) group;
-    return true;
+    return (group != 0 && group == floor(group) && fabs(group) <= id_max) ||
+           refuse(at, "expected " EXPECTED_GROUP);
 }
 
 /* Reads a name or a label. */
@@ -374,21 +369,8 @@ static bool read_orientation(const struct place *at, void *out)
 static read_function read_frames;
 
 /* In the order of reading. A frame has those from SHAPE to ORIENTATION. */
-enum {
-    ID,
-    NAME,
-    GROUP,
-    VELOCITY,
-    SHAPE,
-    ORIGIN,
-    COMPONENTS,
-    VERTICES,
-    SIZE,
-    POSITION,
-    ORIENTATION,
-    FRAMES,
-    BODY_KEYS
-};
+enum { ID, NAME, GROUP, VELOCITY, SHAPE, ORIGIN, COMPONENTS, VERTICES, SIZE, POSITION };
+enum { ORIENTATION = POSITION + 1, FRAMES, BODY_KEYS };
 
 static const struct key body_keys[BODY_KEYS] = {
     [ID] = {"id", true, read_id, offsetof(struct body, placement.id)},
@@ -448,16 +430,6 @@ static bool read_keys(const struct place *at, int first, int end, struct place m
            read_members(member + ORIGIN, body_keys + ORIGIN, end - ORIGIN, out);
 }
 
-/* Makes a box that is turned in its body a cuboid. */
-static void turn_box(int dim, const struct fmb_placement *pose, struct geometry_frame *box)
-{
-    double cuboid[GEOMETRY_FRAME_NUMBERS_MAX];
-    turned_box(dim, box->origin, box->components, pose->orientation, cuboid);
-    box->shape = FMB_CUBOID;
-    memcpy(box->origin, cuboid, (size_t) dim * sizeof *cuboid);
-    memcpy(box->components, cuboid + dim, (size_t) (dim * dim) * sizeof *cuboid);
-}
-
 /* Reads an element of "frames". Adds its bytes in a message to *bytes: 1 for the shape, 4 for a
  * count, and 8 for each number. */
 static bool read_frame(const struct place *at, size_t *bytes)
@@ -470,8 +442,10 @@ static bool read_frame(const struct place *at, size_t *bytes)
         return false;
     if (frame->shape == FMB_BOX)
         memcpy(frame->origin, body.placement.position, sizeof frame->origin);
-    if (turns(&body.placement))
-        turn_box(dim, &body.placement, frame);
+    if (turns(&body.placement)) {
+        turned_box(dim, body.placement.orientation, frame->origin, frame->components);
+        frame->shape = FMB_CUBOID;
+    }
     *scene_add_given(at->reader->scene) = *frame;
     *bytes +=
         1 + (frame->by_vertices ? 4 : 0) + 8 * (size_t) geometry_number_count(dim, frame->shape, 0);

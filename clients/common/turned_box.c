@@ -51,12 +51,13 @@ static double round_once(const mpq_t value)
     return beyond ? far : near;
 }
 
-void turned_box(int dim, const double *centre, const double *size, const double *orientation,
-                double *numbers)
+void turned_box(int dim, const double *orientation, double *origin, double *components)
 {
     const double w = orientation[0];
     double v[3] = {0, 0, orientation[1]}; /* in 2D about z */
+    double size[FMB_DIM_MAX];
     mpq_t norm, edge, number, corner;
+    memcpy(size, components, (size_t) dim * sizeof *size);
     if (dim == 3)
         memcpy(v, orientation + 1, sizeof v);
     mpq_inits(norm, edge, number, corner, NULL);
@@ -64,17 +65,17 @@ void turned_box(int dim, const double *centre, const double *size, const double 
     for (int i = 0; i < 3; i++)
         add_product(norm, 1, v[i], v[i]);
     for (int axis = 0; axis < dim; axis++) {
-        mpq_set_d(corner, centre[axis]);
+        mpq_set_d(corner, origin[axis]);
         for (int i = 0; i < dim; i++) {
             set_entry(edge, w, v, axis, i);
             mpq_set_d(number, size[i]);
             mpq_mul(edge, edge, number);
             mpq_div(edge, edge, norm);
-            numbers[dim + i * dim + axis] = round_once(edge);
+            components[i * dim + axis] = round_once(edge);
             mpq_div_2exp(edge, edge, 1);
             mpq_sub(corner, corner, edge);
         }
-        numbers[axis] = round_once(corner);
+        origin[axis] = round_once(corner);
     }
     mpq_clears(norm, edge, number, corner, NULL);
 }

@@ -220,20 +220,21 @@ static void turned_boxes_are_rounded_once(void **state)
     uint64_t seed = 5;
     (void) state;
     for (int i = 0; i < 2000; i++) {
-        double q[4], size[3], centre[3] = {0}, number[12];
+        double q[4], size[3], origin[3] = {0}, component[9];
         for (int k = 0; k < 4; k++)
             q[k] = (double) (next_random(&seed) % 2000) - 999.5;
         for (int k = 0; k < 3; k++)
             size[k] = (double) (next_random(&seed) % 1000);
-        turned_box(3, centre, size, q, number);
+        memcpy(component, size, sizeof size);
+        turned_box(3, q, origin, component);
         const long double norm = (long double) q[0] * q[0] + (long double) q[1] * q[1] +
                                  (long double) q[2] * q[2] + (long double) q[3] * q[3];
         const long double xy = 2 * ((long double) q[1] * q[2] - (long double) q[0] * q[3]);
         const double should = (double) (xy * size[1] / norm);
-        assert_true(fabs(number[3 + 3] - should) <= fabs(should) * 0x1p-52);
-        if (should != number[6])
-            assert_true(number[6] == nextafter(should, INFINITY) ||
-                        number[6] == nextafter(should, -INFINITY));
+        assert_true(fabs(component[3] - should) <= fabs(should) * 0x1p-52);
+        if (should != component[3])
+            assert_true(component[3] == nextafter(should, INFINITY) ||
+                        component[3] == nextafter(should, -INFINITY));
     }
 }
 
