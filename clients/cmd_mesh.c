@@ -324,8 +324,7 @@ int cmd_mesh(int argc, char **argv)
                         .usage = usage,
                         .options = own,
                         .operand = "mesh",
-                        .operands_max = INT_MAX, /* check() counts them */
-                        .in_order = true};
+                        .operands_max = INT_MAX /* check() counts them */};
     struct mesh mesh[2] = {{0}};
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
