@@ -244,7 +244,7 @@ static bool read_dim(const struct place *at, void *out)
     const double dim = at->item->valuedouble;
     if (!cJSON_IsNumber(at->item))
         return refuse_kind(at, "2 or 3");
-    *(int *) out = (int) dim;
+    *(int *) out = dim == 2 ? 2 : 3;
     return dim == 2 || dim == 3 || refuse_value(at, dim, "2 or 3");
 }
 
@@ -255,8 +255,10 @@ static bool read_id(const struct place *at, void *out)
         return refuse_kind(at, EXPECTED_ID);
     if (id > id_max) /* its digits are lost */
         return refuse(at, "expected " EXPECTED_ID ", found a larger number");
+    if (!(id >= 1 && id == floor(id)))
+        return refuse_value(at, id, EXPECTED_ID);
     *(int64_t *) out = (int64_t) id;
-    return (id >= 1 && id == floor(id)) || refuse_value(at, id, EXPECTED_ID);
+    return true;
 }
 
 static bool read_group(const struct place *at, void *out)
@@ -264,9 +266,10 @@ static bool read_group(const struct place *at, void *out)
     const double group = at->item->valuedouble;
     if (!cJSON_IsNumber(at->item))
         return refuse_kind(at, EXPECTED_GROUP);
+    if (!(group != 0 && group == floor(group) && fabs(group) <= id_max))
+        return refuse(at, "expected " EXPECTED_GROUP);
     *(int64_t *) out = (int64_t) group;
-    return (group != 0 && group == floor(group) && fabs(group) <= id_max) ||
-           refuse(at, "expected " EXPECTED_GROUP);
+    return true;
 }
 
 /* Reads a name or a label. */
