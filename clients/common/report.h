@@ -15,7 +15,7 @@ struct report {
     void (*begin)(struct report *report);
     void (*pair)(struct report *report, const struct fmb_client_answer *answer);
     void (*end)(struct report *report);
-    const struct owned_scene *scene;
+    struct owned_scene *scene;
 };
 
 /* One line, one JSON object, for each scene; flushed at its end:

@@ -26,36 +26,18 @@ static void add_to_bounds(struct panel *panel, const struct fmb_placement *body)
         }
 }
 
-static struct fmb_placement copy_placement(struct owned_scene *memory,
-                                           const struct fmb_placement *placement)
+static void begin_panel(struct panel *panel, const struct owned_scene *owner)
 {
-    struct fmb_placement copy = *placement;
-    struct fmb_body *body = scene_allocate(memory, 1, sizeof *body);
-    *body = *placement->body;
-    if (body->frames) {
-        struct fmb_frame *frames = scene_allocate(memory, body->frame_count, sizeof *frames);
-        body->frames = memcpy(frames, body->frames, body->frame_count * sizeof *frames);
-    }
-    copy.body = body;
-    copy.name = scene_text(memory, placement->name);
-    return copy;
-}
-
-static void keep_scene(struct panel *panel, const struct owned_scene *owner)
-{
-    const struct fmb_scene *scene = &owner->scene;
-    const size_t count = scene->placement_count;
+    const size_t count = owner->scene.placement_count;
     panel->dim = owner->dim;
-    panel->duration = scene->duration;
+    panel->duration = owner->scene.duration;
     panel->body_count = count < SVG_BODIES_MAX ? count : SVG_BODIES_MAX;
     panel->bodies_left_out = count - panel->body_count;
-    panel->body = scene_allocate(&panel->memory, panel->body_count, sizeof *panel->body);
-    panel->verdict = scene_allocate(&panel->memory, panel->body_count, sizeof *panel->verdict);
+    panel->body = owner->scene.placements;
+    panel->verdict = allocate(panel->body_count, sizeof *panel->verdict);
     panel->bounds = view_nothing();
-    for (size_t i = 0; i < panel->body_count; i++) {
-        panel->body[i] = copy_placement(&panel->memory, &scene->placements[i]);
+    for (size_t i = 0; i < panel->body_count; i++)
         add_to_bounds(panel, &panel->body[i]);
-    }
 }
 
 static void note_verdict(struct panel *panel, size_t body, enum fmb_verdict verdict)
@@ -84,7 +66,8 @@ static void keep_answer(struct panel *panel, const struct fmb_client_answer *of)
 
 static void clear_panel(struct panel *panel)
 {
-    scene_clear(&panel->memory);
+    scene_clear(&panel->scene);
+    free(panel->verdict);
     free(panel->box);
 }
 
@@ -105,7 +88,7 @@ static void svg_begin(struct report *report)
 {
     struct svg *svg = (struct svg *) report;
     if (svg->panel_count + svg->panels_left_out < SVG_PANELS_MAX)
-        keep_scene(&svg->panel[svg->panel_count++], report->scene);
+        begin_panel(&svg->panel[svg->panel_count++], report->scene);
     else
         svg->panels_left_out++;
 }
@@ -117,9 +100,14 @@ static void svg_pair(struct report *report, const struct fmb_client_answer *answ
         keep_answer(&svg->panel[svg->panel_count - 1], answer);
 }
 
+/* The panel becomes the owner of the scene. */
 static void svg_end(struct report *report)
 {
-    (void) report;
+    struct svg *svg = (struct svg *) report;
+    if (svg->panels_left_out > 0)
+        return;
+    svg->panel[svg->panel_count - 1].scene = *report->scene;
+    *report->scene = (struct owned_scene){.dim = 0};
 }
 
 struct svg *svg_open(void)

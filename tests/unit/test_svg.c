@@ -57,7 +57,8 @@ static void make_scene(int dim, double size, double at, double velocity)
         .dim = dim, .scene = {.placements = pair.placements, .placement_count = 2, .duration = 1}};
 }
 
-static void begin(struct report *report, const struct owned_scene *scene)
+/* The memory of the scene is not its own. */
+static void begin(struct report *report, struct owned_scene *scene)
 {
     report->scene = scene;
     report->begin(report);
@@ -66,10 +67,11 @@ static void begin(struct report *report, const struct owned_scene *scene)
 static void take(struct svg *svg, const struct owned_scene *owner)
 {
     struct report *report = svg_report(svg);
+    struct owned_scene taken = *owner;
     const struct fmb_scene *scene = &owner->scene;
     struct scene_cursor cursor = {0};
     unsigned of[2];
-    begin(report, owner);
+    begin(report, &taken);
     while (scene_next_pair(scene, &cursor, of)) {
         struct fmb_client_answer answer = {.a = of[0], .b = of[1], .text = ""};
         assert_int_equal(
@@ -271,7 +273,9 @@ static void steps_share_a_view(void **state)
     (void) state;
     make_scene(2, 1, 0, 0);
     take(svg, &pair.scene);
-    pair.placements[1].position[0] = 8;
+    struct fmb_placement later[] = {pair.placements[0], pair.placements[1]};
+    later[1].position[0] = 8;
+    pair.scene.scene.placements = later;
     take(svg, &pair.scene);
     char *text = draw(svg);
     double x[2], y[2];
