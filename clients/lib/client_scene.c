@@ -1,6 +1,5 @@
 #include "client_scene.h"
 
-#include "pair_number.h"
 #include "utf8.h"
 #include "writer.h"
 
@@ -100,76 +99,28 @@ static struct geometry write_frames(const struct fmb_body *body, unsigned char *
     return (struct geometry){out, sum.bytes};
 }
 
-static bool is_zero(const double *numbers, int count)
-{
-    for (int i = 0; i < count; i++)
-        if (numbers[i] != 0)
-            return false;
-    return true;
-}
-
-void client_scene_placement(const struct fmb_placement *of, unsigned char *geometry,
-                            struct placement *out)
+void client_scene_placement(const struct fmb_placement *of, const struct handle *handle,
+                            unsigned char *geometry, struct placement *out)
 {
     const int dim = of->body->dim;
-    const size_t axes = (size_t) dim * sizeof(double);
     *out = (struct placement){.body_id = of->id,
                               .dim = dim,
-                              .frame_count = (int32_t) of->body->frame_count,
-                              .name = of->name,
                               .group = of->group,
                               .orientation_count = of->orientation_count};
-    out->geometry = write_frames(of->body, geometry);
-    memcpy(out->position, of->position, axes);
     memcpy(out->orientation, of->orientation, sizeof out->orientation);
-    if (is_zero(of->velocity, dim))
-        return;
-    out->velocity_count = dim;
-    memcpy(out->velocity, of->velocity, axes);
-}
-
-void client_scene_use_handle(struct placement *placement, const struct handle *handle,
-                             unsigned char geometry[GEOMETRY_NONE_BYTES])
-{
-    geometry_write_none(placement->dim, geometry);
-    placement->geometry = (struct geometry){geometry, GEOMETRY_NONE_BYTES};
-    placement->frame_count = 0;
-    placement->name = NULL;
-    placement->handle = *handle;
-}
-
-/* ---- Pairs ---- */
-
-bool client_scene_is_within_group(const struct fmb_scene *scene, const unsigned pair[2])
-{
-    const int64_t group = scene->placements[pair[0]].group;
-    return group != 0 && group == scene->placements[pair[1]].group;
-}
-
-static struct pair_numbers numbers_of(const struct fmb_scene *scene)
-{
-    return (struct pair_numbers){scene->which == FMB_PAIRS_ACROSS, scene->placement_count,
-                                 scene->split};
-}
-
-bool client_scene_is_before_first(const struct fmb_scene *scene, const unsigned pair[2])
-{
-    return scene->which != FMB_PAIRS_LISTED &&
-           pair_number(numbers_of(scene), pair[0], pair[1]) < scene->first_pair;
-}
-
-bool client_scene_next_pair(const struct fmb_scene *scene, struct client_scene_cursor *cursor,
-                            unsigned out[2])
-{
-    if (scene->which == FMB_PAIRS_LISTED) {
-        if (cursor->next == scene->pair_count)
-            return false;
-        memcpy(out, scene->pairs[cursor->next++], sizeof *scene->pairs);
-        return true;
+    for (int axis = 0; axis < dim; axis++) {
+        out->position[axis] = of->position[axis];
+        out->velocity[axis] = of->velocity[axis];
+        if (of->velocity[axis] != 0)
+            out->velocity_count = dim;
     }
-    if (!pair_find(numbers_of(scene), &cursor->a, &cursor->b))
-        return false;
-    out[0] = (unsigned) cursor->a;
-    out[1] = (unsigned) cursor->b++;
-    return true;
+    if (handle) {
+        geometry_write_none(dim, geometry);
+        out->geometry = (struct geometry){geometry, GEOMETRY_NONE_BYTES};
+        out->handle = *handle;
+    } else {
+        out->frame_count = (int32_t) of->body->frame_count;
+        out->name = of->name;
+        out->geometry = write_frames(of->body, geometry);
+    }
 }

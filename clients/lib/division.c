@@ -1,5 +1,7 @@
 #include "division.h"
 
+#include "client_scene.h"
+#include "pair_number.h"
 #include "wire.h"
 
 #include <stdlib.h>
@@ -7,97 +9,61 @@
 
 /* ---- Placements ---- */
 
-static void set_body(struct division *division, size_t i, struct held *held, unsigned char *scratch)
+static void set_body(const struct fmb_placement *placement, struct held *held,
+                     unsigned char *scratch, struct division_body *out)
 {
-    struct division_body *out = &division->body[i];
-    struct placement placement;
-    client_scene_placement(&division->scene->placements[i], scratch, &placement);
-    out->bytes = (uint32_t) wire_placement_bytes(&placement);
-    if (placement.body_id != 0) {
-        out->entry = held_find(held, &placement.geometry);
-        out->serial = out->entry->serial;
-        if (out->entry->held)
-            client_scene_use_handle(&placement, &out->entry->handle, scratch);
-    }
-    out->least = (uint32_t) wire_placement_bytes(&placement);
+    struct placement converted;
+    client_scene_placement(placement, NULL, scratch, &converted);
+    out->bytes = out->least = (uint32_t) wire_placement_bytes(&converted);
+    if (placement->id != 0)
+        out->entry = held_find(held, &converted.geometry);
+    if (!out->entry || !out->entry->held)
+        return;
+    client_scene_placement(placement, &out->entry->handle, scratch, &converted);
+    out->least = (uint32_t) wire_placement_bytes(&converted);
 }
 
-/* ---- Ignored pairs ---- */
+/* ---- Pairs that are not decided ---- */
 
-static int compare(const void *left, const void *right)
+static struct pair_numbers numbers_of(const struct fmb_scene *scene)
 {
-    const unsigned *p = left, *q = right;
-    if (p[0] != q[0])
-        return p[0] < q[0] ? -1 : 1;
-    return (p[1] > q[1]) - (p[1] < q[1]);
+    return (struct pair_numbers){scene->which == FMB_PAIRS_ACROSS, scene->placement_count,
+                                 scene->split};
 }
 
-static void set_ignored(struct division *division)
+bool division_leaves_out(struct division *division, const unsigned pair[2])
 {
     const struct fmb_scene *scene = division->scene;
-    for (size_t i = 0; i < scene->ignored_count; i++) {
-        const unsigned *pair = scene->ignored[i];
-        division->ignored[i][0] = pair[0] < pair[1] ? pair[0] : pair[1];
-        division->ignored[i][1] = pair[0] < pair[1] ? pair[1] : pair[0];
-    }
-    if (scene->ignored_count > 0)
-        qsort(division->ignored, scene->ignored_count, sizeof *division->ignored, compare);
-    for (size_t i = 0; i < scene->ignored_count; i++)
-        if (i == 0 ||
-            compare(division->ignored[i], division->ignored[division->ignored_count - 1]) != 0)
-            memmove(division->ignored[division->ignored_count++], division->ignored[i],
-                    sizeof *division->ignored);
+    return ignored_has(&division->ignored, pair[0], pair[1]) ||
+           is_within_group(scene, pair[0], pair[1]) ||
+           pair_number(numbers_of(scene), pair[0], pair[1]) < scene->first_pair;
 }
 
-/* Returns the index of the first ignored pair that does not come before this one. */
-static size_t first_ignored(const struct division *division, const unsigned pair[2])
-{
-    size_t low = 0, high = division->ignored_count;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (compare(division->ignored[middle], pair) < 0)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-bool division_ignores(const struct division *division, const unsigned pair[2])
-{
-    const size_t at = first_ignored(division, pair);
-    return (at < division->ignored_count && compare(division->ignored[at], pair) == 0) ||
-           client_scene_is_within_group(division->scene, pair) ||
-           client_scene_is_before_first(division->scene, pair);
-}
-
-int32_t division_ignored(const struct division *division, const struct part *part, int32_t max,
+int32_t division_ignored(struct division *division, const struct part *part, int32_t max,
                          unsigned (*out)[2])
 {
     int32_t count = 0;
     if (!division->blocks)
         return 0;
     const unsigned *row = division->start + part->row, *column = division->start + part->column;
-    const unsigned begin[2] = {row[0], 0};
-    for (size_t i = first_ignored(division, begin);
-         i < division->ignored_count && division->ignored[i][0] < row[1] && count < max; i++) {
-        const unsigned a = division->ignored[i][0], b = division->ignored[i][1];
-        if (b < column[0] || b >= column[1])
-            continue;
-        out[count][0] = a - row[0];
-        out[count++][1] = b - column[0] + (unsigned) part->split;
-    }
+    for (unsigned a = row[0]; a < row[1]; a++)
+        for (unsigned b = row == column ? a + 1 : column[0];
+             b < column[1] && count < max && ignored_has_any(&division->ignored, a); b++)
+            if (ignored_has(&division->ignored, a, b)) {
+                out[count][0] = a - row[0];
+                out[count++][1] = b - column[0] + (unsigned) part->split;
+            }
     return count;
 }
 
 /* ---- Blocks ---- */
 
-/* Whether the parts of the scene may be ALL or ACROSS. The service accepts that only for some
- * methods, which are fast enough. For others pairs are listed. */
+/* Whether the parts of the scene may be ALL or ACROSS. For slower methods pairs are listed, so that
+ * the time that a query takes can be limited. */
 static bool uses_blocks(const struct fmb_scene *scene)
 {
-    const bool certified = !scene->method || scene->method == fmb_method_default();
-    return scene->which != FMB_PAIRS_LISTED && certified;
+    return scene->which != FMB_PAIRS_LISTED &&
+           (!scene->method || scene->method == fmb_method_default());
 }
 
 /* Bytes of a query without placements and pairs. */
@@ -106,40 +72,35 @@ static size_t bytes_without(const struct fmb_scene *scene)
     return WIRE_SCENE_QUERY_BYTES + wire_text_bytes(scene->label);
 }
 
-/* Bytes that the placements of a query may have. */
-static size_t placements_bytes_max(const struct division *division)
-{
-    return QUERY_BYTES_MAX - bytes_without(division->scene);
-}
-
-/* Whether one query can have all placements. whole: they are sent with their frames. */
-static bool fit_into_one(const struct division *division, bool whole)
-{
-    const size_t count = division->scene->placement_count, most = placements_bytes_max(division);
-    size_t bytes = 0;
-    for (size_t i = 0; i < count && bytes <= most; i++)
-        bytes += whole ? division->body[i].bytes : division->body[i].least;
-    return bytes <= most && count <= QUERY_PLACEMENTS_MAX;
-}
-
-static void make_blocks(struct division *division)
+/* whole: without the exception of division.h. */
+static void make_blocks(struct division *division, bool whole)
 {
     const struct fmb_scene *scene = division->scene;
+    struct division_body *body = division->body;
     const bool across = scene->which == FMB_PAIRS_ACROSS;
-    const bool one = division->by_handle || fit_into_one(division, true);
-    const size_t capacity = placements_bytes_max(division) / (one ? 1 : 2);
+    const bool few = scene->placement_count <= QUERY_PLACEMENTS_MAX;
+    const size_t most = QUERY_BYTES_MAX - bytes_without(scene);
+    size_t sum = 0, least = 0;
+    for (size_t i = 0; i < scene->placement_count; i++) {
+        sum += body[i].bytes;
+        least += body[i].least;
+    }
+    division->by_handle = few && !whole && sum > most && least <= most;
+    const size_t capacity = few && (sum <= most || division->by_handle) ? most : most / 2;
     size_t bytes = capacity + 1;
     for (size_t i = 0; i < scene->placement_count; i++) {
-        const size_t more = division->by_handle ? division->body[i].least : division->body[i].bytes;
-        if (bytes + more > capacity || (across && i == scene->split)) {
+        if (division->by_handle)
+            body[i].bytes = body[i].least;
+        if (bytes + body[i].bytes > capacity || (across && i == scene->split)) {
             division->start[division->block_count++] = (unsigned) i;
             bytes = 0;
         }
-        bytes += more;
+        bytes += body[i].bytes;
         if (!across || i < scene->split)
             division->row_count = division->block_count;
     }
     division->start[division->block_count] = (unsigned) scene->placement_count;
+    division->column = division_first_column(division, 0);
 }
 
 size_t division_first_column(const struct division *division, size_t row)
@@ -150,8 +111,7 @@ size_t division_first_column(const struct division *division, size_t row)
 static void add_placement(const struct division *division, unsigned placement, struct part *out)
 {
     out->placement[out->placement_count++] = placement;
-    out->bytes +=
-        division->by_handle ? division->body[placement].least : division->body[placement].bytes;
+    out->bytes += division->body[placement].bytes;
 }
 
 static void add_block(const struct division *division, size_t block, struct part *out)
@@ -175,7 +135,7 @@ static bool next_block(struct division *division, struct part *out)
         out->split = out->placement_count;
         add_block(division, out->column, out);
     }
-    out->total = part_pair_count(out);
+    out->total = (int32_t) pairs_total(part_numbers(out));
     return true;
 }
 
@@ -212,17 +172,31 @@ static void add_pair(struct division *division, const unsigned pair[2], struct p
     out->bytes += WIRE_PAIR_BYTES;
 }
 
+static bool next_pair(struct division *division, struct division_cursor *at, unsigned out[2])
+{
+    const struct fmb_scene *scene = division->scene;
+    if (scene->which == FMB_PAIRS_LISTED) {
+        if (at->listed == scene->pair_count)
+            return false;
+        memcpy(out, scene->pairs[at->listed++], sizeof *scene->pairs);
+        return true;
+    }
+    do {
+        if (!pair_find(numbers_of(scene), &at->a, &at->b))
+            return false;
+        out[0] = (unsigned) at->a;
+        out[1] = (unsigned) at->b++;
+    } while (division_leaves_out(division, out));
+    return true;
+}
+
 static bool next_list(struct division *division, int32_t pairs_max, struct part *out)
 {
-    struct client_scene_cursor ahead = division->at;
+    struct division_cursor ahead = division->at;
     unsigned pair[2];
     out->which = FMB_PAIRS_LISTED;
     division->part++;
-    while (out->total < pairs_max && client_scene_next_pair(division->scene, &ahead, pair)) {
-        if (division_ignores(division, pair)) {
-            division->at = ahead;
-            continue;
-        }
+    while (out->total < pairs_max && next_pair(division, &ahead, pair)) {
         if (out->total > 0 && out->bytes + bytes_of_pair(division, pair) > QUERY_BYTES_MAX)
             break;
         add_pair(division, pair, out);
@@ -236,32 +210,29 @@ static bool next_list(struct division *division, int32_t pairs_max, struct part 
 bool division_begin(const struct fmb_scene *scene, bool single, bool whole, struct held *held,
                     unsigned char *scratch, struct division *out)
 {
+    const size_t count = scene->placement_count;
+    const size_t ignored = ignored_capacity(count, scene->ignored_count);
     *out = (struct division){.scene = scene,
                              .single = single,
                              .blocks = !single && uses_blocks(scene),
-                             .at.next = (size_t) scene->first_pair};
-    const size_t count = scene->placement_count;
+                             .at.listed = (size_t) scene->first_pair};
     out->body = calloc(count + 1, sizeof *out->body);
-    out->ignored = calloc(scene->ignored_count + 1, sizeof *out->ignored);
-    if (out->blocks)
-        out->start = calloc(count + 1, sizeof *out->start);
-    if (!out->body || !out->ignored || (out->blocks && !out->start))
+    out->ignored_memory = calloc(ignored + 1, sizeof *out->ignored_memory);
+    out->start = calloc(count + 1, sizeof *out->start);
+    if (!out->body || !out->ignored_memory || !out->start)
         return false;
     for (size_t i = 0; i < count; i++)
-        set_body(out, i, held, scratch);
-    set_ignored(out);
-    out->by_handle = out->blocks && !whole && !fit_into_one(out, true) && fit_into_one(out, false);
-    if (out->blocks) {
-        make_blocks(out);
-        out->column = division_first_column(out, 0);
-    }
+        set_body(&scene->placements[i], held, scratch, &out->body[i]);
+    ignored_begin(scene, out->ignored_memory, &out->ignored);
+    if (out->blocks)
+        make_blocks(out, whole);
     return true;
 }
 
 void division_end(struct division *division)
 {
     free(division->body);
-    free(division->ignored);
+    free(division->ignored_memory);
     free(division->start);
 }
 

@@ -6,34 +6,40 @@
  * service does not hold them after all, scene_run.c divides the scene again.
  *
  * Listed pairs are taken in order, as many as fit with the placements that they need. So are all
- * pairs of ALL and ACROSS if each pair is a separate query, or if the method decides listed pairs
- * only. Otherwise ALL and ACROSS are divided into blocks of placements, unless all fit into one
- * datagram: a part is a pair of blocks, or one block with itself. The parts with the same first
- * block are a row; the second block is the column. */
+ * pairs of ALL and ACROSS if each pair is a separate query, or if the method is not the default.
+ * Otherwise ALL and ACROSS are divided into blocks of placements, unless all fit into one datagram:
+ * a part is a pair of blocks, or one block with itself. The parts with the same first block are a
+ * row; the second block is the column. */
 #ifndef DIVISION_H
 #define DIVISION_H
 
 #include "held.h"
+#include "ignored.h"
 #include "scene_part.h"
 
 /* A placement of the scene. */
 struct division_body {
-    struct held_body *entry; /* valid while it has this serial number; NULL: anonymous */
-    uint64_t serial;
-    uint32_t bytes, least; /* bytes in a query: whole; by handle if the service holds it */
-    uint64_t part;         /* without blocks: number of the last part that has it */
-    uint16_t index;        /* in that part */
+    struct held_body *entry; /* NULL: it is always sent whole */
+    uint32_t bytes, least;   /* bytes in a query: whole (but see by_handle); as it is sent now */
+    uint64_t part;           /* without blocks: number of the last part that has it */
+    uint16_t index;          /* in that part */
+};
+
+/* Pairs in order: the next one. */
+struct division_cursor {
+    size_t listed;
+    size_t a, b; /* ALL and ACROSS; b is 0 before the first */
 };
 
 struct division {
     const struct fmb_scene *scene;
     struct division_body *body; /* owned, [placement_count] */
-    unsigned (*ignored)[2]; /* owned, [ignored_count]: a < b, in the order of (a, b), each once */
-    size_t ignored_count;
+    struct ignored ignored;
+    unsigned *ignored_memory; /* owned */
     bool single, blocks;
-    bool by_handle;                /* the exception: one part, too large for whole bodies */
-    struct client_scene_cursor at; /* without blocks: after the parts so far */
-    uint64_t part;                 /* without blocks: number of the last part, from 1 */
+    bool by_handle;            /* the exception: bytes are least of all bodies */
+    struct division_cursor at; /* without blocks: after the parts so far */
+    uint64_t part;             /* without blocks: number of the last part, from 1 */
     /* Block i has the placements start[i] to start[i + 1] - 1. The first row_count begin rows. */
     unsigned *start; /* owned, [block_count + 1]; NULL without blocks */
     size_t block_count, row_count;
@@ -48,15 +54,16 @@ bool division_begin(const struct fmb_scene *scene, bool single, bool whole, stru
 void division_end(struct division *division);
 
 /* Returns true and the next part, of at most pairs_max pairs if they are listed; or false after the
- * last one. */
+ * last one. Sets the first fields of *out, up to column. */
 bool division_next(struct division *division, int32_t pairs_max, struct part *out);
 
-/* Whether the pair is not decided: it is ignored, within a group, or before first_pair. */
-bool division_ignores(const struct division *division, const unsigned pair[2]);
+/* ALL and ACROSS: whether the pair is not decided: it is ignored, within a group, or before
+ * first_pair. */
+bool division_leaves_out(struct division *division, const unsigned pair[2]);
 
 /* Writes the ignored pairs of a part, as indices in the part. Returns their number, at most max; 0
  * without blocks. */
-int32_t division_ignored(const struct division *division, const struct part *part, int32_t max,
+int32_t division_ignored(struct division *division, const struct part *part, int32_t max,
                          unsigned (*out)[2]);
 
 /* Returns the first column of a row. */

@@ -5,30 +5,35 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Without memory the geometry is not stored: the body is then not found again, and sent whole. */
-static void enter(struct held *held, const struct geometry *geometry, struct held_body *out)
+static struct held_body *enter(struct held *held, const struct geometry *geometry,
+                               struct held_body **at)
 {
-    unsigned char *copy = realloc(out->geometry, geometry->size);
-    out->geometry = copy ? copy : out->geometry;
-    out->size = copy ? geometry->size : 0;
-    out->held = false;
-    out->serial = ++held->serial;
-    out->handle = hasher_handle(held->hasher, geometry->bytes, geometry->size);
-    if (copy)
-        memcpy(copy, geometry->bytes, geometry->size);
+    struct held_body *body = malloc(sizeof *body + geometry->size);
+    if (!body)
+        return NULL;
+    *body =
+        (struct held_body){.next = *at,
+                           .handle = hasher_handle(held->hasher, geometry->bytes, geometry->size),
+                           .size = geometry->size};
+    memcpy(body->geometry, geometry->bytes, geometry->size);
+    held->count++;
+    return *at = body;
 }
 
 struct held_body *held_find(struct held *held, const struct geometry *geometry)
 {
     const uint64_t hash = digest(0, geometry->bytes, geometry->size);
-    struct held_body *body = &held->body[hash >> (64 - HELD_BITS)];
-    if (body->size != geometry->size || memcmp(body->geometry, geometry->bytes, body->size) != 0)
-        enter(held, geometry, body);
-    return body;
+    struct held_body **at = &held->body[hash >> (64 - HELD_BITS)], *body = *at;
+    while (body && (body->size != geometry->size ||
+                    memcmp(body->geometry, geometry->bytes, body->size) != 0))
+        body = body->next;
+    return body ? body : enter(held, geometry, at);
 }
 
 void held_clear(struct held *held)
 {
     for (int i = 0; i < HELD_MAX; i++)
-        free(held->body[i].geometry);
+        for (struct held_body *body; (body = held->body[i]); free(body))
+            held->body[i] = body->next;
+    held->count = 0;
 }

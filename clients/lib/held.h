@@ -1,7 +1,6 @@
-/* A table of bodies that the service may hold. A body that it holds can be sent by handle.
+/* The bodies of a client, and whether the service holds them: those are sent by handle.
  *
- * The key is the geometry. Each slot has one body: a new body replaces the one in its slot, which
- * is from then on sent whole again. The handle of a body is computed when it enters the table. */
+ * The key is the geometry. The handle of a body is computed when it enters the table. */
 #ifndef HELD_H
 #define HELD_H
 
@@ -9,26 +8,26 @@
 
 enum { HELD_BITS = 14, HELD_MAX = 1 << HELD_BITS };
 
-/* All 0: an empty slot. */
 struct held_body {
-    bool held;               /* a result has shown that the service holds it */
-    uint64_t serial;         /* changes when another body takes the slot */
-    size_t size;             /* 0: not stored, for lack of memory */
-    unsigned char *geometry; /* owned, [size] */
-    struct handle handle;    /* of these bytes */
+    struct held_body *next; /* of the same digest */
+    bool held;              /* a result has shown that the service holds it */
+    struct handle handle;
+    size_t size;
+    unsigned char geometry[]; /* [size] */
 };
 
+/* All 0 but the hasher: empty. */
 struct held {
     struct hasher *hasher; /* not owned */
-    uint64_t serial;       /* of the newest body */
-    struct held_body body[HELD_MAX];
+    size_t count;
+    struct held_body *body[HELD_MAX]; /* owned, by their digests */
 };
 
-/* Returns the entry of a body with this geometry, which enters the table if it is not there. Valid
- * until the next call. */
+/* Returns the entry of a body with this geometry, which enters the table if it is not there; NULL
+ * if out of memory. Valid until held_clear(). */
 struct held_body *held_find(struct held *held, const struct geometry *geometry);
 
-/* Frees the bodies. */
+/* Removes all bodies. */
 void held_clear(struct held *held);
 
 #endif

@@ -6,19 +6,18 @@
 #include "division.h"
 
 struct order {
-    const struct division *division;
+    struct division *division;
     fmb_client_sink *sink;
     void *user;
     struct part_answers *row; /* owned, [block_count]: the current row, by column */
 };
 
 /* The division must outlive the order. Returns false if out of memory. */
-bool order_begin(const struct division *division, fmb_client_sink *sink, void *user,
-                 struct order *out);
+bool order_begin(struct division *division, fmb_client_sink *sink, void *user, struct order *out);
 void order_end(struct order *order);
 
-/* Takes the answers to the next part, and what they own; *answers is empty afterwards. Parts come
- * in the order of the division. */
-void order_take(struct order *order, const struct part *part, struct part_answers *answers);
+/* Takes the answers to the next part, which has none afterwards. Parts come in the order of the
+ * division. */
+void order_take(struct order *order, struct part *part);
 
 #endif

@@ -1,21 +1,17 @@
-/* A part of a scene that fits a datagram, and its answers. No shared state. */
+/* A part of a scene: its queries, one after the other, and its answers. It is a pair of placements,
+ * or what fits a datagram (division.h).
+ *
+ * A part takes several queries if a result has no space for all answers, or if the service does not
+ * hold a body. If the bodies that it does not hold do not fit a datagram together with the
+ * remainder of the part, they are sent first, in queries without pairs. */
 #ifndef SCENE_PART_H
 #define SCENE_PART_H
 
 #include "fmb_client.h"
-#include "client_scene.h"
+#include "pair_number.h"
+#include "request.h"
 
-struct part {
-    bool single;   /* a pair query */
-    int32_t which; /* enum fmb_pairs */
-    int32_t split; /* with ACROSS */
-    int32_t total; /* of pairs */
-    int32_t placement_count;
-    unsigned placement[QUERY_PLACEMENTS_MAX]; /* [in the part]: index in the scene */
-    uint16_t pair[QUERY_PAIRS_MAX][2];        /* LISTED: [total][a, b], indices in the part */
-    size_t bytes;                             /* of the query, without ignored pairs */
-    size_t row, column;                       /* for division.h and order.h */
-};
+struct scene_run;
 
 /* The answer to a pair that is not separated, or has a gap. */
 struct part_answer {
@@ -33,30 +29,47 @@ struct part_answers {
     char *certificate;          /* owned; NULL: none */
 };
 
-void part_answers_clear(struct part_answers *answers);
+struct part {
+    bool single;   /* a pair query */
+    int32_t which; /* enum fmb_pairs */
+    int32_t split; /* with ACROSS */
+    int32_t total; /* of pairs */
+    int32_t placement_count;
+    unsigned placement[QUERY_PLACEMENTS_MAX]; /* [in the part]: index in the scene */
+    uint16_t pair[QUERY_PAIRS_MAX][2];        /* LISTED: [total][a, b], indices in the part */
+    size_t bytes;                             /* of the query, without ignored pairs */
+    size_t row, column;                       /* for division.h and order.h */
+    struct scene_run *run;
+    struct part_answers answers;
+    bool done;       /* no more answers will come */
+    bool defining;   /* the last query only has bodies */
+    int definitions; /* number of such queries */
+    int unknown;     /* number of results with status UNKNOWN_BODY */
+    /* [in the part]: sent with frames in the last query, and in the one before it. */
+    bool whole[QUERY_PLACEMENTS_MAX], whole_earlier[QUERY_PLACEMENTS_MAX];
+};
 
-/* Sets the status of all pairs without an answer. text: NULL or "": the text of the status. */
-void part_answers_refuse(struct part_answers *answers, int status, const char *text);
-
-/* Whether a separated pair is near. */
-static inline bool part_is_near(const struct fmb_scene *scene, const struct fmb_gap *gap)
+/* The numbers of the pairs of a part that is ALL or ACROSS. */
+static inline struct pair_numbers part_numbers(const struct part *part)
 {
-    return scene->margin > 0 && gap->bounds[0] <= scene->margin;
+    return (struct pair_numbers){part->which == FMB_PAIRS_ACROSS, (size_t) part->placement_count,
+                                 (size_t) part->split};
 }
+
+void part_answers_clear(struct part_answers *answers);
 
 /* Returns an upper bound of the bytes of a result, for a pair query with a certificate of usual
  * length. */
 size_t part_result_bytes(const struct part *part, const struct fmb_scene *scene);
 
-/* ALL and ACROSS: returns the number of pairs. */
-int32_t part_pair_count(const struct part *part);
+/* Begins a part, whose fields up to column are set. On input: requests_ready() for its bytes.
+ * Returns when its query is sent, or it is done. */
+void part_begin(struct scene_run *run, struct part *part, size_t bytes);
 
-/* Adds the answers of a result with FMB_OK to those of the pairs before it. Returns MALFORMED if
- * the result does not match the query; nothing is added then, nor with NO_MEMORY. */
-enum part_taken { PART_TAKEN, PART_MALFORMED, PART_NO_MEMORY };
-enum part_taken part_take_scene(const struct part *part, const struct fmb_scene *scene,
-                                const struct scene_result *result, struct part_answers *answers);
-enum part_taken part_take_pair(const struct part *part, const struct fmb_scene *scene,
-                               const struct pair_result *result, struct part_answers *answers);
+/* The handler of the requests of a part, which is their user. */
+request_handler part_take;
+
+/* Ends a part: its remaining pairs have this status. text: NULL or "": that of the status. */
+void part_refuse(struct part *part, int status, const char *text);
 
 #endif

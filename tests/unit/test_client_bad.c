@@ -907,13 +907,38 @@ static const struct {
     {FMB_SEPARATED, false, false, true, 0, false},
 };
 
+/* Returns a part with one pair of these placements of a scene, which has no answer yet. */
+static struct part *part_of(const struct fmb_scene *scene, unsigned a, unsigned b)
+{
+    static struct requests requests;
+    static struct scene_run run = {.requests = &requests};
+    static struct division_body body[PLACEMENTS];
+    static struct part part;
+    run.scene = scene;
+    run.division.body = body;
+    part_answers_clear(&part.answers);
+    part = (struct part){.run = &run, .which = FMB_PAIRS_LISTED, .total = 1, .placement_count = 2};
+    part.placement[0] = a;
+    part.placement[1] = b;
+    part.pair[0][1] = 1;
+    return &part;
+}
+
+/* Passes a result to a part. Returns whether it was taken. */
+static bool takes(struct part *part, const struct request_result *result)
+{
+    static struct request request;
+    const enum request_taken taken = part_take(part, &request, result);
+    assert_int_equal(part->done, taken == REQUEST_COMPLETE);
+    assert_int_equal(part->answers.answered, part->done);
+    return part->done;
+}
+
 static void test_results_of_a_pair_fit_their_query(void **state)
 {
     (void) state;
-    static const struct part part = {.placement = {0, 2}, .pair = {{0, 1}}}; /* of one frame */
     struct fmb_scene scene = listed();
     for (size_t i = 0; i < sizeof pair_lies / sizeof *pair_lies; i++) {
-        struct part_answers answers = {0};
         const struct pair_result result = {
             .dim = 3,
             .answer = {.verdict = pair_lies[i].verdict,
@@ -921,10 +946,8 @@ static void test_results_of_a_pair_fit_their_query(void **state)
                        .has_gap = pair_lies[i].gap},
             .certificate = pair_lies[i].certificate ? "proof" : NULL};
         scene.want = pair_lies[i].want;
-        assert_int_equal(part_take_pair(&part, &scene, &result, &answers),
-                         pair_lies[i].good ? PART_TAKEN : PART_MALFORMED);
-        assert_int_equal(answers.answered, pair_lies[i].good);
-        part_answers_clear(&answers);
+        const struct request_result taken = {.kind = FMB_CLIENT_PAIR, .pair = &result};
+        assert_int_equal(takes(part_of(&scene, 0, 2), &taken), pair_lies[i].good);
     }
 }
 
@@ -946,29 +969,22 @@ static void test_frames_of_a_gap_fit_the_bodies(void **state)
     static struct scene_result named;
     scene.want = FMB_WANT_GAP;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        static struct part part;
-        struct part_answers pair = {0}, all = {0};
-        struct pair_result result = {
+        const struct pair_result result = {
             .dim = 3,
             .names_frames = cases[i].named,
             .answer = {.verdict = FMB_OVERLAPPING,
                        .has_gap = true,
                        .gap = {.frame = {cases[i].frame[0], cases[i].frame[1]}}}};
-        part = (struct part){.which = FMB_PAIRS_LISTED, .total = 1, .placement_count = 2};
-        part.placement[0] = cases[i].a;
-        part.placement[1] = cases[i].b;
-        part.pair[0][1] = 1;
         named =
             (struct scene_result){.end_pair = 1, .dim = 3, .verdict_count = 1, .contact_count = 1};
         named.verdict[0] = FMB_OVERLAPPING;
         named.has_gaps = true;
         named.names_frames = cases[i].named;
         named.gap[0] = result.answer.gap;
-        const enum part_taken taken = cases[i].good ? PART_TAKEN : PART_MALFORMED;
-        assert_int_equal(part_take_pair(&part, &scene, &result, &pair), taken);
-        assert_int_equal(part_take_scene(&part, &scene, &named, &all), taken);
-        part_answers_clear(&pair);
-        part_answers_clear(&all);
+        const struct request_result pair = {.kind = FMB_CLIENT_PAIR, .pair = &result};
+        const struct request_result all = {.kind = FMB_CLIENT_SCENE, .scene = &named};
+        assert_int_equal(takes(part_of(&scene, cases[i].a, cases[i].b), &pair), cases[i].good);
+        assert_int_equal(takes(part_of(&scene, cases[i].a, cases[i].b), &all), cases[i].good);
     }
 }
 
@@ -1204,24 +1220,30 @@ static void test_wrong_handles_of_a_pair_are_malformed(void **state)
     }
 }
 
-/* A body that replaces another one in its slot is not held. */
-static void test_a_new_body_in_a_slot_is_not_held(void **state)
+static void test_bodies_are_kept_until_a_scene_begins_with_a_full_table(void **state)
 {
     (void) state;
     static struct held held;
+    static struct requests requests;
+    static struct scene_run run = {.requests = &requests, .held = &held};
+    const struct fmb_scene scene = {0};
     uint64_t number = 0;
     const struct geometry geometry = {(const unsigned char *) &number, sizeof number};
     held.hasher = hasher_create();
-    struct held_body *first = held_find(&held, &geometry), *other = NULL;
+    struct held_body *first = held_find(&held, &geometry);
     first->held = true;
-    assert_ptr_equal(held_find(&held, &geometry), first);
-    assert_true(first->held);
-    while (other != first) {
-        number++;
-        other = held_find(&held, &geometry);
+    for (int full = 0; full < 2; full++) {
+        while (held.count < HELD_MAX - 1 + (size_t) full) {
+            number++;
+            assert_false(held_find(&held, &geometry)->held);
+        }
+        number = 0;
+        assert_ptr_equal(held_find(&held, &geometry), first);
+        assert_true(first->held);
+        number = HELD_MAX;
+        assert_int_equal(scene_run(&run, &scene, false, NULL, NULL), FMB_OK);
+        assert_int_equal(held.count, full ? 0 : HELD_MAX - 1);
     }
-    assert_false(first->held);
-    held_clear(&held);
     hasher_destroy(held.hasher);
 }
 
@@ -1567,7 +1589,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_an_answer_counts_more_than_an_unknown_body),
         cmocka_unit_test(test_a_late_answer_to_the_query_by_handle_is_taken),
         cmocka_unit_test(test_wrong_handles_of_a_pair_are_malformed),
-        cmocka_unit_test(test_a_new_body_in_a_slot_is_not_held),
+        cmocka_unit_test(test_bodies_are_kept_until_a_scene_begins_with_a_full_table),
         cmocka_unit_test(test_contradicting_second_results_are_counted),
         cmocka_unit_test(test_contradicting_results_of_pairs_are_counted),
         cmocka_unit_test(test_old_results_contradict_nothing),

@@ -115,9 +115,8 @@ static size_t lay_out(const struct fmb_scene_limits *limits, char *base,
     pairs->start = take(base, &at, placements + 2, sizeof *pairs->start);
     pairs->partner = take(base, &at, scene_pairs_capacity(placements), sizeof *pairs->partner);
     pairs->pair = take(base, &at, scene_pairs_capacity(placements), sizeof *pairs->pair);
-    pairs->head = take(base, &at, placements, sizeof *pairs->head);
-    pairs->mark = take(base, &at, placements, sizeof *pairs->mark);
-    pairs->link = take(base, &at, limits->ignored, sizeof *pairs->link);
+    pairs->ignored_memory = take(base, &at, ignored_capacity(placements, limits->ignored),
+                                 sizeof *pairs->ignored_memory);
     state->tree = take(base, &at, fmb_tree_bytes(placements), 1);
     return at;
 }
@@ -226,7 +225,7 @@ static enum fmb_status check_groups(const struct fmb_scene *scene, struct why wh
     for (size_t i = 0; i < scene->placement_count; i++)
         groups = groups || placement[i].group;
     for (size_t k = 0; groups && k < scene->pair_count; k++)
-        if (scene_pairs_is_within_group(scene, scene->pairs[k][0], scene->pairs[k][1]))
+        if (is_within_group(scene, scene->pairs[k][0], scene->pairs[k][1]))
             return refuse_element(why, FMB_BAD_PAIR, "pairs", k);
     return FMB_OK;
 }

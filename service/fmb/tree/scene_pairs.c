@@ -37,40 +37,16 @@ unsigned long long scene_pairs_position(const struct scene_pairs *pairs)
                                          : pairs_total(numbers);
 }
 
-/* ---- Ignored pairs ---- */
-
-static void list_ignored(struct scene_pairs *pairs)
-{
-    const struct fmb_scene *scene = pairs->scene;
-    if (scene->ignored_count == 0)
-        return;
-    memset(pairs->head, 0, scene->placement_count * sizeof *pairs->head);
-    memset(pairs->mark, 0, scene->placement_count * sizeof *pairs->mark);
-    for (size_t i = 0; i < scene->ignored_count; i++) {
-        const unsigned *pair = scene->ignored[i];
-        const unsigned lower = pair[0] < pair[1] ? pair[0] : pair[1];
-        pairs->link[i] = pairs->head[lower];
-        pairs->head[lower] = (unsigned) i + 1;
-    }
-}
-
 /* Removes the ignored ones of the partners found, and those of the same group. */
 static void remove_ignored(struct scene_pairs *pairs)
 {
-    const struct fmb_scene *scene = pairs->scene;
     const unsigned a = pairs->a;
-    const unsigned first = scene->ignored_count > 0 ? pairs->head[a] : 0;
     size_t count = 0;
-    if (first == 0 && scene->placements[a].group == 0)
+    if (!ignored_has_any(&pairs->ignored, a) && pairs->scene->placements[a].group == 0)
         return;
-    for (unsigned at = first; at; at = pairs->link[at - 1]) {
-        const unsigned *pair = scene->ignored[at - 1];
-        pairs->mark[pair[0] == a ? pair[1] : pair[0]] = a + 1;
-    }
     for (size_t i = 0; i < pairs->found_count; i++) {
-        pairs->found[count] = pairs->found[i];
-        count += !(first && pairs->mark[pairs->found[i]] == a + 1) &&
-                 !scene_pairs_is_within_group(scene, a, pairs->found[i]);
+        const unsigned b = pairs->found[count] = pairs->found[i];
+        count += !ignored_has(&pairs->ignored, a, b) && !is_within_group(pairs->scene, a, b);
     }
     pairs->found_count = count;
 }
@@ -142,7 +118,7 @@ static void begin_search(struct scene_pairs *pairs, void *memory)
         .dim = scene->placements->body->dim, .at = box_at, .context = pairs};
     fmb_tree_build_boxes(&boxes, scene->placement_count - pairs->first, 0, memory, &pairs->tree);
     pairs->listed = scene->which == FMB_PAIRS_ALL && list_pairs(pairs);
-    list_ignored(pairs);
+    ignored_begin(scene, pairs->ignored_memory, &pairs->ignored);
     while (pairs->a < pair_rows(numbers) &&
            pairs_before(numbers, pairs->a + 1) <= scene->first_pair)
         pairs->a++;

@@ -4,6 +4,7 @@
 #ifndef FMB_SCENE_PAIRS_H
 #define FMB_SCENE_PAIRS_H
 
+#include "ignored.h"
 #include "scene_frames.h"
 
 /* Filled in by scene_pairs_begin(). */
@@ -25,11 +26,8 @@ struct scene_pairs {
     unsigned *start;     /* [placement + 2] */
     unsigned *partner;   /* [scene_pairs_capacity()] */
     unsigned (*pair)[2]; /* [scene_pairs_capacity()], scratch */
-    /* Ignored pairs as linked lists by the lower index. Entries are positions in ignored plus 1; 0
-     * ends a list. */
-    unsigned *head; /* [placement] */
-    unsigned *link; /* [ignored] */
-    unsigned *mark; /* a + 1 if its pair with a is ignored */
+    struct ignored ignored;
+    unsigned *ignored_memory; /* [ignored_capacity()] */
 };
 
 /* The number of pairs that may be found in one search, for so many placements. If there are more,
@@ -37,14 +35,6 @@ struct scene_pairs {
 static inline size_t scene_pairs_capacity(size_t placements)
 {
     return 8 * placements + FMB_TREE_CAPACITY_MIN;
-}
-
-/* Whether two placements are of one group. */
-static inline bool scene_pairs_is_within_group(const struct fmb_scene *scene, unsigned a,
-                                               unsigned b)
-{
-    const int64_t group = scene->placements[a].group;
-    return group != 0 && group == scene->placements[b].group;
 }
 
 /* Returns the number of pairs of a scene, those that cannot meet included. */
