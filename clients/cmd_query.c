@@ -127,15 +127,15 @@ static bool answer_scene(struct query_run *run, struct owned_scene *owner)
         run->report[i]->scene = owner;
         run->report[i]->begin(run->report[i]);
     }
-    run->progress = progress_begin("pairs", (int64_t) scene_count_pairs(scene));
+    run->progress = progress_begin("pairs", (int64_t) scene_count_pairs(owner));
     if (isatty(STDOUT_FILENO)) /* the answers themselves show the progress */
         run->progress.enabled = false;
     if (!options->local && !run->bus)
         run->bus = answers_bus_open(run->bus_options, options->timeout, (int) options->retries);
     if (options->local)
-        answers_local(scene, take_answer, run);
+        answers_local(owner, take_answer, run);
     else
-        more = answers_bus_scene(run->bus, scene, take_answer, run);
+        more = answers_bus_scene(run->bus, owner, take_answer, run);
     progress_end(&run->progress);
     for (int i = 0; i < 2 && run->report[i]; i++)
         run->report[i]->end(run->report[i]);

@@ -580,25 +580,21 @@ static bool read_pairs(const struct place *array, void *out)
 static bool read_ignored(const struct place *array, void *out)
 {
     struct fmb_scene *scene = out;
-    size_t count;
-    unsigned(*ignored)[2] = read_list(array, &count);
-    if (!ignored)
-        return false;
-    scene->ignored_count = scene_sort_ignored(scene, ignored, count);
-    scene->ignored = (const unsigned(*)[2]) ignored;
-    return true;
+    scene->ignored = (const unsigned(*)[2]) read_list(array, &scene->ignored_count);
+    return scene->ignored != NULL;
 }
 
 /* Refuses listed pairs that are left out. at: the list. */
-static bool check_listed(const struct place *at, const struct fmb_scene *scene)
+static bool check_listed(const struct place *at, struct owned_scene *owner)
 {
+    const struct fmb_scene *scene = &owner->scene;
     for (size_t i = 0; i < scene->pair_count; i++) {
         const struct place pair = {at->reader, at, NULL, NULL, i};
         const unsigned a = scene->pairs[i][0], b = scene->pairs[i][1];
-        if (scene_is_within_group(scene, a, b))
+        if (is_within_group(scene, a, b))
             return refuse(&pair, "both bodies are of group %lld",
                           (long long) scene->placements[a].group);
-        if (scene_leaves_out(scene, a, b))
+        if (scene_leaves_out(owner, a, b))
             return refuse(&pair, "\"ignore\" has this pair too");
     }
     return true;
@@ -625,8 +621,10 @@ static bool read_scene(struct json_reader *reader, const cJSON *item)
     struct fmb_scene *scene = &reader->scene->scene;
     scene->duration = 1;
     if (!find_members(&root, scene_keys, SCENE_KEYS, member) ||
-        !read_members(member, scene_keys, SCENE_KEYS, reader->scene) ||
-        !check_listed(&member[PAIRS], scene))
+        !read_members(member, scene_keys, SCENE_KEYS, reader->scene))
+        return false;
+    scene_begin_ignored(reader->scene);
+    if (!check_listed(&member[PAIRS], reader->scene))
         return false;
     scene->instant = scene->duration == 0;
     if (scene->which == FMB_PAIRS_LISTED)

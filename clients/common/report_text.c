@@ -142,7 +142,7 @@ static void text_begin(struct report *report)
         const int width = label_width(&scene->placements[i]);
         text->id_width = width > text->id_width ? width : text->id_width;
     }
-    uint64_t count = scene_count_pairs(scene);
+    uint64_t count = scene_count_pairs(report->scene);
     fprintf(text->out, "%sscene %zu: %zu bod%s in %dD, %s pair%s, 0 to %s s\n",
             text->scenes > 0 ? "\n" : "", text->scenes + 1, scene->placement_count,
             scene->placement_count == 1 ? "y" : "ies", report->scene->dim,

@@ -71,73 +71,46 @@ const char *scene_label(const struct fmb_placement *placement, char text[SCENE_L
 
 /* ---- Pairs ---- */
 
-static int compare_pairs(const void *left, const void *right)
+void scene_begin_ignored(struct owned_scene *scene)
 {
-    const unsigned *p = left, *q = right;
-    if (p[0] != q[0])
-        return p[0] < q[0] ? -1 : 1;
-    return (p[1] > q[1]) - (p[1] < q[1]);
+    const size_t capacity =
+        ignored_capacity(scene->scene.placement_count, scene->scene.ignored_count);
+    ignored_begin(&scene->scene, scene_allocate(scene, capacity, sizeof(unsigned)),
+                  &scene->ignored);
 }
 
-bool scene_is_within_group(const struct fmb_scene *scene, unsigned a, unsigned b)
+bool scene_leaves_out(struct owned_scene *scene, unsigned a, unsigned b)
 {
-    const int64_t group = scene->placements[a].group;
-    return group != 0 && group == scene->placements[b].group;
+    return is_within_group(&scene->scene, a, b) ||
+           ignored_has(&scene->ignored, a < b ? a : b, a < b ? b : a);
 }
 
-size_t scene_sort_ignored(const struct fmb_scene *scene, unsigned (*ignored)[2], size_t count)
+bool scene_next_pair(struct owned_scene *owner, struct scene_cursor *cursor, unsigned out[2])
 {
-    size_t kept = 0;
-    for (size_t i = 0; i < count; i++) {
-        const unsigned a = ignored[i][0], b = ignored[i][1];
-        if (scene_is_within_group(scene, a, b))
-            continue;
-        ignored[kept][0] = a < b ? a : b;
-        ignored[kept++][1] = a < b ? b : a;
-    }
-    count = kept;
-    if (count > 0)
-        qsort(ignored, count, sizeof *ignored, compare_pairs);
-    kept = 0;
-    for (size_t i = 0; i < count; i++)
-        if (i == 0 || compare_pairs(ignored[i], ignored[kept - 1]) != 0)
-            memmove(ignored[kept++], ignored[i], sizeof *ignored);
-    return kept;
-}
-
-bool scene_leaves_out(const struct fmb_scene *scene, unsigned a, unsigned b)
-{
-    const unsigned key[2] = {a < b ? a : b, a < b ? b : a};
-    return scene_is_within_group(scene, a, b) ||
-           (scene->ignored_count > 0 &&
-            bsearch(key, scene->ignored, scene->ignored_count, sizeof key, compare_pairs));
-}
-
-bool scene_next_pair(const struct fmb_scene *scene, struct scene_cursor *cursor, unsigned out[2])
-{
+    const struct fmb_scene *scene = &owner->scene;
+    const struct pair_numbers all = {.n = scene->placement_count};
     if (scene->which == FMB_PAIRS_LISTED) {
         if (cursor->listed == scene->pair_count)
             return false;
         memcpy(out, scene->pairs[cursor->listed++], sizeof *scene->pairs);
         return true;
     }
-    const struct pair_numbers all = {.n = scene->placement_count};
     while (pair_find(all, &cursor->a, &cursor->b)) {
         out[0] = (unsigned) cursor->a;
         out[1] = (unsigned) cursor->b++;
-        if (!scene_leaves_out(scene, out[0], out[1]))
+        if (!scene_leaves_out(owner, out[0], out[1]))
             return true;
     }
     return false;
 }
 
-uint64_t scene_count_pairs(const struct fmb_scene *scene)
+uint64_t scene_count_pairs(struct owned_scene *scene)
 {
     struct scene_cursor cursor = {0};
     unsigned pair[2];
     uint64_t count = 0;
-    if (scene->which == FMB_PAIRS_LISTED)
-        return scene->pair_count;
+    if (scene->scene.which == FMB_PAIRS_LISTED)
+        return scene->scene.pair_count;
     while (scene_next_pair(scene, &cursor, pair))
         count++;
     return count;

@@ -4,16 +4,16 @@
 #define SCENE_H
 
 #include "geometry.h"
+#include "ignored.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 struct owned_scene {
-    /* ALL or LISTED. Its ignored pairs have a < b, are in the order of (a, b), each once, and none
-     * is within a group. Ids are unique. */
-    struct fmb_scene scene;
-    int dim; /* 2 or 3, of all bodies */
+    struct fmb_scene scene; /* ALL or LISTED; ids are unique */
+    struct ignored ignored; /* its ignored pairs */
+    int dim;                /* 2 or 3, of all bodies */
     /* Owned, [given_count]: the frames of all bodies as they were given, one after the other. */
     struct geometry_frame *given;
     size_t given_count, given_capacity;
@@ -42,14 +42,11 @@ void scene_clear(struct owned_scene *scene);
 enum { SCENE_LABEL_MAX = 24 };
 const char *scene_label(const struct fmb_placement *placement, char text[SCENE_LABEL_MAX]);
 
-/* Whether two bodies are of one group. */
-bool scene_is_within_group(const struct fmb_scene *scene, unsigned a, unsigned b);
-
-/* Brings ignored pairs, two different indices each, into the form above. Returns their number. */
-size_t scene_sort_ignored(const struct fmb_scene *scene, unsigned (*ignored)[2], size_t count);
+/* Sets ignored from the placements and the ignored pairs of the scene. */
+void scene_begin_ignored(struct owned_scene *scene);
 
 /* Whether a pair is ignored, in either order, or within a group. */
-bool scene_leaves_out(const struct fmb_scene *scene, unsigned a, unsigned b);
+bool scene_leaves_out(struct owned_scene *scene, unsigned a, unsigned b);
 
 /* Iterates over the pairs to be decided, in the order of the scene; {0} at first. */
 struct scene_cursor {
@@ -57,10 +54,10 @@ struct scene_cursor {
     size_t a, b;   /* all pairs: of pair_find() */
 };
 
-/* Returns true and the next pair, or false after the last one. In: ALL or LISTED. */
-bool scene_next_pair(const struct fmb_scene *scene, struct scene_cursor *cursor, unsigned out[2]);
+/* Returns true and the next pair, or false after the last one. */
+bool scene_next_pair(struct owned_scene *scene, struct scene_cursor *cursor, unsigned out[2]);
 
 /* Returns the number of these pairs. Cost: O(placements^2) with ALL. */
-uint64_t scene_count_pairs(const struct fmb_scene *scene);
+uint64_t scene_count_pairs(struct owned_scene *scene);
 
 #endif

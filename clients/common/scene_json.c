@@ -1,8 +1,11 @@
 #include "scene_json.h"
 
+#include "allocate.h"
 #include "json_write.h"
+#include "pair_number.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* Writes count vectors of dim numbers. */
 static void write_vectors(struct json_writer *json, const char *key, const double *numbers, int dim,
@@ -118,7 +121,26 @@ static void write_pairs(struct json_writer *json, const struct fmb_placement *pl
     json_end(json, ']');
 }
 
-void scene_json_write(FILE *out, const struct owned_scene *owner)
+/* Writes the ignored pairs in the order of (a, b), each once, without those within a group. */
+static void write_ignored(struct json_writer *json, struct owned_scene *owner)
+{
+    const struct fmb_scene *scene = &owner->scene;
+    const struct pair_numbers all = {.n = scene->placement_count};
+    unsigned(*pair)[2] = allocate(scene->ignored_count, sizeof *pair);
+    size_t count = 0;
+    for (size_t a = 0, b = 0; pair_find(all, &a, &b); b++) {
+        if (is_within_group(scene, (unsigned) a, (unsigned) b) ||
+            !ignored_has(&owner->ignored, (unsigned) a, (unsigned) b))
+            continue;
+        pair[count][0] = (unsigned) a;
+        pair[count++][1] = (unsigned) b;
+    }
+    if (count > 0)
+        write_pairs(json, scene->placements, "ignore", (const unsigned(*)[2]) pair, count);
+    free(pair);
+}
+
+void scene_json_write(FILE *out, struct owned_scene *owner)
 {
     const struct fmb_scene *scene = &owner->scene;
     struct json_writer json = json_object(out);
@@ -132,6 +154,6 @@ void scene_json_write(FILE *out, const struct owned_scene *owner)
     if (scene->which == FMB_PAIRS_LISTED)
         write_pairs(&json, scene->placements, "pairs", scene->pairs, scene->pair_count);
     if (scene->ignored_count > 0)
-        write_pairs(&json, scene->placements, "ignore", scene->ignored, scene->ignored_count);
+        write_ignored(&json, owner);
     json_object_end(&json);
 }

@@ -184,15 +184,6 @@ static void set_bodies(const struct placement *placement, size_t count, bool gro
 
 /* ---- As a scene: pairs ---- */
 
-static void set_ignored(const struct scene_query *query, struct owned_scene *out)
-{
-    const size_t count = (size_t) (query->ignored_count / 2);
-    unsigned(*ignored)[2] = scene_allocate(out, count, sizeof *ignored);
-    memcpy(ignored, query->ignored, count * sizeof *ignored);
-    out->scene.ignored_count = scene_sort_ignored(&out->scene, ignored, count);
-    out->scene.ignored = (const unsigned(*)[2]) ignored;
-}
-
 /* Lists the pairs of ALL or ACROSS from first_pair on that are not left out. */
 static void list_pairs(const struct scene_query *query, struct owned_scene *out)
 {
@@ -201,7 +192,7 @@ static void list_pairs(const struct scene_query *query, struct owned_scene *out)
     unsigned(*pair)[2] = scene_allocate(out, (size_t) pairs_total(numbers), sizeof *pair);
     int32_t skip = query->first_pair;
     for (size_t a = 0, b = 0; pair_find(numbers, &a, &b); b++) {
-        if (skip-- > 0 || scene_leaves_out(&out->scene, (unsigned) a, (unsigned) b))
+        if (skip-- > 0 || scene_leaves_out(out, (unsigned) a, (unsigned) b))
             continue;
         pair[out->scene.pair_count][0] = (unsigned) a;
         pair[out->scene.pair_count++][1] = (unsigned) b;
@@ -212,7 +203,11 @@ static void list_pairs(const struct scene_query *query, struct owned_scene *out)
 static void set_pairs(const struct scene_query *query, struct owned_scene *out)
 {
     struct fmb_scene *scene = &out->scene;
-    set_ignored(query, out);
+    const size_t ignored_count = (size_t) (query->ignored_count / 2);
+    unsigned(*ignored)[2] = scene_allocate(out, ignored_count, sizeof *ignored);
+    scene->ignored = memcpy(ignored, query->ignored, ignored_count * sizeof *ignored);
+    scene->ignored_count = ignored_count;
+    scene_begin_ignored(out);
     if (query->which == FMB_PAIRS_ALL && query->first_pair == 0)
         return;
     if (query->which == FMB_PAIRS_LISTED) {

@@ -1,13 +1,12 @@
 /* Answers all pairs of a scene, in their order: decides them in this process, or by the service on
- * the bus. A scene is ALL or LISTED, with sorted ignored pairs (scene.h). With a margin, contacts
- * and near pairs have a gap even if it is not wanted. */
+ * the bus. With a margin, contacts and near pairs have a gap even if it is not wanted. */
 #ifndef ANSWERS_H
 #define ANSWERS_H
 
 #include "args.h"
 #include "scene.h"
 
-void answers_local(const struct fmb_scene *scene, fmb_client_sink *sink, void *user);
+void answers_local(struct owned_scene *scene, fmb_client_sink *sink, void *user);
 
 struct answers_bus;
 
@@ -19,7 +18,7 @@ void answers_bus_close(struct answers_bus *answers);
 
 /* Returns false if later scenes need not be queried: there is no bus; or no service has answered or
  * sent a heartbeat since the bus was opened. */
-bool answers_bus_scene(struct answers_bus *answers, const struct fmb_scene *scene,
+bool answers_bus_scene(struct answers_bus *answers, struct owned_scene *scene,
                        fmb_client_sink *sink, void *user);
 
 enum { VERIFY_TEXT_MAX = 256 };

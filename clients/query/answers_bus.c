@@ -65,7 +65,7 @@ void answers_bus_close(struct answers_bus *answers)
 
 /* A scene, and the state of its answers. */
 struct bus_scene {
-    const struct fmb_scene *scene;
+    struct owned_scene *scene;
     struct scene_cursor delivered; /* pairs so far */
     fmb_client_sink *sink;
     void *user;
@@ -127,7 +127,7 @@ static bool advise(struct answers_bus *answers, const char *kind)
 }
 
 /* Returns the list of all pairs of a scene. The caller frees it. */
-static unsigned (*list_pairs(const struct fmb_scene *scene, size_t *count))[2]
+static unsigned (*list_pairs(struct owned_scene *scene, size_t *count))[2]
 {
     struct scene_cursor cursor = {0};
     *count = (size_t) scene_count_pairs(scene);
@@ -139,10 +139,11 @@ static unsigned (*list_pairs(const struct fmb_scene *scene, size_t *count))[2]
 
 /* Of all pairs the library answers only contacts and near ones. So pairs are listed if each gets a
  * gap, and for a method that takes listed pairs only. */
-bool answers_bus_scene(struct answers_bus *answers, const struct fmb_scene *scene,
+bool answers_bus_scene(struct answers_bus *answers, struct owned_scene *owner,
                        fmb_client_sink *sink, void *user)
 {
-    struct bus_scene run = {.scene = scene, .sink = sink, .user = user};
+    const struct fmb_scene *scene = &owner->scene;
+    struct bus_scene run = {.scene = owner, .sink = sink, .user = user};
     struct fmb_scene queried = *scene;
     unsigned(*pair)[2] = NULL;
     if (!answers->client) {
@@ -151,7 +152,7 @@ bool answers_bus_scene(struct answers_bus *answers, const struct fmb_scene *scen
     }
     if (scene->which == FMB_PAIRS_ALL &&
         (scene->want & FMB_WANT_GAP || (scene->method && !scene->method->certain))) {
-        pair = list_pairs(scene, &queried.pair_count);
+        pair = list_pairs(owner, &queried.pair_count);
         queried.which = FMB_PAIRS_LISTED;
         queried.pairs = (const unsigned(*)[2]) pair;
         queried.ignored_count = 0;

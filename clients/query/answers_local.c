@@ -26,7 +26,7 @@ static void decide(const struct fmb_scene *scene, struct fmb_client_answer *out,
         memset(&out->answer, 0, sizeof out->answer);
 }
 
-void answers_local(const struct fmb_scene *scene, fmb_client_sink *sink, void *user)
+void answers_local(struct owned_scene *scene, fmb_client_sink *sink, void *user)
 {
     struct scene_cursor cursor = {0};
     struct fmb_client_answer answer;
@@ -35,7 +35,7 @@ void answers_local(const struct fmb_scene *scene, fmb_client_sink *sink, void *u
     while (scene_next_pair(scene, &cursor, pair)) {
         answer.a = pair[0];
         answer.b = pair[1];
-        decide(scene, &answer, text);
+        decide(&scene->scene, &answer, text);
         sink(user, &answer);
     }
 }

@@ -35,8 +35,8 @@ static void test_later_scenes_are_queried_if_there_is_a_heartbeat(void **state)
         assert_int_equal(fmb_body_make(3, FMB_BOX, size, 3, &body), FMB_OK);
         const struct fmb_placement placement[] = {{.body = &body, .id = 1},
                                                   {.body = &body, .id = 2}};
-        const struct fmb_scene scene = {
-            .placements = placement, .placement_count = 2, .duration = 1};
+        struct owned_scene scene = {
+            .dim = 3, .scene = {.placements = placement, .placement_count = 2, .duration = 1}};
         struct relay *relay = relay_new();
         relay->deaf = true;
         relay->before = alive ? send_heartbeat : NULL;

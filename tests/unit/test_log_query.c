@@ -181,7 +181,7 @@ static int64_t decide_found(void)
     scene.scene.method =
         fmb_method_by_number(is_pair ? found.query.pair.method : found.query.scene.method);
     scene.scene.want = FMB_WANT_BOX;
-    answers_local(&scene.scene, is_pair ? on_pair : on_scene_pair, &walk);
+    answers_local(&scene, is_pair ? on_pair : on_scene_pair, &walk);
     if (!is_pair)
         assert_int_equal(walk.verdict, recorded.scene.verdict_count);
     scene_clear(&scene);
@@ -414,11 +414,11 @@ static void assert_pairs(const size_t (*expected)[2], size_t count)
     struct scene_cursor cursor = {0};
     unsigned pair[2];
     for (size_t k = 0; k < count; k++) {
-        assert_true(scene_next_pair(&scene.scene, &cursor, pair));
+        assert_true(scene_next_pair(&scene, &cursor, pair));
         assert_int_equal(pair[0], expected[k][0]);
         assert_int_equal(pair[1], expected[k][1]);
     }
-    assert_false(scene_next_pair(&scene.scene, &cursor, pair));
+    assert_false(scene_next_pair(&scene, &cursor, pair));
     scene_clear(&scene);
 }
 
@@ -492,7 +492,7 @@ static void names_groups_and_vertices_are_kept(void **state)
     assert_string_equal(scene.scene.label, query->label);
     assert_string_equal(scene.scene.placements[0].name, "arm");
     assert_int_equal(scene.scene.placements[2].group, -4);
-    assert_int_equal(scene_count_pairs(&scene.scene), 2);
+    assert_int_equal(scene_count_pairs(&scene), 2);
     assert_memory_equal(&scene.given[1], &face, sizeof face);
     scene_clear(&scene);
     query->label = "a\nb";

@@ -72,7 +72,7 @@ static void take(struct svg *svg, const struct owned_scene *owner)
     struct scene_cursor cursor = {0};
     unsigned of[2];
     begin(report, &taken);
-    while (scene_next_pair(scene, &cursor, of)) {
+    while (scene_next_pair(&taken, &cursor, of)) {
         struct fmb_client_answer answer = {.a = of[0], .b = of[1], .text = ""};
         assert_int_equal(
             fmb_decide(fmb_method_default(), &scene->placements[of[0]], &scene->placements[of[1]],
