@@ -9,6 +9,7 @@
 #include "progress.h"
 #include "scene_json.h"
 #include "logged_query.h"
+#include "wire.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -77,6 +78,24 @@ static bool check_options(const struct args *args, struct log_scene_options *opt
     return true;
 }
 
+/* Reports the detail of the result of a query that the service refuses. */
+static void report_refusal(const struct log_query *query, const struct new_result *refused)
+{
+    const bool is_pair = query->query.kind == LOG_PAIR_QUERY;
+    const uint32_t size = (uint32_t) refused->size;
+    union {
+        struct pair_result pair;
+        struct scene_result scene;
+    } *result = allocate(1, sizeof *result);
+    if (is_pair)
+        wire_read_pair_result(refused->bytes, size, &result->pair);
+    else
+        wire_read_scene_result(refused->bytes, size, &result->scene);
+    complain("event %" PRId64 ": the service refuses it: %s", query->number,
+             is_pair ? result->pair.detail : result->scene.detail);
+    free(result);
+}
+
 /* Whether the service accepts the query. A pair that its method cannot decide is accepted. */
 static bool check_query(const struct log_query *query)
 {
@@ -91,7 +110,7 @@ static bool check_query(const struct log_query *query)
     const bool accepted = result.status == FMB_OK || (query->query.kind == LOG_PAIR_QUERY &&
                                                       result.status == FMB_CANNOT_DECIDE);
     if (!accepted)
-        complain("event %" PRId64 ": the service refuses it: %s", query->number, result.detail);
+        report_refusal(query, &result);
     local_answerer_close(answerer);
     return accepted;
 }

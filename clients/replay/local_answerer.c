@@ -113,7 +113,6 @@ static const char *decide_pair(struct local_answerer *local, const unsigned char
     }
     result->compute_ns = out->compute_ns = clock_ns() - begin;
     out->status = result->status;
-    out->detail = result->detail;
     out->pairs = out->status == FMB_OK;
     out->placement = local->query.pair.placement;
     out->placement_count = 2;
@@ -134,7 +133,6 @@ static const char *decide_scene(struct local_answerer *local, const unsigned cha
     struct scene_result *result = scene_job_result(local->job);
     result->compute_ns = out->compute_ns = clock_ns() - begin;
     out->status = result->status;
-    out->detail = result->detail;
     out->pairs = replayed_decided(query, result);
     out->placement = query->placement;
     out->placement_count = query_stored_placements(query);

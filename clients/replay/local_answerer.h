@@ -18,7 +18,6 @@ struct new_result {
     size_t size;
     int64_t compute_ns, pairs; /* time taken, pairs decided */
     int32_t status;
-    const char *detail; /* valid as bytes is; NULL: the query is too long */
     /* If the status is UNKNOWN_BODY: the first handle without a definition so far; otherwise none.
      */
     struct handle undefined;
