@@ -124,7 +124,7 @@ see_clients/mesh := clients/page clients/common msgs/common service/fmb
 see_clients/replay := clients/page clients/log service/answer $(see_clients/log)
 see_clients := $(addprefix clients/,query record mesh replay) $(see_clients/replay)
 see_clients/demo :=
-see_clients/examples := clients/lib service/fmb
+see_clients/examples := clients/lib msgs/codec service/fmb
 
 # Before the rules whose prerequisites they are.
 message_names := body_t definition_query_t definition_t names_t pair_query_t pair_result_t placement_t \
@@ -398,7 +398,8 @@ install: all
 	for name in $(basename $(notdir $(shared_libraries))); do \
 		ln -sf $$name.0 "$(DESTDIR)$(LIBDIR)/$$name" || exit; done
 	$(if $(DESTDIR),,$(if $(filter /usr/lib% /usr/local/lib%,$(LIBDIR)),[ $$(id -u) != 0 ] || ldconfig))
-	$(INSTALL) -m 644 service/fmb/fmb.h clients/lib/fmb_client.h "$(DESTDIR)$(PREFIX)/include"
+	$(INSTALL) -m 644 service/fmb/fmb.h msgs/codec/fmb_counters.h clients/lib/fmb_client.h \
+		"$(DESTDIR)$(PREFIX)/include"
 	$(INSTALL) -m 644 $(message_files) "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes"
 	$(INSTALL) -m 644 LICENSE "$(DESTDIR)$(PREFIX)/share/doc/fmb"
 	$(fill_in) service/fmb/fmb.pc.in > "$(DESTDIR)$(LIBDIR)/pkgconfig/fmb.pc"
@@ -409,8 +410,8 @@ install-strip: strip_option := -s
 install-strip: install
 
 uninstall:
-	cd "$(DESTDIR)$(PREFIX)" && rm -rf bin/fmbd bin/fmb include/fmb.h include/fmb_client.h \
-		share/fmb share/doc/fmb lib/systemd/system/fmbd.service
+	cd "$(DESTDIR)$(PREFIX)" && rm -rf bin/fmbd bin/fmb include/fmb.h include/fmb_counters.h \
+		include/fmb_client.h share/fmb share/doc/fmb lib/systemd/system/fmbd.service
 	cd "$(DESTDIR)$(LIBDIR)" && rm -f libfmb.a libfmb-client.a \
 		libfmb.so libfmb.so.0 libfmb-client.so libfmb-client.so.0 pkgconfig/fmb.pc \
 		pkgconfig/fmb-client.pc

@@ -61,7 +61,7 @@ static void print_json(const struct fmb_client_heartbeat *status)
     json_integer(&json, "server_id", status->server_id);
     json_string(&json, "version", status->version);
 #define X(name) json_integer(&json, #name, status->name);
-    FMB_CLIENT_COUNTERS(X)
+    FMB_COUNTERS(X)
 #undef X
     json_begin(&json, "results", '{');
 #define X(name, number, text) json_integer(&json, #name, status->results[number]);

@@ -182,7 +182,7 @@ static const char *on_status(struct fmb_client *client, const struct bus_message
     struct fmb_client_heartbeat out = {
         .utime = status.utime, .server_id = status.server_id, .version = status.version};
 #define X(name) out.name = status.name;
-    FMB_CLIENT_COUNTERS(X)
+    FMB_COUNTERS(X)
 #undef X
     memcpy(out.results, status.results, sizeof out.results);
     if (client->watcher.heartbeat)

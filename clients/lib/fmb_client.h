@@ -15,7 +15,7 @@
  *     fmb_client_query(client, &scene, sink, NULL);
  *     fmb_client_close(client);
  *
- * (sink is a function of the caller that receives the answers; clients/examples/ask_scene.c is a
+ * (sink is a function of the caller that receives the answers; clients/examples/scene.c is a
  * complete program.)
  *
  * Link with pkg-config's fmb-client: libfmb, GMP, liblcm and GLib.
@@ -38,6 +38,7 @@
 #define FMB_CLIENT_H
 
 #include "fmb.h"
+#include "fmb_counters.h"
 
 #include <stdint.h>
 
@@ -214,39 +215,12 @@ struct fmb_client_cursor {
 bool fmb_client_next_answer(const struct fmb_client_scene_result *result,
                             struct fmb_client_cursor *cursor, struct fmb_client_answer *out);
 
-/* Counters of a heartbeat; status_t.lcm defines them. */
-#define FMB_CLIENT_COUNTERS(X) \
-    X(uptime_us)               \
-    X(receive_buffer)          \
-    X(received)                \
-    X(answered)                \
-    X(unsent)                  \
-    X(expired)                 \
-    X(refusals_unsent)         \
-    X(scenes)                  \
-    X(definitions)             \
-    X(pairs)                   \
-    X(malformed)               \
-    X(foreign)                 \
-    X(dropped)                 \
-    X(waiting)                 \
-    X(most_waiting)            \
-    X(bodies)                  \
-    X(frames)                  \
-    X(frame_capacity)          \
-    X(ids)                     \
-    X(hits)                    \
-    X(misses)                  \
-    X(evictions)               \
-    X(compute_p50_ns)          \
-    X(compute_p99_ns)          \
-    X(compute_max_ns)
-
+/* The counters are those of fmb_counters.h; status_t.lcm defines them. */
 struct fmb_client_heartbeat {
     int64_t utime, server_id;
     const char *version;
 #define X(name) int64_t name;
-    FMB_CLIENT_COUNTERS(X)
+    FMB_COUNTERS(X)
 #undef X
     int64_t results[FMB_STATUS_COUNT]; /* [status]: results sent */
 };

@@ -23,6 +23,7 @@
 #ifndef WIRE_H
 #define WIRE_H
 
+#include "fmb_counters.h"
 #include "geometry.h"
 #include "query.h"
 
@@ -43,40 +44,12 @@
 /* Most bytes of a heartbeat. */
 enum { WIRE_STATUS_BYTES_MAX = 2000 };
 
-/* The counters of the heartbeat, except those of results. */
-#define WIRE_COUNTERS(X) \
-    X(uptime_us)         \
-    X(receive_buffer)    \
-    X(received)          \
-    X(answered)          \
-    X(unsent)            \
-    X(expired)           \
-    X(refusals_unsent)   \
-    X(scenes)            \
-    X(definitions)       \
-    X(pairs)             \
-    X(malformed)         \
-    X(foreign)           \
-    X(dropped)           \
-    X(waiting)           \
-    X(most_waiting)      \
-    X(bodies)            \
-    X(frames)            \
-    X(frame_capacity)    \
-    X(ids)               \
-    X(hits)              \
-    X(misses)            \
-    X(evictions)         \
-    X(compute_p50_ns)    \
-    X(compute_p99_ns)    \
-    X(compute_max_ns)
-
 /* The heartbeat (status_t.lcm). */
 struct wire_status {
     int64_t utime, server_id;
     char version[32];
 #define X(name) int64_t name;
-    WIRE_COUNTERS(X)
+    FMB_COUNTERS(X)
 #undef X
     int64_t results[FMB_STATUS_COUNT]; /* [status] */
 };

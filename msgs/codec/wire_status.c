@@ -16,7 +16,7 @@ static const struct {
     size_t at;
 } counters[] = {
 #define X(name) {#name, offsetof(struct wire_status, name)},
-    WIRE_COUNTERS(X)
+    FMB_COUNTERS(X)
 #undef X
 #define X(name, number, text) {"result_" #name, offsetof(struct wire_status, results[number])},
         FMB_STATUS_MAP(X)

@@ -5,8 +5,9 @@
  * together take O(pairs + ignored).
  *
  * Use: the engine while it enumerates pairs; the client library while it divides a scene and
- * delivers answers. A caller that counts pairs which are not decided (service/answer, clients/common)
- * queries each a with each b after it, and skips those a for which ignored_has_any() is false.
+ * delivers answers. A caller that counts pairs which are not decided (service/answer,
+ * clients/common) queries each a with each b after it, and skips those a for which
+ * ignored_has_any() is false.
  *
  * Inline: libfmb shows the names of fmb.h only. */
 #ifndef FMB_IGNORED_H

@@ -27,7 +27,7 @@ static bool same_status(const struct wire_status *status, const fmb_msgs_status_
     bool same = status->utime == message->utime && status->server_id == message->server_id &&
                 same_text(status->version, sizeof status->version, message->version, whole);
 #define X(name) same = same && status->name == counter_of(message, #name);
-    WIRE_COUNTERS(X)
+    FMB_COUNTERS(X)
 #undef X
 #define X(name, number, text) \
     same = same && status->results[number] == counter_of(message, "result_" #name);

@@ -220,19 +220,26 @@ grid_scene() {
 
 @test "watch shows the status of errors, in JSON" {
     start_fmbd
-    random_scene 2 2 > "$BATS_TEST_TMPDIR/scene.json"
-    for options in '' --certificate; do
-        "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
-        watch=$!
-        started="$started $watch"
-        query_until_watched() {
-            "$FMB" query --method fmb --gap $options --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
-            ! kill -0 $watch 2> /dev/null
-        }
-        wait_until query_until_watched
-        jq -e --arg error "$(jq -r '.pairs[0].error' "$BATS_TEST_TMPDIR/bus")" \
-            '.error == $error and .status > 0' "$BATS_TEST_TMPDIR/watch"
-    done
+    "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
+    watch=$!
+    started="$started $watch"
+    query_until_watched() { # certificates are of bodies of one frame
+        "$FMB" query --certificate --json <<< "$shared" > "$BATS_TEST_TMPDIR/bus"
+        ! kill -0 $watch 2> /dev/null
+    }
+    shared=$(jq -c '.bodies |= .[2:4]' <<< "$shared")
+    wait_until query_until_watched
+    jq -e --arg error "$(jq -r '.pairs[0].error' "$BATS_TEST_TMPDIR/bus")" \
+        '.error == $error and .status > 0' "$BATS_TEST_TMPDIR/watch"
+    "$FMB" watch --json --count 300 > "$BATS_TEST_TMPDIR/watch" 3>&- &
+    watch=$!
+    started="$started $watch"
+    replay_until_watched() { # the log has scenes that are refused
+        "$FMB" replay --bus tests/logs/refused.log > /dev/null 2>&1 || true
+        ! kill -0 $watch 2> /dev/null
+    }
+    wait_until replay_until_watched
+    jq -es 'any(.[]; (has("a") | not) and .status > 0 and (.error | length > 0))' "$BATS_TEST_TMPDIR/watch"
     stop_fmbd
 }
 
