@@ -12,6 +12,7 @@
 #include "wire.h"
 
 #include <inttypes.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -43,38 +44,33 @@ static const char usage[] =
     "Exit codes: 0 printed; 1 there is no such query, the service refuses it, or a\n"
     "handle is not defined; 2 wrong usage, or a log cannot be read.\n";
 
-struct log_scene_options {
-    struct log_query_options query;
-    bool has_event, has_offset, has_client, has_sequence;
-};
-
+/* The options that have a number. */
+enum { EVENT, OFFSET, CLIENT, SEQUENCE, NUMBERS };
 struct number {
-    int64_t *value;
-    bool *given;
-    int64_t low;
+    long low, value;
+    bool given;
 };
 
 static bool take_number(const struct args *args, void *out)
 {
-    const struct number *number = out;
-    long value;
-    if (!args_integer(args, number->low, INT64_MAX, &value))
-        return false;
-    *number->value = value;
-    *number->given = true;
-    return true;
+    struct number *number = out;
+    number->given = args_integer(args, number->low, LONG_MAX, &number->value);
+    return number->given;
 }
 
-static bool check_options(const struct args *args, struct log_scene_options *options)
+static bool take_numbers(const struct args *args, const struct number *number,
+                         struct log_query_options *out)
 {
-    const bool ids = options->has_client || options->has_sequence;
-    if (options->has_client != options->has_sequence)
+    const bool ids = number[CLIENT].given || number[SEQUENCE].given;
+    if (number[CLIENT].given != number[SEQUENCE].given)
         return args_error(args, "--client goes with --sequence");
-    if (options->has_event + options->has_offset + ids != 1)
+    if (number[EVENT].given + number[OFFSET].given + ids != 1)
         return args_error(args, "expected --event, --offset, or --client with --sequence");
-    options->query.by = options->has_event    ? LOG_QUERY_NUMBER
-                        : options->has_offset ? LOG_QUERY_OFFSET
-                                              : LOG_QUERY_IDS;
+    out->by = ids ? LOG_QUERY_IDS : number[EVENT].given ? LOG_QUERY_NUMBER : LOG_QUERY_OFFSET;
+    out->number = number[EVENT].value;
+    out->offset = number[OFFSET].value;
+    out->client_id = number[CLIENT].value;
+    out->sequence_number = number[SEQUENCE].value;
     return true;
 }
 
@@ -162,16 +158,16 @@ static int print_scene(struct log_query *query)
     return output_flush() ? ARGS_ANSWERED : ARGS_USAGE;
 }
 
-static int run_scene(struct log_scene_options *options)
+static int run_scene(struct log_query_options *options)
 {
     static const int code_of[] = {[LOG_QUERY_FOUND] = ARGS_ANSWERED,
                                   [LOG_QUERY_NONE] = ARGS_FAILED,
                                   [LOG_QUERY_FAILED] = ARGS_USAGE};
     struct log_query *query = allocate(1, sizeof *query);
     struct progress progress = progress_begin("bytes", 0);
-    options->query.progress = progress_to;
-    options->query.user = &progress;
-    const enum log_query_outcome outcome = log_query(&options->query, query);
+    options->progress = progress_to;
+    options->user = &progress;
+    const enum log_query_outcome outcome = log_query(options, query);
     progress_end(&progress);
     int code = code_of[outcome];
     if (outcome == LOG_QUERY_FOUND)
@@ -183,17 +179,13 @@ static int run_scene(struct log_scene_options *options)
 
 int cmd_log_scene(int argc, char **argv)
 {
-    struct log_scene_options options = {.query = {.log = NULL}};
-    struct log_query_options *query = &options.query;
-    struct number event = {&query->number, &options.has_event, INT64_MIN};
-    struct number offset = {&query->offset, &options.has_offset, 0};
-    struct number client = {&query->client_id, &options.has_client, INT64_MIN};
-    struct number sequence = {&query->sequence_number, &options.has_sequence, INT64_MIN};
+    struct number number[NUMBERS] = {
+        [EVENT] = {.low = LONG_MIN}, [CLIENT] = {.low = LONG_MIN}, [SEQUENCE] = {.low = LONG_MIN}};
     const struct args_option own[] = {
-        {"event", ARGS_OTHER, &event, .take = take_number},
-        {"offset", ARGS_OTHER, &offset, .take = take_number},
-        {"client", ARGS_OTHER, &client, .take = take_number},
-        {"sequence", ARGS_OTHER, &sequence, .take = take_number},
+        {"event", ARGS_OTHER, &number[EVENT], .take = take_number},
+        {"offset", ARGS_OTHER, &number[OFFSET], .take = take_number},
+        {"client", ARGS_OTHER, &number[CLIENT], .take = take_number},
+        {"sequence", ARGS_OTHER, &number[SEQUENCE], .take = take_number},
         {.name = NULL},
     };
     struct args args = {"log scene",         usage, own, .operand = "LOG", .operands_min = 1,
@@ -201,10 +193,7 @@ int cmd_log_scene(int argc, char **argv)
     const int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if (!check_options(&args, &options))
-        return ARGS_USAGE;
-    options.query.log = args.operands;
-    options.query.log_count = args.operand_count;
-    options.query.prefix = args.bus.prefix;
-    return run_scene(&options);
+    struct log_query_options options = {
+        .log = args.operands, .log_count = args.operand_count, .prefix = args.bus.prefix};
+    return take_numbers(&args, number, &options) ? run_scene(&options) : ARGS_USAGE;
 }
