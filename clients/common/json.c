@@ -526,8 +526,7 @@ static bool read_bodies(const struct place *array, void *out)
     const size_t count = count_elements(array);
     if (count == SIZE_MAX)
         return false;
-    struct fmb_placement *placements =
-        scene_allocate(array->reader->scene, count, sizeof *placements);
+    struct fmb_placement *placements = scene_alloc(array->reader->scene, count, sizeof *placements);
     array->reader->entry = allocate(count, sizeof *array->reader->entry);
     scene->placements = placements;
     scene->placement_count = count;
@@ -565,7 +564,7 @@ static unsigned (*read_list(const struct place *array, size_t *count))[2]
     *count = count_elements(array);
     if (*count == SIZE_MAX)
         return NULL;
-    unsigned(*list)[2] = scene_allocate(array->reader->scene, *count, sizeof *list);
+    unsigned(*list)[2] = scene_alloc(array->reader->scene, *count, sizeof *list);
     return read_each(array, *count, "pairs", read_pair, list, sizeof *list) ? list : NULL;
 }
 

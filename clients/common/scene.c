@@ -10,7 +10,7 @@
 
 /* ---- Memory ---- */
 
-void *scene_allocate(struct owned_scene *scene, size_t count, size_t size)
+void *scene_alloc(struct owned_scene *scene, size_t count, size_t size)
 {
     scene->memory = allocate_grow(scene->memory, &scene->memory_capacity, scene->memory_count + 1,
                                   sizeof *scene->memory);
@@ -19,7 +19,7 @@ void *scene_allocate(struct owned_scene *scene, size_t count, size_t size)
 
 const char *scene_text(struct owned_scene *scene, const char *text)
 {
-    return text && *text ? strcpy(scene_allocate(scene, strlen(text) + 1, 1), text) : NULL;
+    return text && *text ? strcpy(scene_alloc(scene, strlen(text) + 1, 1), text) : NULL;
 }
 
 void scene_clear(struct owned_scene *scene)
@@ -46,8 +46,8 @@ enum fmb_status scene_make_body(struct owned_scene *scene, size_t count,
                                 const struct fmb_body **out, size_t *bad)
 {
     const struct geometry_frame *given = scene->given + scene->given_count - count;
-    struct fmb_body *body = scene_allocate(scene, 1, sizeof *body);
-    struct fmb_frame one, *frames = count == 1 ? &one : scene_allocate(scene, count, sizeof one);
+    struct fmb_body *body = scene_alloc(scene, 1, sizeof *body);
+    struct fmb_frame one, *frames = count == 1 ? &one : scene_alloc(scene, count, sizeof one);
     double number[GEOMETRY_FRAME_NUMBERS_MAX];
     *out = body;
     for (*bad = 0; *bad < count; ++*bad, given++) {
@@ -75,8 +75,7 @@ void scene_begin_ignored(struct owned_scene *scene)
 {
     const size_t capacity =
         ignored_capacity(scene->scene.placement_count, scene->scene.ignored_count);
-    ignored_begin(&scene->scene, scene_allocate(scene, capacity, sizeof(unsigned)),
-                  &scene->ignored);
+    ignored_begin(&scene->scene, scene_alloc(scene, capacity, sizeof(unsigned)), &scene->ignored);
 }
 
 bool scene_leaves_out(struct owned_scene *scene, unsigned a, unsigned b)

@@ -22,7 +22,7 @@ struct owned_scene {
 };
 
 /* Returns memory, all 0, that scene_clear() frees. Exits with status 1 if memory is exhausted. */
-void *scene_allocate(struct owned_scene *scene, size_t count, size_t size);
+void *scene_alloc(struct owned_scene *scene, size_t count, size_t size);
 
 /* Returns a copy of a text; NULL for "" and NULL. */
 const char *scene_text(struct owned_scene *scene, const char *text);

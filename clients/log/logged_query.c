@@ -164,7 +164,7 @@ static void set_ids(const struct placement *placement, size_t count, struct fmb_
 static void set_bodies(const struct placement *placement, size_t count, bool grouped,
                        struct owned_scene *scene)
 {
-    struct fmb_placement *out = scene_allocate(scene, count, sizeof *out);
+    struct fmb_placement *out = scene_alloc(scene, count, sizeof *out);
     scene->dim = FMB_DIM_MAX;
     for (size_t i = 0; i < count; i++) {
         const struct placement *from = &placement[i];
@@ -189,7 +189,7 @@ static void list_pairs(const struct scene_query *query, struct owned_scene *out)
 {
     const struct pair_numbers numbers = {query->which == FMB_PAIRS_ACROSS,
                                          out->scene.placement_count, (size_t) query->split};
-    unsigned(*pair)[2] = scene_allocate(out, (size_t) pairs_total(numbers), sizeof *pair);
+    unsigned(*pair)[2] = scene_alloc(out, (size_t) pairs_total(numbers), sizeof *pair);
     int32_t skip = query->first_pair;
     for (size_t a = 0, b = 0; pair_find(numbers, &a, &b); b++) {
         if (skip-- > 0 || scene_leaves_out(out, (unsigned) a, (unsigned) b))
@@ -204,7 +204,7 @@ static void set_pairs(const struct scene_query *query, struct owned_scene *out)
 {
     struct fmb_scene *scene = &out->scene;
     const size_t ignored_count = (size_t) (query->ignored_count / 2);
-    unsigned(*ignored)[2] = scene_allocate(out, ignored_count, sizeof *ignored);
+    unsigned(*ignored)[2] = scene_alloc(out, ignored_count, sizeof *ignored);
     scene->ignored = memcpy(ignored, query->ignored, ignored_count * sizeof *ignored);
     scene->ignored_count = ignored_count;
     scene_begin_ignored(out);
@@ -212,7 +212,7 @@ static void set_pairs(const struct scene_query *query, struct owned_scene *out)
         return;
     if (query->which == FMB_PAIRS_LISTED) {
         const size_t count = (size_t) (query->index_count / 2 - query->first_pair);
-        unsigned(*pair)[2] = scene_allocate(out, count, sizeof *pair);
+        unsigned(*pair)[2] = scene_alloc(out, count, sizeof *pair);
         scene->pairs = memcpy(pair, query->pair[query->first_pair], count * sizeof *pair);
         scene->pair_count = count;
     } else {
