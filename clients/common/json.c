@@ -590,7 +590,7 @@ static bool check_listed(const struct place *at, struct owned_scene *owner)
     for (size_t i = 0; i < scene->pair_count; i++) {
         const struct place pair = {at->reader, at, NULL, NULL, i};
         const unsigned a = scene->pairs[i][0], b = scene->pairs[i][1];
-        if (is_within_group(scene, a, b))
+        if (pair_is_within_group(scene, a, b))
             return refuse(&pair, "both bodies are of group %lld",
                           (long long) scene->placements[a].group);
         if (scene_leaves_out(owner, a, b))

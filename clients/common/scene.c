@@ -80,7 +80,7 @@ void scene_begin_ignored(struct owned_scene *scene)
 
 bool scene_leaves_out(struct owned_scene *scene, unsigned a, unsigned b)
 {
-    return is_within_group(&scene->scene, a, b) ||
+    return pair_is_within_group(&scene->scene, a, b) ||
            ignored_has(&scene->ignored, a < b ? a : b, a < b ? b : a);
 }
 

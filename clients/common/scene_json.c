@@ -129,7 +129,7 @@ static void write_ignored(struct json_writer *json, struct owned_scene *owner)
     unsigned(*pair)[2] = allocate(scene->ignored_count, sizeof *pair);
     size_t count = 0;
     for (size_t a = 0, b = 0; pair_find(all, &a, &b); b++) {
-        if (is_within_group(scene, (unsigned) a, (unsigned) b) ||
+        if (pair_is_within_group(scene, (unsigned) a, (unsigned) b) ||
             !ignored_has(&owner->ignored, (unsigned) a, (unsigned) b))
             continue;
         pair[count][0] = (unsigned) a;

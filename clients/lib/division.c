@@ -25,18 +25,12 @@ static void set_body(const struct fmb_placement *placement, struct held *held,
 
 /* ---- Pairs that are not decided ---- */
 
-static struct pair_numbers numbers_of(const struct fmb_scene *scene)
-{
-    return (struct pair_numbers){scene->which == FMB_PAIRS_ACROSS, scene->placement_count,
-                                 scene->split};
-}
-
 bool division_leaves_out(struct division *division, const unsigned pair[2])
 {
     const struct fmb_scene *scene = division->scene;
     return ignored_has(&division->ignored, pair[0], pair[1]) ||
-           is_within_group(scene, pair[0], pair[1]) ||
-           pair_number(numbers_of(scene), pair[0], pair[1]) < scene->first_pair;
+           pair_is_within_group(scene, pair[0], pair[1]) ||
+           pair_number(pair_numbers_of(scene), pair[0], pair[1]) < scene->first_pair;
 }
 
 int32_t division_ignored(struct division *division, const struct part *part, int32_t max,
@@ -182,7 +176,7 @@ static bool next_pair(struct division *division, struct division_cursor *at, uns
         return true;
     }
     do {
-        if (!pair_find(numbers_of(scene), &at->a, &at->b))
+        if (!pair_find(pair_numbers_of(scene), &at->a, &at->b))
             return false;
         out[0] = (unsigned) at->a;
         out[1] = (unsigned) at->b++;

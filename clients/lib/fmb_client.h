@@ -90,7 +90,7 @@ enum { FMB_CLIENT_WHY_MAX = 512 };
  * On input: options, which are copied, or NULL; why has size bytes (NULL if size is 0).
  * Returns NULL if the bus cannot be opened, an option is wrong, or memory is exhausted; why is then
  * the reason, and what to run if there is no multicast route.
- * A client reserves some 12 MB of memory; only large scenes touch most of it. */
+ * A client reserves some 10 MB of memory; only large scenes touch most of it. */
 struct fmb_client *fmb_client_open(const struct fmb_client_options *options, char *why,
                                    size_t size);
 void fmb_client_close(struct fmb_client *client); /* may be NULL */
@@ -129,9 +129,10 @@ typedef void fmb_client_sink(void *user, const struct fmb_client_answer *answer)
  * OVER_LIMIT (2^31 placements, a body of too many frames, or a label of more than 64 bytes),
  * NO_MEMORY, NO_BUS or INSIDE. fmb_client_why() then names the place.
  *
- * Memory: 40 bytes for each placement, 8 for each ignored pair; with ALL and ACROSS also 184
+ * Memory: 44 bytes for each placement, 4 for each ignored pair; with ALL and ACROSS also 192
  * bytes for each of these pairs that waits for earlier ones: at most those of some 500 placements
- * with all others. The client keeps a copy of the frames of up to 16,384 bodies.
+ * with all others. The client keeps a copy of the frames of up to 16,384 bodies, or of twice
+ * as many as a scene has, and of those of the last scene.
  *
  * A query without a result after timeout * tries seconds is given up (NO_ANSWER). If no result of
  * any query came in that time, all remaining pairs are given up (NO_SERVICE): start an fmbd. From

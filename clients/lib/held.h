@@ -6,6 +6,8 @@
 
 #include "query.h"
 
+/* HELD_MAX: the size of the table. If it has as many bodies, and more than twice those of a scene,
+ * it is cleared before the scene. */
 enum { HELD_BITS = 14, HELD_MAX = 1 << HELD_BITS };
 
 struct held_body {

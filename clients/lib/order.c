@@ -15,14 +15,6 @@ void order_end(struct order *order)
     free(order->row);
 }
 
-/* Whether the answer to a pair of ALL or ACROSS is delivered. */
-static bool is_of_interest(const struct fmb_scene *scene, const struct fmb_client_answer *answer)
-{
-    const struct fmb_answer *found = &answer->answer;
-    return answer->status != FMB_OK || found->verdict != FMB_SEPARATED ||
-           (scene->margin > 0 && found->has_gap && found->gap.bounds[0] <= scene->margin);
-}
-
 /* Returns the answer to the pair with this number; NULL: it is separated, or has no answer. To be
  * called in the order of the numbers. */
 static const struct part_answer *find(struct part_answers *answers, int32_t number)
@@ -33,6 +25,8 @@ static const struct part_answer *find(struct part_answers *answers, int32_t numb
     return &answers->answer[answers->delivered++];
 }
 
+/* Delivers the answer to a pair, unless the pair is left out: of ALL and ACROSS those that are not
+ * decided, and, unless each is a separate query, those that are separated and not near. */
 static void deliver(const struct order *order, struct part_answers *answers, int32_t number,
                     const unsigned pair[2])
 {
@@ -40,7 +34,9 @@ static void deliver(const struct order *order, struct part_answers *answers, int
     const struct part_answer *found = find(answers, number);
     const bool listed = scene->which == FMB_PAIRS_LISTED, all = listed || order->division->single;
     const bool answered = number < answers->answered;
-    if ((answered && !found && !all) || (!listed && division_leaves_out(order->division, pair)))
+    const bool far = !found || (found->answer.verdict == FMB_SEPARATED &&
+                                !part_is_near(scene, &found->answer.gap));
+    if ((answered && far && !all) || (!listed && division_leaves_out(order->division, pair)))
         return;
     struct fmb_client_answer out = {.a = pair[0], .b = pair[1], .text = ""};
     if (!answered) {
@@ -53,8 +49,7 @@ static void deliver(const struct order *order, struct part_answers *answers, int
         out.answer = found ? found->answer : (struct fmb_answer){.verdict = FMB_SEPARATED};
         out.certificate = answers->certificate;
     }
-    if (all || is_of_interest(scene, &out))
-        order->sink(order->user, &out);
+    order->sink(order->user, &out);
 }
 
 static void deliver_row(const struct order *order, size_t row)

@@ -1,3 +1,18 @@
+/* Map.
+ *
+ * In: a part with its placements and pairs (division_next()), and its results (request.h).
+ * Out: queries; and part->answers, complete when part->done is set, which order.c delivers.
+ *
+ * Steps:
+ *   1. part_begin() writes the first query and sends it. write_query() sends a body by handle if
+ *      the service holds it.
+ *   2. part_take() is called with each result. Of a service that does not hold a body, the same
+ *      query is written again with frames.
+ *   3. take_answers() checks that the result fits the query (fits_pair(), fits_scene()), adds its
+ *      answers, and writes a query for the pairs that are left.
+ *
+ * Not here: which pairs a part has (division.c), how many parts are under way (scene_run.c), loss
+ * and repetition (request.c). Tested by test_client_query.c and test_client_bad.c. */
 #include "scene_part.h"
 
 #include "client_scene.h"
@@ -276,7 +291,6 @@ static int32_t number_of(const struct part *part, const struct scene_result *res
 static bool fits_pairs(const struct part *part, const struct scene_result *result)
 {
     int32_t before = part->answers.answered - 1;
-    const double margin = part->run->scene->margin;
     for (int32_t k = 0; k < result->verdict_count; k++) {
         unsigned pair[2];
         const int32_t number = number_of(part, result, k, pair);
@@ -284,7 +298,7 @@ static bool fits_pairs(const struct part *part, const struct scene_result *resul
         if (number <= before || number >= result->end_pair)
             return false;
         if (part->which != FMB_PAIRS_LISTED && result->verdict[k] == FMB_SEPARATED &&
-            !(gap && margin > 0 && gap->bounds[0] <= margin))
+            !(gap && part_is_near(part->run->scene, gap)))
             return false;
         if (gap && !fits_frames(part, pair, gap))
             return false;

@@ -56,6 +56,12 @@ static inline struct pair_numbers part_numbers(const struct part *part)
                                  (size_t) part->split};
 }
 
+/* Whether a separated pair with this gap is near. */
+static inline bool part_is_near(const struct fmb_scene *scene, const struct fmb_gap *gap)
+{
+    return scene->margin > 0 && gap->bounds[0] <= scene->margin;
+}
+
 void part_answers_clear(struct part_answers *answers);
 
 /* Returns an upper bound of the bytes of a result, for a pair query with a certificate of usual

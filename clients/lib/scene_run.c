@@ -75,7 +75,7 @@ static void begin(struct scene_run *run, const struct fmb_scene *scene)
     run->want = scene->want;
     run->status = FMB_OK;
     run->until = clock_ns() + (int64_t) (within * 1e9);
-    if (run->held->count >= HELD_MAX)
+    if (run->held->count >= HELD_MAX && run->held->count / 2 > scene->placement_count)
         held_clear(run->held);
 }
 

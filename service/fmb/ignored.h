@@ -76,7 +76,7 @@ static inline bool ignored_has(struct ignored *ignored, unsigned a, unsigned b)
 }
 
 /* Whether two placements are of one group. */
-static inline bool is_within_group(const struct fmb_scene *scene, unsigned a, unsigned b)
+static inline bool pair_is_within_group(const struct fmb_scene *scene, unsigned a, unsigned b)
 {
     const int64_t group = scene->placements[a].group;
     return group != 0 && group == scene->placements[b].group;

@@ -18,6 +18,13 @@ struct pair_numbers {
     size_t n, split; /* number of placements; split: at most n, used if across */
 };
 
+/* In: which is not FMB_PAIRS_LISTED. */
+static inline struct pair_numbers pair_numbers_of(const struct fmb_scene *scene)
+{
+    return (struct pair_numbers){scene->which == FMB_PAIRS_ACROSS, scene->placement_count,
+                                 scene->split};
+}
+
 /* The number of placements that come first in pairs: a is below it. */
 static inline size_t pair_rows(struct pair_numbers of)
 {

@@ -108,7 +108,7 @@ static void check_pairs(struct owned_scene *owner)
                    : scene->which == FMB_PAIRS_LISTED && scene->ignored_count == 0);
     for (size_t i = 0; i < scene->pair_count; i++)
         FUZZ_CHECK(is_pair(scene, scene->pairs[i]) &&
-                   !is_within_group(scene, scene->pairs[i][0], scene->pairs[i][1]));
+                   !pair_is_within_group(scene, scene->pairs[i][0], scene->pairs[i][1]));
     for (size_t i = 0; i < scene->ignored_count; i++)
         FUZZ_CHECK(is_pair(scene, scene->ignored[i]) &&
                    scene_leaves_out(owner, scene->ignored[i][0], scene->ignored[i][1]));

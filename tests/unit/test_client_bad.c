@@ -1220,29 +1220,34 @@ static void test_wrong_handles_of_a_pair_are_malformed(void **state)
     }
 }
 
-static void test_bodies_are_kept_until_a_scene_begins_with_a_full_table(void **state)
+/* The table is full, and a scene begins; only if the scene is small, the table is cleared. */
+static void test_bodies_are_kept_until_the_table_is_full(void **state)
 {
     (void) state;
     static struct held held;
     static struct requests requests;
     static struct scene_run run = {.requests = &requests, .held = &held};
-    const struct fmb_scene scene = {0};
+    static struct fmb_placement bodies[HELD_MAX];
+    static const double size[3] = {1, 1, 1};
+    struct fmb_body box;
+    struct fmb_scene scene = {.placements = bodies, .which = FMB_PAIRS_LISTED};
     uint64_t number = 0;
     const struct geometry geometry = {(const unsigned char *) &number, sizeof number};
+    assert_int_equal(fmb_body_make(3, FMB_BOX, size, 3, &box), FMB_OK);
+    for (int i = 0; i < HELD_MAX; i++)
+        bodies[i].body = &box;
     held.hasher = hasher_create();
     struct held_body *first = held_find(&held, &geometry);
     first->held = true;
-    for (int full = 0; full < 2; full++) {
-        while (held.count < HELD_MAX - 1 + (size_t) full) {
-            number++;
+    for (int more = -1; more < 2; more++) {
+        scene.placement_count = more == 0 ? HELD_MAX / 2 : 0;
+        for (number = held.count; held.count < (size_t) (HELD_MAX + more); number++)
             assert_false(held_find(&held, &geometry)->held);
-        }
         number = 0;
         assert_ptr_equal(held_find(&held, &geometry), first);
         assert_true(first->held);
-        number = HELD_MAX;
         assert_int_equal(scene_run(&run, &scene, false, NULL, NULL), FMB_OK);
-        assert_int_equal(held.count, full ? 0 : HELD_MAX - 1);
+        assert_int_equal(held.count, more == 1 ? 0 : HELD_MAX + more);
     }
     hasher_destroy(held.hasher);
 }
@@ -1589,7 +1594,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_an_answer_counts_more_than_an_unknown_body),
         cmocka_unit_test(test_a_late_answer_to_the_query_by_handle_is_taken),
         cmocka_unit_test(test_wrong_handles_of_a_pair_are_malformed),
-        cmocka_unit_test(test_bodies_are_kept_until_a_scene_begins_with_a_full_table),
+        cmocka_unit_test(test_bodies_are_kept_until_the_table_is_full),
         cmocka_unit_test(test_contradicting_second_results_are_counted),
         cmocka_unit_test(test_contradicting_results_of_pairs_are_counted),
         cmocka_unit_test(test_old_results_contradict_nothing),

@@ -225,7 +225,7 @@ static enum fmb_status check_groups(const struct fmb_scene *scene, struct why wh
     for (size_t i = 0; i < scene->placement_count; i++)
         groups = groups || placement[i].group;
     for (size_t k = 0; groups && k < scene->pair_count; k++)
-        if (is_within_group(scene, scene->pairs[k][0], scene->pairs[k][1]))
+        if (pair_is_within_group(scene, scene->pairs[k][0], scene->pairs[k][1]))
             return refuse_element(why, FMB_BAD_PAIR, "pairs", k);
     return FMB_OK;
 }

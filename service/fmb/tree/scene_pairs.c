@@ -9,26 +9,21 @@
  * microseconds. */
 enum { SEARCHES_MAX = 32 };
 
-static struct pair_numbers numbers_of(const struct fmb_scene *scene)
-{
-    return (struct pair_numbers){scene->which == FMB_PAIRS_ACROSS, scene->placement_count,
-                                 scene->split};
-}
-
 unsigned long long scene_pairs_number(const struct fmb_scene *scene, unsigned a, unsigned b)
 {
-    return pair_number(numbers_of(scene), a, b);
+    return pair_number(pair_numbers_of(scene), a, b);
 }
 
 unsigned long long scene_pairs_total(const struct fmb_scene *scene)
 {
-    return scene->which == FMB_PAIRS_LISTED ? scene->pair_count : pairs_total(numbers_of(scene));
+    return scene->which == FMB_PAIRS_LISTED ? scene->pair_count
+                                            : pairs_total(pair_numbers_of(scene));
 }
 
 unsigned long long scene_pairs_position(const struct scene_pairs *pairs)
 {
     const struct fmb_scene *scene = pairs->scene;
-    const struct pair_numbers numbers = numbers_of(scene);
+    const struct pair_numbers numbers = pair_numbers_of(scene);
     if (scene->which == FMB_PAIRS_LISTED)
         return pairs->next;
     if (pairs->given < pairs->found_count)
@@ -46,7 +41,7 @@ static void remove_ignored(struct scene_pairs *pairs)
         return;
     for (size_t i = 0; i < pairs->found_count; i++) {
         const unsigned b = pairs->found[count] = pairs->found[i];
-        count += !ignored_has(&pairs->ignored, a, b) && !is_within_group(pairs->scene, a, b);
+        count += !ignored_has(&pairs->ignored, a, b) && !pair_is_within_group(pairs->scene, a, b);
     }
     pairs->found_count = count;
 }
@@ -110,7 +105,7 @@ static void box_at(const void *context, unsigned index, double box[2][FMB_DIM_MA
 static void begin_search(struct scene_pairs *pairs, void *memory)
 {
     const struct fmb_scene *scene = pairs->scene;
-    const struct pair_numbers numbers = numbers_of(scene);
+    const struct pair_numbers numbers = pair_numbers_of(scene);
     pairs->first = scene->which == FMB_PAIRS_ACROSS ? (unsigned) scene->split : 0;
     if (pair_rows(numbers) == 0)
         return;
@@ -144,7 +139,7 @@ void scene_pairs_begin(struct scene_pairs *pairs, const struct fmb_scene *scene,
 
 static size_t next_found(struct scene_pairs *pairs, unsigned (*out)[2], size_t max)
 {
-    const struct pair_numbers numbers = numbers_of(pairs->scene);
+    const struct pair_numbers numbers = pair_numbers_of(pairs->scene);
     size_t count = 0;
     while (count < max && pairs->a < pair_rows(numbers)) {
         if (pairs->given < pairs->found_count) {
