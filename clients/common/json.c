@@ -362,7 +362,7 @@ static bool read_orientation(const struct place *at, void *out)
         return false;
     if (placement->orientation[0] == 0 && !turns(placement))
         return refuse(at, "a quaternion of zeros is no rotation");
-    fmb_body_make(dim, FMB_BOX, (const double[FMB_DIM_MAX]){0}, (size_t) dim, &any);
+    fmb_body_make(dim, FMB_BOX, (const double[FMB_DIM_MAX]){1, 1, 1}, (size_t) dim, &any);
     checked = *placement;
     checked.body = &any;
     return fmb_placement_check(&checked) == FMB_OK ||
