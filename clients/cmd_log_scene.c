@@ -2,15 +2,17 @@
 #include "commands.h"
 
 #include "allocate.h"
-#include "answer.h"
 #include "args.h"
 #include "complain.h"
+#include "local_answerer.h"
 #include "log_query.h"
 #include "progress.h"
 #include "scene_json.h"
 #include "logged_query.h"
+#include "wire.h"
 
 #include <inttypes.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -42,139 +44,87 @@ static const char usage[] =
     "Exit codes: 0 printed; 1 there is no such query, the service refuses it, or a\n"
     "handle is not defined; 2 wrong usage, or a log cannot be read.\n";
 
-struct log_scene_options {
-    struct log_query_options query;
-    bool has_event, has_offset, has_client, has_sequence;
-};
-
+/* The options that have a number. */
+enum { EVENT, OFFSET, CLIENT, SEQUENCE, NUMBERS };
 struct number {
-    int64_t *value;
-    bool *given;
-    int64_t low;
+    long low, value;
+    bool given;
 };
 
 static bool take_number(const struct args *args, void *out)
 {
-    const struct number *number = out;
-    long value;
-    if (!args_integer(args, number->low, INT64_MAX, &value))
-        return false;
-    *number->value = value;
-    *number->given = true;
-    return true;
+    struct number *number = out;
+    number->given = args_integer(args, number->low, LONG_MAX, &number->value);
+    return number->given;
 }
 
-static bool check_options(const struct args *args, struct log_scene_options *options)
+static bool take_numbers(const struct args *args, const struct number *number,
+                         struct log_query_options *out)
 {
-    const bool ids = options->has_client || options->has_sequence;
-    if (options->has_client != options->has_sequence)
+    const bool ids = number[CLIENT].given || number[SEQUENCE].given;
+    if (number[CLIENT].given != number[SEQUENCE].given)
         return args_error(args, "--client goes with --sequence");
-    if (options->has_event + options->has_offset + ids != 1)
+    if (number[EVENT].given + number[OFFSET].given + ids != 1)
         return args_error(args, "expected --event, --offset, or --client with --sequence");
-    options->query.by = options->has_event    ? LOG_QUERY_NUMBER
-                        : options->has_offset ? LOG_QUERY_OFFSET
-                                              : LOG_QUERY_IDS;
+    out->by = ids ? LOG_QUERY_IDS : number[EVENT].given ? LOG_QUERY_NUMBER : LOG_QUERY_OFFSET;
+    out->number = number[EVENT].value;
+    out->offset = number[OFFSET].value;
+    out->client_id = number[CLIENT].value;
+    out->sequence_number = number[SEQUENCE].value;
     return true;
 }
 
-/* ---- Whether the service accepts the query ---- */
-
-/* Adds the bodies that the query names by handle to the cache, as far as the service accepts them.
- */
-static void keep_bodies(struct answerer *answerer, struct logged_query *query)
+/* Reports the detail of the result of a query that the service refuses. */
+static void report_refusal(const struct log_query *query, const struct new_result *refused)
 {
-    int32_t count;
-    const struct placement *placement = logged_query_placements(query, &count);
-    struct cache *cache = answerer_cache(answerer);
-    struct handle handle;
-    for (int32_t i = 0; i < count; i++) {
-        if (!placement_by_handle(&placement[i]) || !scene_takes(&placement[i].geometry))
-            continue;
-        const struct cached *kept = cache_intern(cache, 0, &placement[i].geometry, &handle);
-        if (kept)
-            cache_release(cache, kept);
+    const bool is_pair = query->query.kind == LOG_PAIR_QUERY;
+    const uint32_t size = (uint32_t) refused->size;
+    union {
+        struct pair_result pair;
+        struct scene_result scene;
+    } *result = allocate(1, sizeof *result);
+    if (is_pair)
+        wire_read_pair_result(refused->bytes, size, &result->pair);
+    else
+        wire_read_scene_result(refused->bytes, size, &result->scene);
+    complain("event %" PRId64 ": the service refuses it: %s", query->number,
+             is_pair ? result->pair.detail : result->scene.detail);
+    free(result);
+}
+
+/* Whether the service accepts the query. A pair that its method cannot decide is accepted. */
+static bool check_query(const struct log_query *query)
+{
+    if (query->size > QUERY_BYTES_MAX) {
+        complain("event %" PRId64 ": the service refuses it: longer than %d bytes", query->number,
+                 QUERY_BYTES_MAX);
+        return false;
     }
-}
-
-/* A query is accepted even if its method cannot decide the pair. */
-static bool accepts_pair(struct answerer *answerer, const struct log_query *query,
-                         char detail[QUERY_TEXT_MAX])
-{
-    struct pair_result single, *result = &single;
-    struct pair_job *job = pair_job_create();
-    if (!job)
-        allocate_failed();
-    if (!answer_pair(answerer, &query->query.pair, result)) {
-        pair_job_begin(job, answerer, query->bytes, query->size);
-        while (!pair_job_step(job))
-            continue;
-        result = pair_job_end(job, answerer);
-    }
-    snprintf(detail, QUERY_TEXT_MAX, "%s", result->detail);
-    const bool accepted = result->status == FMB_OK || result->status == FMB_CANNOT_DECIDE;
-    pair_job_destroy(job);
+    struct local_answerer *answerer = local_answerer_open(FMB_FRAMES_MAX, query->definitions);
+    struct new_result result;
+    local_answer(answerer, query->query.kind, query->bytes, (uint32_t) query->size, &result);
+    const bool accepted = result.status == FMB_OK || (query->query.kind == LOG_PAIR_QUERY &&
+                                                      result.status == FMB_CANNOT_DECIDE);
+    if (!accepted)
+        report_refusal(query, &result);
+    local_answerer_close(answerer);
     return accepted;
-}
-
-/* The query is accepted if its first pairs are answered. */
-static bool accepts_scene(struct answerer *answerer, const struct log_query *query,
-                          char detail[QUERY_TEXT_MAX])
-{
-    struct scene_job *job = scene_job_create();
-    if (!job)
-        allocate_failed();
-    bool accepted = scene_job_begin(job, query->bytes, query->size) == NULL;
-    while (accepted && !scene_job_has_answers(job) && !scene_job_step(job, answerer))
-        continue;
-    if (accepted && !scene_job_has_answers(job)) {
-        const struct scene_result *result = scene_job_result(job);
-        accepted = result->status == FMB_OK;
-        snprintf(detail, QUERY_TEXT_MAX, "%s", result->detail);
-    }
-    scene_job_destroy(job);
-    return accepted;
-}
-
-static bool is_accepted(struct log_query *query, char detail[QUERY_TEXT_MAX])
-{
-    const struct answerer_options options = {.frames = FMB_FRAMES_MAX, .secret = {1, 1}};
-    struct answerer *answerer = answerer_create(&options);
-    if (!answerer)
-        allocate_failed();
-    struct logged_query *any = &query->query;
-    keep_bodies(answerer, any);
-    const bool accepted = any->kind == LOG_PAIR_QUERY ? accepts_pair(answerer, query, detail)
-                                                      : accepts_scene(answerer, query, detail);
-    answerer_destroy(answerer);
-    return accepted;
-}
-
-static bool check_query(struct log_query *query)
-{
-    char detail[QUERY_TEXT_MAX] = "";
-    if (query->size > QUERY_BYTES_MAX)
-        snprintf(detail, sizeof detail, "longer than %d bytes", QUERY_BYTES_MAX);
-    else if (is_accepted(query, detail))
-        return true;
-    complain("event %" PRId64 ": the service refuses it: %s", query->number, detail);
-    return false;
 }
 
 /* ---- Reports on stderr ---- */
 
-static void report_ids(struct logged_query *query, const struct scene *scene)
+static void report_ids(struct logged_query *query, const struct fmb_placement *printed)
 {
     int32_t count;
     const struct placement *placement = logged_query_placements(query, &count);
     for (int32_t i = 0; i < count; i++) {
-        if (placement[i].body_id == scene->body[i].id)
+        if (placement[i].body_id == printed[i].id)
             continue;
         if (placement[i].body_id == 0)
-            complain("placement %d, which has no id, is body %" PRId64 "", (int) i,
-                     scene->body[i].id);
+            complain("placement %d, which has no id, is body %" PRId64 "", (int) i, printed[i].id);
         else
             complain("placement %d, one more of body %" PRId64 ", is body %" PRId64 "", (int) i,
-                     placement[i].body_id, scene->body[i].id);
+                     placement[i].body_id, printed[i].id);
     }
 }
 
@@ -199,25 +149,25 @@ static void report_command(const struct log_query *query)
 
 static int print_scene(struct log_query *query)
 {
-    struct scene scene;
+    struct owned_scene scene;
     scene_of_query(&query->query, &scene);
     scene_json_write(stdout, &scene);
-    report_ids(&query->query, &scene);
+    report_ids(&query->query, scene.scene.placements);
     report_command(query);
     scene_clear(&scene);
     return output_flush() ? ARGS_ANSWERED : ARGS_USAGE;
 }
 
-static int run_scene(struct log_scene_options *options)
+static int run_scene(struct log_query_options *options)
 {
     static const int code_of[] = {[LOG_QUERY_FOUND] = ARGS_ANSWERED,
                                   [LOG_QUERY_NONE] = ARGS_FAILED,
                                   [LOG_QUERY_FAILED] = ARGS_USAGE};
     struct log_query *query = allocate(1, sizeof *query);
     struct progress progress = progress_begin("bytes", 0);
-    options->query.progress = progress_to;
-    options->query.user = &progress;
-    const enum log_query_outcome outcome = log_query(&options->query, query);
+    options->progress = progress_to;
+    options->user = &progress;
+    const enum log_query_outcome outcome = log_query(options, query);
     progress_end(&progress);
     int code = code_of[outcome];
     if (outcome == LOG_QUERY_FOUND)
@@ -229,17 +179,13 @@ static int run_scene(struct log_scene_options *options)
 
 int cmd_log_scene(int argc, char **argv)
 {
-    struct log_scene_options options = {.query = {.log = NULL}};
-    struct log_query_options *query = &options.query;
-    struct number event = {&query->number, &options.has_event, INT64_MIN};
-    struct number offset = {&query->offset, &options.has_offset, 0};
-    struct number client = {&query->client_id, &options.has_client, INT64_MIN};
-    struct number sequence = {&query->sequence_number, &options.has_sequence, INT64_MIN};
+    struct number number[NUMBERS] = {
+        [EVENT] = {.low = LONG_MIN}, [CLIENT] = {.low = LONG_MIN}, [SEQUENCE] = {.low = LONG_MIN}};
     const struct args_option own[] = {
-        {"event", ARGS_OTHER, &event, .take = take_number},
-        {"offset", ARGS_OTHER, &offset, .take = take_number},
-        {"client", ARGS_OTHER, &client, .take = take_number},
-        {"sequence", ARGS_OTHER, &sequence, .take = take_number},
+        {"event", ARGS_OTHER, &number[EVENT], .take = take_number},
+        {"offset", ARGS_OTHER, &number[OFFSET], .take = take_number},
+        {"client", ARGS_OTHER, &number[CLIENT], .take = take_number},
+        {"sequence", ARGS_OTHER, &number[SEQUENCE], .take = take_number},
         {.name = NULL},
     };
     struct args args = {"log scene",         usage, own, .operand = "LOG", .operands_min = 1,
@@ -247,10 +193,7 @@ int cmd_log_scene(int argc, char **argv)
     const int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if (!check_options(&args, &options))
-        return ARGS_USAGE;
-    options.query.log = args.operands;
-    options.query.log_count = args.operand_count;
-    options.query.prefix = args.bus.prefix;
-    return run_scene(&options);
+    struct log_query_options options = {
+        .log = args.operands, .log_count = args.operand_count, .prefix = args.bus.prefix};
+    return take_numbers(&args, number, &options) ? run_scene(&options) : ARGS_USAGE;
 }

@@ -85,25 +85,24 @@ struct mesh_options {
 
 /* ---- Options --------------------------------------------------------------------------------- */
 
-/* Reads "X,Y,Z", a list of `count` finite numbers. Returns the position after it, or NULL. */
-static const char *read_numbers(const char *text, int count, double *out)
+/* Reads "X", "X,Y" or "X,Y,Z", finite numbers. Returns how many; 0: the text is anything else. */
+static int read_numbers(const char *text, double out[3])
 {
-    for (int i = 0; i < count; i++) {
+    for (int count = 0; count < 3; text++) {
         char *end;
-        if (i > 0 && *text++ != ',')
-            return NULL;
-        out[i] = strtod(text, &end);
-        if (end == text || !isfinite(out[i]))
-            return NULL;
+        out[count] = strtod(text, &end);
+        if (end == text || !isfinite(out[count++]))
+            return 0;
+        if (*end != ',')
+            return *end ? 0 : count;
         text = end;
     }
-    return text;
+    return 0;
 }
 
 static bool take_vector(const struct args *args, double out[3])
 {
-    const char *end = read_numbers(optarg, 3, out);
-    return (end && !*end) ||
+    return read_numbers(optarg, out) == 3 ||
            args_error(args, "--%s: expected three numbers X,Y,Z, found '%s'", args->option, optarg);
 }
 
@@ -129,12 +128,10 @@ static bool add_step(const struct args *args, const struct mesh_step *step, stru
 static bool take_scale(const struct args *args, void *placed)
 {
     struct mesh_step step = {.kind = MESH_SCALE};
-    const char *end = read_numbers(optarg, 1, step.number);
-    if (end && !*end)
+    const int count = read_numbers(optarg, step.number);
+    if (count == 1)
         step.number[1] = step.number[2] = step.number[0];
-    else
-        end = read_numbers(optarg, 3, step.number);
-    if (!end || *end)
+    else if (count != 3)
         return args_error(args, "--scale: expected a number, or three X,Y,Z, found '%s'", optarg);
     return add_step(args, &step, placed);
 }
@@ -147,9 +144,7 @@ static bool is_axis(char letter)
 static bool take_rotate(const struct args *args, void *placed)
 {
     struct mesh_step step = {.kind = MESH_ROTATE, .axis = *optarg - 'x'};
-    const bool good = is_axis(*optarg) && optarg[1] == ',';
-    const char *end = good ? read_numbers(optarg + 2, 1, step.number) : NULL;
-    if (!end || *end)
+    if (!is_axis(*optarg) || optarg[1] != ',' || read_numbers(optarg + 2, step.number) != 1)
         return args_error(args, "--rotate: expected an axis and degrees, such as z,90, found '%s'",
                           optarg);
     return add_step(args, &step, placed);
@@ -329,8 +324,7 @@ int cmd_mesh(int argc, char **argv)
                         .usage = usage,
                         .options = own,
                         .operand = "mesh",
-                        .operands_max = INT_MAX, /* check() counts them */
-                        .in_order = true};
+                        .operands_max = INT_MAX /* check() counts them */};
     struct mesh mesh[2] = {{0}};
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)

@@ -66,138 +66,113 @@ static const char usage[] =
     "Exit codes: 0 answered; 1 a pair could not be decided, or no service answered; 2\n"
     "wrong usage, or input that cannot be read or is not a scene.\n";
 
-struct query_options {
-    bool local, json;
-    struct answers_options wanted;
-    struct output_options svg;
+struct query {
+    /* Options. */
+    bool local, json, box, gap, certificate;
+    const struct fmb_method *method; /* NULL: the default, of this process or of the service */
+    struct output_options picture;
     double timeout;
     long retries;
-};
-
-/* ---- Options --------------------------------------------------------------------------------- */
-
-enum { METHOD_NAMES_MAX = 80 };
-
-/* Returns the names of the methods: "exact, fmb and sat". */
-static const char *method_names(char out[METHOD_NAMES_MAX])
-{
-    size_t used = 0;
-    for (size_t i = 0; fmb_method_at(i) && used < METHOD_NAMES_MAX; i++) {
-        const char *separator = i == 0 ? "" : fmb_method_at(i + 1) ? ", " : " and ";
-        used += (size_t) snprintf(out + used, METHOD_NAMES_MAX - used, "%s%s", separator,
-                                  fmb_method_at(i)->name);
-    }
-    return out;
-}
-
-static bool take_method(const struct args *args, void *out)
-{
-    char names[METHOD_NAMES_MAX];
-    const struct fmb_method **method = out;
-    *method = fmb_method_by_name(optarg);
-    return *method ||
-           args_error(args, "--method: there are %s, not '%s'", method_names(names), optarg);
-}
-
-/* ---- Answers --------------------------------------------------------------------------------- */
-
-struct query_run {
-    const struct query_options *options;
-    const struct args_bus *bus_options;
-    const char *input_name;
-    struct report *report[2]; /* the printed one, and the picture or NULL */
-    struct answers_bus *bus;  /* NULL: not opened yet */
+    struct args_bus bus;
+    const char *input; /* name of the file */
+    /* The run. */
+    struct report *report[2];    /* the printed one, and the picture or NULL */
+    struct answers_bus *answers; /* NULL: not opened yet */
+    const struct fmb_scene *scene;
     struct progress progress;
     bool undecided; /* a pair has no verdict */
 };
 
-static void take_outcome(void *user, const struct scene *scene, const struct outcome *outcome)
+static bool take_method(const struct args *args, void *out)
 {
-    struct query_run *run = user;
-    struct outcome checked = *outcome;
+    const struct fmb_method **method = out;
+    *method = fmb_method_by_name(optarg);
+    return *method ||
+           args_error(args, "--method: there are certified, exact, fmb and sat, not '%s'", optarg);
+}
+
+static void take_answer(void *user, const struct fmb_client_answer *answer)
+{
+    struct query *query = user;
+    struct fmb_client_answer checked = *answer;
     char refutation[VERIFY_TEXT_MAX];
-    if (run->options->wanted.certificate && !outcome->error)
-        verify_outcome(scene, run->options->local ? "the" : "the service's", &checked, refutation);
-    for (int i = 0; i < 2; i++)
-        if (run->report[i])
-            run->report[i]->pair(run->report[i], scene, &checked);
-    run->undecided = run->undecided || checked.error;
-    progress_to(&run->progress, run->progress.done + 1, run->progress.total);
+    if (query->certificate && answer->status == FMB_OK)
+        verify_answer(query->scene, query->local ? "the" : "the service's", &checked, refutation);
+    for (int i = 0; i < 2 && query->report[i]; i++)
+        query->report[i]->pair(query->report[i], &checked);
+    query->undecided = query->undecided || checked.status != FMB_OK;
+    progress_to(&query->progress, query->progress.done + 1, query->progress.total);
 }
 
 /* The bus is opened for the first scene: an invalid one is reported without a bus. Returns false if
  * later scenes need not be queried. */
-static bool answer_scene(struct query_run *run, const struct scene *scene)
+static bool answer_scene(struct query *query, struct owned_scene *owner)
 {
-    const struct query_options *options = run->options;
+    struct fmb_scene *scene = &owner->scene;
     bool more = true;
-    for (int i = 0; i < 2; i++)
-        if (run->report[i])
-            run->report[i]->begin(run->report[i], scene);
-    run->progress = progress_begin("pairs", (int64_t) scene_count_pairs(scene));
+    scene->method = query->method;
+    scene->want = FMB_WANT_TIMES | (query->box ? FMB_WANT_BOX : 0) |
+                  (query->gap ? FMB_WANT_GAP : 0) | (query->certificate ? FMB_WANT_CERTIFICATE : 0);
+    query->scene = scene;
+    for (int i = 0; i < 2 && query->report[i]; i++) {
+        query->report[i]->scene = owner;
+        query->report[i]->begin(query->report[i]);
+    }
+    query->progress = progress_begin("pairs", (int64_t) scene_count_pairs(owner));
     if (isatty(STDOUT_FILENO)) /* the answers themselves show the progress */
-        run->progress.enabled = false;
-    if (!options->local && !run->bus)
-        run->bus = answers_bus_open(run->bus_options, &options->wanted, options->timeout,
-                                    (int) options->retries);
-    if (options->local)
-        answers_local(&options->wanted, scene, take_outcome, run);
+        query->progress.enabled = false;
+    if (!query->local && !query->answers)
+        query->answers = answers_bus_open(&query->bus, query->timeout, (int) query->retries);
+    if (query->local)
+        answers_local(owner, take_answer, query);
     else
-        more = answers_bus_scene(run->bus, scene, take_outcome, run);
-    progress_end(&run->progress);
-    for (int i = 0; i < 2; i++)
-        if (run->report[i])
-            run->report[i]->end(run->report[i], scene);
+        more = answers_bus_scene(query->answers, owner, take_answer, query);
+    progress_end(&query->progress);
+    for (int i = 0; i < 2 && query->report[i]; i++)
+        query->report[i]->end(query->report[i]);
     return more;
 }
 
-static int answer_scenes(struct query_run *run, int fd)
+static int answer_scenes(struct query *query, int fd)
 {
     struct json_reader *reader = json_open(fd);
-    struct scene scene;
+    struct owned_scene scene;
     enum json_outcome outcome;
     bool more = true;
     while (more && (outcome = json_next(reader, &scene)) == JSON_SCENE) {
-        more = answer_scene(run, &scene);
+        more = answer_scene(query, &scene);
         scene_clear(&scene);
     }
     const bool wrong = more && outcome != JSON_END;
     if (wrong)
-        complain("%s: %s", run->input_name, json_error(reader));
+        complain("%s: %s", query->input, json_error(reader));
     json_close(reader);
     if (wrong)
         return ARGS_USAGE;
-    return !more || run->undecided ? ARGS_FAILED : ARGS_ANSWERED;
+    return !more || query->undecided ? ARGS_FAILED : ARGS_ANSWERED;
 }
 
-/* ---- Files ----------------------------------------------------------------------------------- */
-
-static bool write_picture(const struct query_options *options, const struct svg *svg)
+static bool write_picture(const struct output_options *options, const struct svg *svg)
 {
     struct output *output;
-    if (!output_open(&options->svg, &output))
+    if (!output_open(options, &output))
         return false;
     if (output)
         svg_write(svg, output->file);
     return output_close(output, true);
 }
 
-/* file: NULL for standard input. */
-static int run_query(const struct query_options *options, const struct args_bus *bus,
-                     const char *file, int fd)
+static int run_query(struct query *query, int fd)
 {
     struct report_json json = report_json(stdout);
-    struct report_text text = report_text(stdout, options->wanted.box, options->wanted.gap);
-    struct svg *svg = options->svg.path ? svg_open() : NULL;
-    struct query_run run = {
-        .options = options,
-        .bus_options = bus,
-        .input_name = file ? file : "standard input",
-        .report = {options->json ? &json.report : &text.report, svg ? svg_report(svg) : NULL}};
-    int code = answer_scenes(&run, fd);
-    if (run.bus)
-        answers_bus_close(run.bus);
-    bool good = code == ARGS_USAGE || write_picture(options, svg);
+    struct report_text text = report_text(stdout, query->box, query->gap);
+    struct svg *svg = query->picture.path ? svg_open() : NULL;
+    query->report[0] = query->json ? &json.report : &text.report;
+    query->report[1] = svg ? svg_report(svg) : NULL;
+    int code = answer_scenes(query, fd);
+    if (query->answers)
+        answers_bus_close(query->answers);
+    bool good = code == ARGS_USAGE || write_picture(&query->picture, svg);
     svg_close(svg);
     good = output_flush() && good;
     return good || code != ARGS_ANSWERED ? code : ARGS_FAILED;
@@ -206,37 +181,37 @@ static int run_query(const struct query_options *options, const struct args_bus 
 int cmd_query(int argc, char **argv)
 {
     struct output_rules rules = {.force = false};
-    struct query_options options = {
-        .svg = {.kind = OUTPUT_PICTURE, .rules = &rules}, .timeout = 0.5, .retries = 5};
-    struct answers_options *wanted = &options.wanted;
+    struct query query = {
+        .picture = {.kind = OUTPUT_PICTURE, .rules = &rules}, .timeout = 0.5, .retries = 5};
     const struct args_option own[] = {
-        {"local", ARGS_FLAG, .out = &options.local},
-        {"json", ARGS_FLAG, .out = &options.json},
-        {"box", ARGS_FLAG, .out = &wanted->box},
-        {"gap", ARGS_FLAG, .out = &wanted->gap},
-        {"certificate", ARGS_FLAG, .out = &wanted->certificate},
-        {"method", ARGS_OTHER, &wanted->method, .take = take_method},
-        {"svg", ARGS_TEXT, .out = &options.svg.path},
+        {"local", ARGS_FLAG, .out = &query.local},
+        {"json", ARGS_FLAG, .out = &query.json},
+        {"box", ARGS_FLAG, .out = &query.box},
+        {"gap", ARGS_FLAG, .out = &query.gap},
+        {"certificate", ARGS_FLAG, .out = &query.certificate},
+        {"method", ARGS_OTHER, &query.method, .take = take_method},
+        {"svg", ARGS_TEXT, .out = &query.picture.path},
         {"force", ARGS_FLAG, .out = &rules.force},
-        {"timeout", ARGS_NUMBER, &options.timeout, .low = 0.001, .high = 3600},
-        {"retries", ARGS_INTEGER, &options.retries, .high = 1000},
+        {"timeout", ARGS_NUMBER, &query.timeout, .low = 0.001, .high = 3600},
+        {"retries", ARGS_INTEGER, &query.retries, .high = 1000},
         {.name = NULL},
     };
     struct args args = {"query", usage, own, .operand = "FILE", .operands_max = 1};
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    wanted->box = wanted->box || options.svg.path;
     const bool named = args.operand_count > 0 && strcmp(args.operands[0], "-") != 0;
-    const char *file = named ? args.operands[0] : NULL;
-    int fd = file ? open(file, O_RDONLY) : STDIN_FILENO;
+    const int fd = named ? open(args.operands[0], O_RDONLY) : STDIN_FILENO;
+    query.input = named ? args.operands[0] : "standard input";
     if (fd < 0) {
-        complain("%s: %s", file, strerror(errno));
+        complain("%s: %s", query.input, strerror(errno));
         return ARGS_USAGE;
     }
-    rules.other_input = file ? file : "/dev/stdin";
-    code = output_check(&options.svg) ? run_query(&options, &args.bus, file, fd) : ARGS_USAGE;
-    if (file)
+    query.box = query.box || query.picture.path;
+    query.bus = args.bus;
+    rules.other_input = named ? query.input : "/dev/stdin";
+    code = output_check(&query.picture) ? run_query(&query, fd) : ARGS_USAGE;
+    if (named)
         close(fd);
     return code;
 }

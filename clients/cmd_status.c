@@ -25,32 +25,12 @@ static const char usage[] =
     "\n"
     "Exit codes: 0 printed, 1 no heartbeat came, 2 wrong usage.\n";
 
-struct status_options {
+struct status {
     bool json;
     double timeout;
-};
-
-struct heartbeat {
-    struct fmb_client_heartbeat status;
-    char version[32];
-    bool received;
+    bool printed;
     const char *malformed; /* error of the last heartbeat that could not be read; NULL: none */
 };
-
-static void on_heartbeat(void *user, const struct fmb_client_heartbeat *status)
-{
-    struct heartbeat *heartbeat = user;
-    heartbeat->status = *status;
-    snprintf(heartbeat->version, sizeof heartbeat->version, "%s", status->version);
-    heartbeat->status.version = heartbeat->version;
-    heartbeat->received = true;
-}
-
-static void on_malformed(void *user, const char *what)
-{
-    struct heartbeat *heartbeat = user;
-    heartbeat->malformed = what;
-}
 
 /* ---- Printing ---- */
 
@@ -126,48 +106,49 @@ static void print_text(const struct fmb_client_heartbeat *status)
     number_print("own and foreign", status->foreign);
 }
 
-static void advise(const struct status_options *options, const struct args_bus *bus,
-                   const struct heartbeat *heartbeat)
+/* ---- The command ---- */
+
+static void on_heartbeat(void *user, const struct fmb_client_heartbeat *heartbeat)
+{
+    struct status *status = user;
+    if (!status->printed)
+        (status->json ? print_json : print_text)(heartbeat);
+    status->printed = true;
+}
+
+static void on_malformed(void *user, const char *what)
+{
+    struct status *status = user;
+    status->malformed = what;
+}
+
+static void advise(const struct status *status, const struct args_bus *bus)
 {
     complain("no heartbeat on channel %sFMB_STATUS of %s within %g s", bus->prefix,
-             args_bus_name(bus), options->timeout);
-    if (heartbeat->malformed)
+             args_bus_name(bus), status->timeout);
+    if (status->malformed)
         complain("but one that could not be read (%s): another version of fmbd?",
-                 heartbeat->malformed);
+                 status->malformed);
     else
         complain("start one with 'fmbd%s%s &'", *bus->prefix ? " --prefix " : "", bus->prefix);
 }
 
-static int print_heartbeat(const struct status_options *options,
-                           const struct fmb_client_heartbeat *status)
-{
-    if (options->json)
-        print_json(status);
-    else
-        print_text(status);
-    return output_flush() ? ARGS_ANSWERED : ARGS_FAILED;
-}
-
 int cmd_status(int argc, char **argv)
 {
-    struct status_options options = {.timeout = 3};
+    struct status status = {.timeout = 3};
     const struct args_option own[] = {
-        {"json", ARGS_FLAG, .out = &options.json},
-        {"timeout", ARGS_NUMBER, &options.timeout, .low = 0.001, .high = 3600},
+        {"json", ARGS_FLAG, .out = &status.json},
+        {"timeout", ARGS_NUMBER, &status.timeout, .low = 0.001, .high = 3600},
         {.name = NULL},
     };
     struct args args = {"status", usage, own, .operand = NULL};
-    struct heartbeat heartbeat = {.received = false};
     const struct fmb_client_watcher watcher = {
-        .heartbeat = on_heartbeat, .malformed = on_malformed, .user = &heartbeat};
+        .heartbeat = on_heartbeat, .malformed = on_malformed, .user = &status};
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    const enum listen_end end =
-        listen_until(&args.bus, &watcher, &heartbeat.received, options.timeout);
-    if (end == LISTEN_ENOUGH)
-        return print_heartbeat(&options, &heartbeat.status);
+    const enum listen_end end = listen_until(&args.bus, &watcher, &status.printed, status.timeout);
     if (end == LISTEN_TIMEOUT)
-        advise(&options, &args.bus, &heartbeat);
-    return ARGS_FAILED;
+        advise(&status, &args.bus);
+    return end == LISTEN_ENOUGH && output_flush() ? ARGS_ANSWERED : ARGS_FAILED;
 }

@@ -27,15 +27,10 @@ static const char usage[] =
     "Exit codes: 0 ended by a signal or --count, 1 no bus, or the output failed, 2\n"
     "wrong usage.\n";
 
-struct watch_options {
-    bool json;
-    long count; /* 0: no end */
-};
-
 struct watch {
-    const struct watch_options *options;
+    bool json;
+    long count; /* results until the end; 0: no end */
     struct report_columns columns;
-    long printed;
     uint64_t malformed;
     bool enough;
 };
@@ -57,17 +52,17 @@ static struct json_writer begin_json(int64_t utime, int64_t client_id, int64_t s
 
 static void print_pair_json(const struct fmb_client_pair_result *result)
 {
-    const struct outcome outcome = {.error = result->status == FMB_OK ? NULL : result->text,
-                                    .answer = result->answer,
-                                    .names_frames = result->names_frames,
-                                    .certificate = result->certificate};
+    const struct fmb_client_answer answer = {.status = result->status,
+                                             .text = result->text,
+                                             .answer = result->answer,
+                                             .certificate = result->certificate};
     struct json_writer json = begin_json(result->utime, result->client_id, result->sequence_number,
                                          result->server_id, result->compute_ns);
     json_integer(&json, "a", result->body_id[0]);
     json_integer(&json, "b", result->body_id[1]);
-    if (outcome.error)
+    if (result->status != FMB_OK)
         json_integer(&json, "status", result->status);
-    report_answer_json(&json, result->dim, &outcome);
+    report_answer_json(&json, result->dim, result->names_frames, &answer);
     json_object_end(&json);
 }
 
@@ -100,16 +95,12 @@ static void write_scene_pairs(struct json_writer *json,
     struct fmb_client_answer answer;
     json_begin(json, "pairs", '[');
     while (fmb_client_next_answer(result, &cursor, &answer)) {
-        const struct outcome outcome = {.error = answer.status == FMB_OK ? NULL : answer.text,
-                                        .answer = answer.answer,
-                                        .names_frames = result->names_frames};
         json_begin(json, NULL, '{');
-        if (result->names_pairs) {
+        if (result->names_pairs)
             json_integers(json, "placements", (const int64_t[]){answer.a, answer.b}, 2);
-        } else {
+        else
             json_integer(json, "pair", answer.a);
-        }
-        report_answer_json(json, result->dim, &outcome);
+        report_answer_json(json, result->dim, result->names_frames, &answer);
         json_end(json, '}');
     }
     json_end(json, ']');
@@ -158,8 +149,7 @@ static void print_scene_text(const struct fmb_client_scene_result *result)
 
 static void count(struct watch *watch)
 {
-    watch->printed++;
-    if (fflush(stdout) != 0 || watch->printed == watch->options->count)
+    if (fflush(stdout) != 0 || --watch->count == 0)
         watch->enough = true;
 }
 
@@ -168,7 +158,7 @@ static void on_pair(void *user, const struct fmb_client_pair_result *result)
     struct watch *watch = user;
     if (watch->enough)
         return;
-    if (watch->options->json)
+    if (watch->json)
         print_pair_json(result);
     else
         print_pair_text(result, &watch->columns);
@@ -180,7 +170,7 @@ static void on_scene(void *user, const struct fmb_client_scene_result *result)
     struct watch *watch = user;
     if (watch->enough)
         return;
-    if (watch->options->json)
+    if (watch->json)
         print_scene_json(result);
     else
         print_scene_text(result);
@@ -194,29 +184,24 @@ static void on_malformed(void *user, const char *what)
     watch->malformed++;
 }
 
-static int end_of_watch(const struct watch *watch, enum listen_end end)
-{
-    if (watch->malformed > 0)
-        complain("%" PRIu64 " messages could not be read", watch->malformed);
-    if (ferror(stdout))
-        perror("fmb: standard output");
-    return end == LISTEN_FAILED || ferror(stdout) ? ARGS_FAILED : ARGS_ANSWERED;
-}
-
 int cmd_watch(int argc, char **argv)
 {
-    struct watch_options options = {.count = 0};
+    struct watch watch = {.columns = report_columns()};
     const struct args_option own[] = {
-        {"json", ARGS_FLAG, .out = &options.json},
-        {"count", ARGS_INTEGER, &options.count, .low = 1, .high = INT32_MAX},
+        {"json", ARGS_FLAG, .out = &watch.json},
+        {"count", ARGS_INTEGER, &watch.count, .low = 1, .high = INT32_MAX},
         {.name = NULL},
     };
     struct args args = {"watch", usage, own, .operand = NULL};
-    struct watch watch = {.options = &options, .columns = report_columns()};
     const struct fmb_client_watcher watcher = {
         .pair = on_pair, .scene = on_scene, .malformed = on_malformed, .user = &watch};
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    return end_of_watch(&watch, listen_until(&args.bus, &watcher, &watch.enough, -1));
+    const enum listen_end end = listen_until(&args.bus, &watcher, &watch.enough, -1);
+    if (watch.malformed > 0)
+        complain("%" PRIu64 " messages could not be read", watch.malformed);
+    if (ferror(stdout))
+        perror("fmb: standard output");
+    return end == LISTEN_FAILED || ferror(stdout) ? ARGS_FAILED : ARGS_ANSWERED;
 }

@@ -68,14 +68,10 @@ enum { FIRST = 256 }; /* value of the first option, if it has no letter */
 /* A '-' before the letters makes getopt_long() return operands in order, as AN_OPERAND. */
 enum { AN_OPERAND = 1 };
 
-static void list_options(const struct args_option *options, bool in_order,
-                         struct getopt_options *out)
+static void list_options(const struct args_option *options, struct getopt_options *out)
 {
-    char *letter = out->letters;
-    *out = (struct getopt_options){.letters = ""};
-    if (in_order)
-        *letter++ = '-';
-    *letter++ = ':';
+    char *letter = out->letters + 2;
+    *out = (struct getopt_options){.letters = "-:"};
     for (int i = 0; options[i].name; i++) {
         const bool has_value = options[i].kind != ARGS_FLAG;
         const int value = options[i].letter ? options[i].letter : FIRST + i;
@@ -143,7 +139,7 @@ int args_parse(struct args *args, int argc, char **argv)
     for (; args->options[own].name && own < ARGS_OPTIONS_MAX; own++)
         options[own] = args->options[own];
     memcpy(options + own, common, sizeof common);
-    list_options(options, args->in_order, &list);
+    list_options(options, &list);
     args->bus = (struct args_bus){.prefix = ""};
     args->operands = argv + 1;
     args->operand_count = 0;
@@ -153,7 +149,7 @@ int args_parse(struct args *args, int argc, char **argv)
         int i = 0;
         while (list.option[i].name && list.option[i].val != option)
             i++;
-        if (args->in_order && option == AN_OPERAND)
+        if (option == AN_OPERAND)
             args->operands[args->operand_count++] = optarg; /* overwrites words already read */
         else if (list.option[i].name ? !take_option(args, &options[i])
                                      : !refuse(args, option, argv))

@@ -50,10 +50,8 @@ struct args {
     const struct args_option *options;
     const char *operand; /* name of an operand in messages: "FILE"; NULL: none are allowed */
     int operands_min, operands_max;
-    bool in_order; /* operand_count is the number of operands before the option when take is called
-                    */
 
-    /* Filled in by args_parse(). */
+    /* Filled in by args_parse(). When take is called, the operands are those before the option. */
     struct args_bus bus;
     char **operands; /* [operand_count] */
     int operand_count;

@@ -28,10 +28,19 @@ static const double id_max = 9007199254740991.0; /* 2^53 - 1 */
 #define EXPECTED_ID "an integer from 1 to 9007199254740991"
 #define EXPECTED_GROUP "an integer other than 0, of magnitude up to 9007199254740991"
 
+/* A body in the table by id. */
+struct body_id {
+    UT_hash_handle hh;
+    int64_t id;
+    unsigned index;
+};
+
 struct json_reader {
     struct text text;
-    size_t scene_number; /* of the object that is being read, from 1 */
-    int dim;             /* of its scene, once that is known */
+    size_t scene_number;       /* of the object that is being read, from 1 */
+    struct owned_scene *scene; /* what has been read of it */
+    struct body_id *ids;       /* table of its bodies; the entries are those of entry */
+    struct body_id *entry;     /* owned, [body] */
     char error[ERROR_MAX];
 };
 
@@ -120,9 +129,14 @@ static bool refuse_kind(const struct place *at, const char *expected)
 
 /* ---- Objects --------------------------------------------------------------------------------- */
 
+/* Reads a value into what out points to. Returns false if the value is refused. */
+typedef bool read_function(const struct place *at, void *out);
+
 struct key {
     const char *name;
-    bool optional;
+    bool required;
+    read_function *read;
+    size_t offset; /* of the value in the struct of the object */
 };
 
 static bool check_present(const struct place *member)
@@ -130,9 +144,9 @@ static bool check_present(const struct place *member)
     return member->item || refuse(member->parent, "missing key \"%s\"", member->key);
 }
 
-/* On output: member[i] is the value of keys[i]; its item is NULL if an optional one is missing. */
-static bool read_object(const struct place *at, const struct key *keys, int count,
-                        struct place *member)
+/* On output: member[i] is the value of keys[i]; its item is NULL if it is missing. */
+static bool find_members(const struct place *at, const struct key *keys, int count,
+                         struct place *member)
 {
     char text[QUOTED_MAX + 4];
     if (!cJSON_IsObject(at->item))
@@ -150,19 +164,49 @@ static bool read_object(const struct place *at, const struct key *keys, int coun
         member[i].item = child;
     }
     for (int i = 0; i < count; i++)
-        if (!keys[i].optional && !check_present(&member[i]))
+        if (keys[i].required && !check_present(&member[i]))
+            return false;
+    return true;
+}
+
+/* Reads the members that are present, in the order of the keys, into the struct. */
+static bool read_members(const struct place *member, const struct key *keys, int count, void *out)
+{
+    for (int i = 0; i < count; i++)
+        if (member[i].item && !keys[i].read(&member[i], (char *) out + keys[i].offset))
             return false;
     return true;
 }
 
 /* ---- Arrays and numbers ---------------------------------------------------------------------- */
 
-static bool check_array(const struct place *at, size_t count, const char *what)
+static int dim_of(const struct place *at)
 {
-    if (!cJSON_IsArray(at->item))
-        return refuse(at, "expected %zu %s, found %s", count, what, kind_name(at->item));
-    size_t found = (size_t) cJSON_GetArraySize(at->item);
-    return found == count || refuse(at, "expected %zu %s, found %zu", count, what, found);
+    return at->reader->scene->dim;
+}
+
+/* Reads the elements of an array into out, an array of elements of size bytes. what: "numbers". */
+static bool read_each(const struct place *array, size_t count, const char *what,
+                      read_function *read, void *out, size_t size)
+{
+    if (!cJSON_IsArray(array->item))
+        return refuse(array, "expected %zu %s, found %s", count, what, kind_name(array->item));
+    const size_t found = (size_t) cJSON_GetArraySize(array->item);
+    if (found != count)
+        return refuse(array, "expected %zu %s, found %zu", count, what, found);
+    for (struct place at = first_element(array); at.item; next_element(&at))
+        if (!read(&at, (char *) out + at.index * size))
+            return false;
+    return true;
+}
+
+/* Returns the number of elements of an array of any length; SIZE_MAX if it is refused. */
+static size_t count_elements(const struct place *at)
+{
+    if (cJSON_IsArray(at->item))
+        return (size_t) cJSON_GetArraySize(at->item);
+    refuse_kind(at, "an array");
+    return SIZE_MAX;
 }
 
 /* Refuses a number. */
@@ -175,60 +219,93 @@ static bool refuse_value(const struct place *at, double value, const char *expec
                   value < 0 ? "-" : "");
 }
 
-static bool read_number(const struct place *at, double *out)
+static bool read_number(const struct place *at, void *out)
 {
     if (!cJSON_IsNumber(at->item))
         return refuse_kind(at, "a number");
-    *out = at->item->valuedouble;
-    return isfinite(*out) || refuse_value(at, *out, "a finite number");
+    const double value = *(double *) out = at->item->valuedouble;
+    return isfinite(value) || refuse_value(at, value, "a finite number");
 }
 
-static bool read_numbers(const struct place *array, int count, double *out)
+static bool read_from_0(const struct place *at, void *out)
 {
-    if (!check_array(array, (size_t) count, "numbers"))
-        return false;
-    for (struct place at = first_element(array); at.item; next_element(&at))
-        if (!read_number(&at, &out[at.index]))
-            return false;
+    const double *value = out;
+    return read_number(at, out) &&
+           (*value >= 0 || refuse_value(at, *value, "a number of at least 0"));
+}
+
+static bool read_vector(const struct place *at, void *out)
+{
+    return read_each(at, (size_t) dim_of(at), "numbers", read_number, out, sizeof(double));
+}
+
+static bool read_dim(const struct place *at, void *out)
+{
+    const double dim = at->item->valuedouble;
+    if (!cJSON_IsNumber(at->item))
+        return refuse_kind(at, "2 or 3");
+    *(int *) out = dim == 2 ? 2 : 3;
+    return dim == 2 || dim == 3 || refuse_value(at, dim, "2 or 3");
+}
+
+static bool read_id(const struct place *at, void *out)
+{
+    const double id = at->item->valuedouble;
+    if (!cJSON_IsNumber(at->item))
+        return refuse_kind(at, EXPECTED_ID);
+    if (id > id_max) /* its digits are lost */
+        return refuse(at, "expected " EXPECTED_ID ", found a larger number");
+    if (!(id >= 1 && id == floor(id)))
+        return refuse_value(at, id, EXPECTED_ID);
+    *(int64_t *) out = (int64_t) id;
     return true;
 }
 
-static bool read_vector(const struct place *at, double *out)
+static bool read_group(const struct place *at, void *out)
 {
-    return read_numbers(at, at->reader->dim, out);
-}
-
-/* An optional vector: if it is missing, *out is unchanged. */
-static bool maybe_vector(const struct place *at, double *out)
-{
-    return !at->item || read_vector(at, out);
-}
-
-static bool read_id(const struct place *at, int64_t *out)
-{
+    const double group = at->item->valuedouble;
     if (!cJSON_IsNumber(at->item))
-        return refuse_kind(at, EXPECTED_ID);
-    double id = at->item->valuedouble;
-    if (id > id_max) /* its digits are lost */
-        return refuse(at, "expected " EXPECTED_ID ", found a larger number");
-    if (!(id >= 1 && id <= id_max && id == floor(id)))
-        return refuse_value(at, id, EXPECTED_ID);
-    *out = (int64_t) id;
+        return refuse_kind(at, EXPECTED_GROUP);
+    if (!(group != 0 && group == floor(group) && fabs(group) <= id_max))
+        return refuse(at, "expected " EXPECTED_GROUP);
+    *(int64_t *) out = (int64_t) group;
+    return true;
+}
+
+/* Reads a name or a label. */
+static bool read_name(const struct place *at, void *out)
+{
+    const char *name = at->item->valuestring;
+    if (!cJSON_IsString(at->item))
+        return refuse_kind(at, "a string");
+    if (strlen(name) > QUERY_NAME_MAX)
+        return refuse(at, "expected at most %d bytes, found %zu", (int) QUERY_NAME_MAX,
+                      strlen(name));
+    if (!utf8_is_text(name))
+        return refuse(at, "expected UTF-8 without control characters");
+    *(const char **) out = scene_text(at->reader->scene, name);
     return true;
 }
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
 
-static bool read_shape(const struct place *at, int *out)
+/* What is read of a body; or of an element of "frames", whose position and orientation are those in
+ * its body. */
+struct body {
+    struct fmb_placement placement;
+    struct geometry_frame frame; /* unless there are several */
+};
+
+static bool read_shape(const struct place *at, void *out)
 {
-    const int dim = at->reader->dim;
+    const int dim = dim_of(at);
     char text[QUOTED_MAX + 4];
     if (!cJSON_IsString(at->item))
         return refuse_kind(at, "a string");
     for (int shape = FMB_CUBOID; fmb_shape_name(shape); shape++) {
         if (strcmp(at->item->valuestring, fmb_shape_name(shape)) != 0)
             continue;
-        *out = shape;
+        *(int *) out = shape;
         if (shape == FMB_HULL)
             return refuse(at, "hulls are not supported by this version");
         return fmb_component_count(dim, shape) > 0 ||
@@ -238,415 +315,320 @@ static bool read_shape(const struct place *at, int *out)
                   quoted(at->item->valuestring, text));
 }
 
-static bool read_components(const struct place *array, struct geometry_frame *out)
+static bool read_components(const struct place *at, void *out)
 {
-    const int dim = array->reader->dim;
-    if (!check_array(array, (size_t) fmb_component_count(dim, out->shape), "vectors"))
+    struct geometry_frame *frame = out;
+    const size_t dim = (size_t) dim_of(at);
+    return read_each(at, (size_t) fmb_component_count((int) dim, frame->shape), "vectors",
+                     read_vector, frame->components, dim * sizeof(double));
+}
+
+static bool read_vertices(const struct place *at, void *out)
+{
+    struct geometry_frame *frame = out;
+    const size_t dim = (size_t) dim_of(at);
+    const size_t components = (size_t) fmb_component_count((int) dim, frame->shape);
+    double vertices[GEOMETRY_FRAME_NUMBERS_MAX];
+    if (!read_each(at, components + 1, "vertices", read_vector, vertices, dim * sizeof(double)))
         return false;
-    for (struct place at = first_element(array); at.item; next_element(&at))
-        if (!read_vector(&at, out->components + at.index * (size_t) dim))
-            return false;
+    frame->by_vertices = true;
+    memcpy(frame->origin, vertices, dim * sizeof *vertices);
+    memcpy(frame->components, vertices + dim, components * dim * sizeof *vertices);
     return true;
 }
 
-static bool read_vertices(const struct place *array, struct geometry_frame *out)
+static bool read_size(const struct place *at, void *out)
 {
-    const int dim = array->reader->dim;
-    out->by_vertices = true;
-    if (!check_array(array, (size_t) fmb_component_count(dim, out->shape) + 1, "vertices"))
-        return false;
-    for (struct place at = first_element(array); at.item; next_element(&at))
-        if (!read_vector(
-                &at, at.index == 0 ? out->origin : out->components + (at.index - 1) * (size_t) dim))
-            return false;
-    return true;
+    return read_each(at, (size_t) dim_of(at), "numbers", read_from_0, out, sizeof(double));
 }
 
-static bool read_size(const struct place *array, double *out)
+/* Whether any number of a quaternion beyond the first is not 0. */
+static bool turns(const struct fmb_placement *placement)
 {
-    if (!read_vector(array, out))
-        return false;
-    for (struct place at = first_element(array); at.item; next_element(&at))
-        if (out[at.index] < 0)
-            return refuse_value(&at, out[at.index], "a number of at least 0");
-    return true;
-}
-
-/* Reads an optional quaternion that the engine accepts. */
-static bool read_orientation(const struct place *at, double out[4], int *count)
-{
-    static const double size[FMB_DIM_MAX] = {1, 1, 1};
-    const int dim = at->reader->dim;
-    struct fmb_body body;
-    *count = at->item ? (dim == 2 ? 2 : 4) : 0;
-    if (!at->item)
-        return true;
-    if (!read_numbers(at, *count, out))
-        return false;
-    if (out[0] == 0 && out[1] == 0 && (dim == 2 || (out[2] == 0 && out[3] == 0)))
-        return refuse(at, "a quaternion of zeros is no rotation");
-    fmb_body_make(dim, FMB_BOX, size, (size_t) dim, &body);
-    struct fmb_placement placement = {.body = &body, .orientation_count = *count};
-    memcpy(placement.orientation, out, (size_t) *count * sizeof *out);
-    return fmb_placement_check(&placement) == FMB_OK ||
-           refuse(at, "the numbers differ in size by more than 2^200");
-}
-
-/* The keys of a frame come first: a body may be one. */
-enum { SHAPE, ORIGIN, COMPONENTS, VERTICES, SIZE, POSITION, ORIENTATION, FRAME_KEYS };
-enum { ID = FRAME_KEYS, NAME, GROUP, VELOCITY, FRAMES, BODY_KEYS };
-
-static const struct key body_keys[BODY_KEYS] = {
-    [SHAPE] = {"shape", true},
-    [ORIGIN] = {"origin", true},
-    [COMPONENTS] = {"components", true},
-    [VERTICES] = {"vertices", true},
-    [SIZE] = {"size", true},
-    [POSITION] = {"position", true},
-    [ORIENTATION] = {"orientation", true},
-    [ID] = {"id", false},
-    [NAME] = {"name", true},
-    [GROUP] = {"group", true},
-    [VELOCITY] = {"velocity", true},
-    [FRAMES] = {"frames", true},
-};
-
-/* Refuses the first of these keys that is present. what: the kind of object, which has none. */
-static bool check_absent(const struct place *member, const int *keys, int count, const char *what)
-{
-    for (int i = 0; i < count; i++)
-        if (member[keys[i]].item)
-            return refuse(member->parent, "%s has no \"%s\"", what, member[keys[i]].key);
-    return true;
-}
-
-static bool read_box(const struct place *member, struct geometry_frame *out)
-{
-    static const int others[] = {ORIGIN, COMPONENTS, VERTICES};
-    return check_absent(member, others, 3, "a box") && check_present(&member[SIZE]) &&
-           read_size(&member[SIZE], out->components);
-}
-
-static bool read_parts(const struct place *member, struct geometry_frame *out)
-{
-    static const int others[] = {SIZE};
-    return check_absent(member, others, 1, "a frame of components") &&
-           check_present(&member[COMPONENTS]) && maybe_vector(&member[ORIGIN], out->origin) &&
-           read_components(&member[COMPONENTS], out);
-}
-
-static bool read_by_vertices(const struct place *member, struct geometry_frame *out)
-{
-    static const int others[] = {ORIGIN, COMPONENTS, SIZE};
-    if (out->shape == FMB_CUBOID)
-        return refuse(member->parent, "a cuboid has no \"vertices\"");
-    return check_absent(member, others, 3, "a frame of vertices") &&
-           read_vertices(&member[VERTICES], out);
-}
-
-static bool read_shape_and_numbers(const struct place *member, struct geometry_frame *out)
-{
-    *out = (struct geometry_frame){.shape = 0};
-    if (!check_present(&member[SHAPE]) || !read_shape(&member[SHAPE], &out->shape))
-        return false;
-    if (out->shape == FMB_BOX)
-        return read_box(member, out);
-    return (member[VERTICES].item ? read_by_vertices : read_parts)(member, out);
-}
-
-/* Whether a quaternion turns: any number beyond the first is not 0. */
-static bool turns(const double *orientation, int count)
-{
-    for (int i = 1; i < count; i++)
-        if (orientation[i] != 0)
+    for (int i = 1; i < placement->orientation_count; i++)
+        if (placement->orientation[i] != 0)
             return true;
     return false;
 }
 
-/* Reads the pose of a box in its body. A box that is turned there becomes a cuboid. */
-static bool read_box_pose(const struct place *member, struct geometry_frame *box)
+static bool read_orientation(const struct place *at, void *out)
 {
-    const int dim = member->reader->dim;
-    double orientation[4] = {0}, cuboid[GEOMETRY_FRAME_NUMBERS_MAX];
-    int count;
-    if (!maybe_vector(&member[POSITION], box->origin) ||
-        !read_orientation(&member[ORIENTATION], orientation, &count))
+    struct fmb_placement *placement = out, checked;
+    struct fmb_body any;
+    const int dim = dim_of(at);
+    placement->orientation_count = dim == 2 ? 2 : 4;
+    if (!read_each(at, (size_t) placement->orientation_count, "numbers", read_number,
+                   placement->orientation, sizeof(double)))
         return false;
-    if (!turns(orientation, count))
-        return true;
-    turned_box(dim, box->origin, box->components, orientation, cuboid);
-    box->shape = FMB_CUBOID;
-    memcpy(box->origin, cuboid, (size_t) dim * sizeof *cuboid);
-    memcpy(box->components, cuboid + dim, (size_t) (dim * dim) * sizeof *cuboid);
+    if (placement->orientation[0] == 0 && !turns(placement))
+        return refuse(at, "a quaternion of zeros is no rotation");
+    fmb_body_make(dim, FMB_BOX, (const double[FMB_DIM_MAX]){1, 1, 1}, (size_t) dim, &any);
+    checked = *placement;
+    checked.body = &any;
+    return fmb_placement_check(&checked) == FMB_OK ||
+           refuse(at, "the numbers differ in size by more than 2^200");
+}
+
+static read_function read_frames;
+
+/* In the order of reading. A frame has those from SHAPE to ORIENTATION. */
+enum { ID, NAME, GROUP, VELOCITY, SHAPE, ORIGIN, COMPONENTS, VERTICES, SIZE, POSITION };
+enum { ORIENTATION = POSITION + 1, FRAMES, BODY_KEYS };
+
+static const struct key body_keys[BODY_KEYS] = {
+    [ID] = {"id", true, read_id, offsetof(struct body, placement.id)},
+    [NAME] = {"name", false, read_name, offsetof(struct body, placement.name)},
+    [GROUP] = {"group", false, read_group, offsetof(struct body, placement.group)},
+    [VELOCITY] = {"velocity", false, read_vector, offsetof(struct body, placement.velocity)},
+    [SHAPE] = {"shape", false, read_shape, offsetof(struct body, frame.shape)},
+    [ORIGIN] = {"origin", false, read_vector, offsetof(struct body, frame.origin)},
+    [COMPONENTS] = {"components", false, read_components, offsetof(struct body, frame)},
+    [VERTICES] = {"vertices", false, read_vertices, offsetof(struct body, frame)},
+    [SIZE] = {"size", false, read_size, offsetof(struct body, frame.components)},
+    [POSITION] = {"position", false, read_vector, offsetof(struct body, placement.position)},
+    [ORIENTATION] = {"orientation", false, read_orientation, offsetof(struct body, placement)},
+    [FRAMES] = {"frames", false, read_frames, offsetof(struct body, placement.body)},
+};
+
+/* Refuses the first of these keys that is present. keys: sum of 1 << key. what: the kind of object,
+ * which has none. */
+static bool check_absent(const struct place *member, unsigned keys, const char *what)
+{
+    for (int i = 0; i < BODY_KEYS; i++)
+        if ((keys >> i & 1) != 0 && member[i].item)
+            return refuse(member[i].parent, "%s has no \"%s\"", what, member[i].key);
     return true;
 }
 
-/* Returns true if the engine accepted what was read at this place. */
-static bool accept(const struct place *at, enum fmb_status status)
+/* Checks which keys a body or a frame of this shape has. */
+static bool check_keys(const struct place *member, int shape, bool within_frames)
 {
-    return status == FMB_OK || refuse(at, "%s", fmb_status_text(status));
+    const unsigned pose = within_frames ? 1 << POSITION | 1 << ORIENTATION : 0;
+    const unsigned parts = 1 << ORIGIN | 1 << COMPONENTS;
+    if (member[FRAMES].item)
+        return check_absent(member, 1 << SHAPE | parts | 1 << VERTICES | 1 << SIZE,
+                            "a body of \"frames\"");
+    if (!check_present(&member[SHAPE]))
+        return false;
+    if (shape == FMB_BOX)
+        return check_absent(member, parts | 1 << VERTICES, "a box") && check_present(&member[SIZE]);
+    if (member[VERTICES].item)
+        return check_absent(member, shape == FMB_CUBOID ? 1 << VERTICES : 0, "a cuboid") &&
+               check_absent(member, parts | 1 << SIZE | pose, "a frame of vertices");
+    return check_absent(member, 1 << SIZE | pose, "a frame of components") &&
+           check_present(&member[COMPONENTS]) &&
+           (within_frames || member[POSITION].item || member[ORIENTATION].item ||
+            check_present(&member[ORIGIN]));
 }
 
-/* Reads an element of "frames". */
-static bool read_frame(const struct place *at, struct geometry_frame *out)
+/* Reads the keys from `first` to before `end`, which include those of a frame. */
+static bool read_keys(const struct place *at, int first, int end, struct place member[BODY_KEYS],
+                      struct body *out)
 {
-    static const int others[] = {POSITION, ORIENTATION};
-    struct place member[FRAME_KEYS];
-    if (!read_object(at, body_keys, FRAME_KEYS, member) || !read_shape_and_numbers(member, out))
+    memset(out, 0, sizeof *out);
+    memset(member, 0, BODY_KEYS * sizeof *member);
+    return find_members(at, body_keys + first, end - first, member + first) &&
+           read_members(member + first, body_keys + first, SHAPE + 1 - first, out) &&
+           check_keys(member, out->frame.shape, first == SHAPE) &&
+           read_members(member + ORIGIN, body_keys + ORIGIN, end - ORIGIN, out);
+}
+
+/* Reads an element of "frames". Adds its bytes in a message to *bytes: 1 for the shape, 4 for a
+ * count, and 8 for each number. */
+static bool read_frame(const struct place *at, size_t *bytes)
+{
+    struct place member[BODY_KEYS];
+    struct body body;
+    struct geometry_frame *frame = &body.frame;
+    const int dim = dim_of(at);
+    if (!read_keys(at, SHAPE, FRAMES, member, &body))
         return false;
-    return out->shape == FMB_BOX
-               ? read_box_pose(member, out)
-               : check_absent(member, others, 2,
-                              out->by_vertices ? "a frame of vertices" : "a frame of components");
+    if (frame->shape == FMB_BOX)
+        memcpy(frame->origin, body.placement.position, sizeof frame->origin);
+    if (turns(&body.placement)) {
+        turned_box(dim, body.placement.orientation, frame->origin, frame->components);
+        frame->shape = FMB_CUBOID;
+    }
+    *scene_add_given(at->reader->scene) = *frame;
+    *bytes +=
+        1 + (frame->by_vertices ? 4 : 0) + 8 * (size_t) geometry_number_count(dim, frame->shape, 0);
+    return true;
+}
+
+static bool read_frames(const struct place *array, void *out)
+{
+    const size_t count = count_elements(array);
+    size_t bytes = 0, bad;
+    if (count == SIZE_MAX)
+        return false;
+    for (struct place at = first_element(array); at.item; next_element(&at))
+        if (!read_frame(&at, &bytes))
+            return false;
+    if (bytes > FMB_CLIENT_BODY_BYTES_MAX)
+        return refuse(array, "%s: %zu bytes in a message, which has space for %d",
+                      fmb_status_text(FMB_OVER_LIMIT), bytes, (int) FMB_CLIENT_BODY_BYTES_MAX);
+    const enum fmb_status status = scene_make_body(array->reader->scene, count, out, &bad);
+    const struct place frame = {array->reader, array, NULL, NULL, bad};
+    return status == FMB_OK || refuse(bad < count ? &frame : array, "%s", fmb_status_text(status));
 }
 
 /* ---- Bodies ---------------------------------------------------------------------------------- */
 
-/* Returns bytes in a message: 1 for each shape, 4 for each count, and 8 for each number. */
-static size_t frames_bytes(int dim, const struct geometry_frame *frames, size_t count)
+static const struct body_id *find_id(const struct json_reader *reader, int64_t id)
 {
-    size_t bytes = 0;
-    for (size_t i = 0; i < count; i++)
-        bytes += 1 + (frames[i].by_vertices ? 4 : 0) +
-                 8 * (size_t) geometry_number_count(dim, frames[i].shape, 0);
-    return bytes;
+    const struct body_id *found;
+    HASH_FIND(hh, reader->ids, &id, sizeof id, found);
+    return found;
 }
 
-static bool read_frames(const struct place *array, struct scene_body *out)
+/* Adds body `index` to the table. at: its id. */
+static bool add_id(const struct place *at, int64_t id, size_t index)
 {
-    if (!cJSON_IsArray(array->item))
-        return refuse_kind(array, "an array");
-    const size_t count = (size_t) cJSON_GetArraySize(array->item);
-    const int dim = array->reader->dim;
-    size_t bad;
-    out->given = allocate(count, sizeof *out->given);
-    for (struct place at = first_element(array); at.item; next_element(&at))
-        if (!read_frame(&at, &out->given[at.index]))
-            return false;
-    const size_t bytes = frames_bytes(dim, out->given, count);
-    if (bytes > FMB_CLIENT_BODY_BYTES_MAX)
-        return refuse(array, "%s: %zu bytes in a message, which has space for %d",
-                      fmb_status_text(FMB_OVER_LIMIT), bytes, (int) FMB_CLIENT_BODY_BYTES_MAX);
-    const enum fmb_status status = scene_body_make(dim, count, out, &bad);
-    const struct place frame = {array->reader, array, NULL, NULL, bad};
-    return accept(bad < count ? &frame : array, status);
-}
-
-/* Reads a body that is one frame. Its "origin", if it has neither "position" nor "orientation", is
- * its position. */
-static bool read_only_frame(const struct place *member, struct scene_body *out)
-{
-    const int dim = member->reader->dim;
-    size_t bad;
-    out->given = allocate(1, sizeof *out->given);
-    struct geometry_frame *frame = out->given;
-    if (!read_shape_and_numbers(member, frame))
-        return false;
-    if (frame->shape != FMB_BOX && !frame->by_vertices && !member[POSITION].item &&
-        !member[ORIENTATION].item) {
-        if (!check_present(&member[ORIGIN]))
-            return false;
-        memcpy(out->position, frame->origin, sizeof out->position);
-        memset(frame->origin, 0, sizeof frame->origin);
-    }
-    return accept(member->parent, scene_body_make(dim, 1, out, &bad));
-}
-
-static bool read_name(const struct place *at, char out[SCENE_NAME_MAX + 1])
-{
-    if (!at->item)
-        return true;
-    if (!cJSON_IsString(at->item))
-        return refuse_kind(at, "a string");
-    const char *name = at->item->valuestring;
-    if (strlen(name) > SCENE_NAME_MAX)
-        return refuse(at, "expected at most %d bytes, found %zu", (int) SCENE_NAME_MAX,
-                      strlen(name));
-    if (!utf8_is_text(name))
-        return refuse(at, "expected UTF-8 without control characters");
-    strcpy(out, name);
+    struct json_reader *reader = at->reader;
+    const struct body_id *first = find_id(reader, id);
+    struct body_id *entry = &reader->entry[index];
+    if (first)
+        return refuse(at, "%lld is the id of bodies[%u] already", (long long) id, first->index);
+    *entry = (struct body_id){.id = id, .index = (unsigned) index};
+    HASH_ADD(hh, reader->ids, id, sizeof entry->id, entry);
     return true;
 }
 
-/* Reads an optional group. */
-static bool read_group(const struct place *at, int64_t *out)
+/* Reads a body. The "origin" of one that is a frame of components is its position, if it has
+ * neither "position" nor "orientation". */
+static bool read_body(const struct place *at, void *out)
 {
-    if (!at->item)
-        return true;
-    if (!cJSON_IsNumber(at->item))
-        return refuse_kind(at, EXPECTED_GROUP);
-    const double group = at->item->valuedouble;
-    if (group == 0 || group != floor(group) || fabs(group) > id_max)
-        return refuse(at, "expected " EXPECTED_GROUP);
-    *out = (int64_t) group;
-    return true;
-}
-
-static bool read_body(const struct place *at, struct scene_body *out)
-{
-    static const int of_frames[] = {SHAPE, ORIGIN, COMPONENTS, VERTICES, SIZE};
     struct place member[BODY_KEYS];
-    if (!read_object(at, body_keys, BODY_KEYS, member) || !read_id(&member[ID], &out->id) ||
-        !read_name(&member[NAME], out->name) || !read_group(&member[GROUP], &out->group))
+    struct body body;
+    struct fmb_placement *placement = &body.placement;
+    if (!read_keys(at, ID, BODY_KEYS, member, &body) ||
+        !add_id(&member[ID], placement->id, at->index))
         return false;
-    const bool good = member[FRAMES].item
-                          ? check_absent(member, of_frames, 5, "a body of \"frames\"") &&
-                                read_frames(&member[FRAMES], out)
-                          : read_only_frame(member, out);
-    return good && maybe_vector(&member[POSITION], out->position) &&
-           read_orientation(&member[ORIENTATION], out->orientation, &out->orientation_count) &&
-           maybe_vector(&member[VELOCITY], out->velocity);
+    if (!member[FRAMES].item) {
+        size_t bad;
+        if (member[COMPONENTS].item && !member[POSITION].item && !member[ORIENTATION].item) {
+            memcpy(placement->position, body.frame.origin, sizeof placement->position);
+            memset(body.frame.origin, 0, sizeof body.frame.origin);
+        }
+        *scene_add_given(at->reader->scene) = body.frame;
+        const enum fmb_status status =
+            scene_make_body(at->reader->scene, 1, &placement->body, &bad);
+        if (status != FMB_OK)
+            return refuse(at, "%s", fmb_status_text(status));
+    }
+    *(struct fmb_placement *) out = *placement;
+    return true;
 }
 
-static bool read_bodies(const struct place *array, struct scene *out)
+static bool read_bodies(const struct place *array, void *out)
 {
-    if (!cJSON_IsArray(array->item))
-        return refuse_kind(array, "an array");
-    out->body = allocate((size_t) cJSON_GetArraySize(array->item), sizeof *out->body);
-    for (struct place at = first_element(array); at.item; next_element(&at)) {
-        out->body_count++;
-        if (!read_body(&at, &out->body[at.index]))
-            return false;
-    }
-    return true;
+    struct fmb_scene *scene = out;
+    const size_t count = count_elements(array);
+    if (count == SIZE_MAX)
+        return false;
+    struct fmb_placement *placements = scene_alloc(array->reader->scene, count, sizeof *placements);
+    array->reader->entry = allocate(count, sizeof *array->reader->entry);
+    scene->placements = placements;
+    scene->placement_count = count;
+    return read_each(array, count, "bodies", read_body, placements, sizeof *placements);
 }
 
 /* ---- Pairs ----------------------------------------------------------------------------------- */
 
-/* A table of the bodies by id. */
-struct body_id {
-    UT_hash_handle hh;
+/* Reads an id as the index of its body. */
+static bool read_index(const struct place *at, void *out)
+{
     int64_t id;
-    size_t index;
-};
-
-static const struct body_id *find_id(const struct body_id *ids, int64_t id)
-{
-    const struct body_id *found;
-    HASH_FIND(hh, ids, &id, sizeof id, found);
-    return found;
-}
-
-/* Fills the table with entries, which has as many as there are bodies. Refuses a repeated id. */
-static bool add_ids(const struct place *bodies, const struct scene *scene, struct body_id *entry,
-                    struct body_id **ids)
-{
-    for (size_t i = 0; i < scene->body_count; i++) {
-        const struct body_id *first = find_id(*ids, scene->body[i].id);
-        if (first) {
-            const struct place body = {bodies->reader, bodies, NULL, NULL, i};
-            const struct place id = {bodies->reader, &body, NULL, "id", 0};
-            return refuse(&id, "%lld is the id of bodies[%zu] already", (long long) first->id,
-                          first->index);
-        }
-        entry[i].id = scene->body[i].id;
-        entry[i].index = i;
-        HASH_ADD(hh, *ids, id, sizeof entry[i].id, &entry[i]);
-    }
+    if (!read_id(at, &id))
+        return false;
+    const struct body_id *body = find_id(at->reader, id);
+    if (!body)
+        return refuse(at, "no body has the id %lld", (long long) id);
+    *(unsigned *) out = body->index;
     return true;
 }
 
-static bool read_pair(const struct place *array, const struct body_id *ids, struct scene_pair *out)
+static bool read_pair(const struct place *at, void *out)
 {
-    if (!check_array(array, 2, "ids"))
+    const unsigned *pair = out;
+    if (!read_each(at, 2, "ids", read_index, out, sizeof *pair))
         return false;
-    size_t index[2];
-    int64_t id = 0;
-    for (struct place at = first_element(array); at.item; next_element(&at)) {
-        if (!read_id(&at, &id))
-            return false;
-        const struct body_id *body = find_id(ids, id);
-        if (!body)
-            return refuse(&at, "no body has the id %lld", (long long) id);
-        index[at.index] = body->index;
-    }
-    *out = (struct scene_pair){index[0], index[1]};
-    return out->a != out->b ||
-           refuse(array, "a body is no pair with itself (%lld)", (long long) id);
+    return pair[0] != pair[1] ||
+           refuse(at, "a body is no pair with itself (%lld)",
+                  (long long) at->reader->scene->scene.placements[pair[0]].id);
 }
 
-/* Reads an optional list. */
-static bool read_list(const struct place *array, const struct body_id *ids,
-                      struct scene_pair **list, size_t *count)
+/* Reads a list of pairs. Returns NULL if it is refused. */
+static unsigned (*read_list(const struct place *array, size_t *count))[2]
 {
-    if (!array->item)
-        return true;
-    if (!cJSON_IsArray(array->item))
-        return refuse_kind(array, "an array");
-    *list = allocate((size_t) cJSON_GetArraySize(array->item), sizeof **list);
-    for (struct place at = first_element(array); at.item; next_element(&at), ++*count)
-        if (!read_pair(&at, ids, &(*list)[at.index]))
-            return false;
-    return true;
+    *count = count_elements(array);
+    if (*count == SIZE_MAX)
+        return NULL;
+    unsigned(*list)[2] = scene_alloc(array->reader->scene, *count, sizeof *list);
+    return read_each(array, *count, "pairs", read_pair, list, sizeof *list) ? list : NULL;
 }
 
-static bool read_pairs(const struct place *pairs, const struct place *ignore,
-                       const struct body_id *ids, struct scene *out)
+static bool read_pairs(const struct place *array, void *out)
 {
-    out->all_pairs = !pairs->item;
-    if (!read_list(pairs, ids, &out->pair, &out->pair_count) ||
-        !read_list(ignore, ids, &out->ignored, &out->ignored_count))
-        return false;
-    scene_sort_ignored(out);
-    for (size_t i = 0; i < out->pair_count; i++) {
-        const struct place at = {pairs->reader, pairs, NULL, NULL, i};
-        if (scene_is_within_group(out, out->pair[i]))
-            return refuse(&at, "both bodies are of group %lld",
-                          (long long) out->body[out->pair[i].a].group);
-        if (scene_ignores(out, out->pair[i]))
-            return refuse(&at, "\"ignore\" has this pair too");
+    struct fmb_scene *scene = out;
+    scene->which = FMB_PAIRS_LISTED;
+    scene->pairs = (const unsigned(*)[2]) read_list(array, &scene->pair_count);
+    return scene->pairs != NULL;
+}
+
+static bool read_ignored(const struct place *array, void *out)
+{
+    struct fmb_scene *scene = out;
+    scene->ignored = (const unsigned(*)[2]) read_list(array, &scene->ignored_count);
+    return scene->ignored != NULL;
+}
+
+/* Refuses listed pairs that are left out. at: the list. */
+static bool check_listed(const struct place *at, struct owned_scene *owner)
+{
+    const struct fmb_scene *scene = &owner->scene;
+    for (size_t i = 0; i < scene->pair_count; i++) {
+        const struct place pair = {at->reader, at, NULL, NULL, i};
+        const unsigned a = scene->pairs[i][0], b = scene->pairs[i][1];
+        if (pair_is_within_group(scene, a, b))
+            return refuse(&pair, "both bodies are of group %lld",
+                          (long long) scene->placements[a].group);
+        if (scene_leaves_out(owner, a, b))
+            return refuse(&pair, "\"ignore\" has this pair too");
     }
-    out->ignored_count = out->all_pairs ? out->ignored_count : 0;
     return true;
 }
 
 /* ---- The scene ------------------------------------------------------------------------------- */
 
-static bool read_dim(const struct place *at, int *out)
-{
-    if (!cJSON_IsNumber(at->item))
-        return refuse_kind(at, "2 or 3");
-    if (at->item->valuedouble != 2 && at->item->valuedouble != 3)
-        return refuse_value(at, at->item->valuedouble, "2 or 3");
-    *out = (int) at->item->valuedouble;
-    return true;
-}
-
-/* Reads an optional number of at least 0: if it is missing, *out is unchanged. */
-static bool read_from_0(const struct place *at, double *out)
-{
-    if (!at->item)
-        return true;
-    return read_number(at, out) && (*out >= 0 || refuse_value(at, *out, "a number of at least 0"));
-}
-
 enum { LABEL, DIM, DURATION, MARGIN, BODIES, PAIRS, IGNORE, SCENE_KEYS };
 
 static const struct key scene_keys[SCENE_KEYS] = {
-    [LABEL] = {"label", true},   [DIM] = {"dim", false},       [DURATION] = {"duration", true},
-    [MARGIN] = {"margin", true}, [BODIES] = {"bodies", false}, [PAIRS] = {"pairs", true},
-    [IGNORE] = {"ignore", true},
+    [LABEL] = {"label", false, read_name, offsetof(struct owned_scene, scene.label)},
+    [DIM] = {"dim", true, read_dim, offsetof(struct owned_scene, dim)},
+    [DURATION] = {"duration", false, read_from_0, offsetof(struct owned_scene, scene.duration)},
+    [MARGIN] = {"margin", false, read_from_0, offsetof(struct owned_scene, scene.margin)},
+    [BODIES] = {"bodies", true, read_bodies, offsetof(struct owned_scene, scene)},
+    [PAIRS] = {"pairs", false, read_pairs, offsetof(struct owned_scene, scene)},
+    [IGNORE] = {"ignore", false, read_ignored, offsetof(struct owned_scene, scene)},
 };
 
-static bool read_scene(struct json_reader *reader, const cJSON *item, struct scene *out)
+static bool read_scene(struct json_reader *reader, const cJSON *item)
 {
     const struct place root = {.reader = reader, .item = item};
     struct place member[SCENE_KEYS];
-    out->duration = 1;
-    if (!read_object(&root, scene_keys, SCENE_KEYS, member) ||
-        !read_name(&member[LABEL], out->label) || !read_dim(&member[DIM], &reader->dim) ||
-        !read_from_0(&member[DURATION], &out->duration) ||
-        !read_from_0(&member[MARGIN], &out->margin))
+    struct fmb_scene *scene = &reader->scene->scene;
+    scene->duration = 1;
+    if (!find_members(&root, scene_keys, SCENE_KEYS, member) ||
+        !read_members(member, scene_keys, SCENE_KEYS, reader->scene))
         return false;
-    out->dim = reader->dim;
-    if (!read_bodies(&member[BODIES], out))
+    scene_begin_ignored(reader->scene);
+    if (!check_listed(&member[PAIRS], reader->scene))
         return false;
-    struct body_id *ids = NULL, *entry = allocate(out->body_count, sizeof *entry);
-    const bool good = add_ids(&member[BODIES], out, entry, &ids) &&
-                      read_pairs(&member[PAIRS], &member[IGNORE], ids, out);
-    HASH_CLEAR(hh, ids);
-    free(entry);
-    return good;
+    scene->instant = scene->duration == 0;
+    if (scene->which == FMB_PAIRS_LISTED)
+        scene->ignored_count = 0;
+    return true;
 }
 
 /* ---- The input ------------------------------------------------------------------------------- */
@@ -752,13 +734,17 @@ static const char *tokens_end(const char *at, const char *end)
 /* ---- Objects of the input ---- */
 
 static enum json_outcome read_object_text(struct json_reader *reader, const char *object,
-                                          size_t length, struct scene *out)
+                                          size_t length, struct owned_scene *out)
 {
+    reader->scene = out;
     const char *end = object, *bad = tokens_end(object, object + length);
     cJSON *root = cJSON_ParseWithLengthOpts(object, length, &end, false);
     const bool parsed = root && end == object + length && bad == end;
-    const bool good = parsed && read_scene(reader, root, out);
+    const bool good = parsed && read_scene(reader, root);
     cJSON_Delete(root);
+    HASH_CLEAR(hh, reader->ids);
+    free(reader->entry);
+    reader->entry = NULL;
     if (good) {
         reader->scene_number++;
         return JSON_SCENE;
@@ -772,7 +758,7 @@ static enum json_outcome read_object_text(struct json_reader *reader, const char
     return fail(reader, JSON_BAD, reader->text.error);
 }
 
-enum json_outcome json_next(struct json_reader *reader, struct scene *out)
+enum json_outcome json_next(struct json_reader *reader, struct owned_scene *out)
 {
     const char *object = NULL;
     size_t length = 0;

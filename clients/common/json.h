@@ -56,7 +56,7 @@ enum json_outcome {
 
 /* Reads the next scene. Returns as soon as its object is complete, without waiting for more input.
  * After any outcome but JSON_SCENE there is no next call. */
-enum json_outcome json_next(struct json_reader *reader, struct scene *out);
+enum json_outcome json_next(struct json_reader *reader, struct owned_scene *out);
 
 /* After JSON_BAD and JSON_FAILED: returns the reason, one line without a line feed, valid as long
  * as the reader:

@@ -5,14 +5,6 @@
 #include <string.h>
 #include <sys/random.h>
 
-struct keyed_hash keyed_hash_make(void)
-{
-    struct keyed_hash hash;
-    if (getrandom(&hash, sizeof hash, 0) != (ssize_t) sizeof hash)
-        abort(); /* not on a kernel that has the call */
-    return hash;
-}
-
 static inline uint64_t rotate(uint64_t value, int bits)
 {
     return value << bits | value >> (64 - bits);
@@ -35,9 +27,8 @@ static inline void add_word(uint64_t v[4], uint64_t word)
 
 /* J.-P. Aumasson, D. J. Bernstein: SipHash: a fast short-input PRF, 2012; one round a word and
  * three at the end, as in the tables of several languages. */
-unsigned keyed_hash_of(const struct keyed_hash *hash, const void *key, size_t size)
+unsigned keyed_hash_of(const uint64_t secret[2], const void *key, size_t size)
 {
-    const uint64_t *secret = hash->secret;
     const unsigned char *at = key;
     uint64_t word, v[4] = {
                        secret[0] ^ UINT64_C(0x736f6d6570736575),
@@ -61,10 +52,10 @@ unsigned keyed_hash_of(const struct keyed_hash *hash, const void *key, size_t si
 
 unsigned keyed_hash_value(const void *key, size_t size)
 {
-    static struct keyed_hash hash;
+    static uint64_t secret[2];
     static bool made;
-    if (!made)
-        hash = keyed_hash_make();
+    if (!made && getrandom(secret, sizeof secret, 0) != (ssize_t) sizeof secret)
+        abort(); /* not on a kernel that has the call */
     made = true;
-    return keyed_hash_of(&hash, key, size);
+    return keyed_hash_of(secret, key, size);
 }

@@ -15,17 +15,10 @@
 #define HASH_FUNCTION(key, size, value) ((value) = keyed_hash_value(key, size))
 #include <uthash.h>
 
-struct keyed_hash {
-    uint64_t secret[2];
-};
-
-/* Makes a hash with a new random secret. */
-struct keyed_hash keyed_hash_make(void);
-
 /* SipHash-1-3 of `size` bytes. The value depends on the machine's byte order. */
-unsigned keyed_hash_of(const struct keyed_hash *hash, const void *key, size_t size);
+unsigned keyed_hash_of(const uint64_t secret[2], const void *key, size_t size);
 
-/* The same with one secret for all tables, made when it is first used. */
+/* The same with one random secret for all tables, made when it is first used. */
 unsigned keyed_hash_value(const void *key, size_t size);
 
 #endif

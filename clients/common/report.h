@@ -2,25 +2,20 @@
 #ifndef REPORT_H
 #define REPORT_H
 
+#include "fmb_client.h"
 #include "json_write.h"
 #include "number.h"
 #include "scene.h"
 
 #include <stdio.h>
 
-struct outcome {
-    struct scene_pair pair;
-    const char *error;        /* why the pair could not be decided; NULL: it was decided */
-    struct fmb_answer answer; /* all 0 if there is an error */
-    const char *certificate;  /* of the verdict; NULL: none */
-    bool names_frames;        /* a body has several frames: a gap names the two that have it */
-};
-
-/* For each scene, begin is called, then pair for each pair in the order of the query, then end. */
+/* For each scene, the caller sets scene, and calls begin, then pair for each answer in the order of
+ * the pairs, then end. */
 struct report {
-    void (*begin)(struct report *report, const struct scene *scene);
-    void (*pair)(struct report *report, const struct scene *scene, const struct outcome *outcome);
-    void (*end)(struct report *report, const struct scene *scene);
+    void (*begin)(struct report *report);
+    void (*pair)(struct report *report, const struct fmb_client_answer *answer);
+    void (*end)(struct report *report);
+    struct owned_scene *scene;
 };
 
 /* One line, one JSON object, for each scene; flushed at its end:
@@ -71,8 +66,9 @@ struct report_text {
 struct report_text report_text(FILE *out, bool box, bool gap);
 
 /* Writes the members of an answer as report_json does, without braces: "verdict": ..., or
- * "error": ... outcome->pair is not used. */
-void report_answer_json(struct json_writer *json, int dim, const struct outcome *outcome);
+ * "error": ... a and b are not used. names_frames: a body has several frames. */
+void report_answer_json(struct json_writer *json, int dim, bool names_frames,
+                        const struct fmb_client_answer *answer);
 
 /* Prints verdict, contact, gap and box for people, in columns, without a line feed:
  *

@@ -24,11 +24,12 @@ static void write_gap(struct json_writer *json, int dim, const struct fmb_gap *g
     json_end(json, '}');
 }
 
-void report_answer_json(struct json_writer *json, int dim, const struct outcome *outcome)
+void report_answer_json(struct json_writer *json, int dim, bool names_frames,
+                        const struct fmb_client_answer *of)
 {
-    const struct fmb_answer *answer = &outcome->answer;
-    if (outcome->error) {
-        json_string(json, "error", outcome->error);
+    const struct fmb_answer *answer = &of->answer;
+    if (of->status != FMB_OK) {
+        json_string(json, "error", of->text);
         return;
     }
     json_string(json, "verdict", fmb_verdict_name((int) answer->verdict));
@@ -41,38 +42,36 @@ void report_answer_json(struct json_writer *json, int dim, const struct outcome 
         json_end(json, '}');
     }
     if (answer->has_gap)
-        write_gap(json, dim, &answer->gap, outcome->names_frames);
-    if (outcome->certificate)
-        json_string(json, "certificate", outcome->certificate);
+        write_gap(json, dim, &answer->gap, names_frames);
+    if (of->certificate)
+        json_string(json, "certificate", of->certificate);
 }
 
-static void begin_scene(struct report *report, const struct scene *scene)
+static void begin_scene(struct report *report)
 {
     struct json_writer *json = &((struct report_json *) report)->json;
     json_begin(json, NULL, '{');
-    if (scene->label[0])
-        json_string(json, "label", scene->label);
+    if (report->scene->scene.label)
+        json_string(json, "label", report->scene->scene.label);
     json_begin(json, "pairs", '[');
 }
 
-static void write_pair(struct report *report, const struct scene *scene,
-                       const struct outcome *outcome)
+static void write_pair(struct report *report, const struct fmb_client_answer *answer)
 {
     struct json_writer *json = &((struct report_json *) report)->json;
-    const struct scene_body *a = &scene->body[outcome->pair.a], *b = &scene->body[outcome->pair.b];
-    struct outcome named = *outcome;
-    named.names_frames = a->body.frame_count > 1 || b->body.frame_count > 1;
+    const struct fmb_placement *placements = report->scene->scene.placements;
+    const struct fmb_placement *a = &placements[answer->a], *b = &placements[answer->b];
     json_begin(json, NULL, '{');
     json_integer(json, "a", a->id);
     json_integer(json, "b", b->id);
-    report_answer_json(json, scene->dim, &named);
+    report_answer_json(json, report->scene->dim,
+                       a->body->frame_count > 1 || b->body->frame_count > 1, answer);
     json_end(json, '}');
 }
 
-static void end_scene(struct report *report, const struct scene *scene)
+static void end_scene(struct report *report)
 {
     struct json_writer *json = &((struct report_json *) report)->json;
-    (void) scene;
     json_end(json, ']');
     json_object_end(json);
     fflush(json->out);
@@ -80,6 +79,6 @@ static void end_scene(struct report *report, const struct scene *scene)
 
 struct report_json report_json(FILE *out)
 {
-    return (struct report_json){.report = {begin_scene, write_pair, end_scene},
+    return (struct report_json){.report = {begin_scene, write_pair, end_scene, NULL},
                                 .json = {.out = out}};
 }

@@ -23,12 +23,12 @@ struct report_columns report_columns(void)
 }
 
 /* A table of large coordinates, such as those of maps, has wide columns from its first row on. */
-static struct report_columns columns_for(const struct scene *scene)
+static struct report_columns columns_for(const struct owned_scene *scene)
 {
     struct report_columns columns = report_columns();
-    for (size_t i = 0; i < scene->body_count; i++)
+    for (size_t i = 0; i < scene->scene.placement_count; i++)
         for (int axis = 0; axis < scene->dim; axis++)
-            if (fabs(scene->body[i].position[axis]) >= large_end)
+            if (fabs(scene->scene.placements[i].position[axis]) >= large_end)
                 columns.box[axis][0] = columns.box[axis][1] = LARGE_END_WIDTH;
     return columns;
 }
@@ -108,13 +108,13 @@ static void write_certificate(FILE *out, int column, const char *certificate)
 }
 
 /* Returns the width of the name or id of a body, in characters. */
-static int label_width(const struct scene_body *body)
+static int label_width(const struct fmb_placement *body)
 {
     char text[SCENE_LABEL_MAX];
     return (int) escape_characters(scene_label(body, text));
 }
 
-static void write_label(FILE *out, int width, const struct scene_body *body)
+static void write_label(FILE *out, int width, const struct fmb_placement *body)
 {
     char text[SCENE_LABEL_MAX];
     fprintf(out, "  %*s%s", width - label_width(body), "", scene_label(body, text));
@@ -129,21 +129,23 @@ static void write_headings(const struct report_text *text, bool gap)
     fputs(text->box ? "  box\n" : "\n", text->out);
 }
 
-static void text_begin(struct report *report, const struct scene *scene)
+static void text_begin(struct report *report)
 {
     struct report_text *text = (struct report_text *) report;
+    const struct fmb_scene *scene = &report->scene->scene;
     char duration[NUMBER_TEXT_MAX], pairs[NUMBER_TEXT_MAX];
     memset(text->count, 0, sizeof text->count);
     text->near = 0;
-    text->columns = columns_for(scene);
+    text->columns = columns_for(report->scene);
     text->id_width = 1;
-    for (size_t i = 0; i < scene->body_count; i++)
-        if (label_width(&scene->body[i]) > text->id_width)
-            text->id_width = label_width(&scene->body[i]);
-    uint64_t count = scene_count_pairs(scene);
+    for (size_t i = 0; i < scene->placement_count; i++) {
+        const int width = label_width(&scene->placements[i]);
+        text->id_width = width > text->id_width ? width : text->id_width;
+    }
+    uint64_t count = scene_count_pairs(report->scene);
     fprintf(text->out, "%sscene %zu: %zu bod%s in %dD, %s pair%s, 0 to %s s\n",
-            text->scenes > 0 ? "\n" : "", text->scenes + 1, scene->body_count,
-            scene->body_count == 1 ? "y" : "ies", scene->dim,
+            text->scenes > 0 ? "\n" : "", text->scenes + 1, scene->placement_count,
+            scene->placement_count == 1 ? "y" : "ies", report->scene->dim,
             number_grouped((int64_t) count, pairs), count == 1 ? "" : "s",
             number_short(scene->duration, duration));
     text->scenes++;
@@ -151,26 +153,27 @@ static void text_begin(struct report *report, const struct scene *scene)
         write_headings(text, text->gap || scene->margin > 0);
 }
 
-static void text_pair(struct report *report, const struct scene *scene,
-                      const struct outcome *outcome)
+static void text_pair(struct report *report, const struct fmb_client_answer *of)
 {
     struct report_text *text = (struct report_text *) report;
-    write_label(text->out, text->id_width, &scene->body[outcome->pair.a]);
-    write_label(text->out, text->id_width, &scene->body[outcome->pair.b]);
+    const struct fmb_scene *scene = &report->scene->scene;
+    const struct fmb_answer *answer = &of->answer;
+    write_label(text->out, text->id_width, &scene->placements[of->a]);
+    write_label(text->out, text->id_width, &scene->placements[of->b]);
     fputs("  ", text->out);
-    if (outcome->error)
-        fprintf(text->out, "not decided: %s", outcome->error);
+    if (of->status != FMB_OK)
+        fprintf(text->out, "not decided: %s", of->text);
     else
-        report_answer_text(text->out, scene->dim, &outcome->answer, &text->columns);
+        report_answer_text(text->out, report->scene->dim, answer, &text->columns);
     putc('\n', text->out);
-    if (outcome->certificate)
-        write_certificate(text->out, 2 * text->id_width + 6, outcome->certificate);
-    text->count[outcome->answer.verdict]++;
-    text->near += outcome->answer.verdict == FMB_SEPARATED && outcome->answer.has_gap &&
-                  outcome->answer.gap.bounds[0] <= scene->margin;
+    if (of->certificate)
+        write_certificate(text->out, 2 * text->id_width + 6, of->certificate);
+    text->count[answer->verdict]++;
+    text->near += answer->verdict == FMB_SEPARATED && answer->has_gap &&
+                  answer->gap.bounds[0] <= scene->margin;
 }
 
-static void text_end(struct report *report, const struct scene *scene)
+static void text_end(struct report *report)
 {
     struct report_text *text = (struct report_text *) report;
     static const enum fmb_verdict order[] = {FMB_OVERLAPPING, FMB_TOUCHING, FMB_SEPARATED};
@@ -179,7 +182,7 @@ static void text_end(struct report *report, const struct scene *scene)
         fprintf(text->out, "%s%s %s", i ? ", " : "",
                 number_grouped((int64_t) text->count[order[i]], count),
                 fmb_verdict_name((int) order[i]));
-    if (scene->margin > 0)
+    if (report->scene->scene.margin > 0)
         fprintf(text->out, " (%s near)", number_grouped((int64_t) text->near, count));
     if (text->count[0] > 0)
         fprintf(text->out, ", %s not decided", number_grouped((int64_t) text->count[0], count));
@@ -190,5 +193,5 @@ static void text_end(struct report *report, const struct scene *scene)
 struct report_text report_text(FILE *out, bool box, bool gap)
 {
     return (struct report_text){
-        .report = {text_begin, text_pair, text_end}, .out = out, .box = box, .gap = gap};
+        .report = {text_begin, text_pair, text_end, NULL}, .out = out, .box = box, .gap = gap};
 }

@@ -1,8 +1,11 @@
 #include "scene_json.h"
 
+#include "allocate.h"
 #include "json_write.h"
+#include "pair_number.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* Writes count vectors of dim numbers. */
 static void write_vectors(struct json_writer *json, const char *key, const double *numbers, int dim,
@@ -44,12 +47,11 @@ static void write_shape(struct json_writer *json, int dim, const struct geometry
                       fmb_component_count(dim, frame->shape));
 }
 
-static void write_frames(struct json_writer *json, const struct scene_body *body)
+static void write_frames(struct json_writer *json, int dim, const struct geometry_frame *frame,
+                         unsigned count)
 {
-    const int dim = body->body.dim;
     json_begin(json, "frames", '[');
-    for (unsigned i = 0; i < body->body.frame_count; i++) {
-        const struct geometry_frame *frame = &body->given[i];
+    for (; count > 0; count--, frame++) {
         json_begin(json, NULL, '{');
         write_shape(json, dim, frame);
         if (!frame->by_vertices)
@@ -61,48 +63,51 @@ static void write_frames(struct json_writer *json, const struct scene_body *body
 
 /* A body of one frame by vertices, or whose origin or centre is 0, is written as that frame. A
  * frame of components then has the position of the body as its origin, unless the body is turned.
- */
-static void write_body(struct json_writer *json, const struct scene_body *body)
+ * given: the frames of the body. */
+static void write_body(struct json_writer *json, const struct fmb_placement *placement,
+                       const struct geometry_frame *given)
 {
-    const struct geometry_frame *first = body->given;
-    const int dim = body->body.dim;
+    const int dim = placement->body->dim;
     const bool only =
-        body->body.frame_count == 1 && (first->by_vertices || is_zero(first->origin, dim));
-    const bool components = only && first->shape != FMB_BOX && !first->by_vertices;
+        placement->body->frame_count == 1 && (given->by_vertices || is_zero(given->origin, dim));
+    const bool components = only && given->shape != FMB_BOX && !given->by_vertices;
     json_begin(json, NULL, '{');
-    json_integer(json, "id", body->id);
-    if (body->name[0])
-        json_string(json, "name", body->name);
-    if (body->group != 0)
-        json_integer(json, "group", body->group);
+    json_integer(json, "id", placement->id);
+    if (placement->name)
+        json_string(json, "name", placement->name);
+    if (placement->group != 0)
+        json_integer(json, "group", placement->group);
     if (only)
-        write_shape(json, dim, first);
+        write_shape(json, dim, given);
     else
-        write_frames(json, body);
-    if (components && body->orientation_count == 0)
-        json_numbers(json, "origin", body->position, dim);
+        write_frames(json, dim, given, placement->body->frame_count);
+    if (components && placement->orientation_count == 0)
+        json_numbers(json, "origin", placement->position, dim);
     else
-        write_vector(json, "position", body->position, dim);
-    if (body->orientation_count > 0)
-        json_numbers(json, "orientation", body->orientation, body->orientation_count);
-    write_vector(json, "velocity", body->velocity, dim);
+        write_vector(json, "position", placement->position, dim);
+    if (placement->orientation_count > 0)
+        json_numbers(json, "orientation", placement->orientation, placement->orientation_count);
+    write_vector(json, "velocity", placement->velocity, dim);
     json_end(json, '}');
 }
 
-static void write_bodies(struct json_writer *json, const struct scene *scene)
+static void write_bodies(struct json_writer *json, const struct owned_scene *scene)
 {
+    const struct geometry_frame *given = scene->given;
     json_break(json, "\n ");
     json_begin(json, "bodies", '[');
-    for (size_t i = 0; i < scene->body_count; i++) {
+    for (size_t i = 0; i < scene->scene.placement_count; i++) {
+        const struct fmb_placement *placement = &scene->scene.placements[i];
         if (i > 0)
             json_break(json, "\n            ");
-        write_body(json, &scene->body[i]);
+        write_body(json, placement, given);
+        given += placement->body->frame_count;
     }
     json_end(json, ']');
 }
 
-static void write_pairs(struct json_writer *json, const struct scene *scene, const char *key,
-                        const struct scene_pair *pair, size_t count)
+static void write_pairs(struct json_writer *json, const struct fmb_placement *placements,
+                        const char *key, const unsigned (*pair)[2], size_t count)
 {
     enum { PAIRS_PER_LINE = 8 };
     json_break(json, "\n ");
@@ -110,27 +115,45 @@ static void write_pairs(struct json_writer *json, const struct scene *scene, con
     for (size_t k = 0; k < count; k++) {
         if (k > 0 && k % PAIRS_PER_LINE == 0)
             json_break(json, "\n           ");
-        json_begin(json, NULL, '[');
-        json_integer(json, NULL, scene->body[pair[k].a].id);
-        json_integer(json, NULL, scene->body[pair[k].b].id);
-        json_end(json, ']');
+        json_integers(json, NULL,
+                      (const int64_t[]){placements[pair[k][0]].id, placements[pair[k][1]].id}, 2);
     }
     json_end(json, ']');
 }
 
-void scene_json_write(FILE *out, const struct scene *scene)
+/* Writes the ignored pairs in the order of (a, b), each once, without those within a group. */
+static void write_ignored(struct json_writer *json, struct owned_scene *owner)
 {
+    const struct fmb_scene *scene = &owner->scene;
+    const struct pair_numbers all = {.n = scene->placement_count};
+    unsigned(*pair)[2] = allocate(scene->ignored_count, sizeof *pair);
+    size_t count = 0;
+    for (size_t a = 0, b = 0; pair_find(all, &a, &b); b++) {
+        if (pair_is_within_group(scene, (unsigned) a, (unsigned) b) ||
+            !ignored_has(&owner->ignored, (unsigned) a, (unsigned) b))
+            continue;
+        pair[count][0] = (unsigned) a;
+        pair[count++][1] = (unsigned) b;
+    }
+    if (count > 0)
+        write_pairs(json, scene->placements, "ignore", (const unsigned(*)[2]) pair, count);
+    free(pair);
+}
+
+void scene_json_write(FILE *out, struct owned_scene *owner)
+{
+    const struct fmb_scene *scene = &owner->scene;
     struct json_writer json = json_object(out);
-    if (scene->label[0])
+    if (scene->label)
         json_string(&json, "label", scene->label);
-    json_integer(&json, "dim", scene->dim);
+    json_integer(&json, "dim", owner->dim);
     json_number(&json, "duration", scene->duration);
     if (scene->margin > 0)
         json_number(&json, "margin", scene->margin);
-    write_bodies(&json, scene);
-    if (!scene->all_pairs)
-        write_pairs(&json, scene, "pairs", scene->pair, scene->pair_count);
+    write_bodies(&json, owner);
+    if (scene->which == FMB_PAIRS_LISTED)
+        write_pairs(&json, scene->placements, "pairs", scene->pairs, scene->pair_count);
     if (scene->ignored_count > 0)
-        write_pairs(&json, scene, "ignore", scene->ignored, scene->ignored_count);
+        write_ignored(&json, owner);
     json_object_end(&json);
 }

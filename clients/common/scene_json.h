@@ -8,6 +8,6 @@
 
 /* Writes a scene with finite numbers so that it reads back as the same bits: one object, a line for
  * each body. Check ferror(out) for write errors. */
-void scene_json_write(FILE *out, const struct scene *scene);
+void scene_json_write(FILE *out, struct owned_scene *scene);
 
 #endif

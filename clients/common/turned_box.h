@@ -5,10 +5,10 @@
 
 #include "fmb.h"
 
-/* In: dim, 2 or 3; centre and size [dim], finite; an orientation of dim (fmb.h), not all 0.
- * Out: the numbers of a cuboid as fmb_frame_make() takes them, dim + dim * dim; one beyond the
- * largest double is infinite. */
-void turned_box(int dim, const double *centre, const double *size, const double *orientation,
-                double *numbers);
+/* In:  dim, 2 or 3; orientation: one of dim (fmb.h), not all 0; origin and components: the centre
+ *      and the size of the box, [dim], finite
+ * Out: origin, [dim], and components, [component * dim + axis], of the cuboid; a number beyond the
+ *      largest double is infinite */
+void turned_box(int dim, const double *orientation, double *origin, double *components);
 
 #endif

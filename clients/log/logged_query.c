@@ -90,45 +90,35 @@ int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pa
 
 /* ---- As a scene: bodies ---- */
 
-/* The caller frees what *out owns, even if this returns false. */
-static bool read_body(const struct geometry *geometry, struct scene_body *out)
+/* Returns the body of a geometry; NULL if the engine refuses it. */
+static const struct fmb_body *read_body(const struct geometry *geometry, struct owned_scene *out)
 {
     struct geometry_reader reader = geometry_begin(geometry);
-    const size_t count = (size_t) reader.frames_left;
-    size_t read = 0, bad;
-    out->given = allocate(count, sizeof *out->given);
-    while (read < count && geometry_next(&reader, &out->given[read]))
-        read++;
-    return read == count && reader.counts_left == 0 && reader.numbers_left == 0 &&
-           scene_body_make(reader.dim, count, out, &bad) == FMB_OK;
+    const struct fmb_body *body;
+    size_t count = 0, bad;
+    out->dim = reader.dim;
+    while (geometry_next(&reader, scene_add_given(out)))
+        count++;
+    out->given_count--; /* the last one was not read */
+    return reader.frames_left == 0 && reader.counts_left == 0 && reader.numbers_left == 0 &&
+                   scene_make_body(out, count, &body, &bad) == FMB_OK
+               ? body
+               : NULL;
 }
 
 bool scene_takes(const struct geometry *geometry)
 {
-    struct scene_body body = {.id = 0};
-    const bool taken = read_body(geometry, &body);
-    scene_body_clear(&body);
+    struct owned_scene scene = {.dim = 0};
+    const bool taken = read_body(geometry, &scene);
+    scene_clear(&scene);
     return taken;
 }
 
-/* Copies a name or a label, unless a scene cannot have it. */
-static void copy_text(const char *text, char out[SCENE_NAME_MAX + 1])
+/* Returns a copy of a name or a label; NULL if a scene cannot have it. */
+static const char *copy_text(const char *text, struct owned_scene *out)
 {
-    if (text && strlen(text) <= SCENE_NAME_MAX && utf8_is_text(text))
-        strcpy(out, text);
-}
-
-static void set_body(const struct placement *placement, struct scene_body *out)
-{
-    const bool taken = read_body(&placement->geometry, out);
-    assert(taken);
-    (void) taken;
-    memcpy(out->position, placement->position, sizeof out->position);
-    memcpy(out->velocity, placement->velocity, sizeof out->velocity);
-    memcpy(out->orientation, placement->orientation, sizeof out->orientation);
-    out->orientation_count = placement->orientation_count;
-    out->group = placement->group;
-    copy_text(placement->name, out->name);
+    return text && strlen(text) <= QUERY_NAME_MAX && utf8_is_text(text) ? scene_text(out, text)
+                                                                        : NULL;
 }
 
 static int compare(const void *left, const void *right)
@@ -156,89 +146,93 @@ static bool is_repeated(const struct placement *placement, size_t i)
     return false;
 }
 
-static void set_ids(const struct placement *placement, struct scene *scene)
+static void set_ids(const struct placement *placement, size_t count, struct fmb_placement *out)
 {
-    int64_t *sorted = allocate(scene->body_count, sizeof *sorted), id = 1;
+    int64_t *sorted = allocate(count, sizeof *sorted), id = 1;
     size_t next = 0;
-    for (size_t i = 0; i < scene->body_count; i++)
+    for (size_t i = 0; i < count; i++)
         sorted[i] = placement[i].body_id;
-    qsort(sorted, scene->body_count, sizeof *sorted, compare);
-    for (size_t i = 0; i < scene->body_count; i++)
-        scene->body[i].id = placement[i].body_id == 0 || is_repeated(placement, i)
-                                ? free_id(sorted, scene->body_count, &next, &id)
-                                : placement[i].body_id;
+    qsort(sorted, count, sizeof *sorted, compare);
+    for (size_t i = 0; i < count; i++)
+        out[i].id = placement[i].body_id == 0 || is_repeated(placement, i)
+                        ? free_id(sorted, count, &next, &id)
+                        : placement[i].body_id;
     free(sorted);
 }
 
-static void set_bodies(const struct placement *placement, size_t count, struct scene *scene)
+/* grouped: whether the placements keep their groups. */
+static void set_bodies(const struct placement *placement, size_t count, bool grouped,
+                       struct owned_scene *scene)
 {
-    scene->dim = count > 0 ? placement[0].dim : FMB_DIM_MAX;
-    scene->body_count = count;
-    scene->body = allocate(count, sizeof *scene->body);
-    for (size_t i = 0; i < count; i++)
-        set_body(&placement[i], &scene->body[i]);
-    set_ids(placement, scene);
+    struct fmb_placement *out = scene_alloc(scene, count, sizeof *out);
+    scene->dim = FMB_DIM_MAX;
+    for (size_t i = 0; i < count; i++) {
+        const struct placement *from = &placement[i];
+        out[i] = (struct fmb_placement){.body = read_body(&from->geometry, scene),
+                                        .orientation_count = from->orientation_count,
+                                        .group = grouped ? from->group : 0,
+                                        .name = copy_text(from->name, scene)};
+        assert(out[i].body);
+        memcpy(out[i].position, from->position, sizeof from->position);
+        memcpy(out[i].velocity, from->velocity, sizeof from->velocity);
+        memcpy(out[i].orientation, from->orientation, sizeof from->orientation);
+    }
+    set_ids(placement, count, out);
+    scene->scene.placements = out;
+    scene->scene.placement_count = count;
 }
 
 /* ---- As a scene: pairs ---- */
 
-struct list {
-    struct scene *scene;
-    size_t capacity;
-    int32_t skip; /* number of pairs still to skip */
-};
-
-static void add(struct list *list, size_t a, size_t b)
+/* Lists the pairs of ALL or ACROSS from first_pair on that are not left out. */
+static void list_pairs(const struct scene_query *query, struct owned_scene *out)
 {
-    struct scene *scene = list->scene;
-    if (list->skip > 0) {
-        list->skip--;
-        return;
+    const struct pair_numbers numbers = {query->which == FMB_PAIRS_ACROSS,
+                                         out->scene.placement_count, (size_t) query->split};
+    unsigned(*pair)[2] = scene_alloc(out, (size_t) pairs_total(numbers), sizeof *pair);
+    int32_t skip = query->first_pair;
+    for (size_t a = 0, b = 0; pair_find(numbers, &a, &b); b++) {
+        if (skip-- > 0 || scene_leaves_out(out, (unsigned) a, (unsigned) b))
+            continue;
+        pair[out->scene.pair_count][0] = (unsigned) a;
+        pair[out->scene.pair_count++][1] = (unsigned) b;
     }
-    if (scene_ignores(scene, (struct scene_pair){a, b}))
+    out->scene.pairs = (const unsigned(*)[2]) pair;
+}
+
+static void set_pairs(const struct scene_query *query, struct owned_scene *out)
+{
+    struct fmb_scene *scene = &out->scene;
+    const size_t ignored_count = (size_t) (query->ignored_count / 2);
+    unsigned(*ignored)[2] = scene_alloc(out, ignored_count, sizeof *ignored);
+    scene->ignored = memcpy(ignored, query->ignored, ignored_count * sizeof *ignored);
+    scene->ignored_count = ignored_count;
+    scene_begin_ignored(out);
+    if (query->which == FMB_PAIRS_ALL && query->first_pair == 0)
         return;
-    scene->pair =
-        allocate_grow(scene->pair, &list->capacity, scene->pair_count + 1, sizeof *scene->pair);
-    scene->pair[scene->pair_count++] = (struct scene_pair){a, b};
+    if (query->which == FMB_PAIRS_LISTED) {
+        const size_t count = (size_t) (query->index_count / 2 - query->first_pair);
+        unsigned(*pair)[2] = scene_alloc(out, count, sizeof *pair);
+        scene->pairs = memcpy(pair, query->pair[query->first_pair], count * sizeof *pair);
+        scene->pair_count = count;
+    } else {
+        list_pairs(query, out);
+    }
+    scene->which = FMB_PAIRS_LISTED;
+    scene->ignored_count = 0;
 }
 
-static void set_ignored(const struct scene_query *query, struct scene *scene)
+void scene_of_query(const struct logged_query *query, struct owned_scene *out)
 {
-    scene->ignored_count = (size_t) (query->ignored_count / 2);
-    scene->ignored = allocate(scene->ignored_count, sizeof *scene->ignored);
-    for (size_t k = 0; k < scene->ignored_count; k++)
-        scene->ignored[k] = (struct scene_pair){query->ignored[k][0], query->ignored[k][1]};
-    scene_sort_ignored(scene);
-}
-
-static void set_pairs(const struct scene_query *query, struct scene *scene)
-{
-    struct list list = {.scene = scene, .skip = query->first_pair};
-    const struct pair_numbers numbers = {query->which == FMB_PAIRS_ACROSS, scene->body_count,
-                                         (size_t) query->split};
-    scene->all_pairs = query->which == FMB_PAIRS_ALL && query->first_pair == 0;
-    set_ignored(query, scene);
-    if (query->which == FMB_PAIRS_LISTED)
-        for (int32_t k = 0; k < query->index_count / 2; k++)
-            add(&list, query->pair[k][0], query->pair[k][1]);
-    else if (!scene->all_pairs)
-        for (size_t a = 0, b = 0; pair_find(numbers, &a, &b); b++)
-            add(&list, a, b);
-    scene->ignored_count = scene->all_pairs ? scene->ignored_count : 0;
-}
-
-void scene_of_query(const struct logged_query *query, struct scene *out)
-{
-    *out = (struct scene){.all_pairs = true};
+    *out = (struct owned_scene){.dim = 0};
     if (query->kind == LOG_PAIR_QUERY) {
-        out->duration = query->pair.duration;
-        set_bodies(query->pair.placement, 2, out);
-        out->body[0].group = out->body[1].group = 0; /* which a pair query does not look at */
+        out->scene.duration = query->pair.duration;
+        set_bodies(query->pair.placement, 2, false, out);
         return;
     }
-    out->duration = query->scene.duration;
-    out->margin = query->scene.margin;
-    copy_text(query->scene.label, out->label);
-    set_bodies(query->scene.placement, (size_t) query->scene.placement_count, out);
+    out->scene.duration = query->scene.duration;
+    out->scene.margin = query->scene.margin;
+    out->scene.label = copy_text(query->scene.label, out);
+    set_bodies(query->scene.placement, (size_t) query->scene.placement_count, true, out);
     set_pairs(&query->scene, out);
 }

@@ -29,7 +29,7 @@ int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pa
  * does not hold all of it. */
 size_t logged_query_write(const struct logged_query *query, unsigned char out[QUERY_BYTES_MAX]);
 
-struct scene;
+struct owned_scene;
 
 /* Converts a query to a scene (scene.h) with the same bodies, and the same pairs in the same order.
  * The scene has no method and no wanted results, and only a label that JSON can have; that of a
@@ -38,7 +38,7 @@ struct scene;
  * PAIRS_ALL query as such, others listed. Body i is placement i, and keeps its id, unless it has
  * none or an earlier placement has the same id: then it gets the lowest free id. Exits with status
  * 1 if memory is exhausted. */
-void scene_of_query(const struct logged_query *query, struct scene *out);
+void scene_of_query(const struct logged_query *query, struct owned_scene *out);
 
 /* Whether the engine accepts the frames of this body, so that a scene can contain it. */
 bool scene_takes(const struct geometry *geometry);

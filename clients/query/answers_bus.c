@@ -13,20 +13,11 @@ static const double heartbeat_max_s = 1.5;
 
 struct answers_bus {
     struct args_bus bus;
-    struct answers_options options;
     struct fmb_client *client; /* NULL: could not be opened */
     double patience;           /* seconds until a query is given up */
     uint64_t advised;          /* outages that have been reported */
     int64_t heartbeat_by;      /* end of the wait for a heartbeat; clock_ns() */
     bool heartbeat;            /* a service has sent one */
-};
-
-/* A scene, and the state of its answers. */
-struct bus_scene {
-    const struct scene *scene;
-    struct scene_cursor delivered; /* pairs so far */
-    answers_sink *sink;
-    void *user;
 };
 
 static void on_heartbeat(void *user, const struct fmb_client_heartbeat *heartbeat)
@@ -36,13 +27,10 @@ static void on_heartbeat(void *user, const struct fmb_client_heartbeat *heartbea
     answers->heartbeat = true;
 }
 
-struct answers_bus *answers_bus_open(const struct args_bus *bus,
-                                     const struct answers_options *options, double timeout,
-                                     int retries)
+struct answers_bus *answers_bus_open(const struct args_bus *bus, double timeout, int retries)
 {
     struct answers_bus *answers = allocate(1, sizeof *answers);
     answers->bus = *bus;
-    answers->options = *options;
     answers->patience = timeout * (retries + 1);
     answers->client = args_open_client(
         bus, (struct fmb_client_options){.timeout = timeout, .tries = retries + 1});
@@ -56,96 +44,50 @@ struct answers_bus *answers_bus_open(const struct args_bus *bus,
 }
 
 /* Reports contradicting results. The answers are those of the first results. */
-static void report_contradictions(const struct fmb_client *client)
+void answers_bus_close(struct answers_bus *answers)
 {
+    const struct fmb_client *client = answers->client;
     const uint64_t count = client ? fmb_client_get_counts(client).contradicting : 0;
     if (count > 0)
         complain("%" PRIu64
                  " queries got a second result that contradicts the first: another "
                  "program on the bus is wrong, or forges results",
                  count);
-}
-
-void answers_bus_close(struct answers_bus *answers)
-{
-    report_contradictions(answers->client);
     fmb_client_close(answers->client);
     free(answers);
 }
 
-/* ---- The query ---- */
-
-/* Returns the placements of a scene, which the caller frees. They point into it. */
-static struct fmb_placement *placements_of(const struct scene *scene)
-{
-    struct fmb_placement *out = allocate(scene->body_count, sizeof *out);
-    for (size_t i = 0; i < scene->body_count; i++) {
-        const struct scene_body *body = &scene->body[i];
-        out[i] = scene_placement(body);
-        out[i].id = body->id;
-        out[i].name = body->name;
-        out[i].group = body->group;
-    }
-    return out;
-}
-
-/* Copies pairs of a scene for the library: those to be queried if they are listed, else those to be
- * ignored. The caller frees them. */
-static unsigned (*copy_pairs(const struct scene *scene, bool listed, size_t *count))[2]
-{
-    *count = listed ? (size_t) scene_count_pairs(scene) : scene->ignored_count;
-    unsigned(*pair)[2] = allocate(*count, sizeof *pair);
-    struct scene_cursor cursor = {0};
-    struct scene_pair next;
-    for (size_t i = 0; i < *count; i++) {
-        if (!listed)
-            next = scene->ignored[i];
-        else if (!scene_next_pair(scene, &cursor, &next))
-            break;
-        pair[i][0] = (unsigned) next.a;
-        pair[i][1] = (unsigned) next.b;
-    }
-    return pair;
-}
-
-static unsigned want_of(const struct answers_options *options)
-{
-    return FMB_WANT_TIMES | (options->box ? FMB_WANT_BOX : 0) |
-           (options->certificate ? FMB_WANT_CERTIFICATE : 0) | (options->gap ? FMB_WANT_GAP : 0);
-}
-
 /* ---- The answers ---- */
 
-/* Of all pairs, those that the library leaves out are separated. */
-static void deliver_separated(const struct bus_scene *run, struct scene_pair pair)
+/* A scene, and the state of its answers. */
+struct bus_scene {
+    struct owned_scene *scene;
+    struct scene_cursor delivered; /* pairs so far */
+    fmb_client_sink *sink;
+    void *user;
+};
+
+/* Delivers the pairs before the one of `until`, or all that are left: with this status; FMB_OK:
+ * they are separated. */
+static void deliver(struct bus_scene *run, int status, const char *text,
+                    const struct fmb_client_answer *until)
 {
-    const struct outcome outcome = {.pair = pair, .answer.verdict = FMB_SEPARATED};
-    run->sink(run->user, run->scene, &outcome);
+    unsigned pair[2];
+    while (scene_next_pair(run->scene, &run->delivered, pair) &&
+           !(until && pair[0] == until->a && pair[1] == until->b)) {
+        struct fmb_client_answer answer = {
+            .a = pair[0], .b = pair[1], .status = status, .text = text};
+        if (status == FMB_OK)
+            answer.answer.verdict = FMB_SEPARATED;
+        run->sink(run->user, &answer);
+    }
 }
 
 static void take_answer(void *user, const struct fmb_client_answer *answer)
 {
     struct bus_scene *run = user;
-    struct outcome outcome = {.error = answer->status == FMB_OK ? NULL : answer->text};
-    while (scene_next_pair(run->scene, &run->delivered, &outcome.pair) &&
-           (outcome.pair.a != answer->a || outcome.pair.b != answer->b))
-        deliver_separated(run, outcome.pair);
-    if (!outcome.error) {
-        outcome.answer = answer->answer;
-        outcome.certificate = answer->certificate;
-    }
-    run->sink(run->user, run->scene, &outcome);
-}
-
-/* Delivers the remaining pairs. error: why no query was sent; NULL: one was. */
-static void deliver_remaining(struct bus_scene *run, const char *error)
-{
-    struct outcome outcome = {.error = error};
-    while (scene_next_pair(run->scene, &run->delivered, &outcome.pair))
-        if (error)
-            run->sink(run->user, run->scene, &outcome);
-        else
-            deliver_separated(run, outcome.pair);
+    deliver(run, FMB_OK, "", answer);
+    run->sink(run->user, answer);
 }
 
 /* Whether a service has answered or sent a heartbeat since the bus was opened. Waits for one. */
@@ -159,8 +101,9 @@ static bool service_seen(struct answers_bus *answers)
     return answers->heartbeat || fmb_client_get_counts(answers->client).answered > 0;
 }
 
-/* Reports each outage once. Returns false if no service has ever been seen. */
-static bool advise(struct answers_bus *answers)
+/* Reports each outage once. kind: of the queries. Returns false if no service has ever been seen.
+ */
+static bool advise(struct answers_bus *answers, const char *kind)
 {
     const char *prefix = answers->bus.prefix;
     const struct fmb_client_counts counts = fmb_client_get_counts(answers->client);
@@ -168,9 +111,8 @@ static bool advise(struct answers_bus *answers)
         return true;
     answers->advised = counts.outages;
     const bool seen = service_seen(answers);
-    complain("no fmbd answered on channel %sFMB_%s_RESULT of %s within %g s%s", prefix,
-             answers->options.certificate ? "PAIR" : "SCENE", args_bus_name(&answers->bus),
-             answers->patience,
+    complain("no fmbd answered on channel %sFMB_%s_RESULT of %s within %g s%s", prefix, kind,
+             args_bus_name(&answers->bus), answers->patience,
              seen ? "" : ", and none sends a heartbeat: later scenes are not answered");
     if (counts.malformed > 0)
         complain("%" PRIu64 " results could not be read: another version of fmbd?",
@@ -180,45 +122,39 @@ static bool advise(struct answers_bus *answers)
     return seen;
 }
 
-/* Of all pairs the library answers only contacts and near ones. So pairs are listed if each gets a
- * gap. */
-static bool query(struct answers_bus *answers, struct bus_scene *run)
+/* Returns the list of all pairs of a scene. The caller frees it. */
+static unsigned (*list_pairs(struct owned_scene *scene, size_t *count))[2]
 {
-    const struct answers_options *options = &answers->options;
-    const struct scene *scene = run->scene;
-    struct fmb_placement *placements = placements_of(scene);
-    const bool listed =
-        !scene->all_pairs || options->gap || (options->method && !options->method->certain);
-    size_t count;
-    unsigned(*pair)[2] = copy_pairs(scene, listed, &count);
-    const struct fmb_scene queried = {
-        .placements = placements,
-        .placement_count = scene->body_count,
-        .which = listed ? FMB_PAIRS_LISTED : FMB_PAIRS_ALL,
-        .pairs = (const unsigned(*)[2]) pair,
-        .pair_count = listed ? count : 0,
-        .ignored = (const unsigned(*)[2]) pair,
-        .ignored_count = listed ? 0 : count,
-        .duration = scene->duration,
-        .instant = scene->duration == 0,
-        .margin = scene->margin,
-        .want = want_of(options),
-        .method = options->method,
-        .label = scene->label,
-    };
-    const int status = fmb_client_query(answers->client, &queried, take_answer, run);
-    deliver_remaining(run, status == FMB_OK ? NULL : fmb_client_why(answers->client));
-    free(placements);
-    free(pair);
-    return advise(answers);
+    struct scene_cursor cursor = {0};
+    *count = (size_t) scene_count_pairs(scene);
+    unsigned(*pair)[2] = allocate(*count, sizeof *pair);
+    for (size_t i = 0; i < *count && scene_next_pair(scene, &cursor, pair[i]); i++)
+        continue;
+    return pair;
 }
 
-bool answers_bus_scene(struct answers_bus *answers, const struct scene *scene, answers_sink *sink,
-                       void *user)
+/* Of all pairs the library answers only contacts and near ones. So pairs are listed if each gets a
+ * gap, and for a method that takes listed pairs only. */
+bool answers_bus_scene(struct answers_bus *answers, struct owned_scene *owner,
+                       fmb_client_sink *sink, void *user)
 {
-    struct bus_scene run = {.scene = scene, .sink = sink, .user = user};
-    if (answers->client)
-        return query(answers, &run);
-    deliver_remaining(&run, "no bus");
-    return false;
+    const struct fmb_scene *scene = &owner->scene;
+    struct bus_scene run = {.scene = owner, .sink = sink, .user = user};
+    struct fmb_scene queried = *scene;
+    unsigned(*pair)[2] = NULL;
+    if (!answers->client) {
+        deliver(&run, FMB_CLIENT_NO_BUS, "no bus", NULL);
+        return false;
+    }
+    if (scene->which == FMB_PAIRS_ALL &&
+        (scene->want & FMB_WANT_GAP || (scene->method && !scene->method->certain))) {
+        pair = list_pairs(owner, &queried.pair_count);
+        queried.which = FMB_PAIRS_LISTED;
+        queried.pairs = (const unsigned(*)[2]) pair;
+        queried.ignored_count = 0;
+    }
+    const int status = fmb_client_query(answers->client, &queried, take_answer, &run);
+    deliver(&run, status, fmb_client_why(answers->client), NULL);
+    free(pair);
+    return advise(answers, scene->want & FMB_WANT_CERTIFICATE ? "PAIR" : "SCENE");
 }

@@ -2,59 +2,58 @@
 
 #include "query.h"
 
+#include <stdio.h>
 #include <string.h>
 
-/* Decides a pair. Its certificate is in text. Returns the error; NULL: none. */
-static const char *decide(const struct answers_options *options, const struct scene *scene,
-                          struct outcome *out, char text[FMB_CERTIFICATE_MAX])
+/* Decides the pair of *out. Its certificate is in text. */
+static void decide(const struct fmb_scene *scene, struct fmb_client_answer *out,
+                   char text[FMB_CERTIFICATE_MAX])
 {
-    const struct fmb_method *method = options->method ? options->method : fmb_method_default();
-    const bool gap = options->gap || scene->margin > 0;
-    const unsigned want = (options->box ? FMB_WANT_BOX : 0) | (gap ? FMB_WANT_GAP : 0);
-    const struct fmb_placement a = scene_placement(&scene->body[out->pair.a]);
-    const struct fmb_placement b = scene_placement(&scene->body[out->pair.b]);
-    if (gap && !method->certain)
-        return "method: gives no gaps";
-    enum fmb_status status = fmb_decide(method, &a, &b, scene->duration, want, &out->answer);
-    if (!options->gap)
+    const struct fmb_method *method = scene->method ? scene->method : fmb_method_default();
+    const struct fmb_placement *a = &scene->placements[out->a], *b = &scene->placements[out->b];
+    const bool gap = scene->want & FMB_WANT_GAP || scene->margin > 0;
+    const unsigned want = (scene->want & FMB_WANT_BOX) | (gap ? FMB_WANT_GAP : 0);
+    size_t length = 0;
+    enum fmb_status status = fmb_decide(method, a, b, scene->duration, want, &out->answer);
+    if (!(scene->want & FMB_WANT_GAP))
         query_remove_far_gap(scene->margin, &out->answer);
-    if (options->certificate && status == FMB_OK) {
-        size_t length;
-        status = fmb_certificate(&a, &b, scene->duration, text, FMB_CERTIFICATE_MAX, &length);
-        out->certificate = length > 0 ? text : NULL;
-    }
-    return status == FMB_OK ? NULL : fmb_status_text(status);
+    if (scene->want & FMB_WANT_CERTIFICATE && status == FMB_OK)
+        status = fmb_certificate(a, b, scene->duration, text, FMB_CERTIFICATE_MAX, &length);
+    out->certificate = length > 0 ? text : NULL;
+    out->status = status;
+    out->text = gap && !method->certain ? "method: gives no gaps" : fmb_status_text(status);
+    if (status != FMB_OK)
+        memset(&out->answer, 0, sizeof out->answer);
 }
 
-void answers_local(const struct answers_options *options, const struct scene *scene,
-                   answers_sink *sink, void *user)
+void answers_local(struct owned_scene *scene, fmb_client_sink *sink, void *user)
 {
     struct scene_cursor cursor = {0};
-    struct outcome outcome;
+    struct fmb_client_answer answer;
     char text[FMB_CERTIFICATE_MAX];
-    while (scene_next_pair(scene, &cursor, &outcome.pair)) {
-        outcome.certificate = NULL;
-        outcome.error = decide(options, scene, &outcome, text);
-        if (outcome.error)
-            memset(&outcome.answer, 0, sizeof outcome.answer);
-        sink(user, scene, &outcome);
+    unsigned pair[2];
+    while (scene_next_pair(scene, &cursor, pair)) {
+        answer.a = pair[0];
+        answer.b = pair[1];
+        decide(&scene->scene, &answer, text);
+        sink(user, &answer);
     }
 }
 
-void verify_outcome(const struct scene *scene, const char *whose, struct outcome *outcome,
-                    char text[VERIFY_TEXT_MAX])
+void verify_answer(const struct fmb_scene *scene, const char *whose,
+                   struct fmb_client_answer *answer, char text[VERIFY_TEXT_MAX])
 {
-    const struct fmb_placement a = scene_placement(&scene->body[outcome->pair.a]);
-    const struct fmb_placement b = scene_placement(&scene->body[outcome->pair.b]);
     char why[VERIFY_TEXT_MAX];
-    if (outcome->certificate &&
-        fmb_certificate_holds(&a, &b, scene->duration, outcome->answer.verdict,
-                              outcome->certificate, why, sizeof why))
+    if (answer->certificate &&
+        fmb_certificate_holds(&scene->placements[answer->a], &scene->placements[answer->b],
+                              scene->duration, answer->answer.verdict, answer->certificate, why,
+                              sizeof why))
         return;
-    if (outcome->certificate)
+    if (answer->certificate)
         snprintf(text, VERIFY_TEXT_MAX, "%s certificate does not hold: %.200s", whose, why);
     else
         snprintf(text, VERIFY_TEXT_MAX,
                  "no certificate: numbers that span more than 512 bits have none");
-    *outcome = (struct outcome){.pair = outcome->pair, .error = text};
+    *answer = (struct fmb_client_answer){
+        .a = answer->a, .b = answer->b, .status = FMB_CANNOT_DECIDE, .text = text};
 }

@@ -17,28 +17,27 @@ struct svg {
 /* ---- The data of a panel ----------------------------------------------------------------------
  */
 
-static void add_to_bounds(struct panel *panel, const struct scene_body *body)
+static void add_to_bounds(struct panel *panel, const struct fmb_placement *body)
 {
-    for (unsigned frame = 0; frame < body->body.frame_count; frame++)
+    for (unsigned frame = 0; frame < body->body->frame_count; frame++)
         for (int end = 0; end < 2; end++) {
             struct outline outline = outline_make(body, frame, end ? panel->duration : 0);
             view_add(&panel->bounds, &outline, panel->dim);
         }
 }
 
-static void keep_scene(struct panel *panel, const struct scene *scene)
+static void begin_panel(struct panel *panel, const struct owned_scene *owner)
 {
-    panel->dim = scene->dim;
-    panel->duration = scene->duration;
-    panel->body_count = scene->body_count < SVG_BODIES_MAX ? scene->body_count : SVG_BODIES_MAX;
-    panel->bodies_left_out = scene->body_count - panel->body_count;
-    panel->body = allocate(panel->body_count, sizeof *panel->body);
+    const size_t count = owner->scene.placement_count;
+    panel->dim = owner->dim;
+    panel->duration = owner->scene.duration;
+    panel->body_count = count < SVG_BODIES_MAX ? count : SVG_BODIES_MAX;
+    panel->bodies_left_out = count - panel->body_count;
+    panel->body = owner->scene.placements;
     panel->verdict = allocate(panel->body_count, sizeof *panel->verdict);
     panel->bounds = view_nothing();
-    for (size_t i = 0; i < panel->body_count; i++) {
-        panel->body[i] = scene_body_copy(&scene->body[i]);
+    for (size_t i = 0; i < panel->body_count; i++)
         add_to_bounds(panel, &panel->body[i]);
-    }
 }
 
 static void note_verdict(struct panel *panel, size_t body, enum fmb_verdict verdict)
@@ -47,29 +46,27 @@ static void note_verdict(struct panel *panel, size_t body, enum fmb_verdict verd
         panel->verdict[body] = verdict;
 }
 
-static void keep_outcome(struct panel *panel, const struct outcome *outcome)
+static void keep_answer(struct panel *panel, const struct fmb_client_answer *of)
 {
-    const struct fmb_answer *answer = &outcome->answer;
+    const struct fmb_answer *answer = &of->answer;
     panel->count[answer->verdict]++;
-    note_verdict(panel, outcome->pair.a, answer->verdict);
-    note_verdict(panel, outcome->pair.b, answer->verdict);
+    note_verdict(panel, of->a, answer->verdict);
+    note_verdict(panel, of->b, answer->verdict);
     if (!answer->has_box)
         return;
-    if (panel->box_count == SVG_BOXES_MAX || outcome->pair.a >= panel->body_count ||
-        outcome->pair.b >= panel->body_count) {
+    if (panel->box_count == SVG_BOXES_MAX || of->a >= panel->body_count ||
+        of->b >= panel->body_count) {
         panel->boxes_left_out++;
         return;
     }
     panel->box =
         allocate_grow(panel->box, &panel->box_capacity, panel->box_count + 1, sizeof *panel->box);
-    panel->box[panel->box_count++] = (struct panel_box){outcome->pair, *answer};
+    panel->box[panel->box_count++] = (struct panel_box){of->a, of->b, *answer};
 }
 
 static void clear_panel(struct panel *panel)
 {
-    for (size_t i = 0; i < panel->body_count; i++)
-        scene_body_clear(&panel->body[i]);
-    free(panel->body);
+    scene_clear(&panel->scene);
     free(panel->verdict);
     free(panel->box);
 }
@@ -87,34 +84,36 @@ static bool same_bodies(const struct panel *panel, const struct panel *first)
 
 /* ---- The report ------------------------------------------------------------------------------ */
 
-static void svg_begin(struct report *report, const struct scene *scene)
+static void svg_begin(struct report *report)
 {
     struct svg *svg = (struct svg *) report;
     if (svg->panel_count + svg->panels_left_out < SVG_PANELS_MAX)
-        keep_scene(&svg->panel[svg->panel_count++], scene);
+        begin_panel(&svg->panel[svg->panel_count++], report->scene);
     else
         svg->panels_left_out++;
 }
 
-static void svg_pair(struct report *report, const struct scene *scene,
-                     const struct outcome *outcome)
+static void svg_pair(struct report *report, const struct fmb_client_answer *answer)
 {
     struct svg *svg = (struct svg *) report;
-    (void) scene;
     if (svg->panels_left_out == 0)
-        keep_outcome(&svg->panel[svg->panel_count - 1], outcome);
+        keep_answer(&svg->panel[svg->panel_count - 1], answer);
 }
 
-static void svg_end(struct report *report, const struct scene *scene)
+/* The panel becomes the owner of the scene. */
+static void svg_end(struct report *report)
 {
-    (void) report;
-    (void) scene;
+    struct svg *svg = (struct svg *) report;
+    if (svg->panels_left_out > 0)
+        return;
+    svg->panel[svg->panel_count - 1].scene = *report->scene;
+    *report->scene = (struct owned_scene){.dim = 0};
 }
 
 struct svg *svg_open(void)
 {
     struct svg *svg = allocate(1, sizeof *svg);
-    svg->report = (struct report){svg_begin, svg_pair, svg_end};
+    svg->report = (struct report){svg_begin, svg_pair, svg_end, NULL};
     return svg;
 }
 

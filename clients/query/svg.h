@@ -19,9 +19,10 @@ struct svg;
 struct svg *svg_open(void);
 void svg_close(struct svg *svg); /* may be NULL */
 
-/* Returns the report that receives the scenes; owned by svg. Scenes beyond SVG_PANELS_MAX, and
- * within a scene bodies beyond SVG_BODIES_MAX and boxes beyond SVG_BOXES_MAX, are not drawn, but
- * counted in the picture. */
+/* Returns the report that receives the scenes; owned by svg. Its end takes the memory of a scene
+ * that is drawn, and leaves an empty one. Scenes beyond SVG_PANELS_MAX, and within a scene bodies
+ * beyond SVG_BODIES_MAX and boxes beyond SVG_BOXES_MAX, are not drawn, but counted in the picture.
+ */
 struct report *svg_report(struct svg *svg);
 
 void svg_write(const struct svg *svg, FILE *out);

@@ -172,26 +172,21 @@ static struct facet make_facet(const struct view *view, const struct outline *ou
         return facet;
     facet.light = view_light(view, outline->corner[of->corner[0]], outline->corner[of->corner[1]],
                              outline->corner[of->corner[2]]);
-    if (outline->face_count > 1)
+    if (!outline->flat)
         facet.front = is_front(&facet, middle, view_point(view, outline->centre));
     return facet;
-}
-
-static size_t frame_count(const struct panel *panel)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < panel->body_count; i++)
-        count += panel->body[i].body.frame_count;
-    return count;
 }
 
 static struct facet *make_facets(const struct drawing *drawing, size_t *count)
 {
     const struct panel *panel = drawing->panel;
-    struct facet *facets = allocate(frame_count(panel) * OUTLINE_FACES_MAX, sizeof *facets);
+    size_t frames = 0;
+    for (size_t i = 0; i < panel->body_count; i++)
+        frames += panel->body[i].body->frame_count;
+    struct facet *facets = allocate(frames * OUTLINE_FACES_MAX, sizeof *facets);
     *count = 0;
     for (size_t body = 0; body < panel->body_count; body++)
-        for (unsigned frame = 0; frame < panel->body[body].body.frame_count; frame++) {
+        for (unsigned frame = 0; frame < panel->body[body].body->frame_count; frame++) {
             struct outline outline = outline_make(&panel->body[body], frame, 0);
             for (int face = 0; face < outline.face_count; face++) {
                 struct facet *facet = &facets[*count];
@@ -207,8 +202,8 @@ static struct facet *make_facets(const struct drawing *drawing, size_t *count)
 /* Returns the middle of the frames of a body at a time. */
 static struct point middle_of(const struct drawing *drawing, size_t body, double time)
 {
-    const struct scene_body *of = &drawing->panel->body[body];
-    const unsigned count = of->body.frame_count;
+    const struct fmb_placement *of = &drawing->panel->body[body];
+    const unsigned count = of->body->frame_count;
     double centre[FMB_DIM_MAX] = {0};
     for (unsigned frame = 0; frame < count; frame++) {
         struct outline outline = outline_make(of, frame, time);
@@ -218,7 +213,7 @@ static struct point middle_of(const struct drawing *drawing, size_t body, double
     return view_point(&drawing->view, centre);
 }
 
-static void write_label(const struct drawing *drawing, const struct scene_body *body)
+static void write_label(const struct drawing *drawing, const struct fmb_placement *body)
 {
     char text[SCENE_LABEL_MAX];
     const char *label = scene_label(body, text);
@@ -258,38 +253,29 @@ static void draw_facets(const struct drawing *drawing)
 
 /* ---- Motion ---------------------------------------------------------------------------------- */
 
-static bool is_moving(const struct panel *panel, const struct scene_body *body)
-{
-    bool still = true;
-    for (int axis = 0; axis < panel->dim; axis++)
-        still = still && body->velocity[axis] == 0;
-    return panel->duration > 0 && !still;
-}
-
 /* A shorter arrow, which would be shorter than its head, is not drawn. */
 static const double arrow_min_px = 5;
 
-static void draw_ghost(const struct drawing *drawing, size_t body, unsigned frame)
-{
-    char stroke[8];
-    const struct panel *panel = drawing->panel;
-    struct outline end = outline_make(&panel->body[body], frame, panel->duration);
-    svg_panel_colour(panel->verdict[body], 0, stroke);
-    for (int face = 0; face < end.face_count; face++) {
-        struct facet facet = make_facet(&drawing->view, &end, face);
-        if (!facet.front)
-            continue;
-        draw_polygon(drawing, facet.point, facet.count);
-        fprintf(drawing->out, " class=\"ghost\" stroke=\"%s\"/>\n", stroke);
-    }
-}
-
 static void draw_motion(const struct drawing *drawing, size_t body)
 {
-    for (unsigned frame = 0; frame < drawing->panel->body[body].body.frame_count; frame++)
-        draw_ghost(drawing, body, frame);
-    struct point from = middle_of(drawing, body, 0);
-    struct point to = middle_of(drawing, body, drawing->panel->duration);
+    const struct panel *panel = drawing->panel;
+    const struct fmb_placement *placement = &panel->body[body];
+    const double *v = placement->velocity;
+    char stroke[8];
+    if (panel->duration == 0 || (v[0] == 0 && v[1] == 0 && (panel->dim == 2 || v[2] == 0)))
+        return;
+    svg_panel_colour(panel->verdict[body], 0, stroke);
+    for (unsigned frame = 0; frame < placement->body->frame_count; frame++) {
+        struct outline end = outline_make(placement, frame, panel->duration);
+        for (int face = 0; face < end.face_count; face++) {
+            struct facet facet = make_facet(&drawing->view, &end, face);
+            if (!facet.front)
+                continue;
+            draw_polygon(drawing, facet.point, facet.count);
+            fprintf(drawing->out, " class=\"ghost\" stroke=\"%s\"/>\n", stroke);
+        }
+    }
+    struct point from = middle_of(drawing, body, 0), to = middle_of(drawing, body, panel->duration);
     if (hypot(to.x - from.x, to.y - from.y) >= arrow_min_px)
         draw_line(drawing, from, to, "class=\"arrow\" marker-end=\"url(#head)\"");
 }
@@ -301,12 +287,12 @@ static const double ring_below_px = 7;
 
 static void draw_box_title(const struct drawing *drawing, const struct panel_box *box)
 {
-    const struct scene_body *body = drawing->panel->body;
+    const struct fmb_placement *body = drawing->panel->body;
     char text[REPORT_TEXT_MAX];
     fputs("<title>", drawing->out);
-    write_label(drawing, &body[box->pair.a]);
+    write_label(drawing, &body[box->a]);
     fputs(" and ", drawing->out);
-    write_label(drawing, &body[box->pair.b]);
+    write_label(drawing, &body[box->b]);
     fprintf(drawing->out, ": %s", verdict_text(box->answer.verdict));
     if (box->answer.has_contact) {
         report_contact_text(&box->answer, text);
@@ -397,18 +383,6 @@ static struct paper inner_paper(const struct panel *panel, struct paper paper)
                           paper.height - CAPTION_HEIGHT - EDGE - below};
 }
 
-static void draw_bodies(const struct drawing *drawing)
-{
-    const struct panel *panel = drawing->panel;
-    draw_facets(drawing);
-    for (size_t i = 0; i < panel->box_count; i++)
-        draw_box(drawing, &panel->box[i]);
-    for (size_t i = 0; i < panel->body_count; i++)
-        if (is_moving(panel, &panel->body[i]))
-            draw_motion(drawing, i);
-    draw_labels(drawing);
-}
-
 void svg_panel_draw(const struct panel *panel, const struct view_bounds *bounds, struct paper paper,
                     FILE *out)
 {
@@ -417,7 +391,12 @@ void svg_panel_draw(const struct panel *panel, const struct view_bounds *bounds,
     draw_grid(&drawing);
     if (panel->dim == 3)
         draw_triad(&drawing);
-    draw_bodies(&drawing);
+    draw_facets(&drawing);
+    for (size_t i = 0; i < panel->box_count; i++)
+        draw_box(&drawing, &panel->box[i]);
+    for (size_t i = 0; i < panel->body_count; i++)
+        draw_motion(&drawing, i);
+    draw_labels(&drawing);
 }
 
 const char *svg_panel_colour(enum fmb_verdict verdict, double light, char out[8])

@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 struct panel_box {
-    struct scene_pair pair;
+    unsigned a, b;
     struct fmb_answer answer;
 };
 
@@ -16,8 +16,9 @@ struct panel {
     int dim;
     double duration;
     size_t body_count, bodies_left_out;
-    struct scene_body *body;   /* owned */
-    enum fmb_verdict *verdict; /* owned; [body], the worst of its pairs; 0: none */
+    struct owned_scene scene;         /* from its end on */
+    const struct fmb_placement *body; /* of the scene */
+    enum fmb_verdict *verdict;        /* owned; [body], the worst of its pairs; 0: none */
     size_t box_count, box_capacity, boxes_left_out;
     struct panel_box *box;               /* owned */
     uint64_t count[FMB_OVERLAPPING + 1]; /* of pairs, [verdict]; [0]: not decided */

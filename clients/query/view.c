@@ -30,72 +30,38 @@ static bool adds(const struct fmb_frame *frame, int corner, int component)
     return corner == component + 1;
 }
 
-static void set_faces(const struct fmb_frame *frame, struct outline *out)
+/* NaN, as from sums of infinite numbers, becomes low. */
+static double clamp(double value, double low, double high)
 {
-    bool solid = frame->dim == 3 && frame->shape != FMB_FACE;
-    if (is_cuboid(frame)) {
-        out->face = solid ? cuboid_3d : cuboid_2d;
-        out->face_count = solid ? 6 : 1;
-    } else {
-        out->face = solid ? tetrahedron_3d : triangle;
-        out->face_count = solid ? 4 : 1;
-    }
+    return value > high ? high : value >= low ? value : low;
 }
 
-/* R(q) of fmb.h, [row][column]; numbers of any size. */
-static void set_rotation(const struct scene_body *body, double out[3][3])
+static double limited(double coordinate)
 {
-    const double *given = body->orientation;
-    double largest = 0, q[4] = {1, 0, 0, 0}, norm = 0;
-    for (int i = 0; i < body->orientation_count; i++)
-        largest = fmax(largest, fabs(given[i]));
-    for (int i = 0; i < body->orientation_count; i++)
-        q[body->orientation_count == 2 ? 3 * i : i] = given[i] / largest;
-    for (int i = 0; i < 4; i++)
-        norm += q[i] * q[i];
-    const double w = q[0], *v = q + 1;
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        out[i][i] = (w * w + v[i] * v[i] - v[j] * v[j] - v[k] * v[k]) / norm;
-        out[i][j] = 2 * (v[i] * v[j] - w * v[k]) / norm;
-        out[j][i] = 2 * (v[i] * v[j] + w * v[k]) / norm;
-    }
+    return clamp(coordinate, -DBL_MAX / 8, DBL_MAX / 8);
 }
 
-/* Corner k of the frame, in body coordinates. */
-static void set_corner(const struct fmb_frame *frame, int k, double out[FMB_DIM_MAX])
+struct outline outline_make(const struct fmb_placement *placement, unsigned index, double time)
 {
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        out[axis] = frame->origin[axis];
-        for (int i = 0; i < frame->count; i++)
-            out[axis] += adds(frame, k, i) ? frame->component[i][axis] : 0;
-    }
-}
-
-struct outline outline_make(const struct scene_body *body, unsigned index, double time)
-{
-    const struct fmb_frame *frame = fmb_body_frame(&body->body, index);
+    const struct fmb_frame *frame = fmb_body_frame(placement->body, index);
+    const bool cuboid = is_cuboid(frame), solid = frame->dim == 3 && frame->shape != FMB_FACE;
+    const int dim = frame->dim;
+    struct fmb_prepared world; /* origin and components */
     struct outline outline;
-    double rotation[3][3], corner[FMB_DIM_MAX];
     memset(&outline, 0, sizeof outline);
-    set_faces(frame, &outline);
-    set_rotation(body, rotation);
-    outline.corner_count = is_cuboid(frame) ? 1 << frame->count : frame->count + 1;
-    for (int k = 0; k < outline.corner_count; k++) {
-        set_corner(frame, k, corner);
-        for (int axis = 0; axis < frame->dim; axis++) {
-            const double *row = rotation[axis];
-            double at = body->position[axis];
-            if (body->orientation_count == 0)
-                at += corner[axis];
-            else
-                at += row[0] * corner[0] + row[1] * corner[1] + row[2] * corner[2];
-            if (time > 0)
-                at += time * body->velocity[axis];
-            outline.corner[k][axis] = at;
-            outline.centre[axis] += at / outline.corner_count;
+    outline.face = cuboid ? (solid ? cuboid_3d : cuboid_2d) : solid ? tetrahedron_3d : triangle;
+    outline.face_count = !solid ? 1 : cuboid ? 6 : 4;
+    outline.flat = frame->flat;
+    outline.corner_count = cuboid ? 1 << frame->count : frame->count + 1;
+    fmb_prepare(placement, index, 1, &world);
+    for (int k = 0; k < outline.corner_count; k++)
+        for (int axis = 0; axis < dim; axis++) {
+            double at = world.number[axis] + (time > 0 ? time * placement->velocity[axis] : 0);
+            for (int i = 0; i < frame->count; i++)
+                at += adds(frame, k, i) ? world.number[(i + 1) * dim + axis] : 0;
+            outline.corner[k][axis] = limited(at);
+            outline.centre[axis] += outline.corner[k][axis] / outline.corner_count;
         }
-    }
     return outline;
 }
 
@@ -108,9 +74,9 @@ struct outline outline_box(int dim, const double low[FMB_DIM_MAX], const double 
     outline.corner_count = 1 << dim;
     for (int k = 0; k < outline.corner_count; k++)
         for (int axis = 0; axis < dim; axis++)
-            outline.corner[k][axis] = k >> axis & 1 ? high[axis] : low[axis];
+            outline.corner[k][axis] = limited(k >> axis & 1 ? high[axis] : low[axis]);
     for (int axis = 0; axis < dim; axis++)
-        outline.centre[axis] = low[axis] / 2 + high[axis] / 2;
+        outline.centre[axis] = limited(low[axis]) / 2 + limited(high[axis]) / 2;
     return outline;
 }
 
@@ -130,13 +96,7 @@ struct view_bounds view_nothing(void)
                                 .paper_high = {-INFINITY, -INFINITY}};
 }
 
-/* NaN, as from sums of infinite numbers, becomes low. */
-static double clamp(double value, double low, double high)
-{
-    return value > high ? high : value >= low ? value : low;
-}
-
-/* Projects unit coordinates to the plane of the paper: x right, y up. */
+/* Projects coordinates to the plane of the paper: x right, y up. */
 static struct point project(int dim, const double u[FMB_DIM_MAX])
 {
     if (dim == 2)
@@ -157,14 +117,12 @@ static void add_to_paper(double low[2], double high[2], struct point point)
 void view_add(struct view_bounds *bounds, const struct outline *outline, int dim)
 {
     for (int k = 0; k < outline->corner_count; k++) {
-        double quarter[FMB_DIM_MAX] = {0};
+        const double *at = outline->corner[k];
         for (int axis = 0; axis < dim; axis++) {
-            double at = clamp(outline->corner[k][axis], -DBL_MAX, DBL_MAX);
-            bounds->low[axis] = fmin(bounds->low[axis], at);
-            bounds->high[axis] = fmax(bounds->high[axis], at);
-            quarter[axis] = at / 4;
+            bounds->low[axis] = fmin(bounds->low[axis], at[axis]);
+            bounds->high[axis] = fmax(bounds->high[axis], at[axis]);
         }
-        add_to_paper(bounds->paper_low, bounds->paper_high, project(dim, quarter));
+        add_to_paper(bounds->paper_low, bounds->paper_high, project(dim, at));
     }
 }
 
@@ -188,14 +146,14 @@ static void set_units(const struct view_bounds *bounds, struct view *out)
     out->radius = 0;
     for (int axis = 0; axis < out->dim; axis++) {
         bool empty = bounds->low[axis] > bounds->high[axis];
-        double low = empty ? 0 : bounds->low[axis] / 2, high = empty ? 0 : bounds->high[axis] / 2;
-        out->centre[axis] = low + high;
-        out->radius = fmax(out->radius, high - low);
+        double low = empty ? 0 : bounds->low[axis], high = empty ? 0 : bounds->high[axis];
+        out->centre[axis] = (low + high) / 2;
+        out->radius = fmax(out->radius, (high - low) / 2);
     }
     if (out->radius == 0)
         out->radius = 1;
     for (int axis = 0; axis < out->dim; axis++) {
-        double half = (bounds->high[axis] / 2 - bounds->low[axis] / 2) / out->radius;
+        double half = (bounds->high[axis] - bounds->low[axis]) / 2 / out->radius;
         half = half > 0 ? fmin(half, 1) : 0; /* also where the bounds are empty */
         out->high[axis] = fmin(half + margin, 1);
         out->low[axis] = -out->high[axis];
@@ -215,15 +173,13 @@ static void add_floor(const struct view *view, double low[2], double high[2])
 /* Returns the visible part of the paper's plane, in unit coordinates. */
 static struct paper projected_bounds(const struct view *view, const struct view_bounds *bounds)
 {
-    double quarter[FMB_DIM_MAX], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        quarter[axis] = view->centre[axis] / 4;
-    struct point centre = project(view->dim, quarter);
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    struct point centre = project(view->dim, view->centre);
     const double middle[2] = {centre.x, centre.y};
     add_floor(view, low, high);
     for (int axis = 0; axis < 2; axis++) {
-        double first = (bounds->paper_low[axis] - middle[axis]) / (view->radius / 4);
-        double last = (bounds->paper_high[axis] - middle[axis]) / (view->radius / 4);
+        double first = (bounds->paper_low[axis] - middle[axis]) / view->radius;
+        double last = (bounds->paper_high[axis] - middle[axis]) / view->radius;
         low[axis] = fmin(low[axis], clamp(first, -2, 2) - margin);
         high[axis] = fmax(high[axis], clamp(last, -2, 2) + margin);
     }
@@ -251,11 +207,7 @@ struct point view_unit_point(const struct view *view, const double unit[FMB_DIM_
 /* Returns (p - centre) / radius, clipped to the bounds. */
 static double unit_of(const struct view *view, double world, int axis)
 {
-    double p = clamp(world, -DBL_MAX, DBL_MAX);
-    double half = (p / 2 - view->centre[axis] / 2) / (view->radius / 2);
-    if (view->radius < DBL_MIN)
-        half = (p - view->centre[axis]) / view->radius;
-    return clamp(half, view->low[axis], view->high[axis]);
+    return clamp((world - view->centre[axis]) / view->radius, view->low[axis], view->high[axis]);
 }
 
 struct point view_point(const struct view *view, const double world[FMB_DIM_MAX])

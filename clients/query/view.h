@@ -1,13 +1,13 @@
 /* Projects the world to the paper.
  *
  * 2D: the plane, y up. 3D: an axonometric projection, seen from the front, right and above, z up.
- * Both have the same scale along all axes. Numbers may have any size: coordinates are first mapped
- * to [-1, 1] about the middle of the visible region, by halves, since sums could be infinite. What
- * lies outside, such as an infinite end of a box, is clipped. */
+ * Both have the same scale along all axes. Numbers may have any size: coordinates are limited to an
+ * eighth of the largest double, so that sums of a few are finite, and mapped to [-1, 1] about the
+ * middle of the visible region. What lies outside, such as an infinite end of a box, is clipped. */
 #ifndef VIEW_H
 #define VIEW_H
 
-#include "scene.h"
+#include "fmb.h"
 
 /* ---- The corners and faces of a frame, in doubles: for pictures only ---- */
 
@@ -20,14 +20,14 @@ struct outline_face {
 
 struct outline {
     int corner_count, face_count;                    /* in 2D: one face, the frame itself */
-    double corner[OUTLINE_CORNERS_MAX][FMB_DIM_MAX]; /* world; z = 0 in 2D; infinite where beyond
-                                                        the largest double */
+    bool flat;                                       /* no face is turned away from the viewer */
+    double corner[OUTLINE_CORNERS_MAX][FMB_DIM_MAX]; /* world; z = 0 in 2D; limited */
     double centre[FMB_DIM_MAX];                      /* of the corners */
     const struct outline_face *face;
 };
 
 /* Returns frame `index` of a body at a time, in seconds. */
-struct outline outline_make(const struct scene_body *body, unsigned index, double time);
+struct outline outline_make(const struct fmb_placement *placement, unsigned index, double time);
 
 /* Returns an axis-aligned box. */
 struct outline outline_box(int dim, const double low[FMB_DIM_MAX], const double high[FMB_DIM_MAX]);
@@ -37,7 +37,7 @@ struct outline outline_box(int dim, const double low[FMB_DIM_MAX], const double 
 /* The visible region: in the world, and of its projection, right and up on the paper. */
 struct view_bounds {
     double low[FMB_DIM_MAX], high[FMB_DIM_MAX];
-    double paper_low[2], paper_high[2]; /* divided by 4, so that no sum is infinite */
+    double paper_low[2], paper_high[2];
 };
 
 struct view_bounds view_nothing(void);

@@ -20,13 +20,13 @@ static void write_side(struct json_writer *json, const char *key, int dim,
                        const struct difference_side *side)
 {
     const bool decided = side->status == FMB_OK && side->answer.verdict != 0;
-    const struct outcome outcome = {
-        .error = decided ? NULL : fmb_status_text(side->status ? side->status : FMB_CANNOT_DECIDE),
-        .answer = side->answer,
-        .certificate = side->certificate,
-        .names_frames = side->names_frames};
+    const int status = side->status || decided ? side->status : FMB_CANNOT_DECIDE;
+    const struct fmb_client_answer answer = {.status = status,
+                                             .text = fmb_status_text(status),
+                                             .answer = side->answer,
+                                             .certificate = side->certificate};
     json_begin(json, key, '{');
-    report_answer_json(json, dim, &outcome);
+    report_answer_json(json, dim, side->names_frames, &answer);
     json_end(json, '}');
 }
 

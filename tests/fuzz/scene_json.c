@@ -56,14 +56,21 @@ static bool is_orientation(const double *orientation, int count, int dim)
            (count == (dim == 2 ? 2 : 4) && turned && finite_numbers(orientation, count));
 }
 
-static bool is_body(const struct scene_body *body, int dim)
+static bool is_name(const char *name)
 {
-    bool good = body->id >= 1 && body->id < INT64_C(1) << 53 && utf8_is_text(body->name) &&
-                body->body.dim == dim && body->body.frame_count >= 1 &&
-                finite_numbers(body->position, dim) && finite_numbers(body->velocity, dim) &&
-                is_orientation(body->orientation, body->orientation_count, dim);
-    for (unsigned i = 0; good && i < body->body.frame_count; i++)
-        good = is_frame(fmb_body_frame(&body->body, i), dim);
+    return !name || (*name && utf8_is_text(name));
+}
+
+static bool is_placement(const struct fmb_placement *placement, int dim)
+{
+    const struct fmb_body *body = placement->body;
+    bool good = placement->id >= 1 && placement->id < INT64_C(1) << 53 &&
+                is_name(placement->name) && body->dim == dim && body->frame_count >= 1 &&
+                finite_numbers(placement->position, dim) &&
+                finite_numbers(placement->velocity, dim) &&
+                is_orientation(placement->orientation, placement->orientation_count, dim);
+    for (unsigned i = 0; good && i < body->frame_count; i++)
+        good = is_frame(fmb_body_frame(body, i), dim);
     return good;
 }
 
@@ -73,56 +80,49 @@ static int compare_ids(const void *a, const void *b)
     return (left > right) - (left < right);
 }
 
-static bool unique_ids(const struct scene *scene)
+static bool unique_ids(const struct fmb_scene *scene)
 {
     bool unique = true;
-    int64_t *id = fuzz_room(scene->body_count * sizeof *id);
-    for (size_t i = 0; i < scene->body_count; i++)
-        id[i] = scene->body[i].id;
-    if (scene->body_count > 0)
-        qsort(id, scene->body_count, sizeof *id, compare_ids);
-    for (size_t i = 1; i < scene->body_count; i++)
+    int64_t *id = fuzz_room(scene->placement_count * sizeof *id);
+    for (size_t i = 0; i < scene->placement_count; i++)
+        id[i] = scene->placements[i].id;
+    if (scene->placement_count > 0)
+        qsort(id, scene->placement_count, sizeof *id, compare_ids);
+    for (size_t i = 1; i < scene->placement_count; i++)
         unique = unique && id[i - 1] < id[i];
     free(id);
     return unique;
 }
 
-static bool is_pair(const struct scene *scene, struct scene_pair pair)
+static bool is_pair(const struct fmb_scene *scene, const unsigned pair[2])
 {
-    return pair.a < scene->body_count && pair.b < scene->body_count && pair.a != pair.b;
+    const size_t count = scene->placement_count;
+    return pair[0] < count && pair[1] < count && pair[0] != pair[1];
 }
 
-static bool is_within_group(const struct scene *scene, struct scene_pair pair)
+static void check_pairs(struct owned_scene *owner)
 {
-    const int64_t group = scene->body[pair.a].group;
-    return group != 0 && group == scene->body[pair.b].group;
-}
-
-static bool is_before(struct scene_pair left, struct scene_pair right)
-{
-    return left.a < right.a || (left.a == right.a && left.b < right.b);
-}
-
-static void check_pairs(const struct scene *scene)
-{
-    FUZZ_CHECK(scene->all_pairs ? scene->pair_count == 0 : scene->ignored_count == 0);
+    const struct fmb_scene *scene = &owner->scene;
+    FUZZ_CHECK(scene->which == FMB_PAIRS_ALL
+                   ? scene->pair_count == 0
+                   : scene->which == FMB_PAIRS_LISTED && scene->ignored_count == 0);
     for (size_t i = 0; i < scene->pair_count; i++)
-        FUZZ_CHECK(is_pair(scene, scene->pair[i]) && !is_within_group(scene, scene->pair[i]));
-    for (size_t i = 0; i < scene->ignored_count; i++) {
-        FUZZ_CHECK(is_pair(scene, scene->ignored[i]) && scene->ignored[i].a < scene->ignored[i].b);
-        FUZZ_CHECK(!is_within_group(scene, scene->ignored[i]));
-        FUZZ_CHECK(i == 0 || is_before(scene->ignored[i - 1], scene->ignored[i]));
-    }
+        FUZZ_CHECK(is_pair(scene, scene->pairs[i]) &&
+                   !pair_is_within_group(scene, scene->pairs[i][0], scene->pairs[i][1]));
+    for (size_t i = 0; i < scene->ignored_count; i++)
+        FUZZ_CHECK(is_pair(scene, scene->ignored[i]) &&
+                   scene_leaves_out(owner, scene->ignored[i][0], scene->ignored[i][1]));
 }
 
-static void check_scene(const struct scene *scene)
+static void check_scene(struct owned_scene *owner)
 {
-    FUZZ_CHECK(scene->dim == 2 || scene->dim == 3);
+    const struct fmb_scene *scene = &owner->scene;
+    FUZZ_CHECK(owner->dim == 2 || owner->dim == 3);
     FUZZ_CHECK(is_finite(scene->duration) && scene->duration >= 0);
-    for (size_t i = 0; i < scene->body_count; i++)
-        FUZZ_CHECK(is_body(&scene->body[i], scene->dim));
+    for (size_t i = 0; i < scene->placement_count; i++)
+        FUZZ_CHECK(is_placement(&scene->placements[i], owner->dim));
     FUZZ_CHECK(unique_ids(scene));
-    check_pairs(scene);
+    check_pairs(owner);
 }
 
 /* ---- The same scene ---- */
@@ -144,48 +144,57 @@ static bool same_frame(const struct fmb_frame *a, const struct fmb_frame *b)
     return same;
 }
 
-static bool same_body(const struct scene_body *a, const struct scene_body *b)
+static bool same_name(const char *a, const char *b)
 {
-    bool same = a->id == b->id && strcmp(a->name, b->name) == 0 && a->group == b->group &&
-                a->body.dim == b->body.dim && a->body.frame_count == b->body.frame_count &&
+    return a && b ? strcmp(a, b) == 0 : a == b;
+}
+
+static bool same_placed(const struct fmb_placement *a, const struct fmb_placement *b)
+{
+    bool same = a->id == b->id && same_name(a->name, b->name) && a->group == b->group &&
+                a->body->dim == b->body->dim && a->body->frame_count == b->body->frame_count &&
                 a->orientation_count == b->orientation_count &&
                 same_doubles(a->position, b->position, FMB_DIM_MAX) &&
                 same_doubles(a->velocity, b->velocity, FMB_DIM_MAX) &&
                 same_doubles(a->orientation, b->orientation, 4);
-    for (unsigned i = 0; same && i < a->body.frame_count; i++)
-        same = same_given(&a->given[i], &b->given[i]) &&
-               same_frame(fmb_body_frame(&a->body, i), fmb_body_frame(&b->body, i));
+    for (unsigned i = 0; same && i < a->body->frame_count; i++)
+        same = same_frame(fmb_body_frame(a->body, i), fmb_body_frame(b->body, i));
     return same;
 }
 
-static bool same_pairs(const struct scene_pair *a, const struct scene_pair *b, size_t count)
+/* Whether both have the same pairs that are to be decided. */
+static bool same_decided(struct owned_scene *a, struct owned_scene *b)
 {
-    bool same = true;
-    for (size_t i = 0; i < count; i++)
-        same = same && a[i].a == b[i].a && a[i].b == b[i].b;
-    return same;
+    struct scene_cursor of_a = {0}, of_b = {0};
+    unsigned p[2], q[2];
+    while (scene_next_pair(a, &of_a, p))
+        if (!scene_next_pair(b, &of_b, q) || p[0] != q[0] || p[1] != q[1])
+            return false;
+    return !scene_next_pair(b, &of_b, q);
 }
 
-static bool same_scene(const struct scene *a, const struct scene *b)
+static bool same_scene(struct owned_scene *left, struct owned_scene *right)
 {
-    bool same = strcmp(a->label, b->label) == 0 && a->dim == b->dim &&
+    const struct fmb_scene *a = &left->scene, *b = &right->scene;
+    bool same = same_name(a->label, b->label) && left->dim == right->dim &&
                 same_doubles(&a->duration, &b->duration, 1) && a->margin == b->margin &&
-                a->body_count == b->body_count && a->all_pairs == b->all_pairs &&
-                a->pair_count == b->pair_count && a->ignored_count == b->ignored_count;
-    for (size_t i = 0; same && i < a->body_count; i++)
-        same = same_body(&a->body[i], &b->body[i]);
-    return same && same_pairs(a->pair, b->pair, a->pair_count) &&
-           same_pairs(a->ignored, b->ignored, a->ignored_count);
+                a->placement_count == b->placement_count && a->which == b->which &&
+                left->given_count == right->given_count;
+    for (size_t i = 0; same && i < a->placement_count; i++)
+        same = same_placed(&a->placements[i], &b->placements[i]);
+    for (size_t i = 0; same && i < left->given_count; i++)
+        same = same_given(&left->given[i], &right->given[i]);
+    return same && same_decided(left, right);
 }
 
 /* ---- Written and read again ---- */
 
 /* The reader is that of another input. */
-static void check_written(const struct scene *scene)
+static void check_written(struct owned_scene *scene)
 {
     char *text = NULL;
     size_t size = 0;
-    struct scene again;
+    struct owned_scene again;
     FILE *out = open_memstream(&text, &size);
     FUZZ_CHECK(out);
     scene_json_write(out, scene);
@@ -202,37 +211,44 @@ static void check_written(const struct scene *scene)
 
 /* ---- Decided ---- */
 
-static void check_outcome(void *user, const struct scene *scene, const struct outcome *outcome)
+struct decided {
+    const struct fmb_scene *scene;
+    uint64_t count;
+};
+
+static void check_answer(void *user, const struct fmb_client_answer *of)
 {
-    const struct fmb_placement a = scene_placement(&scene->body[outcome->pair.a]);
-    const struct fmb_placement b = scene_placement(&scene->body[outcome->pair.b]);
-    struct fmb_answer answer;
-    uint64_t *count = user;
-    ++*count;
-    FUZZ_CHECK(!outcome->error && fmb_verdict_name((int) outcome->answer.verdict));
+    struct decided *decided = user;
+    const struct fmb_scene *scene = decided->scene;
     const unsigned want = FMB_WANT_BOX | (scene->margin > 0 ? FMB_WANT_GAP : 0);
-    FUZZ_CHECK(fmb_decide(fmb_method_default(), &b, &a, scene->duration, want, &answer) == FMB_OK);
+    struct fmb_answer answer;
+    decided->count++;
+    FUZZ_CHECK(of->status == FMB_OK && fmb_verdict_name((int) of->answer.verdict));
+    FUZZ_CHECK(fmb_decide(fmb_method_default(), &scene->placements[of->b],
+                          &scene->placements[of->a], scene->duration, want, &answer) == FMB_OK);
     query_remove_far_gap(scene->margin, &answer);
-    FUZZ_CHECK(query_same_answer(&outcome->answer, &answer));
+    FUZZ_CHECK(query_same_answer(&of->answer, &answer));
 }
 
-static void check_decided(const struct scene *scene)
+static void check_decided(struct owned_scene *owner)
 {
-    const struct answers_options options = {.box = true};
-    uint64_t count = 0, frames = 0;
-    for (size_t i = 0; i < scene->body_count; i++)
-        frames += scene->body[i].body.frame_count;
-    if (scene_count_pairs(scene) > DECIDED_PAIRS_MAX || frames > DECIDED_FRAMES_MAX)
+    struct fmb_scene *scene = &owner->scene;
+    struct decided decided = {.scene = scene};
+    uint64_t frames = 0;
+    for (size_t i = 0; i < scene->placement_count; i++)
+        frames += scene->placements[i].body->frame_count;
+    if (scene_count_pairs(owner) > DECIDED_PAIRS_MAX || frames > DECIDED_FRAMES_MAX)
         return;
-    answers_local(&options, scene, check_outcome, &count);
-    FUZZ_CHECK(count == scene_count_pairs(scene));
+    scene->want = FMB_WANT_BOX;
+    answers_local(owner, check_answer, &decided);
+    FUZZ_CHECK(decided.count == scene_count_pairs(owner));
 }
 
 /* ---- Read ---- */
 
 struct scenes {
     size_t count;
-    struct scene scene[SCENES_MAX];
+    struct owned_scene scene[SCENES_MAX];
     enum json_outcome outcome; /* that ended them */
     char error[512];
 };
@@ -247,7 +263,7 @@ static void check_error(const char *error)
 static struct scenes read_scenes(const uint8_t *bytes, size_t size, size_t piece)
 {
     struct scenes out = {.outcome = JSON_SCENE};
-    struct scene beyond;
+    struct owned_scene beyond;
     pieces_begin(bytes, size, piece);
     struct json_reader *reader = json_open(-1);
     while (out.count < SCENES_MAX &&
@@ -272,7 +288,7 @@ static void clear_scenes(struct scenes *scenes)
         scene_clear(&scenes->scene[i]);
 }
 
-static void check_same(const struct scenes *a, const struct scenes *b)
+static void check_same(struct scenes *a, struct scenes *b)
 {
     FUZZ_CHECK(a->count == b->count && a->outcome == b->outcome);
     FUZZ_CHECK(strcmp(a->error, b->error) == 0);

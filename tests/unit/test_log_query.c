@@ -73,9 +73,9 @@ static enum log_query_outcome look_for(struct log_query_options options)
 }
 
 /* The scene, through its text. To be cleared. */
-static struct scene scene_of_found(void)
+static struct owned_scene scene_of_found(void)
 {
-    struct scene scene, read;
+    struct owned_scene scene, read;
     FILE *text = tmpfile();
     assert_non_null(text);
     scene_of_query(&found.query, &scene);
@@ -86,9 +86,9 @@ static struct scene scene_of_found(void)
     if (json_next(reader, &read) != JSON_SCENE)
         fail_msg("%s", json_error(reader));
     assert_int_equal(read.dim, scene.dim);
-    assert_int_equal(read.body_count, scene.body_count);
-    assert_int_equal(read.all_pairs, scene.all_pairs);
-    assert_int_equal(read.pair_count, scene.pair_count);
+    assert_int_equal(read.scene.placement_count, scene.scene.placement_count);
+    assert_int_equal(read.scene.which, scene.scene.which);
+    assert_int_equal(read.scene.pair_count, scene.scene.pair_count);
     scene_clear(&scene);
     json_close(reader);
     fclose(text);
@@ -108,6 +108,7 @@ struct walk {
     int32_t verdict; /* the next one of the result */
     int32_t contact;
     int64_t compared;
+    int dim;
 };
 
 static bool same_bits(const double *a, const double *b, size_t count)
@@ -115,73 +116,72 @@ static bool same_bits(const double *a, const double *b, size_t count)
     return memcmp(a, b, count * sizeof *a) == 0;
 }
 
-static void assert_contact(const struct walk *walk, const struct outcome *outcome, int dim)
+static void assert_contact(const struct walk *walk, const struct fmb_client_answer *answer, int dim)
 {
     const struct scene_result *result = &recorded.scene;
     const double *times = result->has_times ? &result->times[2 * walk->contact] : NULL;
     const double *box = result->has_boxes ? &result->boxes[2 * dim * walk->contact] : NULL;
     if (result->has_times && isnan(times[0]))
-        assert_false(outcome->answer.has_contact);
+        assert_false(answer->answer.has_contact);
     else if (result->has_times)
-        assert_true(outcome->answer.has_contact && same_bits(times, outcome->answer.contact, 2));
+        assert_true(answer->answer.has_contact && same_bits(times, answer->answer.contact, 2));
     for (int side = 0; side < 2 && result->has_boxes; side++)
-        assert_true(same_bits(box + dim * side, outcome->answer.box[side], (size_t) dim));
+        assert_true(same_bits(box + dim * side, answer->answer.box[side], (size_t) dim));
 }
 
 /* Whether the result has an answer to this pair of its own. */
-static bool is_named(const struct walk *walk, const struct outcome *outcome)
+static bool is_named(const struct walk *walk, const struct fmb_client_answer *answer)
 {
     const struct scene_result *result = &recorded.scene;
     return walk->verdict < result->verdict_count &&
-           (!result->names_pairs || (result->pair[walk->verdict][0] == outcome->pair.a &&
-                                     result->pair[walk->verdict][1] == outcome->pair.b));
+           (!result->names_pairs || (result->pair[walk->verdict][0] == answer->a &&
+                                     result->pair[walk->verdict][1] == answer->b));
 }
 
-static void on_scene_pair(void *user, const struct scene *scene, const struct outcome *outcome)
+static void on_scene_pair(void *user, const struct fmb_client_answer *answer)
 {
     const struct scene_query *query = &found.query.scene;
     struct walk *walk = user;
     const int32_t number = query->first_pair + walk->pair++;
     if (query->which == FMB_PAIRS_LISTED) {
-        assert_int_equal(outcome->pair.a, query->pair[number][0]);
-        assert_int_equal(outcome->pair.b, query->pair[number][1]);
+        assert_int_equal(answer->a, query->pair[number][0]);
+        assert_int_equal(answer->b, query->pair[number][1]);
     }
     if (number >= recorded.scene.end_pair)
         return;
     walk->compared++;
-    if (!is_named(walk, outcome)) {
-        assert_int_equal(outcome->answer.verdict, FMB_SEPARATED);
+    if (!is_named(walk, answer)) {
+        assert_int_equal(answer->answer.verdict, FMB_SEPARATED);
         return;
     }
-    assert_int_equal(outcome->answer.verdict, recorded.scene.verdict[walk->verdict++]);
-    if (outcome->answer.verdict == FMB_SEPARATED)
+    assert_int_equal(answer->answer.verdict, recorded.scene.verdict[walk->verdict++]);
+    if (answer->answer.verdict == FMB_SEPARATED)
         return;
-    assert_contact(walk, outcome, scene->dim);
+    assert_contact(walk, answer, walk->dim);
     walk->contact++;
 }
 
-static void on_pair(void *user, const struct scene *scene, const struct outcome *outcome)
+static void on_pair(void *user, const struct fmb_client_answer *answer)
 {
-    const struct fmb_answer *then = &recorded.pair.answer, *now = &outcome->answer;
+    const struct fmb_answer *then = &recorded.pair.answer, *now = &answer->answer;
     struct walk *walk = user;
     walk->compared++;
     assert_int_equal(now->verdict, then->verdict);
     assert_int_equal(now->has_contact, then->has_contact);
     assert_true(!then->has_contact || same_bits(now->contact, then->contact, 2));
     for (int side = 0; side < 2 && then->has_box; side++)
-        assert_true(same_bits(now->box[side], then->box[side], (size_t) scene->dim));
+        assert_true(same_bits(now->box[side], then->box[side], (size_t) walk->dim));
 }
 
 static int64_t decide_found(void)
 {
     const bool is_pair = found.query.kind == LOG_PAIR_QUERY;
-    const struct answers_options options = {
-        .method =
-            fmb_method_by_number(is_pair ? found.query.pair.method : found.query.scene.method),
-        .box = true};
-    struct scene scene = scene_of_found();
-    struct walk walk = {.pair = 0};
-    answers_local(&options, &scene, is_pair ? on_pair : on_scene_pair, &walk);
+    struct owned_scene scene = scene_of_found();
+    struct walk walk = {.dim = scene.dim};
+    scene.scene.method =
+        fmb_method_by_number(is_pair ? found.query.pair.method : found.query.scene.method);
+    scene.scene.want = FMB_WANT_BOX;
+    answers_local(&scene, is_pair ? on_pair : on_scene_pair, &walk);
     if (!is_pair)
         assert_int_equal(walk.verdict, recorded.scene.verdict_count);
     scene_clear(&scene);
@@ -401,24 +401,24 @@ static void bodies_get_ids_that_are_free(void **state)
     const int64_t expected[] = {2, 1, 4, 6, 3, QUERY_ID_MAX, 7, 5};
     set_placements(ids, 8);
     found.query.scene.which = FMB_PAIRS_ALL;
-    struct scene scene = scene_of_found();
-    assert_true(scene.all_pairs);
+    struct owned_scene scene = scene_of_found();
+    assert_int_equal(scene.scene.which, FMB_PAIRS_ALL);
     for (int i = 0; i < 8; i++)
-        assert_int_equal(scene.body[i].id, expected[i]);
+        assert_int_equal(scene.scene.placements[i].id, expected[i]);
     scene_clear(&scene);
 }
 
 static void assert_pairs(const size_t (*expected)[2], size_t count)
 {
-    struct scene scene = scene_of_found();
+    struct owned_scene scene = scene_of_found();
     struct scene_cursor cursor = {0};
-    struct scene_pair pair;
+    unsigned pair[2];
     for (size_t k = 0; k < count; k++) {
-        assert_true(scene_next_pair(&scene, &cursor, &pair));
-        assert_int_equal(pair.a, expected[k][0]);
-        assert_int_equal(pair.b, expected[k][1]);
+        assert_true(scene_next_pair(&scene, &cursor, pair));
+        assert_int_equal(pair[0], expected[k][0]);
+        assert_int_equal(pair[1], expected[k][1]);
     }
-    assert_false(scene_next_pair(&scene, &cursor, &pair));
+    assert_false(scene_next_pair(&scene, &cursor, pair));
     scene_clear(&scene);
 }
 
@@ -459,12 +459,12 @@ static void numbers_read_back_as_the_same_bits(void **state)
     found.query.scene.placement_count = 1;
     found.query.scene.placement[0] = *placement;
     found.query.scene.duration = 5e-324;
-    struct scene scene = scene_of_found();
-    const struct scene_body *body = &scene.body[0];
-    assert_true(same_bits(&fmb_body_frame(&body->body, 0)->component[0][0], numbers, 9));
-    assert_true(same_bits(body->position, numbers, 3));
-    assert_true(same_bits(body->velocity, numbers + 3, 3));
-    assert_true(scene.duration == 5e-324);
+    struct owned_scene scene = scene_of_found();
+    const struct fmb_placement *placed = &scene.scene.placements[0];
+    assert_true(same_bits(&fmb_body_frame(placed->body, 0)->component[0][0], numbers, 9));
+    assert_true(same_bits(placed->position, numbers, 3));
+    assert_true(same_bits(placed->velocity, numbers + 3, 3));
+    assert_true(scene.scene.duration == 5e-324);
     scene_clear(&scene);
 }
 
@@ -488,16 +488,16 @@ static void names_groups_and_vertices_are_kept(void **state)
     }
     query->placement[0].name = "arm";
     query->placement[0].group = query->placement[2].group = INT64_C(-4);
-    struct scene scene = scene_of_found();
-    assert_string_equal(scene.label, query->label);
-    assert_string_equal(scene.body[0].name, "arm");
-    assert_int_equal(scene.body[2].group, -4);
+    struct owned_scene scene = scene_of_found();
+    assert_string_equal(scene.scene.label, query->label);
+    assert_string_equal(scene.scene.placements[0].name, "arm");
+    assert_int_equal(scene.scene.placements[2].group, -4);
     assert_int_equal(scene_count_pairs(&scene), 2);
-    assert_memory_equal(scene.body[1].given, &face, sizeof face);
+    assert_memory_equal(&scene.given[1], &face, sizeof face);
     scene_clear(&scene);
     query->label = "a\nb";
     scene = scene_of_found();
-    assert_string_equal(scene.label, "");
+    assert_null(scene.scene.label);
     query->label = NULL;
     scene_clear(&scene);
 }

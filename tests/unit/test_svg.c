@@ -18,47 +18,69 @@
 
 static const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-static void make_body(struct scene_body *out, int64_t id, int dim, enum fmb_shape shape,
-                      double size, double at)
+/* A body, and its placement. */
+struct placed {
+    struct fmb_body body;
+    struct fmb_placement at;
+};
+
+static void make_body(struct placed *out, int64_t id, int dim, enum fmb_shape shape, double size,
+                      double at)
 {
     double components[9];
     size_t count = (size_t) (fmb_component_count(dim, (int) shape) * dim);
     for (size_t i = 0; i < count; i++)
         components[i] = size * (dim == 3 ? unit[i] : unit[i % 2 + i / 2 * 3]);
     memset(out, 0, sizeof *out);
-    out->id = id;
     assert_int_equal(fmb_body_make(dim, (int) shape, components, count, &out->body), FMB_OK);
+    out->at = (struct fmb_placement){.id = id, .body = &out->body};
     for (int axis = 0; axis < dim; axis++)
-        out->position[axis] = at;
+        out->at.position[axis] = at;
 }
 
 /* Two bodies, one of which moves. */
-static void make_scene(struct scene *out, struct scene_body body[2], int dim, double size,
-                       double at, double velocity)
+static struct {
+    struct placed body[2];
+    struct fmb_placement placements[2];
+    struct owned_scene scene;
+} pair;
+
+static void make_scene(int dim, double size, double at, double velocity)
 {
-    make_body(&body[0], 31, dim, FMB_CUBOID, size, at);
-    make_body(&body[1], 47, dim, FMB_TETRAHEDRON, size, at / 2);
+    make_body(&pair.body[0], 31, dim, FMB_CUBOID, size, at);
+    make_body(&pair.body[1], 47, dim, FMB_TETRAHEDRON, size, at / 2);
     for (int axis = 0; axis < dim; axis++)
-        body[1].velocity[axis] = velocity;
-    *out =
-        (struct scene){.dim = dim, .duration = 1, .body_count = 2, .body = body, .all_pairs = true};
+        pair.body[1].at.velocity[axis] = velocity;
+    for (int i = 0; i < 2; i++)
+        pair.placements[i] = pair.body[i].at;
+    pair.scene = (struct owned_scene){
+        .dim = dim, .scene = {.placements = pair.placements, .placement_count = 2, .duration = 1}};
 }
 
-static void take(struct svg *svg, const struct scene *scene)
+/* The memory of the scene is not its own. */
+static void begin(struct report *report, struct owned_scene *scene)
+{
+    report->scene = scene;
+    report->begin(report);
+}
+
+static void take(struct svg *svg, const struct owned_scene *owner)
 {
     struct report *report = svg_report(svg);
+    struct owned_scene taken = *owner;
+    const struct fmb_scene *scene = &owner->scene;
     struct scene_cursor cursor = {0};
-    struct outcome outcome = {.error = NULL};
-    report->begin(report, scene);
-    while (scene_next_pair(scene, &cursor, &outcome.pair)) {
-        const struct fmb_placement a = scene_placement(&scene->body[outcome.pair.a]);
-        const struct fmb_placement b = scene_placement(&scene->body[outcome.pair.b]);
-        assert_int_equal(fmb_decide(fmb_method_default(), &a, &b, scene->duration, FMB_WANT_BOX,
-                                    &outcome.answer),
-                         FMB_OK);
-        report->pair(report, scene, &outcome);
+    unsigned of[2];
+    begin(report, &taken);
+    while (scene_next_pair(&taken, &cursor, of)) {
+        struct fmb_client_answer answer = {.a = of[0], .b = of[1], .text = ""};
+        assert_int_equal(
+            fmb_decide(fmb_method_default(), &scene->placements[of[0]], &scene->placements[of[1]],
+                       scene->duration, FMB_WANT_BOX, &answer.answer),
+            FMB_OK);
+        report->pair(report, &answer);
     }
-    report->end(report, scene);
+    report->end(report);
 }
 
 /* The file as a text; to be freed. */
@@ -73,7 +95,7 @@ static char *draw(const struct svg *svg)
     return text;
 }
 
-static char *draw_one(const struct scene *scene)
+static char *draw_one(const struct owned_scene *scene)
 {
     struct svg *svg = svg_open();
     take(svg, scene);
@@ -146,10 +168,8 @@ static void shows_frames_ids_motion_and_boxes(void **state)
 {
     (void) state;
     for (int dim = 2; dim <= 3; dim++) {
-        struct scene_body body[2];
-        struct scene scene;
-        make_scene(&scene, body, dim, 2, 1, 0.25);
-        char *text = draw_one(&scene);
+        make_scene(dim, 2, 1, 0.25);
+        char *text = draw_one(&pair.scene);
         expect_good_picture(text);
         assert_int_equal(count(text, ">31</text>"), 1);
         assert_int_equal(count(text, ">47</text>"), 1);
@@ -169,11 +189,9 @@ static void any_numbers_can_be_drawn(void **state)
     enum { COUNT = sizeof numbers / sizeof *numbers };
     (void) state;
     for (int i = 0; i < 2 * COUNT * COUNT * COUNT; i++) {
-        struct scene_body body[2];
-        struct scene scene;
-        make_scene(&scene, body, 2 + i % 2, numbers[i / 2 % COUNT], numbers[i / 2 / COUNT % COUNT],
+        make_scene(2 + i % 2, numbers[i / 2 % COUNT], numbers[i / 2 / COUNT % COUNT],
                    numbers[i / 2 / COUNT / COUNT]);
-        char *text = draw_one(&scene);
+        char *text = draw_one(&pair.scene);
         expect_good_picture(text);
         free(text);
     }
@@ -181,22 +199,20 @@ static void any_numbers_can_be_drawn(void **state)
 
 static void infinite_boxes_and_sums_can_be_drawn(void **state)
 {
-    struct scene_body body[2];
-    struct scene scene;
-    struct outcome outcome = {
-        .pair = {0, 1},
+    const struct fmb_client_answer answer = {
+        .b = 1,
         .answer = {.verdict = FMB_OVERLAPPING,
                    .has_box = true,
                    .box = {{-INFINITY, 0, -INFINITY}, {INFINITY, INFINITY, 0}}}};
     (void) state;
-    make_scene(&scene, body, 3, DBL_MAX, DBL_MAX, -DBL_MAX);
-    body[0].body.one.component[0][0] = body[0].body.one.component[1][0] = -DBL_MAX;
-    scene.duration = 1e308;
+    make_scene(3, DBL_MAX, DBL_MAX, -DBL_MAX);
+    pair.body[0].body.one.component[0][0] = pair.body[0].body.one.component[1][0] = -DBL_MAX;
+    pair.scene.scene.duration = 1e308;
     struct svg *svg = svg_open();
     struct report *report = svg_report(svg);
-    report->begin(report, &scene);
-    report->pair(report, &scene, &outcome);
-    report->end(report, &scene);
+    begin(report, &pair.scene);
+    report->pair(report, &answer);
+    report->end(report);
     char *text = draw(svg);
     expect_good_picture(text);
     free(text);
@@ -207,7 +223,7 @@ static void empty_scenes_and_no_scene_can_be_drawn(void **state)
 {
     (void) state;
     for (int dim = 2; dim <= 3; dim++) {
-        struct scene scene = {.dim = dim, .duration = 1, .all_pairs = true};
+        const struct owned_scene scene = {.dim = dim, .scene.duration = 1};
         char *text = draw_one(&scene);
         expect_good_picture(text);
         free(text);
@@ -222,12 +238,16 @@ static void empty_scenes_and_no_scene_can_be_drawn(void **state)
 static void many_scenes_and_bodies_are_cut(void **state)
 {
     enum { SCENES = SVG_PANELS_MAX + 3, BODIES = SVG_BODIES_MAX + 5 };
-    static struct scene_body body[BODIES];
-    struct scene scene = {.dim = 2, .duration = 1, .body = body, .body_count = 1};
+    static struct placed body[BODIES];
+    static struct fmb_placement placements[BODIES];
+    struct owned_scene scene = {
+        .dim = 2, .scene = {.placements = placements, .placement_count = 1, .duration = 1}};
     struct svg *svg = svg_open();
     (void) state;
-    for (int i = 0; i < BODIES; i++)
+    for (int i = 0; i < BODIES; i++) {
         make_body(&body[i], i + 1, 2, FMB_CUBOID, 1, i);
+        placements[i] = body[i].at;
+    }
     for (int i = 0; i < SCENES; i++)
         take(svg, &scene);
     char *text = draw(svg);
@@ -237,7 +257,8 @@ static void many_scenes_and_bodies_are_cut(void **state)
     free(text);
     svg_close(svg);
 
-    scene.body_count = BODIES;
+    scene.scene.placement_count = BODIES;
+    scene.scene.which = FMB_PAIRS_LISTED; /* none */
     text = draw_one(&scene);
     expect_good_picture(text);
     assert_non_null(strstr(text, "5 more bodies"));
@@ -247,15 +268,15 @@ static void many_scenes_and_bodies_are_cut(void **state)
 /* Steps of time are seen from one place: what rests is drawn at the same place on its panel. */
 static void steps_share_a_view(void **state)
 {
-    struct scene_body body[2];
-    struct scene scene;
     char card[64], still[200];
     struct svg *svg = svg_open();
     (void) state;
-    make_scene(&scene, body, 2, 1, 0, 0);
-    take(svg, &scene);
-    body[1].position[0] = 8;
-    take(svg, &scene);
+    make_scene(2, 1, 0, 0);
+    take(svg, &pair.scene);
+    struct fmb_placement later[] = {pair.placements[0], pair.placements[1]};
+    later[1].position[0] = 8;
+    pair.scene.scene.placements = later;
+    take(svg, &pair.scene);
     char *text = draw(svg);
     double x[2], y[2];
     const char *at = text;
@@ -281,12 +302,12 @@ static void turned_bodies_are_drawn_turned(void **state)
 {
     (void) state;
     for (int dim = 2; dim <= 3; dim++) {
-        struct scene_body body;
+        struct placed body;
         make_body(&body, 1, dim, FMB_CUBOID, 2, 10);
-        body.orientation_count = dim == 2 ? 2 : 4;
-        body.orientation[0] = body.orientation[body.orientation_count - 1] = 3;
-        body.velocity[1] = 4;
-        const struct outline outline = outline_make(&body, 0, 0.5);
+        body.at.orientation_count = dim == 2 ? 2 : 4;
+        body.at.orientation[0] = body.at.orientation[body.at.orientation_count - 1] = 3;
+        body.at.velocity[1] = 4;
+        const struct outline outline = outline_make(&body.at, 0, 0.5);
         const double end[2][2] = {{10, 14}, {8, 12}}; /* of x and y, 2 farther in y */
         for (int component = 0; component < 2; component++)
             for (int axis = 0; axis < 2; axis++)
@@ -295,11 +316,34 @@ static void turned_bodies_are_drawn_turned(void **state)
     }
 }
 
+/* All faces of a flat frame are filled, in any orientation. */
+static void flat_boxes_are_filled(void **state)
+{
+    static const double size[] = {1, 2, 0};
+    (void) state;
+    for (int i = 0; i < 100; i++) {
+        struct fmb_body body;
+        const struct fmb_placement placement = {.body = &body,
+                                                .position = {0.1, i, 0.3},
+                                                .orientation = {1, 0.1 * i, 0.7, -0.3 * i},
+                                                .orientation_count = 4,
+                                                .id = 1};
+        const struct owned_scene scene = {
+            .dim = 3, .scene = {.placements = &placement, .placement_count = 1, .duration = 1}};
+        assert_int_equal(fmb_body_make(3, FMB_BOX, size, 3, &body), FMB_OK);
+        char *text = draw_one(&scene);
+        assert_int_equal(count(text, "class=\"back\""), 0);
+        assert_int_equal(count(text, "<title>1: not tested</title>"), 6);
+        free(text);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shows_frames_ids_motion_and_boxes),
         cmocka_unit_test(turned_bodies_are_drawn_turned),
+        cmocka_unit_test(flat_boxes_are_filled),
         cmocka_unit_test(any_numbers_can_be_drawn),
         cmocka_unit_test(infinite_boxes_and_sums_can_be_drawn),
         cmocka_unit_test(empty_scenes_and_no_scene_can_be_drawn),

@@ -9,11 +9,12 @@
 
 #include <cmocka.h>
 
-/* Two unit squares, the second one at (x, 0), and the right outcome. */
+/* Two unit squares, the second one at (x, 0), and the right answer. */
 static struct {
-    struct scene_body body[2];
-    struct scene scene;
-    struct outcome outcome;
+    struct fmb_body body;
+    struct fmb_placement placement[2];
+    struct fmb_scene scene;
+    struct fmb_client_answer answer;
     char certificate[1000];
 } squares;
 
@@ -22,22 +23,19 @@ static void place_squares(double x)
     static const double edges[] = {1, 0, 0, 1};
     size_t length;
     memset(&squares, 0, sizeof squares);
-    for (int i = 0; i < 2; i++) {
-        squares.body[i].id = i + 1;
-        assert_int_equal(fmb_body_make(2, FMB_CUBOID, edges, 4, &squares.body[i].body), FMB_OK);
-    }
-    squares.body[1].position[0] = x;
-    squares.scene = (struct scene){
-        .dim = 2, .duration = 1, .body_count = 2, .body = squares.body, .all_pairs = true};
-    squares.outcome.pair = (struct scene_pair){.a = 0, .b = 1};
-    squares.outcome.certificate = squares.certificate;
-    const struct fmb_placement a = scene_placement(&squares.body[0]);
-    const struct fmb_placement b = scene_placement(&squares.body[1]);
-    assert_int_equal(fmb_decide(fmb_method_default(), &a, &b, 1, 0, &squares.outcome.answer),
-                     FMB_OK);
+    assert_int_equal(fmb_body_make(2, FMB_CUBOID, edges, 4, &squares.body), FMB_OK);
+    for (int i = 0; i < 2; i++)
+        squares.placement[i] = (struct fmb_placement){.id = i + 1, .body = &squares.body};
+    squares.placement[1].position[0] = x;
+    squares.scene =
+        (struct fmb_scene){.placements = squares.placement, .placement_count = 2, .duration = 1};
+    squares.answer.b = 1;
+    squares.answer.text = "";
+    squares.answer.certificate = squares.certificate;
+    const struct fmb_placement *a = &squares.placement[0], *b = &squares.placement[1];
+    assert_int_equal(fmb_decide(fmb_method_default(), a, b, 1, 0, &squares.answer.answer), FMB_OK);
     assert_int_equal(
-        fmb_certificate(&a, &b, 1, squares.certificate, sizeof squares.certificate, &length),
-        FMB_OK);
+        fmb_certificate(a, b, 1, squares.certificate, sizeof squares.certificate, &length), FMB_OK);
 }
 
 static const double apart[] = {0.5, 1, 1.5};
@@ -47,25 +45,26 @@ static void test_what_holds_stays_as_it_was(void **state)
     (void) state;
     for (int i = 0; i < 3; i++) {
         place_squares(apart[i]);
-        struct outcome outcome = squares.outcome;
+        struct fmb_client_answer answer = squares.answer;
         char text[VERIFY_TEXT_MAX];
-        verify_outcome(&squares.scene, "the", &outcome, text);
-        assert_memory_equal(&outcome, &squares.outcome, sizeof outcome);
+        verify_answer(&squares.scene, "the", &answer, text);
+        assert_memory_equal(&answer, &squares.answer, sizeof answer);
     }
 }
 
-static void expect_refuted(const struct outcome *outcome)
+static void expect_refuted(const struct fmb_client_answer *answer)
 {
     static const char begin[] = "the service's certificate does not hold: ";
-    struct outcome refuted = *outcome;
+    struct fmb_client_answer refuted = *answer;
     char text[VERIFY_TEXT_MAX];
-    verify_outcome(&squares.scene, "the service's", &refuted, text);
-    assert_ptr_equal(refuted.error, text);
+    verify_answer(&squares.scene, "the service's", &refuted, text);
+    assert_int_not_equal(refuted.status, FMB_OK);
+    assert_ptr_equal(refuted.text, text);
     assert_memory_equal(text, begin, sizeof begin - 1);
     assert_true(strlen(text) > sizeof begin - 1);
     assert_null(refuted.certificate);
     assert_int_equal(refuted.answer.verdict, 0);
-    assert_int_equal(refuted.pair.b, outcome->pair.b);
+    assert_int_equal(refuted.b, answer->b);
 }
 
 static void test_another_verdict_is_refuted(void **state)
@@ -74,11 +73,11 @@ static void test_another_verdict_is_refuted(void **state)
     for (int i = 0; i < 3; i++)
         for (int verdict = FMB_SEPARATED; verdict <= FMB_OVERLAPPING; verdict++) {
             place_squares(apart[i]);
-            struct outcome outcome = squares.outcome;
-            if (outcome.answer.verdict == (enum fmb_verdict) verdict)
+            struct fmb_client_answer answer = squares.answer;
+            if (answer.answer.verdict == (enum fmb_verdict) verdict)
                 continue;
-            outcome.answer.verdict = (enum fmb_verdict) verdict;
-            expect_refuted(&outcome);
+            answer.answer.verdict = (enum fmb_verdict) verdict;
+            expect_refuted(&answer);
         }
 }
 
@@ -88,12 +87,12 @@ static void test_another_scene_s_certificate_is_refuted(void **state)
     (void) state;
     for (int i = 0; i < 3; i++) {
         place_squares(apart[i]);
-        struct outcome outcome = squares.outcome;
+        struct fmb_client_answer answer = squares.answer;
         char certificate[1000];
         strcpy(certificate, squares.certificate);
-        outcome.certificate = certificate;
+        answer.certificate = certificate;
         place_squares(apart[(i + 1) % 3]);
-        expect_refuted(&outcome);
+        expect_refuted(&answer);
     }
 }
 
@@ -105,9 +104,9 @@ static void test_nonsense_is_refuted(void **state)
     const char *const texts[] = {"", "x", "touching", "\"\\", huge};
     place_squares(1);
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        struct outcome outcome = squares.outcome;
-        outcome.certificate = texts[i];
-        expect_refuted(&outcome);
+        struct fmb_client_answer answer = squares.answer;
+        answer.certificate = texts[i];
+        expect_refuted(&answer);
     }
 }
 
