@@ -37,13 +37,14 @@ static const char usage[] =
     "  --channel REGEX      also record the channels whose whole name matches\n"
     "  --all                record all channels\n" ARGS_COMMON_USAGE
     "\n"
-    "Each file also defines the bodies that its queries name by handle. Definitions\n"
-    "that no message contains are requested from the service. Bodies are kept in up\n"
-    "to 64 MB of memory. Messages of more than one datagram are not recorded.\n"
+    "Each file also defines the bodies that its queries name by handle, and names\n"
+    "them. Definitions that no message contains are requested from the service.\n"
+    "Bodies are kept in up to 64 MB of memory. Messages of more than one datagram are\n"
+    "not recorded.\n"
     "\n"
-    "The report at the end counts the datagrams that the system dropped, and the\n"
-    "handles whose bodies could not be obtained. To enlarge the receive buffer, and\n"
-    "to raise the priority:\n"
+    "The report at the end counts what was lost: datagrams that the kernel dropped,\n"
+    "queries missing by their sequence numbers, and handles whose bodies could not be\n"
+    "obtained. To enlarge the receive buffer, and to raise the priority:\n"
     "  sudo sysctl net.core.rmem_max=4194304\n"
     "  sudo chrt -f 10 fmb record ...\n"
     "\n"
@@ -118,8 +119,14 @@ static bool write_definition(void *user, const void *bytes, size_t size)
     return write_event(recording, recording->channels.name[LOG_DEFINITION], bytes, size);
 }
 
-/* Writes the definitions that must precede a message in its file, and begins a new file if there is
- * no space for both. */
+static bool write_names(void *user, const void *bytes, size_t size)
+{
+    struct recording *recording = user;
+    return write_event(recording, recording->channels.name[LOG_NAMES], bytes, size);
+}
+
+/* Begins a new file if there is no space for the message and the definitions that must precede it
+ * in its file, and writes these. */
 static bool prepare(struct recording *recording, size_t channel_length, size_t size)
 {
     const long number = recording->parts.number;
@@ -129,9 +136,10 @@ static bool prepare(struct recording *recording, size_t channel_length, size_t s
         recording->error = errno;
         return false;
     }
-    if (recording->parts.number != number)
-        record_bodies_begin_file(recording->bodies);
-    return record_bodies_define(recording->bodies, write_definition, recording);
+    return (recording->parts.number == number ||
+            record_bodies_begin_file(recording->bodies, recording->utime, write_names,
+                                     recording)) &&
+           record_bodies_define(recording->bodies, write_definition, recording);
 }
 
 static void on_message(void *user, const struct bus_message *message)
@@ -144,18 +152,19 @@ static void on_message(void *user, const struct bus_message *message)
     if (recording->enough || recording->error ||
         (kind == LOG_OTHER && !log_choice_has_channel(&recording->others, &event)))
         return;
-    const char *wrong = record_bodies_take(recording->bodies, kind, message->bytes, message->size);
+    const char *wrong = record_bodies_read(recording->bodies, kind, message->bytes, message->size);
+    const enum record_bodies_owner owner = record_bodies_owner(recording->bodies);
     recording->utime = message->utime;
-    const bool own = record_bodies_is_own(recording->bodies);
-    if (!own) {
+    if (owner == RECORD_OTHERS) {
         recorded->received[kind]++;
         recorded->malformed += wrong != NULL;
     }
-    if (!prepare(recording, event.channel_length, message->size) || own)
+    if (owner == RECORD_OWN || !prepare(recording, event.channel_length, message->size) ||
+        !write_event(recording, message->channel, message->bytes, message->size))
         return;
-    if (write_event(recording, message->channel, message->bytes, message->size))
-        recording->events++;
-    recording->enough = recording->events == recording->options->count;
+    record_bodies_keep(recording->bodies);
+    if (owner == RECORD_OTHERS)
+        recording->enough = ++recording->events == recording->options->count;
 }
 
 /* ---- Recording ------------------------------------------------------------------------------- */

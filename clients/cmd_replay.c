@@ -190,10 +190,11 @@ static bool write_page(const struct replay_arguments *options)
 }
 
 /* Returns the reason why nothing was compared; NULL: something was, or results were written. */
-static const char *why_nothing(const struct replay_arguments *options, const struct tally *all)
+static const char *why_nothing(const struct replay_arguments *options,
+                               const struct tally_channel *all)
 {
     const bool in_part = isfinite(options->replay.from) || isfinite(options->replay.to);
-    if (tally_queries(all) == 0)
+    if (all->queries == 0)
         return in_part ? "there are no queries of this service from --from to --to"
                        : "there are no queries of this service";
     if (tally_compared(all) > 0 || options->replay.write_golden.path)
@@ -204,8 +205,9 @@ static const char *why_nothing(const struct replay_arguments *options, const str
 /* Returns the exit code of a replay that reached its end. */
 static int code_of(const struct replay_arguments *options, const struct tally *all)
 {
-    const char *nothing = why_nothing(options, all);
-    if (tally_outcome(all, REPLAY_DIFFERENT) + tally_contradictions(all) + tally_left_over(all) > 0)
+    const struct tally_channel both = tally_both(all);
+    const char *nothing = why_nothing(options, &both);
+    if (both.outcome[REPLAY_DIFFERENT] + both.contradictions + both.left_over > 0)
         return ARGS_FAILED;
     if (nothing)
         complain(
@@ -222,10 +224,10 @@ static void report_one(void *user, const struct located_difference *found)
     const char *log = log_name(run, found->place.log);
     char line[REPLAY_LINE_MAX];
     if (run->options->json) {
-        replay_json_found(&run->json, found, log, run->first_utime);
+        replay_json_found(&run->json, found, run->options->replay.names, log, run->first_utime);
         return;
     }
-    replay_line(found, several ? log : NULL, run->first_utime, line);
+    replay_line(found, run->options->replay.names, several ? log : NULL, run->first_utime, line);
     escape(stdout, ESCAPE_TERMINAL, line, strlen(line));
     putchar('\n');
 }
@@ -325,12 +327,14 @@ static int run_replay(struct replay_arguments *options)
         return ARGS_USAGE;
     if (options->html.path)
         options->replay.page = page_open(options->replay.log[0], run.first_utime);
+    options->replay.names = body_names_open();
     run.differences = listing_open(options->limit);
     struct tally *tally = allocate((size_t) options->replay.log_count, sizeof *tally);
     const int code = replay(&run, size, tally);
     free(tally);
     page_close(options->replay.page);
     listing_close(run.differences);
+    body_names_close(options->replay.names);
     return code;
 }
 

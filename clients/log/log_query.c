@@ -208,13 +208,23 @@ static void find_query_of_result(struct query_search *search)
 
 static bool take_definitions(struct query_search *search, const struct log_event *event)
 {
-    struct definitions *definitions = search->out->definitions;
+    struct log_query *out = search->out;
     const enum log_kind kind = log_kind_of(&search->channels, event);
-    if (log_kind_is_query(kind))
-        definitions_add_query(definitions, event->data, (uint32_t) event->kept);
-    else if (kind == LOG_DEFINITION)
-        definitions_add_message(definitions, event->data, (uint32_t) event->kept);
+    const uint32_t size = (uint32_t) event->kept;
+    if (log_kind_is_query(kind) || kind == LOG_DEFINITION)
+        definitions_add_message(out->definitions, kind, event->data, size);
+    if (log_kind_is_query(kind) || kind == LOG_NAMES)
+        body_names_take_message(out->names, kind, event->data, size);
     return true;
+}
+
+/* Sets the names of placements without one. */
+static void fill_names(struct log_query *out, struct placement *placement, int32_t count)
+{
+    for (int32_t i = 0; i < count; i++)
+        if (!placement[i].name || !*placement[i].name)
+            placement[i].name =
+                body_names_find(out->names, out->ids.client_id, placement[i].body_id);
 }
 
 static void find_bodies(struct query_search *search)
@@ -233,6 +243,7 @@ static void find_bodies(struct query_search *search)
     input_rewind(&search->input);
     for_each_event(search, take_definitions);
     definitions_fill(out->definitions, placement, count);
+    fill_names(out, placement, count);
     const int32_t missing = definitions_missing(out->definitions, placement, count);
     if (search->outcome != LOG_QUERY_FOUND || missing < 0)
         return;
@@ -260,6 +271,7 @@ enum log_query_outcome log_query(const struct log_query_options *options, struct
     struct query_search search = {
         .options = options, .out = out, .channels = log_channels(options->prefix)};
     out->definitions = definitions_open();
+    out->names = body_names_open();
     if (input_open(&search.input, options->log, options->log_count))
         run(&search);
     else
@@ -271,5 +283,7 @@ enum log_query_outcome log_query(const struct log_query_options *options, struct
 void log_query_clear(struct log_query *query)
 {
     definitions_close(query->definitions);
+    body_names_close(query->names);
     query->definitions = NULL;
+    query->names = NULL;
 }

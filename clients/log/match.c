@@ -141,6 +141,31 @@ void match_finish(struct match *match, match_sink *sink, void *user)
     }
 }
 
+/* ---- Lists ---- */
+
+void match_list_add(struct match_list *list, struct match_item *item)
+{
+    if (!list->first)
+        list->end = &list->first;
+    item->listed = NULL;
+    *list->end = item;
+    list->end = &item->listed;
+}
+
+struct match_item *match_list_take(struct match_list *list)
+{
+    struct match_item *item = list->first;
+    if (item)
+        list->first = item->listed;
+    return item;
+}
+
+void match_list_drop(struct match_list *list)
+{
+    while (list->first)
+        match_drop(match_list_take(list));
+}
+
 /* ---- Notes ---- */
 
 static size_t note_of(const struct match_key *key)

@@ -36,8 +36,8 @@ struct match_item {
     struct match_place then;
     unsigned char *now; /* owned; the new result; NULL: none yet */
     uint32_t now_size;
-    struct match_item *pending; /* the next item that needs the same definition */
-    struct match_item *next;    /* the next item with the same key; NULL: none */
+    struct match_item *listed; /* the next item of a struct match_list */
+    struct match_item *next;   /* the next item with the same key; NULL: none */
     /* Private: */
     struct match_item *last; /* with the same key; only of the first item */
     UT_hash_handle hh;
@@ -75,6 +75,18 @@ struct match_item *match_any(const struct match *match);
  * them. After that only queries are left. */
 typedef void match_sink(void *user, struct match_item *query, struct match_item *result);
 void match_finish(struct match *match, match_sink *sink, void *user);
+
+/* ---- Lists of items ---- */
+
+/* All 0: empty. An item is in one list at most. */
+struct match_list {
+    struct match_item *first, **end;
+};
+
+void match_list_add(struct match_list *list, struct match_item *item);
+struct match_item *match_list_take(
+    struct match_list *list);                  /* the first item; NULL: none is left */
+void match_list_drop(struct match_list *list); /* match_drop() of all items */
 
 /* ---- Notes of matches ---- */
 

@@ -14,10 +14,6 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-/* Bytes: the size of a receive buffer that the kernel has not limited; and the limit to set for it.
- */
-enum { RECEIVE_BUFFER_ENOUGH = 8 << 20, RECEIVE_BUFFER_TO_SET = 4 << 20 };
-
 static const struct {
     const char *json, *text;
 } names[LOG_KINDS] = {
@@ -28,6 +24,7 @@ static const struct {
     [LOG_STATUS] = {"heartbeats", "heartbeats"},
     [LOG_DEFINITION_QUERY] = {"definition_queries", "definition queries"},
     [LOG_DEFINITION] = {"definitions", "definitions"},
+    [LOG_NAMES] = {"names", "names"},
     [LOG_OTHER] = {"others", "others"},
 };
 
@@ -60,6 +57,7 @@ void record_report_json(const struct recorded *recorded, const struct log_parts 
     json_end(&json, '}');
     json_integer(&json, "malformed", recorded->malformed);
     json_integer(&json, "lost", (int64_t) recorded->bus.dropped);
+    json_integer(&json, "skipped", recorded->bodies.skipped);
     json_integer(&json, "defined_bodies", recorded->bodies.defined);
     json_integer(&json, "dropped_bodies", recorded->bodies.dropped);
     json_integer(&json, "unresolved_handles", recorded->bodies.unresolved);
@@ -99,36 +97,17 @@ void record_report_text(const struct recorded *recorded, const struct log_parts 
 
 /* ---- Losses ---------------------------------------------------------------------------------- */
 
-static void warn_count(int64_t count, const char *what)
-{
-    char text[NUMBER_TEXT_MAX];
-    if (count > 0)
-        complain("%s %s", number_grouped(count, text), what);
-}
-
-static void suggest(long receive_buffer)
-{
-    char text[NUMBER_TEXT_MAX];
-    if (receive_buffer < RECEIVE_BUFFER_ENOUGH)
-        complain(
-            "the receive buffer has only %s bytes; to grant more, run:\n"
-            "  sudo sysctl net.core.rmem_max=%d",
-            number_grouped(receive_buffer, text), RECEIVE_BUFFER_TO_SET);
-    else
-        complain(
-            "this machine or its disk was too busy; to be scheduled before others, run:\n"
-            "  sudo chrt -f 10 fmb record ...");
-}
-
 void record_report_losses(const struct recorded *recorded)
 {
-    warn_count((int64_t) recorded->bus.dropped,
-               "datagrams were dropped since the receive buffer was full");
-    if (recorded->bus.dropped > 0)
-        suggest(recorded->bus.receive_buffer);
-    warn_count(recorded->bodies.unresolved,
-               "handles of answered queries: their bodies could not be obtained");
-    warn_count(recorded->bodies.dropped, "bodies were dropped since there were too many");
+    char text[4][NUMBER_TEXT_MAX];
+    const struct record_bodies_counts *bodies = &recorded->bodies;
+    if (recorded->bus.dropped > 0 || bodies->skipped > 0 || bodies->unresolved > 0)
+        complain(
+            "lost: %s datagrams that the kernel dropped (receive buffer of %s bytes), %s queries "
+            "by their sequence numbers, bodies of %s handles",
+            number_grouped((int64_t) recorded->bus.dropped, text[0]),
+            number_grouped(recorded->bus.receive_buffer, text[1]),
+            number_grouped(bodies->skipped, text[2]), number_grouped(bodies->unresolved, text[3]));
 }
 
 /* ---- The progress line

@@ -36,7 +36,7 @@ struct recorded {
 void record_report_json(const struct recorded *recorded, const struct log_parts *parts);
 void record_report_text(const struct recorded *recorded, const struct log_parts *parts);
 
-/* Reports on standard error what is missing, if anything, and what to do about it. */
+/* Reports on standard error what is missing, if anything, in one line. */
 void record_report_losses(const struct recorded *recorded);
 
 #endif

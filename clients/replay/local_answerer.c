@@ -81,19 +81,6 @@ static void supply(struct local_answerer *local, const struct placement *placeme
     }
 }
 
-/* After UNKNOWN_BODY: supplies the bodies, and returns whether to answer again. If a handle is not
- * defined: false and out->undefined. */
-static bool supply_undefined(struct local_answerer *local, struct new_result *out)
-{
-    const int32_t missing =
-        definitions_missing(local->definitions, out->placement, out->placement_count);
-    if (missing >= 0)
-        out->undefined = out->placement[missing].handle;
-    else
-        supply(local, out->placement, out->placement_count);
-    return missing < 0;
-}
-
 /* ---- Answers ---- */
 
 /* Decides a pair; a job does so if the bodies have several frames. */
@@ -175,8 +162,11 @@ const char *local_answer(struct local_answerer *local, enum log_kind kind,
     if (size > QUERY_BYTES_MAX)
         return refuse(local, kind, bytes, size, out);
     const char *error = decide(local, kind, bytes, size, out);
-    if (!error && out->status == FMB_UNKNOWN_BODY && supply_undefined(local, out))
+    if (!error && out->status == FMB_UNKNOWN_BODY &&
+        definitions_missing(local->definitions, out->placement, out->placement_count) < 0) {
+        supply(local, out->placement, out->placement_count);
         decide(local, kind, bytes, size, out);
+    }
     out->all_held = out->status == FMB_OK && cache_counts(cache).misses == misses;
     return error;
 }

@@ -120,6 +120,8 @@ static void take_event(struct replay *replay, const struct log_event *event)
     } else if (kind == LOG_DEFINITION) {
         const struct match_place place = place_of(replay, event);
         replay_take_definition(replay, event, &place);
+    } else if (kind == LOG_NAMES && replay->options->names) {
+        body_names_take_message(replay->options->names, kind, event->data, (uint32_t) event->kept);
     }
 }
 
@@ -170,8 +172,6 @@ static bool open_replay(struct replay *replay)
     if (!replay->hasher)
         allocate_failed();
     replay->channels = log_channels(options->prefix);
-    replay->defined_end = &replay->defined;
-    replay->unmatched_end = &replay->unmatched;
     replay->rereader = event_reader_open(options->log, options->log_count, options->golden);
     replay->match = match_open();
     return true;
@@ -183,8 +183,8 @@ static void close_replay(struct replay *replay)
         replay->tally[0].bus = answer_bus_counts(replay->bus);
     answer_bus_close(replay->bus);
     local_answerer_close(replay->local);
-    pending_free_list(replay->defined);
-    pending_close(&replay->pending);
+    match_list_drop(&replay->again);
+    match_list_drop(&replay->undefined);
     match_close(replay->match);
     replay_close_pairs(replay);
     event_reader_close(replay->rereader);

@@ -48,22 +48,15 @@ static void take_answer(struct replay *replay, struct match_item *query,
         replay_compare_recorded(replay, query);
 }
 
-static void schedule(struct replay *replay, struct match_item *query)
-{
-    query->pending = NULL;
-    *replay->defined_end = query;
-    replay->defined_end = &query->pending;
-}
-
 /* ---- In this process ---- */
 
 static void answer_here(struct replay *replay, struct match_item *query,
                         const struct new_result *answered)
 {
-    if (handle_is_none(&answered->undefined))
-        take_answer(replay, query, answered);
+    if (answered->status == FMB_UNKNOWN_BODY && !replay->at_end)
+        match_list_add(&replay->undefined, query);
     else
-        pending_add(&replay->pending, &answered->undefined, query);
+        take_answer(replay, query, answered);
 }
 
 /* Excludes a query that cannot be read again: it is not answered or compared. */
@@ -81,9 +74,8 @@ static void fail_changed(struct replay *replay, struct match_item *query)
     exclude(query);
 }
 
-/* last: answers it even if handles are not defined. */
 static void answer_again_here(struct replay *replay, struct match_item *query,
-                              const struct message *message, bool last)
+                              const struct message *message)
 {
     struct new_result answered;
     if (local_answer(replay->local, (enum log_kind) query->key.kind, message->bytes, message->size,
@@ -91,10 +83,7 @@ static void answer_again_here(struct replay *replay, struct match_item *query,
         fail_changed(replay, query);
         return;
     }
-    if (last)
-        take_answer(replay, query, &answered);
-    else
-        answer_here(replay, query, &answered);
+    answer_here(replay, query, &answered);
 }
 
 /* ---- By a service ---- */
@@ -107,7 +96,7 @@ bool replay_on_answered(void *user, struct match_item *query, const struct new_r
     if (is_last)
         take_answer(replay, query, answered);
     else
-        schedule(replay, query);
+        match_list_add(&replay->again, query);
     return is_last;
 }
 
@@ -147,10 +136,10 @@ static void supply_service(struct replay *replay, const struct placement *placem
     }
 }
 
-/* Sends a query again after the service lacked one of its bodies. last: handles without a
+/* Sends a query again after the service lacked one of its bodies. At the end, handles without a
  * definition are left unchanged. */
 static void answer_again_on_bus(struct replay *replay, struct match_item *query,
-                                const struct message *message, bool last)
+                                const struct message *message)
 {
     int32_t count;
     if (logged_query_read(&replay->query, (enum log_kind) query->key.kind, message->bytes,
@@ -159,9 +148,8 @@ static void answer_again_on_bus(struct replay *replay, struct match_item *query,
         return;
     }
     struct placement *placement = logged_query_placements(&replay->query, &count);
-    const int32_t missing = definitions_missing(replay->definitions, placement, count);
-    if (missing >= 0 && !last) {
-        pending_add(&replay->pending, &placement[missing].handle, query);
+    if (!replay->at_end && definitions_missing(replay->definitions, placement, count) >= 0) {
+        match_list_add(&replay->undefined, query);
         return;
     }
     fill_frames(replay, placement, count);
@@ -175,60 +163,26 @@ static void answer_again_on_bus(struct replay *replay, struct match_item *query,
     }
 }
 
+static void answer_again(struct replay *replay)
+{
+    for (struct match_item *query; (query = match_list_take(&replay->again));) {
+        struct message message;
+        if (!replay_read_again(replay, &query->key, &query->place, replay->query_bytes, &message))
+            exclude(query);
+        else if (replay->bus)
+            answer_again_on_bus(replay, query, &message);
+        else
+            answer_again_here(replay, query, &message);
+    }
+}
+
 /* ---- Definitions ---- */
-
-/* Schedules the queries that need this body (NULL: some body). Returns false if there are none. */
-static bool schedule_pending(struct replay *replay, const struct handle *handle)
-{
-    struct match_item *first = pending_take(&replay->pending, handle), *next;
-    for (struct match_item *query = first; query; query = next) {
-        next = query->pending;
-        schedule(replay, query);
-    }
-    return first;
-}
-
-/* Registers the bodies that a service caches: those with frames and an id. */
-static void define(struct replay *replay, const struct placement *placement, int32_t count)
-{
-    for (int32_t i = 0; i < count; i++) {
-        const struct geometry *geometry = &placement[i].geometry;
-        if (!definitions_add_placement(replay->definitions, &placement[i]) ||
-            pending_is_empty(&replay->pending))
-            continue;
-        const struct handle handle = hasher_handle(replay->hasher, geometry->bytes, geometry->size);
-        schedule_pending(replay, &handle);
-    }
-}
-
-static void answer_again(struct replay *replay, struct match_item *query, bool last)
-{
-    struct message message;
-    if (!replay_read_again(replay, &query->key, &query->place, replay->query_bytes, &message))
-        exclude(query);
-    else if (replay->bus)
-        answer_again_on_bus(replay, query, &message, last);
-    else
-        answer_again_here(replay, query, &message, last);
-}
-
-static void answer_defined(struct replay *replay, bool last)
-{
-    while (replay->defined) {
-        struct match_item *query = replay->defined;
-        replay->defined = query->pending;
-        if (!replay->defined)
-            replay->defined_end = &replay->defined;
-        answer_again(replay, query, last);
-    }
-}
 
 void replay_take_definition(struct replay *replay, const struct log_event *event,
                             const struct match_place *place)
 {
-    struct definition *definition = &replay->definition;
-    const char *error =
-        wire_read_definition(event->data, (uint32_t) event->kept, replay->hasher, definition);
+    const char *error = definitions_add_message(replay->definitions, LOG_DEFINITION, event->data,
+                                                (uint32_t) event->kept);
     if (error) {
         replay->tally[place->log].unreadable_definitions++;
         replay->sink->unreadable(replay->sink->user, place, replay->channels.name[LOG_DEFINITION],
@@ -236,10 +190,6 @@ void replay_take_definition(struct replay *replay, const struct log_event *event
         return;
     }
     replay->tally[place->log].definitions++;
-    for (int32_t i = 0; i < definition->body_count; i++)
-        if (definitions_add(replay->definitions, &definition->body[i].geometry))
-            schedule_pending(replay, &definition->body[i].handle);
-    answer_defined(replay, false);
 }
 
 /* ---- Queries ---- */
@@ -274,9 +224,12 @@ void replay_take_query(struct replay *replay, struct message *query)
         else
             answer_bus_query(replay->bus, item, query->bytes, query->size);
     }
-    if (!error && !answered.all_held)
-        define(replay, answered.placement, answered.placement_count);
-    answer_defined(replay, false);
+    if (!error && replay->options->names)
+        body_names_take(replay->options->names, query->key.client_id, answered.placement,
+                        answered.placement_count);
+    for (int32_t i = 0; !error && !answered.all_held && i < answered.placement_count; i++)
+        definitions_add_placement(replay->definitions, &answered.placement[i]);
+    answer_again(replay);
 }
 
 /* ---- The end ---- */
@@ -286,22 +239,22 @@ bool replay_has_ended(const struct replay *replay)
     return replay->bus && !answer_bus_is_running(replay->bus);
 }
 
-/* Waits until all queries are answered, except those with handles that are not defined. */
-static void finish_answers(struct replay *replay, bool last)
+static void finish_answers(struct replay *replay)
 {
     do {
-        answer_defined(replay, last);
+        answer_again(replay);
         if (replay->bus)
             answer_bus_finish(replay->bus);
-    } while (replay->defined && !replay_has_ended(replay));
+    } while (replay->again.first && !replay_has_ended(replay));
 }
 
 void replay_finish_answers(struct replay *replay)
 {
-    finish_answers(replay, false);
+    finish_answers(replay);
     if (replay_has_ended(replay))
         return;
-    while (schedule_pending(replay, NULL)) /* no definition will follow */
-        continue;
-    finish_answers(replay, true);
+    replay->at_end = true; /* no definition will follow */
+    replay->again = replay->undefined;
+    replay->undefined = (struct match_list){.first = NULL};
+    finish_answers(replay);
 }

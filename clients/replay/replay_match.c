@@ -146,13 +146,10 @@ static void on_matched(void *user, struct match_item *query, struct match_item *
         replay_note_match(replay, query, &result->place);
         replay_compare_recorded(replay, query);
     } else if (replay->golden) {
-        *replay->unmatched_end = result;
-        replay->unmatched_end = &result->pending;
-        *replay->unmatched_end = NULL;
+        match_list_add(&replay->unmatched, result);
         return;
     } else {
-        replay_channel(replay, &result->key, &result->place)->results_alone +=
-            result->place.in_range;
+        replay_channel(replay, &result->key, &result->place)->unmatched += result->place.in_range;
     }
     match_free(result);
 }
@@ -172,13 +169,13 @@ void replay_finish_matches(struct replay *replay)
     close_queries(replay);
     match_finish(replay->match, on_matched, replay);
     if (replay->golden) {
-        replay_pair_results(replay, replay->unmatched);
+        replay_pair_results(replay);
         close_queries(replay);
     }
     for (struct match_item *item; (item = match_any(replay->match));) {
         match_remove(replay->match, item);
         if (item->is_result) {
-            replay_channel(replay, &item->key, &item->place)->results_alone++;
+            replay_channel(replay, &item->key, &item->place)->unmatched++;
         } else {
             replay_unrecorded(replay, item);
             if (item->left_over && item->place.in_range)

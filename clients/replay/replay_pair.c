@@ -229,19 +229,18 @@ static void pair_golden(struct replay *replay, struct replay_pair *numbered,
 
 /* ---- Results ---- */
 
-void replay_pair_results(struct replay *replay, struct match_item *first)
+void replay_pair_results(struct replay *replay)
 {
     struct replay_pair *numbered = NULL, *pairs = NULL;
     number_queries(replay, !replay->golden_has_queries, &numbered);
     pair_golden(replay, numbered, &pairs);
     clear(&numbered);
-    for (struct match_item *result = first, *next; result; result = next) {
-        next = result->pending;
+    for (struct match_item *result; (result = match_list_take(&replay->unmatched));) {
         const struct pair_key unique = key_of_ids(&result->key);
         const struct replay_pair *pair = find(pairs, &unique);
         struct message message;
         if (!pair || !pair->query)
-            replay_channel(replay, &result->key, &result->place)->results_alone++;
+            replay_channel(replay, &result->key, &result->place)->unmatched++;
         else if (replay_read_again(replay, &pair->query_key, &result->place, replay->query_bytes,
                                    &message))
             replay_take_result(replay, &message);

@@ -7,7 +7,7 @@
 
 #include "definitions.h"
 #include "log_write.h"
-#include "pending.h"
+#include "match.h"
 #include "replay.h"
 
 union decoded_result {
@@ -30,19 +30,18 @@ struct replay {
     struct local_answerer *local; /* NULL: the service on the bus answers */
     struct answer_bus *bus;       /* NULL: this process answers */
     struct match *match;
-    struct pending_queries pending;
-    /* Queries to answer again, since their handles are now defined; linked by ->pending. */
-    struct match_item *defined, **defined_end;
+    /* Queries to answer again: soon, since the service lacked a body; at the end, since they name a
+     * handle that was not defined before them. */
+    struct match_list again, undefined;
     /* With a golden log: the clients that have a result in it by their ids; its results without a
-     * query, linked by ->pending, at the end; whether it contains queries. */
+     * query, at the end; whether it contains queries. */
     struct replay_pair *matched_clients;
-    struct match_item *unmatched, **unmatched_end;
+    struct match_list unmatched;
     bool golden_has_queries;
     int64_t first_utime;
-    bool started, failed;
+    bool started, at_end, failed;
     int old_version; /* that recorded a message; 0: none did */
     struct logged_query query;
-    struct definition definition;
     struct scene_query supply; /* without pairs */
     /* Buffers for messages read again: a query to be answered, and a result that a callback reads
      * meanwhile. */
@@ -101,9 +100,9 @@ void replay_note_match(struct replay *replay, const struct match_item *query,
                        const struct match_place *result);
 void replay_close_pairs(struct replay *replay);
 
-/* At the end, with a golden log: matches its remaining results, a list linked by ->pending that
- * this frees, with the queries in the table by their order, and sets left_over of these. */
-void replay_pair_results(struct replay *replay, struct match_item *first);
+/* At the end, with a golden log: matches its unmatched results, which this frees, with the queries
+ * in the table by their order, and sets left_over of these. */
+void replay_pair_results(struct replay *replay);
 
 /* Counts and reports a query that only one recording has. key: of the query. */
 void replay_count_left_over(struct replay *replay, const struct match_key *key,

@@ -127,7 +127,7 @@ static const char *differ_in_channel(const struct tally_channel *a, const struct
         return "differences by kind";
     if (a->results != b->results)
         return "results";
-    if (a->results_alone != b->results_alone)
+    if (a->unmatched != b->unmatched)
         return "results alone";
     if (a->results_again != b->results_again || a->contradictions != b->contradictions)
         return "second results";
@@ -183,8 +183,7 @@ static const char *odd_channel(const struct tally_channel *channel)
         return "queries and their outcomes";
     if (differences < channel->outcome[REPLAY_DIFFERENT])
         return "queries and their differences";
-    return channel->results_alone + channel->results_again + channel->contradictions >
-                   channel->results
+    return channel->unmatched + channel->results_again + channel->contradictions > channel->results
                ? "results alone or again"
                : NULL;
 }
@@ -204,7 +203,7 @@ const char *replay_report_odd(const struct replay_report *report, int64_t size)
         return "the bytes of the logs";
     if (report->damages != tally->damages || report->damaged_bytes != tally->damaged_bytes)
         return "damages reported and counted";
-    if (report->unreadable != tally_unreadable(tally) + tally_contradictions(tally))
+    if (report->unreadable != tally_unreadable(tally) + tally_both(tally).contradictions)
         return "unreadable messages reported and counted";
     return differences != report->found_count ? "differences reported and counted" : NULL;
 }
