@@ -270,16 +270,3 @@ int32_t definitions_write(struct definitions *definitions, const struct placemen
     }
     return flush(definitions, sink, user) ? bodies : -1;
 }
-
-int32_t definitions_write_again(struct definitions *definitions, definition_sink *sink, void *user)
-{
-    int32_t bodies = 0;
-    for (struct defined_body *body = definitions->by_bytes; body; body = body->by_bytes.next) {
-        if (body->file != definitions->file)
-            continue;
-        bodies++;
-        if (!pack(definitions, body, sink, user))
-            return -1;
-    }
-    return flush(definitions, sink, user) ? bodies : -1;
-}

@@ -79,8 +79,4 @@ size_t definitions_needed(const struct definitions *definitions, const struct pl
 int32_t definitions_write(struct definitions *definitions, const struct placement *placement,
                           int32_t count, definition_sink *sink, void *user);
 
-/* Writes definitions of all bodies that the file defines, for a file that has lost its beginning.
- * Returns as definitions_write(). */
-int32_t definitions_write_again(struct definitions *definitions, definition_sink *sink, void *user);
-
 #endif

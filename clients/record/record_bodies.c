@@ -124,23 +124,13 @@ size_t record_bodies_needed(const struct record_bodies *bodies)
     return definitions_needed(bodies->definitions, placement, count);
 }
 
-static bool count_defined(struct record_bodies *bodies, int32_t defined)
-{
-    bodies->counts.defined += defined > 0 ? defined : 0;
-    return defined >= 0;
-}
-
 bool record_bodies_define(struct record_bodies *bodies, definition_sink *sink, void *user)
 {
     int32_t count;
     const struct placement *placement = placements(bodies, &count);
-    return count_defined(bodies,
-                         definitions_write(bodies->definitions, placement, count, sink, user));
-}
-
-bool record_bodies_define_again(struct record_bodies *bodies, definition_sink *sink, void *user)
-{
-    return count_defined(bodies, definitions_write_again(bodies->definitions, sink, user));
+    const int32_t defined = definitions_write(bodies->definitions, placement, count, sink, user);
+    bodies->counts.defined += defined > 0 ? defined : 0;
+    return defined >= 0;
 }
 
 /* ---- What is known ---- */

@@ -50,10 +50,6 @@ bool record_bodies_define(struct record_bodies *bodies, definition_sink *sink, v
 /* Keeps the bodies and names of the message read, which is in the file. */
 void record_bodies_keep(struct record_bodies *bodies);
 
-/* Writes definitions of all known bodies that the file defined, for one that has lost its
- * beginning. */
-bool record_bodies_define_again(struct record_bodies *bodies, definition_sink *sink, void *user);
-
 /* The time when a request is due; INT64_MAX: none is, before the next message. */
 int64_t record_bodies_due(const struct record_bodies *bodies);
 

