@@ -59,15 +59,11 @@ struct compare_options {
 
 typedef void difference_sink(void *user, const struct difference *difference);
 
-/* Call the sink for each difference. In: results that were decoded. Never return REPLAY_UNRECORDED.
- */
-enum replay_outcome compare_pairs(const struct compare_options *options,
-                                  const struct pair_query *query, const struct pair_result *then,
-                                  const struct pair_result *now, difference_sink *sink, void *user);
-enum replay_outcome compare_scenes(const struct compare_options *options,
-                                   const struct scene_query *query, const struct scene_result *then,
-                                   const struct scene_result *now, difference_sink *sink,
-                                   void *user);
+/* Calls the sink for each difference. In: a query with two results, which were decoded. Never
+ * returns REPLAY_UNRECORDED. */
+enum replay_outcome compare_results(const struct compare_options *options,
+                                    const struct replayed *replayed, difference_sink *sink,
+                                    void *user);
 
 /* Whether the status depends on the state of the service, not on the query: it was busy, or did not
  * hold a body. */

@@ -96,31 +96,35 @@ static bool read_both(struct replay *replay, const struct match_item *item)
     return read_query(replay, &item->key, &item->place);
 }
 
-/* ---- For the page ---- */
-
-static void add_to_page(struct replay *replay, const struct match_item *item, bool has_recorded,
-                        enum replay_outcome outcome)
+/* The query, as it was read, with its results. */
+static struct replayed replayed_of(struct replay *replay, bool has_recorded)
 {
-    struct replayed replayed = {.log = replay->options->log[item->place.log],
-                                .event_number = item->place.number,
-                                .offset = item->place.offset,
-                                .utime = item->place.utime,
-                                .outcome = outcome};
+    struct replayed out = {.outcome = REPLAY_UNRECORDED};
+    if (replay->compared.kind == LOG_PAIR_QUERY) {
+        out.pair = &replay->compared.pair;
+        out.pair_now = &replay->now.pair;
+        out.pair_then = has_recorded ? &replay->then.pair : NULL;
+    } else {
+        out.scene = &replay->compared.scene;
+        out.scene_now = &replay->now.scene;
+        out.scene_then = has_recorded ? &replay->then.scene : NULL;
+    }
+    return out;
+}
+
+static void add_to_page(struct replay *replay, const struct match_item *item,
+                        struct replayed replayed)
+{
     int32_t count;
     struct placement *placement = logged_query_placements(&replay->compared, &count);
+    replayed.log = replay->options->log[item->place.log];
+    replayed.event_number = item->place.number;
+    replayed.offset = item->place.offset;
+    replayed.utime = item->place.utime;
     definitions_fill(replay->definitions, placement, count);
     for (int32_t i = 0; i < count; i++)
         if (placement_by_handle(&placement[i]) && placement[i].geometry.size > GEOMETRY_NONE_BYTES)
             placement[i].frame_count = geometry_begin(&placement[i].geometry).frames_left;
-    if (item->key.kind == LOG_PAIR_QUERY) {
-        replayed.pair = &replay->compared.pair;
-        replayed.pair_now = &replay->now.pair;
-        replayed.pair_then = has_recorded ? &replay->then.pair : NULL;
-    } else {
-        replayed.scene = &replay->compared.scene;
-        replayed.scene_now = &replay->now.scene;
-        replayed.scene_then = has_recorded ? &replay->then.scene : NULL;
-    }
     page_take(replay->options->page, &replayed);
 }
 
@@ -135,16 +139,6 @@ static void on_difference(void *user, const struct difference *difference)
                                                *difference};
     replay_channel(replay, &query->key, &query->place)->differences[difference->kind]++;
     replay->sink->difference(replay->sink->user, &located);
-}
-
-static enum replay_outcome compare(struct replay *replay, difference_sink *sink)
-{
-    const struct compare_options *options = &replay->options->compare;
-    if (replay->compared.kind == LOG_PAIR_QUERY)
-        return compare_pairs(options, &replay->compared.pair, &replay->then.pair, &replay->now.pair,
-                             sink, replay);
-    return compare_scenes(options, &replay->compared.scene, &replay->then.scene, &replay->now.scene,
-                          sink, replay);
 }
 
 static void count(struct replay *replay, const struct match_item *query,
@@ -172,12 +166,12 @@ void replay_compare(struct replay *replay, const struct match_item *query)
     if (!query->place.in_range || !read_both(replay, query))
         return;
     replay->item = query;
-    const enum replay_outcome outcome = compare(replay, on_difference);
-    count(replay, query, outcome,
-          query->key.kind == LOG_PAIR_QUERY ? replay->then.pair.compute_ns
-                                            : replay->then.scene.compute_ns);
+    struct replayed replayed = replayed_of(replay, true);
+    replayed.outcome = compare_results(&replay->options->compare, &replayed, on_difference, replay);
+    count(replay, query, replayed.outcome,
+          replayed.pair ? replay->then.pair.compute_ns : replay->then.scene.compute_ns);
     if (replay->options->page)
-        add_to_page(replay, query, true, outcome);
+        add_to_page(replay, query, replayed);
 }
 
 void replay_unrecorded(struct replay *replay, const struct match_item *query)
@@ -186,7 +180,7 @@ void replay_unrecorded(struct replay *replay, const struct match_item *query)
         return;
     count(replay, query, REPLAY_UNRECORDED, 0);
     if (replay->options->page && read_both(replay, query))
-        add_to_page(replay, query, false, REPLAY_UNRECORDED);
+        add_to_page(replay, query, replayed_of(replay, false));
 }
 
 /* ---- Second results ---- */
@@ -208,7 +202,11 @@ void replay_compare_second(struct replay *replay, const struct match_note *note,
     if (read_result(first->key.kind, first->bytes, first->size, &replay->now)) {
         errno = EIO; /* it could be decoded before */
         replay_fail_log(replay, first->place.log);
-    } else if (compare(replay, no_difference) != REPLAY_DIFFERENT) {
+        return;
+    }
+    const struct replayed replayed = replayed_of(replay, true);
+    if (compare_results(&replay->options->compare, &replayed, no_difference, NULL) !=
+        REPLAY_DIFFERENT) {
         tally->results_again++;
     } else {
         tally->contradictions++;
