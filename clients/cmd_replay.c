@@ -120,7 +120,7 @@ static const char *log_name(const struct replay_run *run, int log)
     return log < replay->log_count ? replay->log[log] : replay->golden;
 }
 
-static void on_found(void *user, const struct located_difference *found)
+static void on_found(void *user, const struct difference *found)
 {
     struct replay_run *run = user;
     listing_put(run->differences, found);
@@ -217,7 +217,7 @@ static int code_of(const struct replay_arguments *options, const struct tally *a
     return nothing || all->damages > 0 || tally_unreadable(all) > 0 ? ARGS_USAGE : ARGS_ANSWERED;
 }
 
-static void report_one(void *user, const struct located_difference *found)
+static void report_one(void *user, const struct difference *found)
 {
     struct replay_run *run = user;
     const bool several = run->options->replay.log_count > 1;

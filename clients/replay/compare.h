@@ -33,20 +33,16 @@ struct difference_side {
 };
 
 struct difference {
+    /* Of the query, set by the caller of compare_results(). */
+    struct match_place place;
+    enum log_kind query_kind;
+    int64_t client_id, sequence_number;
     enum difference_kind kind;
     bool whole; /* of the scene as a whole (its status), not of a pair */
     int64_t body_id[2];
     unsigned placement[2]; /* indices in the query */
     int dim;
     struct difference_side then, now;
-};
-
-/* A difference, with the position of its query in the logs. */
-struct located_difference {
-    struct match_place place; /* of the query */
-    enum log_kind kind;       /* of the query */
-    int64_t client_id, sequence_number;
-    struct difference difference;
 };
 
 struct compare_options {

@@ -6,7 +6,7 @@
 #include <string.h>
 
 struct listing_entry {
-    struct located_difference located;
+    struct difference difference;
     int64_t number;       /* order of arrival */
     char *certificate[2]; /* owned; NULL: none */
 };
@@ -44,7 +44,7 @@ void listing_close(struct listing *list)
 static int compare_entries(const void *left, const void *right)
 {
     const struct listing_entry *a = left, *b = right;
-    const struct match_place *x = &a->located.place, *y = &b->located.place;
+    const struct match_place *x = &a->difference.place, *y = &b->difference.place;
     if (x->log != y->log)
         return x->log < y->log ? -1 : 1;
     if (x->offset != y->offset)
@@ -61,16 +61,14 @@ static char *copy_of(const char *certificate)
     return copy;
 }
 
-static void set(struct listing_entry *entry, const struct located_difference *located,
-                int64_t number)
+static void set(struct listing_entry *entry, const struct difference *difference, int64_t number)
 {
-    struct difference *difference = &entry->located.difference;
-    entry->located = *located;
+    entry->difference = *difference;
     entry->number = number;
-    entry->certificate[0] = copy_of(located->difference.then.certificate);
-    entry->certificate[1] = copy_of(located->difference.now.certificate);
-    difference->then.certificate = entry->certificate[0];
-    difference->now.certificate = entry->certificate[1];
+    entry->certificate[0] = copy_of(difference->then.certificate);
+    entry->certificate[1] = copy_of(difference->now.certificate);
+    entry->difference.then.certificate = entry->certificate[0];
+    entry->difference.now.certificate = entry->certificate[1];
 }
 
 /* Sorts, and removes the differences beyond the limit. */
@@ -82,7 +80,7 @@ static void shorten(struct listing *list)
         free_entry(&list->entry[--list->count]);
 }
 
-void listing_put(struct listing *list, const struct located_difference *located)
+void listing_put(struct listing *list, const struct difference *difference)
 {
     const int64_t number = list->put++;
     if (list->limit == 0)
@@ -90,7 +88,7 @@ void listing_put(struct listing *list, const struct located_difference *located)
     if (list->count == 2 * list->limit)
         shorten(list);
     list->entry = allocate_grow(list->entry, &list->capacity, list->count + 1, sizeof *list->entry);
-    set(&list->entry[list->count++], located, number);
+    set(&list->entry[list->count++], difference, number);
 }
 
 int64_t listing_beyond(const struct listing *list)
@@ -98,9 +96,9 @@ int64_t listing_beyond(const struct listing *list)
     return list->put > (int64_t) list->limit ? list->put - (int64_t) list->limit : 0;
 }
 
-void listing_each(struct listing *list, located_difference_sink *sink, void *user)
+void listing_each(struct listing *list, difference_sink *sink, void *user)
 {
     shorten(list);
     for (size_t i = 0; i < list->count; i++)
-        sink(user, &list->entry[i].located);
+        sink(user, &list->entry[i].difference);
 }

@@ -11,7 +11,7 @@
 
 /* Callbacks for the progress and the findings of a replay. None may be NULL. */
 struct replay_sink {
-    void (*difference)(void *user, const struct located_difference *located);
+    void (*difference)(void *user, const struct difference *difference);
     /* A message that cannot be decoded, and why; or a second result that contradicts the first. */
     void (*unreadable)(void *user, const struct match_place *place, const char *channel,
                        const char *what);

@@ -134,9 +134,11 @@ static void on_difference(void *user, const struct difference *difference)
 {
     struct replay *replay = user;
     const struct match_item *query = replay->item;
-    const struct located_difference located = {query->place, (enum log_kind) query->key.kind,
-                                               query->key.client_id, query->key.sequence_number,
-                                               *difference};
+    struct difference located = *difference;
+    located.place = query->place;
+    located.query_kind = (enum log_kind) query->key.kind;
+    located.client_id = query->key.client_id;
+    located.sequence_number = query->key.sequence_number;
     replay_channel(replay, &query->key, &query->place)->differences[difference->kind]++;
     replay->sink->difference(replay->sink->user, &located);
 }

@@ -31,11 +31,11 @@ static void write_side(struct json_writer *json, const char *key, int dim,
 }
 
 static void write_names(struct json_writer *json, const struct body_names *names,
-                        const struct located_difference *located)
+                        const struct difference *difference)
 {
-    const int64_t *id = located->difference.body_id;
-    const char *name[2] = {body_names_find(names, located->client_id, id[0]),
-                           body_names_find(names, located->client_id, id[1])};
+    const int64_t *id = difference->body_id;
+    const char *name[2] = {body_names_find(names, difference->client_id, id[0]),
+                           body_names_find(names, difference->client_id, id[1])};
     if (!name[0] && !name[1])
         return;
     json_begin(json, "names", '[');
@@ -45,15 +45,14 @@ static void write_names(struct json_writer *json, const struct body_names *names
 }
 
 static void write_difference(struct json_writer *json, const struct body_names *names,
-                             const struct located_difference *located)
+                             const struct difference *difference)
 {
-    const struct difference *difference = &located->difference;
     if (!difference->whole) {
         json_integer(json, "a", difference->body_id[0]);
         json_integer(json, "b", difference->body_id[1]);
         json_integers(json, "placements",
                       (const int64_t[]){difference->placement[0], difference->placement[1]}, 2);
-        write_names(json, names, located);
+        write_names(json, names, difference);
     }
     json_string(json, "kind", difference_name[difference->kind]);
     if (difference->whole) {
@@ -65,19 +64,19 @@ static void write_difference(struct json_writer *json, const struct body_names *
     }
 }
 
-void replay_json_found(struct json_writer *json, const struct located_difference *located,
+void replay_json_found(struct json_writer *json, const struct difference *difference,
                        const struct body_names *names, const char *log, int64_t first_utime)
 {
     json_begin(json, NULL, '{');
     json_string(json, "log", log);
-    json_integer(json, "event", located->place.number);
-    json_integer(json, "offset", located->place.offset);
-    json_integer(json, "utime", located->place.utime);
-    json_number(json, "time", ((double) located->place.utime - (double) first_utime) / 1e6);
-    json_string(json, "channel", tally_channel_name[tally_channel_of(located->kind)]);
-    json_integer(json, "client_id", located->client_id);
-    json_integer(json, "sequence_number", located->sequence_number);
-    write_difference(json, names, located);
+    json_integer(json, "event", difference->place.number);
+    json_integer(json, "offset", difference->place.offset);
+    json_integer(json, "utime", difference->place.utime);
+    json_number(json, "time", ((double) difference->place.utime - (double) first_utime) / 1e6);
+    json_string(json, "channel", tally_channel_name[tally_channel_of(difference->query_kind)]);
+    json_integer(json, "client_id", difference->client_id);
+    json_integer(json, "sequence_number", difference->sequence_number);
+    write_difference(json, names, difference);
     json_end(json, '}');
 }
 

@@ -28,14 +28,14 @@ static void begin_case(struct junit *junit, const char *name)
     fprintf(junit->out, "\" name=\"%s\">\n", name);
 }
 
-static void write_line(void *user, const struct located_difference *located)
+static void write_line(void *user, const struct difference *difference)
 {
     struct junit *junit = user;
     char line[REPLAY_LINE_MAX];
-    if (located->place.log != junit->log || tally_channel_of(located->kind) != junit->channel ||
-        junit->lines++ >= LINES_MAX)
+    if (difference->place.log != junit->log ||
+        tally_channel_of(difference->query_kind) != junit->channel || junit->lines++ >= LINES_MAX)
         return;
-    replay_line(located, junit->options->names, NULL, junit->first_utime, line);
+    replay_line(difference, junit->options->names, NULL, junit->first_utime, line);
     write_xml(junit->out, line);
     putc('\n', junit->out);
 }

@@ -16,7 +16,7 @@
  * read back as the same bits; certificates are truncated. log: name of the log; NULL if there is
  * only one. */
 enum { REPLAY_LINE_MAX = 1152 };
-void replay_line(const struct located_difference *located, const struct body_names *names,
+void replay_line(const struct difference *difference, const struct body_names *names,
                  const char *log, int64_t first_utime, char line[REPLAY_LINE_MAX]);
 
 /* Prints the counts as text. */
@@ -34,7 +34,7 @@ void replay_text_summary(FILE *out, const struct tally *tally);
  *
  * names: where a body has one. not_listed: number of differences beyond the limit. */
 struct json_writer replay_json_begin(FILE *out);
-void replay_json_found(struct json_writer *json, const struct located_difference *located,
+void replay_json_found(struct json_writer *json, const struct difference *difference,
                        const struct body_names *names, const char *log, int64_t first_utime);
 void replay_json_end(struct json_writer *json, const struct tally *tally, int64_t not_listed,
                      int exit_code);

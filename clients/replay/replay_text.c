@@ -81,20 +81,19 @@ static void side_text(const struct difference *difference, const struct differen
     }
 }
 
-void replay_line(const struct located_difference *located, const struct body_names *names,
+void replay_line(const struct difference *difference, const struct body_names *names,
                  const char *log, int64_t first_utime, char line[REPLAY_LINE_MAX])
 {
-    const struct difference *difference = &located->difference;
     char then[SIDE_MAX], now[SIDE_MAX], bodies[160] = "the scene", body[2][BODY_NAMES_TEXT_MAX];
     side_text(difference, &difference->then, then);
     side_text(difference, &difference->now, now);
     if (!difference->whole)
         snprintf(bodies, sizeof bodies, "bodies %s %s",
-                 body_names_text(names, located->client_id, difference->body_id[0], body[0]),
-                 body_names_text(names, located->client_id, difference->body_id[1], body[1]));
+                 body_names_text(names, difference->client_id, difference->body_id[0], body[0]),
+                 body_names_text(names, difference->client_id, difference->body_id[1], body[1]));
     snprintf(line, REPLAY_LINE_MAX, "%.200s%sevent %" PRId64 "  %.6f s  %s  %s: %s, now %s",
-             log ? log : "", log ? ": " : "", located->place.number,
-             ((double) located->place.utime - (double) first_utime) / 1e6, bodies,
+             log ? log : "", log ? ": " : "", difference->place.number,
+             ((double) difference->place.utime - (double) first_utime) / 1e6, bodies,
              difference_name[difference->kind], then, now);
 }
 

@@ -136,7 +136,7 @@ struct reporting {
     const struct replay_options *options;
 };
 
-static void on_found(void *user, const struct located_difference *found)
+static void on_found(void *user, const struct difference *found)
 {
     struct reporting *reporting = user;
     reporting->found++;
@@ -162,7 +162,7 @@ static void on_progress(void *user, int64_t bytes)
     FUZZ_CHECK(bytes >= 0);
 }
 
-static void report_one(void *user, const struct located_difference *found)
+static void report_one(void *user, const struct difference *found)
 {
     struct reporting *reporting = user;
     char line[REPLAY_LINE_MAX];

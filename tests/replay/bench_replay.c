@@ -138,7 +138,7 @@ static double batch_ns(struct scenes *scenes)
 
 /* ---- Replay ---- */
 
-static void no_found(void *user, const struct located_difference *found)
+static void no_found(void *user, const struct difference *found)
 {
     (void) user;
     (void) found;

@@ -83,7 +83,7 @@ void __wrap_page_take(struct page *page, const struct replayed *replayed)
     taken->query[taken->count++].outcome = replayed->outcome;
 }
 
-static void on_found(void *user, const struct located_difference *found)
+static void on_found(void *user, const struct difference *found)
 {
     (void) user;
     (void) found;

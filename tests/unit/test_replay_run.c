@@ -260,8 +260,8 @@ static void test_differences_are_where_they_are(void **state)
         assert_int_equal(report.found[i].place.number, 2 * (5 * i + 2));
         assert_int_equal(report.found[i].place.utime, 100 * (5 * i + 2));
         assert_int_equal(report.found[i].sequence_number, 5 * i + 2);
-        assert_int_equal(report.found[i].difference.kind, DIFFERENT_VERDICT);
-        assert_int_equal(report.found[i].difference.now.answer.verdict, FMB_SEPARATED);
+        assert_int_equal(report.found[i].kind, DIFFERENT_VERDICT);
+        assert_int_equal(report.found[i].now.answer.verdict, FMB_SEPARATED);
     }
     replay_report_free(&report);
 }
@@ -319,7 +319,7 @@ static void test_a_verdict_is_compared_where_the_definition_comes_late(void **st
     log_definition(2, (double[]){1, 2, 0});
     struct replay_report report = replay();
     assert_int_equal(report.found_count, 1);
-    assert_int_equal(report.found[0].difference.now.answer.verdict, FMB_TOUCHING);
+    assert_int_equal(report.found[0].now.answer.verdict, FMB_TOUCHING);
     replay_report_free(&report);
 }
 
@@ -334,7 +334,7 @@ static void overwrite(void *user, int64_t bytes)
     assert_int_equal(pwrite(file, "\xff\xff\xff\xff", 4, overwritten), 4);
 }
 
-static void refuse_difference(void *user, const struct located_difference *difference)
+static void refuse_difference(void *user, const struct difference *difference)
 {
     (void) user;
     (void) difference;
