@@ -47,7 +47,6 @@ struct match_item *match_find(const struct match *match, const struct match_key 
 static void put(struct match *match, struct match_item *item)
 {
     struct match_item *first = match_find(match, &item->key);
-    item->in_table = true;
     item->next = NULL;
     item->last = item;
     if (first) {
@@ -78,7 +77,6 @@ void match_remove(struct match *match, struct match_item *item)
 {
     struct match_item *next = item->next;
     HASH_DELETE(hh, match->items, item);
-    item->in_table = false;
     if (!next)
         return;
     next->last = item->last;
@@ -87,14 +85,7 @@ void match_remove(struct match *match, struct match_item *item)
 
 void match_free(struct match_item *item)
 {
-    free(item->now);
     free(item);
-}
-
-void match_drop(struct match_item *item)
-{
-    if (item && !item->in_table)
-        match_free(item);
 }
 
 struct match_item *match_any(const struct match *match)
@@ -163,7 +154,7 @@ struct match_item *match_list_take(struct match_list *list)
 void match_list_drop(struct match_list *list)
 {
     while (list->first)
-        match_drop(match_list_take(list));
+        free(match_list_take(list));
 }
 
 /* ---- Notes ---- */

@@ -29,13 +29,11 @@ struct match_item {
     struct match_place place;
     bool is_result; /* otherwise a query; the members below are for the user */
     bool unreadable;
-    bool in_table;     /* the item is in the table */
     bool has_recorded; /* the log has a result, at then */
     bool sent_whole;   /* sent with frames, after UNKNOWN_BODY */
     bool left_over;    /* a recording by another client lacks this query */
     struct match_place then;
-    unsigned char *now; /* owned; the new result; NULL: none yet */
-    uint32_t now_size;
+    size_t index;              /* of the query */
     struct match_item *listed; /* the next item of a struct match_list */
     struct match_item *next;   /* the next item with the same key; NULL: none */
     /* Private: */
@@ -63,9 +61,6 @@ struct match_item *match_new(const struct match_key *key, const struct match_pla
 /* Removes the first item with its key from the table. Free it with match_free(). */
 void match_remove(struct match *match, struct match_item *item);
 void match_free(struct match_item *item);
-
-/* Frees an item unless it is in the table, which owns it. item may be NULL. */
-void match_drop(struct match_item *item);
 
 /* Some item in the table that is the first with its key; NULL: the table is empty. */
 struct match_item *match_any(const struct match *match);

@@ -153,7 +153,7 @@ static void on_result(void *user, const struct fmb_client_raw_result *result)
     }
     slot->bus = NULL;
     if (!is_running(bus))
-        match_drop(item);
+        match_free(item);
     else if (item)
         deliver(bus, item, &answered);
 }
@@ -240,7 +240,7 @@ static void send(struct answer_bus *bus, struct match_item *item, const unsigned
     }
     slot->bus = NULL;
     stop(bus, ANSWER_BUS_FAILED, item ? &item->place : NULL);
-    match_drop(item);
+    match_free(item);
 }
 
 /* Answers a query that the engine does not send, with the status of a service: it is too long, or
@@ -280,7 +280,7 @@ void answer_bus_query(struct answer_bus *bus, struct match_item *item, const uns
     const size_t largest = bytes_of(bus, size);
     wait_for_turn(bus, &item->place, largest);
     if (!is_running(bus)) {
-        match_drop(item);
+        match_free(item);
         return;
     }
     bus->counts.whole += item->sent_whole;
@@ -330,7 +330,7 @@ void answer_bus_close(struct answer_bus *bus)
         return;
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++)
         if (bus->slot[i].bus)
-            match_drop(bus->slot[i].item);
+            match_free(bus->slot[i].item);
     fmb_client_close(bus->client);
     if (bus->signals >= 0)
         close(bus->signals);

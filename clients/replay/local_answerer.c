@@ -17,7 +17,9 @@ struct local_answerer {
     struct scene_job *job;
     struct pair_job *pair_job;
     struct definitions *definitions;
-    struct logged_query query; /* a pair query, or one that is too long */
+    struct logged_query query;         /* a pair query, or one that is too long */
+    const struct placement *placement; /* [placement_count] of the query answered last */
+    int32_t placement_count;
     struct pair_result pair;
     struct scene_result refused;
     unsigned char bytes[QUERY_BYTES_MAX];
@@ -101,8 +103,8 @@ static const char *decide_pair(struct local_answerer *local, const unsigned char
     result->compute_ns = out->compute_ns = clock_ns() - begin;
     out->status = result->status;
     out->pairs = out->status == FMB_OK;
-    out->placement = local->query.pair.placement;
-    out->placement_count = 2;
+    local->placement = local->query.pair.placement;
+    local->placement_count = 2;
     out->size = wire_write_pair_result(result, local->bytes);
     return NULL;
 }
@@ -121,8 +123,8 @@ static const char *decide_scene(struct local_answerer *local, const unsigned cha
     result->compute_ns = out->compute_ns = clock_ns() - begin;
     out->status = result->status;
     out->pairs = replayed_decided(query, result);
-    out->placement = query->placement;
-    out->placement_count = query_stored_placements(query);
+    local->placement = query->placement;
+    local->placement_count = query_stored_placements(query);
     out->size = wire_write_scene_result(result, local->bytes);
     return NULL;
 }
@@ -156,17 +158,14 @@ static const char *refuse(struct local_answerer *local, enum log_kind kind,
 const char *local_answer(struct local_answerer *local, enum log_kind kind,
                          const unsigned char *bytes, uint32_t size, struct new_result *out)
 {
-    struct cache *cache = answerer_cache(local->answerer);
-    const int64_t misses = cache_counts(cache).misses;
     *out = (struct new_result){.bytes = local->bytes};
     if (size > QUERY_BYTES_MAX)
         return refuse(local, kind, bytes, size, out);
     const char *error = decide(local, kind, bytes, size, out);
     if (!error && out->status == FMB_UNKNOWN_BODY &&
-        definitions_missing(local->definitions, out->placement, out->placement_count) < 0) {
-        supply(local, out->placement, out->placement_count);
+        definitions_missing(local->definitions, local->placement, local->placement_count) < 0) {
+        supply(local, local->placement, local->placement_count);
         decide(local, kind, bytes, size, out);
     }
-    out->all_held = out->status == FMB_OK && cache_counts(cache).misses == misses;
     return error;
 }

@@ -5,14 +5,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
-
-/* ---- The golden log: results in the order of their queries ---- */
-
-static void fail_golden(struct replay *replay, int64_t offset, const char *what)
-{
-    complain("%s: offset %" PRId64 ": %s", replay->options->golden, offset, what);
-    replay->failed = true;
-}
+#include <stdlib.h>
 
 static const char *read_key(enum log_kind kind, const struct log_event *event, struct message *out)
 {
@@ -23,6 +16,14 @@ static const char *read_key(enum log_kind kind, const struct log_event *event, s
     out->bytes = event->data;
     out->size = (uint32_t) event->kept;
     return error;
+}
+
+/* ---- The golden log ---- */
+
+static void fail_golden(struct replay *replay, int64_t offset, const char *what)
+{
+    complain("%s: offset %" PRId64 ": %s", replay->options->golden, offset, what);
+    replay->failed = true;
 }
 
 static void take_golden(struct replay *replay, enum log_kind kind, const struct log_event *event)
@@ -43,30 +44,25 @@ static void take_golden(struct replay *replay, enum log_kind kind, const struct 
     replay_take_result(replay, &result);
 }
 
-/* Processes the next result of the golden log. Returns false if there is none. */
-static bool take_next_golden(struct replay *replay)
+static void read_golden(struct replay *replay)
 {
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
-    while ((outcome = log_next(replay->golden, &event, &damage)) == LOG_EVENT ||
-           outcome == LOG_DAMAGE) {
+    while ((outcome = log_next(replay->golden, &event, &damage)) < LOG_END) {
         const enum log_kind kind =
             outcome == LOG_EVENT ? log_kind_of(&replay->channels, &event) : LOG_OTHER;
         replay->golden_has_queries = replay->golden_has_queries || log_kind_is_query(kind);
-        if (log_kind_is_result(kind)) {
-            take_golden(replay, kind, &event);
-            return true;
-        }
         if (outcome == LOG_DAMAGE)
             fail_golden(replay, damage.offset, damage.what);
+        else if (log_kind_is_result(kind))
+            take_golden(replay, kind, &event);
     }
     if (outcome == LOG_FAILED)
         replay_fail(replay, replay->options->golden);
-    return false;
 }
 
-/* ---- Events ---- */
+/* ---- The first reading ---- */
 
 static bool in_time(const struct replay *replay, int64_t utime)
 {
@@ -83,26 +79,53 @@ static struct match_place place_of(const struct replay *replay, const struct log
                                 .utime = event->utime};
 }
 
+/* Collects the bodies and names of a query. Returns as logged_query_read(). */
+static const char *read_query(struct replay *replay, const struct message *query)
+{
+    int32_t count;
+    const char *error = logged_query_read(&replay->query, (enum log_kind) query->key.kind,
+                                          query->bytes, query->size);
+    const struct placement *placement = logged_query_placements(&replay->query, &count);
+    if (error)
+        return error;
+    if (replay->options->names)
+        body_names_take(replay->options->names, query->key.client_id, placement, count);
+    for (int32_t i = 0; i < count; i++)
+        definitions_add_placement(replay->definitions, &placement[i]);
+    return NULL;
+}
+
 static void take_message(struct replay *replay, enum log_kind kind, const struct log_event *event)
 {
-    struct message message;
-    message.place = place_of(replay, event);
+    struct message message = {.place = place_of(replay, event)};
     const char *error = read_key(kind, event, &message);
+    const bool has_ids = !error, is_query = log_kind_is_query(kind);
+    if (has_ids && is_query)
+        error = read_query(replay, &message);
     if (error && message.place.in_range)
         replay_refuse(replay, kind, &message, error);
-    if (error)
-        return;
-    if (log_kind_is_query(kind)) {
-        replay_take_query(replay, &message);
-        if (replay->golden)
-            take_next_golden(replay);
-    } else if (!replay->golden) {
+    if (has_ids && is_query) {
+        replay_take_query(replay, &message, error);
+    } else if (has_ids && !replay->golden) {
         replay_channel(replay, &message.key, &message.place)->results += message.place.in_range;
         replay_take_result(replay, &message);
     }
 }
 
-static void take_event(struct replay *replay, const struct log_event *event)
+static void take_definition(struct replay *replay, const struct log_event *event)
+{
+    const struct match_place place = place_of(replay, event);
+    struct tally *tally = &replay->tally[place.log];
+    const char *error = definitions_add_message(replay->definitions, LOG_DEFINITION, event->data,
+                                                (uint32_t) event->kept);
+    tally->definitions += !error;
+    tally->unreadable_definitions += error != NULL;
+    if (error)
+        replay->sink->unreadable(replay->sink->user, &place, replay->channels.name[LOG_DEFINITION],
+                                 error);
+}
+
+static void survey_event(struct replay *replay, const struct log_event *event)
 {
     const enum log_kind kind = log_kind_of(&replay->channels, event);
     struct tally *tally = &replay->tally[replay->input.log];
@@ -113,17 +136,27 @@ static void take_event(struct replay *replay, const struct log_event *event)
     tally->bytes += event->length;
     tally->statuses += kind == LOG_STATUS;
     tally->other_events += kind == LOG_OTHER;
-    if (log_kind_old_version(kind, event)) {
+    if (log_kind_old_version(kind, event))
         replay->old_version = log_kind_old_version(kind, event);
-    } else if (log_kind_is_query(kind) || log_kind_is_result(kind)) {
+    else if (log_kind_is_query(kind) || log_kind_is_result(kind))
         take_message(replay, kind, event);
-    } else if (kind == LOG_DEFINITION) {
-        const struct match_place place = place_of(replay, event);
-        replay_take_definition(replay, event, &place);
-    } else if (kind == LOG_NAMES && replay->options->names) {
+    else if (kind == LOG_DEFINITION)
+        take_definition(replay, event);
+    else if (kind == LOG_NAMES && replay->options->names)
         body_names_take_message(replay->options->names, kind, event->data, (uint32_t) event->kept);
-    }
 }
+
+/* ---- The second reading ---- */
+
+static void answer_event(struct replay *replay, const struct log_event *event)
+{
+    const enum log_kind kind = log_kind_of(&replay->channels, event);
+    struct message message = {.place = place_of(replay, event)};
+    if (log_kind_is_query(kind) && !read_key(kind, event, &message))
+        replay_answer_query(replay, &message);
+}
+
+/* ---- Both ---- */
 
 static void take_damage(struct replay *replay, const struct log_damage *damage)
 {
@@ -184,7 +217,7 @@ static void close_replay(struct replay *replay)
     answer_bus_close(replay->bus);
     local_answerer_close(replay->local);
     match_list_drop(&replay->again);
-    match_list_drop(&replay->undefined);
+    free(replay->recorded);
     match_close(replay->match);
     replay_close_pairs(replay);
     event_reader_close(replay->rereader);
@@ -210,17 +243,20 @@ static void fail_old_version(struct replay *replay)
     replay->failed = true;
 }
 
-static void read_logs(struct replay *replay)
+/* damage: NULL: it was reported before. */
+static void read_logs(struct replay *replay,
+                      void (*take)(struct replay *replay, const struct log_event *event),
+                      void (*take_damage)(struct replay *replay, const struct log_damage *damage))
 {
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
     while ((outcome = input_next(&replay->input, &event, &damage)) < LOG_END) {
         if (outcome == LOG_EVENT)
-            take_event(replay, &event);
-        else
+            take(replay, &event);
+        else if (take_damage)
             take_damage(replay, &damage);
-        replay->sink->progress(replay->sink->user, replay->input.passed);
+        replay->sink->progress(replay->sink->user, replay->input.passed / 2);
         if (replay->old_version)
             fail_old_version(replay);
         if (replay->old_version || replay_has_ended(replay))
@@ -230,18 +266,18 @@ static void read_logs(struct replay *replay)
         replay_fail(replay, replay->options->log[replay->input.log]);
 }
 
-/* After an early end unmatched items are not reported: their counterparts may not have been read.
- */
-static void finish(struct replay *replay)
+static void run(struct replay *replay)
 {
-    while (replay->golden && take_next_golden(replay))
-        continue;
-    replay_finish_answers(replay);
-    if (replay_has_ended(replay)) {
-        replay->failed = true;
+    read_logs(replay, survey_event, take_damage);
+    if (replay->old_version)
         return;
-    }
+    if (replay->golden)
+        read_golden(replay);
     replay_finish_matches(replay);
+    input_rewind(&replay->input);
+    read_logs(replay, answer_event, NULL);
+    replay_finish_answers(replay);
+    replay->failed = replay->failed || replay_has_ended(replay);
 }
 
 bool replay_run(const struct replay_options *options, const struct replay_sink *sink,
@@ -251,13 +287,10 @@ bool replay_run(const struct replay_options *options, const struct replay_sink *
     replay->options = options;
     replay->sink = sink;
     replay->tally = tally;
-    if (open_replay(replay)) {
-        read_logs(replay);
-        if (!replay->old_version)
-            finish(replay);
-    } else {
+    if (open_replay(replay))
+        run(replay);
+    else
         replay->failed = true;
-    }
     close_replay(replay);
     const bool good = !replay->failed;
     free(replay);

@@ -23,6 +23,12 @@ void replay_fail_log(struct replay *replay, int log)
                                                          : replay->options->golden);
 }
 
+void replay_fail_changed(struct replay *replay, int log)
+{
+    errno = EIO;
+    replay_fail_log(replay, log);
+}
+
 /* Results of the golden log are counted with the first log. */
 static struct tally *tally_of(struct replay *replay, const struct match_place *place)
 {
@@ -83,14 +89,15 @@ static bool read_query(struct replay *replay, const struct match_key *key,
         return false;
     if (!logged_query_read(&replay->compared, (enum log_kind) key->kind, query.bytes, query.size))
         return true;
-    errno = EIO;
-    replay_fail_log(replay, place->log);
+    replay_fail_changed(replay, place->log);
     return false;
 }
 
-static bool read_both(struct replay *replay, const struct match_item *item)
+static bool read_both(struct replay *replay, const struct match_item *item,
+                      const struct new_result *answered)
 {
-    const char *error = read_result(item->key.kind, item->now, item->now_size, &replay->now);
+    const char *error =
+        read_result(item->key.kind, answered->bytes, (uint32_t) answered->size, &replay->now);
     assert(!error); /* encoded by this process, or decoded before */
     (void) error;
     return read_query(replay, &item->key, &item->place);
@@ -151,21 +158,41 @@ static void count(struct replay *replay, const struct match_item *query,
         histogram_add(&tally_of(replay, &query->place)->then, then_ns);
 }
 
-/* Results of both types end with compute_ns. */
-bool replay_same_bytes(struct replay *replay, const struct match_item *query,
-                       const struct message *result)
+static void compare_unrecorded(struct replay *replay, const struct match_item *query,
+                               const struct new_result *answered)
 {
-    const unsigned char *end = result->bytes + result->size;
-    if (replay->options->page || !compare_bytes_same((enum log_kind) query->key.kind, result->bytes,
-                                                     result->size, query->now, query->now_size))
-        return false;
-    count(replay, query, REPLAY_SAME, (int64_t) big_endian_64(end - sizeof(int64_t)));
-    return true;
+    count(replay, query, REPLAY_UNRECORDED, 0);
+    if (replay->options->page && read_both(replay, query, answered))
+        add_to_page(replay, query, replayed_of(replay, false));
 }
 
-void replay_compare(struct replay *replay, const struct match_item *query)
+/* Results of both types end with compute_ns. */
+static bool is_same(struct replay *replay, const struct message *then, const struct new_result *now)
 {
-    if (!query->place.in_range || !read_both(replay, query))
+    return !replay->options->page && compare_bytes_same((enum log_kind) then->key.kind, then->bytes,
+                                                        then->size, now->bytes, now->size);
+}
+
+void replay_compare(struct replay *replay, const struct match_item *query,
+                    const struct new_result *answered)
+{
+    struct message then;
+    if (!query->has_recorded) {
+        compare_unrecorded(replay, query, answered);
+        return;
+    }
+    if (!replay_read_again(replay, &query->key, &query->then, replay->result_bytes, &then))
+        return;
+    if (is_same(replay, &then, answered)) {
+        count(replay, query, REPLAY_SAME,
+              (int64_t) big_endian_64(then.bytes + then.size - sizeof(int64_t)));
+        return;
+    }
+    if (replay_read_result(replay, &then)) {
+        replay_fail_changed(replay, query->then.log);
+        return;
+    }
+    if (!read_both(replay, query, answered))
         return;
     replay->item = query;
     struct replayed replayed = replayed_of(replay, true);
@@ -174,15 +201,6 @@ void replay_compare(struct replay *replay, const struct match_item *query)
           replayed.pair ? replay->then.pair.compute_ns : replay->then.scene.compute_ns);
     if (replay->options->page)
         add_to_page(replay, query, replayed);
-}
-
-void replay_unrecorded(struct replay *replay, const struct match_item *query)
-{
-    if (!query->place.in_range)
-        return;
-    count(replay, query, REPLAY_UNRECORDED, 0);
-    if (replay->options->page && read_both(replay, query))
-        add_to_page(replay, query, replayed_of(replay, false));
 }
 
 /* ---- Second results ---- */
@@ -202,8 +220,7 @@ void replay_compare_second(struct replay *replay, const struct match_note *note,
     if (!read_query(replay, &note->key, &query))
         return;
     if (read_result(first->key.kind, first->bytes, first->size, &replay->now)) {
-        errno = EIO; /* it could be decoded before */
-        replay_fail_log(replay, first->place.log);
+        replay_fail_changed(replay, first->place.log);
         return;
     }
     const struct replayed replayed = replayed_of(replay, true);
