@@ -132,55 +132,36 @@ static void add_bodies(struct cutter *cut)
         definitions_add_placement(cut->definitions, &placement[i]);
 }
 
-static void take_query(struct cutter *cut, const struct match_key *key, struct match_place *place)
+/* Chooses a query. Out: place->in_range. */
+static void take_query(struct cutter *cut, enum log_kind kind, struct match_place *place)
 {
-    struct match_item *result = match_find(cut->match, key);
-    const enum log_kind kind = (enum log_kind) key->kind;
+    add_bodies(cut);
     place->in_range = is_chosen_query(cut, place->utime);
     if (place->in_range && cut->has[kind])
         choose(cut, place->number);
-    if (!result || !result->is_result) {
-        match_add(cut->match, key, place, false);
-        return;
-    }
-    choose_result(cut, log_kind_result_of(kind), place, &result->place);
-    match_remove(cut->match, result);
-    match_free(result);
-}
-
-static void take_result(struct cutter *cut, const struct match_key *key,
-                        const struct match_place *place)
-{
-    struct match_item *query = match_find(cut->match, key);
-    if (!query || query->is_result) {
-        match_add(cut->match, key, place, true);
-        return;
-    }
-    choose_result(cut, log_kind_result_of((enum log_kind) key->kind), &query->place, place);
-    match_remove(cut->match, query);
-    match_free(query);
 }
 
 /* Returns false if the event is not a query or result, or cannot be decoded. */
 static bool take_message(struct cutter *cut, const struct log_event *event, enum log_kind kind)
 {
+    const bool is_result = log_kind_is_result(kind);
     struct query_header ids;
     struct match_place place = {.log = cut->input.log,
                                 .number = cut->event,
                                 .offset = event->offset,
                                 .utime = event->utime};
-    if (kind >= LOG_STATUS || log_kind_ids(kind, event, &ids))
+    if (kind >= LOG_STATUS || log_kind_ids(kind, event, &ids) ||
+        (!is_result && logged_query_read(&cut->query, kind, event->data, (uint32_t) event->kept)))
         return false;
+    if (!is_result)
+        take_query(cut, kind, &place);
     const struct match_key key = {log_kind_query_of(kind), ids.client_id, ids.sequence_number,
                                   ids.utime};
-    if (log_kind_is_result(kind)) {
-        take_result(cut, &key, &place);
-        return true;
-    }
-    if (logged_query_read(&cut->query, kind, event->data, (uint32_t) event->kept))
-        return false;
-    add_bodies(cut);
-    take_query(cut, &key, &place);
+    struct match_item *other = match_take(cut->match, &key, &place, is_result);
+    if (other)
+        choose_result(cut, log_kind_result_of(log_kind_query_of(kind)),
+                      is_result ? &other->place : &place, is_result ? &place : &other->place);
+    match_free(other);
     return true;
 }
 

@@ -83,6 +83,18 @@ void match_remove(struct match *match, struct match_item *item)
     HASH_ADD(hh, match->items, key, sizeof next->key, next);
 }
 
+struct match_item *match_take(struct match *match, const struct match_key *key,
+                              const struct match_place *place, bool is_result)
+{
+    struct match_item *first = match_find(match, key);
+    if (first && first->is_result != is_result) {
+        match_remove(match, first);
+        return first;
+    }
+    match_add(match, key, place, is_result);
+    return NULL;
+}
+
 void match_free(struct match_item *item)
 {
     free(item);

@@ -51,6 +51,11 @@ void match_close(struct match *match); /* may be NULL; frees all items in the ta
  */
 struct match_item *match_find(const struct match *match, const struct match_key *key);
 
+/* Matches a query or result with the first item of the other kind with its key, which is removed:
+ * the caller frees it. Otherwise adds it to the table, and returns NULL. */
+struct match_item *match_take(struct match *match, const struct match_key *key,
+                              const struct match_place *place, bool is_result);
+
 /* Adds an item to the table. */
 struct match_item *match_add(struct match *match, const struct match_key *key,
                              const struct match_place *place, bool is_result);
@@ -60,7 +65,7 @@ struct match_item *match_new(const struct match_key *key, const struct match_pla
 
 /* Removes the first item with its key from the table. Free it with match_free(). */
 void match_remove(struct match *match, struct match_item *item);
-void match_free(struct match_item *item);
+void match_free(struct match_item *item); /* may be NULL */
 
 /* Some item in the table that is the first with its key; NULL: the table is empty. */
 struct match_item *match_any(const struct match *match);
