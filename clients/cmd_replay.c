@@ -17,7 +17,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
 static const char usage[] =
     "usage: fmb replay [OPTIONS] LOG...\n"
@@ -155,16 +154,6 @@ static void on_progress(void *user, int64_t bytes)
 }
 
 /* ---- Files and outcome ---- */
-
-/* Raises the limit of open files as far as the system allows: each log is one. */
-static void open_many(void)
-{
-    struct rlimit limit;
-    if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
-        return;
-    limit.rlim_cur = limit.rlim_max;
-    setrlimit(RLIMIT_NOFILE, &limit);
-}
 
 static bool write_junit(const struct replay_run *run, const struct tally *tally)
 {
@@ -318,7 +307,6 @@ static int replay(struct replay_run *run, int64_t size, struct tally *tally)
 static int run_replay(struct replay_arguments *options)
 {
     struct replay_run run = {.options = options};
-    open_many();
     int64_t size;
     if (!output_check(&options->replay.write_golden) || !output_check(&options->junit) ||
         !output_check(&options->html) || !replay_extent(&options->replay, &size, &run.first_utime))

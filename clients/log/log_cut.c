@@ -230,7 +230,7 @@ static void copy(struct cutter *cut, const struct log_event *event)
         return;
     }
     unsigned char *data = allocate_unset(event->size);
-    if (log_read_data(cut->input.reader[cut->input.log], event, 0, data, event->size))
+    if (log_read_data(cut->input.reader, event, 0, data, event->size))
         append(cut, event, data, event->size);
     else
         fail_input(cut, errno);
@@ -334,7 +334,7 @@ static void run(struct cutter *cut)
     cut->definitions = definitions_open();
     cut->names = body_names_open();
     survey(cut);
-    input_rewind(&cut->input);
+    input_begin(&cut->input, 0);
     cut->event = 0;
     definitions_begin_file(cut->definitions);
     read_logs(cut, copy_event, take_damage);

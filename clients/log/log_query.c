@@ -60,8 +60,7 @@ static void for_each_event(struct query_search *search,
 
 static void rewind_last(struct query_search *search)
 {
-    search->input.log = search->options->log_count - 1;
-    log_rewind(search->input.reader[search->input.log]);
+    input_begin(&search->input, search->options->log_count - 1);
 }
 
 /* ---- The event ---- */
@@ -151,10 +150,10 @@ static void refuse_several(struct query_search *search)
 
 static void find_event(struct query_search *search)
 {
-    struct log_reader *last = search->input.reader[search->options->log_count - 1];
+    const int64_t offset = search->options->by == LOG_QUERY_OFFSET ? search->options->offset : 0;
     rewind_last(search);
-    if (search->options->by == LOG_QUERY_OFFSET && search->options->offset <= log_size(last))
-        log_seek(last, search->options->offset);
+    if (search->input.reader && offset > 0 && offset <= log_size(search->input.reader))
+        log_seek(search->input.reader, offset);
     for_each_event(search, take_match);
     if (search->outcome != LOG_QUERY_FOUND)
         return;
@@ -240,7 +239,7 @@ static void find_bodies(struct query_search *search)
     struct placement *placement = logged_query_placements(&out->query, &count);
     if (definitions_missing(out->definitions, placement, count) < 0)
         return; /* no placement is by handle */
-    input_rewind(&search->input);
+    input_begin(&search->input, 0);
     for_each_event(search, take_definitions);
     definitions_fill(out->definitions, placement, count);
     fill_names(out, placement, count);

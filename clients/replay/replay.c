@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char *read_key(enum log_kind kind, const struct log_event *event, struct message *out)
 {
@@ -196,7 +197,12 @@ static bool open_answers(struct replay *replay)
 static bool open_replay(struct replay *replay)
 {
     const struct replay_options *options = replay->options;
-    if (!input_open(&replay->input, options->log, options->log_count))
+    const size_t count = (size_t) options->log_count;
+    replay->paths = allocate(count + 1, sizeof *replay->paths);
+    memcpy(replay->paths, options->log, count * sizeof *replay->paths);
+    replay->paths[count] = (char *) (uintptr_t) options->golden;
+    if (!input_open(&replay->input, replay->paths, options->log_count) ||
+        !input_open(&replay->rereader, replay->paths, options->log_count + !!options->golden))
         return false;
     replay->definitions = definitions_open();
     if (!open_answers(replay) || !open_goldens(replay))
@@ -205,7 +211,6 @@ static bool open_replay(struct replay *replay)
     if (!replay->hasher)
         allocate_failed();
     replay->channels = log_channels(options->prefix);
-    replay->rereader = event_reader_open(options->log, options->log_count, options->golden);
     replay->match = match_open();
     return true;
 }
@@ -220,7 +225,8 @@ static void close_replay(struct replay *replay)
     free(replay->recorded);
     match_close(replay->match);
     replay_close_pairs(replay);
-    event_reader_close(replay->rereader);
+    input_close(&replay->rereader);
+    free(replay->paths);
     hasher_destroy(replay->hasher);
     definitions_close(replay->definitions);
     log_close(replay->golden);
@@ -274,7 +280,7 @@ static void run(struct replay *replay)
     if (replay->golden)
         read_golden(replay);
     replay_finish_matches(replay);
-    input_rewind(&replay->input);
+    input_begin(&replay->input, 0);
     read_logs(replay, answer_event, NULL);
     replay_finish_answers(replay);
     replay->failed = replay->failed || replay_has_ended(replay);
@@ -303,12 +309,11 @@ bool replay_extent(const struct replay_options *options, int64_t *size, int64_t 
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
-    if (!input_open(&input, options->log, options->log_count))
-        return false;
-    while ((outcome = input_next(&input, &event, &damage)) == LOG_DAMAGE)
+    const bool good = input_open(&input, options->log, options->log_count);
+    while ((outcome = good ? input_next(&input, &event, &damage) : LOG_END) == LOG_DAMAGE)
         continue;
-    *size = input_size(&input);
+    *size = good ? input_size(&input) : 0;
     *first_utime = outcome == LOG_EVENT ? event.utime : 0;
     input_close(&input);
-    return true;
+    return good;
 }

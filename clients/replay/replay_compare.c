@@ -56,7 +56,7 @@ bool replay_read_again(struct replay *replay, const struct match_key *key,
                        struct message *out)
 {
     *out = (struct message){*key, *place, bytes, 0};
-    if (event_reader_read(replay->rereader, place->log, place->offset, bytes, &out->size))
+    if (input_read_again(&replay->rereader, place->log, place->offset, bytes, &out->size))
         return true;
     replay_fail_log(replay, place->log);
     return false;

@@ -31,8 +31,8 @@ struct replay {
     const struct replay_sink *sink;
     struct tally *tally; /* [log_count] */
     struct log_channels channels;
-    struct input input;
-    struct event_reader *rereader;
+    char **paths; /* owned: of the logs, and of the golden log */
+    struct input input, rereader;
     struct log_reader *golden;     /* NULL: none */
     struct output *golden_file;    /* NULL: none */
     struct log_writer *new_golden; /* of golden_file */

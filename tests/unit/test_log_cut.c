@@ -598,7 +598,7 @@ static void long_events_are_copied_in_full(void **state)
         assert_int_equal(reading.event.utime, world.event[i].utime);
         assert_string_equal(reading.event.channel, world.event[i].channel);
         assert_true(
-            log_read_data(reading.input.reader[0], &reading.event, 0, data, reading.event.size));
+            log_read_data(reading.input.reader, &reading.event, 0, data, reading.event.size));
         assert_memory_equal(data, world.event[i].bytes, world.event[i].size);
     }
     assert_false(read_next(&reading));
