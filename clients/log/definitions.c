@@ -144,26 +144,20 @@ const struct geometry *definitions_find(const struct definitions *definitions,
     return body && body->geometry.size > 0 ? &body->geometry : NULL;
 }
 
-int32_t definitions_missing(const struct definitions *definitions,
-                            const struct placement *placement, int32_t count)
+int32_t definitions_fill(const struct definitions *definitions, struct placement *placement,
+                         int32_t count)
 {
-    for (int32_t i = 0; i < count; i++)
-        if (placement_by_handle(&placement[i]) &&
-            !definitions_find(definitions, &placement[i].handle))
-            return i;
-    return -1;
-}
-
-void definitions_fill(const struct definitions *definitions, struct placement *placement,
-                      int32_t count)
-{
+    int32_t missing = -1;
     for (int32_t i = 0; i < count; i++) {
-        const struct geometry *geometry = placement_by_handle(&placement[i])
-                                              ? definitions_find(definitions, &placement[i].handle)
-                                              : NULL;
+        if (!placement_by_handle(&placement[i]))
+            continue;
+        const struct geometry *geometry = definitions_find(definitions, &placement[i].handle);
         if (geometry)
             placement[i].geometry = *geometry;
+        else if (missing < 0)
+            missing = i;
     }
+    return missing;
 }
 
 size_t definitions_count(const struct definitions *definitions)

@@ -39,13 +39,10 @@ const char *definitions_add_message(struct definitions *definitions, enum log_ki
 const struct geometry *definitions_find(const struct definitions *definitions,
                                         const struct handle *handle);
 
-/* The first placement by handle whose body was not added; -1: none. */
-int32_t definitions_missing(const struct definitions *definitions,
-                            const struct placement *placement, int32_t count);
-
-/* Sets the geometry of each placement by handle whose body was added. */
-void definitions_fill(const struct definitions *definitions, struct placement *placement,
-                      int32_t count);
+/* Sets the geometry of each placement by handle whose body was added. Returns the first one whose
+ * body was not; -1: none. */
+int32_t definitions_fill(const struct definitions *definitions, struct placement *placement,
+                         int32_t count);
 
 /* The number of bodies, and the memory they take, tables included, bytes. */
 size_t definitions_count(const struct definitions *definitions);

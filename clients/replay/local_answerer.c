@@ -62,25 +62,28 @@ static bool is_held(struct cache *cache, const struct handle *handle)
     return cached != NULL;
 }
 
-/* Adds the bodies of handles to the cache, except those that a service refuses. Bodies already held
- * are touched first, so that the others do not evict them. */
-static void supply(struct local_answerer *local, const struct placement *placement, int32_t count)
+/* Adds the bodies of the handles of a query to the cache, except those that a service refuses.
+ * Bodies already held are touched first, so that the others do not evict them. Returns false if a
+ * handle is not defined. */
+static bool supply(struct local_answerer *local)
 {
     struct cache *cache = answerer_cache(local->answerer);
-    struct handle handle;
-    for (int32_t i = 0; i < count; i++)
-        if (placement_by_handle(&placement[i]))
-            is_held(cache, &placement[i].handle);
-    for (int32_t i = 0; i < count; i++) {
-        if (!placement_by_handle(&placement[i]) || is_held(cache, &placement[i].handle))
+    bool defined = true;
+    for (int32_t i = 0; i < local->placement_count; i++)
+        if (placement_by_handle(&local->placement[i]))
+            is_held(cache, &local->placement[i].handle);
+    for (int32_t i = 0; i < local->placement_count; i++) {
+        struct handle handle = local->placement[i].handle;
+        if (!placement_by_handle(&local->placement[i]) || is_held(cache, &handle))
             continue;
-        const struct geometry *geometry =
-            definitions_find(local->definitions, &placement[i].handle);
+        const struct geometry *geometry = definitions_find(local->definitions, &handle);
         const struct cached *kept =
             geometry && scene_takes(geometry) ? cache_intern(cache, 0, geometry, &handle) : NULL;
+        defined = defined && geometry;
         if (kept)
             cache_release(cache, kept);
     }
+    return defined;
 }
 
 /* ---- Answers ---- */
@@ -162,10 +165,7 @@ const char *local_answer(struct local_answerer *local, enum log_kind kind,
     if (size > QUERY_BYTES_MAX)
         return refuse(local, kind, bytes, size, out);
     const char *error = decide(local, kind, bytes, size, out);
-    if (!error && out->status == FMB_UNKNOWN_BODY &&
-        definitions_missing(local->definitions, local->placement, local->placement_count) < 0) {
-        supply(local, local->placement, local->placement_count);
+    if (!error && out->status == FMB_UNKNOWN_BODY && supply(local))
         decide(local, kind, bytes, size, out);
-    }
     return error;
 }
