@@ -142,11 +142,11 @@ static struct difference_side side_of(const struct replayed_side *side,
                                       const struct pair_result *pair,
                                       const struct scene_result *scene, int dim)
 {
-    return (struct difference_side){.status = pair ? pair->status : FMB_OK,
-                                    .answer = answer_of(&side->answer, side->dim, dim),
-                                    .certificate = pair ? pair->certificate : NULL,
-                                    .names_frames = pair ? pair->names_frames
-                                                         : scene->names_frames};
+    return (struct difference_side){
+        .status = pair ? pair->status : FMB_OK,
+        .answer = answer_of(&side->answer, side->dim, dim),
+        .certificate = pair ? pair->certificate : NULL,
+        .names_frames = pair ? pair->names_frames : scene->names_frames};
 }
 
 static struct difference difference_of(const struct replayed *replayed,
