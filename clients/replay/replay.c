@@ -19,51 +19,19 @@ static const char *read_key(enum log_kind kind, const struct log_event *event, s
     return error;
 }
 
-/* ---- The golden log ---- */
+/* ---- The first reading ---- */
+
+/* The golden log comes after the others. */
+static bool in_golden(const struct replay *replay)
+{
+    return replay->input.log == replay->options->log_count;
+}
 
 static void fail_golden(struct replay *replay, int64_t offset, const char *what)
 {
     complain("%s: offset %" PRId64 ": %s", replay->options->golden, offset, what);
     replay->failed = true;
 }
-
-static void take_golden(struct replay *replay, enum log_kind kind, const struct log_event *event)
-{
-    struct message result = {.place = {.log = replay->options->log_count,
-                                       .in_range = true,
-                                       .number = event->number,
-                                       .offset = event->offset,
-                                       .utime = event->utime}};
-    const char *error = read_key(kind, event, &result);
-    if (!error)
-        error = replay_read_result(replay, &result);
-    if (error) {
-        fail_golden(replay, event->offset, error);
-        return;
-    }
-    replay_channel(replay, &result.key, &result.place)->results++;
-    replay_take_result(replay, &result);
-}
-
-static void read_golden(struct replay *replay)
-{
-    struct log_event event;
-    struct log_damage damage;
-    enum log_outcome outcome;
-    while ((outcome = log_next(replay->golden, &event, &damage)) < LOG_END) {
-        const enum log_kind kind =
-            outcome == LOG_EVENT ? log_kind_of(&replay->channels, &event) : LOG_OTHER;
-        replay->golden_has_queries = replay->golden_has_queries || log_kind_is_query(kind);
-        if (outcome == LOG_DAMAGE)
-            fail_golden(replay, damage.offset, damage.what);
-        else if (log_kind_is_result(kind))
-            take_golden(replay, kind, &event);
-    }
-    if (outcome == LOG_FAILED)
-        replay_fail(replay, replay->options->golden);
-}
-
-/* ---- The first reading ---- */
 
 static bool in_time(const struct replay *replay, int64_t utime)
 {
@@ -74,7 +42,7 @@ static bool in_time(const struct replay *replay, int64_t utime)
 static struct match_place place_of(const struct replay *replay, const struct log_event *event)
 {
     return (struct match_place){.log = replay->input.log,
-                                .in_range = in_time(replay, event->utime),
+                                .in_range = in_golden(replay) || in_time(replay, event->utime),
                                 .number = event->number,
                                 .offset = event->offset,
                                 .utime = event->utime};
@@ -107,7 +75,7 @@ static void take_message(struct replay *replay, enum log_kind kind, const struct
         replay_refuse(replay, kind, &message, error);
     if (has_ids && is_query) {
         replay_take_query(replay, &message, error);
-    } else if (has_ids && !replay->golden) {
+    } else if (has_ids && !replay->options->golden) {
         replay_channel(replay, &message.key, &message.place)->results += message.place.in_range;
         replay_take_result(replay, &message);
     }
@@ -126,9 +94,30 @@ static void take_definition(struct replay *replay, const struct log_event *event
                                  error);
 }
 
+static void take_golden(struct replay *replay, enum log_kind kind, const struct log_event *event)
+{
+    struct message result = {.place = place_of(replay, event)};
+    replay->golden_has_queries = replay->golden_has_queries || log_kind_is_query(kind);
+    if (!log_kind_is_result(kind))
+        return;
+    const char *error = read_key(kind, event, &result);
+    if (!error)
+        error = replay_read_result(replay, &result);
+    if (error) {
+        fail_golden(replay, event->offset, error);
+        return;
+    }
+    replay_channel(replay, &result.key, &result.place)->results++;
+    replay_take_result(replay, &result);
+}
+
 static void survey_event(struct replay *replay, const struct log_event *event)
 {
     const enum log_kind kind = log_kind_of(&replay->channels, event);
+    if (in_golden(replay)) {
+        take_golden(replay, kind, event);
+        return;
+    }
     struct tally *tally = &replay->tally[replay->input.log];
     if (!replay->started)
         replay->first_utime = event->utime;
@@ -161,6 +150,10 @@ static void answer_event(struct replay *replay, const struct log_event *event)
 
 static void take_damage(struct replay *replay, const struct log_damage *damage)
 {
+    if (in_golden(replay)) {
+        fail_golden(replay, damage->offset, damage->what);
+        return;
+    }
     struct tally *tally = &replay->tally[replay->input.log];
     tally->damages++;
     tally->damaged_bytes += damage->length;
@@ -170,15 +163,9 @@ static void take_damage(struct replay *replay, const struct log_damage *damage)
 
 /* ---- Opening and closing ---- */
 
-static bool open_goldens(struct replay *replay)
+static bool open_output(struct replay *replay)
 {
-    const struct replay_options *options = replay->options;
-    char why[LOG_WHY_MAX];
-    if (options->golden && !(replay->golden = log_open(options->golden, why))) {
-        complain("%s: %s", options->golden, why);
-        return false;
-    }
-    return output_open(&options->write_golden, &replay->golden_file) &&
+    return output_open(&replay->options->write_golden, &replay->golden_file) &&
            (!replay->golden_file ||
             (replay->new_golden = log_begin_output(replay->golden_file)) != NULL);
 }
@@ -197,15 +184,15 @@ static bool open_answers(struct replay *replay)
 static bool open_replay(struct replay *replay)
 {
     const struct replay_options *options = replay->options;
-    const size_t count = (size_t) options->log_count;
-    replay->paths = allocate(count + 1, sizeof *replay->paths);
-    memcpy(replay->paths, options->log, count * sizeof *replay->paths);
-    replay->paths[count] = (char *) (uintptr_t) options->golden;
-    if (!input_open(&replay->input, replay->paths, options->log_count) ||
-        !input_open(&replay->rereader, replay->paths, options->log_count + !!options->golden))
+    const int logs = options->log_count, count = logs + (options->golden != NULL);
+    replay->paths = allocate((size_t) logs + 1, sizeof *replay->paths);
+    memcpy(replay->paths, options->log, (size_t) logs * sizeof *replay->paths);
+    replay->paths[logs] = (char *) (uintptr_t) options->golden;
+    if (!input_open(&replay->input, replay->paths, count) ||
+        !input_open(&replay->rereader, replay->paths, count))
         return false;
     replay->definitions = definitions_open();
-    if (!open_answers(replay) || !open_goldens(replay))
+    if (!open_answers(replay) || !open_output(replay))
         return false;
     replay->hasher = hasher_create();
     if (!replay->hasher)
@@ -229,7 +216,6 @@ static void close_replay(struct replay *replay)
     free(replay->paths);
     hasher_destroy(replay->hasher);
     definitions_close(replay->definitions);
-    log_close(replay->golden);
     input_close(&replay->input);
     const bool empty = replay->new_golden && log_written(replay->new_golden) == 0;
     const int error = log_finish(replay->new_golden);
@@ -269,7 +255,7 @@ static void read_logs(struct replay *replay,
             return;
     }
     if (outcome == LOG_FAILED)
-        replay_fail(replay, replay->options->log[replay->input.log]);
+        replay_fail_log(replay, replay->input.log);
 }
 
 static void run(struct replay *replay)
@@ -277,11 +263,12 @@ static void run(struct replay *replay)
     read_logs(replay, survey_event, take_damage);
     if (replay->old_version)
         return;
-    if (replay->golden)
-        read_golden(replay);
-    replay_finish_matches(replay);
-    input_begin(&replay->input, 0);
-    read_logs(replay, answer_event, NULL);
+    if (!replay_has_ended(replay)) {
+        replay_finish_matches(replay);
+        replay->input.count = replay->options->log_count;
+        input_begin(&replay->input, 0);
+        read_logs(replay, answer_event, NULL);
+    }
     replay_finish_answers(replay);
     replay->failed = replay->failed || replay_has_ended(replay);
 }

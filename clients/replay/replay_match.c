@@ -98,7 +98,7 @@ void replay_take_result(struct replay *replay, const struct message *result)
 static void on_matched(void *user, struct match_item *query, struct match_item *result)
 {
     struct replay *replay = user;
-    if (!query && replay->golden) {
+    if (!query && replay->options->golden) {
         match_list_add(&replay->unmatched, result);
         return;
     }
@@ -125,7 +125,7 @@ void replay_finish_matches(struct replay *replay)
 {
     close_queries(replay);
     match_finish(replay->match, on_matched, replay);
-    if (replay->golden) {
+    if (replay->options->golden) {
         replay_pair_results(replay);
         close_queries(replay);
     }

@@ -90,7 +90,7 @@ void replay_note_match(struct replay *replay, const struct match_item *query,
     const struct pair_key client = key_of_client(query->key.client_id);
     bool is_new;
     match_note(replay->match, query, result);
-    if (replay->golden)
+    if (replay->options->golden)
         take(&replay->matched_clients, &client, &is_new);
 }
 
@@ -214,15 +214,15 @@ static void pair_golden(struct replay *replay, struct replay_pair *numbered,
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
-    log_rewind(replay->golden);
-    while ((outcome = log_next(replay->golden, &event, &damage)) < LOG_END) {
+    input_begin(&replay->input, replay->options->log_count);
+    while ((outcome = input_next(&replay->input, &event, &damage)) < LOG_END) {
         const enum log_kind kind =
             outcome == LOG_EVENT ? log_kind_of(&replay->channels, &event) : LOG_OTHER;
         if (replay->golden_has_queries ? log_kind_is_query(kind) : log_kind_is_result(kind))
             pair_event(replay, &golden, &event, kind, numbered, pairs);
     }
     if (outcome == LOG_FAILED)
-        replay_fail(replay, replay->options->golden);
+        replay_fail_log(replay, replay->options->log_count);
     clear(&golden.clients);
     clear(&golden.counts);
 }

@@ -31,9 +31,8 @@ struct replay {
     const struct replay_sink *sink;
     struct tally *tally; /* [log_count] */
     struct log_channels channels;
-    char **paths; /* owned: of the logs, and of the golden log */
+    char **paths; /* owned: of the logs, and of the golden log if there is one */
     struct input input, rereader;
-    struct log_reader *golden;     /* NULL: none */
     struct output *golden_file;    /* NULL: none */
     struct log_writer *new_golden; /* of golden_file */
     struct definitions *definitions;
