@@ -7,7 +7,7 @@
 
 #include "logged_query.h"
 
-enum { BODY_NAMES_MAX = 1 << 16 };
+enum { BODY_NAMES_MAX = 1 << 14 };
 
 struct body_names;
 
