@@ -6,6 +6,9 @@
 
 #include <stdlib.h>
 
+/* Most handles that are wanted: more of them count as unresolved at once. */
+enum { WANTED_MAX = 1 << 16 };
+
 /* Clients whose last sequence number is known, and the largest step of a client that counts its
  * queries: a larger one begins anew. */
 enum { CLIENTS = 1024, STEP_MAX = 1 << 16 };
@@ -147,6 +150,22 @@ static void count_skipped(struct record_bodies *bodies, const struct query_heade
         *last = *query;
 }
 
+/* Handles that no service knows do not fill the memory. */
+static void want(struct record_bodies *bodies, const struct handle *handle)
+{
+    if (definitions_find(bodies->definitions, handle))
+        return;
+    if (definitions_wanted(bodies->definitions) == WANTED_MAX) {
+        bodies->counts.unresolved++;
+        return;
+    }
+    if (!definitions_want(bodies->definitions, handle))
+        return;
+    bodies->wanted = allocate_grow(bodies->wanted, &bodies->wanted_capacity,
+                                   bodies->wanted_count + 1, sizeof *bodies->wanted);
+    bodies->wanted[bodies->wanted_count++] = *handle;
+}
+
 static void keep_query(struct record_bodies *bodies)
 {
     const struct query_header *header = logged_query_header(&bodies->message.query);
@@ -154,15 +173,11 @@ static void keep_query(struct record_bodies *bodies)
     const struct placement *placement = placements(bodies, &count);
     count_skipped(bodies, header);
     body_names_take(bodies->names, header->client_id, placement, count);
-    for (int32_t i = 0; i < count; i++) {
-        const struct handle *handle = &placement[i].handle;
-        definitions_add_placement(bodies->definitions, &placement[i]);
-        if (!placement_by_handle(&placement[i]) || !definitions_want(bodies->definitions, handle))
-            continue;
-        bodies->wanted = allocate_grow(bodies->wanted, &bodies->wanted_capacity,
-                                       bodies->wanted_count + 1, sizeof *bodies->wanted);
-        bodies->wanted[bodies->wanted_count++] = *handle;
-    }
+    for (int32_t i = 0; i < count; i++)
+        if (placement_by_handle(&placement[i]))
+            want(bodies, &placement[i].handle);
+        else
+            definitions_add_placement(bodies->definitions, &placement[i]);
 }
 
 /* Drops all bodies if they take too much memory. */

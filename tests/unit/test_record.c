@@ -341,6 +341,26 @@ static void test_bodies_that_come_whole_are_not_requested(void **state)
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
 }
 
+/* Handles that no service knows do not fill the memory: at most 65,536 are requested. */
+static void test_wanted_handles_are_limited(void **state)
+{
+    struct world *world = *state;
+    enum { MOST = 1 << 16, MORE = 20 };
+    int requested = 0;
+    begin(world);
+    for (int i = 0; i < MOST + MORE; i += 2) {
+        const struct body a = make_body(world, 1 + i), b = make_body(world, 2 + i);
+        receive_query(world, place_by_handle(&a), place_by_handle(&b));
+    }
+    while (record_bodies_due(world->bodies) != INT64_MAX) {
+        pass(world, SECOND);
+        requested += world->request.handle_count;
+        receive_definition(world, &world->request, NULL, 0, 0);
+    }
+    assert_int_equal(requested, MOST);
+    assert_int_equal(record_bodies_counts(world->bodies).unresolved, MOST + MORE);
+}
+
 /* More than fit into memory: all are dropped, and those that are used are requested again. */
 static void test_dropped_bodies_are_requested_again(void **state)
 {
@@ -429,6 +449,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_requests_without_a_result, setup, teardown),
         cmocka_unit_test_setup_teardown(test_bodies_that_come_whole_are_not_requested, setup,
                                         teardown),
+        cmocka_unit_test_setup_teardown(test_wanted_handles_are_limited, setup, teardown),
         cmocka_unit_test_setup_teardown(test_dropped_bodies_are_requested_again, setup, teardown),
         cmocka_unit_test_setup_teardown(test_each_file_has_the_names, setup, teardown),
         cmocka_unit_test_setup_teardown(test_skipped_sequence_numbers_are_counted, setup, teardown),
