@@ -2,9 +2,8 @@
  *
  * A result belongs to the query with the same client id, sequence number, time of sending and kind;
  * if there are several, to the first without a result. Unmatched queries and results are kept in
- * memory, at some 250 bytes an item plus the result that the user attaches. Matched items are
- * removed. The positions of the last few thousand matches are noted, so that second results are
- * recognised. For one thread at a time. */
+ * memory, at some 250 bytes an item. Matched items are removed. The positions of the last few
+ * thousand matches are noted, so that second results are recognised. For one thread at a time. */
 #ifndef MATCH_H
 #define MATCH_H
 

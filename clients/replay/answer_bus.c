@@ -17,12 +17,10 @@
  *      the caller.
  *
  * The end. stop() records the first reason: a signal, no service, or a failed bus. From then on no
- * query is sent and the sink is not called; items under way that are no longer in the table of
- * match.h are freed here.
+ * query is sent and the sink is not called; items under way are freed here.
  *
- * Not here: matching and comparison (replay_match.c), which bodies a service lacks
- * (replay_answer.c), timeouts and repetition (client library). Tested by
- * tests/system/replay_bus.bats and replay_set.bats. */
+ * Not here: comparison (replay_compare.c), which bodies a service lacks (replay_answer.c), timeouts
+ * and repetition (client library). Tested by tests/system/replay_bus.bats and replay_set.bats. */
 #include "answer_bus.h"
 
 #include "allocate.h"
