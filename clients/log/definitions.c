@@ -11,6 +11,7 @@
 
 struct defined_body {
     UT_hash_handle by_bytes, by_handle;
+    struct defined_body *next; /* the next body whose handle is not computed yet */
     struct handle handle;
     struct geometry geometry; /* size 0: of a handle without a body, which is not in by_bytes */
     int64_t file;             /* the last one that defines the body */
@@ -23,7 +24,8 @@ enum { TABLE_BYTES = 48 };
 
 struct definitions {
     struct defined_body *by_bytes, *by_handle; /* heads of the tables */
-    size_t bytes;                              /* of all bodies */
+    struct defined_body *unhashed;
+    size_t bytes; /* of all bodies */
     int64_t file;
     struct hasher *hasher;
     struct logged_query query;
@@ -49,13 +51,17 @@ void definitions_close(struct definitions *definitions)
 {
     if (!definitions)
         return;
-    struct defined_body *first = definitions->by_handle;
+    struct defined_body *body = definitions->by_bytes, *named = definitions->by_handle, *next;
     HASH_CLEAR(by_bytes, definitions->by_bytes);
     HASH_CLEAR(by_handle, definitions->by_handle);
-    while (first) {
-        struct defined_body *next = first->by_handle.next;
-        free(first);
-        first = next;
+    for (; named; named = next) {
+        next = named->by_handle.next;
+        if (named->geometry.size == 0)
+            free(named);
+    }
+    for (; body; body = next) {
+        next = body->by_bytes.next;
+        free(body);
     }
     hasher_destroy(definitions->hasher);
     free(definitions);
@@ -63,23 +69,43 @@ void definitions_close(struct definitions *definitions)
 
 /* ---- Bodies ---- */
 
-static struct defined_body *find(const struct definitions *definitions, const struct handle *handle)
+static struct defined_body *find_hashed(struct definitions *definitions,
+                                        const struct handle *handle)
 {
     struct defined_body *body;
     HASH_FIND(by_handle, definitions->by_handle, handle, sizeof *handle, body);
     return body;
 }
 
-static struct defined_body *add(struct definitions *definitions, const struct handle *handle,
-                                const struct geometry *geometry)
+/* A body replaces its handle without a body. */
+static void compute_handles(struct definitions *definitions)
+{
+    for (struct defined_body *body; (body = definitions->unhashed) != NULL;) {
+        definitions->unhashed = body->next;
+        body->handle = hasher_handle(definitions->hasher, body->bytes, body->geometry.size);
+        struct defined_body *wanted = find_hashed(definitions, &body->handle);
+        if (wanted) {
+            HASH_DELETE(by_handle, definitions->by_handle, wanted);
+            definitions->bytes -= sizeof *wanted + TABLE_BYTES;
+            free(wanted);
+        }
+        HASH_ADD(by_handle, definitions->by_handle, handle, sizeof body->handle, body);
+    }
+}
+
+static struct defined_body *find(struct definitions *definitions, const struct handle *handle)
+{
+    compute_handles(definitions);
+    return find_hashed(definitions, handle);
+}
+
+static struct defined_body *make(struct definitions *definitions, const struct geometry *geometry)
 {
     struct defined_body *body = allocate(1, sizeof *body + geometry->size);
     if (geometry->size > 0)
         memcpy(body->bytes, geometry->bytes, geometry->size);
-    body->handle = *handle;
     body->geometry = (struct geometry){body->bytes, geometry->size};
     definitions->bytes += sizeof *body + TABLE_BYTES + geometry->size;
-    HASH_ADD(by_handle, definitions->by_handle, handle, sizeof body->handle, body);
     return body;
 }
 
@@ -96,16 +122,10 @@ bool definitions_add(struct definitions *definitions, const struct geometry *geo
     HASH_FIND(by_bytes, definitions->by_bytes, geometry->bytes, geometry->size, body);
     const bool is_new = !body;
     if (is_new) {
-        const struct handle handle =
-            hasher_handle(definitions->hasher, geometry->bytes, geometry->size);
-        struct defined_body *wanted = find(definitions, &handle);
-        if (wanted) {
-            HASH_DELETE(by_handle, definitions->by_handle, wanted);
-            definitions->bytes -= sizeof *wanted + TABLE_BYTES;
-            free(wanted);
-        }
-        body = add(definitions, &handle, geometry);
+        body = make(definitions, geometry);
         HASH_ADD_KEYPTR(by_bytes, definitions->by_bytes, body->bytes, body->geometry.size, body);
+        body->next = definitions->unhashed;
+        definitions->unhashed = body;
     }
     body->file = definitions->file;
     return is_new;
@@ -137,14 +157,14 @@ const char *definitions_add_message(struct definitions *definitions, enum log_ki
     return error;
 }
 
-const struct geometry *definitions_find(const struct definitions *definitions,
+const struct geometry *definitions_find(struct definitions *definitions,
                                         const struct handle *handle)
 {
     const struct defined_body *body = find(definitions, handle);
     return body && body->geometry.size > 0 ? &body->geometry : NULL;
 }
 
-int32_t definitions_fill(const struct definitions *definitions, struct placement *placement,
+int32_t definitions_fill(struct definitions *definitions, struct placement *placement,
                          int32_t count)
 {
     int32_t missing = -1;
@@ -160,12 +180,12 @@ int32_t definitions_fill(const struct definitions *definitions, struct placement
     return missing;
 }
 
-size_t definitions_count(const struct definitions *definitions)
+size_t definitions_count(struct definitions *definitions)
 {
     return HASH_CNT(by_bytes, definitions->by_bytes);
 }
 
-size_t definitions_bytes(const struct definitions *definitions)
+size_t definitions_bytes(struct definitions *definitions)
 {
     return definitions->bytes;
 }
@@ -175,8 +195,11 @@ size_t definitions_bytes(const struct definitions *definitions)
 bool definitions_want(struct definitions *definitions, const struct handle *handle)
 {
     struct defined_body *body = find(definitions, handle);
-    if (!body)
-        body = add(definitions, handle, &(struct geometry){.size = 0});
+    if (!body) {
+        body = make(definitions, &(struct geometry){.size = 0});
+        body->handle = *handle;
+        HASH_ADD(by_handle, definitions->by_handle, handle, sizeof body->handle, body);
+    }
     const bool is_new = body->geometry.size == 0 && !body->wanted;
     body->wanted = true;
     return is_new;
@@ -189,8 +212,9 @@ void definitions_give_up(struct definitions *definitions, const struct handle *h
         body->wanted = false;
 }
 
-size_t definitions_wanted(const struct definitions *definitions)
+size_t definitions_wanted(struct definitions *definitions)
 {
+    compute_handles(definitions);
     return HASH_CNT(by_handle, definitions->by_handle) - definitions_count(definitions);
 }
 
@@ -202,7 +226,7 @@ void definitions_begin_file(struct definitions *definitions)
 }
 
 /* The body of a placement by handle, if it is known and the file does not define it; else NULL. */
-static struct defined_body *undefined(const struct definitions *definitions,
+static struct defined_body *undefined(struct definitions *definitions,
                                       const struct placement *placement)
 {
     struct defined_body *body =
@@ -213,7 +237,7 @@ static struct defined_body *undefined(const struct definitions *definitions,
 enum { DEFINITION_BYTES = WIRE_DEFINITION_BYTES - QUERY_TEXT_MAX + 1 };
 
 /* As if each body took a message of its own. */
-size_t definitions_needed(const struct definitions *definitions, const struct placement *placement,
+size_t definitions_needed(struct definitions *definitions, const struct placement *placement,
                           int32_t count)
 {
     const size_t each = (size_t) log_event_bytes(BUS_CHANNEL_MAX, DEFINITION_BYTES + HANDLE_BYTES);

@@ -2,8 +2,8 @@
  *
  * Bodies come from placements that carry them whole, and from definition_t messages, anywhere in
  * the log. Each distinct body is kept once, in some 200 bytes and its geometry (at most 109 bytes
- * for a frame): memory grows with the number of distinct bodies, not with the log. Adding a known
- * body costs one look-up.
+ * for a frame): memory grows with the number of distinct bodies, not with the log. Adding a body
+ * costs one look-up. Handles are only computed once one is looked up.
  *
  * A file that is written has to define the handles that its queries name. Per file and body one
  * definition (definition_t of client 0 and server 0) is written, before the first query that needs
@@ -36,17 +36,17 @@ const char *definitions_add_message(struct definitions *definitions, enum log_ki
                                     const void *bytes, uint32_t size);
 
 /* The geometry of a handle, valid until definitions_close(); NULL: no such body was added. */
-const struct geometry *definitions_find(const struct definitions *definitions,
+const struct geometry *definitions_find(struct definitions *definitions,
                                         const struct handle *handle);
 
 /* Sets the geometry of each placement by handle whose body was added. Returns the first one whose
  * body was not; -1: none. */
-int32_t definitions_fill(const struct definitions *definitions, struct placement *placement,
+int32_t definitions_fill(struct definitions *definitions, struct placement *placement,
                          int32_t count);
 
 /* The number of bodies, and the memory they take, tables included, bytes. */
-size_t definitions_count(const struct definitions *definitions);
-size_t definitions_bytes(const struct definitions *definitions);
+size_t definitions_count(struct definitions *definitions);
+size_t definitions_bytes(struct definitions *definitions);
 
 /* ---- Handles without a body ---- */
 
@@ -56,7 +56,7 @@ bool definitions_want(struct definitions *definitions, const struct handle *hand
 void definitions_give_up(struct definitions *definitions, const struct handle *handle);
 
 /* The number of these handles whose bodies were not added later. */
-size_t definitions_wanted(const struct definitions *definitions);
+size_t definitions_wanted(struct definitions *definitions);
 
 /* ---- Files that define what they name ---- */
 
@@ -68,7 +68,7 @@ typedef bool definition_sink(void *user, const void *bytes, size_t size);
 void definitions_begin_file(struct definitions *definitions);
 
 /* Most bytes that definitions_write() writes, events of the log included. */
-size_t definitions_needed(const struct definitions *definitions, const struct placement *placement,
+size_t definitions_needed(struct definitions *definitions, const struct placement *placement,
                           int32_t count);
 
 /* Writes definitions of the known bodies that the placements name by handle and the file does not
