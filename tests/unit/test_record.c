@@ -34,7 +34,8 @@ struct world {
     size_t written;                  /* bytes of their events, on the longest channel */
     struct definitions *file;        /* what they define */
     int names;                       /* written at the beginning of the file */
-    struct names read_names;
+    struct names read_names;         /* points into name_bytes */
+    unsigned char name_bytes[QUERY_BYTES_MAX];
     unsigned char bytes[QUERY_BYTES_MAX];
 };
 
@@ -55,7 +56,8 @@ static bool on_write(void *user, const void *bytes, size_t size)
 static bool on_names(void *user, const void *bytes, size_t size)
 {
     struct world *world = user;
-    assert_null(wire_read_names(bytes, (uint32_t) size, &world->read_names));
+    memcpy(world->name_bytes, bytes, size);
+    assert_null(wire_read_names(world->name_bytes, (uint32_t) size, &world->read_names));
     world->names += world->read_names.count;
     return true;
 }
