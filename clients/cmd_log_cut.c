@@ -35,13 +35,14 @@ static const char usage[] =
     "\n"
     "An event is copied if it meets all conditions given. A result is copied with its\n"
     "query, if its channel is chosen. Events are copied unchanged, with their log\n"
-    "times, and renumbered. Before them come definitions, from anywhere in the logs,\n"
-    "of the bodies that the queries name by handle and that no copied event defines\n"
-    "earlier. Handles that the logs do not define are counted.\n"
+    "times, and renumbered. A query that names a body by handle is preceded by its\n"
+    "definition, from anywhere in the logs, unless a copied event defines it earlier.\n"
+    "Handles that the logs do not define are counted. A part of a log begins with the\n"
+    "names of all its bodies.\n"
     "\n"
     "Exit codes: 0 everything chosen was copied; 1 damage was left out, or nothing\n"
-    "was chosen; 2 wrong usage, or a file cannot be read or written: FILE is then\n"
-    "not written.\n";
+    "was chosen; 2 wrong usage, or a file cannot be read or written. FILE is not\n"
+    "written with 2, or if nothing was chosen.\n";
 
 struct log_cut_arguments {
     struct log_cut_options cut;
@@ -90,6 +91,20 @@ static void on_progress(void *user, int64_t bytes, int64_t of)
     progress_to(&run->progress, bytes, of);
 }
 
+static const struct {
+    const char *json, *text;
+} kinds[LOG_KINDS] = {
+    [LOG_PAIR_QUERY] = {"pair_queries", "queries of pairs"},
+    [LOG_PAIR_RESULT] = {"pair_results", "results of pairs"},
+    [LOG_SCENE_QUERY] = {"scene_queries", "queries of scenes"},
+    [LOG_SCENE_RESULT] = {"scene_results", "results of scenes"},
+    [LOG_STATUS] = {"statuses", "heartbeats"},
+    [LOG_DEFINITION_QUERY] = {"definition_queries", "queries of definitions"},
+    [LOG_DEFINITION] = {"definitions", "definitions"},
+    [LOG_NAMES] = {"names", "lists of names"},
+    [LOG_OTHER] = {"other_events", "on other channels"},
+};
+
 static void print_count(const char *name, int64_t count, const char *what)
 {
     char text[NUMBER_TEXT_MAX];
@@ -103,15 +118,10 @@ static void print_text(const struct log_cut_counts *counts)
     printf("kept %s of %s events; %.1f MB, of %.1f\n", number_grouped(counts->kept_events, kept),
            number_grouped(counts->events, events), 1e-6 * (double) counts->kept_bytes,
            1e-6 * (double) counts->bytes);
-    print_count("", counts->kept[LOG_PAIR_QUERY], "queries of pairs");
-    print_count("", counts->kept[LOG_PAIR_RESULT], "results of pairs");
-    print_count("", counts->kept[LOG_SCENE_QUERY], "queries of scenes");
-    print_count("", counts->kept[LOG_SCENE_RESULT], "results of scenes");
-    print_count("", counts->kept[LOG_STATUS], "heartbeats");
-    print_count("", counts->kept[LOG_DEFINITION_QUERY], "queries of definitions");
-    print_count("", counts->kept[LOG_DEFINITION], "definitions");
-    print_count("", counts->kept[LOG_OTHER], "on other channels");
+    for (int kind = 0; kind < LOG_KINDS; kind++)
+        print_count("", counts->kept[kind], kinds[kind].text);
     print_count("defined", counts->defined, "bodies in front of them");
+    print_count("named", counts->names, "bodies in front of them");
     print_count("unknown", counts->unknown, "handles that the logs do not define");
     snprintf(recorded, sizeof recorded,
              "messages recorded by version %d, whose bodies are not known", counts->old_version);
@@ -121,9 +131,6 @@ static void print_text(const struct log_cut_counts *counts)
 
 static void print_json(const struct log_cut_counts *counts, int code)
 {
-    static const char *const name[LOG_KINDS] = {
-        "pair_queries", "pair_results",       "scene_queries", "scene_results",
-        "statuses",     "definition_queries", "definitions",   "other_events"};
     struct json_writer json = json_object(stdout);
     json_integer(&json, "exit", code);
     json_integer(&json, "events", counts->events);
@@ -131,9 +138,10 @@ static void print_json(const struct log_cut_counts *counts, int code)
     json_integer(&json, "kept_events", counts->kept_events);
     json_integer(&json, "kept_bytes", counts->kept_bytes);
     for (int kind = 0; kind < LOG_KINDS; kind++)
-        json_integer(&json, name[kind], counts->kept[kind]);
+        json_integer(&json, kinds[kind].json, counts->kept[kind]);
     json_integer(&json, "added_definitions", counts->definitions);
     json_integer(&json, "added_bodies", counts->defined);
+    json_integer(&json, "added_names", counts->names);
     json_integer(&json, "unknown_handles", counts->unknown);
     json_integer(&json, "old_messages", counts->old_messages);
     json_integer(&json, "old_version", counts->old_version);
@@ -147,7 +155,7 @@ static int code_of(const struct cut_run *run, const struct log_cut_counts *count
     if (run->complaints > COMPLAINTS_MAX)
         complain("and %" PRId64 " more damaged places", run->complaints - COMPLAINTS_MAX);
     if (counts->kept_events == 0)
-        complain("nothing was chosen: %s has no events", run->options->cut.output.path);
+        complain("nothing was chosen: %s is not written", run->options->cut.output.path);
     return counts->damages > 0 || counts->kept_events == 0 ? ARGS_FAILED : ARGS_ANSWERED;
 }
 

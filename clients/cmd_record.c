@@ -37,13 +37,14 @@ static const char usage[] =
     "  --channel REGEX      also record the channels whose whole name matches\n"
     "  --all                record all channels\n" ARGS_COMMON_USAGE
     "\n"
-    "Each file also defines the bodies that its queries name by handle. Definitions\n"
-    "that no message contains are requested from the service. Bodies are kept in up\n"
-    "to 64 MB of memory. Messages of more than one datagram are not recorded.\n"
+    "Each file also defines the bodies that its queries name by handle, and names\n"
+    "them. Definitions that no message contains are requested from the service.\n"
+    "Bodies are kept in up to 64 MB of memory. Messages of more than one datagram are\n"
+    "not recorded.\n"
     "\n"
-    "The report at the end counts the datagrams that the system dropped, and the\n"
-    "handles whose bodies could not be obtained. To enlarge the receive buffer, and\n"
-    "to raise the priority:\n"
+    "The report at the end counts what was lost: datagrams that the kernel dropped,\n"
+    "queries missing by their sequence numbers, and handles whose bodies could not be\n"
+    "obtained. To enlarge the receive buffer, and to raise the priority:\n"
     "  sudo sysctl net.core.rmem_max=4194304\n"
     "  sudo chrt -f 10 fmb record ...\n"
     "\n"
@@ -67,13 +68,12 @@ struct recording {
     struct log_choice others; /* other channels that are recorded too */
     struct log_parts parts;
     struct record_bodies *bodies;
-    struct record_line line;
     struct recorded recorded;
     int64_t begin_ns;
-    int64_t utime;  /* when the newest message was received */
-    int64_t events; /* messages that were written */
-    int error;      /* why the log cannot be written; 0: it can */
-    bool enough;
+    int64_t utime;     /* when the newest message was received */
+    int64_t events;    /* messages that were written */
+    int error;         /* why the log cannot be written; 0: it can */
+    bool enough, line; /* line: the progress is shown */
 };
 
 /* ---- Options --------------------------------------------------------------------------------- */
@@ -118,8 +118,14 @@ static bool write_definition(void *user, const void *bytes, size_t size)
     return write_event(recording, recording->channels.name[LOG_DEFINITION], bytes, size);
 }
 
-/* Writes the definitions that must precede a message in its file, and begins a new file if there is
- * no space for both. */
+static bool write_names(void *user, const void *bytes, size_t size)
+{
+    struct recording *recording = user;
+    return write_event(recording, recording->channels.name[LOG_NAMES], bytes, size);
+}
+
+/* Begins a new file if there is no space for the message and the definitions that must precede it
+ * in its file, and writes these. */
 static bool prepare(struct recording *recording, size_t channel_length, size_t size)
 {
     const long number = recording->parts.number;
@@ -129,9 +135,10 @@ static bool prepare(struct recording *recording, size_t channel_length, size_t s
         recording->error = errno;
         return false;
     }
-    if (recording->parts.number != number)
-        record_bodies_begin_file(recording->bodies);
-    return record_bodies_define(recording->bodies, write_definition, recording);
+    return (recording->parts.number == number ||
+            record_bodies_begin_file(recording->bodies, recording->utime, write_names,
+                                     recording)) &&
+           record_bodies_define(recording->bodies, write_definition, recording);
 }
 
 static void on_message(void *user, const struct bus_message *message)
@@ -144,35 +151,44 @@ static void on_message(void *user, const struct bus_message *message)
     if (recording->enough || recording->error ||
         (kind == LOG_OTHER && !log_choice_has_channel(&recording->others, &event)))
         return;
-    const char *wrong = record_bodies_take(recording->bodies, kind, message->bytes, message->size);
+    const char *wrong = record_bodies_read(recording->bodies, kind, message->bytes, message->size);
+    const enum record_bodies_owner owner = record_bodies_owner(recording->bodies);
     recording->utime = message->utime;
-    const bool own = record_bodies_is_own(recording->bodies);
-    if (!own) {
+    if (owner == RECORD_OTHERS) {
         recorded->received[kind]++;
         recorded->malformed += wrong != NULL;
     }
-    if (!prepare(recording, event.channel_length, message->size) || own)
+    if (owner == RECORD_OWN || !prepare(recording, event.channel_length, message->size) ||
+        !write_event(recording, message->channel, message->bytes, message->size))
         return;
-    if (write_event(recording, message->channel, message->bytes, message->size))
-        recording->events++;
-    recording->enough = recording->events == recording->options->count;
+    record_bodies_keep(recording->bodies);
+    if (owner == RECORD_OTHERS)
+        recording->enough = ++recording->events == recording->options->count;
 }
 
 /* ---- Recording ------------------------------------------------------------------------------- */
 
-static const int64_t line_ns = 250000000, check_ns = 1000000000;
+static const int64_t line_ns = 250000000;
 
-static void show_line(struct recording *recording, int64_t now_ns)
+static void show_line(struct recording *recording)
 {
-    record_line_show(&recording->line, now_ns, recording->parts.name, recording->events,
-                     log_parts_written(&recording->parts),
-                     (int64_t) fmb_client_raw_bus_counts(recording->client).dropped);
+    recording->line =
+        record_line_show(recording->events, log_parts_written(&recording->parts),
+                         (int64_t) fmb_client_raw_bus_counts(recording->client).dropped) ||
+        recording->line;
+}
+
+static void end_line(struct recording *recording)
+{
+    if (recording->line)
+        record_line_end();
+    recording->line = false;
 }
 
 static bool bus_failed(struct recording *recording)
 {
     const int error = errno;
-    record_line_end(&recording->line);
+    end_line(recording);
     complain("the bus has failed: %s", strerror(error));
     return false;
 }
@@ -187,27 +203,19 @@ static void request_bodies(struct recording *recording, int64_t now_ns)
                             record_bodies_take_result, recording->bodies);
 }
 
-/* Waits for messages until a time or a signal, records them, and passes them to the system. */
+/* Waits for messages until a time or a signal, records them, and passes them to the system. Ends
+ * the recording if another program has deleted or truncated the file: what follows could name
+ * bodies that its beginning defined. */
 static bool step(struct recording *recording, int signals, int64_t until_ns)
 {
     const int64_t left_ns = until_ns - clock_ns();
     if (fmb_client_raw_step(recording->client, signals, left_ns > 0 ? 1e-9 * (double) left_ns : 0) <
         0)
         return false;
-    if (!recording->error && !log_flush(recording->parts.writer))
+    if (!recording->error &&
+        (!log_check(recording->parts.writer) || !log_flush(recording->parts.writer)))
         recording->error = errno;
     return true;
-}
-
-/* Ends the recording if another program has deleted or truncated the file. The events that follow
- * in a truncated file name bodies that its beginning defined. */
-static void check_file(struct recording *recording)
-{
-    if (recording->error || log_check(recording->parts.writer))
-        return;
-    const int error = errno;
-    record_bodies_define_again(recording->bodies, write_definition, recording);
-    recording->error = error;
 }
 
 /* Records until the recording is complete, the log fails, or a signal arrives. Returns false if the
@@ -217,25 +225,19 @@ static bool run(struct recording *recording, int signals)
     const double duration = recording->options->duration;
     const int64_t end_ns =
         duration > 0 ? recording->begin_ns + (int64_t) (1e9 * duration) : INT64_MAX;
-    int64_t now_ns = recording->begin_ns, line_at_ns = now_ns, check_at_ns = now_ns;
+    int64_t now_ns = recording->begin_ns, line_at_ns = now_ns;
     struct pollfd signal = {.fd = signals, .events = POLLIN};
     while (!recording->enough && !recording->error && now_ns < end_ns) {
         request_bodies(recording, now_ns);
         const int64_t due_ns = record_bodies_due(recording->bodies);
-        if (!step(recording, signals,
-                  clock_earlier(clock_earlier(due_ns, end_ns),
-                                clock_earlier(line_at_ns, check_at_ns))))
+        if (!step(recording, signals, clock_earlier(clock_earlier(due_ns, end_ns), line_at_ns)))
             return bus_failed(recording);
         if (poll(&signal, 1, 0) > 0)
             return true;
         now_ns = clock_ns();
         if (now_ns >= line_at_ns) {
-            show_line(recording, now_ns);
+            show_line(recording);
             line_at_ns = now_ns + line_ns;
-        }
-        if (now_ns >= check_at_ns) {
-            check_file(recording);
-            check_at_ns = now_ns + check_ns;
         }
     }
     return true;
@@ -267,7 +269,6 @@ static int end_of_recording(struct recording *recording, bool good)
 {
     struct recorded *recorded = &recording->recorded;
     const int64_t end_ns = clock_ns();
-    check_file(recording);
     const int error = log_parts_finish(&recording->parts);
     if (!recording->error)
         recording->error = error;
@@ -275,7 +276,7 @@ static int end_of_recording(struct recording *recording, bool good)
     recorded->seconds = 1e-9 * (double) (end_ns - recording->begin_ns);
     recorded->bodies = record_bodies_counts(recording->bodies);
     recorded->bus = fmb_client_raw_bus_counts(recording->client);
-    record_line_end(&recording->line);
+    end_line(recording);
     if (recording->error)
         output_complain(recording->parts.name, recording->error);
     record_report_losses(recorded);
@@ -290,7 +291,6 @@ static int record(struct recording *recording, int signals)
     signal(SIGXFSZ, SIG_IGN);
     recording->bodies = record_bodies_open(fmb_client_raw_id(recording->client));
     recording->begin_ns = clock_ns();
-    recording->line = record_line_begin(recording->begin_ns);
     complain("recording to %s, with a receive buffer of %ld bytes", recording->parts.name,
              fmb_client_raw_bus_counts(recording->client).receive_buffer);
     const bool good = run(recording, signals) && receive_remaining(recording);

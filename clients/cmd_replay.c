@@ -17,7 +17,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
 static const char usage[] =
     "usage: fmb replay [OPTIONS] LOG...\n"
@@ -70,11 +69,9 @@ static const char usage[] =
     "a query that contradict the first are reported and counted as different. Times\n"
     "to decide are shown, not compared.\n"
     "\n"
-    "Memory, for logs of any size: some 300 bytes for each distinct body, and for\n"
-    "each query that waits for its result some 500 bytes (a pair) or 250 and its\n"
-    "result of at most 64 kB (a scene). A million pair queries before the first\n"
-    "result take 500 MB. With a golden of other clients all queries wait for the end,\n"
-    "and take some 1 kB each.\n"
+    "The logs are read twice. Memory: some 300 bytes for each distinct body, 32 bytes\n"
+    "for each query, and some 250 more for each query or result whose counterpart is\n"
+    "not near; with --golden, for each query; with a golden of other clients, 1 kB.\n"
     "\n"
     "On several machines, by GNU parallel ($SLURM_ARRAY_TASK_ID for {} with Slurm):\n"
     "  parallel --sshloginfile machines fmb replay --json --from {} \\\n"
@@ -120,7 +117,7 @@ static const char *log_name(const struct replay_run *run, int log)
     return log < replay->log_count ? replay->log[log] : replay->golden;
 }
 
-static void on_found(void *user, const struct located_difference *found)
+static void on_found(void *user, const struct difference *found)
 {
     struct replay_run *run = user;
     listing_put(run->differences, found);
@@ -158,16 +155,6 @@ static void on_progress(void *user, int64_t bytes)
 
 /* ---- Files and outcome ---- */
 
-/* Raises the limit of open files as far as the system allows: each log is one. */
-static void open_many(void)
-{
-    struct rlimit limit;
-    if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
-        return;
-    limit.rlim_cur = limit.rlim_max;
-    setrlimit(RLIMIT_NOFILE, &limit);
-}
-
 static bool write_junit(const struct replay_run *run, const struct tally *tally)
 {
     struct output *output;
@@ -190,10 +177,11 @@ static bool write_page(const struct replay_arguments *options)
 }
 
 /* Returns the reason why nothing was compared; NULL: something was, or results were written. */
-static const char *why_nothing(const struct replay_arguments *options, const struct tally *all)
+static const char *why_nothing(const struct replay_arguments *options,
+                               const struct tally_channel *all)
 {
     const bool in_part = isfinite(options->replay.from) || isfinite(options->replay.to);
-    if (tally_queries(all) == 0)
+    if (all->queries == 0)
         return in_part ? "there are no queries of this service from --from to --to"
                        : "there are no queries of this service";
     if (tally_compared(all) > 0 || options->replay.write_golden.path)
@@ -204,8 +192,9 @@ static const char *why_nothing(const struct replay_arguments *options, const str
 /* Returns the exit code of a replay that reached its end. */
 static int code_of(const struct replay_arguments *options, const struct tally *all)
 {
-    const char *nothing = why_nothing(options, all);
-    if (tally_outcome(all, REPLAY_DIFFERENT) + tally_contradictions(all) + tally_left_over(all) > 0)
+    const struct tally_channel both = tally_both(all);
+    const char *nothing = why_nothing(options, &both);
+    if (both.outcome[REPLAY_DIFFERENT] + both.contradictions + both.left_over > 0)
         return ARGS_FAILED;
     if (nothing)
         complain(
@@ -215,17 +204,17 @@ static int code_of(const struct replay_arguments *options, const struct tally *a
     return nothing || all->damages > 0 || tally_unreadable(all) > 0 ? ARGS_USAGE : ARGS_ANSWERED;
 }
 
-static void report_one(void *user, const struct located_difference *found)
+static void report_one(void *user, const struct difference *found)
 {
     struct replay_run *run = user;
     const bool several = run->options->replay.log_count > 1;
     const char *log = log_name(run, found->place.log);
     char line[REPLAY_LINE_MAX];
     if (run->options->json) {
-        replay_json_found(&run->json, found, log, run->first_utime);
+        replay_json_found(&run->json, found, run->options->replay.names, log, run->first_utime);
         return;
     }
-    replay_line(found, several ? log : NULL, run->first_utime, line);
+    replay_line(found, run->options->replay.names, several ? log : NULL, run->first_utime, line);
     escape(stdout, ESCAPE_TERMINAL, line, strlen(line));
     putchar('\n');
 }
@@ -318,19 +307,20 @@ static int replay(struct replay_run *run, int64_t size, struct tally *tally)
 static int run_replay(struct replay_arguments *options)
 {
     struct replay_run run = {.options = options};
-    open_many();
     int64_t size;
     if (!output_check(&options->replay.write_golden) || !output_check(&options->junit) ||
         !output_check(&options->html) || !replay_extent(&options->replay, &size, &run.first_utime))
         return ARGS_USAGE;
     if (options->html.path)
         options->replay.page = page_open(options->replay.log[0], run.first_utime);
+    options->replay.names = body_names_open();
     run.differences = listing_open(options->limit);
     struct tally *tally = allocate((size_t) options->replay.log_count, sizeof *tally);
     const int code = replay(&run, size, tally);
     free(tally);
     page_close(options->replay.page);
     listing_close(run.differences);
+    body_names_close(options->replay.names);
     return code;
 }
 

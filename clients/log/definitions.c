@@ -1,8 +1,10 @@
 #include "definitions.h"
 
-#include "logged_query.h"
 #include "big_endian.h"
+#include "bus.h"
 #include "keyed_hash.h"
+#include "log_write.h"
+#include "logged_query.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +13,9 @@ struct defined_body {
     UT_hash_handle by_bytes, by_handle;
     struct defined_body *next; /* the next body whose handle is not computed yet */
     struct handle handle;
-    struct geometry geometry;
+    struct geometry geometry; /* size 0: of a handle without a body, which is not in by_bytes */
+    int64_t file;             /* the last one that defines the body */
+    bool wanted;              /* without a body: named, and not given up */
     unsigned char bytes[];
 };
 
@@ -22,17 +26,21 @@ struct definitions {
     struct defined_body *by_bytes, *by_handle; /* heads of the tables */
     struct defined_body *unhashed;
     size_t bytes; /* of all bodies */
+    int64_t file;
     struct hasher *hasher;
     struct logged_query query;
-    struct definition definition;
+    struct definition read;
+    struct definition written; /* the message that is being packed; size: of its bodies */
+    size_t size;
+    unsigned char message[QUERY_BYTES_MAX];
 };
 
-/* ---- Opening and closing ----------------------------------------------------------------------
- */
+/* ---- Opening and closing ---- */
 
 struct definitions *definitions_open(void)
 {
     struct definitions *definitions = allocate(1, sizeof *definitions);
+    definitions->file = 1;
     definitions->hasher = hasher_create();
     if (!definitions->hasher)
         allocate_failed();
@@ -43,20 +51,63 @@ void definitions_close(struct definitions *definitions)
 {
     if (!definitions)
         return;
-    struct defined_body *first = definitions->by_bytes;
-    HASH_CLEAR(by_handle, definitions->by_handle);
+    struct defined_body *body = definitions->by_bytes, *named = definitions->by_handle, *next;
     HASH_CLEAR(by_bytes, definitions->by_bytes);
-    while (first) {
-        struct defined_body *next = first->by_bytes.next;
-        free(first);
-        first = next;
+    HASH_CLEAR(by_handle, definitions->by_handle);
+    for (; named; named = next) {
+        next = named->by_handle.next;
+        if (named->geometry.size == 0)
+            free(named);
+    }
+    for (; body; body = next) {
+        next = body->by_bytes.next;
+        free(body);
     }
     hasher_destroy(definitions->hasher);
     free(definitions);
 }
 
-/* ---- Adding -----------------------------------------------------------------------------------
- */
+/* ---- Bodies ---- */
+
+static struct defined_body *find_hashed(struct definitions *definitions,
+                                        const struct handle *handle)
+{
+    struct defined_body *body;
+    HASH_FIND(by_handle, definitions->by_handle, handle, sizeof *handle, body);
+    return body;
+}
+
+/* A body replaces its handle without a body. */
+static void compute_handles(struct definitions *definitions)
+{
+    for (struct defined_body *body; (body = definitions->unhashed) != NULL;) {
+        definitions->unhashed = body->next;
+        body->handle = hasher_handle(definitions->hasher, body->bytes, body->geometry.size);
+        struct defined_body *wanted = find_hashed(definitions, &body->handle);
+        if (wanted) {
+            HASH_DELETE(by_handle, definitions->by_handle, wanted);
+            definitions->bytes -= sizeof *wanted + TABLE_BYTES;
+            free(wanted);
+        }
+        HASH_ADD(by_handle, definitions->by_handle, handle, sizeof body->handle, body);
+    }
+}
+
+static struct defined_body *find(struct definitions *definitions, const struct handle *handle)
+{
+    compute_handles(definitions);
+    return find_hashed(definitions, handle);
+}
+
+static struct defined_body *make(struct definitions *definitions, const struct geometry *geometry)
+{
+    struct defined_body *body = allocate(1, sizeof *body + geometry->size);
+    if (geometry->size > 0)
+        memcpy(body->bytes, geometry->bytes, geometry->size);
+    body->geometry = (struct geometry){body->bytes, geometry->size};
+    definitions->bytes += sizeof *body + TABLE_BYTES + geometry->size;
+    return body;
+}
 
 static bool has_frames(const struct geometry *geometry)
 {
@@ -65,20 +116,19 @@ static bool has_frames(const struct geometry *geometry)
 
 bool definitions_add(struct definitions *definitions, const struct geometry *geometry)
 {
-    struct defined_body *body;
+    struct defined_body *body = NULL;
     if (!has_frames(geometry))
         return false;
     HASH_FIND(by_bytes, definitions->by_bytes, geometry->bytes, geometry->size, body);
-    if (body)
-        return false;
-    body = allocate(1, sizeof *body + geometry->size);
-    memcpy(body->bytes, geometry->bytes, geometry->size);
-    body->geometry = (struct geometry){body->bytes, geometry->size};
-    HASH_ADD_KEYPTR(by_bytes, definitions->by_bytes, body->bytes, body->geometry.size, body);
-    definitions->bytes += sizeof *body + TABLE_BYTES + geometry->size;
-    body->next = definitions->unhashed;
-    definitions->unhashed = body;
-    return true;
+    const bool is_new = !body;
+    if (is_new) {
+        body = make(definitions, geometry);
+        HASH_ADD_KEYPTR(by_bytes, definitions->by_bytes, body->bytes, body->geometry.size, body);
+        body->next = definitions->unhashed;
+        definitions->unhashed = body;
+    }
+    body->file = definitions->file;
+    return is_new;
 }
 
 bool definitions_add_placement(struct definitions *definitions, const struct placement *placement)
@@ -86,113 +136,155 @@ bool definitions_add_placement(struct definitions *definitions, const struct pla
     return placement->body_id != 0 && definitions_add(definitions, &placement->geometry);
 }
 
-static const char too_long[] = "longer than any message of this type";
-
-const char *definitions_add_query(struct definitions *definitions, const void *bytes, uint32_t size)
+const char *definitions_add_message(struct definitions *definitions, enum log_kind kind,
+                                    const void *bytes, uint32_t size)
 {
     struct logged_query *query = &definitions->query;
-    struct query_header header;
+    struct definition *read = &definitions->read;
     int32_t count;
     if (size > QUERY_BYTES_MAX)
-        return too_long;
-    const bool pair = !wire_read_pair_header(bytes, size, &header);
-    const char *error =
-        logged_query_read(query, pair ? LOG_PAIR_QUERY : LOG_SCENE_QUERY, bytes, size);
+        return "longer than any message of this type";
+    if (kind == LOG_DEFINITION) {
+        const char *error = wire_read_definition(bytes, size, definitions->hasher, read);
+        for (int32_t i = 0; !error && i < read->body_count; i++)
+            definitions_add(definitions, &read->body[i].geometry);
+        return error;
+    }
+    const char *error = logged_query_read(query, kind, bytes, size);
     const struct placement *placement = logged_query_placements(query, &count);
     for (int32_t i = 0; !error && i < count; i++)
         definitions_add_placement(definitions, &placement[i]);
     return error;
 }
 
-const char *definitions_add_message(struct definitions *definitions, const void *bytes,
-                                    uint32_t size)
-{
-    struct definition *definition = &definitions->definition;
-    const char *error = size > QUERY_BYTES_MAX
-                            ? too_long
-                            : wire_read_definition(bytes, size, definitions->hasher, definition);
-    for (int32_t i = 0; !error && i < definition->body_count; i++)
-        definitions_add(definitions, &definition->body[i].geometry);
-    return error;
-}
-
-/* ---- Finding ----------------------------------------------------------------------------------
- */
-
-static void compute_handles(struct definitions *definitions)
-{
-    for (struct defined_body *body; (body = definitions->unhashed) != NULL;) {
-        definitions->unhashed = body->next;
-        body->handle = hasher_handle(definitions->hasher, body->bytes, body->geometry.size);
-        HASH_ADD(by_handle, definitions->by_handle, handle, sizeof body->handle, body);
-    }
-}
-
 const struct geometry *definitions_find(struct definitions *definitions,
                                         const struct handle *handle)
 {
-    const struct defined_body *body;
-    compute_handles(definitions);
-    HASH_FIND(by_handle, definitions->by_handle, handle, sizeof *handle, body);
-    return body ? &body->geometry : NULL;
+    const struct defined_body *body = find(definitions, handle);
+    return body && body->geometry.size > 0 ? &body->geometry : NULL;
 }
 
-int32_t definitions_missing(struct definitions *definitions, const struct placement *placement,
-                            int32_t count)
+int32_t definitions_fill(struct definitions *definitions, struct placement *placement,
+                         int32_t count)
 {
-    for (int32_t i = 0; i < count; i++)
-        if (placement_by_handle(&placement[i]) &&
-            !definitions_find(definitions, &placement[i].handle))
-            return i;
-    return -1;
-}
-
-void definitions_fill(struct definitions *definitions, struct placement *placement, int32_t count)
-{
+    int32_t missing = -1;
     for (int32_t i = 0; i < count; i++) {
-        const struct geometry *geometry = placement_by_handle(&placement[i])
-                                              ? definitions_find(definitions, &placement[i].handle)
-                                              : NULL;
+        if (!placement_by_handle(&placement[i]))
+            continue;
+        const struct geometry *geometry = definitions_find(definitions, &placement[i].handle);
         if (geometry)
             placement[i].geometry = *geometry;
+        else if (missing < 0)
+            missing = i;
     }
+    return missing;
 }
 
-size_t definitions_count(const struct definitions *definitions)
+size_t definitions_count(struct definitions *definitions)
 {
     return HASH_CNT(by_bytes, definitions->by_bytes);
 }
 
-size_t definitions_bytes(const struct definitions *definitions)
+size_t definitions_bytes(struct definitions *definitions)
 {
     return definitions->bytes;
 }
 
-/* ---- Writing ----------------------------------------------------------------------------------
- */
+/* ---- Handles without a body ---- */
 
-bool definition_writer_flush(struct definition_writer *writer)
+bool definitions_want(struct definitions *definitions, const struct handle *handle)
 {
-    if (writer->definition.body_count == 0)
+    struct defined_body *body = find(definitions, handle);
+    if (!body) {
+        body = make(definitions, &(struct geometry){.size = 0});
+        body->handle = *handle;
+        HASH_ADD(by_handle, definitions->by_handle, handle, sizeof body->handle, body);
+    }
+    const bool is_new = body->geometry.size == 0 && !body->wanted;
+    body->wanted = true;
+    return is_new;
+}
+
+void definitions_give_up(struct definitions *definitions, const struct handle *handle)
+{
+    struct defined_body *body = find(definitions, handle);
+    if (body)
+        body->wanted = false;
+}
+
+size_t definitions_wanted(struct definitions *definitions)
+{
+    compute_handles(definitions);
+    return HASH_CNT(by_handle, definitions->by_handle) - definitions_count(definitions);
+}
+
+/* ---- Files ---- */
+
+void definitions_begin_file(struct definitions *definitions)
+{
+    definitions->file++;
+}
+
+/* The body of a placement by handle, if it is known and the file does not define it; else NULL. */
+static struct defined_body *undefined(struct definitions *definitions,
+                                      const struct placement *placement)
+{
+    struct defined_body *body =
+        placement_by_handle(placement) ? find(definitions, &placement->handle) : NULL;
+    return body && body->geometry.size > 0 && body->file != definitions->file ? body : NULL;
+}
+
+enum { DEFINITION_BYTES = WIRE_DEFINITION_BYTES - QUERY_TEXT_MAX + 1 };
+
+/* As if each body took a message of its own. */
+size_t definitions_needed(struct definitions *definitions, const struct placement *placement,
+                          int32_t count)
+{
+    const size_t each = (size_t) log_event_bytes(BUS_CHANNEL_MAX, DEFINITION_BYTES + HANDLE_BYTES);
+    size_t bytes = 0;
+    for (int32_t i = 0; i < count; i++) {
+        const struct defined_body *body = undefined(definitions, &placement[i]);
+        bytes += body ? each + body->geometry.size : 0;
+    }
+    return bytes;
+}
+
+static bool flush(struct definitions *definitions, definition_sink *sink, void *user)
+{
+    if (definitions->written.body_count == 0)
         return true;
-    const size_t size = wire_write_definition(&writer->definition, writer->bytes);
-    writer->definition.body_count = 0;
-    writer->size = 0;
-    return writer->sink(writer->user, writer->bytes, size);
+    const size_t size = wire_write_definition(&definitions->written, definitions->message);
+    definitions->written.body_count = 0;
+    definitions->size = 0;
+    return sink(user, definitions->message, size);
 }
 
 /* One geometry always fits: it comes from a message of at most QUERY_BYTES_MAX whose header is no
  * shorter. */
-bool definition_writer_add(struct definition_writer *writer, const struct handle *handle,
-                           const struct geometry *geometry)
+static bool pack(struct definitions *definitions, struct defined_body *body, definition_sink *sink,
+                 void *user)
 {
-    struct definition *definition = &writer->definition;
-    const size_t size = HANDLE_BYTES + geometry->size;
-    if ((DEFINITION_BYTES + writer->size + size > QUERY_BYTES_MAX ||
-         definition->body_count == QUERY_BODIES_MAX) &&
-        !definition_writer_flush(writer))
+    struct definition *written = &definitions->written;
+    const size_t size = HANDLE_BYTES + body->geometry.size;
+    if ((DEFINITION_BYTES + definitions->size + size > QUERY_BYTES_MAX ||
+         written->body_count == QUERY_BODIES_MAX) &&
+        !flush(definitions, sink, user))
         return false;
-    writer->size += size;
-    definition->body[definition->body_count++] = (struct query_body){*handle, *geometry};
+    body->file = definitions->file;
+    definitions->size += size;
+    written->body[written->body_count++] = (struct query_body){body->handle, body->geometry};
     return true;
+}
+
+int32_t definitions_write(struct definitions *definitions, const struct placement *placement,
+                          int32_t count, definition_sink *sink, void *user)
+{
+    int32_t bodies = 0;
+    for (int32_t i = 0; i < count; i++) {
+        struct defined_body *body = undefined(definitions, &placement[i]);
+        bodies += body != NULL;
+        if (body && !pack(definitions, body, sink, user))
+            return -1;
+    }
+    return flush(definitions, sink, user) ? bodies : -1;
 }

@@ -1,14 +1,19 @@
 /* The bodies of a log, by handle.
  *
  * Bodies come from placements that carry them whole, and from definition_t messages, anywhere in
- * the log. Each distinct body is kept once, in some 150 bytes and its geometry (at most 109 bytes
- * for a frame): memory grows with the number of distinct bodies, not with the log. Adding a known
- * body costs one look-up. Handles are only computed once a first one is looked up.
+ * the log. Each distinct body is kept once, in some 200 bytes and its geometry (at most 109 bytes
+ * for a frame): memory grows with the number of distinct bodies, not with the log. Adding a body
+ * costs one look-up. Handles are only computed once one is looked up.
+ *
+ * A file that is written has to define the handles that its queries name. Per file and body one
+ * definition (definition_t of client 0 and server 0) is written, before the first query that needs
+ * it; a file that contains the body in another message needs none.
  *
  * For one thread at a time. */
 #ifndef DEFINITIONS_H
 #define DEFINITIONS_H
 
+#include "log_kind.h"
 #include "wire.h"
 
 struct definitions;
@@ -24,50 +29,51 @@ bool definitions_add(struct definitions *definitions, const struct geometry *geo
 /* Adds the body of a placement if it has frames and an id: services cache no others. */
 bool definitions_add_placement(struct definitions *definitions, const struct placement *placement);
 
-/* Adds the bodies with frames of a message of at most QUERY_BYTES_MAX bytes: of a pair_query_t or
- * scene_query_t (_query), or of a definition_t (_message). Returns NULL; or a static text: why the
- * message cannot be decoded. Then nothing of it was added. */
-const char *definitions_add_query(struct definitions *definitions, const void *bytes,
-                                  uint32_t size);
-const char *definitions_add_message(struct definitions *definitions, const void *bytes,
-                                    uint32_t size);
+/* Adds the bodies with frames of a message: of a query of a pair or a scene, or of a definition.
+ * Returns NULL; or a static text: why the message cannot be decoded. Then nothing of it was added.
+ */
+const char *definitions_add_message(struct definitions *definitions, enum log_kind kind,
+                                    const void *bytes, uint32_t size);
 
 /* The geometry of a handle, valid until definitions_close(); NULL: no such body was added. */
 const struct geometry *definitions_find(struct definitions *definitions,
                                         const struct handle *handle);
 
-/* The first placement by handle whose body was not added; -1: none. */
-int32_t definitions_missing(struct definitions *definitions, const struct placement *placement,
-                            int32_t count);
-
-/* Sets the geometry of each placement by handle whose body was added. */
-void definitions_fill(struct definitions *definitions, struct placement *placement, int32_t count);
+/* Sets the geometry of each placement by handle whose body was added. Returns the first one whose
+ * body was not; -1: none. */
+int32_t definitions_fill(struct definitions *definitions, struct placement *placement,
+                         int32_t count);
 
 /* The number of bodies, and the memory they take, tables included, bytes. */
-size_t definitions_count(const struct definitions *definitions);
-size_t definitions_bytes(const struct definitions *definitions);
+size_t definitions_count(struct definitions *definitions);
+size_t definitions_bytes(struct definitions *definitions);
 
-/* ---- Writing ---- */
+/* ---- Handles without a body ---- */
 
-/* Bytes of a definition_t without bodies, of client 0 and server 0. */
-enum { DEFINITION_BYTES = WIRE_DEFINITION_BYTES - QUERY_TEXT_MAX + 1 };
+/* Notes a handle that is named, but whose body was not added. Returns whether it is new, or was
+ * given up. */
+bool definitions_want(struct definitions *definitions, const struct handle *handle);
+void definitions_give_up(struct definitions *definitions, const struct handle *handle);
 
-/* Writes a message. Returns false if it failed. */
+/* The number of these handles whose bodies were not added later. */
+size_t definitions_wanted(struct definitions *definitions);
+
+/* ---- Files that define what they name ---- */
+
+/* Writes a definition_t. Returns false if it failed. */
 typedef bool definition_sink(void *user, const void *bytes, size_t size);
 
-/* Packs bodies into such messages. The caller sets sink and user, and all other members to 0. */
-struct definition_writer {
-    definition_sink *sink;
-    void *user;
-    size_t size; /* of the bodies in the message */
-    struct definition definition;
-    unsigned char bytes[QUERY_BYTES_MAX];
-};
+/* Begins a file, which defines nothing yet. Bodies that are added later are in the file, and so are
+ * those that were known and are added again. */
+void definitions_begin_file(struct definitions *definitions);
 
-/* Adds a body. Its geometry must stay valid until it is written, at the latest by
- * definition_writer_flush(). Return false if the sink does. */
-bool definition_writer_add(struct definition_writer *writer, const struct handle *handle,
-                           const struct geometry *geometry);
-bool definition_writer_flush(struct definition_writer *writer);
+/* Most bytes that definitions_write() writes, events of the log included. */
+size_t definitions_needed(struct definitions *definitions, const struct placement *placement,
+                          int32_t count);
+
+/* Writes definitions of the known bodies that the placements name by handle and the file does not
+ * define. Returns the number of bodies; -1 as soon as sink returns false. */
+int32_t definitions_write(struct definitions *definitions, const struct placement *placement,
+                          int32_t count, definition_sink *sink, void *user);
 
 #endif

@@ -1,6 +1,7 @@
 #include "log_cut.h"
 
 #include "allocate.h"
+#include "body_names.h"
 #include "complain.h"
 #include "definitions.h"
 #include "input.h"
@@ -23,22 +24,19 @@ struct cutter {
     bool failed;
     int64_t event; /* number of the current event, over all logs */
 
-    /* The first pass chooses events, and the bodies that the cut must define. */
-    struct match *match;
-    bool has[LOG_STATUS]; /* [kind]: whether the channel is chosen */
-    int64_t first_utime;  /* of the first event */
+    struct definitions *definitions; /* of all bodies of the logs */
+    struct body_names *names;        /* of all bodies of the logs */
     struct logged_query query;
+
+    /* The first pass chooses events. */
+    struct match *match;
+    bool has[LOG_STATUS];  /* [kind]: whether the channel is chosen */
+    int64_t first_utime;   /* of the first event */
     unsigned char *chosen; /* owned; one bit for each event */
     size_t chosen_size;    /* bytes */
-    /* Distinct handles that chosen queries name and no earlier chosen event defines, ascending. */
-    struct handle *wanted; /* owned */
-    size_t wanted_count, wanted_capacity;
-    struct definitions *all_definitions, *chosen_definitions; /* of all events; of those chosen */
 
     /* The second pass copies. */
-    bool begun;    /* the definitions have been written */
-    int64_t utime; /* of the first event that is copied */
-    struct definition_writer definitions;
+    int64_t utime; /* of the event that is copied */
 };
 
 /* Reports an error of the output, or of the current input; only the first error. */
@@ -122,129 +120,66 @@ static void choose_result(struct cutter *cut, enum log_kind kind, const struct m
         choose(cut, result->number);
 }
 
-/* ---- Bodies that the cut must define ---- */
+/* ---- The first pass ---- */
 
-static int compare(const void *a, const void *b)
-{
-    return memcmp(a, b, sizeof(struct handle));
-}
-
-static void sort_wanted(struct cutter *cut)
-{
-    size_t count = 0;
-    if (cut->wanted_count > 0)
-        qsort(cut->wanted, cut->wanted_count, sizeof *cut->wanted, compare);
-    for (size_t i = 0; i < cut->wanted_count; i++)
-        if (count == 0 || !handle_equal(&cut->wanted[i], &cut->wanted[count - 1]))
-            cut->wanted[count++] = cut->wanted[i];
-    cut->wanted_count = count;
-}
-
-/* Adds a handle. Duplicates are removed when the list is full, so it has at most twice the capacity
- * of the distinct ones. */
-static void want(struct cutter *cut, const struct handle *handle)
-{
-    if (cut->wanted_count == cut->wanted_capacity) {
-        sort_wanted(cut);
-        if (2 * cut->wanted_count >= cut->wanted_capacity)
-            cut->wanted = allocate_grow(cut->wanted, &cut->wanted_capacity,
-                                        cut->wanted_capacity + 1, sizeof *cut->wanted);
-    }
-    cut->wanted[cut->wanted_count++] = *handle;
-}
-
-/* A query does not define the handles that it names: a service that lacks one of its bodies keeps
- * none of them. */
-static void define_from_query(struct cutter *cut, bool chosen)
+/* Adds the bodies that the query carries whole, and its names. */
+static void add_bodies(struct cutter *cut)
 {
     int32_t count;
     const struct placement *placement = logged_query_placements(&cut->query, &count);
-    for (int32_t i = 0; chosen && i < count; i++)
-        if (placement_by_handle(&placement[i]) &&
-            !definitions_find(cut->chosen_definitions, &placement[i].handle))
-            want(cut, &placement[i].handle);
-    for (int32_t i = 0; i < count; i++) {
-        definitions_add_placement(cut->all_definitions, &placement[i]);
-        if (chosen)
-            definitions_add_placement(cut->chosen_definitions, &placement[i]);
-    }
+    body_names_take(cut->names, logged_query_header(&cut->query)->client_id, placement, count);
+    for (int32_t i = 0; i < count; i++)
+        definitions_add_placement(cut->definitions, &placement[i]);
 }
 
-static void define_from_message(struct cutter *cut, const struct log_event *event, bool chosen)
+/* Chooses a query. Out: place->in_range. */
+static void take_query(struct cutter *cut, enum log_kind kind, struct match_place *place)
 {
-    const uint32_t size = (uint32_t) event->kept;
-    definitions_add_message(cut->all_definitions, event->data, size);
-    if (chosen)
-        definitions_add_message(cut->chosen_definitions, event->data, size);
-}
-
-/* ---- The first pass ---- */
-
-static void take_query(struct cutter *cut, const struct match_key *key, struct match_place *place)
-{
-    struct match_item *result = match_find(cut->match, key);
-    const enum log_kind kind = (enum log_kind) key->kind;
+    add_bodies(cut);
     place->in_range = is_chosen_query(cut, place->utime);
     if (place->in_range && cut->has[kind])
         choose(cut, place->number);
-    define_from_query(cut, place->in_range && cut->has[kind]);
-    if (!result || !result->is_result) {
-        match_add(cut->match, key, place, false);
-        return;
-    }
-    choose_result(cut, log_kind_result_of(kind), place, &result->place);
-    match_remove(cut->match, result);
-    match_free(result);
-}
-
-static void take_result(struct cutter *cut, const struct match_key *key,
-                        const struct match_place *place)
-{
-    struct match_item *query = match_find(cut->match, key);
-    if (!query || query->is_result) {
-        match_add(cut->match, key, place, true);
-        return;
-    }
-    choose_result(cut, log_kind_result_of((enum log_kind) key->kind), &query->place, place);
-    match_remove(cut->match, query);
-    match_free(query);
 }
 
 /* Returns false if the event is not a query or result, or cannot be decoded. */
 static bool take_message(struct cutter *cut, const struct log_event *event, enum log_kind kind)
 {
+    const bool is_result = log_kind_is_result(kind);
     struct query_header ids;
     struct match_place place = {.log = cut->input.log,
                                 .number = cut->event,
                                 .offset = event->offset,
                                 .utime = event->utime};
-    if (kind >= LOG_STATUS || log_kind_ids(kind, event, &ids))
+    if (kind >= LOG_STATUS || log_kind_ids(kind, event, &ids) ||
+        (!is_result && logged_query_read(&cut->query, kind, event->data, (uint32_t) event->kept)))
         return false;
+    if (!is_result)
+        take_query(cut, kind, &place);
     const struct match_key key = {log_kind_query_of(kind), ids.client_id, ids.sequence_number,
                                   ids.utime};
-    if (log_kind_is_result(kind)) {
-        take_result(cut, &key, &place);
-        return true;
-    }
-    if (logged_query_read(&cut->query, kind, event->data, (uint32_t) event->kept))
-        return false;
-    take_query(cut, &key, &place);
+    struct match_item *other = match_take(cut->match, &key, &place, is_result);
+    if (other)
+        choose_result(cut, log_kind_result_of(log_kind_query_of(kind)),
+                      is_result ? &other->place : &place, is_result ? &place : &other->place);
+    match_free(other);
     return true;
 }
 
+/* A part of a log has the names of all of it at its beginning. */
 static void survey_event(struct cutter *cut, const struct log_event *event)
 {
+    const struct log_choice *choice = &cut->options->choice;
     const enum log_kind kind = log_kind_of(&cut->channels, event);
+    const uint32_t size = (uint32_t) event->kept;
     if (cut->event == 0)
         cut->first_utime = event->utime;
-    if (!take_message(cut, event, kind)) {
-        const bool chosen = log_choice_has_channel(&cut->options->choice, event) &&
-                            is_chosen_by_time(cut, event->utime);
-        if (chosen)
-            choose(cut, cut->event);
-        if (kind == LOG_DEFINITION)
-            define_from_message(cut, event, chosen);
-    }
+    if (!take_message(cut, event, kind) && log_choice_has_channel(choice, event) &&
+        is_chosen_by_time(cut, event->utime) && (kind != LOG_NAMES || log_choice_is_all(choice)))
+        choose(cut, cut->event);
+    if (kind == LOG_DEFINITION)
+        definitions_add_message(cut->definitions, kind, event->data, size);
+    else if (kind == LOG_NAMES)
+        body_names_take_message(cut->names, kind, event->data, size);
     cut->event++;
 }
 
@@ -268,20 +203,14 @@ static void choose_channels(struct cutter *cut)
     }
 }
 
-/* Allocates the chosen events and the definitions, which the caller frees. */
+/* Allocates the chosen events, which the caller frees. */
 static void survey(struct cutter *cut)
 {
-    cut->all_definitions = definitions_open();
     cut->match = match_open();
-    cut->chosen_definitions =
-        log_choice_is_all(&cut->options->choice) ? cut->all_definitions : definitions_open();
     choose_channels(cut);
     read_logs(cut, survey_event, NULL);
     if (!cut->failed)
         match_finish(cut->match, on_unmatched, cut);
-    sort_wanted(cut);
-    if (cut->chosen_definitions != cut->all_definitions)
-        definitions_close(cut->chosen_definitions);
     match_close(cut->match);
 }
 
@@ -293,56 +222,72 @@ static void append(struct cutter *cut, const struct log_event *event, const void
         fail_output(cut, errno);
 }
 
-/* An event that is larger than what the reader keeps. */
-struct large_event {
-    struct cutter *cut;
-    const struct log_event *event;
-};
-
-static bool read_large(void *user, size_t from, unsigned char *out, size_t count)
-{
-    const struct large_event *large = user;
-    struct cutter *cut = large->cut;
-    if (log_read_data(cut->input.reader[cut->input.log], large->event, from, out, count))
-        return true;
-    fail_input(cut, errno);
-    return false;
-}
-
+/* An event that is larger than what the reader keeps is read again. */
 static void copy(struct cutter *cut, const struct log_event *event)
 {
-    struct large_event large = {cut, event};
-    if (event->kept == event->size)
+    if (event->kept == event->size) {
         append(cut, event, event->data, event->size);
-    else if (!log_append_large(cut->output, event->utime, event->channel, event->channel_length,
-                               event->size, read_large, &large))
-        fail_output(cut, errno);
+        return;
+    }
+    unsigned char *data = allocate_unset(event->size);
+    if (log_read_data(cut->input.reader, event, 0, data, event->size))
+        append(cut, event, data, event->size);
+    else
+        fail_input(cut, errno);
+    free(data);
+}
+
+static bool append_own(struct cutter *cut, enum log_kind kind, const void *bytes, size_t size)
+{
+    const struct log_event event = {.utime = cut->utime,
+                                    .channel = cut->channels.name[kind],
+                                    .channel_length = cut->channels.length[kind]};
+    append(cut, &event, bytes, size);
+    return !cut->failed;
 }
 
 static bool write_definition(void *user, const void *bytes, size_t size)
 {
     struct cutter *cut = user;
-    const struct log_event event = {.utime = cut->utime,
-                                    .channel = cut->channels.name[LOG_DEFINITION],
-                                    .channel_length = cut->channels.length[LOG_DEFINITION]};
-    append(cut, &event, bytes, size);
     cut->counts->definitions++;
-    return true;
+    return append_own(cut, LOG_DEFINITION, bytes, size);
 }
 
-static void define(struct cutter *cut)
+static bool write_names(void *user, const void *bytes, size_t size)
 {
-    for (size_t i = 0; i < cut->wanted_count; i++) {
-        const struct geometry *geometry = definitions_find(cut->all_definitions, &cut->wanted[i]);
-        cut->counts->defined += geometry != NULL;
-        cut->counts->unknown += !geometry;
-        if (geometry)
-            definition_writer_add(&cut->definitions, &cut->wanted[i], geometry);
-    }
-    definition_writer_flush(&cut->definitions);
+    return append_own(user, LOG_NAMES, bytes, size);
 }
 
 /* ---- The second pass ---- */
+
+/* Begins the output with the names of all bodies, unless the whole log follows, which has them. */
+static void begin_output(struct cutter *cut)
+{
+    if (log_choice_is_all(&cut->options->choice))
+        return;
+    cut->counts->names = body_names_count(cut->names);
+    body_names_write(cut->names, cut->utime, write_names, cut);
+}
+
+/* Writes the definitions that a query needs before it. A query does not define the handles that it
+ * names: a service that lacks one of its bodies keeps none of them. */
+static void define(struct cutter *cut, enum log_kind kind, const struct log_event *event)
+{
+    const uint32_t size = (uint32_t) event->kept;
+    int32_t count;
+    if (kind == LOG_DEFINITION)
+        definitions_add_message(cut->definitions, kind, event->data, size);
+    if (!log_kind_is_query(kind) || logged_query_read(&cut->query, kind, event->data, size))
+        return;
+    const struct placement *placement = logged_query_placements(&cut->query, &count);
+    const int32_t bodies =
+        definitions_write(cut->definitions, placement, count, write_definition, cut);
+    cut->counts->defined += bodies > 0 ? bodies : 0;
+    for (int32_t i = 0; i < count; i++)
+        if (placement_by_handle(&placement[i]))
+            definitions_want(cut->definitions, &placement[i].handle);
+    add_bodies(cut);
+}
 
 static void copy_event(struct cutter *cut, const struct log_event *event)
 {
@@ -351,17 +296,15 @@ static void copy_event(struct cutter *cut, const struct log_event *event)
     counts->bytes += event->length;
     if (!is_chosen(cut, cut->event++))
         return;
-    if (!cut->begun) {
-        cut->utime = event->utime;
-        define(cut);
-    }
-    cut->begun = true;
     const enum log_kind kind = log_kind_of(&cut->channels, event);
-    counts->kept_events++;
-    counts->kept[kind]++;
     const int old_version = log_kind_old_version(kind, event);
+    cut->utime = event->utime;
+    if (counts->kept_events++ == 0)
+        begin_output(cut);
+    counts->kept[kind]++;
     counts->old_messages += old_version > 0;
     counts->old_version = old_version ? old_version : counts->old_version;
+    define(cut, kind, event);
     copy(cut, event);
 }
 
@@ -388,14 +331,18 @@ static bool open_cut(struct cutter *cut)
 
 static void run(struct cutter *cut)
 {
+    cut->definitions = definitions_open();
+    cut->names = body_names_open();
     survey(cut);
-    input_rewind(&cut->input);
+    input_begin(&cut->input, 0);
     cut->event = 0;
+    definitions_begin_file(cut->definitions);
     read_logs(cut, copy_event, take_damage);
     cut->counts->kept_bytes = log_written(cut->output);
+    cut->counts->unknown = (int64_t) definitions_wanted(cut->definitions);
     free(cut->chosen);
-    free(cut->wanted);
-    definitions_close(cut->all_definitions);
+    definitions_close(cut->definitions);
+    body_names_close(cut->names);
 }
 
 bool log_cut(const struct log_cut_options *options, const struct log_cut_sink *sink,
@@ -406,8 +353,6 @@ bool log_cut(const struct log_cut_options *options, const struct log_cut_sink *s
     cut->options = options;
     cut->sink = sink;
     cut->counts = counts;
-    cut->definitions.sink = write_definition;
-    cut->definitions.user = cut;
     if (open_cut(cut))
         run(cut);
     else
@@ -416,7 +361,8 @@ bool log_cut(const struct log_cut_options *options, const struct log_cut_sink *s
     const int error = log_finish(cut->output);
     if (error)
         fail_output(cut, error);
-    const bool good = output_close(cut->file, !cut->failed) && !cut->failed;
+    const bool keep = !cut->failed && counts->kept_events > 0;
+    const bool good = output_close(cut->file, keep) && !cut->failed;
     free(cut);
     return good;
 }

@@ -6,12 +6,13 @@
  * another result, is chosen by its own time. Events that are neither queries nor results have no
  * bodies. Damage is left out.
  *
- * The new log begins with definitions (definition_t, of client 0 and server 0) of the bodies that
- * its queries name by handle and that no copied event defines earlier. They come from anywhere in
- * the logs. Handles that the logs do not define are counted.
+ * A query that names a body by handle is preceded by a definition of it (definition_t, of client 0
+ * and server 0), from anywhere in the logs, unless a copied event defines it earlier. Handles that
+ * the logs do not define are counted. Unless everything is chosen, names_t messages are not copied:
+ * the new log begins with the names of all bodies of the logs.
  *
  * The logs are read twice: once to choose, once to copy. Memory: a bit for each event, the
- * unmatched queries and results, and each distinct body. */
+ * unmatched queries and results, each distinct body, and the largest event. */
 #ifndef LOG_CUT_H
 #define LOG_CUT_H
 
@@ -34,6 +35,7 @@ struct log_cut_counts {
     /* Definitions added, which do not count as kept; the bodies in them; handles in kept queries
      * that the logs do not define. */
     int64_t definitions, defined, unknown;
+    int64_t names;        /* added to the beginning */
     int64_t old_messages; /* kept messages of an old version, whose bodies are not known */
     int old_version;      /* the version of the last of them; 0: there are none */
     int64_t damages, damaged_bytes;
@@ -48,7 +50,7 @@ struct log_cut_sink {
 };
 
 /* False: a file cannot be opened, read or written, which was reported on stderr; the output was
- * then not written. */
+ * then not written. Nor is it if no event was chosen: kept_events is 0. */
 bool log_cut(const struct log_cut_options *options, const struct log_cut_sink *sink,
              struct log_cut_counts *counts);
 

@@ -1,6 +1,7 @@
 #include "log_info.h"
 
 #include "big_endian.h"
+#include "wire_type.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +13,7 @@ struct log_info *log_info_open(void)
 {
     struct log_info *info = allocate(1, sizeof *info);
     info->utime = INT64_MIN;
+    info->names = body_names_open();
     return info;
 }
 
@@ -20,6 +22,7 @@ void log_info_close(struct log_info *info)
     HASH_CLEAR(hh, info->table);
     for (unsigned i = 0; i < info->row_count; i++)
         free(info->row[i].key);
+    body_names_close(info->names);
     free(info);
 }
 
@@ -59,6 +62,21 @@ static size_t key_of(const struct log_event *event, struct log_type type,
     return TYPE_BYTES + event->channel_length;
 }
 
+static enum log_kind kind_of(struct log_type type)
+{
+    static const struct {
+        const char *name;
+        enum log_kind kind;
+    } kinds[] = {{"fmb_msgs.pair_query_t", LOG_PAIR_QUERY},
+                 {"fmb_msgs.scene_query_t", LOG_SCENE_QUERY},
+                 {"fmb_msgs.names_t", LOG_NAMES}};
+    const char *name = type.known ? wire_type_name(type.fingerprint) : NULL;
+    for (size_t i = 0; name && i < sizeof kinds / sizeof *kinds; i++)
+        if (strcmp(name, kinds[i].name) == 0)
+            return kinds[i].kind;
+    return LOG_OTHER;
+}
+
 /* Returns NULL if there is no row, and no space for a new one. */
 static struct log_row *find_row(struct log_info *info, const unsigned char *key, size_t size,
                                 struct log_type type)
@@ -73,40 +91,29 @@ static struct log_row *find_row(struct log_info *info, const unsigned char *key,
     row->channel = (const char *) row->key + TYPE_BYTES;
     row->channel_length = size - TYPE_BYTES;
     row->type = type;
+    row->kind = kind_of(type);
     HASH_ADD_KEYPTR(hh, info->table, row->key, size, row);
     return row;
-}
-
-/* Messages alternate in a pattern. The first guess is the row that followed the last event's row
- * the time before. */
-static struct log_tally *tally_of(struct log_info *info, const struct log_event *event)
-{
-    unsigned char key[TYPE_BYTES + LOG_CHANNEL_MAX];
-    const struct log_type type = type_of(event);
-    const size_t size = key_of(event, type, key);
-    struct log_row *row = &info->row[info->row[info->last].next];
-    if (row->hh.keylen != size || memcmp(row->key, key, size) != 0)
-        row = find_row(info, key, size, type);
-    if (!row)
-        return &info->others;
-    info->row[info->last].next = (unsigned) (row - info->row);
-    info->last = (unsigned) (row - info->row);
-    return &row->tally;
 }
 
 /* ---- Events ---------------------------------------------------------------------------------- */
 
 void log_info_event(struct log_info *info, const struct log_event *event)
 {
-    struct log_tally *tally = tally_of(info, event);
+    unsigned char key[TYPE_BYTES + LOG_CHANNEL_MAX];
+    const struct log_type type = type_of(event);
+    const size_t size = key_of(event, type, key);
+    struct log_row *row = find_row(info, key, size, type);
     info->backward += event->utime < info->utime;
     info->utime = event->utime;
-    add(tally, &(struct log_tally){.events = 1,
-                                   .bytes = (int64_t) event->size,
-                                   .least = event->size,
-                                   .most = event->size,
-                                   .begin = event->utime,
-                                   .end = event->utime});
+    add(row ? &row->tally : &info->others, &(struct log_tally){.events = 1,
+                                                               .bytes = (int64_t) event->size,
+                                                               .least = event->size,
+                                                               .most = event->size,
+                                                               .begin = event->utime,
+                                                               .end = event->utime});
+    if (row && row->kind != LOG_OTHER)
+        body_names_take_message(info->names, row->kind, event->data, (uint32_t) event->kept);
 }
 
 void log_info_damage(struct log_info *info, const struct log_damage *damage)

@@ -3,8 +3,8 @@
 #ifndef LOG_INFO_H
 #define LOG_INFO_H
 
+#include "body_names.h"
 #include "keyed_hash.h"
-#include "log_read.h"
 
 #include <stdio.h>
 
@@ -31,7 +31,7 @@ struct log_row {
     struct log_type type;
     struct log_tally tally;
     /* Private. */
-    unsigned next;      /* the row that last followed this one: a guess for the next event */
+    enum log_kind kind; /* of messages that give bodies names, by their type; else LOG_OTHER */
     unsigned char *key; /* owned; type and channel */
     UT_hash_handle hh;
 };
@@ -42,11 +42,11 @@ struct log_info {
     int64_t backward;         /* events with an earlier time than the event before them */
     int64_t damages, damaged; /* number of damaged places, and their bytes */
     struct log_damage damage[LOG_INFO_DAMAGES_MAX];
+    struct body_names *names; /* of all channels; owned */
     unsigned row_count;
     struct log_row row[LOG_INFO_ROWS_MAX]; /* sorted by channel and type after log_info_end() */
     /* Private. */
     int64_t utime;         /* of the last event */
-    unsigned last;         /* its row */
     struct log_row *table; /* of the rows, by key */
 };
 
@@ -69,8 +69,8 @@ struct log_report {
     const struct log_info *info; /* after log_info_end() */
 };
 
-/* For people; lists the first few damaged places. Control characters in channel names are not
- * printed. */
+/* For people; lists the first few names and damaged places. Control characters in channels and
+ * names are not printed. */
 void log_report_text(FILE *out, const struct log_report *report);
 
 /* One line, one JSON object:
@@ -86,8 +86,9 @@ void log_report_text(FILE *out, const struct log_report *report);
  * bytes, least and most are of data; times are microseconds since 1970, null where there is no
  * event; rate is events a second, null where no time passes. A type that is not one of fmb_msgs is
  * its fingerprint, "0x0123456789abcdef", or null where the data has none. "others" follows channels
- * if there are more than LOG_INFO_ROWS_MAX; at most LOG_INFO_DAMAGES_MAX places are listed; "error"
- * comes last, if the log could not be read to its end. */
+ * if there are more than LOG_INFO_ROWS_MAX; then "names": [{"client_id": 7, "body_id": 1, "name":
+ * "table"}, ...], if bodies have names, the last name of each; at most LOG_INFO_DAMAGES_MAX places
+ * are listed; "error" comes last, if the log could not be read to its end. */
 void log_report_json(FILE *out, const struct log_report *report);
 
 #endif

@@ -123,6 +123,35 @@ static void print_channels(FILE *out, const struct log_info *info)
         fprintf(out, "  (only the first %d are counted each for itself)\n", LOG_INFO_ROWS_MAX);
 }
 
+enum { NAME_LINES = 100 };
+
+struct name_printer {
+    FILE *out;
+    int lines;
+};
+
+static void print_name(void *user, int64_t client_id, int64_t body_id, const char *name)
+{
+    struct name_printer *printer = user;
+    if (printer->lines++ >= NAME_LINES)
+        return;
+    fprintf(printer->out, "    client %" PRId64 ", body %" PRId64 ": ", client_id, body_id);
+    escape(printer->out, ESCAPE_TERMINAL, name, strlen(name));
+    putc('\n', printer->out);
+}
+
+static void print_names(FILE *out, struct body_names *names)
+{
+    char text[NUMBER_TEXT_MAX];
+    struct name_printer printer = {.out = out};
+    if (body_names_count(names) == 0)
+        return;
+    fputs("  names:\n", out);
+    body_names_each(names, print_name, &printer);
+    if (printer.lines > NAME_LINES)
+        fprintf(out, "    and %s more\n", number_grouped(printer.lines - NAME_LINES, text));
+}
+
 static void print_time(FILE *out, const char *name, int64_t utime)
 {
     char text[64];
@@ -220,6 +249,7 @@ void log_report_text(FILE *out, const struct log_report *report)
     if (info->all.events > 0) {
         print_span(out, info);
         print_channels(out, info);
+        print_names(out, info->names);
     }
     if (old_version(info))
         fprintf(out, "  recorded by version %d, whose messages this version does not read\n",
@@ -277,6 +307,25 @@ static void write_channels(struct json_writer *json, const struct log_info *info
     json_end(json, '}');
 }
 
+static void write_name(void *user, int64_t client_id, int64_t body_id, const char *name)
+{
+    struct json_writer *json = user;
+    json_begin(json, NULL, '{');
+    json_integer(json, "client_id", client_id);
+    json_integer(json, "body_id", body_id);
+    json_string(json, "name", name);
+    json_end(json, '}');
+}
+
+static void write_names(struct json_writer *json, struct body_names *names)
+{
+    if (body_names_count(names) == 0)
+        return;
+    json_begin(json, "names", '[');
+    body_names_each(names, write_name, json);
+    json_end(json, ']');
+}
+
 static void write_damage(struct json_writer *json, const struct log_info *info)
 {
     json_begin(json, "damage", '{');
@@ -306,6 +355,7 @@ void log_report_json(FILE *out, const struct log_report *report)
     json_number(&json, "rate", span_of(all) > 0 ? rate_of(all) : NAN);
     json_integer(&json, "backward", report->info->backward);
     write_channels(&json, report->info);
+    write_names(&json, report->info->names);
     write_damage(&json, report->info);
     if (report->error)
         json_string(&json, "error", report->error);

@@ -15,7 +15,7 @@ struct log_channels log_channels(const char *prefix)
         [LOG_PAIR_QUERY] = WIRE_PAIR_QUERY,   [LOG_PAIR_RESULT] = WIRE_PAIR_RESULT,
         [LOG_SCENE_QUERY] = WIRE_SCENE_QUERY, [LOG_SCENE_RESULT] = WIRE_SCENE_RESULT,
         [LOG_STATUS] = WIRE_STATUS,           [LOG_DEFINITION_QUERY] = WIRE_DEFINITION_QUERY,
-        [LOG_DEFINITION] = WIRE_DEFINITION,
+        [LOG_DEFINITION] = WIRE_DEFINITION,   [LOG_NAMES] = WIRE_NAMES,
     };
     struct log_channels channels;
     for (int kind = 0; kind < LOG_OTHER; kind++) {

@@ -15,6 +15,7 @@ enum log_kind {
     LOG_STATUS,
     LOG_DEFINITION_QUERY,
     LOG_DEFINITION,
+    LOG_NAMES,
     LOG_OTHER, /* of another program, or of a service with another prefix */
     LOG_KINDS
 };

@@ -19,6 +19,7 @@ struct query_search {
     struct log_channels channels;
     struct input input;
     enum log_query_outcome outcome; /* the search ends if this is not FOUND */
+    bool of_result;                 /* a result was found: the search is for its query */
     /* Matching events: their number, and the offsets of the first ones. `kind` and the event in
      * `out` are those of the first match. */
     int64_t count;
@@ -58,12 +59,6 @@ static void for_each_event(struct query_search *search,
         fail(search, search->options->log[search->input.log], errno);
 }
 
-static void rewind_last(struct query_search *search)
-{
-    search->input.log = search->options->log_count - 1;
-    log_rewind(search->input.reader[search->input.log]);
-}
-
 /* ---- The event ---- */
 
 static bool has_ids(const struct query_search *search, const struct log_event *event)
@@ -75,8 +70,21 @@ static bool has_ids(const struct query_search *search, const struct log_event *e
            ids.client_id == options->client_id && ids.sequence_number == options->sequence_number;
 }
 
+/* Whether the event is the query of the result that was found. */
+static bool has_result(const struct query_search *search, const struct log_event *event)
+{
+    const enum log_kind kind = log_kind_of(&search->channels, event);
+    const struct query_header *result = &search->out->ids;
+    struct query_header ids;
+    return kind == log_kind_query_of(search->kind) && !log_kind_ids(kind, event, &ids) &&
+           ids.client_id == result->client_id && ids.sequence_number == result->sequence_number &&
+           ids.utime == result->utime;
+}
+
 static bool matches(const struct query_search *search, const struct log_event *event)
 {
+    if (search->of_result)
+        return has_result(search, event);
     switch (search->options->by) {
     case LOG_QUERY_NUMBER: return event->number == search->options->number;
     case LOG_QUERY_OFFSET: return event->offset == search->options->offset;
@@ -113,7 +121,7 @@ static bool take_match(struct query_search *search, const struct log_event *even
     if (search->count++ > 0)
         return true;
     keep_event(search, event);
-    return search->options->by != LOG_QUERY_OFFSET;
+    return search->options->by != LOG_QUERY_OFFSET && !search->of_result;
 }
 
 /* Begins a line on stderr with the query that was requested. */
@@ -151,17 +159,18 @@ static void refuse_several(struct query_search *search)
 
 static void find_event(struct query_search *search)
 {
-    struct log_reader *last = search->input.reader[search->options->log_count - 1];
-    rewind_last(search);
-    if (search->options->by == LOG_QUERY_OFFSET && search->options->offset <= log_size(last))
-        log_seek(last, search->options->offset);
+    const bool seeks = search->options->by == LOG_QUERY_OFFSET && !search->of_result;
+    input_begin(&search->input, search->options->log_count - 1);
+    if (seeks && search->input.reader && search->options->offset <= log_size(search->input.reader))
+        log_seek(search->input.reader, search->options->offset);
+    search->count = 0;
     for_each_event(search, take_match);
     if (search->outcome != LOG_QUERY_FOUND)
         return;
     if (search->count > 1)
         refuse_several(search);
     else if (search->count == 0)
-        refuse(search, "there is none");
+        refuse(search, search->of_result ? "a result, whose query is not here" : "there is none");
     else if (search->kind >= LOG_STATUS)
         refuse(search, "neither a query nor a result of this service (--prefix chooses it)");
 }
@@ -181,40 +190,27 @@ static bool read_ids(struct query_search *search)
     return !error;
 }
 
-/* ---- The query of a result ---- */
-
-static bool take_query_of_result(struct query_search *search, const struct log_event *event)
-{
-    const enum log_kind kind = log_kind_of(&search->channels, event);
-    const struct query_header *result = &search->out->ids;
-    struct query_header ids;
-    if (kind != log_kind_query_of(search->kind) || log_kind_ids(kind, event, &ids) ||
-        ids.client_id != result->client_id || ids.sequence_number != result->sequence_number ||
-        ids.utime != result->utime)
-        return true;
-    keep_event(search, event);
-    return false;
-}
-
-static void find_query_of_result(struct query_search *search)
-{
-    rewind_last(search);
-    for_each_event(search, take_query_of_result);
-    if (search->outcome == LOG_QUERY_FOUND && log_kind_is_result(search->kind))
-        refuse(search, "a result, whose query is not here");
-}
-
 /* ---- Its bodies ---- */
 
 static bool take_definitions(struct query_search *search, const struct log_event *event)
 {
-    struct definitions *definitions = search->out->definitions;
+    struct log_query *out = search->out;
     const enum log_kind kind = log_kind_of(&search->channels, event);
-    if (log_kind_is_query(kind))
-        definitions_add_query(definitions, event->data, (uint32_t) event->kept);
-    else if (kind == LOG_DEFINITION)
-        definitions_add_message(definitions, event->data, (uint32_t) event->kept);
+    const uint32_t size = (uint32_t) event->kept;
+    if (log_kind_is_query(kind) || kind == LOG_DEFINITION)
+        definitions_add_message(out->definitions, kind, event->data, size);
+    if (log_kind_is_query(kind) || kind == LOG_NAMES)
+        body_names_take_message(out->names, kind, event->data, size);
     return true;
+}
+
+/* Sets the names of placements without one. */
+static void fill_names(struct log_query *out, struct placement *placement, int32_t count)
+{
+    for (int32_t i = 0; i < count; i++)
+        if (!placement[i].name || !*placement[i].name)
+            placement[i].name =
+                body_names_find(out->names, out->ids.client_id, placement[i].body_id);
 }
 
 static void find_bodies(struct query_search *search)
@@ -228,12 +224,12 @@ static void find_bodies(struct query_search *search)
         return;
     }
     struct placement *placement = logged_query_placements(&out->query, &count);
-    if (definitions_missing(out->definitions, placement, count) < 0)
+    if (definitions_fill(out->definitions, placement, count) < 0)
         return; /* no placement is by handle */
-    input_rewind(&search->input);
+    input_begin(&search->input, 0);
     for_each_event(search, take_definitions);
-    definitions_fill(out->definitions, placement, count);
-    const int32_t missing = definitions_missing(out->definitions, placement, count);
+    fill_names(out, placement, count);
+    const int32_t missing = definitions_fill(out->definitions, placement, count);
     if (search->outcome != LOG_QUERY_FOUND || missing < 0)
         return;
     begin_line(search);
@@ -249,8 +245,9 @@ static void run(struct query_search *search)
     find_event(search);
     if (search->outcome != LOG_QUERY_FOUND || !read_ids(search))
         return;
-    if (log_kind_is_result(search->kind))
-        find_query_of_result(search);
+    search->of_result = log_kind_is_result(search->kind);
+    if (search->of_result)
+        find_event(search);
     if (search->outcome == LOG_QUERY_FOUND)
         find_bodies(search);
 }
@@ -260,6 +257,7 @@ enum log_query_outcome log_query(const struct log_query_options *options, struct
     struct query_search search = {
         .options = options, .out = out, .channels = log_channels(options->prefix)};
     out->definitions = definitions_open();
+    out->names = body_names_open();
     if (input_open(&search.input, options->log, options->log_count))
         run(&search);
     else
@@ -271,5 +269,7 @@ enum log_query_outcome log_query(const struct log_query_options *options, struct
 void log_query_clear(struct log_query *query)
 {
     definitions_close(query->definitions);
+    body_names_close(query->names);
     query->definitions = NULL;
+    query->names = NULL;
 }

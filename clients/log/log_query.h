@@ -2,7 +2,7 @@
 #ifndef LOG_QUERY_H
 #define LOG_QUERY_H
 
-#include "logged_query.h"
+#include "body_names.h"
 #include "definitions.h"
 #include "log_read.h"
 
@@ -28,9 +28,10 @@ struct log_query {
     size_t size; /* bytes in the log */
     unsigned char bytes[LOG_DATA_MAX];
     /* A placement by handle also has the geometry of its body, from anywhere in the logs. The
-     * counts of its frames and numbers stay 0. */
+     * counts of its frames and numbers stay 0. It has the last name in the logs of its body. */
     struct logged_query query;
     struct definitions *definitions; /* owned */
+    struct body_names *names;        /* owned */
 };
 
 enum log_query_outcome {

@@ -405,6 +405,11 @@ int64_t log_size(const struct log_reader *reader)
     return reader->size;
 }
 
+void log_limit(struct log_reader *reader, int64_t size)
+{
+    reader->size = size;
+}
+
 static struct log_reader *refuse(int fd, const char *reason, char why[LOG_WHY_MAX])
 {
     snprintf(why, LOG_WHY_MAX, "%s", reason);

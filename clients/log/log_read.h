@@ -65,6 +65,10 @@ void log_close(struct log_reader *reader); /* may be NULL */
 /* Size of the file when it was opened, bytes; data appended later are not read. */
 int64_t log_size(const struct log_reader *reader);
 
+/* To be called before the first event: reads as if the file had this size, if it is larger. A
+ * smaller one fails, as if it was truncated. */
+void log_limit(struct log_reader *reader, int64_t size);
+
 /* FAILED: the file cannot be read: errno (ENODATA: it was truncated). All later calls fail too. */
 enum log_outcome { LOG_EVENT, LOG_DAMAGE, LOG_END, LOG_FAILED };
 

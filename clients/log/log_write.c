@@ -14,8 +14,7 @@
 /* Events are collected in a buffer. */
 enum { BUFFER_BYTES = 256 << 10 };
 
-_Static_assert(BUFFER_BYTES >= LOG_HEADER_BYTES + LOG_CHANNEL_MAX + LOG_APPEND_MAX,
-               "the buffer holds an event");
+_Static_assert(BUFFER_BYTES >= LOG_HEADER_BYTES + LOG_CHANNEL_MAX, "the buffer holds a header");
 
 struct log_writer {
     int fd;
@@ -132,42 +131,34 @@ static void put_header(struct log_writer *writer, int64_t utime, const char *cha
     writer->used += LOG_HEADER_BYTES + channel_length;
 }
 
+/* Writes data that the buffer does not hold, after its header, which is all that the buffer has. */
+static bool write_large(struct log_writer *writer, const void *data, size_t size)
+{
+    const size_t header = write_all(writer->fd, writer->buffer, writer->used);
+    const size_t done = header == writer->used ? write_all(writer->fd, data, size) : 0;
+    const bool complete = header == writer->used && done == size;
+    writer->used = 0;
+    if (!complete)
+        return cut_back(writer, header + done, errno);
+    writer->whole += (int64_t) (header + done);
+    return true;
+}
+
 bool log_append(struct log_writer *writer, int64_t utime, const char *channel,
                 size_t channel_length, const void *data, size_t size)
 {
     const size_t bytes = (size_t) log_event_bytes(channel_length, size);
-    assert(channel_length >= 1 && channel_length < LOG_CHANNEL_MAX && size <= LOG_APPEND_MAX);
+    assert(channel_length >= 1 && channel_length < LOG_CHANNEL_MAX && size <= INT32_MAX);
     if (writer->error)
         return fail(writer, 0);
     if (bytes > BUFFER_BYTES - writer->used && !log_flush(writer))
         return false;
     put_header(writer, utime, channel, channel_length, size);
+    if (bytes > BUFFER_BYTES)
+        return write_large(writer, data, size);
     if (size > 0)
         memcpy(writer->buffer + writer->used, data, size);
     writer->used += size;
-    return true;
-}
-
-bool log_append_large(struct log_writer *writer, int64_t utime, const char *channel,
-                      size_t channel_length, size_t size, log_source *source, void *user)
-{
-    size_t done = 0, written = 0; /* of the data; of the event */
-    if (!log_flush(writer))
-        return false;
-    put_header(writer, utime, channel, channel_length, size);
-    do {
-        const size_t space = BUFFER_BYTES - writer->used;
-        const size_t count = size - done < space ? size - done : space;
-        const bool good = source(user, done, writer->buffer + writer->used, count);
-        const size_t used = writer->used + count;
-        const size_t passed = good ? write_all(writer->fd, writer->buffer, used) : 0;
-        writer->used = 0;
-        written += passed;
-        done += count;
-        if (passed != used)
-            return cut_back(writer, written, errno);
-    } while (done < size);
-    writer->whole += (int64_t) written;
     return true;
 }
 

@@ -24,22 +24,11 @@ struct log_writer *log_begin(int fd);
  * Returns NULL if output is NULL, or after an error, which was reported. */
 struct log_writer *log_begin_output(const struct output *output);
 
-/* Largest event of log_append(): bytes of data. */
-enum { LOG_APPEND_MAX = 128 << 10 };
-
 /* Appends an event. Events are numbered from 0. In: utime: time of receipt, microseconds since
- * 1970; channel_length from 1 to LOG_CHANNEL_MAX - 1; size up to LOG_APPEND_MAX. Returns false on
- * error: errno. */
+ * 1970; channel_length from 1 to LOG_CHANNEL_MAX - 1; size up to INT32_MAX. Returns false on error:
+ * errno. */
 bool log_append(struct log_writer *writer, int64_t utime, const char *channel,
                 size_t channel_length, const void *data, size_t size);
-
-/* Provides `count` bytes of data, from byte `from` on. Returns false on error: errno. */
-typedef bool log_source(void *user, size_t from, unsigned char *out, size_t count);
-
-/* As log_append(), for data of up to INT32_MAX bytes. The source provides them in pieces, in order.
- * If it fails, this fails with its error. */
-bool log_append_large(struct log_writer *writer, int64_t utime, const char *channel,
-                      size_t channel_length, size_t size, log_source *source, void *user);
 
 /* Passes all appended events to the system, so that they survive the end of this process. */
 bool log_flush(struct log_writer *writer);

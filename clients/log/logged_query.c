@@ -30,6 +30,11 @@ const char *logged_query_read(struct logged_query *out, enum log_kind kind,
                                   : wire_read_scene_query(bytes, size, &out->scene);
 }
 
+const struct query_header *logged_query_header(const struct logged_query *query)
+{
+    return query->kind == LOG_PAIR_QUERY ? &query->pair.header : &query->scene.header;
+}
+
 struct placement *logged_query_placements(struct logged_query *query, int32_t *count)
 {
     *count = query->kind == LOG_PAIR_QUERY ? 2 : query_stored_placements(&query->scene);

@@ -19,6 +19,8 @@ struct logged_query {
 const char *logged_query_read(struct logged_query *out, enum log_kind kind,
                               const unsigned char *bytes, uint32_t size);
 
+const struct query_header *logged_query_header(const struct logged_query *query);
+
 /* The placements in the struct; *count of them. */
 struct placement *logged_query_placements(struct logged_query *query, int32_t *count);
 

@@ -47,7 +47,6 @@ struct match_item *match_find(const struct match *match, const struct match_key 
 static void put(struct match *match, struct match_item *item)
 {
     struct match_item *first = match_find(match, &item->key);
-    item->in_table = true;
     item->next = NULL;
     item->last = item;
     if (first) {
@@ -78,23 +77,27 @@ void match_remove(struct match *match, struct match_item *item)
 {
     struct match_item *next = item->next;
     HASH_DELETE(hh, match->items, item);
-    item->in_table = false;
     if (!next)
         return;
     next->last = item->last;
     HASH_ADD(hh, match->items, key, sizeof next->key, next);
 }
 
-void match_free(struct match_item *item)
+struct match_item *match_take(struct match *match, const struct match_key *key,
+                              const struct match_place *place, bool is_result)
 {
-    free(item->now);
-    free(item);
+    struct match_item *first = match_find(match, key);
+    if (first && first->is_result != is_result) {
+        match_remove(match, first);
+        return first;
+    }
+    match_add(match, key, place, is_result);
+    return NULL;
 }
 
-void match_drop(struct match_item *item)
+void match_free(struct match_item *item)
 {
-    if (item && !item->in_table)
-        match_free(item);
+    free(item);
 }
 
 struct match_item *match_any(const struct match *match)
@@ -139,6 +142,31 @@ void match_finish(struct match *match, match_sink *sink, void *user)
             match_remove(match, query);
         sink(user, query, result);
     }
+}
+
+/* ---- Lists ---- */
+
+void match_list_add(struct match_list *list, struct match_item *item)
+{
+    if (!list->first)
+        list->end = &list->first;
+    item->listed = NULL;
+    *list->end = item;
+    list->end = &item->listed;
+}
+
+struct match_item *match_list_take(struct match_list *list)
+{
+    struct match_item *item = list->first;
+    if (item)
+        list->first = item->listed;
+    return item;
+}
+
+void match_list_drop(struct match_list *list)
+{
+    while (list->first)
+        free(match_list_take(list));
 }
 
 /* ---- Notes ---- */

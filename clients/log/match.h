@@ -2,9 +2,8 @@
  *
  * A result belongs to the query with the same client id, sequence number, time of sending and kind;
  * if there are several, to the first without a result. Unmatched queries and results are kept in
- * memory, at some 250 bytes an item plus the result that the user attaches. Matched items are
- * removed. The positions of the last few thousand matches are noted, so that second results are
- * recognised. For one thread at a time. */
+ * memory, at some 250 bytes an item. Matched items are removed. The positions of the last few
+ * thousand matches are noted, so that second results are recognised. For one thread at a time. */
 #ifndef MATCH_H
 #define MATCH_H
 
@@ -29,15 +28,13 @@ struct match_item {
     struct match_place place;
     bool is_result; /* otherwise a query; the members below are for the user */
     bool unreadable;
-    bool in_table;     /* the item is in the table */
     bool has_recorded; /* the log has a result, at then */
     bool sent_whole;   /* sent with frames, after UNKNOWN_BODY */
     bool left_over;    /* a recording by another client lacks this query */
     struct match_place then;
-    unsigned char *now; /* owned; the new result; NULL: none yet */
-    uint32_t now_size;
-    struct match_item *pending; /* the next item that needs the same definition */
-    struct match_item *next;    /* the next item with the same key; NULL: none */
+    size_t index;              /* of the query */
+    struct match_item *listed; /* the next item of a struct match_list */
+    struct match_item *next;   /* the next item with the same key; NULL: none */
     /* Private: */
     struct match_item *last; /* with the same key; only of the first item */
     UT_hash_handle hh;
@@ -53,6 +50,11 @@ void match_close(struct match *match); /* may be NULL; frees all items in the ta
  */
 struct match_item *match_find(const struct match *match, const struct match_key *key);
 
+/* Matches a query or result with the first item of the other kind with its key, which is removed:
+ * the caller frees it. Otherwise adds it to the table, and returns NULL. */
+struct match_item *match_take(struct match *match, const struct match_key *key,
+                              const struct match_place *place, bool is_result);
+
 /* Adds an item to the table. */
 struct match_item *match_add(struct match *match, const struct match_key *key,
                              const struct match_place *place, bool is_result);
@@ -62,10 +64,7 @@ struct match_item *match_new(const struct match_key *key, const struct match_pla
 
 /* Removes the first item with its key from the table. Free it with match_free(). */
 void match_remove(struct match *match, struct match_item *item);
-void match_free(struct match_item *item);
-
-/* Frees an item unless it is in the table, which owns it. item may be NULL. */
-void match_drop(struct match_item *item);
+void match_free(struct match_item *item); /* may be NULL */
 
 /* Some item in the table that is the first with its key; NULL: the table is empty. */
 struct match_item *match_any(const struct match *match);
@@ -75,6 +74,18 @@ struct match_item *match_any(const struct match *match);
  * them. After that only queries are left. */
 typedef void match_sink(void *user, struct match_item *query, struct match_item *result);
 void match_finish(struct match *match, match_sink *sink, void *user);
+
+/* ---- Lists of items ---- */
+
+/* All 0: empty. An item is in one list at most. */
+struct match_list {
+    struct match_item *first, **end;
+};
+
+void match_list_add(struct match_list *list, struct match_item *item);
+struct match_item *match_list_take(
+    struct match_list *list);                  /* the first item; NULL: none is left */
+void match_list_drop(struct match_list *list); /* match_drop() of all items */
 
 /* ---- Notes of matches ---- */
 

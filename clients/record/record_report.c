@@ -5,18 +5,12 @@
 #include "json_write.h"
 #include "number.h"
 #include "process.h"
-#include "utf8.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <stdlib.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
-
-/* Bytes: the size of a receive buffer that the kernel has not limited; and the limit to set for it.
- */
-enum { RECEIVE_BUFFER_ENOUGH = 8 << 20, RECEIVE_BUFFER_TO_SET = 4 << 20 };
 
 static const struct {
     const char *json, *text;
@@ -28,6 +22,7 @@ static const struct {
     [LOG_STATUS] = {"heartbeats", "heartbeats"},
     [LOG_DEFINITION_QUERY] = {"definition_queries", "definition queries"},
     [LOG_DEFINITION] = {"definitions", "definitions"},
+    [LOG_NAMES] = {"names", "names"},
     [LOG_OTHER] = {"others", "others"},
 };
 
@@ -60,6 +55,7 @@ void record_report_json(const struct recorded *recorded, const struct log_parts 
     json_end(&json, '}');
     json_integer(&json, "malformed", recorded->malformed);
     json_integer(&json, "lost", (int64_t) recorded->bus.dropped);
+    json_integer(&json, "skipped", recorded->bodies.skipped);
     json_integer(&json, "defined_bodies", recorded->bodies.defined);
     json_integer(&json, "dropped_bodies", recorded->bodies.dropped);
     json_integer(&json, "unresolved_handles", recorded->bodies.unresolved);
@@ -99,84 +95,34 @@ void record_report_text(const struct recorded *recorded, const struct log_parts 
 
 /* ---- Losses ---------------------------------------------------------------------------------- */
 
-static void warn_count(int64_t count, const char *what)
-{
-    char text[NUMBER_TEXT_MAX];
-    if (count > 0)
-        complain("%s %s", number_grouped(count, text), what);
-}
-
-static void suggest(long receive_buffer)
-{
-    char text[NUMBER_TEXT_MAX];
-    if (receive_buffer < RECEIVE_BUFFER_ENOUGH)
-        complain(
-            "the receive buffer has only %s bytes; to grant more, run:\n"
-            "  sudo sysctl net.core.rmem_max=%d",
-            number_grouped(receive_buffer, text), RECEIVE_BUFFER_TO_SET);
-    else
-        complain(
-            "this machine or its disk was too busy; to be scheduled before others, run:\n"
-            "  sudo chrt -f 10 fmb record ...");
-}
-
 void record_report_losses(const struct recorded *recorded)
 {
-    warn_count((int64_t) recorded->bus.dropped,
-               "datagrams were dropped since the receive buffer was full");
-    if (recorded->bus.dropped > 0)
-        suggest(recorded->bus.receive_buffer);
-    warn_count(recorded->bodies.unresolved,
-               "handles of answered queries: their bodies could not be obtained");
-    warn_count(recorded->bodies.dropped, "bodies were dropped since there were too many");
+    char text[4][NUMBER_TEXT_MAX];
+    const struct record_bodies_counts *bodies = &recorded->bodies;
+    if (recorded->bus.dropped > 0 || bodies->skipped > 0 || bodies->unresolved > 0)
+        complain(
+            "lost: %s datagrams that the kernel dropped (receive buffer of %s bytes), %s queries "
+            "by their sequence numbers, bodies of %s handles",
+            number_grouped((int64_t) recorded->bus.dropped, text[0]),
+            number_grouped(recorded->bus.receive_buffer, text[1]),
+            number_grouped(bodies->skipped, text[2]), number_grouped(bodies->unresolved, text[3]));
 }
 
-/* ---- The progress line
- * --------------------------------------------------------------------------- */
+/* ---- The progress line ----------------------------------------------------------------------- */
 
-static const int64_t every_ns = 250000000;
-
-enum { LINE_MAX_CHARACTERS = 512, USUAL_WIDTH = 80 };
-
-struct record_line record_line_begin(int64_t now_ns)
+/* Shorter than any terminal is wide: a line that wraps could not be replaced. */
+bool record_line_show(int64_t events, int64_t bytes, int64_t lost)
 {
-    return (struct record_line){.enabled = isatty(STDERR_FILENO), .at_ns = now_ns};
-}
-
-static int terminal_width(void)
-{
-    struct winsize size;
-    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col
-                                                                           : USUAL_WIDTH;
-}
-
-/* Shortened to the width of the terminal: a line that wraps could not be replaced. */
-static void show(const char *text)
-{
-    fprintf(stderr, "\r%.*s\033[K", terminal_width() - 1, text);
+    char text[3][NUMBER_TEXT_MAX];
+    if (!isatty(STDERR_FILENO) || !stderr_ready())
+        return false;
+    fprintf(stderr, "\rfmb: %s messages, %s MB, %s lost\033[K", number_grouped(events, text[0]),
+            number_grouped(bytes / 1000000, text[1]), number_grouped(lost, text[2]));
     fflush(stderr);
+    return true;
 }
 
-void record_line_show(struct record_line *line, int64_t now_ns, const char *path, int64_t events,
-                      int64_t bytes, int64_t lost)
+void record_line_end(void)
 {
-    const int64_t passed = now_ns - line->at_ns;
-    if (!line->enabled || passed < every_ns || !stderr_ready())
-        return;
-    char text[LINE_MAX_CHARACTERS], number[4][NUMBER_TEXT_MAX];
-    const double seconds = 1e-9 * (double) passed;
-    snprintf(text, sizeof text, "fmb: %s messages, %s/s, %.2f MB/s, %s lost, %s MB: %s",
-             number_grouped(events, number[0]),
-             number_grouped((int64_t) ((double) (events - line->events) / seconds), number[1]),
-             1e-6 * (double) (bytes - line->bytes) / seconds, number_grouped(lost, number[2]),
-             number_grouped(bytes / 1000000, number[3]), utf8_is_text(path) ? path : "?");
-    show(text);
-    *line = (struct record_line){true, true, now_ns, events, bytes};
-}
-
-void record_line_end(struct record_line *line)
-{
-    if (line->shown)
-        fputs("\r\033[K", stderr);
-    line->shown = false;
+    fputs("\r\033[K", stderr);
 }

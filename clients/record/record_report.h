@@ -7,21 +7,12 @@
 #include "log_parts.h"
 #include "record_bodies.h"
 
-struct record_line {
-    bool enabled, shown;
-    int64_t at_ns, events, bytes; /* of the last display: time, and counts then */
-};
-
-/* Returns a line that is shown only if standard error is a terminal. */
-struct record_line record_line_begin(int64_t now_ns);
-
-/* Updates the line, at most a few times a second, and never blocks on the terminal: so it may be
- * called often. On input: the file, the messages and bytes so far, and the messages lost. */
-void record_line_show(struct record_line *line, int64_t now_ns, const char *path, int64_t events,
-                      int64_t bytes, int64_t lost);
+/* Shows the line, unless standard error is no terminal, or blocks. In: messages and bytes so far,
+ * and datagrams lost. Returns whether it is shown. */
+bool record_line_show(int64_t events, int64_t bytes, int64_t lost);
 
 /* Clears the line. */
-void record_line_end(struct record_line *line);
+void record_line_end(void);
 
 struct recorded {
     int64_t received[LOG_KINDS]; /* [kind] messages, written or not */
@@ -36,7 +27,7 @@ struct recorded {
 void record_report_json(const struct recorded *recorded, const struct log_parts *parts);
 void record_report_text(const struct recorded *recorded, const struct log_parts *parts);
 
-/* Reports on standard error what is missing, if anything, and what to do about it. */
+/* Reports on standard error what is missing, if anything, in one line. */
 void record_report_losses(const struct recorded *recorded);
 
 #endif

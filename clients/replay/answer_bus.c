@@ -17,12 +17,10 @@
  *      the caller.
  *
  * The end. stop() records the first reason: a signal, no service, or a failed bus. From then on no
- * query is sent and the sink is not called; items under way that are no longer in the table of
- * match.h are freed here.
+ * query is sent and the sink is not called; items under way are freed here.
  *
- * Not here: matching and comparison (replay_match.c), which bodies a service lacks
- * (replay_answer.c), timeouts and repetition (client library). Tested by
- * tests/system/replay_bus.bats and replay_set.bats. */
+ * Not here: comparison (replay_compare.c), which bodies a service lacks (replay_answer.c), timeouts
+ * and repetition (client library). Tested by tests/system/replay_bus.bats and replay_set.bats. */
 #include "answer_bus.h"
 
 #include "allocate.h"
@@ -153,7 +151,7 @@ static void on_result(void *user, const struct fmb_client_raw_result *result)
     }
     slot->bus = NULL;
     if (!is_running(bus))
-        match_drop(item);
+        match_free(item);
     else if (item)
         deliver(bus, item, &answered);
 }
@@ -240,7 +238,7 @@ static void send(struct answer_bus *bus, struct match_item *item, const unsigned
     }
     slot->bus = NULL;
     stop(bus, ANSWER_BUS_FAILED, item ? &item->place : NULL);
-    match_drop(item);
+    match_free(item);
 }
 
 /* Answers a query that the engine does not send, with the status of a service: it is too long, or
@@ -280,7 +278,7 @@ void answer_bus_query(struct answer_bus *bus, struct match_item *item, const uns
     const size_t largest = bytes_of(bus, size);
     wait_for_turn(bus, &item->place, largest);
     if (!is_running(bus)) {
-        match_drop(item);
+        match_free(item);
         return;
     }
     bus->counts.whole += item->sent_whole;
@@ -330,7 +328,7 @@ void answer_bus_close(struct answer_bus *bus)
         return;
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++)
         if (bus->slot[i].bus)
-            match_drop(bus->slot[i].item);
+            match_free(bus->slot[i].item);
     fmb_client_close(bus->client);
     if (bus->signals >= 0)
         close(bus->signals);

@@ -136,68 +136,52 @@ static struct fmb_answer answer_of(const struct fmb_answer *answer, int dim, int
     return out;
 }
 
-/* ---- Pairs ---- */
+/* ---- Results ---- */
 
-static struct difference_side side_of_pair(const struct pair_result *result, int dim)
+static struct difference_side side_of(const struct replayed_side *side,
+                                      const struct pair_result *pair,
+                                      const struct scene_result *scene, int dim)
 {
-    return (struct difference_side){.status = result->status,
-                                    .answer = answer_of(&result->answer, result->dim, dim),
-                                    .certificate = result->certificate,
-                                    .names_frames = result->names_frames};
+    return (struct difference_side){
+        .status = pair ? pair->status : FMB_OK,
+        .answer = answer_of(&side->answer, side->dim, dim),
+        .certificate = pair ? pair->certificate : NULL,
+        .names_frames = pair ? pair->names_frames : scene->names_frames};
 }
 
-enum replay_outcome compare_pairs(const struct compare_options *options,
-                                  const struct pair_query *query, const struct pair_result *then,
-                                  const struct pair_result *now, difference_sink *sink, void *user)
-{
-    if (compare_status_is_transient(then->status) || compare_status_is_transient(now->status))
-        return transient_outcome(then->status, now->status);
-    const int dim = dim_of(&query->placement[0]);
-    struct difference difference = {
-        .body_id = {query->placement[0].body_id, query->placement[1].body_id},
-        .placement = {0, 1},
-        .dim = dim,
-        .then = side_of_pair(then, dim),
-        .now = side_of_pair(now, dim)};
-    if (!find_difference(options, query->duration, &difference))
-        return REPLAY_SAME;
-    sink(user, &difference);
-    return REPLAY_DIFFERENT;
-}
-
-/* ---- Scenes ---- */
-
-static struct difference difference_of(const struct replayed *scene,
+static struct difference difference_of(const struct replayed *replayed,
                                        const struct replayed_pair *pair)
 {
-    const struct scene_query *query = scene->scene;
-    struct difference difference = {.dim = dim_of(&query->placement[0]),
-                                    .placement = {pair->a, pair->b},
-                                    .then.names_frames = scene->scene_then->names_frames,
-                                    .now.names_frames = scene->scene_now->names_frames};
-    for (int f = 0; f < 2; f++) {
-        const unsigned i = difference.placement[f];
-        if (i < (unsigned) query->placement_count && i < QUERY_PLACEMENTS_MAX)
-            difference.body_id[f] = query->placement[i].body_id;
-    }
-    difference.then.answer = answer_of(&pair->then.answer, pair->then.dim, difference.dim);
-    difference.now.answer = answer_of(&pair->now.answer, pair->now.dim, difference.dim);
+    const bool is_pair = replayed->pair;
+    const struct placement *placement =
+        is_pair ? replayed->pair->placement : replayed->scene->placement;
+    const unsigned count = is_pair ? 2 : (unsigned) query_stored_placements(replayed->scene);
+    const int dim = dim_of(&placement[0]);
+    struct difference difference = {
+        .dim = dim,
+        .placement = {pair->a, pair->b},
+        .then = side_of(&pair->then, replayed->pair_then, replayed->scene_then, dim),
+        .now = side_of(&pair->now, replayed->pair_now, replayed->scene_now, dim)};
+    for (int f = 0; f < 2; f++)
+        if (difference.placement[f] < count)
+            difference.body_id[f] = placement[difference.placement[f]].body_id;
     return difference;
 }
 
-/* Compares the pairs that both results answer. */
+/* Compares the pairs that both results answer; of a pair query also the statuses. */
 static enum replay_outcome compare_answers(const struct compare_options *options,
-                                           const struct replayed *scene, difference_sink *sink,
+                                           const struct replayed *replayed, difference_sink *sink,
                                            void *user)
 {
+    const double duration = replayed->pair ? replayed->pair->duration : replayed->scene->duration;
     enum replay_outcome outcome = REPLAY_SAME;
     struct replayed_pairs pairs;
     struct replayed_pair pair;
-    replayed_pairs_begin(scene, &pairs);
+    replayed_pairs_begin(replayed, &pairs);
     while (replayed_pairs_next(&pairs, &pair)) {
-        struct difference difference = difference_of(scene, &pair);
-        if (pair.then.answered && pair.now.answered &&
-            find_difference(options, scene->scene->duration, &difference)) {
+        struct difference difference = difference_of(replayed, &pair);
+        if ((replayed->pair || (pair.then.answered && pair.now.answered)) &&
+            find_difference(options, duration, &difference)) {
             sink(user, &difference);
             outcome = REPLAY_DIFFERENT;
         }
@@ -228,77 +212,53 @@ static bool is_consistent(const struct scene_query *query, const struct scene_re
     return true;
 }
 
-static enum replay_outcome report_scene_difference(const struct scene_result *then,
-                                                   const struct scene_result *now,
-                                                   difference_sink *sink, void *user)
+/* Whether the answers of two results of a scene can be compared; otherwise *outcome. */
+static bool are_comparable(const struct replayed *replayed, int32_t then, int32_t now,
+                           enum replay_outcome *outcome)
 {
-    const struct difference difference = {.kind = DIFFERENT_STATUS,
-                                          .whole = true,
-                                          .dim = 3,
-                                          .then = {.status = then->status},
-                                          .now = {.status = now->status}};
-    sink(user, &difference);
-    return REPLAY_DIFFERENT;
+    *outcome = then == now && now != FMB_OK ? REPLAY_SAME : REPLAY_DIFFERENT;
+    return then == FMB_OK && now == FMB_OK &&
+           is_consistent(replayed->scene, replayed->scene_then) &&
+           is_consistent(replayed->scene, replayed->scene_now);
 }
 
-enum replay_outcome compare_scenes(const struct compare_options *options,
-                                   const struct scene_query *query, const struct scene_result *then,
-                                   const struct scene_result *now, difference_sink *sink,
-                                   void *user)
+enum replay_outcome compare_results(const struct compare_options *options,
+                                    const struct replayed *replayed, difference_sink *sink,
+                                    void *user)
 {
-    if (compare_status_is_transient(then->status) || compare_status_is_transient(now->status))
-        return transient_outcome(then->status, now->status);
-    if (then->status != now->status)
-        return report_scene_difference(then, now, sink, user);
-    if (now->status != FMB_OK)
-        return REPLAY_SAME;
-    if (!is_consistent(query, then) || !is_consistent(query, now))
-        return report_scene_difference(then, now, sink, user);
-    const struct replayed scene = {.scene = query, .scene_then = then, .scene_now = now};
-    return compare_answers(options, &scene, sink, user);
+    const bool is_pair = replayed->pair;
+    const int32_t then = is_pair ? replayed->pair_then->status : replayed->scene_then->status;
+    const int32_t now = is_pair ? replayed->pair_now->status : replayed->scene_now->status;
+    enum replay_outcome outcome;
+    if (compare_status_is_transient(then) || compare_status_is_transient(now))
+        return transient_outcome(then, now);
+    if (is_pair || are_comparable(replayed, then, now, &outcome))
+        return compare_answers(options, replayed, sink, user);
+    if (outcome == REPLAY_DIFFERENT)
+        sink(user, &(struct difference){.kind = DIFFERENT_STATUS,
+                                        .whole = true,
+                                        .dim = 3,
+                                        .then = {.status = then},
+                                        .now = {.status = now}});
+    return outcome;
 }
 
 /* ---- Encoded results ----
  *
- * Both types begin with the fingerprint, the echoed utime, client id and sequence number (8 bytes
- * each) and the server id, and end with compute_ns. */
+ * Both types begin with the fingerprint (8 bytes), the echoed utime, client id and sequence number
+ * (8 each) and the server id, and end with compute_ns. Then come, of a scene, the status, and of a
+ * pair the ids of the bodies (8 each), their handles and the status. */
 
-enum { SERVER_END = 40, COMPUTE_BYTES = 8 };
-
-/* Pair results: the ids of the bodies (8 bytes each), their handles, and all that is compared, the
- * status first. */
-enum { HANDLES_END = SERVER_END + 2 * 8 + 2 * HANDLE_BYTES };
-
-/* Scene results: status, an empty detail if the status is OK, method, number of unknown bodies (0);
- * the size of the handles and the handles; and all that is compared. */
-enum { UNKNOWN_END = SERVER_END + 4 + 5 + 4 + 4, COUNT_END = UNKNOWN_END + 4 };
-
-static bool same_bytes(const unsigned char *a, const unsigned char *b, size_t begin, size_t end)
-{
-    return memcmp(a + begin, b + begin, end - begin) == 0;
-}
-
-static bool same_pair_bytes(const unsigned char *then, const unsigned char *now, size_t size)
-{
-    return size >= HANDLES_END + 4 + COMPUTE_BYTES && same_bytes(then, now, 0, 8) &&
-           !compare_status_is_transient((int32_t) big_endian_32(now + HANDLES_END)) &&
-           same_bytes(then, now, HANDLES_END, size - COMPUTE_BYTES);
-}
-
-static bool same_scene_bytes(const unsigned char *then, const unsigned char *now, size_t size)
-{
-    if (size < COUNT_END + COMPUTE_BYTES || !same_bytes(then, now, 0, 8) ||
-        !same_bytes(then, now, SERVER_END, COUNT_END) || big_endian_32(now + SERVER_END) != FMB_OK)
-        return false;
-    return same_bytes(then, now, COUNT_END + big_endian_32(now + UNKNOWN_END),
-                      size - COMPUTE_BYTES);
-}
+enum { TYPE_BYTES = 8, SERVER_END = 40, COMPUTE_BYTES = 8 };
+enum { SCENE_STATUS = SERVER_END, PAIR_STATUS = SERVER_END + 2 * 8 + 2 * HANDLE_BYTES };
 
 bool compare_bytes_same(enum log_kind kind, const unsigned char *then, size_t then_size,
                         const unsigned char *now, size_t now_size)
 {
-    if (then_size != now_size)
-        return false;
-    return kind == LOG_PAIR_QUERY ? same_pair_bytes(then, now, now_size)
-                                  : same_scene_bytes(then, now, now_size);
+    const size_t status = kind == LOG_PAIR_QUERY ? PAIR_STATUS : SCENE_STATUS;
+    return then_size == now_size && now_size >= status + 4 + COMPUTE_BYTES &&
+           memcmp(then, now, TYPE_BYTES) == 0 &&
+           memcmp(then + SERVER_END, now + SERVER_END, now_size - SERVER_END - COMPUTE_BYTES) ==
+               0 &&
+           !compare_status_is_transient((int32_t) big_endian_32(now + status));
 }

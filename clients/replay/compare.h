@@ -33,20 +33,16 @@ struct difference_side {
 };
 
 struct difference {
+    /* Of the query, set by the caller of compare_results(). */
+    struct match_place place;
+    enum log_kind query_kind;
+    int64_t client_id, sequence_number;
     enum difference_kind kind;
     bool whole; /* of the scene as a whole (its status), not of a pair */
     int64_t body_id[2];
     unsigned placement[2]; /* indices in the query */
     int dim;
     struct difference_side then, now;
-};
-
-/* A difference, with the position of its query in the logs. */
-struct located_difference {
-    struct match_place place; /* of the query */
-    enum log_kind kind;       /* of the query */
-    int64_t client_id, sequence_number;
-    struct difference difference;
 };
 
 struct compare_options {
@@ -59,15 +55,11 @@ struct compare_options {
 
 typedef void difference_sink(void *user, const struct difference *difference);
 
-/* Call the sink for each difference. In: results that were decoded. Never return REPLAY_UNRECORDED.
- */
-enum replay_outcome compare_pairs(const struct compare_options *options,
-                                  const struct pair_query *query, const struct pair_result *then,
-                                  const struct pair_result *now, difference_sink *sink, void *user);
-enum replay_outcome compare_scenes(const struct compare_options *options,
-                                   const struct scene_query *query, const struct scene_result *then,
-                                   const struct scene_result *now, difference_sink *sink,
-                                   void *user);
+/* Calls the sink for each difference. In: a query with two results, which were decoded. Never
+ * returns REPLAY_UNRECORDED. */
+enum replay_outcome compare_results(const struct compare_options *options,
+                                    const struct replayed *replayed, difference_sink *sink,
+                                    void *user);
 
 /* Whether the status depends on the state of the service, not on the query: it was busy, or did not
  * hold a body. */

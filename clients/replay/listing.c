@@ -6,14 +6,12 @@
 #include <string.h>
 
 struct listing_entry {
-    struct located_difference located;
-    int64_t number;       /* order of arrival */
-    char *certificate[2]; /* owned; NULL: none */
+    struct difference difference;
+    char certificate[2][LISTING_CERTIFICATE_MAX];
 };
 
-/* At most twice the limit, unsorted. */
 struct listing {
-    struct listing_entry *entry;
+    struct listing_entry **entry; /* owned, [count], sorted */
     size_t count, capacity, limit;
     int64_t put;
 };
@@ -25,72 +23,53 @@ struct listing *listing_open(int64_t limit)
     return list;
 }
 
-static void free_entry(struct listing_entry *entry)
-{
-    free(entry->certificate[0]);
-    free(entry->certificate[1]);
-}
-
 void listing_close(struct listing *list)
 {
     if (!list)
         return;
-    for (size_t i = 0; i < list->count; i++)
-        free_entry(&list->entry[i]);
+    while (list->count > 0)
+        free(list->entry[--list->count]);
     free(list->entry);
     free(list);
 }
 
-static int compare_entries(const void *left, const void *right)
+static bool precedes(const struct difference *a, const struct difference *b)
 {
-    const struct listing_entry *a = left, *b = right;
-    const struct match_place *x = &a->located.place, *y = &b->located.place;
-    if (x->log != y->log)
-        return x->log < y->log ? -1 : 1;
-    if (x->offset != y->offset)
-        return x->offset < y->offset ? -1 : 1;
-    return a->number < b->number ? -1 : a->number > b->number;
+    return a->place.log < b->place.log ||
+           (a->place.log == b->place.log && a->place.offset < b->place.offset);
 }
 
-static char *copy_of(const char *certificate)
+static void copy_certificate(struct difference_side *side, char copy[LISTING_CERTIFICATE_MAX])
 {
-    if (!certificate)
-        return NULL;
-    char *copy = allocate(LISTING_CERTIFICATE_MAX, 1);
-    strncpy(copy, certificate, LISTING_CERTIFICATE_MAX - 1);
-    return copy;
-}
-
-static void set(struct listing_entry *entry, const struct located_difference *located,
-                int64_t number)
-{
-    struct difference *difference = &entry->located.difference;
-    entry->located = *located;
-    entry->number = number;
-    entry->certificate[0] = copy_of(located->difference.then.certificate);
-    entry->certificate[1] = copy_of(located->difference.now.certificate);
-    difference->then.certificate = entry->certificate[0];
-    difference->now.certificate = entry->certificate[1];
-}
-
-/* Sorts, and removes the differences beyond the limit. */
-static void shorten(struct listing *list)
-{
-    if (list->count > 0)
-        qsort(list->entry, list->count, sizeof *list->entry, compare_entries);
-    while (list->count > list->limit)
-        free_entry(&list->entry[--list->count]);
-}
-
-void listing_put(struct listing *list, const struct located_difference *located)
-{
-    const int64_t number = list->put++;
-    if (list->limit == 0)
+    if (!side->certificate)
         return;
-    if (list->count == 2 * list->limit)
-        shorten(list);
+    strncpy(copy, side->certificate, LISTING_CERTIFICATE_MAX - 1);
+    side->certificate = copy;
+}
+
+static struct listing_entry *copy_of(const struct difference *difference)
+{
+    struct listing_entry *entry = allocate(1, sizeof *entry);
+    entry->difference = *difference;
+    copy_certificate(&entry->difference.then, entry->certificate[0]);
+    copy_certificate(&entry->difference.now, entry->certificate[1]);
+    return entry;
+}
+
+/* Differences arrive nearly in order, so few are moved. */
+void listing_put(struct listing *list, const struct difference *difference)
+{
+    list->put++;
+    if (list->count == list->limit) {
+        if (list->limit == 0 || !precedes(difference, &list->entry[list->count - 1]->difference))
+            return;
+        free(list->entry[--list->count]);
+    }
     list->entry = allocate_grow(list->entry, &list->capacity, list->count + 1, sizeof *list->entry);
-    set(&list->entry[list->count++], located, number);
+    size_t at = list->count++;
+    for (; at > 0 && precedes(difference, &list->entry[at - 1]->difference); at--)
+        list->entry[at] = list->entry[at - 1];
+    list->entry[at] = copy_of(difference);
 }
 
 int64_t listing_beyond(const struct listing *list)
@@ -98,9 +77,8 @@ int64_t listing_beyond(const struct listing *list)
     return list->put > (int64_t) list->limit ? list->put - (int64_t) list->limit : 0;
 }
 
-void listing_each(struct listing *list, located_difference_sink *sink, void *user)
+void listing_each(const struct listing *list, difference_sink *sink, void *user)
 {
-    shorten(list);
     for (size_t i = 0; i < list->count; i++)
-        sink(user, &list->entry[i].located);
+        sink(user, &list->entry[i]->difference);
 }

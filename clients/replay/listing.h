@@ -1,6 +1,6 @@
 /* The differences that a replay lists: the first ones up to a limit, sorted by the positions of
  * their queries, in whatever order they are added. Differences of one query stay in the order of
- * arrival. Each takes some 300 bytes, and the beginning of certificates that differ. */
+ * arrival. Each takes some 1,000 bytes. */
 #ifndef LISTING_H
 #define LISTING_H
 
@@ -16,13 +16,12 @@ struct listing *listing_open(int64_t limit);
 void listing_close(struct listing *list); /* may be NULL */
 
 /* Adds a difference, which is copied. */
-void listing_put(struct listing *list, const struct located_difference *located);
+void listing_put(struct listing *list, const struct difference *difference);
 
 /* Number of differences beyond the limit. */
 int64_t listing_beyond(const struct listing *list);
 
-/* Calls the sink for each difference kept, sorted. None may be added after that. */
-typedef void located_difference_sink(void *user, const struct located_difference *located);
-void listing_each(struct listing *list, located_difference_sink *sink, void *user);
+/* Calls the sink for each difference kept, sorted. */
+void listing_each(const struct listing *list, difference_sink *sink, void *user);
 
 #endif

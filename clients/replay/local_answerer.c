@@ -17,7 +17,9 @@ struct local_answerer {
     struct scene_job *job;
     struct pair_job *pair_job;
     struct definitions *definitions;
-    struct logged_query query; /* a pair query, or one that is too long */
+    struct logged_query query;         /* a pair query, or one that is too long */
+    const struct placement *placement; /* [placement_count] of the query answered last */
+    int32_t placement_count;
     struct pair_result pair;
     struct scene_result refused;
     unsigned char bytes[QUERY_BYTES_MAX];
@@ -60,38 +62,28 @@ static bool is_held(struct cache *cache, const struct handle *handle)
     return cached != NULL;
 }
 
-/* Adds the bodies of handles to the cache, except those that a service refuses. Bodies already held
- * are touched first, so that the others do not evict them. */
-static void supply(struct local_answerer *local, const struct placement *placement, int32_t count)
+/* Adds the bodies of the handles of a query to the cache, except those that a service refuses.
+ * Bodies already held are touched first, so that the others do not evict them. Returns false if a
+ * handle is not defined. */
+static bool supply(struct local_answerer *local)
 {
     struct cache *cache = answerer_cache(local->answerer);
-    struct handle handle;
-    for (int32_t i = 0; i < count; i++)
-        if (placement_by_handle(&placement[i]))
-            is_held(cache, &placement[i].handle);
-    for (int32_t i = 0; i < count; i++) {
-        if (!placement_by_handle(&placement[i]) || is_held(cache, &placement[i].handle))
+    bool defined = true;
+    for (int32_t i = 0; i < local->placement_count; i++)
+        if (placement_by_handle(&local->placement[i]))
+            is_held(cache, &local->placement[i].handle);
+    for (int32_t i = 0; i < local->placement_count; i++) {
+        struct handle handle = local->placement[i].handle;
+        if (!placement_by_handle(&local->placement[i]) || is_held(cache, &handle))
             continue;
-        const struct geometry *geometry =
-            definitions_find(local->definitions, &placement[i].handle);
+        const struct geometry *geometry = definitions_find(local->definitions, &handle);
         const struct cached *kept =
             geometry && scene_takes(geometry) ? cache_intern(cache, 0, geometry, &handle) : NULL;
+        defined = defined && geometry;
         if (kept)
             cache_release(cache, kept);
     }
-}
-
-/* After UNKNOWN_BODY: supplies the bodies, and returns whether to answer again. If a handle is not
- * defined: false and out->undefined. */
-static bool supply_undefined(struct local_answerer *local, struct new_result *out)
-{
-    const int32_t missing =
-        definitions_missing(local->definitions, out->placement, out->placement_count);
-    if (missing >= 0)
-        out->undefined = out->placement[missing].handle;
-    else
-        supply(local, out->placement, out->placement_count);
-    return missing < 0;
+    return defined;
 }
 
 /* ---- Answers ---- */
@@ -114,8 +106,8 @@ static const char *decide_pair(struct local_answerer *local, const unsigned char
     result->compute_ns = out->compute_ns = clock_ns() - begin;
     out->status = result->status;
     out->pairs = out->status == FMB_OK;
-    out->placement = local->query.pair.placement;
-    out->placement_count = 2;
+    local->placement = local->query.pair.placement;
+    local->placement_count = 2;
     out->size = wire_write_pair_result(result, local->bytes);
     return NULL;
 }
@@ -134,8 +126,8 @@ static const char *decide_scene(struct local_answerer *local, const unsigned cha
     result->compute_ns = out->compute_ns = clock_ns() - begin;
     out->status = result->status;
     out->pairs = replayed_decided(query, result);
-    out->placement = query->placement;
-    out->placement_count = query_stored_placements(query);
+    local->placement = query->placement;
+    local->placement_count = query_stored_placements(query);
     out->size = wire_write_scene_result(result, local->bytes);
     return NULL;
 }
@@ -169,14 +161,11 @@ static const char *refuse(struct local_answerer *local, enum log_kind kind,
 const char *local_answer(struct local_answerer *local, enum log_kind kind,
                          const unsigned char *bytes, uint32_t size, struct new_result *out)
 {
-    struct cache *cache = answerer_cache(local->answerer);
-    const int64_t misses = cache_counts(cache).misses;
     *out = (struct new_result){.bytes = local->bytes};
     if (size > QUERY_BYTES_MAX)
         return refuse(local, kind, bytes, size, out);
     const char *error = decide(local, kind, bytes, size, out);
-    if (!error && out->status == FMB_UNKNOWN_BODY && supply_undefined(local, out))
+    if (!error && out->status == FMB_UNKNOWN_BODY && supply(local))
         decide(local, kind, bytes, size, out);
-    out->all_held = out->status == FMB_OK && cache_counts(cache).misses == misses;
     return error;
 }

@@ -18,12 +18,6 @@ struct new_result {
     size_t size;
     int64_t compute_ns, pairs; /* time taken, pairs decided */
     int32_t status;
-    /* If the status is UNKNOWN_BODY: the first handle without a definition so far; otherwise none.
-     */
-    struct handle undefined;
-    const struct placement *placement; /* [placement_count] of the query; valid as bytes is */
-    int32_t placement_count;
-    bool all_held; /* all bodies with frames and an id were in the cache, so they are defined */
 };
 
 /* Answers a query. In: its bytes in the log, at most the first LOG_DATA_MAX. Returns NULL; or a

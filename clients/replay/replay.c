@@ -5,14 +5,8 @@
 
 #include <errno.h>
 #include <inttypes.h>
-
-/* ---- The golden log: results in the order of their queries ---- */
-
-static void fail_golden(struct replay *replay, int64_t offset, const char *what)
-{
-    complain("%s: offset %" PRId64 ": %s", replay->options->golden, offset, what);
-    replay->failed = true;
-}
+#include <stdlib.h>
+#include <string.h>
 
 static const char *read_key(enum log_kind kind, const struct log_event *event, struct message *out)
 {
@@ -25,13 +19,87 @@ static const char *read_key(enum log_kind kind, const struct log_event *event, s
     return error;
 }
 
+/* ---- The first reading ---- */
+
+/* The golden log comes after the others. */
+static bool in_golden(const struct replay *replay)
+{
+    return replay->input.log == replay->options->log_count;
+}
+
+static void fail_golden(struct replay *replay, int64_t offset, const char *what)
+{
+    complain("%s: offset %" PRId64 ": %s", replay->options->golden, offset, what);
+    replay->failed = true;
+}
+
+static bool in_time(const struct replay *replay, int64_t utime)
+{
+    const double seconds = ((double) utime - (double) replay->first_utime) / 1e6;
+    return seconds >= replay->options->from && seconds < replay->options->to;
+}
+
+static struct match_place place_of(const struct replay *replay, const struct log_event *event)
+{
+    return (struct match_place){.log = replay->input.log,
+                                .in_range = in_golden(replay) || in_time(replay, event->utime),
+                                .number = event->number,
+                                .offset = event->offset,
+                                .utime = event->utime};
+}
+
+/* Collects the bodies and names of a query. Returns as logged_query_read(). */
+static const char *read_query(struct replay *replay, const struct message *query)
+{
+    int32_t count;
+    const char *error = logged_query_read(&replay->query, (enum log_kind) query->key.kind,
+                                          query->bytes, query->size);
+    const struct placement *placement = logged_query_placements(&replay->query, &count);
+    if (error)
+        return error;
+    if (replay->options->names)
+        body_names_take(replay->options->names, query->key.client_id, placement, count);
+    for (int32_t i = 0; i < count; i++)
+        definitions_add_placement(replay->definitions, &placement[i]);
+    return NULL;
+}
+
+static void take_message(struct replay *replay, enum log_kind kind, const struct log_event *event)
+{
+    struct message message = {.place = place_of(replay, event)};
+    const char *error = read_key(kind, event, &message);
+    const bool has_ids = !error, is_query = log_kind_is_query(kind);
+    if (has_ids && is_query)
+        error = read_query(replay, &message);
+    if (error && message.place.in_range)
+        replay_refuse(replay, kind, &message, error);
+    if (has_ids && is_query) {
+        replay_take_query(replay, &message, error);
+    } else if (has_ids && !replay->options->golden) {
+        replay_channel(replay, &message.key, &message.place)->results += message.place.in_range;
+        replay_take_result(replay, &message);
+    }
+}
+
+static void take_definition(struct replay *replay, const struct log_event *event)
+{
+    const struct match_place place = place_of(replay, event);
+    struct tally *tally = &replay->tally[place.log];
+    const char *error = definitions_add_message(replay->definitions, LOG_DEFINITION, event->data,
+                                                (uint32_t) event->kept);
+    tally->definitions += !error;
+    tally->unreadable_definitions += error != NULL;
+    if (error)
+        replay->sink->unreadable(replay->sink->user, &place, replay->channels.name[LOG_DEFINITION],
+                                 error);
+}
+
 static void take_golden(struct replay *replay, enum log_kind kind, const struct log_event *event)
 {
-    struct message result = {.place = {.log = replay->options->log_count,
-                                       .in_range = true,
-                                       .number = event->number,
-                                       .offset = event->offset,
-                                       .utime = event->utime}};
+    struct message result = {.place = place_of(replay, event)};
+    replay->golden_has_queries = replay->golden_has_queries || log_kind_is_query(kind);
+    if (!log_kind_is_result(kind))
+        return;
     const char *error = read_key(kind, event, &result);
     if (!error)
         error = replay_read_result(replay, &result);
@@ -43,68 +111,13 @@ static void take_golden(struct replay *replay, enum log_kind kind, const struct 
     replay_take_result(replay, &result);
 }
 
-/* Processes the next result of the golden log. Returns false if there is none. */
-static bool take_next_golden(struct replay *replay)
-{
-    struct log_event event;
-    struct log_damage damage;
-    enum log_outcome outcome;
-    while ((outcome = log_next(replay->golden, &event, &damage)) == LOG_EVENT ||
-           outcome == LOG_DAMAGE) {
-        const enum log_kind kind =
-            outcome == LOG_EVENT ? log_kind_of(&replay->channels, &event) : LOG_OTHER;
-        replay->golden_has_queries = replay->golden_has_queries || log_kind_is_query(kind);
-        if (log_kind_is_result(kind)) {
-            take_golden(replay, kind, &event);
-            return true;
-        }
-        if (outcome == LOG_DAMAGE)
-            fail_golden(replay, damage.offset, damage.what);
-    }
-    if (outcome == LOG_FAILED)
-        replay_fail(replay, replay->options->golden);
-    return false;
-}
-
-/* ---- Events ---- */
-
-static bool in_time(const struct replay *replay, int64_t utime)
-{
-    const double seconds = ((double) utime - (double) replay->first_utime) / 1e6;
-    return seconds >= replay->options->from && seconds < replay->options->to;
-}
-
-static struct match_place place_of(const struct replay *replay, const struct log_event *event)
-{
-    return (struct match_place){.log = replay->input.log,
-                                .in_range = in_time(replay, event->utime),
-                                .number = event->number,
-                                .offset = event->offset,
-                                .utime = event->utime};
-}
-
-static void take_message(struct replay *replay, enum log_kind kind, const struct log_event *event)
-{
-    struct message message;
-    message.place = place_of(replay, event);
-    const char *error = read_key(kind, event, &message);
-    if (error && message.place.in_range)
-        replay_refuse(replay, kind, &message, error);
-    if (error)
-        return;
-    if (log_kind_is_query(kind)) {
-        replay_take_query(replay, &message);
-        if (replay->golden)
-            take_next_golden(replay);
-    } else if (!replay->golden) {
-        replay_channel(replay, &message.key, &message.place)->results += message.place.in_range;
-        replay_take_result(replay, &message);
-    }
-}
-
-static void take_event(struct replay *replay, const struct log_event *event)
+static void survey_event(struct replay *replay, const struct log_event *event)
 {
     const enum log_kind kind = log_kind_of(&replay->channels, event);
+    if (in_golden(replay)) {
+        take_golden(replay, kind, event);
+        return;
+    }
     struct tally *tally = &replay->tally[replay->input.log];
     if (!replay->started)
         replay->first_utime = event->utime;
@@ -113,18 +126,34 @@ static void take_event(struct replay *replay, const struct log_event *event)
     tally->bytes += event->length;
     tally->statuses += kind == LOG_STATUS;
     tally->other_events += kind == LOG_OTHER;
-    if (log_kind_old_version(kind, event)) {
+    if (log_kind_old_version(kind, event))
         replay->old_version = log_kind_old_version(kind, event);
-    } else if (log_kind_is_query(kind) || log_kind_is_result(kind)) {
+    else if (log_kind_is_query(kind) || log_kind_is_result(kind))
         take_message(replay, kind, event);
-    } else if (kind == LOG_DEFINITION) {
-        const struct match_place place = place_of(replay, event);
-        replay_take_definition(replay, event, &place);
-    }
+    else if (kind == LOG_DEFINITION)
+        take_definition(replay, event);
+    else if (kind == LOG_NAMES && replay->options->names)
+        body_names_take_message(replay->options->names, kind, event->data, (uint32_t) event->kept);
 }
+
+/* ---- The second reading ---- */
+
+static void answer_event(struct replay *replay, const struct log_event *event)
+{
+    const enum log_kind kind = log_kind_of(&replay->channels, event);
+    struct message message = {.place = place_of(replay, event)};
+    if (log_kind_is_query(kind) && !read_key(kind, event, &message))
+        replay_answer_query(replay, &message);
+}
+
+/* ---- Both ---- */
 
 static void take_damage(struct replay *replay, const struct log_damage *damage)
 {
+    if (in_golden(replay)) {
+        fail_golden(replay, damage->offset, damage->what);
+        return;
+    }
     struct tally *tally = &replay->tally[replay->input.log];
     tally->damages++;
     tally->damaged_bytes += damage->length;
@@ -134,15 +163,9 @@ static void take_damage(struct replay *replay, const struct log_damage *damage)
 
 /* ---- Opening and closing ---- */
 
-static bool open_goldens(struct replay *replay)
+static bool open_output(struct replay *replay)
 {
-    const struct replay_options *options = replay->options;
-    char why[LOG_WHY_MAX];
-    if (options->golden && !(replay->golden = log_open(options->golden, why))) {
-        complain("%s: %s", options->golden, why);
-        return false;
-    }
-    return output_open(&options->write_golden, &replay->golden_file) &&
+    return output_open(&replay->options->write_golden, &replay->golden_file) &&
            (!replay->golden_file ||
             (replay->new_golden = log_begin_output(replay->golden_file)) != NULL);
 }
@@ -161,18 +184,20 @@ static bool open_answers(struct replay *replay)
 static bool open_replay(struct replay *replay)
 {
     const struct replay_options *options = replay->options;
-    if (!input_open(&replay->input, options->log, options->log_count))
+    const int logs = options->log_count, count = logs + (options->golden != NULL);
+    replay->paths = allocate((size_t) logs + 1, sizeof *replay->paths);
+    memcpy(replay->paths, options->log, (size_t) logs * sizeof *replay->paths);
+    replay->paths[logs] = (char *) (uintptr_t) options->golden;
+    if (!input_open(&replay->input, replay->paths, count) ||
+        !input_open(&replay->rereader, replay->paths, count))
         return false;
     replay->definitions = definitions_open();
-    if (!open_answers(replay) || !open_goldens(replay))
+    if (!open_answers(replay) || !open_output(replay))
         return false;
     replay->hasher = hasher_create();
     if (!replay->hasher)
         allocate_failed();
     replay->channels = log_channels(options->prefix);
-    replay->defined_end = &replay->defined;
-    replay->unmatched_end = &replay->unmatched;
-    replay->rereader = event_reader_open(options->log, options->log_count, options->golden);
     replay->match = match_open();
     return true;
 }
@@ -183,14 +208,14 @@ static void close_replay(struct replay *replay)
         replay->tally[0].bus = answer_bus_counts(replay->bus);
     answer_bus_close(replay->bus);
     local_answerer_close(replay->local);
-    pending_free_list(replay->defined);
-    pending_close(&replay->pending);
+    match_list_drop(&replay->again);
+    free(replay->recorded);
     match_close(replay->match);
     replay_close_pairs(replay);
-    event_reader_close(replay->rereader);
+    input_close(&replay->rereader);
+    free(replay->paths);
     hasher_destroy(replay->hasher);
     definitions_close(replay->definitions);
-    log_close(replay->golden);
     input_close(&replay->input);
     const bool empty = replay->new_golden && log_written(replay->new_golden) == 0;
     const int error = log_finish(replay->new_golden);
@@ -210,38 +235,42 @@ static void fail_old_version(struct replay *replay)
     replay->failed = true;
 }
 
-static void read_logs(struct replay *replay)
+/* damage: NULL: it was reported before. */
+static void read_logs(struct replay *replay,
+                      void (*take)(struct replay *replay, const struct log_event *event),
+                      void (*take_damage)(struct replay *replay, const struct log_damage *damage))
 {
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
     while ((outcome = input_next(&replay->input, &event, &damage)) < LOG_END) {
         if (outcome == LOG_EVENT)
-            take_event(replay, &event);
-        else
+            take(replay, &event);
+        else if (take_damage)
             take_damage(replay, &damage);
-        replay->sink->progress(replay->sink->user, replay->input.passed);
+        replay->sink->progress(replay->sink->user, replay->input.passed / 2);
         if (replay->old_version)
             fail_old_version(replay);
         if (replay->old_version || replay_has_ended(replay))
             return;
     }
     if (outcome == LOG_FAILED)
-        replay_fail(replay, replay->options->log[replay->input.log]);
+        replay_fail_log(replay, replay->input.log);
 }
 
-/* After an early end unmatched items are not reported: their counterparts may not have been read.
- */
-static void finish(struct replay *replay)
+static void run(struct replay *replay)
 {
-    while (replay->golden && take_next_golden(replay))
-        continue;
-    replay_finish_answers(replay);
-    if (replay_has_ended(replay)) {
-        replay->failed = true;
+    read_logs(replay, survey_event, take_damage);
+    if (replay->old_version)
         return;
+    if (!replay_has_ended(replay)) {
+        replay_finish_matches(replay);
+        replay->input.count = replay->options->log_count;
+        input_begin(&replay->input, 0);
+        read_logs(replay, answer_event, NULL);
     }
-    replay_finish_matches(replay);
+    replay_finish_answers(replay);
+    replay->failed = replay->failed || replay_has_ended(replay);
 }
 
 bool replay_run(const struct replay_options *options, const struct replay_sink *sink,
@@ -251,13 +280,10 @@ bool replay_run(const struct replay_options *options, const struct replay_sink *
     replay->options = options;
     replay->sink = sink;
     replay->tally = tally;
-    if (open_replay(replay)) {
-        read_logs(replay);
-        if (!replay->old_version)
-            finish(replay);
-    } else {
+    if (open_replay(replay))
+        run(replay);
+    else
         replay->failed = true;
-    }
     close_replay(replay);
     const bool good = !replay->failed;
     free(replay);
@@ -270,12 +296,11 @@ bool replay_extent(const struct replay_options *options, int64_t *size, int64_t 
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
-    if (!input_open(&input, options->log, options->log_count))
-        return false;
-    while ((outcome = input_next(&input, &event, &damage)) == LOG_DAMAGE)
+    const bool good = input_open(&input, options->log, options->log_count);
+    while ((outcome = good ? input_next(&input, &event, &damage) : LOG_END) == LOG_DAMAGE)
         continue;
-    *size = input_size(&input);
+    *size = good ? input_size(&input) : 0;
     *first_utime = outcome == LOG_EVENT ? event.utime : 0;
     input_close(&input);
-    return true;
+    return good;
 }

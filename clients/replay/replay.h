@@ -4,13 +4,14 @@
 #define REPLAY_H
 
 #include "answer_bus.h"
+#include "body_names.h"
 #include "input.h"
 #include "output.h"
 #include "page.h"
 
 /* Callbacks for the progress and the findings of a replay. None may be NULL. */
 struct replay_sink {
-    void (*difference)(void *user, const struct located_difference *located);
+    void (*difference)(void *user, const struct difference *difference);
     /* A message that cannot be decoded, and why; or a second result that contradicts the first. */
     void (*unreadable)(void *user, const struct match_place *place, const char *channel,
                        const char *what);
@@ -28,9 +29,10 @@ struct replay_options {
     const char *golden; /* path of a log with results to compare with; NULL: the recorded ones */
     struct output_options write_golden; /* for the new results */
     struct compare_options compare;
-    double from, to;   /* queries with from <= t < to, log time in seconds since the first event */
-    size_t frames;     /* capacity of the cache in this process */
-    struct page *page; /* receives what was replayed; NULL: none */
+    double from, to; /* queries with from <= t < to, log time in seconds since the first event */
+    size_t frames;   /* capacity of the cache in this process */
+    struct body_names *names;             /* receives the names of bodies; NULL: none */
+    struct page *page;                    /* receives what was replayed; NULL: none */
     const struct answer_bus_options *bus; /* the service that answers; NULL: this process */
 };
 

@@ -1,11 +1,8 @@
-/* Answers queries, in this process or on the bus; those with handles that are not defined so far
- * are answered after their definition. */
+/* Answers queries, in this process or on the bus. */
 #include "replay_parts.h"
 
-#include "allocate.h"
 #include "wire.h"
 
-#include <errno.h>
 #include <string.h>
 
 /* ---- Answers ---- */
@@ -42,59 +39,8 @@ static void take_answer(struct replay *replay, struct match_item *query,
     count_answer(replay, query, answered);
     if (replay->new_golden)
         write_golden(replay, query, answered);
-    query->now = memcpy(allocate_unset(answered->size), answered->bytes, answered->size);
-    query->now_size = (uint32_t) answered->size;
-    if (!query->in_table)
-        replay_compare_recorded(replay, query);
-}
-
-static void schedule(struct replay *replay, struct match_item *query)
-{
-    query->pending = NULL;
-    *replay->defined_end = query;
-    replay->defined_end = &query->pending;
-}
-
-/* ---- In this process ---- */
-
-static void answer_here(struct replay *replay, struct match_item *query,
-                        const struct new_result *answered)
-{
-    if (handle_is_none(&answered->undefined))
-        take_answer(replay, query, answered);
-    else
-        pending_add(&replay->pending, &answered->undefined, query);
-}
-
-/* Excludes a query that cannot be read again: it is not answered or compared. */
-static void exclude(struct match_item *query)
-{
-    query->place.in_range = false;
-    match_drop(query);
-}
-
-/* Fails because a query that was decoded before can no longer be: the log has changed. */
-static void fail_changed(struct replay *replay, struct match_item *query)
-{
-    errno = EIO;
-    replay_fail_log(replay, query->place.log);
-    exclude(query);
-}
-
-/* last: answers it even if handles are not defined. */
-static void answer_again_here(struct replay *replay, struct match_item *query,
-                              const struct message *message, bool last)
-{
-    struct new_result answered;
-    if (local_answer(replay->local, (enum log_kind) query->key.kind, message->bytes, message->size,
-                     &answered)) {
-        fail_changed(replay, query);
-        return;
-    }
-    if (last)
-        take_answer(replay, query, &answered);
-    else
-        answer_here(replay, query, &answered);
+    replay_compare(replay, query, answered);
+    match_free(query);
 }
 
 /* ---- By a service ---- */
@@ -107,7 +53,7 @@ bool replay_on_answered(void *user, struct match_item *query, const struct new_r
     if (is_last)
         take_answer(replay, query, answered);
     else
-        schedule(replay, query);
+        match_list_add(&replay->again, query);
     return is_last;
 }
 
@@ -147,23 +93,13 @@ static void supply_service(struct replay *replay, const struct placement *placem
     }
 }
 
-/* Sends a query again after the service lacked one of its bodies. last: handles without a
- * definition are left unchanged. */
-static void answer_again_on_bus(struct replay *replay, struct match_item *query,
-                                const struct message *message, bool last)
+/* Sends a query again after the service lacked one of its bodies. Handles without a definition are
+ * left unchanged. */
+static void send_whole(struct replay *replay, struct match_item *query,
+                       const struct message *message)
 {
     int32_t count;
-    if (logged_query_read(&replay->query, (enum log_kind) query->key.kind, message->bytes,
-                          message->size)) {
-        fail_changed(replay, query);
-        return;
-    }
     struct placement *placement = logged_query_placements(&replay->query, &count);
-    const int32_t missing = definitions_missing(replay->definitions, placement, count);
-    if (missing >= 0 && !last) {
-        pending_add(&replay->pending, &placement[missing].handle, query);
-        return;
-    }
     fill_frames(replay, placement, count);
     const size_t size = logged_query_write(&replay->query, replay->whole);
     query->sent_whole = true;
@@ -175,108 +111,61 @@ static void answer_again_on_bus(struct replay *replay, struct match_item *query,
     }
 }
 
-/* ---- Definitions ---- */
-
-/* Schedules the queries that need this body (NULL: some body). Returns false if there are none. */
-static bool schedule_pending(struct replay *replay, const struct handle *handle)
+static const char *read_query(struct replay *replay, const struct message *query)
 {
-    struct match_item *first = pending_take(&replay->pending, handle), *next;
-    for (struct match_item *query = first; query; query = next) {
-        next = query->pending;
-        schedule(replay, query);
-    }
-    return first;
+    return logged_query_read(&replay->query, (enum log_kind) query->key.kind, query->bytes,
+                             query->size);
 }
 
-/* Registers the bodies that a service caches: those with frames and an id. */
-static void define(struct replay *replay, const struct placement *placement, int32_t count)
+static void send_again(struct replay *replay)
 {
-    for (int32_t i = 0; i < count; i++) {
-        const struct geometry *geometry = &placement[i].geometry;
-        if (!definitions_add_placement(replay->definitions, &placement[i]) ||
-            pending_is_empty(&replay->pending))
+    for (struct match_item *query; (query = match_list_take(&replay->again));) {
+        struct message message;
+        const bool read =
+            replay_read_again(replay, &query->key, &query->place, replay->query_bytes, &message);
+        if (read && !read_query(replay, &message)) {
+            send_whole(replay, query, &message);
             continue;
-        const struct handle handle = hasher_handle(replay->hasher, geometry->bytes, geometry->size);
-        schedule_pending(replay, &handle);
+        }
+        if (read)
+            replay_fail_changed(replay, query->place.log);
+        match_free(query);
     }
-}
-
-static void answer_again(struct replay *replay, struct match_item *query, bool last)
-{
-    struct message message;
-    if (!replay_read_again(replay, &query->key, &query->place, replay->query_bytes, &message))
-        exclude(query);
-    else if (replay->bus)
-        answer_again_on_bus(replay, query, &message, last);
-    else
-        answer_again_here(replay, query, &message, last);
-}
-
-static void answer_defined(struct replay *replay, bool last)
-{
-    while (replay->defined) {
-        struct match_item *query = replay->defined;
-        replay->defined = query->pending;
-        if (!replay->defined)
-            replay->defined_end = &replay->defined;
-        answer_again(replay, query, last);
-    }
-}
-
-void replay_take_definition(struct replay *replay, const struct log_event *event,
-                            const struct match_place *place)
-{
-    struct definition *definition = &replay->definition;
-    const char *error =
-        wire_read_definition(event->data, (uint32_t) event->kept, replay->hasher, definition);
-    if (error) {
-        replay->tally[place->log].unreadable_definitions++;
-        replay->sink->unreadable(replay->sink->user, place, replay->channels.name[LOG_DEFINITION],
-                                 error);
-        return;
-    }
-    replay->tally[place->log].definitions++;
-    for (int32_t i = 0; i < definition->body_count; i++)
-        if (definitions_add(replay->definitions, &definition->body[i].geometry))
-            schedule_pending(replay, &definition->body[i].handle);
-    answer_defined(replay, false);
 }
 
 /* ---- Queries ---- */
 
-/* Registers a query that cannot be decoded, or is outside the range of time: the log may have its
- * result. */
-static void skip_query(struct replay *replay, struct message *query, bool unreadable)
+static void answer_here(struct replay *replay, struct match_item *query,
+                        const struct message *message)
 {
-    query->place.in_range = false;
-    match_drop(replay_begin_query(replay, query, unreadable));
+    struct new_result answered;
+    if (!local_answer(replay->local, (enum log_kind) query->key.kind, message->bytes, message->size,
+                      &answered)) {
+        take_answer(replay, query, &answered);
+        return;
+    }
+    replay_fail_changed(replay, query->place.log);
+    match_free(query);
 }
 
-/* Decodes the query, and answers it or sends it to the service. */
-void replay_take_query(struct replay *replay, struct message *query)
+void replay_answer_query(struct replay *replay, const struct message *message)
 {
-    const enum log_kind kind = (enum log_kind) query->key.kind;
-    const bool here = replay->local && query->place.in_range;
-    struct new_result answered = {.placement = NULL};
-    const char *error =
-        here ? local_answer(replay->local, kind, query->bytes, query->size, &answered)
-             : logged_query_read(&replay->query, kind, query->bytes, query->size);
-    if (!here)
-        answered.placement = logged_query_placements(&replay->query, &answered.placement_count);
-    if (error && query->place.in_range)
-        replay_refuse(replay, kind, query, error);
-    if (error || !query->place.in_range) {
-        skip_query(replay, query, error);
-    } else {
-        struct match_item *item = replay_begin_query(replay, query, false);
-        if (here)
-            answer_here(replay, item, &answered);
-        else
-            answer_bus_query(replay->bus, item, query->bytes, query->size);
+    const struct recorded_query *recorded = &replay->recorded[replay->next];
+    if (replay->next == replay->recorded_count || recorded->offset != message->place.offset) {
+        replay_fail_changed(replay, message->place.log);
+        return;
     }
-    if (!error && !answered.all_held)
-        define(replay, answered.placement, answered.placement_count);
-    answer_defined(replay, false);
+    replay->next++;
+    if (recorded->skipped)
+        return;
+    struct match_item *query = match_new(&message->key, &message->place);
+    query->has_recorded = recorded->log >= 0;
+    query->then = (struct match_place){.log = recorded->log, .offset = recorded->result};
+    if (replay->local)
+        answer_here(replay, query, message);
+    else
+        answer_bus_query(replay->bus, query, message->bytes, message->size);
+    send_again(replay);
 }
 
 /* ---- The end ---- */
@@ -286,22 +175,13 @@ bool replay_has_ended(const struct replay *replay)
     return replay->bus && !answer_bus_is_running(replay->bus);
 }
 
-/* Waits until all queries are answered, except those with handles that are not defined. */
-static void finish_answers(struct replay *replay, bool last)
-{
-    do {
-        answer_defined(replay, last);
-        if (replay->bus)
-            answer_bus_finish(replay->bus);
-    } while (replay->defined && !replay_has_ended(replay));
-}
-
 void replay_finish_answers(struct replay *replay)
 {
-    finish_answers(replay, false);
-    if (replay_has_ended(replay))
-        return;
-    while (schedule_pending(replay, NULL)) /* no definition will follow */
-        continue;
-    finish_answers(replay, true);
+    do {
+        send_again(replay);
+        if (replay->bus)
+            answer_bus_finish(replay->bus);
+    } while (replay->again.first && !replay_has_ended(replay));
+    if (!replay_has_ended(replay) && replay->next < replay->recorded_count)
+        replay_fail_changed(replay, replay->input.log);
 }

@@ -23,6 +23,12 @@ void replay_fail_log(struct replay *replay, int log)
                                                          : replay->options->golden);
 }
 
+void replay_fail_changed(struct replay *replay, int log)
+{
+    errno = EIO;
+    replay_fail_log(replay, log);
+}
+
 /* Results of the golden log are counted with the first log. */
 static struct tally *tally_of(struct replay *replay, const struct match_place *place)
 {
@@ -50,7 +56,7 @@ bool replay_read_again(struct replay *replay, const struct match_key *key,
                        struct message *out)
 {
     *out = (struct message){*key, *place, bytes, 0};
-    if (event_reader_read(replay->rereader, place->log, place->offset, bytes, &out->size))
+    if (input_read_again(&replay->rereader, place->log, place->offset, bytes, &out->size))
         return true;
     replay_fail_log(replay, place->log);
     return false;
@@ -83,44 +89,49 @@ static bool read_query(struct replay *replay, const struct match_key *key,
         return false;
     if (!logged_query_read(&replay->compared, (enum log_kind) key->kind, query.bytes, query.size))
         return true;
-    errno = EIO;
-    replay_fail_log(replay, place->log);
+    replay_fail_changed(replay, place->log);
     return false;
 }
 
-static bool read_both(struct replay *replay, const struct match_item *item)
+static bool read_both(struct replay *replay, const struct match_item *item,
+                      const struct new_result *answered)
 {
-    const char *error = read_result(item->key.kind, item->now, item->now_size, &replay->now);
+    const char *error =
+        read_result(item->key.kind, answered->bytes, (uint32_t) answered->size, &replay->now);
     assert(!error); /* encoded by this process, or decoded before */
     (void) error;
     return read_query(replay, &item->key, &item->place);
 }
 
-/* ---- For the page ---- */
-
-static void add_to_page(struct replay *replay, const struct match_item *item, bool has_recorded,
-                        enum replay_outcome outcome)
+/* The query, as it was read, with its results. */
+static struct replayed replayed_of(struct replay *replay, bool has_recorded)
 {
-    struct replayed replayed = {.log = replay->options->log[item->place.log],
-                                .event_number = item->place.number,
-                                .offset = item->place.offset,
-                                .utime = item->place.utime,
-                                .outcome = outcome};
+    struct replayed out = {.outcome = REPLAY_UNRECORDED};
+    if (replay->compared.kind == LOG_PAIR_QUERY) {
+        out.pair = &replay->compared.pair;
+        out.pair_now = &replay->now.pair;
+        out.pair_then = has_recorded ? &replay->then.pair : NULL;
+    } else {
+        out.scene = &replay->compared.scene;
+        out.scene_now = &replay->now.scene;
+        out.scene_then = has_recorded ? &replay->then.scene : NULL;
+    }
+    return out;
+}
+
+static void add_to_page(struct replay *replay, const struct match_item *item,
+                        struct replayed replayed)
+{
     int32_t count;
     struct placement *placement = logged_query_placements(&replay->compared, &count);
+    replayed.log = replay->options->log[item->place.log];
+    replayed.event_number = item->place.number;
+    replayed.offset = item->place.offset;
+    replayed.utime = item->place.utime;
     definitions_fill(replay->definitions, placement, count);
     for (int32_t i = 0; i < count; i++)
         if (placement_by_handle(&placement[i]) && placement[i].geometry.size > GEOMETRY_NONE_BYTES)
             placement[i].frame_count = geometry_begin(&placement[i].geometry).frames_left;
-    if (item->key.kind == LOG_PAIR_QUERY) {
-        replayed.pair = &replay->compared.pair;
-        replayed.pair_now = &replay->now.pair;
-        replayed.pair_then = has_recorded ? &replay->then.pair : NULL;
-    } else {
-        replayed.scene = &replay->compared.scene;
-        replayed.scene_now = &replay->now.scene;
-        replayed.scene_then = has_recorded ? &replay->then.scene : NULL;
-    }
     page_take(replay->options->page, &replayed);
 }
 
@@ -130,21 +141,13 @@ static void on_difference(void *user, const struct difference *difference)
 {
     struct replay *replay = user;
     const struct match_item *query = replay->item;
-    const struct located_difference located = {query->place, (enum log_kind) query->key.kind,
-                                               query->key.client_id, query->key.sequence_number,
-                                               *difference};
+    struct difference located = *difference;
+    located.place = query->place;
+    located.query_kind = (enum log_kind) query->key.kind;
+    located.client_id = query->key.client_id;
+    located.sequence_number = query->key.sequence_number;
     replay_channel(replay, &query->key, &query->place)->differences[difference->kind]++;
     replay->sink->difference(replay->sink->user, &located);
-}
-
-static enum replay_outcome compare(struct replay *replay, difference_sink *sink)
-{
-    const struct compare_options *options = &replay->options->compare;
-    if (replay->compared.kind == LOG_PAIR_QUERY)
-        return compare_pairs(options, &replay->compared.pair, &replay->then.pair, &replay->now.pair,
-                             sink, replay);
-    return compare_scenes(options, &replay->compared.scene, &replay->then.scene, &replay->now.scene,
-                          sink, replay);
 }
 
 static void count(struct replay *replay, const struct match_item *query,
@@ -155,38 +158,49 @@ static void count(struct replay *replay, const struct match_item *query,
         histogram_add(&tally_of(replay, &query->place)->then, then_ns);
 }
 
-/* Results of both types end with compute_ns. */
-bool replay_same_bytes(struct replay *replay, const struct match_item *query,
-                       const struct message *result)
+static void compare_unrecorded(struct replay *replay, const struct match_item *query,
+                               const struct new_result *answered)
 {
-    const unsigned char *end = result->bytes + result->size;
-    if (replay->options->page || !compare_bytes_same((enum log_kind) query->key.kind, result->bytes,
-                                                     result->size, query->now, query->now_size))
-        return false;
-    count(replay, query, REPLAY_SAME, (int64_t) big_endian_64(end - sizeof(int64_t)));
-    return true;
+    count(replay, query, REPLAY_UNRECORDED, 0);
+    if (replay->options->page && read_both(replay, query, answered))
+        add_to_page(replay, query, replayed_of(replay, false));
 }
 
-void replay_compare(struct replay *replay, const struct match_item *query)
+/* Results of both types end with compute_ns. */
+static bool is_same(struct replay *replay, const struct message *then, const struct new_result *now)
 {
-    if (!query->place.in_range || !read_both(replay, query))
+    return !replay->options->page && compare_bytes_same((enum log_kind) then->key.kind, then->bytes,
+                                                        then->size, now->bytes, now->size);
+}
+
+void replay_compare(struct replay *replay, const struct match_item *query,
+                    const struct new_result *answered)
+{
+    struct message then;
+    if (!query->has_recorded) {
+        compare_unrecorded(replay, query, answered);
+        return;
+    }
+    if (!replay_read_again(replay, &query->key, &query->then, replay->result_bytes, &then))
+        return;
+    if (is_same(replay, &then, answered)) {
+        count(replay, query, REPLAY_SAME,
+              (int64_t) big_endian_64(then.bytes + then.size - sizeof(int64_t)));
+        return;
+    }
+    if (replay_read_result(replay, &then)) {
+        replay_fail_changed(replay, query->then.log);
+        return;
+    }
+    if (!read_both(replay, query, answered))
         return;
     replay->item = query;
-    const enum replay_outcome outcome = compare(replay, on_difference);
-    count(replay, query, outcome,
-          query->key.kind == LOG_PAIR_QUERY ? replay->then.pair.compute_ns
-                                            : replay->then.scene.compute_ns);
+    struct replayed replayed = replayed_of(replay, true);
+    replayed.outcome = compare_results(&replay->options->compare, &replayed, on_difference, replay);
+    count(replay, query, replayed.outcome,
+          replayed.pair ? replay->then.pair.compute_ns : replay->then.scene.compute_ns);
     if (replay->options->page)
-        add_to_page(replay, query, true, outcome);
-}
-
-void replay_unrecorded(struct replay *replay, const struct match_item *query)
-{
-    if (!query->place.in_range)
-        return;
-    count(replay, query, REPLAY_UNRECORDED, 0);
-    if (replay->options->page && read_both(replay, query))
-        add_to_page(replay, query, false, REPLAY_UNRECORDED);
+        add_to_page(replay, query, replayed);
 }
 
 /* ---- Second results ---- */
@@ -206,9 +220,12 @@ void replay_compare_second(struct replay *replay, const struct match_note *note,
     if (!read_query(replay, &note->key, &query))
         return;
     if (read_result(first->key.kind, first->bytes, first->size, &replay->now)) {
-        errno = EIO; /* it could be decoded before */
-        replay_fail_log(replay, first->place.log);
-    } else if (compare(replay, no_difference) != REPLAY_DIFFERENT) {
+        replay_fail_changed(replay, first->place.log);
+        return;
+    }
+    const struct replayed replayed = replayed_of(replay, true);
+    if (compare_results(&replay->options->compare, &replayed, no_difference, NULL) !=
+        REPLAY_DIFFERENT) {
         tally->results_again++;
     } else {
         tally->contradictions++;

@@ -30,13 +30,29 @@ static void write_side(struct json_writer *json, const char *key, int dim,
     json_end(json, '}');
 }
 
-static void write_difference(struct json_writer *json, const struct difference *difference)
+static void write_names(struct json_writer *json, const struct body_names *names,
+                        const struct difference *difference)
+{
+    const int64_t *id = difference->body_id;
+    const char *name[2] = {body_names_find(names, difference->client_id, id[0]),
+                           body_names_find(names, difference->client_id, id[1])};
+    if (!name[0] && !name[1])
+        return;
+    json_begin(json, "names", '[');
+    json_string(json, NULL, name[0]);
+    json_string(json, NULL, name[1]);
+    json_end(json, ']');
+}
+
+static void write_difference(struct json_writer *json, const struct body_names *names,
+                             const struct difference *difference)
 {
     if (!difference->whole) {
         json_integer(json, "a", difference->body_id[0]);
         json_integer(json, "b", difference->body_id[1]);
         json_integers(json, "placements",
                       (const int64_t[]){difference->placement[0], difference->placement[1]}, 2);
+        write_names(json, names, difference);
     }
     json_string(json, "kind", difference_name[difference->kind]);
     if (difference->whole) {
@@ -48,37 +64,26 @@ static void write_difference(struct json_writer *json, const struct difference *
     }
 }
 
-void replay_json_found(struct json_writer *json, const struct located_difference *located,
-                       const char *log, int64_t first_utime)
+void replay_json_found(struct json_writer *json, const struct difference *difference,
+                       const struct body_names *names, const char *log, int64_t first_utime)
 {
     json_begin(json, NULL, '{');
     json_string(json, "log", log);
-    json_integer(json, "event", located->place.number);
-    json_integer(json, "offset", located->place.offset);
-    json_integer(json, "utime", located->place.utime);
-    json_number(json, "time", ((double) located->place.utime - (double) first_utime) / 1e6);
-    json_string(json, "channel", tally_channel_name[tally_channel_of(located->kind)]);
-    json_integer(json, "client_id", located->client_id);
-    json_integer(json, "sequence_number", located->sequence_number);
-    write_difference(json, &located->difference);
+    json_integer(json, "event", difference->place.number);
+    json_integer(json, "offset", difference->place.offset);
+    json_integer(json, "utime", difference->place.utime);
+    json_number(json, "time", ((double) difference->place.utime - (double) first_utime) / 1e6);
+    json_string(json, "channel", tally_channel_name[tally_channel_of(difference->query_kind)]);
+    json_integer(json, "client_id", difference->client_id);
+    json_integer(json, "sequence_number", difference->sequence_number);
+    write_difference(json, names, difference);
     json_end(json, '}');
 }
 
 static void write_counts(struct json_writer *json, const struct tally_channel *channel)
 {
-    static const char *const outcome[REPLAY_OUTCOMES] = {
-        "same", "different", "busy", "unknown_body", "not_defined", "no_result"};
-    json_integer(json, "queries", channel->queries);
-    json_integer(json, "pairs", channel->pairs);
-    for (int i = 0; i < REPLAY_OUTCOMES; i++)
-        json_integer(json, outcome[i], channel->outcome[i]);
-    json_integer(json, "results", channel->results);
-    json_integer(json, "results_alone", channel->results_alone);
-    json_integer(json, "second_results", channel->results_again);
-    json_integer(json, "contradictions", channel->contradictions);
-    json_integer(json, "left_over", channel->left_over);
-    json_integer(json, "unreadable_queries", channel->unreadable[0]);
-    json_integer(json, "unreadable_results", channel->unreadable[1]);
+    for (int i = 0; i < TALLY_COUNTS; i++)
+        json_integer(json, tally_count[i].key, tally_counts(channel)[i]);
     json_begin(json, "different_in", '{');
     for (int kind = 0; kind < DIFFERENT_KINDS; kind++)
         json_integer(json, difference_name[kind], channel->differences[kind]);
@@ -117,9 +122,8 @@ static void write_bus(struct json_writer *json, const struct tally_bus *bus)
 
 static void write_channels(struct json_writer *json, const struct tally *tally)
 {
-    struct tally_channel all = tally->channel[TALLY_PAIRS];
-    tally_add_channel(&all, &tally->channel[TALLY_SCENES]);
-    write_counts(json, &all);
+    const struct tally_channel both = tally_both(tally);
+    write_counts(json, &both);
     json_begin(json, "channels", '{');
     for (int i = 0; i < TALLY_CHANNELS; i++) {
         json_begin(json, tally_channel_name[i], '{');

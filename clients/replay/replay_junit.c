@@ -8,126 +8,101 @@
 /* Lines in a failed test case. */
 enum { LINES_MAX = 100 };
 
+/* The report, and the case that is being written. */
+struct junit {
+    FILE *out;
+    const struct replay_options *options;
+    int64_t first_utime;
+    int log, channel, lines;
+};
+
 static void write_xml(FILE *out, const char *text)
 {
     escape(out, ESCAPE_XML, text, strlen(text));
 }
 
-/* ---- Cases ---- */
-
-static void begin_case(FILE *out, const char *log, const char *name)
+static void begin_case(struct junit *junit, const char *name)
 {
-    fputs("    <testcase classname=\"", out);
-    write_xml(out, log);
-    fprintf(out, "\" name=\"%s\">\n", name);
+    fputs("    <testcase classname=\"", junit->out);
+    write_xml(junit->out, junit->options->log[junit->log]);
+    fprintf(junit->out, "\" name=\"%s\">\n", name);
 }
 
-/* The lines of one case. */
-struct lines {
-    FILE *out;
-    int log, channel, count;
-    int64_t first_utime;
-};
-
-static void write_line(void *user, const struct located_difference *located)
+static void write_line(void *user, const struct difference *difference)
 {
-    struct lines *lines = user;
+    struct junit *junit = user;
     char line[REPLAY_LINE_MAX];
-    if (located->place.log != lines->log || tally_channel_of(located->kind) != lines->channel ||
-        lines->count == LINES_MAX)
+    if (difference->place.log != junit->log ||
+        tally_channel_of(difference->query_kind) != junit->channel || junit->lines++ >= LINES_MAX)
         return;
-    replay_line(located, NULL, lines->first_utime, line);
-    write_xml(lines->out, line);
-    putc('\n', lines->out);
-    lines->count++;
+    replay_line(difference, junit->options->names, NULL, junit->first_utime, line);
+    write_xml(junit->out, line);
+    putc('\n', junit->out);
 }
 
-static int64_t differences_of(const struct tally_channel *channel)
+static void write_channel(struct junit *junit, struct listing *list,
+                          const struct tally_channel *channel)
 {
-    int64_t sum = 0;
+    FILE *out = junit->out;
+    int64_t pairs = 0;
     for (int kind = 0; kind < DIFFERENT_KINDS; kind++)
-        sum += channel->differences[kind];
-    return sum;
-}
-
-static void write_channel(FILE *out, const char *log, int index, int channel_index,
-                          struct listing *list, const struct tally_channel *channel,
-                          int64_t first_utime)
-{
-    begin_case(out, log, tally_channel_name[channel_index]);
+        pairs += channel->differences[kind];
+    begin_case(junit, tally_channel_name[junit->channel]);
     if (channel->outcome[REPLAY_DIFFERENT] > 0) {
         fprintf(out,
                 "      <failure message=\"%" PRId64 " of %" PRId64
                 " queries are answered differently, in %" PRId64 " pairs\">",
-                channel->outcome[REPLAY_DIFFERENT], channel->queries, differences_of(channel));
-        struct lines lines = {out, index, channel_index, 0, first_utime};
-        listing_each(list, write_line, &lines);
+                channel->outcome[REPLAY_DIFFERENT], channel->queries, pairs);
+        junit->lines = 0;
+        listing_each(list, write_line, junit);
         fputs("</failure>\n", out);
     }
-    fprintf(out,
-            "      <system-out>%" PRId64 " queries: %" PRId64 " same, %" PRId64
-            " different, %" PRId64 " busy, %" PRId64 " unknown body, %" PRId64
-            " not defined, %" PRId64 " without result</system-out>\n    </testcase>\n",
-            channel->queries, channel->outcome[REPLAY_SAME], channel->outcome[REPLAY_DIFFERENT],
-            channel->outcome[REPLAY_BUSY], channel->outcome[REPLAY_UNKNOWN],
-            channel->outcome[REPLAY_UNDEFINED], channel->outcome[REPLAY_UNRECORDED]);
+    fputs("      <system-out>", out);
+    for (int i = 0; i < TALLY_COUNTS; i++)
+        if (tally_count[i].junit)
+            fprintf(out, "%" PRId64 "%s", tally_counts(channel)[i], tally_count[i].junit);
+    fputs("</system-out>\n    </testcase>\n", out);
 }
 
-static bool is_whole(const struct tally *tally)
+static void write_log(struct junit *junit, struct listing *list, const struct tally *tally)
 {
-    return tally->damages == 0 && tally_unreadable(tally) == 0 &&
-           tally_contradictions(tally) == 0 && tally_left_over(tally) == 0;
-}
-
-/* Counts of a replay by a live service. */
-static bool ended_early(const struct tally *tally)
-{
-    return tally->bus.used && tally->bus.end != ANSWER_BUS_NO_END;
-}
-
-static void write_bus(FILE *out, const char *log, const struct tally *tally)
-{
-    if (!tally->bus.used)
-        return;
-    begin_case(out, log, "the service answered all");
-    if (ended_early(tally))
-        fprintf(out, "      <error message=\"it answered %" PRId64 " queries\"/>\n",
-                tally->bus.answered);
-    fputs("    </testcase>\n", out);
-}
-
-static void write_log(FILE *out, const char *log, int index, struct listing *list,
-                      const struct tally *tally, int64_t first_utime)
-{
+    FILE *out = junit->out;
+    const struct tally_channel both = tally_both(tally);
+    const struct tally_bus *bus = &tally->bus;
+    const bool is_whole = tally->damages == 0 && tally_unreadable(tally) == 0 &&
+                          both.contradictions == 0 && both.left_over == 0;
+    const bool ended_early = bus->used && bus->end != ANSWER_BUS_NO_END;
     int failures = 0;
     for (int i = 0; i < TALLY_CHANNELS; i++)
         failures += tally->channel[i].outcome[REPLAY_DIFFERENT] > 0;
     fputs("  <testsuite name=\"", out);
-    write_xml(out, log);
+    write_xml(out, junit->options->log[junit->log]);
     fprintf(out, "\" tests=\"%d\" failures=\"%d\" errors=\"%d\">\n",
-            TALLY_CHANNELS + 1 + (int) tally->bus.used, failures,
-            !is_whole(tally) + ended_early(tally));
-    for (int i = 0; i < TALLY_CHANNELS; i++)
-        write_channel(out, log, index, i, list, &tally->channel[i], first_utime);
-    begin_case(out, log, "the log is whole");
-    if (!is_whole(tally))
+            TALLY_CHANNELS + 1 + (int) bus->used, failures, !is_whole + ended_early);
+    for (junit->channel = 0; junit->channel < TALLY_CHANNELS; junit->channel++)
+        write_channel(junit, list, &tally->channel[junit->channel]);
+    begin_case(junit, "the log is whole");
+    if (!is_whole)
         fprintf(out,
                 "      <error message=\"%" PRId64 " damaged places, %" PRId64
                 " messages that cannot be read, %" PRId64
                 " results that contradict earlier ones, %" PRId64
                 " queries in one recording only\"/>\n",
-                tally->damages, tally_unreadable(tally), tally_contradictions(tally),
-                tally_left_over(tally));
+                tally->damages, tally_unreadable(tally), both.contradictions, both.left_over);
     fputs("    </testcase>\n", out);
-    write_bus(out, log, tally);
-    fputs("  </testsuite>\n", out);
+    if (bus->used)
+        begin_case(junit, "the service answered all");
+    if (ended_early)
+        fprintf(out, "      <error message=\"it answered %" PRId64 " queries\"/>\n", bus->answered);
+    fputs(bus->used ? "    </testcase>\n  </testsuite>\n" : "  </testsuite>\n", out);
 }
 
 void replay_junit(FILE *out, const struct replay_options *options, struct listing *list,
                   const struct tally *tally, int64_t first_utime)
 {
+    struct junit junit = {.out = out, .options = options, .first_utime = first_utime};
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"fmb replay\">\n", out);
-    for (int i = 0; i < options->log_count; i++)
-        write_log(out, options->log[i], i, list, &tally[i], first_utime);
+    for (; junit.log < options->log_count; junit.log++)
+        write_log(&junit, list, &tally[junit.log]);
     fputs("</testsuites>\n", out);
 }

@@ -1,44 +1,38 @@
 /* Matches queries with their recorded results. */
 #include "replay_parts.h"
 
+#include "allocate.h"
+
 static void refuse_result(struct replay *replay, const struct message *result, const char *error)
 {
     if (result->place.in_range)
         replay_refuse(replay, log_kind_result_of((enum log_kind) result->key.kind), result, error);
 }
 
-/* ---- Query and result ---- */
-
-/* Compares a query that was removed from the table with its recorded result, which could be read
- * before. */
-void replay_compare_recorded(struct replay *replay, struct match_item *query)
+/* Notes the result of a query, which is no longer in the table, and frees it. */
+static void close_query(struct replay *replay, struct match_item *query,
+                        const struct match_place *result)
 {
-    struct message result;
-    if (query->place.in_range &&
-        replay_read_again(replay, &query->key, &query->then, replay->result_bytes, &result) &&
-        !replay_read_result(replay, &result))
-        replay_compare(replay, query);
+    struct recorded_query *recorded = &replay->recorded[query->index];
+    recorded->log = result->log;
+    recorded->result = result->offset;
+    replay_note_match(replay, query, result);
     match_free(query);
-}
-
-/* Closes a query: no other result is accepted for it. It is compared now if it is answered,
- * otherwise when it is. */
-static void close_query(struct replay *replay, struct match_item *query)
-{
-    match_remove(replay->match, query);
-    replay_note_match(replay, query, &query->then);
-    if (query->now || !query->place.in_range)
-        replay_compare_recorded(replay, query);
 }
 
 /* ---- Queries ---- */
 
-struct match_item *replay_begin_query(struct replay *replay, const struct message *query,
-                                      bool unreadable)
+void replay_take_query(struct replay *replay, const struct message *query, bool unreadable)
 {
+    const size_t index = replay->recorded_count++;
+    replay->recorded = allocate_grow(replay->recorded, &replay->recorded_capacity,
+                                     replay->recorded_count, sizeof *replay->recorded);
+    replay->recorded[index] = (struct recorded_query){
+        .offset = query->place.offset, .skipped = unreadable || !query->place.in_range, .log = -1};
     struct match_item *first = match_find(replay->match, &query->key);
     if (first && !first->is_result && first->has_recorded) {
-        close_query(replay, first); /* it had a transient result, and is repeated */
+        match_remove(replay->match, first); /* it had a transient result, and is repeated */
+        close_query(replay, first, &first->then);
         first = match_find(replay->match, &query->key);
     }
     const bool has_result = first && first->is_result;
@@ -46,14 +40,13 @@ struct match_item *replay_begin_query(struct replay *replay, const struct messag
                                   ? match_new(&query->key, &query->place)
                                   : match_add(replay->match, &query->key, &query->place, false);
     item->unreadable = unreadable;
+    item->place.in_range = item->place.in_range && !unreadable;
+    item->index = index;
     if (!has_result)
-        return item;
-    item->then = first->place;
-    item->has_recorded = true;
+        return;
     match_remove(replay->match, first);
+    close_query(replay, item, &first->place);
     match_free(first);
-    replay_note_match(replay, item, &item->then);
-    return item;
 }
 
 /* ---- Results ---- */
@@ -64,76 +57,40 @@ static void compare_second(struct replay *replay, const struct message *result,
 {
     const struct match_place first = {.log = note->result_log, .offset = note->result_offset};
     struct message earlier;
-    const char *error = replay_read_result(replay, result);
-    if (error)
-        refuse_result(replay, result, error);
-    else if (result->place.in_range &&
-             replay_read_again(replay, &result->key, &first, replay->result_bytes, &earlier))
+    if (result->place.in_range &&
+        replay_read_again(replay, &result->key, &first, replay->result_bytes, &earlier))
         replay_compare_second(replay, note, result, &earlier);
 }
 
-/* Keeps a result of a query that has no answer yet, or a transient result: the query stays in the
- * table, unless it is repeated. */
-static void keep_result(struct replay *replay, struct match_item *query,
-                        const struct message *result)
-{
-    const bool transient = replay_is_transient(replay, (enum log_kind) query->key.kind);
-    if (!query->has_recorded || !transient)
-        query->then = result->place;
-    query->has_recorded = true;
-    if (!transient || query->next)
-        close_query(replay, query);
-}
-
-/* Closes a query that has its answer and its result. */
-static void complete_query(struct replay *replay, struct match_item *query,
-                           const struct message *result, bool is_compared)
-{
-    match_remove(replay->match, query);
-    replay_note_match(replay, query, &result->place);
-    if (!is_compared)
-        replay_compare(replay, query);
-    match_free(query);
-}
-
+/* A query with a transient result stays in the table, unless it is repeated. */
 static void take_result_of(struct replay *replay, struct match_item *query,
                            const struct message *result)
 {
-    const enum log_kind kind = (enum log_kind) query->key.kind;
-    const bool is_same = query->now && replay_same_bytes(replay, query, result);
-    const char *error = is_same ? NULL : replay_read_result(replay, result);
-    if (error) {
-        refuse_result(replay, result, error);
-        return;
-    }
+    const bool transient = replay_is_transient(replay, (enum log_kind) query->key.kind);
     replay_channel(replay, &result->key, &result->place)->results_again +=
         query->has_recorded && result->place.in_range;
-    if (is_same || (query->now && !replay_is_transient(replay, kind)))
-        complete_query(replay, query, result, is_same);
-    else
-        keep_result(replay, query, result);
-}
-
-/* Keeps a result that precedes its query, or has none. */
-static void keep_early_result(struct replay *replay, const struct message *result)
-{
-    const char *error = replay_read_result(replay, result);
-    if (error)
-        refuse_result(replay, result, error);
-    else
-        match_add(replay->match, &result->key, &result->place, true);
+    if (!query->has_recorded || !transient)
+        query->then = result->place;
+    query->has_recorded = true;
+    if (transient && !query->next)
+        return;
+    match_remove(replay->match, query);
+    close_query(replay, query, &query->then);
 }
 
 void replay_take_result(struct replay *replay, const struct message *result)
 {
     struct match_item *first = match_find(replay->match, &result->key);
-    const struct match_note *note;
-    if (first && !first->is_result)
+    const struct match_note *note = first ? NULL : match_noted(replay->match, &result->key);
+    const char *error = replay_read_result(replay, result);
+    if (error)
+        refuse_result(replay, result, error);
+    else if (first && !first->is_result)
         take_result_of(replay, first, result);
-    else if (!first && (note = match_noted(replay->match, &result->key)))
+    else if (note)
         compare_second(replay, result, note);
     else
-        keep_early_result(replay, result);
+        match_add(replay->match, &result->key, &result->place, true);
 }
 
 /* ---- The end ---- */
@@ -141,19 +98,14 @@ void replay_take_result(struct replay *replay, const struct message *result)
 static void on_matched(void *user, struct match_item *query, struct match_item *result)
 {
     struct replay *replay = user;
-    if (query) {
-        query->then = result->place;
-        replay_note_match(replay, query, &result->place);
-        replay_compare_recorded(replay, query);
-    } else if (replay->golden) {
-        *replay->unmatched_end = result;
-        replay->unmatched_end = &result->pending;
-        *replay->unmatched_end = NULL;
+    if (!query && replay->options->golden) {
+        match_list_add(&replay->unmatched, result);
         return;
-    } else {
-        replay_channel(replay, &result->key, &result->place)->results_alone +=
-            result->place.in_range;
     }
+    if (query)
+        close_query(replay, query, &result->place);
+    else
+        replay_channel(replay, &result->key, &result->place)->unmatched += result->place.in_range;
     match_free(result);
 }
 
@@ -162,8 +114,10 @@ static void close_queries(struct replay *replay)
 {
     for (struct match_item *query = match_any(replay->match), *next; query; query = next) {
         next = query->hh.next;
-        if (!query->is_result && query->has_recorded)
-            close_query(replay, query);
+        if (query->is_result || !query->has_recorded)
+            continue;
+        match_remove(replay->match, query);
+        close_query(replay, query, &query->then);
     }
 }
 
@@ -171,19 +125,16 @@ void replay_finish_matches(struct replay *replay)
 {
     close_queries(replay);
     match_finish(replay->match, on_matched, replay);
-    if (replay->golden) {
-        replay_pair_results(replay, replay->unmatched);
+    if (replay->options->golden) {
+        replay_pair_results(replay);
         close_queries(replay);
     }
     for (struct match_item *item; (item = match_any(replay->match));) {
         match_remove(replay->match, item);
-        if (item->is_result) {
-            replay_channel(replay, &item->key, &item->place)->results_alone++;
-        } else {
-            replay_unrecorded(replay, item);
-            if (item->left_over && item->place.in_range)
-                replay_count_left_over(replay, &item->key, &item->place);
-        }
+        if (item->is_result)
+            replay_channel(replay, &item->key, &item->place)->unmatched++;
+        else if (item->left_over && item->place.in_range)
+            replay_count_left_over(replay, &item->key, &item->place);
         match_free(item);
     }
 }

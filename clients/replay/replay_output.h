@@ -10,13 +10,14 @@
 
 /* One line without its end:
  *
- *     event 17  1.25 s  bodies 3 7  verdict: touching, now separated
+ *     event 17  1.25 s  bodies table 7  verdict: touching, now separated
  *
- * The time is log time, in seconds since first_utime. Numbers read back as the same bits;
- * certificates are truncated. log: name of the log; NULL if there is only one. */
+ * The time is log time, in seconds since first_utime. Bodies without a name have their id. Numbers
+ * read back as the same bits; certificates are truncated. log: name of the log; NULL if there is
+ * only one. */
 enum { REPLAY_LINE_MAX = 1152 };
-void replay_line(const struct located_difference *located, const char *log, int64_t first_utime,
-                 char line[REPLAY_LINE_MAX]);
+void replay_line(const struct difference *difference, const struct body_names *names,
+                 const char *log, int64_t first_utime, char line[REPLAY_LINE_MAX]);
 
 /* Prints the counts as text. */
 void replay_text_summary(FILE *out, const struct tally *tally);
@@ -27,14 +28,14 @@ void replay_text_summary(FILE *out, const struct tally *tally);
  *
  *     {"differences": [{"log": "a.log", "event": 17, "utime": ..., "time": 1.25,
  *                       "channel": "FMB_PAIR_QUERY", "client_id": 7, "sequence_number": 3,
- *                       "a": 3, "b": 7, "kind": "verdict",
+ *                       "a": 3, "b": 7, "names": ["table", null], "kind": "verdict",
  *                       "then": {"verdict": "touching"}, "now": {"verdict": "separated"}}],
  *      "not_listed": 0, "same": 12, "different": 1, ...}
  *
- * not_listed: number of differences beyond the limit. */
+ * names: where a body has one. not_listed: number of differences beyond the limit. */
 struct json_writer replay_json_begin(FILE *out);
-void replay_json_found(struct json_writer *json, const struct located_difference *located,
-                       const char *log, int64_t first_utime);
+void replay_json_found(struct json_writer *json, const struct difference *difference,
+                       const struct body_names *names, const char *log, int64_t first_utime);
 void replay_json_end(struct json_writer *json, const struct tally *tally, int64_t not_listed,
                      int exit_code);
 

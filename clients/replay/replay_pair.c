@@ -90,7 +90,7 @@ void replay_note_match(struct replay *replay, const struct match_item *query,
     const struct pair_key client = key_of_client(query->key.client_id);
     bool is_new;
     match_note(replay->match, query, result);
-    if (replay->golden)
+    if (replay->options->golden)
         take(&replay->matched_clients, &client, &is_new);
 }
 
@@ -214,34 +214,33 @@ static void pair_golden(struct replay *replay, struct replay_pair *numbered,
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
-    log_rewind(replay->golden);
-    while ((outcome = log_next(replay->golden, &event, &damage)) < LOG_END) {
+    input_begin(&replay->input, replay->options->log_count);
+    while ((outcome = input_next(&replay->input, &event, &damage)) < LOG_END) {
         const enum log_kind kind =
             outcome == LOG_EVENT ? log_kind_of(&replay->channels, &event) : LOG_OTHER;
         if (replay->golden_has_queries ? log_kind_is_query(kind) : log_kind_is_result(kind))
             pair_event(replay, &golden, &event, kind, numbered, pairs);
     }
     if (outcome == LOG_FAILED)
-        replay_fail(replay, replay->options->golden);
+        replay_fail_log(replay, replay->options->log_count);
     clear(&golden.clients);
     clear(&golden.counts);
 }
 
 /* ---- Results ---- */
 
-void replay_pair_results(struct replay *replay, struct match_item *first)
+void replay_pair_results(struct replay *replay)
 {
     struct replay_pair *numbered = NULL, *pairs = NULL;
     number_queries(replay, !replay->golden_has_queries, &numbered);
     pair_golden(replay, numbered, &pairs);
     clear(&numbered);
-    for (struct match_item *result = first, *next; result; result = next) {
-        next = result->pending;
+    for (struct match_item *result; (result = match_list_take(&replay->unmatched));) {
         const struct pair_key unique = key_of_ids(&result->key);
         const struct replay_pair *pair = find(pairs, &unique);
         struct message message;
         if (!pair || !pair->query)
-            replay_channel(replay, &result->key, &result->place)->results_alone++;
+            replay_channel(replay, &result->key, &result->place)->unmatched++;
         else if (replay_read_again(replay, &pair->query_key, &result->place, replay->query_bytes,
                                    &message))
             replay_take_result(replay, &message);

@@ -1,13 +1,16 @@
-/* The state of a replay, and its parts. Private. Each part calls only those below it: replay.c
- * reads the logs, replay_answer.c answers queries, replay_match.c matches queries with their
- * results,
- * replay_pair.c those of different clients, and replay_compare.c compares results. */
+/* The state of a replay, and its parts. Private.
+ *
+ * The logs are read twice. The first time, replay_match.c finds for each query the place of its
+ * result, and replay_pair.c for those of other clients; names and definitions are collected. The
+ * second time, replay_answer.c answers the queries one after the other, and replay_compare.c
+ * compares the new result with the one at that place. replay.c reads the logs. Each part calls only
+ * those that follow it here. */
 #ifndef REPLAY_PARTS_H
 #define REPLAY_PARTS_H
 
 #include "definitions.h"
 #include "log_write.h"
-#include "pending.h"
+#include "match.h"
 #include "replay.h"
 
 union decoded_result {
@@ -15,40 +18,52 @@ union decoded_result {
     struct scene_result scene;
 };
 
+/* What the first reading finds of a query whose ids can be read. */
+struct recorded_query {
+    int64_t offset; /* of the query */
+    bool skipped;   /* it cannot be decoded, or is outside the range of time */
+    int32_t log;    /* of its result; -1: it has none */
+    int64_t result; /* the offset of its result */
+};
+
 struct replay {
     const struct replay_options *options;
     const struct replay_sink *sink;
     struct tally *tally; /* [log_count] */
     struct log_channels channels;
-    struct input input;
-    struct event_reader *rereader;
-    struct log_reader *golden;     /* NULL: none */
+    char **paths; /* owned: of the logs, and of the golden log if there is one */
+    struct input input, rereader;
     struct output *golden_file;    /* NULL: none */
     struct log_writer *new_golden; /* of golden_file */
     struct definitions *definitions;
     struct hasher *hasher;
-    struct local_answerer *local; /* NULL: the service on the bus answers */
-    struct answer_bus *bus;       /* NULL: this process answers */
-    struct match *match;
-    struct pending_queries pending;
-    /* Queries to answer again, since their handles are now defined; linked by ->pending. */
-    struct match_item *defined, **defined_end;
-    /* With a golden log: the clients that have a result in it by their ids; its results without a
-     * query, linked by ->pending, at the end; whether it contains queries. */
-    struct replay_pair *matched_clients;
-    struct match_item *unmatched, **unmatched_end;
-    bool golden_has_queries;
     int64_t first_utime;
     bool started, failed;
     int old_version; /* that recorded a message; 0: none did */
+
+    /* The first reading. */
+    struct match *match;
+    struct recorded_query *recorded; /* owned, [recorded_count] */
+    size_t recorded_count, recorded_capacity;
+    /* With a golden log: the clients that have a result in it by their ids; its results without a
+     * query, at the end; whether it contains queries. */
+    struct replay_pair *matched_clients;
+    struct match_list unmatched;
+    bool golden_has_queries;
+
+    /* The second reading. */
+    size_t next;                  /* of recorded */
+    struct local_answerer *local; /* NULL: the service on the bus answers */
+    struct answer_bus *bus;       /* NULL: this process answers */
+    struct match_list again;      /* queries to be sent with the frames of their bodies */
+
     struct logged_query query;
-    struct definition definition;
     struct scene_query supply; /* without pairs */
     /* Buffers for messages read again: a query to be answered, and a result that a callback reads
      * meanwhile. */
     unsigned char query_bytes[LOG_DATA_MAX], result_bytes[LOG_DATA_MAX];
     unsigned char whole[QUERY_BYTES_MAX]; /* a query to be sent with the frames of its bodies */
-    /* The comparison in progress: its query, as in the table and decoded, and both results. */
+    /* The comparison in progress: its query, as in the log and decoded, and both results. */
     const struct match_item *item;
     struct logged_query compared;
     union decoded_result then, now;
@@ -68,13 +83,10 @@ struct message {
 /* The sink of the service's answers. */
 bool replay_on_answered(void *user, struct match_item *query, const struct new_result *answered);
 
-/* Answers the query, in process or on the bus, unless it is outside the range of time. */
-void replay_take_query(struct replay *replay, struct message *query);
-void replay_take_definition(struct replay *replay, const struct log_event *event,
-                            const struct match_place *place);
+/* Answers the next query, in process or on the bus. */
+void replay_answer_query(struct replay *replay, const struct message *query);
 
-/* At the end: waits until all queries are answered; then answers those with handles that are not
- * defined, unless the replay has ended early. */
+/* At the end: waits until all queries are answered, unless the replay has ended early. */
 void replay_finish_answers(struct replay *replay);
 
 /* Whether the replay has ended: no service answers, or a signal arrived. */
@@ -82,13 +94,8 @@ bool replay_has_ended(const struct replay *replay);
 
 /* ---- replay_match.c ---- */
 
-/* Adds an item for a query. Its result may be known already; otherwise the item is in the table. */
-struct match_item *replay_begin_query(struct replay *replay, const struct message *query,
-                                      bool unreadable);
-
-/* Compares a query that was removed from the table with its recorded result, and frees it. */
-void replay_compare_recorded(struct replay *replay, struct match_item *query);
-
+/* Registers a query. unreadable: only its ids can be read. */
+void replay_take_query(struct replay *replay, const struct message *query, bool unreadable);
 void replay_take_result(struct replay *replay, const struct message *result);
 
 /* At the end: processes results that do not echo the time of their query, and unmatched items. */
@@ -101,9 +108,9 @@ void replay_note_match(struct replay *replay, const struct match_item *query,
                        const struct match_place *result);
 void replay_close_pairs(struct replay *replay);
 
-/* At the end, with a golden log: matches its remaining results, a list linked by ->pending that
- * this frees, with the queries in the table by their order, and sets left_over of these. */
-void replay_pair_results(struct replay *replay, struct match_item *first);
+/* At the end, with a golden log: matches its unmatched results, which this frees, with the queries
+ * in the table by their order, and sets left_over of these. */
+void replay_pair_results(struct replay *replay);
 
 /* Counts and reports a query that only one recording has. key: of the query. */
 void replay_count_left_over(struct replay *replay, const struct match_key *key,
@@ -114,6 +121,9 @@ void replay_count_left_over(struct replay *replay, const struct match_key *key,
 /* Reports errno and what cannot be read or written, once; the replay continues. */
 void replay_fail(struct replay *replay, const char *what);
 void replay_fail_log(struct replay *replay, int log);
+
+/* replay_fail_log() for a message that could be read before. */
+void replay_fail_changed(struct replay *replay, int log);
 
 /* The counts of the channel of a query or result. */
 struct tally_channel *replay_channel(struct replay *replay, const struct match_key *key,
@@ -135,21 +145,10 @@ const char *replay_read_result(struct replay *replay, const struct message *resu
 /* compare_status_is_transient() of the status of the decoded result. kind: of its query. */
 bool replay_is_transient(const struct replay *replay, enum log_kind kind);
 
-/* Quick check of a query with its new result against the bytes of the recorded result. Returns true
- * if they are the same, which was counted; false: not known, or there is a page. */
-bool replay_same_bytes(struct replay *replay, const struct match_item *query,
-                       const struct message *result);
-
-/* The next three functions read the query from its log again; if that fails, they call
- * replay_fail_log(). */
-
-/* Compares the new result of a query with the decoded result, and counts the outcome. Does nothing
- * if the query is not in the replayed range. */
-void replay_compare(struct replay *replay, const struct match_item *query);
-
-/* Counts a query with a new result, but without a recorded one. Does nothing if the query is not in
- * the replayed range. */
-void replay_unrecorded(struct replay *replay, const struct match_item *query);
+/* Compares the new result of a query with the recorded one, if there is one, and counts the
+ * outcome. */
+void replay_compare(struct replay *replay, const struct match_item *query,
+                    const struct new_result *answered);
 
 /* Compares the decoded result, the second of its query, with the first one. */
 void replay_compare_second(struct replay *replay, const struct match_note *note,

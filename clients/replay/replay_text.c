@@ -81,19 +81,19 @@ static void side_text(const struct difference *difference, const struct differen
     }
 }
 
-void replay_line(const struct located_difference *located, const char *log, int64_t first_utime,
-                 char line[REPLAY_LINE_MAX])
+void replay_line(const struct difference *difference, const struct body_names *names,
+                 const char *log, int64_t first_utime, char line[REPLAY_LINE_MAX])
 {
-    const struct difference *difference = &located->difference;
-    char then[SIDE_MAX], now[SIDE_MAX], bodies[64] = "the scene";
+    char then[SIDE_MAX], now[SIDE_MAX], bodies[160] = "the scene", body[2][BODY_NAMES_TEXT_MAX];
     side_text(difference, &difference->then, then);
     side_text(difference, &difference->now, now);
     if (!difference->whole)
-        snprintf(bodies, sizeof bodies, "bodies %" PRId64 " %" PRId64, difference->body_id[0],
-                 difference->body_id[1]);
+        snprintf(bodies, sizeof bodies, "bodies %s %s",
+                 body_names_text(names, difference->client_id, difference->body_id[0], body[0]),
+                 body_names_text(names, difference->client_id, difference->body_id[1], body[1]));
     snprintf(line, REPLAY_LINE_MAX, "%.200s%sevent %" PRId64 "  %.6f s  %s  %s: %s, now %s",
-             log ? log : "", log ? ": " : "", located->place.number,
-             ((double) located->place.utime - (double) first_utime) / 1e6, bodies,
+             log ? log : "", log ? ": " : "", difference->place.number,
+             ((double) difference->place.utime - (double) first_utime) / 1e6, bodies,
              difference_name[difference->kind], then, now);
 }
 
@@ -101,41 +101,34 @@ void replay_line(const struct located_difference *located, const char *log, int6
 
 static void print_row(FILE *out, const char *name, const struct tally_channel *channel)
 {
-    const int64_t count[] = {channel->queries,
-                             channel->pairs,
-                             channel->outcome[REPLAY_SAME],
-                             channel->outcome[REPLAY_DIFFERENT],
-                             channel->outcome[REPLAY_BUSY],
-                             channel->outcome[REPLAY_UNKNOWN],
-                             channel->outcome[REPLAY_UNDEFINED],
-                             channel->outcome[REPLAY_UNRECORDED],
-                             channel->unreadable[0] + channel->unreadable[1]};
+    char text[NUMBER_TEXT_MAX];
     fprintf(out, "%-16s", name);
-    for (size_t i = 0; i < sizeof count / sizeof *count; i++) {
-        char text[NUMBER_TEXT_MAX];
-        fprintf(out, " %12s", number_grouped(count[i], text));
-    }
-    putc('\n', out);
+    for (int i = 0; i < TALLY_COUNTS; i++)
+        if (tally_count[i].column)
+            fprintf(out, " %12s", number_grouped(tally_counts(channel)[i], text));
+    fprintf(out, " %12s\n", number_grouped(channel->unreadable[0] + channel->unreadable[1], text));
 }
 
 static void print_channels(FILE *out, const struct tally *tally)
 {
-    fprintf(out, "%-16s %12s %12s %12s %12s %12s %12s %12s %12s %12s\n", "", "queries", "pairs",
-            "same", "different", "busy", "unknown body", "not defined", "no result", "unreadable");
+    fprintf(out, "%-16s", "");
+    for (int i = 0; i < TALLY_COUNTS; i++)
+        if (tally_count[i].column)
+            fprintf(out, " %12s", tally_count[i].column);
+    fprintf(out, " %12s\n", "unreadable");
     for (int i = 0; i < TALLY_CHANNELS; i++)
         print_row(out, tally_channel_name[i], &tally->channel[i]);
 }
 
-static void print_kinds(FILE *out, const struct tally *tally)
+static void print_kinds(FILE *out, const struct tally_channel *both)
 {
     const char *before = "different in: ";
     for (int kind = 0; kind < DIFFERENT_KINDS; kind++) {
-        const int64_t count = tally->channel[TALLY_PAIRS].differences[kind] +
-                              tally->channel[TALLY_SCENES].differences[kind];
         char text[NUMBER_TEXT_MAX];
-        if (count == 0)
+        if (both->differences[kind] == 0)
             continue;
-        fprintf(out, "%s%s %s", before, number_grouped(count, text), difference_name[kind]);
+        fprintf(out, "%s%s %s", before, number_grouped(both->differences[kind], text),
+                difference_name[kind]);
         before = ", ";
     }
     if (before[0] == ',')
@@ -150,20 +143,17 @@ static void print_times(FILE *out, const char *name, const struct histogram *tim
                 1e-3 * (double) histogram_quantile(times, 0.99), 1e-3 * (double) times->max);
 }
 
-static void print_log(FILE *out, const struct tally *tally)
+static void print_log(FILE *out, const struct tally *tally, const struct tally_channel *both)
 {
-    char events[NUMBER_TEXT_MAX], alone[NUMBER_TEXT_MAX], other[NUMBER_TEXT_MAX];
-    const int64_t results_alone =
-        tally->channel[TALLY_PAIRS].results_alone + tally->channel[TALLY_SCENES].results_alone;
+    char events[NUMBER_TEXT_MAX], unmatched[NUMBER_TEXT_MAX], other[NUMBER_TEXT_MAX];
     fprintf(out,
             "%s events, %.1f MB; %s on other channels; %s results of queries that are not here",
             number_grouped(tally->events, events), 1e-6 * (double) tally->bytes,
-            number_grouped(tally->other_events, other), number_grouped(results_alone, alone));
-    if (tally_contradictions(tally) > 0)
-        fprintf(out, "; %" PRId64 " results that contradict earlier ones",
-                tally_contradictions(tally));
-    if (tally_left_over(tally) > 0)
-        fprintf(out, "; %" PRId64 " queries in one recording only", tally_left_over(tally));
+            number_grouped(tally->other_events, other), number_grouped(both->unmatched, unmatched));
+    if (both->contradictions > 0)
+        fprintf(out, "; %" PRId64 " results that contradict earlier ones", both->contradictions);
+    if (both->left_over > 0)
+        fprintf(out, "; %" PRId64 " queries in one recording only", both->left_over);
     if (tally->damages > 0)
         fprintf(out, "; %" PRId64 " damaged places, %" PRId64 " bytes", tally->damages,
                 tally->damaged_bytes);
@@ -200,12 +190,13 @@ static void print_bus(FILE *out, const struct tally_bus *bus)
 
 void replay_text_summary(FILE *out, const struct tally *tally)
 {
+    const struct tally_channel both = tally_both(tally);
     print_channels(out, tally);
-    print_kinds(out, tally);
+    print_kinds(out, &both);
     fprintf(out, "%-16s %12s %12s %12s\n", "microseconds", "p50", "p99", "max");
     print_times(out, "then", &tally->then);
     print_times(out, "now", &tally->now);
-    print_log(out, tally);
+    print_log(out, tally, &both);
     if (tally->bus.used)
         print_bus(out, &tally->bus);
 }

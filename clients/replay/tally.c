@@ -2,28 +2,49 @@
 
 #include "wire.h"
 
+#include <stddef.h>
+
 const char *const tally_channel_name[TALLY_CHANNELS] = {WIRE_PAIR_QUERY, WIRE_SCENE_QUERY};
+
+const struct tally_count tally_count[TALLY_COUNTS] = {
+    {"queries", "queries", " queries: "},
+    {"pairs", "pairs", NULL},
+    {"same", "same", " same, "},
+    {"different", "different", " different, "},
+    {"busy", "busy", " busy, "},
+    {"unknown_body", "unknown body", " unknown body, "},
+    {"not_defined", "not defined", " not defined, "},
+    {"no_result", "no result", " without result"},
+    {"results", NULL, NULL},
+    {"unmatched_results", NULL, NULL},
+    {"second_results", NULL, NULL},
+    {"contradictions", NULL, NULL},
+    {"left_over", NULL, NULL},
+    {"unreadable_queries", NULL, NULL},
+    {"unreadable_results", NULL, NULL},
+};
+
+_Static_assert(offsetof(struct tally_channel, differences) == TALLY_COUNTS * sizeof(int64_t),
+               "each count has its names");
+_Static_assert(offsetof(struct tally, then) % sizeof(int64_t) == 0, "counts only");
+
+const int64_t *tally_counts(const struct tally_channel *channel)
+{
+    return &channel->queries;
+}
 
 int tally_channel_of(enum log_kind kind)
 {
     return kind == LOG_SCENE_QUERY || kind == LOG_SCENE_RESULT ? TALLY_SCENES : TALLY_PAIRS;
 }
 
-void tally_add_channel(struct tally_channel *to, const struct tally_channel *from)
+/* Adds the 64-bit integers of two structs. */
+static void add(void *to, const void *from, size_t size)
 {
-    to->queries += from->queries;
-    to->pairs += from->pairs;
-    for (int i = 0; i < REPLAY_OUTCOMES; i++)
-        to->outcome[i] += from->outcome[i];
-    for (int i = 0; i < DIFFERENT_KINDS; i++)
-        to->differences[i] += from->differences[i];
-    to->results += from->results;
-    to->results_alone += from->results_alone;
-    to->results_again += from->results_again;
-    to->contradictions += from->contradictions;
-    to->left_over += from->left_over;
-    for (int i = 0; i < 2; i++)
-        to->unreadable[i] += from->unreadable[i];
+    int64_t *sum = to;
+    const int64_t *count = from;
+    for (size_t i = 0; i < size / sizeof *sum; i++)
+        sum[i] += count[i];
 }
 
 static void add_histogram(struct histogram *to, const struct histogram *from)
@@ -36,52 +57,27 @@ static void add_histogram(struct histogram *to, const struct histogram *from)
 
 void tally_add(struct tally *to, const struct tally *from)
 {
-    for (int i = 0; i < TALLY_CHANNELS; i++)
-        tally_add_channel(&to->channel[i], &from->channel[i]);
-    to->events += from->events;
-    to->bytes += from->bytes;
-    to->statuses += from->statuses;
-    to->definitions += from->definitions;
-    to->unreadable_definitions += from->unreadable_definitions;
-    to->other_events += from->other_events;
-    to->damages += from->damages;
-    to->damaged_bytes += from->damaged_bytes;
+    add(to, from, offsetof(struct tally, then));
     add_histogram(&to->then, &from->then);
     add_histogram(&to->now, &from->now);
     if (from->bus.used)
         to->bus = from->bus;
 }
 
-int64_t tally_queries(const struct tally *tally)
+struct tally_channel tally_both(const struct tally *tally)
 {
-    return tally->channel[TALLY_PAIRS].queries + tally->channel[TALLY_SCENES].queries;
+    struct tally_channel both = tally->channel[TALLY_PAIRS];
+    add(&both, &tally->channel[TALLY_SCENES], sizeof both);
+    return both;
 }
 
-int64_t tally_outcome(const struct tally *tally, enum replay_outcome outcome)
+int64_t tally_compared(const struct tally_channel *channel)
 {
-    return tally->channel[TALLY_PAIRS].outcome[outcome] +
-           tally->channel[TALLY_SCENES].outcome[outcome];
+    return channel->outcome[REPLAY_SAME] + channel->outcome[REPLAY_DIFFERENT];
 }
 
 int64_t tally_unreadable(const struct tally *tally)
 {
-    int64_t sum = tally->unreadable_definitions;
-    for (int i = 0; i < TALLY_CHANNELS; i++)
-        sum += tally->channel[i].unreadable[0] + tally->channel[i].unreadable[1];
-    return sum;
-}
-
-int64_t tally_compared(const struct tally *tally)
-{
-    return tally_outcome(tally, REPLAY_SAME) + tally_outcome(tally, REPLAY_DIFFERENT);
-}
-
-int64_t tally_contradictions(const struct tally *tally)
-{
-    return tally->channel[TALLY_PAIRS].contradictions + tally->channel[TALLY_SCENES].contradictions;
-}
-
-int64_t tally_left_over(const struct tally *tally)
-{
-    return tally->channel[TALLY_PAIRS].left_over + tally->channel[TALLY_SCENES].left_over;
+    const struct tally_channel both = tally_both(tally);
+    return tally->unreadable_definitions + both.unreadable[0] + both.unreadable[1];
 }

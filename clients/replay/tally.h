@@ -5,22 +5,34 @@
 #include "compare.h"
 #include "histogram.h"
 
-/* Counts of the queries of one channel. */
+/* Counts of the queries of one channel: tally_count[] lists all but the differences. */
 struct tally_channel {
     int64_t queries;                  /* queries that could be decoded */
     int64_t pairs;                    /* pairs decided */
     int64_t outcome[REPLAY_OUTCOMES]; /* [enum replay_outcome] */
-    int64_t differences[DIFFERENT_KINDS];
-    int64_t results;        /* recorded, or in the golden */
-    int64_t results_alone;  /* without a query in the log, or long after its first result */
+    int64_t results;                  /* recorded, or in the golden */
+    int64_t unmatched;      /* results without a query in the log, or long after its first result */
     int64_t results_again;  /* second results that agree with the first or depend on the moment */
     int64_t contradictions; /* second results that contradict the first */
     int64_t left_over;      /* of different clients: queries in one recording only */
     int64_t unreadable[2];  /* [query, result] */
+    int64_t differences[DIFFERENT_KINDS];
 };
 
 enum { TALLY_PAIRS, TALLY_SCENES, TALLY_CHANNELS };
 extern const char *const tally_channel_name[TALLY_CHANNELS]; /* of the queries */
+
+/* The counts of a channel, in the order of the struct, with their names in reports. */
+enum { TALLY_COUNTS = 15 };
+struct tally_count {
+    const char *key;    /* in JSON */
+    const char *column; /* in the table for people; NULL: none */
+    const char *junit;  /* after the number in JUnit XML; NULL: not there */
+};
+extern const struct tally_count tally_count[TALLY_COUNTS];
+
+/* The counts as an array [TALLY_COUNTS]. */
+const int64_t *tally_counts(const struct tally_channel *channel);
 
 /* Counts of a replay through a service on the bus (answer_bus.h). */
 struct tally_bus {
@@ -54,17 +66,15 @@ struct tally {
 int tally_channel_of(enum log_kind kind);
 
 /* Adds from to to. */
-void tally_add_channel(struct tally_channel *to, const struct tally_channel *from);
 void tally_add(struct tally *to, const struct tally *from);
 
-/* Sums over both channels. */
-int64_t tally_queries(const struct tally *tally);
-int64_t tally_outcome(const struct tally *tally, enum replay_outcome outcome);
-int64_t tally_unreadable(const struct tally *tally);
-int64_t tally_contradictions(const struct tally *tally);
-int64_t tally_left_over(const struct tally *tally);
+/* The sums over both channels. */
+struct tally_channel tally_both(const struct tally *tally);
 
-/* Number of queries compared: the same or different. */
-int64_t tally_compared(const struct tally *tally);
+/* The number of queries compared: the same or different. */
+int64_t tally_compared(const struct tally_channel *channel);
+
+/* The number of messages that cannot be decoded, definitions included. */
+int64_t tally_unreadable(const struct tally *tally);
 
 #endif

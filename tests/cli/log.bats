@@ -252,6 +252,22 @@ field() {
 
 # ---- The command -----------------------------------------------------------------------------
 
+@test "names of bodies are the last ones, and do nothing to a terminal" {
+    # Two names_t of one name each: of client 5 and body 1, "a" and then a control sequence.
+    for name in 'a' '\033[31mr\377'; do
+        size=$(printf "$name" | wc -c)
+        printf '\355\241\332\001\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\1\0\0\0\11\0\0\0'
+        printf "\\$(printf %o $((8 + 8 + 4 + 16 + 4 + size + 1)))FMB_NAMES"
+        printf '\305\144\156\214\264\111\013\174\0\0\0\0\0\0\0\1\0\0\0\1'
+        printf '\0\0\0\0\0\0\0\5\0\0\0\0\0\0\0\1\0\0\0'
+        printf "\\$(printf %o $((size + 1)))$name\0"
+    done > "$log"
+    run "$FMB" log info "$log"
+    [ "$status" = 0 ]
+    [ "${lines[-2]}" = '    client 5, body 1: \x1b[31mr'$'\ufffd' ]
+    [ "$("$FMB" log info --json "$log" | jq -c .names)" = '[{"client_id":5,"body_id":1,"name":"\u001b[31mr'$'\ufffd''"}]' ]
+}
+
 @test "names of files reach the terminal without control characters" {
     name=$BATS_TEST_TMPDIR/$'\e[31mred'
     good > "$name"

@@ -93,7 +93,7 @@ split_at() {
     done
 }
 
-@test "bodies that come whole before the cut are defined at its beginning" {
+@test "bodies that come whole before the cut are defined in it" {
     generate --blast pairs 20000 --by-handle "$log"
     cuts 0 "$log" -o "$cut" --from 0.15
     has '.added_bodies > 1000 and .added_definitions > 1 and .unknown_handles == 0'
@@ -273,15 +273,19 @@ split_at() {
     [ -z "$output" ]
 }
 
-@test "nothing chosen is an empty log" {
+@test "where nothing is chosen no file is written, and an old one stays" {
     generate stack "$log"
     cuts 1 "$log" -o "$cut" --from 1000
-    has '.kept_events == 0'
-    [ "$stderr" = "fmb: nothing was chosen: $cut has no events" ]
-    [ -f "$cut" ]
-    [ ! -s "$cut" ]
+    has '.kept_events == 0 and .kept_bytes == 0'
+    [ "$stderr" = "fmb: nothing was chosen: $cut is not written" ]
+    [ ! -e "$cut" ]
     : > "$T/empty.log"
-    cuts 1 "$T/empty.log" -o "$cut" --force
+    cuts 1 "$T/empty.log" -o "$cut"
+    [ ! -e "$cut" ]
+    cp "$log" "$cut"
+    cuts 1 "$log" -o "$cut" --force --from 1000
+    [ "$stderr" = "fmb: nothing was chosen: $cut is not written" ]
+    cmp "$log" "$cut"
 }
 
 @test "for people there is a text" {

@@ -226,7 +226,7 @@ xpath() {
     edit --repeat 4 --repeat 50 arm.log
     replay spoiled.log
     ended 0
-    counts '.queries == 72 and .same == 72 and .results == 74 and .results_alone == 0'
+    counts '.queries == 72 and .same == 72 and .results == 74 and .unmatched_results == 0'
     counts '.second_results == 2 and .contradictions == 0'
     edit --drop 4 --drop 30 moving.log
     replay spoiled.log
@@ -235,7 +235,7 @@ xpath() {
     edit --drop-query 7 --drop-query 40 arm.log
     replay spoiled.log
     ended 0
-    counts '.queries == 70 and .results_alone == 2 and .results == 72'
+    counts '.queries == 70 and .unmatched_results == 2 and .results == 72'
 }
 
 @test "a second result that contradicts the first" {
@@ -306,7 +306,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 @test "of ranges of time the sum is the whole" {
     for log in clients arm foreign; do
         sums() { jq -cs '[.[] | [.queries, .same, .busy, .unknown_body, .no_result, .results,
-            .results_alone, .unreadable_queries, .unreadable_results]] | transpose | map(add)'; }
+            .unmatched_results, .unreadable_queries, .unreadable_results]] | transpose | map(add)'; }
         report_of $log.log | sums > whole
         {
             report_of --to 0.01 $log.log
@@ -384,7 +384,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     # It is a log: the results are its own.
     replay arm.golden
     ended 2
-    counts '.results == 72 and .results_alone == 72'
+    counts '.results == 72 and .unmatched_results == 72'
     run "$FMB" replay --write-golden arm.golden arm.log
     ended 2
     [[ $output == *'arm.golden: File exists; --force overwrites it'* ]]
@@ -418,7 +418,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     edit --events 0 60 arm.log
     replay --golden arm.golden spoiled.log
     ended 0
-    counts '.results == 72 and .results_alone > 20 and .no_result == 0'
+    counts '.results == 72 and .unmatched_results > 20 and .no_result == 0'
 }
 
 @test "a recording by another client is compared in order" {
@@ -459,7 +459,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [[ $stderr == *'arm.log: event '*': FMB_'*'_QUERY: has no counterpart in the other recording' ]]
     replay --golden arm.log less.log
     ended 1
-    counts '.same == 71 and .no_result == 0 and .left_over == 1 and .results_alone == 1'
+    counts '.same == 71 and .no_result == 0 and .left_over == 1 and .unmatched_results == 1'
     [[ $stderr == *'arm.log: event '*': FMB_'*'_QUERY: has no counterpart in the other recording' ]]
     run "$FMB" replay --golden arm.log less.log
     ended 1
@@ -498,7 +498,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     "$EDIT" --events 40 1000 moving.log end.log
     replay --golden begin.log end.log
     ended 0
-    counts '.same == 10 and .no_result == 10 and .results_alone == 20 and .left_over == 0'
+    counts '.same == 10 and .no_result == 10 and .unmatched_results == 20 and .left_over == 0'
 }
 
 @test "golden results that cannot be read are named" {

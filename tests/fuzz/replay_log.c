@@ -136,7 +136,7 @@ struct reporting {
     const struct replay_options *options;
 };
 
-static void on_found(void *user, const struct located_difference *found)
+static void on_found(void *user, const struct difference *found)
 {
     struct reporting *reporting = user;
     reporting->found++;
@@ -162,13 +162,14 @@ static void on_progress(void *user, int64_t bytes)
     FUZZ_CHECK(bytes >= 0);
 }
 
-static void report_one(void *user, const struct located_difference *found)
+static void report_one(void *user, const struct difference *found)
 {
     struct reporting *reporting = user;
     char line[REPLAY_LINE_MAX];
-    replay_line(found, NULL, 0, line);
+    replay_line(found, reporting->options->names, NULL, 0, line);
     FUZZ_CHECK(line[0] && !strchr(line, '\n'));
-    replay_json_found(&reporting->json, found, reporting->options->log[0], 0);
+    replay_json_found(&reporting->json, found, reporting->options->names,
+                      reporting->options->log[0], 0);
     reporting->reported++;
 }
 
@@ -189,9 +190,9 @@ static void check_json(const char *text, const struct reporting *reporting,
     const cJSON *list = cJSON_GetObjectItemCaseSensitive(json, "differences");
     FUZZ_CHECK(cJSON_GetArraySize(list) == reporting->reported);
     FUZZ_CHECK(number_in(json, "not_listed") == reporting->found - reporting->reported);
-    FUZZ_CHECK(number_in(json, "queries") == tally_queries(tally));
+    FUZZ_CHECK(number_in(json, "queries") == tally_both(tally).queries);
     for (int i = 0; i < REPLAY_OUTCOMES; i++)
-        FUZZ_CHECK(number_in(json, outcome[i]) == tally_outcome(tally, (enum replay_outcome) i));
+        FUZZ_CHECK(number_in(json, outcome[i]) == tally_both(tally).outcome[i]);
     cJSON_Delete(json);
 }
 
@@ -271,7 +272,7 @@ static void check_counts(const struct tally *tally, const struct look *look)
 static bool same_channel(const struct tally_channel *a, const struct tally_channel *b)
 {
     return a->queries == b->queries && a->pairs == b->pairs && a->results == b->results &&
-           a->results_alone == b->results_alone && a->contradictions == b->contradictions &&
+           a->unmatched == b->unmatched && a->contradictions == b->contradictions &&
            memcmp(a->outcome, b->outcome, sizeof a->outcome) == 0 &&
            memcmp(a->unreadable, b->unreadable, sizeof a->unreadable) == 0;
 }

@@ -111,7 +111,7 @@ static void read_scenes(char *path, struct scenes *scenes)
         if (log_kind_of(&channels, &event) != LOG_SCENE_QUERY ||
             wire_read_scene_query(event.data, (uint32_t) event.kept, &query))
             continue;
-        definitions_add_query(definitions, event.data, (uint32_t) event.kept);
+        definitions_add_message(definitions, LOG_SCENE_QUERY, event.data, (uint32_t) event.kept);
         if (query.index_count > 0)
             keep_scene(scenes, definitions, &query);
     }
@@ -138,7 +138,7 @@ static double batch_ns(struct scenes *scenes)
 
 /* ---- Replay ---- */
 
-static void no_found(void *user, const struct located_difference *found)
+static void no_found(void *user, const struct difference *found)
 {
     (void) user;
     (void) found;
@@ -177,7 +177,8 @@ static double replay_ns(char *path, struct tally *tally)
     if (!replay_run(&options, &sink, tally))
         fail("the replay failed");
     const double took = stopwatch_now() - begin;
-    if (tally_compared(tally) != tally_queries(tally))
+    const struct tally_channel both = tally_both(tally);
+    if (tally_compared(&both) != both.queries)
         fail("not all was compared");
     return took;
 }
@@ -206,7 +207,7 @@ static void bench_pairs(char *path)
     static struct tally tally;
     double replay[ROUNDS];
     for (int round = 0; round < ROUNDS; round++)
-        replay[round] = replay_ns(path, &tally) / (double) tally_queries(&tally);
+        replay[round] = replay_ns(path, &tally) / (double) tally_both(&tally).queries;
     const struct spread spread = spread_of(replay, ROUNDS);
     printf("pairs   %8.3f million queries a second (%.0f ns; quartiles %.0f, %.0f)   %s\n",
            1e3 / spread.median, spread.median, spread.low, spread.high, path);

@@ -94,21 +94,14 @@ void world_clear(struct log_world *world)
     *world = (struct log_world){.event = NULL};
 }
 
-static bool from_memory(void *user, size_t from, unsigned char *out, size_t count)
-{
-    if (count > 0)
-        memcpy(out, (const unsigned char *) user + from, count);
-    return true;
-}
-
 void world_write(const struct log_world *world, const char *path)
 {
     struct log_writer *writer = log_begin(output_open_in_place(path, true));
     assert_non_null(writer);
     for (size_t i = 0; i < world->count; i++) {
         const struct world_event *event = &world->event[i];
-        assert_true(log_append_large(writer, event->utime, event->channel, strlen(event->channel),
-                                     event->size, from_memory, event->bytes));
+        assert_true(log_append(writer, event->utime, event->channel, strlen(event->channel),
+                               event->bytes, event->size));
     }
     assert_int_equal(log_finish(writer), 0);
 }

@@ -6,7 +6,7 @@
 
 /* ---- What is reported ---- */
 
-static void on_found(void *user, const struct located_difference *found)
+static void on_found(void *user, const struct difference *found)
 {
     struct replay_report *report = user;
     if (report->found_count == report->found_room) {
@@ -15,9 +15,9 @@ static void on_found(void *user, const struct located_difference *found)
         if (!report->found)
             abort();
     }
-    struct located_difference *put = &report->found[report->found_count++];
+    struct difference *put = &report->found[report->found_count++];
     *put = *found;
-    put->difference.then.certificate = put->difference.now.certificate = NULL;
+    put->then.certificate = put->now.certificate = NULL;
 }
 
 static void on_unreadable(void *user, const struct match_place *place, const char *channel,
@@ -52,15 +52,14 @@ static void on_progress(void *user, int64_t bytes)
 /* ---- Runs ---- */
 
 /* Of one query they stay in their order. */
-static int compare_places(const struct located_difference *a, const struct located_difference *b)
+static int compare_places(const struct difference *a, const struct difference *b)
 {
     if (a->place.log != b->place.log)
         return a->place.log < b->place.log ? -1 : 1;
     return a->place.offset < b->place.offset ? -1 : a->place.offset > b->place.offset;
 }
 
-static void sort_found(struct located_difference *found, int64_t count,
-                       struct located_difference *room)
+static void sort_found(struct difference *found, int64_t count, struct difference *room)
 {
     const int64_t half = count / 2;
     int64_t a = 0, b = half;
@@ -86,7 +85,7 @@ struct replay_report replay_report_of(const struct replay_options *options)
     for (int log = 0; log < options->log_count; log++)
         tally_add(&report.tally, &tally[log]);
     free(tally);
-    struct located_difference *room = calloc((size_t) report.found_count + 1, sizeof *room);
+    struct difference *room = calloc((size_t) report.found_count + 1, sizeof *room);
     if (!room)
         abort();
     sort_found(report.found, report.found_count, room);
@@ -102,17 +101,17 @@ void replay_report_free(struct replay_report *report)
 
 /* ---- Comparing ---- */
 
-static bool same_found(const struct located_difference *a, const struct located_difference *b)
+static bool same_found(const struct difference *a, const struct difference *b)
 {
-    const struct difference *x = &a->difference, *y = &b->difference;
     return compare_places(a, b) == 0 && a->place.number == b->place.number &&
-           a->place.utime == b->place.utime && a->kind == b->kind && a->client_id == b->client_id &&
-           a->sequence_number == b->sequence_number && x->kind == y->kind && x->whole == y->whole &&
-           memcmp(x->body_id, y->body_id, sizeof x->body_id) == 0 &&
-           memcmp(x->placement, y->placement, sizeof x->placement) == 0 && x->dim == y->dim &&
-           x->then.status == y->then.status && x->now.status == y->now.status &&
-           query_same_answer(&x->then.answer, &y->then.answer) &&
-           query_same_answer(&x->now.answer, &y->now.answer);
+           a->place.utime == b->place.utime && a->query_kind == b->query_kind &&
+           a->client_id == b->client_id && a->sequence_number == b->sequence_number &&
+           a->kind == b->kind && a->whole == b->whole &&
+           memcmp(a->body_id, b->body_id, sizeof a->body_id) == 0 &&
+           memcmp(a->placement, b->placement, sizeof a->placement) == 0 && a->dim == b->dim &&
+           a->then.status == b->then.status && a->now.status == b->now.status &&
+           query_same_answer(&a->then.answer, &b->then.answer) &&
+           query_same_answer(&a->now.answer, &b->now.answer);
 }
 
 static const char *differ_in_channel(const struct tally_channel *a, const struct tally_channel *b)
@@ -127,7 +126,7 @@ static const char *differ_in_channel(const struct tally_channel *a, const struct
         return "differences by kind";
     if (a->results != b->results)
         return "results";
-    if (a->results_alone != b->results_alone)
+    if (a->unmatched != b->unmatched)
         return "results alone";
     if (a->results_again != b->results_again || a->contradictions != b->contradictions)
         return "second results";
@@ -183,8 +182,7 @@ static const char *odd_channel(const struct tally_channel *channel)
         return "queries and their outcomes";
     if (differences < channel->outcome[REPLAY_DIFFERENT])
         return "queries and their differences";
-    return channel->results_alone + channel->results_again + channel->contradictions >
-                   channel->results
+    return channel->unmatched + channel->results_again + channel->contradictions > channel->results
                ? "results alone or again"
                : NULL;
 }
@@ -204,7 +202,7 @@ const char *replay_report_odd(const struct replay_report *report, int64_t size)
         return "the bytes of the logs";
     if (report->damages != tally->damages || report->damaged_bytes != tally->damaged_bytes)
         return "damages reported and counted";
-    if (report->unreadable != tally_unreadable(tally) + tally_contradictions(tally))
+    if (report->unreadable != tally_unreadable(tally) + tally_both(tally).contradictions)
         return "unreadable messages reported and counted";
     return differences != report->found_count ? "differences reported and counted" : NULL;
 }

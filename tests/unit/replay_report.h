@@ -7,7 +7,7 @@
 struct replay_report {
     bool good;          /* as replay_run() */
     struct tally tally; /* of all logs */
-    struct located_difference
+    struct difference
         *found; /* owned, [found_count], by the places of their queries; no certificates */
     int64_t found_count, found_room;
     int64_t unreadable, damages, damaged_bytes; /* as they were reported, contradictions too */

@@ -104,15 +104,17 @@ static void test_pair(void **state)
         .placement = {place(&whole),
                       {.handle = named.handle, .dim = 3, .geometry = {none, sizeof none}}}};
     const uint32_t size = (uint32_t) wire_write_pair_query(&query, world->bytes);
-    assert_null(definitions_add_query(world->definitions, world->bytes, size));
+    assert_null(definitions_add_message(world->definitions, LOG_PAIR_QUERY, world->bytes, size));
     assert_found(world, &whole);
     assert_null(definitions_find(world->definitions, &named.handle));
     struct placement anonymous = place(&named);
     anonymous.body_id = 0;
     assert_false(definitions_add_placement(world->definitions, &anonymous));
     assert_null(definitions_find(world->definitions, &named.handle));
-    assert_non_null(definitions_add_query(world->definitions, world->bytes, size - 1));
-    assert_non_null(definitions_add_message(world->definitions, world->bytes, size));
+    assert_non_null(
+        definitions_add_message(world->definitions, LOG_PAIR_QUERY, world->bytes, size - 1));
+    assert_non_null(
+        definitions_add_message(world->definitions, LOG_DEFINITION, world->bytes, size));
 }
 
 static void test_scene(void **state)
@@ -127,7 +129,7 @@ static void test_scene(void **state)
     query->placement_count = 2;
     query->which = FMB_PAIRS_ALL;
     const uint32_t size = (uint32_t) wire_write_scene_query(query, world->bytes);
-    assert_null(definitions_add_query(world->definitions, world->bytes, size));
+    assert_null(definitions_add_message(world->definitions, LOG_SCENE_QUERY, world->bytes, size));
     assert_found(world, &body[0]);
     assert_found(world, &body[1]);
     free(query);
@@ -144,10 +146,11 @@ static void test_definition(void **state)
     definition->body[0].geometry = body.geometry;
     const uint32_t size = (uint32_t) wire_write_definition(definition, world->bytes);
     world->bytes[size - 1] ^= 1;
-    assert_non_null(definitions_add_message(world->definitions, world->bytes, size));
+    assert_non_null(
+        definitions_add_message(world->definitions, LOG_DEFINITION, world->bytes, size));
     assert_null(definitions_find(world->definitions, &body.handle));
     world->bytes[size - 1] ^= 1;
-    assert_null(definitions_add_message(world->definitions, world->bytes, size));
+    assert_null(definitions_add_message(world->definitions, LOG_DEFINITION, world->bytes, size));
     assert_found(world, &body);
     free(definition);
 }

@@ -33,6 +33,9 @@ struct world {
     int definitions, defined;        /* messages and bodies that were written */
     size_t written;                  /* bytes of their events, on the longest channel */
     struct definitions *file;        /* what they define */
+    int names;                       /* written at the beginning of the file */
+    struct names read_names;         /* points into name_bytes */
+    unsigned char name_bytes[QUERY_BYTES_MAX];
     unsigned char bytes[QUERY_BYTES_MAX];
 };
 
@@ -43,10 +46,19 @@ static bool on_write(void *user, const void *bytes, size_t size)
     assert_null(wire_read_definition(bytes, (uint32_t) size, world->hasher, &definition));
     assert_int_equal(definition.client_id, 0);
     assert_int_equal(definition.server_id, 0);
-    assert_null(definitions_add_message(world->file, bytes, (uint32_t) size));
+    assert_null(definitions_add_message(world->file, LOG_DEFINITION, bytes, (uint32_t) size));
     world->definitions++;
     world->written += (size_t) log_event_bytes(BUS_CHANNEL_MAX - 1, size);
     world->defined += definition.body_count;
+    return true;
+}
+
+static bool on_names(void *user, const void *bytes, size_t size)
+{
+    struct world *world = user;
+    memcpy(world->name_bytes, bytes, size);
+    assert_null(wire_read_names(world->name_bytes, (uint32_t) size, &world->read_names));
+    world->names += world->read_names.count;
     return true;
 }
 
@@ -105,14 +117,20 @@ static struct placement place_by_handle(const struct body *body)
 /* A message that the recorder receives: the definitions that it needs are written before it. */
 static void receive(struct world *world, enum log_kind kind, size_t size)
 {
-    assert_null(record_bodies_take(world->bodies, kind, world->bytes, size));
+    assert_null(record_bodies_read(world->bodies, kind, world->bytes, size));
     const int before = world->definitions;
     const size_t needed = record_bodies_needed(world->bodies);
+    const enum record_bodies_owner owner = record_bodies_owner(world->bodies);
     world->written = 0;
     assert_true(record_bodies_define(world->bodies, on_write, world));
     assert_int_equal(needed > 0, world->definitions > before);
     assert_true(world->written <= needed);
     assert_int_equal(record_bodies_needed(world->bodies), 0);
+    if (owner == RECORD_OWN)
+        return;
+    if (kind == LOG_DEFINITION)
+        definitions_add_message(world->file, kind, world->bytes, (uint32_t) size);
+    record_bodies_keep(world->bodies);
 }
 
 static void receive_query(struct world *world, struct placement a, struct placement b)
@@ -122,20 +140,6 @@ static void receive_query(struct world *world, struct placement a, struct placem
                                      .duration = 1,
                                      .placement = {a, b}};
     receive(world, LOG_PAIR_QUERY, wire_write_pair_query(&query, world->bytes));
-}
-
-/* The result of the last query. */
-static void receive_result(struct world *world, enum fmb_status status)
-{
-    struct pair_result result = {.client_id = CLIENT,
-                                 .sequence_number = world->sequence_number,
-                                 .server_id = SERVER,
-                                 .status = status};
-    if (status == FMB_OK) {
-        result.method = 1;
-        result.answer.verdict = FMB_SEPARATED;
-    }
-    receive(world, LOG_PAIR_RESULT, wire_write_pair_result(&result, world->bytes));
 }
 
 static void receive_definition(struct world *world, const struct definition_query *query,
@@ -170,7 +174,8 @@ static void pass(struct world *world, int64_t ns)
     world->now_ns += ns;
     const bool due = record_bodies_due(world->bodies) <= world->now_ns;
     const size_t size = record_bodies_request(world->bodies, world->now_ns, bytes);
-    assert_int_equal(size > 0, due);
+    assert_true(due || size == 0);
+    assert_true(record_bodies_due(world->bodies) > world->now_ns);
     if (size == 0)
         return;
     assert_null(wire_read_definition_query(bytes, (uint32_t) size, &world->request));
@@ -188,7 +193,8 @@ static void begin_file(struct world *world)
 {
     definitions_close(world->file);
     world->file = definitions_open();
-    record_bodies_begin_file(world->bodies);
+    world->names = 0;
+    assert_true(record_bodies_begin_file(world->bodies, 5, on_names, world));
 }
 
 /* The request at the start, and its answer: no bodies. */
@@ -198,7 +204,7 @@ static void begin(struct world *world)
     assert_int_equal(world->requests, 1);
     assert_int_equal(world->request.handle_count, 0);
     receive_definition(world, &world->request, NULL, 0, 0);
-    assert_true(record_bodies_is_own(world->bodies));
+    assert_int_equal(record_bodies_owner(world->bodies), RECORD_OWN);
 }
 
 /* ---- Tests ------------------------------------------------------------------------------------
@@ -221,15 +227,19 @@ static void test_all_are_requested_in_pages(void **state)
     receive_definition(world, &world->request, &body[1], 1, 0);
     pass(world, SECOND);
     assert_int_equal(world->requests, 2);
-    /* They are written when a query names them. */
+    /* The file has the results as they are, and needs no other definitions. */
+    assert_file_defines(world, &body[0]);
+    assert_file_defines(world, &body[1]);
+    assert_int_equal(record_bodies_counts(world->bodies).defined, 2);
+    receive_query(world, place_by_handle(&body[0]), place_by_handle(&body[1]));
     assert_int_equal(world->definitions, 0);
+    begin_file(world);
+    receive_query(world, place_by_handle(&body[0]), place_by_handle(&body[1]));
     receive_query(world, place_by_handle(&body[0]), place_by_handle(&body[1]));
     assert_int_equal(world->definitions, 1);
     assert_int_equal(world->defined, 2);
     assert_file_defines(world, &body[0]);
     assert_file_defines(world, &body[1]);
-    receive_query(world, place_by_handle(&body[0]), place_by_handle(&body[1]));
-    assert_int_equal(world->definitions, 1);
 }
 
 static void test_each_file_defines_what_it_names(void **state)
@@ -248,35 +258,32 @@ static void test_each_file_defines_what_it_names(void **state)
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
 }
 
-static void test_bodies_of_answered_queries_are_requested(void **state)
+static void test_bodies_of_queries_are_requested(void **state)
 {
     struct world *world = *state;
     const struct body a = make_body(world, 1), b = make_body(world, 2);
     begin(world);
     receive_query(world, place_by_handle(&a), place_by_handle(&b));
     pass(world, SECOND);
-    assert_int_equal(world->requests, 1); /* it is not answered yet */
-    receive_result(world, FMB_OK);
-    pass(world, SECOND);
     assert_int_equal(world->requests, 2);
     assert_int_equal(world->request.handle_count, 2);
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, 2);
     /* The answer has one: the file gets it at once, since a query in it names the body. */
     receive_definition(world, &world->request, &a, 1, 0);
-    assert_true(record_bodies_is_own(world->bodies));
+    assert_int_equal(record_bodies_owner(world->bodies), RECORD_BODIES);
     assert_file_defines(world, &a);
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, 1);
     /* The service does not hold the other one: it is not requested again. */
     receive_query(world, place_by_handle(&a), place_by_handle(&b));
-    receive_result(world, FMB_OK);
     pass(world, SECOND);
     assert_int_equal(world->requests, 2);
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, 1);
     /* A definition for another client resolves it too, and is in the file as it is. */
     const struct definition_query foreign = {.client_id = CLIENT};
     receive_definition(world, &foreign, &b, 1, 0);
-    assert_false(record_bodies_is_own(world->bodies));
+    assert_int_equal(record_bodies_owner(world->bodies), RECORD_OTHERS);
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
+    assert_int_equal(record_bodies_counts(world->bodies).defined, 1);
     const int before = world->definitions;
     receive_query(world, place_by_handle(&a), place_by_handle(&b));
     assert_int_equal(world->definitions, before);
@@ -289,7 +296,6 @@ static void test_handles_are_requested_in_pages(void **state)
     const struct body body[] = {make_body(world, 1), make_body(world, 2)};
     begin(world);
     receive_query(world, place_by_handle(&body[0]), place_by_handle(&body[1]));
-    receive_result(world, FMB_OK);
     pass(world, SECOND);
     receive_definition(world, &world->request, &body[0], 1, 1);
     pass(world, SECOND);
@@ -302,7 +308,7 @@ static void test_handles_are_requested_in_pages(void **state)
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
 }
 
-/* Nothing is requested of a service that does not answer until it has answered a query. */
+/* A service that does not answer gets a request for each query, not for each interval. */
 static void test_requests_without_a_result(void **state)
 {
     struct world *world = *state;
@@ -310,7 +316,6 @@ static void test_requests_without_a_result(void **state)
     pass(world, 0);
     lose_request(world);
     receive_query(world, place_by_handle(&a), place_by_handle(&b));
-    receive_result(world, FMB_OK);
     pass(world, SECOND);
     assert_int_equal(world->requests, 2);
     assert_int_equal(world->request.handle_count, 2);
@@ -318,49 +323,24 @@ static void test_requests_without_a_result(void **state)
     pass(world, SECOND);
     assert_int_equal(world->requests, 2);
     receive_query(world, place_by_handle(&a), place_whole(&b));
-    receive_result(world, FMB_OK);
     pass(world, SECOND);
     assert_int_equal(world->requests, 3);
+    assert_int_equal(world->request.handle_count, 1);
     receive_definition(world, &world->request, &a, 1, 0);
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
 }
 
-/* A method that cannot decide a pair had its bodies all the same. */
-static void test_bodies_of_undecided_pairs_are_requested(void **state)
+/* A body that a query carries whole before its request is sent is not requested. */
+static void test_bodies_that_come_whole_are_not_requested(void **state)
 {
     struct world *world = *state;
     const struct body a = make_body(world, 1), b = make_body(world, 2);
     begin(world);
     receive_query(world, place_by_handle(&a), place_by_handle(&b));
-    receive_result(world, FMB_CANNOT_DECIDE);
+    receive_query(world, place_whole(&a), place_whole(&b));
     pass(world, SECOND);
-    assert_int_equal(world->request.handle_count, 2);
-}
-
-/* The newest queries without a result are kept, and each result is that of one of them. */
-static void test_results_of_many_queries(void **state)
-{
-    struct world *world = *state;
-    enum { QUERIES = 300, RECENT = QUERIES - 40, FORGOTTEN = 10 };
-    static const struct {
-        int64_t number;
-        int requests;
-    } results[] = {{QUERIES + 1, 1}, {FORGOTTEN, 1}, {RECENT, 2}};
-    const struct body whole = make_body(world, 1);
-    begin(world);
-    for (int i = 1; i <= QUERIES; i++) {
-        const struct body body = make_body(world, 1 + i);
-        receive_query(world, place_by_handle(&body), place_whole(&whole));
-    }
-    for (int i = 0; i < 3; i++) {
-        world->sequence_number = results[i].number;
-        receive_result(world, FMB_OK);
-        pass(world, SECOND);
-        assert_int_equal(world->requests, results[i].requests);
-    }
-    const struct body recent = make_body(world, 1 + RECENT);
-    assert_int_equal(world->request.handle_count, 1);
-    assert_true(handle_equal(&world->request.handle[0], &recent.handle));
+    assert_int_equal(world->requests, 1);
+    assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
 }
 
 /* Handles that no service knows do not fill the memory: at most 65,536 are requested. */
@@ -373,7 +353,6 @@ static void test_wanted_handles_are_limited(void **state)
     for (int i = 0; i < MOST + MORE; i += 2) {
         const struct body a = make_body(world, 1 + i), b = make_body(world, 2 + i);
         receive_query(world, place_by_handle(&a), place_by_handle(&b));
-        receive_result(world, FMB_OK);
     }
     while (record_bodies_due(world->bodies) != INT64_MAX) {
         pass(world, SECOND);
@@ -384,141 +363,81 @@ static void test_wanted_handles_are_limited(void **state)
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, MOST + MORE);
 }
 
-static void test_refused_queries_need_no_bodies(void **state)
-{
-    struct world *world = *state;
-    const struct body a = make_body(world, 1), b = make_body(world, 2);
-    begin(world);
-    receive_query(world, place_by_handle(&a), place_by_handle(&b));
-    receive_result(world, FMB_UNKNOWN_BODY);
-    pass(world, SECOND);
-    assert_int_equal(world->requests, 1);
-    assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
-}
-
-/* More than fit into memory: those that are used stay. */
-static void test_what_is_used_stays(void **state)
+/* More than fit into memory: all are dropped, and those that are used are requested again. */
+static void test_dropped_bodies_are_requested_again(void **state)
 {
     struct world *world = *state;
     const struct body used = make_body(world, 1), once = make_body(world, 2);
     begin(world);
     receive_query(world, place_whole(&used), place_whole(&once));
-    for (int i = 0; record_bodies_counts(world->bodies).dropped < 200000; i++) {
+    for (int i = 0; record_bodies_counts(world->bodies).dropped == 0; i++) {
         const struct body a = make_body(world, 3 + 2 * i), b = make_body(world, 4 + 2 * i);
         receive_query(world, place_whole(&a), place_whole(&b));
-        if (i % 1000 == 0)
-            receive_query(world, place_by_handle(&used), place_whole(&a));
     }
-    begin_file(world);
-    receive_query(world, place_by_handle(&used), place_by_handle(&once));
+    assert_true(record_bodies_counts(world->bodies).dropped > 200000);
+    receive_query(world, place_by_handle(&used), place_by_handle(&used));
+    pass(world, SECOND);
+    assert_int_equal(world->request.handle_count, 1);
+    receive_definition(world, &world->request, &used, 1, 0);
     assert_file_defines(world, &used);
-    assert_null(definitions_find(world->file, &once.handle));
+    assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
 }
 
-/* A body of many boxes in 2D. */
-struct large_body {
-    struct geometry geometry;
-    struct handle handle;
-};
+/* ---- Names ---- */
 
-static struct large_body make_large(struct world *world, int number, int frames)
-{
-    static struct geometry_frame frame[1800];
-    for (int i = 0; i < frames; i++)
-        frame[i] =
-            (struct geometry_frame){.shape = FMB_BOX, .origin = {number, i}, .components = {1, 1}};
-    const size_t size = geometry_size(2, frame, frames);
-    unsigned char *bytes = allocate(1, size);
-    geometry_write_frames(2, frame, frames, bytes);
-    return (struct large_body){{bytes, size}, hasher_handle(world->hasher, bytes, size)};
-}
-
-static void free_large(struct large_body *body, int count)
-{
-    for (int i = 0; i < count; i++)
-        free((void *) (uintptr_t) body[i].geometry.bytes);
-}
-
-static struct placement place_large(const struct large_body *body, bool whole)
-{
-    static unsigned char none[GEOMETRY_NONE_BYTES];
-    geometry_write_none(2, none);
-    struct placement placement = {.body_id = 1, .dim = 2, .geometry = body->geometry};
-    if (!whole) {
-        placement.handle = body->handle;
-        placement.geometry = (struct geometry){none, sizeof none};
-    }
-    return placement;
-}
-
-static void receive_scene(struct world *world, const struct placement *placement, int count)
-{
-    static struct scene_query query;
-    query = (struct scene_query){.client_id = CLIENT, .placement_count = count};
-    memcpy(query.placement, placement, (size_t) count * sizeof *placement);
-    receive(world, LOG_SCENE_QUERY, wire_write_scene_query(&query, world->bytes));
-}
-
-/* Bodies that queries give whole, until one more of so many frames would fill half of the memory.
- * In: the half, of which `filled` are the bodies. Returns their number. */
-static int give_large(struct world *world, struct definitions *filled, int frames, int number,
-                      struct large_body *out)
-{
-    int count = 0;
-    for (;; count++) {
-        out[count] = make_large(world, number + count, frames);
-        if (definitions_bytes(filled) + out[count].geometry.size + 1000 >= RECORD_BODIES_BYTES / 2)
-            break;
-        const struct placement placement = place_large(&out[count], true);
-        definitions_add(filled, &out[count].geometry);
-        receive_scene(world, &placement, 1);
-    }
-    free_large(&out[count], 1);
-    return count;
-}
-
-/* One query names an old body, and then enough to fill half of the memory twice. */
-static void test_what_a_query_names_stays_until_it_is_defined(void **state)
+static void test_each_file_has_the_names(void **state)
 {
     struct world *world = *state;
-    enum { MANY = 1800, SOME = 100, FEW = 30, BODIES_MAX = 700 };
-    static struct large_body body[BODIES_MAX];
-    static struct placement placement[BODIES_MAX];
-    struct definitions *filled = definitions_open();
+    const struct body body = make_body(world, 1);
+    struct placement first = place_whole(&body), second = place_whole(&body);
     begin(world);
-    body[0] = make_large(world, 0, SOME);
-    placement[0] = place_large(&body[0], true);
-    receive_scene(world, placement, 1);
-    definitions_add(filled, &body[0].geometry);
-    int count = give_large(world, filled, MANY, 1, body + 1);
-    free_large(body + 1, count);
-    struct large_body last = make_large(world, 1 + count, MANY);
-    placement[0] = place_large(&last, true);
-    receive_scene(world, placement, 1);
-    definitions_close(filled);
+    begin_file(world);
+    assert_int_equal(world->names, 0);
+    first.name = "table";
+    second.body_id = 2;
+    receive_query(world, first, second);
+    for (int file = 0; file < 2; file++) {
+        begin_file(world);
+        assert_int_equal(world->names, 1);
+        assert_int_equal(world->read_names.utime, 5);
+        assert_int_equal(world->read_names.client_id[0], CLIENT);
+        assert_int_equal(world->read_names.body_id[0], 1);
+        assert_string_equal(world->read_names.name[0], "table");
+    }
+    /* The last name counts; a query without one changes none. */
+    first.name = "desk";
+    second.name = "\xff\n";
+    receive_query(world, first, second);
+    receive_query(world, place_whole(&body), place_by_handle(&body));
+    begin_file(world);
+    assert_int_equal(world->names, 2);
+    assert_string_equal(world->read_names.name[0], "desk");
+    assert_string_equal(world->read_names.name[1], "\xff\n");
+}
 
-    filled = definitions_open();
-    count = 1 + give_large(world, filled, MANY, 1000, body + 1);
-    count += give_large(world, filled, FEW, 2000, body + count);
-    struct large_body more = make_large(world, 3000, SOME);
-    for (int i = 0; i < count; i++)
-        placement[i] = place_large(&body[i], false);
-    placement[count] = place_large(&more, true);
-    receive_scene(world, placement, count + 1);
-    for (int i = 0; i < count; i++)
-        assert_non_null(definitions_find(world->file, &body[i].handle));
-    free_large(body, count);
-    free_large(&last, 1);
-    free_large(&more, 1);
-    definitions_close(filled);
+/* ---- Sequence numbers ---- */
+
+static void test_skipped_sequence_numbers_are_counted(void **state)
+{
+    struct world *world = *state;
+    const struct body body = make_body(world, 1);
+    static const struct {
+        int64_t number, skipped;
+    } steps[] = {{10, 0}, {11, 0}, {11, 0}, {14, 2}, {13, 2}, {15, 2}, {1000000, 2}, {1000001, 2}};
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        world->sequence_number = steps[i].number - 1;
+        receive_query(world, place_whole(&body), place_whole(&body));
+        assert_int_equal(record_bodies_counts(world->bodies).skipped, steps[i].skipped);
+    }
 }
 
 static void test_what_cannot_be_read(void **state)
 {
     struct world *world = *state;
     for (int kind = 0; kind < LOG_OTHER; kind++)
-        assert_non_null(record_bodies_take(world->bodies, (enum log_kind) kind, world->bytes, 10));
-    assert_null(record_bodies_take(world->bodies, LOG_OTHER, world->bytes, 10));
+        assert_non_null(record_bodies_read(world->bodies, (enum log_kind) kind, world->bytes, 10));
+    assert_null(record_bodies_read(world->bodies, LOG_OTHER, world->bytes, 10));
+    record_bodies_keep(world->bodies);
     assert_int_equal(record_bodies_needed(world->bodies), 0);
 }
 
@@ -527,18 +446,15 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_all_are_requested_in_pages, setup, teardown),
         cmocka_unit_test_setup_teardown(test_each_file_defines_what_it_names, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_bodies_of_answered_queries_are_requested, setup,
-                                        teardown),
+        cmocka_unit_test_setup_teardown(test_bodies_of_queries_are_requested, setup, teardown),
         cmocka_unit_test_setup_teardown(test_handles_are_requested_in_pages, setup, teardown),
         cmocka_unit_test_setup_teardown(test_requests_without_a_result, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_bodies_of_undecided_pairs_are_requested, setup,
+        cmocka_unit_test_setup_teardown(test_bodies_that_come_whole_are_not_requested, setup,
                                         teardown),
-        cmocka_unit_test_setup_teardown(test_results_of_many_queries, setup, teardown),
         cmocka_unit_test_setup_teardown(test_wanted_handles_are_limited, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_refused_queries_need_no_bodies, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_what_is_used_stays, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_what_a_query_names_stays_until_it_is_defined, setup,
-                                        teardown),
+        cmocka_unit_test_setup_teardown(test_dropped_bodies_are_requested_again, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_each_file_has_the_names, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_skipped_sequence_numbers_are_counted, setup, teardown),
         cmocka_unit_test_setup_teardown(test_what_cannot_be_read, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -127,8 +127,8 @@ static enum replay_outcome compare_with(double tolerance, const struct pair_quer
 {
     const struct compare_options options = {.tolerance = tolerance};
     reported_count = 0;
-    const enum replay_outcome outcome =
-        compare_pairs(&options, query, then, now, on_difference, NULL);
+    const struct replayed replayed = {.pair = query, .pair_then = then, .pair_now = now};
+    const enum replay_outcome outcome = compare_results(&options, &replayed, on_difference, NULL);
     assert_int_equal(reported_count, outcome == REPLAY_DIFFERENT);
     return outcome;
 }
@@ -535,7 +535,8 @@ static void check_differences(int total)
 static enum replay_outcome compare(void)
 {
     reported_count = 0;
-    return compare_scenes(&exact, &scene, &then, &now, on_difference, NULL);
+    const struct replayed replayed = {.scene = &scene, .scene_then = &then, .scene_now = &now};
+    return compare_results(&exact, &replayed, on_difference, NULL);
 }
 
 static void check_scene(void)

@@ -20,18 +20,18 @@ static uint64_t draw(uint64_t below)
 
 enum { PUT_MAX = 3000 };
 
-static struct located_difference put[PUT_MAX];
+static struct difference put[PUT_MAX];
 static int listed_count;
 
 /* What is listed next has to be put[listed_count]. */
-static void on_listed(void *user, const struct located_difference *found)
+static void on_listed(void *user, const struct difference *found)
 {
-    const struct located_difference *expected = &put[listed_count++];
+    const struct difference *expected = &put[listed_count++];
     (void) user;
     assert_int_equal(found->place.log, expected->place.log);
     assert_int_equal(found->place.offset, expected->place.offset);
     assert_int_equal(found->place.number, expected->place.number);
-    const char *certificate = found->difference.then.certificate;
+    const char *certificate = found->then.certificate;
     const int64_t number = found->place.number;
     char text[32];
     snprintf(text, sizeof text, "certificate %d", (int) number);
@@ -39,12 +39,12 @@ static void on_listed(void *user, const struct located_difference *found)
         assert_string_equal(certificate, text);
     else
         assert_null(certificate);
-    assert_null(found->difference.now.certificate);
+    assert_null(found->now.certificate);
 }
 
-static struct located_difference draw_found(int number)
+static struct difference draw_found(int number)
 {
-    struct located_difference found = {.place = {.number = number}};
+    struct difference found = {.place = {.number = number}};
     found.place.log = (int32_t) draw(3);
     found.place.offset = (int64_t) draw(40) - 20;
     return found;
@@ -52,7 +52,7 @@ static struct located_difference draw_found(int number)
 
 static int compare(const void *left, const void *right)
 {
-    const struct located_difference *a = left, *b = right;
+    const struct difference *a = left, *b = right;
     if (a->place.log != b->place.log)
         return a->place.log < b->place.log ? -1 : 1;
     if (a->place.offset != b->place.offset)
@@ -68,9 +68,9 @@ static void check(int count, int64_t limit, int order)
         put[i] = draw_found(i);
         if (order != 0)
             put[i].place.offset = order * (int64_t) i;
-        struct located_difference found = put[i];
+        struct difference found = put[i];
         snprintf(text, sizeof text, "certificate %d", i);
-        found.difference.then.certificate = i % 2 ? text : NULL;
+        found.then.certificate = i % 2 ? text : NULL;
         listing_put(listing, &found);
     }
     qsort(put, (size_t) count, sizeof *put, compare);
@@ -102,8 +102,8 @@ static void test_long_certificates(void **state)
     static char text[1000];
     (void) state;
     memset(text, 'x', sizeof text - 1);
-    struct located_difference found = {.place = {.number = 1}};
-    found.difference.then.certificate = text;
+    struct difference found = {.place = {.number = 1}};
+    found.then.certificate = text;
     struct listing *listing = listing_open(1);
     listing_put(listing, &found);
     text[0] = '\0'; /* it is copied */

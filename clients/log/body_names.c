@@ -1,0 +1,158 @@
+#include "body_names.h"
+
+#include "keyed_hash.h"
+#include "wire.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct body_key {
+    int64_t client_id, body_id;
+};
+
+struct body_name {
+    struct body_key key;
+    char name[QUERY_NAME_MAX + 1];
+    UT_hash_handle hh;
+};
+
+struct body_names {
+    struct body_name *table;
+    struct logged_query query;
+    struct names read;
+};
+
+struct body_names *body_names_open(void)
+{
+    return allocate(1, sizeof(struct body_names));
+}
+
+void body_names_close(struct body_names *names)
+{
+    struct body_name *first = names ? names->table : NULL;
+    if (names)
+        HASH_CLEAR(hh, names->table);
+    while (first) {
+        struct body_name *next = first->hh.next;
+        free(first);
+        first = next;
+    }
+    free(names);
+}
+
+static struct body_name *find(const struct body_names *names, int64_t client_id, int64_t body_id)
+{
+    const struct body_key key = {client_id, body_id};
+    struct body_name *found = NULL;
+    if (names)
+        HASH_FIND(hh, names->table, &key, sizeof key, found);
+    return found;
+}
+
+static void set(struct body_names *names, int64_t client_id, int64_t body_id, const char *name)
+{
+    if (!name || !*name || strlen(name) > QUERY_NAME_MAX || body_id == 0)
+        return;
+    struct body_name *entry = find(names, client_id, body_id);
+    if (!entry && HASH_COUNT(names->table) == BODY_NAMES_MAX)
+        return;
+    if (!entry) {
+        entry = allocate(1, sizeof *entry);
+        entry->key = (struct body_key){client_id, body_id};
+        HASH_ADD(hh, names->table, key, sizeof entry->key, entry);
+    }
+    strcpy(entry->name, name);
+}
+
+void body_names_take(struct body_names *names, int64_t client_id, const struct placement *placement,
+                     int32_t count)
+{
+    for (int32_t i = 0; i < count; i++)
+        set(names, client_id, placement[i].body_id, placement[i].name);
+}
+
+static const char *take_query(struct body_names *names, enum log_kind kind, const void *bytes,
+                              uint32_t size)
+{
+    struct logged_query *query = &names->query;
+    int32_t count;
+    const char *error = logged_query_read(query, kind, bytes, size);
+    const struct placement *placement = logged_query_placements(query, &count);
+    if (!error)
+        body_names_take(names, logged_query_header(query)->client_id, placement, count);
+    return error;
+}
+
+const char *body_names_take_message(struct body_names *names, enum log_kind kind, const void *bytes,
+                                    uint32_t size)
+{
+    struct names *read = &names->read;
+    if (kind != LOG_NAMES)
+        return take_query(names, kind, bytes, size);
+    const char *error = wire_read_names(bytes, size, read);
+    for (int32_t i = 0; !error && i < read->count; i++)
+        set(names, read->client_id[i], read->body_id[i], read->name[i]);
+    return error;
+}
+
+const char *body_names_find(const struct body_names *names, int64_t client_id, int64_t body_id)
+{
+    const struct body_name *found = find(names, client_id, body_id);
+    return found ? found->name : NULL;
+}
+
+const char *body_names_text(const struct body_names *names, int64_t client_id, int64_t body_id,
+                            char text[BODY_NAMES_TEXT_MAX])
+{
+    const char *name = body_names_find(names, client_id, body_id);
+    if (name)
+        strcpy(text, name);
+    else
+        snprintf(text, BODY_NAMES_TEXT_MAX, "%" PRId64, body_id);
+    return text;
+}
+
+int32_t body_names_count(const struct body_names *names)
+{
+    return (int32_t) HASH_COUNT(names->table);
+}
+
+static int compare(const struct body_name *left, const struct body_name *right)
+{
+    const struct body_key *a = &left->key, *b = &right->key;
+    if (a->client_id != b->client_id)
+        return a->client_id < b->client_id ? -1 : 1;
+    return (a->body_id > b->body_id) - (a->body_id < b->body_id);
+}
+
+void body_names_each(struct body_names *names, body_names_sink *sink, void *user)
+{
+    HASH_SORT(names->table, compare);
+    for (const struct body_name *name = names->table; name; name = name->hh.next)
+        sink(user, name->key.client_id, name->key.body_id, name->name);
+}
+
+bool body_names_write(const struct body_names *names, int64_t utime,
+                      bool (*sink)(void *user, const void *bytes, size_t size), void *user)
+{
+    /* As many as fit, each as long as a name may be. */
+    enum { MOST = (QUERY_BYTES_MAX - WIRE_NAMES_BYTES) / (21 + QUERY_NAME_MAX) };
+    unsigned char bytes[QUERY_BYTES_MAX];
+    struct names *message = allocate(1, sizeof *message);
+    bool good = true;
+    message->utime = utime;
+    for (const struct body_name *name = names->table; name && good; name = name->hh.next) {
+        const int32_t i = message->count++;
+        message->client_id[i] = name->key.client_id;
+        message->body_id[i] = name->key.body_id;
+        message->name[i] = name->name;
+        if (message->count < MOST && name->hh.next)
+            continue;
+        good = sink(user, bytes, wire_write_names(message, bytes));
+        message->count = 0;
+    }
+    free(message);
+    return good;
+}

@@ -1,0 +1,46 @@
+/* The names of the bodies of a log: the last one that a client sent with a body's id, in the
+ * placements of its queries or in a names_t message. Names are bytes from the bus. At most
+ * BODY_NAMES_MAX are kept, and none of more than QUERY_NAME_MAX bytes, which services refuse. For
+ * one thread at a time. */
+#ifndef BODY_NAMES_H
+#define BODY_NAMES_H
+
+#include "logged_query.h"
+
+enum { BODY_NAMES_MAX = 1 << 14 };
+
+struct body_names;
+
+/* Exits with status 1 if memory is exhausted. */
+struct body_names *body_names_open(void);
+void body_names_close(struct body_names *names); /* may be NULL */
+
+/* Sets the names that placements of a client's query give to its bodies. */
+void body_names_take(struct body_names *names, int64_t client_id, const struct placement *placement,
+                     int32_t count);
+
+/* Sets the names of a message: of a query of a pair or a scene, or of a names_t. Returns NULL; or a
+ * static text: why it cannot be decoded. */
+const char *body_names_take_message(struct body_names *names, enum log_kind kind, const void *bytes,
+                                    uint32_t size);
+
+/* The name; NULL: none. names may be NULL: there are none. */
+const char *body_names_find(const struct body_names *names, int64_t client_id, int64_t body_id);
+
+/* Writes the name, or else the id, into text, which may then not be UTF-8. Returns text. */
+enum { BODY_NAMES_TEXT_MAX = QUERY_NAME_MAX + 1 };
+const char *body_names_text(const struct body_names *names, int64_t client_id, int64_t body_id,
+                            char text[BODY_NAMES_TEXT_MAX]);
+
+int32_t body_names_count(const struct body_names *names);
+
+/* Calls the sink for each name, in the order of client and body ids. */
+typedef void body_names_sink(void *user, int64_t client_id, int64_t body_id, const char *name);
+void body_names_each(struct body_names *names, body_names_sink *sink, void *user);
+
+/* Writes all names as names_t messages; none if there are none. Returns false as soon as sink does.
+ */
+bool body_names_write(const struct body_names *names, int64_t utime,
+                      bool (*sink)(void *user, const void *bytes, size_t size), void *user);
+
+#endif

@@ -1,0 +1,160 @@
+/* The names of bodies: the last one counts, what is no name is ignored, and what is written is read
+ * again. */
+#include "body_names.h"
+
+#include "allocate.h"
+#include "wire.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static struct body_names *names;
+
+static int set_up(void **state)
+{
+    (void) state;
+    names = body_names_open();
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void) state;
+    body_names_close(names);
+    return 0;
+}
+
+static void give(int64_t client_id, int64_t body_id, const char *name)
+{
+    const struct placement placement = {.body_id = body_id, .name = name};
+    body_names_take(names, client_id, &placement, 1);
+}
+
+static void test_the_last_name_counts(void **state)
+{
+    char text[BODY_NAMES_TEXT_MAX];
+    (void) state;
+    give(7, 1, "table");
+    give(7, 2, "gripper");
+    give(8, 1, "shelf");
+    give(7, 1, "desk");
+    give(7, 1, "");
+    give(7, 1, NULL);
+    assert_int_equal(body_names_count(names), 3);
+    assert_string_equal(body_names_find(names, 7, 1), "desk");
+    assert_string_equal(body_names_find(names, 8, 1), "shelf");
+    assert_null(body_names_find(names, 8, 2));
+    assert_null(body_names_find(NULL, 8, 1));
+    assert_string_equal(body_names_text(names, 7, 2, text), "gripper");
+    assert_string_equal(body_names_text(names, 8, INT64_MIN, text), "-9223372036854775808");
+}
+
+static void test_what_is_no_name_is_ignored(void **state)
+{
+    char longest[QUERY_NAME_MAX + 2];
+    (void) state;
+    memset(longest, 'x', sizeof longest);
+    longest[QUERY_NAME_MAX + 1] = '\0';
+    give(7, 1, longest);
+    give(7, 0, "anonymous");
+    assert_int_equal(body_names_count(names), 0);
+    longest[QUERY_NAME_MAX] = '\0';
+    give(7, 1, longest);
+    assert_string_equal(body_names_find(names, 7, 1), longest);
+}
+
+/* ---- Messages ---- */
+
+static struct body_names *again;
+static int messages;
+
+static bool take_again(void *user, const void *bytes, size_t size)
+{
+    (void) user;
+    messages++;
+    assert_null(body_names_take_message(again, LOG_NAMES, bytes, (uint32_t) size));
+    return messages < 3;
+}
+
+static void assert_next(void *user, int64_t client_id, int64_t body_id, const char *name)
+{
+    int64_t *next = user;
+    char expected[32];
+    snprintf(expected, sizeof expected, "body %d", (int) *next);
+    assert_int_equal(client_id, *next / 100);
+    assert_int_equal(body_id, 1 + *next % 100);
+    assert_string_equal(name, expected);
+    ++*next;
+}
+
+static void test_written_names_are_read_again(void **state)
+{
+    enum { COUNT = 2000 };
+    char name[32];
+    int64_t next = 0;
+    (void) state;
+    again = body_names_open();
+    messages = 0;
+    for (int i = 0; i < COUNT; i++) {
+        const int at = i * 7 % COUNT; /* in another order */
+        snprintf(name, sizeof name, "body %d", at);
+        give(at / 100, 1 + at % 100, name);
+    }
+    assert_false(body_names_write(names, 5, take_again, NULL));
+    assert_int_equal(messages, 3);
+    assert_int_equal(body_names_count(again), COUNT);
+    body_names_each(again, assert_next, &next);
+    assert_int_equal(next, COUNT);
+    body_names_close(again);
+}
+
+static void test_messages_that_cannot_be_read(void **state)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    struct names *message = allocate(1, sizeof *message);
+    (void) state;
+    message->count = 2;
+    for (int i = 0; i < 2; i++) {
+        message->body_id[i] = 1 + i;
+        message->name[i] = "name";
+    }
+    const uint32_t size = (uint32_t) wire_write_names(message, bytes);
+    for (uint32_t shorter = 0; shorter < size; shorter++)
+        assert_non_null(body_names_take_message(names, LOG_NAMES, bytes, shorter));
+    for (int kind = LOG_PAIR_QUERY; kind <= LOG_SCENE_QUERY; kind += LOG_SCENE_QUERY)
+        assert_non_null(body_names_take_message(names, (enum log_kind) kind, bytes, size));
+    assert_int_equal(body_names_count(names), 0);
+    assert_null(body_names_take_message(names, LOG_NAMES, bytes, size));
+    assert_int_equal(body_names_count(names), 2);
+    free(message);
+}
+
+static void test_names_are_limited(void **state)
+{
+    (void) state;
+    for (int i = 0; i < BODY_NAMES_MAX + 10; i++)
+        give(i, 1, "name");
+    assert_int_equal(body_names_count(names), BODY_NAMES_MAX);
+    give(0, 1, "other");
+    assert_string_equal(body_names_find(names, 0, 1), "other");
+    assert_null(body_names_find(names, BODY_NAMES_MAX, 1));
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(test_##name, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(the_last_name_counts),
+        TEST(what_is_no_name_is_ignored),
+        TEST(written_names_are_read_again),
+        TEST(messages_that_cannot_be_read),
+        TEST(names_are_limited),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
