@@ -100,19 +100,16 @@ static void keep_bodies(struct answerer *answerer, struct logged_query *query)
 static bool accepts_pair(struct answerer *answerer, const struct log_query *query,
                          char detail[QUERY_TEXT_MAX])
 {
-    struct pair_result single, *result = &single;
-    struct pair_job *job = pair_job_create();
+    struct answer_job *job = answer_job_create();
     if (!job)
         allocate_failed();
-    if (!answer_pair(answerer, &query->query.pair, result)) {
-        pair_job_begin(job, answerer, query->bytes, query->size);
-        while (!pair_job_step(job))
-            continue;
-        result = pair_job_end(job, answerer);
-    }
+    answer_job_begin(job, ANSWER_PAIR, query->bytes, query->size);
+    while (!answer_job_step(job, answerer))
+        continue;
+    const struct pair_result *result = answer_job_pair_result(job);
     snprintf(detail, QUERY_TEXT_MAX, "%s", result->detail);
     const bool accepted = result->status == FMB_OK || result->status == FMB_CANNOT_DECIDE;
-    pair_job_destroy(job);
+    answer_job_destroy(job);
     return accepted;
 }
 
@@ -120,18 +117,18 @@ static bool accepts_pair(struct answerer *answerer, const struct log_query *quer
 static bool accepts_scene(struct answerer *answerer, const struct log_query *query,
                           char detail[QUERY_TEXT_MAX])
 {
-    struct scene_job *job = scene_job_create();
+    struct answer_job *job = answer_job_create();
     if (!job)
         allocate_failed();
-    bool accepted = scene_job_begin(job, query->bytes, query->size) == NULL;
-    while (accepted && !scene_job_has_answers(job) && !scene_job_step(job, answerer))
+    bool accepted = answer_job_begin(job, ANSWER_SCENE, query->bytes, query->size) == NULL;
+    while (accepted && !answer_job_has_answers(job) && !answer_job_step(job, answerer))
         continue;
-    if (accepted && !scene_job_has_answers(job)) {
-        const struct scene_result *result = scene_job_result(job);
+    if (accepted && !answer_job_has_answers(job)) {
+        const struct scene_result *result = answer_job_scene_result(job);
         accepted = result->status == FMB_OK;
         snprintf(detail, QUERY_TEXT_MAX, "%s", result->detail);
     }
-    scene_job_destroy(job);
+    answer_job_destroy(job);
     return accepted;
 }
 

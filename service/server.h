@@ -19,6 +19,7 @@
 #ifndef SERVER_H
 #define SERVER_H
 
+#include "answer.h"
 #include "bus.h"
 #include "meter.h"
 
@@ -28,8 +29,14 @@
 
 struct server;
 
-/* Kinds of messages. */
-enum server_kind { SERVER_PAIRS, SERVER_SCENES, SERVER_DEFINITIONS, SERVER_STATUS, SERVER_KINDS };
+/* Kinds of messages: queries as in answer.h, and heartbeats. */
+enum server_kind {
+    SERVER_PAIRS = ANSWER_PAIR,
+    SERVER_SCENES = ANSWER_SCENE,
+    SERVER_DEFINITIONS = ANSWER_DEFINITION,
+    SERVER_STATUS,
+    SERVER_KINDS
+};
 
 struct server_options {
     const char *prefix; /* of the channels; "": none */

@@ -8,17 +8,14 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Most frames of a query. One message cannot define so many, but it may name bodies by handle. */
-enum { FRAMES_MAX = 65536 };
-
 bool check_refuse(struct check_context *context, enum fmb_status status, const char *field,
                   const char *reason)
 {
     char place[32] = "";
-    if (context->part && context->index >= 0)
-        snprintf(place, sizeof place, "%s[%d].", context->part, (int) context->index);
-    else if (context->part)
-        snprintf(place, sizeof place, "%s.", context->part);
+    if (context->index >= 0 && context->is_pair)
+        snprintf(place, sizeof place, "%c.", 'a' + (char) context->index);
+    else if (context->index >= 0)
+        snprintf(place, sizeof place, "placements[%d].", (int) context->index);
     *context->status = (int32_t) status;
     snprintf(context->detail, QUERY_TEXT_MAX, "%s%s: %s", place, field,
              reason ? reason : fmb_status_text(status));
@@ -137,8 +134,6 @@ static bool check_definition(struct check_context *context, const struct placeme
                check_count(context, "num_numbers", 0, placement->number_count);
     if (placement->frame_count == 0)
         return check_refuse(context, FMB_NO_FRAMES, "num_frames", "neither a handle nor frames");
-    if (placement->frame_count > FRAMES_MAX)
-        return check_refuse(context, FMB_OVER_LIMIT, "num_frames", "more than 65536");
     return true;
 }
 
@@ -186,20 +181,6 @@ bool check_placement(struct check_context *context, const struct placement *plac
            check_name(context, placement->name) &&
            check_finite(context, "position", placement->position, dim) &&
            check_orientation(context, placement) && check_velocity(context, placement);
-}
-
-bool check_body_dim(struct check_context *context, const struct placement *placement,
-                    const struct fmb_body *body)
-{
-    return placement->dim == body->dim || check_refuse(context, FMB_WRONG_DIMENSION, "dim",
-                                                       "not that of the body with this handle");
-}
-
-bool check_frames(struct check_context *context, int64_t frames, int64_t *total)
-{
-    *total += frames;
-    return *total <= FRAMES_MAX || check_refuse(context, FMB_OVER_LIMIT, "num_frames",
-                                                "more than 65536 frames in the query");
 }
 
 /* ---- Queries ---- */

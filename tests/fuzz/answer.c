@@ -7,7 +7,7 @@
  * Pairs are queried between the steps of a scene too, and some scenes are stopped. */
 #include "fuzz.h"
 
-#include "answer.h"
+#include "answer_now.h"
 #include "model.h"
 #include "results.h"
 #include "same.h"
@@ -29,8 +29,7 @@ static const int64_t server_id = 99;
 /* One input's service. */
 struct service {
     struct answerer *answerer;
-    struct scene_job *job;
-    struct pair_job *pair_job;
+    struct answer_job *job;
     struct model model;
     /* Queried between the steps of a scene: the last pair that was good. Its results, to be checked
      * after the scene's. */
@@ -153,25 +152,12 @@ static void check_pair(struct service *service, const struct pair_query *query,
         FUZZ_CHECK(memcmp(&result->handle[f], &handle[f], sizeof handle[f]) == 0);
 }
 
-/* A pair that takes a job: the message is written again, and copied. */
-static void answer_in_steps(struct service *service, const struct pair_query *query,
-                            struct pair_result *result)
-{
-    static unsigned char bytes[QUERY_BYTES_MAX];
-    FUZZ_CHECK(!pair_job_begin(service->pair_job, service->answerer, bytes,
-                               wire_write_pair_query(query, bytes)));
-    while (!pair_job_step(service->pair_job))
-        ;
-    *result = *pair_job_end(service->pair_job, service->answerer);
-}
-
 /* The result as a client reads it. */
 static struct pair_result answer_to(struct service *service, const struct pair_query *query)
 {
     static unsigned char bytes[QUERY_BYTES_MAX];
     struct pair_result result;
-    if (!answer_pair(service->answerer, query, &result))
-        answer_in_steps(service, query, &result);
+    answer_pair(service->answerer, query, &result);
     const struct pair_result *read =
         results_read_pair(bytes, wire_write_pair_result(&result, bytes));
     FUZZ_CHECK(read);
@@ -458,11 +444,11 @@ static void check_scene_echo(const struct scene_query *query, const struct scene
 static bool advance(struct service *service, const struct scene_query *query)
 {
     const bool stops = query->sequence_number % 4 == 3;
-    for (int steps = 1; !scene_job_step(service->job, service->answerer); steps++) {
+    for (int steps = 1; !answer_job_step(service->job, service->answerer); steps++) {
         if (steps >= STEPS_WITH_BODIES)
             query_between(service);
-        if (stops && scene_job_has_answers(service->job)) {
-            scene_job_stop(service->job);
+        if (stops && answer_job_has_answers(service->job)) {
+            answer_job_stop(service->job);
             return true;
         }
     }
@@ -479,10 +465,10 @@ static void query_scene(struct service *service, const struct scene_query *query
     if (total > PAIRS_MAX || size > QUERY_BYTES_MAX)
         return;
     service->between_count = 0;
-    FUZZ_CHECK(!scene_job_begin(service->job, bytes, size));
+    FUZZ_CHECK(!answer_job_begin(service->job, ANSWER_SCENE, bytes, size));
     const bool stopped = advance(service, query);
     const struct scene_result *read = results_read_scene(
-        written, wire_write_scene_result(scene_job_result(service->job), written));
+        written, wire_write_scene_result(answer_job_scene_result(service->job), written));
     FUZZ_CHECK(read);
     check_scene_echo(query, read);
     check_scene(service, query, read, (const unsigned(*)[2]) pair, total, stopped);
@@ -615,10 +601,9 @@ static struct service *begin(void)
     const struct answerer_options options = {
         FRAMES, server_id, {0x9e3779b97f4a7c15, 0xbf58476d1ce4e5b9}};
     if (!service.job) {
-        service.job = scene_job_create();
-        service.pair_job = pair_job_create();
+        service.job = answer_job_create();
         service.model.hasher = hasher_create();
-        FUZZ_CHECK(service.job && service.pair_job && service.model.hasher);
+        FUZZ_CHECK(service.job && service.model.hasher);
     }
     service.answerer = answerer_create(&options);
     FUZZ_CHECK(service.answerer);
