@@ -378,10 +378,10 @@ static bool begin_anticipating(struct server *server, int client)
 static bool keep_anticipating(struct server *server)
 {
     struct anticipation *anticipation = &server->anticipation;
-    const int64_t now_ns = server->clocks->wall_ns();
     const int client = anticipation->client;
     if (client < 0)
         return false;
+    const int64_t now_ns = server->clocks->wall_ns();
     if (anticipation_poll(anticipation, now_ns) && !has_work(server, client) &&
         scheduler_lead(server->scheduler, client) > -SCHEDULER_SLICE_NS)
         return true;
@@ -394,7 +394,7 @@ enum server_state server_work(struct server *server)
 {
     if (keep_anticipating(server))
         return SERVER_ANTICIPATING;
-    const int64_t until_ns = server->clocks->wall_ns() + work_ns;
+    const int64_t until_ns = server->meter.wall_ns + work_ns;
     int64_t left_ns = work_ns;
     while (left_ns > 0) {
         int64_t lead_ns;

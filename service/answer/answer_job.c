@@ -109,10 +109,11 @@ static bool check_placements(struct answer_job *job)
 {
     for (int32_t i = 0; i < job->placement_count; i++) {
         const struct placement *placement = &job->placements[i];
-        if (!check_placement(at(job, i), placement))
+        if (!check_placement(at(job, i), placement, &job->placed[i]))
             return false;
         if (!job->is_pair && placement->dim != job->placements[0].dim)
             return check_refuse(at(job, i), FMB_DIMENSIONS_DIFFER, "dim", NULL);
+        job->placed[i].group = job->is_pair ? 0 : placement->group; /* groups are of scenes */
     }
     return true;
 }
@@ -384,27 +385,6 @@ static bool check_certificate(struct answer_job *job)
                         "a certificate is for bodies of one frame");
 }
 
-/* Finds the bodies of all placements that name them by handle. This ends before any body is added,
- * so that a query that is refused adds nothing to the cache. */
-static enum answer_stage find(struct answer_job *job)
-{
-    for (const int32_t end = step_end(job); job->next < end; job->next++)
-        if (!find_one(job, job->next)) {
-            job->result.unknown_count = 0;
-            return complete(job);
-        }
-    if (job->next < job->placement_count)
-        return FINDING;
-    if (!job->is_pair && job->result.unknown_count > 0) {
-        refuse_unknown(job, (int32_t) job->result.unknown[0]);
-        return complete(job);
-    }
-    if (!check_certificate(job))
-        return complete(job);
-    job->next = 0;
-    return ADDING;
-}
-
 /* Finds the body of placement i, which has frames; or makes it, at most *frames frames a call, and
  * adds it to the cache unless it is anonymous or the cache has no memory for it. Returns false
  * while it is not complete. On output: *handle: the handle of a body with an id, which the caller
@@ -433,19 +413,6 @@ static bool intern(struct answer_job *job, int32_t i, int32_t *frames, struct ha
         cached = cache_add(cache, id, handle, geometry, body);
     job->used[i] = (struct used_body){cached ? &cached->body : body, cached};
     return true;
-}
-
-static void place(struct answer_job *job, int32_t i)
-{
-    const struct placement *placement = &job->placements[i];
-    struct fmb_placement *out = &job->placed[i];
-    out->body = job->used[i].body;
-    memcpy(out->position, placement->position, sizeof out->position);
-    memcpy(out->velocity, placement->velocity, sizeof out->velocity);
-    memcpy(out->orientation, placement->orientation, sizeof out->orientation);
-    out->orientation_count = placement->orientation_count;
-    out->group = job->is_pair ? 0 : placement->group; /* groups are of scenes */
-    job->several_frames = job->several_frames || out->body->frame_count > 1;
 }
 
 /* ---- The answer of a pair ---- */
@@ -573,9 +540,31 @@ static enum answer_stage add(struct answer_job *job)
             break;
         if (!job->is_pair && !placement_by_handle(&job->placements[i]))
             result->handle_count += job->placements[i].body_id != 0;
-        place(job, i);
+        job->placed[i].body = job->used[i].body;
+        job->several_frames = job->several_frames || job->used[i].body->frame_count > 1;
     }
     return job->next < job->placement_count ? ADDING : begin_deciding(job);
+}
+
+/* Finds the bodies of all placements that name them by handle. This ends before any body is added,
+ * so that a query that is refused adds nothing to the cache. */
+static enum answer_stage find(struct answer_job *job)
+{
+    for (const int32_t end = step_end(job); job->next < end; job->next++)
+        if (!find_one(job, job->next)) {
+            job->result.unknown_count = 0;
+            return complete(job);
+        }
+    if (job->next < job->placement_count)
+        return FINDING;
+    if (!job->is_pair && job->result.unknown_count > 0) {
+        refuse_unknown(job, (int32_t) job->result.unknown[0]);
+        return complete(job);
+    }
+    if (!check_certificate(job))
+        return complete(job);
+    job->next = 0;
+    return job->is_pair ? add(job) : ADDING; /* a step less for short queries */
 }
 
 /* Bytes of the result that a pair with this verdict takes. */
