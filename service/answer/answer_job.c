@@ -42,7 +42,7 @@ struct answer_job {
     void *memory;                  /* owned; fmb_scene_bytes(&limits) bytes */
     struct used_body used[QUERY_PLACEMENTS_MAX];
     struct fmb_placement placed[QUERY_PLACEMENTS_MAX];
-    struct query_marks marks; /* bit_of(pair) in check_ignored(); also of query_pairs_decided() */
+    struct query_marks marks;
     struct pair_query pair;
     struct pair_result pair_result;
     char certificate[FMB_CERTIFICATE_MAX]; /* of the pair result, if it has one */
@@ -170,29 +170,17 @@ static bool check_indices(struct check_context *context, const char *field,
     return true;
 }
 
-/* Index of the bit of a pair, in either order, in answer_job.marks. */
-static size_t bit_of(const unsigned pair[2])
-{
-    const unsigned lower = pair[0] < pair[1] ? pair[0] : pair[1];
-    const unsigned upper = pair[0] < pair[1] ? pair[1] : pair[0];
-    return (size_t) lower * QUERY_PLACEMENTS_MAX + upper;
-}
-
-/* No listed pair may be ignored. Only the bits of listed pairs are read: they are cleared first, so
- * that the 1.1 million bits need no initialization. */
+/* No listed pair may be ignored. */
 static bool check_ignored(struct check_context *context, struct answer_job *job)
 {
     const struct scene_query *query = &job->query;
-    if (query->ignored_count == 0)
+    if (query->ignored_count == 0 || query->index_count == 0)
         return true;
-    for (int32_t i = 0; i < query->index_count / 2; i++)
-        job->marks.bit[bit_of(query->pair[i]) / 8] &=
-            (unsigned char) ~(1u << bit_of(query->pair[i]) % 8);
+    query_marks_clear(&job->marks, (unsigned) query->placement_count);
     for (int32_t i = 0; i < query->ignored_count / 2; i++)
-        job->marks.bit[bit_of(query->ignored[i]) / 8] |=
-            (unsigned char) (1u << bit_of(query->ignored[i]) % 8);
+        query_mark(&job->marks, query->ignored[i]);
     for (int32_t i = 0; i < query->index_count / 2; i++)
-        if (job->marks.bit[bit_of(query->pair[i]) / 8] >> bit_of(query->pair[i]) % 8 & 1)
+        if (query_is_marked(&job->marks, query->pair[i]))
             return check_refuse_at(context, FMB_BAD_PAIR, "indices", 2 * i, "a pair to ignore");
     return true;
 }
