@@ -9,7 +9,6 @@
 #include "anticipation.h"
 #include "histogram.h"
 #include "jobs.h"
-#include "malformed.h"
 #include "queue.h"
 #include "process.h"
 #include "quota.h"
@@ -73,7 +72,11 @@ struct server {
     struct histogram compute_ns;               /* of all queries answered with FMB_OK */
     struct wire_status status; /* counts so far; complete_status() sets the other fields */
     int64_t ready_ns, heartbeat_due_ns;
-    struct malformed malformed;
+    /* Messages that cannot be decoded, and those of them not reported yet; the last one. */
+    int64_t malformed_unreported, malformed_reported_ns;
+    const char *malformed_reason;
+    enum server_kind malformed_kind;
+    uint32_t malformed_size;
     /* The other service on the same channels that was reported last (0: none), and when. */
     int64_t other_id, other_reported_ns;
     bool can_begin; /* a job is free or can be stopped */
@@ -124,13 +127,34 @@ static void publish_answer(struct server *server, enum server_kind kind, struct 
         histogram_add(&server->compute_ns, compute_ns);
 }
 
+/* Reports messages that could not be read and are not reported yet on stderr; at most one report a
+ * second. */
+static void report_malformed(struct server *server)
+{
+    if (server->malformed_unreported == 0 || !stderr_report_due(server->malformed_reported_ns))
+        return;
+    fprintf(stderr,
+            "fmbd: malformed message on %s (%" PRIu32 " bytes): %s; %" PRId64
+            " of them so far, %" PRId64 " since this was last said\n",
+            server->query_channel[server->malformed_kind], server->malformed_size,
+            server->malformed_reason, server->status.malformed, server->malformed_unreported);
+    server->malformed_reported_ns = clock_ns();
+    server->malformed_unreported = 0;
+}
+
 /* Notes a query that cannot be read. error: why it cannot; NULL: it can. */
 static bool is_malformed(struct server *server, enum server_kind kind, size_t size,
                          const char *error)
 {
-    if (error)
-        malformed_note(&server->malformed, server->query_channel[kind], (uint32_t) size, error);
-    return error;
+    if (!error)
+        return false;
+    server->status.malformed++;
+    server->malformed_unreported++;
+    server->malformed_kind = kind;
+    server->malformed_size = (uint32_t) size;
+    server->malformed_reason = error;
+    report_malformed(server);
+    return true;
 }
 
 /* ---- Activity ---- */
@@ -516,7 +540,6 @@ static void complete_status(const struct server *server, const struct bus_counts
     status->utime = clock_utime();
     status->uptime_us = (clock_ns() - server->ready_ns) / 1000;
     status->receive_buffer = bus->receive_buffer;
-    status->malformed = server->malformed.count;
     status->foreign = (int64_t) (bus->foreign + bus->malformed);
     status->dropped = (int64_t) bus->dropped;
     status->waiting = queue.datagrams;
@@ -545,7 +568,7 @@ void server_heartbeat(struct server *server, const struct bus_counts *bus)
     complete_status(server, bus, &status);
     const size_t size = wire_write_status(&status, bytes);
     server->publish(server->user, server->result_channel[SERVER_STATUS], bytes, size);
-    malformed_report(&server->malformed);
+    report_malformed(server);
     server->heartbeat_due_ns = clock_ns() + heartbeat_ns;
 }
 

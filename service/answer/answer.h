@@ -88,9 +88,8 @@ bool answer_job_has_answers(const struct answer_job *job);
 void answer_job_stop(struct answer_job *job);
 
 /* The placements of the query, as decoded; *count of them. Owned by the job, and valid until the
- * next answer_job_begin(). answer_job_scene(): the whole query, of a scene. */
+ * next answer_job_begin(). */
 const struct placement *answer_job_placements(const struct answer_job *job, int32_t *count);
-const struct scene_query *answer_job_scene(const struct answer_job *job);
 
 /* The result: of a pair, or of a scene. On input: a job whose result is complete. Its compute_ns is
  * 0. Owned by the job, and valid until the next answer_job_begin(). A certificate is present if it

@@ -717,11 +717,6 @@ const struct placement *answer_job_placements(const struct answer_job *job, int3
     return job->placements;
 }
 
-const struct scene_query *answer_job_scene(const struct answer_job *job)
-{
-    return &job->query;
-}
-
 const struct pair_result *answer_job_pair_result(const struct answer_job *job)
 {
     assert(job->stage == COMPLETE && job->is_pair);
