@@ -54,8 +54,8 @@ struct queue {
     struct queue_chunk *chunk;
     int32_t free_chunk; /* the chunk freed last, first in the list of freed chunks */
     struct queue_client *client;
-    int32_t *held; /* [client_count] chunks; apart, so that all are read in 0.1 microseconds */
-    int32_t client_count;
+    int32_t *held;      /* [client] chunks; apart, so that all are read in 0.1 microseconds */
+    int32_t client_end; /* no client from here on has held any */
     uint64_t arrivals;
     struct queue_counts counts;
 };
@@ -71,7 +71,6 @@ struct queue *queue_create(size_t chunks, int clients)
                             .chunk = calloc(chunks + 1, sizeof *queue->chunk),
                             .client = calloc((size_t) clients, sizeof *queue->client),
                             .held = calloc((size_t) clients, sizeof *queue->held),
-                            .client_count = clients,
                             .counts = {.capacity = (int64_t) chunks}};
     if (!queue->bytes || !queue->chunk || !queue->client || !queue->held) {
         queue_destroy(queue);
@@ -164,7 +163,7 @@ static void hold(struct queue *queue, int32_t c, int32_t more_chunks)
 static int32_t held_above(const struct queue *queue, int32_t limit)
 {
     int32_t sum = 0;
-    for (int32_t c = 0; c < queue->client_count; c++)
+    for (int32_t c = 0; c < queue->client_end; c++)
         sum += queue->held[c] > limit ? queue->held[c] - limit : 0;
     return sum;
 }
@@ -236,6 +235,8 @@ enum queue_put_result queue_put(struct queue *queue, enum queue_fifo fifo,
     const int32_t missing = chunks - (int32_t) (queue->counts.capacity - queue->counts.chunks);
     if (missing > 0)
         return held_above(queue, queue->held[c] + chunks) < missing ? QUEUE_REFUSED : QUEUE_FULL;
+    if (c >= queue->client_end)
+        queue->client_end = c + 1;
     append(queue, c, fifo, write_datagram(queue, datagram, bytes));
     hold(queue, c, chunks);
     if (++queue->counts.datagrams > queue->counts.datagrams_most)
@@ -260,7 +261,7 @@ bool queue_pop(struct queue *queue, int client, enum queue_fifo fifo, struct que
 int queue_largest(const struct queue *queue)
 {
     int largest = 0;
-    for (int32_t c = 1; c < queue->client_count; c++)
+    for (int32_t c = 1; c < queue->client_end; c++)
         if (queue->held[c] >= queue->held[largest])
             largest = c;
     return queue->held[largest] > 0 ? largest : -1;
