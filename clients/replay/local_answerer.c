@@ -6,6 +6,7 @@
 #include "process.h"
 #include "wire.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 /* Any constant. */
@@ -89,17 +90,28 @@ static bool supply_undefined(struct local_answerer *local, struct new_result *ou
 
 /* ---- Answers ---- */
 
-/* Answers a query; one that is too long as a service does, which reads only its header. */
+/* Answers a query that is too long as a service does, but reads only its header. */
+static const char *refuse(struct local_answerer *local, enum answer_kind kind,
+                          const unsigned char *bytes, uint32_t size, struct new_result *out)
+{
+    struct pair_result pair = {.server_id = SERVER_ID, .status = FMB_OVER_LIMIT};
+    out->status = FMB_OVER_LIMIT;
+    if (kind == ANSWER_SCENE)
+        return answer_refused(local->answerer, kind, bytes, size, FMB_OVER_LIMIT, local->bytes,
+                              &out->size);
+    snprintf(pair.detail, sizeof pair.detail, "%s", fmb_status_text(pair.status));
+    const char *error = wire_read_pair_header(bytes, size, &pair.header);
+    out->size = error ? 0 : wire_write_pair_result(&pair, local->bytes);
+    return error;
+}
+
 static const char *decide(struct local_answerer *local, enum log_kind kind,
                           const unsigned char *bytes, uint32_t size, struct new_result *out)
 {
     const enum answer_kind as = kind == LOG_PAIR_QUERY ? ANSWER_PAIR : ANSWER_SCENE;
     struct answer_job *job = local->job;
-    if (size > QUERY_BYTES_MAX) {
-        out->status = FMB_OVER_LIMIT;
-        return answer_refused(local->answerer, as, bytes, size, FMB_OVER_LIMIT, local->bytes,
-                              &out->size);
-    }
+    if (size > QUERY_BYTES_MAX)
+        return refuse(local, as, bytes, size, out);
     const int64_t begin = clock_ns();
     const char *error = answer_job_begin(job, as, bytes, size);
     while (!error && !answer_job_step(job, local->answerer))

@@ -94,9 +94,14 @@ static bool answer_pair_at(struct instance *instance, int64_t utime, const unsig
         return false;
     }
     if (size > QUERY_BYTES_MAX) {
-        answer_pair_refused(instance->answerer, &query, FMB_OVER_LIMIT, result);
+        size_t out = 0;
+        answer_refused(instance->answerer, ANSWER_PAIR, bytes, size, FMB_OVER_LIMIT, written, &out);
+        wire_read_pair_result(written, (uint32_t) out, result);
     } else {
-        answer_pair(instance->answerer, &query, result);
+        answer_job_begin(instance->job, ANSWER_PAIR, bytes, size);
+        while (!answer_job_step(instance->job, instance->answerer))
+            continue;
+        *result = *answer_job_pair_result(instance->job);
         result->compute_ns = draw_int(&instance->draw, 300, 5000);
     }
     put_pair_result(instance, utime, result);

@@ -103,21 +103,18 @@ static size_t refuse_busy(struct relay *relay, const struct bus_message *message
 static size_t answer(struct relay *relay, struct answerer *service,
                      const struct bus_message *message, unsigned char out[QUERY_BYTES_MAX])
 {
-    struct pair_query query;
-    struct pair_result result;
+    int32_t status;
     const uint32_t size = (uint32_t) message->size;
     switch (message->listener) {
     case RELAY_PAIR:
-        if (wire_read_pair_query(message->bytes, size, &query))
-            return 0;
-        answer_pair(service, &query, &result);
-        return wire_write_pair_result(&result, out);
     case RELAY_SCENE:
-        if (answer_job_begin(relay->job, ANSWER_SCENE, message->bytes, size))
+        if (answer_job_begin(relay->job,
+                             message->listener == RELAY_PAIR ? ANSWER_PAIR : ANSWER_SCENE,
+                             message->bytes, size))
             return 0;
         while (!answer_job_step(relay->job, service))
             continue;
-        return wire_write_scene_result(answer_job_scene_result(relay->job), out);
+        return answer_job_write(relay->job, 0, out, &status);
     default:
         if (wire_read_definition_query(message->bytes, size, &relay->definition_query))
             return 0;
