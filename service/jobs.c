@@ -4,49 +4,34 @@
 
 bool jobs_init(struct jobs *jobs)
 {
-    *jobs = (struct jobs){.free = JOBS};
+    *jobs = (struct jobs){.spare = answer_job_create(), .free = JOBS};
+    bool ok = jobs->spare;
     for (int i = 0; i < JOBS; i++) {
-        jobs->job[i] =
-            (struct job){.scene = scene_job_create(), .pair = pair_job_create(), .client = -1};
-        if (!jobs->job[i].scene || !jobs->job[i].pair)
-            return false;
+        jobs->job[i] = (struct job){.answer = answer_job_create(), .client = -1};
+        ok = ok && jobs->job[i].answer;
     }
-    return true;
+    return ok;
 }
 
 void jobs_release(struct jobs *jobs)
 {
-    for (int i = 0; i < JOBS; i++) {
-        scene_job_destroy(jobs->job[i].scene);
-        pair_job_destroy(jobs->job[i].pair);
-    }
+    answer_job_destroy(jobs->spare);
+    for (int i = 0; i < JOBS; i++)
+        answer_job_destroy(jobs->job[i].answer);
 }
 
-struct job *jobs_take(struct jobs *jobs, int client)
+struct job *jobs_take(struct jobs *jobs, int client, int kind)
 {
     struct job *job = jobs->job;
     assert(jobs->free > 0 && !jobs->of_client[client]);
     while (job->client >= 0)
         job++;
-    job->client = client;
-    job->used_ns = 0;
-    job->number = ++jobs->taken;
-    jobs->last = job;
+    struct answer_job *begun = jobs->spare;
+    jobs->spare = job->answer;
+    *job = (struct job){.answer = begun, .kind = kind, .client = client, .number = ++jobs->taken};
     jobs->of_client[client] = job;
     jobs->free--;
     return job;
-}
-
-/* The job in progress that was taken last; NULL: there is none. */
-static const struct job *find_last(const struct jobs *jobs)
-{
-    const struct job *last = NULL;
-    for (int i = 0; i < JOBS; i++) {
-        const struct job *job = &jobs->job[i];
-        if (job->client >= 0 && (!last || job->number > last->number))
-            last = job;
-    }
-    return last;
 }
 
 void jobs_give_back(struct jobs *jobs, struct job *job)
@@ -54,22 +39,20 @@ void jobs_give_back(struct jobs *jobs, struct job *job)
     jobs->of_client[job->client] = NULL;
     job->client = -1;
     jobs->free++;
-    if (job == jobs->last)
-        jobs->last = find_last(jobs);
-}
-
-static bool can_stop(const struct jobs *jobs, const struct job *job)
-{
-    const int64_t patience_ns = job == jobs->last ? JOBS_BRIEF_NS : JOBS_PATIENCE_NS;
-    return job->used_ns > patience_ns || (!job->is_pair && scene_job_has_answers(job->scene));
 }
 
 struct job *jobs_longest(struct jobs *jobs)
 {
     struct job *longest = NULL;
+    int64_t last = 0; /* number of the job taken last */
+    for (int i = 0; i < JOBS; i++)
+        if (jobs->job[i].client >= 0 && jobs->job[i].number > last)
+            last = jobs->job[i].number;
     for (int i = 0; i < JOBS; i++) {
         struct job *job = &jobs->job[i];
-        if (job->client >= 0 && can_stop(jobs, job) &&
+        const int64_t patience_ns = job->number == last ? JOBS_BRIEF_NS : JOBS_PATIENCE_NS;
+        if (job->client >= 0 &&
+            (job->used_ns > patience_ns || answer_job_has_answers(job->answer)) &&
             (!longest || job->used_ns > longest->used_ns))
             longest = job;
     }

@@ -12,19 +12,18 @@
 enum { JOBS = 16 };
 
 struct job {
-    struct scene_job *scene; /* owned; in progress unless is_pair */
-    struct pair_job *pair;   /* owned; in progress if is_pair */
-    bool is_pair;
-    int client;      /* -1: the job is free */
-    int64_t used_ns; /* time spent on it so far */
-    int64_t number;  /* jobs are numbered in the order in which they are taken, from 1 */
+    struct answer_job *answer; /* owned */
+    int kind;                  /* of the query, any value */
+    int client;                /* -1: the job is free */
+    int64_t used_ns;           /* time spent on it so far */
+    int64_t number;            /* jobs are numbered in the order in which they are taken, from 1 */
 };
 
 struct jobs {
     struct job job[JOBS];
+    struct answer_job *spare;                     /* owned; in no job */
     int free;                                     /* number of free jobs */
     int64_t taken;                                /* number of jobs taken so far */
-    const struct job *last;                       /* in progress, taken last; NULL: none */
     struct job *of_client[SCHEDULER_CLIENTS + 1]; /* [client] NULL: none */
 };
 
@@ -35,9 +34,9 @@ bool jobs_init(struct jobs *jobs);
 /* Frees the memory. */
 void jobs_release(struct jobs *jobs);
 
-/* Assigns a free job to a client; the caller sets is_pair and begins it. On input: jobs->free > 0;
- * the client has no job. */
-struct job *jobs_take(struct jobs *jobs, int client);
+/* Assigns a free job with the query in jobs->spare to a client. On input: jobs->free > 0; the
+ * client has no job. */
+struct job *jobs_take(struct jobs *jobs, int client, int kind);
 
 /* Makes a job free. On input: a job that was taken, and has ended. */
 void jobs_give_back(struct jobs *jobs, struct job *job);

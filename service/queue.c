@@ -32,7 +32,7 @@
  * The newest datagram is evicted, so h counts that datagram and all older ones. What the client has
  * left may be less than the share, by less than the size of the evicted datagram. */
 
-/* Chunks and clients are linked by index, counted from 1. Index 0 means none, so that memory of
+/* Chunks are linked by index, counted from 1. Index 0 means none, so that memory of
  * zeros has no links. A datagram is identified by the index of its first chunk. */
 struct queue_chunk {
     int32_t next; /* chunk of the same datagram, or next in the list of freed chunks */
@@ -45,10 +45,8 @@ struct queue_chunk {
 };
 
 struct queue_client {
-    int32_t chunks;                                   /* held */
     int64_t waiting[QUEUE_FIFOS];                     /* datagrams */
     int32_t oldest[QUEUE_FIFOS], newest[QUEUE_FIFOS]; /* datagrams */
-    int32_t equal_before, equal_after; /* neighbours among the clients that hold as many chunks */
 };
 
 struct queue {
@@ -56,8 +54,8 @@ struct queue {
     struct queue_chunk *chunk;
     int32_t free_chunk; /* the chunk freed last, first in the list of freed chunks */
     struct queue_client *client;
-    int32_t *level; /* [number of chunks, from 0]: first client that holds exactly so many */
-    int32_t top;    /* most chunks that any client holds */
+    int32_t *held;      /* [client] chunks; apart, so that all are read in 0.1 microseconds */
+    int32_t client_end; /* no client from here on has held any */
     uint64_t arrivals;
     struct queue_counts counts;
 };
@@ -71,10 +69,10 @@ struct queue *queue_create(size_t chunks, int clients)
     /* Large zeroed blocks take no memory before they are written to. */
     *queue = (struct queue){.bytes = aligned_alloc(QUEUE_CHUNK, chunks * QUEUE_CHUNK),
                             .chunk = calloc(chunks + 1, sizeof *queue->chunk),
-                            .client = calloc((size_t) clients + 1, sizeof *queue->client),
-                            .level = calloc(chunks + 1, sizeof *queue->level),
+                            .client = calloc((size_t) clients, sizeof *queue->client),
+                            .held = calloc((size_t) clients, sizeof *queue->held),
                             .counts = {.capacity = (int64_t) chunks}};
-    if (!queue->bytes || !queue->chunk || !queue->client || !queue->level) {
+    if (!queue->bytes || !queue->chunk || !queue->client || !queue->held) {
         queue_destroy(queue);
         return NULL;
     }
@@ -88,7 +86,7 @@ void queue_destroy(struct queue *queue)
     free(queue->bytes);
     free(queue->chunk);
     free(queue->client);
-    free(queue->level);
+    free(queue->held);
     free(queue);
 }
 
@@ -150,62 +148,24 @@ static void read_datagram(struct queue *queue, int32_t datagram, unsigned char *
     }
 }
 
-/* ---- Clients by number of chunks ------------------------------------------------------------- */
+/* ---- What clients hold ----------------------------------------------------------------------- */
 
-static void leave_level(struct queue *queue, int32_t c)
-{
-    int32_t before = queue->client[c].equal_before, after = queue->client[c].equal_after;
-    if (before)
-        queue->client[before].equal_after = after;
-    else
-        queue->level[queue->client[c].chunks] = after;
-    if (after)
-        queue->client[after].equal_before = before;
-}
-
-static void join_level(struct queue *queue, int32_t c)
-{
-    int32_t *first = &queue->level[queue->client[c].chunks];
-    queue->client[c].equal_before = 0;
-    queue->client[c].equal_after = *first;
-    if (*first)
-        queue->client[*first].equal_before = c;
-    *first = c;
-}
-
-/* Adds more_chunks, which may be negative, to what the client holds. If top decreases, it stops at
- * the latest at what this client still holds: the loop takes at most as many steps as one datagram
- * has chunks. */
+/* Adds more_chunks, which may be negative, to what the client holds. */
 static void hold(struct queue *queue, int32_t c, int32_t more_chunks)
 {
-    struct queue_client *client = &queue->client[c];
-    if (client->chunks)
-        leave_level(queue, c);
-    else
-        queue->counts.clients++;
-    client->chunks += more_chunks;
+    const bool held = queue->held[c];
+    queue->held[c] += more_chunks;
     queue->counts.chunks += more_chunks;
-    if (client->chunks)
-        join_level(queue, c);
-    else
-        queue->counts.clients--;
-    if (client->chunks > queue->top)
-        queue->top = client->chunks;
-    while (queue->top && !queue->level[queue->top])
-        queue->top--;
+    queue->counts.clients += (queue->held[c] != 0) - held;
 }
 
-/* Free chunks plus what clients hold above the limit: the left side of (1) with L = limit. Stops
- * counting at `wanted` or more. The first client visited adds as many chunks as there are levels
- * above the limit, and each further client at least one. So neither more levels nor more clients
- * are visited than chunks are wanted. */
-static int32_t reclaimable(const struct queue *queue, int32_t limit, int32_t wanted)
+/* What clients hold above the limit together: the sum in (1) with L = limit. */
+static int32_t held_above(const struct queue *queue, int32_t limit)
 {
-    int32_t found = (int32_t) (queue->counts.capacity - queue->counts.chunks);
-    for (int32_t level = queue->top; level > limit && found < wanted; level--)
-        for (int32_t c = queue->level[level]; c && found < wanted; c = queue->client[c].equal_after)
-            found += level - limit;
-    return found;
+    int32_t sum = 0;
+    for (int32_t c = 0; c < queue->client_end; c++)
+        sum += queue->held[c] > limit ? queue->held[c] - limit : 0;
+    return sum;
 }
 
 /* ---- FIFOs ----------------------------------------------------------------------------------- */
@@ -242,7 +202,7 @@ static void unlink_datagram(struct queue *queue, int32_t c, enum queue_fifo fifo
 static void remove_datagram(struct queue *queue, int32_t c, enum queue_fifo fifo, int32_t datagram,
                             struct queue_datagram *out, unsigned char *bytes)
 {
-    out->client = c - 1;
+    out->client = c;
     out->kind = queue->chunk[datagram].kind;
     out->size = (size_t) queue->chunk[datagram].size;
     out->arrived_ns = queue->chunk[datagram].arrived_ns;
@@ -271,11 +231,12 @@ enum queue_put_result queue_put(struct queue *queue, enum queue_fifo fifo,
                                 const struct queue_datagram *datagram, const unsigned char *bytes)
 {
     assert(datagram->size >= 1 && datagram->size <= QUEUE_DATAGRAM_MAX);
-    const int32_t chunks = chunks_of(datagram->size), c = datagram->client + 1;
-    if (reclaimable(queue, queue->client[c].chunks + chunks, chunks) < chunks)
-        return QUEUE_REFUSED;
-    if (queue->counts.capacity - queue->counts.chunks < chunks)
-        return QUEUE_FULL;
+    const int32_t chunks = chunks_of(datagram->size), c = datagram->client;
+    const int32_t missing = chunks - (int32_t) (queue->counts.capacity - queue->counts.chunks);
+    if (missing > 0)
+        return held_above(queue, queue->held[c] + chunks) < missing ? QUEUE_REFUSED : QUEUE_FULL;
+    if (c >= queue->client_end)
+        queue->client_end = c + 1;
     append(queue, c, fifo, write_datagram(queue, datagram, bytes));
     hold(queue, c, chunks);
     if (++queue->counts.datagrams > queue->counts.datagrams_most)
@@ -285,32 +246,34 @@ enum queue_put_result queue_put(struct queue *queue, enum queue_fifo fifo,
 
 const int64_t *queue_waiting(const struct queue *queue, int client)
 {
-    return queue->client[client + 1].waiting;
+    return queue->client[client].waiting;
 }
 
 bool queue_pop(struct queue *queue, int client, enum queue_fifo fifo, struct queue_datagram *out,
                unsigned char bytes[QUEUE_DATAGRAM_MAX])
 {
-    const int32_t c = client + 1;
-    if (queue->client[c].waiting[fifo] == 0)
+    if (queue->client[client].waiting[fifo] == 0)
         return false;
-    remove_datagram(queue, c, fifo, queue->client[c].oldest[fifo], out, bytes);
+    remove_datagram(queue, client, fifo, queue->client[client].oldest[fifo], out, bytes);
     return true;
 }
 
 int queue_largest(const struct queue *queue)
 {
-    return queue->top ? queue->level[queue->top] - 1 : -1;
+    int largest = 0;
+    for (int32_t c = 1; c < queue->client_end; c++)
+        if (queue->held[c] >= queue->held[largest])
+            largest = c;
+    return queue->held[largest] > 0 ? largest : -1;
 }
 
 bool queue_evict(struct queue *queue, int client, struct queue_datagram *out,
                  unsigned char bytes[QUEUE_DATAGRAM_MAX])
 {
-    const int32_t c = client + 1;
-    if (queue->client[c].chunks == 0)
+    if (queue->held[client] == 0)
         return false;
-    const enum queue_fifo fifo = newest_fifo(queue, c);
-    remove_datagram(queue, c, fifo, queue->client[c].newest[fifo], out, bytes);
+    const enum queue_fifo fifo = newest_fifo(queue, client);
+    remove_datagram(queue, client, fifo, queue->client[client].newest[fifo], out, bytes);
     return true;
 }
 

@@ -16,8 +16,9 @@
  * nothing, whatever the others do. Every datagram that was added is popped or evicted exactly once.
  *
  * All memory is allocated by queue_create() and touched on first use; the chunk freed last is
- * reused first. An operation takes time proportional to the chunks of its datagram, independent of
- * the number of clients. One queue may be used by one thread at a time; queues share no state. */
+ * reused first. An operation takes time proportional to the chunks of its datagram; if too few are
+ * free, also to the highest number of a client so far: a nanosecond each. One queue may be used by
+ * one thread at a time; queues share no state. */
 #ifndef QUEUE_H
 #define QUEUE_H
 

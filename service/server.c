@@ -9,13 +9,13 @@
 #include "anticipation.h"
 #include "histogram.h"
 #include "jobs.h"
-#include "malformed.h"
 #include "queue.h"
 #include "process.h"
 #include "quota.h"
 #include "scheduler.h"
 #include "wire.h"
 
+#include <assert.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -72,18 +72,19 @@ struct server {
     struct histogram compute_ns;               /* of all queries answered with FMB_OK */
     struct wire_status status; /* counts so far; complete_status() sets the other fields */
     int64_t ready_ns, heartbeat_due_ns;
-    struct malformed malformed;
+    /* Messages that cannot be decoded, and those of them not reported yet; the last one. */
+    int64_t malformed_unreported, malformed_reported_ns;
+    const char *malformed_reason;
+    enum server_kind malformed_kind;
+    uint32_t malformed_size;
     /* The other service on the same channels that was reported last (0: none), and when. */
     int64_t other_id, other_reported_ns;
+    bool can_begin; /* a job is free or can be stopped */
     /* Buffers of the query being answered or refused, and of its result. */
-    struct pair_query pair;
-    struct pair_result pair_result;
     struct definition_query definition;
     struct definition definition_result;
-    struct scene_result refused;
-    unsigned char datagram[QUEUE_DATAGRAM_MAX]; /* the query being answered */
-    unsigned char evicted[QUEUE_DATAGRAM_MAX];  /* the query being refused after its eviction */
-    unsigned char out[QUERY_BYTES_MAX];         /* the result, encoded */
+    unsigned char evicted[QUEUE_DATAGRAM_MAX]; /* the query being refused after its eviction */
+    unsigned char out[QUERY_BYTES_MAX];        /* the result, encoded */
 };
 
 /* ---- Results ---- */
@@ -108,45 +109,52 @@ static void publish_result(struct server *server, enum server_kind kind, size_t 
 }
 
 /* Drops a query without a result. On input: counter: in server->status, of the reason. */
-static void drop(struct server *server, int kind, int64_t *counter)
+static void drop(struct server *server, enum server_kind kind, int64_t *counter)
 {
-    count_query(server, (enum server_kind) kind, false);
+    count_query(server, kind, false);
     ++*counter;
 }
 
-static void publish_pair(struct server *server, const struct pair_result *result)
+/* Publishes the result of a job. */
+static void publish_answer(struct server *server, enum server_kind kind, struct answer_job *answer,
+                           int64_t compute_ns)
 {
-    publish_result(server, SERVER_PAIRS, wire_write_pair_result(result, server->out),
-                   result->status);
-    if (result->status != FMB_OK)
+    int32_t status;
+    const size_t size = answer_job_write(answer, compute_ns, server->out, &status);
+    publish_result(server, kind, size, status);
+    server->status.pairs += answer_job_decided(answer);
+    if (status == FMB_OK)
+        histogram_add(&server->compute_ns, compute_ns);
+}
+
+/* Reports messages that could not be read and are not reported yet on stderr; at most one report a
+ * second. */
+static void report_malformed(struct server *server)
+{
+    if (server->malformed_unreported == 0 || !stderr_report_due(server->malformed_reported_ns))
         return;
-    server->status.pairs++;
-    histogram_add(&server->compute_ns, result->compute_ns);
-}
-
-static void publish_definition(struct server *server, const struct definition *result)
-{
-    publish_result(server, SERVER_DEFINITIONS, wire_write_definition(result, server->out),
-                   result->status);
-}
-
-/* On input: pairs: number of pairs decided. */
-static void publish_scene(struct server *server, int32_t pairs, const struct scene_result *result)
-{
-    publish_result(server, SERVER_SCENES, wire_write_scene_result(result, server->out),
-                   result->status);
-    server->status.pairs += pairs;
-    if (result->status == FMB_OK)
-        histogram_add(&server->compute_ns, result->compute_ns);
+    fprintf(stderr,
+            "fmbd: malformed message on %s (%" PRIu32 " bytes): %s; %" PRId64
+            " of them so far, %" PRId64 " since this was last said\n",
+            server->query_channel[server->malformed_kind], server->malformed_size,
+            server->malformed_reason, server->status.malformed, server->malformed_unreported);
+    server->malformed_reported_ns = clock_ns();
+    server->malformed_unreported = 0;
 }
 
 /* Notes a query that cannot be read. error: why it cannot; NULL: it can. */
 static bool is_malformed(struct server *server, enum server_kind kind, size_t size,
                          const char *error)
 {
-    if (error)
-        malformed_note(&server->malformed, server->query_channel[kind], (uint32_t) size, error);
-    return error;
+    if (!error)
+        return false;
+    server->status.malformed++;
+    server->malformed_unreported++;
+    server->malformed_kind = kind;
+    server->malformed_size = (uint32_t) size;
+    server->malformed_reason = error;
+    report_malformed(server);
+    return true;
 }
 
 /* ---- Activity ---- */
@@ -171,44 +179,20 @@ static void update_activity(struct server *server, int client)
 
 /* ---- Refusals ---- */
 
-static void refuse_pair(struct server *server, const unsigned char *bytes, size_t size,
-                        enum fmb_status status)
-{
-    const char *error = wire_read_pair_query(bytes, (uint32_t) size, &server->pair);
-    if (is_malformed(server, SERVER_PAIRS, size, error))
-        return;
-    answer_pair_refused(server->answerer, &server->pair, status, &server->pair_result);
-    publish_pair(server, &server->pair_result);
-}
-
-/* Refuses a scene or definition query. Needs only its header, which server_receive() has found to
- * be valid. */
-static void refuse_other(struct server *server, enum server_kind kind, const unsigned char *bytes,
-                         size_t size, enum fmb_status status)
-{
-    struct query_header header;
-    kinds[kind].read_header(bytes, (uint32_t) size, &header);
-    if (kind == SERVER_SCENES) {
-        answer_scene_refused(server->answerer, &header, status, &server->refused);
-        publish_scene(server, 0, &server->refused);
-    } else {
-        answer_definition_refused(server->answerer, &header, status, &server->definition_result);
-        publish_definition(server, &server->definition_result);
-    }
-}
-
 /* Refuses a query; without a result if the quota of refusals of its client is used up. The time is
  * charged to its client, not to the batch. */
 static void refuse(struct server *server, const struct queue_datagram *datagram,
                    const unsigned char *bytes, enum fmb_status status)
 {
+    const enum server_kind kind = (enum server_kind) datagram->kind;
+    size_t size;
     server->batch_ns += meter_read(&server->meter);
     if (!quota_take_refusal(&server->quota[datagram->client], server->meter.wall_ns))
-        drop(server, datagram->kind, &server->status.refusals_unsent);
-    else if (datagram->kind == SERVER_PAIRS)
-        refuse_pair(server, bytes, datagram->size, status);
-    else
-        refuse_other(server, (enum server_kind) datagram->kind, bytes, datagram->size, status);
+        drop(server, kind, &server->status.refusals_unsent);
+    else if (!is_malformed(server, kind, datagram->size,
+                           answer_refused(server->answerer, (enum answer_kind) kind, bytes,
+                                          datagram->size, status, server->out, &size)))
+        publish_result(server, kind, size, (int32_t) status);
     scheduler_charge(server->scheduler, datagram->client, meter_read(&server->meter));
 }
 
@@ -223,67 +207,23 @@ static bool evict(struct server *server, int client)
     return true;
 }
 
-/* ---- Pairs and definitions ---- */
+/* ---- Queries ---- */
 
-/* Moves a pair query of bodies of several frames to the FIFO of scenes, since it needs a job. The
- * queue has capacity for it, from which it has just been popped; if it refuses the query all the
- * same, the client gets FMB_BUSY. */
-static void defer_pair(struct server *server, const struct queue_datagram *query)
+static void answer_definition_query(struct server *server, const unsigned char *bytes, size_t size)
 {
-    if (queue_put(server->queue, QUEUE_SCENES, query, server->datagram) == QUEUE_ADDED)
-        return;
-    answer_pair_refused(server->answerer, &server->pair, FMB_BUSY, &server->pair_result);
-    publish_pair(server, &server->pair_result);
-}
-
-static void process_pair(struct server *server, const struct queue_datagram *query)
-{
-    struct pair_result *result = &server->pair_result;
-    const char *error =
-        wire_read_pair_query(server->datagram, (uint32_t) query->size, &server->pair);
-    if (is_malformed(server, SERVER_PAIRS, query->size, error))
-        return;
-    const int64_t begin_ns = server->clocks->wall_ns();
-    if (!answer_pair(server->answerer, &server->pair, result)) {
-        defer_pair(server, query);
-        return;
-    }
-    result->compute_ns = server->clocks->wall_ns() - begin_ns;
-    publish_pair(server, result);
-}
-
-static void process_definition(struct server *server, size_t size)
-{
-    const char *error =
-        wire_read_definition_query(server->datagram, (uint32_t) size, &server->definition);
+    struct definition *result = &server->definition_result;
+    const char *error = wire_read_definition_query(bytes, (uint32_t) size, &server->definition);
     if (is_malformed(server, SERVER_DEFINITIONS, size, error))
         return;
-    answer_definition(server->answerer, &server->definition, &server->definition_result);
-    publish_definition(server, &server->definition_result);
+    answer_definition(server->answerer, &server->definition, result);
+    publish_result(server, SERVER_DEFINITIONS, wire_write_definition(result, server->out),
+                   result->status);
 }
-
-static void answer_short(struct server *server, const struct queue_datagram *query)
-{
-    if (query->kind == SERVER_PAIRS)
-        process_pair(server, query);
-    else
-        process_definition(server, query->size);
-}
-
-/* ---- Scenes, and pairs of bodies of several frames ---- */
 
 static void finish_job(struct server *server, struct job *job)
 {
     quota_add_sample(&server->quota[job->client], QUEUE_SCENES, job->used_ns);
-    if (job->is_pair) {
-        struct pair_result *result = pair_job_end(job->pair, server->answerer);
-        result->compute_ns = job->used_ns;
-        publish_pair(server, result);
-    } else {
-        struct scene_result *result = scene_job_result(job->scene);
-        result->compute_ns = job->used_ns;
-        publish_scene(server, scene_job_decided(job->scene), result);
-    }
+    publish_answer(server, (enum server_kind) job->kind, job->answer, job->used_ns);
     jobs_give_back(&server->jobs, job);
 }
 
@@ -291,8 +231,7 @@ static void finish_job(struct server *server, struct job *job)
  * scene, the pairs answered so far. */
 static void stop_job(struct server *server, struct job *job)
 {
-    if (!job->is_pair)
-        scene_job_stop(job->scene);
+    answer_job_stop(job->answer);
     finish_job(server, job);
 }
 
@@ -308,31 +247,55 @@ static void stop_longest_job(struct server *server, int for_client)
     update_activity(server, client);
 }
 
-/* Begins the job of a query from the client's FIFO of scenes. NULL: the query is malformed. */
-static struct job *begin_job(struct server *server, const struct queue_datagram *query)
+/* Answers the query in jobs.spare if it is a short pair query. Returns whether it was. */
+static bool answer_short(struct server *server)
 {
-    if (server->jobs.free == 0)
+    struct answer_job *answer = server->jobs.spare;
+    const int64_t begin_ns = server->clocks->wall_ns();
+    bool complete = answer_job_step(answer, server->answerer);
+    if (!complete && !answer_job_is_short(answer, server->answerer))
+        return false;
+    while (!complete)
+        complete = answer_job_step(answer, server->answerer);
+    publish_answer(server, SERVER_PAIRS, answer, server->clocks->wall_ns() - begin_ns);
+    return true;
+}
+
+/* Answers a query at once, or begins a job for it; a pair of bodies of several frames from the FIFO
+ * of short queries is moved to that of scenes if the client has other scenes or no job is free.
+ * (The queue has capacity for it, from which it has just been popped.) Returns the job; NULL: none.
+ */
+static struct job *begin(struct server *server, const struct queue_datagram *query,
+                         enum queue_fifo fifo)
+{
+    const enum server_kind kind = (enum server_kind) query->kind;
+    struct jobs *jobs = &server->jobs;
+    if (kind == SERVER_DEFINITIONS) {
+        answer_definition_query(server, answer_job_message(jobs->spare), query->size);
+        return NULL;
+    }
+    const char *error = answer_job_begin(jobs->spare, (enum answer_kind) kind,
+                                         answer_job_message(jobs->spare), query->size);
+    if (is_malformed(server, kind, query->size, error) ||
+        (fifo == QUEUE_SHORT && answer_short(server)))
+        return NULL;
+    if (fifo == QUEUE_SHORT && (jobs->of_client[query->client] || jobs->free == 0 ||
+                                queue_waiting(server->queue, query->client)[QUEUE_SCENES] > 0)) {
+        const enum queue_put_result put =
+            queue_put(server->queue, QUEUE_SCENES, query, answer_job_message(jobs->spare));
+        assert(put == QUEUE_ADDED); /* it has just been popped */
+        (void) put;
+        return NULL;
+    }
+    if (jobs->free == 0)
         stop_longest_job(server, query->client);
-    struct job *job = jobs_take(&server->jobs, query->client);
-    job->is_pair = query->kind == SERVER_PAIRS;
-    const char *error =
-        job->is_pair ? pair_job_begin(job->pair, server->answerer, server->datagram, query->size)
-                     : scene_job_begin(job->scene, server->datagram, query->size);
-    if (!is_malformed(server, (enum server_kind) query->kind, query->size, error))
-        return job;
-    jobs_give_back(&server->jobs, job);
-    return NULL;
+    return jobs_take(jobs, query->client, (int) kind);
 }
 
 /* Whether there is work besides one job: another job, or a query in the queue. */
 static bool other_work_pending(const struct server *server)
 {
     return server->jobs.free < JOBS - 1 || queue_counts(server->queue).datagrams > 0;
-}
-
-static bool step(struct server *server, struct job *job)
-{
-    return job->is_pair ? pair_job_step(job->pair) : scene_job_step(job->scene, server->answerer);
 }
 
 /* Steps a job for about max_ns nanoseconds: it ends with the first step that reaches them. */
@@ -342,14 +305,14 @@ static void advance_job(struct server *server, struct job *job, int64_t max_ns)
     bool complete = false;
     int64_t turn_ns = 0;
     while (!complete && turn_ns < max_ns) {
-        complete = step(server, job);
+        complete = answer_job_step(job->answer, server->answerer);
         turn_ns = server->clocks->wall_ns() - begin_ns;
     }
     job->used_ns += turn_ns;
     if (complete)
         finish_job(server, job);
-    else if (job->used_ns > scene_limit_ns && !job->is_pair && other_work_pending(server) &&
-             scene_job_has_answers(job->scene))
+    else if (job->used_ns > scene_limit_ns && other_work_pending(server) &&
+             answer_job_has_answers(job->answer))
         stop_job(server, job);
 }
 
@@ -361,7 +324,7 @@ static bool may_serve(const void *user, int client)
 {
     const struct server *server = user;
     return server->jobs.of_client[client] || queue_waiting(server->queue, client)[QUEUE_SHORT] ||
-           server->jobs.free > 0 || jobs_longest((struct jobs *) &server->jobs);
+           server->can_begin;
 }
 
 /* Nanoseconds charged for one call of serve() that took used_ns. A long call delays every other
@@ -391,18 +354,19 @@ static void serve(struct server *server, int client, int64_t job_max_ns)
         meter_base(&server->meter);
     server->last_client = client;
     scheduler_advance(server->scheduler);
-    const bool is_short = queue_pop(server->queue, client, QUEUE_SHORT, &query, server->datagram);
-    const bool begins = is_short || (!job && queue_pop(server->queue, client, QUEUE_SCENES, &query,
-                                                       server->datagram));
+    unsigned char *message = answer_job_message(server->jobs.spare);
+    const bool is_short = queue_pop(server->queue, client, QUEUE_SHORT, &query, message);
+    const bool begins =
+        is_short || (!job && queue_pop(server->queue, client, QUEUE_SCENES, &query, message));
     const bool expired = begins && server->clocks->wall_ns() - query.arrived_ns > QUOTA_AGE_NS;
     if (expired)
-        drop(server, query.kind, &server->status.expired);
-    else if (is_short)
-        answer_short(server, &query);
-    else if (job || (begins && (job = begin_job(server, &query))))
+        drop(server, (enum server_kind) query.kind, &server->status.expired);
+    if (begins)
+        job = expired ? NULL : begin(server, &query, is_short ? QUEUE_SHORT : QUEUE_SCENES);
+    if (job)
         advance_job(server, job, job_max_ns);
     const int64_t used_ns = meter_read(&server->meter);
-    if (is_short && !expired)
+    if (is_short && !expired && !job)
         quota_add_sample(&server->quota[client], QUEUE_SHORT, used_ns);
     scheduler_charge(server->scheduler, client, charge_of(used_ns));
     enforce_quota(server, client);
@@ -438,10 +402,10 @@ static bool begin_anticipating(struct server *server, int client)
 static bool keep_anticipating(struct server *server)
 {
     struct anticipation *anticipation = &server->anticipation;
-    const int64_t now_ns = server->clocks->wall_ns();
     const int client = anticipation->client;
     if (client < 0)
         return false;
+    const int64_t now_ns = server->clocks->wall_ns();
     if (anticipation_poll(anticipation, now_ns) && !has_work(server, client) &&
         scheduler_lead(server->scheduler, client) > -SCHEDULER_SLICE_NS)
         return true;
@@ -454,10 +418,11 @@ enum server_state server_work(struct server *server)
 {
     if (keep_anticipating(server))
         return SERVER_ANTICIPATING;
-    const int64_t until_ns = server->clocks->wall_ns() + work_ns;
+    const int64_t until_ns = server->meter.wall_ns + work_ns;
     int64_t left_ns = work_ns;
     while (left_ns > 0) {
         int64_t lead_ns;
+        server->can_begin = server->jobs.free > 0 || jobs_longest(&server->jobs);
         const int client =
             scheduler_next(server->scheduler, may_serve, server, server->last_client, &lead_ns);
         if (client < 0)
@@ -575,7 +540,6 @@ static void complete_status(const struct server *server, const struct bus_counts
     status->utime = clock_utime();
     status->uptime_us = (clock_ns() - server->ready_ns) / 1000;
     status->receive_buffer = bus->receive_buffer;
-    status->malformed = server->malformed.count;
     status->foreign = (int64_t) (bus->foreign + bus->malformed);
     status->dropped = (int64_t) bus->dropped;
     status->waiting = queue.datagrams;
@@ -604,7 +568,7 @@ void server_heartbeat(struct server *server, const struct bus_counts *bus)
     complete_status(server, bus, &status);
     const size_t size = wire_write_status(&status, bytes);
     server->publish(server->user, server->result_channel[SERVER_STATUS], bytes, size);
-    malformed_report(&server->malformed);
+    report_malformed(server);
     server->heartbeat_due_ns = clock_ns() + heartbeat_ns;
 }
 

@@ -10,6 +10,14 @@
  * are counted. If all jobs (jobs.h) are in use and another client needs one, the job that has used
  * most time ends: with the pairs answered so far, or as FMB_BUSY.
  *
+ * What each part of fair sharing is for:
+ *
+ *     scheduler     clients use equal time, whatever they query
+ *     anticipation  a client that waits for each answer keeps its turn
+ *     meter         no client is charged for what other programs use
+ *     queue, quota  a flood takes no capacity of others; waiting and refusing are bounded
+ *     jobs          memory for scenes is bounded, and long ones let short ones begin
+ *
  * One server may be used by one thread at a time; servers share no state. The caller's loop:
  *
  *     read the bus: server_receive() for each message, then server_end_batch();
@@ -19,6 +27,7 @@
 #ifndef SERVER_H
 #define SERVER_H
 
+#include "answer.h"
 #include "bus.h"
 #include "meter.h"
 
@@ -28,8 +37,14 @@
 
 struct server;
 
-/* Kinds of messages. */
-enum server_kind { SERVER_PAIRS, SERVER_SCENES, SERVER_DEFINITIONS, SERVER_STATUS, SERVER_KINDS };
+/* Kinds of messages: queries as in answer.h, and heartbeats. */
+enum server_kind {
+    SERVER_PAIRS = ANSWER_PAIR,
+    SERVER_SCENES = ANSWER_SCENE,
+    SERVER_DEFINITIONS = ANSWER_DEFINITION,
+    SERVER_STATUS,
+    SERVER_KINDS
+};
 
 struct server_options {
     const char *prefix; /* of the channels; "": none */

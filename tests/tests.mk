@@ -9,7 +9,7 @@ see_tests/campaign := tests/oracle $(call fmb,number frame filter exact decide)
 see_tests/bench := tests/campaign tests/oracle $(call fmb,number frame filter article tree exact decide) \
 	clients/common
 see_tests/bench/peers := tests/bench
-see_tests/encode := msgs/codec service/fmb
+see_tests/encode := msgs/codec service/fmb service/answer
 see_tests/bus := tests/encode tests/bench $(see_tests/bench) service $(see_service)
 see_tests/robot := tests/encode tests/bus tests/bench tests/oracle service $(wire)
 see_tests/hostile := $(GEN)

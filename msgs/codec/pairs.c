@@ -31,37 +31,46 @@ bool query_has_pair(const struct scene_query *query, unsigned a, unsigned b)
     return pair_is_among(numbers_of(query), a, b);
 }
 
-/* Pairs that are not decided, each counted once. */
-struct undecided {
-    const struct scene_query *query;
-    int32_t end_pair;
-    int64_t count; /* of those from first_pair to end_pair */
-    struct query_marks *marks;
-};
+/* ---- Sets of pairs ---- */
 
-static void count_undecided(struct undecided *undecided, const unsigned pair[2])
+void query_marks_clear(struct query_marks *marks, unsigned placements)
 {
-    const struct scene_query *query = undecided->query;
-    const unsigned n = (unsigned) query_stored_placements(query);
-    const unsigned a = pair[0] < pair[1] ? pair[0] : pair[1];
-    const unsigned b = pair[0] < pair[1] ? pair[1] : pair[0];
-    if (!query_has_pair(query, a, b))
-        return;
-    const unsigned bit = a * n + b;
-    const int64_t number = query_pair_number(query, a, b);
-    const bool counted = undecided->marks->bit[bit / 8] >> bit % 8 & 1;
-    undecided->marks->bit[bit / 8] |= (unsigned char) (1u << bit % 8);
-    undecided->count += !counted && number >= query->first_pair && number < undecided->end_pair;
+    marks->placements = placements;
+    memset(marks->bit, 0, placements * placements / 8 + 1);
 }
 
-static void count_grouped(struct undecided *undecided)
+static unsigned bit_of(const struct query_marks *marks, const unsigned pair[2])
 {
-    const struct scene_query *query = undecided->query;
-    const unsigned n = (unsigned) query_stored_placements(query);
-    for (unsigned a = 0; a < n; a++)
-        for (unsigned b = a + 1; b < n && query->placement[a].group != 0; b++)
-            if (query->placement[a].group == query->placement[b].group)
-                count_undecided(undecided, (const unsigned[2]){a, b});
+    const unsigned lower = pair[0] < pair[1] ? pair[0] : pair[1];
+    return lower * marks->placements + (pair[0] + pair[1] - lower);
+}
+
+bool query_is_marked(const struct query_marks *marks, const unsigned pair[2])
+{
+    const unsigned bit = bit_of(marks, pair);
+    return marks->bit[bit / 8] >> bit % 8 & 1;
+}
+
+void query_mark(struct query_marks *marks, const unsigned pair[2])
+{
+    const unsigned bit = bit_of(marks, pair);
+    marks->bit[bit / 8] |= (unsigned char) (1u << bit % 8);
+}
+
+/* ---- Pairs that are decided ---- */
+
+/* Marks a pair that is not decided. Returns 1 if it is one from first_pair to end_pair that was not
+ * marked; else 0. */
+static int count_undecided(const struct scene_query *query, int32_t end_pair,
+                           struct query_marks *marks, const unsigned pair[2])
+{
+    const bool ordered = pair[0] < pair[1];
+    const unsigned a = pair[!ordered], b = pair[ordered];
+    if (!query_has_pair(query, a, b) || query_is_marked(marks, pair))
+        return 0;
+    const int64_t number = query_pair_number(query, a, b);
+    query_mark(marks, pair);
+    return number >= query->first_pair && number < end_pair;
 }
 
 static bool has_undecided(const struct scene_query *query)
@@ -75,13 +84,17 @@ static bool has_undecided(const struct scene_query *query)
 int64_t query_pairs_decided(const struct scene_query *query, int32_t end_pair,
                             struct query_marks *marks)
 {
-    struct undecided undecided = {.query = query, .end_pair = end_pair, .marks = marks};
-    const size_t n = (size_t) query_stored_placements(query);
-    if (has_undecided(query)) {
-        memset(marks->bit, 0, n * n / 8 + 1);
-        for (int32_t k = 0; k < query->ignored_count / 2; k++)
-            count_undecided(&undecided, query->ignored[k]);
-        count_grouped(&undecided);
-    }
-    return (int64_t) end_pair - query->first_pair - undecided.count;
+    int64_t decided = (int64_t) end_pair - query->first_pair;
+    const struct placement *placement = query->placement;
+    const unsigned n = (unsigned) query_stored_placements(query);
+    if (!has_undecided(query))
+        return decided;
+    query_marks_clear(marks, n);
+    for (int32_t k = 0; k < query->ignored_count / 2; k++)
+        decided -= count_undecided(query, end_pair, marks, query->ignored[k]);
+    for (unsigned a = 0; a < n; a++)
+        for (unsigned b = a + 1; b < n && placement[a].group != 0; b++)
+            if (placement[a].group == placement[b].group)
+                decided -= count_undecided(query, end_pair, marks, (const unsigned[2]){a, b});
+    return decided;
 }

@@ -150,13 +150,21 @@ int64_t query_pair_count(const struct scene_query *query);
 bool query_has_pair(const struct scene_query *query, unsigned a, unsigned b);
 int64_t query_pair_number(const struct scene_query *query, unsigned a, unsigned b);
 
-/* Memory of query_pairs_decided(): a bit for each pair of placements. */
+/* A set of pairs of placements, in either order: a bit for each. */
 struct query_marks {
+    unsigned placements;
     unsigned char bit[QUERY_PLACEMENTS_MAX * QUERY_PLACEMENTS_MAX / 8 + 1];
 };
 
+/* Makes the set empty. On input: as many placements as query_stored_placements(). */
+void query_marks_clear(struct query_marks *marks, unsigned placements);
+
+/* On input: indices below the number of placements. */
+bool query_is_marked(const struct query_marks *marks, const unsigned pair[2]);
+void query_mark(struct query_marks *marks, const unsigned pair[2]);
+
 /* The number of pairs from first_pair on and before end_pair that are decided: neither ignored nor
- * within a group. No listed pair is. */
+ * within a group. No listed pair is. Uses the memory of marks. */
 int64_t query_pairs_decided(const struct scene_query *query, int32_t end_pair,
                             struct query_marks *marks);
 

@@ -5,7 +5,6 @@
 #include "wire.h"
 
 #include <assert.h>
-#include <stdio.h>
 
 static bool check_definition_query(struct check_context *context,
                                    const struct definition_query *query)
@@ -60,31 +59,11 @@ static void append_bodies(const struct cache *cache, const struct definition_que
     }
 }
 
-/* Sets all fields of the result except the contents of its array. */
-static void begin_result(const struct answerer *answerer, const struct query_header *query,
-                         struct definition *result)
-{
-    result->header = *query;
-    result->server_id = answerer->server_id;
-    result->status = FMB_OK;
-    result->detail[0] = '\0';
-    result->next = 0;
-    result->body_count = 0;
-}
-
 void answer_definition(struct answerer *answerer, const struct definition_query *query,
                        struct definition *result)
 {
-    struct check_context context = {.status = &result->status, .detail = result->detail};
-    begin_result(answerer, &query->header, result);
+    struct check_context context = {&result->status, result->detail, false, -1};
+    answerer_begin_definition(answerer, &query->header, result);
     if (check_definition_query(&context, query))
         append_bodies(answerer->cache, query, result);
-}
-
-void answer_definition_refused(const struct answerer *answerer, const struct query_header *query,
-                               enum fmb_status status, struct definition *result)
-{
-    begin_result(answerer, query, result);
-    result->status = (int32_t) status;
-    snprintf(result->detail, sizeof result->detail, "%s", fmb_status_text(result->status));
 }

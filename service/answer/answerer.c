@@ -1,5 +1,8 @@
 #include "answerer.h"
 
+#include "wire.h"
+
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,40 +33,81 @@ struct cache *answerer_cache(struct answerer *answerer)
     return answerer->cache;
 }
 
-struct fmb_placement answerer_place(const struct placement *placement, const struct fmb_body *body)
+/* ---- Results ---- */
+
+void answerer_begin_pair(const struct answerer *answerer, const struct pair_query *query,
+                         struct pair_result *result)
 {
-    struct fmb_placement out = {.body = body, .orientation_count = placement->orientation_count};
-    memcpy(out.position, placement->position, sizeof out.position);
-    memcpy(out.velocity, placement->velocity, sizeof out.velocity);
-    memcpy(out.orientation, placement->orientation, sizeof out.orientation);
-    return out;
+    memset(result, 0, sizeof *result);
+    result->header = query->header;
+    result->server_id = answerer->server_id;
+    for (int f = 0; f < 2; f++)
+        result->body_id[f] = query->placement[f].body_id;
 }
 
-struct used_body answerer_intern(struct answerer *answerer, const struct placement *placement,
-                                 struct query_bodies *own, int32_t *frames, struct handle *handle)
+void answerer_begin_scene(const struct answerer *answerer, const struct query_header *query,
+                          struct scene_result *result)
 {
-    struct cache *cache = answerer->cache;
-    const struct geometry *geometry = &placement->geometry;
-    const int64_t id = placement->body_id;
-    const struct cached *cached = NULL;
-    if (!own->maker.memory) {
-        cached = id ? cache_lookup(cache, id, geometry, handle) : NULL;
-        if (cached)
-            return (struct used_body){&cached->body, cached};
-        body_begin(&own->maker, geometry, own->memory + own->used);
-    }
-    const struct fmb_body *body = body_continue(&own->maker, frames);
-    if (!body)
-        return (struct used_body){.body = NULL};
-    own->used += BODY_BYTES(body->frame_count);
-    own->maker.memory = NULL;
-    if (id)
-        cached = cache_add(cache, id, handle, geometry, body);
-    return (struct used_body){cached ? &cached->body : body, cached};
+    memset(result, 0, offsetof(struct scene_result, unknown));
+    result->header = *query;
+    result->server_id = answerer->server_id;
 }
 
-void answerer_release(struct answerer *answerer, const struct used_body *used)
+void answerer_begin_definition(const struct answerer *answerer, const struct query_header *query,
+                               struct definition *result)
 {
-    if (used->cached)
-        cache_release(answerer->cache, used->cached);
+    memset(result, 0, offsetof(struct definition, body));
+    result->header = *query;
+    result->server_id = answerer->server_id;
+}
+
+void answerer_set_status(enum fmb_status status, int32_t *out, char detail[QUERY_TEXT_MAX])
+{
+    *out = (int32_t) status;
+    snprintf(detail, QUERY_TEXT_MAX, "%s", fmb_status_text(*out));
+}
+
+/* ---- Refusals ---- */
+
+static size_t refuse_pair(const struct answerer *answerer, const struct pair_query *query,
+                          enum fmb_status status, unsigned char out[QUERY_BYTES_MAX])
+{
+    struct pair_result result;
+    answerer_begin_pair(answerer, query, &result);
+    answerer_set_status(status, &result.status, result.detail);
+    return wire_write_pair_result(&result, out);
+}
+
+static size_t refuse_scene(struct answerer *answerer, const struct query_header *query,
+                           enum fmb_status status, unsigned char out[QUERY_BYTES_MAX])
+{
+    struct scene_result *result = &answerer->scene;
+    answerer_begin_scene(answerer, query, result);
+    answerer_set_status(status, &result->status, result->detail);
+    return wire_write_scene_result(result, out);
+}
+
+static size_t refuse_definition(struct answerer *answerer, const struct query_header *query,
+                                enum fmb_status status, unsigned char out[QUERY_BYTES_MAX])
+{
+    struct definition *result = &answerer->definition;
+    answerer_begin_definition(answerer, query, result);
+    answerer_set_status(status, &result->status, result->detail);
+    return wire_write_definition(result, out);
+}
+
+const char *answer_refused(struct answerer *answerer, enum answer_kind kind,
+                           const unsigned char *bytes, size_t size, enum fmb_status status,
+                           unsigned char out[QUERY_BYTES_MAX], size_t *out_size)
+{
+    struct pair_query pair;
+    const char *error = kind == ANSWER_PAIR ? wire_read_pair_query(bytes, (uint32_t) size, &pair)
+                        : kind == ANSWER_SCENE
+                            ? wire_read_scene_header(bytes, (uint32_t) size, &pair.header)
+                            : wire_read_definition_header(bytes, (uint32_t) size, &pair.header);
+    if (!error)
+        *out_size = kind == ANSWER_PAIR    ? refuse_pair(answerer, &pair, status, out)
+                    : kind == ANSWER_SCENE ? refuse_scene(answerer, &pair.header, status, out)
+                                           : refuse_definition(answerer, &pair.header, status, out);
+    return error;
 }

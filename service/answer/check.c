@@ -8,17 +8,14 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Most frames of a query. One message cannot define so many, but it may name bodies by handle. */
-enum { FRAMES_MAX = 65536 };
-
 bool check_refuse(struct check_context *context, enum fmb_status status, const char *field,
                   const char *reason)
 {
     char place[32] = "";
-    if (context->part && context->index >= 0)
-        snprintf(place, sizeof place, "%s[%d].", context->part, (int) context->index);
-    else if (context->part)
-        snprintf(place, sizeof place, "%s.", context->part);
+    if (context->index >= 0 && context->is_pair)
+        snprintf(place, sizeof place, "%c.", 'a' + (char) context->index);
+    else if (context->index >= 0)
+        snprintf(place, sizeof place, "placements[%d].", (int) context->index);
     *context->status = (int32_t) status;
     snprintf(context->detail, QUERY_TEXT_MAX, "%s%s: %s", place, field,
              reason ? reason : fmb_status_text(status));
@@ -137,34 +134,7 @@ static bool check_definition(struct check_context *context, const struct placeme
                check_count(context, "num_numbers", 0, placement->number_count);
     if (placement->frame_count == 0)
         return check_refuse(context, FMB_NO_FRAMES, "num_frames", "neither a handle nor frames");
-    if (placement->frame_count > FRAMES_MAX)
-        return check_refuse(context, FMB_OVER_LIMIT, "num_frames", "more than 65536");
     return true;
-}
-
-/* Applies the engine's rule for orientations, which depends on the dimension of the body only: any
- * body of that dimension will do. */
-static bool check_orientation(struct check_context *context, const struct placement *placement)
-{
-    static const struct fmb_body any[FMB_DIM_MAX + 1] = {
-        [2] = {.dim = 2, .frame_count = 1}, [3] = {.dim = 3, .frame_count = 1}};
-    const int32_t count = placement->orientation_count;
-    if (count == 0)
-        return true;
-    if (!check_count(context, "num_orientation", placement->dim == 2 ? 2 : 4, count))
-        return false;
-    struct fmb_placement placed = {.body = &any[placement->dim], .orientation_count = count};
-    memcpy(placed.orientation, placement->orientation, sizeof placed.orientation);
-    return fmb_placement_check(&placed) == FMB_OK ||
-           check_refuse(context, FMB_BAD_ORIENTATION, "orientation",
-                        "zero, not finite, or components that differ by more than 2^200");
-}
-
-static bool check_velocity(struct check_context *context, const struct placement *placement)
-{
-    const int32_t count = placement->velocity_count;
-    return count == 0 || (check_count(context, "num_velocity", placement->dim, count) &&
-                          check_finite(context, "velocity", placement->velocity, count));
 }
 
 static bool check_name(struct check_context *context, const char *name)
@@ -173,7 +143,38 @@ static bool check_name(struct check_context *context, const char *name)
            check_refuse(context, FMB_BAD_NAME, "name", NULL);
 }
 
-bool check_placement(struct check_context *context, const struct placement *placement)
+/* Applies the engine's rule for orientations, which depends on the dimension of the body only: any
+ * body of that dimension will do. */
+static bool check_orientation(struct check_context *context, int dim, struct fmb_placement *placed)
+{
+    static const struct fmb_body any[FMB_DIM_MAX + 1] = {
+        [2] = {.dim = 2, .frame_count = 1}, [3] = {.dim = 3, .frame_count = 1}};
+    placed->body = &any[dim];
+    return placed->orientation_count == 0 ||
+           (check_count(context, "num_orientation", dim == 2 ? 2 : 4, placed->orientation_count) &&
+            (fmb_placement_check(placed) == FMB_OK ||
+             check_refuse(context, FMB_BAD_ORIENTATION, "orientation",
+                          "zero, not finite, or components that differ by more than 2^200")));
+}
+
+/* Fills in the engine's placement on the way. */
+static bool check_pose(struct check_context *context, const struct placement *placement,
+                       struct fmb_placement *out)
+{
+    const int dim = placement->dim, velocities = placement->velocity_count;
+    *out = (struct fmb_placement){.orientation_count = placement->orientation_count};
+    memcpy(out->position, placement->position, sizeof out->position);
+    memcpy(out->orientation, placement->orientation, sizeof out->orientation);
+    if (!check_finite(context, "position", out->position, dim) ||
+        !check_orientation(context, dim, out))
+        return false;
+    memcpy(out->velocity, placement->velocity, sizeof out->velocity);
+    return velocities == 0 || (check_count(context, "num_velocity", dim, velocities) &&
+                               check_finite(context, "velocity", out->velocity, dim));
+}
+
+bool check_placement(struct check_context *context, const struct placement *placement,
+                     struct fmb_placement *out)
 {
     const int dim = placement->dim;
     if (!check_id(context, "body_id", placement->body_id) || !check_definition(context, placement))
@@ -183,23 +184,7 @@ bool check_placement(struct check_context *context, const struct placement *plac
     return (placement_by_handle(placement) ||
             (check_shapes(context, placement) && check_numbers(context, placement) &&
              check_sizes(context, placement))) &&
-           check_name(context, placement->name) &&
-           check_finite(context, "position", placement->position, dim) &&
-           check_orientation(context, placement) && check_velocity(context, placement);
-}
-
-bool check_body_dim(struct check_context *context, const struct placement *placement,
-                    const struct fmb_body *body)
-{
-    return placement->dim == body->dim || check_refuse(context, FMB_WRONG_DIMENSION, "dim",
-                                                       "not that of the body with this handle");
-}
-
-bool check_frames(struct check_context *context, int64_t frames, int64_t *total)
-{
-    *total += frames;
-    return *total <= FRAMES_MAX || check_refuse(context, FMB_OVER_LIMIT, "num_frames",
-                                                "more than 65536 frames in the query");
+           check_name(context, placement->name) && check_pose(context, placement, out);
 }
 
 /* ---- Queries ---- */

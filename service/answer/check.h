@@ -5,13 +5,15 @@
 
 #include "query.h"
 
+#include <stdbool.h>
+
 /* Context of a check: the part of the query that is being checked, and where to report. The name of
  * a field is formatted only if the field is wrong. */
 struct check_context {
-    int32_t *status;  /* of the result */
-    char *detail;     /* [QUERY_TEXT_MAX] of the result */
-    const char *part; /* list or struct in the query: "a", "placements"; NULL: the query itself */
-    int32_t index;    /* in the list, from 0; -1: the part is no list */
+    int32_t *status; /* of the result */
+    char *detail;    /* [QUERY_TEXT_MAX] of the result */
+    bool is_pair;    /* placements are called a and b */
+    int32_t index;   /* of the placement that is being checked; -1: the query itself */
 };
 
 /* Refuses the query: sets the status and a detail such as "b.numbers[4]: not a finite number". On
@@ -32,14 +34,9 @@ bool check_ids(struct check_context *context, int64_t client_id, int64_t sequenc
 bool check_request(struct check_context *context, double duration, int32_t method, int32_t want,
                    int32_t wants);
 
-/* All fields of a placement. Frames are valid if and only if fmb_frame_make() accepts them all. */
-bool check_placement(struct check_context *context, const struct placement *placement);
-
-/* For a placement that names its body by handle: its dimension must be that of the body found. */
-bool check_body_dim(struct check_context *context, const struct placement *placement,
-                    const struct fmb_body *body);
-
-/* Adds the frames of a body to *total, the sum over the query so far; it must not exceed 65,536. */
-bool check_frames(struct check_context *context, int64_t frames, int64_t *total);
+/* All fields of a placement. Frames are valid if and only if fmb_frame_make() accepts them all. On
+ * output: *out: the engine's placement, whose body and group the caller sets. */
+bool check_placement(struct check_context *context, const struct placement *placement,
+                     struct fmb_placement *out);
 
 #endif

@@ -29,14 +29,14 @@ static const int64_t server_id = 99;
 /* One input's service. */
 struct service {
     struct answerer *answerer;
-    struct scene_job *job;
-    struct pair_job *pair_job;
+    struct answer_job *job, *between_job;
     struct model model;
     /* Queried between the steps of a scene: the last pair that was good. Its results, to be checked
      * after the scene's. */
     bool has_pair;
     struct pair_query pair;
-    unsigned char *pair_bytes; /* owned: where its geometries are */
+    unsigned char *pair_bytes; /* owned: its message */
+    size_t pair_size;
     int between_count;
     struct pair_result between[BETWEEN_MAX];
 };
@@ -153,35 +153,26 @@ static void check_pair(struct service *service, const struct pair_query *query,
         FUZZ_CHECK(memcmp(&result->handle[f], &handle[f], sizeof handle[f]) == 0);
 }
 
-/* A pair that takes a job: the message is written again, and copied. */
-static void answer_in_steps(struct service *service, const struct pair_query *query,
-                            struct pair_result *result)
+/* The result as a client reads it. On input: a job that is idle. */
+static struct pair_result answer_to(struct answer_job *job, struct answerer *answerer,
+                                    const uint8_t *bytes, size_t size)
 {
-    static unsigned char bytes[QUERY_BYTES_MAX];
-    FUZZ_CHECK(!pair_job_begin(service->pair_job, service->answerer, bytes,
-                               wire_write_pair_query(query, bytes)));
-    while (!pair_job_step(service->pair_job))
+    static unsigned char written[QUERY_BYTES_MAX];
+    int32_t status;
+    FUZZ_CHECK(!answer_job_begin(job, ANSWER_PAIR, bytes, size));
+    while (!answer_job_step(job, answerer))
         ;
-    *result = *pair_job_end(service->pair_job, service->answerer);
-}
-
-/* The result as a client reads it. */
-static struct pair_result answer_to(struct service *service, const struct pair_query *query)
-{
-    static unsigned char bytes[QUERY_BYTES_MAX];
-    struct pair_result result;
-    if (!answer_pair(service->answerer, query, &result))
-        answer_in_steps(service, query, &result);
     const struct pair_result *read =
-        results_read_pair(bytes, wire_write_pair_result(&result, bytes));
+        results_read_pair(written, answer_job_write(job, 0, written, &status));
     FUZZ_CHECK(read);
     return *read;
 }
 
 /* Geometries of the query are in bytes; the service keeps these, or frees them. */
-static void query_pair(struct service *service, const struct pair_query *query, uint8_t *bytes)
+static void query_pair(struct service *service, const struct pair_query *query, uint8_t *bytes,
+                       size_t size)
 {
-    const struct pair_result result = answer_to(service, query);
+    const struct pair_result result = answer_to(service->job, service->answerer, bytes, size);
     check_pair(service, query, &result);
     if (!is_good_pair(query)) {
         free(bytes);
@@ -191,6 +182,7 @@ static void query_pair(struct service *service, const struct pair_query *query, 
     service->pair_bytes = bytes;
     service->has_pair = true;
     service->pair = *query;
+    service->pair_size = size;
 }
 
 /* The certificate is valid until the next result is read. */
@@ -199,7 +191,8 @@ static void query_between(struct service *service)
     if (!service->has_pair || service->between_count == BETWEEN_MAX)
         return;
     struct pair_result *result = &service->between[service->between_count++];
-    *result = answer_to(service, &service->pair);
+    *result =
+        answer_to(service->between_job, service->answerer, service->pair_bytes, service->pair_size);
     result->certificate = NULL;
 }
 
@@ -458,11 +451,11 @@ static void check_scene_echo(const struct scene_query *query, const struct scene
 static bool advance(struct service *service, const struct scene_query *query)
 {
     const bool stops = query->sequence_number % 4 == 3;
-    for (int steps = 1; !scene_job_step(service->job, service->answerer); steps++) {
+    for (int steps = 1; !answer_job_step(service->job, service->answerer); steps++) {
         if (steps >= STEPS_WITH_BODIES)
             query_between(service);
-        if (stops && scene_job_has_answers(service->job)) {
-            scene_job_stop(service->job);
+        if (stops && answer_job_has_answers(service->job)) {
+            answer_job_stop(service->job);
             return true;
         }
     }
@@ -479,10 +472,10 @@ static void query_scene(struct service *service, const struct scene_query *query
     if (total > PAIRS_MAX || size > QUERY_BYTES_MAX)
         return;
     service->between_count = 0;
-    FUZZ_CHECK(!scene_job_begin(service->job, bytes, size));
+    FUZZ_CHECK(!answer_job_begin(service->job, ANSWER_SCENE, bytes, size));
     const bool stopped = advance(service, query);
     const struct scene_result *read = results_read_scene(
-        written, wire_write_scene_result(scene_job_result(service->job), written));
+        written, wire_write_scene_result(answer_job_scene_result(service->job), written));
     FUZZ_CHECK(read);
     check_scene_echo(query, read);
     check_scene(service, query, read, (const unsigned(*)[2]) pair, total, stopped);
@@ -592,9 +585,9 @@ static void answer_query(struct service *service, const uint8_t *data, size_t si
     static struct scene_query scene;
     static struct definition_query definition;
     uint8_t *bytes = fuzz_copy(data, size);
-    if (!wire_read_pair_query(bytes, (uint32_t) size, &pair) &&
+    if (size <= QUERY_BYTES_MAX && !wire_read_pair_query(bytes, (uint32_t) size, &pair) &&
         !has_many_frames(pair.placement, 2) && !takes_too_long(pair.placement, 2, bytes, size)) {
-        query_pair(service, &pair, bytes);
+        query_pair(service, &pair, bytes, size);
         return;
     }
     if (!wire_read_scene_query(bytes, (uint32_t) size, &scene)) {
@@ -615,10 +608,10 @@ static struct service *begin(void)
     const struct answerer_options options = {
         FRAMES, server_id, {0x9e3779b97f4a7c15, 0xbf58476d1ce4e5b9}};
     if (!service.job) {
-        service.job = scene_job_create();
-        service.pair_job = pair_job_create();
+        service.job = answer_job_create();
+        service.between_job = answer_job_create();
         service.model.hasher = hasher_create();
-        FUZZ_CHECK(service.job && service.pair_job && service.model.hasher);
+        FUZZ_CHECK(service.job && service.between_job && service.model.hasher);
     }
     service.answerer = answerer_create(&options);
     FUZZ_CHECK(service.answerer);

@@ -68,7 +68,7 @@ finds() {
 }
 
 @test "answer finds a pair of a scene that is left out" {
-    finds answer-scene "n < result->verdict_count"
+    finds answer-job "n < result->verdict_count"
 }
 
 @test "scene_json finds a number that is not finite" {

@@ -1,6 +1,6 @@
 #include "seeds.h"
 
-#include "answer.h"
+#include "answer_now.h"
 #include "fuzz.h"
 #include "log_draft.h"
 #include "wire.h"
@@ -197,15 +197,15 @@ static void log_pair_result(struct pair_query query, int32_t status, bool right)
 
 static void log_scene(const struct scene_query *query)
 {
-    struct scene_job *job = scene_job_create();
+    struct answer_job *job = answer_job_create();
     FUZZ_CHECK(job);
     const size_t size = wire_write_scene_query(query, bytes);
     log_event(WIRE_SCENE_QUERY, size);
-    FUZZ_CHECK(!scene_job_begin(job, bytes, size));
-    while (!scene_job_step(job, service))
+    FUZZ_CHECK(!answer_job_begin(job, ANSWER_SCENE, bytes, size));
+    while (!answer_job_step(job, service))
         continue;
-    log_event(WIRE_SCENE_RESULT, wire_write_scene_result(scene_job_result(job), bytes));
-    scene_job_destroy(job);
+    log_event(WIRE_SCENE_RESULT, wire_write_scene_result(answer_job_scene_result(job), bytes));
+    answer_job_destroy(job);
 }
 
 /* All that the service holds, as a recorder writes it. */

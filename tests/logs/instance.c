@@ -1,5 +1,6 @@
 #include "instance.h"
 
+#include "answer_now.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -22,8 +23,7 @@ bool instance_open(struct instance *instance, struct tape *tape,
     for (int i = 0; i < INSTANCE_CHANNELS; i++)
         bus_channel(instance->channel[i], options->prefix, names[i]);
     instance->answerer = answerer_create(&answerer);
-    instance->job = scene_job_create();
-    instance->pair_job = pair_job_create();
+    instance->job = answer_job_create();
     if (instance->answerer && instance->job)
         return true;
     instance_close(instance);
@@ -34,8 +34,7 @@ void instance_close(struct instance *instance)
 {
     answerer_destroy(instance->answerer);
     if (instance->job)
-        scene_job_destroy(instance->job);
-    pair_job_destroy(instance->pair_job);
+        answer_job_destroy(instance->job);
 }
 
 /* ---- What goes onto the tape ---- */
@@ -95,14 +94,14 @@ static bool answer_pair_at(struct instance *instance, int64_t utime, const unsig
         return false;
     }
     if (size > QUERY_BYTES_MAX) {
-        answer_pair_refused(instance->answerer, &query, FMB_OVER_LIMIT, result);
+        size_t out = 0;
+        answer_refused(instance->answerer, ANSWER_PAIR, bytes, size, FMB_OVER_LIMIT, written, &out);
+        wire_read_pair_result(written, (uint32_t) out, result);
     } else {
-        if (!answer_pair(instance->answerer, &query, result)) {
-            pair_job_begin(instance->pair_job, instance->answerer, bytes, size);
-            while (!pair_job_step(instance->pair_job))
-                continue;
-            *result = *pair_job_end(instance->pair_job, instance->answerer);
-        }
+        answer_job_begin(instance->job, ANSWER_PAIR, bytes, size);
+        while (!answer_job_step(instance->job, instance->answerer))
+            continue;
+        *result = *answer_job_pair_result(instance->job);
         result->compute_ns = draw_int(&instance->draw, 300, 5000);
     }
     put_pair_result(instance, utime, result);
@@ -122,15 +121,15 @@ bool instance_hear_pair(struct instance *instance, const unsigned char *bytes, s
 
 static const struct scene_result *run_job(struct instance *instance)
 {
-    struct scene_job *job = instance->job;
+    struct answer_job *job = instance->job;
     int steps = 0;
-    while (!scene_job_step(job, instance->answerer))
-        if (instance->stop_after > 0 && scene_job_has_answers(job) &&
+    while (!answer_job_step(job, instance->answerer))
+        if (instance->stop_after > 0 && answer_job_has_answers(job) &&
             ++steps == instance->stop_after) {
-            scene_job_stop(job);
+            answer_job_stop(job);
             break;
         }
-    return scene_job_result(job);
+    return answer_job_scene_result(job);
 }
 
 static void refuse_scene(struct instance *instance, const unsigned char *bytes, size_t size,
@@ -153,7 +152,7 @@ bool instance_hear_scene(struct instance *instance, const unsigned char *bytes, 
     if (size > QUERY_BYTES_MAX) {
         refuse_scene(instance, bytes, size, FMB_OVER_LIMIT, result);
     } else {
-        scene_job_begin(instance->job, bytes, size);
+        answer_job_begin(instance->job, ANSWER_SCENE, bytes, size);
         *result = *run_job(instance);
         result->compute_ns = 4000 + 40 * result->verdict_count + draw_int(&instance->draw, 0, 3000);
     }

@@ -28,8 +28,7 @@ enum instance_channel {
 struct instance {
     struct tape *tape; /* not owned */
     struct answerer *answerer;
-    struct scene_job *job;
-    struct pair_job *pair_job;
+    struct answer_job *job;
     struct wire_status status; /* what it counts for its heartbeat */
     struct draw draw;          /* for the times that answers are said to have taken */
     char channel[INSTANCE_CHANNELS][BUS_CHANNEL_MAX];

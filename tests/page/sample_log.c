@@ -1,5 +1,6 @@
 #include "sample_log.h"
 
+#include "answer_now.h"
 #include "geometry_write.h"
 #include "wire.h"
 
@@ -14,7 +15,7 @@ void sample_begin(struct sample_log *log, const char *title)
     const struct answerer_options options = {.frames = 4096, .server_id = 1};
     *log = (struct sample_log){.page = page_open(title, begin_utime),
                                .answerer = answerer_create(&options),
-                               .job = scene_job_create(),
+                               .job = answer_job_create(),
                                .log = "drive.log",
                                .utime = begin_utime,
                                .event_number = 1,
@@ -27,7 +28,7 @@ bool sample_end(struct sample_log *log, FILE *out)
 {
     page_write(log->page, out);
     page_close(log->page);
-    scene_job_destroy(log->job);
+    answer_job_destroy(log->job);
     answerer_destroy(log->answerer);
     return fflush(out) == 0 && !ferror(out);
 }
@@ -90,16 +91,17 @@ void sample_scene(struct sample_log *log, const struct scene_query *query)
     sent = *query;
     for (int32_t i = 0; i < query->placement_count; i++)
         sent.placement[i] = as_sent(&query->placement[i]);
-    if (scene_job_begin(log->job, bytes, wire_write_scene_query(&sent, bytes)))
+    if (answer_job_begin(log->job, ANSWER_SCENE, bytes, wire_write_scene_query(&sent, bytes)))
         abort();
-    while (!scene_job_step(log->job, log->answerer))
+    while (!answer_job_step(log->job, log->answerer))
         continue;
-    struct scene_result *now = scene_job_result(log->job);
-    now->compute_ns = 52300;
-    then = *now;
+    static struct scene_result now;
+    now = *answer_job_scene_result(log->job);
+    now.compute_ns = 52300;
+    then = now;
     if (log->alter_scene)
         log->alter_scene(&then);
-    struct replayed replayed = {.scene = query, .scene_now = now, .scene_then = &then};
+    struct replayed replayed = {.scene = query, .scene_now = &now, .scene_then = &then};
     take(log, &replayed, log->alter_scene != NULL);
 }
 

@@ -9,7 +9,7 @@
 struct sample_log {
     struct page *page;
     struct answerer *answerer;
-    struct scene_job *job;
+    struct answer_job *job;
     const char *log;                     /* path on the page */
     int64_t utime, event_number, offset; /* of the next query */
     /* Alters the recorded result of the next query, which makes its outcome DIFFERENT; NULL: none.

@@ -1,6 +1,6 @@
 #include "log_world.h"
 
-#include "answer.h"
+#include "answer_now.h"
 #include "geometry_write.h"
 #include "log_write.h"
 #include "wire.h"
@@ -20,7 +20,7 @@ struct making {
     const struct world_options *options;
     struct log_world *world;
     struct answerer *answerer;
-    struct scene_job *job;
+    struct answer_job *job;
     double now;
     int64_t sequence;
     struct handle handle[CLIENTS][BODIES + 1]; /* [client][body]: of a result; all 0: none */
@@ -119,7 +119,7 @@ static void start_service(struct making *making, int life, size_t frames)
 
 static void open_making(struct making *making, size_t frames)
 {
-    making->job = scene_job_create();
+    making->job = answer_job_create();
     assert_non_null(making->job);
     start_service(making, 0, frames);
 }
@@ -127,16 +127,16 @@ static void open_making(struct making *making, size_t frames)
 static void close_making(struct making *making)
 {
     answerer_destroy(making->answerer);
-    scene_job_destroy(making->job);
+    answer_job_destroy(making->job);
 }
 
 /* In: the query, in bytes. */
 static const struct scene_result *answer_scene(struct making *making, size_t size)
 {
-    assert_null(scene_job_begin(making->job, bytes, size));
-    while (!scene_job_step(making->job, making->answerer))
+    assert_null(answer_job_begin(making->job, ANSWER_SCENE, bytes, size));
+    while (!answer_job_step(making->job, making->answerer))
         continue;
-    return scene_job_result(making->job);
+    return answer_job_scene_result(making->job);
 }
 
 /* ---- Bodies ---- */

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE /* pipe2() */
 #include "relay.h"
 
+#include "answer_now.h"
 #include "clock.h"
 #include "wire.h"
 
@@ -102,26 +103,18 @@ static size_t refuse_busy(struct relay *relay, const struct bus_message *message
 static size_t answer(struct relay *relay, struct answerer *service,
                      const struct bus_message *message, unsigned char out[QUERY_BYTES_MAX])
 {
-    struct pair_query query;
-    struct pair_result result;
+    int32_t status;
     const uint32_t size = (uint32_t) message->size;
     switch (message->listener) {
     case RELAY_PAIR:
-        if (wire_read_pair_query(message->bytes, size, &query))
-            return 0;
-        if (answer_pair(service, &query, &result))
-            return wire_write_pair_result(&result, out);
-        if (pair_job_begin(relay->pair_job, service, message->bytes, size))
-            return 0;
-        while (!pair_job_step(relay->pair_job))
-            continue;
-        return wire_write_pair_result(pair_job_end(relay->pair_job, service), out);
     case RELAY_SCENE:
-        if (scene_job_begin(relay->job, message->bytes, size))
+        if (answer_job_begin(relay->job,
+                             message->listener == RELAY_PAIR ? ANSWER_PAIR : ANSWER_SCENE,
+                             message->bytes, size))
             return 0;
-        while (!scene_job_step(relay->job, service))
+        while (!answer_job_step(relay->job, service))
             continue;
-        return wire_write_scene_result(scene_job_result(relay->job), out);
+        return answer_job_write(relay->job, 0, out, &status);
     default:
         if (wire_read_definition_query(message->bytes, size, &relay->definition_query))
             return 0;
@@ -223,9 +216,8 @@ void relay_open(struct relay *relay, size_t frames)
     for (int kind = 0; kind < RELAY_KINDS; kind++)
         assert_true(bus_listen(relay->bus, channel[kind], why));
     relay->service[0] = start(frames);
-    relay->job = scene_job_create();
-    relay->pair_job = pair_job_create();
-    assert_true(relay->job && relay->pair_job);
+    relay->job = answer_job_create();
+    assert_non_null(relay->job);
     make_recursive(&relay->lock);
     assert_int_equal(pipe2(relay->stop, O_CLOEXEC), 0);
     assert_int_equal(pthread_create(&relay->thread, NULL, serve, relay), 0);
@@ -237,8 +229,7 @@ void relay_close(struct relay *relay)
     pthread_join(relay->thread, NULL);
     for (int i = 0; i < RELAY_SERVICES; i++)
         answerer_destroy(relay->service[i]);
-    scene_job_destroy(relay->job);
-    pair_job_destroy(relay->pair_job);
+    answer_job_destroy(relay->job);
     bus_close(relay->bus);
     close(relay->stop[0]);
     close(relay->stop[1]);

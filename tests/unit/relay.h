@@ -49,8 +49,7 @@ struct relay {
     pthread_t thread;
     int stop[2];
     struct bus *bus;
-    struct scene_job *job;
-    struct pair_job *pair_job;
+    struct answer_job *job;
     struct scene_result result;
     struct definition_query definition_query;
     struct definition definition;

@@ -187,19 +187,19 @@ enum fmb_status scene_decide(const struct scene_query *query, const unsigned pai
 
 /* ---- Answers ---- */
 
-void scene_begin(struct scene_job *job, const struct scene_query *query)
+void scene_begin(struct answer_job *job, const struct scene_query *query)
 {
     static unsigned char bytes[QUERY_BYTES_MAX];
-    assert_null(scene_job_begin(job, bytes, wire_write_scene_query(query, bytes)));
+    assert_null(answer_job_begin(job, ANSWER_SCENE, bytes, wire_write_scene_query(query, bytes)));
 }
 
-void scene_answer(struct scene_job *job, struct answerer *answerer, const struct scene_query *query,
-                  struct scene_result *out)
+void scene_answer(struct answer_job *job, struct answerer *answerer,
+                  const struct scene_query *query, struct scene_result *out)
 {
     scene_begin(job, query);
-    while (!scene_job_step(job, answerer))
+    while (!answer_job_step(job, answerer))
         continue;
-    *out = *scene_job_result(job);
+    *out = *answer_job_scene_result(job);
 }
 
 /* ---- A result, read from its beginning ---- */

@@ -47,11 +47,11 @@ enum fmb_status scene_decide(const struct scene_query *query, const unsigned pai
                              struct fmb_answer *answer);
 
 /* Begins with the query as a message; it must fit. */
-void scene_begin(struct scene_job *job, const struct scene_query *query);
+void scene_begin(struct answer_job *job, const struct scene_query *query);
 
 /* The result of a query that is not interrupted. */
-void scene_answer(struct scene_job *job, struct answerer *answerer, const struct scene_query *query,
-                  struct scene_result *out);
+void scene_answer(struct answer_job *job, struct answerer *answerer,
+                  const struct scene_query *query, struct scene_result *out);
 
 /* Fails the running test where the result is not, to the bit, the answer to the pairs from
  * first_pair to end_pair. whole: the query with every placement whole. */

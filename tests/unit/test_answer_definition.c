@@ -1,5 +1,5 @@
 /* What a definition query gets: by handle, or all bodies that are held, page by page. */
-#include "answer.h"
+#include "answer_now.h"
 #include "geometry_write.h"
 #include "scene_truth.h"
 #include "wire.h"

@@ -1,7 +1,7 @@
 /* What a scene query gets: the answers of fmb_decide() to each of its pairs, to the bit; as many as
  * one datagram has space for, and the remainder on request; in steps, which may be interrupted; or
  * what is wrong, and where. */
-#include "answer.h"
+#include "answer_now.h"
 #include "geometry_write.h"
 #include "scene_truth.h"
 #include "wire.h"
@@ -22,7 +22,7 @@
 enum { BODIES = 40 };
 
 static struct answerer *answerer;
-static struct scene_job *job, *second_job;
+static struct answer_job *job, *second_job;
 static struct scene scene;
 static struct scene_query *const query = &scene.query;
 static struct scene_query other;
@@ -35,8 +35,8 @@ static int set_up(void **state)
     const struct answerer_options options = {BODIES, .server_id = 99,
                                              .secret = {0x243f6a8885a308d3, 0x13198a2e03707344}};
     answerer = answerer_create(&options);
-    job = scene_job_create();
-    second_job = scene_job_create();
+    job = answer_job_create();
+    second_job = answer_job_create();
     memset(&scene, 0, sizeof scene);
     query->duration = 1;
     query->which = FMB_PAIRS_ALL;
@@ -46,8 +46,8 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     (void) state;
-    scene_job_destroy(job);
-    scene_job_destroy(second_job);
+    answer_job_destroy(job);
+    answer_job_destroy(second_job);
     answerer_destroy(answerer);
     return 0;
 }
@@ -502,10 +502,10 @@ static void test_too_many_placements(void **state)
     bytes[COUNT_AT + 3] = (QUERY_PLACEMENTS_MAX + 1) & 0xff;
     for (size_t i = 0; i <= QUERY_PLACEMENTS_MAX; i++) /* an empty name has a length of 1 */
         bytes[COUNT_AT + 4 + i * PLACEMENT + NAME + 3] = 1;
-    assert_null(scene_job_begin(job, bytes, size));
-    assert_true(scene_job_step(job, answerer));
-    assert_int_equal(scene_job_result(job)->status, FMB_OVER_LIMIT);
-    assert_string_equal(scene_job_result(job)->detail, "num_placements: more than 829");
+    assert_null(answer_job_begin(job, ANSWER_SCENE, bytes, size));
+    assert_true(answer_job_step(job, answerer));
+    assert_int_equal(answer_job_scene_result(job)->status, FMB_OVER_LIMIT);
+    assert_string_equal(answer_job_scene_result(job)->detail, "num_placements: more than 829");
 }
 
 static void test_bad_counts(void **state)
@@ -746,10 +746,10 @@ static void test_bytes_that_are_no_query(void **state)
     (void) state;
     set_row(2);
     const size_t size = wire_write_scene_query(query, bytes);
-    assert_non_null(scene_job_begin(job, bytes, size - 1));
-    assert_non_null(scene_job_begin(job, bytes, QUERY_BYTES_MAX + 1));
-    assert_non_null(scene_job_begin(job, NULL, 0));
-    assert_null(scene_job_begin(job, bytes, size));
+    assert_non_null(answer_job_begin(job, ANSWER_SCENE, bytes, size - 1));
+    assert_non_null(answer_job_begin(job, ANSWER_SCENE, bytes, QUERY_BYTES_MAX + 1));
+    assert_non_null(answer_job_begin(job, ANSWER_SCENE, NULL, 0));
+    assert_null(answer_job_begin(job, ANSWER_SCENE, bytes, size));
 }
 
 /* ---- Handles ---- */
@@ -991,9 +991,9 @@ static void test_queries_between_steps_do_not_show(void **state)
             answer_and_check(query);
             again = result;
             scene_begin(job, query);
-            for (; !scene_job_step(job, answerer); steps++)
+            for (; !answer_job_step(job, answerer); steps++)
                 evict_all();
-            const struct scene_result *stepwise = scene_job_result(job);
+            const struct scene_result *stepwise = answer_job_scene_result(job);
             scene_assert(query, stepwise);
             assert_int_equal(stepwise->end_pair, again.end_pair);
             assert_memory_equal(stepwise->handle, again.handle, 36 * sizeof(struct handle));
@@ -1012,12 +1012,12 @@ static void test_a_scene_without_answers_stops_as_busy(void **state)
         bool complete = false;
         for (int i = 0; i < steps; i++) {
             assert_false(complete);
-            complete = scene_job_step(job, answerer);
+            complete = answer_job_step(job, answerer);
         }
-        if (complete || scene_job_has_answers(job))
+        if (complete || answer_job_has_answers(job))
             break;
-        scene_job_stop(job);
-        result = *scene_job_result(job);
+        answer_job_stop(job);
+        result = *answer_job_scene_result(job);
         assert_int_equal(result.status, FMB_BUSY);
         assert_int_equal(result.header.sequence_number, query->sequence_number);
         assert_int_equal(result.end_pair + result.verdict_count + result.handle_count, 0);
@@ -1047,10 +1047,10 @@ static void test_two_jobs_at_once(void **state)
         while (!complete[0] || !complete[1]) {
             const int turn = draw_int(&draw, 0, 1);
             if (!complete[turn])
-                complete[turn] = scene_job_step(turn ? second_job : job, answerer);
+                complete[turn] = answer_job_step(turn ? second_job : job, answerer);
         }
-        scene_assert(query, scene_job_result(job));
-        scene_assert(&second.query, scene_job_result(second_job));
+        scene_assert(query, answer_job_scene_result(job));
+        scene_assert(&second.query, answer_job_scene_result(second_job));
     }
 }
 
@@ -1063,7 +1063,7 @@ static void test_begun_anew(void **state)
         set_heap(60, 3, true, true);
         scene_begin(job, query);
         for (int i = 0; i < steps; i++)
-            scene_job_step(job, answerer);
+            answer_job_step(job, answerer);
         set_row(3);
         answer_and_check(query);
     }
@@ -1094,12 +1094,12 @@ static void test_scenes_that_are_stopped(void **state)
                  query->first_pair = result.end_pair) {
                 int more = draw_int(&draw, 0, 1);
                 scene_begin(job, query);
-                while (!scene_job_step(job, answerer))
-                    if (scene_job_has_answers(job) && more-- == 0) {
-                        scene_job_stop(job);
+                while (!answer_job_step(job, answerer))
+                    if (answer_job_has_answers(job) && more-- == 0) {
+                        answer_job_stop(job);
                         break;
                     }
-                result = *scene_job_result(job);
+                result = *answer_job_scene_result(job);
                 scene_assert(query, &result);
                 assert_fits();
                 parts++;
@@ -1133,19 +1133,19 @@ static void test_exact_pairs_are_one_a_step(void **state)
     int steps = 0;
     set_slivers(8);
     scene_begin(job, query);
-    while (!scene_job_step(job, answerer))
-        steps += scene_job_has_answers(job);
-    scene_assert(query, scene_job_result(job));
+    while (!answer_job_step(job, answerer))
+        steps += answer_job_has_answers(job);
+    scene_assert(query, answer_job_scene_result(job));
     assert_in_range(steps, 8 * 7 / 2 - 2, 8 * 7 / 2);
     for (query->first_pair = 0; query->first_pair < 8 * 7 / 2; query->first_pair++) {
         set_slivers(8);
         scene_begin(job, query);
         bool complete = false;
-        while (!scene_job_has_answers(job) && !complete)
-            complete = scene_job_step(job, answerer);
+        while (!answer_job_has_answers(job) && !complete)
+            complete = answer_job_step(job, answerer);
         if (!complete)
-            scene_job_stop(job);
-        result = *scene_job_result(job);
+            answer_job_stop(job);
+        result = *answer_job_scene_result(job);
         scene_assert(query, &result);
         assert_int_equal(result.end_pair, query->first_pair + 1);
         other = *query;
@@ -1170,11 +1170,11 @@ static void test_steps_are_short(void **state)
         query->method = fmb_method_by_name(each[i].method)->number;
         query->want = each[i].want;
         scene_begin(job, query);
-        while (!scene_job_has_answers(job))
-            assert_false(scene_job_step(job, answerer));
-        scene_job_stop(job);
-        scene_assert(query, scene_job_result(job));
-        assert_true(scene_job_result(job)->end_pair <= each[i].pairs);
+        while (!answer_job_has_answers(job))
+            assert_false(answer_job_step(job, answerer));
+        answer_job_stop(job);
+        scene_assert(query, answer_job_scene_result(job));
+        assert_true(answer_job_scene_result(job)->end_pair <= each[i].pairs);
     }
 }
 

@@ -3,7 +3,7 @@
 #include "compare.h"
 #include "geometry_write.h"
 
-#include "answer.h"
+#include "answer_now.h"
 #include "wire.h"
 
 #include <float.h>
@@ -20,7 +20,7 @@
 static const struct compare_options exact = {.tolerance = 0};
 
 static struct answerer *answerer;
-static struct scene_job *job;
+static struct answer_job *job;
 
 static uint64_t drawn;
 
@@ -50,14 +50,14 @@ static int set_up(void **state)
     drawn = 1;
     const struct answerer_options options = {.frames = 2000, .server_id = 99, .secret = {1, 2}};
     answerer = answerer_create(&options);
-    job = scene_job_create();
+    job = answer_job_create();
     return answerer && job ? 0 : -1;
 }
 
 static int tear_down(void **state)
 {
     (void) state;
-    scene_job_destroy(job);
+    answer_job_destroy(job);
     answerer_destroy(answerer);
     return 0;
 }
@@ -614,10 +614,10 @@ static size_t now_size;
 static void answer_now(void)
 {
     static unsigned char query[QUERY_BYTES_MAX];
-    assert_null(scene_job_begin(job, query, wire_write_scene_query(&scene, query)));
-    while (!scene_job_step(job, answerer))
+    assert_null(answer_job_begin(job, ANSWER_SCENE, query, wire_write_scene_query(&scene, query)));
+    while (!answer_job_step(job, answerer))
         continue;
-    now_size = wire_write_scene_result(scene_job_result(job), now_bytes);
+    now_size = wire_write_scene_result(answer_job_scene_result(job), now_bytes);
     memcpy(then_bytes, now_bytes, now_size);
     assert_null(wire_read_scene_result(now_bytes, (uint32_t) now_size, &now));
     then = now;

@@ -4,7 +4,7 @@
 #include "log_draft.h"
 #include "replay_report.h"
 
-#include "answer.h"
+#include "answer_now.h"
 #include "wire.h"
 
 #include <malloc.h>
@@ -656,7 +656,7 @@ struct delayed {
 
 static struct {
     struct answerer *answerer;
-    struct scene_job *job;
+    struct answer_job *job;
     int64_t number[CLIENTS];
     struct {
         bool held; /* as far as the client knows */
@@ -689,7 +689,7 @@ static void make_world(void)
     const struct answerer_options small = {.frames = 6, .server_id = 99, .secret = {1, 2}};
     memset(&world, 0, sizeof world);
     world.answerer = answerer_create(&small);
-    world.job = scene_job_create();
+    world.job = answer_job_create();
     assert_true(world.answerer && world.job);
 }
 
@@ -697,7 +697,7 @@ static void end_world(void)
 {
     for (int i = 0; i < world.delayed_count; i++)
         free(world.delayed[i].bytes);
-    scene_job_destroy(world.job);
+    answer_job_destroy(world.job);
     answerer_destroy(world.answerer);
 }
 
@@ -852,16 +852,17 @@ static void log_scene_query(int ways, int64_t at, int client)
         query.index_count += 2;
     }
     const size_t size = wire_write_scene_query(&query, query_bytes);
-    assert_null(scene_job_begin(world.job, query_bytes, size));
+    assert_null(answer_job_begin(world.job, ANSWER_SCENE, query_bytes, size));
     bool complete;
     do { /* one that is stopped early has fewer pairs */
-        complete = scene_job_step(world.job, world.answerer);
-        if (!complete && draw(3) == 0 && scene_job_has_answers(world.job)) {
-            scene_job_stop(world.job);
+        complete = answer_job_step(world.job, world.answerer);
+        if (!complete && draw(3) == 0 && answer_job_has_answers(world.job)) {
+            answer_job_stop(world.job);
             complete = true;
         }
     } while (!complete);
-    struct scene_result *result = scene_job_result(world.job);
+    static struct scene_result now, *result = &now;
+    now = *answer_job_scene_result(world.job);
     for (int i = 0; i < query.placement_count; i++)
         learn_status(client, &query.placement[i], result->status);
     if (at < 0)

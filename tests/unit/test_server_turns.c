@@ -308,8 +308,7 @@ static void test_the_longest_job_is_the_one_to_stop(void **state)
     static struct jobs jobs;
     assert_true(jobs_init(&jobs));
     for (int client = 0; client < 3; client++) {
-        struct job *job = jobs_take(&jobs, client);
-        job->is_pair = true;
+        struct job *job = jobs_take(&jobs, client, SERVER_PAIRS);
         job->used_ns = used_s[client] * JOBS_PATIENCE_NS;
     }
     assert_int_equal(jobs_longest(&jobs)->client, 1);
@@ -324,8 +323,7 @@ static void test_the_last_job_stops_early(void **state)
     struct job *job[JOBS];
     assert_true(jobs_init(&jobs));
     for (int client = 0; client < JOBS; client++) {
-        job[client] = jobs_take(&jobs, client);
-        job[client]->is_pair = true;
+        job[client] = jobs_take(&jobs, client, SERVER_PAIRS);
         job[client]->used_ns = 2 * JOBS_BRIEF_NS;
     }
     assert_ptr_equal(jobs_longest(&jobs), job[JOBS - 1]);
@@ -333,9 +331,8 @@ static void test_the_last_job_stops_early(void **state)
     assert_ptr_equal(jobs_longest(&jobs), job[JOBS - 1]);
     jobs_give_back(&jobs, job[JOBS - 1]);
     assert_ptr_equal(jobs_longest(&jobs), job[JOBS - 2]);
-    job[3] = jobs_take(&jobs, 3);
+    job[3] = jobs_take(&jobs, 3, SERVER_PAIRS);
     assert_null(jobs_longest(&jobs));
-    job[3]->is_pair = true;
     job[3]->used_ns = 2 * JOBS_BRIEF_NS;
     assert_ptr_equal(jobs_longest(&jobs), job[3]);
     jobs_release(&jobs);

@@ -3,4 +3,4 @@
 #define fmb_scene_begin(scene, limits, memory, out)        \
     ((scene)->ignored_count -= (scene)->ignored_count > 0, \
      fmb_scene_begin(scene, limits, memory, out))
-#include "answer_scene.c"
+#include "answer_job.c"

@@ -1,0 +1,752 @@
+/* Answers pair and scene queries in stages: CHECKING the fields, FINDING bodies by handle, ADDING
+ * bodies that have frames, DECIDING, COMPLETE. answer_job_step() does a
+ * part of one stage; a refused query is COMPLETE at once. A pair of bodies of several frames is a
+ * scene of one listed pair; a pair of frames is decided at once. */
+#include "answerer.h"
+
+#include "body.h"
+#include "check.h"
+#include "wire.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The largest number of bodies found in one step: tens of microseconds. A step makes at most
+ * BODY_PORTION frames. */
+enum { STEP_PLACEMENTS = 32 };
+
+enum answer_stage { IDLE, CHECKING, FINDING, ADDING, DECIDING, COMPLETE };
+
+/* The body of a placement. */
+struct used_body {
+    const struct fmb_body *body;
+    const struct cached *cached; /* pinned, to be released; NULL: made for this query only */
+};
+
+struct answer_job {
+    enum answer_stage stage;
+    bool is_pair;
+    struct answerer *answerer; /* NULL: no body is in use */
+    struct check_context context;
+    const struct placement *placements; /* of the query */
+    int32_t placement_count;
+    int32_t next;        /* the next placement in FINDING and ADDING */
+    int64_t frames;      /* of the placements before next in FINDING, then of all */
+    bool several_frames; /* of a body */
+    long capacity;       /* bytes of the result of a scene that are left for answers */
+    struct fmb_scene scene;
+    struct fmb_scene_state *state; /* in memory */
+    void *memory;                  /* owned; fmb_scene_bytes(&limits) bytes */
+    struct used_body used[QUERY_PLACEMENTS_MAX];
+    struct fmb_placement placed[QUERY_PLACEMENTS_MAX];
+    struct query_marks marks;
+    struct pair_query pair;
+    struct pair_result pair_result;
+    char certificate[FMB_CERTIFICATE_MAX]; /* of the pair result, if it has one */
+    struct scene_result result;
+    struct scene_query query;
+    struct query_bodies bodies;
+    unsigned char bytes[ANSWER_MESSAGE_MAX]; /* the message; the geometries point into it */
+};
+
+static const struct fmb_scene_limits limits = {.placements = QUERY_PLACEMENTS_MAX,
+                                               .frames = FMB_FRAMES_MAX,
+                                               .ignored = QUERY_PAIRS_MAX,
+                                               .slots = FMB_SCENE_SLOTS};
+
+struct answer_job *answer_job_create(void)
+{
+    struct answer_job *job = aligned_alloc(_Alignof(struct answer_job), sizeof *job);
+    if (!job)
+        return NULL;
+    job->stage = IDLE;
+    job->is_pair = false;
+    job->answerer = NULL;
+    job->memory = malloc(fmb_scene_bytes(&limits));
+    if (!job->memory) {
+        free(job);
+        return NULL;
+    }
+    return job;
+}
+
+void answer_job_destroy(struct answer_job *job)
+{
+    if (!job)
+        return;
+    free(job->memory);
+    free(job);
+}
+
+/* Releases the bodies of a query in progress, which ends it. */
+static void release(struct answer_job *job)
+{
+    for (int32_t i = 0; job->answerer && i < job->placement_count; i++)
+        if (job->used[i].cached)
+            cache_release(job->answerer->cache, job->used[i].cached);
+    job->answerer = NULL;
+}
+
+static enum answer_stage complete(struct answer_job *job)
+{
+    release(job);
+    return COMPLETE;
+}
+
+/* The context of a check of placement i; of the whole query if i is -1. */
+static struct check_context *at(struct answer_job *job, int32_t i)
+{
+    job->context.index = i;
+    return &job->context;
+}
+
+/* ---- Checking ---- */
+
+static bool check_placements(struct answer_job *job)
+{
+    for (int32_t i = 0; i < job->placement_count; i++) {
+        const struct placement *placement = &job->placements[i];
+        if (!check_placement(at(job, i), placement, &job->placed[i]))
+            return false;
+        if (!job->is_pair && placement->dim != job->placements[0].dim)
+            return check_refuse(at(job, i), FMB_DIMENSIONS_DIFFER, "dim", NULL);
+        job->placed[i].group = job->is_pair ? 0 : placement->group; /* groups are of scenes */
+    }
+    return true;
+}
+
+static bool check_pair(struct answer_job *job)
+{
+    const struct pair_query *query = &job->pair;
+    struct check_context *context = at(job, -1);
+    return check_ids(context, query->client_id, query->sequence_number) &&
+           check_request(context, query->duration, query->method, query->want,
+                         FMB_WANT_BOX | FMB_WANT_CERTIFICATE | FMB_WANT_GAP) &&
+           check_placements(job) &&
+           (query->placement[0].dim == query->placement[1].dim ||
+            check_refuse(at(job, -1), FMB_DIMENSIONS_DIFFER, "dim", NULL));
+}
+
+/* Number of pairs that are_valid_pairs() checks at once. */
+enum { PAIR_GROUP = 16 };
+
+/* Whether each of PAIR_GROUP pairs has two different indices below placements. Compilers vectorize
+ * the loop only if the function is not inlined. */
+static bool __attribute__((noinline))
+are_valid_pairs(const unsigned (*restrict pair)[2], unsigned placements)
+{
+    unsigned bad = 0;
+    for (int i = 0; i < PAIR_GROUP; i++)
+        bad |= (unsigned) (pair[i][0] >= placements) | (unsigned) (pair[i][1] >= placements) |
+               (unsigned) (pair[i][0] == pair[i][1]);
+    return !bad;
+}
+
+static bool check_pair_at(struct check_context *context, const char *field, const unsigned pair[2],
+                          int32_t i, unsigned placements)
+{
+    const bool inside = pair[0] < placements && pair[1] < placements;
+    return (inside && pair[0] != pair[1]) ||
+           check_refuse_at(context, FMB_BAD_PAIR, field, 2 * i + (pair[0] < placements),
+                           inside ? "a placement against itself" : "no placement has this index");
+}
+
+/* Checks count pairs: whole groups of PAIR_GROUP at once, the pairs of an invalid group and the
+ * remainder one by one. */
+static bool check_indices(struct check_context *context, const char *field,
+                          const unsigned (*pair)[2], int32_t count, int32_t placements)
+{
+    const unsigned end = (unsigned) placements;
+    for (int32_t i = 0; i < count; i++) {
+        const bool many = i % PAIR_GROUP == 0 && i + PAIR_GROUP <= count;
+        if (many && are_valid_pairs(pair + i, end))
+            i += PAIR_GROUP - 1;
+        else if (!check_pair_at(context, field, pair[i], i, end))
+            return false;
+    }
+    return true;
+}
+
+/* No listed pair may be ignored. */
+static bool check_ignored(struct check_context *context, struct answer_job *job)
+{
+    const struct scene_query *query = &job->query;
+    if (query->ignored_count == 0 || query->index_count == 0)
+        return true;
+    query_marks_clear(&job->marks, (unsigned) query->placement_count);
+    for (int32_t i = 0; i < query->ignored_count / 2; i++)
+        query_mark(&job->marks, query->ignored[i]);
+    for (int32_t i = 0; i < query->index_count / 2; i++)
+        if (query_is_marked(&job->marks, query->pair[i]))
+            return check_refuse_at(context, FMB_BAD_PAIR, "indices", 2 * i, "a pair to ignore");
+    return true;
+}
+
+/* No listed pair may be within a group. */
+static bool check_groups(struct check_context *context, const struct scene_query *query)
+{
+    const struct placement *placement = query->placement;
+    bool groups = false;
+    for (int32_t i = 0; i < query->placement_count; i++)
+        groups = groups || placement[i].group;
+    for (int32_t i = 0; groups && i < query->index_count / 2; i++) {
+        const int64_t group = placement[query->pair[i][0]].group;
+        if (group && group == placement[query->pair[i][1]].group)
+            return check_refuse_at(context, FMB_BAD_PAIR, "indices", 2 * i, "a pair of one group");
+    }
+    return true;
+}
+
+/* The arrays of scene_query hold all pairs that a message of QUERY_BYTES_MAX can have; but a
+ * message can have more placements, of dimension 0, than the array holds. */
+static bool check_counts(struct check_context *context, const struct scene_query *query)
+{
+    char reason[32];
+    assert(query->index_count <= 2 * QUERY_PAIRS_MAX);
+    snprintf(reason, sizeof reason, "more than %d", (int) QUERY_PLACEMENTS_MAX);
+    if (query->placement_count > QUERY_PLACEMENTS_MAX)
+        return check_refuse(context, FMB_OVER_LIMIT, "num_placements", reason);
+    if (query->index_count % 2)
+        return check_refuse(context, FMB_WRONG_COUNT, "num_indices", "not two for each pair");
+    if (query->index_count > 0 && query->which != FMB_PAIRS_LISTED)
+        return check_refuse(context, FMB_WRONG_COUNT, "num_indices",
+                            "indices without PAIRS_LISTED");
+    if (query->ignored_count % 2)
+        return check_refuse(context, FMB_WRONG_COUNT, "num_ignored", "not two for each pair");
+    return true;
+}
+
+/* The engine's scene, without its placements. On input: a query whose counts, method and which were
+ * checked. Ignored pairs of a listed scene are left out, since no listed pair may be ignored. */
+static struct fmb_scene scene_of(const struct scene_query *query)
+{
+    const bool listed = query->which == FMB_PAIRS_LISTED;
+    return (struct fmb_scene){.placement_count = (size_t) query->placement_count,
+                              .duration = query->duration,
+                              .instant = query->duration == 0,
+                              .method = fmb_method_by_number(query->method),
+                              .want = (unsigned) query->want,
+                              .margin = query->margin,
+                              .which = (enum fmb_pairs) query->which,
+                              .split = (size_t) query->split,
+                              .pairs = query->pair,
+                              .pair_count = (size_t) query->index_count / 2,
+                              .ignored = query->ignored,
+                              .ignored_count = listed ? 0 : (size_t) query->ignored_count / 2,
+                              .first_pair = (unsigned long long) query->first_pair};
+}
+
+static bool check_which(struct check_context *context, const struct scene_query *query)
+{
+    const struct fmb_method *method = fmb_method_by_number(query->method);
+    const bool across = query->which == FMB_PAIRS_ACROSS;
+    if (query->which < FMB_PAIRS_ALL || query->which > FMB_PAIRS_ACROSS)
+        return check_refuse(context, FMB_UNKNOWN_WANT, "which", NULL);
+    if (query->split < 0 || query->split > (across ? query->placement_count : 0))
+        return check_refuse(context, FMB_BAD_PAIR, "split",
+                            across ? "not from 0 to num_placements" : "not 0");
+    const struct fmb_scene scene = scene_of(query);
+    if (query->first_pair < 0 || scene.first_pair > fmb_scene_pair_count(&scene))
+        return check_refuse(context, FMB_BAD_PAIR, "first_pair", "there are not so many");
+    if (query->which != FMB_PAIRS_LISTED && !method->certain)
+        return check_refuse(context, FMB_CANNOT_DECIDE, "method", "listed pairs alone");
+    return true;
+}
+
+static bool check_margin(struct check_context *context, const struct scene_query *query)
+{
+    return (query->margin >= 0 && isfinite(query->margin)) ||
+           check_refuse(context, FMB_BAD_MARGIN, "margin", "negative or not finite");
+}
+
+static bool check_scene(struct answer_job *job)
+{
+    const struct scene_query *query = &job->query;
+    struct check_context *context = at(job, -1);
+    const int32_t want = query->want | (query->margin > 0 ? FMB_WANT_GAP : 0);
+    return check_ids(context, query->client_id, query->sequence_number) &&
+           check_margin(context, query) &&
+           check_request(context, query->duration, query->method, want,
+                         FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP) &&
+           check_counts(context, query) && check_which(context, query) && check_placements(job) &&
+           check_indices(at(job, -1), "indices", query->pair, query->index_count / 2,
+                         query->placement_count) &&
+           check_indices(context, "ignored", query->ignored, query->ignored_count / 2,
+                         query->placement_count) &&
+           check_groups(context, query) && check_ignored(context, job);
+}
+
+/* The end of the placements of this step. If there are several steps, prefetches their bodies. */
+static int32_t step_end(const struct answer_job *job)
+{
+    const int32_t left = job->placement_count - job->next;
+    const int32_t end = job->next + (left < STEP_PLACEMENTS ? left : STEP_PLACEMENTS);
+    for (int32_t i = job->next; job->placement_count > STEP_PLACEMENTS && i < end; i++)
+        cache_prefetch(job->answerer->cache, &job->placements[i]);
+    return end;
+}
+
+static void begin_result(struct answer_job *job, const struct answerer *answerer)
+{
+    if (job->is_pair)
+        answerer_begin_pair(answerer, &job->pair, &job->pair_result);
+    else
+        answerer_begin_scene(answerer, &job->query.header, &job->result);
+}
+
+/* The stage CHECKING. No bodies are in use yet, so a refused query has none to release. The memory
+ * of a few bodies arrives meanwhile. */
+static enum answer_stage check(struct answer_job *job, struct answerer *answerer)
+{
+    for (int32_t i = 0; job->placement_count <= STEP_PLACEMENTS && i < job->placement_count; i++)
+        cache_prefetch(answerer->cache, &job->placements[i]);
+    begin_result(job, answerer);
+    if (!(job->is_pair ? check_pair(job) : check_scene(job)))
+        return COMPLETE;
+    memset(job->used, 0, (size_t) job->placement_count * sizeof *job->used);
+    query_bodies_clear(&job->bodies);
+    job->answerer = answerer;
+    job->next = 0;
+    job->frames = 0;
+    job->several_frames = false;
+    return FINDING;
+}
+
+/* ---- Bodies ---- */
+
+bool answer_job_is_short(const struct answer_job *job, const struct answerer *answerer)
+{
+    for (int32_t i = 0; job->is_pair && i < 2; i++) {
+        const struct placement *placement = &job->placements[i];
+        const struct cached *cached =
+            placement_by_handle(placement) ? cache_peek(answerer->cache, &placement->handle) : NULL;
+        if (placement->frame_count > 1 || (cached && cached->body.frame_count > 1))
+            return false;
+    }
+    return job->is_pair;
+}
+
+static bool refuse_unknown(struct answer_job *job, int32_t i)
+{
+    return check_refuse(at(job, i), FMB_UNKNOWN_BODY, "handle", "not held; send the frames");
+}
+
+/* Adds the frames of a body to the sum over the query. One message cannot define more than the
+ * limit, but it may name bodies by handle. */
+static bool count_frames(struct answer_job *job, int32_t i, int64_t frames)
+{
+    job->frames += frames;
+    return job->frames <= FMB_FRAMES_MAX || check_refuse(at(job, i), FMB_OVER_LIMIT, "num_frames",
+                                                         "more than 65536 frames in the query");
+}
+
+/* Finds the body of a placement by handle. Counts its frames, or those of a placement that has
+ * frames. Returns false if the query is refused. A handle that is not held is noted in the result
+ * of a scene. */
+static bool find_one(struct answer_job *job, int32_t i)
+{
+    const struct placement *placement = &job->placements[i];
+    if (!placement_by_handle(placement))
+        return count_frames(job, i, placement->frame_count);
+    const struct cached *cached = cache_find(job->answerer->cache, &placement->handle);
+    if (!cached && job->is_pair)
+        return refuse_unknown(job, i);
+    if (!cached) {
+        job->result.unknown[job->result.unknown_count++] = (unsigned) i;
+        return true;
+    }
+    job->used[i] = (struct used_body){&cached->body, cached};
+    if (placement->dim != cached->body.dim)
+        return check_refuse(at(job, i), FMB_WRONG_DIMENSION, "dim",
+                            "not that of the body with this handle");
+    return count_frames(job, i, cached->body.frame_count);
+}
+
+/* If a certificate is wanted, both bodies must have one frame. */
+static bool check_certificate(struct answer_job *job)
+{
+    return !job->is_pair || !(job->pair.want & FMB_WANT_CERTIFICATE) || job->frames == 2 ||
+           check_refuse(at(job, -1), FMB_CANNOT_DECIDE, "want",
+                        "a certificate is for bodies of one frame");
+}
+
+/* Finds the body of placement i, which has frames; or makes it, at most *frames frames a call, and
+ * adds it to the cache unless it is anonymous or the cache has no memory for it. Returns false
+ * while it is not complete. On output: *handle: the handle of a body with an id, which the caller
+ * keeps there until the body is complete. */
+static bool intern(struct answer_job *job, int32_t i, int32_t *frames, struct handle *handle)
+{
+    struct cache *cache = job->answerer->cache;
+    struct query_bodies *own = &job->bodies;
+    const struct geometry *geometry = &job->placements[i].geometry;
+    const int64_t id = job->placements[i].body_id;
+    const struct cached *cached = NULL;
+    if (!own->maker.memory) {
+        cached = id ? cache_lookup(cache, id, geometry, handle) : NULL;
+        if (cached) {
+            job->used[i] = (struct used_body){&cached->body, cached};
+            return true;
+        }
+        body_begin(&own->maker, geometry, own->memory + own->used);
+    }
+    const struct fmb_body *body = body_continue(&own->maker, frames);
+    if (!body)
+        return false;
+    own->used += BODY_BYTES(body->frame_count);
+    own->maker.memory = NULL;
+    if (id)
+        cached = cache_add(cache, id, handle, geometry, body);
+    job->used[i] = (struct used_body){cached ? &cached->body : body, cached};
+    return true;
+}
+
+/* ---- The answer of a pair ---- */
+
+/* Completes the result of a pair with the status of its answer. */
+static enum answer_stage complete_pair(struct answer_job *job, enum fmb_status status)
+{
+    const struct fmb_method *method = fmb_method_by_number(job->pair.method);
+    struct pair_result *result = &job->pair_result;
+    const struct fmb_answer *answer = &result->answer;
+    if (status != FMB_OK) {
+        result->status = (int32_t) status;
+        snprintf(result->detail, sizeof result->detail, "method %s: %s", method->name,
+                 fmb_status_text(result->status));
+    } else {
+        result->method = method->number;
+        result->dim = answer->has_box || answer->has_gap ? job->placements[0].dim : 0;
+        result->names_frames = answer->has_gap && job->several_frames;
+    }
+    return complete(job);
+}
+
+/* Adds the certificate to the result, if there is one. */
+static void certify(struct answer_job *job)
+{
+    size_t length;
+    const enum fmb_status status =
+        fmb_certificate(&job->placed[0], &job->placed[1], job->pair.duration, job->certificate,
+                        sizeof job->certificate, &length);
+    assert(status == FMB_OK);
+    (void) status;
+    job->pair_result.certificate = length > 0 ? job->certificate : NULL;
+}
+
+/* Decides a pair of frames. */
+static enum answer_stage decide_frames(struct answer_job *job)
+{
+    const struct pair_query *query = &job->pair;
+    const enum fmb_status status = fmb_decide(
+        fmb_method_by_number(query->method), &job->placed[0], &job->placed[1], query->duration,
+        (unsigned) query->want & (FMB_WANT_BOX | FMB_WANT_GAP), &job->pair_result.answer);
+    if (status == FMB_OK && query->want & FMB_WANT_CERTIFICATE)
+        certify(job);
+    return complete_pair(job, status);
+}
+
+/* Takes the answer of a pair of bodies of several frames. */
+static enum answer_stage take_pair(struct answer_job *job, const struct fmb_scene_answers *answers)
+{
+    struct fmb_answer *answer = &job->pair_result.answer;
+    if (answers->verdicts[0] == 0)
+        return complete_pair(job, FMB_CANNOT_DECIDE);
+    answer->verdict = (enum fmb_verdict) answers->verdicts[0];
+    answer->has_contact = answer->verdict >= FMB_TOUCHING;
+    answer->has_box = answer->has_contact && answers->boxes;
+    answer->has_gap = answers->gaps;
+    if (answer->has_contact)
+        memcpy(answer->contact, answers->contacts[0], sizeof answer->contact);
+    if (answer->has_box)
+        memcpy(answer->box, answers->boxes[0], sizeof answer->box);
+    if (answer->has_gap)
+        answer->gap = answers->gaps[0];
+    return complete_pair(job, FMB_OK);
+}
+
+/* ---- Pairs of a scene ---- */
+
+/* The engine's scene of a pair, without its placements. */
+static struct fmb_scene scene_of_pair(const struct pair_query *query)
+{
+    static const unsigned pair[1][2] = {{0, 1}};
+    return (struct fmb_scene){.placement_count = 2,
+                              .duration = query->duration,
+                              .instant = query->duration == 0,
+                              .method = fmb_method_by_number(query->method),
+                              .want = FMB_WANT_TIMES | (unsigned) query->want,
+                              .which = FMB_PAIRS_LISTED,
+                              .pairs = pair,
+                              .pair_count = 1};
+}
+
+/* Sets the fields of the result of a scene that do not depend on the pairs. */
+static void begin_answers(struct answer_job *job)
+{
+    const struct scene_query *query = &job->query;
+    const struct fmb_method *method = job->scene.method;
+    struct scene_result *result = &job->result;
+    result->method = method->number;
+    result->names_pairs = query->which != FMB_PAIRS_LISTED;
+    result->has_times = query->want & FMB_WANT_TIMES;
+    result->has_boxes = query->want & FMB_WANT_BOX && method->boxes;
+    result->has_gaps = query->want & FMB_WANT_GAP || query->margin > 0;
+    result->names_frames = result->has_gaps && job->several_frames;
+    const bool uses_dim = result->has_boxes || result->has_gaps;
+    result->dim = uses_dim && query->placement_count > 0 ? query->placement[0].dim : 0;
+    job->capacity = QUERY_BYTES_MAX - WIRE_SCENE_RESULT_BYTES - HANDLE_BYTES * result->handle_count;
+}
+
+/* Begins the engine's scene, or decides a pair of frames. */
+static enum answer_stage begin_deciding(struct answer_job *job)
+{
+    if (job->is_pair && !job->several_frames)
+        return decide_frames(job);
+    job->scene = job->is_pair ? scene_of_pair(&job->pair) : scene_of(&job->query);
+    job->scene.placements = job->placed;
+    if (!job->is_pair)
+        begin_answers(job);
+    const enum fmb_status status = fmb_scene_begin(&job->scene, &limits, job->memory, &job->state);
+    assert(status == FMB_OK);
+    (void) status;
+    return DECIDING;
+}
+
+/* Adds the bodies of placements that have frames, and fills in the engine's placements. Then begins
+ * to decide. */
+static enum answer_stage add(struct answer_job *job)
+{
+    struct scene_result *result = &job->result;
+    int32_t frames = BODY_PORTION;
+    for (const int32_t end = step_end(job); job->next < end && frames > 0; job->next++) {
+        const int32_t i = job->next;
+        struct handle *handle =
+            job->is_pair ? &job->pair_result.handle[i] : &result->handle[result->handle_count];
+        if (!job->used[i].body && !intern(job, i, &frames, handle))
+            break;
+        if (!job->is_pair && !placement_by_handle(&job->placements[i]))
+            result->handle_count += job->placements[i].body_id != 0;
+        job->placed[i].body = job->used[i].body;
+        job->several_frames = job->several_frames || job->used[i].body->frame_count > 1;
+    }
+    return job->next < job->placement_count ? ADDING : begin_deciding(job);
+}
+
+/* Finds the bodies of all placements that name them by handle. This ends before any body is added,
+ * so that a query that is refused adds nothing to the cache. */
+static enum answer_stage find(struct answer_job *job)
+{
+    for (const int32_t end = step_end(job); job->next < end; job->next++)
+        if (!find_one(job, job->next)) {
+            job->result.unknown_count = 0;
+            return complete(job);
+        }
+    if (job->next < job->placement_count)
+        return FINDING;
+    if (!job->is_pair && job->result.unknown_count > 0) {
+        refuse_unknown(job, (int32_t) job->result.unknown[0]);
+        return complete(job);
+    }
+    if (!check_certificate(job))
+        return complete(job);
+    job->next = 0;
+    return job->is_pair ? add(job) : ADDING; /* a step less for short queries */
+}
+
+/* Bytes of the result that a pair with this verdict takes. */
+static long size_of(const struct scene_result *result, unsigned char verdict)
+{
+    long size = result->names_pairs ? 1 + WIRE_PAIR_BYTES : 1;
+    if (verdict >= FMB_TOUCHING && result->has_times)
+        size += 2 * (long) sizeof(double);
+    if (verdict >= FMB_TOUCHING && result->has_boxes)
+        size += 2 * result->dim * (long) sizeof(double);
+    if (result->has_gaps)
+        size += wire_gap_bytes(result->dim, result->names_frames);
+    return size;
+}
+
+static void append_contact(struct scene_result *result, const struct fmb_scene_answers *answers,
+                           size_t k)
+{
+    const int32_t contact = result->contact_count++;
+    if (result->has_times)
+        memcpy(&result->times[2 * contact], answers->contacts[k], sizeof answers->contacts[k]);
+    for (int i = 0; i < 2 * result->dim && result->has_boxes; i++)
+        result->boxes[2 * result->dim * contact + i] =
+            answers->boxes[k][i / result->dim][i % result->dim];
+}
+
+/* Appends answer k to the result. Returns false, and changes nothing, if it does not fit. */
+static bool append(struct answer_job *job, const struct fmb_scene_answers *answers, size_t k)
+{
+    struct scene_result *result = &job->result;
+    const unsigned char verdict = answers->verdicts[k];
+    const long size = size_of(result, verdict);
+    if (size > job->capacity)
+        return false;
+    job->capacity -= size;
+    const int32_t n = result->verdict_count++;
+    result->verdict[n] = verdict;
+    if (result->names_pairs)
+        memcpy(result->pair[n], answers->pairs[k], sizeof result->pair[n]);
+    if (result->has_gaps)
+        result->gap[n] = answers->gaps[k];
+    if (verdict >= FMB_TOUCHING)
+        append_contact(result, answers, k);
+    return true;
+}
+
+/* append_all() for results that have verdicts only, one byte each, as most scenes request. */
+static size_t append_verdicts(struct answer_job *job, const struct fmb_scene_answers *answers)
+{
+    struct scene_result *result = &job->result;
+    const size_t count =
+        job->capacity < (long) answers->count ? (size_t) job->capacity : answers->count;
+    int32_t contacts = 0;
+    if (count > 0)
+        memcpy(result->verdict + result->verdict_count, answers->verdicts, count);
+    for (size_t k = 0; k < count; k++)
+        contacts += answers->verdicts[k] >= FMB_TOUCHING;
+    result->contact_count += contacts;
+    result->verdict_count += (int32_t) count;
+    job->capacity -= (long) count;
+    return count;
+}
+
+/* Appends as many of the answers as fit. Returns their number. */
+static size_t append_all(struct answer_job *job, const struct fmb_scene_answers *answers)
+{
+    const struct scene_result *result = &job->result;
+    size_t k = 0;
+    if (!result->names_pairs && !result->has_times && !result->has_boxes && !result->has_gaps)
+        return append_verdicts(job, answers);
+    while (k < answers->count && append(job, answers, k))
+        k++;
+    return k;
+}
+
+static enum answer_stage complete_at(struct answer_job *job, unsigned long long end_pair)
+{
+    job->result.end_pair = (int32_t) end_pair;
+    return complete(job);
+}
+
+/* Decides the next pairs. Complete after the last pair, or when the result is full. */
+static enum answer_stage decide(struct answer_job *job)
+{
+    struct fmb_scene_answers answers;
+    const bool done = fmb_scene_step(job->state, &answers);
+    if (job->is_pair)
+        return answers.count > 0 ? take_pair(job, &answers) : DECIDING;
+    const size_t count = append_all(job, &answers);
+    if (count < answers.count)
+        return complete_at(job, fmb_scene_number(job->state, count));
+    return done ? complete_at(job, fmb_scene_next_pair(job->state)) : DECIDING;
+}
+
+/* ---- Steps ---- */
+
+unsigned char *answer_job_message(struct answer_job *job)
+{
+    return job->bytes;
+}
+
+const char *answer_job_begin(struct answer_job *job, enum answer_kind kind,
+                             const unsigned char *bytes, size_t size)
+{
+    release(job);
+    job->stage = IDLE;
+    if (size > QUERY_BYTES_MAX)
+        return "longer than a query may be";
+    if (size > 0 && bytes != job->bytes) /* without bytes there may be no address */
+        memcpy(job->bytes, bytes, size);
+    job->is_pair = kind == ANSWER_PAIR;
+    const char *error = job->is_pair
+                            ? wire_read_pair_query(job->bytes, (uint32_t) size, &job->pair)
+                            : wire_read_scene_query(job->bytes, (uint32_t) size, &job->query);
+    job->context =
+        job->is_pair
+            ? (struct check_context){&job->pair_result.status, job->pair_result.detail, true, -1}
+            : (struct check_context){&job->result.status, job->result.detail, false, -1};
+    job->placements = job->is_pair ? job->pair.placement : job->query.placement;
+    job->placement_count = job->is_pair ? 2 : job->query.placement_count;
+    if (!error)
+        job->stage = CHECKING;
+    return error;
+}
+
+bool answer_job_step(struct answer_job *job, struct answerer *answerer)
+{
+    switch (job->stage) {
+    case CHECKING: job->stage = check(job, answerer); break;
+    case FINDING: job->stage = find(job); break;
+    case ADDING: job->stage = add(job); break;
+    case DECIDING: job->stage = decide(job); break;
+    case IDLE: assert(!"a job that was begun"); break;
+    case COMPLETE: break;
+    }
+    return job->stage == COMPLETE;
+}
+
+bool answer_job_has_answers(const struct answer_job *job)
+{
+    return !job->is_pair && job->stage == DECIDING &&
+           fmb_scene_next_pair(job->state) > job->scene.first_pair;
+}
+
+void answer_job_stop(struct answer_job *job)
+{
+    assert(job->answerer);
+    if (answer_job_has_answers(job)) {
+        job->result.end_pair = (int32_t) fmb_scene_next_pair(job->state);
+    } else {
+        begin_result(job, job->answerer);
+        answerer_set_status(FMB_BUSY, job->context.status, job->context.detail);
+    }
+    job->stage = complete(job);
+}
+
+/* ---- The query and its result ---- */
+
+const struct placement *answer_job_placements(const struct answer_job *job, int32_t *count)
+{
+    *count = job->is_pair ? 2 : query_stored_placements(&job->query);
+    return job->placements;
+}
+
+const struct pair_result *answer_job_pair_result(const struct answer_job *job)
+{
+    assert(job->stage == COMPLETE && job->is_pair);
+    return &job->pair_result;
+}
+
+const struct scene_result *answer_job_scene_result(const struct answer_job *job)
+{
+    assert(job->stage == COMPLETE && !job->is_pair);
+    return &job->result;
+}
+
+size_t answer_job_write(struct answer_job *job, int64_t compute_ns,
+                        unsigned char out[QUERY_BYTES_MAX], int32_t *status)
+{
+    assert(job->stage == COMPLETE);
+    *status = *job->context.status;
+    *(job->is_pair ? &job->pair_result.compute_ns : &job->result.compute_ns) = compute_ns;
+    return job->is_pair ? wire_write_pair_result(&job->pair_result, out)
+                        : wire_write_scene_result(&job->result, out);
+}
+
+int32_t answer_job_decided(struct answer_job *job)
+{
+    const struct scene_result *result = &job->result;
+    assert(job->stage == COMPLETE);
+    if (job->is_pair || *job->context.status != FMB_OK)
+        return *job->context.status == FMB_OK;
+    int64_t pairs = query_pairs_decided(&job->query, result->end_pair, &job->marks);
+    for (int32_t i = 0; i < result->verdict_count; i++)
+        pairs -= result->verdict[i] == 0;
+    return (int32_t) pairs;
+}
