@@ -238,7 +238,7 @@ static void fail_old_version(struct replay *replay)
 /* damage: NULL: it was reported before. */
 static void read_logs(struct replay *replay,
                       void (*take)(struct replay *replay, const struct log_event *event),
-                      void (*take_damage)(struct replay *replay, const struct log_damage *damage))
+                      void (*damaged)(struct replay *replay, const struct log_damage *damage))
 {
     struct log_event event;
     struct log_damage damage;
@@ -246,8 +246,8 @@ static void read_logs(struct replay *replay,
     while ((outcome = input_next(&replay->input, &event, &damage)) < LOG_END) {
         if (outcome == LOG_EVENT)
             take(replay, &event);
-        else if (take_damage)
-            take_damage(replay, &damage);
+        else if (damaged)
+            damaged(replay, &damage);
         replay->sink->progress(replay->sink->user, replay->input.passed / 2);
         if (replay->old_version)
             fail_old_version(replay);
