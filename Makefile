@@ -161,31 +161,29 @@ set_single_plain := $(set_plain)
 set_single_sse2 := -DLANES=2
 set_single_avx2 := -DLANES=2 -mavx2 -mfma
 kernel_of = $(addprefix $(O)/kernels/,$(addsuffix .o,$1))
-many_kernels := $(call kernel_of,$(foreach s,$(sets),$s exact_$s times_$s boxes_$s))
-box_refinements := $(call kernel_of,$(foreach s,$(sets),refine_boxes_$s))
+many_kernels := $(call kernel_of,$(foreach s,$(sets),$s exact_$s times_$s))
+# Boxes: loops over two lanes on every machine, and four with AVX2; plain C to compare with.
+box_kernels := $(call kernel_of,boxes_plain boxes_two $(if $(filter avx2,$(sets)),boxes_avx2))
+set_two := -DLANES=2
 single_kernels_of = $(call kernel_of,$(foreach s,$1,single_$s exact_single_$s times_single_$s))
 single_kernels := $(call single_kernels_of,$(single_sets))
 kernel_set = $(set_$(subst exact_,,$(subst times_,,$(subst boxes_,,$*))))
 kernel_job = $(or $(if $(findstring exact_,$*),-DKERNEL_EXACT),$(if $(findstring times_,$*),-DKERNEL_TIMES), \
-	$(if $(findstring boxes_,$*),-DKERNEL_BOXES),-ffp-contract=fast)
+	$(if $(findstring boxes_,$*),$(not_inlined)),-ffp-contract=fast)
 $(many_kernels): $(O)/kernels/%.o: service/fmb/filter/many.c $(O)/settings
 $(sort $(single_kernels) $(call single_kernels_of,plain)): \
 	$(O)/kernels/%.o: service/fmb/filter/single.c $(O)/settings
-# With -O1, kernels of boxes are as fast and compile in half the time.
-ifeq ($(MODE)$(filter gcc%,$(compiler)),releasegcc)
-$(O)/kernels/boxes_%.o: flags += -O1 -fschedule-insns2 -Wno-maybe-uninitialized
-endif
 # gcc 12 does not compile kernels of boxes with sanitizers otherwise (internal compiler error).
 ifeq ($(MODE)$(filter gcc%,$(compiler)),asangcc)
 $(O)/kernels/%.o: flags += -fno-tree-dominator-opts
 endif
 compile_kernel = $(compile) $(sees) -DKERNEL_NAME=$* -Wno-psabi $(kernel_set) $(kernel_job)
-$(sort $(many_kernels) $(single_kernels) $(call single_kernels_of,plain)): $(O)/kernels/%.o:
+$(box_kernels): $(O)/kernels/%.o: service/fmb/filter/boxes.c $(O)/settings
+$(O)/service/fmb/exact/limbs_box.o: flags += $(not_inlined)
+$(sort $(many_kernels) $(box_kernels) $(single_kernels) $(call single_kernels_of,plain)): \
+		$(O)/kernels/%.o:
 	@mkdir -p $(@D)
 	$(compile_kernel)
-$(box_refinements): $(O)/kernels/refine_%.o: service/fmb/filter/box_refine.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile_kernel) $(not_inlined)
 
 $(O)/service/fmb/filter/instructions.o: flags += $(if $(INSTRUCTIONS),-DINSTRUCTIONS_MOST=2)
 
@@ -194,9 +192,9 @@ fast_math := tests/bench/gpr tests/bench/lean_sat tests/bench/seidel
 $(fast_math:%=$(O)/%.o): flags += -ffinite-math-only -fno-signed-zeros
 
 engine_folders := $(call fmb,number frame filter article tree exact gap certificate decide)
-kernels := $(many_kernels) $(box_refinements) $(single_kernels)
+kernels := $(many_kernels) $(box_kernels) $(single_kernels)
 engine_objects_in = $(if $(findstring filter,$1),$(kernels)) \
-	$(filter-out %/many.o %/single.o %/box_refine.o,$(call objects_in,$1))
+	$(filter-out %/many.o %/single.o %/boxes.o,$(call objects_in,$1))
 engine_objects := $(call engine_objects_in,$(engine_folders))
 
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)

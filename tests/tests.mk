@@ -93,32 +93,26 @@ $(O)/slabs/kernel.o $(O)/slabs/kernel_fused.o $(O)/slabs/kernel_planted.o: $(O)/
 
 # Kernels of eight lanes in vectors that every machine has; and with a wrong bound.
 set_wide := -DLANES=8
-wide_kernels := $(call kernel_of,wide exact_wide times_wide boxes_wide)
+wide_kernels := $(call kernel_of,wide exact_wide times_wide)
 $(wide_kernels): $(O)/kernels/%.o: service/fmb/filter/many.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile_bare) -DKERNEL_NAME=$* $(kernel_set) $(kernel_job)
-$(O)/kernels/refine_boxes_wide.o: service/fmb/filter/box_refine.c $(O)/settings
+$(O)/kernels/boxes_wide.o: service/fmb/filter/boxes.c $(O)/settings
 	@mkdir -p $(@D)
-	$(compile_bare) -DKERNEL_NAME=boxes_wide $(set_wide) -DKERNEL_BOXES $(not_inlined)
+	$(compile_bare) -DKERNEL_NAME=boxes_wide $(set_wide)
 $(O)/kernels/wide_planted.o: service/fmb/filter/many.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile_bare) -DKERNEL_NAME=wide_planted $(set_wide) -ffp-contract=fast -DSLABS_ROUNDING=0x1p-58
-$(B)/tests/test_kernels: $(wide_kernels) $(addprefix $(O)/kernels/,refine_boxes_wide.o wide_planted.o)
+$(B)/tests/test_kernels: $(wide_kernels) $(addprefix $(O)/kernels/,boxes_wide.o wide_planted.o)
 
-# Kernels of boxes with bounds that are a sixteenth of theirs, and with none.
-box_kernels := $(call kernel_of,boxes_planted boxes_bare)
-box_unit_planted := 0x1p-57
+# Kernels of boxes with bounds that are a 64th of theirs, and with none.
+wrong_boxes := $(call kernel_of,boxes_planted boxes_bare)
+box_unit_planted := 0x1p-59
 box_unit_bare := 0x1p-200
-box_refinements_of_tests := $(call kernel_of,refine_boxes_planted refine_boxes_bare)
-compile_box = $(compile_bare) -DLANES=1 -DKERNEL_BOXES -DKERNEL_NAME=boxes_$* -DBOX_UNIT=$(box_unit_$*)
-$(box_kernels): $(O)/kernels/boxes_%.o: service/fmb/filter/many.c $(O)/settings
+$(wrong_boxes): $(O)/kernels/boxes_%.o: service/fmb/filter/boxes.c $(O)/settings
 	@mkdir -p $(@D)
-	$(compile_box)
-$(box_refinements_of_tests): $(O)/kernels/refine_boxes_%.o: service/fmb/filter/box_refine.c \
-		$(O)/settings
-	@mkdir -p $(@D)
-	$(compile_box) $(not_inlined)
-$(B)/tests/test_box_bounds: $(box_kernels) $(box_refinements_of_tests)
+	$(compile_bare) -DLANES=1 -DKERNEL_NAME=boxes_$* -DBOX_UNIT=$(box_unit_$*)
+$(B)/tests/test_box_bounds: $(wrong_boxes)
 
 $(internal_tests): $(O)/tests/unit/slab_truth.o $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
 	kernel_fused.o kernel_planted.o) $(shared) $(client) $(product) $(engine)

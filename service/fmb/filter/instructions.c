@@ -14,20 +14,20 @@
 _Static_assert(INSTRUCTIONS_PLAIN == 1 && INSTRUCTIONS_SSE2 == 2 && INSTRUCTIONS_AVX512 == 4,
                "INSTRUCTIONS_MOST is a number of the enum");
 
-#define KERNEL_DECLARE(name)                                                                \
-    extern kernel_function *const kernel_##name[KERNEL_KINDS],                              \
-        *const kernel_exact_##name[KERNEL_KINDS], *const kernel_times_##name[KERNEL_KINDS], \
-                                                      *const kernel_boxes_##name[KERNEL_KINDS];
+#define KERNEL_DECLARE(name)                                   \
+    extern kernel_function *const kernel_##name[KERNEL_KINDS], \
+        *const kernel_exact_##name[KERNEL_KINDS], *const kernel_times_##name[KERNEL_KINDS];
 #define KERNEL_DECLARE_SINGLE(name)                                          \
     extern kernel_single_function *const kernel_single_##name[KERNEL_KINDS], \
         *const kernel_exact_single_##name[KERNEL_KINDS],                     \
             *const kernel_times_single_##name[KERNEL_KINDS];
-#define KERNEL_SET(name)                                                             \
-    {                                                                                \
-        kernel_##name, kernel_exact_##name, kernel_times_##name, kernel_boxes_##name \
+#define KERNEL_SET(name, boxes)                                                 \
+    {                                                                           \
+        kernel_##name, kernel_exact_##name, kernel_times_##name, kernel_##boxes \
     }
 
 KERNEL_DECLARE(plain)
+extern kernel_box_function kernel_boxes_plain, kernel_boxes_two, kernel_boxes_avx2;
 
 #if defined(__x86_64__) && INSTRUCTIONS_MOST > 1
 KERNEL_DECLARE(sse2)
@@ -46,13 +46,15 @@ KERNEL_DECLARE_SINGLE(plain)
 #endif
 
 static const struct kernel_set sets[] = {
-    [INSTRUCTIONS_PLAIN] = KERNEL_SET(plain),
 #if defined(__x86_64__) && INSTRUCTIONS_MOST > 1
-    [INSTRUCTIONS_SSE2] = KERNEL_SET(sse2),
+    [INSTRUCTIONS_PLAIN] = KERNEL_SET(plain, boxes_plain),
+    [INSTRUCTIONS_SSE2] = KERNEL_SET(sse2, boxes_two),
 #if INSTRUCTIONS_MOST > 2
-    [INSTRUCTIONS_AVX2] = KERNEL_SET(avx2),
-    [INSTRUCTIONS_AVX512] = KERNEL_SET(avx512),
+    [INSTRUCTIONS_AVX2] = KERNEL_SET(avx2, boxes_avx2),
+    [INSTRUCTIONS_AVX512] = KERNEL_SET(avx512, boxes_avx2),
 #endif
+#else
+    [INSTRUCTIONS_PLAIN] = KERNEL_SET(plain, boxes_two),
 #endif
 };
 
@@ -96,9 +98,9 @@ static int best(void)
     return INSTRUCTIONS_PLAIN;
 }
 
-kernel_function *const *kernel_boxes_single(void)
+kernel_box_function *kernel_boxes_single(void)
 {
-    return sets[best() < INSTRUCTIONS_AVX2 ? best() : INSTRUCTIONS_AVX2].boxes;
+    return kernel_boxes_two;
 }
 
 const char *instructions_name(int instructions)

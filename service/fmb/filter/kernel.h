@@ -1,8 +1,8 @@
 /* The kernels of the filter: prepared frames in, outcomes, times of contact or boxes out. A kernel
  * decides pairs of one kind, as many side by side as its instruction set has lanes. many.c (many
  * pairs) and single.c (one pair) are compiled once for each instruction set and job (Makefile,
- * kernel_lanes.h). Only the first pass uses fused operations: the bits of all other jobs are
- * promised. No function here has shared state. */
+ * kernel_lanes.h), boxes.c once for each number of lanes up to four. Only the first pass uses fused
+ * operations: the bits of all other jobs are promised. No function here has shared state. */
 #ifndef FMB_KERNEL_H
 #define FMB_KERNEL_H
 
@@ -129,21 +129,20 @@ struct kernel_call {
     /* [count][lower, upper][axis], of pairs in contact; NAN where doubles do not prove the limit
      * of fmb.h. */
     double (*boxes)[2][FMB_DIM_MAX];
-    /* For boxes: the frames of every pair are in contact as they are prepared, which is certain if
-     * the filter decided it. More boxes of frames with an error are known then. */
-    bool in_contact;
 };
 
 enum { KERNEL_LANES = 8 };
 
 typedef void kernel_function(const struct kernel_call *call);
 
+/* Writes the boxes of pairs in contact of a kind of kernel_box_kind(). */
+typedef void kernel_box_function(const struct kernel_call *call, enum kernel_kind kind);
+
 /* Tables of kernels, [KERNEL_KINDS], NULL for combinations of bits that do not exist.
  *
  *     verdicts  the first pass, of all kinds: writes outcomes
  *     exact     the second pass, of all kinds: writes outcomes
  *     times     of the kinds that drift: writes outcomes and contacts
- *     boxes     of all kinds of kernel_box_kind(): writes boxes
  *
  * The second pass is for pairs that another kernel leaves unsure. It decides all that verdicts
  * decides, and in addition pairs that touch along coordinate axes, and pairs whose numbers do not
@@ -151,7 +150,8 @@ typedef void kernel_function(const struct kernel_call *call);
  * TOUCHING of two faces means only that they are not separated, and do not overlap unless their
  * planes are parallel. */
 struct kernel_set {
-    kernel_function *const *verdicts, *const *exact, *const *times, *const *boxes;
+    kernel_function *const *verdicts, *const *exact, *const *times;
+    kernel_box_function *boxes;
 };
 
 /* Sets *out to the tables of an instruction set (enum instructions). Returns false if this
@@ -169,8 +169,8 @@ kernel_single_function *const *kernel_verdicts_single(void);
 kernel_single_function *const *kernel_exact_single(void);
 kernel_single_function *const *kernel_times_single(void);
 
-/* Boxes of a single pair: kernels of many pairs, of the instruction set that takes least time for
- * one. */
-kernel_function *const *kernel_boxes_single(void);
+/* Boxes of a single pair: the kernel of many pairs, of the instruction set that takes least time
+ * for one. */
+kernel_box_function *kernel_boxes_single(void);
 
 #endif

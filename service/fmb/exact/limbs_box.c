@@ -1,0 +1,392 @@
+/* Boxes in fixed-width integers: the step between doubles (box_clip.h) and GMP (exact_box.c).
+ *
+ * In: two prepared frames in contact, solids or faces.
+ *
+ * Out: the box, within the limit of fmb.h.
+ *
+ * The segments of each frame are clipped to the slabs of the other, and edges that move cross, as
+ * in box_clip.h. But how far a vertex is inside a bound, and how far a crossing is inside the
+ * ranges of its parameters, are integers here: their signs are exact, and as doubles they are off
+ * by less than 2^-53 of themselves. A segment crosses a bound between vertices on either side, with
+ * the values f
+ * >= 0 > g: at f / (f - g), a sum of two magnitudes, off by less than 2^-51 of itself. Only where a
+ * segment enters the other frame within 2^-48 of where it leaves it, the order of both matters, and
+ * is that of two products of integers. So points are off by no more than what the slack of
+ * box_ends.h covers, and a point that counts surely is in the intersection. */
+#include "limbs_box.h"
+
+#define LANES 1
+#include "kernel_box.h"
+#include "limbs.h"
+
+enum { LOW, HIGH, BOUNDS };
+
+/* The slabs of one frame, and the vertices of the other. */
+struct box_slabs {
+    int count;
+    /* How far vertices are inside the bounds: [bound][slab][vertex]. */
+    limbs_number inside[BOUNDS][CLIP_SLABS][CLIP_VERTICES];
+    double value[BOUNDS][CLIP_SLABS][CLIP_VERTICES];
+};
+
+/* A bound that a segment crosses, by number, and where. */
+struct bound_crossing {
+    int bound, slab;
+    double at;
+};
+
+/* out := |x|, as a number without a sign. In: out is not x. */
+static void set_magnitude(int n, const uint64_t *x, uint64_t *out)
+{
+    memset(out, 0, (size_t) n * sizeof *x);
+    if (is_negative(n, x))
+        subtract(n, out, x);
+    else
+        add(n, out, x);
+}
+
+static double to_double(int n, const uint64_t *x)
+{
+    limbs_number magnitude;
+    set_magnitude(n, x, magnitude);
+    int top = n - 1;
+    while (top > 0 && magnitude[top] == 0)
+        top--;
+    double out = (double) magnitude[top];
+    if (top > 0) {
+        const two_limbs leading = (two_limbs) magnitude[top] << 64 | magnitude[top - 1];
+        out = ldexp((double) leading, 64 * (top - 1));
+    }
+    return is_negative(n, x) ? -out : out;
+}
+
+/* ---- Values at vertices ---- */
+
+/* out += x, or out -= x. */
+static void add_signed(int n, uint64_t *out, int sign, const uint64_t *x)
+{
+    if (sign < 0)
+        subtract(n, out, x);
+    else
+        add(n, out, x);
+}
+
+/* out[v] := value plus what the components of frame f add at vertex v, times sign; then, if drift
+ * is not 0, the same with the drift times that. Vertices as in struct clip_wire. */
+static void set_limbs_at_vertices(const struct limbs_pair *pair, const struct limbs_products *of,
+                                  int f, int sign, int drift, const uint64_t *value,
+                                  limbs_number out[CLIP_VERTICES])
+{
+    const int n = pair->limbs, count = pair->frame[f]->count;
+    const bool simplex = frame_is_simplex(pair->frame[f]);
+    const bool centred = pair->frame[f]->shape == FMB_BOX;
+    const size_t size = (size_t) n * sizeof *value;
+    const int vertices = simplex ? count + 1 : 1 << count;
+    memcpy(out[0], value, size);
+    for (int i = 0; i < count; i++)
+        for (int v = 0; v < (simplex ? 1 : 1 << i); v++) {
+            uint64_t *next = out[simplex ? 1 + i : v | 1 << i];
+            memcpy(next, out[v], size);
+            add_signed(n, next, sign, of->component[f][i]);
+            if (centred)
+                add_signed(n, out[v], -sign, of->component[f][i]);
+        }
+    for (int v = 0; v < vertices && drift; v++) {
+        memcpy(out[vertices + v], out[v], size);
+        add_signed(n, out[vertices + v], drift, of->drift);
+    }
+}
+
+static bool is_less(int n, const uint64_t *x, const uint64_t *y)
+{
+    limbs_number difference;
+    memcpy(difference, x, (size_t) n * sizeof *x);
+    subtract(n, difference, y);
+    return is_negative(n, difference);
+}
+
+/* [low, high] := the extent of frame f along the normal, from its origin; of a box, its centre. */
+static void set_limbs_extent(const struct limbs_pair *pair, const struct limbs_products *of, int f,
+                             uint64_t *low, uint64_t *high)
+{
+    const int n = pair->limbs;
+    const size_t size = (size_t) n * sizeof *low;
+    const bool simplex = frame_is_simplex(pair->frame[f]);
+    memset(low, 0, size);
+    memset(high, 0, size);
+    for (int i = 0; i < pair->frame[f]->count; i++) {
+        const uint64_t *at = of->component[f][i];
+        if (!simplex)
+            add(n, is_negative(n, at) ? low : high, at);
+        else if (is_less(n, at, low))
+            memcpy(low, at, size);
+        else if (is_less(n, high, at))
+            memcpy(high, at, size);
+    }
+    if (pair->frame[f]->shape != FMB_BOX)
+        return;
+    subtract(n, high, low);
+    memset(low, 0, size);
+    subtract(n, low, high);
+}
+
+/* ---- Slabs ---- */
+
+/* Adds the slab of a normal of frame f. Returns false if the frame has no extent along it, and it
+ * is not the plane of a face. */
+static bool add_slab_of(const struct limbs_pair *pair, const struct kernel_traits traits, int f,
+                        const struct limbs_products *of, bool plane, struct box_slabs *out)
+{
+    const int n = pair->limbs, k = out->count++;
+    const size_t size = (size_t) n * sizeof(uint64_t);
+    limbs_number low, high, start = {0}, at[CLIP_VERTICES];
+    set_limbs_extent(pair, of, f, low, high);
+    if (!plane && memcmp(low, high, size) == 0)
+        return false;
+    add_signed(n, start, f ? -1 : 1, of->offset);
+    set_limbs_at_vertices(pair, of, !f, 1, !traits.drifts ? 0 : f ? -1 : 1, start, at);
+    for (int v = 0; v < vertex_count(traits, !f) * (traits.drifts ? 2 : 1); v++) {
+        uint64_t *above = out->inside[LOW][k][v], *below = out->inside[HIGH][k][v];
+        memcpy(above, at[v], size);
+        subtract(n, above, low);
+        memcpy(below, high, size);
+        subtract(n, below, at[v]);
+        out->value[LOW][k][v] = to_double(n, above);
+        out->value[HIGH][k][v] = to_double(n, below);
+    }
+    return true;
+}
+
+/* The slabs of frame f, as those of set_space_slabs() and set_plane_slabs(). Returns false for a
+ * frame that is flat, other than a face with an area. */
+static bool set_limbs_slabs(struct limbs_pair *pair, const struct kernel_traits traits, int f,
+                            struct box_slabs *out)
+{
+    const int first = f ? SLABS_EDGE_OF_B : 0;
+    const int count = traits.face[f] ? 1 : traits.simplex[f] ? traits.dim + 1 : traits.dim;
+    struct limbs_products of;
+    out->count = 0;
+    for (int k = 0; k < count; k++) {
+        const int u = traits.face[f] ? 0 : traits.dim == 2 ? k : k == 3 ? 3 : next(k);
+        const int v = traits.face[f] ? 1 : k == 3 ? 4 : next(next(k));
+        if (!limbs_products_of(pair, (struct slab_normal){first + u, first + v}, &of) ||
+            !add_slab_of(pair, traits, f, &of, traits.face[f], out))
+            return false;
+    }
+    for (int index = 0; index < 3 && traits.face[f]; index++) {
+        limbs_products_in_face(pair, f, edge_at(traits, f, index), &of);
+        if (!add_slab_of(pair, traits, f, &of, false, out))
+            return false;
+    }
+    return true;
+}
+
+/* ---- Segments ---- */
+
+/* Whether a segment from vertex v to w enters by a bound no later than it leaves by another. With
+ * the values f < 0 <= g along the first bound, and F >= 0 > G along the second: if and only if f /
+ * (f
+ * - g) <= F / (F - G), that is, f G <= F g. */
+static bool enters_in_time(int n, const struct box_slabs *slabs, int v, int w,
+                           const struct bound_crossing *enter, const struct bound_crossing *leave)
+{
+    limbs_number factor[4];
+    mp_limb_t product[2][2 * LIMBS_MAX];
+    set_magnitude(n, slabs->inside[enter->bound][enter->slab][v], factor[0]);
+    set_magnitude(n, slabs->inside[leave->bound][leave->slab][w], factor[1]);
+    set_magnitude(n, slabs->inside[leave->bound][leave->slab][v], factor[2]);
+    set_magnitude(n, slabs->inside[enter->bound][enter->slab][w], factor[3]);
+    mpn_mul_n(product[0], factor[0], factor[1], n);
+    mpn_mul_n(product[1], factor[2], factor[3], n);
+    return mpn_cmp(product[0], product[1], 2 * n) <= 0;
+}
+
+/* Clips the segment from vertex v to w. from of the result is NAN if nothing is left. */
+static struct clip_span clip_in_limbs(int n, const struct box_slabs *slabs, int v, int w)
+{
+    const struct clip_span none = {NAN, NAN};
+    struct bound_crossing enter[BOUNDS * CLIP_SLABS], leave[BOUNDS * CLIP_SLABS];
+    struct clip_span span = {0, 1};
+    int enters = 0, leaves = 0;
+    for (int i = 0; i < BOUNDS * slabs->count; i++) {
+        const int bound = i % BOUNDS, k = i / BOUNDS;
+        const double f = slabs->value[bound][k][v], g = slabs->value[bound][k][w];
+        if (f < 0 && g < 0)
+            return none;
+        const double at = f / (f - g);
+        if (f < 0) {
+            enter[enters++] = (struct bound_crossing){bound, k, at};
+            span.from = at > span.from ? at : span.from;
+        } else if (g < 0) {
+            leave[leaves++] = (struct bound_crossing){bound, k, at};
+            span.to = at < span.to ? at : span.to;
+        }
+    }
+    if (span.to - span.from >= CLIP_SHORTEST)
+        return span;
+    if (span.to - span.from < -CLIP_SHORTEST)
+        return none;
+    for (int i = 0; i < enters; i++)
+        for (int j = 0; j < leaves; j++)
+            if (!enters_in_time(n, slabs, v, w, &enter[i], &leave[j]))
+                return none;
+    return span;
+}
+
+/* ---- Crossings ---- */
+
+/* A parameter of crossings, for all vertices of A and B: the number that it is, times all, is what
+ * those of both add up to. */
+struct crossing_parameter {
+    struct limbs_products of;
+    limbs_number of_a[CLIP_VERTICES], of_b[CLIP_VERTICES], all;
+    double inverse; /* of all */
+};
+
+/* The product of the normal with an edge of frame f, by number. */
+static void set_edge_product(const struct limbs_pair *pair, const struct kernel_traits traits,
+                             const struct limbs_products *of, int f, int e, uint64_t *out)
+{
+    const int n = pair->limbs;
+    const size_t size = (size_t) n * sizeof *out;
+    memcpy(out, of->component[f][e < traits.dim ? e : edge_to(traits, e)], size);
+    if (e >= traits.dim)
+        subtract(n, out, of->component[f][edge_from(traits, e)]);
+    if (pair->frame[f]->shape == FMB_BOX)
+        add(n, out, of->component[f][e]);
+}
+
+/* Sets a parameter with the normal of two edges (slabs.h). which: of an edge e of frame 0 or 1, or
+ * the time (2). Returns false if directions and drift are dependent. */
+static bool set_parameter(struct limbs_pair *pair, const struct kernel_traits traits,
+                          struct slab_normal normal, int which, int e,
+                          struct crossing_parameter *out)
+{
+    const int n = pair->limbs;
+    const limbs_number none = {0};
+    limbs_number all, offset = {0};
+    if (!limbs_products_of(pair, normal, &out->of))
+        return false;
+    if (which == 2)
+        memcpy(all, out->of.drift, (size_t) n * sizeof(uint64_t));
+    else
+        set_edge_product(pair, traits, &out->of, which, e, all);
+    if (is_zero(n, all))
+        return false;
+    /* From A to B: s a - r b - t drift, so that r and t have the opposite sign. */
+    const int sign = is_negative(n, all) == (which == 0) ? -1 : 1;
+    add_signed(n, offset, sign, out->of.offset);
+    set_limbs_at_vertices(pair, &out->of, 0, -sign, 0, none, out->of_a);
+    set_limbs_at_vertices(pair, &out->of, 1, sign, 0, offset, out->of_b);
+    set_magnitude(n, all, out->all);
+    out->inverse = 1 / to_double(n, out->all);
+    return true;
+}
+
+/* The parameter of the edges from vertex v of A and w of B, from 0 to 1; NAN if it is not. */
+static double parameter_at(int n, const struct crossing_parameter *parameter, int v, int w)
+{
+    limbs_number x, left;
+    memcpy(x, parameter->of_a[v], (size_t) n * sizeof(uint64_t));
+    add(n, x, parameter->of_b[w]);
+    memcpy(left, parameter->all, (size_t) n * sizeof(uint64_t));
+    subtract(n, left, x);
+    return is_negative(n, x) || is_negative(n, left) ? NAN : to_double(n, x) * parameter->inverse;
+}
+
+/* Adds the crossings of the edges along i of A and j of B, by index, to the reach. */
+static void add_crossings_of(struct limbs_pair *pair, const struct kernel_traits traits,
+                             const struct clip_wire wire[2], const struct clip_points *a, int i,
+                             int j, double reach[2][3])
+{
+    const int n = pair->limbs, u = edge_at(traits, 0, i), v = edge_at(traits, 1, j);
+    struct crossing_parameter s, r, t;
+    if (!set_parameter(pair, traits, (struct slab_normal){SLABS_EDGE_OF_B + v, SLABS_DRIFT}, 0, u,
+                       &s) ||
+        !set_parameter(pair, traits, (struct slab_normal){u, SLABS_DRIFT}, 1, v, &r) ||
+        !set_parameter(pair, traits, (struct slab_normal){u, SLABS_EDGE_OF_B + v}, 2, 0, &t))
+        return;
+    for (int of_a = 0; of_a < wire[0].segments; of_a++) {
+        const int from_a = wire[0].from[of_a];
+        if (wire[0].direction[of_a] != i || from_a >= wire[0].vertices)
+            continue;
+        for (int of_b = 0; of_b < wire[1].segments; of_b++) {
+            const int from_b = wire[1].from[of_b];
+            if (wire[1].direction[of_b] != j || from_b >= wire[1].vertices)
+                continue;
+            const double at_s = parameter_at(n, &s, from_a, from_b);
+            if (isnan(at_s) || isnan(parameter_at(n, &r, from_a, from_b)))
+                continue;
+            const double at_t = parameter_at(n, &t, from_a, from_b);
+            for (int axis = 0; axis < 3 && !isnan(at_t); axis++) {
+                const double x =
+                    a->vertex[axis][from_a] +
+                    (at_s * a->along[axis][i] + at_t * a->along[axis][wire[0].directions - 1]);
+                reach[0][axis] = fmax(reach[0][axis], -x);
+                reach[1][axis] = fmax(reach[1][axis], x);
+            }
+        }
+    }
+}
+
+/* ---- All of it ---- */
+
+/* Sets how far the intersection reaches from 0, [below, above][axis], but for errors of the
+ * coordinates. Returns false for flat frames. */
+static bool find_reach_in_limbs(struct limbs_pair *pair, const struct kernel_traits traits,
+                                const struct box_pair *box, double reach[2][3])
+{
+    struct clip_wire wire[2];
+    struct clip_points points[2];
+    for (int i = 0; i < 6; i++)
+        reach[i / 3][i % 3] = -INFINITY;
+    for (int f = 0; f < 2; f++) {
+        struct box_slabs slabs;
+        struct clip_span spans[CLIP_SEGMENTS];
+        if (!set_limbs_slabs(pair, traits, !f, &slabs))
+            return false;
+        set_wire(traits, f, &wire[f]);
+        set_points(traits, f, &wire[f], &box->frame[f], &points[f]);
+        for (int s = 0; s < wire[f].segments; s++)
+            spans[s] = clip_in_limbs(pair->limbs, &slabs, wire[f].from[s], wire[f].to[s]);
+        add_reach(traits, &wire[f], &points[f], spans, reach);
+    }
+    for (int i = 0; i < edge_count(traits, 0) && traits.dim == 3 && traits.drifts; i++)
+        for (int j = 0; j < edge_count(traits, 1); j++)
+            add_crossings_of(pair, traits, wire, &points[0], i, j, reach);
+    return true;
+}
+
+bool limbs_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+               int limbs_most, double box[2][FMB_DIM_MAX])
+{
+    bool swapped;
+    const enum kernel_kind kind = kernel_box_kind(a, b, duration, &swapped);
+    if (kind >= KERNEL_KINDS)
+        return false;
+    const struct fmb_prepared *const frames[1][2] = {{swapped ? b : a, swapped ? a : b}};
+    const struct fmb_prepared *const *of = frames[0];
+    const struct frame_pair given = {
+        {of[0]->frame, of[0]->placement}, {of[1]->frame, of[1]->placement}, duration};
+    const struct kernel_traits traits = traits_of(kind);
+    struct frame_lanes frame[2];
+    struct pair_lanes pair;
+    struct box_places places;
+    struct box_pair of_pair;
+    struct box_ends ends;
+    struct limbs_pair limbs;
+    double reach[2][3];
+    gather_pairs(frames, traits, frame);
+    set_places(traits, frame, duration, &pair, &places);
+    begin_box(&pair, traits, &places, &of_pair);
+    if (!pair.in_range || !limbs_prepare_faces(&given, limbs_span_of(&given), &limbs) ||
+        limbs.limbs > limbs_most || !find_reach_in_limbs(&limbs, traits, &of_pair, reach))
+        return false;
+    set_ends(traits, &of_pair, reach, 1, ends.outer);
+    set_ends(traits, &of_pair, reach, -1, ends.inner);
+    if (!are_near(traits, &of_pair, &ends))
+        return false;
+    memset(box, 0, 2 * FMB_DIM_MAX * sizeof **box);
+    put_box(&pair, traits, &places, &of_pair, &ends, box);
+    return true;
+}
