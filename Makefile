@@ -179,6 +179,9 @@ $(O)/kernels/%.o: flags += -fno-tree-dominator-opts
 endif
 compile_kernel = $(compile) $(sees) -DKERNEL_NAME=$* -Wno-psabi $(kernel_set) $(kernel_job)
 $(box_kernels): $(O)/kernels/%.o: service/fmb/filter/boxes.c $(O)/settings
+ifeq ($(MODE),release)
+$(box_kernels): flags += -O3
+endif
 $(O)/service/fmb/exact/limbs_box.o: flags += $(not_inlined)
 $(sort $(many_kernels) $(box_kernels) $(single_kernels) $(call single_kernels_of,plain)): \
 		$(O)/kernels/%.o:

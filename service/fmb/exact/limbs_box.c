@@ -7,12 +7,12 @@
  * The segments of each frame are clipped to the slabs of the other, and edges that move cross, as
  * in box_clip.h. But how far a vertex is inside a bound, and how far a crossing is inside the
  * ranges of its parameters, are integers here: their signs are exact, and as doubles they are off
- * by less than 2^-53 of themselves. A segment crosses a bound between vertices on either side, with
- * the values f
- * >= 0 > g: at f / (f - g), a sum of two magnitudes, off by less than 2^-51 of itself. Only where a
- * segment enters the other frame within 2^-48 of where it leaves it, the order of both matters, and
- * is that of two products of integers. So points are off by no more than what the slack of
- * box_ends.h covers, and a point that counts surely is in the intersection. */
+ * by less than 2.1 u of themselves, u = 2^-53. A segment crosses a bound between vertices on either
+ * side, with values f >= 0 > g: at f / (f - g), a sum of two magnitudes, off by less than 6.2 u of
+ * itself. Only where a segment enters the other frame within 2^-48 of where it leaves it, the order
+ * of both matters, and is that of two products of integers. So points are off by no more than the
+ * slack of box_ends.h: also where that is 6.1 u times four times all components, twice what a
+ * segment is long. And a point that counts surely is in the intersection. */
 #include "limbs_box.h"
 
 #define LANES 1
@@ -45,19 +45,17 @@ static void set_magnitude(int n, const uint64_t *x, uint64_t *out)
         add(n, out, x);
 }
 
+/* x, off by less than 2.1 u of itself. The two leading limbs of those that hold x with its sign are
+ * at least 2^63 in magnitude; the limbs below are less than one. */
 static double to_double(int n, const uint64_t *x)
 {
-    limbs_number magnitude;
-    set_magnitude(n, x, magnitude);
-    int top = n - 1;
-    while (top > 0 && magnitude[top] == 0)
-        top--;
-    double out = (double) magnitude[top];
-    if (top > 0) {
-        const two_limbs leading = (two_limbs) magnitude[top] << 64 | magnitude[top - 1];
-        out = ldexp((double) leading, 64 * (top - 1));
-    }
-    return is_negative(n, x) ? -out : out;
+    const int used = limbs_needed(n, x);
+    if (used < 2)
+        return used == 0 ? 0 : (double) (int64_t) x[0];
+    const uint64_t bits = (uint64_t) (1023 + 64 * (used - 2)) << 52;
+    double scale;
+    memcpy(&scale, &bits, sizeof scale);
+    return ((double) (int64_t) x[used - 1] * 0x1p64 + (double) x[used - 2]) * scale;
 }
 
 /* ---- Values at vertices ---- */
@@ -235,98 +233,142 @@ static struct clip_span clip_in_limbs(int n, const struct box_slabs *slabs, int 
 
 /* ---- Crossings ---- */
 
-/* A parameter of crossings, for all vertices of A and B: the number that it is, times all, is what
- * those of both add up to. */
+/* A parameter of the crossings of edges from any vertex of A and of B: all times its value is the
+ * sum of a number of each vertex. */
 struct crossing_parameter {
-    struct limbs_products of;
-    limbs_number of_a[CLIP_VERTICES], of_b[CLIP_VERTICES], all;
-    double inverse; /* of all */
+    limbs_number at[2][CLIP_VERTICES], all;  /* [frame][vertex] */
+    double value[2][CLIP_VERTICES], inverse; /* the same; 1 / all */
+    bool exists;
 };
 
-/* The product of the normal with an edge of frame f, by number. */
-static void set_edge_product(const struct limbs_pair *pair, const struct kernel_traits traits,
-                             const struct limbs_products *of, int f, int e, uint64_t *out)
-{
-    const int n = pair->limbs;
-    const size_t size = (size_t) n * sizeof *out;
-    memcpy(out, of->component[f][e < traits.dim ? e : edge_to(traits, e)], size);
-    if (e >= traits.dim)
-        subtract(n, out, of->component[f][edge_from(traits, e)]);
-    if (pair->frame[f]->shape == FMB_BOX)
-        add(n, out, of->component[f][e]);
-}
-
-/* Sets a parameter with the normal of two edges (slabs.h). which: of an edge e of frame 0 or 1, or
- * the time (2). Returns false if directions and drift are dependent. */
-static bool set_parameter(struct limbs_pair *pair, const struct kernel_traits traits,
-                          struct slab_normal normal, int which, int e,
+/* Sets a parameter from the products of the normal of the other two directions: that along edge e
+ * of frame 0 or 1 (which), or the time (which = 2). It does not exist where the directions are
+ * dependent. */
+static void set_parameter(const struct limbs_pair *pair, const struct kernel_traits traits,
+                          const struct limbs_products *of, int which, int e,
                           struct crossing_parameter *out)
 {
     const int n = pair->limbs;
-    const limbs_number none = {0};
+    const size_t size = (size_t) n * sizeof(uint64_t);
     limbs_number all, offset = {0};
-    if (!limbs_products_of(pair, normal, &out->of))
-        return false;
-    if (which == 2)
-        memcpy(all, out->of.drift, (size_t) n * sizeof(uint64_t));
-    else
-        set_edge_product(pair, traits, &out->of, which, e, all);
-    if (is_zero(n, all))
-        return false;
+    memcpy(all, which == 2 ? of->drift : of->component[which][e < 3 ? e : edge_to(traits, e)],
+           size);
+    if (which < 2 && e >= 3)
+        subtract(n, all, of->component[which][edge_from(traits, e)]);
+    if (which < 2 && pair->frame[which]->shape == FMB_BOX)
+        add(n, all, of->component[which][e]);
+    out->exists = !is_zero(n, all);
+    if (!out->exists)
+        return;
     /* From A to B: s a - r b - t drift, so that r and t have the opposite sign. */
     const int sign = is_negative(n, all) == (which == 0) ? -1 : 1;
-    add_signed(n, offset, sign, out->of.offset);
-    set_limbs_at_vertices(pair, &out->of, 0, -sign, 0, none, out->of_a);
-    set_limbs_at_vertices(pair, &out->of, 1, sign, 0, offset, out->of_b);
+    add_signed(n, offset, sign, of->offset);
+    for (int f = 0; f < 2; f++) {
+        const limbs_number none = {0};
+        set_limbs_at_vertices(pair, of, f, f ? sign : -sign, 0, f ? offset : none, out->at[f]);
+        for (int v = 0; v < vertex_count(traits, f); v++)
+            out->value[f][v] = to_double(n, out->at[f][v]);
+    }
     set_magnitude(n, all, out->all);
     out->inverse = 1 / to_double(n, out->all);
-    return true;
 }
 
-/* The parameter of the edges from vertex v of A and w of B, from 0 to 1; NAN if it is not. */
-static double parameter_at(int n, const struct crossing_parameter *parameter, int v, int w)
+/* Returns whether the parameter of the edges from vertices v of A and w of B is from 0 to 1, and
+ * sets it. In doubles, the sum and its distance from 1 are off by less than 2^-50 of the
+ * magnitudes; if that does not decide, in integers. */
+static bool is_in_range(int n, const struct crossing_parameter *parameter, int v, int w,
+                        double *out)
 {
+    const double of_a = parameter->value[0][v] * parameter->inverse;
+    const double of_b = parameter->value[1][w] * parameter->inverse;
+    const double error = 0x1p-50 * ((fabs(of_a) + fabs(of_b)) + 1);
     limbs_number x, left;
-    memcpy(x, parameter->of_a[v], (size_t) n * sizeof(uint64_t));
-    add(n, x, parameter->of_b[w]);
-    memcpy(left, parameter->all, (size_t) n * sizeof(uint64_t));
+    *out = of_a + of_b;
+    if (*out < -error || *out > 1 + error)
+        return false;
+    memcpy(x, parameter->at[0][v], (size_t) n * sizeof *x);
+    add(n, x, parameter->at[1][w]);
+    memcpy(left, parameter->all, (size_t) n * sizeof *left);
     subtract(n, left, x);
-    return is_negative(n, x) || is_negative(n, left) ? NAN : to_double(n, x) * parameter->inverse;
+    *out = to_double(n, x) * parameter->inverse;
+    return !is_negative(n, x) && !is_negative(n, left);
 }
 
-/* Adds the crossings of the edges along i of A and j of B, by index, to the reach. */
+/* Where the edges of a frame along a direction begin, at the start of the window. */
+struct edge_starts {
+    int count, vertex[4];
+};
+
+static struct edge_starts starts_along(const struct clip_wire *wire, int direction)
+{
+    struct edge_starts out = {0};
+    for (int n = 0; n < wire->segments; n++)
+        if (wire->direction[n] == direction && wire->from[n] < wire->vertices)
+            out.vertex[out.count++] = wire->from[n];
+    return out;
+}
+
+/* Adds the crossings of the edges along i of A and j of B, by index, to the reach; s and r: their
+ * parameters. */
 static void add_crossings_of(struct limbs_pair *pair, const struct kernel_traits traits,
                              const struct clip_wire wire[2], const struct clip_points *a, int i,
-                             int j, double reach[2][3])
+                             int j, const struct crossing_parameter *s,
+                             const struct crossing_parameter *r, double reach[2][3])
 {
-    const int n = pair->limbs, u = edge_at(traits, 0, i), v = edge_at(traits, 1, j);
-    struct crossing_parameter s, r, t;
-    if (!set_parameter(pair, traits, (struct slab_normal){SLABS_EDGE_OF_B + v, SLABS_DRIFT}, 0, u,
-                       &s) ||
-        !set_parameter(pair, traits, (struct slab_normal){u, SLABS_DRIFT}, 1, v, &r) ||
-        !set_parameter(pair, traits, (struct slab_normal){u, SLABS_EDGE_OF_B + v}, 2, 0, &t))
+    const int n = pair->limbs;
+    const struct edge_starts of_a = starts_along(&wire[0], i), of_b = starts_along(&wire[1], j);
+    const double *along[3] = {a->along[0], a->along[1], a->along[2]};
+    const int path = wire[0].directions - 1;
+    struct limbs_products of;
+    struct crossing_parameter t = {.exists = false};
+    if (!limbs_products_of(
+            pair,
+            (struct slab_normal){edge_at(traits, 0, i), SLABS_EDGE_OF_B + edge_at(traits, 1, j)},
+            &of))
         return;
-    for (int of_a = 0; of_a < wire[0].segments; of_a++) {
-        const int from_a = wire[0].from[of_a];
-        if (wire[0].direction[of_a] != i || from_a >= wire[0].vertices)
+    for (int k = 0; k < of_a.count * of_b.count; k++) {
+        const int v = of_a.vertex[k / of_b.count], w = of_b.vertex[k % of_b.count];
+        double at_s, at_r, at_t;
+        if (!is_in_range(n, s, v, w, &at_s) || !is_in_range(n, r, v, w, &at_r))
             continue;
-        for (int of_b = 0; of_b < wire[1].segments; of_b++) {
-            const int from_b = wire[1].from[of_b];
-            if (wire[1].direction[of_b] != j || from_b >= wire[1].vertices)
-                continue;
-            const double at_s = parameter_at(n, &s, from_a, from_b);
-            if (isnan(at_s) || isnan(parameter_at(n, &r, from_a, from_b)))
-                continue;
-            const double at_t = parameter_at(n, &t, from_a, from_b);
-            for (int axis = 0; axis < 3 && !isnan(at_t); axis++) {
-                const double x =
-                    a->vertex[axis][from_a] +
-                    (at_s * a->along[axis][i] + at_t * a->along[axis][wire[0].directions - 1]);
-                reach[0][axis] = fmax(reach[0][axis], -x);
-                reach[1][axis] = fmax(reach[1][axis], x);
-            }
+        if (!t.exists)
+            set_parameter(pair, traits, &of, 2, 0, &t);
+        if (!t.exists || !is_in_range(n, &t, v, w, &at_t))
+            continue;
+        for (int axis = 0; axis < 3; axis++) {
+            const double x =
+                a->vertex[axis][v] + (at_s * along[axis][i] + at_t * along[axis][path]);
+            reach[0][axis] = fmax(reach[0][axis], -x);
+            reach[1][axis] = fmax(reach[1][axis], x);
         }
     }
+}
+
+/* The parameters s depend on the direction along B, and with it on that along A by a factor only; r
+ * likewise. */
+static void add_all_crossings(struct limbs_pair *pair, const struct kernel_traits traits,
+                              const struct clip_wire wire[2], const struct clip_points *a,
+                              double reach[2][3])
+{
+    struct limbs_products of[2][SLABS_EDGES];
+    bool exists[2][SLABS_EDGES];
+    for (int f = 0; f < 2; f++)
+        for (int i = 0; i < edge_count(traits, f); i++)
+            exists[f][i] = limbs_products_of(
+                pair,
+                (struct slab_normal){(f ? SLABS_EDGE_OF_B : 0) + edge_at(traits, f, i),
+                                     SLABS_DRIFT},
+                &of[f][i]);
+    for (int i = 0; i < edge_count(traits, 0); i++)
+        for (int j = 0; j < edge_count(traits, 1); j++) {
+            struct crossing_parameter s, r;
+            if (!exists[0][i] || !exists[1][j])
+                continue;
+            set_parameter(pair, traits, &of[1][j], 0, edge_at(traits, 0, i), &s);
+            set_parameter(pair, traits, &of[0][i], 1, edge_at(traits, 1, j), &r);
+            if (s.exists && r.exists)
+                add_crossings_of(pair, traits, wire, a, i, j, &s, &r, reach);
+        }
 }
 
 /* ---- All of it ---- */
@@ -351,9 +393,8 @@ static bool find_reach_in_limbs(struct limbs_pair *pair, const struct kernel_tra
             spans[s] = clip_in_limbs(pair->limbs, &slabs, wire[f].from[s], wire[f].to[s]);
         add_reach(traits, &wire[f], &points[f], spans, reach);
     }
-    for (int i = 0; i < edge_count(traits, 0) && traits.dim == 3 && traits.drifts; i++)
-        for (int j = 0; j < edge_count(traits, 1); j++)
-            add_crossings_of(pair, traits, wire, &points[0], i, j, reach);
+    if (traits.dim == 3 && traits.drifts)
+        add_all_crossings(pair, traits, wire, &points[0], reach);
     return true;
 }
 
@@ -382,8 +423,11 @@ bool limbs_box(const struct fmb_prepared *a, const struct fmb_prepared *b, doubl
     if (!pair.in_range || !limbs_prepare_faces(&given, limbs_span_of(&given), &limbs) ||
         limbs.limbs > limbs_most || !find_reach_in_limbs(&limbs, traits, &of_pair, reach))
         return false;
-    set_ends(traits, &of_pair, reach, 1, ends.outer);
-    set_ends(traits, &of_pair, reach, -1, ends.inner);
+    for (int i = 0; i < 6; i++) {
+        const int end = i / 3, axis = i % 3;
+        ends.outer[end][axis] = reach[end][axis] + of_pair.slack[axis];
+        ends.inner[end][axis] = reach[end][axis] - of_pair.slack[axis];
+    }
     if (!are_near(traits, &of_pair, &ends))
         return false;
     memset(box, 0, 2 * FMB_DIM_MAX * sizeof **box);

@@ -81,6 +81,13 @@
  * 6. Underflow. E is at least 2^-640 (else the lane is not good). What underflows is less than 100
  * * 2^-1074 * 2^405 < 2^-662 (slabs.c). Nothing underflows where nothing rounds.
  *
+ * 7. Level cuboids. Where both frames have exact coordinates along an axis, and do not drift along
+ * it, a slab whose normal is that axis takes its values from exact differences along it
+ *    (exact_difference()): their signs are exact, and they are off by less than 2^-52 of
+ * themselves. The true slab has the same bounds. A vertex of the other cuboid is at one of its two
+ * ends, as one component only extends along the axis. So E is 0 here too, whatever the errors of
+ * the frames across the axis. Of cuboids that are flat, some other slab has no inner spans.
+ *
  * CROSSINGS
  *
  * Let p + s a be an edge of A and q + r b one of B, each seen from the reference point of its
@@ -96,27 +103,27 @@
  *
  * p x a and q x b are made of the normals of faces (moment_of_edge()).
  *
- * 7. Let N_s be the computed right side of the first equation, X the computed factor on its left,
+ * 8. Let N_s be the computed right side of the first equation, X the computed factor on its left,
  *    and W the weight of b x H. Where the true edges cross within the ranges of the parameters,
  *    |N_s - s X| <= E_s, with E_s = BOX_ROUNDING W . (all vectors at hand) for rounding: a monomial
  *    of N_s is rounded at most 4 times in the offset, 2 in H, 5 in the triple product, 1 in a
  *    difference, 5 in sums and with the range; one of X 8 times. At the same s, r and t, points of
  *    the true edges are off by at most e together, and N_s - s X by at most e |b x H|: E_s includes
  *    1.01 e times the scale. E_r and E_t likewise.
- * 8. A crossing is possible if N_s is within E_s of the range of s times X, and so for r and t. So
+ * 9. A crossing is possible if N_s is within E_s of the range of s times X, and so for r and t. So
  * no crossing that is a vertex is lost. s is within E_s / |X| of N_s / X, and p + s a + t travel_A
  * is off along axis k by at most (E_s |a_k| + E_t |travel_A[k]|) / |X|.
- * 9. It is certain if N_s is inside this range by more than E_s, and so for r and t. Then the true
+ * 10. It is certain if N_s is inside this range by more than E_s, and so for r and t. Then the true
  *    edges cross. First, as prepared: the range of s has the length 2 for a cuboid and 1 for a
  *    simplex, so |X| > E_s for a cuboid and |X| > 2 E_s for a simplex, more than the error of X. So
  *    the exact X is not 0, and there is a crossing. If a parameter were out of its range by x, the
- *    bound of 7 would grow by less than |X| x. So the crossing is within the ranges. Now move all
- *    vertices linearly from where they are as prepared to where they truly are. On the way, by 7, a
+ *    bound of 8 would grow by less than |X| x. So the crossing is within the ranges. Now move all
+ *    vertices linearly from where they are as prepared to where they truly are. On the way, by 8, a
  *    crossing that is within the ranges is inside them by a margin. Were the exact X 0 somewhere on
  *    the way, the crossing would be one of a line of crossings, and this line leaves the ranges at
  * a crossing without a margin. So X stays other than 0, and the crossing moves continuously and
  *    never leaves the ranges. So the inner end of each is no more than a true point.
- * 10. Underflow: E_s, E_r and E_t include 2^-93 T times the scale (T: slabs.c). With sizes of at
+ * 11. Underflow: E_s, E_r and E_t include 2^-93 T times the scale (T: slabs.c). With sizes of at
  * least 2^-180 (else the lane is not good) all three are more than 2^-640, as in 6. Where nothing
  *    rounds, they are 0, and all signs exact. */
 #ifndef FMB_BOX_CLIP_H
@@ -124,7 +131,7 @@
 
 #include "box_ends.h"
 
-/* Bounds the error of a value by the sum of the magnitudes of its monomials (1, 7). */
+/* Bounds the error of a value by the sum of the magnitudes of its monomials (1, 8). */
 #define BOX_ROUNDING (48 * BOX_UNIT)
 
 /* Spans shorter than this may be points, and are not certain (5). */
@@ -367,7 +374,9 @@ INLINE void set_values(const struct kernel_traits traits, const struct pair_lane
     const lanes_mask exact = slab->exact ? box->exact : (lanes_mask){0};
     const lanes error =
         lanes_select(exact, lanes_of(0), rounded + 1.01 * slab->scale * pair->error);
-    *good &= exact | (rounded >= 0x1p-640);
+    const lanes_mask solid = traits.face[!which] && k == 3 ? is_not((lanes_mask){0})
+                                                           : (lanes_mask) (slab->high > slab->low);
+    *good &= (exact & solid) | (is_not(exact) & (rounded >= 0x1p-640));
     set_at_vertices(traits, which, slab->middle, slab->at, slab->swing, at);
     set_along_directions(traits, which, slab->at, slab->swing, along);
     for (int v = 0; v < vertices; v++) {
@@ -379,6 +388,41 @@ INLINE void set_values(const struct kernel_traits traits, const struct pair_lane
     }
     for (int d = 0; d < edge_count(traits, which) + (traits.drifts ? 1 : 0); d++)
         out->inverse[k][d] = 1 / (along[d] + 0.0); /* of 0: +INFINITY */
+}
+
+/* Two cuboids: replaces the values of slab k of a frame in the lanes in which its normal is a
+ * coordinate axis, by exact differences along that axis (7). which: the other frame. */
+INLINE void set_level_values(const struct kernel_traits traits, const struct pair_lanes *pair,
+                             int which, const struct box_places *places, int k, int axis,
+                             struct clip_values *out)
+{
+    const int vertices = vertex_count(traits, which);
+    const lanes(*own)[3] = pair->component[!which], (*other)[3] = pair->component[which];
+    const lanes(*apart)[2] = places->apart[axis];
+    lanes_mask level = places->level[axis];
+    lanes at[CLIP_VERTICES], component[3];
+    for (int i = 0; i < traits.dim; i++) {
+        level &= i == (traits.dim == 2 ? 1 - k : k) ? own[i][axis] != 0 : own[i][axis] == 0;
+        component[i] = other[i][axis];
+    }
+    if (!lanes_mask_bits(level))
+        return;
+    set_at_vertices(traits, which, lanes_of(0), component, lanes_of(0), at);
+    for (int v = 0; v < vertices * (traits.drifts ? 2 : 1); v++) {
+        const lanes_mask above = at[v] > 0;
+        const lanes low = which ? -lanes_select(above, apart[0][1], apart[0][0])
+                                : lanes_select(above, apart[1][0], apart[0][0]);
+        const lanes high = which ? -lanes_select(above, apart[1][1], apart[1][0])
+                                 : lanes_select(above, apart[1][1], apart[0][1]);
+        for (int bound = 0; bound < CLIP_BOUNDS; bound++) {
+            out->low[bound][k][v] = lanes_select(level, low, out->low[bound][k][v]);
+            out->high[bound][k][v] = lanes_select(level, high, out->high[bound][k][v]);
+        }
+    }
+    for (int d = 0; d < traits.dim + (traits.drifts ? 1 : 0); d++) {
+        const lanes along = d < traits.dim ? component[d] + 0.0 : lanes_of(0);
+        out->inverse[k][d] = lanes_select(level, 1 / along, out->inverse[k][d]);
+    }
 }
 
 /* The part of a span between two bounds that are so far away, divided by the growth of the value.
@@ -563,117 +607,126 @@ INLINE lanes moment_of_edge(const struct kernel_traits traits, int which, int e,
     return n == 0 ? -(u + v) : n == 1 ? -(u - v) : n == 2 ? u - v : u + v;
 }
 
-/* The edges along i of A and j of B, [edge]: their bases, and their parts of r X, s X and t X. */
+/* x where it is inside its range from 0 to all, or from -all to all for an edge of a cuboid: by how
+ * much. */
+INLINE lanes inside_range(bool simplex, lanes x, lanes all)
+{
+    return simplex ? lanes_min(x, all - x) : all - lanes_abs(x);
+}
+
+/* Parts of s X, r X and t X of edges in one direction, [edge]; and where edges of A begin. */
 struct clip_edges {
-    lanes base[4][3]; /* of A */
-    lanes r[2][4], s[2][4], t[2][4];
+    lanes s[4], r[4], t[4], base[3][4];
 };
 
-INLINE void set_edges(const struct kernel_traits traits, const struct clip_crossings *all,
-                      const struct face_products side[2], const struct box_frame *a, int i, int j,
-                      struct clip_edges *out)
+/* Of the edges along i of A, with those along j of B. */
+INLINE void set_edges_of_a(const struct kernel_traits traits, const struct clip_crossings *all,
+                           const struct face_products *side, const struct box_frame *a, int i,
+                           int j, struct clip_edges *out)
 {
-    const lanes *swing_a = side[0].swing, *swing_b = side[1].swing;
-    const lanes(*of_a)[6] = side[0].other, (*of_b)[6] = side[1].other;
     const lanes along_b[3] = {all->edges.swing[0][j], all->edges.swing[1][j],
                               traits.face[0] ? lanes_of(0) : all->edges.swing[2][j]};
     for (int m = 0; m < parallel_count(traits, 0); m++) {
         for (int axis = 0; axis < 3; axis++) {
             const lanes at[3] = {a->edge[0][axis], a->edge[1][axis],
                                  traits.face[0] ? lanes_of(0) : a->edge[2][axis]};
-            out->base[m][axis] = a->centre[axis] + base_of_edge(traits, 0, i, m, at);
+            out->base[axis][m] = a->centre[axis] + base_of_edge(traits, 0, i, m, at);
         }
-        out->r[0][m] = all->drift_middle[0][i] -
-                       moment_of_edge(traits, 0, i, m, swing_a[0], swing_a[1], swing_a[2]);
-        out->s[0][m] = base_of_edge(traits, 0, i, m, along_b);
-        out->t[0][m] = moment_of_edge(traits, 0, i, m, of_a[0][j], of_a[1][j], of_a[2][j]);
+        out->r[m] = all->drift_middle[0][i] -
+                    moment_of_edge(traits, 0, i, m, side->swing[0], side->swing[1], side->swing[2]);
+        out->s[m] = base_of_edge(traits, 0, i, m, along_b);
+        out->t[m] = moment_of_edge(traits, 0, i, m, side->other[0][j], side->other[1][j],
+                                   side->other[2][j]);
     }
+}
+
+INLINE void set_edges_of_b(const struct kernel_traits traits, const struct clip_crossings *all,
+                           const struct face_products *side, int i, int j, struct clip_edges *out)
+{
     for (int n = 0; n < parallel_count(traits, 1); n++) {
-        out->r[1][n] = base_of_edge(traits, 1, j, n, all->edges.swing[i]);
-        out->s[1][n] = all->drift_middle[1][j] +
-                       moment_of_edge(traits, 1, j, n, swing_b[0], swing_b[1], swing_b[2]);
-        out->t[1][n] = moment_of_edge(traits, 1, j, n, of_b[0][i], of_b[1][i], of_b[2][i]);
+        out->r[n] = base_of_edge(traits, 1, j, n, all->edges.swing[i]);
+        out->s[n] = all->drift_middle[1][j] +
+                    moment_of_edge(traits, 1, j, n, side->swing[0], side->swing[1], side->swing[2]);
+        out->t[n] = moment_of_edge(traits, 1, j, n, side->other[0][i], side->other[1][i],
+                                   side->other[2][i]) -
+                    all->edges.middle[i][j];
     }
 }
 
-/* How far x is inside the range of a parameter times X: from 0 to X for an edge of a simplex, else
- * from -X to X. In: X >= 0. */
-INLINE lanes inside_range(bool simplex, lanes x, lanes all)
-{
-    return simplex ? lanes_min(x, all - x) : all - lanes_abs(x);
-}
+/* The crossings of edges along i of A and j of B. Where X may be 0, the radius is infinite. */
+struct clip_crossing {
+    struct clip_edges a, b;
+    lanes det, turned, error_s, error_r, error_t; /* |X|, X, bounds */
+    lanes along[3], travel[3], radius[3];         /* of s X, t X; of the error of a position */
+    lanes_mask known, crosses;
+};
 
-/* A reach in the lanes of a mask, INFINITY where it is not a number; -INFINITY in the others. */
-INLINE lanes farthest(lanes reach, lanes_mask mask)
-{
-    return lanes_select(mask, lanes_select(reach == reach, reach, lanes_of(INFINITY)),
-                        lanes_of(-INFINITY));
-}
-
-/* Adds the crossings of edges to the reach of A: for CLIP_OUTER those that are possible, for
- * CLIP_INNER those that are certain. Returns the lanes in which one of these is not certain, or has
- * a position that is not known to within box->whole. */
-INLINE lanes_mask add_crossing_reach(const struct pair_lanes *pair,
-                                     const struct kernel_traits traits, const struct box_pair *box,
-                                     const struct face_products side[2],
-                                     const struct clip_crossings *all, int bound, lanes reach[2][3])
+INLINE void set_crossing(const struct pair_lanes *pair, const struct kernel_traits traits,
+                         const struct box_places *places, const struct box_pair *box,
+                         const struct face_products side[2], const struct clip_crossings *all,
+                         int i, int j, struct clip_crossing *out)
 {
     const struct box_frame *a = &box->frame[0];
-    const bool simplex_a = traits.simplex[0], simplex_b = traits.simplex[1];
-    /* Edges that are parallel in exact numbers have no crossings. */
-    const lanes_mask drifts = pair->half_drift_size != 0;
-    lanes_mask uncertain = {0};
-    for (int index_a = 0; index_a < edge_count(traits, 0); index_a++)
-        for (int index_b = 0; index_b < edge_count(traits, 1); index_b++) {
-            const int i = edge_at(traits, 0, index_a), j = edge_at(traits, 1, index_b);
-            struct clip_edges edges;
-            lanes weight[3], radius[3], wide = lanes_of(0);
-            const lanes turned = all->edges.swing[i][j], det = lanes_abs(turned);
-            set_edges(traits, all, side, a, i, j, &edges);
-            cross_weight(all->length[0][i], all->length[1][j], weight);
-            const lanes error_s = all->error[1][j], error_r = all->error[0][i];
-            const lanes error_t =
-                lanes_select(box->exact, lanes_of(0),
-                             BOX_ROUNDING * dot(weight, box->reach) +
-                                 all->scale_error * (pair->size[0][i] * pair->size[1][j]));
-            const lanes inverse = 1 / det;
-            for (int axis = 0; axis < 3; axis++) {
-                radius[axis] = inverse * (error_s * lanes_abs(a->edge[i][axis]) +
-                                          error_t * lanes_abs(a->travel[axis]));
-                wide = lanes_max(radius[axis], wide);
-            }
-            const lanes_mask crosses = drifts & ((det > 0) | is_not(box->exact));
-            const lanes_mask known = (det > 0) & (wide <= 0.5 * box->whole);
-            const int count_b = parallel_count(traits, 1);
-            for (int index = 0; index < parallel_count(traits, 0) * count_b; index++) {
-                const int m = index / count_b, n = index % count_b;
-                const lanes s = with_sign_of(edges.s[1][n] - edges.s[0][m], turned);
-                const lanes r = with_sign_of(edges.r[0][m] - edges.r[1][n], turned);
-                const lanes t =
-                    with_sign_of((edges.t[1][n] + edges.t[0][m]) - all->edges.middle[i][j], turned);
-                const lanes in_s = inside_range(simplex_a, s, det),
-                            in_r = inside_range(simplex_b, r, det),
-                            in_t = inside_range(false, t, det);
-                const lanes_mask possible =
-                    crosses & (in_s >= -error_s) & (in_r >= -error_r) & (in_t >= -error_t);
-                const lanes_mask certain =
-                    possible & known & (in_s >= error_s) & (in_r >= error_r) & (in_t >= error_t);
-                const lanes_mask counts = bound == CLIP_OUTER ? possible : certain;
-                if (!lanes_mask_bits(counts))
-                    continue;
-                uncertain |= counts & is_not(certain);
-                for (int axis = 0; axis < 3; axis++) {
-                    const lanes middle = edges.base[m][axis] + ((inverse * s) * a->edge[i][axis] +
-                                                                (inverse * t) * a->travel[axis]);
-                    const lanes half = bound == CLIP_OUTER ? radius[axis] : -radius[axis];
-                    const lanes below = farthest(half - middle, counts),
-                                above = farthest(half + middle, counts);
-                    reach[0][axis] = lanes_max(below, reach[0][axis]);
-                    reach[1][axis] = lanes_max(above, reach[1][axis]);
-                }
-            }
+    lanes weight[3], wide = lanes_of(0);
+    set_edges_of_a(traits, all, &side[0], a, i, j, &out->a);
+    set_edges_of_b(traits, all, &side[1], i, j, &out->b);
+    out->turned = all->edges.swing[i][j];
+    out->det = lanes_abs(out->turned);
+    out->error_s = all->error[1][j];
+    out->error_r = all->error[0][i];
+    cross_weight(all->length[0][i], all->length[1][j], weight);
+    out->error_t = lanes_select(box->exact, lanes_of(0),
+                                BOX_ROUNDING * dot(weight, box->reach) +
+                                    all->scale_error * (pair->size[0][i] * pair->size[1][j]));
+    const lanes_mask some = out->det > 0x1p-1000;
+    const lanes inverse = lanes_select(some, 1 / out->det, lanes_of(0));
+    for (int axis = 0; axis < 3; axis++) {
+        out->along[axis] = inverse * a->edge[i][axis];
+        out->travel[axis] = inverse * a->travel[axis];
+        const lanes radius = out->error_s * lanes_abs(out->along[axis]) +
+                             out->error_t * lanes_abs(out->travel[axis]);
+        out->radius[axis] = lanes_select(some, radius, lanes_of(INFINITY));
+        wide = lanes_max(out->radius[axis], wide);
+    }
+    /* None if X is exactly 0: in exact numbers, or all three vectors are across a level axis. */
+    out->crosses = (pair->half_drift_size != 0) & (some | is_not(box->exact));
+    for (int axis = 0; axis < 3; axis++)
+        out->crosses &= is_not(places->level[axis] & (a->edge[i][axis] == 0) &
+                               (box->frame[1].edge[j][axis] == 0));
+    out->known = wide <= 0.5 * box->whole;
+}
+
+/* Adds the crossing of edge m of A and n of B to the reach of A: to the outer one where it is
+ * possible, to the inner one where it is certain. Returns the lanes in which it is possible, but
+ * not certain, or has a position that is not known to within box->whole. */
+INLINE lanes_mask add_crossing(const struct kernel_traits traits, const struct clip_crossing *from,
+                               int m, int n, lanes reach[CLIP_BOUNDS][2][3])
+{
+    const lanes none = lanes_of(-INFINITY), det = from->det, turned = from->turned;
+    const lanes s = with_sign_of(from->b.s[n] - from->a.s[m], turned);
+    const lanes r = with_sign_of(from->a.r[m] - from->b.r[n], turned);
+    const lanes t = with_sign_of(from->b.t[n] + from->a.t[m], turned);
+    const lanes in_s = inside_range(traits.simplex[0], s, det);
+    const lanes in_r = inside_range(traits.simplex[1], r, det);
+    const lanes in_t = inside_range(false, t, det);
+    const lanes_mask possible = from->crosses & (in_s >= -from->error_s) &
+                                (in_r >= -from->error_r) & (in_t >= -from->error_t);
+    if (!lanes_mask_bits(possible))
+        return possible;
+    const lanes_mask certain = possible & from->known & (in_s >= from->error_s) &
+                               (in_r >= from->error_r) & (in_t >= from->error_t);
+    for (int axis = 0; axis < 3; axis++) {
+        const lanes middle =
+            from->a.base[axis][m] + (s * from->along[axis] + t * from->travel[axis]);
+        for (int bound = 0; bound < CLIP_BOUNDS; bound++) {
+            lanes(*at)[3] = reach[bound];
+            const lanes_mask counts = bound == CLIP_OUTER ? possible : certain;
+            const lanes half = bound == CLIP_OUTER ? from->radius[axis] : -from->radius[axis];
+            at[0][axis] = lanes_max(lanes_select(counts, half - middle, none), at[0][axis]);
+            at[1][axis] = lanes_max(lanes_select(counts, half + middle, none), at[1][axis]);
         }
-    return uncertain;
+    }
+    return possible & is_not(certain);
 }
 
 /* ---- All of it ---- */
@@ -688,74 +741,75 @@ struct clip_side {
 /* Clips a frame to the other one. Out: side; other, the face products of the other. Returns the
  * lanes of clip_segments(). */
 INLINE lanes_mask clip_frame(const struct pair_lanes *pair, const struct kernel_traits traits,
-                             int which, const struct box_pair *box, struct face_products *other,
-                             lanes_mask *good, struct clip_side *side)
+                             const struct box_places *places, int which, const struct box_pair *box,
+                             struct face_products *other, lanes_mask *good, struct clip_side *side)
 {
     struct clip_slab slab[CLIP_SLABS];
     struct clip_values values;
     const int slabs = traits.dim == 2
                           ? set_plane_slabs(pair, traits, !which, &box->frame[!which], slab)
                           : set_space_slabs(pair, traits, !which, other, slab);
-    for (int k = 0; k < slabs; k++)
+    for (int k = 0; k < slabs; k++) {
         set_values(traits, pair, which, box, &slab[k], k, good, &values);
+        for (int axis = 0; axis < traits.dim; axis++)
+            if (lanes_mask_bits(places->level[axis]))
+                set_level_values(traits, pair, which, places, k, axis, &values);
+    }
     set_wire(traits, which, &side->wire);
     set_points(traits, which, &side->wire, &box->frame[which], &side->points);
     return clip_segments(&side->wire, &values, slabs, traits.face[!which], side->points.longest,
                          box, &side->spans);
 }
 
-/* The ends of the box, the slack added (sign = 1) or subtracted (sign = -1). */
-INLINE void set_ends(const struct kernel_traits traits, const struct box_pair *box,
-                     const lanes reach[2][3], double sign, lanes ends[2][3])
+/* Adds all crossings to the reach of A. Returns the lanes of add_crossing(). */
+INLINE lanes_mask add_crossings(const struct pair_lanes *pair, const struct kernel_traits traits,
+                                const struct box_places *places, const struct box_pair *box,
+                                const struct face_products side[2], lanes_mask *good,
+                                lanes reach[CLIP_BOUNDS][2][3])
 {
-    for (int axis = 0; axis < traits.dim; axis++)
-        for (int end = 0; end < 2; end++)
-            ends[end][axis] = reach[end][axis] + sign * box->slack[axis];
-}
-
-/* Sets how far the spans reach, and in 3D the crossings of frames that move. Returns the lanes of
- * add_crossing_reach(). */
-INLINE lanes_mask find_reach(const struct pair_lanes *pair, const struct kernel_traits traits,
-                             const struct box_pair *box, const struct clip_side side[2],
-                             const struct face_products products[2],
-                             const struct clip_crossings *crossings, int bound, lanes reach[2][3])
-{
-    for (int axis = 0; axis < traits.dim; axis++)
-        reach[0][axis] = reach[1][axis] = lanes_of(-INFINITY);
-    for (int which = 0; which < 2; which++)
-        add_reach(traits, &side[which].wire, &side[which].points, side[which].spans.part[bound],
-                  reach);
-    if (traits.dim == 2 || !traits.drifts)
-        return (lanes_mask){0};
-    return add_crossing_reach(pair, traits, box, products, crossings, bound, reach);
+    struct clip_crossings all;
+    lanes_mask uncertain = {0};
+    *good &= set_crossings(pair, traits, box, &all);
+    for (int i = 0; i < edge_count(traits, 0); i++)
+        for (int j = 0; j < edge_count(traits, 1); j++) {
+            struct clip_crossing crossing;
+            set_crossing(pair, traits, places, box, side, &all, edge_at(traits, 0, i),
+                         edge_at(traits, 1, j), &crossing);
+            for (int m = 0; m < parallel_count(traits, 0); m++)
+                for (int n = 0; n < parallel_count(traits, 1); n++)
+                    uncertain |= add_crossing(traits, &crossing, m, n, reach);
+        }
+    return uncertain;
 }
 
 /* Finds the ends of the box. Returns the lanes in which they are good. */
 INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_traits traits,
-                           const struct box_pair *box, struct box_ends *ends)
+                           const struct box_places *places, const struct box_pair *box,
+                           struct box_ends *ends)
 {
     struct face_products products[2];
     struct clip_side side[2];
-    struct clip_crossings crossings;
-    lanes reach[2][3];
+    lanes reach[CLIP_BOUNDS][2][3];
     lanes_mask good = is_not((lanes_mask){0}), uncertain = {0};
+    for (int i = 0; i < CLIP_BOUNDS * 6; i++)
+        reach[i / 6][i / 3 % 2][i % 3] = lanes_of(-INFINITY);
     for (int which = 0; which < 2; which++)
-        uncertain |= clip_frame(pair, traits, which, box, &products[!which], &good, &side[which]);
+        uncertain |=
+            clip_frame(pair, traits, places, which, box, &products[!which], &good, &side[which]);
     if (traits.dim == 3 && traits.drifts)
-        good &= set_crossings(pair, traits, box, &crossings);
-    uncertain |= find_reach(pair, traits, box, side, products, &crossings, CLIP_OUTER, reach);
-    set_ends(traits, box, reach, 1, ends->outer);
-    /* Where not uncertain, these are within box->whole of the true ends. */
-    set_ends(traits, box, reach, -1, ends->inner);
-    if (lanes_mask_bits(uncertain & good)) {
-        lanes inner[2][3];
-        find_reach(pair, traits, box, side, products, &crossings, CLIP_INNER, reach);
-        set_ends(traits, box, reach, -1, inner);
-        for (int axis = 0; axis < traits.dim; axis++)
-            for (int end = 0; end < 2; end++)
-                ends->inner[end][axis] =
-                    lanes_select(uncertain, inner[end][axis], ends->inner[end][axis]);
-    }
+        uncertain |= add_crossings(pair, traits, places, box, products, &good, reach);
+    for (int bound = 0; bound < (lanes_mask_bits(uncertain & good) ? 2 : 1); bound++)
+        for (int which = 0; which < 2; which++)
+            add_reach(traits, &side[which].wire, &side[which].points, side[which].spans.part[bound],
+                      reach[bound]);
+    for (int axis = 0; axis < traits.dim; axis++)
+        for (int end = 0; end < 2; end++) {
+            /* Where not uncertain, the outer reach is within box->whole of the true one. */
+            const lanes inner =
+                lanes_select(uncertain, reach[CLIP_INNER][end][axis], reach[CLIP_OUTER][end][axis]);
+            ends->outer[end][axis] = reach[CLIP_OUTER][end][axis] + box->slack[axis];
+            ends->inner[end][axis] = inner - box->slack[axis];
+        }
     return are_near(traits, box, ends) & good;
 }
 

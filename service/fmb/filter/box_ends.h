@@ -44,6 +44,10 @@ struct box_places {
     lanes error[2];
     lanes_mask exact; /* nothing rounds (slabs_exact.h) */
     double duration;
+    /* Two cuboids, [axis]: the lanes in which both have exact coordinates along an axis along which
+     * they do not drift, with [end of A][end of B] from one to the other (exact_difference()). */
+    lanes_mask level[3];
+    lanes apart[3][2][2];
 };
 
 /* A frame. Edges by number (slabs.h); those of a cuboid are half of what they are. */

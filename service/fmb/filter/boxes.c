@@ -16,7 +16,7 @@ static void find_box(const struct kernel_traits traits, const struct pair_lanes 
     if (lanes_mask_bits(good | is_not(pair->in_range)) != (1u << LANES) - 1) {
         struct box_ends clipped_ends;
         const lanes_mask clips = is_not(good);
-        const lanes_mask found = clip_box(pair, traits, &of_pair, &clipped_ends);
+        const lanes_mask found = clip_box(pair, traits, places, &of_pair, &clipped_ends);
         good |= found;
         for (int i = 0; i < 6; i++) {
             const int end = i / 3, axis = i % 3;

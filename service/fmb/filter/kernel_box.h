@@ -26,6 +26,33 @@ INLINE void gather_pairs(const struct fmb_prepared *const pairs[][2],
         for (size_t lane = 0; lane < LANES; lane++)
             frame[lane] = (const double *) pairs[lane][which];
         gather(traits, frame, &pair[which]);
+        memcpy(pair[which].prepared, frame, sizeof frame);
+    }
+}
+
+/* Sets level and apart. */
+INLINE void set_level(const struct kernel_traits traits, const struct frame_lanes frame[2],
+                      struct box_places *out)
+{
+    const lanes_bits axes = known_axes(traits, &frame[0]) & known_axes(traits, &frame[1]);
+    const bool any = lanes_mask_bits(is_centred(&frame[0]) | is_centred(&frame[1]));
+    for (int axis = 0; axis < traits.dim; axis++) {
+        lanes_mask level = (axes & (1u << axis)) != 0;
+        if (traits.simplex[0] || traits.simplex[1])
+            level = (lanes_mask){0};
+        if (traits.drifts)
+            level &= frame[0].velocity[axis] == frame[1].velocity[axis];
+        if (lanes_mask_bits(level)) {
+            const struct exact_extent a = extent_along(traits, 0, &frame[0], any, axis);
+            const struct exact_extent b = extent_along(traits, 1, &frame[1], any, axis);
+            for (int i = 0; i < 4; i++) {
+                const struct exact_sum apart =
+                    exact_difference(&a, &b, i / 2 ? a.high : a.low, i % 2 ? b.high : b.low, any);
+                level &= apart.rounds == 0;
+                out->apart[axis][i / 2][i % 2] = apart.value;
+            }
+        }
+        out->level[axis] = level;
     }
 }
 
@@ -34,6 +61,7 @@ INLINE void set_places(const struct kernel_traits traits, const struct frame_lan
 {
     set_pair(traits, &frame[0], &frame[1], duration, pair);
     out->duration = duration;
+    set_level(traits, frame, out);
     out->exact = nothing_rounds(traits, &frame[0], &frame[1], duration, pair);
     for (int which = 0; which < 2; which++) {
         out->summary[which] = frame[which].summary;
