@@ -419,6 +419,7 @@ bool limbs_box(const struct fmb_prepared *a, const struct fmb_prepared *b, doubl
     double reach[2][3];
     gather_pairs(frames, traits, frame);
     set_places(traits, frame, duration, &pair, &places);
+    set_exact(traits, frame, &pair, &places);
     begin_box(&pair, traits, &places, &of_pair);
     if (!pair.in_range || !limbs_prepare_faces(&given, limbs_span_of(&given), &limbs) ||
         limbs.limbs > limbs_most || !find_reach_in_limbs(&limbs, traits, &of_pair, reach))

@@ -46,16 +46,20 @@
  *
  * ERRORS
  *
- * 1. Values. Every number of a slab is a sum of monomials: products of a coordinate of a vector at
- *    hand (the offset, half the drift, components) with those of the edges in the normal. E =
- *    BOX_ROUNDING W . (the magnitudes of all vectors at hand) bounds the error of the value s + t d
- * on a segment less a bound of the slab, for any t in [0, 1]. W is the normal with all monomials
- *    positive. A monomial of s is rounded at most 4 times in the offset or 2 in half the drift; 5
- *    times in a triple product; 2 where edges are differences or normals are summed, 3 more in the
- *    plane of a face; 4 times in the sum of a vertex, and 2 with the bound and E: at most 20. One
- * of d is rounded 11 times, and twice as a quotient. Along an edge of a cuboid d is twice the
- * product of its half. So the error is at most 20 u of the monomials of s and 2 * 13 u of those of
- * d, u = 2^-53, less than 48 u of the sum over all vectors at hand.
+ * 1. Values. Every number of a slab is a sum of monomials: products of a coordinate of a vector
+ * (the offset, half the drift, components) with those of the edges in the normal. W is the normal
+ * with all monomials positive, and reach holds the magnitudes of the vectors: the offset as it was
+ *    before the components of cuboids were added, the drift, of a cuboid twice the sum of all
+ *    components, of a simplex the largest. E = BOX_ROUNDING W . reach bounds the error of the value
+ *    s + t d on a segment less a bound of the slab, for any t in [0, 1]. A monomial of s is rounded
+ *    at most 4 times in the offset, 5 in a triple product, 2 where normals are summed, 4 in the sum
+ *    of a vertex, 2 with the bound and E: 17 times, or 13 without the offset. One of d is rounded 8
+ *    times, or 7 along an edge of a cuboid, and twice as a quotient. Along an edge of a cuboid d is
+ *    twice the product with half of it: 13 u + 2 * 9 u = 31 u of its monomials, u = 2^-53. From P
+ * to Q of a simplex: 13 u of those of P and 10 u of those of both, 33 u of the larger ones. Half
+ * the drift is in the offset, in the swing and twice in d: 17 u + 15 u + 2 * 11 u, less than twice
+ * 33 u. In the plane of a face there are 3 roundings more, at most 42 u: weights are 1.3 times as
+ *    large there.
  * 2. A span. A bound is crossed where s + t d, with the computed s and d, is a bound of the slab
  * moved by E. Where d is 0, the quotient is infinite, and its sign that of what is left to the
  * bound; on the bound it is NAN, and clips nothing. So the part of the true segment that is in the
@@ -82,11 +86,13 @@
  * * 2^-1074 * 2^405 < 2^-662 (slabs.c). Nothing underflows where nothing rounds.
  *
  * 7. Level cuboids. Where both frames have exact coordinates along an axis, and do not drift along
- * it, a slab whose normal is that axis takes its values from exact differences along it
+ *    it, a slab whose normal is that axis takes its values from exact differences along it
  *    (exact_difference()): their signs are exact, and they are off by less than 2^-52 of
  * themselves. The true slab has the same bounds. A vertex of the other cuboid is at one of its two
  * ends, as one component only extends along the axis. So E is 0 here too, whatever the errors of
- * the frames across the axis. Of cuboids that are flat, some other slab has no inner spans.
+ * the frames across the axis: 3 holds in the cross-sections at each point of the axis, which are
+ * within the errors of their frames of the true ones. Of a cuboid that is flat, some other slab
+ * leaves no inner spans.
  *
  * CROSSINGS
  *
@@ -105,11 +111,13 @@
  *
  * 8. Let N_s be the computed right side of the first equation, X the computed factor on its left,
  *    and W the weight of b x H. Where the true edges cross within the ranges of the parameters,
- *    |N_s - s X| <= E_s, with E_s = BOX_ROUNDING W . (all vectors at hand) for rounding: a monomial
- *    of N_s is rounded at most 4 times in the offset, 2 in H, 5 in the triple product, 1 in a
- *    difference, 5 in sums and with the range; one of X 8 times. At the same s, r and t, points of
- *    the true edges are off by at most e together, and N_s - s X by at most e |b x H|: E_s includes
- *    1.01 e times the scale. E_r and E_t likewise.
+ *    |N_s - s X| <= E_s, with E_s = BOX_ROUNDING W . reach for rounding. A monomial of X is rounded
+ *    at most 9 times: 2 in H, 5 in the triple product, 2 where both edges are differences. One of
+ *    N_s is rounded 8 times in that way, 3 in sums and with the range, 4 more in the offset. From P
+ *    to Q of a simplex that is 11 u of the monomials of P and 9 u of those of both, less than 33 u
+ *    of the larger ones. At the same s, r and t, points of the true edges are off by at most e
+ *    together, and N_s - s X by at most e |b x H|: E_s includes 1.01 e times the scale. E_r and E_t
+ *    likewise.
  * 9. A crossing is possible if N_s is within E_s of the range of s times X, and so for r and t. So
  * no crossing that is a vertex is lost. s is within E_s / |X| of N_s / X, and p + s a + t travel_A
  * is off along axis k by at most (E_s |a_k| + E_t |travel_A[k]|) / |X|.
@@ -132,7 +140,10 @@
 #include "box_ends.h"
 
 /* Bounds the error of a value by the sum of the magnitudes of its monomials (1, 8). */
-#define BOX_ROUNDING (48 * BOX_UNIT)
+#define BOX_ROUNDING (33.1 * BOX_UNIT)
+
+/* How much larger weights are in the plane of a face (1). */
+#define BOX_IN_FACE 1.3
 
 /* Spans shorter than this may be points, and are not certain (5). */
 #define CLIP_SHORTEST 0x1p-48
@@ -311,6 +322,8 @@ INLINE void set_face_slab(const struct pair_lanes *pair, const struct kernel_tra
                               .swing = which ? -swing : swing,
                               .scale = pair->size[which][1 - i] * plane->scale};
     cross_weight(c[1 - i], plane->weight, out->weight);
+    for (int axis = 0; axis < 3; axis++)
+        out->weight[axis] *= BOX_IN_FACE;
     for (int j = 0; j < component_count(traits, !which); j++)
         out->at[j] = dot(normal, pair->component[!which][j]);
     set_bounds(traits, which, dot(side->normal[2], side->normal[2]), out);
@@ -731,9 +744,8 @@ INLINE lanes_mask add_crossing(const struct kernel_traits traits, const struct c
 
 /* ---- All of it ---- */
 
-/* What a frame reaches, and the numbers that its spans come from. */
+/* A frame, and what is left of its segments. */
 struct clip_side {
-    struct clip_wire wire;
     struct clip_points points;
     struct clip_spans spans;
 };
@@ -741,7 +753,8 @@ struct clip_side {
 /* Clips a frame to the other one. Out: side; other, the face products of the other. Returns the
  * lanes of clip_segments(). */
 INLINE lanes_mask clip_frame(const struct pair_lanes *pair, const struct kernel_traits traits,
-                             const struct box_places *places, int which, const struct box_pair *box,
+                             const struct box_places *places, int which,
+                             const struct clip_wire *wire, const struct box_pair *box,
                              struct face_products *other, lanes_mask *good, struct clip_side *side)
 {
     struct clip_slab slab[CLIP_SLABS];
@@ -755,10 +768,9 @@ INLINE lanes_mask clip_frame(const struct pair_lanes *pair, const struct kernel_
             if (lanes_mask_bits(places->level[axis]))
                 set_level_values(traits, pair, which, places, k, axis, &values);
     }
-    set_wire(traits, which, &side->wire);
-    set_points(traits, which, &side->wire, &box->frame[which], &side->points);
-    return clip_segments(&side->wire, &values, slabs, traits.face[!which], side->points.longest,
-                         box, &side->spans);
+    set_points(traits, which, wire, &box->frame[which], &side->points);
+    return clip_segments(wire, &values, slabs, traits.face[!which], side->points.longest, box,
+                         &side->spans);
 }
 
 /* Adds all crossings to the reach of A. Returns the lanes of add_crossing(). */
@@ -784,8 +796,8 @@ INLINE lanes_mask add_crossings(const struct pair_lanes *pair, const struct kern
 
 /* Finds the ends of the box. Returns the lanes in which they are good. */
 INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_traits traits,
-                           const struct box_places *places, const struct box_pair *box,
-                           struct box_ends *ends)
+                           const struct clip_wire wire[2], const struct box_places *places,
+                           const struct box_pair *box, struct box_ends *ends)
 {
     struct face_products products[2];
     struct clip_side side[2];
@@ -794,13 +806,13 @@ INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_tr
     for (int i = 0; i < CLIP_BOUNDS * 6; i++)
         reach[i / 6][i / 3 % 2][i % 3] = lanes_of(-INFINITY);
     for (int which = 0; which < 2; which++)
-        uncertain |=
-            clip_frame(pair, traits, places, which, box, &products[!which], &good, &side[which]);
+        uncertain |= clip_frame(pair, traits, places, which, &wire[which], box, &products[!which],
+                                &good, &side[which]);
     if (traits.dim == 3 && traits.drifts)
         uncertain |= add_crossings(pair, traits, places, box, products, &good, reach);
     for (int bound = 0; bound < (lanes_mask_bits(uncertain & good) ? 2 : 1); bound++)
         for (int which = 0; which < 2; which++)
-            add_reach(traits, &side[which].wire, &side[which].points, side[which].spans.part[bound],
+            add_reach(traits, &wire[which], &side[which].points, side[which].spans.part[bound],
                       reach[bound]);
     for (int axis = 0; axis < traits.dim; axis++)
         for (int end = 0; end < 2; end++) {

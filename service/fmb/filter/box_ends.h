@@ -61,7 +61,7 @@ struct box_frame {
 struct box_pair {
     struct box_frame frame[2];
     lanes slack[3];    /* of a coordinate */
-    lanes reach[3];    /* magnitudes of all vectors at hand, and of what the offset is made of */
+    lanes reach[3];    /* of a value: [axis], magnitudes of the vectors that it is made of */
     lanes largest;     /* coordinate, or a little less */
     lanes whole;       /* what ends may be apart, without the slack on both sides */
     lanes unit;        /* of the small numbers that ends are made of; 0: they are not */
@@ -106,6 +106,15 @@ INLINE lanes magnitudes_along(const struct pair_lanes *pair, const struct kernel
     for (int i = 1; i < component_count(traits, which); i++)
         sum += lanes_abs(pair->component[which][i][axis]);
     return sum;
+}
+
+INLINE lanes largest_along(const struct pair_lanes *pair, const struct kernel_traits traits,
+                           int which, int axis)
+{
+    lanes largest = lanes_abs(pair->component[which][0][axis]);
+    for (int i = 1; i < component_count(traits, which); i++)
+        largest = lanes_max(lanes_abs(pair->component[which][i][axis]), largest);
+    return largest;
 }
 
 /* Zeros become positive. */
@@ -269,7 +278,8 @@ INLINE void set_sizes(const struct pair_lanes *pair, const struct kernel_traits 
     for (int which = 0; which < 2; which++) {
         const lanes sum = magnitudes_along(pair, traits, which, axis);
         const lanes at = twice * lanes_abs(places->origin[which][axis]);
-        out->reach[axis] += traits.simplex[which] ? sum : 2 * sum;
+        out->reach[axis] +=
+            traits.simplex[which] ? largest_along(pair, traits, which, axis) : 2 * sum;
         slack = lanes_max(at + 4 * out->frame[which].own_sum[axis], slack);
     }
     const lanes rounding = lanes_select(places->exact, lanes_of(BOX_PLACE_ROUNDING_EXACT),
@@ -338,15 +348,17 @@ INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits 
 
 /* ---- Boxes along the axes ---- */
 
-/* The lanes in which both frames are cuboids along the axes: the intersection is that of their
- * extents along each axis. */
+/* The lanes in which both frames are cuboids along the axes, and at rest: the intersection is that
+ * of their extents along each axis. These are off by no more than the errors of the frames: with a
+ * largest coordinate of L, sizes are at most 2.2 sqrt(3) L, and T at most 57 L in doubled lengths.
+ */
 INLINE lanes_mask are_aligned(const struct pair_lanes *pair, const struct kernel_traits traits,
-                              const struct box_places *places, const struct box_pair *box)
+                              const struct box_places *places)
 {
     lanes_mask out = {0};
     if (traits.simplex[0] || traits.simplex[1] || traits.drifts)
         return out;
-    out = pair->error <= 0x1p-45 * box->largest;
+    out = pair->error <= 0x1p-51 * pair->reach;
     UNROLL(2)
     for (int which = 0; which < 2; which++) {
         const lanes(*c)[3] = pair->component[which];

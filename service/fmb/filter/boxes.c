@@ -4,29 +4,27 @@
 
 /* Sets the box, [lower, upper][axis]; NAN in lanes in which doubles do not prove the limit of
  * fmb.h, 0 along axes beyond dim. */
-static void find_box(const struct kernel_traits traits, const struct pair_lanes *pair,
-                     const struct box_places *places, lanes box[2][3])
+static void find_box(const struct kernel_traits traits, const struct clip_wire wire[2],
+                     const struct frame_lanes frame[2], const struct pair_lanes *pair,
+                     struct box_places *places, lanes box[2][3])
 {
+    const lanes_mask aligned = are_aligned(pair, traits, places);
+    const bool clips = !lanes_all(aligned | is_not(pair->in_range));
     struct box_pair of_pair;
     struct box_ends ends;
+    places->exact = (lanes_mask){0};
+    if (clips)
+        set_exact(traits, frame, pair, places);
     begin_box(pair, traits, places, &of_pair);
+    lanes_mask good = aligned & of_pair.usable;
     for (int i = 0; i < 6; i++)
         ends.outer[i / 3][i % 3] = ends.inner[i / 3][i % 3] = lanes_of(INFINITY);
-    lanes_mask good = are_aligned(pair, traits, places, &of_pair) & of_pair.usable;
-    if (lanes_mask_bits(good | is_not(pair->in_range)) != (1u << LANES) - 1) {
-        struct box_ends clipped_ends;
-        const lanes_mask clips = is_not(good);
-        const lanes_mask found = clip_box(pair, traits, places, &of_pair, &clipped_ends);
-        good |= found;
-        for (int i = 0; i < 6; i++) {
-            const int end = i / 3, axis = i % 3;
-            if (axis >= traits.dim)
-                continue;
-            ends.outer[end][axis] =
-                lanes_select(clips, clipped_ends.outer[end][axis], ends.outer[end][axis]);
-            ends.inner[end][axis] =
-                lanes_select(clips, clipped_ends.inner[end][axis], ends.inner[end][axis]);
-        }
+    if (clips)
+        good |= clip_box(pair, traits, wire, places, &of_pair, &ends) & is_not(aligned);
+    for (int i = 0; i < 6; i++) {
+        lanes *outer = &ends.outer[i / 3][i % 3], *inner = &ends.inner[i / 3][i % 3];
+        *outer = lanes_select(aligned, lanes_of(INFINITY), *outer);
+        *inner = lanes_select(aligned, lanes_of(INFINITY), *inner);
     }
     put_box(pair, traits, places, &of_pair, &ends, box);
     good &= pair->in_range;
@@ -41,6 +39,9 @@ kernel_box_function KERNEL_PASTE(kernel, KERNEL_NAME);
 void KERNEL_PASTE(kernel, KERNEL_NAME)(const struct kernel_call *call, enum kernel_kind kind)
 {
     const struct kernel_traits traits = traits_of(kind);
+    struct clip_wire wire[2];
+    for (int which = 0; which < 2; which++)
+        set_wire(traits, which, &wire[which]);
     for (size_t first = 0; first < call->count; first += LANES) {
         struct frame_lanes frame[2];
         struct pair_lanes pair;
@@ -48,7 +49,7 @@ void KERNEL_PASTE(kernel, KERNEL_NAME)(const struct kernel_call *call, enum kern
         lanes box[2][3];
         gather_pairs((const struct fmb_prepared *const(*)[2]) & call->pairs[first], traits, frame);
         set_places(traits, frame, call->duration, &pair, &places);
-        find_box(traits, &pair, &places, box);
+        find_box(traits, wire, frame, &pair, &places, box);
         for (int i = 0; i < 6; i++) {
             double at[LANES];
             memcpy(at, &box[i / 3][i % 3], sizeof at);

@@ -27,7 +27,7 @@ _Static_assert(INSTRUCTIONS_PLAIN == 1 && INSTRUCTIONS_SSE2 == 2 && INSTRUCTIONS
     }
 
 KERNEL_DECLARE(plain)
-extern kernel_box_function kernel_boxes_plain, kernel_boxes_two, kernel_boxes_avx2;
+kernel_box_function kernel_boxes_plain, kernel_boxes_two, kernel_boxes_avx2;
 
 #if defined(__x86_64__) && INSTRUCTIONS_MOST > 1
 KERNEL_DECLARE(sse2)
@@ -100,7 +100,7 @@ static int best(void)
 
 kernel_box_function *kernel_boxes_single(void)
 {
-    return kernel_boxes_two;
+    return sets[best()].boxes;
 }
 
 const char *instructions_name(int instructions)

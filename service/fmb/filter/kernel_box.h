@@ -30,10 +30,11 @@ INLINE void gather_pairs(const struct fmb_prepared *const pairs[][2],
     }
 }
 
-/* Sets level and apart. */
-INLINE void set_level(const struct kernel_traits traits, const struct frame_lanes frame[2],
-                      struct box_places *out)
+/* Sets what is exact: exact, level and apart. */
+INLINE void set_exact(const struct kernel_traits traits, const struct frame_lanes frame[2],
+                      const struct pair_lanes *pair, struct box_places *out)
 {
+    out->exact = nothing_rounds(traits, &frame[0], &frame[1], out->duration, pair);
     const lanes_bits axes = known_axes(traits, &frame[0]) & known_axes(traits, &frame[1]);
     const bool any = lanes_mask_bits(is_centred(&frame[0]) | is_centred(&frame[1]));
     for (int axis = 0; axis < traits.dim; axis++) {
@@ -56,13 +57,12 @@ INLINE void set_level(const struct kernel_traits traits, const struct frame_lane
     }
 }
 
+/* Sets the rest of the places, and the pair. */
 INLINE void set_places(const struct kernel_traits traits, const struct frame_lanes frame[2],
                        double duration, struct pair_lanes *pair, struct box_places *out)
 {
     set_pair(traits, &frame[0], &frame[1], duration, pair);
     out->duration = duration;
-    set_level(traits, frame, out);
-    out->exact = nothing_rounds(traits, &frame[0], &frame[1], duration, pair);
     for (int which = 0; which < 2; which++) {
         out->summary[which] = frame[which].summary;
         out->error[which] = frame[which].error;
