@@ -709,37 +709,71 @@ INLINE void set_crossing(const struct pair_lanes *pair, const struct kernel_trai
     out->known = wide <= 0.5 * box->whole;
 }
 
-/* Adds the crossing of edge m of A and n of B to the reach of A: to the outer one where it is
- * possible, to the inner one where it is certain. Returns the lanes in which it is possible, but
- * not certain, or has a position that is not known to within box->whole. */
+/* The crossing of two edges: s X and t X, and how far s, r and t are inside their ranges, times X.
+ */
+struct clip_parameters {
+    lanes s, t, in_s, in_r, in_t;
+};
+
+/* Returns the lanes in which the crossing of edge m of A and n of B is possible. */
+INLINE lanes_mask is_possible(const struct kernel_traits traits, const struct clip_crossing *from,
+                              int m, int n, struct clip_parameters *out)
+{
+    const lanes turned = from->turned;
+    const lanes r = with_sign_of(from->a.r[m] - from->b.r[n], turned);
+    out->s = with_sign_of(from->b.s[n] - from->a.s[m], turned);
+    out->t = with_sign_of(from->b.t[n] + from->a.t[m], turned);
+    out->in_s = inside_range(traits.simplex[0], out->s, from->det);
+    out->in_r = inside_range(traits.simplex[1], r, from->det);
+    out->in_t = inside_range(false, out->t, from->det);
+    return from->crosses & (out->in_s >= -from->error_s) & (out->in_r >= -from->error_r) &
+           (out->in_t >= -from->error_t);
+}
+
+/* Adds the crossing to the reach of A: to the outer one where it is possible, to the inner one
+ * where it is certain. Returns the lanes in which it is possible, but not certain, or has a
+ * position that is not known to within box->whole. */
 INLINE lanes_mask add_crossing(const struct kernel_traits traits, const struct clip_crossing *from,
                                int m, int n, lanes reach[CLIP_BOUNDS][2][3])
 {
-    const lanes none = lanes_of(-INFINITY), det = from->det, turned = from->turned;
-    const lanes s = with_sign_of(from->b.s[n] - from->a.s[m], turned);
-    const lanes r = with_sign_of(from->a.r[m] - from->b.r[n], turned);
-    const lanes t = with_sign_of(from->b.t[n] + from->a.t[m], turned);
-    const lanes in_s = inside_range(traits.simplex[0], s, det);
-    const lanes in_r = inside_range(traits.simplex[1], r, det);
-    const lanes in_t = inside_range(false, t, det);
-    const lanes_mask possible = from->crosses & (in_s >= -from->error_s) &
-                                (in_r >= -from->error_r) & (in_t >= -from->error_t);
-    if (!lanes_mask_bits(possible))
-        return possible;
-    const lanes_mask certain = possible & from->known & (in_s >= from->error_s) &
-                               (in_r >= from->error_r) & (in_t >= from->error_t);
+    struct clip_parameters at;
+    const lanes none = lanes_of(-INFINITY);
+    const lanes_mask possible = is_possible(traits, from, m, n, &at);
+    const lanes_mask certain = possible & from->known & (at.in_s >= from->error_s) &
+                               (at.in_r >= from->error_r) & (at.in_t >= from->error_t);
     for (int axis = 0; axis < 3; axis++) {
         const lanes middle =
-            from->a.base[axis][m] + (s * from->along[axis] + t * from->travel[axis]);
+            from->a.base[axis][m] + (at.s * from->along[axis] + at.t * from->travel[axis]);
         for (int bound = 0; bound < CLIP_BOUNDS; bound++) {
-            lanes(*at)[3] = reach[bound];
+            lanes *below = &reach[bound][0][axis], *above = &reach[bound][1][axis];
             const lanes_mask counts = bound == CLIP_OUTER ? possible : certain;
             const lanes half = bound == CLIP_OUTER ? from->radius[axis] : -from->radius[axis];
-            at[0][axis] = lanes_max(lanes_select(counts, half - middle, none), at[0][axis]);
-            at[1][axis] = lanes_max(lanes_select(counts, half + middle, none), at[1][axis]);
+            *below = lanes_max(lanes_select(counts, half - middle, none), *below);
+            *above = lanes_max(lanes_select(counts, half + middle, none), *above);
         }
     }
     return possible & is_not(certain);
+}
+
+/* Adds all crossings of edges in two directions. First all that are possible in some lane are
+ * found, without branches; few are. Returns the lanes of add_crossing(). */
+INLINE lanes_mask add_parallel_crossings(const struct kernel_traits traits,
+                                         const struct clip_crossing *from,
+                                         lanes reach[CLIP_BOUNDS][2][3])
+{
+    unsigned any = 0;
+    lanes_mask uncertain = {0};
+    for (int m = 0; m < parallel_count(traits, 0); m++)
+        for (int n = 0; n < parallel_count(traits, 1); n++) {
+            struct clip_parameters at;
+            const lanes_mask possible = is_possible(traits, from, m, n, &at);
+            any |= (unsigned) (lanes_mask_bits(possible) != 0) << (4 * m + n);
+        }
+    for (; any != 0; any &= any - 1) {
+        const int index = __builtin_ctz(any);
+        uncertain |= add_crossing(traits, from, index / 4, index % 4, reach);
+    }
+    return uncertain;
 }
 
 /* ---- All of it ---- */
@@ -787,9 +821,7 @@ INLINE lanes_mask add_crossings(const struct pair_lanes *pair, const struct kern
             struct clip_crossing crossing;
             set_crossing(pair, traits, places, box, side, &all, edge_at(traits, 0, i),
                          edge_at(traits, 1, j), &crossing);
-            for (int m = 0; m < parallel_count(traits, 0); m++)
-                for (int n = 0; n < parallel_count(traits, 1); n++)
-                    uncertain |= add_crossing(traits, &crossing, m, n, reach);
+            uncertain |= add_parallel_crossings(traits, &crossing, reach);
         }
     return uncertain;
 }
