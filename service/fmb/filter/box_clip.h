@@ -79,9 +79,12 @@
  * they are as prepared to where they truly are, the segment keeps crossing the face, at some
  * parameter in [f, g].
  * 5. Where nothing rounds (slabs_exact.h), all numbers of solids and of the plane of a face are
- * exact, and E is 0. Only t is rounded, twice, which moves the end of a span by less than the
- * slack; but a span may be a point, or lost by a rounding. So an outer span is kept unless it is
- * shorter than -2^-48, and an inner one only if it is longer than 2^-48.
+ *    exact, and E is 0. Only t is rounded, twice, which moves the end of a span by less than the
+ *    slack; but a span may be a point, or lost by a rounding. So an outer span is kept unless it is
+ *    shorter than -2^-48, and an inner one only if it is longer than 2^-48. Of small numbers, all
+ *    multiples of g with T < 2^8 g, values are multiples of g^3 below 2^24 g^3 (in 2D of g^2). Two
+ *    different quotients of these, from 0 to 1, are more than 2^-48 apart. So rounded quotients are
+ *    in the exact order, and equal where these are: both spans are those of exact numbers.
  * 6. Underflow. E is at least 2^-640 (else the lane is not good). What underflows is less than 100
  * * 2^-1074 * 2^405 < 2^-662 (slabs.c). Nothing underflows where nothing rounds.
  *
@@ -362,7 +365,9 @@ INLINE int set_space_slabs(const struct pair_lanes *pair, const struct kernel_tr
 struct clip_values {
     /* [slab][vertex]: what is left to the bounds of the slab, moved outward or inward. */
     lanes low[CLIP_BOUNDS][CLIP_SLABS][CLIP_VERTICES], high[CLIP_BOUNDS][CLIP_SLABS][CLIP_VERTICES];
-    lanes inverse[CLIP_SLABS][CLIP_DIRECTIONS]; /* of what the value grows by */
+    lanes along[CLIP_SLABS][CLIP_DIRECTIONS], inverse[CLIP_SLABS][CLIP_DIRECTIONS]; /* growth */
+    lanes_mask small; /* lanes of small numbers (5) */
+    bool any_small;
 };
 
 /* The parameters of a segment that remain, [from, to], from 0 to 1; from is NAN: none. */
@@ -399,8 +404,10 @@ INLINE void set_values(const struct kernel_traits traits, const struct pair_lane
         out->high[CLIP_OUTER][k][v] = high + error;
         out->high[CLIP_INNER][k][v] = high - error;
     }
-    for (int d = 0; d < edge_count(traits, which) + (traits.drifts ? 1 : 0); d++)
-        out->inverse[k][d] = 1 / (along[d] + 0.0); /* of 0: +INFINITY */
+    for (int d = 0; d < edge_count(traits, which) + (traits.drifts ? 1 : 0); d++) {
+        out->along[k][d] = along[d] + 0.0;
+        out->inverse[k][d] = 1 / out->along[k][d]; /* of 0: +INFINITY */
+    }
 }
 
 /* Two cuboids: replaces the values of slab k of a frame in the lanes in which its normal is a
@@ -434,22 +441,33 @@ INLINE void set_level_values(const struct kernel_traits traits, const struct pai
     }
     for (int d = 0; d < traits.dim + (traits.drifts ? 1 : 0); d++) {
         const lanes along = d < traits.dim ? component[d] + 0.0 : lanes_of(0);
+        out->along[k][d] = lanes_select(level, along, out->along[k][d]);
         out->inverse[k][d] = lanes_select(level, 1 / along, out->inverse[k][d]);
     }
 }
 
-/* The part of a span between two bounds that are so far away, divided by the growth of the value.
- * On a bound with a value that does not change, the product is NAN: nothing is clipped. */
-INLINE struct clip_span clipped(struct clip_span span, lanes low, lanes high, lanes inverse)
+/* x over what the value grows by. */
+INLINE lanes quotient(const struct clip_values *values, lanes x, int k, int d)
 {
-    const lanes_mask up = inverse > 0;
-    const lanes first = lanes_select(up, low, high) * inverse;
-    const lanes last = lanes_select(up, high, low) * inverse;
+    const lanes product = x * values->inverse[k][d];
+    return values->any_small ? lanes_select(values->small, x / values->along[k][d], product)
+                             : product;
+}
+
+/* The part of a span within slab k. On a bound with a value that does not change, the quotient is
+ * NAN: nothing is clipped. */
+INLINE struct clip_span clipped(const struct clip_values *values, int bound, int k, int v, int d,
+                                struct clip_span span)
+{
+    const lanes_mask up = values->inverse[k][d] > 0;
+    const lanes low = values->low[bound][k][v], high = values->high[bound][k][v];
+    const lanes first = quotient(values, lanes_select(up, low, high), k, d);
+    const lanes last = quotient(values, lanes_select(up, high, low), k, d);
     return (struct clip_span){lanes_max(first, span.from), lanes_min(last, span.to)};
 }
 
 /* The span, or none if it is shorter than so much. */
-INLINE struct clip_span at_least(struct clip_span span, double length)
+INLINE struct clip_span at_least(struct clip_span span, lanes length)
 {
     span.from = lanes_select(span.to - span.from >= length, span.from, lanes_of(NAN));
     return span;
@@ -461,19 +479,15 @@ INLINE void clip_segment(const struct clip_values *values, int slabs, bool plane
                          struct clip_span *out_outer, struct clip_span *out_inner)
 {
     const struct clip_span whole = {lanes_of(0), lanes_of(1)};
+    const lanes shortest = lanes_select(values->small, lanes_of(0), lanes_of(CLIP_SHORTEST));
     struct clip_span outer = whole, inner = whole;
     for (int k = 0; k < (plane ? slabs - 1 : slabs); k++) {
-        const lanes inverse = values->inverse[k][d];
-        outer =
-            clipped(outer, values->low[CLIP_OUTER][k][v], values->high[CLIP_OUTER][k][v], inverse);
-        inner =
-            clipped(inner, values->low[CLIP_INNER][k][v], values->high[CLIP_INNER][k][v], inverse);
+        outer = clipped(values, CLIP_OUTER, k, v, d, outer);
+        inner = clipped(values, CLIP_INNER, k, v, d, inner);
     }
     if (plane) {
-        const int k = slabs - 1;
         const struct clip_span all = {lanes_of(-INFINITY), lanes_of(INFINITY)};
-        const struct clip_span at = clipped(all, values->low[CLIP_OUTER][k][v],
-                                            values->high[CLIP_OUTER][k][v], values->inverse[k][d]);
+        const struct clip_span at = clipped(values, CLIP_OUTER, slabs - 1, v, d, all);
         const lanes_mask crosses =
             (at.from - inner.from >= CLIP_SHORTEST) & (inner.to - at.to >= CLIP_SHORTEST);
         outer.from = lanes_max(at.from, outer.from);
@@ -481,9 +495,9 @@ INLINE void clip_segment(const struct clip_values *values, int slabs, bool plane
         inner.from = lanes_select(crosses, at.to, lanes_of(NAN));
         inner.to = at.from;
     } else {
-        inner = at_least(inner, CLIP_SHORTEST);
+        inner = at_least(inner, shortest);
     }
-    *out_outer = at_least(outer, -CLIP_SHORTEST);
+    *out_outer = at_least(outer, -shortest);
     *out_inner = inner;
 }
 
@@ -796,6 +810,8 @@ INLINE lanes_mask clip_frame(const struct pair_lanes *pair, const struct kernel_
     const int slabs = traits.dim == 2
                           ? set_plane_slabs(pair, traits, !which, &box->frame[!which], slab)
                           : set_space_slabs(pair, traits, !which, other, slab);
+    values.small = box->unit != 0;
+    values.any_small = lanes_mask_bits(values.small);
     for (int k = 0; k < slabs; k++) {
         set_values(traits, pair, which, box, &slab[k], k, good, &values);
         for (int axis = 0; axis < traits.dim; axis++)
