@@ -173,10 +173,6 @@ kernel_job = $(or $(if $(findstring exact_,$*),-DKERNEL_EXACT),$(if $(findstring
 $(many_kernels): $(O)/kernels/%.o: service/fmb/filter/many.c $(O)/settings
 $(sort $(single_kernels) $(call single_kernels_of,plain)): \
 	$(O)/kernels/%.o: service/fmb/filter/single.c $(O)/settings
-# gcc 12 does not compile kernels of boxes with sanitizers otherwise (internal compiler error).
-ifeq ($(MODE)$(filter gcc%,$(compiler)),asangcc)
-$(O)/kernels/%.o: flags += -fno-tree-dominator-opts
-endif
 compile_kernel = $(compile) $(sees) -DKERNEL_NAME=$* -Wno-psabi $(kernel_set) $(kernel_job)
 $(box_kernels): $(O)/kernels/%.o: service/fmb/filter/boxes.c $(O)/settings
 ifeq ($(MODE),release)

@@ -185,8 +185,8 @@ static bool set_limbs_slabs(struct limbs_pair *pair, const struct kernel_traits 
  * the values f < 0 <= g along the first bound, and F >= 0 > G along the second: if and only if f /
  * (f
  * - g) <= F / (F - G), that is, f G <= F g. */
-static bool enters_in_time(int n, const struct box_slabs *slabs, int v, int w,
-                           const struct bound_crossing *enter, const struct bound_crossing *leave)
+static bool enters_in_order(int n, const struct box_slabs *slabs, int v, int w,
+                            const struct bound_crossing *enter, const struct bound_crossing *leave)
 {
     limbs_number factor[4];
     mp_limb_t product[2][2 * LIMBS_MAX];
@@ -226,7 +226,7 @@ static struct clip_span clip_in_limbs(int n, const struct box_slabs *slabs, int 
         return none;
     for (int i = 0; i < enters; i++)
         for (int j = 0; j < leaves; j++)
-            if (!enters_in_time(n, slabs, v, w, &enter[i], &leave[j]))
+            if (!enters_in_order(n, slabs, v, w, &enter[i], &leave[j]))
                 return none;
     return span;
 }

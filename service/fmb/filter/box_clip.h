@@ -81,10 +81,9 @@
  * 5. Where nothing rounds (slabs_exact.h), all numbers of solids and of the plane of a face are
  *    exact, and E is 0. Only t is rounded, twice, which moves the end of a span by less than the
  *    slack; but a span may be a point, or lost by a rounding. So an outer span is kept unless it is
- *    shorter than -2^-48, and an inner one only if it is longer than 2^-48. Of small numbers, all
- *    multiples of g with T < 2^8 g, values are multiples of g^3 below 2^24 g^3 (in 2D of g^2). Two
- *    different quotients of these, from 0 to 1, are more than 2^-48 apart. So rounded quotients are
- *    in the exact order, and equal where these are: both spans are those of exact numbers.
+ *    shorter than -2^-48, and an inner one only if it is longer than 2^-48. Of a span between
+ * these, the exact order of its ends decides, that of products of two numbers (enters_in_time()):
+ * with T from 2^-100 to 2^100, numbers are multiples of 2^-356 and below 2^301.
  * 6. Underflow. E is at least 2^-640 (else the lane is not good). What underflows is less than 100
  * * 2^-1074 * 2^405 < 2^-662 (slabs.c). Nothing underflows where nothing rounds.
  *
@@ -366,8 +365,8 @@ struct clip_values {
     /* [slab][vertex]: what is left to the bounds of the slab, moved outward or inward. */
     lanes low[CLIP_BOUNDS][CLIP_SLABS][CLIP_VERTICES], high[CLIP_BOUNDS][CLIP_SLABS][CLIP_VERTICES];
     lanes along[CLIP_SLABS][CLIP_DIRECTIONS], inverse[CLIP_SLABS][CLIP_DIRECTIONS]; /* growth */
-    lanes_mask small; /* lanes of small numbers (5) */
-    bool any_small;
+    lanes_mask exact; /* the order of quotients can be found (5) */
+    bool any_exact;
 };
 
 /* The parameters of a segment that remain, [from, to], from 0 to 1; from is NAN: none. */
@@ -446,28 +445,50 @@ INLINE void set_level_values(const struct kernel_traits traits, const struct pai
     }
 }
 
-/* x over what the value grows by. */
-INLINE lanes quotient(const struct clip_values *values, lanes x, int k, int d)
-{
-    const lanes product = x * values->inverse[k][d];
-    return values->any_small ? lanes_select(values->small, x / values->along[k][d], product)
-                             : product;
-}
-
-/* The part of a span within slab k. On a bound with a value that does not change, the quotient is
+/* The part of a span within slab k. On a bound with a value that does not change, the product is
  * NAN: nothing is clipped. */
 INLINE struct clip_span clipped(const struct clip_values *values, int bound, int k, int v, int d,
                                 struct clip_span span)
 {
-    const lanes_mask up = values->inverse[k][d] > 0;
+    const lanes inverse = values->inverse[k][d];
+    const lanes_mask up = inverse > 0;
     const lanes low = values->low[bound][k][v], high = values->high[bound][k][v];
-    const lanes first = quotient(values, lanes_select(up, low, high), k, d);
-    const lanes last = quotient(values, lanes_select(up, high, low), k, d);
+    const lanes first = lanes_select(up, low, high) * inverse;
+    const lanes last = lanes_select(up, high, low) * inverse;
     return (struct clip_span){lanes_max(first, span.from), lanes_min(last, span.to)};
 }
 
+/* The lanes in which x y <= z w. In: these products and their errors neither overflow nor
+ * underflow. */
+INLINE lanes_mask is_no_more(lanes x, lanes y, lanes z, lanes w)
+{
+    const lanes one = x * y, other = z * w;
+    return (one - other) + (product_error(x, y, one) - product_error(z, w, other)) <= 0;
+}
+
+/* Where nothing rounds: the lanes in which a segment enters each slab no later than it leaves any.
+ * With what is left to the bounds at its start, a to that where it enters and b to the other, and
+ * the growth g >= 0 of the value, it is in slab i from a_i / g_i to b_i / g_i. */
+INLINE lanes_mask enters_in_time(const struct clip_values *values, int slabs, int v, int d)
+{
+    lanes a[CLIP_SLABS], b[CLIP_SLABS], g[CLIP_SLABS];
+    lanes_mask out = is_not((lanes_mask){0});
+    for (int k = 0; k < slabs; k++) {
+        const lanes along = values->along[k][d];
+        const lanes low = values->low[CLIP_OUTER][k][v], high = values->high[CLIP_OUTER][k][v];
+        a[k] = lanes_select(along < 0, -high, low);
+        b[k] = lanes_select(along < 0, -low, high);
+        g[k] = lanes_abs(along);
+        out &= (a[k] <= g[k]) & (b[k] >= 0);
+    }
+    for (int i = 0; i < slabs; i++)
+        for (int j = 0; j < slabs; j++)
+            out &= is_no_more(a[i], g[j], b[j], g[i]);
+    return out;
+}
+
 /* The span, or none if it is shorter than so much. */
-INLINE struct clip_span at_least(struct clip_span span, lanes length)
+INLINE struct clip_span at_least(struct clip_span span, double length)
 {
     span.from = lanes_select(span.to - span.from >= length, span.from, lanes_of(NAN));
     return span;
@@ -479,7 +500,6 @@ INLINE void clip_segment(const struct clip_values *values, int slabs, bool plane
                          struct clip_span *out_outer, struct clip_span *out_inner)
 {
     const struct clip_span whole = {lanes_of(0), lanes_of(1)};
-    const lanes shortest = lanes_select(values->small, lanes_of(0), lanes_of(CLIP_SHORTEST));
     struct clip_span outer = whole, inner = whole;
     for (int k = 0; k < (plane ? slabs - 1 : slabs); k++) {
         outer = clipped(values, CLIP_OUTER, k, v, d, outer);
@@ -495,9 +515,16 @@ INLINE void clip_segment(const struct clip_values *values, int slabs, bool plane
         inner.from = lanes_select(crosses, at.to, lanes_of(NAN));
         inner.to = at.from;
     } else {
-        inner = at_least(inner, shortest);
+        inner = at_least(inner, CLIP_SHORTEST);
     }
-    *out_outer = at_least(outer, -shortest);
+    outer = at_least(outer, -CLIP_SHORTEST);
+    const lanes_mask ties = values->exact & (outer.to - outer.from < CLIP_SHORTEST);
+    if (!plane && values->any_exact && lanes_mask_bits(ties)) {
+        const lanes_mask in_time = enters_in_time(values, slabs, v, d);
+        outer.from = lanes_select(ties & is_not(in_time), lanes_of(NAN), outer.from);
+        inner.from = lanes_select(ties, outer.from, inner.from);
+    }
+    *out_outer = outer;
     *out_inner = inner;
 }
 
@@ -810,8 +837,8 @@ INLINE lanes_mask clip_frame(const struct pair_lanes *pair, const struct kernel_
     const int slabs = traits.dim == 2
                           ? set_plane_slabs(pair, traits, !which, &box->frame[!which], slab)
                           : set_space_slabs(pair, traits, !which, other, slab);
-    values.small = box->unit != 0;
-    values.any_small = lanes_mask_bits(values.small);
+    values.exact = box->exact & (pair->reach >= 0x1p-100) & (pair->reach <= 0x1p100);
+    values.any_exact = lanes_mask_bits(values.exact);
     for (int k = 0; k < slabs; k++) {
         set_values(traits, pair, which, box, &slab[k], k, good, &values);
         for (int axis = 0; axis < traits.dim; axis++)

@@ -211,16 +211,21 @@ INLINE lanes upper_half(lanes x)
     return large - (large - x);
 }
 
+/* x y - product, exactly where nothing overflows or underflows (Dekker). */
+INLINE lanes product_error(lanes x, lanes y, lanes product)
+{
+    const lanes x_high = upper_half(x), y_high = upper_half(y);
+    const lanes x_low = x - x_high, y_low = y - y_high;
+    return ((x_high * y_high - product) + x_high * y_low + x_low * y_high) + x_low * y_low;
+}
+
 /* What a product is off by at most, 0 where it is exact. Factors beyond 2^900 count as inexact: NAN
  * is not 0. */
 INLINE lanes product_slack(lanes x, lanes y, lanes product)
 {
-    const lanes x_high = upper_half(x), y_high = upper_half(y);
-    const lanes x_low = x - x_high, y_low = y - y_high;
-    const lanes error =
-        ((x_high * y_high - product) + x_high * y_low + x_low * y_high) + x_low * y_low;
     const lanes_mask exact =
-        ((error == 0) & (lanes_abs(product) >= 0x1p-900)) | (x == 0) | (y == 0);
+        ((product_error(x, y, product) == 0) & (lanes_abs(product) >= 0x1p-900)) | (x == 0) |
+        (y == 0);
     return lanes_select(exact, lanes_of(0), 0x1p-52 * lanes_abs(product) + 0x1p-950);
 }
 
