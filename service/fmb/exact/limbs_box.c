@@ -344,8 +344,7 @@ static void add_crossings_of(struct limbs_pair *pair, const struct kernel_traits
     }
 }
 
-/* The parameters s depend on the direction along B, and with it on that along A by a factor only; r
- * likewise. */
+/* The normal of an edge and the drift serves the edges of the other frame in all directions. */
 static void add_all_crossings(struct limbs_pair *pair, const struct kernel_traits traits,
                               const struct clip_wire wire[2], const struct clip_points *a,
                               double reach[2][3])
