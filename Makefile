@@ -156,11 +156,10 @@ $(filter)/%_avx2.o: flags += -mavx2 -mfma
 $(filter)/%_avx512.o: flags += -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
 verdict_kernels := $(patsubst %.c,$(O)/%.o,$(wildcard $(addprefix service/fmb/filter/,verdicts_*.c single_*.c)))
 $(verdict_kernels): flags += -ffp-contract=fast
-left_out := $(if $(x86),$(if $(INSTRUCTIONS),%_avx2.o %_avx512.o),%_avx2.o %_avx512.o)
-# gcc 12 does not compile kernels of boxes with sanitizers otherwise (internal compiler error).
-ifeq ($(MODE)$(filter gcc%,$(compiler)),asangcc)
-$(filter)/boxes_%.o: flags += -fno-tree-dominator-opts
+ifeq ($(MODE),release)
+$(filter)/boxes_%.o: flags += -O3
 endif
+left_out := $(if $(x86),$(if $(INSTRUCTIONS),%_avx2.o %_avx512.o),%_avx2.o %_avx512.o)
 
 $(O)/service/fmb/filter/instructions.o: flags += $(if $(INSTRUCTIONS),-DINSTRUCTIONS_MOST=2)
 

@@ -420,7 +420,7 @@ static bool box_of(const struct frame_pair *pair, double box[2][FMB_DIM_MAX])
     struct fmb_prepared frame[2];
     prepared_set(pair->a, &frame[0]);
     prepared_set(pair->b, &frame[1]);
-    return certified_box(&frame[0], &frame[1], pair->duration, false, box);
+    return certified_box(&frame[0], &frame[1], pair->duration, box);
 }
 
 /* *answer has the interval and the box of the exact method, which those of doubles replace. */

@@ -89,10 +89,11 @@ enum fmb_status sat_decide(const struct frame_pair *frames, unsigned want,
     const struct fmb_prepared *first = &frame[swapped], *second = &frame[!swapped];
     enum slabs_outcome outcome;
     if (kind & KERNEL_DRIFTS) {
-        struct kernel_one out;
-        kernel_run_one(kernels->times[kind], first, second, duration, false, &out);
-        outcome = (enum slabs_outcome) out.outcome[0];
-        memcpy(contact, out.contact[0], sizeof contact);
+        struct kernel_one one;
+        kernel_set_one(first, second, duration, &one);
+        kernels->times[kind](&one.call);
+        outcome = (enum slabs_outcome) one.outcome[0];
+        memcpy(contact, one.contact[0], sizeof contact);
     } else {
         outcome = kernels->single[kind](first, second, duration);
     }

@@ -373,38 +373,31 @@ struct contacts {
     double box[BLOCK + KERNEL_LANES][2][FMB_DIM_MAX];
 };
 
-/* A box that the filter does not give: by the exact method, or left open. */
+/* A box that the filter does not give: computed by itself, or left open. */
 static void put_box_single(struct batch_block *block, size_t k)
 {
     const struct fmb_batch *batch = block->batch;
     const struct fmb_prepared *const *pair = block->pair[k];
     const size_t i = block->first + block->slot[k];
-    if (batch->open) {
-        put_nothing(batch, i);
-        batch->verdicts[i] = LEFT_OPEN;
-    } else {
-        const struct frame_pair frames = {{pair[0]->frame, pair[0]->placement},
-                                          {pair[1]->frame, pair[1]->placement},
-                                          batch->duration};
-        exact_box(&frames, batch->boxes[i]);
-    }
+    if (may_decide_single(block) && certified_box_unsure(pair[0], pair[1], batch->duration,
+                                                         batch->open != NULL, batch->boxes[i]))
+        return;
+    put_nothing(batch, i);
+    batch->verdicts[i] = LEFT_OPEN;
 }
 
-/* Computes the boxes of pairs of one kind of kernel_box_kind(). in_contact: as in struct
- * kernel_call.
- */
-static void put_boxes(struct batch_block *block, kernel_function *boxes, bool in_contact,
+/* Computes the boxes of pairs of one kind of kernel_box_kind(). */
+static void put_boxes(struct batch_block *block, kernel_box_function *boxes, enum kernel_kind kind,
                       struct contacts *contacts)
 {
     const struct kernel_call call = {.pairs = contacts->pair,
                                      .count = contacts->count,
                                      .duration = block->batch->duration,
-                                     .boxes = contacts->box,
-                                     .in_contact = in_contact};
+                                     .boxes = contacts->box};
     for (size_t n = contacts->count; n < contacts->count + KERNEL_LANES; n++)
         contacts->pair[n][0] = contacts->pair[n][1] = &missing;
     if (contacts->count > 0)
-        boxes(&call);
+        boxes(&call, kind);
     for (size_t n = 0; n < contacts->count; n++) {
         const size_t k = contacts->index[n];
         if (isnan(contacts->box[n][0][0]))
@@ -415,16 +408,10 @@ static void put_boxes(struct batch_block *block, kernel_function *boxes, bool in
     }
 }
 
-/* Which pairs in contact have their boxes computed together. */
-struct box_group {
-    bool moving; /* a frame moves; else both are at rest */
-    bool unsure; /* the filter does not decide them; else it does */
-};
-
-/* Computes the boxes of a group. Returns how many pairs in contact do not move or rest as the group
- * does. */
-static size_t put_group(struct batch_block *block, const struct batch_job *job,
-                        const struct box_group group, size_t start, size_t end)
+/* Computes the boxes of the pairs in contact in which a frame moves, or of those in which none
+ * does. Returns how many are of the other kind. */
+static size_t put_group(struct batch_block *block, const struct batch_job *job, bool moving,
+                        size_t start, size_t end)
 {
     const struct fmb_batch *batch = block->batch;
     struct contacts contacts;
@@ -432,22 +419,21 @@ static size_t put_group(struct batch_block *block, const struct batch_job *job,
     size_t others = 0;
     contacts.count = 0;
     for (size_t k = start; k < end; k++) {
-        const size_t i = block->first + block->slot[k];
         const struct fmb_prepared *const *pair = block->pair[k];
         bool swapped;
-        if (!batch_is_contact(batch->verdicts[i]))
+        if (!batch_is_contact(batch->verdicts[block->first + block->slot[k]]))
             continue;
         const enum kernel_kind own = kernel_box_kind(pair[0], pair[1], batch->duration, &swapped);
-        const bool moving = own & KERNEL_DRIFTS;
-        others += moving != group.moving;
-        if (moving != group.moving || (block->outcome[k] == SLABS_UNSURE) != group.unsure)
+        if (((own & KERNEL_DRIFTS) != 0) != moving) {
+            others++;
             continue;
+        }
         kind = own;
         contacts.pair[contacts.count][0] = pair[swapped];
         contacts.pair[contacts.count][1] = pair[!swapped];
         contacts.index[contacts.count++] = k;
     }
-    put_boxes(block, job->kernels.boxes[kind], !group.unsure, &contacts);
+    put_boxes(block, job->kernels.boxes, kind, &contacts);
     return others;
 }
 
@@ -455,16 +441,12 @@ static size_t put_group(struct batch_block *block, const struct batch_job *job,
 static void put_all_boxes(struct batch_block *block, const struct batch_job *job,
                           enum kernel_kind kind, size_t start, size_t end)
 {
-    const bool any_unsure = memchr(block->outcome + start, SLABS_UNSURE, end - start) != NULL;
+    const bool moving = kind & KERNEL_DRIFTS;
     for (size_t k = start; k < end; k++)
         if (!batch_is_contact(block->batch->verdicts[block->first + block->slot[k]]))
             put_no_box(block->batch, block->first + block->slot[k]);
-    for (int unsure = 0; unsure < (any_unsure ? 2 : 1); unsure++) {
-        const bool moving = kind & KERNEL_DRIFTS;
-        const struct box_group same = {moving, unsure}, others = {!moving, unsure};
-        if (put_group(block, job, same, start, end) > 0)
-            put_group(block, job, others, start, end);
-    }
+    if (put_group(block, job, moving, start, end) > 0)
+        put_group(block, job, !moving, start, end);
 }
 
 /* Runs a kernel on the pairs of a kind that the kernels before leave unsure, KERNEL_LANES at a
@@ -497,10 +479,7 @@ static void next_pass(kernel_function *kernel, bool faces, const struct kernel_c
             first->outcomes[index[n]] = outcome[n];
 }
 
-/* Sets the outcomes of a kind. The kernel of times decides some pairs that the second pass leaves
- * unsure. Boxes depend on whether the filter decides a pair (kernel_call.in_contact): where boxes
- * are wanted, that kernel runs even if contacts are not. Then the boxes are the same in both cases,
- * and those of fmb_decide(). */
+/* Sets the outcomes of a kind. */
 static void filter_kind(struct batch_block *block, const struct batch_job *job,
                         enum kernel_kind kind)
 {
@@ -514,8 +493,6 @@ static void filter_kind(struct batch_block *block, const struct batch_job *job,
     const bool times = batch->contacts && kind & KERNEL_DRIFTS;
     (times ? job->kernels.times : job->kernels.verdicts)[kind](&call);
     next_pass(job->kernels.exact[kind], kind & KERNEL_FACE && kind & KERNEL_SAME_SHAPE, &call);
-    if (batch->boxes && kind & KERNEL_DRIFTS && !times)
-        next_pass(job->kernels.times[kind], false, &call);
     if (batch->contacts)
         put_contacts(block, kind, start, end);
     else

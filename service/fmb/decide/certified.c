@@ -14,16 +14,17 @@
  * Two faces that no slab separates go through verdict_of_planes(): if they stay in one plane, the
  * verdict is that of their projections, two triangles in 2D.
  *
- * Then answer_contact(), answer_box() and gap_of() compute what else is wanted, and complete()
- * replaces what doubles do not give within the limits of fmb.h by the exact method. Each step
- * depends on the numbers of the pair only, so that every caller gets the same bits. The error
- * bounds are derived in slabs.c, slabs_lanes.h, box_search.h, box_clip.h and contact.c. */
+ * Then answer_contact(), answer_box() and gap_of() compute what else is wanted: in doubles, what
+ * these do not give within the limits of fmb.h in fixed-width integers, and the rest by the exact
+ * method. Each step depends on the numbers of the pair only, so that every caller gets the same
+ * bits. The error bounds are derived in slabs.c, slabs_lanes.h, box_clip.h and contact.c. */
 #include "certified.h"
 
 #include "exact.h"
 #include "faces.h"
 #include "gap.h"
 #include "limbs.h"
+#include "limbs_box.h"
 #include "kernel.h"
 
 #include <math.h>
@@ -42,7 +43,6 @@ struct certified {
     bool span_known, rounds; /* rounds: operations on these numbers may round */
     struct dyadic_span span;
     enum certified_path path;
-    bool by_filter;                     /* the filter decided the verdict */
     enum faces_planes planes;           /* other than CROSSING only of two faces that are close */
     struct faces_projection projection; /* where they are SHARED */
 };
@@ -53,7 +53,6 @@ static void begin(struct certified *certified, const struct frame_pair *pair, bo
     certified->quick = quick;
     certified->open = false;
     certified->slabs_known = certified->span_known = false;
-    certified->by_filter = false;
     certified->planes = FACES_CROSSING;
 }
 
@@ -138,8 +137,9 @@ static bool set_kind(struct certified *certified, const struct fmb_prepared *a,
 static enum slabs_outcome call_kernel(const struct certified *certified,
                                       kernel_function *const *kernels, struct kernel_one *out)
 {
-    kernel_run_one(kernels[certified->kind], certified->frame[certified->swapped],
-                   certified->frame[!certified->swapped], certified->pair->duration, false, out);
+    kernel_set_one(certified->frame[certified->swapped], certified->frame[!certified->swapped],
+                   certified->pair->duration, out);
+    kernels[certified->kind](&out->call);
     return (enum slabs_outcome) out->outcome[0];
 }
 
@@ -171,7 +171,6 @@ static enum fmb_verdict verdict_of_unsure(struct certified *certified)
     certified->path = CERTIFIED_SECOND;
     if (outcome == SLABS_UNSURE || (touching && are_faces(certified)))
         return verdict_in_integers(certified, touching);
-    certified->by_filter = true;
     return (enum fmb_verdict) outcome;
 }
 
@@ -183,15 +182,14 @@ static enum fmb_verdict verdict_of(struct certified *certified, double contact[2
     enum slabs_outcome outcome;
     certified->path = CERTIFIED_FILTER;
     if (contact) {
-        struct kernel_one out;
-        outcome = call_kernel(certified, kernels->times, &out);
-        memcpy(contact, out.contact[0], sizeof out.contact[0]);
+        struct kernel_one one;
+        outcome = call_kernel(certified, kernels->times, &one);
+        memcpy(contact, one.contact[0], sizeof one.contact[0]);
     } else {
         outcome = kernels->single[certified->kind](certified->frame[certified->swapped],
                                                    certified->frame[!certified->swapped],
                                                    certified->pair->duration);
     }
-    certified->by_filter = outcome != SLABS_UNSURE;
     return outcome == SLABS_UNSURE ? verdict_of_unsure(certified) : (enum fmb_verdict) outcome;
 }
 
@@ -263,39 +261,36 @@ static bool answer_contact(struct certified *certified, struct fmb_answer *answe
 }
 
 bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                   bool in_contact, double box[2][FMB_DIM_MAX])
+                   double box[2][FMB_DIM_MAX])
 {
-    struct kernel_one out;
+    struct kernel_one one;
     bool swapped;
     const enum kernel_kind kind = kernel_box_kind(a, b, duration, &swapped);
-    kernel_run_one(kernel_set_best()->boxes[kind], swapped ? b : a, swapped ? a : b, duration,
-                   in_contact, &out);
-    memcpy(box, out.box[0], sizeof out.box[0]);
+    kernel_set_one(swapped ? b : a, swapped ? a : b, duration, &one);
+    kernel_set_best()->boxes(&one.call, kind);
+    memcpy(box, one.box[0], sizeof one.box[0]);
     return !isnan(box[0][0]);
 }
 
-/* Returns false if doubles do not give the box. */
-static bool answer_box(const struct certified *certified, struct fmb_answer *answer)
+bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                          double duration, bool quick, double box[2][FMB_DIM_MAX])
 {
-    answer->has_box = true;
-    return certified_box(certified->frame[0], certified->frame[1], certified->pair->duration,
-                         certified->by_filter, answer->box);
+    const struct frame_pair pair = {{a->frame, a->placement}, {b->frame, b->placement}, duration};
+    if (limbs_box(a, b, duration, quick ? CERTIFIED_QUICK_LIMBS : LIMBS_MAX, box))
+        return true;
+    if (!quick)
+        exact_box(&pair, box);
+    return !quick;
 }
 
-/* Computes by the exact method what doubles did not give, and only that. Which method gives a value
- * depends on the numbers of the pair only, so that the answer is the same for every caller. */
-static void complete(const struct frame_pair *pair, bool good_contact, bool good_box,
-                     struct fmb_answer *answer)
+/* Sets the box. Returns false if the decision is quick and needs wider integers. */
+static bool answer_box(const struct certified *certified, struct fmb_answer *answer)
 {
-    struct fmb_answer exact = {0};
-    if (good_contact) {
-        exact_box(pair, answer->box);
-        return;
-    }
-    exact_decide(pair, good_box ? 0 : FMB_WANT_BOX, &exact);
-    memcpy(answer->contact, exact.contact, sizeof exact.contact);
-    if (!good_box)
-        memcpy(answer->box, exact.box, sizeof exact.box);
+    const struct fmb_prepared *a = certified->frame[0], *b = certified->frame[1];
+    const double duration = certified->pair->duration;
+    answer->has_box = true;
+    return certified_box(a, b, duration, answer->box) ||
+           certified_box_unsure(a, b, duration, certified->quick, answer->box);
 }
 
 static enum fmb_status decide(const struct frame_pair *pair, const struct fmb_prepared *a,
@@ -314,13 +309,15 @@ static enum fmb_status decide(const struct frame_pair *pair, const struct fmb_pr
         answer->contact[0] = answer->contact[1] = 0;
         return FMB_OK;
     }
-    const bool good_contact = answer_contact(&certified, answer);
-    const bool good_box = !(want & FMB_WANT_BOX) || answer_box(&certified, answer);
-    if (good_contact && good_box)
-        return FMB_OK;
-    if (quick)
+    if (!answer_contact(&certified, answer)) {
+        struct fmb_answer exact = {0};
+        if (quick)
+            return FMB_CANNOT_DECIDE;
+        exact_decide(pair, 0, &exact);
+        memcpy(answer->contact, exact.contact, sizeof exact.contact);
+    }
+    if (want & FMB_WANT_BOX && !answer_box(&certified, answer))
         return FMB_CANNOT_DECIDE;
-    complete(pair, good_contact, good_box, answer);
     return FMB_OK;
 }
 

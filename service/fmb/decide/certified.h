@@ -6,8 +6,8 @@
  *               method. For two faces in one plane: the verdict of two triangles in 2D (faces.c)
  *     contact   the filter bounds the times in the same pass (slabs_lanes.h). If a bound is not
  *               tight enough, or nothing rounds: the slabs one by one (contact.c)
- *     box       from what is left of the edges and where they cross (box_clip.h), or for each end
- *               the least of a list of bounds (box_search.h)
+ *     box       from what is left of the edges and where they cross, in doubles (box_clip.h) or in
+ *               fixed-width integers (limbs_box.c)
  *     gap       given the verdict, in steps of its own (gap.h)
  *
  * Contact and box are computed as two enclosures: the outer one surely contains the exact value,
@@ -53,9 +53,14 @@ enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb
 bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs, bool rounds,
                 struct dyadic_span span, bool exact, double contact[2]);
 
-/* Computes the box of a prepared pair in contact. in_contact: as in struct kernel_call. Returns
- * false, and NAN, if doubles do not give it within its limit. */
+/* Computes the box of a prepared pair in contact. Returns false, and NAN, if doubles do not give it
+ * within its limit. */
 bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                   bool in_contact, double box[2][FMB_DIM_MAX]);
+                   double box[2][FMB_DIM_MAX]);
+
+/* The same where doubles do not give it: in fixed-width integers, or else by the exact method.
+ * quick: returns false if it needs GMP or wider integers. */
+bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                          double duration, bool quick, double box[2][FMB_DIM_MAX]);
 
 #endif

@@ -47,9 +47,10 @@
  * All are below 2^(3t+8); the largest are slabs of the drift. For two boxes, whose edges have
  * length 1, a slab is below 2^(t+8), and one of the drift below 2^(2t+8). Rotations preserve
  * lengths. With a factor of at most 2^s, every number of a slab and every intermediate factor is
- * below 2^(3t+8+s). L limbs hold it with a sign if 3t + 8 + s < 64 L. All results are sums of
- * products modulo 2^(64 L); they are correct because their final values are in range. A quaternion
- * of integers below 2^b has n < 2^(2b+2). In 2D all bounds are smaller. */
+ * below 2^(3t+8+s). L limbs hold it with a sign if 3t + 8 + s < 64 L. A normal in the plane of a
+ * face has one more edge of at most 2 r < 2^(t+2) as a factor. All results are sums of products
+ * modulo 2^(64 L); they are correct because their final values are in range. A quaternion of
+ * integers below 2^b has n < 2^(2b+2). In 2D all bounds are smaller. */
 #include "limbs.h"
 
 #include "interval.h"
@@ -235,26 +236,29 @@ static void set_turns(const struct limbs_quaternion q[2], struct limbs_pair *out
 
 /* Bounds the bits of the numbers of slabs, without a sign. Derived at the top of this file. */
 static long bits_of(const struct frame_pair *pair, struct dyadic_span span,
-                    const struct limbs_quaternion q[2], bool same)
+                    const struct limbs_quaternion q[2], bool same, bool in_faces)
 {
     const bool moves = pair_moves(pair);
     const bool boxes = pair->a.frame->shape == FMB_BOX && pair->b.frame->shape == FMB_BOX;
     const long length = span.top > span.unit ? span.top - span.unit : 0;
     long bits = (!boxes ? 3 : moves ? 2 : 1) * length + 8;
+    if (in_faces)
+        bits += length + 2;
     for (int f = 0; f < 2; f++)
         if (q[f].turned && !(f == 1 && same && !moves))
             bits += 2 * q[f].bits + 2;
     return bits;
 }
 
-bool limbs_prepare(const struct frame_pair *pair, struct dyadic_span span, struct limbs_pair *out)
+static bool prepare(const struct frame_pair *pair, struct dyadic_span span, bool in_faces,
+                    struct limbs_pair *out)
 {
     const struct placed_frame *placed[2] = {&pair->a, &pair->b};
     struct limbs_quaternion q[2];
     limbs_set_quaternion(placed[0]->placement, &q[0]);
     limbs_set_quaternion(placed[1]->placement, &q[1]);
     const bool same = limbs_same_rotation(&q[0], &q[1]);
-    const long limbs = bits_of(pair, span, q, same) / 64 + 1;
+    const long limbs = bits_of(pair, span, q, same, in_faces) / 64 + 1;
     if (limbs > LIMBS_MAX)
         return false;
     const int n = out->limbs = limbs < 2 ? 2 : (int) limbs;
@@ -279,4 +283,16 @@ bool limbs_prepare(const struct frame_pair *pair, struct dyadic_span span, struc
     else
         set_turns(q, out);
     return true;
+}
+
+bool limbs_prepare(const struct frame_pair *pair, struct dyadic_span span, struct limbs_pair *out)
+{
+    return prepare(pair, span, false, out);
+}
+
+bool limbs_prepare_faces(const struct frame_pair *pair, struct dyadic_span span,
+                         struct limbs_pair *out)
+{
+    return prepare(pair, span, pair->a.frame->shape == FMB_FACE || pair->b.frame->shape == FMB_FACE,
+                   out);
 }

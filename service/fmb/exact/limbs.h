@@ -43,6 +43,10 @@ bool limbs_never_round(const struct slabs_pair *pair, struct dyadic_span span);
  * LIMBS_MAX limbs. */
 bool limbs_prepare(const struct frame_pair *pair, struct dyadic_span span, struct limbs_pair *out);
 
+/* The same, also for products with normals in the planes of faces. */
+bool limbs_prepare_faces(const struct frame_pair *pair, struct dyadic_span span,
+                         struct limbs_pair *out);
+
 /* Returns the sign of the gap of a slab; -1 if its normal is zero and the slab is void. Edges are
  * in the order of slabs_list(): of a, of b, the drift. */
 int limbs_gap_sign(struct limbs_pair *pair, struct slab_normal normal);
@@ -58,5 +62,20 @@ struct limbs_planes limbs_planes_of(struct limbs_pair *pair);
 /* Computes the numbers of a slab_value exactly, times a common positive factor. */
 void limbs_slab(struct limbs_pair *pair, struct slab_normal normal, mpz_t low, mpz_t high,
                 mpz_t start, mpz_t slope);
+
+/* Products of a normal with the vectors of a pair, times one positive factor. */
+struct limbs_products {
+    limbs_number component[2][FMB_DIM_MAX]; /* [frame][component]; of a box, of half of it */
+    limbs_number offset; /* from the origin of frame 0 to that of frame 1; of a box, its centre */
+    limbs_number drift;
+};
+
+/* Computes the products of the normal of a slab. Returns false if it is zero. */
+bool limbs_products_of(struct limbs_pair *pair, struct slab_normal normal,
+                       struct limbs_products *out);
+
+/* The same for a normal in the plane of frame f, a face: that of the face times one of its edges.
+ * On input, the pair is prepared for this. */
+void limbs_products_in_face(struct limbs_pair *pair, int f, int edge, struct limbs_products *out);
 
 #endif

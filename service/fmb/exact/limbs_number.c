@@ -69,7 +69,7 @@ INLINE void transform(const int n, const struct limbs_vector row[FMB_DIM_MAX],
                       const struct limbs_vector *v, struct limbs_vector *out)
 {
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        dot(n, &row[axis], v, out->at[axis]);
+        dot_limbs(n, &row[axis], v, out->at[axis]);
 }
 
 const struct limbs_vector *limbs_transform(int n, const struct limbs_vector *row,

@@ -101,8 +101,8 @@ INLINE void add_product(const int n, uint64_t *out, bool minus, const uint64_t *
 }
 
 /* out := x . y */
-INLINE void dot(const int n, const struct limbs_vector *x, const struct limbs_vector *y,
-                uint64_t *out)
+INLINE void dot_limbs(const int n, const struct limbs_vector *x, const struct limbs_vector *y,
+                      uint64_t *out)
 {
     memset(out, 0, (size_t) n * sizeof *out);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)

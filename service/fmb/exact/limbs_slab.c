@@ -84,18 +84,10 @@ static void set_plane_normal(int n, const struct limbs_vector *v, struct limbs_v
     memcpy(out->at[1], v->at[0], (size_t) n * sizeof *out->at[1]);
 }
 
-/* u x v of two edges of frame f; in 2D u, an edge of frame f, rotated by a right angle. */
-static void set_normal_of_face(struct limbs_pair *pair, int f, struct slab_normal edges,
-                               struct normal *out)
+/* Completes a normal that is known in the coordinates of frame f, in out->storage[f]. */
+static void spread_normal(struct limbs_pair *pair, int f, struct normal *out)
 {
     const int n = pair->limbs, other = !f;
-    const struct limbs_vector *u = edge_in_view(pair, edges.u, LIMBS_OWN);
-
-    if (pair->frame[0]->dim == 2)
-        set_plane_normal(n, u, &out->storage[f]);
-    else
-        limbs_cross(n, u, edge_in_view(pair, edges.v, LIMBS_OWN), false, &out->storage[f]);
-    limbs_trim(n, &out->storage[f]);
     out->at[f] = &out->storage[f];
     out->at[other] = limbs_transform(n, pair->across[f], out->at[f], &out->storage[other]);
     out->at[WORLD] = pair->to_world[other]
@@ -103,6 +95,34 @@ static void set_normal_of_face(struct limbs_pair *pair, int f, struct slab_norma
                          : out->at[other];
     out->factor[f] = pair->all;
     out->factor[WORLD] = pair->norm[other];
+}
+
+/* u x v of two edges of frame f; in 2D u, an edge of frame f, rotated by a right angle. */
+static void set_normal_of_face(struct limbs_pair *pair, int f, struct slab_normal edges,
+                               struct normal *out)
+{
+    const int n = pair->limbs;
+    const struct limbs_vector *u = edge_in_view(pair, edges.u, LIMBS_OWN);
+
+    if (pair->frame[0]->dim == 2)
+        set_plane_normal(n, u, &out->storage[f]);
+    else
+        limbs_cross(n, u, edge_in_view(pair, edges.v, LIMBS_OWN), false, &out->storage[f]);
+    limbs_trim(n, &out->storage[f]);
+    spread_normal(pair, f, out);
+}
+
+/* The normal of a face of frame f, times an edge of the same frame: it lies in the plane. */
+static void set_normal_in_face(struct limbs_pair *pair, int f, int edge, struct normal *out)
+{
+    struct limbs_vector normal;
+    const int first = f ? SLABS_EDGE_OF_B : 0;
+    set_normal_of_face(pair, f, (struct slab_normal){first, first + 1}, out);
+    normal = out->storage[f];
+    limbs_cross(pair->limbs, &normal, edge_in_view(pair, first + edge, LIMBS_OWN), false,
+                &out->storage[f]);
+    limbs_trim(pair->limbs, &out->storage[f]);
+    spread_normal(pair, f, out);
 }
 
 /* u x drift, in 3D. */
@@ -206,7 +226,7 @@ INLINE void set_extent(const int n, const struct limbs_pair *pair, int f,
     memset(interval->low, 0, size);
     memset(interval->high, 0, size);
     for (int i = 0; i < frame->count; i++) {
-        dot(n, normal->at[f], &pair->component[f][i], at);
+        dot_limbs(n, normal->at[f], &pair->component[f][i], at);
         if (!simplex)
             add(n, is_negative(n, at) ? interval->low : interval->high, at);
         else if (less(n, at, interval->low))
@@ -220,7 +240,7 @@ INLINE void set_extent(const int n, const struct limbs_pair *pair, int f,
         subtract(n, interval->low, interval->high);
     }
     if (pair->origin[f].limbs > 0) {
-        dot(n, normal->at[f], &pair->origin[f], at);
+        dot_limbs(n, normal->at[f], &pair->origin[f], at);
         add(n, interval->low, at);
         add(n, interval->high, at);
     }
@@ -237,9 +257,9 @@ INLINE void set_values(const int n, const struct limbs_pair *pair, const struct 
     set_extent(n, pair, 1, normal, &b);
     subtract(n, out->bounds.low, b.high);
     subtract(n, out->bounds.high, b.low);
-    dot(n, normal->at[WORLD], &pair->offset, out->start);
+    dot_limbs(n, normal->at[WORLD], &pair->offset, out->start);
     scale_by(n, normal->factor[WORLD], out->start);
-    dot(n, normal->at[WORLD], &pair->drift, out->slope);
+    dot_limbs(n, normal->at[WORLD], &pair->drift, out->slope);
     scale_by(n, normal->factor[WORLD], out->slope);
 }
 
@@ -291,6 +311,54 @@ struct limbs_planes limbs_planes_of(struct limbs_pair *pair)
     return (struct limbs_planes){
         .parallel = parallel,
         .shared = parallel && is_zero(n, slab.start) && is_zero(n, slab.slope)};
+}
+
+static void set_dot(int n, const struct limbs_vector *x, const struct limbs_vector *y,
+                    uint64_t *out)
+{
+    WITH_LIMBS(n, dot_limbs, x, y, out);
+}
+
+/* out->offset includes the origins of the frames. */
+static void set_products(struct limbs_pair *pair, const struct normal *normal,
+                         struct limbs_products *out)
+{
+    const int n = pair->limbs;
+    limbs_number origin;
+    set_dot(n, normal->at[WORLD], &pair->offset, out->offset);
+    scale_by(n, normal->factor[WORLD], out->offset);
+    set_dot(n, normal->at[WORLD], &pair->drift, out->drift);
+    scale_by(n, normal->factor[WORLD], out->drift);
+    for (int f = 0; f < 2; f++) {
+        for (int i = 0; i < pair->frame[f]->count; i++) {
+            set_dot(n, normal->at[f], &pair->component[f][i], out->component[f][i]);
+            scale_by(n, normal->factor[f], out->component[f][i]);
+        }
+        if (pair->origin[f].limbs == 0)
+            continue;
+        set_dot(n, normal->at[f], &pair->origin[f], origin);
+        scale_by(n, normal->factor[f], origin);
+        (f == 0 ? subtract : add)(n, out->offset, origin);
+    }
+}
+
+bool limbs_products_of(struct limbs_pair *pair, struct slab_normal edges,
+                       struct limbs_products *out)
+{
+    struct normal normal;
+    if (!set_normal(pair, edges, &normal))
+        return false;
+    set_products(pair, &normal, out);
+    return true;
+}
+
+void limbs_products_in_face(struct limbs_pair *pair, int f, int edge, struct limbs_products *out)
+{
+    struct normal normal = {.factor = {NULL}};
+    set_normal_in_face(pair, f, edge, &normal);
+    if (pair->common)
+        normal.factor[0] = normal.factor[1] = pair->common;
+    set_products(pair, &normal, out);
 }
 
 static void to_mpz(int n, uint64_t *x, mpz_t out)

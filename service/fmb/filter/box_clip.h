@@ -1,20 +1,21 @@
-/* Boxes of intersections from edges: two solids in contact, in 2D or 3D, at rest or moving, LANES
+/* Boxes of intersections from edges: two frames in contact, in 2D or 3D, at rest or moving, LANES
  * pairs at once.
  *
- * In: struct pair_lanes; struct box_search as begin_box() leaves it, or search_box() after that.
+ * In: struct pair_lanes; struct box_pair as begin_box() leaves it (box_ends.h).
  *
- * Out: as search_box() (box_search.h).
+ * Out: struct box_ends, and the lanes in which all ends are within the limit.
  *
  * Steps (clip_box()):
- *   1. set_slabs()            the slabs whose intersection is a frame
+ *   1. set_plane_slabs(),     the slabs whose intersection is a frame
+ *      set_space_slabs()
  *   2. clip_segments()        clips the segments of the other frame to these slabs: widened by the
  *                             bound on their error (outer spans), and narrowed by it (inner spans)
- *   3. find_reach()           how far the outer spans reach along each axis
- *   4. uncertain_spans()      the lanes in which an inner span is too short for the limit
- *   5. set_crossings(), add_crossing_reach()
- *                             moving in 3D: how far crossings of edges reach
- *   6. 3 and 5 for the inner ends, in the lanes that 4 or 5 return
- *   7. put_box(), are_near()  (box_search.h)
+ *   3. find_reach()           how far the outer spans reach along each axis; moving in 3D, also the
+ *                             crossings of edges that are possible
+ *   4. 3 for the inner spans and crossings that are certain, in the lanes in which some outer one
+ * is not nearly as certain
+ *
+ * Not here: what follows from the ends (box_ends.h); the same in integers (exact/limbs_box.c).
  *
  * THE METHOD
  *
@@ -23,7 +24,7 @@
  * vertex is on an edge of that frame, and in the other frame. Conversely, the part of an edge that
  * is in the other frame belongs to the intersection. So the box is that of all these parts.
  *
- * Where the frames move, time runs from -1 to 1 over the window, and a vertex is
+ * Where the frames move, a vertex is
  *
  *   - at the start or the end of the window, on an edge as at rest;
  *   - or in three faces of one frame: on the path of one of its vertices, and in the other frame;
@@ -31,70 +32,76 @@
  *
  * In 2D edges take the place of faces: a vertex at rest is on an edge of one frame, and in the
  * other; else it is at the start or the end, or on two edges of one frame, so on the path of one of
- * its vertices. There are no crossings.
+ * its vertices. There are no crossings. A face counts as a solid without a thickness
+ * (exact_box.c has the proof for flat frames).
  *
  * Segments are the edges at rest; or the edges at the start, those at the end, and the paths.
  *
  * A cuboid is the intersection of three slabs: |n . x| <= |n . c_k| with x seen from its centre
  * and n = c_i x c_j; in 2D of two, with the normals of its edges. A tetrahedron is that of four:
  * with n_k = c_i x c_j and D = n_k . c_k for any k, n_k . x / D is the barycentric coordinate of
- * c_k, from 0 to 1, as is the sum of all three. So |n . x - D / 2| <= |D| / 2, for each n_k and for
- * their sum, whatever the sign of D. A triangle is that of three likewise.
+ * c_k, from 0 to 1, as is the sum of all three. A triangle is that of three in the same way; so is
+ * a face, in its plane, with the normals c_1 x n and n x c_0, n = c_0 x c_1, and D = |n|^2. Its
+ * plane is a fourth slab, from 0 to 0.
  *
- * Along a segment p + t a, the value of n . x, less that in the middle of a slab, is s + t d, with
- * d = n . a. On an edge of a simplex 0 <= t <= 1. Else -1 <= t <= 1, and a is half an edge of a
- * cuboid, or travel, half of the displacement in the window. With the radius r of the slab, t is
- * within r / |d| of -s / d. Like s and d, r is a distance times |n|.
+ * ERRORS
  *
- * OUTER AND INNER ENDS OF SPANS
- *
- * The radius of a slab is r + E for the outer spans and r - E for the inner ones. E bounds the
- * error of s + t d and that of r together, for every t of the segment. So the part of the true
- * segment that is in the true other frame lies in the outer span, and contains the inner one. This
- * holds whether or not the frames as prepared are in contact. u = 2^-53. The roundings are counted
- * in 3D; in 2D there are fewer.
- *
- * 1. Products, beside those of the exact normal of the frame as prepared. With the weight W of n as
- *    in box_search.h, coordinates of n are rounded twice, and a product n . w three times more: 5 u
- *    W . |w|; twice more in the sum of three products, whose weight is the sum of theirs. D is
- *    computed once. Exactly, all n_k . c_k are equal and have the same monomials, so the bound for
- *    D holds with any k. Along an edge c_q - c_p, s has n . c_p, and d has n . c_q - n . c_p from
- *    the same products; in a sum of three, these are subtracted before they are added. With p = W .
- *    |c_p| and q = W . |c_q|, s + t d is off by at most 5 u ((1 - t) p + t q) for the products, 2 u
- *    p for the sum in s, and 3 u t (p + q) for the difference and the sum in d. This is linear in
- *    t: 7 u p at t = 0 and u (5 p + 8 q) at t = 1, so at most 8 u (p + q). (In terms of the larger
- *    of p and q it is up to 13 u: the bound needs the sum over all components.) Together at most
- *    8.1 u W . (the sum of the magnitudes of all vectors at hand).
- * 2. The offset is rounded 4 times, half the drift twice: 5 u times the magnitudes of what they are
- *    made of, and |n| is at most W.
- * 3. Sums and quotients: roundings of the products with n. s: 3 in sums, 2 more as a quotient. r +
- *    E: 1, 2 more as a quotient. d: 1 where it is a difference. The sum of the two quotients is off
- *    by u |t|, and so s + t d by u |d|, since |t| > 1 is cut off. Together at most 7 u times the
- *    sum of the magnitudes of D (or n . c_k), of n . (the offset), n . (half the drift), and n .
- *    (the components).
- * 4. Frames with errors: let e be the sum of the errors of both. Each point of a true segment is
+ * 1. Values. Every number of a slab is a sum of monomials: products of a coordinate of a vector
+ *    (the offset, half the drift, components) with those of the edges in the normal. W is the
+ *    normal with all monomials positive, and reach holds the magnitudes of the vectors: the
+ *    offset as it was before the components of cuboids were added, the drift, of a cuboid twice
+ *    the sum of all components, of a simplex the largest. E = BOX_ROUNDING W . reach bounds the
+ *    error of the value s + t d on a segment less a bound of the slab, for any t in [0, 1]. A
+ *    monomial of s is rounded at most 4 times in the offset, 5 in a triple product, 2 where
+ *    normals are summed, 4 in the sum of a vertex, 2 with the bound and E: 17 times, or 13
+ *    without the offset. One of d is rounded 8 times, or 7 along an edge of a cuboid, and twice
+ *    as a quotient. Along an edge of a cuboid d is twice the product with half of it: 13 u + 2 *
+ *    9 u = 31 u of its monomials, u = 2^-53. From P to Q of a simplex: 13 u of those of P and 10
+ *    u of those of both, 33 u of the larger ones. Half the drift is in the offset, in the swing
+ *    and twice in d: 17 u + 15 u + 2 * 11 u, less than twice 33 u. In the plane of a face there
+ *    are 3 roundings more, at most 42 u: weights are 1.3 times as large there.
+ * 2. A span. A bound is crossed where s + t d, with the computed s and d, is a bound of the slab
+ *    moved by E. Where d is 0, the quotient is infinite, and its sign that of what is left to the
+ *    bound; on the bound it is NAN, and clips nothing. So the part of the true segment that is in
+ *    the true other frame lies in the outer span, and contains the inner one. This holds whether
+ *    or not the frames as prepared are in contact.
+ * 3. Frames with errors: let e be the sum of the errors of both. Each point of a true segment is
  *    within the error of its frame of the same point of the computed one. A point x is in a true
  *    frame if the frame as prepared contains the ball around x whose radius is the error of the
  *    frame: otherwise m . x > h(m) for some direction m, with the support function h of the true
- *    frame; that of the frame as prepared is at most |m| times the error more, and the ball reaches
- *    that far beyond x. So |n| e is enough for both ends, and |n| is at most its scale. set_slab()
- *    has 1.01 e, for rounding.
- * 5. Where |d| < 2^-20 E', with E' = 1 to 3 together, 2^-20 E' takes the place of d, which changes
- *    s + t d by less than 2^-19 E'. E' is at least 2^-640 (else the lane is not good). What
- *    underflows is less than 100 * 2^-1074 * 2^405 < 2^-662 (slabs.c), and so less than 2^-20 E'
- *    too. E' covers both: it has 9 u where 1 needs 8.1, and 3 does not need all of its 7 u.
- *    Quotients with s are below 2^71, and never NAN; r / |d| may be infinite.
- * 6. With t from t_0 to t_1, p + t a is computed as p + (t_0 + t_1) (a / 2) +- (t_1 - t_0) |a / 2|.
- *    What p and a are made of is rounded at most 16 times in all, what the origin is made of 7
- *    times: less than the slack (box_search.h), which includes e.
+ *    frame; that of the frame as prepared is at most |m| times the error more, and the ball
+ *    reaches that far beyond x. So |n| e is enough for both ends, and |n| is at most its scale. E
+ *    includes 1.01 e times the scale, for rounding.
+ * 4. The plane of a face has no inner span. With the outer span [f, g] of the plane, all points
+ *    of the segment within e of the plane are between f and g. If f > 0 and g < 1, and [f, g] is
+ *    within the inner spans of the other slabs of the face, then no end of the segment is within
+ *    e of the face, and no point of it within e of an edge of the face. So while both move from
+ *    where they are as prepared to where they truly are, the segment keeps crossing the face, at
+ *    some parameter in [f, g].
+ * 5. Where nothing rounds (slabs_exact.h), all numbers of solids and of the plane of a face are
+ *    exact, and E is 0. Only t is rounded, twice, which moves the end of a span by less than the
+ *    slack; but a span may be a point, or lost by a rounding. So an outer span is kept unless it
+ *    is shorter than -2^-48, and an inner one only if it is longer than 2^-48. Of a span between
+ *    these, the exact order of its ends decides, that of products of two numbers
+ *    (enters_in_time()): with T from 2^-100 to 2^100, numbers are multiples of 2^-356 and below
+ *    2^301.
+ * 6. Underflow. E is at least 2^-640 (else the lane is not good). What underflows is less than
+ *    100 * 2^-1074 * 2^405 < 2^-662 (slabs.c). Nothing underflows where nothing rounds.
+ * 7. Level cuboids. Where both frames have exact coordinates along an axis, and do not drift
+ *    along it, a slab whose normal is that axis takes its values from exact differences along it
+ *    (exact_difference()): their signs are exact, and they are off by less than 2^-52 of
+ *    themselves. The true slab has the same bounds. A vertex of the other cuboid is at one of its
+ *    two ends, as one component only extends along the axis. So E is 0 here too, whatever the
+ *    errors of the frames across the axis: 3 holds in the cross-sections at each point of the
+ *    axis, which are within the errors of their frames of the true ones. Of a cuboid that is
+ *    flat, some other slab leaves no inner spans.
  *
  * CROSSINGS
  *
  * Let p + s a be an edge of A and q + r b one of B, each seen from the reference point of its
- * frame; s and r are their parameters (no longer those of a slab). Let o be the offset, H =
- * travel_B - travel_A half the drift, and t the time. The edges cross where s a - r b - t H = g,
- * with g = o + q - p. With X = [a b H], the products of this equation with b x H, H x a and a x b
- * are
+ * frame. Let o be the offset, H = travel_B - travel_A half the drift, and t the time, from -1 to 1.
+ * The edges cross where s a - r b - t H = g, with g = o + q - p. With X = [a b H], the products of
+ * this equation with b x H, H x a and a x b are
  *
  *     s X = [o b H] + [q b H] - [p b H]
  *
@@ -104,380 +111,486 @@
  *
  * p x a and q x b are made of the normals of faces (moment_of_edge()).
  *
- * 7. Let N_s be the computed right side of the first equation, X the computed factor on its left,
+ * 8. Let N_s be the computed right side of the first equation, X the computed factor on its left,
  *    and W the weight of b x H. Where the true edges cross within the ranges of the parameters,
- *    |N_s - s X| <= E_s. E_s is the sum of a bound for rounding, derived here, and one for the
- *    errors of the frames (8). E_r and E_t likewise. A product of components is rounded 7 times (H
- *    2, cross product 2, dot product 3), and at most 4 times more: in the difference that b may be,
- *    in sums of products, and in N_s. So [o b H] is rounded 11 times, after 4 roundings of o
- *    itself; what q is made of, 10 times. If A is a simplex, let p = P and a = Q - P. In N_s - s X
- *    the products with P and Q, rounded 7 times, have the factors 1 - s and s: together 7 times the
- *    larger one. P is rounded twice more in N_s, P and Q twice more in X: at most 13 times the
- *    larger one, the farthest coordinate. If A is a cuboid, it is 10 times the sum of all
- *    components. So the rounding part of E_s is W . (13.1 u (|o| + the farthest coordinates) + 4.1
- *    u (what o is made of)); that of E_r is the same with the weight of a x H. In the third
- *    equation all of these, and H, are rounded at most 9 times.
- * 8. Frames with errors: every vertex is off by at most the frame's error (prepared.h). So at the
- *    same s, r and t, points of the true edges are off by at most e together, and N_s - s X by at
- *    most e |b x H|, the other part of E_s. scale_error has 1.01 e, for what 9 and 11 add.
- * 9. So s is within E_s / |X| of N_s / X, and p + s a + t travel_A is off along axis k by at most
- *    (E_s |a_k| + E_t |travel_A[k]|) / |X|. A crossing is possible if, within these errors, all
- *    parameters are in their ranges. So no crossing that is a vertex is lost, and the outer end of
- *    each is no less than the vertex. Quotients are rounded twice, and the distance from a range
- *    twice: 4 u where |s| <= 1. Beyond 1, |s| is at most 4 u more than 1 + E_s / |X|, and its
- *    excess is rounded by at most 4 u (E_s / |X| + 4 u). The constants of E_s, E_r and E_t are at
- *    least 0.7 % larger than 7 and 8 need (13.1 for 13), which covers this and 11.
- * 10. It is certain if each parameter is in its range by more than these errors. Then the true
- *    edges cross. First, as prepared: the range of s has the length 2 for a cuboid and 1 for a
- *    simplex, so |X| > E_s for a cuboid and |X| > 2 E_s for a simplex. The error of X is less: at
- *    most 8 u W . |a| < E_s for a cuboid, 9 u W . (|P| + |Q|) < 2 E_s for a simplex. So the exact X
- *    is not 0, and there is a crossing. If a parameter were out of its range by x, the bound of 7
- *    would grow by less than |X| x. So the crossing is within the ranges. Now move all vertices
- *    linearly from where they are as prepared to where they truly are. On the way, by 7 and 8, a
- *    crossing that is within the ranges is inside them by a margin. Were the exact X 0 somewhere on
- *    the way, the crossing would be one of a line of crossings, and this line leaves the ranges at
- *    a crossing without a margin. So X stays other than 0, and the crossing moves continuously and
- *    never leaves the ranges. So the inner end of each is no more than a true point.
- * 11. Where |X| is less than 2^-20 of the least of E_s, E_r and E_t, that takes its place, which
- *    changes s X by less than 2^-19 of each. scale_error has 2^-93 T in addition (T: slabs.c). With
- *    sizes of at least 2^-180 (else the lane is not good) all three are more than 2^-640, above all
- *    that underflows (5), and nothing overflows: quotients are below 2^500. Where H is 0, there are
- *    no crossings.
- * 12. Positions: what the components are made of is rounded at most 16 times, travel 17 times, the
- *    origin 7 times: less than the slack where |s| and |t| are at most 1. Their excess
- *    over 1 adds at most 17 u of the error of the position in 9, within the same 0.7 %.
- *
- * Where nothing rounds (slabs_exact.h), frames often touch, and inner spans are empty. Such lanes
- * are left to box_search.h, where determinants and products with n are then exact. */
+ *    |N_s - s X| <= E_s, with E_s = BOX_ROUNDING W . reach for rounding. A monomial of X is
+ *    rounded at most 9 times: 2 in H, 5 in the triple product, 2 where both edges are
+ *    differences. One of N_s is rounded 8 times in that way, 3 in sums and with the range, 4 more
+ *    in the offset. From P to Q of a simplex that is 11 u of the monomials of P and 9 u of those
+ *    of both, less than 33 u of the larger ones. At the same s, r and t, points of the true edges
+ *    are off by at most e together, and N_s - s X by at most e |b x H|: E_s includes 1.01 e times
+ *    the scale. E_r and E_t have the same form.
+ * 9. A crossing is possible if N_s is within E_s of the range of s times X, and so for r and t.
+ *    So no crossing that is a vertex is lost. s is within E_s / |X| of N_s / X, and p + s a + t
+ *    travel_A is off along axis k by at most (E_s |a_k| + E_t |travel_A[k]|) / |X|.
+ * 10. It is certain if N_s is inside this range by more than E_s, and so for r and t. Then the
+ *     true edges cross. First, as prepared: the range of s has the length 2 for a cuboid and 1
+ *     for a simplex, so |X| > E_s for a cuboid and |X| > 2 E_s for a simplex, more than the error
+ *     of X. So the exact X is not 0, and there is a crossing. If a parameter were out of its
+ *     range by x, the bound of 8 would grow by less than |X| x. So the crossing is within the
+ *     ranges. Now move all vertices linearly from where they are as prepared to where they truly
+ *     are. On the way, by 8, a crossing that is within the ranges is inside them by a margin.
+ *     Were the exact X 0 somewhere on the way, the crossing would be one of a line of crossings,
+ *     and this line leaves the ranges at a crossing without a margin. So X stays other than 0,
+ *     and the crossing moves continuously and never leaves the ranges. So the inner end of each
+ *     is no more than a true point.
+ * 11. Underflow: E_s, E_r and E_t include 2^-93 T times the scale (T: slabs.c). With sizes of at
+ *     least 2^-180 (else the lane is not good) all three are more than 2^-640, as in 6. Where
+ *     nothing rounds, they are 0, and all signs exact. */
 #ifndef FMB_BOX_CLIP_H
 #define FMB_BOX_CLIP_H
 
-#include "box_search.h"
+#include "box_ends.h"
+
+/* Bounds the error of a value by the sum of the magnitudes of its monomials (1, 8). */
+#define BOX_ROUNDING (33.1 * BOX_UNIT)
+
+/* How much larger weights are in the plane of a face (1). */
+#define BOX_IN_FACE 1.3
+
+/* Spans shorter than this may be points, and are not certain (5). */
+#define CLIP_SHORTEST 0x1p-48
 
 enum { CLIP_OUTER, CLIP_INNER, CLIP_BOUNDS };
-enum { CLIP_SLABS_MAX = 4, CLIP_SEGMENTS_MAX = 32 };
+enum { CLIP_SLABS = 4, CLIP_VERTICES = 16, CLIP_SEGMENTS = 32, CLIP_DIRECTIONS = 7 };
 
-/* A linear function of the points of a frame: a coordinate, or n . x from the middle of a slab. */
-struct clip_form {
-    lanes at[6];  /* [edge]: what it grows by along the edge */
-    lanes middle; /* its value at the reference point in the middle of the window */
-    lanes swing;  /* what it grows by from there to the end of the window */
+/* ---- Segments ---- */
+
+/* The segments of a frame: each goes from a vertex to another, in the direction of an edge, by
+ * index, or, after all edges, of the path. A vertex of a cuboid is the sum of the components whose
+ * bits are set; of a simplex, the origin, then the end of each component. If the kind drifts,
+ * vertices at the end of the window follow those at its start. */
+struct clip_wire {
+    int vertices, segments, directions;
+    unsigned char from[CLIP_SEGMENTS], to[CLIP_SEGMENTS], direction[CLIP_SEGMENTS];
 };
 
-/* A slab of one frame, as it is seen from the other. */
+INLINE int vertex_count(const struct kernel_traits traits, int which)
+{
+    return traits.simplex[which] ? component_count(traits, which) + 1 : 1 << traits.dim;
+}
+
+INLINE void add_segment(struct clip_wire *wire, int from, int to, int direction)
+{
+    wire->from[wire->segments] = (unsigned char) from;
+    wire->to[wire->segments] = (unsigned char) to;
+    wire->direction[wire->segments++] = (unsigned char) direction;
+}
+
+INLINE void set_wire(const struct kernel_traits traits, int which, struct clip_wire *out)
+{
+    const int edges = edge_count(traits, which);
+    out->vertices = vertex_count(traits, which);
+    out->directions = traits.drifts ? edges + 1 : edges;
+    out->segments = 0;
+    for (int end = 0; end < (traits.drifts ? 2 : 1); end++)
+        for (int index = 0; index < edges; index++) {
+            const int e = edge_at(traits, which, index), first = end * out->vertices;
+            if (traits.simplex[which])
+                add_segment(out, first + (e < traits.dim ? 0 : 1 + edge_from(traits, e)),
+                            first + 1 + (e < traits.dim ? e : edge_to(traits, e)), index);
+            for (int v = 0; v < out->vertices && !traits.simplex[which]; v++)
+                if (!(v >> e & 1))
+                    add_segment(out, first + v, first + (v | 1 << e), index);
+        }
+    for (int v = 0; v < out->vertices && traits.drifts; v++)
+        add_segment(out, v, out->vertices + v, edges);
+}
+
+/* Sets out[v] for all vertices of a frame. In: the value at the reference point in the middle of
+ * the window, what it grows by along each component, and from there to the end of the window. */
+INLINE void set_at_vertices(const struct kernel_traits traits, int which, lanes middle,
+                            const lanes at[3], lanes swing, lanes out[CLIP_VERTICES])
+{
+    const int vertices = vertex_count(traits, which);
+    out[0] = middle;
+    for (int i = 0; i < component_count(traits, which); i++) {
+        if (traits.simplex[which]) {
+            out[1 + i] = middle + at[i];
+            continue;
+        }
+        for (int v = 0; v < 1 << i; v++) {
+            out[v | 1 << i] = out[v] + at[i];
+            out[v] -= at[i];
+        }
+    }
+    for (int v = 0; v < vertices && traits.drifts; v++) {
+        out[vertices + v] = out[v] + swing;
+        out[v] -= swing;
+    }
+}
+
+/* Sets out[direction], what a value grows by along each direction. */
+INLINE void set_along_directions(const struct kernel_traits traits, int which, const lanes at[3],
+                                 lanes swing, lanes out[CLIP_DIRECTIONS])
+{
+    const int edges = edge_count(traits, which);
+    for (int index = 0; index < edges; index++) {
+        const int e = edge_at(traits, which, index);
+        out[index] = !traits.simplex[which] ? at[e] + at[e]
+                     : e < traits.dim       ? at[e]
+                                            : at[edge_to(traits, e)] - at[edge_from(traits, e)];
+    }
+    if (traits.drifts)
+        out[edges] = swing + swing;
+}
+
+/* ---- Slabs ---- */
+
+/* The cross product with all signs positive. */
+INLINE void cross_weight(const lanes u[3], const lanes v[3], lanes out[3])
+{
+    for (int k = 0; k < 3; k++) {
+        const int i = next(k), j = next(i);
+        out[k] = lanes_abs(u[i] * v[j]) + lanes_abs(u[j] * v[i]);
+    }
+}
+
+/* A slab of one frame, from low to high, and the values of the other frame in it. */
 struct clip_slab {
-    struct clip_form form;
-    lanes radius[CLIP_BOUNDS]; /* [outer, inner]: surely not too small, surely not too large */
-    lanes least;               /* takes the place of a smaller |d| (5) */
+    lanes low, high;
+    lanes middle, swing, at[3]; /* of the reference point, the drift, the components */
+    lanes weight[3], scale;     /* of the normal */
+    bool exact;                 /* in lanes in which nothing rounds */
 };
 
-/* The parameters of a segment that remain, [from, to]; from > to: none. */
+/* Sets the bounds to 0 and own, and turns the normal so that own >= 0; of a cuboid, -own and own.
+ */
+INLINE void set_bounds(const struct kernel_traits traits, int which, lanes own,
+                       struct clip_slab *out)
+{
+    out->high = lanes_abs(own);
+    out->low = traits.simplex[which] ? lanes_of(0) : -out->high;
+    out->exact = true;
+    if (!traits.simplex[which])
+        return;
+    out->middle = with_sign_of(out->middle, own);
+    out->swing = with_sign_of(out->swing, own);
+    for (int j = 0; j < 3; j++)
+        out->at[j] = with_sign_of(out->at[j], own);
+}
+
+/* The edges of a frame in 2D. */
+INLINE int set_plane_slabs(const struct pair_lanes *pair, const struct kernel_traits traits,
+                           int which, const struct box_frame *frame, struct clip_slab *out)
+{
+    struct edge_products_2d edges;
+    const lanes area = product(pair->component[which][0], pair->component[which][1]);
+    set_edge_products_2d(pair, traits, which, &edges);
+    for (int e = 0; e < edge_count(traits, which); e++) {
+        lanes length[2];
+        for (int axis = 0; axis < 2; axis++)
+            length[axis] = e < 2
+                               ? lanes_abs(frame->edge[e][axis])
+                               : lanes_abs(frame->edge[0][axis]) + lanes_abs(frame->edge[1][axis]);
+        out[e] = (struct clip_slab){.middle = which ? -edges.middle[e] : edges.middle[e],
+                                    .swing = which ? -edges.swing[e] : edges.swing[e],
+                                    .at = {edges.other[e][0], edges.other[e][1]},
+                                    .weight = {length[1], length[0]},
+                                    .scale = pair->size[which][e]};
+        set_bounds(traits, which, e == 0 ? area : -area, &out[e]);
+    }
+    return edge_count(traits, which);
+}
+
+/* out := the sum of two or three normals. */
+INLINE void add_normals(const struct clip_slab *slab, int count, struct clip_slab *out)
+{
+    *out = slab[0];
+    for (int k = 1; k < count; k++) {
+        out->middle += slab[k].middle;
+        out->swing += slab[k].swing;
+        out->scale += slab[k].scale;
+        for (int axis = 0; axis < 3; axis++) {
+            out->at[axis] += slab[k].at[axis];
+            out->weight[axis] += slab[k].weight[axis];
+        }
+    }
+}
+
+/* Within the plane of a face, with the normal n: the coordinate along c_0 has the normal c_1 x n,
+ * that along c_1 n x c_0, and |n|^2 at 1. */
+INLINE void set_face_slab(const struct pair_lanes *pair, const struct kernel_traits traits,
+                          int which, int i, const struct face_products *side,
+                          const struct clip_slab *plane, struct clip_slab *out)
+{
+    const lanes(*c)[3] = pair->component[which];
+    lanes normal[3];
+    if (i == 0)
+        cross(c[1], side->normal[2], normal);
+    else
+        cross(side->normal[2], c[0], normal);
+    const lanes middle = dot(normal, pair->offset), swing = dot(normal, pair->half_drift);
+    *out = (struct clip_slab){.middle = which ? -middle : middle,
+                              .swing = which ? -swing : swing,
+                              .scale = pair->size[which][1 - i] * plane->scale};
+    cross_weight(c[1 - i], plane->weight, out->weight);
+    for (int axis = 0; axis < 3; axis++)
+        out->weight[axis] *= BOX_IN_FACE;
+    for (int j = 0; j < component_count(traits, !which); j++)
+        out->at[j] = dot(normal, pair->component[!which][j]);
+    set_bounds(traits, which, dot(side->normal[2], side->normal[2]), out);
+    out->exact = false;
+}
+
+/* The faces of a solid: those of two components, then the one across from the origin. A face has
+ * three edges in its plane, and the plane. */
+INLINE int set_space_slabs(const struct pair_lanes *pair, const struct kernel_traits traits,
+                           int which, struct face_products *side, struct clip_slab *out)
+{
+    set_face_products(pair, traits, which, side);
+    for (int k = first_plane(traits, which); k < 3; k++) {
+        struct clip_slab *slab = &out[traits.face[which] ? 3 : k];
+        const int i = next(k), j = next(i);
+        *slab = (struct clip_slab){.middle = which ? -side->middle[k] : side->middle[k],
+                                   .swing = which ? -side->swing[k] : side->swing[k],
+                                   .at = {side->other[k][0], side->other[k][1], side->other[k][2]},
+                                   .scale = pair->size[which][i] * pair->size[which][j]};
+        cross_weight(pair->component[which][i], pair->component[which][j], slab->weight);
+        set_bounds(traits, which, side->volume, slab);
+    }
+    if (traits.face[which]) {
+        for (int i = 0; i < 2; i++)
+            set_face_slab(pair, traits, which, i, side, &out[3], &out[i]);
+        add_normals(out, 2, &out[2]);
+    } else if (traits.simplex[which]) {
+        add_normals(out, 3, &out[3]);
+    }
+    return traits.simplex[which] ? 4 : 3;
+}
+
+/* ---- Spans ---- */
+
+/* How the slabs of one frame clip the segments of the other. */
+struct clip_values {
+    /* [slab][vertex]: what is left to the bounds of the slab, moved outward or inward. */
+    lanes low[CLIP_BOUNDS][CLIP_SLABS][CLIP_VERTICES], high[CLIP_BOUNDS][CLIP_SLABS][CLIP_VERTICES];
+    lanes along[CLIP_SLABS][CLIP_DIRECTIONS], inverse[CLIP_SLABS][CLIP_DIRECTIONS]; /* growth */
+    lanes_mask exact; /* the order of quotients can be found (5) */
+    bool any_exact;
+};
+
+/* The parameters of a segment that remain, [from, to], from 0 to 1; from is NAN: none. */
 struct clip_span {
     lanes from, to;
 };
 
 /* The spans of the segments of a frame. */
 struct clip_spans {
-    struct clip_span part[CLIP_BOUNDS][CLIP_SEGMENTS_MAX];
+    struct clip_span part[CLIP_BOUNDS][CLIP_SEGMENTS];
 };
 
-/* Whether the boxes of a kind of pairs can be found in this way. */
-INLINE bool can_be_clipped(const struct kernel_traits traits)
+INLINE void set_values(const struct kernel_traits traits, const struct pair_lanes *pair, int which,
+                       const struct box_pair *box, const struct clip_slab *slab, int k,
+                       lanes_mask *good, struct clip_values *out)
 {
-    return !traits.face[0] && !traits.face[1];
-}
-
-/* Whether the edges of moving frames have so many crossings, 72 or 144, that other ways come first.
- */
-INLINE bool is_clipped_last(const struct kernel_traits traits)
-{
-    return traits.dim == 3 && traits.drifts && !(traits.simplex[0] && traits.simplex[1]);
-}
-
-INLINE lanes max_of_three(lanes x, lanes y, lanes z)
-{
-    return lanes_max(lanes_max(x, y), z);
-}
-
-/* ---- Segments ----
- *
- * They are numbered by their directions: those along edge e, at the start of the window and then at
- * its end; after all edges, the paths of the vertices. Loops over the directions are unrolled, but
- * for moving frames in 3D: code for each of their segments would not fit into the instruction
- * cache.
- */
-
-/* Executes a statement with each direction of a frame. path: whether it is that of the paths, a
- * constant in each copy of the statement, so that its loops have a constant number of turns. */
-#define EACH_DIRECTION(traits, which, direction, path, statement)                         \
-    do {                                                                                  \
-        if (traits.dim == 3 && traits.drifts) {                                           \
-            for (int direction = 0; direction < edge_count(traits, which); direction++) { \
-                const bool path = false;                                                  \
-                statement;                                                                \
-            }                                                                             \
-        } else {                                                                          \
-            const bool path = false;                                                      \
-            UNROLL(6)                                                                     \
-            for (int direction = 0; direction < edge_count(traits, which); direction++)   \
-                statement;                                                                \
-        }                                                                                 \
-        if (traits.drifts) {                                                              \
-            const int direction = edge_count(traits, which);                              \
-            const bool path = true;                                                       \
-            statement;                                                                    \
-        }                                                                                 \
-    } while (0)
-
-/* How many edges of a frame have the same direction. */
-INLINE int parallel_count(const struct kernel_traits traits, int which)
-{
-    return traits.simplex[which] ? 1 : traits.dim == 2 ? 2 : 4;
-}
-
-INLINE int first_segment(const struct kernel_traits traits, int which, int direction)
-{
-    return direction * parallel_count(traits, which) * (traits.drifts ? 2 : 1);
-}
-
-INLINE int segment_count(const struct kernel_traits traits, int which, bool path)
-{
-    const int parallel = parallel_count(traits, which);
-    if (path)
-        return traits.simplex[which] ? traits.dim + 1 : 2 * parallel;
-    return traits.drifts ? 2 * parallel : parallel;
-}
-
-INLINE lanes along_direction(int direction, bool path, const struct clip_form *form)
-{
-    return path ? form->swing : form->at[direction];
-}
-
-/* The value of a form at the base of edge n along e, less that at the reference point. The base is
- * the vertex at which an edge of a simplex begins, the midpoint of an edge of a cuboid. at:
- * [component], what the form grows by along each. */
-INLINE lanes base_of_edge(const struct kernel_traits traits, int which, int e, int n,
-                          const lanes at[3])
-{
-    if (traits.simplex[which])
-        return e < traits.dim ? lanes_of(0) : at[edge_from(traits, e)];
-    if (traits.dim == 2)
-        return n == 0 ? -at[1 - e] : at[1 - e];
-    const lanes u = at[next(e)], v = at[next(next(e))];
-    return n == 0 ? -(u + v) : n == 1 ? -(u - v) : n == 2 ? u - v : u + v;
-}
-
-/* The values of a form at parameter 0 of the segments of a direction: at the first vertex of an
- * edge of a simplex, else in the middle of the segment. */
-INLINE void set_bases(const struct kernel_traits traits, int which, int direction, bool path,
-                      const struct clip_form *form, lanes base[8])
-{
-    const lanes *at = form->at;
-    const int parallel = parallel_count(traits, which);
-    if (path && traits.simplex[which]) {
-        base[0] = form->middle;
-        UNROLL(3)
-        for (int i = 0; i < traits.dim; i++)
-            base[1 + i] = form->middle + at[i];
-        return;
+    const int vertices = vertex_count(traits, which) * (traits.drifts ? 2 : 1);
+    lanes at[CLIP_VERTICES], along[CLIP_DIRECTIONS], weight = slab->weight[0] * box->reach[0];
+    for (int axis = 1; axis < traits.dim; axis++)
+        weight += slab->weight[axis] * box->reach[axis];
+    const lanes rounded = BOX_ROUNDING * weight;
+    const lanes_mask exact = slab->exact ? box->exact : (lanes_mask){0};
+    const lanes error =
+        lanes_select(exact, lanes_of(0), rounded + 1.01 * slab->scale * pair->error);
+    const lanes_mask solid = traits.face[!which] && k == 3 ? is_not((lanes_mask){0})
+                                                           : (lanes_mask) (slab->high > slab->low);
+    *good &= (exact & solid) | (is_not(exact) & (rounded >= 0x1p-640));
+    set_at_vertices(traits, which, slab->middle, slab->at, slab->swing, at);
+    set_along_directions(traits, which, slab->at, slab->swing, along);
+    for (int v = 0; v < vertices; v++) {
+        const lanes low = slab->low - at[v], high = slab->high - at[v];
+        out->low[CLIP_OUTER][k][v] = low - error;
+        out->low[CLIP_INNER][k][v] = low + error;
+        out->high[CLIP_OUTER][k][v] = high + error;
+        out->high[CLIP_INNER][k][v] = high - error;
     }
-    if (path) {
-        UNROLL(4)
-        for (int n = 0; n < parallel; n++) {
-            const lanes middle = form->middle + base_of_edge(traits, which, 0, n, at);
-            base[n] = middle - at[0];
-            base[parallel + n] = middle + at[0];
+    for (int d = 0; d < edge_count(traits, which) + (traits.drifts ? 1 : 0); d++) {
+        out->along[k][d] = along[d] + 0.0;
+        out->inverse[k][d] = 1 / out->along[k][d]; /* of 0: +INFINITY */
+    }
+}
+
+/* Two cuboids: replaces the values of slab k of a frame in the lanes in which its normal is a
+ * coordinate axis, by exact differences along that axis (7). which: the other frame. */
+INLINE void set_level_values(const struct kernel_traits traits, const struct pair_lanes *pair,
+                             int which, const struct box_places *places, int k, int axis,
+                             struct clip_values *out)
+{
+    const int vertices = vertex_count(traits, which);
+    const lanes(*own)[3] = pair->component[!which], (*other)[3] = pair->component[which];
+    const lanes(*apart)[2] = places->apart[axis];
+    lanes_mask level = places->level[axis];
+    lanes at[CLIP_VERTICES], component[3];
+    for (int i = 0; i < traits.dim; i++) {
+        level &= i == (traits.dim == 2 ? 1 - k : k) ? own[i][axis] != 0 : own[i][axis] == 0;
+        component[i] = other[i][axis];
+    }
+    if (!lanes_mask_bits(level))
+        return;
+    set_at_vertices(traits, which, lanes_of(0), component, lanes_of(0), at);
+    for (int v = 0; v < vertices * (traits.drifts ? 2 : 1); v++) {
+        const lanes_mask above = at[v] > 0;
+        const lanes low = which ? -lanes_select(above, apart[0][1], apart[0][0])
+                                : lanes_select(above, apart[1][0], apart[0][0]);
+        const lanes high = which ? -lanes_select(above, apart[1][1], apart[1][0])
+                                 : lanes_select(above, apart[1][1], apart[0][1]);
+        for (int bound = 0; bound < CLIP_BOUNDS; bound++) {
+            out->low[bound][k][v] = lanes_select(level, low, out->low[bound][k][v]);
+            out->high[bound][k][v] = lanes_select(level, high, out->high[bound][k][v]);
         }
-        return;
     }
-    UNROLL(4)
-    for (int n = 0; n < parallel; n++) {
-        const bool none = traits.simplex[which] && direction < traits.dim;
-        const lanes middle =
-            none ? form->middle : form->middle + base_of_edge(traits, which, direction, n, at);
-        base[n] = traits.drifts ? middle - form->swing : middle;
-        if (traits.drifts)
-            base[parallel + n] = middle + form->swing;
+    for (int d = 0; d < traits.dim + (traits.drifts ? 1 : 0); d++) {
+        const lanes along = d < traits.dim ? component[d] + 0.0 : lanes_of(0);
+        out->along[k][d] = lanes_select(level, along, out->along[k][d]);
+        out->inverse[k][d] = lanes_select(level, 1 / along, out->inverse[k][d]);
     }
 }
 
-/* ---- Slabs ---- */
-
-/* What 1 and 2 are for a weight of 1 along each axis. */
-INLINE void set_weight_errors(const struct kernel_traits traits, const struct box_search *search,
-                              lanes out[3])
+/* The part of a span within slab k. On a bound with a value that does not change, the product is
+ * NAN: nothing is clipped. */
+INLINE struct clip_span clipped(const struct clip_values *values, int bound, int k, int v, int d,
+                                struct clip_span span)
 {
-    UNROLL(3)
-    for (int axis = 0; axis < traits.dim; axis++)
-        out[axis] = (9 * BOX_UNIT) * search->size[axis] + (5 * BOX_UNIT) * search->offset_sum[axis];
+    const lanes inverse = values->inverse[k][d];
+    const lanes_mask up = inverse > 0;
+    const lanes low = values->low[bound][k][v], high = values->high[bound][k][v];
+    const lanes first = lanes_select(up, low, high) * inverse;
+    const lanes last = lanes_select(up, high, low) * inverse;
+    return (struct clip_span){lanes_max(first, span.from), lanes_min(last, span.to)};
 }
 
-INLINE void set_slab(const struct kernel_traits traits, const struct pair_lanes *pair, int which,
-                     const struct box_normal *normal, const lanes weight_error[3], lanes_mask *good,
-                     struct clip_slab *out)
+/* The lanes in which x y <= z w. In: these products and their errors neither overflow nor
+ * underflow. */
+INLINE lanes_mask is_no_more(lanes x, lanes y, lanes z, lanes w)
 {
-    const lanes own = lanes_abs(normal->own), radius = traits.simplex[which] ? 0.5 * own : own;
-    lanes sum = ((own + lanes_abs(normal->middle)) + lanes_abs(normal->at[0])) +
-                (traits.dim == 2 ? lanes_abs(normal->at[1])
-                                 : lanes_abs(normal->at[1]) + lanes_abs(normal->at[2]));
-    if (traits.drifts)
-        sum += lanes_abs(normal->swing);
-    const lanes rounded = weight_of(traits, normal->weight, weight_error) + (7 * BOX_UNIT) * sum;
-    const lanes error = rounded + 1.01 * normal->scale * pair->error;
-    out->form.middle = traits.simplex[which] ? normal->middle - 0.5 * normal->own : normal->middle;
-    out->form.swing = normal->swing;
-    out->radius[CLIP_OUTER] = radius + error;
-    out->radius[CLIP_INNER] = radius - error;
-    out->least = 0x1p-20 * rounded;
-    *good &= rounded >= 0x1p-640;
-    UNROLL(6)
-    for (int e = 0; e < edge_count(traits, !which); e++)
-        out->form.at[e] = normal->at[e];
+    const lanes one = x * y, other = z * w;
+    return (one - other) + (product_error(x, y, one) - product_error(z, w, other)) <= 0;
 }
 
-/* Sets the slabs of a frame, and in 3D its face products. Returns their number. */
-INLINE int set_slabs(const struct kernel_traits traits, const struct pair_lanes *pair, int which,
-                     const struct box_search *search, struct face_products *side, lanes_mask *good,
-                     struct clip_slab slab[CLIP_SLABS_MAX])
+/* Where nothing rounds: the lanes in which a segment enters each slab no later than it leaves any.
+ * With what is left to the bounds at its start, a to that where it enters and b to the other, and
+ * the growth g >= 0 of the value, it is in slab i from a_i / g_i to b_i / g_i. */
+INLINE lanes_mask enters_in_time(const struct clip_values *values, int slabs, int v, int d)
 {
-    struct box_normal normals[4];
-    lanes weight_error[3];
-    set_weight_errors(traits, search, weight_error);
-    if (traits.dim == 2) {
-        set_plane_normals(pair, traits, which, &search->frame[which], normals);
-    } else {
-        set_face_products(pair, traits, which, side);
-        set_normals(pair, traits, which, side, normals);
-    }
-    const int count = traits.simplex[which] ? traits.dim + 1 : traits.dim;
-    UNROLL(4)
-    for (int k = 0; k < count; k++)
-        set_slab(traits, pair, which, &normals[k], weight_error, good, &slab[k]);
-    return count;
-}
-
-/* The part of a span within [middle - half, middle + half]. */
-INLINE struct clip_span clipped(struct clip_span span, lanes middle, lanes half)
-{
-    return (struct clip_span){lanes_max(middle - half, span.from),
-                              lanes_min(middle + half, span.to)};
-}
-
-/* Clips the segments of a direction to the slabs of the other frame. */
-INLINE void clip_segments(const struct kernel_traits traits, int which, int direction, bool path,
-                          const struct clip_slab *slab, int slabs, struct clip_spans *out)
-{
-    const int count = segment_count(traits, which, path);
-    const int first = first_segment(traits, which, direction);
-    const bool from_vertex = traits.simplex[which] && !path;
-    struct clip_span span[CLIP_BOUNDS][8];
-    UNROLL(16)
-    for (int n = 0; n < 16; n++)
-        span[n / 8][n % 8] = (struct clip_span){lanes_of(from_vertex ? 0 : -1), lanes_of(1)};
-    UNROLL(4)
+    lanes a[CLIP_SLABS], b[CLIP_SLABS], g[CLIP_SLABS];
+    lanes_mask out = is_not((lanes_mask){0});
     for (int k = 0; k < slabs; k++) {
-        lanes base[8];
-        const lanes d = along_direction(direction, path, &slab[k].form);
-        const lanes negative = -1 / lanes_select(lanes_abs(d) >= slab[k].least, d, slab[k].least);
-        const lanes outer = slab[k].radius[CLIP_OUTER] * lanes_abs(negative);
-        const lanes inner = slab[k].radius[CLIP_INNER] * lanes_abs(negative);
-        set_bases(traits, which, direction, path, &slab[k].form, base);
-        UNROLL(8)
-        for (int n = 0; n < count; n++) {
-            const lanes middle = base[n] * negative;
-            span[CLIP_OUTER][n] = clipped(span[CLIP_OUTER][n], middle, outer);
-            span[CLIP_INNER][n] = clipped(span[CLIP_INNER][n], middle, inner);
-        }
+        const lanes along = values->along[k][d];
+        const lanes low = values->low[CLIP_OUTER][k][v], high = values->high[CLIP_OUTER][k][v];
+        a[k] = lanes_select(along < 0, -high, low);
+        b[k] = lanes_select(along < 0, -low, high);
+        g[k] = lanes_abs(along);
+        out &= (a[k] <= g[k]) & (b[k] >= 0);
     }
-    UNROLL(2)
-    for (int bound = 0; bound < CLIP_BOUNDS; bound++)
-        UNROLL(8)
-    for (int n = 0; n < count; n++)
-        out->part[bound][first + n] = span[bound][n];
+    for (int i = 0; i < slabs; i++)
+        for (int j = 0; j < slabs; j++)
+            out &= is_no_more(a[i], g[j], b[j], g[i]);
+    return out;
+}
+
+/* The span, or none if it is shorter than so much. */
+INLINE struct clip_span at_least(struct clip_span span, double length)
+{
+    span.from = lanes_select(span.to - span.from >= length, span.from, lanes_of(NAN));
+    return span;
+}
+
+/* Clips a segment. plane: the last slab is the plane of a face. The inner span then is the range in
+ * which the segment surely crosses the face, from its end to its start. */
+INLINE void clip_segment(const struct clip_values *values, int slabs, bool plane, int v, int d,
+                         struct clip_span *out_outer, struct clip_span *out_inner)
+{
+    const struct clip_span whole = {lanes_of(0), lanes_of(1)};
+    struct clip_span outer = whole, inner = whole;
+    for (int k = 0; k < (plane ? slabs - 1 : slabs); k++) {
+        outer = clipped(values, CLIP_OUTER, k, v, d, outer);
+        inner = clipped(values, CLIP_INNER, k, v, d, inner);
+    }
+    if (plane) {
+        const struct clip_span all = {lanes_of(-INFINITY), lanes_of(INFINITY)};
+        const struct clip_span at = clipped(values, CLIP_OUTER, slabs - 1, v, d, all);
+        const lanes_mask crosses =
+            (at.from - inner.from >= CLIP_SHORTEST) & (inner.to - at.to >= CLIP_SHORTEST);
+        outer.from = lanes_max(at.from, outer.from);
+        outer.to = lanes_min(at.to, outer.to);
+        inner.from = lanes_select(crosses, at.to, lanes_of(NAN));
+        inner.to = at.from;
+    } else {
+        inner = at_least(inner, CLIP_SHORTEST);
+    }
+    outer = at_least(outer, -CLIP_SHORTEST);
+    const lanes_mask ties = values->exact & (outer.to - outer.from < CLIP_SHORTEST);
+    if (!plane && values->any_exact && lanes_mask_bits(ties)) {
+        const lanes_mask in_time = enters_in_time(values, slabs, v, d);
+        outer.from = lanes_select(ties & is_not(in_time), lanes_of(NAN), outer.from);
+        inner.from = lanes_select(ties, outer.from, inner.from);
+    }
+    *out_outer = outer;
+    *out_inner = inner;
+}
+
+/* Clips the segments of a frame. Returns the lanes in which, for some segment with an outer span,
+ * there is no inner span, or one that is shorter by more than box->whole along some axis. */
+INLINE lanes_mask clip_segments(const struct clip_wire *wire, const struct clip_values *values,
+                                int slabs, bool plane, const lanes longest[CLIP_DIRECTIONS],
+                                const struct box_pair *box, struct clip_spans *out)
+{
+    lanes_mask uncertain = {0};
+    for (int n = 0; n < wire->segments; n++) {
+        const int v = wire->from[n], d = wire->direction[n];
+        struct clip_span *outer = &out->part[CLIP_OUTER][n], *inner = &out->part[CLIP_INNER][n];
+        clip_segment(values, slabs, plane, v, d, outer, inner);
+        const lanes lost = (outer->to - outer->from) - (inner->to - inner->from);
+        const lanes_mask near = lost * longest[d] <= box->whole;
+        uncertain |= (outer->from == outer->from) & is_not(near);
+    }
+    return uncertain;
 }
 
 /* ---- Reach ---- */
 
-/* A coordinate of the points of a frame. */
-INLINE void set_coordinate(const struct kernel_traits traits, int which, int axis,
-                           const struct box_search *search, struct clip_form *out)
-{
-    const struct box_frame *frame = &search->frame[which];
-    out->middle = frame->centre[axis];
-    out->swing = frame->travel[axis];
-    UNROLL(6)
-    for (int e = 0; e < edge_count(traits, which); e++)
-        out->at[e] = frame->edge[e][axis];
-}
+/* Where the vertices of a frame are, and its directions. */
+struct clip_points {
+    lanes vertex[3][CLIP_VERTICES], along[3][CLIP_DIRECTIONS];
+    lanes longest[CLIP_DIRECTIONS];
+};
 
-/* Adds the spans of a direction to what reach holds of an axis, [below, above]. */
-INLINE void add_reach(const struct kernel_traits traits, int which, int direction, bool path,
-                      const struct clip_form *coordinate, const struct clip_spans *spans, int bound,
-                      lanes *below, lanes *above)
+INLINE void set_points(const struct kernel_traits traits, int which, const struct clip_wire *wire,
+                       const struct box_frame *frame, struct clip_points *out)
 {
-    lanes base[8];
-    const struct clip_span *part = &spans->part[bound][first_segment(traits, which, direction)];
-    const lanes half = 0.5 * along_direction(direction, path, coordinate);
-    set_bases(traits, which, direction, path, coordinate, base);
-    UNROLL(8)
-    for (int n = 0; n < segment_count(traits, which, path); n++) {
-        const lanes from = part[n].from, to = part[n].to;
-        const lanes sum = lanes_select(to >= from, to + from, lanes_of(NAN));
-        const lanes middle = base[n] + sum * half;
-        const lanes length = (to - from) * lanes_abs(half);
-        *below = lanes_max(length - middle, *below);
-        *above = lanes_max(length + middle, *above);
-    }
-}
-
-/* How far the spans of a frame reach from 0, [below, above][axis]; -INFINITY if all are empty. */
-INLINE void find_reach(const struct kernel_traits traits, int which,
-                       const struct box_search *search, const struct clip_spans *spans, int bound,
-                       lanes reach[2][3])
-{
-    UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
-        struct clip_form coordinate;
-        lanes *below = &reach[0][axis], *above = &reach[1][axis];
-        set_coordinate(traits, which, axis, search, &coordinate);
-        *below = *above = lanes_of(-INFINITY);
-        EACH_DIRECTION(
-            traits, which, direction, path,
-            add_reach(traits, which, direction, path, &coordinate, spans, bound, below, above));
+        lanes at[3];
+        for (int i = 0; i < component_count(traits, which); i++)
+            at[i] = frame->edge[i][axis];
+        set_at_vertices(traits, which, frame->centre[axis], at, frame->travel[axis],
+                        out->vertex[axis]);
+        set_along_directions(traits, which, at, frame->travel[axis], out->along[axis]);
+        for (int d = 0; d < wire->directions; d++) {
+            const lanes length = lanes_abs(out->along[axis][d]);
+            out->longest[d] = axis ? lanes_max(length, out->longest[d]) : length;
+        }
     }
 }
 
-INLINE lanes_mask uncertain_along(const struct kernel_traits traits, int which, int direction,
-                                  bool path, const struct box_search *search,
-                                  const struct clip_spans *spans)
+/* Adds how far the spans of a frame reach from 0, [below, above][axis]. Where to < from, some point
+ * of the range surely is in the intersection: the least reach of these. */
+INLINE void add_reach(const struct kernel_traits traits, const struct clip_wire *wire,
+                      const struct clip_points *points, const struct clip_span *part,
+                      lanes reach[2][3])
 {
-    lanes_mask out = {0};
-    const struct box_frame *frame = &search->frame[which];
-    const lanes *a = path ? frame->travel : frame->edge[direction];
-    const int first = first_segment(traits, which, direction);
-    lanes longest = lanes_max(lanes_abs(a[0]), lanes_abs(a[1]));
-    if (traits.dim == 3)
-        longest = lanes_max(longest, lanes_abs(a[2]));
-    UNROLL(8)
-    for (int n = 0; n < segment_count(traits, which, path); n++) {
-        const struct clip_span *outer = &spans->part[CLIP_OUTER][first + n];
-        const struct clip_span *inner = &spans->part[CLIP_INNER][first + n];
-        const lanes length = outer->to - outer->from, certain = inner->to - inner->from;
-        const lanes_mask near = (certain >= 0) & ((length - certain) * longest <= search->whole);
-        out |= (length >= 0) & is_not(near);
+    for (int axis = 0; axis < traits.dim; axis++) {
+        lanes below = reach[0][axis], above = reach[1][axis];
+        for (int n = 0; n < wire->segments; n++) {
+            const lanes at = points->vertex[axis][wire->from[n]];
+            const lanes half = 0.5 * points->along[axis][wire->direction[n]];
+            const lanes middle = at + (part[n].to + part[n].from) * half;
+            const lanes length = (part[n].to - part[n].from) * lanes_abs(half);
+            below = lanes_max(length - middle, below);
+            above = lanes_max(length + middle, above);
+        }
+        reach[0][axis] = below;
+        reach[1][axis] = above;
     }
-    return out;
-}
-
-/* The lanes in which, for some segment with an outer span that is not empty, the inner span is
- * empty, or shorter by more than search->whole along some axis. */
-INLINE lanes_mask uncertain_spans(const struct kernel_traits traits, int which,
-                                  const struct box_search *search, const struct clip_spans *spans)
-{
-    lanes_mask out = {0};
-    EACH_DIRECTION(traits, which, direction, path,
-                   out |= uncertain_along(traits, which, direction, path, search, spans));
-    return out;
 }
 
 /* ---- Crossings ---- */
@@ -486,53 +599,56 @@ INLINE lanes_mask uncertain_spans(const struct kernel_traits traits, int which,
 struct clip_crossings {
     struct edge_products edges;
     lanes drift_middle[2][6]; /* [frame][edge]: (half_drift x offset) . edge */
+    lanes length[2][6][3];    /* [frame][edge][axis]: of what an edge is made of */
     lanes error[2][6];        /* [frame][edge]: E_r for an edge of A, E_s for an edge of B */
-    lanes edge_error[3]; /* [axis]: rounding part of E_t, for a weight of 1 of a x b along it */
-    lanes scale_error;   /* 1.01 e + 2^-93 T: the other part, for a scale of 1 */
+    lanes scale_error;        /* what errors of frames and underflow add for a scale of 1 */
 };
 
-/* The largest magnitude of a coordinate of the vertices of a frame, seen from its reference point.
- */
-INLINE lanes farthest_along(const struct pair_lanes *pair, const struct kernel_traits traits,
-                            int which, int axis)
-{
-    const lanes(*c)[3] = pair->component[which];
-    return traits.simplex[which]
-               ? max_of_three(lanes_abs(c[0][axis]), lanes_abs(c[1][axis]), lanes_abs(c[2][axis]))
-               : magnitudes_along(pair, traits, which, axis);
-}
-
-/* Returns the lanes in which every edge, and a drift that is not 0, has a size of at least 2^-180
- * (11). */
+/* Returns the lanes in which nothing rounds, or every edge and a drift that is not 0 has a size of
+ * at least 2^-180. */
 INLINE lanes_mask set_crossings(const struct pair_lanes *pair, const struct kernel_traits traits,
-                                const struct box_search *search, struct clip_crossings *out)
+                                const struct box_pair *box, struct clip_crossings *out)
 {
-    lanes drift_error[3], weight[3];
-    lanes smallest = lanes_select(pair->half_drift_size != 0, pair->half_drift_size, lanes_of(1));
+    lanes least = lanes_select(pair->half_drift_size != 0, pair->half_drift_size, lanes_of(1));
+    out->scale_error = 1.01 * pair->error + 0x1p-93 * pair->reach;
     set_products(pair, traits, pair->offset, out->edges.middle);
     set_products(pair, traits, pair->half_drift, out->edges.swing);
-    out->scale_error = 1.01 * pair->error + (0x1p-40 * BOX_UNIT) * pair->reach;
-    UNROLL(3)
-    for (int axis = 0; axis < 3; axis++) {
-        const lanes sum = lanes_abs(pair->offset[axis]) + farthest_along(pair, traits, 0, axis) +
-                          farthest_along(pair, traits, 1, axis);
-        const lanes of_offset = (4.1 * BOX_UNIT) * search->offset_sum[axis];
-        drift_error[axis] = (13.1 * BOX_UNIT) * sum + of_offset;
-        out->edge_error[axis] =
-            (9.1 * BOX_UNIT) * (sum + lanes_abs(pair->half_drift[axis])) + of_offset;
-    }
-    UNROLL(2)
     for (int which = 0; which < 2; which++) {
+        const lanes(*c)[3] = pair->component[which];
         set_drift_middles(pair, traits, which, out->drift_middle[which]);
-        for (int e = 0; e < edge_count(traits, which); e++) {
+        for (int index = 0; index < edge_count(traits, which); index++) {
+            const int e = edge_at(traits, which, index);
+            lanes weight[3], *length = out->length[which][e];
+            for (int axis = 0; axis < 3; axis++)
+                length[axis] = e < 3 ? lanes_abs(c[e][axis])
+                                     : lanes_abs(c[edge_from(traits, e)][axis]) +
+                                           lanes_abs(c[edge_to(traits, e)][axis]);
+            cross_weight(length, pair->half_drift, weight);
             const lanes size = pair->size[which][e];
-            cross_weight(search->frame[which].length[e], pair->half_drift, weight);
-            out->error[which][e] =
-                dot(weight, drift_error) + (size * pair->half_drift_size) * out->scale_error;
-            smallest = lanes_min(size, smallest);
+            const lanes error = BOX_ROUNDING * dot(weight, box->reach) +
+                                out->scale_error * (size * pair->half_drift_size);
+            out->error[which][e] = lanes_select(box->exact, lanes_of(0), error);
+            least = lanes_min(size, least);
         }
     }
-    return smallest >= 0x1p-180;
+    return box->exact | (least >= 0x1p-180);
+}
+
+/* How many edges of a frame have the same direction. */
+INLINE int parallel_count(const struct kernel_traits traits, int which)
+{
+    return traits.simplex[which] ? 1 : 4;
+}
+
+/* The value at the base of edge n along e, less that at the reference point. The base is the vertex
+ * at which an edge of a simplex begins, the midpoint of an edge of a cuboid. at: [component]. */
+INLINE lanes base_of_edge(const struct kernel_traits traits, int which, int e, int n,
+                          const lanes at[3])
+{
+    if (traits.simplex[which])
+        return e < 3 ? lanes_of(0) : at[edge_from(traits, e)];
+    const lanes u = at[next(e)], v = at[next(next(e))];
+    return n == 0 ? -(u + v) : n == 1 ? -(u - v) : n == 2 ? u - v : u + v;
 }
 
 /* (base x edge) . w, for the base of edge n along e. at[k]: normal[k] . w. */
@@ -546,209 +662,243 @@ INLINE lanes moment_of_edge(const struct kernel_traits traits, int which, int e,
     return n == 0 ? -(u + v) : n == 1 ? -(u - v) : n == 2 ? u - v : u + v;
 }
 
-/* How far the parameter of an edge is outside its range. */
-INLINE lanes excess_of(const struct kernel_traits traits, int which, lanes x)
+/* x where it is inside its range from 0 to all, or from -all to all for an edge of a cuboid: by how
+ * much. */
+INLINE lanes inside_range(bool simplex, lanes x, lanes all)
 {
-    return traits.simplex[which] ? lanes_abs(x - 0.5) - 0.5 : lanes_abs(x) - 1;
+    return simplex ? lanes_min(x, all - x) : all - lanes_abs(x);
 }
 
-/* The edges along one direction of A, [edge]: their bases, and their parts of r X, and of s X and t
- * X of their crossings with edges along j of B. */
-struct clip_edges_of_a {
-    lanes base[4][3];
-    lanes r[4], s[4][6], t[4][6]; /* [edge], [edge][j] */
+/* Parts of s X, r X and t X of edges in one direction, [edge]; and where edges of A begin. */
+struct clip_edges {
+    lanes s[4], r[4], t[4], base[3][4];
 };
 
+/* Of the edges along i of A, with those along j of B. */
 INLINE void set_edges_of_a(const struct kernel_traits traits, const struct clip_crossings *all,
                            const struct face_products *side, const struct box_frame *a, int i,
-                           struct clip_edges_of_a *out)
+                           int j, struct clip_edges *out)
 {
-    const lanes(*swing)[6] = all->edges.swing, (*other)[6] = side->other;
-    UNROLL(4)
-    for (int n = 0; n < parallel_count(traits, 0); n++) {
-        out->r[n] = all->drift_middle[0][i] -
-                    moment_of_edge(traits, 0, i, n, side->swing[0], side->swing[1], side->swing[2]);
-        UNROLL(3)
+    const lanes along_b[3] = {all->edges.swing[0][j], all->edges.swing[1][j],
+                              traits.face[0] ? lanes_of(0) : all->edges.swing[2][j]};
+    for (int m = 0; m < parallel_count(traits, 0); m++) {
         for (int axis = 0; axis < 3; axis++) {
-            const lanes at[3] = {a->edge[0][axis], a->edge[1][axis], a->edge[2][axis]};
-            out->base[n][axis] = a->centre[axis] + base_of_edge(traits, 0, i, n, at);
+            const lanes at[3] = {a->edge[0][axis], a->edge[1][axis],
+                                 traits.face[0] ? lanes_of(0) : a->edge[2][axis]};
+            out->base[axis][m] = a->centre[axis] + base_of_edge(traits, 0, i, m, at);
         }
-        UNROLL(6)
-        for (int j = 0; j < edge_count(traits, 1); j++) {
-            const lanes at[3] = {swing[0][j], swing[1][j], swing[2][j]};
-            out->s[n][j] = base_of_edge(traits, 0, i, n, at);
-            out->t[n][j] = moment_of_edge(traits, 0, i, n, other[0][j], other[1][j], other[2][j]);
-        }
+        out->r[m] = all->drift_middle[0][i] -
+                    moment_of_edge(traits, 0, i, m, side->swing[0], side->swing[1], side->swing[2]);
+        out->s[m] = base_of_edge(traits, 0, i, m, along_b);
+        out->t[m] = moment_of_edge(traits, 0, i, m, side->other[0][j], side->other[1][j],
+                                   side->other[2][j]);
     }
 }
-
-/* The edges along j of B, [edge]: their parts of r X, s X and t X of their crossings with edges
- * along i of A. */
-struct clip_edges_of_b {
-    lanes r[4], s[4], t[4];
-};
 
 INLINE void set_edges_of_b(const struct kernel_traits traits, const struct clip_crossings *all,
-                           const struct face_products *side, int i, int j,
-                           struct clip_edges_of_b *out)
+                           const struct face_products *side, int i, int j, struct clip_edges *out)
 {
-    const lanes *drift = side->swing, (*other)[6] = side->other;
-    UNROLL(4)
     for (int n = 0; n < parallel_count(traits, 1); n++) {
         out->r[n] = base_of_edge(traits, 1, j, n, all->edges.swing[i]);
-        out->s[n] =
-            all->drift_middle[1][j] + moment_of_edge(traits, 1, j, n, drift[0], drift[1], drift[2]);
-        out->t[n] = moment_of_edge(traits, 1, j, n, other[0][i], other[1][i], other[2][i]);
+        out->s[n] = all->drift_middle[1][j] +
+                    moment_of_edge(traits, 1, j, n, side->swing[0], side->swing[1], side->swing[2]);
+        out->t[n] = moment_of_edge(traits, 1, j, n, side->other[0][i], side->other[1][i],
+                                   side->other[2][i]) -
+                    all->edges.middle[i][j];
     }
 }
 
-/* Adds the crossings of edges to the reach of A (find_reach()): for CLIP_OUTER those that are
- * possible, for CLIP_INNER those that are certain. Returns the lanes in which one of these is not
- * certain, or has a position that is not known to within search->whole. */
-INLINE lanes_mask add_crossing_reach(const struct pair_lanes *pair,
-                                     const struct kernel_traits traits,
-                                     const struct box_search *search,
-                                     const struct face_products side[2],
-                                     const struct clip_crossings *all, int bound, lanes reach[2][3])
+/* The crossings of edges along i of A and j of B. Where X may be 0, the radius is infinite. */
+struct clip_crossing {
+    struct clip_edges a, b;
+    lanes det, turned, error_s, error_r, error_t; /* |X|, X, bounds */
+    lanes along[3], travel[3], radius[3];         /* of s X, t X; of the error of a position */
+    lanes_mask known, crosses;
+};
+
+INLINE void set_crossing(const struct pair_lanes *pair, const struct kernel_traits traits,
+                         const struct box_places *places, const struct box_pair *box,
+                         const struct face_products side[2], const struct clip_crossings *all,
+                         int i, int j, struct clip_crossing *out)
 {
-    const struct box_frame *a = &search->frame[0], *b = &search->frame[1];
-    const int parallel_a = parallel_count(traits, 0), parallel_b = parallel_count(traits, 1);
-    const lanes_mask drifts = pair->half_drift_size != 0;
-    const double rounded = 4 * BOX_UNIT;
+    const struct box_frame *a = &box->frame[0];
+    lanes weight[3], wide = lanes_of(0);
+    set_edges_of_a(traits, all, &side[0], a, i, j, &out->a);
+    set_edges_of_b(traits, all, &side[1], i, j, &out->b);
+    out->turned = all->edges.swing[i][j];
+    out->det = lanes_abs(out->turned);
+    out->error_s = all->error[1][j];
+    out->error_r = all->error[0][i];
+    cross_weight(all->length[0][i], all->length[1][j], weight);
+    out->error_t = lanes_select(box->exact, lanes_of(0),
+                                BOX_ROUNDING * dot(weight, box->reach) +
+                                    all->scale_error * (pair->size[0][i] * pair->size[1][j]));
+    const lanes_mask some = out->det > 0x1p-1000;
+    const lanes inverse = lanes_select(some, 1 / out->det, lanes_of(0));
+    for (int axis = 0; axis < 3; axis++) {
+        out->along[axis] = inverse * a->edge[i][axis];
+        out->travel[axis] = inverse * a->travel[axis];
+        const lanes radius = out->error_s * lanes_abs(out->along[axis]) +
+                             out->error_t * lanes_abs(out->travel[axis]);
+        out->radius[axis] = lanes_select(some, radius, lanes_of(INFINITY));
+        wide = lanes_max(out->radius[axis], wide);
+    }
+    /* None if X is exactly 0: in exact numbers, or all three vectors are across a level axis. */
+    out->crosses = (pair->half_drift_size != 0) & (some | is_not(box->exact));
+    for (int axis = 0; axis < 3; axis++)
+        out->crosses &= is_not(places->level[axis] & (a->edge[i][axis] == 0) &
+                               (box->frame[1].edge[j][axis] == 0));
+    out->known = wide <= 0.5 * box->whole;
+}
+
+/* The crossing of two edges: s X and t X, and how far s, r and t are inside their ranges, times X.
+ */
+struct clip_parameters {
+    lanes s, t, in_s, in_r, in_t;
+};
+
+/* Returns the lanes in which the crossing of edge m of A and n of B is possible. */
+INLINE lanes_mask is_possible(const struct kernel_traits traits, const struct clip_crossing *from,
+                              int m, int n, struct clip_parameters *out)
+{
+    const lanes turned = from->turned;
+    const lanes r = with_sign_of(from->a.r[m] - from->b.r[n], turned);
+    out->s = with_sign_of(from->b.s[n] - from->a.s[m], turned);
+    out->t = with_sign_of(from->b.t[n] + from->a.t[m], turned);
+    out->in_s = inside_range(traits.simplex[0], out->s, from->det);
+    out->in_r = inside_range(traits.simplex[1], r, from->det);
+    out->in_t = inside_range(false, out->t, from->det);
+    return from->crosses & (out->in_s >= -from->error_s) & (out->in_r >= -from->error_r) &
+           (out->in_t >= -from->error_t);
+}
+
+/* Adds the crossing to the reach of A: to the outer one where it is possible, to the inner one
+ * where it is certain. Returns the lanes in which it is possible, but not certain, or has a
+ * position that is not known to within box->whole. */
+INLINE lanes_mask add_crossing(const struct kernel_traits traits, const struct clip_crossing *from,
+                               int m, int n, lanes reach[CLIP_BOUNDS][2][3])
+{
+    struct clip_parameters at;
+    const lanes none = lanes_of(-INFINITY);
+    const lanes_mask possible = is_possible(traits, from, m, n, &at);
+    const lanes_mask certain = possible & from->known & (at.in_s >= from->error_s) &
+                               (at.in_r >= from->error_r) & (at.in_t >= from->error_t);
+    for (int axis = 0; axis < 3; axis++) {
+        const lanes middle =
+            from->a.base[axis][m] + (at.s * from->along[axis] + at.t * from->travel[axis]);
+        for (int bound = 0; bound < CLIP_BOUNDS; bound++) {
+            lanes *below = &reach[bound][0][axis], *above = &reach[bound][1][axis];
+            const lanes_mask counts = bound == CLIP_OUTER ? possible : certain;
+            const lanes half = bound == CLIP_OUTER ? from->radius[axis] : -from->radius[axis];
+            *below = lanes_max(lanes_select(counts, half - middle, none), *below);
+            *above = lanes_max(lanes_select(counts, half + middle, none), *above);
+        }
+    }
+    return possible & is_not(certain);
+}
+
+/* Adds all crossings of edges in two directions. First all that are possible in some lane are
+ * found, without branches; few are. Returns the lanes of add_crossing(). */
+INLINE lanes_mask add_parallel_crossings(const struct kernel_traits traits,
+                                         const struct clip_crossing *from,
+                                         lanes reach[CLIP_BOUNDS][2][3])
+{
+    unsigned any = 0;
     lanes_mask uncertain = {0};
-    for (int i = 0; i < edge_count(traits, 0); i++) {
-        struct clip_edges_of_a of_a;
-        struct clip_edges_of_b of_b;
-        const lanes error_r = all->error[0][i];
-        const lanes scale_error = pair->size[0][i] * all->scale_error;
-        lanes error[3]; /* [axis]: rounding part of E_t, for an edge of B of length 1 along it */
-        UNROLL(3)
-        for (int axis = 0; axis < 3; axis++) {
-            const int u = next(axis), v = next(u);
-            error[axis] =
-                all->edge_error[u] * a->length[i][v] + all->edge_error[v] * a->length[i][u];
+    for (int m = 0; m < parallel_count(traits, 0); m++)
+        for (int n = 0; n < parallel_count(traits, 1); n++) {
+            struct clip_parameters at;
+            const lanes_mask possible = is_possible(traits, from, m, n, &at);
+            any |= (unsigned) (lanes_mask_bits(possible) != 0) << (4 * m + n);
         }
-        set_edges_of_a(traits, all, &side[0], a, i, &of_a);
-        for (int j = 0; j < edge_count(traits, 1); j++) {
-            const lanes error_s = all->error[1][j];
-            const lanes error_t = dot(error, b->length[j]) + pair->size[1][j] * scale_error;
-            const lanes least = 0x1p-20 * lanes_min(lanes_min(error_s, error_r), error_t);
-            const lanes det = all->edges.swing[i][j];
-            const lanes inverse = 1 / lanes_select(lanes_abs(det) >= least, det, least);
-            const lanes size = lanes_abs(inverse);
-            const lanes radius_s = error_s * size, radius_r = error_r * size,
-                        radius_t = error_t * size;
-            lanes radius[3];
-            UNROLL(3)
-            for (int axis = 0; axis < 3; axis++)
-                radius[axis] =
-                    radius_s * lanes_abs(a->edge[i][axis]) + radius_t * lanes_abs(a->travel[axis]);
-            const lanes_mask wide =
-                max_of_three(radius[0], radius[1], radius[2]) > 0.5 * search->whole;
-            set_edges_of_b(traits, all, &side[1], i, j, &of_b);
-            UNROLL(16)
-            for (int index = 0; index < parallel_a * parallel_b; index++) {
-                const int m = index / parallel_b, n = index % parallel_b;
-                const lanes s = inverse * (of_b.s[n] - of_a.s[m][j]);
-                const lanes r = inverse * (of_a.r[m] - of_b.r[n]);
-                const lanes t = inverse * ((of_b.t[n] + of_a.t[m][j]) - all->edges.middle[i][j]);
-                const lanes over_s = excess_of(traits, 0, s), over_r = excess_of(traits, 1, r),
-                            over_t = lanes_abs(t) - 1;
-                const lanes_mask possible = max_of_three(over_s - radius_s, over_r - radius_r,
-                                                         over_t - radius_t) <= rounded;
-                const lanes_mask certain = max_of_three(over_s + radius_s, over_r + radius_r,
-                                                        over_t + radius_t) < -rounded;
-                const lanes_mask counts = drifts & (bound == CLIP_OUTER ? possible : certain);
-                uncertain |= counts & (is_not(certain) | wide);
-                UNROLL(3)
-                for (int axis = 0; axis < 3; axis++) {
-                    const lanes middle =
-                        of_a.base[m][axis] + (s * a->edge[i][axis] + t * a->travel[axis]);
-                    const lanes half =
-                        lanes_select(counts, bound == CLIP_OUTER ? radius[axis] : -radius[axis],
-                                     lanes_of(-INFINITY));
-                    reach[0][axis] = lanes_max(half - middle, reach[0][axis]);
-                    reach[1][axis] = lanes_max(half + middle, reach[1][axis]);
-                }
-            }
-        }
+    for (; any != 0; any &= any - 1) {
+        const int index = __builtin_ctz(any);
+        uncertain |= add_crossing(traits, from, index / 4, index % 4, reach);
     }
     return uncertain;
 }
 
 /* ---- All of it ---- */
 
-/* The ends of the box: for each, the farther reach of the two frames, with the slack added (sign =
- * 1) or subtracted (sign = -1). */
-INLINE void join_ends(const struct kernel_traits traits, const struct box_search *search,
-                      const lanes reach[2][2][3], double sign, lanes ends[2][3])
-{
-    UNROLL(3)
-    for (int axis = 0; axis < traits.dim; axis++)
-        UNROLL(2)
-    for (int end = 0; end < 2; end++)
-        ends[end][axis] = lanes_max(reach[0][end][axis] + sign * search->slack[0][axis],
-                                    reach[1][end][axis] + sign * search->slack[1][axis]);
-}
+/* A frame, and what is left of its segments. */
+struct clip_side {
+    struct clip_points points;
+    struct clip_spans spans;
+};
 
-/* Clips a frame to the other one. Out: other, the face products of that; spans; reach, of the outer
- * spans. Returns the lanes of uncertain_spans(). */
+/* Clips a frame to the other one. Out: side; other, the face products of the other. Returns the
+ * lanes of clip_segments(). */
 INLINE lanes_mask clip_frame(const struct pair_lanes *pair, const struct kernel_traits traits,
-                             int which, const struct box_search *search,
-                             struct face_products *other, lanes_mask *good,
-                             struct clip_spans *spans, lanes reach[2][3])
+                             const struct box_places *places, int which,
+                             const struct clip_wire *wire, const struct box_pair *box,
+                             struct face_products *other, lanes_mask *good, struct clip_side *side)
 {
-    struct clip_slab slab[CLIP_SLABS_MAX];
-    const int slabs = set_slabs(traits, pair, !which, search, other, good, slab);
-    EACH_DIRECTION(traits, which, direction, path,
-                   clip_segments(traits, which, direction, path, slab, slabs, spans));
-    find_reach(traits, which, search, spans, CLIP_OUTER, reach);
-    return uncertain_spans(traits, which, search, spans);
+    struct clip_slab slab[CLIP_SLABS];
+    struct clip_values values;
+    const int slabs = traits.dim == 2
+                          ? set_plane_slabs(pair, traits, !which, &box->frame[!which], slab)
+                          : set_space_slabs(pair, traits, !which, other, slab);
+    values.exact = box->exact & (pair->reach >= 0x1p-100) & (pair->reach <= 0x1p100);
+    values.any_exact = lanes_mask_bits(values.exact);
+    for (int k = 0; k < slabs; k++) {
+        set_values(traits, pair, which, box, &slab[k], k, good, &values);
+        for (int axis = 0; axis < traits.dim; axis++)
+            if (lanes_mask_bits(places->level[axis]))
+                set_level_values(traits, pair, which, places, k, axis, &values);
+    }
+    set_points(traits, which, wire, &box->frame[which], &side->points);
+    return clip_segments(wire, &values, slabs, traits.face[!which], side->points.longest, box,
+                         &side->spans);
 }
 
-/* Boxes, and in which lanes they are good. */
-INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_traits traits,
-                           const struct box_places *places, struct box_search *search,
-                           lanes box[2][3])
+/* Adds all crossings to the reach of A. Returns the lanes of add_crossing(). */
+INLINE lanes_mask add_crossings(const struct pair_lanes *pair, const struct kernel_traits traits,
+                                const struct box_places *places, const struct box_pair *box,
+                                const struct face_products side[2], lanes_mask *good,
+                                lanes reach[CLIP_BOUNDS][2][3])
 {
-    struct face_products side[2];
-    struct clip_spans spans[2];
-    struct clip_crossings crossings;
-    struct box_ends ends;
-    lanes reach[2][2][3];
-    lanes_mask good = is_not(search->exact), uncertain;
-    if (!lanes_mask_bits(good & pair->in_range))
-        return (lanes_mask){0};
-    if (traits.dim == 2 || traits.drifts) {
-        set_lengths(pair, traits, 0, &search->frame[0]);
-        set_lengths(pair, traits, 1, &search->frame[1]);
-    }
-    uncertain = clip_frame(pair, traits, 0, search, &side[1], &good, &spans[0], reach[0]);
-    uncertain |= clip_frame(pair, traits, 1, search, &side[0], &good, &spans[1], reach[1]);
-    if (traits.dim == 3 && traits.drifts) {
-        good &= set_crossings(pair, traits, search, &crossings);
-        uncertain |=
-            add_crossing_reach(pair, traits, search, side, &crossings, CLIP_OUTER, reach[0]);
-    }
-    join_ends(traits, search, reach, 1, ends.outer);
-    /* Where not uncertain, these are within search->whole of the true ends. */
-    join_ends(traits, search, reach, -1, ends.inner);
-    if (lanes_mask_bits(uncertain)) {
-        lanes inner[2][3];
-        find_reach(traits, 0, search, &spans[0], CLIP_INNER, reach[0]);
-        find_reach(traits, 1, search, &spans[1], CLIP_INNER, reach[1]);
-        if (traits.dim == 3 && traits.drifts)
-            add_crossing_reach(pair, traits, search, side, &crossings, CLIP_INNER, reach[0]);
-        join_ends(traits, search, reach, -1, inner);
-        UNROLL(3)
-        for (int axis = 0; axis < traits.dim; axis++)
-            UNROLL(2)
-        for (int end = 0; end < 2; end++)
-            ends.inner[end][axis] =
-                lanes_select(uncertain, inner[end][axis], ends.inner[end][axis]);
-    }
-    put_box(pair, traits, places, search, &ends, box);
-    return are_near(traits, search, &ends) & good;
+    struct clip_crossings all;
+    lanes_mask uncertain = {0};
+    *good &= set_crossings(pair, traits, box, &all);
+    for (int i = 0; i < edge_count(traits, 0); i++)
+        for (int j = 0; j < edge_count(traits, 1); j++) {
+            struct clip_crossing crossing;
+            set_crossing(pair, traits, places, box, side, &all, edge_at(traits, 0, i),
+                         edge_at(traits, 1, j), &crossing);
+            uncertain |= add_parallel_crossings(traits, &crossing, reach);
+        }
+    return uncertain;
+}
+
+/* Finds the ends of the box. Returns the lanes in which they are good. */
+INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_traits traits,
+                           const struct clip_wire wire[2], const struct box_places *places,
+                           const struct box_pair *box, struct box_ends *ends)
+{
+    struct face_products products[2];
+    struct clip_side side[2];
+    lanes reach[CLIP_BOUNDS][2][3];
+    lanes_mask good = is_not((lanes_mask){0}), uncertain = {0};
+    for (int i = 0; i < CLIP_BOUNDS * 6; i++)
+        reach[i / 6][i / 3 % 2][i % 3] = lanes_of(-INFINITY);
+    for (int which = 0; which < 2; which++)
+        uncertain |= clip_frame(pair, traits, places, which, &wire[which], box, &products[!which],
+                                &good, &side[which]);
+    if (traits.dim == 3 && traits.drifts)
+        uncertain |= add_crossings(pair, traits, places, box, products, &good, reach);
+    for (int bound = 0; bound < (lanes_mask_bits(uncertain & good) ? 2 : 1); bound++)
+        for (int which = 0; which < 2; which++)
+            add_reach(traits, &wire[which], &side[which].points, side[which].spans.part[bound],
+                      reach[bound]);
+    for (int axis = 0; axis < traits.dim; axis++)
+        for (int end = 0; end < 2; end++) {
+            /* Where not uncertain, the outer reach is within box->whole of the true one. */
+            const lanes inner =
+                lanes_select(uncertain, reach[CLIP_INNER][end][axis], reach[CLIP_OUTER][end][axis]);
+            ends->outer[end][axis] = reach[CLIP_OUTER][end][axis] + box->slack[axis];
+            ends->inner[end][axis] = inner - box->slack[axis];
+        }
+    return are_near(traits, box, ends) & good;
 }
 
 #endif

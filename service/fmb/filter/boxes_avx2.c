@@ -1,6 +1,5 @@
 /* Boxes of four pairs at a time: AVX2. */
 #define LANES 4
 #define INLINED_NOT
-#define KERNEL_BOXES
 #define KERNEL_NAME boxes_avx2
-#include "many.h"
+#include "boxes.h"

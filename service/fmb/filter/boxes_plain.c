@@ -1,6 +1,5 @@
 /* Boxes, in plain C: what the other sets are compared with. */
 #define LANES 1
 #define INLINED_NOT
-#define KERNEL_BOXES
 #define KERNEL_NAME boxes_plain
-#include "many.h"
+#include "boxes.h"

@@ -19,21 +19,15 @@
 static_assert(INSTRUCTIONS_PLAIN == 1 && INSTRUCTIONS_TWO == 2 && INSTRUCTIONS_AVX512 == 4,
               "INSTRUCTIONS_MOST is a number of the enum");
 
-extern kernel_function *const kernel_verdicts_plain[KERNEL_KINDS],
-    *const kernel_exact_plain[KERNEL_KINDS],
-        *const kernel_times_plain[KERNEL_KINDS],
-            *const kernel_boxes_plain[KERNEL_KINDS],
-                *const kernel_verdicts_two[KERNEL_KINDS],
-                    *const kernel_exact_two[KERNEL_KINDS],
-                        *const kernel_times_two[KERNEL_KINDS],
-                            *const kernel_boxes_two[KERNEL_KINDS],
-                                *const kernel_verdicts_avx2[KERNEL_KINDS],
-                                    *const kernel_exact_avx2[KERNEL_KINDS],
-                                        *const kernel_times_avx2[KERNEL_KINDS],
-                                            *const kernel_boxes_avx2[KERNEL_KINDS],
-                                                *const kernel_verdicts_avx512[KERNEL_KINDS];
-extern kernel_single_function *const kernel_single_plain[KERNEL_KINDS],
-    *const kernel_single_two[KERNEL_KINDS], *const kernel_single_avx2[KERNEL_KINDS];
+#define KERNEL_DECLARE(name)                                                                \
+    extern kernel_function *const kernel_verdicts_##name[KERNEL_KINDS],                     \
+        *const kernel_exact_##name[KERNEL_KINDS], *const kernel_times_##name[KERNEL_KINDS]; \
+    extern kernel_single_function *const kernel_single_##name[KERNEL_KINDS];
+KERNEL_DECLARE(plain)
+KERNEL_DECLARE(two)
+KERNEL_DECLARE(avx2)
+extern kernel_function *const kernel_verdicts_avx512[KERNEL_KINDS];
+kernel_box_function kernel_boxes_plain, kernel_boxes_two, kernel_boxes_avx2;
 
 /* AVX-512 is worth its kernels for verdicts alone. */
 static const struct kernel_set sets[] = {

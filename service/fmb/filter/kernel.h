@@ -1,8 +1,8 @@
 /* The kernels of the filter: prepared frames in, outcomes, times of contact or boxes out. A kernel
  * decides pairs of one kind, as many side by side as its instruction set has lanes. Each job and
- * instruction set has a file (verdicts_avx2.c) that includes many.h (many pairs) or single.h (one
- * pair). Only the first pass uses fused operations: the bits of all other jobs are promised. No
- * function here has shared state. */
+ * instruction set has a file (verdicts_avx2.c) that includes many.h (many pairs), single.h (one
+ * pair) or boxes.h. Only the first pass uses fused operations: the bits of all other jobs are
+ * promised. No function here has shared state. */
 #ifndef FMB_KERNEL_H
 #define FMB_KERNEL_H
 
@@ -129,14 +129,14 @@ struct kernel_call {
     /* [count][lower, upper][axis], of pairs in contact; NAN where doubles do not prove the limit
      * of fmb.h. */
     double (*boxes)[2][FMB_DIM_MAX];
-    /* For boxes: the frames of every pair are in contact as they are prepared, which is certain if
-     * the filter decided it. More boxes of frames with an error are known then. */
-    bool in_contact;
 };
 
 enum { KERNEL_LANES = 8 };
 
 typedef void kernel_function(const struct kernel_call *call);
+
+/* Writes the boxes of pairs in contact of a kind of kernel_box_kind(). */
+typedef void kernel_box_function(const struct kernel_call *call, enum kernel_kind kind);
 
 /* Kernels of a single pair, for its verdict. */
 typedef enum slabs_outcome kernel_single_function(const struct fmb_prepared *a,
@@ -147,7 +147,6 @@ typedef enum slabs_outcome kernel_single_function(const struct fmb_prepared *a,
  *     verdicts  the first pass, of all kinds: writes outcomes
  *     exact     the second pass, of all kinds: writes outcomes
  *     times     of the kinds that drift: writes outcomes and contacts
- *     boxes     of all kinds of kernel_box_kind(): writes boxes
  *     single    the first pass for a single pair, of all kinds
  *
  * The second pass is for pairs that another kernel leaves unsure. It decides all that verdicts
@@ -156,7 +155,8 @@ typedef enum slabs_outcome kernel_single_function(const struct fmb_prepared *a,
  * TOUCHING of two faces means only that they are not separated, and do not overlap unless their
  * planes are parallel. */
 struct kernel_set {
-    kernel_function *const *verdicts, *const *exact, *const *times, *const *boxes;
+    kernel_function *const *verdicts, *const *exact, *const *times;
+    kernel_box_function *boxes;
     kernel_single_function *const *single;
 };
 
@@ -167,30 +167,28 @@ bool kernel_set_of(int instructions, struct kernel_set *out);
 /* The tables of the best instruction set that this machine has. */
 const struct kernel_set *kernel_set_best(void);
 
-/* What a kernel of many pairs writes for one of them. */
+/* A call of a kernel of many pairs for one, which element 0 of each output is of. */
 struct kernel_one {
+    struct kernel_call call; /* to the arrays below: the struct is not copied */
+    const struct fmb_prepared *pairs[KERNEL_LANES][2];
     unsigned char outcome[KERNEL_LANES];
     double contact[KERNEL_LANES][2], box[KERNEL_LANES][2][FMB_DIM_MAX];
 };
 
-/* Runs a kernel of many pairs on one; element 0 of each array is its own. In: a and b in the order
- * that the kernel takes. */
-static inline void kernel_run_one(kernel_function *kernel, const struct fmb_prepared *a,
-                                  const struct fmb_prepared *b, double duration, bool in_contact,
-                                  struct kernel_one *out)
+/* Sets a call for one pair. In: a and b in the order that the kernel takes. */
+static inline void kernel_set_one(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                                  double duration, struct kernel_one *out)
 {
-    const struct fmb_prepared *pairs[KERNEL_LANES][2];
     for (int lane = 0; lane < KERNEL_LANES; lane++) {
-        pairs[lane][0] = a;
-        pairs[lane][1] = b;
+        out->pairs[lane][0] = a;
+        out->pairs[lane][1] = b;
     }
-    kernel(&(struct kernel_call){.pairs = pairs,
-                                 .count = 1,
-                                 .duration = duration,
-                                 .outcomes = out->outcome,
-                                 .contacts = out->contact,
-                                 .boxes = out->box,
-                                 .in_contact = in_contact});
+    out->call = (struct kernel_call){.pairs = out->pairs,
+                                     .count = 1,
+                                     .duration = duration,
+                                     .outcomes = out->outcome,
+                                     .contacts = out->contact,
+                                     .boxes = out->box};
 }
 
 #endif

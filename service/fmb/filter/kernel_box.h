@@ -1,106 +1,75 @@
-/* Boxes of prepared frames in lanes. */
+/* What boxes.h and the boxes in fixed-width integers have in common: pairs of prepared frames in
+ * lanes. */
 #ifndef FMB_KERNEL_BOX_H
 #define FMB_KERNEL_BOX_H
 
-#include "kernel_exact.h"
 #include "box_clip.h"
+#include "kernel_exact.h"
 
-/* LANES pairs that are left open, and their boxes. */
-struct box_refinement {
-    struct kernel_traits traits;
-    struct pair_lanes pair;
-    struct box_places places;
-    struct box_left_out left_out;
-    lanes_mask good;
-    lanes box[2][3];
-};
-
-/* The second pass of search_box(), then clip_box() for moving pairs with a cuboid (box_refine.h).
- */
-void KERNEL_PASTE(refine, KERNEL_NAME)(struct box_refinement *refinement);
-
-/* Whether the boxes of all lanes in range are good. */
-INLINE bool all_good(lanes_mask good, const struct pair_lanes *pair)
+/* The kind as traits of a pair. KERNEL_DRIFTS: a frame moves. */
+INLINE struct kernel_traits traits_of(enum kernel_kind kind)
 {
-    return lanes_mask_bits(good | is_not(pair->in_range)) == (1u << LANES) - 1;
+    const bool face = kind & KERNEL_FACE, same = kind & KERNEL_SAME_SHAPE,
+               tetrahedron = kind & KERNEL_TETRAHEDRON;
+    return (struct kernel_traits){.dim = kind & KERNEL_3D ? 3 : 2,
+                                  .simplex = {same || (face && tetrahedron), tetrahedron || face},
+                                  .face = {face && same, face},
+                                  .drifts = kind & KERNEL_DRIFTS,
+                                  .box = true};
 }
 
-/* Fills box[] from other[] in the lanes in which it is not good yet. more: the lanes in which
- * other[] is good. Returns the lanes in which box[] is good then. */
-INLINE lanes_mask join_boxes(const struct kernel_traits traits, lanes_mask more,
-                             const lanes other[2][3], lanes_mask good, lanes box[2][3])
+INLINE void gather_pairs(const struct fmb_prepared *const pairs[][2],
+                         const struct kernel_traits traits, struct frame_lanes pair[2])
 {
-    UNROLL(2)
-    for (int end = 0; end < 2; end++)
-        UNROLL(3)
-    for (int axis = 0; axis < traits.dim; axis++)
-        box[end][axis] = lanes_select(good, box[end][axis], other[end][axis]);
-    return good | more;
-}
-
-/* Finds boxes in up to three ways, until all that can be are good:
- *
- *     two cuboids in 2D, or at rest   search_box(), clip_box(), second pass of search_box()
- *     with a cuboid in 3D, moving     search_box(), second pass, clip_box() (box_refine.h)
- *     others without a face           clip_box(), search_box(), second pass
- *     faces                           search_box(), second pass
- *
- * Two cuboids are searched first, since they often rest on each other. The order for a lane does
- * not depend on the other lanes. Returns the lanes in which boxes are good. */
-INLINE lanes_mask find_boxes(const struct kernel_traits traits, const struct pair_lanes *pair,
-                             const struct box_places *places, lanes box[2][3])
-{
-    const bool clips = can_be_clipped(traits) && !is_clipped_last(traits);
-    const bool clips_first = clips && (traits.simplex[0] || traits.simplex[1]);
-    struct box_refinement last;
-    struct box_search search;
-    lanes other[2][3];
-    lanes_mask more, good;
-    begin_box(pair, traits, places, &search);
-    good = clips_first ? clip_box(pair, traits, places, &search, box)
-                       : search_box(pair, traits, places, false, &search, &last.left_out, box);
-    if (all_good(good, pair))
-        return good;
-    if (clips) {
-        more = clips_first ? search_box(pair, traits, places, false, &search, &last.left_out, other)
-                           : clip_box(pair, traits, places, &search, other);
-        good = join_boxes(traits, more, other, good, box);
+    for (int which = 0; which < 2; which++) {
+        const double *frame[LANES];
+        for (size_t lane = 0; lane < LANES; lane++)
+            frame[lane] = (const double *) pairs[lane][which];
+        gather(traits, frame, &pair[which]);
+        memcpy(pair[which].prepared, frame, sizeof frame);
     }
-    if (all_good(good, pair))
-        return good;
-    last.traits = traits;
-    last.pair = *pair;
-    last.places = *places;
-    KERNEL_PASTE(refine, KERNEL_NAME)(&last);
-    return join_boxes(traits, last.good, last.box, good, box);
 }
 
-/* The boxes, [lower, upper][axis]: NAN in lanes in which doubles do not prove the limit of fmb.h, 0
- * along axes beyond dim. */
-INLINE void boxes_of(const struct kernel_traits traits, const struct pair_lanes *pair,
-                     const struct frame_lanes frame[2], double duration, bool in_contact,
-                     lanes box[2][3])
+/* Sets what is exact: exact, level and apart. */
+INLINE void set_exact(const struct kernel_traits traits, const struct frame_lanes frame[2],
+                      const struct pair_lanes *pair, struct box_places *out)
 {
-    struct box_places places = {.summary = {frame[0].summary, frame[1].summary},
-                                .error = {frame[0].error, frame[1].error},
-                                .duration = duration,
-                                .in_contact = in_contact};
-    places.exact = nothing_rounds(traits, &frame[0], &frame[1], duration, pair);
-    UNROLL(2)
-    for (int which = 0; which < 2; which++)
-        UNROLL(3)
+    out->exact = nothing_rounds(traits, &frame[0], &frame[1], out->duration, pair);
+    const lanes_bits axes = known_axes(traits, &frame[0]) & known_axes(traits, &frame[1]);
+    const bool any = lanes_mask_bits(is_centred(&frame[0]) | is_centred(&frame[1]));
     for (int axis = 0; axis < traits.dim; axis++) {
-        places.origin[which][axis] = frame[which].origin[axis];
+        lanes_mask level = (axes & (1u << axis)) != 0;
+        if (traits.simplex[0] || traits.simplex[1])
+            level = (lanes_mask){0};
         if (traits.drifts)
-            places.velocity[which][axis] = frame[which].velocity[axis];
+            level &= frame[0].velocity[axis] == frame[1].velocity[axis];
+        if (lanes_mask_bits(level)) {
+            const struct exact_extent a = extent_along(traits, 0, &frame[0], any, axis);
+            const struct exact_extent b = extent_along(traits, 1, &frame[1], any, axis);
+            for (int i = 0; i < 4; i++) {
+                const struct exact_sum apart =
+                    exact_difference(&a, &b, i / 2 ? a.high : a.low, i % 2 ? b.high : b.low, any);
+                level &= apart.rounds == 0;
+                out->apart[axis][i / 2][i % 2] = apart.value;
+            }
+        }
+        out->level[axis] = level;
     }
-    const lanes_mask good = find_boxes(traits, pair, &places, box) & pair->in_range;
-    UNROLL(2)
-    for (int end = 0; end < 2; end++)
-        UNROLL(3)
-    for (int axis = 0; axis < 3; axis++)
-        box[end][axis] =
-            axis < traits.dim ? lanes_select(good, box[end][axis], lanes_of(NAN)) : lanes_of(0);
+}
+
+/* Sets the rest of the places, and the pair. */
+INLINE void set_places(const struct kernel_traits traits, const struct frame_lanes frame[2],
+                       double duration, struct pair_lanes *pair, struct box_places *out)
+{
+    set_pair(traits, &frame[0], &frame[1], duration, pair);
+    out->duration = duration;
+    for (int which = 0; which < 2; which++) {
+        out->summary[which] = frame[which].summary;
+        out->error[which] = frame[which].error;
+        memcpy(out->origin[which], frame[which].origin, sizeof out->origin[which]);
+        if (traits.drifts)
+            memcpy(out->velocity[which], frame[which].velocity, sizeof out->velocity[which]);
+    }
 }
 
 #endif

@@ -1,7 +1,7 @@
 /* A kernel of the filter: what many.h (many pairs) and single.h (a single pair) share.
  *
  *   In     prepared frames (prepared.h), read as arrays of doubles, and the duration of the window
- *   Out    for each lane an outcome (enum slabs_outcome); times of contact or boxes where requested
+ *   Out    for each lane an outcome (enum slabs_outcome); times of contact where requested
  *
  * Steps:
  *
@@ -12,20 +12,18 @@
  *   5. outcomes_of()      separated, touching, overlapping, or unsure; times_of(): seconds
  *
  * Macros that the includer of many.h defines select the job. None: the first pass, verdicts.
- * KERNEL_EXACT: the second pass (kernel_exact.h). KERNEL_TIMES: verdicts and times. KERNEL_BOXES:
- * boxes (kernel_box.h, box_refine.h). The bits of the last three are promised. At the end of this
- * file KERNEL_FUNCTIONS defines one function for each kind of pair (dimension, shapes, motion:
- * kernel.h), with the traits as a constant. KERNEL_TABLE lists these functions in the order of the
- * kinds, in a table whose name ends in KERNEL_NAME. A file that defines INLINED_NOT is neither
- * inlined nor unrolled (inlined.h).
+ * KERNEL_EXACT: the second pass (kernel_exact.h). KERNEL_TIMES: verdicts and times. The bits of the
+ * last two are promised, and so are those of boxes, which boxes.h computes from steps 1 to 3. At
+ * the end of this file KERNEL_FUNCTIONS defines one function for each kind of pair (dimension,
+ * shapes, motion: kernel.h), with the traits as a constant. KERNEL_TABLE lists these functions in
+ * the order of the kinds, in a table whose name ends in KERNEL_NAME. A file that defines
+ * INLINED_NOT is neither inlined nor unrolled (inlined.h).
  *
  * Order of the headers; each includes only headers before it: slabs.h, pair_lanes.h (a pair in
  * lanes), slabs_lanes.h (one slab), slabs_2d.h and slabs_3d.h (all slabs), slabs_evaluate.h, this
- * file, kernel_exact.h, kernel_box.h. slabs_exact.h, and box_search.h and box_clip.h, hold the
- * mathematics of the last two.
+ * file, kernel_exact.h. slabs_exact.h holds the mathematics of the last one.
  *
- * Proofs: the bounds of slabs in slabs.c, of times in slabs_lanes.h, of frames in prepared.h, of
- * boxes in box_search.h and box_clip.h. */
+ * Proofs: the bounds of slabs in slabs.c, of times in slabs_lanes.h, of frames in prepared.h. */
 #ifndef FMB_KERNEL_LANES_H
 #define FMB_KERNEL_LANES_H
 
@@ -37,19 +35,13 @@ enum { TIMES = 1 };
 #else
 enum { TIMES = 0 };
 #endif
-#ifdef KERNEL_BOXES
-enum { BOXES = 1 };
-#else
-enum { BOXES = 0 };
-#endif
 #ifdef KERNEL_EXACT
 enum { EXACT = 1 };
 #else
 enum { EXACT = 0 };
 #endif
-enum { ROUGH = !TIMES && !EXACT && !BOXES };
-/* What the filter decides in the end must not depend on the order of the pair: boxes depend on it
- * (kernel_call.in_contact). */
+enum { ROUGH = !TIMES && !EXACT };
+/* The bits of these do not depend on the order of the pair. */
 enum { SWAP_INVARIANT = TIMES || EXACT };
 
 /* ---- The gather ----
@@ -356,7 +348,6 @@ enum kernel_shape { SHAPE_C, SHAPE_T, SHAPE_F }; /* cuboid, tetrahedron, face */
                                            .axis_aligned = parallel,                \
                                            .swap_invariant = SWAP_INVARIANT,        \
                                            .times = TIMES,                          \
-                                           .box = BOXES,                            \
                                            .rough = ROUGH,                          \
                                            .exact = EXACT}))
 #define KERNEL_SOLIDS(FUNCTION, name, dimension, drift, parallel)                  \
@@ -405,16 +396,16 @@ enum kernel_shape { SHAPE_C, SHAPE_T, SHAPE_F }; /* cuboid, tetrahedron, face */
     {                           \
         KERNEL_DRIFTING_ENTRIES \
     }
-#elif defined(KERNEL_EXACT) || defined(KERNEL_BOXES)
-/* One function with and without KERNEL_AXIS_ALIGNED: boxes find zero normals by their masks, and
- * the second pass always looks for them. */
-#define KERNEL_FUNCTIONS(FUNCTION)                     \
-    KERNEL_SOLIDS(FUNCTION, plane, 2, 0, 0)            \
-    KERNEL_SOLIDS(FUNCTION, plane_drifts, 2, 1, 0)     \
-    KERNEL_SOLIDS(FUNCTION, space, 3, 0, EXACT)        \
-    KERNEL_SOLIDS(FUNCTION, space_drifts, 3, 1, EXACT) \
-    KERNEL_FACES(FUNCTION, space, 0, EXACT)            \
-    KERNEL_FACES(FUNCTION, space_drifts, 1, EXACT)
+#elif defined(KERNEL_EXACT)
+/* One function with and without KERNEL_AXIS_ALIGNED: the second pass always looks for zero normals.
+ */
+#define KERNEL_FUNCTIONS(FUNCTION)                 \
+    KERNEL_SOLIDS(FUNCTION, plane, 2, 0, 0)        \
+    KERNEL_SOLIDS(FUNCTION, plane_drifts, 2, 1, 0) \
+    KERNEL_SOLIDS(FUNCTION, space, 3, 0, 1)        \
+    KERNEL_SOLIDS(FUNCTION, space_drifts, 3, 1, 1) \
+    KERNEL_FACES(FUNCTION, space, 0, 1)            \
+    KERNEL_FACES(FUNCTION, space_drifts, 1, 1)
 #define KERNEL_3D_ENTRIES(name, kind)                                         \
     KERNEL_SOLID_ENTRIES(name, KERNEL_3D + (kind)),                           \
         KERNEL_SOLID_ENTRIES(name, KERNEL_3D + KERNEL_AXIS_ALIGNED + (kind)), \

@@ -1,10 +1,6 @@
 /* Kernels of many pairs, LANES of them at a time. The includer defines LANES, KERNEL_NAME and the
  * job (kernel_lanes.h). */
-#ifdef KERNEL_BOXES
-#include "box_refine.h"
-#else
 #include "kernel_exact.h"
-#endif
 
 INLINE void gather_side(const struct kernel_call *call, const struct kernel_traits traits,
                         size_t first, int which, struct frame_lanes *out)
@@ -23,7 +19,7 @@ INLINE void gather_pairs(const struct kernel_call *call, const struct kernel_tra
     gather_side(call, traits, first, 1, &pair[1]);
 }
 
-#if defined(KERNEL_TIMES) || defined(KERNEL_BOXES)
+#ifdef KERNEL_TIMES
 
 /* Writes lane i to out[i * stride]. */
 INLINE void scatter(lanes x, double *out, int stride)
@@ -37,25 +33,7 @@ INLINE void scatter(lanes x, double *out, int stride)
 
 #endif
 
-#ifdef KERNEL_BOXES
-
-INLINE void evaluate_lanes(const struct kernel_traits traits, const struct kernel_call *call,
-                           size_t first)
-{
-    struct frame_lanes frame[2];
-    struct pair_lanes pair;
-    lanes box[2][3];
-    gather_pairs(call, traits, first, frame);
-    set_pair(traits, &frame[0], &frame[1], call->duration, &pair);
-    boxes_of(traits, &pair, frame, call->duration, call->in_contact, box);
-    UNROLL(2)
-    for (int end = 0; end < 2; end++)
-        UNROLL(3)
-    for (int axis = 0; axis < 3; axis++)
-        scatter(box[end][axis], &call->boxes[first][end][axis], 6);
-}
-
-#elif defined(KERNEL_EXACT)
+#ifdef KERNEL_EXACT
 
 INLINE void evaluate_lanes(const struct kernel_traits traits, const struct kernel_call *call,
                            size_t first)

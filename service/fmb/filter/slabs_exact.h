@@ -140,28 +140,34 @@ INLINE void set_centred(lanes_mask centred, lanes position, lanes centre, struct
     out->high = lanes_select(centred, half, out->high);
 }
 
-/* The gap along an axis in value; rounds: the lanes in which its sign is not known. any: some
- * remainder is not 0. */
+/* From end_a of a to end_b of b along an axis: low or high of each. Its value is off by less than
+ * 2^-52 of itself, and has the exact sign, but for the lanes in rounds. any: some remainder is not
+ * 0. */
+INLINE struct exact_sum exact_difference(const struct exact_extent *a, const struct exact_extent *b,
+                                         lanes end_a, lanes end_b, bool any)
+{
+    const lanes offset = b->origin - a->origin;
+    struct exact_sum out = {offset, error_of_sum(b->origin, -a->origin, offset),
+                            a->rounds | b->rounds};
+    if (any) {
+        add_exactly(&out, b->remainder);
+        add_exactly(&out, -a->remainder);
+    }
+    add_exactly(&out, end_b);
+    add_exactly(&out, -end_a);
+    out.value += out.remainder;
+    return out;
+}
+
+/* The gap along an axis; rounds: the lanes in which its sign is not known. */
 INLINE struct exact_sum axis_gap(const struct exact_extent *a, const struct exact_extent *b,
                                  bool any)
 {
-    const lanes offset = b->origin - a->origin;
-    const lanes error = error_of_sum(b->origin, -a->origin, offset);
-    struct exact_sum above = {offset, error, a->rounds | b->rounds};
-    struct exact_sum below = {-offset, -error, above.rounds};
-    if (any) {
-        add_exactly(&above, b->remainder);
-        add_exactly(&above, -a->remainder);
-        add_exactly(&below, a->remainder);
-        add_exactly(&below, -b->remainder);
-    }
-    add_exactly(&above, b->low);
-    add_exactly(&above, -a->high);
-    add_exactly(&below, a->low);
-    add_exactly(&below, -b->high);
-    above.value = lanes_max(above.value + above.remainder, below.value + below.remainder);
-    above.rounds |= below.rounds; /* of either */
-    return above;
+    struct exact_sum out = exact_difference(a, b, a->high, b->low, any);
+    const struct exact_sum below = exact_difference(a, b, a->low, b->high, any);
+    out.value = lanes_max(out.value, -below.value);
+    out.rounds |= below.rounds; /* of either */
+    return out;
 }
 
 #endif

@@ -1,0 +1,60 @@
+/* The kernel of boxes, LANES pairs at a time: one function for all kinds of pairs, loops over
+ * arrays. The includer defines LANES, INLINED_NOT and KERNEL_NAME. */
+#include "kernel_box.h"
+
+/* Sets the box, [lower, upper][axis]; NAN in lanes in which doubles do not prove the limit of
+ * fmb.h, 0 along axes beyond dim. */
+static void find_box(const struct kernel_traits traits, const struct clip_wire wire[2],
+                     const struct frame_lanes frame[2], const struct pair_lanes *pair,
+                     struct box_places *places, lanes box[2][3])
+{
+    const lanes_mask aligned = are_aligned(pair, traits, places);
+    const bool clips = !lanes_all(aligned | is_not(pair->in_range));
+    struct box_pair of_pair;
+    struct box_ends ends;
+    places->exact = (lanes_mask){0};
+    if (clips)
+        set_exact(traits, frame, pair, places);
+    begin_box(pair, traits, places, &of_pair);
+    lanes_mask good = aligned & of_pair.usable;
+    for (int i = 0; i < 6; i++)
+        ends.outer[i / 3][i % 3] = ends.inner[i / 3][i % 3] = lanes_of(INFINITY);
+    if (clips)
+        good |= clip_box(pair, traits, wire, places, &of_pair, &ends) & is_not(aligned);
+    for (int i = 0; i < 6; i++) {
+        lanes *outer = &ends.outer[i / 3][i % 3], *inner = &ends.inner[i / 3][i % 3];
+        *outer = lanes_select(aligned, lanes_of(INFINITY), *outer);
+        *inner = lanes_select(aligned, lanes_of(INFINITY), *inner);
+    }
+    put_box(pair, traits, places, &of_pair, &ends, box);
+    good &= pair->in_range;
+    for (int end = 0; end < 2; end++)
+        for (int axis = 0; axis < 3; axis++)
+            box[end][axis] =
+                axis < traits.dim ? lanes_select(good, box[end][axis], lanes_of(NAN)) : lanes_of(0);
+}
+
+kernel_box_function KERNEL_PASTE(kernel, KERNEL_NAME);
+
+void KERNEL_PASTE(kernel, KERNEL_NAME)(const struct kernel_call *call, enum kernel_kind kind)
+{
+    const struct kernel_traits traits = traits_of(kind);
+    struct clip_wire wire[2];
+    for (int which = 0; which < 2; which++)
+        set_wire(traits, which, &wire[which]);
+    for (size_t first = 0; first < call->count; first += LANES) {
+        struct frame_lanes frame[2];
+        struct pair_lanes pair;
+        struct box_places places;
+        lanes box[2][3];
+        gather_pairs((const struct fmb_prepared *const(*)[2]) & call->pairs[first], traits, frame);
+        set_places(traits, frame, call->duration, &pair, &places);
+        find_box(traits, wire, frame, &pair, &places, box);
+        for (int i = 0; i < 6; i++) {
+            double at[LANES];
+            memcpy(at, &box[i / 3][i % 3], sizeof at);
+            for (int lane = 0; lane < LANES; lane++)
+                call->boxes[first + (size_t) lane][i / 3][i % 3] = at[lane];
+        }
+    }
+}
