@@ -64,7 +64,7 @@ nothing='{"overlapping": 0, "touching": 0, "faces_a": 0, "faces_b": 0, "pairs": 
 
 # ---- Answers ---------------------------------------------------------------------------------
 
-@test "a mesh within the bounds of another one that it does not meet: a hint, for people alone" {
+@test "a mesh inside the bounds of another one that it does not intersect gets a hint in text only" {
     obj out.obj '-1 -1 -1' '3 -1 -1' '-1 3 -1' '-1 -1 3' -- '1 3 2' '1 2 4' '1 4 3' '2 3 4'
     obj in.obj '0 0 0' '0.1 0 0' '0 0.1 0' '0 0 0.1' -- '1 3 2' '1 2 4' '1 4 3' '2 3 4'
     hint='in.obj may lie inside out.obj, within whose bounds it is: only surfaces are compared'
@@ -81,14 +81,14 @@ nothing='{"overlapping": 0, "touching": 0, "faces_a": 0, "faces_b": 0, "pairs": 
     [[ $output != *inside* ]]
 }
 
-@test "one line of JSON: counts, and the pairs in order" {
+@test "JSON is one line with the counts and the pairs in order" {
     answers '{"overlapping": 1, "touching": 1, "faces_a": 1, "faces_b": 2, "pairs": [[0, 0, "overlapping"], [0, 1, "touching"]]}' a.obj b.obj
     answers '{"overlapping": 1, "touching": 1, "faces_a": 2, "faces_b": 1, "pairs": [[0, 0, "overlapping"], [1, 0, "touching"]]}' b.obj a.obj
     answers "$nothing" a.obj b.obj --translate 0,0,5
     [ "$(wc -l <<< "$output")" = 1 ]
 }
 
-@test "text for people, and with --list every pair before it" {
+@test "text is a summary, and with --list every pair before it" {
     mesh a.obj b.obj
     ended 0
     said ''
@@ -105,7 +105,7 @@ in them are
 $counts"
 }
 
-@test "moving meshes: when each pair meets, and when the first and the last do" {
+@test "moving meshes have the contact interval of each pair, and the first and the last time" {
     answers '{"overlapping": 1, "touching": 1, "faces_a": 1, "faces_b": 2, "pairs": [[0, 0, "overlapping", [0.5, 2]], [0, 1, "touching", [1.5, 2]]]}' \
         a.obj --translate 0,0,1.5 --velocity 0,0,-1 b.obj --duration 2
     mesh a.obj --translate 0,0,1.5 --velocity 0,0,-1 b.obj --duration 2 --list
@@ -124,7 +124,7 @@ $counts"
     [[ $output != *'first at'* ]]
 }
 
-@test "what is nearest to decimals decides: a tenth three times is not three tenths" {
+@test "the nearest doubles decide: a tenth three times is not three tenths" {
     obj low.obj '0 0 0.1' '1 0 0.1' '0 1 0.1' -- '1 2 3'
     obj high.obj '0 0 0.3' '1 0 0.3' '0 1 0.3' -- '1 2 3'
     answers "$nothing" low.obj --scale 1,1,3 high.obj
@@ -132,7 +132,7 @@ $counts"
         high.obj --scale 1,1,1 high.obj
 }
 
-@test "edges that no double holds: faces that share a vertex touch, an ulp beside it they do not" {
+@test "faces that share a vertex touch, and an ulp away from it they do not" {
     # 1e16 + 2 is the next double.
     obj far.obj '10000000000000000 0.1 0.3' '-0.1 0.7 0.2' '0.3 1e-17 -5' -- '1 2 3'
     obj shares.obj '-7 -7.3 9' '-0.1 0.7 0.2' '-8 0.1 0.1' -- '1 2 3'
@@ -142,7 +142,7 @@ $counts"
     answers "$nothing" far.obj beside.obj
 }
 
-@test "--method exact says the same" {
+@test "--method exact gives the same answer" {
     "$MAKE_MESH" --faces 200 one.ply
     for options in '' '--translate 0.1,0.2,0.3' '--as tetrahedra' '--velocity 0.1,0,0.05'; do
         # shellcheck disable=SC2086
@@ -158,7 +158,7 @@ $counts"
     answers "$output" one.ply one.ply --velocity 0.1,0,0.05 --method exact
 }
 
-@test "--as tetrahedra: on one side of the face, as high as a unit normal" {
+@test "--as tetrahedra adds a vertex on one side of each face, at the height of a unit normal" {
     obj below.obj '0 0 -1' '1 0 -1' '0 1 -1' -- '1 2 3'
     answers "$nothing" a.obj below.obj
     answers "$nothing" --as faces a.obj below.obj --translate 0,0,0.5
@@ -167,7 +167,7 @@ $counts"
     answers "$nothing" --as tetrahedra a.obj below.obj --translate 0,0,-0x1p-52
 }
 
-@test "empty meshes meet nothing" {
+@test "an empty mesh intersects nothing" {
     printf 'ply\nformat ascii 1.0\nend_header\n' > empty.ply
     printf 'solid nothing\nendsolid nothing\n' > empty.stl
     for empty in empty.ply empty.stl; do
@@ -200,7 +200,7 @@ apart() {
     jq -e '.overlapping + .touching == 0' <<< "$output" > /dev/null
 }
 
-@test "steps are for the file before them, or for both" {
+@test "steps apply to the file before them, or to both" {
     meets a.obj a.obj
     apart a.obj --translate 0,0,1 a.obj
     apart a.obj a.obj --translate 0,0,1
@@ -214,7 +214,7 @@ apart() {
     meets -- a.obj b.obj
 }
 
-@test "steps follow each other, in the order in which they are typed" {
+@test "steps are applied in the order of the command line" {
     obj point.obj '8 1 0' '8 1 0' '8 1 0' -- '1 1 1'
     obj from.obj '1 2 0' '1 2 0' '1 2 0' -- '1 2 3'
     meets from.obj --rotate z,90 --translate 10,0,0 point.obj
@@ -226,7 +226,7 @@ apart() {
     meets --rotate x,90 from.obj --rotate x,-90 point.obj --rotate x,270 --translate -7,1,0
 }
 
-@test "at most 32 steps for a mesh" {
+@test "more than 32 steps for a mesh are refused" {
     steps=$(printf -- '--mirror x %.0s' $(seq 32))
     # shellcheck disable=SC2086
     meets a.obj a.obj $steps
@@ -236,7 +236,7 @@ apart() {
     wrong 'more than 32 steps for a mesh' a.obj a.obj $steps --mirror x
 }
 
-@test "what goes beyond the doubles is told" {
+@test "coordinates beyond the largest double are reported" {
     cannot_read 'a.obj: vertex 1 is farther out than edges in doubles go: scale the mesh' a.obj --scale 1e308 b.obj
     cannot_read 'b.obj: vertex 2 is farther out than edges in doubles go: scale the mesh' a.obj b.obj --scale 8e307
     meets a.obj --scale 8e307 a.obj
@@ -248,7 +248,7 @@ apart() {
 
 # ---- A mesh with itself ------------------------------------------------------------------------
 
-@test "--self: what meets, and beside it what is shared" {
+@test "--self counts intersections apart from shared vertices and edges" {
     # A tetrahedron whose last face is there twice, and a triangle through it.
     obj self.obj '0 0 0' '1 0 0' '0 1 0' '0 0 1' '0.1 0.1 -1' '0.1 0.1 0.5' '9 9 9' -- \
         '1 3 2' '1 2 4' '1 4 3' '2 3 4' '4 2 3' '5 6 7' '2 7 7'
@@ -269,7 +269,7 @@ and beside each other, with nothing else in common, are
              5  pairs that share a vertex'
 }
 
-@test "--self refuses what it does not go with" {
+@test "--self refuses options that exclude it" {
     wrong 'expected one mesh with --self, found 2' --self a.obj b.obj
     wrong 'expected one mesh with --self, found 0' --self
     wrong '--self asks faces, not tetrahedra' --self --as tetrahedra a.obj
@@ -287,7 +287,7 @@ and beside each other, with nothing else in common, are
 
 # ---- Files -------------------------------------------------------------------------------------
 
-@test "--ply: both meshes in one, which reads back, and colours" {
+@test "--ply writes both meshes in one file with colours, which reads back" {
     mesh a.obj b.obj --translate 0,0,0.5 --ply out.ply
     ended 0
     grep -a -q 'element vertex 9' out.ply
@@ -312,7 +312,7 @@ and beside each other, with nothing else in common, are
 190 190 190" ]
 }
 
-@test "all formats, and every mixture, give the same answer" {
+@test "all formats, and every mixture of them, give the same answer" {
     for format in ply-ascii ply-le ply-be stl-ascii obj; do
         "$MAKE_MESH" --faces 800 --format $format one.$format
         mesh one.$format one.$format --translate 0.1,0.2,0.3 --json
@@ -331,7 +331,7 @@ and beside each other, with nothing else in common, are
     [ "$(jq -c .overlapping <<< "$output")" = "$(jq -c .overlapping <<< "$expected")" ]
 }
 
-@test "files that cannot be read, and what is broken, with the place" {
+@test "unreadable and broken files are reported with the place" {
     cannot_read 'no.obj: No such file or directory' no.obj b.obj
     cannot_read 'no.obj: No such file or directory' a.obj no.obj
     cannot_read "$BATS_TEST_TMPDIR: a folder, not a file" a.obj "$BATS_TEST_TMPDIR"
@@ -355,7 +355,7 @@ and beside each other, with nothing else in common, are
     [ "$(wc -l <<< "$stderr")" = 1 ]
 }
 
-@test "what cannot be written is told" {
+@test "output that cannot be written is reported" {
     mesh a.obj b.obj --json --ply "$BATS_TEST_TMPDIR/no/out.ply"
     ended 1
     said "fmb: $BATS_TEST_TMPDIR/no/out.ply: No such file or directory"
@@ -370,7 +370,7 @@ and beside each other, with nothing else in common, are
 
 # ---- Usage -------------------------------------------------------------------------------------
 
-@test "wrong usage is one line and a hint" {
+@test "wrong usage is refused with exit code 2 and a hint" {
     wrong 'expected two meshes, found 0; or one and --self'
     wrong 'expected two meshes, found 1; or one and --self' a.obj
     wrong 'expected two meshes, found 3; or one and --self' a.obj b.obj a.obj
@@ -400,7 +400,7 @@ and beside each other, with nothing else in common, are
     wrong "option '--json=1' takes no value" a.obj --json=1 b.obj
 }
 
-@test "--help, and fmb help mesh" {
+@test "--help and fmb help mesh print the usage" {
     mesh --help
     ended 0
     said ''
@@ -422,7 +422,7 @@ and beside each other, with nothing else in common, are
 
 # ---- The terminal ------------------------------------------------------------------------------
 
-@test "on a terminal it shows how far it is, elsewhere it does not" {
+@test "progress is shown on a terminal only" {
     script -qfc true /dev/null < /dev/null > /dev/null 2>&1 3>&- || skip 'there is no pseudo-terminal'
     "$MAKE_MESH" --faces 100000 large.ply
     script -qfc "$FMB mesh --method exact large.ply large.ply" screen < /dev/null > /dev/null 3>&- &

@@ -16,7 +16,7 @@ setup() {
     export PKG_CONFIG_PATH=$root/lib/pkgconfig LD_LIBRARY_PATH=$root/lib
 }
 
-@test "the example queries a scene: compiled against what is installed, with neither libfmb nor GMP" {
+@test "the example builds against the installed library, with neither libfmb nor GMP, and queries a scene" {
     $compiler -std=c99 -Wall -Wextra -Werror $flags clients/examples/ask_scene.c \
         $(pkg-config --static --cflags --libs fmb-client) -o "$BATS_TEST_TMPDIR/ask_scene"
     [ -z "$(ldd "$BATS_TEST_TMPDIR/ask_scene" | grep gmp)" ]
@@ -65,7 +65,7 @@ END
         $(pkg-config --cflags fmb-client) || ! command -v g++
 }
 
-@test "the client's library shows its own names alone" {
+@test "the client library exports its own names only" {
     nm -g --defined-only "$root/lib/libfmb-client.a" | awk 'NF == 3 { print $3 }' > "$BATS_TEST_TMPDIR/names"
     grep -qx fmb_client_query "$BATS_TEST_TMPDIR/names"
     grep -qx fmb_status_text "$BATS_TEST_TMPDIR/names"
@@ -73,7 +73,7 @@ END
     [ -z "$(grep fmb_msgs "$BATS_TEST_TMPDIR/names")" ]
 }
 
-@test "shared libraries have a soname, and show the names of their headers alone" {
+@test "shared libraries have a soname, and export the names of their headers only" {
     for name in fmb fmb-client; do
         file=$root/lib/lib$name.so
         [ "$(readlink "$file")" = lib$name.so.0 ]
@@ -112,7 +112,7 @@ END
 }
 
 # Options of make are those of setup().
-@test "a prefix may hold a space, % and &, or be relative; uninstall removes all that was installed" {
+@test "a prefix may contain a space, % and &, or be relative, and uninstall removes all files" {
     printf '#include <fmb_client.h>\nint main(void) { return !fmb_client_prefix_ok("a"); }\n' \
         > "$BATS_TEST_TMPDIR/small.c"
     for prefix in "$BATS_TEST_TMPDIR/a %n & prefix" "$(realpath --relative-to=. "$BATS_TEST_TMPDIR")/relative"; do
