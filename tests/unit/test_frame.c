@@ -459,7 +459,8 @@ static void decide_checks_first(void **state)
     struct fmb_answer answer;
     for (size_t i = 0; fmb_method_at(i); i++) {
         struct pair pair = plane_pair();
-        assert_int_equal(pair_decide(fmb_method_at(i), &pair, 4, &answer), FMB_UNKNOWN_WANT);
+        assert_int_equal(pair_decide(fmb_method_at(i), &pair, FMB_WANT_CERTIFICATE, &answer),
+                         FMB_UNKNOWN_WANT);
         assert_int_equal(pair_decide(fmb_method_at(i), &pair, 0x80000001U, &answer),
                          FMB_UNKNOWN_WANT);
         pair.duration = -1;
