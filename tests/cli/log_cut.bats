@@ -217,7 +217,7 @@ split_at() {
     has ".damages == 2 and .damaged_bytes > $((next - at)) and .kept_events == .events"
     [[ "$stderr" == *"offset $at: $((next - at)) bytes: no event; left out"* ]]
     [[ "$stderr" == *'the last event is cut off; left out'* ]]
-    # The first 30 are as they were; those behind them are numbered anew.
+    # The first 30 are as they were; those after them are numbered anew.
     cmp -n "$at" "$T/good.log" "$cut"
     cuts 0 "$cut" -o "$T/again.log"
     has '.damages == 0'
@@ -231,7 +231,7 @@ split_at() {
     cuts 1 "$log" "$T/second.log" -o "$cut"
     has '.damages == 1 and .damaged_bytes == 6'
     [[ "$stderr" == *"second.log: offset 0: 6 bytes"* ]]
-    # As fmb replay tells it.
+    # As fmb replay reports it.
     run --separate-stderr "$FMB" replay "$log" "$T/second.log"
     [[ "$stderr" == *"second.log: offset 0: 6 bytes"* ]]
 }

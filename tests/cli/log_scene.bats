@@ -1,4 +1,4 @@
-# fmb log scene: a query of a log, as a scene to ask again.
+# fmb log scene: a query of a log, as a scene to decide again.
 
 bats_require_minimum_version 1.5.0
 
@@ -130,7 +130,7 @@ split_at() {
     jq -e '.bodies | all(.components | length == 3 or length == 2)' <<< "$query" > "$T/jq"
     scene 0 "$T/first.log" "$T/second.log" --event 100
     [ "$output" = "$query" ]
-    # Alone the second log does not define all handles.
+    # By itself the second log does not define all handles.
     unknown=0
     for ((event = 60; event < 120; event += 2)); do
         run --separate-stderr "$FMB" log scene "$T/second.log" --event "$event"
@@ -199,7 +199,7 @@ split_at() {
     scene 1 "$log" --event 3
     said "event 3 is there 2 times: --offset $at --offset $((at + $(stat -c %s "$T/one.log")))"
     scene 0 "$log" --offset "$at"
-    # Of the last log alone.
+    # Of the last log only.
     scene 0 "$T/one.log" "$T/one.log" --event 3
 }
 

@@ -197,7 +197,7 @@ xpath() {
         ended 1
         counts '.different == 8 and ([.differences[].offset] | . == sort) and (.differences | length) == 8'
     done
-    # Which are told does not hang on it either.
+    # Which are listed does not depend on it either.
     for log in flipped delayed last; do
         replay --limit 3 $log.log
         ended 1
@@ -324,9 +324,9 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     counts '.queries > 0'
     local at=$output
     replay --from 0.200001 --to 0.21 arm.log
-    local behind=$output
+    local after=$output
     replay --from 0.2 --to 0.21 arm.log
-    [ "$(jq .queries <<< "$output")" = $(($(jq .queries <<< "$at") + $(jq .queries <<< "$behind"))) ]
+    [ "$(jq .queries <<< "$output")" = $(($(jq .queries <<< "$at") + $(jq .queries <<< "$after"))) ]
 }
 
 @test "a time range without queries is unusable: there is nothing to compare" {

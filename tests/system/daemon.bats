@@ -116,7 +116,7 @@ many_scenes() {
     [ "$(jq -c '[.bodies, .misses, .evictions]' "$BATS_TEST_TMPDIR/status")" = '[1,20,0]' ]
     "$FMB" query --json --certificate "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
     "$FMB" query --json --certificate --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
-    # All but the first and the last are the first of some pair that is queried alone.
+    # All but the first and the last are the first of some single pair.
     [ "$(status_of evictions)" -ge 18 ]
     stop_fmbd
 }
@@ -132,7 +132,7 @@ many_scenes() {
         .frame_capacity == 500 and .misses == 5 and .hits == 5 * (.scenes - 1)' "$BATS_TEST_TMPDIR/status"
     "$FMB" query --certificate "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" status --json > "$BATS_TEST_TMPDIR/status"
-    jq -e '(.pairs - 10 * .scenes) as $alone | $alone >= 10 and .received == .scenes + $alone and
+    jq -e '(.pairs - 10 * .scenes) as $single | $single >= 10 and .received == .scenes + $single and
         .malformed == 0 and .received == .answered + .unsent and
         .answered == ([.results[]] | add)' "$BATS_TEST_TMPDIR/status"
     run "$FMB" status
@@ -256,7 +256,7 @@ many_scenes() {
         fmbd=$!
         started="$started $fmbd"
         wait_until "$FMB" status --timeout 0.2
-        # Fill the pipe to the brim where nobody reads.
+        # Fill the pipe to the brim without a reader.
         [ $reader = gone ] || timeout 1 dd if=/dev/zero of="$BATS_TEST_TMPDIR/pipe" bs=4096 2> /dev/null || true
         "$FMB_BUILD/fake-peer" FMB_PAIR_QUERY status
         [ "$(status_of malformed)" -gt 100 ]

@@ -300,11 +300,11 @@ grid_scene() {
     started="$started $watch"
     # It prints a line of what passes only once it listens.
     random_scene 2 3 > "$BATS_TEST_TMPDIR/scene.json"
-    heard() {
+    received() {
         "$FMB" query "$BATS_TEST_TMPDIR/scene.json" > /dev/null
         grep -q 'up to pair 3: ' "$BATS_TEST_TMPDIR/watch"
     }
-    wait_until heard
+    wait_until received
     sent=0 to_watch=0 scenes_to_watch=0
     for type in pair_query pair_result scene_query scene_result definition_query definition status; do
         sent=$((sent + $("$FMB_BUILD/fake-peer" FMB_PAIR_QUERY $type)))

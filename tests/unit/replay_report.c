@@ -60,19 +60,19 @@ static int compare_places(const struct located_difference *a, const struct locat
 }
 
 static void sort_found(struct located_difference *found, int64_t count,
-                       struct located_difference *room)
+                       struct located_difference *scratch)
 {
     const int64_t half = count / 2;
     int64_t a = 0, b = half;
     if (count < 2)
         return;
-    sort_found(found, half, room);
-    sort_found(found + half, count - half, room);
+    sort_found(found, half, scratch);
+    sort_found(found + half, count - half, scratch);
     for (int64_t i = 0; i < count; i++)
-        room[i] = b == count || (a < half && compare_places(&found[a], &found[b]) <= 0)
-                      ? found[a++]
-                      : found[b++];
-    memcpy(found, room, (size_t) count * sizeof *found);
+        scratch[i] = b == count || (a < half && compare_places(&found[a], &found[b]) <= 0)
+                         ? found[a++]
+                         : found[b++];
+    memcpy(found, scratch, (size_t) count * sizeof *found);
 }
 
 struct replay_report replay_report_of(const struct replay_options *options)
@@ -86,11 +86,11 @@ struct replay_report replay_report_of(const struct replay_options *options)
     for (int log = 0; log < options->log_count; log++)
         tally_add(&report.tally, &tally[log]);
     free(tally);
-    struct located_difference *room = calloc((size_t) report.found_count + 1, sizeof *room);
-    if (!room)
+    struct located_difference *scratch = calloc((size_t) report.found_count + 1, sizeof *scratch);
+    if (!scratch)
         abort();
-    sort_found(report.found, report.found_count, room);
-    free(room);
+    sort_found(report.found, report.found_count, scratch);
+    free(scratch);
     return report;
 }
 

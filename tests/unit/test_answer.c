@@ -282,7 +282,7 @@ static void test_eviction(void **state)
 }
 
 /* With capacity for one, the second body of a query does not evict the first, which is in use, but
- * is made for this query alone. */
+ * is made for this query only. */
 static void test_capacity_for_one(void **state)
 {
     (void) state;

@@ -536,7 +536,7 @@ static void test_bad_pairs(void **state)
     query->index_count = 80;
     for (int i = 0; i < 40; i++)
         query->pair[i][1] = 1;
-    for (int at = 3; at < 40; at += 34) /* alone, and among many */
+    for (int at = 3; at < 40; at += 34) /* single, and among many */
         for (size_t i = 0; i < COUNT(bad); i++) {
             char detail[60];
             query->pair[at][0] = bad[i].a;

@@ -141,7 +141,7 @@ static int list_of(const struct subject *subject, const struct pair *pair,
                            : subject->list(slabs, true, out);
 }
 
-/* A pair as a subject may be asked it: kernels want the cuboid first, and the face last. */
+/* A pair as a subject takes it: kernels want the cuboid first, and the face last. */
 static void set_pair(const struct subject *subject, const struct question *question,
                      struct ready *out)
 {
@@ -173,7 +173,7 @@ static double ratio_of(const struct subject *subject, const struct question *que
     return slab_truth_worst(truth, &slab[index / 2 % count]);
 }
 
-/* Whom the search is at. */
+/* The subject of the search. */
 struct climb {
     struct question question;
     int index; /* of the slab */
@@ -226,7 +226,7 @@ static struct climb search_kind(struct draw *draw, const struct subject *subject
 }
 
 /* Searches all kinds (of axes: those in space); each must come to the ratio that is
- * asked, and none beyond 1. */
+ * requested, and none beyond 1. */
 static void attack(const struct subject *subject)
 {
     struct draw draw;

@@ -588,7 +588,7 @@ static int64_t longest_chain(uint64_t multiplier, const uint64_t used[2], int ca
     return longest;
 }
 
-/* Likewise bodies. Chains of 256 bodies in 256 buckets are as short as of any. */
+/* Bodies chosen to collide. Chains of 256 bodies in 256 buckets are as short as of any. */
 static void test_bodies_chosen_to_collide(void **state)
 {
     (void) state;

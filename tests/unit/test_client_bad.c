@@ -348,7 +348,7 @@ static double seconds_since(int64_t start)
 }
 
 /* A client may run for hours, and the service be started after it. While there is none, each call
- * takes a timeout, and sends one query alone. */
+ * takes a timeout, and sends only one query. */
 static void test_a_service_that_comes_back_is_found(void **state)
 {
     (void) state;
@@ -814,7 +814,7 @@ static void test_forged_results_are_ignored(void **state)
             struct relay *relay = relay_new();
             relay->lie = lies[i].lie;
             scene.placement_count = of_list ? 100 : 400;
-            scene.want = lies[i].list ? ALL_WANTS : 0; /* of names alone: nothing else shows them */
+            scene.want = lies[i].list ? ALL_WANTS : 0; /* of names only: nothing else shows them */
             relay_open(relay, 2000);
             struct fmb_client *client = relay_client(relay, 0.1, 1);
             const struct tally tally = query(client, &scene);

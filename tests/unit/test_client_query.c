@@ -99,7 +99,7 @@ static void test_all_pairs_of_many_bodies(void **state)
     relay_close(relay);
 }
 
-/* Results with no room for all answers: nearly all pairs meet. */
+/* Results with no space for all answers: nearly all pairs meet. */
 static void test_all_pairs_of_a_crowd(void **state)
 {
     (void) state;

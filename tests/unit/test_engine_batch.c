@@ -118,7 +118,7 @@ static unsigned draw_frame(struct draw *draw)
     return (unsigned) draw_int(draw, 0, FRAMES - 1);
 }
 
-/* Of frames that can be asked together: neighbours in either order, any two, one with itself, an
+/* Of frames that make a pair: neighbours in either order, any two, one with itself, an
  * earlier pair again or the other way round. */
 static void draw_pair(struct draw *draw, struct world *world, size_t i)
 {
@@ -163,7 +163,7 @@ static void expect_right(const struct question *question, const struct pair *pai
         referee_fail(question, why);
 }
 
-/* As the method certified says of a pair that can be asked. */
+/* As the method certified decides a valid pair. */
 static void set_expected(const struct world *world, const unsigned pair[2], bool check_oracle,
                          struct said *out)
 {
@@ -182,7 +182,7 @@ static void set_expected(const struct world *world, const unsigned pair[2], bool
         memcpy(out->box, answer.box, sizeof out->box);
 }
 
-/* Of all pairs; the oracle is asked of one in so many. */
+/* Of all pairs; the oracle decides one in so many. */
 static void set_all_expected(struct world *world, int oracle_of)
 {
     world->status = FMB_OK;
@@ -193,7 +193,7 @@ static void set_all_expected(struct world *world, int oracle_of)
 
 /* ---- Batches ---- */
 
-/* Room for one array of answers with guards on both sides. */
+/* Memory for one array of answers with guards on both sides. */
 struct guarded {
     unsigned char *all;
     size_t size;
@@ -222,7 +222,7 @@ static void expect_guards(const struct guarded *guarded)
     assert_true(is_untouched(guarded->all + GUARDS + guarded->size, GUARDS));
 }
 
-/* How a batch is asked. */
+/* How a batch is called. */
 struct way {
     int instructions;
     bool contacts, boxes;
@@ -616,7 +616,7 @@ static size_t decide_verdicts(const struct world *world, const struct way *way,
 }
 
 /* Kernels of instruction sets that fuse operations are unsure of other pairs than those that do
- * not, and every pair that is decided alone leaves another one open. */
+ * not, and every pair that is decided by itself leaves another one open. */
 static void what_is_left_open_does_not_depend_on_instructions(void **state)
 {
     (void) state;
@@ -746,14 +746,14 @@ static void address_does_not_matter(void **state)
     (void) state;
     struct draw draw;
     struct world *world = world_new();
-    unsigned char *room = aligned_alloc(64, sizeof world->frame + 64);
-    assert_non_null(room);
+    unsigned char *memory = aligned_alloc(64, sizeof world->frame + 64);
+    assert_non_null(memory);
     draw_begin(&draw, "address_does_not_matter");
     draw_frames(&draw, NULL, 1, world);
     draw_pairs(&draw, 300, world);
     set_all_expected(world, 1000);
     for (size_t at = 0; at < 64; at += 8) {
-        struct fmb_prepared *frames = (struct fmb_prepared *) (void *) (room + at);
+        struct fmb_prepared *frames = (struct fmb_prepared *) (void *) (memory + at);
         memcpy(frames, world->frame, sizeof world->frame);
         for (int instructions = INSTRUCTIONS_BEST; instructions <= INSTRUCTIONS_AVX512;
              instructions++) {
@@ -763,13 +763,13 @@ static void address_does_not_matter(void **state)
         }
         assert_memory_equal(frames, world->frame, sizeof world->frame); /* nothing is written */
     }
-    free(room);
+    free(memory);
     free(world);
 }
 
 /* ---- Tests: what is refused ---- */
 
-/* The frames that cannot be asked are the first ones. */
+/* The refused frames are the first ones. */
 enum { ALL_ZERO, NOT_PREPARED, BAD_FRAMES };
 
 static void spoil_frames(struct world *world)

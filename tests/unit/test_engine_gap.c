@@ -1007,7 +1007,8 @@ static void frames_equal_after_rounding_have_an_order(void **state)
     }
 }
 
-/* Bodies that share a frame, at the same place: the other frames tell the order of the pair. */
+/* Bodies that share a frame, at the same place: the other frames determine the order of the pair.
+ */
 static void a_shared_frame_has_an_order(void **state)
 {
     static const double at[2][6] = {{0, 0, 0, 2, 1, 1.5}, {0.1, 0.2, 0.3, 0.5, 0.25, 0.125}};

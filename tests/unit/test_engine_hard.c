@@ -249,7 +249,7 @@ static void at_the_window_s_end(struct draw *draw, struct question *question)
              away ? 0 * draw_window(draw, question) : draw_window(draw, question));
 }
 
-/* ---- Contact that nobody promised the kind of ---- */
+/* ---- Contact of no given kind ---- */
 
 static void overlap_then_recede(struct draw *draw, struct question *question)
 {
@@ -263,7 +263,7 @@ static void overlap_then_recede(struct draw *draw, struct question *question)
     question->duration = draw_duration(draw);
 }
 
-/* Components from a space of the rank asked for, with integer coefficients. */
+/* Components from a space of the rank given, with integer coefficients. */
 static void flatten(struct draw *draw, struct solid *solid, int rank)
 {
     double basis[FMB_DIM_MAX][FMB_DIM_MAX] = {{0}};

@@ -258,7 +258,7 @@ static void assert_sane(const struct question *question, const struct fmb_answer
 }
 
 /* Numbers that over- or underflow on the way are not to be taken for an answer: bodies ten sizes
- * apart are separated at any size, or it is said that the method cannot tell. */
+ * apart are separated at any size, or the method reports that it cannot decide. */
 static void say_so_of_numbers_out_of_range(void **state)
 {
     (void) state;

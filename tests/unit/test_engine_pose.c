@@ -463,7 +463,7 @@ static void boxes_of_small_numbers_are_plain(void **state)
     assert_true(plain > ends - ends / 30 && ends > 0); /* few are known less well */
 }
 
-/* ---- By every way to ask ---- */
+/* ---- By every function that decides ---- */
 
 enum { PAIRS = 150 };
 

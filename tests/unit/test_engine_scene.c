@@ -309,7 +309,7 @@ static void random_scenes(void **state)
     assert_true(near_pairs > 3 * scenes / 4);
 }
 
-/* In a heap, where all boxes meet, there is no room for all pairs at once; in a row there is. */
+/* In a heap, where all boxes meet, there is no memory for all pairs at once; in a row there is. */
 static void heaps_and_rows(void **state)
 {
     struct draw draw = {41};

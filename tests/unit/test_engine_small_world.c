@@ -1,7 +1,7 @@
 /* The exact method against the oracle in a small world, where nearly everything touches: all
  * numbers are small integers, and every degenerate case there is comes up.
  *
- * In the plane all pairs are asked. In space there are too many (cuboids alone: 19,683 bodies
+ * In the plane all pairs are decided. In space there are too many (of cuboids: 19,683 bodies
  * at 64 places): a seeded sample, whose size is printed; FMB_SAMPLE=10 draws ten times as many,
  * FMB_FAST=1 takes an eighth, and thins out the plane as well. */
 #include <setjmp.h>
@@ -55,7 +55,7 @@ static struct solid with_vectors_exchanged(const struct solid *solid)
 
 /* The set of points of a frame is the same in whatever order its components come (its
  * definition is symmetric in the terms x_i c_i), and the truth does not know the order of the
- * pair: so the oracle is asked once for the questions that the engine gets: both orders of the
+ * pair: so the oracle is called once for the questions that the engine gets: both orders of the
  * vectors of A and of those of B, and with each of them one order of the pair. */
 static void assert_all_orders(const struct question *question, const struct oracle_answer *truth)
 {

@@ -190,7 +190,7 @@ static void nested(struct draw *draw, size_t i, size_t count, struct solid *soli
     }
 }
 
-/* Those that are asked about the middle are all to one side of the rest. */
+/* Queries about the middle lie on one side of all others. */
 static void odd_sequence(struct draw *draw, size_t i, size_t count, struct solid *solid)
 {
     scattered(draw, i, count, solid);
@@ -310,7 +310,7 @@ static void boxes_hold_their_frames_and_are_tight(void **state)
     }
 }
 
-/* The sum alone, with numbers that are hard to add: the sign of its error is what counts. */
+/* The sum by itself, with numbers that are hard to add: the sign of its error is what counts. */
 static void sums_step_down_just_where_they_were_rounded_up(void **state)
 {
     (void) state;
@@ -351,7 +351,7 @@ struct planted {
     unsigned *found, *expected; /* [count] */
 };
 
-/* At any address, with guards behind. */
+/* At any address, with guards after it. */
 static void plant(struct draw *draw, const struct scene *scene, struct planted *out)
 {
     const size_t offset = (size_t) draw_int(draw, 0, 63);
@@ -379,7 +379,7 @@ static void uproot(struct planted *planted)
     free(planted->expected);
 }
 
-/* By asking every frame, in words that have nothing of the tree's. */
+/* By testing every frame, without code of the tree. */
 static size_t find_all(const struct scene *scene, const struct fmb_prepared *frame, unsigned from,
                        unsigned *out)
 {
@@ -419,7 +419,8 @@ static void query_some(struct draw *draw, const struct scene *scene, struct plan
     }
 }
 
-/* Counts in times[i * count + j] how often fmb_tree_pairs() says the pair, in calls of any room. */
+/* Counts in times[i * count + j] how often fmb_tree_pairs() returns the pair, in calls of any
+ * capacity. */
 static void count_pairs(struct draw *draw, const struct fmb_tree *a, const struct fmb_tree *b,
                         unsigned char *times)
 {
@@ -427,10 +428,10 @@ static void count_pairs(struct draw *draw, const struct fmb_tree *a, const struc
     unsigned pairs[MOST + 1][2];
     struct fmb_tree_cursor cursor = {0};
     for (size_t count = 1; count > 0;) {
-        const size_t room = (size_t) draw_int(draw, FMB_TREE_CAPACITY_MIN, MOST);
-        pairs[room][0] = UINT_MAX;
-        assert_int_equal(fmb_tree_pairs(a, b, &cursor, pairs, room, &count), FMB_OK);
-        assert_true(count <= room && pairs[room][0] == UINT_MAX);
+        const size_t capacity = (size_t) draw_int(draw, FMB_TREE_CAPACITY_MIN, MOST);
+        pairs[capacity][0] = UINT_MAX;
+        assert_int_equal(fmb_tree_pairs(a, b, &cursor, pairs, capacity, &count), FMB_OK);
+        assert_true(count <= capacity && pairs[capacity][0] == UINT_MAX);
         for (size_t k = 0; k < count; k++) {
             assert_true(pairs[k][0] < a->frame_count && pairs[k][1] < b->frame_count);
             times[pairs[k][0] * b->frame_count + pairs[k][1]]++;
@@ -496,7 +497,7 @@ static size_t draw_count(struct draw *draw)
     }
 }
 
-/* Asked about their own frames, and about those of another scene. */
+/* Queried with their own frames, and with those of another scene. */
 static void trees_find_what_testing_every_frame_finds(void **state)
 {
     (void) state;
@@ -747,7 +748,7 @@ static void clouds_of_every_size(struct draw *draw, size_t i, size_t count, stru
 }
 
 struct cost {
-    double visits, found; /* of a frame that is asked about */
+    double visits, found; /* of a frame that is queried */
 };
 
 static struct cost cost_of(struct draw *draw, drawing *how, size_t count)
@@ -797,7 +798,7 @@ static void queries_cost_no_more_than_a_few_nodes_a_level(void **state)
         }
 }
 
-/* Where all are found, no node is asked twice; and of boxes around one centre, those that are too
+/* Where all are found, no node is visited twice; and of boxes around one centre, those that are too
  * small are left out together. */
 static void boxes_with_one_centre_cost_what_is_found(void **state)
 {

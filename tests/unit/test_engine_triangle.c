@@ -15,6 +15,7 @@
 #include <limits.h>
 #include <math.h>
 
+#include "allocate.h"
 #include "batch.h"
 #include "draw.h"
 #include "fmb.h"
@@ -652,13 +653,6 @@ static void put_box(const void *context, unsigned index, double box[2][FMB_DIM_M
     memcpy(box, world->box[index], sizeof world->box[index]);
 }
 
-static void *room(size_t count, size_t size)
-{
-    void *memory = calloc(count + 1, size);
-    assert_non_null(memory);
-    return memory;
-}
-
 /* The triangles have one velocity, and so do their boxes. */
 static void open_world(struct draw *draw, point *pool, size_t count, double duration,
                        struct world *out)
@@ -668,11 +662,11 @@ static void open_world(struct draw *draw, point *pool, size_t count, double dura
         draw_motion(draw, pool, &motion);
     *out = (struct world){.count = count, .duration = duration, .moving = motion.moving};
     memcpy(out->velocity, motion.velocity, sizeof out->velocity);
-    out->box = room(count, sizeof *out->box);
-    out->triangle = room(count, sizeof *out->triangle);
-    out->body = room(count, sizeof *out->body);
-    out->placement = room(count, sizeof *out->placement);
-    out->prepared = room(count, sizeof *out->prepared);
+    out->box = allocate(count, sizeof *out->box);
+    out->triangle = allocate(count, sizeof *out->triangle);
+    out->body = allocate(count, sizeof *out->body);
+    out->placement = allocate(count, sizeof *out->placement);
+    out->prepared = allocate(count, sizeof *out->prepared);
     for (size_t i = 0; i < count; i++) {
         struct triangle *triangle = &out->triangle[i];
         draw_triangle(draw, pool, triangle);
@@ -692,7 +686,7 @@ static void open_world(struct draw *draw, point *pool, size_t count, double dura
     }
     const struct fmb_boxes boxes = {3, put_box, out, motion.moving ? out->velocity : NULL};
     for (int t = 0; t < 2; t++)
-        out->memory[t] = room(1, fmb_tree_bytes(count));
+        out->memory[t] = allocate(1, fmb_tree_bytes(count));
     assert_int_equal(fmb_tree_build_boxes(&boxes, count, duration, out->memory[0], &out->boxes),
                      FMB_OK);
     assert_int_equal(fmb_tree_build(out->prepared, count, duration, out->memory[1], &out->frames),
@@ -755,11 +749,11 @@ static bool boxes_meet(const struct world *a, size_t i, const struct world *b, s
 /* How often each pair is reported. */
 static void count_pairs(const struct fmb_tree *a, const struct fmb_tree *b, unsigned char *times)
 {
-    enum { ROOM = FMB_TREE_CAPACITY_MIN + 5 };
-    unsigned pairs[ROOM][2];
+    enum { CAPACITY = FMB_TREE_CAPACITY_MIN + 5 };
+    unsigned pairs[CAPACITY][2];
     struct fmb_tree_cursor cursor = {0};
     for (size_t count = 1; count > 0;) {
-        assert_int_equal(fmb_tree_pairs(a, b, &cursor, pairs, ROOM, &count), FMB_OK);
+        assert_int_equal(fmb_tree_pairs(a, b, &cursor, pairs, CAPACITY, &count), FMB_OK);
         for (size_t k = 0; k < count; k++)
             times[pairs[k][0] * b->frame_count + pairs[k][1]]++;
     }
@@ -768,7 +762,7 @@ static void count_pairs(const struct fmb_tree *a, const struct fmb_tree *b, unsi
 /* Those whose exact boxes meet, each once; no others where the boxes stand still. */
 static void assert_pairs_of(const struct world *a, const struct world *b)
 {
-    unsigned char *times = room(a->count * b->count, 1);
+    unsigned char *times = allocate(a->count * b->count, 1);
     count_pairs(&a->boxes, &b->boxes, times);
     for (size_t i = 0; i < a->count; i++)
         for (size_t j = 0; j < b->count; j++) {
@@ -786,7 +780,7 @@ static void assert_none_lost(const struct world *a, const struct world *b)
     struct triangles_answer truth;
     triangles_init(&truth);
     for (int kinds = 0; kinds < 4; kinds++) {
-        unsigned char *times = room(a->count * b->count, 1);
+        unsigned char *times = allocate(a->count * b->count, 1);
         count_pairs(kinds & 1 ? &a->frames : &a->boxes, kinds & 2 ? &b->frames : &b->boxes, times);
         for (size_t i = 0; i < a->count; i++)
             for (size_t j = 0; j < b->count; j++) {
@@ -844,7 +838,7 @@ static void boxes_in_the_plane(void **state)
     struct fmb_tree_cursor cursor = {0};
     unsigned pairs[FMB_TREE_CAPACITY_MIN][2];
     size_t count;
-    void *memory = room(1, fmb_tree_bytes(4));
+    void *memory = allocate(1, fmb_tree_bytes(4));
     assert_int_equal(fmb_tree_build_boxes(&boxes, 4, 1, memory, &tree), FMB_OK);
     assert_int_equal(fmb_tree_pairs(&tree, &tree, &cursor, pairs, FMB_TREE_CAPACITY_MIN, &count),
                      FMB_OK);

@@ -438,7 +438,7 @@ static void durations(void **state)
     }
 }
 
-/* A plane pair's z is nobody's business, in the check and in the answer. */
+/* The z of a plane pair is ignored by the check and by the answer. */
 static void axes_beyond_dim_are_not_read(void **state)
 {
     (void) state;

@@ -601,7 +601,7 @@ static void bad_scenes_are_refused(void **state)
         expect_error(bad_scenes[i].text, bad_scenes[i].error);
 }
 
-/* Places are cJSON's: of a key that does not begin with a quote, the byte behind. */
+/* Places are cJSON's: of a key that does not begin with a quote, the next byte. */
 static const struct {
     const char *text, *error;
 } bad_texts[] = {

@@ -182,7 +182,7 @@ static struct cell draw_cell(struct draw *draw, int kind, bool may_move)
 
 /* ---- Pools of pairs of one kind and duration ---- */
 
-enum { POOL = 40, ROOM = POOL + KERNEL_LANES };
+enum { POOL = 40, CAPACITY = POOL + KERNEL_LANES };
 
 struct pool {
     int kind, count;
@@ -281,11 +281,11 @@ static void draw_box_pool(struct draw *draw, pair_function *pair, int kind, stru
 
 enum { GUARD = 0xa5 };
 
-/* What a function left, and room beyond what it may write. */
+/* What a function left, and memory beyond what it may write. */
 struct left {
-    unsigned char outcome[ROOM + KERNEL_LANES];
-    double contact[ROOM + KERNEL_LANES][2];
-    double box[ROOM + KERNEL_LANES][2][FMB_DIM_MAX];
+    unsigned char outcome[CAPACITY + KERNEL_LANES];
+    double contact[CAPACITY + KERNEL_LANES][2];
+    double box[CAPACITY + KERNEL_LANES][2][FMB_DIM_MAX];
 };
 
 static bool is_untouched(const void *from, size_t size)
@@ -302,7 +302,7 @@ static bool is_untouched(const void *from, size_t size)
 static void run_part(kernel_function *function, const struct pool *pool, int first, int count,
                      struct left *out)
 {
-    const struct fmb_prepared *pairs[ROOM][2];
+    const struct fmb_prepared *pairs[CAPACITY][2];
     const struct kernel_call run = {pairs,        (size_t) count, pool->duration,  out->outcome,
                                     out->contact, out->box,       pool->in_contact};
     for (int i = 0; i < count + KERNEL_LANES - 1; i++) {

@@ -31,7 +31,7 @@ static void it_is_siphash(void **state)
         assert_int_equal(keyed_hash_of(&hash, bytes, cases[i].size), (unsigned) cases[i].value);
 }
 
-/* Keys that differ in the upper bits of one word alone, as the coordinates of a grid do. A secret
+/* Keys that differ only in the upper bits of one word, as the coordinates of a grid do. A secret
  * with which a bucket has 40 of 4096 keys, where 4 are to be expected, is one in 10^20. */
 static void upper_bits_reach_the_buckets(void **state)
 {

@@ -183,7 +183,7 @@ static void compare_pair(struct draw *draw, const struct question *question,
 static int draw_unit(struct draw *draw, int bits)
 {
     switch (draw_int(draw, 0, 3)) {
-    case 0: return -1074 + 60; /* room for the window */
+    case 0: return -1074 + 60; /* space for the window */
     case 1: return 1000 - bits;
     case 2: return -bits / 2;
     default: return draw_int(draw, -900, 900 - bits);

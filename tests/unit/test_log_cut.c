@@ -163,7 +163,7 @@ static void assert_same_outcomes(const struct query_outcomes *whole,
 
 /* ---- What is in a cut ---- */
 
-/* Reads the logs, one behind the other. */
+/* Reads the logs, one after the other. */
 struct reading {
     struct input input;
     struct log_event event;

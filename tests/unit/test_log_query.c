@@ -1,4 +1,4 @@
-/* A query of a log, taken out as a scene of JSON and decided alone, has the answers that were
+/* A query of a log, taken out as a scene of JSON and decided by itself, has the answers that were
  * recorded, to the bit. */
 #include "geometry_write.h"
 #include "log_query.h"
@@ -225,7 +225,7 @@ static int64_t query_by_result(size_t event, const struct query_header *ids)
     assert_int_equal(found.ids.sequence_number, ids->sequence_number);
     const int64_t compared = decide_found();
 
-    /* It is the same query, however one asks for it. */
+    /* The same query, however it is selected. */
     const int64_t offset = found.offset, number = found.number;
     const struct log_query_options ways[] = {
         {.by = LOG_QUERY_NUMBER, .number = number},

@@ -65,7 +65,8 @@ static void put_file(const char *name, const char *text)
     fclose(file);
 }
 
-/* ---- Events: each is told by its number ------------------------------------------------------ */
+/* ---- Events: each is identified by its number
+ * ------------------------------------------------------ */
 
 enum { DATA_MAX = 100000 };
 
@@ -382,7 +383,7 @@ static void test_a_deleted_file_is_noticed(void **state)
     assert_int_equal(errno, ESTALE);
     assert_true(append_event(to_writer, writer, 2));
     assert_int_equal(log_finish(writer), ESTALE);
-    /* Also at the end alone, and where another file has taken its place. */
+    /* Also only at the end, and where another file has taken its place. */
     writer = begin_log("deleted");
     put_file("other", "other");
     char other[256];
@@ -467,7 +468,7 @@ static const char *part_name(const char *name, long number)
     return out;
 }
 
-/* Files are as full as they can be, and have no more than one event that is too large alone. */
+/* Files are as full as they can be, and have no more than one event that is too large by itself. */
 static void test_several_files_divide_no_event(void **state)
 {
     (void) state;

@@ -1,5 +1,5 @@
-/* Which faces of meshes meet: against asking every pair, by an oracle that knows the vertices
- * alone; what faces of one mesh share; where steps put a mesh. */
+/* Which faces of meshes intersect: against a test of every pair by an oracle that knows the
+ * vertices only; what faces of one mesh share; where steps put a mesh. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,30 +13,25 @@
 #include <float.h>
 #include <math.h>
 
+#include "allocate.h"
 #include "bumpy.h"
 #include "draw.h"
 #include "mesh_face.h"
 #include "mesh_intersect.h"
 #include "mesh_adjacency.h"
 #include "mesh_transform.h"
+#include "progress_seen.h"
 #include "triangles.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* ---- Meshes ---- */
 
-static void *room(size_t count, size_t size)
-{
-    void *memory = calloc(count + 1, size);
-    assert_non_null(memory);
-    return memory;
-}
-
 static void make_mesh(size_t vertices, size_t faces, struct mesh *out)
 {
     *out = (struct mesh){.vertex_count = vertices, .face_count = faces};
-    out->vertex = room(vertices, sizeof *out->vertex);
-    out->face = room(faces, sizeof *out->face);
+    out->vertex = allocate(vertices, sizeof *out->vertex);
+    out->face = allocate(faces, sizeof *out->face);
 }
 
 /* How far apart the points of a grid are, and where it begins. */
@@ -157,7 +152,8 @@ static void assert_counts(const struct mesh_query *question,
 {
     const bool self = question->a == question->b;
     size_t of[4] = {0}, faces[2] = {0};
-    unsigned char *in[2] = {room(question->a->face_count, 1), room(question->b->face_count, 1)};
+    unsigned char *in[2] = {allocate(question->a->face_count, 1),
+                            allocate(question->b->face_count, 1)};
     for (size_t k = 0; k < meeting->count; k++) {
         of[meeting->pair[k].verdict]++;
         in[0][meeting->pair[k].a] = 1;
@@ -716,35 +712,22 @@ static void normals_beyond_the_doubles_are_reported(void **state)
     assert_int_equal(intersect_of_size(0x1p-1074, MESH_FACES), FMB_OK);
 }
 
-/* ---- How far it is ---- */
-
-struct heard {
-    uint64_t done, total;
-    int times;
-};
-
-static void hear(void *context, uint64_t done, uint64_t total)
-{
-    struct heard *heard = context;
-    assert_true(heard->times == 0 || (done >= heard->done && total == heard->total));
-    assert_true(done <= total);
-    *heard = (struct heard){done, total, heard->times + 1};
-}
+/* ---- Progress ---- */
 
 static void progress_goes_on_to_its_end(void **state)
 {
     (void) state;
     struct draw draw;
     struct mesh mesh[2];
-    struct heard heard = {0};
+    struct progress_seen seen = {0};
     struct mesh_intersection meeting;
     draw_begin(&draw, "progress_goes_on_to_its_end");
     for (int m = 0; m < 2; m++)
         draw_soup(&draw, &grids[0], 3, 100, 200, &mesh[m]);
     const struct mesh_query question = {
-        .a = &mesh[0], .b = &mesh[1], .duration = 1, .report = hear, .context = &heard};
+        .a = &mesh[0], .b = &mesh[1], .duration = 1, .report = progress_seen, .context = &seen};
     assert_int_equal(mesh_intersect(&question, &meeting), FMB_OK);
-    assert_true(heard.times > 10 && heard.done > 0);
+    assert_true(seen.times > 10 && seen.done > 0);
     mesh_intersection_free(&meeting);
     mesh_free(&mesh[0]);
     mesh_free(&mesh[1]);
@@ -755,7 +738,7 @@ static void empty_meshes_meet_nothing(void **state)
     (void) state;
     struct mesh mesh[3] = {{0}};
     bumpy_make(8, 1, &mesh[1]);
-    make_mesh(5, 0, &mesh[2]); /* vertices alone */
+    make_mesh(5, 0, &mesh[2]); /* only vertices */
     for (int k = 0; k < 9; k++) {
         const struct mesh_query question = {.a = &mesh[k / 3], .b = &mesh[k % 3], .duration = 1};
         struct mesh_intersection meeting;

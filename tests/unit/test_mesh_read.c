@@ -17,6 +17,8 @@
 
 #include <cmocka.h>
 
+#include "progress_seen.h"
+
 /* ---- Bytes that a file has ------------------------------------------------------------------- */
 
 enum { FILE_MAX = 1 << 16 };
@@ -54,7 +56,7 @@ static void add_float(struct file *file, float value, bool big_endian)
     add_bits(file, bits, sizeof bits, big_endian);
 }
 
-/* In a block that ends behind the 0 behind the bytes. */
+/* In a block that ends after the 0 that follows the bytes. */
 static bool parse(const void *bytes, size_t size, const char *name, struct mesh *out, char *error)
 {
     unsigned char *copy = malloc(size + 1);
@@ -204,7 +206,7 @@ static void add_number(struct file *file, int type, double value, bool big_endia
 }
 
 /* One triangle with what can be written differently: types of coordinates, of counts and indices;
- * a list before, and behind, and a value behind. */
+ * a list before and after, and a value after. */
 static void make_binary(struct file *file, int coordinate, int count, int index, int spelling,
                         bool big_endian, const double vertex[3][3])
 {
@@ -434,7 +436,7 @@ static void test_ply_bytes_that_are_refused(void **state)
     expect_refused_bytes(lists, BYTES("\0\1\0\0\0\0\0"), "byte 91 (element 1): the file ends here");
 }
 
-/* All that white space may do behind the end. */
+/* White space after the end. */
 static void test_ply_ends(void **state)
 {
     static const char one[] = VERTICES("binary_little_endian", "1") "end_header\n"
@@ -445,7 +447,7 @@ static void test_ply_ends(void **state)
     expect_mesh(read_text(VERTICES("ascii", "1") "end_header\n0 0 0\n \r\n\t"), 1, origin, 0, NULL);
 }
 
-/* Counts for which no memory is asked, as there are no bytes for them. */
+/* Counts for which no memory is allocated, as there are no bytes for them. */
 static void test_ply_promises(void **state)
 {
     static const char *const formats_of_ply[] = {"ascii", "binary_little_endian",
@@ -694,25 +696,11 @@ static void write_file(const char *path, const void *bytes, size_t size)
     assert_true(file && fwrite(bytes, 1, size, file) == size && fclose(file) == 0);
 }
 
-struct heard {
-    int times;
-    uint64_t done, total;
-};
-
-static void hear(void *context, uint64_t done, uint64_t total)
-{
-    struct heard *heard = context;
-    assert_true(done >= heard->done && done <= total);
-    heard->times++;
-    heard->done = done;
-    heard->total = total;
-}
-
 static void test_files(void **state)
 {
     char folder[] = "/tmp/fmb-test-XXXXXX", path[64], error[MESH_ERROR_MAX];
-    struct heard heard = {0};
-    const struct mesh_progress watch = {.report = hear, .context = &heard};
+    struct progress_seen seen = {0};
+    const struct mesh_progress watch = {.report = progress_seen, .context = &seen};
     struct mesh mesh;
     (void) state;
     assert_non_null(mkdtemp(folder));
@@ -732,7 +720,7 @@ static void test_files(void **state)
     write_file(path, obj, sizeof obj - 1);
     assert_true(mesh_read(path, &watch, &mesh, error));
     expect_mesh(mesh, 4, square, 2, halves);
-    assert_true(heard.times > 0 && heard.total == sizeof obj - 1 && heard.done == heard.total);
+    assert_true(seen.times > 0 && seen.total == sizeof obj - 1 && seen.done == seen.total);
     unlink(path);
     rmdir(folder);
 }

@@ -1,4 +1,4 @@
-/* The oracle on cases worked out by hand, so that it can be believed elsewhere. It is asked
+/* The oracle on cases worked out by hand, so that it can be trusted elsewhere. It is called
  * about each case in both orders. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -181,7 +181,7 @@ static struct replayed of_scene(const struct scene_query *query, const struct sc
         .log = "a.log", .outcome = outcome, .scene = query, .scene_then = then, .scene_now = now};
 }
 
-/* The data of a page of this query alone; to be deleted. */
+/* The data of a page of only this query; to be deleted. */
 static cJSON *data_of_one(const struct replayed *replayed)
 {
     struct page *page = page_open("one", BEGIN);

@@ -14,7 +14,7 @@
 
 enum { GUARD = 0xa5, CLIENTS = 100 };
 
-/* Datagrams are cut from here, so that each byte of one tells where it is from. */
+/* Datagrams are cut from here, so that each byte of one shows its origin. */
 static unsigned char noise[2 * QUEUE_DATAGRAM_MAX];
 static unsigned char got_bytes[QUEUE_DATAGRAM_MAX + 1];
 

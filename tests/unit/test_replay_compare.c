@@ -170,7 +170,7 @@ static void test_every_kind(void **state)
     expect_same(0, &query, &then, &now);
     char other[FMB_CERTIFICATE_MAX];
     strcpy(other, now.certificate);
-    other[strlen(other) - 1] ^= 1; /* at its end alone */
+    other[strlen(other) - 1] ^= 1; /* only at its end */
     then.certificate = other;
     expect_kind(0, &query, &then, &now, DIFFERENT_CERTIFICATE);
     then.certificate = "none such";
@@ -780,7 +780,7 @@ static void expect_whole(void)
     assert_int_equal(reported[0].kind, DIFFERENT_STATUS);
 }
 
-/* As many pairs as a message has room for, all of them in contact, and nothing else said. */
+/* As many pairs as a message holds, all of them in contact, and nothing else. */
 static void test_the_most_pairs(void **state)
 {
     (void) state;

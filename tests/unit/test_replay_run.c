@@ -520,7 +520,7 @@ static void test_the_same_again_before_it_can_be_answered(void **state)
 
 /* ---- Messages that cannot be read, or say little ---- */
 
-/* A query whose header can be read and nothing else: its result is not one of nobody. */
+/* A query of which only the header can be read: its result is not unmatched. */
 static void test_a_query_that_cannot_be_read(void **state)
 {
     unsigned char bytes[QUERY_BYTES_MAX];

@@ -179,8 +179,7 @@ static void test_the_one_that_was_idle_longest_is_forgotten(void **state)
     assert_int_equal(scheduler_client(turns, 5000), SCHEDULER_CLIENTS); /* all are active */
     scheduler_deactivate(turns, 7);
     scheduler_deactivate(turns, 3);
-    assert_int_equal(scheduler_client(turns, 5000),
-                     SCHEDULER_CLIENTS); /* those two started behind */
+    assert_int_equal(scheduler_client(turns, 5000), SCHEDULER_CLIENTS); /* those two started late */
     serve(9, 1);
     assert_int_equal(active_client(5000), 7);
     assert_int_equal(scheduler_client(turns, 5000), 7);

@@ -223,7 +223,7 @@ static void test_pairs_before_the_first_are_not_counted(void **state)
     assert_int_equal(pairs_counted(scene), 5);
 }
 
-/* The bytes on stderr when a heartbeat of this server is heard. */
+/* The bytes on stderr when a heartbeat of this server is received. */
 static long said_of_heartbeat(int64_t server_id)
 {
     unsigned char bytes[WIRE_STATUS_BYTES_MAX];
@@ -249,7 +249,7 @@ static void sleep_ms(long ms)
     nanosleep(&pause, NULL);
 }
 
-/* Another service is reported once; the heartbeats that a server hears of its own are not. */
+/* Another service is reported once; its own heartbeats are not. */
 static void test_another_service_is_reported(void **state)
 {
     (void) state;

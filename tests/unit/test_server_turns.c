@@ -155,7 +155,7 @@ static void test_a_new_id_gains_nothing(void **state)
     const int before = service.count;
     service_query_pair(OTHER, 1);
     service_settle();
-    /* It begins 1 ms behind, and a turn lasts 0.5 ms more. */
+    /* It begins 1 ms late, and a turn lasts 0.5 ms more. */
     assert_in_range(place_of(OTHER, 1) - before, 140, 160);
     expect_all_ok(501);
 }
@@ -196,8 +196,8 @@ static void test_a_client_in_closed_loop_keeps_its_share(void **state)
     service.cost_ns[COSTLY] = 5 * MS;
     for (int i = 0; i < 150; i++)
         service_query_pair(COSTLY, i);
-    /* Alone it would get 1 s / 30 us = 33,333. Beside the other it is charged 20 us for 30 us, the
-     * other 9.95 ms for 5 ms: so it has 749 ms. */
+    /* By itself it would get 1 s / 30 us = 33,333. Beside the other it is charged 20 us for 30 us,
+     * the other 9.95 ms for 5 ms: so it has 749 ms. */
     assert_in_range(answers_in_closed_loop(20 * US, 1000 * MS), 24000, 26000);
     assert_in_range(answers_to(COSTLY), 48, 53);
 }

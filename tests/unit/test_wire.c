@@ -566,12 +566,12 @@ static void test_pair_result_apart_round_trip(void **state)
 
 /* A result with this certificate, as no service need have written it. */
 static size_t write_certificate(char *certificate, int32_t status, int32_t verdict,
-                                unsigned char *out, size_t room)
+                                unsigned char *out, size_t capacity)
 {
     char detail[] = "";
     fmb_msgs_pair_result_t message = {
         .status = status, .detail = detail, .verdict = verdict, .certificate = certificate};
-    int size = fmb_msgs_pair_result_t_encode(out, 0, (int) room, &message);
+    int size = fmb_msgs_pair_result_t_encode(out, 0, (int) capacity, &message);
     assert_true(size > 0);
     return (size_t) size;
 }
@@ -644,7 +644,8 @@ static bool is_accepted(const struct pair_result *result)
     return !wire_read_pair_result(bytes, (uint32_t) wire_write_pair_result(result, bytes), &read);
 }
 
-/* Bodies that are separated have witness points, and they alone; those that touch have a gap of 0.
+/* Bodies that are separated have witness points, and no others do; those that touch have a gap of
+ * 0.
  */
 static void test_gaps_are_consistent(void **state)
 {
@@ -694,7 +695,7 @@ static void test_box_and_gap_have_one_dimension(void **state)
     }
 }
 
-/* Bodies that meet have a contact interval, and they alone may have a box; only pairs that were
+/* Bodies that meet have a contact interval, and only they may have a box; only pairs that were
  * decided have a verdict. */
 static void test_answers_are_consistent(void **state)
 {

@@ -150,7 +150,7 @@ static void test_lists_of_every_length(void **state)
     }
 }
 
-/* To the last bytes: pairs alone, and placements alone. */
+/* To the last bytes: only pairs, and only placements. */
 static void test_largest_queries(void **state)
 {
     (void) state;
@@ -404,7 +404,7 @@ static void test_refusal_round_trip(void **state)
 
 /* ---- Results that no service gives ---- */
 
-/* Three contacts with times and boxes in 3D, and room for what a test makes of them. */
+/* Three contacts with times and boxes in 3D, and space for the changes of a test. */
 struct lie {
     fmb_msgs_scene_result_t message;
     char detail[8];
