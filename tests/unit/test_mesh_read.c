@@ -1,4 +1,4 @@
-/* Meshes in every format, as they are and as they should not be. */
+/* Meshes in every format, good ones and refused ones, with the place. */
 #include "mesh.h"
 
 #include "bumpy.h"
@@ -84,24 +84,27 @@ static struct mesh read_text(const char *text)
     return read_good(text, strlen(text), "");
 }
 
-static void expect_error(const void *bytes, size_t size, const char *name, const char *expected)
+/* place: with which the error begins, before a colon. */
+static void expect_error(const void *bytes, size_t size, const char *name, const char *place)
 {
     struct mesh mesh;
     char error[MESH_ERROR_MAX];
+    const size_t length = strlen(place);
     if (parse(bytes, size, name, &mesh, error))
-        fail_msg("it is read, not refused: %s", expected);
-    assert_string_equal(error, expected);
+        fail_msg("it is read, not refused: %s", place);
+    if (strncmp(error, place, length) != 0 || error[length] != ':')
+        fail_msg("%s, not %s", error, place);
     assert_true(!mesh.vertex && !mesh.face && mesh.vertex_count == 0 && mesh.face_count == 0);
 }
 
 /* head, and rest: most of the texts have the same beginning. */
-static void expect_refused(const char *head, const char *rest, const char *expected)
+static void expect_refused(const char *head, const char *rest, const char *place)
 {
     struct file *file = calloc(1, sizeof *file);
     assert_non_null(file);
     add_text(file, head);
     add_text(file, rest);
-    expect_error(file->bytes, file->size, "", expected);
+    expect_error(file->bytes, file->size, "", place);
     free(file);
 }
 
@@ -153,7 +156,7 @@ static const char ply_ascii[] =
     "3 3 2 1\n";
 
 /* Faces before vertices, coordinates in another order and between others, elements and lists that
- * nobody asks for. */
+ * are not read. */
 static const char ply_order[] =
     "ply\r\n"
     "obj_info any\r\n"
@@ -260,61 +263,59 @@ static void test_ply_binary(void **state)
 static void test_ply_headers_that_are_refused(void **state)
 {
     static const char *const cases[][2] = {
-        {"ply \nfoo\n", "line 2: 'foo' is no keyword of a PLY header"},
-        {"ply\n\x01\xff\n", "line 2: '\?\?' is no keyword of a PLY header"},
-        {"ply 1\nformat ascii 1.0\nend_header\n", "line 1: a PLY file begins with a line 'ply'"},
-        {"ply\rformat ascii 1.0\rend_header\r",
-         "line 1: lines end in carriage returns alone: convert them first"},
-        {"ply\n", "line 2: the file ends before the header does: no end_header"},
-        {"ply\nformat ascii 1.0\nend_header",
-         "line 3: the file ends before the header does: no end_header"},
-        {"ply\nend_header\n", "line 2: the header names no format"},
-        {"ply\nformat ascii 1.0\nformat ascii 1.0\nend_header\n", "line 3: a second format"},
-        {"ply\nformat ascii 1.1\nend_header\n",
-         "line 2: the format is not ascii 1.0, binary_little_endian 1.0 or binary_big_endian 1.0"},
-        {"ply\nformat text 1.0\nend_header\n",
-         "line 2: the format is not ascii 1.0, binary_little_endian 1.0 or binary_big_endian 1.0"},
-        {"ply\nformat ascii 1.0\nelement vertex\n", "line 3: an element has a name and a count"},
-        {"ply\nformat ascii 1.0\nelement vertex -1\n",
-         "line 3: '-1' is no count from 0 to 4294967294"},
-        {"ply\nformat ascii 1.0\nelement face 4294967295\n",
-         "line 3: '4294967295' is no count from 0 to 4294967294"},
-        {"ply\nformat ascii 1.0\nelement face 18446744073709551617\n",
-         "line 3: '18446744073709551617' is no count from 0 to 4294967294"},
-        {"ply\nformat ascii 1.0\nelement face 1.0\n",
-         "line 3: '1.0' is no count from 0 to 4294967294"},
-        {"ply\nformat ascii 1.0\nelement vertex 0\nelement vertex 0\n",
-         "line 4: a second element vertex"},
-        {"ply\nformat ascii 1.0\nelement tristrips 1\n",
-         "line 3: strips of triangles are not read: write them as faces first"},
-        {"ply\nformat ascii 1.0\nproperty int x\n", "line 3: a property before any element"},
-        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty x\n",
-         "line 4: a property is 'TYPE NAME' or 'list TYPE TYPE NAME'"},
-        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty list int x\n",
-         "line 4: a property is 'TYPE NAME' or 'list TYPE TYPE NAME'"},
-        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty int64 x\n",
-         "line 4: 'int64' is no type of PLY"},
-        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty list int list x\n",
-         "line 4: 'list' is no type of PLY"},
-        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty int x\nproperty int x\n",
-         "line 5: vertex has this property already"},
+        {"ply \nfoo\n", "line 2"},
+        {"ply 1\nformat ascii 1.0\nend_header\n", "line 1"},
+        {"ply\rformat ascii 1.0\rend_header\r", "line 1"},
+        {"ply\n", "line 2"},
+        {"ply\nformat ascii 1.0\nend_header", "line 3"},
+        {"ply\nend_header\n", "line 2"},
+        {"ply\nformat ascii 1.0\nformat ascii 1.0\nend_header\n", "line 3"},
+        {"ply\nformat ascii 1.1\nend_header\n", "line 2"},
+        {"ply\nformat text 1.0\nend_header\n", "line 2"},
+        {"ply\nformat ascii 1.0\nelement vertex\n", "line 3"},
+        {"ply\nformat ascii 1.0\nelement vertex -1\n", "line 3"},
+        {"ply\nformat ascii 1.0\nelement face 4294967295\n", "line 3"},
+        {"ply\nformat ascii 1.0\nelement face 18446744073709551617\n", "line 3"},
+        {"ply\nformat ascii 1.0\nelement face 1.0\n", "line 3"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nelement vertex 0\n", "line 4"},
+        {"ply\nformat ascii 1.0\nelement tristrips 1\n", "line 3"},
+        {"ply\nformat ascii 1.0\nproperty int x\n", "line 3"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty x\n", "line 4"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty list int x\n", "line 4"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty int64 x\n", "line 4"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty list int list x\n", "line 4"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty int x\nproperty int x\n", "line 5"},
         {"ply\nformat ascii 1.0\nelement face 0\nproperty list int int vertex_index\n"
          "property list int int vertex_indices\n",
-         "line 5: face has this property already"},
-        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty list int int y\n",
-         "line 4: 'y' is a list"},
-        {"ply\nformat ascii 1.0\nelement face 0\nproperty int vertex_indices\n",
-         "line 4: 'vertex_indices' is no list"},
+         "line 5"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty list int int y\n", "line 4"},
+        {"ply\nformat ascii 1.0\nelement face 0\nproperty int vertex_indices\n", "line 4"},
         {"ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nproperty int z\nend_header\n0 0",
-         "line 3: vertices without y"},
+         "line 3"},
         {"ply\nformat ascii 1.0\nelement face 1\nproperty list int int i\nend_header\n0 0",
-         "line 3: faces without vertex_indices or vertex_index"},
+         "line 3"},
     };
     (void) state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         expect_refused(cases[i][0], "", cases[i][1]);
-    expect_error("plY", 3, "a.PLY", "line 1: the file ends before the header does: no end_header");
-    expect_error("plyy\n", 5, "a.PLY", "line 1: a PLY file begins with a line 'ply'");
+    expect_error("plY", 3, "a.PLY", "line 1");
+    expect_error("plyy\n", 5, "a.PLY", "line 1");
+}
+
+/* A word of the file in an error is printable and short. */
+static void test_words_in_errors(void **state)
+{
+    static const char *const cases[][2] = {
+        {"ply\n\x01\xff\n", "line 2: '\?\?' is no keyword of a PLY header"},
+        {"ply\nabcdefghijklmnopqrstuvwxyz0123456789\n",
+         "line 2: 'abcdefghijklmnopqrstuvwxyz01...' is no keyword of a PLY header"}};
+    (void) state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct mesh mesh;
+        char error[MESH_ERROR_MAX];
+        assert_false(parse(cases[i][0], strlen(cases[i][0]), "", &mesh, error));
+        assert_string_equal(error, cases[i][1]);
+    }
 }
 
 static void test_ply_headers_that_are_too_long(void **state)
@@ -324,12 +325,12 @@ static void test_ply_headers_that_are_too_long(void **state)
     add_text(file, "ply\n");
     for (int i = 0; i < 65; i++)
         add_text(file, "element e 0\n");
-    expect_error(file->bytes, file->size, "", "line 66: more than 64 elements");
+    expect_error(file->bytes, file->size, "", "line 66");
     file->size = 0;
     add_text(file, "ply\nelement e 0\n");
     for (int i = 0; i < 257; i++)
         add_text(file, "property int p\n");
-    expect_error(file->bytes, file->size, "", "line 259: more than 256 properties");
+    expect_error(file->bytes, file->size, "", "line 259");
     free(file);
 }
 
@@ -341,57 +342,47 @@ static void test_ply_headers_that_are_too_long(void **state)
 static void test_ply_bodies_that_are_refused(void **state)
 {
     static const char *const cases[][2] = {
-        {"", "line 3: the file is cut off, or this count is wrong: there is room for 0 at most"},
-        {"0 0 0\n0 0 0\n0 0 0\n3 0 1\n",
-         "line 7: the file is cut off, or this count is wrong: there is room for 0 at most"},
-        {"0 0 0\n0 0 0\n0 0\n3 0 1 2\n3 1",
-         "line 12: the line ends before all numbers of vertex 2"},
-        {"0 0 0\n0 0 0\n0 0 0\n       \n\t\t", "line 14: the file ends before face 0 of 1"},
-        {"0 0 0\n0 0 0\n0 0 0\n3 0 1       ", "line 13: the file ends within face 0"},
-        {"0 0 0\n0 0 0\n0 0 0 7\n3 0 1 2\n", "line 12: '7' behind the last number of vertex 2"},
-        {"0 0 0\n0 0 0\n0 0 0\n3 0 1 2 7\n", "line 13: '7' behind the last number of face 0"},
-        {"0 0 0\n0 0 0\n0 0 0\n3 0 1 2\n3 0 1 2\n",
-         "line 14: '3' behind the last element: a count is wrong, or something was added"},
-        {"0 0 0\n0 zero 0\n0 0 0\n3 0 1 2\n", "line 11: 'zero' is no number"},
-        {"0 0 0\n0 1..5 0\n0 0 0\n3 0 1 2\n", "line 11: '1..5' is no number"},
-        {"0 0 0\n0 0x1 0\n0 0 0\n3 0 1 2\n", "line 11: '0x1' is no number"},
-        {"0 0 0\n0 0,5 0\n0 0 0\n3 0 1 2\n", "line 11: '0,5' is no number"},
-        {"0 0 0\n0 abcdefghijklmnopqrstuvwxyz0123456789 0\n0 0 0\n3 0 1 2\n",
-         "line 11: 'abcdefghijklmnopqrstuvwxyz01...' is no number"},
-        {"0 0 0\n0 1e999 0\n0 0 0\n3 0 1 2\n", "line 11: y is not finite"},
-        {"0 0 0\n0 0 nan\n0 0 0\n3 0 1 2\n", "line 11: z is not finite"},
-        {"-inf 0 0\n0 0 0\n0 0 0\n3 0 1 2\n", "line 10: x is not finite"},
-        {"0 0 0\n0 0 0\n0 0 0\n4 0 1 2 0\n", "line 13: a face of 4 vertices: triangulate it first"},
-        {"0 0 0\n0 0 0\n0 0 0\n2 0 1      \n", "line 13: a face of 2 vertices: remove it first"},
-        {"0 0 0\n0 0 0\n0 0 0\n-3 0 1 2\n", "line 13: a list of -3 values"},
-        {"0 0 0\n0 0 0\n0 0 0\n3.5 0 1 2\n", "line 13: a list of 3.5 values"},
-        {"0 0 0\n0 0 0\n0 0 0\nnan 0 1 2\n", "line 13: a list of nan values"},
-        {"0 0 0\n0 0 0\n0 0 0\n1e10 0 1 2\n", "line 13: a list of 1e+10 values"},
-        {"0 0 0\n0 0 0\n0 0 0\n3 0 1 3\n",
-         "line 13: index 3 is no vertex: there are 3, counted from 0"},
-        {"0 0 0\n0 0 0\n0 0 0\n3 0 -1 2\n",
-         "line 13: index -1 is no vertex: there are 3, counted from 0"},
-        {"0 0 0\n0 0 0\n0 0 0\n3 0.5 1 2\n",
-         "line 13: index 0.5 is no vertex: there are 3, counted from 0"},
-        {"0 0 0\n0 0 0\n0 0 0\n3 0 1 1e999\n",
-         "line 13: index inf is no vertex: there are 3, counted from 0"},
+        {"", "line 3"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0 1\n", "line 7"},
+        {"0 0 0\n0 0 0\n0 0\n3 0 1 2\n3 1", "line 12"},
+        {"0 0 0\n0 0 0\n0 0 0\n       \n\t\t", "line 14"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0 1       ", "line 13"},
+        {"0 0 0\n0 0 0\n0 0 0 7\n3 0 1 2\n", "line 12"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0 1 2 7\n", "line 13"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0 1 2\n3 0 1 2\n", "line 14"},
+        {"0 0 0\n0 zero 0\n0 0 0\n3 0 1 2\n", "line 11"},
+        {"0 0 0\n0 1..5 0\n0 0 0\n3 0 1 2\n", "line 11"},
+        {"0 0 0\n0 0x1 0\n0 0 0\n3 0 1 2\n", "line 11"},
+        {"0 0 0\n0 0,5 0\n0 0 0\n3 0 1 2\n", "line 11"},
+        {"0 0 0\n0 1e999 0\n0 0 0\n3 0 1 2\n", "line 11"},
+        {"0 0 0\n0 0 nan\n0 0 0\n3 0 1 2\n", "line 11"},
+        {"-inf 0 0\n0 0 0\n0 0 0\n3 0 1 2\n", "line 10"},
+        {"0 0 0\n0 0 0\n0 0 0\n4 0 1 2 0\n", "line 13"},
+        {"0 0 0\n0 0 0\n0 0 0\n2 0 1      \n", "line 13"},
+        {"0 0 0\n0 0 0\n0 0 0\n-3 0 1 2\n", "line 13"},
+        {"0 0 0\n0 0 0\n0 0 0\n3.5 0 1 2\n", "line 13"},
+        {"0 0 0\n0 0 0\n0 0 0\nnan 0 1 2\n", "line 13"},
+        {"0 0 0\n0 0 0\n0 0 0\n1e10 0 1 2\n", "line 13"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0 1 3\n", "line 13"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0 -1 2\n", "line 13"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0.5 1 2\n", "line 13"},
+        {"0 0 0\n0 0 0\n0 0 0\n3 0 1 1e999\n", "line 13"},
     };
     (void) state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         expect_refused(VERTICES("ascii", "3") FACES("1"), cases[i][0], cases[i][1]);
-    expect_refused(VERTICES("ascii", "0") FACES("1"), "3 0 0 0\n",
-                   "line 10: index 0 is no vertex: there are 0, counted from 0");
+    expect_refused(VERTICES("ascii", "0") FACES("1"), "3 0 0 0\n", "line 10");
     expect_refused("ply\nformat ascii 1.0\nelement a 1\nproperty float a\nend_header\n", "1,5",
-                   "line 6: '1,5' is no number");
+                   "line 6");
 }
 
 static void expect_refused_bytes(const char *header, const char *bytes, size_t size,
-                                 const char *expected)
+                                 const char *place)
 {
     struct file *file = calloc(1, sizeof *file);
     add_text(file, header);
     add(file, bytes, size);
-    expect_error(file->bytes, file->size, "", expected);
+    expect_error(file->bytes, file->size, "", place);
     free(file);
 }
 
@@ -407,33 +398,26 @@ static void test_ply_bytes_that_are_refused(void **state)
         "ply\nformat binary_big_endian 1.0\nelement a 2\n"
         "property list ushort uint b\nend_header\n";
     (void) state;
-    expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0"),
-                         "line 7: the file is cut off, or this count is wrong: there is room for "
-                         "0 at most");
+    expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0"), "line 7");
     expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\0\1\0\0\0"),
-                         "byte 190 (face 0): index 1 is no vertex: there are 1, counted from 0");
+                         "byte 190 (face 0)");
     expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\3\0\0\0\0\377\377\377\377\0\0\0\0"),
-                         "byte 186 (face 0): index -1 is no vertex: there are 1, counted from 0");
+                         "byte 186 (face 0)");
     expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\200\177\0\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0\0"),
-                         "byte 173 (vertex 0): y is not finite");
+                         "byte 173 (vertex 0)");
     expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\300\377\0\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0\0"),
-                         "byte 173 (vertex 0): y is not finite");
+                         "byte 173 (vertex 0)");
     expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\4\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0"),
-                         "byte 181 (face 0): a face of 4 vertices: triangulate it first");
+                         "byte 181 (face 0)");
     expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\2\0\0\0\0\0\0\0\0\0\0\0\0"),
-                         "byte 181 (face 0): a face of 2 vertices: remove it first");
+                         "byte 181 (face 0)");
     expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0\0 \r\n.."),
-                         "byte 194: 5 bytes behind the last element: a count is wrong, or "
-                         "something was added");
-    expect_refused_bytes(zero, BYTES("\0\3\77\0\0\0\0\0\0\0\0\0\0\0"),
-                         "byte 170 (face 0): index 0.5 is no vertex: there are 0, counted from 0");
-    expect_refused_bytes(zero, BYTES("\377\377\0\0\0\0\0\0\0\0\0\0\0\0"),
-                         "byte 168 (face 0): a list of -1 values");
-    expect_refused_bytes(lists, BYTES("\0\1\0\0\0\0\0\1\0\0\0"),
-                         "byte 95 (element 1): the file ends here");
-    expect_refused_bytes(lists, BYTES("\377\377\0\0\0\0"),
-                         "byte 90 (element 0): the file ends here");
-    expect_refused_bytes(lists, BYTES("\0\1\0\0\0\0\0"), "byte 91 (element 1): the file ends here");
+                         "byte 194");
+    expect_refused_bytes(zero, BYTES("\0\3\77\0\0\0\0\0\0\0\0\0\0\0"), "byte 170 (face 0)");
+    expect_refused_bytes(zero, BYTES("\377\377\0\0\0\0\0\0\0\0\0\0\0\0"), "byte 168 (face 0)");
+    expect_refused_bytes(lists, BYTES("\0\1\0\0\0\0\0\1\0\0\0"), "byte 95 (element 1)");
+    expect_refused_bytes(lists, BYTES("\377\377\0\0\0\0"), "byte 90 (element 0)");
+    expect_refused_bytes(lists, BYTES("\0\1\0\0\0\0\0"), "byte 91 (element 1)");
 }
 
 /* White space after the end. */
@@ -466,16 +450,11 @@ static void test_ply_promises(void **state)
     (void) state;
     for (size_t f = 0; f < 3; f++) {
         for (size_t i = 0; i < sizeof promises / sizeof *promises; i++) {
-            char text[512], expected[256];
+            char text[512], place[16];
             sprintf(text, "ply\nformat %s 1.0\n%send_header\n1 1 1 1 1 1 1 1 1 1 1 1 ",
                     formats_of_ply[f], promises[i].lines);
-            sprintf(expected,
-                    "line %d: the file is cut off, or this count is wrong: ", promises[i].line);
-            struct mesh mesh;
-            char error[MESH_ERROR_MAX];
-            assert_false(parse(text, strlen(text), "", &mesh, error));
-            error[strlen(expected)] = '\0';
-            assert_string_equal(error, expected);
+            sprintf(place, "line %d", promises[i].line);
+            expect_error(text, strlen(text), "", place);
         }
     }
 }
@@ -512,25 +491,22 @@ static void test_stl_ascii(void **state)
 static void test_stl_ascii_that_is_refused(void **state)
 {
     static const char *const cases[][2] = {
-        {"solid", "line 1: the file ends where facet or endsolid should stand"},
-        {"solid a\nfacet\n", "line 3: the file ends where normal should stand"},
-        {"solid a\nfacets\n", "line 2: 'facets' stands where facet or endsolid should"},
-        {"solid a\nfacet normal 0 0\nouter loop", "line 3: 'outer' stands where a number should"},
-        {"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 1e999", "line 4: z is not finite"},
-        {"solid a\nfacet normal 0 0 0\nouter loop\nvertex nan 0 0", "line 4: x is not finite"},
-        {"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0.5.5 0",
-         "line 4: '0.5.5' stands where a number should"},
-        {"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nendloop",
-         "line 6: a facet of 2 vertices: remove it first"},
+        {"solid", "line 1"},
+        {"solid a\nfacet\n", "line 3"},
+        {"solid a\nfacets\n", "line 2"},
+        {"solid a\nfacet normal 0 0\nouter loop", "line 3"},
+        {"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 1e999", "line 4"},
+        {"solid a\nfacet normal 0 0 0\nouter loop\nvertex nan 0 0", "line 4"},
+        {"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0.5.5 0", "line 4"},
+        {"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nendloop", "line 6"},
         {"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\n"
          "vertex 0 0 0\n",
-         "line 7: a facet of more than 3 vertices: triangulate it first"},
-        {"solid a\nfacet normal 0 0 0\nouter loop\nendloop",
-         "line 4: 'endloop' stands where vertex should"},
+         "line 7"},
+        {"solid a\nfacet normal 0 0 0\nouter loop\nendloop", "line 4"},
         {"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\n"
          "endloop\nouter loop",
-         "line 8: 'outer' stands where endfacet should"},
-        {"solid a\nendsolid a\nfacet", "line 3: 'facet' stands where solid should"},
+         "line 8"},
+        {"solid a\nendsolid a\nfacet", "line 3"},
     };
     (void) state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
@@ -579,21 +555,14 @@ static void test_stl_binary_that_is_refused(void **state)
     struct file *file = calloc(1, sizeof *file);
     (void) state;
     make_stl(file, "solid");
-    expect_error(file->bytes, file->size - 1, "a.stl",
-                 "byte 80: 2 facets of binary STL are 184 bytes with their header, the file has "
-                 "183: it is cut off, or the count is wrong");
-    expect_error(file->bytes, file->size + 1, "A.STL",
-                 "byte 80: 2 facets of binary STL are 184 bytes with their header, the file has "
-                 "185: it is cut off, or the count is wrong");
-    expect_error(file->bytes, 83, "A.STL",
-                 "byte 83: the file ends within the 84 bytes that begin a binary STL file");
+    expect_error(file->bytes, file->size - 1, "a.stl", "byte 80");
+    expect_error(file->bytes, file->size + 1, "A.STL", "byte 80");
+    expect_error(file->bytes, 83, "A.STL", "byte 83");
     memset(file->bytes + 80, 0xff, 4);
-    expect_error(file->bytes, file->size, "a.stl",
-                 "byte 80: 4294967295 facets of binary STL are 214748364834 bytes with their "
-                 "header, the file has 184: it is cut off, or the count is wrong");
+    expect_error(file->bytes, file->size, "a.stl", "byte 80");
     make_stl(file, "");
     memcpy(file->bytes + 84 + 50 + 12 + 12 + 8, "\0\0\200\377", 4);
-    expect_error(file->bytes, file->size, "", "byte 166 (face 1): z is not finite");
+    expect_error(file->bytes, file->size, "", "byte 166 (face 1)");
     free(file);
 }
 
@@ -626,59 +595,49 @@ static void test_obj(void **state)
 static void test_obj_that_is_refused(void **state)
 {
     static const char *const cases[][2] = {
-        {"foo 1\n", "line 4: 'foo' is no statement of OBJ"},
-        {"curv 0 1 1 2\n", "line 4: curv defines what is no triangle: make triangles of it first"},
-        {"surf 0 1 0 1 1\n",
-         "line 4: surf defines what is no triangle: make triangles of it first"},
-        {"call a.obj\n", "line 4: call defines what is no triangle: make triangles of it first"},
-        {"v 1 2\n",
-         "line 4: a vertex of 2 numbers: it has 3, and 1 more for a weight, 3 more for a "
-         "colour"},
-        {"v 1 2 3 4 5\n",
-         "line 4: a vertex of 5 numbers: it has 3, and 1 more for a weight, 3 more "
-         "for a colour"},
-        {"v 1 2 3x\n", "line 4: '3x' is no number"},
-        {"v 1 2 \\\n\\\n x\n", "line 6: 'x' is no number"},
-        {"v 1 2 1e400\n", "line 4: z is not finite"},
-        {"v -nan 2 1\n", "line 4: x is not finite"},
-        {"f 1 2 3 1\n", "line 4: a face of 4 vertices: triangulate it first"},
-        {"f 1 2\n", "line 4: a face of 2 vertices: remove it first"},
-        {"f\n", "line 4: a face of 0 vertices: remove it first"},
-        {"f 1 2 3/\n", "line 4: '3/' is no corner of a face"},
-        {"f 1 2 3/1/\n", "line 4: '3/1/' is no corner of a face"},
-        {"f 1 2 3//\n", "line 4: '3//' is no corner of a face"},
-        {"f 1 2 3/1/1/1\n", "line 4: '3/1/1/1' is no corner of a face"},
-        {"f 1 2 1.5\n", "line 4: '1.5' is no corner of a face"},
-        {"f 1 2 x\n", "line 4: 'x' is no corner of a face"},
-        {"f 1 2 0\n", "line 4: index 0 is no vertex: they count from 1"},
-        {"f 1 2 -4\n", "line 4: index -4 is no vertex: there are 3 before it"},
-        {"f -99999999999999999999 2 3\n",
-         "line 4: index -99999999999999999999 is no vertex: there are 3 before it"},
-        {"f 1 2 6/1\nf 1 5 2\nv 0 0 0\n",
-         "line 4: index 6/1 is no vertex: there are 4, counted from 1"},
-        {"f 1 2 4294967297\n",
-         "line 4: index 4294967297 is no vertex: there are 3, counted from 1"},
-        {"f 1 2 18446744073709551617\n",
-         "line 4: index 18446744073709551617 is no vertex: there are 3, counted from 1"},
+        {"foo 1\n", "line 4"},
+        {"curv 0 1 1 2\n", "line 4"},
+        {"surf 0 1 0 1 1\n", "line 4"},
+        {"call a.obj\n", "line 4"},
+        {"v 1 2\n", "line 4"},
+        {"v 1 2 3 4 5\n", "line 4"},
+        {"v 1 2 3x\n", "line 4"},
+        {"v 1 2 \\\n\\\n x\n", "line 6"},
+        {"v 1 2 1e400\n", "line 4"},
+        {"v -nan 2 1\n", "line 4"},
+        {"f 1 2 3 1\n", "line 4"},
+        {"f 1 2\n", "line 4"},
+        {"f\n", "line 4"},
+        {"f 1 2 3/\n", "line 4"},
+        {"f 1 2 3/1/\n", "line 4"},
+        {"f 1 2 3//\n", "line 4"},
+        {"f 1 2 3/1/1/1\n", "line 4"},
+        {"f 1 2 1.5\n", "line 4"},
+        {"f 1 2 x\n", "line 4"},
+        {"f 1 2 0\n", "line 4"},
+        {"f 1 2 -4\n", "line 4"},
+        {"f -99999999999999999999 2 3\n", "line 4"},
+        {"f 1 2 6/1\nf 1 5 2\nv 0 0 0\n", "line 4"},
+        {"f 1 2 4294967297\n", "line 4"},
+        {"f 1 2 18446744073709551617\n", "line 4"},
     };
     (void) state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         expect_refused("v 0 0 0\nv 1 0 0\nv 0 1 0\n", cases[i][0], cases[i][1]);
-    expect_error("v 0 0 0\0 1", 10, "", "line 1: '0?' is no number");
+    expect_error("v 0 0 0\0 1", 10, "", "line 1");
 }
 
 /* ---- What is none of them -------------------------------------------------------------------- */
 
 static void test_what_is_no_mesh(void **state)
 {
-    static const char none[] = "byte 0: no PLY, STL or OBJ file, by its name nor by its contents";
     (void) state;
-    expect_error("", 0, "a.obj", "byte 0: the file is empty");
-    expect_error("hello", 5, "a.txt", none);
-    expect_error("\0\0\0", 3, "", none);
-    expect_error("vv 1", 4, "", none);
-    expect_error("solids\n", 7, "", none);
-    expect_error("# v\n#", 5, "", none);
+    expect_error("", 0, "a.obj", "byte 0");
+    expect_error("hello", 5, "a.txt", "byte 0");
+    expect_error("\0\0\0", 3, "", "byte 0");
+    expect_error("vv 1", 4, "", "byte 0");
+    expect_error("solids\n", 7, "", "byte 0");
+    expect_error("# v\n#", 5, "", "byte 0");
 }
 
 static void expect_unread(const char *path, const char *expected)
@@ -713,10 +672,6 @@ static void test_files(void **state)
     unlink(path);
     write_file(path, "", 0);
     expect_unread(path, "byte 0: the file is empty");
-    write_file(path, "v 0", 3);
-    expect_unread(path,
-                  "line 1: a vertex of 1 numbers: it has 3, and 1 more for a weight, 3 more "
-                  "for a colour");
     write_file(path, obj, sizeof obj - 1);
     assert_true(mesh_read(path, &watch, &mesh, error));
     expect_mesh(mesh, 4, square, 2, halves);
@@ -920,6 +875,7 @@ int main(void)
         cmocka_unit_test(test_ply_ascii),
         cmocka_unit_test(test_ply_binary),
         cmocka_unit_test(test_ply_headers_that_are_refused),
+        cmocka_unit_test(test_words_in_errors),
         cmocka_unit_test(test_ply_headers_that_are_too_long),
         cmocka_unit_test(test_ply_bodies_that_are_refused),
         cmocka_unit_test(test_ply_bytes_that_are_refused),
