@@ -299,6 +299,28 @@ static void test_certificates_end_somewhere(void **state)
     }
 }
 
+static void test_a_box_of_too_many_numbers_is_refused(void **state)
+{
+    (void) state;
+    double zero[8] = {0};
+    char empty[] = "";
+    for (int numbers = 0; numbers <= 8; numbers++) {
+        fmb_msgs_pair_result_t message = {.detail = empty,
+                                          .verdict = FMB_TOUCHING,
+                                          .num_contact = 2,
+                                          .contact = zero,
+                                          .num_box = numbers,
+                                          .box = zero,
+                                          .certificate = empty};
+        unsigned char bytes[WIRE_STATUS_BYTES_MAX];
+        struct pair_result read;
+        const int size = fmb_msgs_pair_result_t_encode(bytes, 0, sizeof bytes, &message);
+        assert_true(size > 0);
+        assert_int_equal(wire_read_pair_result(bytes, (uint32_t) size, &read) == NULL,
+                         numbers == 0 || numbers == 4 || numbers == 6);
+    }
+}
+
 /* A newer service may have more counters, in another order, and a longer version. */
 static void test_status_of_a_newer_service(void **state)
 {
@@ -413,6 +435,7 @@ int main(void)
         cmocka_unit_test(test_handles_are_hashes_of_the_encoding),
         cmocka_unit_test(test_handles_distinguish_zeros),
         cmocka_unit_test(test_certificates_end_somewhere),
+        cmocka_unit_test(test_a_box_of_too_many_numbers_is_refused),
         cmocka_unit_test(test_status_of_a_newer_service),
         cmocka_unit_test(test_names_round_trip),
         cmocka_unit_test(test_old_versions_are_named),

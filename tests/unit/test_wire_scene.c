@@ -335,6 +335,46 @@ static void test_results_that_fill_a_message(void **state)
     assert_int_equal(write_and_read(), QUERY_BYTES_MAX);
 }
 
+static void expect_refused(void)
+{
+    assert_non_null(read_result(wire_write_scene_result(&result, bytes)));
+}
+
+/* What the corpora of tests/fuzz have no example of. */
+static void test_results_that_contradict_themselves(void **state)
+{
+    (void) state;
+    set_result(3, 0, 2, NAMES | GAPS); /* separated, touching */
+    write_and_read();
+    result.gap[1].bounds[1] = 1;
+    expect_refused();
+    result.gap[1].bounds[0] = result.gap[1].bounds[1] = NAN; /* only separated pairs have none */
+    expect_refused();
+    set_result(3, 0, 2, NAMES | GAPS);
+    result.gap[0].time = INFINITY;
+    expect_refused();
+    memset(&result, 0, sizeof result);
+    result.status = FMB_BUSY;
+    result.handle_count = 1;
+    expect_refused();
+    result.handle_count = 0;
+    result.end_pair = 1;
+    expect_refused();
+
+    char detail[] = "";
+    uint8_t verdicts[3] = {FMB_TOUCHING, FMB_TOUCHING, FMB_TOUCHING};
+    int16_t indices[6] = {0, 1, 0, 2, 1, 2};
+    fmb_msgs_scene_result_t message = {.detail = detail,
+                                       .end_pair = 3,
+                                       .num_verdicts = 3,
+                                       .verdicts = verdicts,
+                                       .indices = indices};
+    for (message.num_indices = 0; message.num_indices <= 6; message.num_indices++) {
+        const int size = fmb_msgs_scene_result_t_encode(bytes, 0, sizeof bytes, &message);
+        assert_int_equal(read_result((size_t) size) == NULL, message.num_indices % 6 == 0);
+    }
+}
+
 /* Only the padding, 1 byte after the flags and 7 after has_witness, does not count. */
 static void answers_that_differ_in_any_byte_are_not_the_same(void **state)
 {
@@ -374,6 +414,7 @@ int main(void)
         TEST(test_largest_queries),
         TEST(test_more_than_the_capacity),
         TEST(test_results_that_fill_a_message),
+        TEST(test_results_that_contradict_themselves),
     };
     return cmocka_run_group_tests_name("wire_scene", tests, NULL, NULL);
 }
