@@ -39,17 +39,6 @@ answers() {
     is "$expected"
 }
 
-# wrong TEXT ARGUMENTS...: wrong usage is one line, and a hint.
-wrong() {
-    local text=$1
-    shift
-    mesh "$@"
-    ended 2
-    is ''
-    said "fmb mesh: $text
-Try 'fmb mesh --help'."
-}
-
 # cannot_read TEXT ARGUMENTS...
 cannot_read() {
     local text=$1
@@ -233,7 +222,7 @@ apart() {
     # shellcheck disable=SC2086
     meets a.obj $steps a.obj $steps
     # shellcheck disable=SC2086
-    wrong 'more than 32 steps for a mesh' a.obj a.obj $steps --mirror x
+    wrong mesh a.obj a.obj $steps --mirror x
 }
 
 @test "coordinates beyond the largest double are reported" {
@@ -270,11 +259,13 @@ and beside each other, with nothing else in common, are
 }
 
 @test "--self refuses options that exclude it" {
-    wrong 'expected one mesh with --self, found 2' --self a.obj b.obj
-    wrong 'expected one mesh with --self, found 0' --self
-    wrong '--self asks faces, not tetrahedra' --self --as tetrahedra a.obj
-    wrong '--self and --velocity: a mesh does not move against itself' --self a.obj --velocity 0,0,1
-    wrong '--self and --velocity: a mesh does not move against itself' --velocity 0,0,1 --self a.obj
+    wrong mesh --self a.obj b.obj
+    wrong mesh --self
+    wrong mesh --self --as tetrahedra a.obj
+    wrong mesh --self a.obj --velocity 0,0,1
+    wrong mesh --velocity 0,0,1 --self a.obj
+    said "fmb mesh: --self and --velocity: a mesh does not move against itself
+Try 'fmb mesh --help'."
 }
 
 @test "a closed mesh shares three edges for every two faces" {
@@ -371,33 +362,22 @@ and beside each other, with nothing else in common, are
 # ---- Usage -------------------------------------------------------------------------------------
 
 @test "wrong usage is refused with exit code 2 and a hint" {
-    wrong 'expected two meshes, found 0; or one and --self'
-    wrong 'expected two meshes, found 1; or one and --self' a.obj
-    wrong 'expected two meshes, found 3; or one and --self' a.obj b.obj a.obj
-    wrong 'expected two meshes, found 4; or one and --self' a.obj b.obj -- --json a.obj
-    wrong "--scale: expected a number, or three X,Y,Z, found '1,2'" a.obj --scale 1,2 b.obj
-    wrong "--scale: expected a number, or three X,Y,Z, found ''" a.obj --scale= b.obj
-    wrong "--scale: expected a number, or three X,Y,Z, found 'inf'" a.obj --scale inf b.obj
-    wrong "--scale: expected a number, or three X,Y,Z, found '1,2,3,4'" a.obj --scale 1,2,3,4 b.obj
-    wrong "--scale: expected a number, or three X,Y,Z, found '1e999'" a.obj --scale 1e999 b.obj
-    wrong "--translate: expected three numbers X,Y,Z, found '1'" a.obj --translate 1 b.obj
-    wrong "--translate: expected three numbers X,Y,Z, found '1,nan,3'" a.obj --translate 1,nan,3 b.obj
-    wrong "--velocity: expected three numbers X,Y,Z, found '1,2,3x'" a.obj --velocity 1,2,3x b.obj
-    wrong "--rotate: expected an axis and degrees, such as z,90, found '90'" a.obj --rotate 90 b.obj
-    wrong "--rotate: expected an axis and degrees, such as z,90, found 'z'" a.obj --rotate z b.obj
-    wrong "--rotate: expected an axis and degrees, such as z,90, found 'w,1'" a.obj --rotate w,1 b.obj
-    wrong "--rotate: expected an axis and degrees, such as z,90, found ''" a.obj --rotate '' b.obj
-    wrong "--mirror: expected x, y or z, found 'xy'" a.obj --mirror xy b.obj
-    wrong "--mirror: expected x, y or z, found ''" a.obj --mirror '' b.obj
-    wrong "--as: there are faces and tetrahedra, not 'cubes'" a.obj --as cubes b.obj
-    wrong "--method: there are certified and exact, not 'sat'" a.obj --method sat b.obj
-    wrong "--method: there are certified and exact, not 'guess'" a.obj --method guess b.obj
-    wrong "--duration: expected a number from 0 to 1.79769e+308, found '-1'" a.obj --duration -1 b.obj
-    wrong "--duration: expected a number from 0 to 1.79769e+308, found 'nan'" a.obj --duration nan b.obj
-    wrong "unknown option '--bogus'" a.obj b.obj --bogus
-    wrong "unknown option '-x'" a.obj -x b.obj
-    wrong "option '--translate' needs a value" a.obj b.obj --translate
-    wrong "option '--json=1' takes no value" a.obj --json=1 b.obj
+    wrong mesh
+    wrong mesh a.obj
+    wrong mesh a.obj b.obj a.obj
+    wrong mesh a.obj b.obj -- --json a.obj
+    for option in '--scale 1,2' --scale= '--scale inf' '--scale 1,2,3,4' '--scale 1e999' '--translate 1' \
+        '--translate 1,nan,3' '--velocity 1,2,3x' '--rotate 90' '--rotate z' '--rotate w,1' --rotate= \
+        '--mirror xy' --mirror= '--as cubes' '--method sat' '--method guess' '--duration -1' \
+        '--duration nan' -x --json=1; do
+        # shellcheck disable=SC2086
+        wrong mesh a.obj $option b.obj
+    done
+    wrong mesh a.obj b.obj --bogus
+    wrong mesh a.obj b.obj --translate
+    wrong mesh a.obj --rotate 90 b.obj
+    said "fmb mesh: --rotate: expected an axis and degrees, such as z,90, found '90'
+Try 'fmb mesh --help'."
 }
 
 @test "--help and fmb help mesh print the usage" {

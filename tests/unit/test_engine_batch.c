@@ -874,32 +874,6 @@ static void refused_pairs_stop_no_other(void **state)
     assert_true(seen[FMB_NOT_FINITE] + seen[FMB_OVER_LIMIT] + seen[FMB_DIMENSIONS_DIFFER] > 0);
 }
 
-/* All of a frame is finite where it is read, or it is not prepared. */
-static void what_is_not_finite_is_not_prepared(void **state)
-{
-    (void) state;
-    static const double bad[] = {NAN, INFINITY, -INFINITY};
-    static const struct fmb_prepared zero;
-    struct draw draw;
-    draw_begin(&draw, "what_is_not_finite_is_not_prepared");
-    for (long n = draw_sample(400); n > 0; n--) {
-        const struct cell cell = pair_draw_cell(&draw);
-        const int axis = draw_int(&draw, 0, FMB_DIM_MAX - 1);
-        struct question question;
-        struct ready ready;
-        struct fmb_prepared good, found;
-        pair_draw(&draw, &cell, &question);
-        referee_ready(&question, &ready);
-        assert_int_equal(fmb_prepare(&ready.pair.a, 0, 1, &good), FMB_OK);
-        const bool velocity = draw_coin(&draw);
-        struct fmb_placement *frame = &ready.pair.a;
-        (velocity ? frame->velocity : frame->position)[axis] = bad[draw_int(&draw, 0, 2)];
-        const bool read = axis < cell.dim;
-        assert_int_equal(fmb_prepare(frame, 0, 1, &found), read ? FMB_NOT_FINITE : FMB_OK);
-        assert_memory_equal(&found, read ? &zero : &good, sizeof found);
-    }
-}
-
 /* ---- Tests: what is refused as a whole ---- */
 
 static void expect_whole_refused(const struct world *world, const struct way *way,
@@ -992,7 +966,6 @@ int main(void)
         cmocka_unit_test(order_does_not_matter),
         cmocka_unit_test(address_does_not_matter),
         cmocka_unit_test(refused_pairs_stop_no_other),
-        cmocka_unit_test(what_is_not_finite_is_not_prepared),
         cmocka_unit_test(durations_that_are_none_are_refused),
         cmocka_unit_test(frames_that_move_need_a_window),
         cmocka_unit_test(instructions_have_names),

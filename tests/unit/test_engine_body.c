@@ -262,11 +262,14 @@ static void no_vertex_is_beyond_the_radius(void **state)
     assert_true(body.radius == frames[1].radius);
 }
 
-/* The three edges at the origin enclose a volume of `thickness`; offset: of the origin along z. */
-static struct fmb_frame make_thin(double thickness, double offset)
+/* The three edges at the origin enclose a volume of `thickness`; the first and edge `second` are
+ * nearly parallel. offset: of the origin along z. */
+static struct fmb_frame make_thin(double thickness, double offset, int second)
 {
-    const double vertex[12] = {0, 0, offset, 1, 0, 0, 1, thickness, 0, 0, 0, 1};
+    double vertex[12] = {0, 0, offset, 1, 0, 0};
     struct fmb_frame frame;
+    vertex[3 * second] = vertex[3 * (5 - second) + 2] = 1;
+    vertex[3 * second + 1] = thickness;
     assert_int_equal(fmb_frame_make_vertices(3, FMB_TETRAHEDRON, vertex, 12, &frame), FMB_OK);
     assert_true(frame.rounded == (offset != 0));
     return frame;
@@ -276,10 +279,11 @@ static struct fmb_frame make_thin(double thickness, double offset)
 static void thin_frames_are_not_sturdy(void **state)
 {
     (void) state;
-    for (int rounded = 0; rounded < 2; rounded++) {
+    for (int n = 0; n < 4; n++) {
+        const int rounded = n % 2, second = 2 + n / 2;
         const double offset = rounded ? 0x1p-60 : 0;
-        const struct fmb_frame thick = make_thin(0x1p-43, offset);
-        const struct fmb_frame thin = make_thin(0x1p-45, offset);
+        const struct fmb_frame thick = make_thin(0x1p-43, offset, second);
+        const struct fmb_frame thin = make_thin(0x1p-45, offset, second);
         assert_true(thick.sturdy && thick.in_range);
         assert_true(!thin.sturdy && thin.in_range == !rounded);
     }
