@@ -189,7 +189,7 @@ static void expect(const struct pair_query *query, enum fmb_status status, const
 /* Ends the counts of a case. */
 enum { END = INT32_MIN };
 
-static void test_answer_and_echo(void **state)
+static void a_pair_is_answered_and_its_ids_are_echoed(void **state)
 {
     (void) state;
     struct hasher *hasher = hasher_create();
@@ -220,7 +220,7 @@ static void test_answer_and_echo(void **state)
 }
 
 /* Also without an id, or with another one. */
-static void test_handles_stand_for_frames(void **state)
+static void handles_stand_for_frames(void **state)
 {
     (void) state;
     struct pair_query query = stretched(2);
@@ -240,7 +240,7 @@ static void test_handles_stand_for_frames(void **state)
     assert_int_equal(counts().hits, 10);
 }
 
-static void test_handles_that_are_not_held(void **state)
+static void unknown_handles_are_refused(void **state)
 {
     (void) state;
     struct pair_query query = stretched(2);
@@ -255,7 +255,7 @@ static void test_handles_that_are_not_held(void **state)
     expect(&query, FMB_UNKNOWN_BODY, "b.handle: not held; send the frames");
 }
 
-static void test_handle_of_the_other_dimension(void **state)
+static void a_handle_of_the_other_dimension_is_refused(void **state)
 {
     (void) state;
     const struct geometry_frame square = {.shape = FMB_CUBOID, .components = {1, 0, 0, 1}};
@@ -268,7 +268,7 @@ static void test_handle_of_the_other_dimension(void **state)
 }
 
 /* With capacity for two: keeping a third body evicts the one not used longest. */
-static void test_eviction(void **state)
+static void evicted_bodies_are_unknown(void **state)
 {
     (void) state;
     struct pair_query query = stretched(2);
@@ -283,7 +283,7 @@ static void test_eviction(void **state)
 
 /* With capacity for one, the second body of a query does not evict the first, which is in use, but
  * is made for this query only. */
-static void test_capacity_for_one(void **state)
+static void a_cache_of_one_frame_answers_whole_pairs(void **state)
 {
     (void) state;
     struct pair_query query = stretched(2);
@@ -310,7 +310,7 @@ static void test_capacity_for_one(void **state)
 }
 
 /* One id with two geometries in one pair: each placement is what it says. */
-static void test_one_id_two_bodies(void **state)
+static void one_id_may_have_two_bodies(void **state)
 {
     (void) state;
     struct pair_query query = stretched(2);
@@ -326,7 +326,7 @@ static void test_one_id_two_bodies(void **state)
     assert_int_equal(counts().misses, 2);
 }
 
-static void test_anonymous_bodies_are_not_kept(void **state)
+static void anonymous_bodies_are_not_kept(void **state)
 {
     (void) state;
     struct pair_query query = cubes();
@@ -338,7 +338,7 @@ static void test_anonymous_bodies_are_not_kept(void **state)
     assert_int_equal(counts().misses, 0);
 }
 
-static void test_bad_numbers(void **state)
+static void numbers_that_are_not_finite_are_refused(void **state)
 {
     (void) state;
     struct pair_query query = cubes();
@@ -356,7 +356,7 @@ static void test_bad_numbers(void **state)
     expect(&query, FMB_NOT_FINITE, "a.velocity[1]: not a finite number");
 }
 
-static void test_bad_counts(void **state)
+static void wrong_counts_are_refused(void **state)
 {
     (void) state;
     struct pair_query query = cubes();
@@ -410,7 +410,7 @@ static void set_vertices(struct pair_query *query, int f, int32_t dim, const int
     placement->geometry = (struct geometry){bytes[f], writer_end(&writer, bytes[f])};
 }
 
-static void test_counts_of_vertices(void **state)
+static void wrong_counts_of_vertices_are_refused(void **state)
 {
     (void) state;
     static const struct {
@@ -496,7 +496,7 @@ static void test_counts_of_vertices(void **state)
 }
 
 /* With a handle there are no counts. */
-static void test_a_handle_has_no_counts(void **state)
+static void a_handle_has_no_counts(void **state)
 {
     (void) state;
     static const int32_t counts[] = {4, END};
@@ -506,7 +506,7 @@ static void test_a_handle_has_no_counts(void **state)
     expect(&query, FMB_WRONG_COUNT, "a.num_counts: expected 0 numbers, found 1");
 }
 
-static void test_names(void **state)
+static void bad_names_are_refused(void **state)
 {
     (void) state;
     static const char good[] =
@@ -536,7 +536,7 @@ static void test_names(void **state)
 }
 
 /* A pair query does not look at groups: also where it takes a job. */
-static void test_groups_of_a_pair_do_not_matter(void **state)
+static void groups_of_a_pair_do_not_matter(void **state)
 {
     (void) state;
     struct geometry_frame frames[2] = {unit_cube, unit_cube};
@@ -552,7 +552,7 @@ static void test_groups_of_a_pair_do_not_matter(void **state)
     }
 }
 
-static void test_handle_or_frames(void **state)
+static void a_placement_has_a_handle_or_frames(void **state)
 {
     (void) state;
     const struct handle handle = {{1}};
@@ -573,7 +573,7 @@ static void test_handle_or_frames(void **state)
     expect(&query, FMB_OVER_LIMIT, "a.num_frames: more than 65536");
 }
 
-static void test_bad_shapes_and_dimensions(void **state)
+static void unknown_shapes_and_dimensions_are_refused(void **state)
 {
     (void) state;
     for (int shape = 0; shape < 256; shape++) {
@@ -601,7 +601,7 @@ static void test_bad_shapes_and_dimensions(void **state)
     expect(&query, FMB_DIMENSIONS_DIFFER, "dim: a 2D body against a 3D one");
 }
 
-static void test_bad_orientations(void **state)
+static void bad_orientations_are_refused(void **state)
 {
     (void) state;
     static const char detail[] =
@@ -630,7 +630,7 @@ static void test_bad_orientations(void **state)
 }
 
 /* 0 is a flat frame. */
-static void test_bad_sizes(void **state)
+static void bad_sizes_are_refused(void **state)
 {
     (void) state;
     struct geometry_frame frames[3] = {box(0, 1), unit_cube, box(3, 1)};
@@ -701,7 +701,7 @@ static struct pair_query gratings(int count, double spacing, double distance)
 }
 
 /* Whole and by handle, with every method, in steps: the answer of one call of the engine. */
-static void test_bodies_of_several_frames(void **state)
+static void bodies_of_several_frames_are_answered(void **state)
 {
     (void) state;
     const double distance[] = {-100, 0, 1.75, 2, 1000};
@@ -730,7 +730,7 @@ static void test_bodies_of_several_frames(void **state)
 }
 
 /* A turned body is the same body. */
-static void test_turning_bodies_hit(void **state)
+static void turning_bodies_hit(void **state)
 {
     (void) state;
     struct pair_query query = cubes();
@@ -748,7 +748,7 @@ static void test_turning_bodies_hit(void **state)
 }
 
 /* A pair of many frames takes many steps, between which other queries are answered. */
-static void test_many_frames_take_many_steps(void **state)
+static void many_frames_take_many_steps(void **state)
 {
     (void) state;
     static unsigned char message[QUERY_BYTES_MAX];
@@ -768,7 +768,7 @@ static void test_many_frames_take_many_steps(void **state)
     assert_memory_equal(&answered->answer, &expected, sizeof expected);
 }
 
-static void test_a_job_that_is_stopped(void **state)
+static void a_job_that_is_stopped(void **state)
 {
     (void) state;
     static unsigned char message[QUERY_BYTES_MAX];
@@ -784,7 +784,7 @@ static void test_a_job_that_is_stopped(void **state)
 }
 
 /* What is refused in a job: nothing is cached. */
-static void test_certificates_of_several_frames(void **state)
+static void bodies_of_several_frames_have_no_certificate(void **state)
 {
     (void) state;
     struct pair_query query = gratings(2, 2, 0);
@@ -802,7 +802,7 @@ static void test_certificates_of_several_frames(void **state)
 }
 
 /* A body that the cache has no memory for is answered all the same, and its handle is right. */
-static void test_more_frames_than_the_cache(void **state)
+static void a_body_larger_than_the_cache_is_answered(void **state)
 {
     (void) state;
     const struct pair_query query = gratings(40, 2, 0.5);
@@ -814,7 +814,7 @@ static void test_more_frames_than_the_cache(void **state)
     assert_int_equal(counts().bodies, 0);
 }
 
-static void test_bad_ids(void **state)
+static void bad_ids_are_refused(void **state)
 {
     (void) state;
     struct pair_query query = cubes();
@@ -833,7 +833,7 @@ static void test_bad_ids(void **state)
     assert_int_equal(answer_to(&query).status, FMB_OK);
 }
 
-static void test_bad_requests(void **state)
+static void bad_requests_are_refused(void **state)
 {
     (void) state;
     const double durations[] = {-1, NAN, INFINITY, -5e-324};
@@ -853,7 +853,7 @@ static void test_bad_requests(void **state)
         expect(&query, FMB_CANNOT_DECIDE, "method: gives no gaps");
 }
 
-static void test_refused_without_being_read(void **state)
+static void refused_without_being_read(void **state)
 {
     (void) state;
     const struct pair_query query = cubes();
@@ -881,7 +881,7 @@ static bool certified(const struct pair_query *query, const struct pair_result *
                                  result->answer.verdict, result->certificate, why, sizeof why);
 }
 
-static void test_certificates(void **state)
+static void certificates_are_given_on_request(void **state)
 {
     (void) state;
     const double apart[] = {0.5, 1, 1.5};
@@ -912,7 +912,7 @@ static void test_certificates(void **state)
 }
 
 /* Of a body that comes by handle too. */
-static void test_certificate_by_handle(void **state)
+static void bodies_by_handle_have_certificates(void **state)
 {
     (void) state;
     struct pair_query query = cubes();
@@ -924,7 +924,7 @@ static void test_certificate_by_handle(void **state)
 }
 
 /* The body is kept all the same, and its handle known. */
-static void test_inexact_methods_on_a_flat_frame(void **state)
+static void inexact_methods_do_not_decide_flat_frames(void **state)
 {
     (void) state;
     struct pair_query query = cubes();
@@ -940,7 +940,7 @@ static void test_inexact_methods_on_a_flat_frame(void **state)
 }
 
 /* Of bodies of one frame, moving. */
-static void test_gaps(void **state)
+static void gaps_are_given_on_request(void **state)
 {
     (void) state;
     const double speed[] = {0, -2, -2.5, -7};
@@ -959,7 +959,7 @@ static void test_gaps(void **state)
     }
 }
 
-static void test_a_repeat_gets_the_same(void **state)
+static void a_repeat_gets_the_same(void **state)
 {
     (void) state;
     struct pair_query query = cubes();
@@ -975,39 +975,41 @@ static void test_a_repeat_gets_the_same(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_answer_and_echo),
-        TEST(test_handles_stand_for_frames),
-        TEST(test_handles_that_are_not_held),
-        TEST(test_handle_of_the_other_dimension),
-        TEST(test_eviction),
-        cmocka_unit_test_setup_teardown(test_capacity_for_one, set_up_one, tear_down),
-        TEST(test_one_id_two_bodies),
-        TEST(test_anonymous_bodies_are_not_kept),
-        TEST(test_bad_numbers),
-        TEST(test_bad_counts),
-        TEST(test_counts_of_vertices),
-        TEST(test_a_handle_has_no_counts),
-        TEST(test_names),
-        TEST(test_groups_of_a_pair_do_not_matter),
-        TEST(test_handle_or_frames),
-        TEST(test_bad_shapes_and_dimensions),
-        TEST(test_bad_orientations),
-        TEST(test_bad_sizes),
-        cmocka_unit_test_setup_teardown(test_bodies_of_several_frames, set_up_many, tear_down),
-        TEST(test_turning_bodies_hit),
-        cmocka_unit_test_setup_teardown(test_many_frames_take_many_steps, set_up_many, tear_down),
-        TEST(test_a_job_that_is_stopped),
-        cmocka_unit_test_setup_teardown(test_certificates_of_several_frames, set_up_many,
+        TEST(a_pair_is_answered_and_its_ids_are_echoed),
+        TEST(handles_stand_for_frames),
+        TEST(unknown_handles_are_refused),
+        TEST(a_handle_of_the_other_dimension_is_refused),
+        TEST(evicted_bodies_are_unknown),
+        cmocka_unit_test_setup_teardown(a_cache_of_one_frame_answers_whole_pairs, set_up_one,
                                         tear_down),
-        TEST(test_more_frames_than_the_cache),
-        TEST(test_bad_ids),
-        TEST(test_bad_requests),
-        TEST(test_refused_without_being_read),
-        TEST(test_certificates),
-        TEST(test_certificate_by_handle),
-        TEST(test_inexact_methods_on_a_flat_frame),
-        TEST(test_gaps),
-        TEST(test_a_repeat_gets_the_same),
+        TEST(one_id_may_have_two_bodies),
+        TEST(anonymous_bodies_are_not_kept),
+        TEST(numbers_that_are_not_finite_are_refused),
+        TEST(wrong_counts_are_refused),
+        TEST(wrong_counts_of_vertices_are_refused),
+        TEST(a_handle_has_no_counts),
+        TEST(bad_names_are_refused),
+        TEST(groups_of_a_pair_do_not_matter),
+        TEST(a_placement_has_a_handle_or_frames),
+        TEST(unknown_shapes_and_dimensions_are_refused),
+        TEST(bad_orientations_are_refused),
+        TEST(bad_sizes_are_refused),
+        cmocka_unit_test_setup_teardown(bodies_of_several_frames_are_answered, set_up_many,
+                                        tear_down),
+        TEST(turning_bodies_hit),
+        cmocka_unit_test_setup_teardown(many_frames_take_many_steps, set_up_many, tear_down),
+        TEST(a_job_that_is_stopped),
+        cmocka_unit_test_setup_teardown(bodies_of_several_frames_have_no_certificate, set_up_many,
+                                        tear_down),
+        TEST(a_body_larger_than_the_cache_is_answered),
+        TEST(bad_ids_are_refused),
+        TEST(bad_requests_are_refused),
+        TEST(refused_without_being_read),
+        TEST(certificates_are_given_on_request),
+        TEST(bodies_by_handle_have_certificates),
+        TEST(inexact_methods_do_not_decide_flat_frames),
+        TEST(gaps_are_given_on_request),
+        TEST(a_repeat_gets_the_same),
     };
     return cmocka_run_group_tests_name("answer", tests, NULL, NULL);
 }

@@ -255,7 +255,7 @@ static void query_much(void)
     }
 }
 
-static void test_clients_that_share_ids_and_lose_datagrams(void **state)
+static void clients_that_share_ids_and_lose_datagrams(void **state)
 {
     static const size_t frames[] = {1, 6, 24, 100};
     (void) state;
@@ -274,7 +274,7 @@ static void test_clients_that_share_ids_and_lose_datagrams(void **state)
 
 /* With capacity for the bodies of all clients each is prepared once, whichever client uses which id
  * for which of them, and no handle is ever unknown. */
-static void test_clients_that_share_ids_do_not_disturb_each_other(void **state)
+static void clients_that_share_ids_do_not_disturb_each_other(void **state)
 {
     (void) state;
     begin(true, 2 * CONTENTS * SOLID_FRAMES_MAX);
@@ -291,8 +291,8 @@ static void test_clients_that_share_ids_do_not_disturb_each_other(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clients_that_share_ids_and_lose_datagrams),
-        cmocka_unit_test(test_clients_that_share_ids_do_not_disturb_each_other),
+        cmocka_unit_test(clients_that_share_ids_and_lose_datagrams),
+        cmocka_unit_test(clients_that_share_ids_do_not_disturb_each_other),
     };
     return cmocka_run_group_tests_name("answer_clients", tests, NULL, NULL);
 }

@@ -76,7 +76,7 @@ static size_t answer_query(void)
     return size;
 }
 
-static void test_by_handle(void **state)
+static void definitions_are_found_by_handle(void **state)
 {
     (void) state;
     const int order[] = {5, 2, 2, 8};
@@ -107,7 +107,7 @@ static void test_by_handle(void **state)
 }
 
 /* A body that is nearly as large as a message, among small ones: every page ends, and has it. */
-static void test_the_largest_body(void **state)
+static void the_largest_body_is_defined(void **state)
 {
     (void) state;
     enum { FRAMES = 657 }; /* of 97 bytes each */
@@ -161,7 +161,7 @@ static int read_all_pages(size_t body_bytes)
 
 /* Pages are full, and have exactly what is held: also after evictions, and where the last page is
  * full too. */
-static void test_pages(void **state)
+static void definitions_come_in_pages(void **state)
 {
     (void) state;
     static struct handle handle[CAPACITY];
@@ -185,7 +185,7 @@ static void test_pages(void **state)
 }
 
 /* What a recorder requests does not count as use. */
-static void test_definitions_are_no_uses(void **state)
+static void definitions_are_no_uses(void **state)
 {
     (void) state;
     const struct handle first = keep(2, 0);
@@ -216,7 +216,7 @@ static void expect(enum fmb_status status, const char *detail)
     assert_int_equal(result.next, 0);
 }
 
-static void test_refusals(void **state)
+static void bad_definition_queries_are_refused(void **state)
 {
     (void) state;
     keep(2, 0);
@@ -239,7 +239,7 @@ static void test_refusals(void **state)
     expect(FMB_BAD_ID, "sequence_number: not from 0 to 2^53 - 1");
 }
 
-static void test_refused_without_being_read(void **state)
+static void refused_without_being_read(void **state)
 {
     (void) state;
     const struct query_header header = {7, 8, 9};
@@ -259,9 +259,9 @@ static void test_refused_without_being_read(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_by_handle), TEST(test_the_largest_body),
-        TEST(test_pages),     TEST(test_definitions_are_no_uses),
-        TEST(test_refusals),  TEST(test_refused_without_being_read),
+        TEST(definitions_are_found_by_handle),    TEST(the_largest_body_is_defined),
+        TEST(definitions_come_in_pages),          TEST(definitions_are_no_uses),
+        TEST(bad_definition_queries_are_refused), TEST(refused_without_being_read),
     };
     return cmocka_run_group_tests_name("answer_definition", tests, NULL, NULL);
 }

@@ -157,7 +157,7 @@ static double draw_duration(struct draw *draw)
     return draw_coin(draw) ? 1 : others[draw_int(draw, 0, (int) COUNT(others) - 1)];
 }
 
-static void test_answers_are_those_of_each_pair(void **state)
+static void answers_are_those_of_each_pair(void **state)
 {
     (void) state;
     struct draw draw;
@@ -171,7 +171,7 @@ static void test_answers_are_those_of_each_pair(void **state)
     }
 }
 
-static void test_answers_of_the_exact_method(void **state)
+static void answers_of_the_exact_method(void **state)
 {
     (void) state;
     struct draw draw;
@@ -183,7 +183,7 @@ static void test_answers_of_the_exact_method(void **state)
 }
 
 /* Of flat frames they say nothing. */
-static void test_answers_of_inexact_methods(void **state)
+static void answers_of_inexact_methods(void **state)
 {
     (void) state;
     struct draw draw;
@@ -209,7 +209,7 @@ static void test_answers_of_inexact_methods(void **state)
 
 /* The scene at which the tree of boxes looks: of all sizes, from the least doubles to the largest,
  * and where many boxes are the same. */
-static void test_no_contact_is_lost_anywhere(void **state)
+static void no_contact_is_lost_anywhere(void **state)
 {
     (void) state;
     static const double scales[] = {0x1p-1074, 1e-308, 1e-300, 1, 1e150, 1e300, 0x1p1021};
@@ -243,7 +243,7 @@ static void test_no_contact_is_lost_anywhere(void **state)
 
 /* ---- Parts ---- */
 
-static void test_every_pair_can_be_the_first(void **state)
+static void every_pair_can_be_the_first(void **state)
 {
     (void) state;
     struct draw draw;
@@ -313,7 +313,7 @@ static int parts_of(int pairs, int pair_bytes, int handles)
     return (pairs + each - 1) / each;
 }
 
-static void test_parts_fill_their_datagrams(void **state)
+static void parts_fill_their_datagrams(void **state)
 {
     (void) state;
     set_heap(100, 3, true, true);
@@ -338,7 +338,7 @@ static void test_parts_fill_their_datagrams(void **state)
 }
 
 /* As many contacts as fit, then one separated pair for each byte that is left, and one more. */
-static void test_a_datagram_is_filled_to_its_last_byte(void **state)
+static void a_datagram_is_filled_to_its_last_byte(void **state)
 {
     (void) state;
     enum { HANDLES = 4, CONTACT_BYTES = 1 + 16 };
@@ -361,7 +361,7 @@ static void test_a_datagram_is_filled_to_its_last_byte(void **state)
 }
 
 /* Near pairs count for the space of a result as contacts do. */
-static void test_near_pairs_fill_their_datagrams(void **state)
+static void near_pairs_fill_their_datagrams(void **state)
 {
     (void) state;
     set_row(100);
@@ -375,7 +375,7 @@ static void test_near_pairs_fill_their_datagrams(void **state)
 
 /* As many pairs as a query has space for, of two placements or of many: all verdicts fit, beside
  * the handles. */
-static void test_verdicts_of_listed_pairs_fit(void **state)
+static void verdicts_of_listed_pairs_fit(void **state)
 {
     (void) state;
     query->which = FMB_PAIRS_LISTED;
@@ -399,7 +399,7 @@ static void test_verdicts_of_listed_pairs_fit(void **state)
 
 /* ---- Small queries ---- */
 
-static void test_empty_scenes(void **state)
+static void empty_scenes_are_answered(void **state)
 {
     (void) state;
     for (int32_t which = FMB_PAIRS_ALL; which <= FMB_PAIRS_ACROSS; which++)
@@ -415,7 +415,7 @@ static void test_empty_scenes(void **state)
             }
 }
 
-static void test_echo(void **state)
+static void ids_are_echoed(void **state)
 {
     (void) state;
     set_row(2);
@@ -450,7 +450,7 @@ static void expect(enum fmb_status status, const char *detail)
     assert_int_equal(counts().misses, kept);
 }
 
-static void test_bad_placements(void **state)
+static void bad_placements_are_refused(void **state)
 {
     (void) state;
     set_row(340);
@@ -485,7 +485,7 @@ static void test_bad_placements(void **state)
 }
 
 /* Placements of dimension 0 are so short that a message has more of them than are valid. */
-static void test_too_many_placements(void **state)
+static void too_many_placements_are_refused(void **state)
 {
     (void) state;
     enum {
@@ -508,7 +508,7 @@ static void test_too_many_placements(void **state)
     assert_string_equal(scene_job_result(job)->detail, "num_placements: more than 829");
 }
 
-static void test_bad_counts(void **state)
+static void wrong_counts_are_refused(void **state)
 {
     (void) state;
     set_row(2);
@@ -524,7 +524,7 @@ static void test_bad_counts(void **state)
     expect(FMB_WRONG_COUNT, "num_ignored: not two for each pair");
 }
 
-static void test_bad_pairs(void **state)
+static void bad_pairs_are_refused(void **state)
 {
     (void) state;
     static const struct {
@@ -558,7 +558,7 @@ static void set_ignored(int32_t i, unsigned a, unsigned b)
     query->ignored[i][1] = b;
 }
 
-static void test_bad_ignored_pairs(void **state)
+static void bad_ignored_pairs_are_refused(void **state)
 {
     (void) state;
     set_row(7);
@@ -586,7 +586,7 @@ static void test_bad_ignored_pairs(void **state)
 }
 
 /* Ignored pairs count in the numbering, and get no answer, wherever the answers begin. */
-static void test_ignored_pairs(void **state)
+static void ignored_pairs_are_left_out(void **state)
 {
     (void) state;
     struct draw draw;
@@ -614,7 +614,7 @@ static void test_ignored_pairs(void **state)
 }
 
 /* A listed pair within a group is refused; the pairs of others are decided. */
-static void test_listed_pairs_within_a_group(void **state)
+static void listed_pairs_within_a_group_are_refused(void **state)
 {
     (void) state;
     set_row(5);
@@ -651,7 +651,7 @@ static struct handle keep_large_body(int32_t frames)
 }
 
 /* 64 placements of 1024 frames are as many as a query may have. */
-static void test_too_many_frames(void **state)
+static void too_many_frames_are_refused(void **state)
 {
     (void) state;
     const struct answerer_options options = {2048, .server_id = 99, .secret = {1, 2}};
@@ -674,7 +674,7 @@ static void test_too_many_frames(void **state)
     expect(FMB_OVER_LIMIT, "placements[64].num_frames: more than 65536 frames in the query");
 }
 
-static void test_bad_requests(void **state)
+static void bad_requests_are_refused(void **state)
 {
     (void) state;
     const double durations[] = {-1, NAN, INFINITY, -0x1p-1074};
@@ -726,7 +726,7 @@ static void test_bad_requests(void **state)
     expect(FMB_BAD_ID, "sequence_number: not from 0 to 2^53 - 1");
 }
 
-static void test_refused_without_being_read(void **state)
+static void refused_without_being_read(void **state)
 {
     (void) state;
     const struct query_header header = {7, 8, 9};
@@ -741,7 +741,7 @@ static void test_refused_without_being_read(void **state)
     assert_true(assert_fits() < 130);
 }
 
-static void test_bytes_that_are_no_query(void **state)
+static void malformed_bytes_are_refused(void **state)
 {
     (void) state;
     set_row(2);
@@ -754,7 +754,7 @@ static void test_bytes_that_are_no_query(void **state)
 
 /* ---- Handles ---- */
 
-static void test_handles_mixed_with_whole_placements(void **state)
+static void handles_and_whole_placements_may_be_mixed(void **state)
 {
     (void) state;
     struct draw draw;
@@ -785,7 +785,7 @@ static void test_handles_mixed_with_whole_placements(void **state)
 }
 
 /* Exactly those that are not held are listed, and the cache stays as it was. */
-static void test_handles_that_are_not_held(void **state)
+static void unknown_handles_are_listed(void **state)
 {
     (void) state;
     set_row(6);
@@ -816,7 +816,7 @@ static void test_handles_that_are_not_held(void **state)
 }
 
 /* A body of the other dimension has this handle: that is wrong, whatever is not held besides. */
-static void test_handle_of_the_other_dimension(void **state)
+static void a_handle_of_the_other_dimension_is_refused(void **state)
 {
     (void) state;
     const struct solid square = {.dim = 2, .shape = FMB_CUBOID, .component = {{1, 0}, {0, 1}}};
@@ -831,7 +831,7 @@ static void test_handle_of_the_other_dimension(void **state)
 }
 
 /* Each placement is the body that it says, and both bodies stay. */
-static void test_one_id_with_two_bodies(void **state)
+static void one_id_may_have_two_bodies(void **state)
 {
     (void) state;
     for (int method = 0; method < 2; method++) {
@@ -854,7 +854,7 @@ static void test_one_id_with_two_bodies(void **state)
 }
 
 /* Bodies in use are not evicted: those that come later are used once. */
-static void test_more_bodies_than_the_cache_holds(void **state)
+static void more_bodies_than_the_cache_holds_are_answered(void **state)
 {
     (void) state;
     static struct handle handle[3 * BODIES];
@@ -923,7 +923,7 @@ void *__wrap_aligned_alloc(size_t alignment, size_t size)
 
 /* All memory is allocated at the start, whatever the query: by handle or whole, evicting or not,
  * refused or not. */
-static void test_answers_allocate_nothing(void **state)
+static void answers_allocate_nothing(void **state)
 {
     (void) state;
     struct draw draw;
@@ -975,7 +975,7 @@ static void evict_all(void)
 
 /* What is answered between the steps, and evicts every body of the scene, does not show in the
  * result. */
-static void test_queries_between_steps_do_not_show(void **state)
+static void queries_between_steps_do_not_show(void **state)
 {
     (void) state;
     struct draw draw;
@@ -1002,7 +1002,7 @@ static void test_queries_between_steps_do_not_show(void **state)
 }
 
 /* After any number of steps; its bodies can be evicted at once. */
-static void test_a_scene_without_answers_stops_as_busy(void **state)
+static void a_scene_without_answers_stops_as_busy(void **state)
 {
     (void) state;
     int steps = 1;
@@ -1029,7 +1029,7 @@ static void test_a_scene_without_answers_stops_as_busy(void **state)
 }
 
 /* Two jobs of one answerer, in turns. */
-static void test_two_jobs_at_once(void **state)
+static void two_jobs_run_at_once(void **state)
 {
     (void) state;
     struct draw draw;
@@ -1055,7 +1055,7 @@ static void test_two_jobs_at_once(void **state)
 }
 
 /* A job that is begun anew while it is under way has forgotten the first query. */
-static void test_begun_anew(void **state)
+static void a_job_can_be_begun_anew(void **state)
 {
     (void) state;
     set_heap(60, 3, true, true);
@@ -1070,7 +1070,7 @@ static void test_begun_anew(void **state)
 }
 
 /* A scene that is stopped early has the answers so far, and the next query has the remainder. */
-static void test_scenes_that_are_stopped(void **state)
+static void a_stopped_scene_continues_where_it_ended(void **state)
 {
     (void) state;
     static const char *const methods[] = {"exact", "certified"};
@@ -1127,7 +1127,7 @@ static void set_slivers(int32_t count)
 }
 
 /* In the middle of a block too, which the next query has nothing to do with. */
-static void test_exact_pairs_are_one_a_step(void **state)
+static void a_step_decides_one_exact_pair(void **state)
 {
     (void) state;
     int steps = 0;
@@ -1157,7 +1157,7 @@ static void test_exact_pairs_are_one_a_step(void **state)
 }
 
 /* No step decides more than a block. */
-static void test_steps_are_short(void **state)
+static void steps_are_short(void **state)
 {
     (void) state;
     static const struct {
@@ -1183,41 +1183,41 @@ static void test_steps_are_short(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_answers_are_those_of_each_pair),
-        TEST(test_answers_of_the_exact_method),
-        TEST(test_answers_of_inexact_methods),
-        TEST(test_no_contact_is_lost_anywhere),
-        TEST(test_every_pair_can_be_the_first),
-        TEST(test_parts_fill_their_datagrams),
-        TEST(test_a_datagram_is_filled_to_its_last_byte),
-        TEST(test_near_pairs_fill_their_datagrams),
-        TEST(test_verdicts_of_listed_pairs_fit),
-        TEST(test_empty_scenes),
-        TEST(test_echo),
-        TEST(test_bad_placements),
-        TEST(test_too_many_placements),
-        TEST(test_bad_counts),
-        TEST(test_bad_pairs),
-        TEST(test_bad_ignored_pairs),
-        TEST(test_ignored_pairs),
-        TEST(test_listed_pairs_within_a_group),
-        TEST(test_too_many_frames),
-        TEST(test_bad_requests),
-        TEST(test_refused_without_being_read),
-        TEST(test_bytes_that_are_no_query),
-        TEST(test_handles_mixed_with_whole_placements),
-        TEST(test_handles_that_are_not_held),
-        TEST(test_handle_of_the_other_dimension),
-        TEST(test_one_id_with_two_bodies),
-        TEST(test_more_bodies_than_the_cache_holds),
-        TEST(test_answers_allocate_nothing),
-        TEST(test_queries_between_steps_do_not_show),
-        TEST(test_a_scene_without_answers_stops_as_busy),
-        TEST(test_two_jobs_at_once),
-        TEST(test_begun_anew),
-        TEST(test_scenes_that_are_stopped),
-        TEST(test_exact_pairs_are_one_a_step),
-        TEST(test_steps_are_short),
+        TEST(answers_are_those_of_each_pair),
+        TEST(answers_of_the_exact_method),
+        TEST(answers_of_inexact_methods),
+        TEST(no_contact_is_lost_anywhere),
+        TEST(every_pair_can_be_the_first),
+        TEST(parts_fill_their_datagrams),
+        TEST(a_datagram_is_filled_to_its_last_byte),
+        TEST(near_pairs_fill_their_datagrams),
+        TEST(verdicts_of_listed_pairs_fit),
+        TEST(empty_scenes_are_answered),
+        TEST(ids_are_echoed),
+        TEST(bad_placements_are_refused),
+        TEST(too_many_placements_are_refused),
+        TEST(wrong_counts_are_refused),
+        TEST(bad_pairs_are_refused),
+        TEST(bad_ignored_pairs_are_refused),
+        TEST(ignored_pairs_are_left_out),
+        TEST(listed_pairs_within_a_group_are_refused),
+        TEST(too_many_frames_are_refused),
+        TEST(bad_requests_are_refused),
+        TEST(refused_without_being_read),
+        TEST(malformed_bytes_are_refused),
+        TEST(handles_and_whole_placements_may_be_mixed),
+        TEST(unknown_handles_are_listed),
+        TEST(a_handle_of_the_other_dimension_is_refused),
+        TEST(one_id_may_have_two_bodies),
+        TEST(more_bodies_than_the_cache_holds_are_answered),
+        TEST(answers_allocate_nothing),
+        TEST(queries_between_steps_do_not_show),
+        TEST(a_scene_without_answers_stops_as_busy),
+        TEST(two_jobs_run_at_once),
+        TEST(a_job_can_be_begun_anew),
+        TEST(a_stopped_scene_continues_where_it_ended),
+        TEST(a_step_decides_one_exact_pair),
+        TEST(steps_are_short),
     };
     return cmocka_run_group_tests_name("answer_scene", tests, NULL, NULL);
 }

@@ -27,7 +27,7 @@ static void count(void *user, const struct scene *scene, const struct outcome *o
 
 /* A service that sends heartbeats, even if it does not answer in time, is queried for later scenes.
  */
-static void test_later_scenes_are_queried_if_there_is_a_heartbeat(void **state)
+static void later_scenes_are_queried_if_there_is_a_heartbeat(void **state)
 {
     (void) state;
     for (int alive = 0; alive < 2; alive++) {
@@ -60,7 +60,7 @@ static void test_later_scenes_are_queried_if_there_is_a_heartbeat(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_later_scenes_are_queried_if_there_is_a_heartbeat),
+        cmocka_unit_test(later_scenes_are_queried_if_there_is_a_heartbeat),
     };
     (void) argc;
     relay_enter(argv);

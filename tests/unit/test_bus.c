@@ -136,7 +136,7 @@ static const unsigned char *noise(void)
 
 /* ---- URLs ---- */
 
-static void test_urls_mean_what_they_mean_to_lcm(void **state)
+static void urls_mean_what_they_mean_to_lcm(void **state)
 {
     (void) state;
     enum { DEFAULT_BUFFER = 4 << 20 };
@@ -168,7 +168,7 @@ static void test_urls_mean_what_they_mean_to_lcm(void **state)
     }
 }
 
-static void test_bad_urls_are_refused_in_one_line(void **state)
+static void bad_urls_are_refused_in_one_line(void **state)
 {
     (void) state;
     static const char *const bad[][2] = {
@@ -217,7 +217,7 @@ static void test_bad_urls_are_refused_in_one_line(void **state)
     }
 }
 
-static void test_long_urls_fit_the_reason(void **state)
+static void long_urls_fit_the_reason(void **state)
 {
     (void) state;
     static const char *const heads[] = {"", "udpm://", "udpm://" GROUP ":", "udpm://?",
@@ -234,7 +234,7 @@ static void test_long_urls_fit_the_reason(void **state)
     }
 }
 
-static void test_environment_names_the_bus(void **state)
+static void environment_names_the_bus(void **state)
 {
     (void) state;
     char url[128], why[BUS_WHY_MAX];
@@ -277,7 +277,7 @@ static int open_without_route(void)
                : 4;
 }
 
-static void test_missing_route_is_explained_and_liblcm_prints_nothing(void **state)
+static void missing_route_is_explained_and_liblcm_prints_nothing(void **state)
 {
     (void) state;
     int status;
@@ -291,7 +291,7 @@ static void test_missing_route_is_explained_and_liblcm_prints_nothing(void **sta
     assert_int_equal(WEXITSTATUS(status), 0);
 }
 
-static void test_no_free_descriptor_is_not_a_missing_route(void **state)
+static void no_free_descriptor_is_not_a_missing_route(void **state)
 {
     (void) state;
     char why[BUS_WHY_MAX] = "";
@@ -310,7 +310,7 @@ static void test_no_free_descriptor_is_not_a_missing_route(void **state)
 
 /* ---- Names ---- */
 
-static void test_prefixes_and_channels(void **state)
+static void prefixes_precede_channels(void **state)
 {
     (void) state;
     char channel[BUS_CHANNEL_MAX];
@@ -324,7 +324,7 @@ static void test_prefixes_and_channels(void **state)
     assert_string_equal(channel, "ARM_FMB_STATUS");
 }
 
-static void test_listeners_are_checked_and_numbered(void **state)
+static void listeners_are_checked_and_numbered(void **state)
 {
     (void) state;
     char name[BUS_CHANNEL_MAX + 1], why[BUS_WHY_MAX] = "";
@@ -359,7 +359,7 @@ static void test_listeners_are_checked_and_numbered(void **state)
 
 /* ---- Messages ---- */
 
-static void test_messages_of_every_size_arrive(void **state)
+static void messages_of_every_size_arrive(void **state)
 {
     (void) state;
     static const size_t sizes[] = {0, 1, 7, 1400, 65000, LARGEST};
@@ -373,7 +373,7 @@ static void test_messages_of_every_size_arrive(void **state)
 }
 
 /* Longer messages would leave as fragments. */
-static void test_what_fits_no_datagram_is_not_published(void **state)
+static void what_fits_no_datagram_is_not_published(void **state)
 {
     (void) state;
     char name[BUS_CHANNEL_MAX + 1];
@@ -392,7 +392,7 @@ static void test_what_fits_no_datagram_is_not_published(void **state)
     bus_close(bus);
 }
 
-static void test_a_batch_ends_at_its_size(void **state)
+static void a_batch_ends_at_its_size(void **state)
 {
     (void) state;
     enum { SENT = BUS_BATCH + 36 };
@@ -409,7 +409,7 @@ static void test_a_batch_ends_at_its_size(void **state)
     bus_close(bus);
 }
 
-static void test_buses_on_one_host_both_receive(void **state)
+static void buses_on_one_host_both_receive(void **state)
 {
     (void) state;
     struct bus *one = open_listening("C"), *two = open_listening("C");
@@ -422,7 +422,7 @@ static void test_buses_on_one_host_both_receive(void **state)
     bus_close(two);
 }
 
-static void test_foreign_channels_are_counted(void **state)
+static void foreign_channels_are_counted(void **state)
 {
     (void) state;
     struct bus *bus = open_listening("CHANNEL");
@@ -439,7 +439,7 @@ static void test_foreign_channels_are_counted(void **state)
 }
 
 /* A large message that arrived before its channel was added, and so was truncated, is dropped. */
-static void test_a_channel_added_later_delivers_whole_messages_only(void **state)
+static void a_channel_added_later_delivers_whole_messages_only(void **state)
 {
     (void) state;
     static const char *const added[] = {"B", NULL};
@@ -460,7 +460,7 @@ static void test_a_channel_added_later_delivers_whole_messages_only(void **state
 }
 
 /* Channel names of every length modulo 4, which the filter compares by words and bytes. */
-static void test_large_messages_are_whole_on_every_listened_channel(void **state)
+static void large_messages_are_whole_on_every_listened_channel(void **state)
 {
     (void) state;
     char names[BUS_LISTENERS_MAX][BUS_CHANNEL_MAX];
@@ -487,7 +487,7 @@ static ssize_t receive_raw(const struct bus *bus)
 
 /* Of a datagram on another channel from 1,016 bytes on (1,024 with the UDP header) only LCM's
  * header is received. */
-static void test_large_datagrams_on_other_channels_are_truncated(void **state)
+static void large_datagrams_on_other_channels_are_truncated(void **state)
 {
     (void) state;
     static const char *const others[] = {"CHANNEL2", "CHANNE", "cHANNEL", "CHANNEl", "X"};
@@ -507,7 +507,7 @@ static void test_large_datagrams_on_other_channels_are_truncated(void **state)
 
 /* Everything that kills or deceives liblcm. What the buffer held before must not decide: it holds a
  * message when each arrives. */
-static void test_malformed_datagrams_are_counted_and_harmless(void **state)
+static void malformed_datagrams_are_counted_and_harmless(void **state)
 {
     (void) state;
 #define LONG_63 "nnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnn"
@@ -578,7 +578,7 @@ static int count_joined(void)
     return sockets;
 }
 
-static void test_the_group_is_joined_until_the_bus_is_closed(void **state)
+static void the_group_is_joined_until_the_bus_is_closed(void **state)
 {
     (void) state;
     struct bus *bus = open_bus("");
@@ -589,7 +589,7 @@ static void test_the_group_is_joined_until_the_bus_is_closed(void **state)
     assert_int_equal(count_joined(), 0);
 }
 
-static void test_a_socket_that_fails_is_reported(void **state)
+static void a_socket_that_fails_is_reported(void **state)
 {
     (void) state;
     struct bus *bus = open_listening("C");
@@ -601,7 +601,7 @@ static void test_a_socket_that_fails_is_reported(void **state)
     bus_close(bus);
 }
 
-static void test_unicast_does_not_arrive(void **state)
+static void unicast_does_not_arrive(void **state)
 {
     (void) state;
     const int sender = open_sender();
@@ -613,7 +613,7 @@ static void test_unicast_does_not_arrive(void **state)
     close(sender);
 }
 
-static void test_ttl_is_that_of_the_url(void **state)
+static void ttl_is_that_of_the_url(void **state)
 {
     (void) state;
     static const int ttls[] = {0, 1, 7};
@@ -660,7 +660,7 @@ static uint64_t receive_all(struct bus *bus)
     return (uint64_t) latest.count;
 }
 
-static void test_datagrams_dropped_by_the_kernel_are_counted(void **state)
+static void datagrams_dropped_by_the_kernel_are_counted(void **state)
 {
     (void) state;
     enum { SENT = 200, SIZE = 1400 };
@@ -692,7 +692,7 @@ static uint32_t after_wrap(int fd)
     return 5;
 }
 
-static void test_counter_of_drops_does_not_wrap(void **state)
+static void counter_of_drops_does_not_wrap(void **state)
 {
     (void) state;
     struct bus *bus = open_listening("C");
@@ -705,7 +705,7 @@ static void test_counter_of_drops_does_not_wrap(void **state)
     bus_close(bus);
 }
 
-static void test_default_receive_buffer_is_4_mb_where_granted(void **state)
+static void default_receive_buffer_is_4_mb_where_granted(void **state)
 {
     (void) state;
     int granted = 0;
@@ -728,7 +728,7 @@ static int64_t ms_of(clockid_t clock)
     return (int64_t) time.tv_sec * 1000 + time.tv_nsec / 1000000;
 }
 
-static void test_wait_says_what_is_ready(void **state)
+static void wait_says_what_is_ready(void **state)
 {
     (void) state;
     int ends[2];
@@ -748,7 +748,7 @@ static void test_wait_says_what_is_ready(void **state)
     bus_close(bus);
 }
 
-static void test_wait_before_listening_and_after_messages_sleeps(void **state)
+static void wait_before_listening_and_after_messages_sleeps(void **state)
 {
     (void) state;
     enum { WAIT_MS = 300 };
@@ -783,7 +783,7 @@ static int count_yields(struct bus *bus, int timeout_ms)
     return yields;
 }
 
-static void test_waits_actively_once_after_publishing(void **state)
+static void waits_actively_once_after_publishing(void **state)
 {
     (void) state;
     struct bus *bus = open_listening("C");
@@ -796,7 +796,7 @@ static void test_waits_actively_once_after_publishing(void **state)
     bus_close(bus);
 }
 
-static void test_waits_actively_once_after_messages_of_its_channels(void **state)
+static void waits_actively_once_after_messages_of_its_channels(void **state)
 {
     (void) state;
     struct bus *bus = open_listening("C"), *other = open_bus("");
@@ -812,7 +812,7 @@ static void test_waits_actively_once_after_messages_of_its_channels(void **state
 }
 
 /* There a yield takes a whole time slice. */
-static void test_does_not_wait_actively_on_a_busy_core(void **state)
+static void does_not_wait_actively_on_a_busy_core(void **state)
 {
     (void) state;
     struct bus *bus = open_bus("");
@@ -840,7 +840,7 @@ static void on_lcm(const lcm_recv_buf_t *buffer, const char *channel, void *user
     snprintf(out->channel, sizeof out->channel, "%s", channel);
 }
 
-static void test_plain_lcm_understands_both_ways(void **state)
+static void plain_lcm_understands_both_ways(void **state)
 {
     (void) state;
     static const size_t sizes[] = {0, 1, 1400, LARGEST};
@@ -879,7 +879,7 @@ static int count_threads(void)
     return threads;
 }
 
-static void test_liblcm_starts_no_thread(void **state)
+static void liblcm_starts_no_thread(void **state)
 {
     (void) state;
     const int threads = count_threads();
@@ -893,7 +893,7 @@ static void test_liblcm_starts_no_thread(void **state)
 }
 
 /* LCM's own select() ends the process there. */
-static void test_many_descriptors_are_open(void **state)
+static void many_descriptors_are_open(void **state)
 {
     (void) state;
     enum { OPEN = 1100 };
@@ -927,7 +927,7 @@ static int count_descriptors(void)
     return count;
 }
 
-static void test_a_closed_bus_leaves_no_descriptor(void **state)
+static void a_closed_bus_leaves_no_descriptor(void **state)
 {
     (void) state;
     char why[BUS_WHY_MAX];
@@ -944,7 +944,7 @@ static void test_a_closed_bus_leaves_no_descriptor(void **state)
     }
 }
 
-static void test_child_closes_and_the_parent_goes_on(void **state)
+static void child_closes_and_the_parent_goes_on(void **state)
 {
     (void) state;
     int status;
@@ -966,40 +966,40 @@ static void test_child_closes_and_the_parent_goes_on(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_urls_mean_what_they_mean_to_lcm),
-        cmocka_unit_test(test_bad_urls_are_refused_in_one_line),
-        cmocka_unit_test(test_long_urls_fit_the_reason),
-        cmocka_unit_test(test_environment_names_the_bus),
-        cmocka_unit_test(test_missing_route_is_explained_and_liblcm_prints_nothing),
-        cmocka_unit_test(test_no_free_descriptor_is_not_a_missing_route),
-        cmocka_unit_test(test_prefixes_and_channels),
-        cmocka_unit_test(test_listeners_are_checked_and_numbered),
-        cmocka_unit_test(test_messages_of_every_size_arrive),
-        cmocka_unit_test(test_what_fits_no_datagram_is_not_published),
-        cmocka_unit_test(test_a_batch_ends_at_its_size),
-        cmocka_unit_test(test_buses_on_one_host_both_receive),
-        cmocka_unit_test(test_foreign_channels_are_counted),
-        cmocka_unit_test(test_a_channel_added_later_delivers_whole_messages_only),
-        cmocka_unit_test(test_large_messages_are_whole_on_every_listened_channel),
-        cmocka_unit_test(test_large_datagrams_on_other_channels_are_truncated),
-        cmocka_unit_test(test_malformed_datagrams_are_counted_and_harmless),
-        cmocka_unit_test(test_the_group_is_joined_until_the_bus_is_closed),
-        cmocka_unit_test(test_a_socket_that_fails_is_reported),
-        cmocka_unit_test(test_unicast_does_not_arrive),
-        cmocka_unit_test(test_ttl_is_that_of_the_url),
-        cmocka_unit_test(test_datagrams_dropped_by_the_kernel_are_counted),
-        cmocka_unit_test(test_counter_of_drops_does_not_wrap),
-        cmocka_unit_test(test_default_receive_buffer_is_4_mb_where_granted),
-        cmocka_unit_test(test_wait_says_what_is_ready),
-        cmocka_unit_test(test_wait_before_listening_and_after_messages_sleeps),
-        cmocka_unit_test(test_waits_actively_once_after_publishing),
-        cmocka_unit_test(test_waits_actively_once_after_messages_of_its_channels),
-        cmocka_unit_test(test_does_not_wait_actively_on_a_busy_core),
-        cmocka_unit_test(test_plain_lcm_understands_both_ways),
-        cmocka_unit_test(test_liblcm_starts_no_thread),
-        cmocka_unit_test(test_many_descriptors_are_open),
-        cmocka_unit_test(test_a_closed_bus_leaves_no_descriptor),
-        cmocka_unit_test(test_child_closes_and_the_parent_goes_on),
+        cmocka_unit_test(urls_mean_what_they_mean_to_lcm),
+        cmocka_unit_test(bad_urls_are_refused_in_one_line),
+        cmocka_unit_test(long_urls_fit_the_reason),
+        cmocka_unit_test(environment_names_the_bus),
+        cmocka_unit_test(missing_route_is_explained_and_liblcm_prints_nothing),
+        cmocka_unit_test(no_free_descriptor_is_not_a_missing_route),
+        cmocka_unit_test(prefixes_precede_channels),
+        cmocka_unit_test(listeners_are_checked_and_numbered),
+        cmocka_unit_test(messages_of_every_size_arrive),
+        cmocka_unit_test(what_fits_no_datagram_is_not_published),
+        cmocka_unit_test(a_batch_ends_at_its_size),
+        cmocka_unit_test(buses_on_one_host_both_receive),
+        cmocka_unit_test(foreign_channels_are_counted),
+        cmocka_unit_test(a_channel_added_later_delivers_whole_messages_only),
+        cmocka_unit_test(large_messages_are_whole_on_every_listened_channel),
+        cmocka_unit_test(large_datagrams_on_other_channels_are_truncated),
+        cmocka_unit_test(malformed_datagrams_are_counted_and_harmless),
+        cmocka_unit_test(the_group_is_joined_until_the_bus_is_closed),
+        cmocka_unit_test(a_socket_that_fails_is_reported),
+        cmocka_unit_test(unicast_does_not_arrive),
+        cmocka_unit_test(ttl_is_that_of_the_url),
+        cmocka_unit_test(datagrams_dropped_by_the_kernel_are_counted),
+        cmocka_unit_test(counter_of_drops_does_not_wrap),
+        cmocka_unit_test(default_receive_buffer_is_4_mb_where_granted),
+        cmocka_unit_test(wait_says_what_is_ready),
+        cmocka_unit_test(wait_before_listening_and_after_messages_sleeps),
+        cmocka_unit_test(waits_actively_once_after_publishing),
+        cmocka_unit_test(waits_actively_once_after_messages_of_its_channels),
+        cmocka_unit_test(does_not_wait_actively_on_a_busy_core),
+        cmocka_unit_test(plain_lcm_understands_both_ways),
+        cmocka_unit_test(liblcm_starts_no_thread),
+        cmocka_unit_test(many_descriptors_are_open),
+        cmocka_unit_test(a_closed_bus_leaves_no_descriptor),
+        cmocka_unit_test(child_closes_and_the_parent_goes_on),
     };
     (void) argc;
     relay_enter(argv);

@@ -65,7 +65,7 @@ static void give_one_frame(void)
 
 /* ---- A bad bus ---- */
 
-static void test_what_the_bus_loses_is_sent_again(void **state)
+static void what_the_bus_loses_is_sent_again(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -101,7 +101,7 @@ static void ignore_scene(void *user, const struct fmb_client_scene_result *resul
     (void) result;
 }
 
-static void test_messages_that_cannot_be_read_are_counted(void **state)
+static void messages_that_cannot_be_read_are_counted(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -134,7 +134,7 @@ static void publish_pair_results(struct relay *relay)
     }
 }
 
-static void test_results_of_another_kind_are_ignored(void **state)
+static void results_of_another_kind_are_ignored(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -169,7 +169,7 @@ static void count_pairs(void *user, const struct fmb_client_pair_result *result)
     ++*(int *) user;
 }
 
-static void test_results_of_another_client_reach_only_the_watcher(void **state)
+static void results_of_another_client_reach_only_the_watcher(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -234,7 +234,7 @@ static struct request *send_unsent(enum fmb_client_kind kind, size_t bytes, size
 }
 
 /* A later query of a request may be larger than the first. */
-static void test_larger_queries_of_a_request_are_charged(void **state)
+static void larger_queries_of_a_request_are_charged(void **state)
 {
     (void) state;
     int status;
@@ -247,7 +247,7 @@ static void test_larger_queries_of_a_request_are_charged(void **state)
 }
 
 /* A request releases its share of the window when it ends. */
-static void test_the_window_is_free_when_all_requests_have_ended(void **state)
+static void the_window_is_free_when_all_requests_have_ended(void **state)
 {
     (void) state;
     int status;
@@ -266,7 +266,7 @@ static void test_the_window_is_free_when_all_requests_have_ended(void **state)
 }
 
 /* In the end the refusal is the result. Its pauses, a minute in all, are not waited for. */
-static void test_a_service_that_stays_busy_is_given_up(void **state)
+static void a_service_that_stays_busy_is_given_up(void **state)
 {
     (void) state;
     const struct request_result busy = {
@@ -297,7 +297,7 @@ static void wait_a_millisecond(void *user, int other_fd, int timeout_ms)
     nanosleep(&(struct timespec){0, 1000000}, NULL);
 }
 
-static void test_results_without_a_query_do_not_prolong_others(void **state)
+static void results_without_a_query_do_not_prolong_others(void **state)
 {
     (void) state;
     enum { MS = 1000000, TIMEOUT = 20 * MS, TRIES = 3 };
@@ -349,7 +349,7 @@ static double seconds_since(int64_t start)
 
 /* A client may run for hours, and the service be started after it. While there is none, each call
  * takes a timeout, and sends only one query. */
-static void test_a_service_that_comes_back_is_found(void **state)
+static void a_service_that_comes_back_is_found(void **state)
 {
     (void) state;
     const double timeout = 0.1;
@@ -394,7 +394,7 @@ static void hear_third(struct relay *relay)
     relay->deaf = relay->queries < 3;
 }
 
-static void test_a_repeat_finds_the_service(void **state)
+static void a_repeat_finds_the_service(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -412,7 +412,7 @@ static void test_a_repeat_finds_the_service(void **state)
     relay_close(relay);
 }
 
-static void test_no_service_costs_the_time_of_one_query(void **state)
+static void no_service_costs_the_time_of_one_query(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -436,7 +436,7 @@ static void test_no_service_costs_the_time_of_one_query(void **state)
 
 /* Under one number, the first time soon, then after twice the time each: a datagram that is lost
  * costs milliseconds, and a service that is slow is not flooded. */
-static void test_a_lost_query_is_repeated_soon_and_then_more_rarely(void **state)
+static void a_lost_query_is_repeated_soon_and_then_more_rarely(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -473,7 +473,7 @@ static void lose_one_and_be_slow(struct relay *relay)
     relay->deaf = relay->queries == 3;
 }
 
-static void test_queries_in_line_are_not_repeated(void **state)
+static void queries_in_line_are_not_repeated(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -510,7 +510,7 @@ static void be_slow_and_answer_once(struct relay *relay)
 
 /* The time from the last repeat to the result of the first query is not the time that the service
  * takes. A client that measured it would go on to repeat. */
-static void test_a_slow_service_gets_repeats_at_first_only(void **state)
+static void a_slow_service_gets_repeats_at_first_only(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -534,7 +534,7 @@ static void die(struct relay *relay)
     relay->deaf = relay->queries > 3;
 }
 
-static void test_the_others_have_no_answer(void **state)
+static void the_others_have_no_answer(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -552,7 +552,7 @@ static void test_the_others_have_no_answer(void **state)
     relay_close(relay);
 }
 
-static void test_the_time_for_all_ends_it(void **state)
+static void the_time_for_all_ends_it(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -578,7 +578,7 @@ static void check_slowly(void *user, const struct fmb_client_answer *answer)
     relay_check(user, answer);
 }
 
-static void test_a_caller_that_takes_long_gets_all_answers(void **state)
+static void a_caller_that_takes_long_gets_all_answers(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -600,7 +600,7 @@ static void test_a_caller_that_takes_long_gets_all_answers(void **state)
 
 /* What is under way at once fits into a usual receive buffer: two of the largest datagrams, or many
  * small ones. */
-static void test_what_is_under_way_is_limited(void **state)
+static void what_is_under_way_is_limited(void **state)
 {
     (void) state;
     struct fmb_client_scene scene = all_pairs();
@@ -803,7 +803,7 @@ static const struct {
 };
 
 /* A forged result is ignored: it gives no answer, and counts as malformed. */
-static void test_forged_results_are_ignored(void **state)
+static void forged_results_are_ignored(void **state)
 {
     (void) state;
     for (size_t i = 0; i < sizeof lies / sizeof *lies; i++)
@@ -869,7 +869,7 @@ static void gaps_unwanted(struct scene_result *result, int turn)
     memset(result->gap, 0, (size_t) result->verdict_count * sizeof *result->gap);
 }
 
-static void test_forged_gaps_are_ignored(void **state)
+static void forged_gaps_are_ignored(void **state)
 {
     (void) state;
     static relay_lie *const gap_lies[] = {no_gaps, too_far_apart, no_gap, gaps_of_2d,
@@ -911,7 +911,7 @@ static const struct {
     {FMB_SEPARATED, false, false, true, 0, false},
 };
 
-static void test_results_of_a_pair_fit_their_query(void **state)
+static void results_of_a_pair_fit_their_query(void **state)
 {
     (void) state;
     static const struct part part = {.placement = {0, 2}, .pair = {{0, 1}}}; /* of one frame */
@@ -934,7 +934,7 @@ static void test_results_of_a_pair_fit_their_query(void **state)
 
 /* The frames that have a gap, of bodies of one frame and of three: named if and only if a body has
  * several, and such that the body has. */
-static void test_frames_of_a_gap_fit_the_bodies(void **state)
+static void frames_of_a_gap_fit_the_bodies(void **state)
 {
     (void) state;
     static const struct {
@@ -987,7 +987,7 @@ static void lies_at_first(struct scene_result *result, int turn)
         result->end_pair = -7;
 }
 
-static void test_the_right_result_after_forged_ones_is_taken(void **state)
+static void the_right_result_after_forged_ones_is_taken(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -1013,7 +1013,7 @@ static void step_by_step(struct scene_result *result, int turn)
     keep_first(result, 1);
 }
 
-static void test_steps_of_one_pair_end(void **state)
+static void steps_of_one_pair_end(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -1042,7 +1042,7 @@ static void in_no_time(struct scene_result *result, int turn)
 }
 
 /* A query lists as many pairs as are decided soon. */
-static void test_slow_services_get_fewer_pairs_a_query(void **state)
+static void slow_services_get_fewer_pairs_a_query(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -1092,7 +1092,7 @@ static uint64_t queries_with(relay_lie *lie)
     return counts.queries - before;
 }
 
-static void test_unknown_bodies_for_ever_are_sent_whole(void **state)
+static void unknown_bodies_for_ever_are_sent_whole(void **state)
 {
     (void) state;
     assert_int_equal(queries_with(unknown_body), 2); /* by handle, then whole */
@@ -1107,14 +1107,14 @@ static void another_unknown_body(struct scene_result *result, int turn)
     result->unknown[0] = (unsigned) turn % 100;
 }
 
-static void test_unknown_bodies_one_by_one_are_sent_whole(void **state)
+static void unknown_bodies_one_by_one_are_sent_whole(void **state)
 {
     (void) state;
     assert_int_equal(queries_with(another_unknown_body), 3);
 }
 
 /* Of two services on a bus, the one that holds no body answers first. */
-static void test_an_answer_counts_more_than_an_unknown_body(void **state)
+static void an_answer_counts_more_than_an_unknown_body(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -1156,7 +1156,7 @@ static void hear_two(struct relay *relay)
     relay->deaf = relay->queries > 2;
 }
 
-static void test_a_late_answer_to_the_query_by_handle_is_taken(void **state)
+static void a_late_answer_to_the_query_by_handle_is_taken(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -1189,7 +1189,7 @@ static void no_pair_handle(struct pair_result *result, int turn)
     result->handle[0] = none;
 }
 
-static void test_wrong_handles_of_a_pair_are_malformed(void **state)
+static void wrong_handles_of_a_pair_are_malformed(void **state)
 {
     (void) state;
     relay_pair_lie *const lie[] = {another_pair_handle, no_pair_handle};
@@ -1209,7 +1209,7 @@ static void test_wrong_handles_of_a_pair_are_malformed(void **state)
 }
 
 /* A body that replaces another one in its slot is not held. */
-static void test_a_new_body_in_a_slot_is_not_held(void **state)
+static void a_new_body_in_a_slot_is_not_held(void **state)
 {
     (void) state;
     static struct held held;
@@ -1269,7 +1269,7 @@ static uint64_t contradicting(struct fmb_client *client)
     return fmb_client_get_counts(client).contradicting;
 }
 
-static void test_contradicting_second_results_are_counted(void **state)
+static void contradicting_second_results_are_counted(void **state)
 {
     (void) state;
     static const struct {
@@ -1300,7 +1300,7 @@ static void test_contradicting_second_results_are_counted(void **state)
     }
 }
 
-static void test_contradicting_results_of_pairs_are_counted(void **state)
+static void contradicting_results_of_pairs_are_counted(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -1320,7 +1320,7 @@ static void test_contradicting_results_of_pairs_are_counted(void **state)
 
 /* Of recent results as many are kept as the numbers have remainders: an old one is not taken for a
  * newer one of the same remainder. */
-static void test_old_results_contradict_nothing(void **state)
+static void old_results_contradict_nothing(void **state)
 {
     (void) state;
     static struct recent recent;
@@ -1354,7 +1354,7 @@ static void test_old_results_contradict_nothing(void **state)
 /* ---- The process ---- */
 
 /* LCM's own receiver, which uses select(), aborts there. */
-static void test_many_open_descriptors(void **state)
+static void many_open_descriptors_do_not_matter(void **state)
 {
     (void) state;
     enum { COUNT = 1100 };
@@ -1378,7 +1378,7 @@ static void test_many_open_descriptors(void **state)
     relay_close(relay);
 }
 
-static void test_a_child_that_closes_harms_nothing(void **state)
+static void a_child_that_closes_harms_nothing(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -1423,7 +1423,7 @@ static void query_within(void *user, const struct fmb_client_answer *answer)
     assert_int_equal(fmb_client_watch(within->client, &watcher), FMB_CLIENT_INSIDE);
 }
 
-static void test_no_call_within_a_callback(void **state)
+static void no_call_within_a_callback(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -1474,7 +1474,7 @@ static void on_malformed(void *user, const char *what)
 }
 
 /* One client listens to what another one is answered. */
-static void test_watching(void **state)
+static void a_watcher_sees_all_results(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -1518,7 +1518,7 @@ static void test_watching(void **state)
 
 /* ---- Opening ---- */
 
-static void test_wrong_options_are_refused(void **state)
+static void wrong_options_are_refused(void **state)
 {
     (void) state;
     char why[FMB_CLIENT_WHY_MAX], little[8];
@@ -1541,45 +1541,45 @@ static void test_wrong_options_are_refused(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_the_bus_loses_is_sent_again),
-        cmocka_unit_test(test_messages_that_cannot_be_read_are_counted),
-        cmocka_unit_test(test_results_of_another_kind_are_ignored),
-        cmocka_unit_test(test_results_of_another_client_reach_only_the_watcher),
-        cmocka_unit_test(test_larger_queries_of_a_request_are_charged),
-        cmocka_unit_test(test_the_window_is_free_when_all_requests_have_ended),
-        cmocka_unit_test(test_a_service_that_stays_busy_is_given_up),
-        cmocka_unit_test(test_results_without_a_query_do_not_prolong_others),
-        cmocka_unit_test(test_a_service_that_comes_back_is_found),
-        cmocka_unit_test(test_a_repeat_finds_the_service),
-        cmocka_unit_test(test_no_service_costs_the_time_of_one_query),
-        cmocka_unit_test(test_a_lost_query_is_repeated_soon_and_then_more_rarely),
-        cmocka_unit_test(test_queries_in_line_are_not_repeated),
-        cmocka_unit_test(test_a_slow_service_gets_repeats_at_first_only),
-        cmocka_unit_test(test_the_others_have_no_answer),
-        cmocka_unit_test(test_the_time_for_all_ends_it),
-        cmocka_unit_test(test_a_caller_that_takes_long_gets_all_answers),
-        cmocka_unit_test(test_what_is_under_way_is_limited),
-        cmocka_unit_test(test_forged_results_are_ignored),
-        cmocka_unit_test(test_forged_gaps_are_ignored),
-        cmocka_unit_test(test_results_of_a_pair_fit_their_query),
-        cmocka_unit_test(test_frames_of_a_gap_fit_the_bodies),
-        cmocka_unit_test(test_the_right_result_after_forged_ones_is_taken),
-        cmocka_unit_test(test_steps_of_one_pair_end),
-        cmocka_unit_test(test_slow_services_get_fewer_pairs_a_query),
-        cmocka_unit_test(test_unknown_bodies_for_ever_are_sent_whole),
-        cmocka_unit_test(test_unknown_bodies_one_by_one_are_sent_whole),
-        cmocka_unit_test(test_an_answer_counts_more_than_an_unknown_body),
-        cmocka_unit_test(test_a_late_answer_to_the_query_by_handle_is_taken),
-        cmocka_unit_test(test_wrong_handles_of_a_pair_are_malformed),
-        cmocka_unit_test(test_a_new_body_in_a_slot_is_not_held),
-        cmocka_unit_test(test_contradicting_second_results_are_counted),
-        cmocka_unit_test(test_contradicting_results_of_pairs_are_counted),
-        cmocka_unit_test(test_old_results_contradict_nothing),
-        cmocka_unit_test(test_many_open_descriptors),
-        cmocka_unit_test(test_a_child_that_closes_harms_nothing),
-        cmocka_unit_test(test_no_call_within_a_callback),
-        cmocka_unit_test(test_watching),
-        cmocka_unit_test(test_wrong_options_are_refused),
+        cmocka_unit_test(what_the_bus_loses_is_sent_again),
+        cmocka_unit_test(messages_that_cannot_be_read_are_counted),
+        cmocka_unit_test(results_of_another_kind_are_ignored),
+        cmocka_unit_test(results_of_another_client_reach_only_the_watcher),
+        cmocka_unit_test(larger_queries_of_a_request_are_charged),
+        cmocka_unit_test(the_window_is_free_when_all_requests_have_ended),
+        cmocka_unit_test(a_service_that_stays_busy_is_given_up),
+        cmocka_unit_test(results_without_a_query_do_not_prolong_others),
+        cmocka_unit_test(a_service_that_comes_back_is_found),
+        cmocka_unit_test(a_repeat_finds_the_service),
+        cmocka_unit_test(no_service_costs_the_time_of_one_query),
+        cmocka_unit_test(a_lost_query_is_repeated_soon_and_then_more_rarely),
+        cmocka_unit_test(queries_in_line_are_not_repeated),
+        cmocka_unit_test(a_slow_service_gets_repeats_at_first_only),
+        cmocka_unit_test(the_others_have_no_answer),
+        cmocka_unit_test(the_time_for_all_ends_it),
+        cmocka_unit_test(a_caller_that_takes_long_gets_all_answers),
+        cmocka_unit_test(what_is_under_way_is_limited),
+        cmocka_unit_test(forged_results_are_ignored),
+        cmocka_unit_test(forged_gaps_are_ignored),
+        cmocka_unit_test(results_of_a_pair_fit_their_query),
+        cmocka_unit_test(frames_of_a_gap_fit_the_bodies),
+        cmocka_unit_test(the_right_result_after_forged_ones_is_taken),
+        cmocka_unit_test(steps_of_one_pair_end),
+        cmocka_unit_test(slow_services_get_fewer_pairs_a_query),
+        cmocka_unit_test(unknown_bodies_for_ever_are_sent_whole),
+        cmocka_unit_test(unknown_bodies_one_by_one_are_sent_whole),
+        cmocka_unit_test(an_answer_counts_more_than_an_unknown_body),
+        cmocka_unit_test(a_late_answer_to_the_query_by_handle_is_taken),
+        cmocka_unit_test(wrong_handles_of_a_pair_are_malformed),
+        cmocka_unit_test(a_new_body_in_a_slot_is_not_held),
+        cmocka_unit_test(contradicting_second_results_are_counted),
+        cmocka_unit_test(contradicting_results_of_pairs_are_counted),
+        cmocka_unit_test(old_results_contradict_nothing),
+        cmocka_unit_test(many_open_descriptors_do_not_matter),
+        cmocka_unit_test(a_child_that_closes_harms_nothing),
+        cmocka_unit_test(no_call_within_a_callback),
+        cmocka_unit_test(a_watcher_sees_all_results),
+        cmocka_unit_test(wrong_options_are_refused),
     };
     (void) argc;
     relay_enter(argv);

@@ -49,7 +49,7 @@ static unsigned (*list_of(size_t count, size_t frames))[2]
 
 /* ---- Sizes and orders ---- */
 
-static void test_small_scenes_of_every_kind(void **state)
+static void small_scenes_of_every_kind_are_answered(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -82,7 +82,7 @@ static void test_small_scenes_of_every_kind(void **state)
     relay_close(relay);
 }
 
-static void test_all_pairs_of_many_bodies(void **state)
+static void all_pairs_of_many_bodies_are_answered(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -100,7 +100,7 @@ static void test_all_pairs_of_many_bodies(void **state)
 }
 
 /* Results with no space for all answers: nearly all pairs meet. */
-static void test_all_pairs_of_a_crowd(void **state)
+static void all_pairs_of_a_crowd_are_answered(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -119,7 +119,7 @@ static void test_all_pairs_of_a_crowd(void **state)
     relay_close(relay);
 }
 
-static void test_many_pairs_listed(void **state)
+static void many_listed_pairs_are_answered(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -198,7 +198,7 @@ static void check_method(void *user, const struct fmb_client_answer *answer)
 }
 
 /* fmb and sat answer listed pairs only; the library lists them. */
-static void test_every_method(void **state)
+static void every_method_answers(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -220,7 +220,7 @@ static void test_every_method(void **state)
 }
 
 /* Near pairs, none missed, in the blocks that a large scene is divided into. */
-static void test_near_pairs_of_many_bodies(void **state)
+static void near_pairs_of_many_bodies_are_answered(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -271,7 +271,7 @@ static void check_certificate(void *user, const struct fmb_client_answer *answer
     giving->given++;
 }
 
-static void test_certificates_of_all_pairs(void **state)
+static void all_pairs_have_certificates(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -315,7 +315,7 @@ static void use_vertices(struct fmb_client_frame *frame, int dim, double (*verte
 }
 
 /* Groups, names, a label, and frames by vertices, in queries of every kind. */
-static void test_groups_names_and_vertices(void **state)
+static void groups_names_and_vertices(void **state)
 {
     (void) state;
     enum { BODIES = 300 };
@@ -364,7 +364,7 @@ static void test_groups_names_and_vertices(void **state)
 }
 
 /* Each pair a query of its own: no pair within a group is sent. */
-static void test_groups_where_pairs_are_listed(void **state)
+static void groups_where_pairs_are_listed(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -385,7 +385,7 @@ static void test_groups_where_pairs_are_listed(void **state)
     relay_close(relay);
 }
 
-static void test_one_pair(void **state)
+static void one_pair_is_answered(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -427,7 +427,7 @@ static void wrong(struct fmb_client *client, const struct fmb_client_scene *scen
     assert_memory_equal(fmb_client_why(client), place, strlen(place));
 }
 
-static void test_wrong_scenes_are_refused(void **state)
+static void wrong_scenes_are_refused(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -519,7 +519,7 @@ static void count_meeting(void *user, const struct fmb_client_answer *answer)
     *(int *) user += answer->answer.verdict >= FMB_TOUCHING;
 }
 
-static void test_a_scene_of_zeros_queries_all_pairs(void **state)
+static void a_scene_of_zeros_queries_all_pairs(void **state)
 {
     (void) state;
     static const struct fmb_client_frame cube = {.shape = FMB_BOX, .components = {1, 1, 1}};
@@ -542,7 +542,7 @@ static void test_a_scene_of_zeros_queries_all_pairs(void **state)
     relay_close(relay);
 }
 
-static void test_bodies_that_move_need_a_window(void **state)
+static void bodies_that_move_need_a_window(void **state)
 {
     (void) state;
     static const struct fmb_client_frame cube = {.shape = FMB_BOX, .components = {1, 1, 1}};
@@ -583,7 +583,7 @@ static void count_refusals(void *user, const struct fmb_client_answer *answer)
     ++*(int *) user;
 }
 
-static void test_refusals_of_the_service_are_given(void **state)
+static void refusals_of_the_service_are_given(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -607,7 +607,7 @@ static void count_no_gaps(void *user, const struct fmb_client_answer *answer)
     ++*(int *) user;
 }
 
-static void test_methods_without_gaps(void **state)
+static void methods_without_gaps_give_none(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -667,7 +667,7 @@ static struct fmb_client_counts query_world(struct world *world)
     return counts;
 }
 
-static void test_bodies_go_by_handle_the_second_time(void **state)
+static void bodies_go_by_handle_the_second_time(void **state)
 {
     (void) state;
     struct world world;
@@ -697,7 +697,7 @@ static void test_bodies_go_by_handle_the_second_time(void **state)
 }
 
 /* Another client gives the ids to other bodies: neither has to send anything again. */
-static void test_equal_ids_of_two_clients_do_not_matter(void **state)
+static void equal_ids_of_two_clients_do_not_matter(void **state)
 {
     (void) state;
     struct world world;
@@ -720,7 +720,7 @@ static void test_equal_ids_of_two_clients_do_not_matter(void **state)
     close_world(&world);
 }
 
-static void test_a_new_service_holds_no_bodies(void **state)
+static void a_new_service_holds_no_bodies(void **state)
 {
     (void) state;
     struct world world;
@@ -734,7 +734,7 @@ static void test_a_new_service_holds_no_bodies(void **state)
     close_world(&world);
 }
 
-static void test_a_cache_of_one_body_is_enough(void **state)
+static void a_cache_of_one_body_is_enough(void **state)
 {
     (void) state;
     for (size_t bodies = 1; bodies <= 64; bodies *= 4) {
@@ -755,7 +755,7 @@ static void steal(struct relay *relay)
     stolen++;
 }
 
-static void test_bodies_that_are_never_held_end(void **state)
+static void bodies_that_are_never_held_end(void **state)
 {
     (void) state;
     struct world world;
@@ -771,7 +771,7 @@ static void test_bodies_that_are_never_held_end(void **state)
 }
 
 /* The same id twice in a scene, with different components. */
-static void test_an_id_may_stand_twice(void **state)
+static void an_id_may_stand_twice(void **state)
 {
     (void) state;
     struct world world;
@@ -785,7 +785,7 @@ static void test_an_id_may_stand_twice(void **state)
 
 /* ---- Ignored pairs, and bodies of many frames ---- */
 
-static void test_ignored_pairs_are_left_out(void **state)
+static void ignored_pairs_are_left_out(void **state)
 {
     (void) state;
     struct world world;
@@ -814,7 +814,7 @@ static void test_ignored_pairs_are_left_out(void **state)
 }
 
 /* Two bodies that do not fit into one datagram together: their frames are sent first. */
-static void test_bodies_of_many_frames(void **state)
+static void bodies_of_many_frames_are_answered(void **state)
 {
     (void) state;
     enum { FRAMES = 500, BODIES = 5 };
@@ -863,7 +863,7 @@ static size_t bytes_of(const struct fmb_client_placement *body)
 
 /* A listed pair in a query that is as large as a datagram, and a byte less, and a few more: then
  * the bodies are sent first. */
-static void test_pairs_that_just_fit_into_a_datagram(void **state)
+static void pairs_that_just_fit_into_a_datagram(void **state)
 {
     (void) state;
     enum { BOX = 49, MORE = 48 }; /* bytes of a box, and how many more a cuboid has */
@@ -909,7 +909,7 @@ static void test_pairs_that_just_fit_into_a_datagram(void **state)
 
 /* ---- Several clients ---- */
 
-static void test_two_clients_in_a_process(void **state)
+static void two_clients_in_a_process(void **state)
 {
     (void) state;
     struct world world;
@@ -955,7 +955,7 @@ static void *run(void *user)
     return NULL;
 }
 
-static void test_clients_in_threads(void **state)
+static void clients_of_several_threads_are_independent(void **state)
 {
     (void) state;
     struct thread thread[2];
@@ -987,32 +987,32 @@ static void test_clients_in_threads(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_small_scenes_of_every_kind),
-        cmocka_unit_test(test_all_pairs_of_many_bodies),
-        cmocka_unit_test(test_all_pairs_of_a_crowd),
-        cmocka_unit_test(test_many_pairs_listed),
-        cmocka_unit_test(test_every_method),
-        cmocka_unit_test(test_near_pairs_of_many_bodies),
-        cmocka_unit_test(test_certificates_of_all_pairs),
-        cmocka_unit_test(test_groups_names_and_vertices),
-        cmocka_unit_test(test_groups_where_pairs_are_listed),
-        cmocka_unit_test(test_one_pair),
-        cmocka_unit_test(test_wrong_scenes_are_refused),
-        cmocka_unit_test(test_a_scene_of_zeros_queries_all_pairs),
-        cmocka_unit_test(test_bodies_that_move_need_a_window),
-        cmocka_unit_test(test_refusals_of_the_service_are_given),
-        cmocka_unit_test(test_methods_without_gaps),
-        cmocka_unit_test(test_bodies_go_by_handle_the_second_time),
-        cmocka_unit_test(test_equal_ids_of_two_clients_do_not_matter),
-        cmocka_unit_test(test_a_new_service_holds_no_bodies),
-        cmocka_unit_test(test_a_cache_of_one_body_is_enough),
-        cmocka_unit_test(test_bodies_that_are_never_held_end),
-        cmocka_unit_test(test_an_id_may_stand_twice),
-        cmocka_unit_test(test_ignored_pairs_are_left_out),
-        cmocka_unit_test(test_bodies_of_many_frames),
-        cmocka_unit_test(test_pairs_that_just_fit_into_a_datagram),
-        cmocka_unit_test(test_two_clients_in_a_process),
-        cmocka_unit_test(test_clients_in_threads),
+        cmocka_unit_test(small_scenes_of_every_kind_are_answered),
+        cmocka_unit_test(all_pairs_of_many_bodies_are_answered),
+        cmocka_unit_test(all_pairs_of_a_crowd_are_answered),
+        cmocka_unit_test(many_listed_pairs_are_answered),
+        cmocka_unit_test(every_method_answers),
+        cmocka_unit_test(near_pairs_of_many_bodies_are_answered),
+        cmocka_unit_test(all_pairs_have_certificates),
+        cmocka_unit_test(groups_names_and_vertices),
+        cmocka_unit_test(groups_where_pairs_are_listed),
+        cmocka_unit_test(one_pair_is_answered),
+        cmocka_unit_test(wrong_scenes_are_refused),
+        cmocka_unit_test(a_scene_of_zeros_queries_all_pairs),
+        cmocka_unit_test(bodies_that_move_need_a_window),
+        cmocka_unit_test(refusals_of_the_service_are_given),
+        cmocka_unit_test(methods_without_gaps_give_none),
+        cmocka_unit_test(bodies_go_by_handle_the_second_time),
+        cmocka_unit_test(equal_ids_of_two_clients_do_not_matter),
+        cmocka_unit_test(a_new_service_holds_no_bodies),
+        cmocka_unit_test(a_cache_of_one_body_is_enough),
+        cmocka_unit_test(bodies_that_are_never_held_end),
+        cmocka_unit_test(an_id_may_stand_twice),
+        cmocka_unit_test(ignored_pairs_are_left_out),
+        cmocka_unit_test(bodies_of_many_frames_are_answered),
+        cmocka_unit_test(pairs_that_just_fit_into_a_datagram),
+        cmocka_unit_test(two_clients_in_a_process),
+        cmocka_unit_test(clients_of_several_threads_are_independent),
     };
     (void) argc;
     relay_enter(argv);

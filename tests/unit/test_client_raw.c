@@ -87,7 +87,7 @@ static void send_pair(struct fmb_client *client, int64_t a, int64_t b, struct pa
         fmb_client_raw_send(client, FMB_CLIENT_PAIR, message, size, size, take_pair, out), FMB_OK);
 }
 
-static void test_many_pairs_over_a_bad_bus(void **state)
+static void many_pairs_are_answered_over_a_bad_bus(void **state)
 {
     (void) state;
     enum { COUNT = 300 };
@@ -117,7 +117,7 @@ static void test_many_pairs_over_a_bad_bus(void **state)
     relay_close(relay);
 }
 
-static void test_a_window_of_64_is_under_way(void **state)
+static void a_window_of_64_is_under_way(void **state)
 {
     (void) state;
     static struct pair pair[FMB_CLIENT_RAW_WINDOW];
@@ -149,7 +149,7 @@ static void test_a_window_of_64_is_under_way(void **state)
 
 /* No more bytes than a stock receive buffer holds: two of the largest datagrams. */
 /* A query is lost, and its caller comes back only when the time for all its repeats is over. */
-static void test_a_caller_that_was_away_repeats_its_query(void **state)
+static void a_caller_that_was_away_repeats_its_query(void **state)
 {
     (void) state;
     struct pair pair = {0};
@@ -167,7 +167,7 @@ static void test_a_caller_that_was_away_repeats_its_query(void **state)
     relay_close(relay);
 }
 
-static void test_large_queries_are_few_at_a_time(void **state)
+static void large_queries_are_few_at_a_time(void **state)
 {
     (void) state;
     static struct pair pair;
@@ -188,7 +188,7 @@ static void test_large_queries_are_few_at_a_time(void **state)
     relay_close(relay);
 }
 
-static void test_messages_that_are_none_are_refused(void **state)
+static void messages_that_are_none_are_refused(void **state)
 {
     (void) state;
     static unsigned char message[QUERY_BYTES_MAX + 1];
@@ -207,7 +207,7 @@ static void test_messages_that_are_none_are_refused(void **state)
 
 /* Other clients' results fill the buffer of a client that is idle: before a query is sent, all of
  * them are read, so that its result has space. */
-static void test_an_idle_client_is_drained_before_a_query(void **state)
+static void an_idle_client_is_drained_before_a_query(void **state)
 {
     (void) state;
     static struct pair pair;
@@ -274,7 +274,7 @@ static void query_definition(struct fmb_client *client, int64_t first, const str
     finish(client);
 }
 
-static void test_scenes_and_definitions(void **state)
+static void scenes_and_definitions_are_answered(void **state)
 {
     (void) state;
     static struct scene_result scene;
@@ -302,7 +302,7 @@ static void test_scenes_and_definitions(void **state)
 
 /* ---- The loop ---- */
 
-static void test_a_step_ends_with_another_descriptor(void **state)
+static void a_step_ends_with_another_descriptor(void **state)
 {
     (void) state;
     static struct pair pair;
@@ -334,7 +334,7 @@ static void step_within(void *user, const struct fmb_client_raw_result *result)
         FMB_CLIENT_INSIDE);
 }
 
-static void test_no_call_within_a_callback(void **state)
+static void no_call_within_a_callback(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -380,7 +380,7 @@ static void tap(void *user, const struct bus_message *message)
     }
 }
 
-static void test_a_tap_gets_all_messages_first(void **state)
+static void a_tap_gets_all_messages_first(void **state)
 {
     (void) state;
     struct relay *relay = relay_new();
@@ -411,16 +411,16 @@ static void test_a_tap_gets_all_messages_first(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_many_pairs_over_a_bad_bus),
-        cmocka_unit_test(test_a_window_of_64_is_under_way),
-        cmocka_unit_test(test_a_caller_that_was_away_repeats_its_query),
-        cmocka_unit_test(test_large_queries_are_few_at_a_time),
-        cmocka_unit_test(test_messages_that_are_none_are_refused),
-        cmocka_unit_test(test_an_idle_client_is_drained_before_a_query),
-        cmocka_unit_test(test_scenes_and_definitions),
-        cmocka_unit_test(test_a_step_ends_with_another_descriptor),
-        cmocka_unit_test(test_no_call_within_a_callback),
-        cmocka_unit_test(test_a_tap_gets_all_messages_first),
+        cmocka_unit_test(many_pairs_are_answered_over_a_bad_bus),
+        cmocka_unit_test(a_window_of_64_is_under_way),
+        cmocka_unit_test(a_caller_that_was_away_repeats_its_query),
+        cmocka_unit_test(large_queries_are_few_at_a_time),
+        cmocka_unit_test(messages_that_are_none_are_refused),
+        cmocka_unit_test(an_idle_client_is_drained_before_a_query),
+        cmocka_unit_test(scenes_and_definitions_are_answered),
+        cmocka_unit_test(a_step_ends_with_another_descriptor),
+        cmocka_unit_test(no_call_within_a_callback),
+        cmocka_unit_test(a_tap_gets_all_messages_first),
     };
     (void) argc;
     relay_enter(argv);

@@ -15,7 +15,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void test_quantiles(void **state)
+static void quantiles_are_within_a_bucket(void **state)
 {
     (void) state;
     enum { COUNT = 10007 };
@@ -38,7 +38,7 @@ static void test_quantiles(void **state)
     assert_true(histogram.max == value[COUNT - 1]);
 }
 
-static void test_quantiles_at_the_edges(void **state)
+static void quantiles_at_the_edges_are_exact(void **state)
 {
     (void) state;
     static struct histogram histogram;
@@ -53,8 +53,8 @@ static void test_quantiles_at_the_edges(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_quantiles),
-        cmocka_unit_test(test_quantiles_at_the_edges),
+        cmocka_unit_test(quantiles_are_within_a_bucket),
+        cmocka_unit_test(quantiles_at_the_edges_are_exact),
     };
     return cmocka_run_group_tests_name("counters", tests, NULL, NULL);
 }

@@ -47,7 +47,7 @@ static void assert_found(struct world *world, const struct body *body)
     assert_memory_equal(found->bytes, body->bytes, found->size);
 }
 
-static int setup(void **state)
+static int set_up(void **state)
 {
     struct world *world = allocate(1, sizeof *world);
     world->definitions = definitions_open();
@@ -56,7 +56,7 @@ static int setup(void **state)
     return 0;
 }
 
-static int teardown(void **state)
+static int tear_down(void **state)
 {
     struct world *world = *state;
     definitions_close(world->definitions);
@@ -66,7 +66,7 @@ static int teardown(void **state)
 }
 
 /* More than the first buckets of a table, every other one twice. */
-static void test_many(void **state)
+static void many_bodies_are_defined(void **state)
 {
     enum { COUNT = 3000 };
     struct world *world = *state;
@@ -91,7 +91,7 @@ static void test_many(void **state)
     }
 }
 
-static void test_pair(void **state)
+static void bodies_of_a_pair_are_defined(void **state)
 {
     struct world *world = *state;
     struct body whole, named;
@@ -115,7 +115,7 @@ static void test_pair(void **state)
     assert_non_null(definitions_add_message(world->definitions, world->bytes, size));
 }
 
-static void test_scene(void **state)
+static void bodies_of_a_scene_are_defined(void **state)
 {
     struct world *world = *state;
     struct scene_query *query = allocate(1, sizeof *query);
@@ -133,7 +133,7 @@ static void test_scene(void **state)
     free(query);
 }
 
-static void test_definition(void **state)
+static void bodies_of_a_definition_are_defined(void **state)
 {
     struct world *world = *state;
     struct definition *definition = allocate(1, sizeof *definition);
@@ -155,10 +155,10 @@ static void test_definition(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_many, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_pair, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_scene, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_definition, setup, teardown),
+        cmocka_unit_test_setup_teardown(many_bodies_are_defined, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bodies_of_a_pair_are_defined, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bodies_of_a_scene_are_defined, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bodies_of_a_definition_are_defined, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,7 +41,7 @@ static void expect_row(const struct log_row *row, const char *channel, bool know
     assert_int_equal(row->type.fingerprint, fingerprint);
 }
 
-static void test_nothing(void **state)
+static void an_empty_log_has_no_channels(void **state)
 {
     (void) state;
     struct log_info *info = log_info_open();
@@ -51,7 +51,7 @@ static void test_nothing(void **state)
     log_info_close(info);
 }
 
-static void test_channels_and_types(void **state)
+static void channels_and_types_are_counted(void **state)
 {
     (void) state;
     struct log_info *info = log_info_open();
@@ -77,7 +77,7 @@ static void test_channels_and_types(void **state)
 }
 
 /* Rounds over more channels than are counted: the first ones are, whatever came between. */
-static void test_more_channels_than_are_counted(void **state)
+static void further_channels_are_summed(void **state)
 {
     (void) state;
     enum { MORE = LOG_INFO_ROWS_MAX + 500, ROUNDS = 3 };
@@ -106,7 +106,7 @@ static void test_more_channels_than_are_counted(void **state)
 }
 
 /* Beside a list, searched from its beginning. */
-static void test_against_a_list(void **state)
+static void counts_match_a_list(void **state)
 {
     (void) state;
     enum { CHANNELS = 12, EVENTS = 20000 };
@@ -133,7 +133,7 @@ static void test_against_a_list(void **state)
     log_info_close(info);
 }
 
-static void test_damages(void **state)
+static void damages_are_counted(void **state)
 {
     (void) state;
     struct log_info *info = log_info_open();
@@ -150,11 +150,11 @@ static void test_damages(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nothing),
-        cmocka_unit_test(test_channels_and_types),
-        cmocka_unit_test(test_more_channels_than_are_counted),
-        cmocka_unit_test(test_against_a_list),
-        cmocka_unit_test(test_damages),
+        cmocka_unit_test(an_empty_log_has_no_channels),
+        cmocka_unit_test(channels_and_types_are_counted),
+        cmocka_unit_test(further_channels_are_summed),
+        cmocka_unit_test(counts_match_a_list),
+        cmocka_unit_test(damages_are_counted),
     };
     return cmocka_run_group_tests_name("log_info", tests, NULL, NULL);
 }

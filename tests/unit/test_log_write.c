@@ -178,7 +178,7 @@ int __wrap_fsync(int file)
     return __real_fsync(file);
 }
 
-static void test_a_finished_log_is_on_the_disk(void **state)
+static void a_finished_log_is_on_the_disk(void **state)
 {
     (void) state;
     struct log_writer *writer = log_begin(output_open_in_place(in_folder("synced"), false));
@@ -189,7 +189,7 @@ static void test_a_finished_log_is_on_the_disk(void **state)
     assert_int_equal(synced, 1);
 }
 
-static void test_what_is_written_is_read(void **state)
+static void what_is_written_is_read(void **state)
 {
     (void) state;
     enum { COUNT = 100 };
@@ -205,7 +205,7 @@ static void test_what_is_written_is_read(void **state)
     assert_int_equal(read_events("log", 0), COUNT);
 }
 
-static void test_a_log_of_nothing(void **state)
+static void a_log_without_events_is_empty(void **state)
 {
     (void) state;
     assert_int_equal(log_finish(log_begin(output_open_in_place(in_folder("empty"), false))), 0);
@@ -213,7 +213,7 @@ static void test_a_log_of_nothing(void **state)
     assert_int_equal(log_finish(NULL), 0);
 }
 
-static void test_what_was_flushed_is_there(void **state)
+static void what_was_flushed_is_there(void **state)
 {
     (void) state;
     struct log_writer *writer = log_begin(output_open_in_place(in_folder("flushed"), false));
@@ -227,7 +227,7 @@ static void test_what_was_flushed_is_there(void **state)
     assert_int_equal(log_finish(writer), 0);
 }
 
-static void test_nothing_is_overwritten_without_force(void **state)
+static void nothing_is_overwritten_without_force(void **state)
 {
     (void) state;
     put_file("precious", "precious");
@@ -241,7 +241,7 @@ static void test_nothing_is_overwritten_without_force(void **state)
     assert_int_equal(read_events("precious", 3), 1);
 }
 
-static void test_what_cannot_be_created(void **state)
+static void a_file_that_cannot_be_created_is_an_error(void **state)
 {
     (void) state;
     for (int force = 0; force < 2; force++) {
@@ -254,7 +254,7 @@ static void test_what_cannot_be_created(void **state)
 
 /* ---- Disks that are full --------------------------------------------------------------------- */
 
-static void test_a_full_disk_is_said(void **state)
+static void a_full_disk_is_said(void **state)
 {
     (void) state;
     struct log_writer *writer = log_begin(output_open_in_place("/dev/full", true));
@@ -305,7 +305,7 @@ static void fill(const char *name, rlim_t limit, bool flush)
     assert_true(bytes <= (int64_t) limit && (int64_t) limit < bytes + bytes_of_event(whole));
 }
 
-static void test_a_full_disk_leaves_whole_events(void **state)
+static void a_full_disk_leaves_whole_events(void **state)
 {
     (void) state;
     for (rlim_t limit = 1000003; limit < 1000003 + 200000; limit += 7919) {
@@ -327,7 +327,7 @@ static bool fails_later(void *user, size_t from, unsigned char *out, size_t coun
 }
 
 /* Larger than the buffer. */
-static void test_large_events(void **state)
+static void large_events_are_written(void **state)
 {
     (void) state;
     static unsigned char data[3000000];
@@ -374,7 +374,7 @@ static struct log_writer *begin_log(const char *name)
     return writer;
 }
 
-static void test_a_deleted_file_is_noticed(void **state)
+static void a_deleted_file_is_noticed(void **state)
 {
     (void) state;
     struct log_writer *writer = begin_log("deleted");
@@ -392,7 +392,7 @@ static void test_a_deleted_file_is_noticed(void **state)
     assert_int_equal(log_finish(writer), ESTALE);
 }
 
-static void test_a_truncated_file_is_noticed(void **state)
+static void a_truncated_file_is_noticed(void **state)
 {
     (void) state;
     struct log_writer *writer = begin_log("truncated");
@@ -402,7 +402,7 @@ static void test_a_truncated_file_is_noticed(void **state)
 }
 
 /* The bytes written after a truncation are a whole log, whatever error ends it. */
-static void test_a_file_that_was_truncated_gets_no_hole(void **state)
+static void a_file_that_was_truncated_gets_no_hole(void **state)
 {
     (void) state;
     enum { BEFORE = 400, AFTER = 300 };
@@ -469,7 +469,7 @@ static const char *part_name(const char *name, long number)
 }
 
 /* Files are as full as they can be, and have no more than one event that is too large by itself. */
-static void test_several_files_divide_no_event(void **state)
+static void several_files_divide_no_event(void **state)
 {
     (void) state;
     enum { COUNT = 200, LIMIT = 80000 };
@@ -493,7 +493,7 @@ static void test_several_files_divide_no_event(void **state)
     log_parts_close(&parts);
 }
 
-static void test_the_newest_files_are_kept(void **state)
+static void the_newest_files_are_kept(void **state)
 {
     (void) state;
     struct log_parts_options options = several("kept", 80000, false);
@@ -507,7 +507,7 @@ static void test_the_newest_files_are_kept(void **state)
 }
 
 /* A file that the user has removed does not keep the others. */
-static void test_a_file_that_is_gone_is_not_kept(void **state)
+static void a_file_that_is_gone_is_not_kept(void **state)
 {
     (void) state;
     struct log_parts_options options = several("gone", 80000, false);
@@ -525,7 +525,7 @@ static void test_a_file_that_is_gone_is_not_kept(void **state)
     log_parts_close(&parts);
 }
 
-static void test_a_single_file(void **state)
+static void a_single_file_has_no_number(void **state)
 {
     (void) state;
     const struct log_parts_options options = several("alone", 0, false);
@@ -537,7 +537,7 @@ static void test_a_single_file(void **state)
     assert_int_equal(size_of("alone.000"), 9);
 }
 
-static void test_files_of_before_are_overwritten_only_with_force(void **state)
+static void files_of_before_are_overwritten_only_with_force(void **state)
 {
     (void) state;
     static const char *const others[] = {"run", "run.00", "run.0x1", "run.000.gz", "xrun.000"};
@@ -564,7 +564,7 @@ static void test_files_of_before_are_overwritten_only_with_force(void **state)
         assert_int_equal(size_of(others[i]), 9);
 }
 
-static void test_a_next_file_that_cannot_be_had(void **state)
+static void a_next_file_that_cannot_be_created_is_an_error(void **state)
 {
     (void) state;
     const struct log_parts_options options = several("next", 1000, false);
@@ -584,24 +584,24 @@ static void test_a_next_file_that_cannot_be_had(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_is_written_is_read),
-        cmocka_unit_test(test_a_log_of_nothing),
-        cmocka_unit_test(test_a_finished_log_is_on_the_disk),
-        cmocka_unit_test(test_what_was_flushed_is_there),
-        cmocka_unit_test(test_nothing_is_overwritten_without_force),
-        cmocka_unit_test(test_what_cannot_be_created),
-        cmocka_unit_test(test_a_full_disk_is_said),
-        cmocka_unit_test(test_a_full_disk_leaves_whole_events),
-        cmocka_unit_test(test_large_events),
-        cmocka_unit_test(test_a_deleted_file_is_noticed),
-        cmocka_unit_test(test_a_truncated_file_is_noticed),
-        cmocka_unit_test(test_a_file_that_was_truncated_gets_no_hole),
-        cmocka_unit_test(test_several_files_divide_no_event),
-        cmocka_unit_test(test_the_newest_files_are_kept),
-        cmocka_unit_test(test_a_file_that_is_gone_is_not_kept),
-        cmocka_unit_test(test_a_single_file),
-        cmocka_unit_test(test_files_of_before_are_overwritten_only_with_force),
-        cmocka_unit_test(test_a_next_file_that_cannot_be_had),
+        cmocka_unit_test(what_is_written_is_read),
+        cmocka_unit_test(a_log_without_events_is_empty),
+        cmocka_unit_test(a_finished_log_is_on_the_disk),
+        cmocka_unit_test(what_was_flushed_is_there),
+        cmocka_unit_test(nothing_is_overwritten_without_force),
+        cmocka_unit_test(a_file_that_cannot_be_created_is_an_error),
+        cmocka_unit_test(a_full_disk_is_said),
+        cmocka_unit_test(a_full_disk_leaves_whole_events),
+        cmocka_unit_test(large_events_are_written),
+        cmocka_unit_test(a_deleted_file_is_noticed),
+        cmocka_unit_test(a_truncated_file_is_noticed),
+        cmocka_unit_test(a_file_that_was_truncated_gets_no_hole),
+        cmocka_unit_test(several_files_divide_no_event),
+        cmocka_unit_test(the_newest_files_are_kept),
+        cmocka_unit_test(a_file_that_is_gone_is_not_kept),
+        cmocka_unit_test(a_single_file_has_no_number),
+        cmocka_unit_test(files_of_before_are_overwritten_only_with_force),
+        cmocka_unit_test(a_next_file_that_cannot_be_created_is_an_error),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

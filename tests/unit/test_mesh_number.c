@@ -44,7 +44,7 @@ static void expect_same(const char *text)
         fail_msg("'%s' is %.17g, read as %.17g", text, expected, value);
 }
 
-static void test_limits(void **state)
+static void numbers_at_the_limits_round_as_strtod(void **state)
 {
     static const char *const texts[] = {"0",
                                         "-0",
@@ -121,7 +121,7 @@ static void test_limits(void **state)
 }
 
 /* As many digits as one likes, with the point anywhere. */
-static void test_drawn_decimals(void **state)
+static void drawn_decimals_round_as_strtod(void **state)
 {
     const int count = is_fast() ? 100000 : 1000000;
     (void) state;
@@ -144,7 +144,7 @@ static void test_drawn_decimals(void **state)
 }
 
 /* Doubles as programs write them, and what lies just between two. */
-static void test_drawn_doubles(void **state)
+static void drawn_doubles_read_back(void **state)
 {
     const int count = is_fast() ? 20000 : 200000;
     (void) state;
@@ -168,7 +168,7 @@ static void test_drawn_doubles(void **state)
     }
 }
 
-static void test_words(void **state)
+static void nan_and_infinity_are_numbers(void **state)
 {
     static const struct {
         const char *text;
@@ -185,7 +185,7 @@ static void test_words(void **state)
     }
 }
 
-static void test_where_it_ends(void **state)
+static void a_number_ends_where_strtod_ends(void **state)
 {
     static const struct {
         const char *text;
@@ -205,7 +205,7 @@ static void test_where_it_ends(void **state)
 }
 
 /* Text of many thousand digits. */
-static void test_long(void **state)
+static void long_numbers_round_as_strtod(void **state)
 {
     enum { DIGITS = 20000 };
     static char text[DIGITS + 32];
@@ -225,9 +225,12 @@ static void test_long(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_limits),        cmocka_unit_test(test_drawn_decimals),
-        cmocka_unit_test(test_drawn_doubles), cmocka_unit_test(test_words),
-        cmocka_unit_test(test_where_it_ends), cmocka_unit_test(test_long),
+        cmocka_unit_test(numbers_at_the_limits_round_as_strtod),
+        cmocka_unit_test(drawn_decimals_round_as_strtod),
+        cmocka_unit_test(drawn_doubles_read_back),
+        cmocka_unit_test(nan_and_infinity_are_numbers),
+        cmocka_unit_test(a_number_ends_where_strtod_ends),
+        cmocka_unit_test(long_numbers_round_as_strtod),
     };
     return cmocka_run_group_tests_name("mesh_number", tests, NULL, NULL);
 }

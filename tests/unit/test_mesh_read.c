@@ -183,7 +183,7 @@ static const char ply_order[] =
     "5e22 7 1 1\r\n"
     "9\r\n\r\n";
 
-static void test_ply_ascii(void **state)
+static void ply_of_text_is_read(void **state)
 {
     (void) state;
     expect_mesh(read_text(ply_ascii), 4, square, 2, halves);
@@ -236,7 +236,7 @@ static void make_binary(struct file *file, int coordinate, int count, int index,
     add_number(file, DOUBLE, NAN, big_endian);
 }
 
-static void test_ply_binary(void **state)
+static void ply_of_bytes_is_read(void **state)
 {
     static const unsigned face[][3] = {{2, 1, 0}};
     static const double extremes[TYPE_COUNT][2] = {{-128, 127},
@@ -260,7 +260,7 @@ static void test_ply_binary(void **state)
     free(file);
 }
 
-static void test_ply_headers_that_are_refused(void **state)
+static void bad_ply_headers_are_refused(void **state)
 {
     static const char *const cases[][2] = {
         {"ply \nfoo\n", "line 2"},
@@ -303,7 +303,7 @@ static void test_ply_headers_that_are_refused(void **state)
 }
 
 /* A word of the file in an error is printable and short. */
-static void test_words_in_errors(void **state)
+static void words_in_errors_are_printable_and_short(void **state)
 {
     static const char *const cases[][2] = {
         {"ply\n\x01\xff\n", "line 2: '\?\?' is no keyword of a PLY header"},
@@ -318,7 +318,7 @@ static void test_words_in_errors(void **state)
     }
 }
 
-static void test_ply_headers_that_are_too_long(void **state)
+static void too_long_ply_headers_are_refused(void **state)
 {
     struct file *file = calloc(1, sizeof *file);
     (void) state;
@@ -339,7 +339,7 @@ static void test_ply_headers_that_are_too_long(void **state)
     "\nproperty float x\nproperty float y\nproperty float z\n"
 #define FACES(count) "element face " count "\nproperty list uchar int vertex_indices\nend_header\n"
 
-static void test_ply_bodies_that_are_refused(void **state)
+static void bad_ply_bodies_are_refused(void **state)
 {
     static const char *const cases[][2] = {
         {"", "line 3"},
@@ -388,7 +388,7 @@ static void expect_refused_bytes(const char *header, const char *bytes, size_t s
 
 #define BYTES(bytes) bytes, sizeof bytes - 1
 
-static void test_ply_bytes_that_are_refused(void **state)
+static void bad_ply_bytes_are_refused(void **state)
 {
     static const char one[] = VERTICES("binary_little_endian", "1") FACES("1");
     static const char zero[] = VERTICES("binary_big_endian", "0") "element face 1\n"
@@ -421,7 +421,7 @@ static void test_ply_bytes_that_are_refused(void **state)
 }
 
 /* White space after the end. */
-static void test_ply_ends(void **state)
+static void white_space_may_follow_ply(void **state)
 {
     static const char one[] = VERTICES("binary_little_endian", "1") "end_header\n"
                                                                     "\0\0\0\0\0\0\0\0\0\0\0\0 \r\n\t";
@@ -432,7 +432,7 @@ static void test_ply_ends(void **state)
 }
 
 /* Counts for which no memory is allocated, as there are no bytes for them. */
-static void test_ply_promises(void **state)
+static void counts_beyond_the_file_are_refused(void **state)
 {
     static const char *const formats_of_ply[] = {"ascii", "binary_little_endian",
                                                  "binary_big_endian"};
@@ -475,7 +475,7 @@ static const char stl_ascii[] =
     "ENDLOOP ENDFACET\n"
     "endsolid a name of some words\n";
 
-static void test_stl_ascii(void **state)
+static void stl_of_text_is_read(void **state)
 {
     (void) state;
     expect_mesh(read_text(stl_ascii), 4, square, 2, halves);
@@ -488,7 +488,7 @@ static void test_stl_ascii(void **state)
     expect_mesh(read_text("solid\nendsolid"), 0, NULL, 0, NULL);
 }
 
-static void test_stl_ascii_that_is_refused(void **state)
+static void bad_stl_of_text_is_refused(void **state)
 {
     static const char *const cases[][2] = {
         {"solid", "line 1"},
@@ -532,7 +532,7 @@ static void make_stl(struct file *file, const char *header)
     }
 }
 
-static void test_stl_binary(void **state)
+static void stl_of_bytes_is_read(void **state)
 {
     static const char *const headers[] = {"", "binary", "solid, which it is not", "solid\nfacet"};
     double vertex[4][3];
@@ -550,7 +550,7 @@ static void test_stl_binary(void **state)
     free(file);
 }
 
-static void test_stl_binary_that_is_refused(void **state)
+static void bad_stl_of_bytes_is_refused(void **state)
 {
     struct file *file = calloc(1, sizeof *file);
     (void) state;
@@ -581,7 +581,7 @@ static const char obj[] =
     "f 4//1 \\\n -1//1 \\\r\n -2//1 # what is no number\n"
     "v 1 1\\\n5e22 1 2 3 4";
 
-static void test_obj(void **state)
+static void obj_is_read(void **state)
 {
     (void) state;
     expect_mesh(read_text(obj), 4, square, 2, halves);
@@ -592,7 +592,7 @@ static void test_obj(void **state)
     expect_mesh(read_good("\n \n# no\n \nv 0 0 0", 17, ""), 1, square, 0, NULL);
 }
 
-static void test_obj_that_is_refused(void **state)
+static void bad_obj_is_refused(void **state)
 {
     static const char *const cases[][2] = {
         {"foo 1\n", "line 4"},
@@ -629,7 +629,7 @@ static void test_obj_that_is_refused(void **state)
 
 /* ---- What is none of them -------------------------------------------------------------------- */
 
-static void test_what_is_no_mesh(void **state)
+static void other_files_are_refused(void **state)
 {
     (void) state;
     expect_error("", 0, "a.obj", "byte 0");
@@ -655,7 +655,7 @@ static void write_file(const char *path, const void *bytes, size_t size)
     assert_true(file && fwrite(bytes, 1, size, file) == size && fclose(file) == 0);
 }
 
-static void test_files(void **state)
+static void only_regular_files_are_read(void **state)
 {
     char folder[] = "/tmp/fmb-test-XXXXXX", path[64], error[MESH_ERROR_MAX];
     struct progress_seen seen = {0};
@@ -725,7 +725,7 @@ static void expect_same_corners(const struct mesh *a, const struct mesh *b, doub
                                  b->vertex[b->face[i][corner]][axis]) <= most);
 }
 
-static void test_all_formats_are_the_same_mesh(void **state)
+static void all_formats_are_the_same_mesh(void **state)
 {
     static const unsigned counts[] = {8, 1000, 5000};
     (void) state;
@@ -758,7 +758,7 @@ static void write_coloured(FILE *out, const struct mesh *mesh)
     mesh_write_ply(out, mesh, colours);
 }
 
-static void test_what_is_written_is_read(void **state)
+static void what_is_written_is_read(void **state)
 {
     static double vertex[][3] = {{-0.0, 0x1p-1074, -0x1.fffffffffffffp1023}, {0.1, 1e22, 0}};
     static unsigned face[][3] = {{0, 1, 0}, {1, 1, 1}};
@@ -774,7 +774,7 @@ static void test_what_is_written_is_read(void **state)
     expect_mesh(read_back(&mesh, write_plain), 0, NULL, 0, NULL);
 }
 
-static void test_bytes_that_are_written(void **state)
+static void ply_is_written_byte_by_byte(void **state)
 {
     static double vertex[][3] = {{1, -2, 0.5}};
     static unsigned face[][3] = {{0, 0, 0}};
@@ -844,7 +844,7 @@ static void spoil(struct file *file, const char *name)
     }
 }
 
-static void test_every_place_of_each_format(void **state)
+static void every_damaged_byte_is_refused_or_read(void **state)
 {
     static const char *const names[] = {"", "a.stl", "a.obj"};
     static const double triangle[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 2}};
@@ -872,27 +872,27 @@ static void test_every_place_of_each_format(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ply_ascii),
-        cmocka_unit_test(test_ply_binary),
-        cmocka_unit_test(test_ply_headers_that_are_refused),
-        cmocka_unit_test(test_words_in_errors),
-        cmocka_unit_test(test_ply_headers_that_are_too_long),
-        cmocka_unit_test(test_ply_bodies_that_are_refused),
-        cmocka_unit_test(test_ply_bytes_that_are_refused),
-        cmocka_unit_test(test_ply_ends),
-        cmocka_unit_test(test_ply_promises),
-        cmocka_unit_test(test_stl_ascii),
-        cmocka_unit_test(test_stl_ascii_that_is_refused),
-        cmocka_unit_test(test_stl_binary),
-        cmocka_unit_test(test_stl_binary_that_is_refused),
-        cmocka_unit_test(test_obj),
-        cmocka_unit_test(test_obj_that_is_refused),
-        cmocka_unit_test(test_what_is_no_mesh),
-        cmocka_unit_test(test_files),
-        cmocka_unit_test(test_all_formats_are_the_same_mesh),
-        cmocka_unit_test(test_what_is_written_is_read),
-        cmocka_unit_test(test_bytes_that_are_written),
-        cmocka_unit_test(test_every_place_of_each_format),
+        cmocka_unit_test(ply_of_text_is_read),
+        cmocka_unit_test(ply_of_bytes_is_read),
+        cmocka_unit_test(bad_ply_headers_are_refused),
+        cmocka_unit_test(words_in_errors_are_printable_and_short),
+        cmocka_unit_test(too_long_ply_headers_are_refused),
+        cmocka_unit_test(bad_ply_bodies_are_refused),
+        cmocka_unit_test(bad_ply_bytes_are_refused),
+        cmocka_unit_test(white_space_may_follow_ply),
+        cmocka_unit_test(counts_beyond_the_file_are_refused),
+        cmocka_unit_test(stl_of_text_is_read),
+        cmocka_unit_test(bad_stl_of_text_is_refused),
+        cmocka_unit_test(stl_of_bytes_is_read),
+        cmocka_unit_test(bad_stl_of_bytes_is_refused),
+        cmocka_unit_test(obj_is_read),
+        cmocka_unit_test(bad_obj_is_refused),
+        cmocka_unit_test(other_files_are_refused),
+        cmocka_unit_test(only_regular_files_are_read),
+        cmocka_unit_test(all_formats_are_the_same_mesh),
+        cmocka_unit_test(what_is_written_is_read),
+        cmocka_unit_test(ply_is_written_byte_by_byte),
+        cmocka_unit_test(every_damaged_byte_is_refused_or_read),
     };
     return cmocka_run_group_tests_name("mesh_read", tests, NULL, NULL);
 }

@@ -21,14 +21,14 @@
 
 static char folder[] = "/tmp/test_output.XXXXXX";
 
-static int setup(void **state)
+static int set_up(void **state)
 {
     (void) state;
     strcpy(folder + strlen(folder) - 6, "XXXXXX");
     return !mkdtemp(folder) || chdir(folder) != 0;
 }
 
-static int teardown(void **state)
+static int tear_down(void **state)
 {
     (void) state;
     DIR *dir = opendir(folder);
@@ -95,7 +95,7 @@ static mode_t mode_of(const char *path)
 
 /* ---- Existing files ---- */
 
-static void test_without_a_path_no_file_is_opened(void **state)
+static void without_a_path_no_file_is_opened(void **state)
 {
     struct output *output;
     (void) state;
@@ -104,7 +104,7 @@ static void test_without_a_path_no_file_is_opened(void **state)
     assert_true(output_close(output, true));
 }
 
-static void test_a_picture_replaces_an_empty_file_or_a_picture(void **state)
+static void a_picture_replaces_an_empty_file_or_a_picture(void **state)
 {
     (void) state;
     write_picture("new", false);
@@ -115,7 +115,7 @@ static void test_a_picture_replaces_an_empty_file_or_a_picture(void **state)
     assert_int_equal(count_files(), 3);
 }
 
-static void test_only_force_replaces_another_kind(void **state)
+static void only_force_replaces_another_kind(void **state)
 {
     static const char *const others[] = {"{\"dim\": 3}", "<sv", "<svgx", " <svg ", "x"};
     (void) state;
@@ -128,7 +128,7 @@ static void test_only_force_replaces_another_kind(void **state)
     assert_int_equal(count_files(), 1);
 }
 
-static void test_each_kind_replaces_its_own_kind(void **state)
+static void each_kind_replaces_its_own_kind(void **state)
 {
     static const char *const text[] = {
         [OUTPUT_PICTURE] = "<svg x",
@@ -149,7 +149,7 @@ static void test_each_kind_replaces_its_own_kind(void **state)
         }
 }
 
-static void test_an_input_is_never_replaced(void **state)
+static void an_input_is_never_replaced(void **state)
 {
     (void) state;
     for (int force = 0; force < 2; force++) {
@@ -171,7 +171,7 @@ static void test_an_input_is_never_replaced(void **state)
 
 /* ---- Links, modes, and files that are not regular ---- */
 
-static void test_symbolic_links_stay(void **state)
+static void symbolic_links_stay(void **state)
 {
     char target[64];
     (void) state;
@@ -190,7 +190,7 @@ static void test_symbolic_links_stay(void **state)
     assert_int_equal(unlink("folder/there") + unlink("folder/absent") + unlink("folder/link"), 0);
 }
 
-static void test_new_files_follow_the_umask_and_others_keep_their_mode(void **state)
+static void new_files_follow_the_umask_and_others_keep_their_mode(void **state)
 {
     const mode_t mask = umask(027);
     (void) state;
@@ -203,7 +203,7 @@ static void test_new_files_follow_the_umask_and_others_keep_their_mode(void **st
     assert_int_equal(mode_of("old"), 0604);
 }
 
-static void test_a_file_that_cannot_be_opened_is_an_error(void **state)
+static void a_file_that_cannot_be_opened_is_an_error(void **state)
 {
     (void) state;
     assert_null(open_picture("no/such/folder", true, NULL));
@@ -216,7 +216,7 @@ static void test_a_file_that_cannot_be_opened_is_an_error(void **state)
     assert_int_equal(count_files(), 0);
 }
 
-static void test_a_device_is_written_directly(void **state)
+static void a_device_is_written_directly(void **state)
 {
     struct stat device;
     (void) state;
@@ -230,7 +230,7 @@ static void test_a_device_is_written_directly(void **state)
 
 /* ---- Closing, and the end of the process ---- */
 
-static void test_an_output_that_is_not_kept_leaves_the_old_file(void **state)
+static void an_output_that_is_not_kept_leaves_the_old_file(void **state)
 {
     (void) state;
     for (int old = 0; old < 2; old++) {
@@ -288,7 +288,7 @@ static void end_by_limit(struct output *output)
     exit(output_close(output, true) ? 0 : 1);
 }
 
-static void test_no_temporary_file_is_left_when_a_process_ends(void **state)
+static void no_temporary_file_is_left_when_a_process_ends(void **state)
 {
     (void) state;
     put_file("file", "<svg old");
@@ -307,7 +307,7 @@ static void test_no_temporary_file_is_left_when_a_process_ends(void **state)
     assert_file("file", "<svg old");
 }
 
-static void test_ignored_signals_stay_ignored(void **state)
+static void ignored_signals_stay_ignored(void **state)
 {
     (void) state;
     signal(SIGHUP, SIG_IGN); /* as nohup does */
@@ -320,23 +320,23 @@ static void test_ignored_signals_stay_ignored(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_without_a_path_no_file_is_opened, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_a_picture_replaces_an_empty_file_or_a_picture, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(test_only_force_replaces_another_kind, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_each_kind_replaces_its_own_kind, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_an_input_is_never_replaced, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_symbolic_links_stay, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_new_files_follow_the_umask_and_others_keep_their_mode,
-                                        setup, teardown),
-        cmocka_unit_test_setup_teardown(test_a_file_that_cannot_be_opened_is_an_error, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(test_a_device_is_written_directly, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_no_temporary_file_is_left_when_a_process_ends, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(test_ignored_signals_stay_ignored, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_an_output_that_is_not_kept_leaves_the_old_file, setup,
-                                        teardown),
+        cmocka_unit_test_setup_teardown(without_a_path_no_file_is_opened, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_picture_replaces_an_empty_file_or_a_picture, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(only_force_replaces_another_kind, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(each_kind_replaces_its_own_kind, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(an_input_is_never_replaced, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(symbolic_links_stay, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(new_files_follow_the_umask_and_others_keep_their_mode,
+                                        set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_file_that_cannot_be_opened_is_an_error, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(a_device_is_written_directly, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(no_temporary_file_is_left_when_a_process_ends, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(ignored_signals_stay_ignored, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(an_output_that_is_not_kept_leaves_the_old_file, set_up,
+                                        tear_down),
     };
     /* A shell starts jobs in the background with some of them ignored. */
     for (size_t i = 0; i < SIGNALS; i++)

@@ -50,7 +50,7 @@ static bool on_write(void *user, const void *bytes, size_t size)
     return true;
 }
 
-static int setup(void **state)
+static int set_up(void **state)
 {
     struct world *world = allocate(1, sizeof *world);
     world->bodies = record_bodies_open(RECORDER);
@@ -61,7 +61,7 @@ static int setup(void **state)
     return 0;
 }
 
-static int teardown(void **state)
+static int tear_down(void **state)
 {
     struct world *world = *state;
     record_bodies_close(world->bodies);
@@ -204,7 +204,7 @@ static void begin(struct world *world)
 /* ---- Tests ------------------------------------------------------------------------------------
  */
 
-static void test_all_are_requested_in_pages(void **state)
+static void all_are_requested_in_pages(void **state)
 {
     struct world *world = *state;
     const struct body body[] = {make_body(world, 1), make_body(world, 2)};
@@ -232,7 +232,7 @@ static void test_all_are_requested_in_pages(void **state)
     assert_int_equal(world->definitions, 1);
 }
 
-static void test_each_file_defines_what_it_names(void **state)
+static void each_file_defines_what_it_names(void **state)
 {
     struct world *world = *state;
     const struct body whole = make_body(world, 1), other = make_body(world, 2);
@@ -248,7 +248,7 @@ static void test_each_file_defines_what_it_names(void **state)
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
 }
 
-static void test_bodies_of_answered_queries_are_requested(void **state)
+static void bodies_of_answered_queries_are_requested(void **state)
 {
     struct world *world = *state;
     const struct body a = make_body(world, 1), b = make_body(world, 2);
@@ -283,7 +283,7 @@ static void test_bodies_of_answered_queries_are_requested(void **state)
 }
 
 /* A definition of all handles takes several pages. */
-static void test_handles_are_requested_in_pages(void **state)
+static void handles_are_requested_in_pages(void **state)
 {
     struct world *world = *state;
     const struct body body[] = {make_body(world, 1), make_body(world, 2)};
@@ -303,7 +303,7 @@ static void test_handles_are_requested_in_pages(void **state)
 }
 
 /* Nothing is requested of a service that does not answer until it has answered a query. */
-static void test_requests_without_a_result(void **state)
+static void requests_without_a_result_are_repeated(void **state)
 {
     struct world *world = *state;
     const struct body a = make_body(world, 1), b = make_body(world, 2);
@@ -326,7 +326,7 @@ static void test_requests_without_a_result(void **state)
 }
 
 /* A method that cannot decide a pair had its bodies all the same. */
-static void test_bodies_of_undecided_pairs_are_requested(void **state)
+static void bodies_of_undecided_pairs_are_requested(void **state)
 {
     struct world *world = *state;
     const struct body a = make_body(world, 1), b = make_body(world, 2);
@@ -338,7 +338,7 @@ static void test_bodies_of_undecided_pairs_are_requested(void **state)
 }
 
 /* The newest queries without a result are kept, and each result is that of one of them. */
-static void test_results_of_many_queries(void **state)
+static void results_of_many_queries_are_kept(void **state)
 {
     struct world *world = *state;
     enum { QUERIES = 300, RECENT = QUERIES - 40, FORGOTTEN = 10 };
@@ -364,7 +364,7 @@ static void test_results_of_many_queries(void **state)
 }
 
 /* Handles that no service knows do not fill the memory: at most 65,536 are requested. */
-static void test_wanted_handles_are_limited(void **state)
+static void wanted_handles_are_limited(void **state)
 {
     struct world *world = *state;
     enum { MOST = 1 << 16, MORE = 20 };
@@ -384,7 +384,7 @@ static void test_wanted_handles_are_limited(void **state)
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, MOST + MORE);
 }
 
-static void test_refused_queries_need_no_bodies(void **state)
+static void refused_queries_need_no_bodies(void **state)
 {
     struct world *world = *state;
     const struct body a = make_body(world, 1), b = make_body(world, 2);
@@ -397,7 +397,7 @@ static void test_refused_queries_need_no_bodies(void **state)
 }
 
 /* More than fit into memory: those that are used stay. */
-static void test_what_is_used_stays(void **state)
+static void what_is_used_stays(void **state)
 {
     struct world *world = *state;
     const struct body used = make_body(world, 1), once = make_body(world, 2);
@@ -478,7 +478,7 @@ static int give_large(struct world *world, struct definitions *filled, int frame
 }
 
 /* One query names an old body, and then enough to fill half of the memory twice. */
-static void test_what_a_query_names_stays_until_it_is_defined(void **state)
+static void what_a_query_names_stays_until_it_is_defined(void **state)
 {
     struct world *world = *state;
     enum { MANY = 1800, SOME = 100, FEW = 30, BODIES_MAX = 700 };
@@ -513,7 +513,7 @@ static void test_what_a_query_names_stays_until_it_is_defined(void **state)
     definitions_close(filled);
 }
 
-static void test_what_cannot_be_read(void **state)
+static void unreadable_messages_are_counted(void **state)
 {
     struct world *world = *state;
     for (int kind = 0; kind < LOG_OTHER; kind++)
@@ -525,21 +525,20 @@ static void test_what_cannot_be_read(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_all_are_requested_in_pages, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_each_file_defines_what_it_names, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_bodies_of_answered_queries_are_requested, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(test_handles_are_requested_in_pages, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_requests_without_a_result, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_bodies_of_undecided_pairs_are_requested, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(test_results_of_many_queries, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_wanted_handles_are_limited, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_refused_queries_need_no_bodies, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_what_is_used_stays, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_what_a_query_names_stays_until_it_is_defined, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(test_what_cannot_be_read, setup, teardown),
+        cmocka_unit_test_setup_teardown(all_are_requested_in_pages, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(each_file_defines_what_it_names, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bodies_of_answered_queries_are_requested, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(handles_are_requested_in_pages, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(requests_without_a_result_are_repeated, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bodies_of_undecided_pairs_are_requested, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(results_of_many_queries_are_kept, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(wanted_handles_are_limited, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(refused_queries_need_no_bodies, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_is_used_stays, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_a_query_names_stays_until_it_is_defined, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(unreadable_messages_are_counted, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

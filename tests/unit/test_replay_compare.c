@@ -159,7 +159,7 @@ enum {
     GAP = FMB_WANT_GAP
 };
 
-static void test_every_kind(void **state)
+static void every_kind_of_difference_is_found(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 1, BOX | CERTIFICATE | GAP);
     const struct pair_result now = answer(&query);
@@ -202,7 +202,7 @@ static void test_every_kind(void **state)
     expect_kind(0, &query, &then, &now, DIFFERENT_STATUS);
 }
 
-static void test_what_is_not_compared(void **state)
+static void other_fields_are_not_compared(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 1, BOX);
     const struct pair_result now = answer(&query);
@@ -218,7 +218,7 @@ static void test_what_is_not_compared(void **state)
     expect_same(0, &query, &then, &refused);
 }
 
-static void test_statuses_of_the_moment(void **state)
+static void statuses_of_the_moment_are_not_compared(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 1, BOX);
     const struct pair_result good = answer(&query);
@@ -272,7 +272,7 @@ static const struct {
     {0, NAN, NAN, true, true}, /* the same bits */
 };
 
-static void test_ends_of_intervals(void **state)
+static void ends_of_intervals_are_compared(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 1, 0);
     const struct pair_result good = answer(&query);
@@ -297,7 +297,7 @@ static void set_box(struct pair_result *result, int side, int axis, double end)
         result->answer.box[1 - side][axis] = 1;
 }
 
-static void test_ends_of_boxes(void **state)
+static void ends_of_boxes_are_compared(void **state)
 {
     (void) state;
     for (int dim = 2; dim <= 3; dim++) {
@@ -329,7 +329,7 @@ static void set_gap(struct pair_result *result, int bound, double value)
     gap->witness[1][2] = 1;
 }
 
-static void test_bounds_of_gaps(void **state)
+static void bounds_of_gaps_are_compared(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 0, 0);
     const struct pair_result good = answer(&query);
@@ -347,7 +347,7 @@ static void test_bounds_of_gaps(void **state)
 }
 
 /* Of bodies that are small and near the origin. */
-static void test_a_tolerance_is_relative_to_the_largest_coordinate(void **state)
+static void a_tolerance_is_relative_to_the_largest_coordinate(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 0, 0);
     struct pair_result then = answer(&query);
@@ -362,7 +362,7 @@ static void test_a_tolerance_is_relative_to_the_largest_coordinate(void **state)
 }
 
 /* Nearest points need not be the only ones. */
-static void test_with_a_tolerance_witness_points_may_differ(void **state)
+static void with_a_tolerance_witness_points_may_differ(void **state)
 {
     const struct pair_query query = pair(3, 2, 0, GAP);
     const struct pair_result now = answer(&query);
@@ -377,7 +377,7 @@ static void test_with_a_tolerance_witness_points_may_differ(void **state)
     expect_kind(1, &query, &then, &now, DIFFERENT_GAP);
 }
 
-static void test_with_a_tolerance_certificates_may_differ(void **state)
+static void with_a_tolerance_certificates_may_differ(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 0, CERTIFICATE);
     const struct pair_result now = answer(&query);
@@ -393,7 +393,7 @@ static void test_with_a_tolerance_certificates_may_differ(void **state)
 }
 
 /* A box of the other dimension is another box, though all numbers that both have be the same. */
-static void test_boxes_of_another_dimension(void **state)
+static void boxes_of_another_dimension_differ(void **state)
 {
     (void) state;
     for (int dim = 2; dim <= 3; dim++) {
@@ -699,7 +699,7 @@ static bool through_the_wire(struct scene_result *result)
     return !wire_read_scene_result(bytes, (uint32_t) size, result);
 }
 
-static void test_scenes_against_the_model(void **state)
+static void scenes_compare_as_the_model(void **state)
 {
     int different = 0, same = 0, shorter = 0;
     (void) state;
@@ -730,7 +730,7 @@ static void test_scenes_against_the_model(void **state)
 /* ---- Results that are not of the query ---- */
 
 /* Any result beside any query. */
-static void test_results_of_other_queries(void **state)
+static void results_of_other_queries_differ(void **state)
 {
     static struct scene_result kept[20];
     int count = 0, whole = 0, walked = 0;
@@ -752,7 +752,7 @@ static void test_results_of_other_queries(void **state)
 }
 
 /* Each byte of a result changed in several ways: what can still be read. */
-static void test_results_changed_byte_by_byte(void **state)
+static void every_changed_byte_is_found(void **state)
 {
     int read = 0;
     (void) state;
@@ -781,7 +781,7 @@ static void expect_whole(void)
 }
 
 /* As many pairs as a message holds, all of them in contact, and nothing else. */
-static void test_the_most_pairs(void **state)
+static void the_most_pairs_are_compared(void **state)
 {
     (void) state;
     memset(&scene, 0, sizeof scene);
@@ -810,7 +810,7 @@ static void test_the_most_pairs(void **state)
 /* Indices of a scene with about the most placements that a query can have, and beyond it. */
 enum { PLACEMENTS = 400 };
 
-static void test_the_most_placements(void **state)
+static void the_most_placements_are_compared(void **state)
 {
     (void) state;
     for (int which = FMB_PAIRS_ALL; which <= FMB_PAIRS_ACROSS; which += 2) {
@@ -859,7 +859,7 @@ static bool looks_same(enum log_kind kind, const unsigned char *a, const unsigne
     return same;
 }
 
-static void test_scenes_whose_bytes_are_the_same(void **state)
+static void scenes_whose_bytes_are_the_same(void **state)
 {
     int same = 0;
     (void) state;
@@ -900,7 +900,7 @@ static struct pair_query drawn_pair(void)
     return query;
 }
 
-static void test_pairs_whose_bytes_are_the_same(void **state)
+static void pairs_whose_bytes_are_the_same(void **state)
 {
     static unsigned char a[QUERY_BYTES_MAX], b[QUERY_BYTES_MAX];
     int same = 0, unknown = 0;
@@ -929,7 +929,7 @@ static void test_pairs_whose_bytes_are_the_same(void **state)
     assert_in_range(unknown, 50, 1000);
 }
 
-static void test_names(void **state)
+static void differences_have_names(void **state)
 {
     (void) state;
     for (int kind = 0; kind < DIFFERENT_KINDS; kind++)
@@ -938,26 +938,26 @@ static void test_names(void **state)
 
 int main(void)
 {
-#define TEST(name) cmocka_unit_test_setup_teardown(test_##name, set_up, tear_down)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        TEST(every_kind),
-        TEST(what_is_not_compared),
-        TEST(statuses_of_the_moment),
-        TEST(ends_of_intervals),
-        TEST(ends_of_boxes),
-        TEST(bounds_of_gaps),
+        TEST(every_kind_of_difference_is_found),
+        TEST(other_fields_are_not_compared),
+        TEST(statuses_of_the_moment_are_not_compared),
+        TEST(ends_of_intervals_are_compared),
+        TEST(ends_of_boxes_are_compared),
+        TEST(bounds_of_gaps_are_compared),
         TEST(a_tolerance_is_relative_to_the_largest_coordinate),
         TEST(with_a_tolerance_witness_points_may_differ),
         TEST(with_a_tolerance_certificates_may_differ),
-        TEST(boxes_of_another_dimension),
-        TEST(scenes_against_the_model),
-        TEST(results_of_other_queries),
-        TEST(results_changed_byte_by_byte),
-        TEST(the_most_pairs),
-        TEST(the_most_placements),
+        TEST(boxes_of_another_dimension_differ),
+        TEST(scenes_compare_as_the_model),
+        TEST(results_of_other_queries_differ),
+        TEST(every_changed_byte_is_found),
+        TEST(the_most_pairs_are_compared),
+        TEST(the_most_placements_are_compared),
         TEST(scenes_whose_bytes_are_the_same),
         TEST(pairs_whose_bytes_are_the_same),
-        TEST(names),
+        TEST(differences_have_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

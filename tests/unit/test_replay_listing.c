@@ -84,7 +84,7 @@ static void check(int count, int64_t limit, int order)
     listing_close(listing);
 }
 
-static void test_the_first_ones(void **state)
+static void the_first_differences_are_listed(void **state)
 {
     static const int64_t limits[] = {0, 1, 2, 3, 7, 100, 1000, PUT_MAX, INT32_MAX};
     (void) state;
@@ -97,7 +97,7 @@ static void test_the_first_ones(void **state)
 }
 
 /* Of a long certificate the beginning. */
-static void test_long_certificates(void **state)
+static void long_certificates_are_listed(void **state)
 {
     static char text[1000];
     (void) state;
@@ -114,8 +114,8 @@ static void test_long_certificates(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_first_ones),
-        cmocka_unit_test(test_long_certificates),
+        cmocka_unit_test(the_first_differences_are_listed),
+        cmocka_unit_test(long_certificates_are_listed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -49,7 +49,7 @@ static void serve(int client, int64_t ns)
 }
 
 /* The client that was served last keeps its turn for a while beyond the others. */
-static void test_turns_last_a_slice(void **state)
+static void turns_last_a_slice(void **state)
 {
     (void) state;
     int64_t lead_ns;
@@ -67,7 +67,7 @@ static void test_turns_last_a_slice(void **state)
     assert_true(lead_ns == INT64_MAX);
 }
 
-static void test_least_used_is_next(void **state)
+static void least_used_is_next(void **state)
 {
     (void) state;
     int64_t lead_ns;
@@ -94,7 +94,7 @@ static bool is_odd(const void *user, int client)
     return client % 2;
 }
 
-static void test_clients_that_may_not_be_served_are_passed_over(void **state)
+static void clients_that_may_not_be_served_are_passed_over(void **state)
 {
     (void) state;
     int64_t lead_ns;
@@ -107,7 +107,7 @@ static void test_clients_that_may_not_be_served_are_passed_over(void **state)
 }
 
 /* Each gets as much time as the others, whatever a turn of it takes. */
-static void test_time_is_shared_equally(void **state)
+static void time_is_shared_equally(void **state)
 {
     (void) state;
     static const int64_t cost[] = {10, 1000, 70};
@@ -123,7 +123,7 @@ static void test_time_is_shared_equally(void **state)
         assert_in_range(used[c] - used[0] + 1000, 0, 2000);
 }
 
-static void test_idling_earns_no_credit(void **state)
+static void idling_earns_no_credit(void **state)
 {
     (void) state;
     const int idle = active_client(1), busy = active_client(2);
@@ -136,7 +136,7 @@ static void test_idling_earns_no_credit(void **state)
     assert_int_equal(next(), busy);
 }
 
-static void test_debt_is_kept(void **state)
+static void debt_is_kept(void **state)
 {
     (void) state;
     const int debtor = active_client(1), other = active_client(2);
@@ -150,7 +150,7 @@ static void test_debt_is_kept(void **state)
     assert_int_equal(next(), debtor);
 }
 
-static void test_a_new_id_has_no_advantage_over_an_old_one(void **state)
+static void a_new_id_has_no_advantage_over_an_old_one(void **state)
 {
     (void) state;
     const int old = active_client(1);
@@ -161,7 +161,7 @@ static void test_a_new_id_has_no_advantage_over_an_old_one(void **state)
     assert_int_equal(next(), new);
 }
 
-static void test_known_clients_keep_their_number(void **state)
+static void known_clients_keep_their_number(void **state)
 {
     (void) state;
     for (int64_t id = 0; id < SCHEDULER_CLIENTS; id++)
@@ -171,7 +171,7 @@ static void test_known_clients_keep_their_number(void **state)
 }
 
 /* The first whose debt is paid. */
-static void test_the_one_that_was_idle_longest_is_forgotten(void **state)
+static void the_one_that_was_idle_longest_is_forgotten(void **state)
 {
     (void) state;
     for (int64_t id = 0; id < SCHEDULER_CLIENTS; id++)
@@ -192,7 +192,7 @@ static void test_the_one_that_was_idle_longest_is_forgotten(void **state)
 
 /* Against a list: ids come, idle and come again, in any order. Those that are active keep their
  * number, but for the shared one. */
-static void test_ids_without_end(void **state)
+static void an_endless_stream_of_ids_is_served(void **state)
 {
     (void) state;
     enum { IDS = 5000 };
@@ -231,7 +231,7 @@ static void accustom(int client, int64_t think_ns, int times)
     }
 }
 
-static void test_fast_clients_are_waited_for(void **state)
+static void fast_clients_are_waited_for(void **state)
 {
     (void) state;
     anticipation_init(&expectation);
@@ -254,7 +254,7 @@ static void test_fast_clients_are_waited_for(void **state)
 }
 
 /* Waiting pays only where the work of another client would take longer. */
-static void test_waiting_is_weighed_against_work(void **state)
+static void waiting_is_weighed_against_work(void **state)
 {
     (void) state;
     anticipation_init(&expectation);
@@ -264,7 +264,7 @@ static void test_waiting_is_weighed_against_work(void **state)
     assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 30000, false));
 }
 
-static void test_slow_clients_are_not_waited_for(void **state)
+static void slow_clients_are_not_waited_for(void **state)
 {
     (void) state;
     anticipation_init(&expectation);
@@ -300,7 +300,7 @@ static void pass(int64_t on_the_wall_ns, int64_t of_the_cpu_ns)
     cpu_ns += of_the_cpu_ns;
 }
 
-static void test_long_spans_leave_out_other_programs(void **state)
+static void long_spans_leave_out_other_programs(void **state)
 {
     (void) state;
     static const struct meter_clocks clocks = {read_wall, read_cpu};
@@ -332,20 +332,20 @@ static void test_long_spans_leave_out_other_programs(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_turns_last_a_slice),
-        TEST(test_least_used_is_next),
-        TEST(test_clients_that_may_not_be_served_are_passed_over),
-        TEST(test_time_is_shared_equally),
-        TEST(test_idling_earns_no_credit),
-        TEST(test_debt_is_kept),
-        TEST(test_a_new_id_has_no_advantage_over_an_old_one),
-        TEST(test_known_clients_keep_their_number),
-        TEST(test_the_one_that_was_idle_longest_is_forgotten),
-        TEST(test_ids_without_end),
-        cmocka_unit_test(test_fast_clients_are_waited_for),
-        cmocka_unit_test(test_waiting_is_weighed_against_work),
-        cmocka_unit_test(test_slow_clients_are_not_waited_for),
-        cmocka_unit_test(test_long_spans_leave_out_other_programs),
+        TEST(turns_last_a_slice),
+        TEST(least_used_is_next),
+        TEST(clients_that_may_not_be_served_are_passed_over),
+        TEST(time_is_shared_equally),
+        TEST(idling_earns_no_credit),
+        TEST(debt_is_kept),
+        TEST(a_new_id_has_no_advantage_over_an_old_one),
+        TEST(known_clients_keep_their_number),
+        TEST(the_one_that_was_idle_longest_is_forgotten),
+        TEST(an_endless_stream_of_ids_is_served),
+        cmocka_unit_test(fast_clients_are_waited_for),
+        cmocka_unit_test(waiting_is_weighed_against_work),
+        cmocka_unit_test(slow_clients_are_not_waited_for),
+        cmocka_unit_test(long_spans_leave_out_other_programs),
     };
     return cmocka_run_group_tests_name("turns", tests, NULL, NULL);
 }

@@ -42,7 +42,7 @@ static void place_squares(double x)
 
 static const double apart[] = {0.5, 1, 1.5};
 
-static void test_what_holds_stays_as_it_was(void **state)
+static void what_holds_stays_as_it_was(void **state)
 {
     (void) state;
     for (int i = 0; i < 3; i++) {
@@ -68,7 +68,7 @@ static void expect_refuted(const struct outcome *outcome)
     assert_int_equal(refuted.pair.b, outcome->pair.b);
 }
 
-static void test_another_verdict_is_refuted(void **state)
+static void another_verdict_is_refuted(void **state)
 {
     (void) state;
     for (int i = 0; i < 3; i++)
@@ -83,7 +83,7 @@ static void test_another_verdict_is_refuted(void **state)
 }
 
 /* The certificate of one scene, word for word, beside another one. */
-static void test_another_scene_s_certificate_is_refuted(void **state)
+static void another_scene_s_certificate_is_refuted(void **state)
 {
     (void) state;
     for (int i = 0; i < 3; i++) {
@@ -97,7 +97,7 @@ static void test_another_scene_s_certificate_is_refuted(void **state)
     }
 }
 
-static void test_nonsense_is_refuted(void **state)
+static void nonsense_is_refuted(void **state)
 {
     (void) state;
     static char huge[100000];
@@ -114,10 +114,10 @@ static void test_nonsense_is_refuted(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_holds_stays_as_it_was),
-        cmocka_unit_test(test_another_verdict_is_refuted),
-        cmocka_unit_test(test_another_scene_s_certificate_is_refuted),
-        cmocka_unit_test(test_nonsense_is_refuted),
+        cmocka_unit_test(what_holds_stays_as_it_was),
+        cmocka_unit_test(another_verdict_is_refuted),
+        cmocka_unit_test(another_scene_s_certificate_is_refuted),
+        cmocka_unit_test(nonsense_is_refuted),
     };
     return cmocka_run_group_tests_name("verify", tests, NULL, NULL);
 }

@@ -31,7 +31,7 @@
 static struct hasher *hasher;
 
 /* A change of any field changes the fingerprint, and with it breaks every old client and log. */
-static void test_fingerprints_are_pinned(void **state)
+static void fingerprints_are_pinned(void **state)
 {
     (void) state;
     assert_int_equal(__fmb_msgs_body_t_get_hash(), 0x18fc974de94f47b6u);
@@ -47,7 +47,7 @@ static void test_fingerprints_are_pinned(void **state)
 }
 
 /* LCM hands on a size that is a negative int for some short packets. */
-static void test_negative_size_is_refused(void **state)
+static void negative_size_is_refused(void **state)
 {
     (void) state;
     unsigned char good[HOSTILE_BYTES_MAX];
@@ -64,7 +64,7 @@ static void test_negative_size_is_refused(void **state)
 
 /* Counts that no body has make a query that is answered, not a malformed one: the reader keeps what
  * fits, and the counts. */
-static void test_long_lists_are_read(void **state)
+static void long_lists_are_read(void **state)
 {
     (void) state;
     static double many[500];
@@ -102,7 +102,7 @@ static void test_long_lists_are_read(void **state)
 
 /* ---- Geometries and handles ---- */
 
-static void test_geometry_round_trip(void **state)
+static void geometries_are_read_back(void **state)
 {
     (void) state;
     for (int dim = 2; dim <= 3; dim++)
@@ -123,7 +123,7 @@ static void test_geometry_round_trip(void **state)
         }
 }
 
-static void test_numbers_of_frames(void **state)
+static void shapes_have_their_count_of_numbers(void **state)
 {
     (void) state;
     static const int counts[2][9] = {{0, 6, 6, 0, 4, 0, 6, 0, 0}, {0, 12, 12, 9, 6, 0, 12, 9, 0}};
@@ -140,7 +140,7 @@ static void test_numbers_of_frames(void **state)
 }
 
 /* As many frames as a message has space for, of all shapes. */
-static void test_geometry_of_many_frames(void **state)
+static void geometries_of_many_frames_are_read_back(void **state)
 {
     (void) state;
     static struct geometry_frame frames[QUERY_FRAMES_MAX];
@@ -171,7 +171,7 @@ static void test_geometry_of_many_frames(void **state)
 }
 
 /* What no frame is made of is refused, whatever the counts are. */
-static void test_geometry_that_does_not_fit(void **state)
+static void inconsistent_geometries_have_no_frames(void **state)
 {
     (void) state;
     unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX], other[GEOMETRY_FRAME_BYTES_MAX];
@@ -194,7 +194,7 @@ static void test_geometry_that_does_not_fit(void **state)
 }
 
 /* A tetrahedron whose count says more or fewer vertices than it has, or that has none. */
-static void test_a_frame_by_vertices_has_their_count(void **state)
+static void a_frame_by_vertices_has_their_count(void **state)
 {
     (void) state;
     struct geometry_frame frame = sample_frame(3, FMB_TETRAHEDRON), read;
@@ -213,7 +213,7 @@ static void test_a_frame_by_vertices_has_their_count(void **state)
 }
 
 /* The second frame has one number less than it needs. */
-static void test_a_later_frame_that_does_not_fit(void **state)
+static void a_later_frame_that_does_not_fit_ends_the_geometry(void **state)
 {
     (void) state;
     const struct geometry_frame frames[2] = {sample_frame(3, FMB_BOX), sample_frame(3, FMB_FACE)};
@@ -228,7 +228,7 @@ static void test_a_later_frame_that_does_not_fit(void **state)
 
 /* The handle is what any SHA-256 makes of the bytes between handle and position, as lcm-gen's own
  * encoder writes them: a client in any language can compute it. */
-static void test_handles_are_hashes_of_the_encoding(void **state)
+static void handles_are_hashes_of_the_encoding(void **state)
 {
     (void) state;
     static const unsigned char abc[HANDLE_BYTES] = {0xba, 0x78, 0x16, 0xbf, 0x8f, 0x01, 0xcf, 0xea,
@@ -248,7 +248,7 @@ static void test_handles_are_hashes_of_the_encoding(void **state)
     assert_memory_equal(encoded + 8 + HANDLE_BYTES, bytes, size);
 }
 
-static void test_handles_distinguish_zeros(void **state)
+static void handles_distinguish_zeros(void **state)
 {
     (void) state;
     unsigned char bytes[2][GEOMETRY_FRAME_BYTES_MAX];
@@ -276,7 +276,7 @@ static size_t write_certificate(char *certificate, int32_t status, int32_t verdi
     return (size_t) size;
 }
 
-static void test_certificates_end_somewhere(void **state)
+static void too_long_certificates_are_refused(void **state)
 {
     (void) state;
     static char text[3 * FMB_CERTIFICATE_MAX];
@@ -299,7 +299,7 @@ static void test_certificates_end_somewhere(void **state)
     }
 }
 
-static void test_a_box_of_too_many_numbers_is_refused(void **state)
+static void a_box_of_too_many_numbers_is_refused(void **state)
 {
     (void) state;
     double zero[8] = {0};
@@ -322,7 +322,7 @@ static void test_a_box_of_too_many_numbers_is_refused(void **state)
 }
 
 /* A newer service may have more counters, in another order, and a longer version. */
-static void test_status_of_a_newer_service(void **state)
+static void a_heartbeat_of_a_newer_service_is_read(void **state)
 {
     (void) state;
     char version[] = "10.20.30-with-a-long-name-that-goes-on-and-on";
@@ -343,7 +343,7 @@ static void test_status_of_a_newer_service(void **state)
     assert_memory_equal(status.version, version, sizeof status.version - 1);
 }
 
-static void test_names_round_trip(void **state)
+static void names_are_read_back(void **state)
 {
     (void) state;
     static struct names names, read;
@@ -375,7 +375,7 @@ static void test_names_round_trip(void **state)
 }
 
 /* Messages of old versions have their own words, so that logs and services can name the version. */
-static void test_old_versions_are_named(void **state)
+static void old_versions_are_named(void **state)
 {
     (void) state;
     const struct {
@@ -423,22 +423,22 @@ static int tear_down(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_fingerprints_are_pinned),
-        cmocka_unit_test(test_negative_size_is_refused),
-        cmocka_unit_test(test_long_lists_are_read),
-        cmocka_unit_test(test_geometry_round_trip),
-        cmocka_unit_test(test_numbers_of_frames),
-        cmocka_unit_test(test_geometry_of_many_frames),
-        cmocka_unit_test(test_a_later_frame_that_does_not_fit),
-        cmocka_unit_test(test_geometry_that_does_not_fit),
-        cmocka_unit_test(test_a_frame_by_vertices_has_their_count),
-        cmocka_unit_test(test_handles_are_hashes_of_the_encoding),
-        cmocka_unit_test(test_handles_distinguish_zeros),
-        cmocka_unit_test(test_certificates_end_somewhere),
-        cmocka_unit_test(test_a_box_of_too_many_numbers_is_refused),
-        cmocka_unit_test(test_status_of_a_newer_service),
-        cmocka_unit_test(test_names_round_trip),
-        cmocka_unit_test(test_old_versions_are_named),
+        cmocka_unit_test(fingerprints_are_pinned),
+        cmocka_unit_test(negative_size_is_refused),
+        cmocka_unit_test(long_lists_are_read),
+        cmocka_unit_test(geometries_are_read_back),
+        cmocka_unit_test(shapes_have_their_count_of_numbers),
+        cmocka_unit_test(geometries_of_many_frames_are_read_back),
+        cmocka_unit_test(a_later_frame_that_does_not_fit_ends_the_geometry),
+        cmocka_unit_test(inconsistent_geometries_have_no_frames),
+        cmocka_unit_test(a_frame_by_vertices_has_their_count),
+        cmocka_unit_test(handles_are_hashes_of_the_encoding),
+        cmocka_unit_test(handles_distinguish_zeros),
+        cmocka_unit_test(too_long_certificates_are_refused),
+        cmocka_unit_test(a_box_of_too_many_numbers_is_refused),
+        cmocka_unit_test(a_heartbeat_of_a_newer_service_is_read),
+        cmocka_unit_test(names_are_read_back),
+        cmocka_unit_test(old_versions_are_named),
     };
     return cmocka_run_group_tests_name("wire", tests, set_up, tear_down);
 }

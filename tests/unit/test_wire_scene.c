@@ -109,7 +109,7 @@ static void assert_same_query(void)
 }
 
 /* Indices are read many at a time: of every length as many as there are, and no more. */
-static void test_lists_of_every_length(void **state)
+static void lists_of_every_length_are_read(void **state)
 {
     (void) state;
     for (int32_t count = 0; count < 70; count++) {
@@ -124,7 +124,7 @@ static void test_lists_of_every_length(void **state)
 }
 
 /* To the last bytes: only pairs, and only placements. */
-static void test_largest_queries(void **state)
+static void the_largest_queries_are_read(void **state)
 {
     (void) state;
     const int placements = (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES) / QUERY_PLACEMENT_BYTES_MIN;
@@ -147,7 +147,7 @@ static void test_largest_queries(void **state)
 }
 
 /* More placements, and pairs, than the structs hold: all are read, the first are kept. */
-static void test_more_than_the_capacity(void **state)
+static void lists_beyond_the_capacity_keep_the_first(void **state)
 {
     (void) state;
     static fmb_msgs_placement_t placements[QUERY_PLACEMENTS_MAX + 200];
@@ -308,7 +308,7 @@ static size_t write_and_read(void)
 
 /* As many of each kind of answer as the bound of wire.h admits, with the longest detail: the
  * message fits, and the bound is not wasteful. */
-static void test_results_that_fill_a_message(void **state)
+static void results_fill_a_message_to_its_last_byte(void **state)
 {
     (void) state;
     for (int form = 0; form < 2 * FORMS; form++) {
@@ -341,7 +341,7 @@ static void expect_refused(void)
 }
 
 /* What the corpora of tests/fuzz have no example of. */
-static void test_results_that_contradict_themselves(void **state)
+static void inconsistent_results_are_refused(void **state)
 {
     (void) state;
     set_result(3, 0, 2, NAMES | GAPS); /* separated, touching */
@@ -410,11 +410,11 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(answers_that_differ_in_any_byte_are_not_the_same),
         TEST(parts_that_no_answer_has_are_the_same),
-        TEST(test_lists_of_every_length),
-        TEST(test_largest_queries),
-        TEST(test_more_than_the_capacity),
-        TEST(test_results_that_fill_a_message),
-        TEST(test_results_that_contradict_themselves),
+        TEST(lists_of_every_length_are_read),
+        TEST(the_largest_queries_are_read),
+        TEST(lists_beyond_the_capacity_keep_the_first),
+        TEST(results_fill_a_message_to_its_last_byte),
+        TEST(inconsistent_results_are_refused),
     };
     return cmocka_run_group_tests_name("wire_scene", tests, NULL, NULL);
 }
