@@ -120,6 +120,8 @@ $(box_refinements_of_tests): $(O)/kernels/refine_boxes_%.o: service/fmb/filter/b
 	$(compile_box) $(not_inlined)
 $(B)/tests/test_box_bounds: $(box_kernels) $(box_refinements_of_tests)
 
+# cmocka hands each test a state, which few read.
+$(O)/tests/unit/%.o: flags += -Wno-unused-parameter
 $(internal_tests): $(O)/tests/unit/slab_truth.o $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
 	kernel_fused.o kernel_planted.o) $(shared) $(client) $(product) $(engine)
 $(filter-out $(internal_tests),$(unit_tests)): $(shared) $(client) $(product) $(B)/libfmb.a

@@ -1,4 +1,6 @@
 /* What a pair query gets: the right answer, or the status that says what is wrong and where. */
+#include "unit.h"
+
 #include "answer.h"
 #include "big_endian.h"
 #include "body.h"
@@ -7,13 +9,6 @@
 #include "writer.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static struct answerer *answerer;
 static struct pair_job *job;
@@ -29,25 +24,21 @@ static int set_up_frames(size_t frames)
 
 static int set_up(void **state)
 {
-    (void) state;
     return set_up_frames(2);
 }
 
 static int set_up_many(void **state)
 {
-    (void) state;
     return set_up_frames(300);
 }
 
 static int set_up_one(void **state)
 {
-    (void) state;
     return set_up_frames(1);
 }
 
 static int tear_down(void **state)
 {
-    (void) state;
     pair_job_destroy(job);
     answerer_destroy(answerer);
     return 0;
@@ -191,7 +182,6 @@ enum { END = INT32_MIN };
 
 static void a_pair_is_answered_and_its_ids_are_echoed(void **state)
 {
-    (void) state;
     struct hasher *hasher = hasher_create();
     struct pair_query query = cubes();
     query.want = FMB_WANT_BOX;
@@ -222,7 +212,6 @@ static void a_pair_is_answered_and_its_ids_are_echoed(void **state)
 /* Also without an id, or with another one. */
 static void handles_stand_for_frames(void **state)
 {
-    (void) state;
     struct pair_query query = stretched(2);
     const struct pair_result first = answer_to(&query);
     for (int64_t id = 0; id < 5; id++) {
@@ -242,7 +231,6 @@ static void handles_stand_for_frames(void **state)
 
 static void unknown_handles_are_refused(void **state)
 {
-    (void) state;
     struct pair_query query = stretched(2);
     struct handle handle = answer_to(&query).handle[1];
     handle.bytes[15] ^= 1;
@@ -257,7 +245,6 @@ static void unknown_handles_are_refused(void **state)
 
 static void a_handle_of_the_other_dimension_is_refused(void **state)
 {
-    (void) state;
     const struct geometry_frame square = {.shape = FMB_CUBOID, .components = {1, 0, 0, 1}};
     struct pair_query query = cubes();
     const struct handle handle = answer_to(&query).handle[0];
@@ -270,7 +257,6 @@ static void a_handle_of_the_other_dimension_is_refused(void **state)
 /* With capacity for two: keeping a third body evicts the one not used longest. */
 static void evicted_bodies_are_unknown(void **state)
 {
-    (void) state;
     struct pair_query query = stretched(2);
     const struct pair_result first = answer_to(&query);
     query = stretched(3);
@@ -285,7 +271,6 @@ static void evicted_bodies_are_unknown(void **state)
  * is made for this query only. */
 static void a_cache_of_one_frame_answers_whole_pairs(void **state)
 {
-    (void) state;
     struct pair_query query = stretched(2);
     query.want = FMB_WANT_BOX;
     const struct pair_result first = answer_to(&query);
@@ -312,7 +297,6 @@ static void a_cache_of_one_frame_answers_whole_pairs(void **state)
 /* One id with two geometries in one pair: each placement is what it says. */
 static void one_id_may_have_two_bodies(void **state)
 {
-    (void) state;
     struct pair_query query = stretched(2);
     query.placement[0].body_id = query.placement[1].body_id = 9;
     for (int repeat = 0; repeat < 3; repeat++) {
@@ -328,7 +312,6 @@ static void one_id_may_have_two_bodies(void **state)
 
 static void anonymous_bodies_are_not_kept(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     query.placement[0].body_id = query.placement[1].body_id = 0;
     const struct pair_result result = answer_to(&query);
@@ -340,7 +323,6 @@ static void anonymous_bodies_are_not_kept(void **state)
 
 static void numbers_that_are_not_finite_are_refused(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     put_number(1, 4, NAN);
     expect(&query, FMB_NOT_FINITE, "b.numbers[4]: not a finite number");
@@ -358,7 +340,6 @@ static void numbers_that_are_not_finite_are_refused(void **state)
 
 static void wrong_counts_are_refused(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     set_geometry(&query, 0, 3, 1, FMB_CUBOID, 9);
     expect(&query, FMB_WRONG_COUNT, "a.num_numbers: expected 12 numbers, found 9");
@@ -412,7 +393,6 @@ static void set_vertices(struct pair_query *query, int f, int32_t dim, const int
 
 static void wrong_counts_of_vertices_are_refused(void **state)
 {
-    (void) state;
     static const struct {
         int32_t dim, frames;
         int codes[3];
@@ -484,7 +464,7 @@ static void wrong_counts_of_vertices_are_refused(void **state)
          FMB_WRONG_COUNT,
          "b.num_numbers: expected 6442450941 numbers, found 3"},
         {3, 1, {5}, {END}, 3, FMB_WRONG_COUNT, "b.num_counts: expected 1 numbers, found 0"}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = 0; i < COUNT(cases); i++) {
         struct pair_query query = cases[i].dim == 2 ? squares() : cubes();
         set_vertices(&query, 1, cases[i].dim, cases[i].codes, cases[i].counts, cases[i].frames,
                      cases[i].numbers);
@@ -498,7 +478,6 @@ static void wrong_counts_of_vertices_are_refused(void **state)
 /* With a handle there are no counts. */
 static void a_handle_has_no_counts(void **state)
 {
-    (void) state;
     static const int32_t counts[] = {4, END};
     struct pair_query query = cubes();
     set_vertices(&query, 0, 3, NULL, counts, 0, 0);
@@ -508,7 +487,6 @@ static void a_handle_has_no_counts(void **state)
 
 static void bad_names_are_refused(void **state)
 {
-    (void) state;
     static const char good[] =
         "0123456789012345678901234567890123456789012345678901234567890\xe2\x82\xac";
     static const char *const bad[] = {
@@ -527,7 +505,7 @@ static void bad_names_are_refused(void **state)
     const struct pair_result named = answer_to(&query);
     assert_int_equal(named.status, FMB_OK);
     assert_memory_equal(&named.handle[0], &unnamed.handle[0], sizeof named.handle[0]);
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    for (size_t i = 0; i < COUNT(bad); i++) {
         query = cubes();
         query.placement[1].name = bad[i];
         expect(&query, FMB_BAD_NAME,
@@ -538,7 +516,6 @@ static void bad_names_are_refused(void **state)
 /* A pair query does not look at groups: also where it takes a job. */
 static void groups_of_a_pair_do_not_matter(void **state)
 {
-    (void) state;
     struct geometry_frame frames[2] = {unit_cube, unit_cube};
     for (int count = 1; count <= 2; count++) {
         struct pair_query query = cubes();
@@ -554,7 +531,6 @@ static void groups_of_a_pair_do_not_matter(void **state)
 
 static void a_placement_has_a_handle_or_frames(void **state)
 {
-    (void) state;
     const struct handle handle = {{1}};
     struct pair_query query = cubes();
     query.placement[0].handle = handle;
@@ -575,7 +551,6 @@ static void a_placement_has_a_handle_or_frames(void **state)
 
 static void unknown_shapes_and_dimensions_are_refused(void **state)
 {
-    (void) state;
     for (int shape = 0; shape < 256; shape++) {
         if (shape >= FMB_CUBOID && shape <= 7)
             continue;
@@ -603,13 +578,12 @@ static void unknown_shapes_and_dimensions_are_refused(void **state)
 
 static void bad_orientations_are_refused(void **state)
 {
-    (void) state;
     static const char detail[] =
         "b.orientation: zero, not finite, or components that differ by more than 2^200";
     const double bad[][4] = {{0, 0, 0, 0},        {-0.0, 0, -0.0, 0},   {NAN, 0, 0, 1},
                              {1, INFINITY, 0, 0}, {0, 0, -INFINITY, 0}, {1, 0, 0x1p-201, 0},
                              {0x1p-1000, 0, 0, 1}};
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    for (size_t i = 0; i < COUNT(bad); i++) {
         struct pair_query query = cubes();
         query.placement[1].orientation_count = 4;
         memcpy(query.placement[1].orientation, bad[i], sizeof bad[i]);
@@ -632,7 +606,6 @@ static void bad_orientations_are_refused(void **state)
 /* 0 is a flat frame. */
 static void bad_sizes_are_refused(void **state)
 {
-    (void) state;
     struct geometry_frame frames[3] = {box(0, 1), unit_cube, box(3, 1)};
     struct pair_query query = cubes();
     frames[0].components[2] = -0x1p-1074;
@@ -703,7 +676,6 @@ static struct pair_query gratings(int count, double spacing, double distance)
 /* Whole and by handle, with every method, in steps: the answer of one call of the engine. */
 static void bodies_of_several_frames_are_answered(void **state)
 {
-    (void) state;
     const double distance[] = {-100, 0, 1.75, 2, 1000};
     for (int i = 0; i < 5; i++)
         for (int k = 0; k < 10; k++) {
@@ -732,7 +704,6 @@ static void bodies_of_several_frames_are_answered(void **state)
 /* A turned body is the same body. */
 static void turning_bodies_hit(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     for (int i = 0; i < 10; i++) {
         query.placement[1].orientation_count = 4;
@@ -750,7 +721,6 @@ static void turning_bodies_hit(void **state)
 /* A pair of many frames takes many steps, between which other queries are answered. */
 static void many_frames_take_many_steps(void **state)
 {
-    (void) state;
     static unsigned char message[QUERY_BYTES_MAX];
     const struct pair_query query = gratings(100, 0.001, 0.5);
     const struct fmb_answer expected = truth(&query);
@@ -770,7 +740,6 @@ static void many_frames_take_many_steps(void **state)
 
 static void a_job_that_is_stopped(void **state)
 {
-    (void) state;
     static unsigned char message[QUERY_BYTES_MAX];
     const struct pair_query query = gratings(100, 0.001, 0.5);
     const size_t size = wire_write_pair_query(&query, message);
@@ -786,7 +755,6 @@ static void a_job_that_is_stopped(void **state)
 /* What is refused in a job: nothing is cached. */
 static void bodies_of_several_frames_have_no_certificate(void **state)
 {
-    (void) state;
     struct pair_query query = gratings(2, 2, 0);
     query.want = FMB_WANT_CERTIFICATE;
     expect(&query, FMB_CANNOT_DECIDE, "want: a certificate is for bodies of one frame");
@@ -804,7 +772,6 @@ static void bodies_of_several_frames_have_no_certificate(void **state)
 /* A body that the cache has no memory for is answered all the same, and its handle is right. */
 static void a_body_larger_than_the_cache_is_answered(void **state)
 {
-    (void) state;
     const struct pair_query query = gratings(40, 2, 0.5);
     const struct fmb_answer expected = truth(&query);
     const struct pair_result result = answer_to(&query);
@@ -816,7 +783,6 @@ static void a_body_larger_than_the_cache_is_answered(void **state)
 
 static void bad_ids_are_refused(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     query.placement[1].body_id = QUERY_ID_MAX + 1;
     expect(&query, FMB_BAD_ID, "b.body_id: not from 0 to 2^53 - 1");
@@ -835,9 +801,8 @@ static void bad_ids_are_refused(void **state)
 
 static void bad_requests_are_refused(void **state)
 {
-    (void) state;
     const double durations[] = {-1, NAN, INFINITY, -5e-324};
-    for (size_t i = 0; i < sizeof durations / sizeof *durations; i++) {
+    for (size_t i = 0; i < COUNT(durations); i++) {
         struct pair_query query = cubes();
         query.duration = durations[i];
         expect(&query, FMB_BAD_DURATION, "duration: negative or not finite");
@@ -855,7 +820,6 @@ static void bad_requests_are_refused(void **state)
 
 static void refused_without_being_read(void **state)
 {
-    (void) state;
     const struct pair_query query = cubes();
     struct pair_result result;
     memset(&result, 0xa5, sizeof result);
@@ -883,7 +847,6 @@ static bool certified(const struct pair_query *query, const struct pair_result *
 
 static void certificates_are_given_on_request(void **state)
 {
-    (void) state;
     const double apart[] = {0.5, 1, 1.5};
     const enum fmb_verdict verdict[] = {FMB_OVERLAPPING, FMB_TOUCHING, FMB_SEPARATED};
     for (int i = 0; i < 6; i++) {
@@ -914,7 +877,6 @@ static void certificates_are_given_on_request(void **state)
 /* Of a body that comes by handle too. */
 static void bodies_by_handle_have_certificates(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     query.want = FMB_WANT_CERTIFICATE;
     struct pair_query by_handle = query;
@@ -926,7 +888,6 @@ static void bodies_by_handle_have_certificates(void **state)
 /* The body is kept all the same, and its handle known. */
 static void inexact_methods_do_not_decide_flat_frames(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     put_number(0, 3, 0);
     query.method = fmb_method_by_name("sat")->number;
@@ -942,7 +903,6 @@ static void inexact_methods_do_not_decide_flat_frames(void **state)
 /* Of bodies of one frame, moving. */
 static void gaps_are_given_on_request(void **state)
 {
-    (void) state;
     const double speed[] = {0, -2, -2.5, -7};
     for (int i = 0; i < 4; i++) {
         struct pair_query query = cubes();
@@ -961,7 +921,6 @@ static void gaps_are_given_on_request(void **state)
 
 static void a_repeat_gets_the_same(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     query.want = FMB_WANT_BOX;
     query.placement[0].velocity_count = 3;

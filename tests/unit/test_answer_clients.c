@@ -1,16 +1,10 @@
 /* Clients that follow the rules of msgs/README.md always get right answers, whatever is lost on the
  * way, and whatever others do with the same ids: simulated clients against fmb_decide(). */
+#include "unit.h"
+
 #include "answer.h"
 #include "scene_truth.h"
 #include "wire.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 enum { CLIENTS = 5, IDS = 24, PLACEMENTS = 8, CONTENTS = 64 };
 
@@ -258,8 +252,7 @@ static void query_much(void)
 static void clients_that_share_ids_and_lose_datagrams(void **state)
 {
     static const size_t frames[] = {1, 6, 24, 100};
-    (void) state;
-    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
+    for (size_t i = 0; i < COUNT(frames); i++) {
         begin(false, frames[i]);
         query_much();
         const struct cache_counts counts = cache_counts(answerer_cache(world.answerer));
@@ -276,7 +269,6 @@ static void clients_that_share_ids_and_lose_datagrams(void **state)
  * for which of them, and no handle is ever unknown. */
 static void clients_that_share_ids_do_not_disturb_each_other(void **state)
 {
-    (void) state;
     begin(true, 2 * CONTENTS * SOLID_FRAMES_MAX);
     query_much();
     const struct cache_counts counts = cache_counts(answerer_cache(world.answerer));

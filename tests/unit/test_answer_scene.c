@@ -1,6 +1,8 @@
 /* What a scene query gets: the answers of fmb_decide() to each of its pairs, to the bit; as many as
  * one datagram has space for, and the remainder on request; in steps, which may be interrupted; or
  * what is wrong, and where. */
+#include "unit.h"
+
 #include "answer.h"
 #include "geometry_write.h"
 #include "scene_truth.h"
@@ -8,16 +10,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 enum { BODIES = 40 };
 
@@ -31,7 +23,6 @@ static unsigned char bytes[2 * QUERY_BYTES_MAX];
 
 static int set_up(void **state)
 {
-    (void) state;
     const struct answerer_options options = {BODIES, .server_id = 99,
                                              .secret = {0x243f6a8885a308d3, 0x13198a2e03707344}};
     answerer = answerer_create(&options);
@@ -45,7 +36,6 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    (void) state;
     scene_job_destroy(job);
     scene_job_destroy(second_job);
     answerer_destroy(answerer);
@@ -159,7 +149,6 @@ static double draw_duration(struct draw *draw)
 
 static void answers_are_those_of_each_pair(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "scenes, certified");
     for (long round = 0; round < draw_sample(96); round++) {
@@ -173,7 +162,6 @@ static void answers_are_those_of_each_pair(void **state)
 
 static void answers_of_the_exact_method(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "scenes, exact");
     for (long round = 0; round < draw_sample(16); round++) {
@@ -185,7 +173,6 @@ static void answers_of_the_exact_method(void **state)
 /* Of flat frames they say nothing. */
 static void answers_of_inexact_methods(void **state)
 {
-    (void) state;
     struct draw draw;
     int undecided = 0;
     draw_begin(&draw, "scenes, inexact");
@@ -211,7 +198,6 @@ static void answers_of_inexact_methods(void **state)
  * and where many boxes are the same. */
 static void no_contact_is_lost_anywhere(void **state)
 {
-    (void) state;
     static const double scales[] = {0x1p-1074, 1e-308, 1e-300, 1, 1e150, 1e300, 0x1p1021};
     struct draw draw;
     draw_begin(&draw, "scenes of all sizes");
@@ -245,7 +231,6 @@ static void no_contact_is_lost_anywhere(void **state)
 
 static void every_pair_can_be_the_first(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "first pairs");
     for (int32_t which = FMB_PAIRS_ALL; which <= FMB_PAIRS_ACROSS; which++) {
@@ -315,7 +300,6 @@ static int parts_of(int pairs, int pair_bytes, int handles)
 
 static void parts_fill_their_datagrams(void **state)
 {
-    (void) state;
     set_heap(100, 3, true, true);
     query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
     assert_int_equal(answer_all_parts(5 + 16 + 48), parts_of(4950, 5 + 16 + 48, 100));
@@ -340,7 +324,6 @@ static void parts_fill_their_datagrams(void **state)
 /* As many contacts as fit, then one separated pair for each byte that is left, and one more. */
 static void a_datagram_is_filled_to_its_last_byte(void **state)
 {
-    (void) state;
     enum { HANDLES = 4, CONTACT_BYTES = 1 + 16 };
     const int32_t capacity = QUERY_BYTES_MAX - WIRE_SCENE_RESULT_BYTES - HANDLE_BYTES * HANDLES;
     const int32_t contacts = capacity / CONTACT_BYTES;
@@ -363,7 +346,6 @@ static void a_datagram_is_filled_to_its_last_byte(void **state)
 /* Near pairs count for the space of a result as contacts do. */
 static void near_pairs_fill_their_datagrams(void **state)
 {
-    (void) state;
     set_row(100);
     query->margin = 200;
     assert_int_equal(answer_all_parts(5 + 96), parts_of(4950, 5 + 96, 100));
@@ -377,7 +359,6 @@ static void near_pairs_fill_their_datagrams(void **state)
  * the handles. */
 static void verdicts_of_listed_pairs_fit(void **state)
 {
-    (void) state;
     query->which = FMB_PAIRS_LISTED;
     for (int32_t count = 2; count <= 350; count += 348) {
         set_heap(count, 2, false, true);
@@ -401,7 +382,6 @@ static void verdicts_of_listed_pairs_fit(void **state)
 
 static void empty_scenes_are_answered(void **state)
 {
-    (void) state;
     for (int32_t which = FMB_PAIRS_ALL; which <= FMB_PAIRS_ACROSS; which++)
         for (int32_t count = 0; count <= 1; count++)
             for (int32_t split = 0; split <= (which == FMB_PAIRS_ACROSS ? count : 0); split++) {
@@ -417,7 +397,6 @@ static void empty_scenes_are_answered(void **state)
 
 static void ids_are_echoed(void **state)
 {
-    (void) state;
     set_row(2);
     query->utime = 3;
     query->client_id = 4;
@@ -452,7 +431,6 @@ static void expect(enum fmb_status status, const char *detail)
 
 static void bad_placements_are_refused(void **state)
 {
-    (void) state;
     set_row(340);
     scene_put_number(&scene, 3, 7, NAN);
     expect(FMB_NOT_FINITE, "placements[3].numbers[7]: not a finite number");
@@ -487,7 +465,6 @@ static void bad_placements_are_refused(void **state)
 /* Placements of dimension 0 are so short that a message has more of them than are valid. */
 static void too_many_placements_are_refused(void **state)
 {
-    (void) state;
     enum {
         HEAD = 8 + 3 * 8 + 5 + 8 + 2 * 4 + 8 + 3 * 4,
         COUNT_AT = HEAD,
@@ -510,7 +487,6 @@ static void too_many_placements_are_refused(void **state)
 
 static void wrong_counts_are_refused(void **state)
 {
-    (void) state;
     set_row(2);
     query->which = FMB_PAIRS_LISTED;
     query->index_count = 3;
@@ -526,7 +502,6 @@ static void wrong_counts_are_refused(void **state)
 
 static void bad_pairs_are_refused(void **state)
 {
-    (void) state;
     static const struct {
         unsigned a, b;
         int place;
@@ -560,7 +535,6 @@ static void set_ignored(int32_t i, unsigned a, unsigned b)
 
 static void bad_ignored_pairs_are_refused(void **state)
 {
-    (void) state;
     set_row(7);
     query->ignored_count = 4;
     set_ignored(0, 1, 2);
@@ -588,7 +562,6 @@ static void bad_ignored_pairs_are_refused(void **state)
 /* Ignored pairs count in the numbering, and get no answer, wherever the answers begin. */
 static void ignored_pairs_are_left_out(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "ignored pairs");
     for (long round = 0; round < draw_sample(24); round++) {
@@ -616,7 +589,6 @@ static void ignored_pairs_are_left_out(void **state)
 /* A listed pair within a group is refused; the pairs of others are decided. */
 static void listed_pairs_within_a_group_are_refused(void **state)
 {
-    (void) state;
     set_row(5);
     query->which = FMB_PAIRS_LISTED;
     query->index_count = 6;
@@ -653,7 +625,6 @@ static struct handle keep_large_body(int32_t frames)
 /* 64 placements of 1024 frames are as many as a query may have. */
 static void too_many_frames_are_refused(void **state)
 {
-    (void) state;
     const struct answerer_options options = {2048, .server_id = 99, .secret = {1, 2}};
     answerer_destroy(answerer);
     answerer = answerer_create(&options);
@@ -676,7 +647,6 @@ static void too_many_frames_are_refused(void **state)
 
 static void bad_requests_are_refused(void **state)
 {
-    (void) state;
     const double durations[] = {-1, NAN, INFINITY, -0x1p-1074};
     set_row(2);
     for (size_t i = 0; i < COUNT(durations); i++) {
@@ -728,7 +698,6 @@ static void bad_requests_are_refused(void **state)
 
 static void refused_without_being_read(void **state)
 {
-    (void) state;
     const struct query_header header = {7, 8, 9};
     memset(&result, 0xa5, sizeof result);
     answer_scene_refused(answerer, &header, FMB_BUSY, &result);
@@ -743,7 +712,6 @@ static void refused_without_being_read(void **state)
 
 static void malformed_bytes_are_refused(void **state)
 {
-    (void) state;
     set_row(2);
     const size_t size = wire_write_scene_query(query, bytes);
     assert_non_null(scene_job_begin(job, bytes, size - 1));
@@ -756,7 +724,6 @@ static void malformed_bytes_are_refused(void **state)
 
 static void handles_and_whole_placements_may_be_mixed(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "handles");
     query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
@@ -787,7 +754,6 @@ static void handles_and_whole_placements_may_be_mixed(void **state)
 /* Exactly those that are not held are listed, and the cache stays as it was. */
 static void unknown_handles_are_listed(void **state)
 {
-    (void) state;
     set_row(6);
     for (int i = 0; i < 6; i++)
         stretch(i, 1 + i);
@@ -818,7 +784,6 @@ static void unknown_handles_are_listed(void **state)
 /* A body of the other dimension has this handle: that is wrong, whatever is not held besides. */
 static void a_handle_of_the_other_dimension_is_refused(void **state)
 {
-    (void) state;
     const struct solid square = {.dim = 2, .shape = FMB_CUBOID, .component = {{1, 0}, {0, 1}}};
     query->placement_count = 1;
     scene_set(&scene, 0, &square, 5);
@@ -833,7 +798,6 @@ static void a_handle_of_the_other_dimension_is_refused(void **state)
 /* Each placement is the body that it says, and both bodies stay. */
 static void one_id_may_have_two_bodies(void **state)
 {
-    (void) state;
     for (int method = 0; method < 2; method++) {
         query->method = method ? fmb_method_by_name("exact")->number : 0;
         set_row(4);
@@ -856,7 +820,6 @@ static void one_id_may_have_two_bodies(void **state)
 /* Bodies in use are not evicted: those that come later are used once. */
 static void more_bodies_than_the_cache_holds_are_answered(void **state)
 {
-    (void) state;
     static struct handle handle[3 * BODIES];
     query->want = FMB_WANT_BOX;
     for (int method = 0; method < 2; method++) {
@@ -925,7 +888,6 @@ void *__wrap_aligned_alloc(size_t alignment, size_t size)
  * refused or not. */
 static void answers_allocate_nothing(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "memory");
     assert_true(allocations > 0); /* by set_up() */
@@ -977,7 +939,6 @@ static void evict_all(void)
  * result. */
 static void queries_between_steps_do_not_show(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "steps");
     query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
@@ -1004,7 +965,6 @@ static void queries_between_steps_do_not_show(void **state)
 /* After any number of steps; its bodies can be evicted at once. */
 static void a_scene_without_answers_stops_as_busy(void **state)
 {
-    (void) state;
     int steps = 1;
     for (;; steps++) {
         set_row(BODIES);
@@ -1031,7 +991,6 @@ static void a_scene_without_answers_stops_as_busy(void **state)
 /* Two jobs of one answerer, in turns. */
 static void two_jobs_run_at_once(void **state)
 {
-    (void) state;
     struct draw draw;
     static struct scene second;
     draw_begin(&draw, "two jobs");
@@ -1057,7 +1016,6 @@ static void two_jobs_run_at_once(void **state)
 /* A job that is begun anew while it is under way has forgotten the first query. */
 static void a_job_can_be_begun_anew(void **state)
 {
-    (void) state;
     set_heap(60, 3, true, true);
     for (int steps = 0; steps < 12; steps++) {
         set_heap(60, 3, true, true);
@@ -1072,7 +1030,6 @@ static void a_job_can_be_begun_anew(void **state)
 /* A scene that is stopped early has the answers so far, and the next query has the remainder. */
 static void a_stopped_scene_continues_where_it_ended(void **state)
 {
-    (void) state;
     static const char *const methods[] = {"exact", "certified"};
     struct draw draw;
     draw_begin(&draw, "scenes that are stopped");
@@ -1129,7 +1086,6 @@ static void set_slivers(int32_t count)
 /* In the middle of a block too, which the next query has nothing to do with. */
 static void a_step_decides_one_exact_pair(void **state)
 {
-    (void) state;
     int steps = 0;
     set_slivers(8);
     scene_begin(job, query);
@@ -1159,7 +1115,6 @@ static void a_step_decides_one_exact_pair(void **state)
 /* No step decides more than a block. */
 static void steps_are_short(void **state)
 {
-    (void) state;
     static const struct {
         const char *method;
         int32_t want;

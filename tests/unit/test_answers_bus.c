@@ -1,15 +1,10 @@
 /* fmb query on the bus, where no service answers. */
+#include "unit.h"
+
 #include "allocate.h"
 #include "answers.h"
 #include "relay.h"
 #include "wire.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static void send_heartbeat(struct relay *relay)
 {
@@ -29,7 +24,6 @@ static void count(void *user, const struct scene *scene, const struct outcome *o
  */
 static void later_scenes_are_queried_if_there_is_a_heartbeat(void **state)
 {
-    (void) state;
     for (int alive = 0; alive < 2; alive++) {
         int pairs = 0;
         struct scene_body body[2] = {{.id = 1}, {.id = 2}};

@@ -1,6 +1,8 @@
 /* The bus beside liblcm, and against raw datagrams. Runs itself in a network of its own (netns);
  * where there is none, it is skipped. */
 #define _GNU_SOURCE
+#include "unit.h"
+
 #include "relay.h"
 #include "bus.h"
 
@@ -10,18 +12,11 @@
 #include <fcntl.h>
 #include <lcm/lcm.h>
 #include <sched.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 #include "url.h"
 
@@ -138,7 +133,6 @@ static const unsigned char *noise(void)
 
 static void urls_mean_what_they_mean_to_lcm(void **state)
 {
-    (void) state;
     enum { DEFAULT_BUFFER = 4 << 20 };
     static const struct {
         const char *url, *group;
@@ -154,7 +148,7 @@ static void urls_mean_what_they_mean_to_lcm(void **state)
         {"udpm://?ttl=0x10&recv_buf_size=010", GROUP, 7667, 16, 8},
         {"udpm://?ttl=1&ttl=3", GROUP, 7667, 3, DEFAULT_BUFFER},
     };
-    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+    for (size_t i = 0; i < COUNT(good); i++) {
         struct bus_url url;
         char group[INET_ADDRSTRLEN], why[BUS_WHY_MAX];
         if (!bus_url_parse(good[i].url, &url, why))
@@ -170,7 +164,6 @@ static void urls_mean_what_they_mean_to_lcm(void **state)
 
 static void bad_urls_are_refused_in_one_line(void **state)
 {
-    (void) state;
     static const char *const bad[][2] = {
         {"tcpq://127.0.0.1:7700", "write udpm://" GROUP ":7667"},
         {"mpudpm://" GROUP ":7667", "write udpm://" GROUP ":7667"},
@@ -207,7 +200,7 @@ static void bad_urls_are_refused_in_one_line(void **state)
         {"udpm://?TTL=0", "unknown option 'TTL=0'"},
         {"udpm://?ttl=0&bogus=1", "unknown option 'bogus=1'"},
     };
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    for (size_t i = 0; i < COUNT(bad); i++) {
         struct bus_url url;
         char why[BUS_WHY_MAX] = "";
         if (bus_url_parse(bad[i][0], &url, why) || !strstr(why, bad[i][1]))
@@ -219,11 +212,10 @@ static void bad_urls_are_refused_in_one_line(void **state)
 
 static void long_urls_fit_the_reason(void **state)
 {
-    (void) state;
     static const char *const heads[] = {"", "udpm://", "udpm://" GROUP ":", "udpm://?",
                                         "udpm://?ttl="};
     char url[2000], why[BUS_WHY_MAX + 1];
-    for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) {
+    for (size_t i = 0; i < COUNT(heads); i++) {
         memset(url, 'x', sizeof url - 1);
         url[sizeof url - 1] = '\0';
         memcpy(url, heads[i], strlen(heads[i]));
@@ -236,7 +228,6 @@ static void long_urls_fit_the_reason(void **state)
 
 static void environment_names_the_bus(void **state)
 {
-    (void) state;
     char url[128], why[BUS_WHY_MAX];
     setenv("LCM_DEFAULT_URL", "tcpq://here", 1);
     assert_null(bus_open(NULL, why));
@@ -279,7 +270,6 @@ static int open_without_route(void)
 
 static void missing_route_is_explained_and_liblcm_prints_nothing(void **state)
 {
-    (void) state;
     int status;
     const pid_t child = fork();
     if (child == 0)
@@ -293,7 +283,6 @@ static void missing_route_is_explained_and_liblcm_prints_nothing(void **state)
 
 static void no_free_descriptor_is_not_a_missing_route(void **state)
 {
-    (void) state;
     char why[BUS_WHY_MAX] = "";
     struct rlimit limit;
     assert_int_equal(getrlimit(RLIMIT_NOFILE, &limit), 0);
@@ -312,7 +301,6 @@ static void no_free_descriptor_is_not_a_missing_route(void **state)
 
 static void prefixes_precede_channels(void **state)
 {
-    (void) state;
     char channel[BUS_CHANNEL_MAX];
     assert_true(bus_prefix_ok(""));
     assert_true(bus_prefix_ok("ROBOT-1_a"));
@@ -326,7 +314,6 @@ static void prefixes_precede_channels(void **state)
 
 static void listeners_are_checked_and_numbered(void **state)
 {
-    (void) state;
     char name[BUS_CHANNEL_MAX + 1], why[BUS_WHY_MAX] = "";
     struct bus *bus = open_bus("");
     memset(name, 'n', BUS_CHANNEL_MAX);
@@ -361,10 +348,9 @@ static void listeners_are_checked_and_numbered(void **state)
 
 static void messages_of_every_size_arrive(void **state)
 {
-    (void) state;
     static const size_t sizes[] = {0, 1, 7, 1400, 65000, LARGEST};
     struct bus *bus = open_listening("C");
-    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+    for (size_t i = 0; i < COUNT(sizes); i++) {
         assert_true(bus_publish(bus, "C", noise(), sizes[i]));
         expect_message(bus, "C", noise(), sizes[i]);
         assert_true(llabs(latest.utime - time(NULL) * INT64_C(1000000)) < 10000000);
@@ -375,7 +361,6 @@ static void messages_of_every_size_arrive(void **state)
 /* Longer messages would leave as fragments. */
 static void what_fits_no_datagram_is_not_published(void **state)
 {
-    (void) state;
     char name[BUS_CHANNEL_MAX + 1];
     struct bus *bus = open_listening(NULL);
     memset(name, 'n', BUS_CHANNEL_MAX);
@@ -394,7 +379,6 @@ static void what_fits_no_datagram_is_not_published(void **state)
 
 static void a_batch_ends_at_its_size(void **state)
 {
-    (void) state;
     enum { SENT = BUS_BATCH + 36 };
     struct bus *bus = open_listening("C");
     latest.count = 0;
@@ -411,7 +395,6 @@ static void a_batch_ends_at_its_size(void **state)
 
 static void buses_on_one_host_both_receive(void **state)
 {
-    (void) state;
     struct bus *one = open_listening("C"), *two = open_listening("C");
     assert_true(bus_publish(one, "C", "both", 4));
     expect_message(one, "C", "both", 4);
@@ -424,11 +407,10 @@ static void buses_on_one_host_both_receive(void **state)
 
 static void foreign_channels_are_counted(void **state)
 {
-    (void) state;
     struct bus *bus = open_listening("CHANNEL");
     static const char *const others[] = {"CHANNEL2", "CHANNE", "channel", "X"};
     latest.count = 0;
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    for (size_t i = 0; i < COUNT(others); i++)
         assert_true(bus_publish(bus, others[i], "x", 1));
     receive_datagrams(bus, 4);
     assert_int_equal(latest.count, 0);
@@ -441,9 +423,8 @@ static void foreign_channels_are_counted(void **state)
 /* A large message that arrived before its channel was added, and so was truncated, is dropped. */
 static void a_channel_added_later_delivers_whole_messages_only(void **state)
 {
-    (void) state;
     static const char *const added[] = {"B", NULL};
-    for (size_t i = 0; i < sizeof added / sizeof *added; i++) {
+    for (size_t i = 0; i < COUNT(added); i++) {
         struct bus *bus = open_listening("A"), *other = open_bus("");
         assert_true(bus_publish(other, "A", noise(), LARGEST));
         assert_true(bus_publish(other, "B", noise(), LARGEST));
@@ -462,7 +443,6 @@ static void a_channel_added_later_delivers_whole_messages_only(void **state)
 /* Channel names of every length modulo 4, which the filter compares by words and bytes. */
 static void large_messages_are_whole_on_every_listened_channel(void **state)
 {
-    (void) state;
     char names[BUS_LISTENERS_MAX][BUS_CHANNEL_MAX];
     struct bus *bus = open_bus("");
     for (int i = 0; i < BUS_LISTENERS_MAX; i++) {
@@ -489,10 +469,9 @@ static ssize_t receive_raw(const struct bus *bus)
  * header is received. */
 static void large_datagrams_on_other_channels_are_truncated(void **state)
 {
-    (void) state;
     static const char *const others[] = {"CHANNEL2", "CHANNE", "cHANNEL", "CHANNEl", "X"};
     struct bus *bus = open_listening("CHANNEL");
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+    for (size_t i = 0; i < COUNT(others); i++) {
         const size_t before = 8 + strlen(others[i]) + 1;
         assert_true(bus_publish(bus, others[i], noise(), 1015 - before));
         assert_int_equal(receive_raw(bus), 1015);
@@ -509,7 +488,6 @@ static void large_datagrams_on_other_channels_are_truncated(void **state)
  * message when each arrives. */
 static void malformed_datagrams_are_counted_and_harmless(void **state)
 {
-    (void) state;
 #define LONG_63 "nnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnn"
 #define BYTES(text) text, sizeof text - 1
     static const struct {
@@ -538,7 +516,7 @@ static void malformed_datagrams_are_counted_and_harmless(void **state)
         {BYTES("LC03\0\0\0\3\0\0\1\0\0\0\0\0\0\0\0\2C\0abcd")},
         {BYTES("LC03\0\0\0\3")},
     };
-    enum { COUNT = sizeof malformed / sizeof *malformed };
+    enum { COUNT = COUNT(malformed) };
     const int sender = open_sender();
     struct bus *bus = open_listening(NULL);
     for (uint64_t i = 0; i < COUNT; i++) {
@@ -580,7 +558,6 @@ static int count_joined(void)
 
 static void the_group_is_joined_until_the_bus_is_closed(void **state)
 {
-    (void) state;
     struct bus *bus = open_bus("");
     const int before = count_joined();
     listen_to(bus, "C");
@@ -591,7 +568,6 @@ static void the_group_is_joined_until_the_bus_is_closed(void **state)
 
 static void a_socket_that_fails_is_reported(void **state)
 {
-    (void) state;
     struct bus *bus = open_listening("C");
     const int file = open("/dev/null", O_RDONLY);
     assert_true(dup2(file, bus_fileno(bus)) >= 0);
@@ -603,7 +579,6 @@ static void a_socket_that_fails_is_reported(void **state)
 
 static void unicast_does_not_arrive(void **state)
 {
-    (void) state;
     const int sender = open_sender();
     struct bus *bus = open_listening("C");
     send_raw(sender, "127.0.0.1", BYTES("LC02\0\0\0\1C\0unicast"));
@@ -615,12 +590,11 @@ static void unicast_does_not_arrive(void **state)
 
 static void ttl_is_that_of_the_url(void **state)
 {
-    (void) state;
     static const int ttls[] = {0, 1, 7};
     struct bus *listening = open_listening("C");
     const int on = 1, fd = bus_fileno(listening);
     assert_int_equal(setsockopt(fd, IPPROTO_IP, IP_RECVTTL, &on, sizeof on), 0);
-    for (size_t i = 0; i < sizeof ttls / sizeof *ttls; i++) {
+    for (size_t i = 0; i < COUNT(ttls); i++) {
         char options[32], bytes[64];
         _Alignas(struct cmsghdr) char control[64];
         snprintf(options, sizeof options, "&ttl=%d", ttls[i]);
@@ -662,7 +636,6 @@ static uint64_t receive_all(struct bus *bus)
 
 static void datagrams_dropped_by_the_kernel_are_counted(void **state)
 {
-    (void) state;
     enum { SENT = 200, SIZE = 1400 };
     struct bus *bus = open_bus("&recv_buf_size=20000");
     listen_to(bus, "C");
@@ -694,7 +667,6 @@ static uint32_t after_wrap(int fd)
 
 static void counter_of_drops_does_not_wrap(void **state)
 {
-    (void) state;
     struct bus *bus = open_listening("C");
     drops = before_wrap;
     assert_int_equal(bus_counts(bus).dropped, 0xfffffff0);
@@ -707,7 +679,6 @@ static void counter_of_drops_does_not_wrap(void **state)
 
 static void default_receive_buffer_is_4_mb_where_granted(void **state)
 {
-    (void) state;
     int granted = 0;
     const int wanted = 4 << 20, fd = open_sender();
     socklen_t size = sizeof granted;
@@ -730,7 +701,6 @@ static int64_t ms_of(clockid_t clock)
 
 static void wait_says_what_is_ready(void **state)
 {
-    (void) state;
     int ends[2];
     struct bus *bus = open_listening("C");
     assert_int_equal(pipe(ends), 0);
@@ -750,7 +720,6 @@ static void wait_says_what_is_ready(void **state)
 
 static void wait_before_listening_and_after_messages_sleeps(void **state)
 {
-    (void) state;
     enum { WAIT_MS = 300 };
     struct bus *bus = open_bus("");
     for (int round = 0; round < 2; round++) {
@@ -785,7 +754,6 @@ static int count_yields(struct bus *bus, int timeout_ms)
 
 static void waits_actively_once_after_publishing(void **state)
 {
-    (void) state;
     struct bus *bus = open_listening("C");
     assert_int_equal(count_yields(bus, 1), 0);
     assert_true(bus_publish(bus, "FOREIGN", "x", 1));
@@ -798,7 +766,6 @@ static void waits_actively_once_after_publishing(void **state)
 
 static void waits_actively_once_after_messages_of_its_channels(void **state)
 {
-    (void) state;
     struct bus *bus = open_listening("C"), *other = open_bus("");
     assert_true(bus_publish(other, "FOREIGN", "x", 1));
     assert_int_equal(bus_receive(bus, on_message, &latest), 1);
@@ -814,7 +781,6 @@ static void waits_actively_once_after_messages_of_its_channels(void **state)
 /* There a yield takes a whole time slice. */
 static void does_not_wait_actively_on_a_busy_core(void **state)
 {
-    (void) state;
     struct bus *bus = open_bus("");
     yield_ns = 3000000;
     assert_true(bus_publish(bus, "C", "x", 1));
@@ -842,7 +808,6 @@ static void on_lcm(const lcm_recv_buf_t *buffer, const char *channel, void *user
 
 static void plain_lcm_understands_both_ways(void **state)
 {
-    (void) state;
     static const size_t sizes[] = {0, 1, 1400, LARGEST};
     char url[128];
     snprintf(url, sizeof url, "udpm://" GROUP ":%d?ttl=0", port);
@@ -850,7 +815,7 @@ static void plain_lcm_understands_both_ways(void **state)
     assert_non_null(lcm);
     assert_non_null(lcm_subscribe(lcm, "B", on_lcm, &latest)); /* tests itself on the bus */
     struct bus *bus = open_listening("L");
-    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+    for (size_t i = 0; i < COUNT(sizes); i++) {
         latest = (struct latest){0};
         assert_true(bus_publish(bus, "B", noise(), sizes[i]));
         assert_true(lcm_handle_timeout(lcm, PATIENCE_MS) > 0);
@@ -881,7 +846,6 @@ static int count_threads(void)
 
 static void liblcm_starts_no_thread(void **state)
 {
-    (void) state;
     const int threads = count_threads();
     struct bus *bus = open_listening("C");
     for (int i = 0; i < 10; i++) {
@@ -895,7 +859,6 @@ static void liblcm_starts_no_thread(void **state)
 /* LCM's own select() ends the process there. */
 static void many_descriptors_are_open(void **state)
 {
-    (void) state;
     enum { OPEN = 1100 };
     static int open_fds[OPEN];
     struct rlimit limit;
@@ -929,7 +892,6 @@ static int count_descriptors(void)
 
 static void a_closed_bus_leaves_no_descriptor(void **state)
 {
-    (void) state;
     char why[BUS_WHY_MAX];
     bus_close(open_listening("C")); /* liblcm opens some only once */
     const int before = count_descriptors();
@@ -946,7 +908,6 @@ static void a_closed_bus_leaves_no_descriptor(void **state)
 
 static void child_closes_and_the_parent_goes_on(void **state)
 {
-    (void) state;
     int status;
     struct bus *bus = open_listening("C");
     assert_true(bus_publish(bus, "C", "before", 6));

@@ -1,5 +1,7 @@
 /* The client library over a bus that loses, repeats and delays, with a service that is busy, gone,
  * slow, or forges results. */
+#include "unit.h"
+
 #include "clock.h"
 #include "hostile.h"
 #include "fmb_client_raw.h"
@@ -11,19 +13,10 @@
 
 #include <limits.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { PLACEMENTS = 700, ALL_WANTS = FMB_WANT_BOX | FMB_WANT_TIMES };
 
@@ -67,7 +60,6 @@ static void give_one_frame(void)
 
 static void what_the_bus_loses_is_sent_again(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->lose_query = 7;
     relay->lose_result = 5;
@@ -103,7 +95,6 @@ static void ignore_scene(void *user, const struct fmb_client_scene_result *resul
 
 static void messages_that_cannot_be_read_are_counted(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     const struct fmb_client_watcher watcher = {.scene = ignore_scene};
     relay_open(relay, 2000);
@@ -136,7 +127,6 @@ static void publish_pair_results(struct relay *relay)
 
 static void results_of_another_kind_are_ignored(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     relay_open(relay, 2000);
@@ -171,7 +161,6 @@ static void count_pairs(void *user, const struct fmb_client_pair_result *result)
 
 static void results_of_another_client_reach_only_the_watcher(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     int watched = 0;
@@ -236,7 +225,6 @@ static struct request *send_unsent(enum fmb_client_kind kind, size_t bytes, size
 /* A later query of a request may be larger than the first. */
 static void larger_queries_of_a_request_are_charged(void **state)
 {
-    (void) state;
     int status;
     open_unsent();
     for (int i = 0; i < 3; i++) {
@@ -249,7 +237,6 @@ static void larger_queries_of_a_request_are_charged(void **state)
 /* A request releases its share of the window when it ends. */
 static void the_window_is_free_when_all_requests_have_ended(void **state)
 {
-    (void) state;
     int status;
     open_unsent();
     for (int i = 0; i < 10; i++) {
@@ -268,7 +255,6 @@ static void the_window_is_free_when_all_requests_have_ended(void **state)
 /* In the end the refusal is the result. Its pauses, a minute in all, are not waited for. */
 static void a_service_that_stays_busy_is_given_up(void **state)
 {
-    (void) state;
     const struct request_result busy = {
         .kind = FMB_CLIENT_DEFINITION, .status = FMB_BUSY, .detail = ""};
     int status = FMB_OK, refusals = 0;
@@ -299,7 +285,6 @@ static void wait_a_millisecond(void *user, int other_fd, int timeout_ms)
 
 static void results_without_a_query_do_not_prolong_others(void **state)
 {
-    (void) state;
     enum { MS = 1000000, TIMEOUT = 20 * MS, TRIES = 3 };
     static struct requests requests, *forged = &requests;
     int status = FMB_OK;
@@ -351,7 +336,6 @@ static double seconds_since(int64_t start)
  * takes a timeout, and sends only one query. */
 static void a_service_that_comes_back_is_found(void **state)
 {
-    (void) state;
     const double timeout = 0.1;
     const int tries = 10;
     struct relay *relay = relay_new();
@@ -396,7 +380,6 @@ static void hear_third(struct relay *relay)
 
 static void a_repeat_finds_the_service(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->deaf = true;
     relay_open(relay, 2000);
@@ -414,7 +397,6 @@ static void a_repeat_finds_the_service(void **state)
 
 static void no_service_costs_the_time_of_one_query(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->deaf = true;
     relay_open(relay, 10);
@@ -438,7 +420,6 @@ static void no_service_costs_the_time_of_one_query(void **state)
  * costs milliseconds, and a service that is slow is not flooded. */
 static void a_lost_query_is_repeated_soon_and_then_more_rarely(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     relay_open(relay, 10);
@@ -475,7 +456,6 @@ static void lose_one_and_be_slow(struct relay *relay)
 
 static void queries_in_line_are_not_repeated(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->before = lose_one_and_be_slow;
     struct tally tally;
@@ -512,7 +492,6 @@ static void be_slow_and_answer_once(struct relay *relay)
  * takes. A client that measured it would go on to repeat. */
 static void a_slow_service_gets_repeats_at_first_only(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     relay->before = be_slow_and_answer_once;
@@ -536,7 +515,6 @@ static void die(struct relay *relay)
 
 static void the_others_have_no_answer(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->before = die;
     struct relay_truth truth;
@@ -554,7 +532,6 @@ static void the_others_have_no_answer(void **state)
 
 static void the_time_for_all_ends_it(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->deaf = true;
     relay_open(relay, 10);
@@ -580,7 +557,6 @@ static void check_slowly(void *user, const struct fmb_client_answer *answer)
 
 static void a_caller_that_takes_long_gets_all_answers(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct relay_truth truth;
     relay_open(relay, 2000);
@@ -602,7 +578,6 @@ static void a_caller_that_takes_long_gets_all_answers(void **state)
  * small ones. */
 static void what_is_under_way_is_limited(void **state)
 {
-    (void) state;
     struct fmb_client_scene scene = all_pairs();
     for (int small = 0; small < 2; small++) {
         struct relay *relay = relay_new();
@@ -805,8 +780,7 @@ static const struct {
 /* A forged result is ignored: it gives no answer, and counts as malformed. */
 static void forged_results_are_ignored(void **state)
 {
-    (void) state;
-    for (size_t i = 0; i < sizeof lies / sizeof *lies; i++)
+    for (size_t i = 0; i < COUNT(lies); i++)
         for (int of_list = 0; of_list < 2; of_list++) {
             struct fmb_client_scene scene = of_list ? listed() : all_pairs();
             if (!(of_list ? lies[i].list : lies[i].named))
@@ -871,10 +845,9 @@ static void gaps_unwanted(struct scene_result *result, int turn)
 
 static void forged_gaps_are_ignored(void **state)
 {
-    (void) state;
     static relay_lie *const gap_lies[] = {no_gaps, too_far_apart, no_gap, gaps_of_2d,
                                           gaps_unwanted};
-    for (size_t i = 0; i < sizeof gap_lies / sizeof *gap_lies; i++) {
+    for (size_t i = 0; i < COUNT(gap_lies); i++) {
         struct relay *relay = relay_new();
         struct fmb_client_scene scene = all_pairs();
         scene.placement_count = 200;
@@ -913,10 +886,9 @@ static const struct {
 
 static void results_of_a_pair_fit_their_query(void **state)
 {
-    (void) state;
     static const struct part part = {.placement = {0, 2}, .pair = {{0, 1}}}; /* of one frame */
     struct fmb_client_scene scene = listed();
-    for (size_t i = 0; i < sizeof pair_lies / sizeof *pair_lies; i++) {
+    for (size_t i = 0; i < COUNT(pair_lies); i++) {
         struct part_answers answers = {0};
         const struct pair_result result = {
             .dim = 3,
@@ -936,7 +908,6 @@ static void results_of_a_pair_fit_their_query(void **state)
  * several, and such that the body has. */
 static void frames_of_a_gap_fit_the_bodies(void **state)
 {
-    (void) state;
     static const struct {
         unsigned a, b; /* placements: 0 has one frame, 1 has three */
         bool named;
@@ -949,7 +920,7 @@ static void frames_of_a_gap_fit_the_bodies(void **state)
     struct fmb_client_scene scene = listed();
     static struct scene_result named;
     scene.want = FMB_WANT_GAP;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = 0; i < COUNT(cases); i++) {
         static struct part part;
         struct part_answers pair = {0}, all = {0};
         struct pair_result result = {
@@ -989,7 +960,6 @@ static void lies_at_first(struct scene_result *result, int turn)
 
 static void the_right_result_after_forged_ones_is_taken(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->lie = lies_at_first;
     relay_open(relay, 2000);
@@ -1015,7 +985,6 @@ static void step_by_step(struct scene_result *result, int turn)
 
 static void steps_of_one_pair_end(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->lie = relay->second_lie = step_by_step;
     relay->double_result = 1;
@@ -1044,7 +1013,6 @@ static void in_no_time(struct scene_result *result, int turn)
 /* A query lists as many pairs as are decided soon. */
 static void slow_services_get_fewer_pairs_a_query(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->lie = for_ever;
     relay_open(relay, 2000);
@@ -1094,7 +1062,6 @@ static uint64_t queries_with(relay_lie *lie)
 
 static void unknown_bodies_for_ever_are_sent_whole(void **state)
 {
-    (void) state;
     assert_int_equal(queries_with(unknown_body), 2); /* by handle, then whole */
 }
 
@@ -1109,14 +1076,12 @@ static void another_unknown_body(struct scene_result *result, int turn)
 
 static void unknown_bodies_one_by_one_are_sent_whole(void **state)
 {
-    (void) state;
     assert_int_equal(queries_with(another_unknown_body), 3);
 }
 
 /* Of two services on a bus, the one that holds no body answers first. */
 static void an_answer_counts_more_than_an_unknown_body(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     relay_open(relay, 2000);
@@ -1158,7 +1123,6 @@ static void hear_two(struct relay *relay)
 
 static void a_late_answer_to_the_query_by_handle_is_taken(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     relay_open(relay, 2000);
@@ -1191,7 +1155,6 @@ static void no_pair_handle(struct pair_result *result, int turn)
 
 static void wrong_handles_of_a_pair_are_malformed(void **state)
 {
-    (void) state;
     relay_pair_lie *const lie[] = {another_pair_handle, no_pair_handle};
     for (int i = 0; i < 2; i++) {
         struct relay *relay = relay_new();
@@ -1211,7 +1174,6 @@ static void wrong_handles_of_a_pair_are_malformed(void **state)
 /* A body that replaces another one in its slot is not held. */
 static void a_new_body_in_a_slot_is_not_held(void **state)
 {
-    (void) state;
     static struct held held;
     uint64_t number = 0;
     const struct geometry geometry = {(const unsigned char *) &number, sizeof number};
@@ -1271,7 +1233,6 @@ static uint64_t contradicting(struct fmb_client *client)
 
 static void contradicting_second_results_are_counted(void **state)
 {
-    (void) state;
     static const struct {
         relay_lie *lie;
         bool contradicts;
@@ -1280,7 +1241,7 @@ static void contradicting_second_results_are_counted(void **state)
                   {other_service, false},
                   {busy, false},
                   {step_by_step, false}};
-    for (size_t i = 0; i < sizeof second / sizeof *second; i++) {
+    for (size_t i = 0; i < COUNT(second); i++) {
         struct relay *relay = relay_new();
         relay->double_result = 1;
         relay->second_lie = second[i].lie;
@@ -1302,7 +1263,6 @@ static void contradicting_second_results_are_counted(void **state)
 
 static void contradicting_results_of_pairs_are_counted(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->double_result = 1;
     struct fmb_client_answer answer;
@@ -1322,7 +1282,6 @@ static void contradicting_results_of_pairs_are_counted(void **state)
  * newer one of the same remainder. */
 static void old_results_contradict_nothing(void **state)
 {
-    (void) state;
     static struct recent recent;
     struct pair_result pair = {.answer = {.verdict = FMB_SEPARATED}};
     unsigned char bytes[2][QUERY_BYTES_MAX];
@@ -1356,7 +1315,6 @@ static void old_results_contradict_nothing(void **state)
 /* LCM's own receiver, which uses select(), aborts there. */
 static void many_open_descriptors_do_not_matter(void **state)
 {
-    (void) state;
     enum { COUNT = 1100 };
     static int fd[COUNT];
     struct rlimit limit;
@@ -1380,7 +1338,6 @@ static void many_open_descriptors_do_not_matter(void **state)
 
 static void a_child_that_closes_harms_nothing(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     int status;
     relay_open(relay, 2000);
@@ -1425,7 +1382,6 @@ static void query_within(void *user, const struct fmb_client_answer *answer)
 
 static void no_call_within_a_callback(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 2000);
     const struct fmb_client_scene scene = listed();
@@ -1476,7 +1432,6 @@ static void on_malformed(void *user, const char *what)
 /* One client listens to what another one is answered. */
 static void a_watcher_sees_all_results(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct watching watching = {0};
     struct relay_truth truth;
@@ -1520,14 +1475,13 @@ static void a_watcher_sees_all_results(void **state)
 
 static void wrong_options_are_refused(void **state)
 {
-    (void) state;
     char why[FMB_CLIENT_WHY_MAX], little[8];
     const struct fmb_client_options wrong[] = {{.prefix = "a.*"},
                                                {.timeout = -1},
                                                {.timeout = NAN},
                                                {.tries = -1},
                                                {.url = "tcpq://127.0.0.1:1"}};
-    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    for (size_t i = 0; i < COUNT(wrong); i++) {
         why[0] = '\0';
         assert_null(fmb_client_open(&wrong[i], why, sizeof why));
         assert_true(strlen(why) > 10);

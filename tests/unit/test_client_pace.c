@@ -1,18 +1,11 @@
 /* The request engine over a simulated network with loss and delay, and with a simulated clock.
  * Every run is the same on any machine. */
+#include "unit.h"
+
 #include "clock.h"
 #include "query.h"
 #include "request.h"
 #include "scene_run.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static const int64_t us = 1000, ms = 1000000, s = 1000000000; /* nanoseconds */
 
@@ -203,13 +196,12 @@ static const double heavy_loss = 0.3;
  * delay each loss costs a round trip, and the window waits for its oldest query. */
 static void a_full_window_keeps_a_share_of_its_rate_under_loss(void **state)
 {
-    (void) state;
     static const struct {
         int64_t delay_ms;
         int tries;
         double share;
     } network[] = {{0, 6, 0.3}, {20, 60, 0.1}, {100, 60, 0.1}};
-    for (size_t i = 0; i < sizeof network / sizeof *network; i++) {
+    for (size_t i = 0; i < COUNT(network); i++) {
         open_network(0, network[i].delay_ms * ms, 100 * us);
         query_for(60 * s, FMB_CLIENT_RAW_WINDOW);
         const int64_t without = load.answers;
@@ -224,7 +216,6 @@ static void a_full_window_keeps_a_share_of_its_rate_under_loss(void **state)
 
 static void a_lost_single_query_is_repeated_soon(void **state)
 {
-    (void) state;
     open_network(heavy_loss, 0, 100 * us);
     query_for(60 * s, 1);
     assert_true(median() < 20 * ms);
@@ -236,7 +227,6 @@ static void a_lost_single_query_is_repeated_soon(void **state)
 /* A wait does not end before a deadline or a result: the client does not spin. */
 static void a_wait_lasts_until_something_is_due(void **state)
 {
-    (void) state;
     open_network(heavy_loss, 0, 100 * us);
     query_for(10 * s, 1);
     assert_true(net.waits < 4 * net.sent);
@@ -247,7 +237,6 @@ static void a_wait_lasts_until_something_is_due(void **state)
 /* One result in five comes after those of some later queries. Fewer than that are repeated. */
 static void reordered_results_cause_few_repeats(void **state)
 {
-    (void) state;
     open_network(0, 0, 100 * us);
     net.late = 0.2;
     net.lag = ms / 2;
@@ -259,7 +248,6 @@ static void reordered_results_cause_few_repeats(void **state)
  * them. They are repeated once immediately, and then at intervals that double. */
 static void slow_queries_that_are_overtaken_back_off(void **state)
 {
-    (void) state;
     open_network(0, 0, 100 * us);
     net.late = 0.002;
     net.lag = 200 * ms;
@@ -274,7 +262,6 @@ static void slow_queries_that_are_overtaken_back_off(void **state)
 /* When the network becomes slow, at first every query is repeated before its result comes. */
 static void the_interval_adapts_to_a_longer_delay(void **state)
 {
-    (void) state;
     for (int lossy = 0; lossy < 2; lossy++) {
         open_network(0, 0, 100 * us);
         query_for(s, 1);
@@ -298,7 +285,6 @@ static void the_interval_adapts_to_a_longer_delay(void **state)
 /* A busy service is queried for a minute, at growing intervals, whatever the timeout is. */
 static void a_busy_service_is_queried_for_a_minute(void **state)
 {
-    (void) state;
     open_network(0, 0, 100 * us);
     net.status = FMB_BUSY;
     query_for(70 * s, 1);
@@ -321,7 +307,6 @@ static void count_statuses(void *user, const struct fmb_client_answer *answer)
  * there is no service. */
 static void no_service_takes_precedence_over_late(void **state)
 {
-    (void) state;
     enum { PAIRS = 3000 };
     static struct scene_run run;
     static struct held held;

@@ -1,20 +1,13 @@
 /* The client library against the service: every answer is that of libfmb, to the bit, in the order
  * of the pairs, whatever the size of the scene and whatever the service holds. */
+#include "unit.h"
+
 #include "client_scene.h"
 #include "relay.h"
 #include "wire.h"
 
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 enum { ALL_WANTS = FMB_WANT_BOX | FMB_WANT_TIMES };
 
@@ -51,7 +44,6 @@ static unsigned (*list_of(size_t count, size_t frames))[2]
 
 static void small_scenes_of_every_kind_are_answered(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 1000);
     struct fmb_client *client = relay_client(relay, 5, 1);
@@ -84,7 +76,6 @@ static void small_scenes_of_every_kind_are_answered(void **state)
 
 static void all_pairs_of_many_bodies_are_answered(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     const size_t count = relay_size(5000, 1300);
     relay_open(relay, 65536);
@@ -102,7 +93,6 @@ static void all_pairs_of_many_bodies_are_answered(void **state)
 /* Results with no space for all answers: nearly all pairs meet. */
 static void all_pairs_of_a_crowd_are_answered(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     const size_t count = relay_size(900, 560);
     relay_open(relay, 65536);
@@ -121,7 +111,6 @@ static void all_pairs_of_a_crowd_are_answered(void **state)
 
 static void many_listed_pairs_are_answered(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     const size_t count = relay_size(100000, 20000), frames = 3000;
     relay_open(relay, 65536);
@@ -200,7 +189,6 @@ static void check_method(void *user, const struct fmb_client_answer *answer)
 /* fmb and sat answer listed pairs only; the library lists them. */
 static void every_method_answers(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 1000);
     struct fmb_client *client = relay_client(relay, 5, 1);
@@ -222,7 +210,6 @@ static void every_method_answers(void **state)
 /* Near pairs, none missed, in the blocks that a large scene is divided into. */
 static void near_pairs_of_many_bodies_are_answered(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 65536);
     struct fmb_client *client = relay_client(relay, 20, 1);
@@ -273,7 +260,6 @@ static void check_certificate(void *user, const struct fmb_client_answer *answer
 
 static void all_pairs_have_certificates(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 20); /* fewer than there are */
     struct fmb_client *client = relay_client(relay, 5, 1);
@@ -317,7 +303,6 @@ static void use_vertices(struct fmb_client_frame *frame, int dim, double (*verte
 /* Groups, names, a label, and frames by vertices, in queries of every kind. */
 static void groups_names_and_vertices(void **state)
 {
-    (void) state;
     enum { BODIES = 300 };
     static double vertex[3 * BODIES][FMB_DIM_MAX + 1][FMB_DIM_MAX];
     struct relay *relay = relay_new();
@@ -366,7 +351,6 @@ static void groups_names_and_vertices(void **state)
 /* Each pair a query of its own: no pair within a group is sent. */
 static void groups_where_pairs_are_listed(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 1000);
     struct fmb_client *client = relay_client(relay, 5, 1);
@@ -387,7 +371,6 @@ static void groups_where_pairs_are_listed(void **state)
 
 static void one_pair_is_answered(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 10);
     struct fmb_client *client = relay_client(relay, 5, 1);
@@ -429,7 +412,6 @@ static void wrong(struct fmb_client *client, const struct fmb_client_scene *scen
 
 static void wrong_scenes_are_refused(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 10);
     struct fmb_client *client = relay_client(relay, 5, 1);
@@ -521,7 +503,6 @@ static void count_meeting(void *user, const struct fmb_client_answer *answer)
 
 static void a_scene_of_zeros_queries_all_pairs(void **state)
 {
-    (void) state;
     static const struct fmb_client_frame cube = {.shape = FMB_BOX, .components = {1, 1, 1}};
     static const unsigned pair[1][2] = {{0, 1}};
     struct fmb_client_placement placement[2] = {{.dim = 3, .frames = &cube, .frame_count = 1}};
@@ -544,7 +525,6 @@ static void a_scene_of_zeros_queries_all_pairs(void **state)
 
 static void bodies_that_move_need_a_window(void **state)
 {
-    (void) state;
     static const struct fmb_client_frame cube = {.shape = FMB_BOX, .components = {1, 1, 1}};
     struct fmb_client_placement placement[2] = {{.dim = 3, .frames = &cube, .frame_count = 1}};
     struct relay *relay = relay_new();
@@ -585,7 +565,6 @@ static void count_refusals(void *user, const struct fmb_client_answer *answer)
 
 static void refusals_of_the_service_are_given(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     int count = 0;
     relay_open(relay, 10);
@@ -609,7 +588,6 @@ static void count_no_gaps(void *user, const struct fmb_client_answer *answer)
 
 static void methods_without_gaps_give_none(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     int count = 0;
     relay_open(relay, 10);
@@ -669,7 +647,6 @@ static struct fmb_client_counts query_world(struct world *world)
 
 static void bodies_go_by_handle_the_second_time(void **state)
 {
-    (void) state;
     struct world world;
     open_world(&world, 1000);
     world.frame[50].body_id = 0;
@@ -699,7 +676,6 @@ static void bodies_go_by_handle_the_second_time(void **state)
 /* Another client gives the ids to other bodies: neither has to send anything again. */
 static void equal_ids_of_two_clients_do_not_matter(void **state)
 {
-    (void) state;
     struct world world;
     open_world(&world, 1000);
     query_world(&world);
@@ -722,7 +698,6 @@ static void equal_ids_of_two_clients_do_not_matter(void **state)
 
 static void a_new_service_holds_no_bodies(void **state)
 {
-    (void) state;
     struct world world;
     open_world(&world, 1000);
     query_world(&world);
@@ -736,7 +711,6 @@ static void a_new_service_holds_no_bodies(void **state)
 
 static void a_cache_of_one_body_is_enough(void **state)
 {
-    (void) state;
     for (size_t bodies = 1; bodies <= 64; bodies *= 4) {
         struct world world;
         open_world(&world, bodies);
@@ -757,7 +731,6 @@ static void steal(struct relay *relay)
 
 static void bodies_that_are_never_held_end(void **state)
 {
-    (void) state;
     struct world world;
     open_world(&world, 1000);
     query_world(&world);
@@ -773,7 +746,6 @@ static void bodies_that_are_never_held_end(void **state)
 /* The same id twice in a scene, with different components. */
 static void an_id_may_stand_twice(void **state)
 {
-    (void) state;
     struct world world;
     open_world(&world, 1000);
     for (int i = 10; i < 20; i++)
@@ -787,7 +759,6 @@ static void an_id_may_stand_twice(void **state)
 
 static void ignored_pairs_are_left_out(void **state)
 {
-    (void) state;
     struct world world;
     open_world(&world, 1000);
     enum { PAIRS = 500 };
@@ -816,7 +787,6 @@ static void ignored_pairs_are_left_out(void **state)
 /* Two bodies that do not fit into one datagram together: their frames are sent first. */
 static void bodies_of_many_frames_are_answered(void **state)
 {
-    (void) state;
     enum { FRAMES = 500, BODIES = 5 };
     struct relay *relay = relay_new();
     relay_open(relay, 20000);
@@ -865,7 +835,6 @@ static size_t bytes_of(const struct fmb_client_placement *body)
  * the bodies are sent first. */
 static void pairs_that_just_fit_into_a_datagram(void **state)
 {
-    (void) state;
     enum { BOX = 49, MORE = 48 }; /* bytes of a box, and how many more a cuboid has */
     static const unsigned pair[1][2] = {{0, 1}};
     const int most = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES - WIRE_PAIR_BYTES;
@@ -911,7 +880,6 @@ static void pairs_that_just_fit_into_a_datagram(void **state)
 
 static void two_clients_in_a_process(void **state)
 {
-    (void) state;
     struct world world;
     open_world(&world, 1000);
     struct fmb_client *other = relay_client(world.relay, 5, 1);
@@ -957,7 +925,6 @@ static void *run(void *user)
 
 static void clients_of_several_threads_are_independent(void **state)
 {
-    (void) state;
     struct thread thread[2];
     pthread_t id[2];
     struct fmb_client_placement *frame = frames_of(600, 3, 6, 1);

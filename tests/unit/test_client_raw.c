@@ -1,21 +1,14 @@
 /* Encoded queries through the client library's engine, as fmb replay and fmb record send them. */
+#include "unit.h"
+
 #include "fmb_client_raw.h"
 #include "geometry_write.h"
 #include "relay.h"
 #include "wire.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/ioctl.h>
 #include <time.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { BODIES = 30, PATIENCE_S = 10 };
 
@@ -89,7 +82,6 @@ static void send_pair(struct fmb_client *client, int64_t a, int64_t b, struct pa
 
 static void many_pairs_are_answered_over_a_bad_bus(void **state)
 {
-    (void) state;
     enum { COUNT = 300 };
     static struct pair pair[COUNT];
     struct relay *relay = relay_new();
@@ -119,7 +111,6 @@ static void many_pairs_are_answered_over_a_bad_bus(void **state)
 
 static void a_window_of_64_is_under_way(void **state)
 {
-    (void) state;
     static struct pair pair[FMB_CLIENT_RAW_WINDOW];
     struct relay *relay = relay_new();
     relay->deaf = true;
@@ -151,7 +142,6 @@ static void a_window_of_64_is_under_way(void **state)
 /* A query is lost, and its caller comes back only when the time for all its repeats is over. */
 static void a_caller_that_was_away_repeats_its_query(void **state)
 {
-    (void) state;
     struct pair pair = {0};
     struct relay *relay = relay_new();
     relay->lose_query = 1;
@@ -169,7 +159,6 @@ static void a_caller_that_was_away_repeats_its_query(void **state)
 
 static void large_queries_are_few_at_a_time(void **state)
 {
-    (void) state;
     static struct pair pair;
     struct relay *relay = relay_new();
     relay->deaf = true;
@@ -190,7 +179,6 @@ static void large_queries_are_few_at_a_time(void **state)
 
 static void messages_that_are_none_are_refused(void **state)
 {
-    (void) state;
     static unsigned char message[QUERY_BYTES_MAX + 1];
     struct relay *relay = relay_new();
     relay_open(relay, 1000);
@@ -209,7 +197,6 @@ static void messages_that_are_none_are_refused(void **state)
  * them are read, so that its result has space. */
 static void an_idle_client_is_drained_before_a_query(void **state)
 {
-    (void) state;
     static struct pair pair;
     struct relay *relay = relay_new();
     relay->deaf = true;
@@ -276,7 +263,6 @@ static void query_definition(struct fmb_client *client, int64_t first, const str
 
 static void scenes_and_definitions_are_answered(void **state)
 {
-    (void) state;
     static struct scene_result scene;
     static struct definition definition;
     struct relay *relay = relay_new();
@@ -304,7 +290,6 @@ static void scenes_and_definitions_are_answered(void **state)
 
 static void a_step_ends_with_another_descriptor(void **state)
 {
-    (void) state;
     static struct pair pair;
     struct relay *relay = relay_new();
     relay->deaf = true;
@@ -336,7 +321,6 @@ static void step_within(void *user, const struct fmb_client_raw_result *result)
 
 static void no_call_within_a_callback(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     unsigned char message[QUERY_BYTES_MAX];
     relay_open(relay, 1000);
@@ -382,7 +366,6 @@ static void tap(void *user, const struct bus_message *message)
 
 static void a_tap_gets_all_messages_first(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 1000);
     for (int every = 0; every < 2; every++) {

@@ -1,13 +1,7 @@
 /* The quantiles of the heartbeat. */
+#include "unit.h"
+
 #include "histogram.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
 
 static int compare(const void *a, const void *b)
 {
@@ -17,7 +11,6 @@ static int compare(const void *a, const void *b)
 
 static void quantiles_are_within_a_bucket(void **state)
 {
-    (void) state;
     enum { COUNT = 10007 };
     static int64_t value[COUNT];
     static struct histogram histogram;
@@ -28,7 +21,7 @@ static void quantiles_are_within_a_bucket(void **state)
         histogram_add(&histogram, value[i]);
     }
     qsort(value, COUNT, sizeof *value, compare);
-    for (size_t i = 0; i < sizeof shares / sizeof *shares; i++) {
+    for (size_t i = 0; i < COUNT(shares); i++) {
         int64_t exact = value[(int) (shares[i] * COUNT + 0.999999) - 1];
         int64_t reported = histogram_quantile(&histogram, shares[i]);
         assert_true(reported >= exact);
@@ -40,7 +33,6 @@ static void quantiles_are_within_a_bucket(void **state)
 
 static void quantiles_at_the_edges_are_exact(void **state)
 {
-    (void) state;
     static struct histogram histogram;
     assert_int_equal(histogram_quantile(&histogram, 0.5), 0);
     histogram_add(&histogram, 0);

@@ -1,17 +1,11 @@
 /* The bodies of a log by handle: from queries and from definitions, each once. */
+#include "unit.h"
+
 #include "definitions.h"
 #include "geometry_write.h"
 
 #include "allocate.h"
 #include "wire.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 struct body {
     unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];

@@ -1,15 +1,8 @@
 /* Many pairs at once: what fmb_decide_batch() and fmb_decide_prepared() say is what the
  * method certified says, bit for bit, for each instruction set, in any order, at any address; and
  * that agrees with the exact method, and on samples with the oracle. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <limits.h>
@@ -23,8 +16,6 @@
 #include "pair_draw.h"
 #include "question.h"
 #include "referee.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 enum { FRAMES = 128, PAIRS_MAX = 1000, GUARD = 0xa5, GUARDS = 64 };
 
@@ -274,7 +265,6 @@ static void decide(const struct world *world, const struct fmb_prepared *frames,
 
 static int count_allocations(void **state)
 {
-    (void) state;
     gmp_count_allocations();
     return 0;
 }
@@ -431,7 +421,6 @@ static void expect_all_seen(const struct tally *tally)
 /* All kinds side by side. */
 static void mixed_batches_are_certified(void **state)
 {
-    (void) state;
     struct draw draw;
     struct tally tally = {0};
     struct world *world = world_new();
@@ -451,7 +440,6 @@ static void mixed_batches_are_certified(void **state)
 /* Batches of one kind take shorter ways. */
 static void batches_of_one_kind_are_certified(void **state)
 {
-    (void) state;
     struct draw draw;
     struct tally tally = {0};
     struct cell cells[CELL_WITH_FACES];
@@ -489,7 +477,6 @@ static void set_random_frames(struct draw *draw, const struct cell *cell, struct
 /* Doubles decide random pairs: no verdict is left open, and few contacts and boxes are. */
 static void random_pairs_are_not_left_open(void **state)
 {
-    (void) state;
     struct draw draw;
     struct cell cells[CELL_WITH_FACES];
     struct world *world = world_new();
@@ -534,7 +521,6 @@ static void set_row_of_rectangles(double along, double across, struct world *wor
  * contacts that the filter does not give, 32 in each 128 are decided if that needs no GMP. */
 static void touching_pairs_are_left_open(void **state)
 {
-    (void) state;
     struct world *world = world_new();
     const struct way verdicts = {0}, contacts = {.contacts = true};
     const struct way boxes = {.contacts = true, .boxes = true};
@@ -619,7 +605,6 @@ static size_t decide_verdicts(const struct world *world, const struct way *way,
  * not, and every pair that is decided by itself leaves another one open. */
 static void what_is_left_open_does_not_depend_on_instructions(void **state)
 {
-    (void) state;
     struct draw draw;
     struct cell cells[CELL_WITH_FACES];
     struct world *world = world_new();
@@ -651,7 +636,6 @@ static void what_is_left_open_does_not_depend_on_instructions(void **state)
 /* Where blocks begin and end. */
 static void any_count_is_answered(void **state)
 {
-    (void) state;
     static const size_t counts[] = {0, 1, 127, 128, 129, 1000};
     struct draw draw;
     struct world *world = world_new();
@@ -668,7 +652,6 @@ static void any_count_is_answered(void **state)
 /* Arrays may be missing where there is nothing. */
 static void nothing_is_answered(void **state)
 {
-    (void) state;
     const struct fmb_batch batch = {.duration = 1};
     assert_int_equal(fmb_decide_batch(&batch), FMB_OK);
     size_t count = 1, open[1];
@@ -725,7 +708,6 @@ static void shuffle(struct draw *draw, struct world *world)
 
 static void order_does_not_matter(void **state)
 {
-    (void) state;
     struct draw draw;
     struct world *world = world_new();
     draw_begin(&draw, "order_does_not_matter");
@@ -743,7 +725,6 @@ static void order_does_not_matter(void **state)
 /* Any address that doubles may have. */
 static void address_does_not_matter(void **state)
 {
-    (void) state;
     struct draw draw;
     struct world *world = world_new();
     unsigned char *memory = aligned_alloc(64, sizeof world->frame + 64);
@@ -855,7 +836,6 @@ static void expect_meet_refuses(const struct world *world)
 
 static void refused_pairs_stop_no_other(void **state)
 {
-    (void) state;
     struct draw draw;
     struct world *world = world_new();
     long seen[FMB_STATUS_COUNT] = {0};
@@ -890,7 +870,6 @@ static void expect_whole_refused(const struct world *world, const struct way *wa
 
 static void frames_that_move_need_a_window(void **state)
 {
-    (void) state;
     static const double size[3] = {1, 1, 1};
     static const unsigned pair[1][2] = {{0, 1}};
     struct fmb_body cube;
@@ -919,7 +898,6 @@ static void frames_that_move_need_a_window(void **state)
 
 static void durations_that_are_none_are_refused(void **state)
 {
-    (void) state;
     static const double bad[] = {NAN, -NAN, INFINITY, -INFINITY, -1, -0x1p-1074, -DBL_MAX};
     const struct way way = {0, true, true};
     enum fmb_verdict verdict;
@@ -942,7 +920,6 @@ static void durations_that_are_none_are_refused(void **state)
 
 static void instructions_have_names(void **state)
 {
-    (void) state;
     static const int unknown[] = {-1, 5, 1000, INT_MAX, INT_MIN};
     assert_string_equal(instructions_name(INSTRUCTIONS_BEST), "best");
     assert_string_equal(instructions_name(INSTRUCTIONS_PLAIN), "plain");

@@ -1,12 +1,6 @@
 /* Boxes, frames from vertices, bodies and placements: what they hold, and what is refused. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <gmp.h>
@@ -33,7 +27,6 @@ static struct fmb_frame make_box(int dim, const double *number, size_t count)
 
 static void boxes_have_a_centre_and_a_size(void **state)
 {
-    (void) state;
     static const double number[6] = {10, 20, 30, 2, 4, 5};
     const struct fmb_frame space = make_box(3, number, 6), plane = make_box(2, number, 4);
     for (int axis = 0; axis < 3; axis++) {
@@ -51,7 +44,6 @@ static void boxes_have_a_centre_and_a_size(void **state)
 
 static void boxes_of_size_0_are_flat(void **state)
 {
-    (void) state;
     for (int zeros = 0; zeros < 16; zeros++) {
         const double number[3] = {zeros & 1 ? 0 : 1, zeros & 2 ? -0.0 : 2, zeros & 4 ? 0 : S};
         const struct fmb_frame space = make_box(3, number, 3), plane = make_box(2, number, 2);
@@ -63,7 +55,6 @@ static void boxes_of_size_0_are_flat(void **state)
 
 static void boxes_of_negative_size_are_refused(void **state)
 {
-    (void) state;
     static const double bad[] = {-1, -S, -M};
     struct fmb_frame frame;
     for (size_t i = 0; i < COUNT(bad); i++)
@@ -79,7 +70,6 @@ static void boxes_of_negative_size_are_refused(void **state)
 
 static void an_origin_left_out_is_0(void **state)
 {
-    (void) state;
     double number[12] = {0, 0, 0, 1, 2, 3, 4, 5, 7, -1, 1, 2};
     for (int shape = FMB_CUBOID; shape <= FMB_BOX; shape++)
         for (int dim = shape == FMB_FACE ? 3 : 2; dim <= 3; dim++) {
@@ -102,7 +92,6 @@ static void an_origin_left_out_is_0(void **state)
 
 static void vertices_that_are_refused(void **state)
 {
-    (void) state;
     static const struct {
         int dim, shape;
         size_t count;
@@ -197,7 +186,6 @@ static void expect_edges(const double *vertices, const struct fmb_frame *frame)
 /* Vertices on a line or a plane but for an ulp: whether they are is not what rounded edges say. */
 static void vertices_are_exact(void **state)
 {
-    (void) state;
     struct draw draw;
     long count[2][2] = {{0}};
     draw_begin(&draw, "vertices_are_exact");
@@ -228,7 +216,6 @@ static void vertices_are_exact(void **state)
 
 static void bodies_of_one_frame_hold_it(void **state)
 {
-    (void) state;
     static const double number[6] = {1, 2, 3, 2, 4, 6};
     struct fmb_body body, copy, again;
     const struct fmb_frame frame = make_box(3, number, 6);
@@ -249,7 +236,6 @@ static void bodies_of_one_frame_hold_it(void **state)
 /* The farthest vertex, (4, 8, 12), is 14.97 away; the one opposite, (-2, -4, -6), is nearer. */
 static void no_vertex_is_beyond_the_radius(void **state)
 {
-    (void) state;
     static const double near[6] = {0, 0, 0, 1, 1, 1}, far[6] = {1, 2, 3, 6, 12, 18};
     const struct fmb_frame frames[3] = {make_box(3, near, 6), make_box(3, far, 6),
                                         make_box(3, near, 6)};
@@ -278,7 +264,6 @@ static struct fmb_frame make_thin(double thickness, double offset, int second)
 /* Rounding might turn a thin frame inside out: doubles decide it only if nothing is rounded. */
 static void thin_frames_are_not_sturdy(void **state)
 {
-    (void) state;
     for (int n = 0; n < 4; n++) {
         const int rounded = n % 2, second = 2 + n / 2;
         const double offset = rounded ? 0x1p-60 : 0;
@@ -292,7 +277,6 @@ static void thin_frames_are_not_sturdy(void **state)
 /* 2^600 + 2^547 is no double. */
 static void radii_of_large_frames_are_rounded_up(void **state)
 {
-    (void) state;
     static const double number[9] = {0x1p600, 0, 0, 0x1p547, 0, 0, 0x1p547, 0, 0};
     struct fmb_frame frame;
     assert_int_equal(fmb_frame_make(3, FMB_FACE, number, 9, &frame), FMB_OK);
@@ -301,7 +285,6 @@ static void radii_of_large_frames_are_rounded_up(void **state)
 
 static void bodies_that_are_refused(void **state)
 {
-    (void) state;
     static struct fmb_frame frames[FMB_FRAMES_MAX + 1];
     const struct fmb_frame plane = make(2, FMB_CUBOID, unit2), space = make(3, FMB_CUBOID, unit3);
     struct fmb_body body;
@@ -352,7 +335,6 @@ static void expect_status(const struct fmb_placement *placement, enum fmb_status
 
 static void placements_without_a_body_are_refused(void **state)
 {
-    (void) state;
     static const struct fmb_body never_made;
     plane_body = make_body(2, unit2);
     expect_status(&(struct fmb_placement){.body = NULL}, FMB_NO_FRAMES);
@@ -362,7 +344,6 @@ static void placements_without_a_body_are_refused(void **state)
 
 static void placements_that_are_not_finite_are_refused(void **state)
 {
-    (void) state;
     static const double bad[] = {NAN, INFINITY, -INFINITY};
     plane_body = make_body(2, unit2);
     space_body = make_body(3, unit3);
@@ -383,7 +364,6 @@ static void placements_that_are_not_finite_are_refused(void **state)
 
 static void counts_of_orientations(void **state)
 {
-    (void) state;
     plane_body = make_body(2, unit2);
     space_body = make_body(3, unit3);
     for (int dim = 2; dim <= 3; dim++)
@@ -416,7 +396,6 @@ static bool is_too_small(double x, double y)
 
 static void orientations_by_hand(void **state)
 {
-    (void) state;
     static const struct {
         double q[4];
         bool good;
@@ -452,7 +431,6 @@ static void orientations_by_hand(void **state)
 
 static void components_of_orientations_may_be_far_apart(void **state)
 {
-    (void) state;
     struct draw draw;
     long count[2] = {0};
     draw_begin(&draw, "components_of_orientations_may_be_far_apart");
@@ -480,7 +458,6 @@ static void components_of_orientations_may_be_far_apart(void **state)
 
 static void frames_that_a_body_does_not_have(void **state)
 {
-    (void) state;
     static const struct {
         unsigned first, count;
         bool good;

@@ -1,23 +1,14 @@
 /* Certificates that the maker gives: they hold by the checker, for pairs of all kinds, and prove
  * nothing else, whatever is done to them. The checker has tests of its own
  * (test_engine_certificate_check.c). */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <math.h>
 
 #include "hard_pairs.h"
 #include "referee.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 enum { TEXT_SIZE = FMB_CERTIFICATE_MAX, WHY_SIZE = 200 };
 
@@ -196,7 +187,6 @@ static void garble(struct draw *draw, char *text, size_t size)
 
 static void tampered_texts_prove_no_wrong_verdict(void **state)
 {
-    (void) state;
     struct draw draw;
     size_t families = 0;
     draw_begin(&draw, "tampered_texts_prove_no_wrong_verdict");
@@ -230,7 +220,6 @@ static void tampered_texts_prove_no_wrong_verdict(void **state)
 
 static void certificates_of_other_pairs_prove_no_wrong_verdict(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "certificates_of_other_pairs_prove_no_wrong_verdict");
     char *text[2] = {malloc(TEXT_SIZE), malloc(TEXT_SIZE)};
@@ -277,7 +266,6 @@ static struct question cubes(double x, bool moving)
 
 static void what_is_made_of_cubes(void **state)
 {
-    (void) state;
     const struct question apart = cubes(3, false), touching = cubes(1, false);
     const struct question overlapping = cubes(0.75, false), arriving = cubes(-2, true);
     const struct question passing = cubes(-1.5, true);
@@ -301,7 +289,6 @@ static struct question flat_frames(int rank, const double place[3])
 
 static void what_is_made_of_flat_frames(void **state)
 {
-    (void) state;
     static const struct {
         int rank;
         double place[3];
@@ -336,7 +323,6 @@ static void what_is_made_of_flat_frames(void **state)
  * unit is half its size, and of a rotation, whose squared quaternion multiplies all numbers. */
 static void certificates_end_with_the_span(void **state)
 {
-    (void) state;
     static const struct {
         int shape;
         bool moving, turned;
@@ -371,7 +357,6 @@ static void certificates_end_with_the_span(void **state)
 
 static void too_small_a_size_is_reported(void **state)
 {
-    (void) state;
     const struct question question = cubes(1, false);
     struct ready ready;
     char text[64];
@@ -403,7 +388,6 @@ static void assert_refused(const struct pair *pair, enum fmb_status status)
 
 static void bad_pairs_are_refused(void **state)
 {
-    (void) state;
     const struct question question = cubes(3, true);
     struct question flat_one = cubes(3, true);
     struct ready ready, plane;

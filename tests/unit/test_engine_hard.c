@@ -3,20 +3,13 @@
  *
  * Each family draws pairs from the seed that it prints (FMB_SEED gives one back); FMB_SAMPLE=10
  * draws ten times as many, FMB_FAST=1 an eighth. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 
 #include "hard_pairs.h"
 #include "referee.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 static void engine_agrees_on_family(void **state)
 {

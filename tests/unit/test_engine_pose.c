@@ -2,14 +2,8 @@
  * what must not change where the whole scene turns, or a quaternion gets longer; bodies of many
  * frames.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <math.h>
@@ -18,8 +12,6 @@
 #include "draw.h"
 #include "question.h"
 #include "referee.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* ---- Orientations ---- */
 
@@ -332,7 +324,6 @@ static void answers_are_what_the_oracle_says(void **state)
  * where the offset is there, no other slab gives the verdict, or the end of the contact. */
 static void edges_may_be_parallel_in_doubles_only(void **state)
 {
-    (void) state;
     for (int signs = 0; signs < 4; signs++) {
         const double y = signs & 1 ? -1 : 1, z = signs & 2 ? -1 : 1;
         struct question question = {.a = {.dim = 3,
@@ -358,7 +349,6 @@ static void edges_may_be_parallel_in_doubles_only(void **state)
 /* Boxes that touch along an axis, whose true centres, position + centre, are not doubles. */
 static void boxes_touch_about_centres_that_round(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++)
         for (int axis = 0; axis < dim; axis++)
             for (int nudge = -1; nudge <= 1; nudge++) {
@@ -379,7 +369,6 @@ static void boxes_touch_about_centres_that_round(void **state)
 /* Boxes that touch as doubles have them, apart or overlapping by what their places lose. */
 static void boxes_are_apart_by_what_rounding_loses(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++)
         for (int sign = -1; sign <= 1; sign++)
             for (int turned = 0; turned < 2; turned++) {
@@ -408,7 +397,6 @@ static void boxes_hold_travels_that_underflow(void **state)
                                         {0x1p-960, 0x1p-10},
                                         {0x1.8p-300, 0x1.8p-778},
                                         {-0x1p-537, 0x1p-538}};
-    (void) state;
     for (int dim = 2; dim <= 3; dim++)
         for (size_t i = 0; i < COUNT(travels); i++) {
             struct question question = {.a = {.dim = dim, .shape = FMB_BOX, .moving = true},
@@ -426,7 +414,6 @@ static void boxes_hold_travels_that_underflow(void **state)
 /* Of solids of small whole numbers, ends that are short binary fractions are given as such. */
 static void boxes_of_small_numbers_are_plain(void **state)
 {
-    (void) state;
     struct draw draw;
     long ends = 0, plain = 0;
     draw_begin(&draw, "boxes_of_small_numbers_are_plain");
@@ -560,7 +547,6 @@ static void expect_certificates(const struct crowd *crowd)
 
 static void every_way_to_decide_gives_the_same(void **state)
 {
-    (void) state;
     static struct crowd crowd;
     struct draw draw;
     draw_begin(&draw, "every_way_to_decide_gives_the_same");
@@ -696,7 +682,6 @@ static void expect_unchanged(const struct question *question, const struct quest
 
 static void scenes_may_turn_by_quarters(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "scenes_may_turn_by_quarters");
     for (long n = draw_sample(12000); n > 0; n--) {
@@ -718,7 +703,6 @@ static double draw_factor(struct draw *draw)
 
 static void quaternions_may_have_any_length(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "quaternions_may_have_any_length");
     for (long n = draw_sample(12000); n > 0; n--) {
@@ -826,7 +810,6 @@ static void decide_each(const struct fmb_method *method, const struct many *a, c
 
 static void bodies_are_the_hulls_of_their_frames(void **state)
 {
-    (void) state;
     static const char *const names[] = {"exact", "certified"};
     struct draw draw;
     long of_verdict[FMB_OVERLAPPING + 1] = {0};

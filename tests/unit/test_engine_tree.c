@@ -1,14 +1,7 @@
 /* Which pairs may meet: boxes against rational numbers, trees against testing every frame, whatever
  * the scene; no pair that meets is lost; and what a tree costs is counted in nodes, not in time. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <gmp.h>
@@ -20,8 +13,6 @@
 #include "question.h"
 #include "referee.h"
 #include "tree.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 enum { GUARD = 0xa5, GUARDS = 64 };
 
@@ -209,14 +200,12 @@ static mpq_t exact, scratch;
 
 static int set_up(void **state)
 {
-    (void) state;
     mpq_inits(exact, scratch, NULL);
     return 0;
 }
 
 static int tear_down(void **state)
 {
-    (void) state;
     mpq_clears(exact, scratch, NULL);
     return 0;
 }
@@ -286,7 +275,6 @@ static void expect_end(const struct solid *solid, double duration, double low, d
 
 static void boxes_hold_their_frames_and_are_tight(void **state)
 {
-    (void) state;
     static const double durations[] = {0, 0x1p-1074, 1e-300, 0.1, 1, 2, 3, 1e300, DBL_MAX};
     struct draw draw;
     draw_begin(&draw, "boxes_hold_their_frames_and_are_tight");
@@ -313,7 +301,6 @@ static void boxes_hold_their_frames_and_are_tight(void **state)
 /* The sum by itself, with numbers that are hard to add: the sign of its error is what counts. */
 static void sums_step_down_just_where_they_were_rounded_up(void **state)
 {
-    (void) state;
     struct draw draw;
     long stepped = 0, kept = 0;
     draw_begin(&draw, "sums_step_down_just_where_they_were_rounded_up");
@@ -458,7 +445,6 @@ static void expect_same_pairs(struct draw *draw, const struct scene *scene, stru
 
 static void pairs_of_trees_are_what_testing_every_pair_finds(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "pairs_of_trees_are_what_testing_every_pair_finds");
     for (long n = draw_sample(160); n > 0; n--) {
@@ -500,7 +486,6 @@ static size_t draw_count(struct draw *draw)
 /* Queried with their own frames, and with those of another scene. */
 static void trees_find_what_testing_every_frame_finds(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "trees_find_what_testing_every_frame_finds");
     for (long n = draw_sample(240); n > 0; n--) {
@@ -548,7 +533,6 @@ static void expect_sound(const struct fmb_tree *tree)
 
 static void trees_of_every_small_number_are_sound(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "trees_of_every_small_number_are_sound");
     for (size_t count = 0; count < 300; count++) {
@@ -566,7 +550,6 @@ static void trees_of_every_small_number_are_sound(void **state)
 /* Neighbours that touch are found, and no others: 27 with itself, inside of the grid. */
 static void cubes_in_a_grid_have_their_neighbours(void **state)
 {
-    (void) state;
     enum { SIDE = 7, CUBES = SIDE * SIDE * SIDE };
     struct draw draw;
     struct scene scene;
@@ -626,7 +609,6 @@ static bool is_found(const unsigned *found, size_t count, unsigned index)
 
 static void pairs_that_meet_are_found(void **state)
 {
-    (void) state;
     static const double durations[] = {1, 1, 0, 0.1, 3, 1e300};
     enum { FRAMES = 256 };
     struct draw draw;
@@ -773,7 +755,6 @@ static struct cost cost_of(struct draw *draw, drawing *how, size_t count)
 
 static void queries_cost_no_more_than_a_few_nodes_a_level(void **state)
 {
-    (void) state;
     static const struct {
         const char *name;
         drawing *how;
@@ -802,7 +783,6 @@ static void queries_cost_no_more_than_a_few_nodes_a_level(void **state)
  * small are left out together. */
 static void boxes_with_one_centre_cost_what_is_found(void **state)
 {
-    (void) state;
     enum { FRAMES = 3000 };
     struct draw draw;
     draw_begin(&draw, "boxes_with_one_centre_cost_what_is_found");
@@ -831,7 +811,6 @@ static void boxes_with_one_centre_cost_what_is_found(void **state)
 
 static void queries_that_are_not_supported_are_refused(void **state)
 {
-    (void) state;
     struct draw draw;
     struct scene flat, deep;
     struct planted planted;

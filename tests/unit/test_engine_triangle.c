@@ -1,14 +1,7 @@
 /* Faces by their vertices, exactly: pairs whose edges no double holds, against an oracle that reads
  * nothing but the vertices; many at once; their boxes, and trees of these. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <gmp.h>
@@ -21,8 +14,6 @@
 #include "fmb.h"
 #include "placed_pair.h"
 #include "triangles.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* ---- Points ---- */
 
@@ -378,13 +369,11 @@ static void assert_pairs(const char *what, bool moving, long usual)
 
 static void pairs_at_rest_are_what_their_vertices_say(void **state)
 {
-    (void) state;
     assert_pairs("pairs_at_rest_are_what_their_vertices_say", false, 8000);
 }
 
 static void moving_pairs_are_what_their_vertices_say(void **state)
 {
-    (void) state;
     assert_pairs("moving_pairs_are_what_their_vertices_say", true, 4000);
 }
 
@@ -553,7 +542,6 @@ static long assert_crowd(const struct crowd *crowd)
 
 static void batches_decide_rounded_faces(void **state)
 {
-    (void) state;
     static struct crowd crowd;
     struct draw draw;
     long rounded = 0;
@@ -570,7 +558,6 @@ static void batches_decide_rounded_faces(void **state)
 
 static void a_box_holds_all_vertices_at_all_times(void **state)
 {
-    (void) state;
     struct draw draw;
     struct drawn drawn;
     mpq_t way, at, time;
@@ -603,7 +590,6 @@ static void a_box_holds_all_vertices_at_all_times(void **state)
  * edge is off by at most u on each axis, the frame by 3 u, and two sums step down by 2 u each. */
 static void a_box_is_tight(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "a_box_is_tight");
     for (long n = draw_sample(20000); n > 0; n--) {
@@ -798,7 +784,6 @@ static void assert_none_lost(const struct world *a, const struct world *b)
 
 static void trees_of_boxes_lose_nothing(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "trees_of_boxes_lose_nothing");
     for (long n = draw_sample(400); n > 0; n--) {
@@ -830,7 +815,6 @@ static void put_flat_box(const void *context, unsigned index, double box[2][FMB_
 
 static void boxes_in_the_plane(void **state)
 {
-    (void) state;
     static const double at[4][2] = {{0, 0}, {1, 0}, {0, 0}, {1, -0.0}};
     static const unsigned expected[2][2] = {{0, 2}, {1, 3}};
     const struct fmb_boxes boxes = {2, put_flat_box, at, NULL};
@@ -849,7 +833,6 @@ static void boxes_in_the_plane(void **state)
 
 static void boxes_that_cannot_be_are_refused(void **state)
 {
-    (void) state;
     static const double bad[] = {-1, -0x1p-1074, INFINITY, NAN};
     struct fmb_boxes boxes = {3, put_flat_box, NULL, NULL};
     struct fmb_tree tree;
@@ -904,7 +887,6 @@ static double any_size(struct draw *draw)
 
 static void bodies_hold_their_edges_exactly(void **state)
 {
-    (void) state;
     struct draw draw;
     long refused = 0, made = 0;
     draw_begin(&draw, "bodies_hold_their_edges_exactly");
@@ -936,7 +918,6 @@ static void bodies_hold_their_edges_exactly(void **state)
  */
 static void what_does_not_round_is_an_ordinary_face(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "what_does_not_round_is_an_ordinary_face");
     for (long n = draw_sample(2000); n > 0; n--) {
@@ -956,7 +937,6 @@ static void what_does_not_round_is_an_ordinary_face(void **state)
 /* Coordinates up to the largest double, and subnormal ones, in one pair. */
 static void pairs_at_the_ends_of_the_doubles(void **state)
 {
-    (void) state;
     struct draw draw;
     struct triangles_answer truth;
     long arranged = 0;
@@ -986,7 +966,6 @@ static void pairs_at_the_ends_of_the_doubles(void **state)
  * the matrix of the rotation. Rounded, the planes cross. */
 static void rotated_faces_share_their_plane(void **state)
 {
-    (void) state;
     static const double flat[9] = {-0.5, -0.5, 0, 2, 0, 0, 0, 2, 0};
     for (int x = 1; x < 6; x++)
         for (int y = 1; y < 6; y++) {

@@ -1,9 +1,6 @@
 /* Reading scenes: what is understood, and what is refused, with the place. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+
+#include "unit.h"
 
 #include "json.h"
 #include "number.h"
@@ -13,9 +10,6 @@
 
 #include <math.h>
 #include <regex.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 /* A reader of the text, in a file that is gone with it. */
@@ -124,7 +118,6 @@ static void reads_every_field(void **state)
         " \"origin\": [0.1,-0,1e308], \"shape\": \"tetrahedron\", \"id\": 1},"
         "{\"id\": 7, \"shape\": \"face\", \"origin\": [0,0,0], \"components\": [[1,0,0],[0,1,0]]}],"
         " \"margin\": 1e-9, \"duration\": 2.5, \"dim\": 3}");
-    (void) state;
     assert_int_equal(scene.dim, 3);
     assert_true(scene.duration == 2.5);
     assert_true(scene.margin == 1e-9);
@@ -159,7 +152,6 @@ static void reads_poses_frames_names_and_ignored_pairs(void **state)
         "{\"id\": 3, \"shape\": \"face\", \"origin\": [7,8,9], \"position\": [1,1,1], "
         "\"components\": [[1,0,0],[0,1,0]]}],"
         "\"ignore\": [[3,2],[1,2],[2,3]]}");
-    (void) state;
     const struct fmb_frame *box = fmb_body_frame(&scene.body[0].body, 0);
     assert_string_equal(scene.body[0].name, "\xc3\xa4<");
     assert_int_equal(box->shape, FMB_BOX);
@@ -194,7 +186,6 @@ static void reads_poses_frames_names_and_ignored_pairs(void **state)
 /* Vertices stand in place of origin and components, groups leave pairs out. */
 static void reads_vertices_groups_and_labels(void **state)
 {
-    (void) state;
     struct scene scene = read_one(
         "{\"label\": \"shelf \\u20ac\", \"dim\": 3, \"bodies\": ["
         "{\"id\": 1, \"group\": -7, \"shape\": \"tetrahedron\", \"position\": [1,0,0],"
@@ -233,7 +224,6 @@ static void reads_vertices_groups_and_labels(void **state)
 static void turned_boxes_are_rounded_once(void **state)
 {
     uint64_t seed = 5;
-    (void) state;
     for (int i = 0; i < 2000; i++) {
         double q[4], size[3], centre[3] = {0}, number[12];
         for (int k = 0; k < 4; k++)
@@ -258,7 +248,6 @@ static void missing_fields_have_defaults(void **state)
     struct scene_cursor cursor = {0};
     struct scene_pair pair;
     static const size_t order[][2] = {{0, 1}, {0, 2}, {1, 2}};
-    (void) state;
     assert_true(scene.duration == 1);
     assert_true(scene.margin == 0);
     assert_true(scene.all_pairs);
@@ -277,8 +266,7 @@ static void empty_lists_are_scenes(void **state)
 {
     static const char *const texts[] = {SCENE(""), SCENE(BODY(1)), SCENE_PAIRS("[]"),
                                         "{\"dim\":2,\"bodies\":[],\"pairs\":[]}"};
-    (void) state;
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    for (size_t i = 0; i < COUNT(texts); i++) {
         struct scene_cursor cursor = {0};
         struct scene_pair pair;
         struct scene scene = read_one(texts[i]);
@@ -293,7 +281,6 @@ static void scenes_follow_each_other(void **state)
     struct input input = open_bytes(SCENE(BODY(1)) SCENE(BODY(2)) "\n\t " SCENE(BODY(3)) "\r\n",
                                     strlen(SCENE(BODY(1))) * 3 + 5);
     struct scene scene;
-    (void) state;
     for (int64_t id = 1; id <= 3; id++) {
         assert_int_equal(json_next(input.reader, &scene), JSON_SCENE);
         assert_int_equal(scene.body[0].id, id);
@@ -309,7 +296,6 @@ static void a_scene_is_given_when_it_is_complete(void **state)
     int end[2];
     struct scene scene;
     static const char text[] = SCENE(BODY(1)) "{\"di";
-    (void) state;
     assert_int_equal(pipe(end), 0);
     assert_int_equal(write(end[1], text, sizeof text - 1), sizeof text - 1);
     struct json_reader *reader = json_open(end[0]);
@@ -342,7 +328,6 @@ static void doubles_come_back_bit_for_bit(void **state)
 {
     uint64_t seed = 1;
     char text[NUMBER_TEXT_MAX];
-    (void) state;
     for (int i = 0; i < 20000; i++) {
         uint64_t bits = next_random(&seed);
         double value, back;
@@ -373,8 +358,7 @@ static void numbers_are_written_short(void **state)
                  {INFINITY, "null"},
                  {NAN, "null"}};
     char text[NUMBER_TEXT_MAX];
-    (void) state;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    for (size_t i = 0; i < COUNT(cases); i++)
         assert_string_equal(number_exact(cases[i].value, text), cases[i].text);
     assert_string_equal(number_grouped(-1234567, text), "-1,234,567");
     assert_string_equal(number_grouped(-123, text), "-123");
@@ -396,8 +380,7 @@ static void ends_that_differ_look_different(void **state)
         {-INFINITY, INFINITY, "-inf", "inf"},
     };
     char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
-    (void) state;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = 0; i < COUNT(cases); i++) {
         number_ends(cases[i].low, cases[i].high, low, high);
         assert_string_equal(low, cases[i].low_text);
         assert_string_equal(high, cases[i].high_text);
@@ -444,7 +427,6 @@ static void the_sign_of_zero_is_kept(void **state)
     char *written;
     size_t size;
     struct scene scene = read_one(text);
-    (void) state;
     const struct scene_body *body = scene.body;
     const struct fmb_frame *box = fmb_body_frame(&body[2].body, 0),
                            *face = fmb_body_frame(&body[2].body, 1);
@@ -473,7 +455,6 @@ static void the_sign_of_zero_is_kept(void **state)
 static void long_numbers_are_read_in_full(void **state)
 {
     char text[512];
-    (void) state;
     snprintf(text, sizeof text, "0.1%0200d", 1);
     assert_true(read_number_back(text) == 0.1);
     snprintf(text, sizeof text, "-0.%0100de100", 25);
@@ -592,8 +573,7 @@ static const struct {
 
 static void bad_scenes_are_refused(void **state)
 {
-    (void) state;
-    for (size_t i = 0; i < sizeof bad_scenes / sizeof *bad_scenes; i++)
+    for (size_t i = 0; i < COUNT(bad_scenes); i++)
         expect_place(bad_scenes[i].text, bad_scenes[i].place);
 }
 
@@ -640,8 +620,7 @@ static const struct {
 
 static void bad_texts_are_refused(void **state)
 {
-    (void) state;
-    for (size_t i = 0; i < sizeof bad_texts / sizeof *bad_texts; i++)
+    for (size_t i = 0; i < COUNT(bad_texts); i++)
         expect_error(bad_texts[i].text, bad_texts[i].error);
 }
 
@@ -663,7 +642,6 @@ static void numbers_follow_the_grammar_of_json(void **state)
     enum { COUNT = sizeof characters - 1, LONGEST = 4 };
     regex_t number;
     int accepted = 0;
-    (void) state;
     assert_int_equal(regcomp(&number, "^-?(0|[1-9][0-9]*)(\\.[0-9]+)?([eE][+-]?[0-9]+)?$",
                              REG_EXTENDED | REG_NOSUB),
                      0);
@@ -706,8 +684,7 @@ static void names_are_utf8_without_control_characters(void **state)
                  {"a\xc3", false},
                  {"\xc0\x80", false},
                  {"\x80", false}};
-    (void) state;
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    for (size_t i = 0; i < COUNT(names); i++) {
         char text[256];
         snprintf(
             text, sizeof text,
@@ -726,7 +703,6 @@ static void control_characters_are_refused(void **state)
 {
     static const char scene[] = SCENE(BODY(1));
     const size_t size = sizeof scene - 1;
-    (void) state;
     for (unsigned char byte = 0; byte < ' '; byte++)
         for (size_t at = 1; at < size; at++) {
             char text[sizeof scene];
@@ -745,7 +721,6 @@ static void control_characters_are_refused(void **state)
 
 static void brackets_in_strings_are_not_counted(void **state)
 {
-    (void) state;
     expect_error("{\"]}\\\"}[{\\\\\": 1}", "unknown key \"]}\"}[{\\\"");
     expect_error(
         "{\"dim\":\"" /* 40 of them */
@@ -761,7 +736,6 @@ static void an_object_without_end_is_refused(void **state)
     const char *object;
     size_t length;
     struct text text;
-    (void) state;
     assert_non_null(file);
     fprintf(file, "\n{%0100000d", 0);
     rewind(file);
@@ -779,7 +753,6 @@ static void deep_nesting_is_refused_early(void **state)
 {
     enum { SIZE = 1 << 20 };
     static char text[SIZE];
-    (void) state;
     memset(text, '[', sizeof text);
     memcpy(text, "{\"dim\":", 7);
     expect_error_in_bytes(text, sizeof text, "line 1, column 39: nested more than 32 deep");
@@ -789,7 +762,6 @@ static void a_directory_is_no_input(void **state)
 {
     struct scene scene;
     FILE *file = fopen(".", "r");
-    (void) state;
     assert_non_null(file);
     struct json_reader *reader = json_open(fileno(file));
     assert_int_equal(json_next(reader, &scene), JSON_FAILED);
@@ -802,7 +774,6 @@ static void a_directory_is_no_input(void **state)
 static void every_beginning_of_a_scene_is_refused(void **state)
 {
     static const char text[] = SCENE_PAIRS("[[1,2],[2,1]]");
-    (void) state;
     for (size_t size = 0; size < sizeof text - 1; size++) {
         struct input input = open_bytes(text, size);
         struct scene scene;
@@ -817,7 +788,6 @@ static void changed_bytes_do_no_harm(void **state)
 {
     static const char text[] = SCENE_PAIRS("[[1,2],[2,1]]");
     uint64_t seed = 2;
-    (void) state;
     for (int i = 0; i < 5000; i++) {
         char changed[sizeof text];
         struct scene scene;

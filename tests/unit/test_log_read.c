@@ -1,20 +1,15 @@
 /* Good logs, every way to break small ones, and logs that would make a reader slow. */
+#include "unit.h"
+
 #include "log_bytes.h"
 #include "log_read.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <lcm/lcm.h>
-
-#include <cmocka.h>
 
 /* ---- What the reader reads with -------------------------------------------------------------- */
 
@@ -156,13 +151,11 @@ static void make_small(void)
 
 static void an_empty_file_is_a_log_of_no_events(void **state)
 {
-    (void) state;
     assert_int_equal(read_bytes(noise, 0).count, 0);
 }
 
 static void an_event_is_what_was_written(void **state)
 {
-    (void) state;
     struct log_event event;
     struct log_damage damage;
     whole.size = whole.count = 0;
@@ -185,7 +178,6 @@ static void an_event_is_what_was_written(void **state)
 /* Names and data as long as can be, and around what is kept. */
 static void the_longest_event_is_read(void **state)
 {
-    (void) state;
     static const size_t sizes[] = {0, LOG_DATA_MAX - 1, LOG_DATA_MAX, LOG_DATA_MAX + 1,
                                    sizeof noise};
     static const int names[] = {1, 63, 64, 65, LOG_CHANNEL_MAX - 1};
@@ -244,7 +236,6 @@ static void expect_same(const struct log_event *event, const lcm_eventlog_event_
  * as LCM's own reader has it. */
 static void lcm_reads_the_same(void **state)
 {
-    (void) state;
     struct log_event event;
     struct log_damage damage;
     char why[LOG_WHY_MAX];
@@ -275,7 +266,6 @@ static void lcm_reads_the_same(void **state)
 
 static void every_truncation_is_read_up_to_its_end(void **state)
 {
-    (void) state;
     make_small();
     for (size_t size = 0; size < whole.size; size++) {
         const struct report report = read_bytes(whole.bytes, size);
@@ -306,7 +296,6 @@ static bool is_structure(size_t byte, size_t event)
 
 static void every_damaged_byte_is_reported(void **state)
 {
-    (void) state;
     make_small();
     for (size_t byte = 0; byte < whole.size; byte++)
         for (int flip = 0; flip < FLIPS; flip++) {
@@ -327,7 +316,6 @@ static void flip_two(size_t one, size_t two, unsigned char first, unsigned char 
 
 static void every_two_damaged_bytes_are_reported(void **state)
 {
-    (void) state;
     const size_t step = getenv("FMB_FAST") ? 3 : 1;
     make_small();
     for (size_t one = 0; one < whole.size; one++)
@@ -345,7 +333,6 @@ static void every_two_damaged_bytes_are_reported(void **state)
 /* Any bytes between any two events, also such as begin like one. */
 static void garbage_is_reported_everywhere(void **state)
 {
-    (void) state;
     static const struct {
         const char *bytes;
         size_t size;
@@ -361,7 +348,7 @@ static void garbage_is_reported_everywhere(void **state)
          "an event with impossible lengths"},
         {"\xed\xed\xa1\xda", 4, "no event"},
     };
-    const size_t kinds = sizeof garbage / sizeof *garbage;
+    const size_t kinds = COUNT(garbage);
     make_small();
     for (size_t g = 0; g < kinds; g++)
         for (size_t place = 0; place <= whole.count; place++) {
@@ -379,7 +366,6 @@ static void garbage_is_reported_everywhere(void **state)
 /* Between all events too, where none is followed by another. */
 static void garbage_between_all_events_is_reported(void **state)
 {
-    (void) state;
     whole.size = whole.count = 0;
     for (int i = 0; i < 9; i++) {
         log_bytes_event(&whole, i, "CHANNEL", "data", 4);
@@ -400,7 +386,6 @@ static const char impossible[] = "an event with impossible lengths";
 
 static void false_lengths_are_damage(void **state)
 {
-    (void) state;
     static const struct {
         uint32_t channel, data;
         const char *what, *what_last;
@@ -418,7 +403,7 @@ static void false_lengths_are_damage(void **state)
         {40, 5, wrong, "the last event is cut off"},
         {5, 6, wrong, "the last event is cut off"}, /* one byte too far */
     };
-    for (size_t i = 0; i < sizeof lies / sizeof *lies; i++)
+    for (size_t i = 0; i < COUNT(lies); i++)
         for (int last = 0; last < 2; last++) {
             make_small();
             const size_t at = whole.size, begun = whole.count;
@@ -437,7 +422,6 @@ static void false_lengths_are_damage(void **state)
  * killed and began anew in the same file. */
 static void a_log_after_a_truncated_log_is_read(void **state)
 {
-    (void) state;
     make_small();
     for (size_t size = whole.begin[4] + 1; size < whole.end[4]; size++) {
         inner.size = 0;
@@ -452,7 +436,6 @@ static void a_log_after_a_truncated_log_is_read(void **state)
 /* Whole logs in the data of events, the last one too, are data. */
 static void a_log_in_a_message_is_data(void **state)
 {
-    (void) state;
     make_small();
     inner = whole;
     whole.size = whole.count = 0;
@@ -507,7 +490,6 @@ static void expect_hole(struct log_reader *reader)
 
 static void a_hole_of_ten_gigabytes_is_skipped(void **state)
 {
-    (void) state;
     struct log_event event;
     struct log_damage damage;
     char why[LOG_WHY_MAX], path[64];
@@ -526,7 +508,6 @@ static void a_hole_of_ten_gigabytes_is_skipped(void **state)
 
 static void a_hole_at_the_end_is_damage(void **state)
 {
-    (void) state;
     struct log_event event;
     struct log_damage damage;
     struct log_reader *reader = open_hole();
@@ -597,14 +578,13 @@ static void garbage_after(void)
 /* Not much more is read than the file, in calls that are at most as many as there are headers. */
 static void work_grows_only_with_the_size(void **state)
 {
-    (void) state;
     static void (*const units[])(void) = {long_lie,     lies_into_the_buffer, sync_words,
                                           first_bytes,  nested_headers,       ones,
                                           garbage_after};
     struct log_event event;
     struct log_damage damage;
     make_noise(3);
-    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+    for (size_t i = 0; i < COUNT(units); i++) {
         fill_with(units[i]);
         struct log_reader *reader = open_bytes(whole.bytes, whole.size);
         memset(&reads, 0, sizeof reads);
@@ -629,7 +609,6 @@ static void work_grows_only_with_the_size(void **state)
  * there on, or from the next event. */
 static void seeking_finds_what_reading_found(void **state)
 {
-    (void) state;
     make_small();
     log_bytes_header(&whole, 5, 40, 5, 1000); /* into the next */
     log_bytes_add(&whole, "D1234five!", 10);
@@ -654,7 +633,6 @@ static void seeking_finds_what_reading_found(void **state)
 
 static void seeking_in_a_log_of_many_buffers(void **state)
 {
-    (void) state;
     struct log_event event;
     struct log_damage damage;
     make_noise(4);
@@ -678,7 +656,6 @@ static void seeking_in_a_log_of_many_buffers(void **state)
 
 static void what_is_written_later_is_not_read(void **state)
 {
-    (void) state;
     make_small();
     struct log_reader *reader = open_bytes(whole.bytes, whole.begin[2]);
     assert_int_equal(pwrite(log_bytes_descriptor(), whole.bytes, whole.size, 0), whole.size);
@@ -699,7 +676,6 @@ static void expect_failed(struct log_reader *reader, int error)
 
 static void a_file_that_becomes_shorter_ends_reading(void **state)
 {
-    (void) state;
     struct log_event event;
     struct log_damage damage;
     make_noise(5);
@@ -751,7 +727,6 @@ static void read_changed(struct log_reader *reader)
  * damaged. It changes before each of these reads. */
 static void a_file_may_change_while_it_is_read(void **state)
 {
-    (void) state;
     static unsigned char image[4 * LOG_DATA_MAX];
     make_noise(5);
     whole.size = whole.count = 0;
@@ -773,7 +748,6 @@ static void a_file_may_change_while_it_is_read(void **state)
 
 static void data_of_an_event_are_read_in_pieces(void **state)
 {
-    (void) state;
     static unsigned char image[3 * LOG_DATA_MAX + 5], data[sizeof image];
     struct log_event event;
     struct log_damage damage;
@@ -797,7 +771,6 @@ static void data_of_an_event_are_read_in_pieces(void **state)
 /* Also where nothing but a hole is to come. */
 static void a_hole_that_becomes_shorter_ends_reading(void **state)
 {
-    (void) state;
     struct log_event event;
     struct log_damage damage;
     struct log_reader *reader = open_hole();
@@ -810,7 +783,6 @@ static void a_hole_that_becomes_shorter_ends_reading(void **state)
 
 static void a_file_that_cannot_be_read_is_an_error(void **state)
 {
-    (void) state;
     make_small();
     struct log_reader *reader = open_bytes(whole.bytes, whole.size);
     reads.error = EIO;
@@ -829,7 +801,6 @@ static void expect_refused(const char *path, const char *reason)
 
 static void what_is_no_file_is_refused(void **state)
 {
-    (void) state;
     char folder[] = "/tmp/fmb-test-XXXXXX", pipe[64];
     assert_non_null(mkdtemp(folder));
     snprintf(pipe, sizeof pipe, "%s/pipe", folder);

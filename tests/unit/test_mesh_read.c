@@ -1,4 +1,6 @@
 /* Meshes in every format, good ones and refused ones, with the place. */
+#include "unit.h"
+
 #include "mesh.h"
 
 #include "bumpy.h"
@@ -8,14 +10,8 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 #include "progress_seen.h"
 
@@ -185,7 +181,6 @@ static const char ply_order[] =
 
 static void ply_of_text_is_read(void **state)
 {
-    (void) state;
     expect_mesh(read_text(ply_ascii), 4, square, 2, halves);
     expect_mesh(read_text(ply_order), 4, square, 2, halves);
     expect_mesh(read_good(ply_ascii, sizeof ply_ascii - 2, ""), 4, square, 2, halves);
@@ -248,7 +243,6 @@ static void ply_of_bytes_is_read(void **state)
                                                    {-0.1f, 0x1p-149},
                                                    {-0.1, 0x1p-1074}};
     struct file *file = malloc(sizeof *file);
-    (void) state;
     for (int mix = 0; mix < TYPE_COUNT * TYPE_COUNT * TYPE_COUNT * 4; mix++) {
         const int coordinate = mix / 4 % TYPE_COUNT, count = mix / 32 % TYPE_COUNT;
         const int index = mix / 256;
@@ -295,8 +289,7 @@ static void bad_ply_headers_are_refused(void **state)
         {"ply\nformat ascii 1.0\nelement face 1\nproperty list int int i\nend_header\n0 0",
          "line 3"},
     };
-    (void) state;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    for (size_t i = 0; i < COUNT(cases); i++)
         expect_refused(cases[i][0], "", cases[i][1]);
     expect_error("plY", 3, "a.PLY", "line 1");
     expect_error("plyy\n", 5, "a.PLY", "line 1");
@@ -309,8 +302,7 @@ static void words_in_errors_are_printable_and_short(void **state)
         {"ply\n\x01\xff\n", "line 2: '\?\?' is no keyword of a PLY header"},
         {"ply\nabcdefghijklmnopqrstuvwxyz0123456789\n",
          "line 2: 'abcdefghijklmnopqrstuvwxyz01...' is no keyword of a PLY header"}};
-    (void) state;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = 0; i < COUNT(cases); i++) {
         struct mesh mesh;
         char error[MESH_ERROR_MAX];
         assert_false(parse(cases[i][0], strlen(cases[i][0]), "", &mesh, error));
@@ -321,7 +313,6 @@ static void words_in_errors_are_printable_and_short(void **state)
 static void too_long_ply_headers_are_refused(void **state)
 {
     struct file *file = calloc(1, sizeof *file);
-    (void) state;
     add_text(file, "ply\n");
     for (int i = 0; i < 65; i++)
         add_text(file, "element e 0\n");
@@ -368,8 +359,7 @@ static void bad_ply_bodies_are_refused(void **state)
         {"0 0 0\n0 0 0\n0 0 0\n3 0.5 1 2\n", "line 13"},
         {"0 0 0\n0 0 0\n0 0 0\n3 0 1 1e999\n", "line 13"},
     };
-    (void) state;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    for (size_t i = 0; i < COUNT(cases); i++)
         expect_refused(VERTICES("ascii", "3") FACES("1"), cases[i][0], cases[i][1]);
     expect_refused(VERTICES("ascii", "0") FACES("1"), "3 0 0 0\n", "line 10");
     expect_refused("ply\nformat ascii 1.0\nelement a 1\nproperty float a\nend_header\n", "1,5",
@@ -397,7 +387,6 @@ static void bad_ply_bytes_are_refused(void **state)
     static const char lists[] =
         "ply\nformat binary_big_endian 1.0\nelement a 2\n"
         "property list ushort uint b\nend_header\n";
-    (void) state;
     expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\0\0\0\0"), "line 7");
     expect_refused_bytes(one, BYTES("\0\0\0\0\0\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0\0\1\0\0\0"),
                          "byte 190 (face 0)");
@@ -426,7 +415,6 @@ static void white_space_may_follow_ply(void **state)
     static const char one[] = VERTICES("binary_little_endian", "1") "end_header\n"
                                                                     "\0\0\0\0\0\0\0\0\0\0\0\0 \r\n\t";
     static const double origin[][3] = {{0, 0, 0}};
-    (void) state;
     expect_mesh(read_good(one, sizeof one - 1, ""), 1, origin, 0, NULL);
     expect_mesh(read_text(VERTICES("ascii", "1") "end_header\n0 0 0\n \r\n\t"), 1, origin, 0, NULL);
 }
@@ -447,9 +435,8 @@ static void counts_beyond_the_file_are_refused(void **state)
          "element face 1000000000\nproperty list double double vertex_index\n",
          7},
     };
-    (void) state;
     for (size_t f = 0; f < 3; f++) {
-        for (size_t i = 0; i < sizeof promises / sizeof *promises; i++) {
+        for (size_t i = 0; i < COUNT(promises); i++) {
             char text[512], place[16];
             sprintf(text, "ply\nformat %s 1.0\n%send_header\n1 1 1 1 1 1 1 1 1 1 1 1 ",
                     formats_of_ply[f], promises[i].lines);
@@ -477,7 +464,6 @@ static const char stl_ascii[] =
 
 static void stl_of_text_is_read(void **state)
 {
-    (void) state;
     expect_mesh(read_text(stl_ascii), 4, square, 2, halves);
     struct file *file = calloc(1, sizeof *file);
     add_text(file, "\xef\xbb\xbf");
@@ -508,8 +494,7 @@ static void bad_stl_of_text_is_refused(void **state)
          "line 8"},
         {"solid a\nendsolid a\nfacet", "line 3"},
     };
-    (void) state;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    for (size_t i = 0; i < COUNT(cases); i++)
         expect_refused(cases[i][0], "", cases[i][1]);
 }
 
@@ -537,10 +522,9 @@ static void stl_of_bytes_is_read(void **state)
     static const char *const headers[] = {"", "binary", "solid, which it is not", "solid\nfacet"};
     double vertex[4][3];
     struct file *file = calloc(1, sizeof *file);
-    (void) state;
     for (int i = 0; i < 12; i++)
         vertex[i / 3][i % 3] = (float) square[i / 3][i % 3];
-    for (size_t i = 0; i < sizeof headers / sizeof *headers; i++) {
+    for (size_t i = 0; i < COUNT(headers); i++) {
         make_stl(file, headers[i]);
         expect_mesh(read_good(file->bytes, file->size, "a.obj"), 4, (const double(*)[3]) vertex, 2,
                     halves);
@@ -553,7 +537,6 @@ static void stl_of_bytes_is_read(void **state)
 static void bad_stl_of_bytes_is_refused(void **state)
 {
     struct file *file = calloc(1, sizeof *file);
-    (void) state;
     make_stl(file, "solid");
     expect_error(file->bytes, file->size - 1, "a.stl", "byte 80");
     expect_error(file->bytes, file->size + 1, "A.STL", "byte 80");
@@ -583,7 +566,6 @@ static const char obj[] =
 
 static void obj_is_read(void **state)
 {
-    (void) state;
     expect_mesh(read_text(obj), 4, square, 2, halves);
     expect_mesh(read_good(obj, sizeof obj - 1, "a.stl.OBJ"), 4, square, 2, halves);
     expect_mesh(read_good("# nothing", 9, "a.obj"), 0, NULL, 0, NULL);
@@ -621,8 +603,7 @@ static void bad_obj_is_refused(void **state)
         {"f 1 2 4294967297\n", "line 4"},
         {"f 1 2 18446744073709551617\n", "line 4"},
     };
-    (void) state;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    for (size_t i = 0; i < COUNT(cases); i++)
         expect_refused("v 0 0 0\nv 1 0 0\nv 0 1 0\n", cases[i][0], cases[i][1]);
     expect_error("v 0 0 0\0 1", 10, "", "line 1");
 }
@@ -631,7 +612,6 @@ static void bad_obj_is_refused(void **state)
 
 static void other_files_are_refused(void **state)
 {
-    (void) state;
     expect_error("", 0, "a.obj", "byte 0");
     expect_error("hello", 5, "a.txt", "byte 0");
     expect_error("\0\0\0", 3, "", "byte 0");
@@ -661,7 +641,6 @@ static void only_regular_files_are_read(void **state)
     struct progress_seen seen = {0};
     const struct mesh_progress watch = {.report = progress_seen, .context = &seen};
     struct mesh mesh;
-    (void) state;
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/mesh.obj", folder);
     expect_unread(path, strerror(ENOENT));
@@ -728,7 +707,6 @@ static void expect_same_corners(const struct mesh *a, const struct mesh *b, doub
 static void all_formats_are_the_same_mesh(void **state)
 {
     static const unsigned counts[] = {8, 1000, 5000};
-    (void) state;
     for (int made = 0; made < 3; made++) {
         struct mesh mesh;
         bumpy_make(counts[made], (uint64_t) made, &mesh);
@@ -763,7 +741,6 @@ static void what_is_written_is_read(void **state)
     static double vertex[][3] = {{-0.0, 0x1p-1074, -0x1.fffffffffffffp1023}, {0.1, 1e22, 0}};
     static unsigned face[][3] = {{0, 1, 0}, {1, 1, 1}};
     struct mesh mesh = {.vertex_count = 2, .face_count = 2, .vertex = vertex, .face = face};
-    (void) state;
     expect_mesh(read_back(&mesh, write_plain), 2, (const double(*)[3]) vertex, 2,
                 (const unsigned(*)[3]) face);
     expect_mesh(read_back(&mesh, write_coloured), 2, (const double(*)[3]) vertex, 2,
@@ -791,7 +768,6 @@ static void ply_is_written_byte_by_byte(void **state)
     char *bytes;
     size_t size;
     FILE *file = open_memstream(&bytes, &size);
-    (void) state;
     mesh_write_ply(file, &mesh, colour);
     assert_int_equal(fclose(file), 0);
     assert_int_equal(size, sizeof expected - 1);
@@ -849,10 +825,9 @@ static void every_damaged_byte_is_refused_or_read(void **state)
     static const char *const names[] = {"", "a.stl", "a.obj"};
     static const double triangle[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 2}};
     struct file *file = calloc(1, sizeof *file);
-    (void) state;
-    for (size_t name = 0; name < sizeof names / sizeof *names; name++) {
+    for (size_t name = 0; name < COUNT(names); name++) {
         const char *const texts[] = {ply_ascii, ply_order, stl_ascii, obj};
-        for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        for (size_t i = 0; i < COUNT(texts); i++) {
             file->size = 0;
             add_text(file, texts[i]);
             spoil(file, names[name]);

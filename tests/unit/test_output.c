@@ -1,10 +1,7 @@
 /* Files that commands write: which existing files are replaced, and which files are left when a
  * command ends early. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+
+#include "unit.h"
 
 #include "output.h"
 
@@ -12,8 +9,6 @@
 #include <errno.h>
 #include <limits.h>
 #include <signal.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -23,14 +18,12 @@ static char folder[] = "/tmp/test_output.XXXXXX";
 
 static int set_up(void **state)
 {
-    (void) state;
     strcpy(folder + strlen(folder) - 6, "XXXXXX");
     return !mkdtemp(folder) || chdir(folder) != 0;
 }
 
 static int tear_down(void **state)
 {
-    (void) state;
     DIR *dir = opendir(folder);
     for (struct dirent *entry; (entry = readdir(dir));)
         remove(entry->d_name);
@@ -98,7 +91,6 @@ static mode_t mode_of(const char *path)
 static void without_a_path_no_file_is_opened(void **state)
 {
     struct output *output;
-    (void) state;
     assert_true(output_open(&(struct output_options){.kind = OUTPUT_PAGE}, &output));
     assert_null(output);
     assert_true(output_close(output, true));
@@ -106,7 +98,6 @@ static void without_a_path_no_file_is_opened(void **state)
 
 static void a_picture_replaces_an_empty_file_or_a_picture(void **state)
 {
-    (void) state;
     write_picture("new", false);
     put_file("empty", "");
     write_picture("empty", false);
@@ -118,8 +109,7 @@ static void a_picture_replaces_an_empty_file_or_a_picture(void **state)
 static void only_force_replaces_another_kind(void **state)
 {
     static const char *const others[] = {"{\"dim\": 3}", "<sv", "<svgx", " <svg ", "x"};
-    (void) state;
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+    for (size_t i = 0; i < COUNT(others); i++) {
         put_file("other", others[i]);
         assert_null(open_picture("other", false, NULL));
         assert_file("other", others[i]);
@@ -137,7 +127,6 @@ static void each_kind_replaces_its_own_kind(void **state)
         [OUTPUT_MESH] = "ply\nformat",
         [OUTPUT_LOG] = "\xed\xa1\xda\x01"};
     const struct output_rules rules = {.force = false}, force = {.force = true};
-    (void) state;
     for (int kind = OUTPUT_PICTURE; kind <= OUTPUT_LOG; kind++)
         for (int old = OUTPUT_PICTURE; old <= OUTPUT_LOG; old++) {
             put_file("file", text[old]);
@@ -151,7 +140,6 @@ static void each_kind_replaces_its_own_kind(void **state)
 
 static void an_input_is_never_replaced(void **state)
 {
-    (void) state;
     for (int force = 0; force < 2; force++) {
         put_file("input", "<svg input");
         assert_int_equal(symlink("input", "symbolic"), 0);
@@ -174,7 +162,6 @@ static void an_input_is_never_replaced(void **state)
 static void symbolic_links_stay(void **state)
 {
     char target[64];
-    (void) state;
     assert_int_equal(mkdir("folder", 0777), 0);
     put_file("folder/there", "<svg old");
     assert_int_equal(symlink("there", "folder/link"), 0);
@@ -193,7 +180,6 @@ static void symbolic_links_stay(void **state)
 static void new_files_follow_the_umask_and_others_keep_their_mode(void **state)
 {
     const mode_t mask = umask(027);
-    (void) state;
     write_picture("new", false);
     assert_int_equal(mode_of("new"), 0640);
     assert_int_equal(umask(mask), 027);
@@ -205,7 +191,6 @@ static void new_files_follow_the_umask_and_others_keep_their_mode(void **state)
 
 static void a_file_that_cannot_be_opened_is_an_error(void **state)
 {
-    (void) state;
     assert_null(open_picture("no/such/folder", true, NULL));
     assert_null(open_picture(".", true, NULL));
     assert_int_equal(symlink("loop", "loop"), 0);
@@ -219,7 +204,6 @@ static void a_file_that_cannot_be_opened_is_an_error(void **state)
 static void a_device_is_written_directly(void **state)
 {
     struct stat device;
-    (void) state;
     struct output *output = open_picture("/dev/full", false, NULL);
     assert_non_null(output);
     fputs("<svg ", output->file);
@@ -232,7 +216,6 @@ static void a_device_is_written_directly(void **state)
 
 static void an_output_that_is_not_kept_leaves_the_old_file(void **state)
 {
-    (void) state;
     for (int old = 0; old < 2; old++) {
         if (old)
             put_file("file", "<svg old");
@@ -264,7 +247,7 @@ static int status_of(void (*end)(struct output *output))
 }
 
 static const int signals[] = {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM};
-enum { SIGNALS = sizeof signals / sizeof *signals };
+enum { SIGNALS = COUNT(signals) };
 
 static int ended_by;
 
@@ -290,7 +273,6 @@ static void end_by_limit(struct output *output)
 
 static void no_temporary_file_is_left_when_a_process_ends(void **state)
 {
-    (void) state;
     put_file("file", "<svg old");
     for (size_t i = 0; i < SIGNALS; i++) {
         ended_by = signals[i];
@@ -309,7 +291,6 @@ static void no_temporary_file_is_left_when_a_process_ends(void **state)
 
 static void ignored_signals_stay_ignored(void **state)
 {
-    (void) state;
     signal(SIGHUP, SIG_IGN); /* as nohup does */
     ended_by = SIGHUP;
     const int status = status_of(end_by_signal);

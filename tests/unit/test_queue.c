@@ -1,16 +1,11 @@
 /* Order, capacity; against a flood, against a naive model, and what memory is touched. */
+#include "unit.h"
+
 #include "queue.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { GUARD = 0xa5, CLIENTS = 100 };
 
@@ -20,7 +15,6 @@ static unsigned char got_bytes[QUEUE_DATAGRAM_MAX + 1];
 
 static int set_up(void **state)
 {
-    (void) state;
     srand(1);
     for (size_t i = 0; i < sizeof noise; i++)
         noise[i] = (unsigned char) (rand() >> 8);
@@ -96,7 +90,6 @@ static void expect_empty(struct queue *queue)
 
 static void a_client_is_served_in_order(void **state)
 {
-    (void) state;
     struct queue *queue = create(8);
     expect_empty(queue);
     for (int i = 0; i < 5; i++)
@@ -117,7 +110,6 @@ static void a_client_is_served_in_order(void **state)
 
 static void lines_are_independent(void **state)
 {
-    (void) state;
     struct queue *queue = create(32);
     for (int i = 0; i < 4; i++)
         keep(queue, 1, 10 + i, 50);
@@ -138,7 +130,6 @@ static void lines_are_independent(void **state)
 
 static void queries_may_have_any_size(void **state)
 {
-    (void) state;
     struct queue *queue = create(40);
     for (int chunks = 1; chunks <= 16; chunks++)
         for (int off = -1; off <= 1; off++) {
@@ -157,7 +148,6 @@ static void queries_may_have_any_size(void **state)
 
 static void a_queue_of_one_chunk_works(void **state)
 {
-    (void) state;
     struct queue *queue = create(1);
     assert_int_equal(put(queue, 1, 0, QUEUE_CHUNK + 1), QUEUE_REFUSED);
     assert_int_equal(put(queue, 1, 0, QUEUE_DATAGRAM_MAX), QUEUE_REFUSED);
@@ -173,7 +163,6 @@ static void a_queue_of_one_chunk_works(void **state)
 
 static void the_biggest_holder_loses_its_newest(void **state)
 {
-    (void) state;
     struct queue *queue = create(10);
     for (int i = 0; i < 6; i++)
         keep(queue, 1, 10 + i, 100);
@@ -200,7 +189,6 @@ static void the_biggest_holder_loses_its_newest(void **state)
 /* The first would lose 3 chunks, which are not enough: it loses none. */
 static void nothing_is_evicted_in_vain(void **state)
 {
-    (void) state;
     struct queue *queue = create(19);
     for (int i = 0; i < 19; i++)
         keep(queue, 1, i, 1);
@@ -261,14 +249,12 @@ static void withstand(struct flood flood)
 
 static void a_flood_of_small_queries_evicts_its_own(void **state)
 {
-    (void) state;
     withstand((struct flood){.chunks = 64, .flooders = 1, .size = 10, .modest_size = 400});
     withstand((struct flood){.chunks = 64, .flooders = 1, .size = 10, .modest_size = 65536});
 }
 
 static void a_flood_of_large_queries_evicts_its_own(void **state)
 {
-    (void) state;
     withstand((struct flood){.chunks = 64, .flooders = 1, .size = 65536, .modest_size = 400});
     withstand((struct flood){.chunks = 64, .flooders = 1, .size = 65536, .modest_size = 65536});
 }
@@ -276,7 +262,6 @@ static void a_flood_of_large_queries_evicts_its_own(void **state)
 /* Up to the share that is promised, to the chunk: 21 clients, 16 chunks each. */
 static void many_floods_share_the_queue(void **state)
 {
-    (void) state;
     const size_t chunks = 21 * 16;
     withstand((struct flood){.chunks = chunks, .flooders = 20, .size = 1, .modest_size = 65536});
     withstand((struct flood){.chunks = chunks, .flooders = 20, .size = 9000, .modest_size = 65536});
@@ -481,7 +466,6 @@ static void compare_with_model(int capacity, int operations)
 
 static void the_queue_matches_a_model(void **state)
 {
-    (void) state;
     compare_with_model(1, 20000);
     compare_with_model(2, 20000);
     compare_with_model(17, 60000);
@@ -502,7 +486,6 @@ static long page_faults(void)
  * touched. */
 static void what_was_freed_is_used_again(void **state)
 {
-    (void) state;
     enum { CHUNKS = 65536 };
     struct queue *queue = create(CHUNKS);
     long before = page_faults();
@@ -533,7 +516,6 @@ static long faults_of_some_more(struct queue *queue)
  * copy of those that it writes to, each by a fault. */
 static void what_was_freed_last_is_used_first(void **state)
 {
-    (void) state;
     enum { CHUNKS = 4096 };
     struct queue *queue = create(CHUNKS);
     for (int i = 0; i < CHUNKS; i++)
@@ -555,7 +537,6 @@ static void what_was_freed_last_is_used_first(void **state)
 
 static void all_chunks_come_back(void **state)
 {
-    (void) state;
     enum { CHUNKS = 64 };
     struct queue *queue = create(CHUNKS);
     for (int round = 0; round < 3; round++) {

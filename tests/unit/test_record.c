@@ -1,4 +1,6 @@
 /* The bodies of a recording: what is requested, and what each file defines. */
+#include "unit.h"
+
 #include "geometry_write.h"
 #include "record_bodies.h"
 
@@ -6,15 +8,6 @@
 #include "definitions.h"
 #include "log_write.h"
 #include "wire.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 enum { SERVER = 5, CLIENT = 7, RECORDER = 9, SECOND = 1000000000 };
 

@@ -1,5 +1,7 @@
 /* Two results of a query compared: every way in which they can differ, numbers at their ends,
  * scenes against a naive model, results that lie; and that bytes which look the same are. */
+#include "unit.h"
+
 #include "compare.h"
 #include "geometry_write.h"
 
@@ -8,14 +10,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static const struct compare_options exact = {.tolerance = 0};
 
@@ -46,7 +40,6 @@ static void on_difference(void *user, const struct difference *difference)
 
 static int set_up(void **state)
 {
-    (void) state;
     drawn = 1;
     const struct answerer_options options = {.frames = 2000, .server_id = 99, .secret = {1, 2}};
     answerer = answerer_create(&options);
@@ -56,7 +49,6 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    (void) state;
     scene_job_destroy(job);
     answerer_destroy(answerer);
     return 0;
@@ -163,7 +155,6 @@ static void every_kind_of_difference_is_found(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 1, BOX | CERTIFICATE | GAP);
     const struct pair_result now = answer(&query);
-    (void) state;
     assert_true(now.answer.has_box && now.answer.has_contact && now.certificate);
     assert_true(now.answer.has_gap);
     struct pair_result then = now;
@@ -207,7 +198,6 @@ static void other_fields_are_not_compared(void **state)
     const struct pair_query query = pair(3, 0.5, 1, BOX);
     const struct pair_result now = answer(&query);
     struct pair_result then = now;
-    (void) state;
     then.server_id = then.utime = then.compute_ns = -1;
     then.handle[0].bytes[0] ^= 1;
     then.method = 77;
@@ -224,7 +214,6 @@ static void statuses_of_the_moment_are_not_compared(void **state)
     const struct pair_result good = answer(&query);
     const struct pair_result busy = {.status = FMB_BUSY}, unknown = {.status = FMB_UNKNOWN_BODY};
     const struct pair_result bad = {.status = FMB_BAD_ID};
-    (void) state;
     for (double tolerance = 0; tolerance < 1; tolerance += 0.5) {
         assert_int_equal(compare_with(tolerance, &query, &busy, &good), REPLAY_BUSY);
         assert_int_equal(compare_with(tolerance, &query, &busy, &bad), REPLAY_BUSY);
@@ -276,8 +265,7 @@ static void ends_of_intervals_are_compared(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 1, 0);
     const struct pair_result good = answer(&query);
-    (void) state;
-    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+    for (size_t i = 0; i < COUNT(ends); i++)
         for (int end = 0; end < 2; end++) {
             struct pair_result then = good, now = good;
             then.answer.contact[end] = ends[i].then;
@@ -299,11 +287,10 @@ static void set_box(struct pair_result *result, int side, int axis, double end)
 
 static void ends_of_boxes_are_compared(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++) {
         const struct pair_query query = pair(dim, 0.5, 0, BOX);
         const struct pair_result good = answer(&query);
-        for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+        for (size_t i = 0; i < COUNT(ends); i++)
             for (int at = 0; at < 2 * dim; at++) {
                 struct pair_result then = good, now = good;
                 set_box(&then, at / dim, at % dim, ends[i].then);
@@ -333,8 +320,7 @@ static void bounds_of_gaps_are_compared(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 0, 0);
     const struct pair_result good = answer(&query);
-    (void) state;
-    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+    for (size_t i = 0; i < COUNT(ends); i++)
         for (int bound = 0; bound < 2; bound++) {
             struct pair_result then = good, now = good;
             set_gap(&then, bound, ends[i].then);
@@ -351,7 +337,6 @@ static void a_tolerance_is_relative_to_the_largest_coordinate(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 0, 0);
     struct pair_result then = answer(&query);
-    (void) state;
     set_gap(&then, 0, 1e-3);
     set_gap(&then, 1, 1e-3);
     then.answer.gap.witness[1][2] = 1e-3;
@@ -367,7 +352,6 @@ static void with_a_tolerance_witness_points_may_differ(void **state)
     const struct pair_query query = pair(3, 2, 0, GAP);
     const struct pair_result now = answer(&query);
     struct pair_result then = now;
-    (void) state;
     assert_true(now.answer.gap.has_witness);
     then.answer.gap.witness[0][1] += 0.25;
     then.answer.gap.direction[0] += 0.25;
@@ -382,7 +366,6 @@ static void with_a_tolerance_certificates_may_differ(void **state)
     const struct pair_query query = pair(3, 0.5, 0, CERTIFICATE);
     const struct pair_result now = answer(&query);
     struct pair_result then = now;
-    (void) state;
     then.certificate = NULL;
     expect_same(1e-12, &query, &then, &now);
     then.answer.verdict = FMB_TOUCHING; /* but nothing else that is not a number */
@@ -395,7 +378,6 @@ static void with_a_tolerance_certificates_may_differ(void **state)
 /* A box of the other dimension is another box, though all numbers that both have be the same. */
 static void boxes_of_another_dimension_differ(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++) {
         const struct pair_query query = pair(dim, 0.5, 0, BOX);
         struct pair_result now = answer(&query), then;
@@ -702,7 +684,6 @@ static bool through_the_wire(struct scene_result *result)
 static void scenes_compare_as_the_model(void **state)
 {
     int different = 0, same = 0, shorter = 0;
-    (void) state;
     for (int round = 0; round < 10000; round++) {
         draw_scene();
         answer_now();
@@ -734,7 +715,6 @@ static void results_of_other_queries_differ(void **state)
 {
     static struct scene_result kept[20];
     int count = 0, whole = 0, walked = 0;
-    (void) state;
     for (int round = 0; round < 2000; round++) {
         draw_scene();
         answer_now();
@@ -755,7 +735,6 @@ static void results_of_other_queries_differ(void **state)
 static void every_changed_byte_is_found(void **state)
 {
     int read = 0;
-    (void) state;
     for (int round = 0; round < 150; round++) {
         draw_scene();
         answer_now();
@@ -783,7 +762,6 @@ static void expect_whole(void)
 /* As many pairs as a message holds, all of them in contact, and nothing else. */
 static void the_most_pairs_are_compared(void **state)
 {
-    (void) state;
     memset(&scene, 0, sizeof scene);
     scene.duration = 1;
     scene.which = FMB_PAIRS_LISTED;
@@ -812,7 +790,6 @@ enum { PLACEMENTS = 400 };
 
 static void the_most_placements_are_compared(void **state)
 {
-    (void) state;
     for (int which = FMB_PAIRS_ALL; which <= FMB_PAIRS_ACROSS; which += 2) {
         memset(&scene, 0, sizeof scene);
         scene.duration = 1;
@@ -862,7 +839,6 @@ static bool looks_same(enum log_kind kind, const unsigned char *a, const unsigne
 static void scenes_whose_bytes_are_the_same(void **state)
 {
     int same = 0;
-    (void) state;
     for (int round = 0; round < 300; round++) {
         draw_scene();
         if (draw(4) == 0 && scene.placement_count > 0) { /* refused in many ways */
@@ -904,7 +880,6 @@ static void pairs_whose_bytes_are_the_same(void **state)
 {
     static unsigned char a[QUERY_BYTES_MAX], b[QUERY_BYTES_MAX];
     int same = 0, unknown = 0;
-    (void) state;
     for (int round = 0; round < 1000; round++) {
         const struct pair_query query = drawn_pair();
         const struct pair_result result = answer(&query);
@@ -931,7 +906,6 @@ static void pairs_whose_bytes_are_the_same(void **state)
 
 static void differences_have_names(void **state)
 {
-    (void) state;
     for (int kind = 0; kind < DIFFERENT_KINDS; kind++)
         assert_true(strlen(difference_name[kind]) > 2);
 }

@@ -1,14 +1,7 @@
 /* Which differences are listed, and in which order: against all of them, sorted. */
+#include "unit.h"
+
 #include "listing.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static uint64_t drawn = 1;
 
@@ -87,8 +80,7 @@ static void check(int count, int64_t limit, int order)
 static void the_first_differences_are_listed(void **state)
 {
     static const int64_t limits[] = {0, 1, 2, 3, 7, 100, 1000, PUT_MAX, INT32_MAX};
-    (void) state;
-    for (size_t i = 0; i < sizeof limits / sizeof *limits; i++)
+    for (size_t i = 0; i < COUNT(limits); i++)
         for (int order = -1; order <= 1; order++) {
             check(0, limits[i], order);
             for (int count = 1; count <= PUT_MAX; count = 3 * count + 1)
@@ -100,7 +92,6 @@ static void the_first_differences_are_listed(void **state)
 static void long_certificates_are_listed(void **state)
 {
     static char text[1000];
-    (void) state;
     memset(text, 'x', sizeof text - 1);
     struct located_difference found = {.place = {.number = 1}};
     found.difference.then.certificate = text;

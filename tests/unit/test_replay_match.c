@@ -1,28 +1,19 @@
 /* Queries and results that wait for each other: order, keys that are the same or nearly so, the
  * end, notes; and against a naive model. */
+#include "unit.h"
+
 #include "match.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static struct match *match;
 
 static int set_up(void **state)
 {
-    (void) state;
     match = match_open();
     return 0;
 }
 
 static int tear_down(void **state)
 {
-    (void) state;
     match_close(match);
     return 0;
 }
@@ -51,7 +42,6 @@ static void take(struct match_key of, int64_t offset)
 
 static void the_first_query_is_matched_first(void **state)
 {
-    (void) state;
     for (int i = 0; i < 5; i++)
         add(key(1, 2), i, false);
     take(key(1, 2), 0);
@@ -66,7 +56,6 @@ static void the_first_query_is_matched_first(void **state)
 
 static void keys_differ_in_any_number(void **state)
 {
-    (void) state;
     struct match_key keys[] = {key(1, 2), key(2, 1), key(1, 2), key(1, 2)};
     keys[2].utime++;
     keys[3].kind = LOG_SCENE_QUERY;
@@ -79,7 +68,6 @@ static void keys_differ_in_any_number(void **state)
 static void ids_may_be_any_numbers(void **state)
 {
     static const int64_t ids[] = {INT64_MIN, -1, 0, 1, INT64_MAX};
-    (void) state;
     for (int i = 0; i < 25; i++)
         add(key(ids[i / 5], ids[i % 5]), i, false);
     for (int i = 0; i < 25; i++)
@@ -89,7 +77,6 @@ static void ids_may_be_any_numbers(void **state)
 /* A log of one client whose numbers never change: each step takes the same time. */
 static void many_queries_may_have_one_key(void **state)
 {
-    (void) state;
     for (int i = 0; i < 200000; i++)
         add(key(1, 1), i, false);
     for (int i = 0; i < 200000; i++)
@@ -115,7 +102,6 @@ static void on_found(void *user, struct match_item *query, struct match_item *re
 static void results_without_the_time_match(void **state)
 {
     struct match_key later = key(1, 2);
-    (void) state;
     later.utime = 9;
     found_count = 0;
     add(key(1, 2), 0, false);
@@ -139,7 +125,6 @@ static void results_without_the_time_match(void **state)
 static void notes_are_kept(void **state)
 {
     const struct match_key none = {0}, one = key(1, 2), other = key(1, 3);
-    (void) state;
     assert_null(match_noted(match, &none));
     const struct match_place query_place = {.log = 1, .offset = 77};
     const struct match_place result_place = {.log = 2, .offset = 99};
@@ -159,7 +144,6 @@ static void notes_are_kept(void **state)
 static void notes_are_of_the_last_ones(void **state)
 {
     const struct match_place place = {.offset = 1};
-    (void) state;
     for (int64_t i = 0; i < 1000000; i++) {
         const struct match_key of = key(7, i);
         struct match_item *query = match_new(&of, &place);
@@ -185,7 +169,6 @@ static struct {
 
 static void matching_agrees_with_a_model(void **state)
 {
-    (void) state;
     memset(queue, 0, sizeof queue);
     srand(1);
     for (int64_t step = 0; step < 40000; step++) {

@@ -1,5 +1,7 @@
 /* Whole replays: logs of a service and its clients that are made here and then spoiled in every
  * way. Ranges of time add up to the whole, and all counts agree. */
+#include "unit.h"
+
 #include "geometry_write.h"
 #include "log_draft.h"
 #include "replay_report.h"
@@ -9,15 +11,7 @@
 
 #include <malloc.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static uint64_t drawn = 1;
 
@@ -61,7 +55,6 @@ static void open_log(void)
 
 static int tear_down(void **state)
 {
-    (void) state;
     close_log();
     return 0;
 }
@@ -223,7 +216,6 @@ static struct replay_report replay(void)
 
 static void an_empty_log_has_nothing_to_compare(void **state)
 {
-    (void) state;
     struct replay_report report = replay();
     assert_int_equal(tally_queries(&report.tally), 0);
     replay_report_free(&report);
@@ -233,7 +225,6 @@ static void an_empty_log_has_nothing_to_compare(void **state)
 static void a_clock_that_goes_back_changes_nothing(void **state)
 {
     static const int64_t utimes[] = {1000, 999, -5, INT64_MIN, 0, INT64_MAX, 1001};
-    (void) state;
     for (int i = 0; i < 7; i++)
         log_both(utimes[i], pair(i, whole(1, 1, 0), whole(2, 1, i)));
     struct replay_report report = replay();
@@ -244,7 +235,6 @@ static void a_clock_that_goes_back_changes_nothing(void **state)
 
 static void differences_are_where_they_are(void **state)
 {
-    (void) state;
     for (int i = 0; i < 20; i++) {
         const struct pair_query query = pair(i, whole(1, 1, 0), whole(2, 1, i));
         struct pair_result result = result_of(&query);
@@ -272,7 +262,6 @@ static const double none[] = {0};
 
 static void handles_are_defined_before_and_after(void **state)
 {
-    (void) state;
     log_both(0, pair(1, by_handle(3, 2, 0), whole(2, 1, 2)));
     log_both(1, pair(2, by_handle(3, 2, 0), by_handle(4, 5, 9)));
     log_definition(2, (double[]){1, 2, 0});
@@ -291,7 +280,6 @@ static void handles_are_defined_before_and_after(void **state)
  * and their results stand elsewhere; a body without an id does not. */
 static void handles_are_defined_by_whole_bodies(void **state)
 {
-    (void) state;
     for (int anonymous = 0; anonymous < 2; anonymous++) {
         const struct pair_query one = pair(1, by_handle(3, 2, 0), by_handle(4, 1, 2));
         const struct pair_result result = result_of(&one);
@@ -310,7 +298,6 @@ static void handles_are_defined_by_whole_bodies(void **state)
 
 static void a_verdict_is_compared_where_the_definition_comes_late(void **state)
 {
-    (void) state;
     const struct pair_query query = pair(1, by_handle(3, 2, 0), by_handle(4, 1, 2));
     struct pair_result result = result_of(&query);
     result.answer.verdict = FMB_OVERLAPPING;
@@ -361,11 +348,10 @@ static void ignore_damage(void *user, int log, const struct log_damage *damage)
  * only follows it. */
 static void a_query_that_changes_before_its_answer_ends_the_replay(void **state)
 {
-    (void) state;
     static const int64_t offsets[] = {0, 20, 24, 28 + sizeof WIRE_PAIR_QUERY - 1};
     const struct replay_sink sink = {refuse_difference, ignore_unreadable, ignore_damage, overwrite,
                                      NULL};
-    for (size_t i = 0; i < 2 * sizeof offsets / sizeof *offsets; i++) {
+    for (size_t i = 0; i < 2 * COUNT(offsets); i++) {
         const struct pair_query query = pair(1, by_handle(3, 2, 0), by_handle(4, 1, 2));
         const struct pair_result result = result_of(&query);
         struct tally tally = {.events = 0};
@@ -386,7 +372,6 @@ static void a_query_that_changes_before_its_answer_ends_the_replay(void **state)
 /* One id, two bodies: handles say which. */
 static void two_clients_use_the_same_ids_for_other_bodies(void **state)
 {
-    (void) state;
     for (int i = 0; i < 40; i++) {
         const double edge = i % 2 ? 1 : 3;
         struct pair_query query = pair(i / 2, i < 2 ? whole(1, edge, 0) : by_handle(1, edge, 0),
@@ -403,7 +388,6 @@ static void two_clients_use_the_same_ids_for_other_bodies(void **state)
 static void a_cache_that_is_too_small_leaves_queries_open(void **state)
 {
     struct replay_options with = options();
-    (void) state;
     with.frames = 2;
     for (int i = 0; i < 60; i++)
         log_both(
@@ -419,7 +403,6 @@ static void a_cache_that_is_too_small_leaves_queries_open(void **state)
 /* A definition whose body is not what its handle says. */
 static void a_false_definition_defines_nothing(void **state)
 {
-    (void) state;
     log_definition(0, (double[]){2, 0});
     recorded.bytes[recorded.size - 1] ^= 1;
     log_both(1, pair(1, by_handle(3, 2, 0), whole(4, 1, 0)));
@@ -434,7 +417,6 @@ static void a_false_definition_defines_nothing(void **state)
 
 static void results_of_the_moment_are_not_compared(void **state)
 {
-    (void) state;
     for (int i = 0; i < 30; i++) {
         const struct pair_query query = pair(i, by_handle(1, i % 3 ? 1 : 2, 0), whole(2, 1, i));
         const struct pair_result result = status_of(&query, i % 2 ? FMB_BUSY : FMB_UNKNOWN_BODY);
@@ -450,7 +432,6 @@ static void results_of_the_moment_are_not_compared(void **state)
 /* A client repeats a query that was refused, under the same number; or another service answers. */
 static void an_answer_after_a_result_of_the_moment_is_compared(void **state)
 {
-    (void) state;
     for (int repeats = 0; repeats < 2; repeats++) {
         for (int i = 0; i < 20; i++) {
             const struct pair_query query = pair(i, by_handle(1, i % 2 ? 1 : 2, 0), whole(2, 1, i));
@@ -477,7 +458,6 @@ static void an_answer_after_a_result_of_the_moment_is_compared(void **state)
 /* Of two services on one bus each query has two results. The first counts. */
 static void second_results_are_counted(void **state)
 {
-    (void) state;
     for (int i = 0; i < 30; i++) {
         const struct pair_query query = pair(i, whole(3, 2, 0), whole(2, 1, i));
         struct pair_result result = result_of(&query);
@@ -503,7 +483,6 @@ static void second_results_are_counted(void **state)
 /* The same query again, each time before its handle is defined. */
 static void repeats_before_the_answer_are_the_same(void **state)
 {
-    (void) state;
     const struct pair_query query = pair(1, by_handle(3, 2, 0), whole(2, 1, 2));
     const struct pair_result result = result_of(&query);
     log_pair(0, &query);
@@ -524,7 +503,6 @@ static void repeats_before_the_answer_are_the_same(void **state)
 static void an_unreadable_query_is_counted(void **state)
 {
     unsigned char bytes[QUERY_BYTES_MAX];
-    (void) state;
     for (int i = 0; i < 10; i++) {
         const struct pair_query query = pair(i, whole(3, 2, 0), whole(2, 1, i));
         const struct pair_result result = result_of(&query);
@@ -542,7 +520,6 @@ static void an_unreadable_query_is_counted(void **state)
 static void an_unreadable_result_is_counted(void **state)
 {
     unsigned char bytes[QUERY_BYTES_MAX];
-    (void) state;
     for (int i = 0; i < 10; i++) {
         const struct pair_query query = pair(i, whole(3, 2, 0), whole(2, 1, i));
         const struct pair_result result = result_of(&query);
@@ -567,7 +544,6 @@ static void queries_beyond_all_limits_replay_as_refused(void **state)
     static struct scene_result result;
     static const size_t sizes[] = {QUERY_BYTES_MAX, QUERY_BYTES_MAX + 1, LOG_DATA_MAX,
                                    LOG_DATA_MAX + 1, sizeof bytes};
-    (void) state;
     query.label = "abc"; /* so that whole pairs fill the datagram */
     query.which = FMB_PAIRS_LISTED;
     query.index_count = (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES - 3) / 2;
@@ -591,7 +567,6 @@ static void queries_beyond_all_limits_replay_as_refused(void **state)
 static void negative_times_are_not_counted(void **state)
 {
     static const int64_t times[] = {INT64_MIN, -1, 0, 1, INT64_MAX};
-    (void) state;
     for (int i = 0; i < 5; i++) {
         const struct pair_query query = pair(i, whole(3, 2, 0), whole(2, 1, i));
         struct pair_result result = result_of(&query);
@@ -611,7 +586,6 @@ static void a_log_of_version_1_is_recognised(void **state)
 {
     static const unsigned char bytes[64] = {0x17, 0x04, 0x23, 0x1d, 0xbc, 0x74, 0xa7, 0x2c};
     const struct replay_options with = options();
-    (void) state;
     log_both(0, pair(1, whole(3, 2, 0), whole(2, 1, 2)));
     log_draft_event(&recorded, WIRE_PAIR_QUERY, 1, bytes, sizeof bytes);
     log_both(2, pair(2, whole(3, 2, 0), whole(2, 1, 2)));
@@ -628,7 +602,6 @@ static void results_after_all_queries_take_bounded_memory(void **state)
     const int64_t count = 100000;
     struct pair_query query = pair(0, whole(3, 2, 0), whole(2, 1, 2));
     struct pair_result result = result_of(&query);
-    (void) state;
     for (int i = 0; i < count; i++) {
         query.sequence_number = i;
         log_pair(i, &query);
@@ -987,7 +960,6 @@ static void check_ways(int ways)
 
 static void worlds_spoiled_in_one_way(void **state)
 {
-    (void) state;
     check_ways(0);
     for (int way = 1; way < EVERYTHING; way *= 2)
         check_ways(way);
@@ -996,7 +968,6 @@ static void worlds_spoiled_in_one_way(void **state)
 
 static void worlds_spoiled_in_many_ways(void **state)
 {
-    (void) state;
     for (int round = 0; round < (getenv("FMB_FAST") ? 5 : 40); round++)
         check_ways((int) draw(EVERYTHING + 1));
     check_ways(EVERYTHING);
@@ -1004,14 +975,12 @@ static void worlds_spoiled_in_many_ways(void **state)
 
 static int make_hasher(void **state)
 {
-    (void) state;
     hasher = hasher_create();
     return hasher ? 0 : -1;
 }
 
 static int free_hasher(void **state)
 {
-    (void) state;
     hasher_destroy(hasher);
     return 0;
 }

@@ -1,21 +1,14 @@
 /* Runs of slots against a plain map of them. */
+#include "unit.h"
+
 #include "runs.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 enum { SLOTS = 100 };
 
 static void all_slots_can_be_taken(void **state)
 {
-    (void) state;
     static struct run_slot slot[SLOTS];
     struct runs runs;
     runs_init(&runs, slot, SLOTS);
@@ -31,7 +24,6 @@ static void all_slots_can_be_taken(void **state)
 /* A freed run is merged with both free neighbours, and is what is taken next. */
 static void neighbours_are_merged(void **state)
 {
-    (void) state;
     static struct run_slot slot[SLOTS];
     struct runs runs;
     runs_init(&runs, slot, SLOTS);
@@ -55,7 +47,6 @@ static void neighbours_are_merged(void **state)
 /* A run that was freed last is found, however many shorter ones of its list there are. */
 static void the_last_one_is_found(void **state)
 {
-    (void) state;
     static struct run_slot slot[SLOTS];
     struct runs runs;
     runs_init(&runs, slot, SLOTS);
@@ -73,7 +64,6 @@ static void the_last_one_is_found(void **state)
 /* Of a list, more than the first run is examined. */
 static void a_longer_run_of_a_list_is_found(void **state)
 {
-    (void) state;
     static struct run_slot slot[SLOTS];
     struct runs runs;
     runs_init(&runs, slot, SLOTS);
@@ -90,7 +80,6 @@ static void a_longer_run_of_a_list_is_found(void **state)
  * returned reaches as far as it can. */
 static void runs_match_a_map(void **state)
 {
-    (void) state;
     enum { ROUNDS = 200000 };
     static struct run_slot slot[SLOTS];
     int length[SLOTS] = {0}, taken = 0; /* of the run that begins there */

@@ -1,17 +1,12 @@
 /* Which client is served when: the server with clocks that the test moves. */
+#include "unit.h"
+
 #include "anticipation.h"
 #include "geometry_write.h"
 #include "gmp_allocations.h"
 #include "jobs.h"
 #include "quota.h"
 #include "service.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 enum { CHEAP = 1, COSTLY = 2, OTHER = 3, US = 1000, MS = 1000000 };
 
@@ -47,7 +42,6 @@ static void work_for(int64_t ns)
 
 static void a_client_is_served_in_order(void **state)
 {
-    (void) state;
     for (int i = 0; i < 100; i++)
         service_query_pair(CHEAP, i);
     assert_int_equal(service.count, 0);
@@ -59,7 +53,6 @@ static void a_client_is_served_in_order(void **state)
 
 static void clients_share_time_not_answers(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = 10 * US;
     service.cost_ns[COSTLY] = MS;
     for (int i = 0; i < 3000; i++)
@@ -78,7 +71,6 @@ static void clients_share_time_not_answers(void **state)
  * what it takes to read a datagram, and to refuse it or an older one for which it has no space. */
 static void reading_is_charged(void **state)
 {
-    (void) state;
     const struct pair_query query = service_pair(COSTLY, 2000);
     unsigned char bytes[QUERY_BYTES_MAX];
     service.cost_ns[CHEAP] = service.cost_ns[COSTLY] = 10 * US;
@@ -95,7 +87,6 @@ static void reading_is_charged(void **state)
 
 static void refusing_is_charged(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = service.cost_ns[COSTLY] = 10 * US;
     service.refusal_ns = 100 * US;
     for (int i = 0; i < 9000; i++)
@@ -112,7 +103,6 @@ static void refusing_is_charged(void **state)
 /* The bus is looked at between two units: no call of server_work() takes much longer than one. */
 static void work_is_done_in_short_spans(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = 10 * US;
     service.cost_ns[COSTLY] = 5 * MS;
     for (int i = 0; i < 300; i++)
@@ -130,7 +120,6 @@ static void work_is_done_in_short_spans(void **state)
 
 static void pairs_do_not_wait_for_scenes_of_their_client(void **state)
 {
-    (void) state;
     static const int64_t order[] = {3, 4, 1, 2};
     service.tick_ns = US;
     service_query_scene(CHEAP, 1, 300);
@@ -147,7 +136,6 @@ static void pairs_do_not_wait_for_scenes_of_their_client(void **state)
 
 static void a_new_id_gains_nothing(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = 10 * US;
     for (int i = 0; i < 500; i++)
         service_query_pair(CHEAP, i);
@@ -191,7 +179,6 @@ static int64_t answers_in_closed_loop(int64_t think_ns, int64_t span_ns)
 /* Without it, there would be one answer for each of COSTLY's: 200. */
 static void a_client_in_closed_loop_keeps_its_share(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = 10 * US;
     service.cost_ns[COSTLY] = 5 * MS;
     for (int i = 0; i < 150; i++)
@@ -204,7 +191,6 @@ static void a_client_in_closed_loop_keeps_its_share(void **state)
 
 static void a_slow_client_is_not_waited_for(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = 10 * US;
     service.cost_ns[COSTLY] = 100 * US;
     for (int i = 0; i < 8000; i++)
@@ -219,7 +205,6 @@ static void a_slow_client_is_not_waited_for(void **state)
 /* The same client beside certificates. Each would delay it by more than the wait takes. */
 static void a_slow_client_is_anticipated_before_long_work(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = 10 * US;
     service.cost_ns[COSTLY] = 10 * MS;
     for (int i = 0; i < 100; i++)
@@ -231,7 +216,6 @@ static void a_slow_client_is_anticipated_before_long_work(void **state)
 
 static void waiting_for_a_client_ends(void **state)
 {
-    (void) state;
     service.cost_ns[COSTLY] = 5 * MS;
     service_query_pair(CHEAP, 1);
     for (int i = 0; i < 3; i++)
@@ -249,7 +233,6 @@ static void waiting_for_a_client_ends(void **state)
 
 static void scenes_share_time(void **state)
 {
-    (void) state;
     service.tick_ns = US;
     service_query_scene(CHEAP, 1, 400);
     service_query_scene(COSTLY, 1, 400);
@@ -264,7 +247,6 @@ static void scenes_share_time(void **state)
 
 static void pairs_pass_long_scenes(void **state)
 {
-    (void) state;
     service.tick_ns = 10 * US;
     service_query_scene(COSTLY, 1, 500);
     for (int i = 0; i < 20; i++)
@@ -284,7 +266,6 @@ static void pairs_pass_long_scenes(void **state)
 /* A scene of a tenth of a second goes on where no other waits. */
 static void long_scenes_stop_where_others_wait(void **state)
 {
-    (void) state;
     service.tick_ns = 20 * US;
     service_query_scene(COSTLY, 1, 500);
     service_settle();
@@ -303,7 +284,6 @@ static void long_scenes_stop_where_others_wait(void **state)
 
 static void the_longest_job_is_the_one_to_stop(void **state)
 {
-    (void) state;
     static const int used_s[] = {2, 4, 3};
     static struct jobs jobs;
     assert_true(jobs_init(&jobs));
@@ -319,7 +299,6 @@ static void the_longest_job_is_the_one_to_stop(void **state)
 /* It is the one taken last of those that are left. */
 static void the_last_job_stops_early(void **state)
 {
-    (void) state;
     static struct jobs jobs;
     struct job *job[JOBS];
     assert_true(jobs_init(&jobs));
@@ -344,7 +323,6 @@ static void the_last_job_stops_early(void **state)
 /* More clients than jobs: the longest stops early, and each gets an answer. */
 static void more_scenes_than_jobs_are_served(void **state)
 {
-    (void) state;
     enum { CLIENTS = 3 * JOBS };
     service.tick_ns = 10 * US;
     for (int64_t client = 1; client <= CLIENTS; client++)
@@ -363,7 +341,6 @@ static void more_scenes_than_jobs_are_served(void **state)
 
 static void a_full_queue_refuses_the_one_that_holds_most(void **state)
 {
-    (void) state;
     enum { FLOOD = 9000, MODEST = 500 };
     for (int i = 0; i < FLOOD; i++)
         service_query_pair(COSTLY, i);
@@ -396,7 +373,6 @@ static void a_full_queue_refuses_the_one_that_holds_most(void **state)
  * The client of that scene is then idle: it gets no turn, and the service does not wait for it. */
 static void a_client_whose_only_query_is_evicted_is_idle(void **state)
 {
-    (void) state;
     enum { CROWD = 512, BODIES = 505 };
     for (int64_t client = 1; client <= CROWD; client++) {
         service.batch_ns = client < CROWD ? 2 * MS : 0; /* the last one has used least */
@@ -415,7 +391,6 @@ static void a_client_whose_only_query_is_evicted_is_idle(void **state)
 
 static void an_endless_stream_of_ids_gains_nothing(void **state)
 {
-    (void) state;
     enum { IDS = 20000 };
     service.cost_ns[CHEAP] = 10 * US;
     int64_t sent = 0;
@@ -434,7 +409,6 @@ static void an_endless_stream_of_ids_gains_nothing(void **state)
 
 static void queries_expire(void **state)
 {
-    (void) state;
     service_query_pair(CHEAP, 1);
     service.now_ns += QUOTA_AGE_NS;
     service_settle();
@@ -457,7 +431,6 @@ static void queries_expire(void **state)
 
 static void a_repeat_expires_by_its_own_arrival(void **state)
 {
-    (void) state;
     service_query_pair(CHEAP, 1);
     service.now_ns += QUOTA_AGE_NS / 2;
     service_query_pair(CHEAP, 1);
@@ -470,7 +443,6 @@ static void a_repeat_expires_by_its_own_arrival(void **state)
 /* The second pair waits for the job of the first. */
 static void a_query_in_progress_does_not_expire(void **state)
 {
-    (void) state;
     service.tick_ns = US;
     service_query_frames(CHEAP, 1, 900);
     service_query_frames(CHEAP, 2, 900);
@@ -489,7 +461,6 @@ static void a_query_in_progress_does_not_expire(void **state)
 /* A pair of many frames waits in one FIFO, and then in another for the job of the one before it. */
 static void a_pair_of_many_frames_ages_from_its_arrival(void **state)
 {
-    (void) state;
     service.tick_ns = US;
     service_query_frames(CHEAP, 1, 900);
     service_query_frames(CHEAP, 2, 900);
@@ -506,7 +477,6 @@ static void a_pair_of_many_frames_ages_from_its_arrival(void **state)
 /* When the time that the queries of a client take is known, the newest are refused. */
 static void waiting_time_is_limited(void **state)
 {
-    (void) state;
     enum { SENT = 400 };
     service.cost_ns[COSTLY] = 20 * MS;
     for (int i = 0; i < SENT; i++)
@@ -535,7 +505,6 @@ static void waiting_time_is_limited(void **state)
 
 static void waiting_time_of_scenes_is_limited(void **state)
 {
-    (void) state;
     enum { KNOWN = 256, SENT = 100 };
     service.tick_ns = 10 * MS;
     for (int i = 0; i < KNOWN; i++) {
@@ -554,7 +523,6 @@ static void waiting_time_of_scenes_is_limited(void **state)
 /* Queries that are dropped take no time, and are no samples of the estimate. */
 static void dropped_queries_are_not_in_the_estimate(void **state)
 {
-    (void) state;
     enum { KNOWN = 256 };
     service.cost_ns[COSTLY] = 20 * MS;
     for (int i = 0; i < KNOWN; i++) {
@@ -572,7 +540,6 @@ static void dropped_queries_are_not_in_the_estimate(void **state)
 
 static void many_clients_share_the_waiting_time(void **state)
 {
-    (void) state;
     enum { CLIENTS = 20, KNOWN = 256, SENT = 100 };
     for (int i = 0; i < KNOWN + SENT; i++)
         for (int64_t client = 10; client < 10 + CLIENTS; client++) {
@@ -586,7 +553,6 @@ static void many_clients_share_the_waiting_time(void **state)
 
 static void the_only_waiting_query_is_never_refused(void **state)
 {
-    (void) state;
     service.cost_ns[COSTLY] = 2 * QUOTA_CLIENT_NS;
     for (int i = 0; i < 100; i++) {
         service_query_pair(COSTLY, i);
@@ -602,7 +568,6 @@ static void the_only_waiting_query_is_never_refused(void **state)
 
 static void thousands_of_cheap_queries_may_wait(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = 20 * US;
     for (int i = 0; i < 8000; i++)
         service_query_pair(CHEAP, i);
@@ -613,7 +578,6 @@ static void thousands_of_cheap_queries_may_wait(void **state)
 /* One query in a hundred takes 10 ms, the others 5 us: 105 us on average. */
 static void the_estimate_of_mixed_queries_is_their_mean(void **state)
 {
-    (void) state;
     struct quota quota = {0};
     int64_t most_ns = 0;
     for (int i = 0; i < 10000; i++) {
@@ -630,7 +594,6 @@ static void the_estimate_of_mixed_queries_is_their_mean(void **state)
 
 static void a_new_id_has_a_quota_of_its_own(void **state)
 {
-    (void) state;
     enum { EXPENSIVE = 8, CHEAPER = 25 };
     for (int64_t id = 0; id < SCHEDULER_CLIENTS; id++)
         for (int i = 0; i < EXPENSIVE; i++) {
@@ -650,7 +613,6 @@ static void a_new_id_has_a_quota_of_its_own(void **state)
 
 static void refusals_are_limited(void **state)
 {
-    (void) state;
     enum { SECONDS = 3, RATE = 5000 };
     service.cost_ns[COSTLY] = 100 * MS;
     for (int i = 0; i < SECONDS * RATE; i++) {
@@ -671,7 +633,6 @@ static void refusals_are_limited(void **state)
 
 static void a_pair_of_many_frames_is_answered_in_steps(void **state)
 {
-    (void) state;
     service.tick_ns = US;
     service_query_frames(COSTLY, 1, 900);
     work_for(MS);
@@ -710,20 +671,17 @@ static void expect_a_free_job(void (*query_frames)(int64_t, int64_t, int), enum 
 
 static void pairs_of_many_frames_do_not_keep_all_jobs(void **state)
 {
-    (void) state;
     expect_a_free_job(service_query_frames, SERVER_PAIRS);
 }
 
 static void scenes_of_many_frames_do_not_keep_all_jobs(void **state)
 {
-    (void) state;
     expect_a_free_job(service_query_frames_scene, SERVER_SCENES);
 }
 
 /* Clients that query without end what takes long do not keep short scenes waiting. */
 static void long_jobs_do_not_keep_short_ones_waiting(void **state)
 {
-    (void) state;
     enum { CLIENTS = JOBS + 4, SCENES = 20 };
     for (int i = 0; i < CLIENTS; i++)
         for (int number = 0; number < 2; number++)
@@ -823,7 +781,6 @@ static void expect_short_spans(int count)
 
 static void bodies_are_made_in_short_steps(void **state)
 {
-    (void) state;
     mp_set_memory_functions(allocate_slowly, gmp_count_reallocate, gmp_release);
     for (int64_t id = 0; id < 2; id++) {
         service_close(NULL);
@@ -843,7 +800,6 @@ static void bodies_are_made_in_short_steps(void **state)
 /* Neither finds the body, so that both make it. */
 static void a_body_that_two_clients_make_is_cached_once(void **state)
 {
-    (void) state;
     service.tick_ns = 20 * US; /* turns end before bodies do */
     send_flat_scene(CHEAP, 1, 1, FLAT_MOST, 7);
     send_flat_scene(COSTLY, 1, 1, FLAT_MOST, 8);

@@ -1,18 +1,12 @@
 /* The picture: whole, well-formed, and of ordinary numbers, whatever the scene. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+
+#include "unit.h"
 
 #include "svg.h"
 #include "view.h"
 
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
@@ -144,7 +138,6 @@ static void expect_good_picture(const char *text)
 
 static void shows_frames_ids_motion_and_boxes(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++) {
         struct scene_body body[2];
         struct scene scene;
@@ -166,8 +159,7 @@ static void any_numbers_can_be_drawn(void **state)
 {
     static const double numbers[] = {0,     5e-324, 1e-310, 1e-300, 1,       1e6,   1e15,
                                      1e150, 1e300,  1e308,  -1e308, DBL_MAX, -1e15, -DBL_MAX};
-    enum { COUNT = sizeof numbers / sizeof *numbers };
-    (void) state;
+    enum { COUNT = COUNT(numbers) };
     for (int i = 0; i < 2 * COUNT * COUNT * COUNT; i++) {
         struct scene_body body[2];
         struct scene scene;
@@ -188,7 +180,6 @@ static void infinite_boxes_and_sums_can_be_drawn(void **state)
         .answer = {.verdict = FMB_OVERLAPPING,
                    .has_box = true,
                    .box = {{-INFINITY, 0, -INFINITY}, {INFINITY, INFINITY, 0}}}};
-    (void) state;
     make_scene(&scene, body, 3, DBL_MAX, DBL_MAX, -DBL_MAX);
     body[0].body.one.component[0][0] = body[0].body.one.component[1][0] = -DBL_MAX;
     scene.duration = 1e308;
@@ -205,7 +196,6 @@ static void infinite_boxes_and_sums_can_be_drawn(void **state)
 
 static void empty_scenes_and_no_scene_can_be_drawn(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++) {
         struct scene scene = {.dim = dim, .duration = 1, .all_pairs = true};
         char *text = draw_one(&scene);
@@ -225,7 +215,6 @@ static void many_scenes_and_bodies_are_cut(void **state)
     static struct scene_body body[BODIES];
     struct scene scene = {.dim = 2, .duration = 1, .body = body, .body_count = 1};
     struct svg *svg = svg_open();
-    (void) state;
     for (int i = 0; i < BODIES; i++)
         make_body(&body[i], i + 1, 2, FMB_CUBOID, 1, i);
     for (int i = 0; i < SCENES; i++)
@@ -251,7 +240,6 @@ static void steps_share_a_view(void **state)
     struct scene scene;
     char card[64], still[200];
     struct svg *svg = svg_open();
-    (void) state;
     make_scene(&scene, body, 2, 1, 0, 0);
     take(svg, &scene);
     body[1].position[0] = 8;
@@ -279,7 +267,6 @@ static void steps_share_a_view(void **state)
 /* By 90 degrees: x becomes y, in 3D about the z axis. */
 static void turned_bodies_are_drawn_turned(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++) {
         struct scene_body body;
         make_body(&body, 1, dim, FMB_CUBOID, 2, 10);

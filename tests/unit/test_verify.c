@@ -1,13 +1,7 @@
 /* A verdict that its certificate does not show becomes an error. */
+#include "unit.h"
+
 #include "answers.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 /* Two unit squares, the second one at (x, 0), and the right outcome. */
 static struct {
@@ -44,7 +38,6 @@ static const double apart[] = {0.5, 1, 1.5};
 
 static void what_holds_stays_as_it_was(void **state)
 {
-    (void) state;
     for (int i = 0; i < 3; i++) {
         place_squares(apart[i]);
         struct outcome outcome = squares.outcome;
@@ -70,7 +63,6 @@ static void expect_refuted(const struct outcome *outcome)
 
 static void another_verdict_is_refuted(void **state)
 {
-    (void) state;
     for (int i = 0; i < 3; i++)
         for (int verdict = FMB_SEPARATED; verdict <= FMB_OVERLAPPING; verdict++) {
             place_squares(apart[i]);
@@ -85,7 +77,6 @@ static void another_verdict_is_refuted(void **state)
 /* The certificate of one scene, word for word, beside another one. */
 static void another_scene_s_certificate_is_refuted(void **state)
 {
-    (void) state;
     for (int i = 0; i < 3; i++) {
         place_squares(apart[i]);
         struct outcome outcome = squares.outcome;
@@ -99,12 +90,11 @@ static void another_scene_s_certificate_is_refuted(void **state)
 
 static void nonsense_is_refuted(void **state)
 {
-    (void) state;
     static char huge[100000];
     memset(huge, '(', sizeof huge - 1);
     const char *const texts[] = {"", "x", "touching", "\"\\", huge};
     place_squares(1);
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    for (size_t i = 0; i < COUNT(texts); i++) {
         struct outcome outcome = squares.outcome;
         outcome.certificate = texts[i];
         expect_refuted(&outcome);

@@ -1,5 +1,7 @@
 /* Limits, geometries, handles, names and versions of the codec. The corpora of tests/fuzz prove
  * that it writes the bytes of lcm-gen, reads them back and refuses all others. */
+#include "unit.h"
+
 #include "big_endian.h"
 #include "geometry_write.h"
 #include "hostile.h"
@@ -19,21 +21,12 @@
 #include "fmb_msgs_status_t.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static struct hasher *hasher;
 
 /* A change of any field changes the fingerprint, and with it breaks every old client and log. */
 static void fingerprints_are_pinned(void **state)
 {
-    (void) state;
     assert_int_equal(__fmb_msgs_body_t_get_hash(), 0x18fc974de94f47b6u);
     assert_int_equal(__fmb_msgs_definition_query_t_get_hash(), 0xe2c4e2ab0ebcd9d9u);
     assert_int_equal(__fmb_msgs_definition_t_get_hash(), 0xef476d61362c5fbau);
@@ -49,7 +42,6 @@ static void fingerprints_are_pinned(void **state)
 /* LCM hands on a size that is a negative int for some short packets. */
 static void negative_size_is_refused(void **state)
 {
-    (void) state;
     unsigned char good[HOSTILE_BYTES_MAX];
     struct pair_query query;
     struct query_header header;
@@ -66,7 +58,6 @@ static void negative_size_is_refused(void **state)
  * fits, and the counts. */
 static void long_lists_are_read(void **state)
 {
-    (void) state;
     static double many[500];
     static uint8_t shapes[300];
     static int32_t counts[200];
@@ -104,7 +95,6 @@ static void long_lists_are_read(void **state)
 
 static void geometries_are_read_back(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++)
         for (int code = 1; code <= 7; code++) {
             const int shape = geometry_shape(code).shape;
@@ -125,7 +115,6 @@ static void geometries_are_read_back(void **state)
 
 static void shapes_have_their_count_of_numbers(void **state)
 {
-    (void) state;
     static const int counts[2][9] = {{0, 6, 6, 0, 4, 0, 6, 0, 0}, {0, 12, 12, 9, 6, 0, 12, 9, 0}};
     for (int shape = 0; shape < 9; shape++) {
         for (int dim = 2; dim <= 3; dim++)
@@ -142,7 +131,6 @@ static void shapes_have_their_count_of_numbers(void **state)
 /* As many frames as a message has space for, of all shapes. */
 static void geometries_of_many_frames_are_read_back(void **state)
 {
-    (void) state;
     static struct geometry_frame frames[QUERY_FRAMES_MAX];
     static unsigned char bytes[QUERY_BYTES_MAX];
     for (int dim = 2; dim <= 3; dim++) {
@@ -173,7 +161,6 @@ static void geometries_of_many_frames_are_read_back(void **state)
 /* What no frame is made of is refused, whatever the counts are. */
 static void inconsistent_geometries_have_no_frames(void **state)
 {
-    (void) state;
     unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX], other[GEOMETRY_FRAME_BYTES_MAX];
     struct geometry_frame frame = {.shape = FMB_CUBOID};
     const size_t size = geometry_write(3, &frame, bytes);
@@ -183,7 +170,7 @@ static void inconsistent_geometries_have_no_frames(void **state)
         unsigned char byte;
     } changes[] = {{3, 1},   {3, 4},   {0, 0x80}, {8, 0}, {8, 5},
                    {8, 255}, {16, 11}, {7, 0},    {8, 6}, {8, 7}};
-    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+    for (size_t i = 0; i < COUNT(changes); i++) {
         memcpy(other, bytes, size);
         other[changes[i].at] = changes[i].byte;
         if (changes[i].at == 7) /* no frame: the list of numbers begins a byte earlier */
@@ -196,7 +183,6 @@ static void inconsistent_geometries_have_no_frames(void **state)
 /* A tetrahedron whose count says more or fewer vertices than it has, or that has none. */
 static void a_frame_by_vertices_has_their_count(void **state)
 {
-    (void) state;
     struct geometry_frame frame = sample_frame(3, FMB_TETRAHEDRON), read;
     frame.by_vertices = true;
     unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
@@ -215,7 +201,6 @@ static void a_frame_by_vertices_has_their_count(void **state)
 /* The second frame has one number less than it needs. */
 static void a_later_frame_that_does_not_fit_ends_the_geometry(void **state)
 {
-    (void) state;
     const struct geometry_frame frames[2] = {sample_frame(3, FMB_BOX), sample_frame(3, FMB_FACE)};
     unsigned char bytes[SAMPLE_BYTES_MAX];
     struct geometry geometry = {bytes, geometry_write_frames(3, frames, 2, bytes)};
@@ -230,7 +215,6 @@ static void a_later_frame_that_does_not_fit_ends_the_geometry(void **state)
  * encoder writes them: a client in any language can compute it. */
 static void handles_are_hashes_of_the_encoding(void **state)
 {
-    (void) state;
     static const unsigned char abc[HANDLE_BYTES] = {0xba, 0x78, 0x16, 0xbf, 0x8f, 0x01, 0xcf, 0xea,
                                                     0x41, 0x41, 0x40, 0xde, 0x5d, 0xae, 0x22, 0x23};
     struct handle handle = hasher_handle(hasher, (const unsigned char *) "abc", 3);
@@ -250,7 +234,6 @@ static void handles_are_hashes_of_the_encoding(void **state)
 
 static void handles_distinguish_zeros(void **state)
 {
-    (void) state;
     unsigned char bytes[2][GEOMETRY_FRAME_BYTES_MAX];
     struct handle handle[2];
     for (int i = 0; i < 2; i++) {
@@ -278,13 +261,12 @@ static size_t write_certificate(char *certificate, int32_t status, int32_t verdi
 
 static void too_long_certificates_are_refused(void **state)
 {
-    (void) state;
     static char text[3 * FMB_CERTIFICATE_MAX];
     static unsigned char bytes[4 * FMB_CERTIFICATE_MAX];
     const size_t longest = FMB_CERTIFICATE_MAX - 1;
     const size_t lengths[] = {1, longest, longest + 1, sizeof text - 1};
     struct pair_result result;
-    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+    for (size_t i = 0; i < COUNT(lengths); i++) {
         memset(text, '7', lengths[i]);
         text[lengths[i]] = '\0';
         size_t size = write_certificate(text, FMB_OK, FMB_SEPARATED, bytes, sizeof bytes);
@@ -301,7 +283,6 @@ static void too_long_certificates_are_refused(void **state)
 
 static void a_box_of_too_many_numbers_is_refused(void **state)
 {
-    (void) state;
     double zero[8] = {0};
     char empty[] = "";
     for (int numbers = 0; numbers <= 8; numbers++) {
@@ -324,7 +305,6 @@ static void a_box_of_too_many_numbers_is_refused(void **state)
 /* A newer service may have more counters, in another order, and a longer version. */
 static void a_heartbeat_of_a_newer_service_is_read(void **state)
 {
-    (void) state;
     char version[] = "10.20.30-with-a-long-name-that-goes-on-and-on";
     char text[][24] = {"result_CANNOT_DECIDE", "received_twice", "compute_max_ns", "", "received"};
     char *names[] = {text[0], text[1], text[2], text[3], text[4]};
@@ -345,7 +325,6 @@ static void a_heartbeat_of_a_newer_service_is_read(void **state)
 
 static void names_are_read_back(void **state)
 {
-    (void) state;
     static struct names names, read;
     static unsigned char bytes[QUERY_BYTES_MAX];
     names = (struct names){.utime = 5, .count = 2, .client_id = {1, -1}, .body_id = {7, INT64_MAX}};
@@ -377,7 +356,6 @@ static void names_are_read_back(void **state)
 /* Messages of old versions have their own words, so that logs and services can name the version. */
 static void old_versions_are_named(void **state)
 {
-    (void) state;
     const struct {
         uint64_t fingerprint;
         int version;
@@ -391,7 +369,7 @@ static void old_versions_are_named(void **state)
         {(uint64_t) __fmb_msgs_scene_query_t_get_hash(), 0, "fmb_msgs.scene_query_t", "another"},
         {0xe2c4e2ab0ebcd9d9, 0, "fmb_msgs.definition_query_t", "another"},
         {5, 0, NULL, "another"}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = 0; i < COUNT(cases); i++) {
         const int64_t fingerprint = (int64_t) cases[i].fingerprint;
         unsigned char bytes[8];
         struct pair_query query;
@@ -408,14 +386,12 @@ static void old_versions_are_named(void **state)
 
 static int set_up(void **state)
 {
-    (void) state;
     hasher = hasher_create();
     return hasher ? 0 : -1;
 }
 
 static int tear_down(void **state)
 {
-    (void) state;
     hasher_destroy(hasher);
     return 0;
 }

@@ -1,5 +1,7 @@
 /* Scenes on the wire: of the sizes that wire.h gives, up to the last byte of a message; and which
  * answers are the same. */
+#include "unit.h"
+
 #include "sample_placement.h"
 #include "wire.h"
 
@@ -8,14 +10,6 @@
 #include "fmb_msgs_scene_result_t.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static struct scene_query query, query_read;
 static struct scene_result result, result_read;
@@ -23,7 +17,6 @@ static unsigned char bytes[2 * QUERY_BYTES_MAX];
 
 static int set_up(void **state)
 {
-    (void) state;
     memset(&query, 0, sizeof query);
     memset(&result, 0, sizeof result);
     memset(&query_read, 0, sizeof query_read);
@@ -111,7 +104,6 @@ static void assert_same_query(void)
 /* Indices are read many at a time: of every length as many as there are, and no more. */
 static void lists_of_every_length_are_read(void **state)
 {
-    (void) state;
     for (int32_t count = 0; count < 70; count++) {
         set_query(0, count, count);
         memset(query_read.ignored, 7, sizeof query_read.ignored);
@@ -126,7 +118,6 @@ static void lists_of_every_length_are_read(void **state)
 /* To the last bytes: only pairs, and only placements. */
 static void the_largest_queries_are_read(void **state)
 {
-    (void) state;
     const int placements = (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES) / QUERY_PLACEMENT_BYTES_MIN;
     set_query(0, (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES) / 2, 0);
     query.label = "s"; /* the other bytes are even in number */
@@ -149,7 +140,6 @@ static void the_largest_queries_are_read(void **state)
 /* More placements, and pairs, than the structs hold: all are read, the first are kept. */
 static void lists_beyond_the_capacity_keep_the_first(void **state)
 {
-    (void) state;
     static fmb_msgs_placement_t placements[QUERY_PLACEMENTS_MAX + 200];
     static int16_t indices[2 * QUERY_PAIRS_MAX + 2];
     const int count = QUERY_PLACEMENTS_MAX + 200;
@@ -310,7 +300,6 @@ static size_t write_and_read(void)
  * message fits, and the bound is not wasteful. */
 static void results_fill_a_message_to_its_last_byte(void **state)
 {
-    (void) state;
     for (int form = 0; form < 2 * FORMS; form++) {
         int32_t verdicts = 0;
         do
@@ -343,7 +332,6 @@ static void expect_refused(void)
 /* What the corpora of tests/fuzz have no example of. */
 static void inconsistent_results_are_refused(void **state)
 {
-    (void) state;
     set_result(3, 0, 2, NAMES | GAPS); /* separated, touching */
     write_and_read();
     result.gap[1].bounds[1] = 1;
@@ -378,7 +366,6 @@ static void inconsistent_results_are_refused(void **state)
 /* Only the padding, 1 byte after the flags and 7 after has_witness, does not count. */
 static void answers_that_differ_in_any_byte_are_not_the_same(void **state)
 {
-    (void) state;
     const struct fmb_answer full = {.has_contact = true, .has_box = true, .has_gap = true};
     size_t same = 0;
     for (size_t i = 0; i < sizeof full; i++) {
@@ -394,7 +381,6 @@ static void answers_that_differ_in_any_byte_are_not_the_same(void **state)
 /* Numbers of a part that neither answer has are not compared. */
 static void parts_that_no_answer_has_are_the_same(void **state)
 {
-    (void) state;
     const struct fmb_answer none = {.verdict = FMB_SEPARATED};
     struct fmb_answer other = none;
     other.contact[0] = other.box[0][0] = other.gap.bounds[1] = 1;
