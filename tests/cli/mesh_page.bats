@@ -83,6 +83,7 @@ numbers() {
 
 @test "the page has the faces, their colours and their rounded vertices" {
     [ "$(numbers small 1 face u4 12 | wc -l)" = 200 ]
+    [ "$(numbers touching 1 colour u1 1 | wc -l)" = 4 ]
     data small.html | jq -r '.pairs[][1]' | sort -un > met
     numbers small 1 colour u1 1 | awk '$1 == 3 { print NR - 1 }' > coloured
     diff met coloured

@@ -137,6 +137,9 @@ many_scenes() {
         .answered == ([.results[]] | add)' "$BATS_TEST_TMPDIR/status"
     run "$FMB" status
     [ "$status" = 0 ]
+    for row in received scenes definitions answered 'pairs decided' 'not sent' malformed waiting; do
+        grep -qE "^ +$row +[0-9,]+" <<< "$output"
+    done
     stop_fmbd
 }
 

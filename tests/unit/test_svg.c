@@ -226,11 +226,39 @@ static void many_scenes_and_bodies_are_cut(void **state)
     free(text);
     svg_close(svg);
 
+    struct scene_pair last = {BODIES - 2, BODIES - 1}; /* touching, and not drawn */
     scene.body_count = BODIES;
+    scene.pair = &last;
+    scene.pair_count = 1;
     text = draw_one(&scene);
     expect_good_picture(text);
     assert_non_null(strstr(text, "5 more bodies"));
+    assert_non_null(strstr(text, "1 more boxes"));
     free(text);
+}
+
+/* Wherever the face is, and in whatever order its corners are. */
+static void the_light_on_a_face_is_that_of_its_normal(void **state)
+{
+    struct view_bounds bounds = view_nothing();
+    const double low[3] = {-2, -2, -2}, high[3] = {2, 2, 2};
+    const struct outline all = outline_box(3, low, high);
+    view_add(&bounds, &all, 3);
+    const struct view view = view_make(3, &bounds, (struct paper){0, 0, 400, 300});
+    for (int axis = 0; axis < 3; axis++) {
+        double first = -1;
+        for (double at = -1; at <= 1; at += 0.5) {
+            double corner[3][3] = {{at, at, at}, {at, at, at}, {at, at, at}};
+            corner[1][(axis + 1) % 3] += 0.5;
+            corner[2][(axis + 2) % 3] += 1;
+            for (int turn = 0; turn < 3; turn++) {
+                const double light =
+                    view_light(&view, corner[turn], corner[(turn + 1) % 3], corner[(turn + 2) % 3]);
+                first = first < 0 ? light : first;
+                assert_true(light > 0 && light < 1 && fabs(light - first) < 1e-12);
+            }
+        }
+    }
 }
 
 /* Steps of time are seen from one place: what rests is drawn at the same place on its panel. */
@@ -291,6 +319,7 @@ int main(void)
         cmocka_unit_test(infinite_boxes_and_sums_can_be_drawn),
         cmocka_unit_test(empty_scenes_and_no_scene_can_be_drawn),
         cmocka_unit_test(many_scenes_and_bodies_are_cut),
+        cmocka_unit_test(the_light_on_a_face_is_that_of_its_normal),
         cmocka_unit_test(steps_share_a_view),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
