@@ -183,28 +183,33 @@ static void expect_edges(const double *vertices, const struct fmb_frame *frame)
     mpq_clears(edge, term, NULL);
 }
 
-/* Vertices on a line or a plane but for an ulp: whether they are is not what rounded edges say. */
+/* Vertices on a line or a plane but for an ulp: whether they are is not what rounded edges say. Of
+ * any size, down to the least doubles. */
 static void vertices_are_exact(void **state)
 {
     struct draw draw;
     long count[2][2] = {{0}};
     draw_begin(&draw, "vertices_are_exact");
     for (long n = draw_sample(40000); n > 0; n--) {
-        const int dim = draw_int(&draw, 2, 3);
+        const int dim = draw_int(&draw, 2, 3), exponent = draw_int(&draw, -1074, 1010);
+        const int shape = dim == 3 && draw_coin(&draw) ? FMB_FACE : FMB_TETRAHEDRON;
+        const int numbers = shape == FMB_FACE ? 9 : (dim + 1) * dim;
         const double unit = draw_coin(&draw) ? 0.1 : 0.25;
         double vertices[12];
         struct fmb_frame frame;
-        for (int k = 0; k < (dim + 1) * dim; k++)
+        for (int k = 0; k < numbers; k++)
             vertices[k] = unit * draw_int(&draw, -3, 3) + (draw_coin(&draw) ? 0 : 1000);
         for (int axis = 0; axis < dim && draw_coin(&draw); axis++) /* the last is a copy */
-            vertices[dim * dim + axis] = vertices[(dim - 1) * dim + axis];
+            vertices[numbers - dim + axis] = vertices[numbers - 2 * dim + axis];
         if (draw_coin(&draw))
             vertices[draw_int(&draw, 0, dim)] += 0x1p-45;
-        assert_int_equal(fmb_frame_make_vertices(dim, FMB_TETRAHEDRON, vertices,
-                                                 (size_t) ((dim + 1) * dim), &frame),
+        const int scaled = draw_coin(&draw) ? numbers : draw_int(&draw, 0, numbers);
+        for (int k = 0; k < scaled; k++)
+            vertices[k] = ldexp(vertices[k], exponent);
+        assert_int_equal(fmb_frame_make_vertices(dim, shape, vertices, (size_t) numbers, &frame),
                          FMB_OK);
         expect_edges(vertices, &frame);
-        const bool flat = are_in_one_plane(dim, vertices);
+        const bool flat = shape == FMB_FACE || are_in_one_plane(dim, vertices);
         assert_int_equal(frame.flat, flat);
         assert_true(memcmp(frame.origin, vertices, (size_t) dim * sizeof *vertices) == 0);
         count[flat][frame.rounded]++;

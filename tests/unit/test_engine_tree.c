@@ -1,5 +1,5 @@
 /* Which pairs may meet: boxes against rational numbers, trees against testing every frame, whatever
- * the scene; no pair that meets is lost; and what a tree costs is counted in nodes, not in time. */
+ * the scene: so no pair that meets is lost. What a tree costs is counted in nodes, not in time. */
 
 #include "unit.h"
 
@@ -9,7 +9,6 @@
 #include <math.h>
 
 #include "draw.h"
-#include "pair_draw.h"
 #include "question.h"
 #include "referee.h"
 #include "tree.h"
@@ -547,99 +546,6 @@ static void trees_of_every_small_number_are_sound(void **state)
     }
 }
 
-/* Neighbours that touch are found, and no others: 27 with itself, inside of the grid. */
-static void cubes_in_a_grid_have_their_neighbours(void **state)
-{
-    enum { SIDE = 7, CUBES = SIDE * SIDE * SIDE };
-    struct draw draw;
-    struct scene scene;
-    struct planted planted;
-    draw_begin(&draw, "cubes_in_a_grid_have_their_neighbours");
-    scene_open(CUBES, 1, &scene);
-    for (int i = 0; i < CUBES; i++) {
-        const int place[3] = {i / SIDE / SIDE, i / SIDE % SIDE, i % SIDE};
-        scene.solid[i] = (struct solid){.dim = 3, .shape = FMB_CUBOID};
-        for (int axis = 0; axis < 3; axis++) {
-            scene.solid[i].origin[axis] = place[axis];
-            scene.solid[i].component[axis][axis] = 1;
-        }
-        scene_prepare(&scene, (size_t) i);
-    }
-    plant(&draw, &scene, &planted);
-    for (int i = 0; i < CUBES; i++) {
-        const int place[3] = {i / SIDE / SIDE, i / SIDE % SIDE, i % SIDE};
-        size_t expected = 1;
-        for (int axis = 0; axis < 3; axis++)
-            expected *= place[axis] == 0 || place[axis] == SIDE - 1 ? 2 : 3;
-        const struct aabb box = aabb_of(&scene.frame[i], 1);
-        assert_int_equal(tree_query(&planted.tree, &box, 0, planted.found), expected);
-    }
-    uproot(&planted);
-    scene_close(&scene);
-}
-
-/* ---- No pair is lost ---- */
-
-/* Frames 2 i and 2 i + 1 come from one question, made to be hard. */
-static void draw_hard(struct draw *draw, int dim, struct scene *scene)
-{
-    for (size_t i = 0; i + 1 < scene->count; i += 2) {
-        struct cell cell;
-        struct question question;
-        do {
-            cell = pair_draw_cell(draw);
-        } while (cell.dim != dim);
-        (draw_int(draw, 0, 7) ? pair_draw : pair_draw_stretched)(draw, &cell, &question);
-        if (scene->duration > 0)
-            pair_set_duration(&question, scene->duration);
-        scene->solid[i] = question.a;
-        scene->solid[i + 1] = question.b;
-        scene_prepare(scene, i);
-        scene_prepare(scene, i + 1);
-    }
-}
-
-static bool is_found(const unsigned *found, size_t count, unsigned index)
-{
-    for (size_t k = 0; k < count; k++)
-        if (found[k] == index)
-            return true;
-    return false;
-}
-
-static void pairs_that_meet_are_found(void **state)
-{
-    static const double durations[] = {1, 1, 0, 0.1, 3, 1e300};
-    enum { FRAMES = 256 };
-    struct draw draw;
-    long meeting = 0, apart = 0;
-    draw_begin(&draw, "pairs_that_meet_are_found");
-    for (long n = draw_sample(60); n > 0; n--) {
-        struct scene scene;
-        struct planted planted;
-        scene_open(FRAMES, durations[n % (long) COUNT(durations)], &scene);
-        draw_hard(&draw, draw_int(&draw, 2, 3), &scene);
-        plant(&draw, &scene, &planted);
-        for (unsigned i = 0; i < FRAMES; i++) {
-            const struct aabb box = aabb_of(&scene.frame[i], scene.duration);
-            const size_t count = tree_query(&planted.tree, &box, i + 1, planted.found);
-            for (unsigned j = i + 1; j < (i % 2 ? i + 4 : i + 3) && j < FRAMES; j++) {
-                enum fmb_verdict verdict;
-                assert_int_equal(
-                    fmb_decide_prepared(&scene.frame[i], &scene.frame[j], scene.duration, &verdict),
-                    FMB_OK);
-                assert_true(verdict == FMB_SEPARATED || is_found(planted.found, count, j));
-                meeting += verdict != FMB_SEPARATED;
-                apart += !is_found(planted.found, count, j);
-            }
-        }
-        uproot(&planted);
-        scene_close(&scene);
-    }
-    printf("# %ld pairs meet, %ld were left out\n", meeting, apart);
-    assert_true(meeting > 0 && apart > 0);
-}
-
 /* ---- What a tree costs ---- */
 
 static void cube_at(const double origin[3], const double size[3], struct solid *out)
@@ -862,8 +768,6 @@ int main(void)
         cmocka_unit_test(trees_of_every_small_number_are_sound),
         cmocka_unit_test(trees_find_what_testing_every_frame_finds),
         cmocka_unit_test(pairs_of_trees_are_what_testing_every_pair_finds),
-        cmocka_unit_test(cubes_in_a_grid_have_their_neighbours),
-        cmocka_unit_test(pairs_that_meet_are_found),
         cmocka_unit_test(queries_cost_no_more_than_a_few_nodes_a_level),
         cmocka_unit_test(boxes_with_one_centre_cost_what_is_found),
         cmocka_unit_test(queries_that_are_not_supported_are_refused),

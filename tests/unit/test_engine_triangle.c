@@ -556,36 +556,6 @@ static void batches_decide_rounded_faces(void **state)
 
 /* ---- Boxes ---- */
 
-static void a_box_holds_all_vertices_at_all_times(void **state)
-{
-    struct draw draw;
-    struct drawn drawn;
-    mpq_t way, at, time;
-    draw_begin(&draw, "a_box_holds_all_vertices_at_all_times");
-    mpq_inits(way, at, time, NULL);
-    for (long n = draw_sample(20000); n > 0; n--) {
-        struct arranged arranged;
-        struct fmb_prepared prepared;
-        double box[2][FMB_DIM_MAX];
-        draw_pair(&draw, draw_coin(&draw), &drawn);
-        set_arranged(&drawn, draw_int(&draw, 0, TURNS / 2 - 1), &arranged);
-        assert_int_equal(fmb_prepare(&arranged.pair.a, 0, 1, &prepared), FMB_OK);
-        fmb_box_of(&prepared, drawn.duration, box);
-        const struct triangle *triangle = &drawn.triangle[0];
-        for (int k = 0; k < 18; k++) { /* a corner, an axis, an end of the window */
-            const int corner = k % 3, axis = k / 3 % 3;
-            mpq_set_d(way, triangle->moving ? triangle->velocity[axis] : 0);
-            mpq_set_d(time, k / 9 ? drawn.duration : 0);
-            mpq_mul(way, way, time);
-            mpq_set_d(at, triangle->vertex[corner][axis]);
-            mpq_add(at, at, way);
-            if (!is_beyond(box[0][axis], -1, at) || !is_beyond(box[1][axis], 1, at))
-                fail_of(&drawn, k, "box", axis, corner);
-        }
-    }
-    mpq_clears(way, at, time, NULL);
-}
-
 /* No larger than the rounding of its numbers makes it: with u = 2^-52 of the largest coordinate, an
  * edge is off by at most u on each axis, the frame by 3 u, and two sums step down by 2 u each. */
 static void a_box_is_tight(void **state)
@@ -852,28 +822,6 @@ static void boxes_that_cannot_be_are_refused(void **state)
 
 /* ---- Bodies ---- */
 
-/* component + rest is the difference of the vertices, and component the double next to it. */
-static void assert_edges_exact(const double vertex[3][3], const struct fmb_frame *frame)
-{
-    mpq_t edge, other;
-    mpq_inits(edge, other, NULL);
-    bool rounded = false;
-    for (int k = 0; k < 6; k++) {
-        const int i = k / 3, axis = k % 3;
-        mpq_set_d(edge, frame->component[i][axis]);
-        mpq_set_d(other, frame->remainder[i][axis]);
-        mpq_add(edge, edge, other);
-        mpq_set_d(other, vertex[0][axis]);
-        mpq_add(edge, edge, other);
-        mpq_set_d(other, vertex[i + 1][axis]);
-        assert_int_equal(mpq_cmp(edge, other), 0);
-        assert_true(frame->component[i][axis] == vertex[i + 1][axis] - vertex[0][axis]);
-        rounded = rounded || frame->remainder[i][axis] != 0;
-    }
-    assert_int_equal(frame->rounded, rounded);
-    mpq_clears(edge, other, NULL);
-}
-
 static double any_size(struct draw *draw)
 {
     switch (draw_int(draw, 0, 4)) {
@@ -882,35 +830,6 @@ static double any_size(struct draw *draw)
     case 2: return ldexp(draw_int(draw, -5, 5), -1074);
     case 3: return draw_int(draw, -1, 1);
     default: return draw_finite(draw);
-    }
-}
-
-static void bodies_hold_their_edges_exactly(void **state)
-{
-    struct draw draw;
-    long refused = 0, made = 0;
-    draw_begin(&draw, "bodies_hold_their_edges_exactly");
-    for (long n = draw_sample(100000); n > 0; n--) {
-        double vertex[3][3];
-        struct fmb_body body;
-        bool finite = true;
-        for (int k = 0; k < 9; k++)
-            vertex[k / 3][k % 3] = any_size(&draw);
-        for (int k = 3; k < 9; k++)
-            finite = finite && isfinite(vertex[k / 3][k % 3] - vertex[0][k % 3]);
-        const enum fmb_status status = make_face((const double(*)[3]) vertex, &body);
-        assert_int_equal(status, finite ? FMB_OK : FMB_NOT_FINITE);
-        refused += !finite;
-        made += finite;
-        if (finite)
-            assert_edges_exact((const double(*)[3]) vertex, &body.one);
-    }
-    assert_true(refused > 0 && made > 0);
-    for (int k = 0; k < 9; k++) {
-        double vertex[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-        struct fmb_body body;
-        vertex[k / 3][k % 3] = k % 2 ? NAN : -INFINITY;
-        assert_int_equal(make_face((const double(*)[3]) vertex, &body), FMB_NOT_FINITE);
     }
 }
 
@@ -993,12 +912,10 @@ int main(void)
         cmocka_unit_test(moving_pairs_are_what_their_vertices_say),
         cmocka_unit_test(batches_decide_rounded_faces),
         cmocka_unit_test(pairs_at_the_ends_of_the_doubles),
-        cmocka_unit_test(a_box_holds_all_vertices_at_all_times),
         cmocka_unit_test(a_box_is_tight),
         cmocka_unit_test(trees_of_boxes_lose_nothing),
         cmocka_unit_test(boxes_in_the_plane),
         cmocka_unit_test(boxes_that_cannot_be_are_refused),
-        cmocka_unit_test(bodies_hold_their_edges_exactly),
         cmocka_unit_test(what_does_not_round_is_an_ordinary_face),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
