@@ -709,26 +709,6 @@ static void ties_do_not_depend_on_any_order(void **state)
     }
 }
 
-/* Two pairs of cubes at the same distance along x, one with A on the left and one with A on the
- * right. The same pair of frames gives the gap in both orders of the bodies. */
-static void a_tie_is_the_same_pair_in_both_orders(void **state)
-{
-    static const double at[2][2][6] = {{{0, 0, 0, 1, 1, 1}, {2, 9, 0, 1, 1, 1}},
-                                       {{2, 0, 0, 1, 1, 1}, {0, 9, 0, 1, 1, 1}}};
-    struct fmb_frame frame[2][2];
-    struct fmb_body body[2];
-    for (int s = 0; s < 2; s++) {
-        for (int i = 0; i < 2; i++)
-            frame[s][i] = frame_of(FMB_BOX, at[s][i]);
-        body[s] = body_of(frame[s], 2);
-    }
-    const struct pair pair = {.a = {.body = &body[0]}, .b = {.body = &body[1]}};
-    const struct pair swapped = {pair.b, pair.a, 0};
-    const struct fmb_gap gap = gap_of_pair(&pair).gap, other = gap_of_pair(&swapped).gap;
-    assert_true(gap.bounds[0] == 1 && gap.bounds[1] == 1);
-    assert_true(gap_check_swapped(false, &gap, &other));
-}
-
 /* Unit cubes with equal depths along several axes, at rest and moving along z. Doubles and integers
  * choose the same axis as the direction. */
 static void equal_depths_have_one_direction(void **state)
@@ -1083,7 +1063,6 @@ int main(void)
         cmocka_unit_test(batches_give_the_same),
         cmocka_unit_test(bodies_of_several_frames),
         cmocka_unit_test(ties_do_not_depend_on_any_order),
-        cmocka_unit_test(a_tie_is_the_same_pair_in_both_orders),
         cmocka_unit_test(equal_depths_have_one_direction),
         cmocka_unit_test(bounds_of_boxes_are_proven),
         cmocka_unit_test(a_margin_is_compared_with_the_lower_bound),

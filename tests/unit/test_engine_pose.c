@@ -1,7 +1,5 @@
-/* Placed bodies: pairs with orientations against the oracle, and the same by every way to decide;
- * what must not change where the whole scene turns, or a quaternion gets longer; bodies of many
- * frames.
- */
+/* Placed bodies: pairs with orientations of any length against the oracle, and the same by every
+ * way to decide; bodies of many frames. */
 
 #include "unit.h"
 
@@ -560,163 +558,6 @@ static void every_way_to_decide_gives_the_same(void **state)
     }
 }
 
-/* ---- What must not change ---- */
-
-/* out := p q, exact where the products of their numbers are. */
-static void multiply(const double p[4], const double q[4], double out[4])
-{
-    out[0] = p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3];
-    out[1] = p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2];
-    out[2] = p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1];
-    out[3] = p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0];
-}
-
-/* One of the 24 turns of a cube: axis i goes to sign[i] times axis to[i]. */
-struct cube_turn {
-    double q[4];
-    int to[3];
-    double sign[3];
-};
-
-static struct cube_turn draw_cube_turn(struct draw *draw)
-{
-    struct cube_turn turn;
-    double square;
-    do {
-        draw_integers(draw, 4, -1, 1, turn.q);
-        square = turn.q[0] * turn.q[0] + turn.q[1] * turn.q[1] + turn.q[2] * turn.q[2] +
-                 turn.q[3] * turn.q[3];
-    } while (square != 1 && square != 2 && square != 4);
-    for (int i = 0; i < 3; i++) { /* e_i to q e_i q*, the length of which is square */
-        const double unit[4] = {0, i == 0, i == 1, i == 2};
-        const double conjugate[4] = {turn.q[0], -turn.q[1], -turn.q[2], -turn.q[3]};
-        double half[4], image[4];
-        multiply(turn.q, unit, half);
-        multiply(half, conjugate, image);
-        for (int axis = 0; axis < 3; axis++)
-            if (image[1 + axis] != 0) {
-                turn.to[i] = axis;
-                turn.sign[i] = image[1 + axis] / square;
-            }
-    }
-    return turn;
-}
-
-static void turn_vector(const struct cube_turn *turn, double vector[FMB_DIM_MAX])
-{
-    double out[FMB_DIM_MAX];
-    for (int i = 0; i < 3; i++)
-        out[turn->to[i]] = turn->sign[i] * vector[i];
-    memcpy(vector, out, sizeof out);
-}
-
-static void turn_solid(const struct cube_turn *turn, struct solid *solid)
-{
-    static const double identity[4] = {1, 0, 0, 0};
-    double q[4];
-    multiply(turn->q, solid->orientation_count ? solid->orientation : identity, q);
-    memcpy(solid->orientation, q, sizeof q);
-    solid->orientation_count = 4;
-    turn_vector(turn, solid->origin);
-    turn_vector(turn, solid->velocity);
-}
-
-/* On output: the box with its axes exchanged. */
-static void turn_box(const struct cube_turn *turn, double box[2][FMB_DIM_MAX])
-{
-    turn_vector(turn, box[0]);
-    turn_vector(turn, box[1]);
-    for (int axis = 0; axis < 3; axis++)
-        for (int end = 0; end < 2; end++)
-            box[end][axis] += 0.0; /* never -0 */
-    for (int axis = 0; axis < 3; axis++)
-        if (box[0][axis] > box[1][axis]) {
-            const double low = box[1][axis];
-            box[1][axis] = box[0][axis];
-            box[0][axis] = low;
-        }
-}
-
-static void decide_both(const struct question *question, struct fmb_answer *exact,
-                        enum fmb_verdict *certified)
-{
-    struct ready ready;
-    struct fmb_answer answer;
-    referee_ready(question, &ready);
-    referee_decide(question, exact);
-    assert_int_equal(pair_decide(fmb_method_default(), &ready.pair, FMB_WANT_BOX, &answer), FMB_OK);
-    *certified = answer.verdict;
-}
-
-/* The orientations of a pair as whole numbers, so that products with few others are exact. */
-static struct question draw_whole_turns(struct draw *draw, int dim)
-{
-    struct question question;
-    do
-        question = draw_pair(draw);
-    while (question.a.dim != dim);
-    draw_turn(draw, draw_coin(draw) ? whole : whole_of_8_bits, &question.a);
-    draw_turn(draw, draw_coin(draw) ? whole : whole_of_8_bits, &question.b);
-    if (draw_coin(draw))
-        vertex_to_vertex(draw, &question);
-    return question;
-}
-
-static void expect_unchanged(const struct question *question, const struct question *changed,
-                             const struct cube_turn *turn)
-{
-    struct fmb_answer before, after;
-    enum fmb_verdict certified;
-    decide_both(question, &before, &certified);
-    assert_int_equal(certified, before.verdict);
-    if (turn && before.has_box)
-        turn_box(turn, before.box);
-    decide_both(changed, &after, &certified);
-    if (certified != before.verdict)
-        referee_fail(changed, "certified has another verdict than before");
-    if (!referee_same(&before, &after)) {
-        question_print(question);
-        referee_fail(changed, "another answer than before");
-    }
-}
-
-static void scenes_may_turn_by_quarters(void **state)
-{
-    struct draw draw;
-    draw_begin(&draw, "scenes_may_turn_by_quarters");
-    for (long n = draw_sample(12000); n > 0; n--) {
-        const struct question question = draw_whole_turns(&draw, 3);
-        const struct cube_turn turn = draw_cube_turn(&draw);
-        struct question turned = question;
-        turn_solid(&turn, &turned.a);
-        turn_solid(&turn, &turned.b);
-        expect_unchanged(&question, &turned, &turn);
-    }
-}
-
-static double draw_factor(struct draw *draw)
-{
-    const double factor =
-        draw_coin(draw) ? draw_int(draw, 1, 9) : ldexp(1, draw_int(draw, -400, 400));
-    return draw_coin(draw) ? factor : -factor;
-}
-
-static void quaternions_may_have_any_length(void **state)
-{
-    struct draw draw;
-    draw_begin(&draw, "quaternions_may_have_any_length");
-    for (long n = draw_sample(12000); n > 0; n--) {
-        const struct question question = draw_whole_turns(&draw, draw_int(&draw, 2, 3));
-        struct question longer = question;
-        const double of_a = draw_factor(&draw), of_b = draw_factor(&draw);
-        for (int i = 0; i < 4; i++) {
-            longer.a.orientation[i] *= of_a;
-            longer.b.orientation[i] *= of_b;
-        }
-        expect_unchanged(&question, &longer, NULL);
-    }
-}
-
 /* ---- Bodies of many frames ---- */
 
 enum { FRAMES = 5 };
@@ -861,8 +702,6 @@ int main(void)
         cmocka_unit_test(boxes_hold_travels_that_underflow),
         cmocka_unit_test(boxes_of_small_numbers_are_plain),
         cmocka_unit_test(every_way_to_decide_gives_the_same),
-        cmocka_unit_test(scenes_may_turn_by_quarters),
-        cmocka_unit_test(quaternions_may_have_any_length),
         cmocka_unit_test(bodies_are_the_hulls_of_their_frames),
     };
     struct CMUnitTest tests[COUNT(families) + COUNT(others)];

@@ -783,24 +783,6 @@ static void every_beginning_of_a_scene_is_refused(void **state)
     }
 }
 
-/* Any byte changed: a scene, or a refusal. */
-static void changed_bytes_do_no_harm(void **state)
-{
-    static const char text[] = SCENE_PAIRS("[[1,2],[2,1]]");
-    uint64_t seed = 2;
-    for (int i = 0; i < 5000; i++) {
-        char changed[sizeof text];
-        struct scene scene;
-        memcpy(changed, text, sizeof text);
-        for (uint64_t k = next_random(&seed) % 3; k < 3; k++)
-            changed[next_random(&seed) % (sizeof text - 1)] = (char) next_random(&seed);
-        struct input input = open_bytes(changed, sizeof text - 1);
-        if (json_next(input.reader, &scene) == JSON_SCENE)
-            scene_clear(&scene);
-        close_input(&input);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -827,7 +809,6 @@ int main(void)
         cmocka_unit_test(deep_nesting_is_refused_early),
         cmocka_unit_test(a_directory_is_no_input),
         cmocka_unit_test(every_beginning_of_a_scene_is_refused),
-        cmocka_unit_test(changed_bytes_do_no_harm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
