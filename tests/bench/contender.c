@@ -299,13 +299,13 @@ void contender_run(enum contender contender, const struct work *work)
 void contender_help(void)
 {
     printf(
-        "batch: fmb_decide_batch(), verdicts alone; +interval, +box: with these. single: "
+        "batch: fmb_decide_batch(), verdicts only; +interval, +box: with these. single: "
         "fmb_decide_prepared()\n"
         "of prepared frames; computed: prepared in the call. query: fmb_decide(), certified, with\n"
         "the interval of moving pairs. fmb, sat query, exact: the same by these methods; fmb with\n"
         "the inverse kept in the body; computed: in the call. sat: separating axes in plain "
         "doubles,\n"
-        "verdict alone, of placed frames: the yardstick; placed: in the call. obb: oriented "
+        "verdict only, of placed frames: the yardstick; placed: in the call. obb: oriented "
         "boxes,\n"
         "the same way. seidel, gpr: methods that the article names, in doubles, of placed "
         "frames.\n");

@@ -114,7 +114,7 @@ well_formed() {
     ended 0
     # Seven cells of 500 pairs, both ways round; fmb refuses two of them.
     jq -e '[.cells[].methods[] | select(.name == "certified") | .queries] | add == 7000' "$ACCURACY"
-    has "$OUT/index.html" 'Asked 7,000 times'
+    has "$OUT/index.html" '7,000 decisions of pairs'
     has "$OUT/speed-error.svg" 'certified: none wrong of 7,000'
     jq -e '[.cells[].methods[] | select(.name == "fmb")
             | .false_separated + .false_contact + .false_kind] | add == 811' "$ACCURACY"
@@ -184,7 +184,7 @@ well_formed() {
     has "$BATS_TEST_TMPDIR/bus.html" "$(jq .status.bytes "$BUS") bytes together"
 }
 
-@test "a bus that was not measured is left out, one section alone is enough, a broken report is refused" {
+@test "a bus that was not measured is left out, one section is enough, a broken report is refused" {
     BUS=$BATS_TEST_TMPDIR/none.json
     report
     ended 0

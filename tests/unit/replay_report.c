@@ -128,7 +128,7 @@ static const char *differ_in_channel(const struct tally_channel *a, const struct
     if (a->results != b->results)
         return "results";
     if (a->results_alone != b->results_alone)
-        return "results alone";
+        return "unmatched results";
     if (a->results_again != b->results_again || a->contradictions != b->contradictions)
         return "second results";
     return memcmp(a->unreadable, b->unreadable, sizeof a->unreadable) != 0 ? "unreadable" : NULL;
@@ -185,7 +185,7 @@ static const char *odd_channel(const struct tally_channel *channel)
         return "queries and their differences";
     return channel->results_alone + channel->results_again + channel->contradictions >
                    channel->results
-               ? "results alone or again"
+               ? "unmatched or repeated results"
                : NULL;
 }
 

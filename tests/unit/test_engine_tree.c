@@ -732,11 +732,11 @@ static void queries_that_are_not_supported_are_refused(void **state)
     for (size_t i = 0; i < COUNT(bad); i++) {
         assert_int_equal(fmb_tree_build(deep.frame, 4, bad[i], NULL, &other), FMB_BAD_DURATION);
     }
-    const struct fmb_prepared nobody = {0}, mixed[2] = {flat.frame[0], deep.frame[0]};
-    const struct fmb_prepared one_missing[2] = {flat.frame[0], nobody};
+    const struct fmb_prepared no_frame = {0}, mixed[2] = {flat.frame[0], deep.frame[0]};
+    const struct fmb_prepared one_missing[2] = {flat.frame[0], no_frame};
     assert_int_equal(fmb_tree_build(mixed, 2, 1, NULL, &other), FMB_DIMENSIONS_DIFFER);
     assert_int_equal(fmb_tree_build(one_missing, 2, 1, NULL, &other), FMB_NOT_FINITE);
-    assert_int_equal(fmb_tree_build(&nobody, UINT_MAX, 1, NULL, &other), FMB_OVER_LIMIT);
+    assert_int_equal(fmb_tree_build(&no_frame, UINT_MAX, 1, NULL, &other), FMB_OVER_LIMIT);
     assert_int_equal(other.frame_count, 0);
     struct fmb_tree_cursor cursor = {0};
     unsigned pairs[FMB_TREE_CAPACITY_MIN][2];

@@ -503,13 +503,13 @@ static void a_file_that_is_gone_is_not_kept(void **state)
 
 static void a_single_file_has_no_number(void **state)
 {
-    const struct log_parts_options options = several("alone", 0, false);
+    const struct log_parts_options options = several("single", 0, false);
     struct log_parts parts;
-    put_file("alone.000", "of others");
+    put_file("single.000", "of others");
     write_parts(&options, 100, &parts);
     log_parts_close(&parts);
-    assert_int_equal(read_events("alone", 0), 100);
-    assert_int_equal(size_of("alone.000"), 9);
+    assert_int_equal(read_events("single", 0), 100);
+    assert_int_equal(size_of("single.000"), 9);
 }
 
 static void files_of_before_are_overwritten_only_with_force(void **state)
