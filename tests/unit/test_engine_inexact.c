@@ -236,6 +236,8 @@ static void assert_sane(const struct question *question, const struct fmb_answer
 {
     if (!fmb_verdict_name(answer->verdict))
         referee_fail(question, "no verdict");
+    if (answer->has_contact != (answer->verdict != FMB_SEPARATED))
+        referee_fail(question, "an interval without contact, or none with it");
     const double *contact = answer->contact;
     if (answer->has_contact &&
         !(0 <= contact[0] && contact[0] <= contact[1] && contact[1] <= question->duration))
