@@ -4,7 +4,7 @@
 #   N passed, N failed[, N skipped]
 #
 # A line before it gives the reasons of skipped tests. Exit code 0 only if none failed. With FMB_FAST
-# set: the release build alone, smaller samples, and without the suites that take long. Needs what
+# set: only the release build, smaller samples, and without the suites that take long. Needs what
 # 'make deps-test' installs. The output of each suite stays in build/tests.log/.
 set -u
 cd "$(dirname "$0")/.." || exit
@@ -13,7 +13,7 @@ self=tests/run.sh
 log=build/tests.log
 limit=600 # seconds a suite may take before it has failed
 
-# Three builds, each for what it alone proves. Release: every suite. Sanitizers of gcc: the programs, as
+# Three builds, each for what only it proves. Release: every suite. Sanitizers of gcc: the programs, as
 # their users start them, where these suites take them furthest; kernels of one instruction set are
 # enough. Sanitizers of clang, instrumented for fuzzing: unit tests, with all kernels, fuzzers, and the
 # goldens, which another compiler must reproduce.
@@ -38,7 +38,7 @@ slow="$slow system/bus.bats cli/page.bats cli/mesh_page.bats cli/campaign.bats c
 run_suite() {
     kind=$1 build=$2 what=$3
     export FMB_BUILD="$build" CMOCKA_MESSAGE_OUTPUT=TAP
-    # Samples that fit into the time of a run; a suite alone draws all of its own. Sanitizers look
+    # Samples that fit into the time of a run; a suite by itself draws all of its own. Sanitizers look
     # at paths, not at answers: fewer samples take them all.
     case $build in
     "$release") sample=${FMB_FAST:+1} sample=${sample:-0.7} ;;
@@ -53,8 +53,8 @@ run_suite() {
     esac
 }
 
-# Counts of one suite's TAP: "passed failed skipped". A test that the plan promises and nothing
-# is heard of has failed; so has a suite that ends badly though all its tests passed.
+# Counts of one suite's TAP: "passed failed skipped". A test that the plan promises and that does not
+# report has failed; so has a suite that ends badly though all its tests passed.
 count_suite() {
     awk -v code="$2" '
         /^1\.\.[0-9]+/ { planned += substr($1, 4); plans++ }

@@ -99,6 +99,8 @@ $(tested_kernels): $(O)/%.o: %.c $(O)/settings
 $(B)/tests/test_kernels: $(filter $(O)/tests/unit/kernels/verdicts_%,$(tested_kernels))
 $(B)/tests/test_box_bounds: $(filter $(O)/tests/unit/kernels/boxes_%,$(tested_kernels))
 
+# cmocka hands each test a state, which few read.
+$(O)/tests/unit/%.o: flags += -Wno-unused-parameter
 $(internal_tests): $(O)/tests/unit/slab_truth.o $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
 	kernel_fused.o kernel_planted.o) $(shared) $(client) $(product) $(engine)
 $(filter-out $(internal_tests),$(unit_tests)): $(shared) $(client) $(product) $(B)/libfmb.a

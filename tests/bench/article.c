@@ -1,7 +1,7 @@
-/* The article's own qualification (section 6.2, Table 1): a pair is asked again and again, A-B and
- * B-A, with the inverse computed in the call; of each pair the ratio of the times of FMB and SAT is
- * taken, and of these the mean. Repeating hides what mispredicted branches cost, so these times are
- * not those of a scene. */
+/* The article's own qualification (section 6.2, Table 1): a pair is decided again and again, A-B
+ * and B-A, with the inverse computed in the call; of each pair the ratio of the times of FMB and
+ * SAT is taken, and of these the mean. Repeating hides what mispredicted branches cost, so these
+ * times are not those of a scene. */
 #include "bench.h"
 
 #include <string.h>
@@ -48,9 +48,9 @@ static double time_of(enum contender contender, const struct scene *scene, const
         memcpy(same[i], pair, sizeof same[i]);
     double ns = 0;
     for (int round = 0; round < 2; round++) { /* the first one says how many */
-        const double room = round == 0 ? 0 : budget / ns;
-        work.count = room > REPEATS_MOST    ? REPEATS_MOST
-                     : room > REPEATS_LEAST ? (size_t) room
+        const double most = round == 0 ? 0 : budget / ns;
+        work.count = most > REPEATS_MOST    ? REPEATS_MOST
+                     : most > REPEATS_LEAST ? (size_t) most
                                             : REPEATS_LEAST;
         const double start = stopwatch_now();
         contender_run(contender, &work);
@@ -147,7 +147,7 @@ void article_run(struct bench *bench)
         "certified", "query");
     json_begin(&bench->json, "article", '[');
     for (int i = 0; i < count; i++)
-        if (cells[i].shape[0] <= cells[i].shape[1]) /* CT stands for TC, asked as B-A */
+        if (cells[i].shape[0] <= cells[i].shape[1]) /* CT stands for TC, decided as B-A */
             cell_run(bench, &cells[i]);
     json_end(&bench->json, ']');
 }

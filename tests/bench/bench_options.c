@@ -17,7 +17,7 @@ static void help(void)
         "What a verdict costs, by kind of pair and by method. One thread, on one CPU, its own "
         "time;\n"
         "methods in turn within each block, medians of blocks. Minutes.\n\n"
-        "  --section NAME       one section alone:");
+        "  --section NAME       one section only:");
     for (int i = 0; i < SECTIONS; i++)
         printf(" %s", sections[i]);
     printf(

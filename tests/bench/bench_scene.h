@@ -1,4 +1,4 @@
-/* Bodies to be asked about, and pairs of them: distinct ones, so that no branch is learnt by
+/* Bodies, and pairs of them: distinct ones, so that no branch is predicted from
  * heart. */
 #ifndef BENCH_SCENE_H
 #define BENCH_SCENE_H
@@ -19,7 +19,7 @@ struct scene {
     struct fmb_placement *placement; /* [count] */
     struct fmb_body *body;           /* the placements' */
     struct lean_frame *lean;         /* [count], placed; faces are no cuboids or tetrahedra */
-    struct oriented *oriented;       /* [count], boxes in 3D alone */
+    struct oriented *oriented;       /* [count], only boxes in 3D */
 };
 
 struct pairs {

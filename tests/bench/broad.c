@@ -10,7 +10,7 @@
 
 enum { BLOCKS_MAX = 5, PAIRS_MAX = 1024 };
 
-/* What a block of a scene is: frames, a tree of them, and room for what is found. */
+/* What a block of a scene is: frames, a tree of them, and memory for what is found. */
 struct broad {
     const struct scene *scene;
     void *memory;

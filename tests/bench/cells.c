@@ -1,5 +1,5 @@
-/* Kinds of pairs, random as in the article: what each way to ask costs, and what can be read from
- * that. All of it is raced once; the sections are views of the same times. */
+/* Kinds of pairs, random as in the article: what each way to decide costs, and what can be read
+ * from that. All of it is raced once; the sections are views of the same times. */
 #include "bench.h"
 
 #include <math.h>
@@ -97,7 +97,7 @@ static void print_box(const struct spread *times)
 
 /* clang-format off */
 static const struct view views[] = {
-    {"cells", "Random pairs (the article's distribution), nanoseconds a pair, each asked once in turn.\n"
+    {"cells", "Random pairs (the article's distribution), nanoseconds a pair, each decided once in turn.\n"
      "Ratios: certified to the yardstick, below 1 where certified is the faster one.", false, 9,
      {{CONTENDER_BATCH, NULL, "batch"}, {CONTENDER_BATCH_INTERVAL, NULL, "+interval"},
       {CONTENDER_BATCH_BOX, NULL, "+box"}, {CONTENDER_SINGLE, NULL, "single"},
@@ -110,7 +110,7 @@ static const struct view views[] = {
       {CONTENDER_SINGLE, "certified_prepared_ns", "certified"},
       {CONTENDER_SINGLE_COMPUTED, "certified_computed_ns", "computed"}}, NULL, NULL, NULL},
     {"order", "fmb by which frame is projected onto which, and by the order of its first rows: that of\n"
-     "the article's listing, those with least room first, the listing's backwards.", false, 4,
+     "the article's listing, those with least slack first, the listing's backwards.", false, 4,
      {{CONTENDER_FMB, "ab_ns", "A-B"}, {CONTENDER_FMB_BA, "ba_ns", "B-A"},
       {CONTENDER_FMB_SORTED, "sorted_ns", "sorted"},
       {CONTENDER_FMB_REVERSED, "reversed_ns", "backwards"}}, NULL, NULL, NULL},
@@ -134,7 +134,7 @@ enum { VIEWS = sizeof views / sizeof *views };
 struct result {
     struct spread times[CONTENDERS]; /* NAN where it does not run */
     size_t pairs;
-    double volume_ratio; /* of fmb's box to certified's, the median; NAN: not asked for */
+    double volume_ratio; /* of fmb's box to certified's, the median; NAN: not measured */
 };
 
 static double volume_of(const struct fmb_answer *answer, int dim)

@@ -85,7 +85,7 @@ static void single_computed(const struct work *work)
     }
 }
 
-/* The verdict of a method that takes touching for contact and does not tell it. */
+/* The verdict of a method that takes touching for contact and does not report it. */
 static unsigned char verdict_of(bool meets)
 {
     return meets ? FMB_OVERLAPPING : FMB_SEPARATED;
@@ -299,13 +299,13 @@ void contender_run(enum contender contender, const struct work *work)
 void contender_help(void)
 {
     printf(
-        "batch: fmb_decide_batch(), verdicts alone; +interval, +box: with these. single: "
+        "batch: fmb_decide_batch(), verdicts only; +interval, +box: with these. single: "
         "fmb_decide_prepared()\n"
         "of prepared frames; computed: prepared in the call. query: fmb_decide(), certified, with\n"
         "the interval of moving pairs. fmb, sat query, exact: the same by these methods; fmb with\n"
         "the inverse kept in the body; computed: in the call. sat: separating axes in plain "
         "doubles,\n"
-        "verdict alone, of placed frames: the yardstick; placed: in the call. obb: oriented "
+        "verdict only, of placed frames: the yardstick; placed: in the call. obb: oriented "
         "boxes,\n"
         "the same way. seidel, gpr: methods that the article names, in doubles, of placed "
         "frames.\n");
@@ -322,7 +322,8 @@ static double time_of(enum contender contender, const struct work *work)
     return (stopwatch_now() - start) / (double) work->count;
 }
 
-/* some: what will be timed, of all. Slow ones, that ask but some of the pairs, need no more here.
+/* some: what will be timed, of all. Slow ones, that decide but some of the pairs, need no more
+ * here.
  */
 static void warm_up(enum contender contender, const struct work *some, const struct work *all)
 {
@@ -333,14 +334,14 @@ static void warm_up(enum contender contender, const struct work *some, const str
     contender_run(contender, &other);
 }
 
-/* As many of the pairs as the budget has room for. */
+/* As many of the pairs as the budget covers. */
 static struct work cut(const struct race *race, const struct work *work, enum contender contender)
 {
     struct work some = *work;
     some.count = some.count < LEAST_PAIRS ? some.count : LEAST_PAIRS;
-    const double room = race->budget / time_of(contender, &some);
-    if (room > (double) some.count)
-        some.count = room < (double) work->count ? (size_t) room : work->count;
+    const double most = race->budget / time_of(contender, &some);
+    if (most > (double) some.count)
+        some.count = most < (double) work->count ? (size_t) most : work->count;
     return some;
 }
 

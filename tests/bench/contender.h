@@ -1,4 +1,4 @@
-/* What is raced: ways to ask about pairs of a scene, one table of them all. */
+/* What is measured: ways to decide pairs of a scene, one table of them all. */
 #ifndef CONTENDER_H
 #define CONTENDER_H
 
@@ -6,12 +6,12 @@
 #include "instructions.h"
 #include "stopwatch.h"
 
-/* Pairs to be asked, T = 1, and room for the answers of the batch. */
+/* Pairs to decide, T = 1, and memory for the answers of the batch. */
 struct work {
     const struct scene *scene;
     const unsigned (*pair)[2];
     size_t count;
-    const unsigned (*warm)[2]; /* [warm_count], other ones, asked untimed before */
+    const unsigned (*warm)[2]; /* [warm_count], other ones, decided untimed before */
     size_t warm_count;
     enum instructions instructions;  /* of the batch */
     unsigned char *verdicts;         /* [count] */
@@ -21,7 +21,7 @@ struct work {
     double *gaps;                    /* [count], theirs */
 };
 
-/* With room for the answers. work_free() frees that. */
+/* With memory for the answers, which work_free() frees. */
 struct work work_of(const struct scene *scene, const struct pairs *pairs);
 void work_free(struct work *work);
 
@@ -74,12 +74,12 @@ void contender_help(void);
 
 struct race {
     int blocks;
-    double budget; /* nanoseconds a block for each: slow ones ask the first pairs only */
+    double budget; /* nanoseconds a block for each: slow ones decide the first pairs only */
 };
 
 /* Nanoseconds a pair of each, taken in turn within each block. What ran before has other code and
  * other data in the caches: each is warmed up with pairs of the same bodies, which are not those
- * that are timed, so that no branch is learnt by heart. */
+ * that are timed, so that no branch is predicted from memory. */
 void race_run(const struct race *race, const struct work *work, const enum contender *contenders,
               int count, struct spread *out);
 

@@ -1,11 +1,11 @@
 /* Method. If tetrahedra are separated, so they are by a plane through a face of A, through an edge
  * of A or through a face of B.
  *
- * The heights of B's four vertices above a face of A tell whether that face separates: all are
+ * The heights of B's four vertices above a face of A decide whether that face separates: all are
  * positive. An edge of A lies in two faces, f and g. Seen along it A is the quadrant x <= 0, y <= 0
  * of the heights x above f and y above g, and a plane through the edge separates if and only if
  * the hull of B's four points (x, y) does not meet that quadrant: none of them is in it, and no
- * segment from a point with x > 0 alone to one with y > 0 alone crosses it. So the heights above
+ * segment from a point with only x > 0 to one with only y > 0 crosses it. So the heights above
  * A's faces serve its edges too, in two dimensions. */
 #include "gpr.h"
 

@@ -53,7 +53,7 @@ void instructions_run(struct bench *bench)
 
 /* ---- Growth ---- */
 
-/* Room for a scene and what is asked of it. */
+/* Memory for a scene and its answers. */
 static const double most_bytes = 2e9;
 
 static double bytes_of(double bodies, double pairs)
@@ -118,7 +118,7 @@ static void grow_bodies(struct bench *bench)
     }
 }
 
-/* Small calls go on through the pairs, so that each is asked once in turn. */
+/* Small calls go on through the pairs, so that each is decided once in turn. */
 static void grow_pairs(struct bench *bench)
 {
     const size_t most = bench->quick ? 10000 : 10000000;

@@ -125,7 +125,7 @@ INLINE bool meet_across(struct search *search, const double *u, const double *v)
                                         u[0] * v[1] - u[1] * v[0]});
 }
 
-/* The faces that components span: in 2D, where a face is an edge, it stands alone. */
+/* The faces that components span: in 2D, where a face is an edge, it is the only one. */
 INLINE bool meet_across_components(struct search *search, const double (*edge)[3])
 {
     return meet_across(search, edge[0], edge[1]) &&

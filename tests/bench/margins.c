@@ -93,7 +93,7 @@ void margins_run(struct bench *bench)
     printf(
         "\nScenes of bodies of about size 1 in a cloud, nanoseconds a body: verdicts; verdicts\n"
         "and gaps of pairs that meet; verdicts with a margin, and gaps of near pairs. boxes: how\n"
-        "many others the box of a body meets; meet, near: pairs. Ratios to verdicts alone.\n\n"
+        "many others the box of a body meets; meet, near: pairs. Ratios to verdicts only.\n\n"
         "%-18s %6s %6s %8s %6s %8s %8s %8s %8s %8s\n",
         "", "boxes", "meet", "margin", "near", "verdicts", "gaps", "margin", "gaps", "margin");
     json_begin(&bench->json, "margins", '[');

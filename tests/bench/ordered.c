@@ -8,12 +8,12 @@ void ordered_choose(enum order order)
 }
 
 /* How much more than the least left side the right side is, all variables being within [0,1]. */
-static double room(const struct row *row)
+static double slack_of(const struct row *row)
 {
-    double room = row->y;
+    double slack = row->y;
     for (int i = 0; i < ROWS_VARS_MAX; i++)
-        room -= row->a[i] < 0 ? row->a[i] : 0;
-    return room;
+        slack -= row->a[i] < 0 ? row->a[i] : 0;
+    return slack;
 }
 
 static void sort(struct row *rows, int count)
@@ -21,7 +21,7 @@ static void sort(struct row *rows, int count)
     double key[ROWS_MAX];
     for (int i = 0; i < count; i++) {
         const struct row row = rows[i];
-        const double of_row = room(&row);
+        const double of_row = slack_of(&row);
         int to = i;
         for (; to > 0 && key[to - 1] > of_row; to--) {
             rows[to] = rows[to - 1];

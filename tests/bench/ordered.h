@@ -5,7 +5,7 @@
 
 #include "rows.h"
 
-/* SORTED: such rows first as have least room (inequality 11). */
+/* SORTED: rows with the least slack first (inequality 11). */
 enum order { ORDER_SORTED, ORDER_REVERSED };
 
 /* From now on. */

@@ -42,7 +42,7 @@ int peer_answers(int peer);
 bool peer_takes(int peer, int dim, bool moving, bool boxes);
 
 /* pair: [count], indices of solids. Writes the gaps: positive for separated, else overlapping or
- * touching; infinite where the peer gives the verdict alone; NAN where it failed. */
+ * touching; infinite where the peer gives the verdict only; NAN where it failed. */
 void peer_run(const struct peers *peers, int peer, const unsigned (*pair)[2], size_t count,
               double *gap);
 

@@ -42,7 +42,7 @@ struct spread spread_of(double *values, int count)
     return (struct spread){values[count / 2], values[count / 4], values[count - 1 - count / 4]};
 }
 
-/* Each step waits for the one before: no cache, no branch, no throughput; the clock alone. */
+/* Each step waits for the one before: no cache, no branch, no throughput; only the clock. */
 void stopwatch_calibrate(void)
 {
     const double start = stopwatch_now();

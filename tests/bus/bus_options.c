@@ -14,7 +14,7 @@ static void help(void)
         "Usage: bench-bus [OPTION]...\n\n"
         "Times of the service from bus to bus, beside an echo that does nothing, in turns.\n"
         "Starts fmbd and the echo itself. Minutes.\n\n"
-        "  --section NAME       one section alone:");
+        "  --section NAME       one section only:");
     for (int i = 0; i < SECTIONS; i++)
         printf(" %s", sections[i]);
     printf(

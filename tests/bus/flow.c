@@ -48,7 +48,7 @@ static double run_block(struct line *line, struct datagram *datagram, int querie
     return good ? queries / ((double) (clock_ns() - begin) / 1e9) : NAN;
 }
 
-/* ---- The engine alone ---- */
+/* ---- The engine by itself ---- */
 
 struct engine {
     const struct workload_scene *scene;

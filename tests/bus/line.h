@@ -1,5 +1,5 @@
 /* A client's connection to fmbd or to the echo. fmbd is queried through the receiver that its
- * clients use (bus.h), the echo through liblcm alone. Nothing is repeated, and nothing is done
+ * clients use (bus.h), the echo through liblcm only. Nothing is repeated, and nothing is done
  * between the clock and the bus. */
 #ifndef LINE_H
 #define LINE_H

@@ -53,8 +53,8 @@ static bool beside(const char *name, char path[PATH_LENGTH_MAX])
         return false;
     path[length] = '\0';
     char *slash = strrchr(path, '/');
-    const size_t room = PATH_LENGTH_MAX - (size_t) (slash + 1 - path);
-    return (size_t) snprintf(slash + 1, room, "%s", name) < room;
+    const size_t space = PATH_LENGTH_MAX - (size_t) (slash + 1 - path);
+    return (size_t) snprintf(slash + 1, space, "%s", name) < space;
 }
 
 static void say_into(const char *log)

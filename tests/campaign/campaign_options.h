@@ -27,7 +27,7 @@ struct options_program {
     const char *name;
     const struct option *options; /* the values are OPTION_ ones; ends with 0s */
     void (*help)(void);
-    long pairs; /* unless told */
+    long pairs; /* default */
 };
 
 enum {

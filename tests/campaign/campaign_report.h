@@ -15,7 +15,7 @@ struct report {
     size_t measures;
 };
 
-/* A line a family and method; or a cell and method, where the options ask for it. Then what each
+/* A line a family and method; or a cell and method, where the options request it. Then what each
  * method that is never wrong did, and a reproducer of the first reply of it that was wrong in a
  * cell, of some of these cells. */
 void report_print(const struct report *report, FILE *out);

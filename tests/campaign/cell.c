@@ -26,12 +26,6 @@ int cell_list_all(struct cell *out)
     return list(last, out);
 }
 
-const char *cell_space_text(const struct cell *cell, char text[CELL_TEXT_MAX])
-{
-    snprintf(text, CELL_TEXT_MAX, "%dD %s", cell->dim, cell->moving ? "moving" : "static");
-    return text;
-}
-
 const char *cell_shapes_text(const struct cell *cell, char text[CELL_TEXT_MAX])
 {
     static const char letters[] = "?CTFB";

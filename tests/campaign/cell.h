@@ -20,16 +20,15 @@ struct cell {
 enum { CELL_ORDINARY = 16, CELL_WITH_FACES = 26, CELL_OF_ALL_SHAPES = 50 };
 
 /* The cells: 2D before 3D, static before moving, CC, CT, TC, TT. With faces: those with faces too.
- * On input: room for CELL_WITH_FACES. Returns how many. */
+ * On input: capacity for CELL_WITH_FACES. Returns how many. */
 int cell_list(bool faces, struct cell *out);
 
-/* Those of all shapes, likewise. On input: room for CELL_OF_ALL_SHAPES. */
+/* Those of all shapes. On input: capacity for CELL_OF_ALL_SHAPES. */
 int cell_list_all(struct cell *out);
 
-/* "3D moving CT"; "3D moving"; "CT". Returns text. */
+/* "3D moving CT"; "CT". Returns text. */
 enum { CELL_TEXT_MAX = 16 };
 const char *cell_text(const struct cell *cell, char text[CELL_TEXT_MAX]);
-const char *cell_space_text(const struct cell *cell, char text[CELL_TEXT_MAX]);
 const char *cell_shapes_text(const struct cell *cell, char text[CELL_TEXT_MAX]);
 
 /* Where the cell starts to draw, for the what-for of this name; part counts the parts of a cell

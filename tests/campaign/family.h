@@ -35,7 +35,7 @@ struct family {
 const struct family *family_at(size_t index);
 const struct family *family_by_name(const char *name); /* NULL: none of that name */
 
-/* The cells it has. On input: room for CELL_WITH_FACES;
+/* The cells it has. On input: capacity for CELL_WITH_FACES;
  * of a family of placed bodies, for CELL_OF_ALL_SHAPES. Returns how many. */
 int family_cells(const struct family *family, struct cell *out);
 

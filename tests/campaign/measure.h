@@ -1,4 +1,4 @@
-/* One cell of the accuracy campaign: draws its pairs, asks all methods, and the oracle. */
+/* One cell of the accuracy campaign: draws its pairs, runs all methods and the oracle. */
 #ifndef MEASURE_H
 #define MEASURE_H
 

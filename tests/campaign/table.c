@@ -21,11 +21,11 @@ void table_end(struct table *table)
 
 static void make_room(struct table *table)
 {
-    if (table->rows < table->room)
+    if (table->rows < table->capacity)
         return;
-    table->room = table->room ? 2 * table->room : 16;
+    table->capacity = table->capacity ? 2 * table->capacity : 16;
     void *text =
-        realloc(table->text, table->room * (size_t) table->columns * sizeof table->text[0]);
+        realloc(table->text, table->capacity * (size_t) table->columns * sizeof table->text[0]);
     if (!text) {
         fprintf(stderr, "out of memory\n");
         exit(EXIT_FAILURE);

@@ -12,7 +12,7 @@ struct table {
     int columns;
     int left; /* the first so many columns are flush left, the others right */
     int filled;
-    size_t rows, room;
+    size_t rows, capacity;
     char (*text)[TABLE_TEXT_MAX]; /* [row * columns + column] */
 };
 

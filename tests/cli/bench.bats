@@ -48,7 +48,7 @@ contacts() {
     grep -q '3D static CC' "$BATS_TEST_TMPDIR/report/index.html"
 }
 
-@test "bench says what is wrong with an option" {
+@test "bench reports a wrong option with exit code 2" {
     run "$BENCH" --section nowhere
     [ "$status" = 2 ]
     run "$BENCH" --instructions abacus

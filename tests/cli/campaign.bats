@@ -10,7 +10,7 @@ setup() {
     case ${FMB_FAST:-0} in 0) ;; *) pairs=4 ;; esac
 }
 
-@test "accuracy: no method is wrong that never must be, and the families are what they say" {
+@test "accuracy: no exact method is wrong, and families have the properties that they state" {
     run "$BUILD/accuracy" --pairs $pairs --json "$JSON"
     ended 0
     jq -e 'all(.cells[].methods[] | select(.name == "certified" or .name == "exact");
@@ -38,7 +38,7 @@ setup() {
     has "exact: $((40 * $(count true))) gaps"
 }
 
-@test "accuracy: the counts do not depend on how many work at it" {
+@test "accuracy: the counts do not depend on the number of workers" {
     for workers in 1 3; do
         run "$BUILD/accuracy" --pairs 20 --family gap-ulp --family faces --workers $workers \
             --json "$JSON"
@@ -50,7 +50,7 @@ setup() {
     cmp "$BATS_TEST_TMPDIR/1" "$BATS_TEST_TMPDIR/3"
 }
 
-@test "accuracy: a bound that is wrong is found" {
+@test "accuracy: a wrong bound is detected" {
     run "$BUILD/accuracy-planted" --pairs 20 --family touch-vertex-vertex --family gap-ulp \
         --family random --json "$JSON"
     ended 1
@@ -62,14 +62,14 @@ setup() {
     [[ $output == *"struct question question = {"* ]] # a reproducer
 }
 
-@test "validate: no method is wrong that never must be" {
+@test "validate: no exact method is wrong" {
     run "$BUILD/validate" --pairs $((pairs * 100))
     ended 0
     [[ ${lines[-1]} == *"no wrong verdict of a method that is never wrong" ]]
     [[ ${lines[-1]} != *" 0 certificates"* ]]
 }
 
-@test "usage" {
+@test "campaigns print their usage, and refuse wrong options with exit code 2" {
     for program in accuracy validate; do
         run "$BUILD/$program" --help
         ended 0

@@ -52,7 +52,7 @@ none() {
 }
 
 # Seen from the page, or from the top. Not those that are built, or installed.
-@test "every path in backticks is there" {
+@test "every path in backticks exists" {
     for page in "${pages[@]}"; do
         quoted "$page" | grep -x '\.\?[A-Za-z0-9_*.-]*/[A-Za-z0-9_*./-]*' |
             grep -v '^\(build\|lib/systemd\|share\)/' |
@@ -62,7 +62,7 @@ none() {
     done | none
 }
 
-@test "every name of a source file in backticks is there, in whatever folder" {
+@test "every source file in backticks exists in some folder" {
     for page in "${pages[@]}"; do
         quoted "$page" | grep -x '[A-Za-z0-9_]*\.\(c\|h\|js\|sh\|bats\|lcm\|in\)' |
             while read -r name; do
@@ -72,7 +72,7 @@ none() {
     done | none
 }
 
-@test "every function in backticks is there" {
+@test "every function in backticks exists" {
     for page in "${pages[@]}"; do
         quoted "$page" | grep -x '[A-Za-z0-9_]*()' | tr -d '()' |
             while read -r name; do
@@ -88,7 +88,7 @@ none() {
         grep -vxFf "$BATS_TEST_TMPDIR/quoted" | none
 }
 
-@test "every target of make in backticks is there" {
+@test "every target of make in backticks exists" {
     # What make knows; it makes nothing, as there is no such target.
     MAKEFLAGS='' make -npq MODE=debug no-such-target > "$BATS_TEST_TMPDIR/known" 2> /dev/null || true
     for page in "${pages[@]}"; do

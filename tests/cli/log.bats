@@ -47,7 +47,7 @@ field() {
 
 # ---- Good logs -------------------------------------------------------------------------------
 
-@test "a log, for people" {
+@test "a log is summarised as text" {
     good > "$log"
     info "$log"
     ended 0
@@ -62,7 +62,7 @@ field() {
   no damage"
 }
 
-@test "a log, for programs" {
+@test "a log is summarised as JSON" {
     good > "$log"
     info --json "$log"
     ended 0
@@ -70,7 +70,7 @@ field() {
     is "{\"log\": \"$log\", \"size\": 152, \"events\": 3, \"bytes\": 30, \"begin\": 1700000000000000, \"end\": 1700000002250000, \"rate\": 0.8888888888888888, \"backward\": 1, \"channels\": [{\"channel\": \"FMB_PAIR_QUERY\", \"type\": \"fmb_msgs.pair_query_t\", \"events\": 2, \"bytes\": 22, \"least\": 10, \"most\": 12, \"begin\": 1700000000000000, \"end\": 1700000002250000}, {\"channel\": \"FMB_STATUS\", \"type\": \"fmb_msgs.status_t\", \"events\": 1, \"bytes\": 8, \"least\": 8, \"most\": 8, \"begin\": 1700000001000001, \"end\": 1700000001000001}], \"damage\": {\"places\": 0, \"bytes\": 0, \"first\": []}}"
 }
 
-@test "all types of the service, and others by their fingerprint" {
+@test "messages of the service have names, others their fingerprint" {
     for type in 18fc974de94f47b6 e2c4e2ab0ebcd9d9 ef476d61362c5fba $pair_query 9dd6a8c2afceabd8 \
         cbe2227b63ea25a1 abbd2c17d3792717 54e9a70f5ddb21bb $status c5646e8cb4490b7c 0123456789abcdef 00; do
         event 1 A $type
@@ -93,7 +93,7 @@ field() {
     is "{\"log\": \"$log\", \"size\": 0, \"events\": 0, \"bytes\": 0, \"begin\": null, \"end\": null, \"rate\": null, \"backward\": 0, \"channels\": [], \"damage\": {\"places\": 0, \"bytes\": 0, \"first\": []}}"
 }
 
-@test "one event takes no time" {
+@test "a log of one event has no duration" {
     event -1 A '' > "$log"
     info --json "$log"
     ended 0
@@ -104,7 +104,7 @@ field() {
 "* ]]
 }
 
-@test "times may be any" {
+@test "times of any size and order are reported" {
     event -9223372036854775808 A '' > "$log"
     event 9223372036854775807 A '' >> "$log"
     info "$log"
@@ -114,7 +114,7 @@ field() {
     [[ $output == *'"begin": -9223372036854775808, "end": 9223372036854775807'* ]]
 }
 
-@test "names of channels do nothing to a terminal, and are told apart" {
+@test "names of channels are escaped, and remain distinct" {
     event 1 '\e[2J\e]0;x\a' '' > "$log"
     event 1 'a\0b"\\' '' >> "$log"
     event 1 '\xff\xc3\xa4' '' >> "$log"
@@ -135,7 +135,7 @@ field() {
     [ -z "$(tr -d '\n -~' <<< "$output")" ]
 }
 
-@test "several logs, one after the other; the worst gives the exit code" {
+@test "several logs are reported in turn, and the worst sets the exit code" {
     good > "$log"
     head -c 100 "$log" > "$BATS_TEST_TMPDIR/b.log"
     info --json "$log" "$log"
@@ -150,7 +150,7 @@ field() {
     said "fmb: $BATS_TEST_TMPDIR/none.log: No such file or directory"
 }
 
-@test "what LCM writes is read" {
+@test "logs that LCM writes are read" {
     # The logs of the regression set were written by liblcm.
     info --json "$BATS_TEST_DIRNAME/../logs/clients.log"
     ended 0
@@ -160,7 +160,7 @@ field() {
 
 # ---- Damage ----------------------------------------------------------------------------------
 
-@test "damage is told with its place, and what is good is read" {
+@test "damage is reported with its offset, and the good events are read" {
     { good && printf 'garbage' && good && event 1 A 001122 | head -c 30; } > "$log"
     info "$log"
     ended 1
@@ -175,7 +175,7 @@ field() {
     [ "$(field '[.events, .damage]')" = '[6,{"places":2,"bytes":37,"first":[{"offset":152,"length":7,"what":"no event"},{"offset":311,"length":30,"what":"the last event is cut off"}]}]' ]
 }
 
-@test "of many damages the first are told, and how many there are" {
+@test "of many damages the first are listed, and all are counted" {
     good > "$BATS_TEST_TMPDIR/good"
     for _ in $(seq 25); do cat "$BATS_TEST_TMPDIR/good" && printf '?'; done > "$log"
     info "$log"
@@ -211,7 +211,7 @@ field() {
 152 0 3"
 }
 
-@test "a hole of ten gigabytes is passed over" {
+@test "a hole of ten gigabytes is skipped" {
     good > "$log"
     truncate -s 10G "$log" || skip 'no such large files here'
     good >> "$log"
@@ -221,7 +221,7 @@ field() {
         '[10737418392,6,[{"offset":152,"length":10737418088,"what":"zeros"}]]' ]
 }
 
-@test "what is no log is refused" {
+@test "a file that is not a log is refused" {
     info README.md
     ended 2
     is ''
@@ -252,7 +252,7 @@ field() {
 
 # ---- The command -----------------------------------------------------------------------------
 
-@test "names of bodies are the last ones, and do nothing to a terminal" {
+@test "the last name of a body counts, and is printed without control characters" {
     # Two names_t of one name each: of client 5 and body 1, "a" and then a control sequence.
     for name in 'a' '\033[31mr\377'; do
         size=$(printf "$name" | wc -c)
@@ -268,7 +268,7 @@ field() {
     [ "$("$FMB" log info --json "$log" | jq -c .names)" = '[{"client_id":5,"body_id":1,"name":"\u001b[31mr'$'\ufffd''"}]' ]
 }
 
-@test "names of files reach the terminal without control characters" {
+@test "names of files are printed without control characters" {
     name=$BATS_TEST_TMPDIR/$'\e[31mred'
     good > "$name"
     run "$FMB" log info "$name"
@@ -288,7 +288,7 @@ field() {
     is 'fmb: standard output: No space left on device'
 }
 
-@test "help" {
+@test "--help prints the usage" {
     run --separate-stderr "$FMB" log --help
     ended 0
     [[ $output == 'usage: fmb log COMMAND'*'  info '* ]]
@@ -325,7 +325,7 @@ field() {
     said ''
 }
 
-@test "wrong usage" {
+@test "wrong usage is refused with exit code 2" {
     run "$FMB" log frobnicate
     ended 2
     is "fmb log: unknown command 'frobnicate'

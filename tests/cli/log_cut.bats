@@ -64,7 +64,7 @@ split_at() {
 
 # ---- What is copied --------------------------------------------------------------------------
 
-@test "without a choice all is copied, to the byte" {
+@test "without a selection the whole log is copied byte for byte" {
     for kind in arm clients crowd; do
         generate "$kind" "$log"
         cuts 0 "$log" -o "$cut" --force
@@ -84,7 +84,7 @@ split_at() {
     has '.unknown_handles > 0'
 }
 
-@test "a replay says of a time that was cut out what it says of it in the whole" {
+@test "a replay of a cut reports what a replay of that time range reports" {
     generate clients "$log"
     for span in '0 0.02' '0.013 0.06' '0.03 1.5' '0.9 1.1' '1.5 3'; do
         read -r from to <<< "$span"
@@ -109,14 +109,14 @@ split_at() {
     cmp -n "$(stat -c %s "$cut")" "$log" "$cut"
 }
 
-@test "scenes by handle get the bodies that they name" {
+@test "scenes by handle have the bodies that they name" {
     generate --blast scenes 40 --by-handle "$log"
     cuts 0 "$log" -o "$cut" --from 0.001
     has '.added_definitions == 1 and .added_bodies == 100'
     outcomes "$cut" | jq -e '.[1][1] == .[1][0] and .[1][0] > 5'
 }
 
-@test "bodies: their queries and the results of these, and nothing else" {
+@test "--body selects the queries of a body and their results" {
     generate clients "$log"
     cuts 0 "$log" -o "$cut" --body 3
     has '.pair_queries > 0 and .pair_results > 0 and .scene_queries > 0 and .statuses == 0'
@@ -129,7 +129,7 @@ split_at() {
     cuts 1 "$log" -o "$cut" --force --body 4711
 }
 
-@test "channels, by name and by expression" {
+@test "--channel selects by name and by expression" {
     generate foreign "$log"
     cuts 0 "$log" -o "$cut"
     results=$(jq .pair_results <<< "$output")
@@ -146,7 +146,7 @@ split_at() {
     has '.pair_queries > 0 and .other_events > 0'
 }
 
-@test "queries without their results have all that they need" {
+@test "queries without their results keep their definitions" {
     generate --blast pairs 20000 --by-handle "$log"
     cuts 0 "$log" -o "$cut" --from 0.15 --channel FMB_PAIR_QUERY
     has '.kept_events == .pair_queries and .added_bodies > 1000'
@@ -154,7 +154,7 @@ split_at() {
     outcomes "$cut" --golden "$log" | jq -e '.[0][1] == .[0][0] and .[0][0] > 1000'
 }
 
-@test "several logs are one, and the parts of a log are the whole" {
+@test "several logs are read as one, and the parts of a log are the whole" {
     generate clients "$log"
     split_at "$log" 60
     cuts 0 "$T/first.log" "$T/second.log" -o "$cut" --from 0.02
@@ -204,7 +204,7 @@ split_at() {
 
 # ---- Damage ----------------------------------------------------------------------------------
 
-@test "damage is told with its place, and left out: the cut is good" {
+@test "damage is reported with its offset, and is not copied" {
     generate stack "$log"
     cp "$log" "$T/good.log"
     at=$(offset_of "$log" 30)
@@ -217,7 +217,7 @@ split_at() {
     has ".damages == 2 and .damaged_bytes > $((next - at)) and .kept_events == .events"
     [[ "$stderr" == *"offset $at: $((next - at)) bytes: no event; left out"* ]]
     [[ "$stderr" == *'the last event is cut off; left out'* ]]
-    # The first 30 are as they were; those behind them are numbered anew.
+    # The first 30 are as they were; those after them are numbered anew.
     cmp -n "$at" "$T/good.log" "$cut"
     cuts 0 "$cut" -o "$T/again.log"
     has '.damages == 0'
@@ -225,18 +225,18 @@ split_at() {
     [ "$status" = 0 ]
 }
 
-@test "damage at the beginning of a second log is told too" {
+@test "damage at the beginning of a second log is reported" {
     generate stack "$log"
     (printf 'no log'; cat "$log") > "$T/second.log"
     cuts 1 "$log" "$T/second.log" -o "$cut"
     has '.damages == 1 and .damaged_bytes == 6'
     [[ "$stderr" == *"second.log: offset 0: 6 bytes"* ]]
-    # As fmb replay tells it.
+    # As fmb replay reports it.
     run --separate-stderr "$FMB" replay "$log" "$T/second.log"
     [[ "$stderr" == *"second.log: offset 0: 6 bytes"* ]]
 }
 
-@test "messages that cannot be read are no damage" {
+@test "messages that cannot be decoded are not damage" {
     generate foreign "$log"
     cuts 0 "$log" -o "$cut" --channel FMB_PAIR_QUERY
     has '.damages == 0 and .pair_queries > 44'
@@ -244,7 +244,7 @@ split_at() {
 
 # ---- Files and usage -------------------------------------------------------------------------
 
-@test "a file is overwritten only by force, and no log by its own cut" {
+@test "a file is overwritten only with --force, and a log never by its own cut" {
     generate stack "$log"
     cp "$log" "$T/good.log"
     echo precious > "$cut"
@@ -261,7 +261,7 @@ split_at() {
     [[ "$stderr" == *"link.log: this command reads it: write to another file" ]]
 }
 
-@test "what cannot be read or written is said" {
+@test "files that cannot be read or written are reported" {
     generate --blast pairs 2000 "$log"
     cuts 2 "$T/nothing.log" -o "$cut"
     [ "$stderr" = "fmb: $T/nothing.log: No such file or directory" ]
@@ -288,7 +288,7 @@ split_at() {
     cmp "$log" "$cut"
 }
 
-@test "for people there is a text" {
+@test "a cut is summarised as text" {
     generate --blast pairs 400 --by-handle "$log"
     run "$FMB" log cut "$log" -o "$cut" --from 0.001
     [ "$status" = 0 ]
@@ -296,7 +296,7 @@ split_at() {
     [[ "$output" == *'defined '*' bodies in front of them'* ]]
 }
 
-@test "wrong usage is said" {
+@test "wrong usage is refused with exit code 2" {
     for arguments in '' 'LOG' '-o FILE' 'LOG -o FILE --from -1' 'LOG -o FILE --to x' \
         'LOG -o FILE --body 0' 'LOG -o FILE --body 9007199254740992' 'LOG -o FILE --channel (' \
         'LOG -o FILE --from 10 --to 5' 'LOG -o FILE --from 1 --to 1' 'LOG -o FILE --what'; do
@@ -308,7 +308,7 @@ split_at() {
     [ ! -e FILE ]
 }
 
-@test "help" {
+@test "--help prints the usage" {
     run --separate-stderr "$FMB" log cut --help
     [ "$status" = 0 ]
     [[ "$output" == 'usage: fmb log cut '* ]]

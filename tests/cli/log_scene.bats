@@ -1,4 +1,4 @@
-# fmb log scene: a query of a log, as a scene to ask again.
+# fmb log scene: a query of a log, as a scene to decide again.
 
 bats_require_minimum_version 1.5.0
 
@@ -62,7 +62,7 @@ split_at() {
     tail -c +$((at + 1)) "$1" > "$T/second.log"
 }
 
-@test "each query of a log is a scene that can be decided, with the command to ask it" {
+@test "each query of a log is a scene that can be decided, with its command" {
     generate arm "$log"
     scenes=0
     certificates=0
@@ -81,7 +81,7 @@ split_at() {
     [ "$certificates" -gt 0 ]
 }
 
-@test "the answers of a query alone are those in the log" {
+@test "the answers of a single query are those in the log" {
     generate --blast pairs 40 --by-handle --box --certificate "$log"
     "$FMB" replay "$log" --write-golden "$T/golden.log" > "$T/said"
     for event in 20 41 78; do
@@ -106,7 +106,7 @@ split_at() {
     said "offset $((offset + 1)): there is none"
 }
 
-@test "what a replay finds different is what the query alone is not" {
+@test "a difference in a replay is a difference of the single query" {
     generate --blast pairs 40 --whole --static --dim 3 --box "$log"
     cp "$log" "$T/other.log"
     # Of the last result the verdict: after header, channel, ids, handles, status, empty detail and method.
@@ -122,7 +122,7 @@ split_at() {
     [ "$(answers | jq -r '.pairs[0].verdict')" = "$now" ]
 }
 
-@test "bodies by handle have their frames, defined by the logs before too" {
+@test "bodies by handle have their frames, also those that an earlier log defines" {
     generate --blast pairs 60 --by-handle "$log"
     split_at "$log" 60
     scene 0 "$log" --event 100
@@ -130,7 +130,7 @@ split_at() {
     jq -e '.bodies | all(.components | length == 3 or length == 2)' <<< "$query" > "$T/jq"
     scene 0 "$T/first.log" "$T/second.log" --event 100
     [ "$output" = "$query" ]
-    # Alone the second log does not define all handles.
+    # By itself the second log does not define all handles.
     unknown=0
     for ((event = 60; event < 120; event += 2)); do
         run --separate-stderr "$FMB" log scene "$T/second.log" --event "$event"
@@ -151,7 +151,7 @@ split_at() {
     [ "$output" = "$query" ]
 }
 
-@test "pairs are those that were asked" {
+@test "the pairs of a scene are those of the query" {
     generate crowd "$log"
     forms=
     for event in 0 2 4 6 8 10; do
@@ -163,7 +163,7 @@ split_at() {
     [[ "$forms" == *true* && "$forms" == *false* ]]
 }
 
-@test "bodies without an id of their own get one" {
+@test "bodies without a distinct id get one" {
     generate --blast pairs 30 --whole "$log"
     scene 0 "$log" --event 0
     [[ "$stderr" == *'fmb: event 0 (offset 0), client '* ]]
@@ -179,7 +179,7 @@ split_at() {
     [ "$found" -gt 0 ]
 }
 
-@test "what the service refuses has no scene, and the reason is said" {
+@test "a refused query has no scene, and the reason is reported" {
     generate refused "$log"
     scene 1 "$log" --event 22
     [ -z "$output" ]
@@ -192,14 +192,14 @@ split_at() {
     done
 }
 
-@test "numbers that repeat are told with their offsets" {
+@test "repeated sequence numbers are listed with their offsets" {
     generate stack "$T/one.log"
     cat "$T/one.log" "$T/one.log" > "$log"
     at=$(offset_of "$T/one.log" 3)
     scene 1 "$log" --event 3
     said "event 3 is there 2 times: --offset $at --offset $((at + $(stat -c %s "$T/one.log")))"
     scene 0 "$log" --offset "$at"
-    # Of the last log alone.
+    # Of the last log only.
     scene 0 "$T/one.log" "$T/one.log" --event 3
 }
 
@@ -218,7 +218,7 @@ split_at() {
     [ "$margins" = ' 31250000 31250000 0 0 0 1 1' ]
 }
 
-@test "what is no query is said" {
+@test "a number that is not a query is reported" {
     generate foreign "$log"
     scene 1 "$log" --event 5000
     [ "$stderr" = "fmb: $log: event 5000: there is none" ]
@@ -233,7 +233,7 @@ split_at() {
     [ "$stderr" = "fmb: $T/nothing.log: No such file or directory" ]
 }
 
-@test "wrong usage is said" {
+@test "wrong usage is refused with exit code 2" {
     for arguments in '' '--event 1' 'LOG' 'LOG --event x' 'LOG --event 1 --offset 1' \
         'LOG --client 1' 'LOG --sequence 1' 'LOG --event 1 --client 1 --sequence 1' \
         'LOG --event 9223372036854775808' 'LOG --offset -1' 'LOG --what'; do

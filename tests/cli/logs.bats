@@ -22,26 +22,26 @@ capped_at() {
     [ "$(tr '\n' ' ' < "$BATS_TEST_TMPDIR/sets")" = "$* " ]
 }
 
-@test "each kind of log is here, and no others" {
+@test "the set has a log of each kind and no others" {
     "$GENERATE" --list | cut -d ' ' -f 1 | sort > "$BATS_TEST_TMPDIR/kinds"
     for log in tests/logs/*.log; do name_of "$log"; done | sort | cmp - "$BATS_TEST_TMPDIR/kinds"
 }
 
-@test "the generator makes the logs that are here" {
+@test "the generator reproduces the logs of the set" {
     makes_the_set "$GENERATE"
 }
 
-@test "with plain C alone it makes them too" {
+@test "the generator reproduces the logs with plain C only" {
     capped_at plain plain
     makes_the_set "$FMB_BUILD/capped/generate-plain"
 }
 
-@test "with two lanes it makes them too" {
+@test "the generator reproduces the logs with two lanes" {
     capped_at two plain two
     makes_the_set "$FMB_BUILD/capped/generate-two"
 }
 
-@test "with AVX2 it makes them too" {
+@test "the generator reproduces the logs with AVX2" {
     capped_at avx2 plain two avx2
     makes_the_set "$FMB_BUILD/capped/generate-avx2"
 }
@@ -75,7 +75,7 @@ capped_at() {
     [ "$(unique "$scenes | select(.pairs == 0 and .gaps > 0) | .verdicts[]")" = '[1,2,3]' ]
 }
 
-@test "results come late, early and not at all; services start anew, and beside each other" {
+@test "the set has late, early and missing results, restarts and parallel services" {
     "$DESCRIBE" tests/logs/foreign.log > "$BATS_TEST_TMPDIR/events"
     jq -es 'any(.[]; .channel == "LAB_FMB_PAIR_RESULT")' "$BATS_TEST_TMPDIR/events"
     [ "$(jq -s '[.[].channel] | unique | length' "$BATS_TEST_TMPDIR/events")" -gt 12 ]
@@ -94,7 +94,7 @@ capped_at() {
         | contains([[0,0,0]]) and contains([[2,2,0]])' "$BATS_TEST_TMPDIR/events"
 }
 
-@test "where there was no room, the answer goes on from there" {
+@test "an answer that exceeds a message continues in the next one" {
     "$DESCRIBE" tests/logs/crowd.log > "$BATS_TEST_TMPDIR/events"
     # Full to the last contact, which takes 53 bytes.
     jq -es 'any(.[]; .size > 63600 and .size <= 63900)' "$BATS_TEST_TMPDIR/events"
@@ -102,7 +102,7 @@ capped_at() {
         and any(. > 0 and . < 9730 and . > 4000)' "$BATS_TEST_TMPDIR/events"
 }
 
-@test "a blast has as many queries as wanted, all of them answered" {
+@test "a blast has the number of queries requested, and all have results" {
     "$GENERATE" --blast pairs 300 --box "$BATS_TEST_TMPDIR/blast.log"
     "$DESCRIBE" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
     jq -es '[.[] | select(.status == 0)] | length == 300
@@ -117,7 +117,7 @@ capped_at() {
     jq -es 'all(.[]; .channel != "FMB_SCENE_QUERY" or .size > 63800)' "$BATS_TEST_TMPDIR/events"
 }
 
-@test "a blast is what was wanted: in one dimension, at rest, whole" {
+@test "a blast has the dimension, the motion and the form requested" {
     "$GENERATE" --blast pairs 50 --dim 2 --static --whole "$BATS_TEST_TMPDIR/blast.log"
     "$DESCRIBE" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
     # 48 bytes, and of each placement 62 and 2 + 4 + 2 numbers.
@@ -131,7 +131,7 @@ capped_at() {
     jq -es '[.[] | .client // empty] | length == 100 and (unique | length == 2)' "$BATS_TEST_TMPDIR/events"
 }
 
-@test "what cannot be made is said" {
+@test "the generator reports what it cannot make" {
     for options in '' arm 'nothing FILE' '--blast pears 1 FILE' '--blast pairs 0 FILE' \
         '--blast pairs 1x FILE' '--dim 4 arm FILE' '--what arm FILE' '--blast pairs 1'; do
         # shellcheck disable=SC2086

@@ -39,17 +39,6 @@ answers() {
     is "$expected"
 }
 
-# wrong TEXT ARGUMENTS...: wrong usage is one line, and a hint.
-wrong() {
-    local text=$1
-    shift
-    mesh "$@"
-    ended 2
-    is ''
-    said "fmb mesh: $text
-Try 'fmb mesh --help'."
-}
-
 # cannot_read TEXT ARGUMENTS...
 cannot_read() {
     local text=$1
@@ -64,7 +53,7 @@ nothing='{"overlapping": 0, "touching": 0, "faces_a": 0, "faces_b": 0, "pairs": 
 
 # ---- Answers ---------------------------------------------------------------------------------
 
-@test "a mesh within the bounds of another one that it does not meet: a hint, for people alone" {
+@test "a mesh inside the bounds of another one that it does not intersect gets a hint in text only" {
     obj out.obj '-1 -1 -1' '3 -1 -1' '-1 3 -1' '-1 -1 3' -- '1 3 2' '1 2 4' '1 4 3' '2 3 4'
     obj in.obj '0 0 0' '0.1 0 0' '0 0.1 0' '0 0 0.1' -- '1 3 2' '1 2 4' '1 4 3' '2 3 4'
     hint='in.obj may lie inside out.obj, within whose bounds it is: only surfaces are compared'
@@ -81,14 +70,14 @@ nothing='{"overlapping": 0, "touching": 0, "faces_a": 0, "faces_b": 0, "pairs": 
     [[ $output != *inside* ]]
 }
 
-@test "one line of JSON: counts, and the pairs in order" {
+@test "JSON is one line with the counts and the pairs in order" {
     answers '{"overlapping": 1, "touching": 1, "faces_a": 1, "faces_b": 2, "pairs": [[0, 0, "overlapping"], [0, 1, "touching"]]}' a.obj b.obj
     answers '{"overlapping": 1, "touching": 1, "faces_a": 2, "faces_b": 1, "pairs": [[0, 0, "overlapping"], [1, 0, "touching"]]}' b.obj a.obj
     answers "$nothing" a.obj b.obj --translate 0,0,5
     [ "$(wc -l <<< "$output")" = 1 ]
 }
 
-@test "text for people, and with --list every pair before it" {
+@test "text is a summary, and with --list every pair before it" {
     mesh a.obj b.obj
     ended 0
     said ''
@@ -105,7 +94,7 @@ in them are
 $counts"
 }
 
-@test "moving meshes: when each pair meets, and when the first and the last do" {
+@test "moving meshes have the contact interval of each pair, and the first and the last time" {
     answers '{"overlapping": 1, "touching": 1, "faces_a": 1, "faces_b": 2, "pairs": [[0, 0, "overlapping", [0.5, 2]], [0, 1, "touching", [1.5, 2]]]}' \
         a.obj --translate 0,0,1.5 --velocity 0,0,-1 b.obj --duration 2
     mesh a.obj --translate 0,0,1.5 --velocity 0,0,-1 b.obj --duration 2 --list
@@ -124,7 +113,7 @@ $counts"
     [[ $output != *'first at'* ]]
 }
 
-@test "what is nearest to decimals decides: a tenth three times is not three tenths" {
+@test "the nearest doubles decide: a tenth three times is not three tenths" {
     obj low.obj '0 0 0.1' '1 0 0.1' '0 1 0.1' -- '1 2 3'
     obj high.obj '0 0 0.3' '1 0 0.3' '0 1 0.3' -- '1 2 3'
     answers "$nothing" low.obj --scale 1,1,3 high.obj
@@ -132,7 +121,7 @@ $counts"
         high.obj --scale 1,1,1 high.obj
 }
 
-@test "edges that no double holds: faces that share a vertex touch, an ulp beside it they do not" {
+@test "faces that share a vertex touch, and an ulp away from it they do not" {
     # 1e16 + 2 is the next double.
     obj far.obj '10000000000000000 0.1 0.3' '-0.1 0.7 0.2' '0.3 1e-17 -5' -- '1 2 3'
     obj shares.obj '-7 -7.3 9' '-0.1 0.7 0.2' '-8 0.1 0.1' -- '1 2 3'
@@ -142,7 +131,7 @@ $counts"
     answers "$nothing" far.obj beside.obj
 }
 
-@test "--method exact says the same" {
+@test "--method exact gives the same answer" {
     "$MAKE_MESH" --faces 200 one.ply
     for options in '' '--translate 0.1,0.2,0.3' '--as tetrahedra' '--velocity 0.1,0,0.05'; do
         # shellcheck disable=SC2086
@@ -158,7 +147,7 @@ $counts"
     answers "$output" one.ply one.ply --velocity 0.1,0,0.05 --method exact
 }
 
-@test "--as tetrahedra: on one side of the face, as high as a unit normal" {
+@test "--as tetrahedra adds a vertex on one side of each face, at the height of a unit normal" {
     obj below.obj '0 0 -1' '1 0 -1' '0 1 -1' -- '1 2 3'
     answers "$nothing" a.obj below.obj
     answers "$nothing" --as faces a.obj below.obj --translate 0,0,0.5
@@ -167,7 +156,7 @@ $counts"
     answers "$nothing" --as tetrahedra a.obj below.obj --translate 0,0,-0x1p-52
 }
 
-@test "empty meshes meet nothing" {
+@test "an empty mesh intersects nothing" {
     printf 'ply\nformat ascii 1.0\nend_header\n' > empty.ply
     printf 'solid nothing\nendsolid nothing\n' > empty.stl
     for empty in empty.ply empty.stl; do
@@ -200,7 +189,7 @@ apart() {
     jq -e '.overlapping + .touching == 0' <<< "$output" > /dev/null
 }
 
-@test "steps are for the file before them, or for both" {
+@test "steps apply to the file before them, or to both" {
     meets a.obj a.obj
     apart a.obj --translate 0,0,1 a.obj
     apart a.obj a.obj --translate 0,0,1
@@ -214,7 +203,7 @@ apart() {
     meets -- a.obj b.obj
 }
 
-@test "steps follow each other, in the order in which they are typed" {
+@test "steps are applied in the order of the command line" {
     obj point.obj '8 1 0' '8 1 0' '8 1 0' -- '1 1 1'
     obj from.obj '1 2 0' '1 2 0' '1 2 0' -- '1 2 3'
     meets from.obj --rotate z,90 --translate 10,0,0 point.obj
@@ -226,17 +215,17 @@ apart() {
     meets --rotate x,90 from.obj --rotate x,-90 point.obj --rotate x,270 --translate -7,1,0
 }
 
-@test "at most 32 steps for a mesh" {
+@test "more than 32 steps for a mesh are refused" {
     steps=$(printf -- '--mirror x %.0s' $(seq 32))
     # shellcheck disable=SC2086
     meets a.obj a.obj $steps
     # shellcheck disable=SC2086
     meets a.obj $steps a.obj $steps
     # shellcheck disable=SC2086
-    wrong 'more than 32 steps for a mesh' a.obj a.obj $steps --mirror x
+    wrong mesh a.obj a.obj $steps --mirror x
 }
 
-@test "what goes beyond the doubles is told" {
+@test "coordinates beyond the largest double are reported" {
     cannot_read 'a.obj: vertex 1 is farther out than edges in doubles go: scale the mesh' a.obj --scale 1e308 b.obj
     cannot_read 'b.obj: vertex 2 is farther out than edges in doubles go: scale the mesh' a.obj b.obj --scale 8e307
     meets a.obj --scale 8e307 a.obj
@@ -248,7 +237,7 @@ apart() {
 
 # ---- A mesh with itself ------------------------------------------------------------------------
 
-@test "--self: what meets, and beside it what is shared" {
+@test "--self counts intersections apart from shared vertices and edges" {
     # A tetrahedron whose last face is there twice, and a triangle through it.
     obj self.obj '0 0 0' '1 0 0' '0 1 0' '0 0 1' '0.1 0.1 -1' '0.1 0.1 0.5' '9 9 9' -- \
         '1 3 2' '1 2 4' '1 4 3' '2 3 4' '4 2 3' '5 6 7' '2 7 7'
@@ -269,12 +258,14 @@ and beside each other, with nothing else in common, are
              5  pairs that share a vertex'
 }
 
-@test "--self refuses what it does not go with" {
-    wrong 'expected one mesh with --self, found 2' --self a.obj b.obj
-    wrong 'expected one mesh with --self, found 0' --self
-    wrong '--self asks faces, not tetrahedra' --self --as tetrahedra a.obj
-    wrong '--self and --velocity: a mesh does not move against itself' --self a.obj --velocity 0,0,1
-    wrong '--self and --velocity: a mesh does not move against itself' --velocity 0,0,1 --self a.obj
+@test "--self refuses options that exclude it" {
+    wrong mesh --self a.obj b.obj
+    wrong mesh --self
+    wrong mesh --self --as tetrahedra a.obj
+    wrong mesh --self a.obj --velocity 0,0,1
+    wrong mesh --velocity 0,0,1 --self a.obj
+    said "fmb mesh: --self and --velocity: a mesh does not move against itself
+Try 'fmb mesh --help'."
 }
 
 @test "a closed mesh shares three edges for every two faces" {
@@ -287,7 +278,7 @@ and beside each other, with nothing else in common, are
 
 # ---- Files -------------------------------------------------------------------------------------
 
-@test "--ply: both meshes in one, which reads back, and colours" {
+@test "--ply writes both meshes in one file with colours, which reads back" {
     mesh a.obj b.obj --translate 0,0,0.5 --ply out.ply
     ended 0
     grep -a -q 'element vertex 9' out.ply
@@ -312,7 +303,7 @@ and beside each other, with nothing else in common, are
 190 190 190" ]
 }
 
-@test "all formats, and every mixture, give the same answer" {
+@test "all formats, and every mixture of them, give the same answer" {
     for format in ply-ascii ply-le ply-be stl-ascii obj; do
         "$MAKE_MESH" --faces 800 --format $format one.$format
         mesh one.$format one.$format --translate 0.1,0.2,0.3 --json
@@ -331,7 +322,7 @@ and beside each other, with nothing else in common, are
     [ "$(jq -c .overlapping <<< "$output")" = "$(jq -c .overlapping <<< "$expected")" ]
 }
 
-@test "files that cannot be read, and what is broken, with the place" {
+@test "unreadable and broken files are reported with the place" {
     cannot_read 'no.obj: No such file or directory' no.obj b.obj
     cannot_read 'no.obj: No such file or directory' a.obj no.obj
     cannot_read "$BATS_TEST_TMPDIR: a folder, not a file" a.obj "$BATS_TEST_TMPDIR"
@@ -355,7 +346,7 @@ and beside each other, with nothing else in common, are
     [ "$(wc -l <<< "$stderr")" = 1 ]
 }
 
-@test "what cannot be written is told" {
+@test "output that cannot be written is reported" {
     mesh a.obj b.obj --json --ply "$BATS_TEST_TMPDIR/no/out.ply"
     ended 1
     said "fmb: $BATS_TEST_TMPDIR/no/out.ply: No such file or directory"
@@ -370,37 +361,26 @@ and beside each other, with nothing else in common, are
 
 # ---- Usage -------------------------------------------------------------------------------------
 
-@test "wrong usage is one line and a hint" {
-    wrong 'expected two meshes, found 0; or one and --self'
-    wrong 'expected two meshes, found 1; or one and --self' a.obj
-    wrong 'expected two meshes, found 3; or one and --self' a.obj b.obj a.obj
-    wrong 'expected two meshes, found 4; or one and --self' a.obj b.obj -- --json a.obj
-    wrong "--scale: expected a number, or three X,Y,Z, found '1,2'" a.obj --scale 1,2 b.obj
-    wrong "--scale: expected a number, or three X,Y,Z, found ''" a.obj --scale= b.obj
-    wrong "--scale: expected a number, or three X,Y,Z, found 'inf'" a.obj --scale inf b.obj
-    wrong "--scale: expected a number, or three X,Y,Z, found '1,2,3,4'" a.obj --scale 1,2,3,4 b.obj
-    wrong "--scale: expected a number, or three X,Y,Z, found '1e999'" a.obj --scale 1e999 b.obj
-    wrong "--translate: expected three numbers X,Y,Z, found '1'" a.obj --translate 1 b.obj
-    wrong "--translate: expected three numbers X,Y,Z, found '1,nan,3'" a.obj --translate 1,nan,3 b.obj
-    wrong "--velocity: expected three numbers X,Y,Z, found '1,2,3x'" a.obj --velocity 1,2,3x b.obj
-    wrong "--rotate: expected an axis and degrees, such as z,90, found '90'" a.obj --rotate 90 b.obj
-    wrong "--rotate: expected an axis and degrees, such as z,90, found 'z'" a.obj --rotate z b.obj
-    wrong "--rotate: expected an axis and degrees, such as z,90, found 'w,1'" a.obj --rotate w,1 b.obj
-    wrong "--rotate: expected an axis and degrees, such as z,90, found ''" a.obj --rotate '' b.obj
-    wrong "--mirror: expected x, y or z, found 'xy'" a.obj --mirror xy b.obj
-    wrong "--mirror: expected x, y or z, found ''" a.obj --mirror '' b.obj
-    wrong "--as: there are faces and tetrahedra, not 'cubes'" a.obj --as cubes b.obj
-    wrong "--method: there are certified and exact, not 'sat'" a.obj --method sat b.obj
-    wrong "--method: there are certified and exact, not 'guess'" a.obj --method guess b.obj
-    wrong "--duration: expected a number from 0 to 1.79769e+308, found '-1'" a.obj --duration -1 b.obj
-    wrong "--duration: expected a number from 0 to 1.79769e+308, found 'nan'" a.obj --duration nan b.obj
-    wrong "unknown option '--bogus'" a.obj b.obj --bogus
-    wrong "unknown option '-x'" a.obj -x b.obj
-    wrong "option '--translate' needs a value" a.obj b.obj --translate
-    wrong "option '--json=1' takes no value" a.obj --json=1 b.obj
+@test "wrong usage is refused with exit code 2 and a hint" {
+    wrong mesh
+    wrong mesh a.obj
+    wrong mesh a.obj b.obj a.obj
+    wrong mesh a.obj b.obj -- --json a.obj
+    for option in '--scale 1,2' --scale= '--scale inf' '--scale 1,2,3,4' '--scale 1e999' '--translate 1' \
+        '--translate 1,nan,3' '--velocity 1,2,3x' '--rotate 90' '--rotate z' '--rotate w,1' --rotate= \
+        '--mirror xy' --mirror= '--as cubes' '--method sat' '--method guess' '--duration -1' \
+        '--duration nan' -x --json=1; do
+        # shellcheck disable=SC2086
+        wrong mesh a.obj $option b.obj
+    done
+    wrong mesh a.obj b.obj --bogus
+    wrong mesh a.obj b.obj --translate
+    wrong mesh a.obj --rotate 90 b.obj
+    said "fmb mesh: --rotate: expected an axis and degrees, such as z,90, found '90'
+Try 'fmb mesh --help'."
 }
 
-@test "--help, and fmb help mesh" {
+@test "--help and fmb help mesh print the usage" {
     mesh --help
     ended 0
     said ''
@@ -422,7 +402,7 @@ and beside each other, with nothing else in common, are
 
 # ---- The terminal ------------------------------------------------------------------------------
 
-@test "on a terminal it shows how far it is, elsewhere it does not" {
+@test "progress is shown on a terminal only" {
     script -qfc true /dev/null < /dev/null > /dev/null 2>&1 3>&- || skip 'there is no pseudo-terminal'
     "$MAKE_MESH" --faces 100000 large.ply
     script -qfc "$FMB mesh --method exact large.ply large.ply" screen < /dev/null > /dev/null 3>&- &

@@ -50,7 +50,7 @@ setup() {
 
 # ---- What it holds ---------------------------------------------------------------------------
 
-@test "one file that refers to nothing else, and lets nothing else run" {
+@test "the page is one file that refers to nothing else and runs nothing else" {
     for page in small touching moving self empty large; do
         data $page.html | jq -e '.pairs | type == "array"' > /dev/null
         is_self_contained $page.html
@@ -64,7 +64,7 @@ setup() {
     data touching.html | jq -e --arg name "x$hostile/\"q'.obj" '.meshes[1].name == $name'
 }
 
-@test "the pairs are those of the program" {
+@test "the pairs of the page are those of the program" {
     for page in small touching moving; do
         data $page.html | jq -c '[.count, .overlapping, .touching, .pairs]' > held
         jq -c '[.overlapping + .touching, .overlapping, .touching,
@@ -81,8 +81,9 @@ numbers() {
         sed 's/^ *//; s/  */ /g'
 }
 
-@test "faces, their colours and their vertices are there, rounded" {
+@test "the page has the faces, their colours and their rounded vertices" {
     [ "$(numbers small 1 face u4 12 | wc -l)" = 200 ]
+    [ "$(numbers touching 1 colour u1 1 | wc -l)" = 4 ]
     data small.html | jq -r '.pairs[][1]' | sort -un > met
     numbers small 1 colour u1 1 | awk '$1 == 3 { print NR - 1 }' > coloured
     diff met coloured
@@ -99,18 +100,18 @@ numbers() {
           for (i = 1; i <= 3; i++) { off = at[i] - $i - by[i]; if (off > 1e-6 || off < -1e-6) exit 1 } }' corner -
 }
 
-@test "the list ends somewhere, and what is left out is counted" {
+@test "the list is bounded, and omitted pairs are counted" {
     data large.html | jq -e '.count > 20000 and (.pairs | length) == 20000'
 }
 
-@test "a file that cannot be written is said" {
+@test "a file that cannot be written is reported" {
     run -1 --separate-stderr "$fmb" mesh --html missing/x.html a.ply b.ply
     [[ $stderr == "fmb: missing/x.html: "* ]]
 }
 
 # ---- In a browser ----------------------------------------------------------------------------
 
-@test "it opens, and nothing goes wrong in it" {
+@test "the page opens without errors" {
     found meshes '.done and .error == null'
     [ ! -s meshes.console ] || {
         cat meshes.console
@@ -124,7 +125,7 @@ counts() {
     jq -c '[.overlapping + .touching, .overlapping, .touching | tostring]' "$1.json"
 }
 
-@test "the counts are those of the program" {
+@test "the counts of the page are those of the program" {
     found meshes ".opened.counts == $(counts small) and .touch.counts == $(counts touching)"
     found meshes ".moving.counts == $(counts moving) and .self.counts == $(counts self)"
     found meshes ".opened.facts == \"A a.ply: $(jq .faces_a small.json) of 200 faces meet\" +
@@ -137,7 +138,7 @@ counts() {
     found meshes '.self | .red < 50 and .yellow < 50 and .drawn > 50000'
 }
 
-@test "a click on a pair chooses it, and shows it near" {
+@test "a click on a pair selects it and moves the camera to it" {
     name=$(jq -r '.pairs[2] | "A \(.[0]) – B \(.[1])"' small.json)
     next=$(jq -r '.pairs[3] | "A \(.[0]) – B \(.[1])"' small.json)
     found meshes ".clicked | .row == [\"$name\"] and .said == \"$name: overlapping\""
@@ -147,23 +148,23 @@ counts() {
     found meshes ".pointed | any(startswith(\"$face\"))"
 }
 
-@test "the mouse, the wheel and keys turn it; y may be up" {
+@test "mouse, wheel and keys turn the view, and y may be up" {
     found meshes '[.opened, .turned, .zoomed, .keys, .up] | map(.sum) | unique | length == 5'
     found meshes '.zoomed.blue > 1.2 * .turned.blue'
 }
 
-@test "the list: by face, by verdict" {
+@test "the list is sorted by face or by verdict" {
     found meshes '.filtered.names | length > 0 and all(test("\\b3\\b"))'
     count=$(jq '[.pairs[] | select(.[0] == 3 or .[1] == 3)] | length' small.json)
     found meshes ".filtered.said == \"$count of $(jq '.pairs | length' small.json) pairs\""
     found meshes '.touching == 0 and .all == (.opened.rows)'
 }
 
-@test "a hostile name is shown as it is" {
+@test "a hostile name is shown verbatim" {
     found meshes ".touch.title == \"corner.obj and \\\"q'.obj\" and (.touch.facts | contains(\"x$hostile/\"))"
 }
 
-@test "time: the slider moves a mesh, and the faces in contact are red" {
+@test "the time slider moves a mesh, and the faces in contact are red" {
     found meshes '.moving.moment | startswith("0.731051 s of 1 s")'
     found meshes '.moving.bands == 1 and .before.moment == "0 s of 1 s" and .after.moment == "1 s of 1 s"'
     found meshes '.before.red < 50 and .after.red > 3000 and .before.sum != .after.sum'
@@ -174,7 +175,7 @@ counts() {
     found meshes '.playing == "❚❚"'
 }
 
-@test "much, nothing, and numbers of all sizes" {
+@test "large and empty meshes and numbers of all sizes are drawn" {
     found meshes '.large | .notes == ["The list has the first 20,000 of " + .counts[0]
         + " pairs; the program tells them all."] and .rows == 100 and .then == 200 and .red > 10000'
     found meshes '.empty | .counts == ["0", "0", "0"] and .list == "No faces meet." and .rows == 0'

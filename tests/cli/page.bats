@@ -31,14 +31,14 @@ setup() {
 
 # ---- Contents --------------------------------------------------------------------------------
 
-@test "one file that refers to nothing else" {
+@test "the page is one file that refers to nothing else" {
     for page in mixed arm many crowd uneven empty; do
         data $page.html | jq -e '.events | type == "array"' > /dev/null
         is_self_contained $page.html
     done
 }
 
-@test "its policy lets its own script and style run, and nothing else" {
+@test "the policy of the page permits its own script and style only" {
     has_policy arm.html
 }
 
@@ -51,7 +51,7 @@ setup() {
 
 # ---- In a browser ----------------------------------------------------------------------------
 
-@test "it opens without errors" {
+@test "the page opens without errors" {
     found light '.done and .error == null'
     [ ! -s light.console ] || {
         cat light.console
@@ -68,24 +68,24 @@ setup() {
     grep -q 'Uncaught SyntaxError.*source: .*cut.html' dark.console
 }
 
-@test "it may not reach the network, nor run what is not its own" {
+@test "the page cannot reach the network, nor run foreign scripts" {
     found dark '.refused.directives == ["connect-src", "img-src", "script-src-attr"]'
     found dark '.refused.title | startswith("Replay: ")'
 }
 
-@test "rows: those with differences first, then those that meet" {
+@test "rows with differences come first, then those in contact" {
     found light '.opened.labels[1:6] == ["anonymous – anonymous", "anonymous – 32", "3 – 4", "1 – 2", "7 – 8"]'
     found light '.filled == ["separated", "overlapping"]'
 }
 
-@test "a click on a mark shows the query there, in two dimensions" {
+@test "a click on a mark shows its query in two dimensions" {
     found light '.clicked | .pair == ["1 – 2"] and .verdict == ["overlapping"] and .scene == "Scene, 2D"
         and .lane == ["1 2"] and .hash == "#0:31" and .query == "Query 31"'
     found light '.clicked | .drawn > 10000 and .red > 3000 and .violet > 300'
     found light '.moved.sum != .clicked.sum and .zoomed.red > 1.5 * .moved.red'
 }
 
-@test "a gap: its size, and a line between the nearest points" {
+@test "a gap has its size, and a line between the nearest points" {
     found light '.gap | .verdict == ["separated"] and .texts[:3] == ["pair", "verdict", "gap"]
         and (.texts[3] | tonumber) > 0.1 and .blue > 20'
     found light '.clicked.blue == 0'
@@ -95,11 +95,11 @@ setup() {
     found light '.pointed == ["body 1, parallelogram: overlapping", "body 2, triangle: overlapping"]'
 }
 
-@test "the arrows lead from query to query" {
+@test "the arrow keys step through the queries" {
     found light '.right.query == "Query 33" and .left.query == "Query 31"'
 }
 
-@test "a difference is found by pressing d, by its flag and in the list" {
+@test "a difference is reached by the key d, by its flag and by the list" {
     found light '.opened.flags == 2 and .opened.listed == 3'
     found light '.opened.chosen | .query == "Query 65" and .outcome == "≠ different"'
     found light '[.next, .flag] | all(.query == "Query 65" and .outcome == "≠ different"
@@ -110,13 +110,13 @@ setup() {
     found light '.around.query == "Query 107" and .listed.query == "Query 69"'
 }
 
-@test "three dimensions: turned, seen from above, at the end of the window; both boxes" {
+@test "scenes in three dimensions turn, show the view from above, the end of the window and both boxes" {
     found light '.space | .drawn > 10000 and .red > 3000 and .violet > 300 and .pink > 300'
     found light '[.space, .turned, .above, .slid] | map(.sum) | unique | length == 4'
     found light '.slid | .said == "1 s of 1 s" and .bands == 2 and .then == 1'
 }
 
-@test "a scene: its pairs, one of them chosen" {
+@test "a scene lists its pairs, one of them selected" {
     found light '.scene | .pair == ["≠1 – 13", "≠2 – 11", "11 – 12", "12 – 13"] and .drawn > 10000'
     found light '.other.pressed == ["11 – 12"] and .other.sum != .scene.sum and .near.red > .other.red'
     found light '.playing == "❚❚"'
@@ -151,13 +151,13 @@ setup() {
         and all(.events[].frames[]; .[0] > 0 and .[1] >= 0)' part.json
 }
 
-@test "the filter, more rows, zooming" {
+@test "the filter, more rows and zooming work" {
     found light '.filtered.rows == ["all queries", "3 – 4"] and .filteredPair == .filtered.rows'
     found light '.filteredNone == {rows: 1, said: "no pair with it"} and .more == [9, 20]'
     found light '.zoom | .near and .dragged and .back'
 }
 
-@test "large and empty logs: omitted queries, a pause, a crowd, no query" {
+@test "large and empty logs are drawn: omitted queries, a pause, a crowd, no query" {
     found light '.many | .counts[0] == "5,700" and .rows == 9 and .leftOut == 1
         and .folds == ["24 h without queries"] and .more == "show 40 more of 90 pairs"'
     found light '.many.note | startswith("699 queries are counted, but not shown, from 86474.985 to 86485.470 s.")
@@ -171,11 +171,11 @@ setup() {
     found light '.uneven.titles | .[0] == "overlapping, 334 queries from 0.000 s" and length == 6'
 }
 
-@test "texts on the axis do not overprint each other" {
+@test "texts on the axis do not overlap" {
     found light '.uneven | .texts > 0 and (.overprints | length == 41 and all(. == 0))'
 }
 
-@test "the scene and what plays it are in view at 1400 x 900" {
+@test "the scene and its controls are in view at 1400 x 900" {
     found light '.foldHidden == false and (.fold | length == 3 and all(. <= 900))'
 }
 

@@ -28,3 +28,13 @@ ended() {
         return 1
     }
 }
+
+# wrong COMMAND ARGUMENTS...: wrong usage of fmb is refused with one line and a hint.
+wrong() {
+    # shellcheck disable=SC2086
+    run --separate-stderr "$FMB" $1 "${@:2}" < /dev/null
+    ended 2
+    is ''
+    [[ $stderr == "fmb $1: "*$'\n'"Try 'fmb $1 --help'." ]]
+    [ "$(wc -l <<< "$stderr")" = 2 ]
+}

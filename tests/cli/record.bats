@@ -20,7 +20,7 @@ Try 'fmb record --help'." ]
     [ ! -e "$log" ]
 }
 
-@test "help" {
+@test "--help prints the usage" {
     run --separate-stderr "$FMB" record --help
     [ "$status" = 0 ]
     [ "$stderr" = '' ]
@@ -31,7 +31,7 @@ Try 'fmb record --help'." ]
     "$FMB" --help | grep -q '^  record  '
 }
 
-@test "wrong options" {
+@test "wrong options are refused with exit code 2" {
     wrong 'expected a FILE to write'
     wrong "expected one FILE, found 'b' too" "$log" b
     wrong "unknown option '--frobnicate'" --frobnicate "$log"
@@ -46,6 +46,6 @@ Try 'fmb record --help'." ]
     wrong "option '--channel' needs a value" --channel
 }
 
-@test "an invalid regular expression" {
+@test "an invalid regular expression is refused" {
     wrong '--channel: '"'('"' is no regular expression: Unmatched ( or \(' --channel '(' "$log"
 }

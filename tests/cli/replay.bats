@@ -61,7 +61,7 @@ xpath() {
 
 # ---- All the same -----------------------------------------------------------------------------
 
-@test "a log that says what is so" {
+@test "a log with right answers has no differences" {
     run --separate-stderr "$FMB" replay arm.log
     ended 0
     [ -z "$stderr" ]
@@ -75,7 +75,7 @@ xpath() {
     counts '.compute | .then.count == 72 and .now.count == 72 and .unit == "ns"'
 }
 
-@test "every kind of log" {
+@test "every kind of log has no differences" {
     for log in arm clients foreign refused blast moving; do
         replay $log.log
         counts '.different == 0 and .queries == .same + .busy + .unknown_body + .not_defined + .no_result'
@@ -97,7 +97,7 @@ xpath() {
 
 # ---- Differences ------------------------------------------------------------------------------
 
-@test "another verdict" {
+@test "an altered verdict is a difference" {
     edit --flip 3 --flip 4 arm.log
     run --separate-stderr "$FMB" replay spoiled.log
     ended 1
@@ -114,7 +114,7 @@ xpath() {
     counts '.differences[0].now.verdict == "touching" and .differences[0].log == "spoiled.log"'
 }
 
-@test "another number, and how near is near enough" {
+@test "an altered number is a difference beyond --tolerance" {
     edit --nudge 0 1e-9 moving.log
     replay spoiled.log
     ended 1
@@ -133,7 +133,7 @@ xpath() {
     ended 1
 }
 
-@test "a box without an end" {
+@test "a box with an infinite end is compared" {
     edit --nudge 0 inf moving.log
     for tolerance in 0 1; do
         replay --tolerance $tolerance spoiled.log
@@ -145,7 +145,7 @@ xpath() {
     [[ ${lines[0]} == *" box: x "*"..inf  y "*", now x "* ]]
 }
 
-@test "another gap, of a pair and of a scene" {
+@test "an altered gap of a pair and of a scene is a difference" {
     for n in $(seq 0 19); do
         edit --nudge "$n" 1e-9 apart.log
         replay spoiled.log
@@ -166,7 +166,7 @@ xpath() {
     counts '.different == 1 and .different_in.gap == 1 and .differences[0].channel == "FMB_SCENE_QUERY"'
 }
 
-@test "another certificate" {
+@test "an altered certificate is a difference" {
     edit --certify 2 '5 more <&"'"'> of it" blast.log
     replay spoiled.log
     ended 1
@@ -175,7 +175,7 @@ xpath() {
     ended 0
 }
 
-@test "another status" {
+@test "an altered status is a difference" {
     edit --refuse 2 9 --refuse 3 12345 moving.log
     replay spoiled.log
     ended 1
@@ -197,7 +197,7 @@ xpath() {
         ended 1
         counts '.different == 8 and ([.differences[].offset] | . == sort) and (.differences | length) == 8'
     done
-    # Which are told does not hang on it either.
+    # Which are listed does not depend on it either.
     for log in flipped delayed last; do
         replay --limit 3 $log.log
         ended 1
@@ -213,7 +213,7 @@ xpath() {
 
 # ---- What stands where -------------------------------------------------------------------------
 
-@test "results anywhere: later, all behind all queries, all before them" {
+@test "results match wherever they are: later, after all queries, before all queries" {
     for how in '--delay 1' '--delay 37' --last --first '--utime 5'; do
         # shellcheck disable=SC2086
         edit $how clients.log
@@ -222,7 +222,7 @@ xpath() {
     done
 }
 
-@test "two results, no result, a result of nobody" {
+@test "repeated, missing and unmatched results are counted" {
     edit --repeat 4 --repeat 50 arm.log
     replay spoiled.log
     ended 0
@@ -238,7 +238,7 @@ xpath() {
     counts '.queries == 70 and .unmatched_results == 2 and .results == 72'
 }
 
-@test "a second result that contradicts the first" {
+@test "a second result that contradicts the first is a difference" {
     edit --repeat 4 --flip 5 arm.log
     replay spoiled.log
     ended 1
@@ -250,7 +250,7 @@ xpath() {
     [ "$(xpath '//testsuite/@errors')" = 1 ]
 }
 
-@test "a second result in the golden that contradicts the first" {
+@test "a second golden result that contradicts the first is a difference" {
     edit --repeat 4 --flip 5 arm.log
     replay --golden spoiled.log arm.log
     ended 1
@@ -258,7 +258,7 @@ xpath() {
     [[ $stderr == *'spoiled.log: event '*': contradicts an earlier result of the same query' ]]
 }
 
-@test "several logs are one" {
+@test "several logs are read as one" {
     for at in 1 30 31 77 145; do
         "$EDIT" --events 0 $at clients.log a.log
         "$EDIT" --events $at 1000 clients.log b.log
@@ -277,7 +277,7 @@ xpath() {
     counts '[.differences[].log] == ["a.log", "b.log"]'
 }
 
-@test "what is wrong with one of several logs is told of that" {
+@test "damage of one of several logs is reported with its name" {
     local middle=$(($("$EDIT" --offset 77 arm.log) + 11))
     head -c $middle arm.log > a.log
     tail -c +$((middle + 1)) arm.log > b.log
@@ -291,7 +291,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [ "$(xpath 'count(//testsuite[3]//error)')" = 0 ]
 }
 
-@test "many logs" {
+@test "many logs are read as one" {
     for i in $(seq 0 145); do
         "$EDIT" --events $i $((i + 1)) arm.log part.$i.log
         parts+=("part.$i.log")
@@ -303,7 +303,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     counts '.same == 72'
 }
 
-@test "of ranges of time the sum is the whole" {
+@test "the counts of adjacent time ranges add up to those of the log" {
     for log in clients arm foreign; do
         sums() { jq -cs '[.[] | [.queries, .same, .busy, .unknown_body, .no_result, .results,
             .unmatched_results, .unreadable_queries, .unreadable_results]] | transpose | map(add)'; }
@@ -324,9 +324,9 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     counts '.queries > 0'
     local at=$output
     replay --from 0.200001 --to 0.21 arm.log
-    local behind=$output
+    local after=$output
     replay --from 0.2 --to 0.21 arm.log
-    [ "$(jq .queries <<< "$output")" = $(($(jq .queries <<< "$at") + $(jq .queries <<< "$behind"))) ]
+    [ "$(jq .queries <<< "$output")" = $(($(jq .queries <<< "$at") + $(jq .queries <<< "$after"))) ]
 }
 
 @test "a time range without queries is unusable: there is nothing to compare" {
@@ -357,7 +357,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     counts '.queries < 72 and .queries > 0'
 }
 
-@test "channels with a prefix" {
+@test "--prefix selects the channels of a prefix" {
     edit --prefix LAB_ arm.log
     replay spoiled.log
     ended 2
@@ -373,7 +373,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 
 # ---- The golden --------------------------------------------------------------------------------
 
-@test "golden results, there and back" {
+@test "golden results that were written compare equal" {
     for log in arm clients refused blast; do
         run "$FMB" replay --write-golden $log.golden $log.log
         ended 0
@@ -392,7 +392,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     ended 0
 }
 
-@test "golden results of other verdicts" {
+@test "golden results with other verdicts are differences" {
     "$FMB" replay --write-golden arm.golden arm.log
     "$EDIT" --flip 3 --flip 60 arm.golden flipped.golden
     replay --golden flipped.golden arm.log
@@ -404,7 +404,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     ended 0
 }
 
-@test "golden results in another order, too many and too few" {
+@test "golden results match in any order, and extra and missing ones are counted" {
     "$FMB" replay --write-golden arm.golden arm.log
     "$EDIT" --events 20 72 arm.golden a.log
     "$EDIT" --events 0 20 arm.golden b.log
@@ -522,7 +522,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 
 # ---- What is broken ----------------------------------------------------------------------------
 
-@test "a log that is cut off" {
+@test "a truncated log is read up to its end" {
     for lost in 1 27 28 29 300; do
         head -c -$lost arm.log > spoiled.log
         replay spoiled.log
@@ -532,7 +532,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     done
 }
 
-@test "a log with something else in it" {
+@test "foreign bytes in a log are damage" {
     edit --garbage 50 --garbage 3 --garbage 0 arm.log
     replay spoiled.log
     ended 2
@@ -541,14 +541,14 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [[ $stderr == *"offset $(($("$EDIT" --offset 3 arm.log) + 25)): "* ]]
 }
 
-@test "differences count more than damage" {
+@test "differences determine the exit code before damage" {
     edit --garbage 50 --flip 3 arm.log
     replay spoiled.log
     ended 1
     counts '.damages == 1 and .different == 1'
 }
 
-@test "many damages are counted, and not all named" {
+@test "many damages are counted, and the first are listed" {
     local garbage=()
     for n in $(seq 1 60); do garbage+=(--garbage $n); done
     edit "${garbage[@]}" arm.log
@@ -559,7 +559,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [[ $stderr == *'fmb: and 40 more of these' ]]
 }
 
-@test "no log at all: text, one byte, zeros, noise, a folder, a pipe, nothing there" {
+@test "files that are not logs are refused: text, one byte, zeros, noise, a folder, a pipe, a missing file" {
     echo 'this is no log' > text.log
     printf 'x' > byte.log
     head -c 100000 /dev/zero > zeros.log
@@ -579,7 +579,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     done
 }
 
-@test "an empty log, and one of others" {
+@test "logs without queries have nothing to compare" {
     : > empty.log
     replay empty.log
     ended 2
@@ -594,7 +594,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     counts '.other_events == 146'
 }
 
-@test "messages of another version" {
+@test "messages of another version are counted as unreadable" {
     edit --version 4 --version 7 arm.log # a query and a result
     replay spoiled.log
     ended 2
@@ -617,7 +617,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     done
 }
 
-@test "what is reported reaches the terminal as it is meant" {
+@test "reports are printed without control characters" {
     edit --certify 2 "$(printf '%%s%%n\e[31m')" blast.log || true # what the reader refuses
     replay spoiled.log
     [[ $stderr != *$'\e'* ]]
@@ -633,7 +633,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 
 # ---- JUnit -------------------------------------------------------------------------------------
 
-@test "JUnit: all the same" {
+@test "JUnit: a log without differences passes" {
     junit arm.log
     ended 0
     [ "$(xpath 'count(//testcase)')" = 3 ]
@@ -642,7 +642,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [ "$(xpath '//testsuite/@name')" = arm.log ]
 }
 
-@test "JUnit: differences, in the log where they are" {
+@test "JUnit: a difference is a failure of its log" {
     "$EDIT" --flip 3 --flip 60 arm.log flipped.log
     junit arm.log flipped.log arm.log
     ended 1
@@ -670,7 +670,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [[ $(xpath '//testcase/@classname') == *'"'"'"'<&>é€𝄞.log' ]]
 }
 
-@test "JUnit: more differences than are listed" {
+@test "JUnit: omitted differences are counted" {
     local flips=()
     for n in $(seq 0 300); do flips+=(--flip "$n"); done
     edit "${flips[@]}" blast.log
@@ -680,7 +680,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [ "$(xpath '//failure' | grep -c ^event)" = 100 ]
 }
 
-@test "JUnit that cannot be written" {
+@test "JUnit: a report that cannot be written is a failure" {
     run "$FMB" replay --junit /nowhere/report.xml arm.log
     ended 2
     [[ $output == *'fmb: /nowhere/report.xml: No such file or directory'* ]]
@@ -691,7 +691,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 
 # ---- The command -------------------------------------------------------------------------------
 
-@test "what is typed wrong" {
+@test "wrong options are refused with exit code 2" {
     for arguments in '' '--tolerance -1 arm.log' '--tolerance nan arm.log' '--tolerance x arm.log' \
         '--from -1 arm.log' '--from inf arm.log' '--limit -1 arm.log' '--frames 0 arm.log' '--frm 1 arm.log' \
         '--from 10 --to 5 arm.log' '--from 0.2 --to 0.2 arm.log' '--golden' '-p a/b arm.log' '--bus --frames 9 arm.log' '--speed 1 arm.log'; do
@@ -706,13 +706,13 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [[ $output == 'usage: fmb replay '* ]]
 }
 
-@test "output that cannot be written" {
+@test "output that cannot be written is a failure" {
     run bash -c '"$0" replay arm.log > /dev/full' "$FMB"
     ended 2
     [[ $output == *'fmb: standard output: No space left on device'* ]]
 }
 
-@test "a cache of one body" {
+@test "a cache of one body leaves queries open, and none different" {
     report_of --frames 1 arm.log > one
     jq -e '.different == 0 and .queries == .same + .unknown_body + .not_defined' one
 }

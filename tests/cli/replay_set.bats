@@ -8,25 +8,25 @@ setup() {
     cd "$BATS_TEST_DIRNAME/../.." || return
 }
 
-@test "all is as it was" {
+@test "the set replays without differences" {
     replays_the_set "$FMB_BUILD/fmb"
 }
 
-@test "all is as it was with plain C alone" {
+@test "the set replays without differences with plain C only" {
     replays_the_set "$FMB_BUILD/capped/fmb-plain"
 }
 
-@test "all is as it was with two lanes" {
+@test "the set replays without differences with two lanes" {
     need_set two
     replays_the_set "$FMB_BUILD/capped/fmb-two"
 }
 
-@test "all is as it was with AVX2" {
+@test "the set replays without differences with AVX2" {
     need_set avx2
     replays_the_set "$FMB_BUILD/capped/fmb-avx2"
 }
 
-@test "another answer is another one: with the results of another log nothing is as it was" {
+@test "the results of another log are differences" {
     run "$FMB_BUILD/fmb" replay --golden tests/logs/stack.golden tests/logs/arm.log
     [ "$status" != 0 ]
 }

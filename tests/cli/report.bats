@@ -53,7 +53,7 @@ well_formed() {
     ! command -v xmllint > /dev/null || xmllint --noout "$1"
 }
 
-@test "one page and one picture, whole, that load nothing" {
+@test "the report is one page and one picture that load nothing" {
     report
     ended 0
     [ "$output" = "$OUT/index.html" ]
@@ -77,7 +77,7 @@ well_formed() {
     well_formed "$BATS_TEST_TMPDIR/all.svg"
 }
 
-@test "a picture that is not well-formed is found" {
+@test "a picture that is not well-formed is detected" {
     for text in '<svg><g></svg></g>' '<svg><g a=1/></svg>' '<svg>a & b</svg>' '<svg><g></svg>'; do
         echo "$text" > "$BATS_TEST_TMPDIR/bad.svg"
         run well_formed "$BATS_TEST_TMPDIR/bad.svg"
@@ -85,7 +85,7 @@ well_formed() {
     done
 }
 
-@test "every method, family and section is there" {
+@test "the page has every method, family and section" {
     report
     ended 0
     jq -r '.cells[].methods[].name, (.grids, .instructions, .broad, .worst)[].name,
@@ -114,7 +114,7 @@ well_formed() {
     ended 0
     # Seven cells of 500 pairs, both ways round; fmb refuses two of them.
     jq -e '[.cells[].methods[] | select(.name == "certified") | .queries] | add == 7000' "$ACCURACY"
-    has "$OUT/index.html" 'Asked 7,000 times'
+    has "$OUT/index.html" '7,000 decisions of pairs'
     has "$OUT/speed-error.svg" 'certified: none wrong of 7,000'
     jq -e '[.cells[].methods[] | select(.name == "fmb")
             | .false_separated + .false_contact + .false_kind] | add == 811' "$ACCURACY"
@@ -122,7 +122,7 @@ well_formed() {
     has "$OUT/speed-error.svg" '16.2 % wrong'
 }
 
-@test "contacts: a large marker near contact, small ones of random pairs, and all numbers" {
+@test "contacts have large markers near contact, small ones of random pairs, and all numbers" {
     report
     ended 0
     sed -n '/^<section id=contacts>/,/^<.section>/p' "$OUT/index.html" > "$BATS_TEST_TMPDIR/contacts.html"
@@ -137,7 +137,7 @@ well_formed() {
     [ "$(grep -c '^<tr><td class=w>' "$BATS_TEST_TMPDIR/contacts.html")" = "$(jq '.contacts | length' "$BENCH")" ]
 }
 
-@test "what makes a missing report is said, and nothing is run" {
+@test "a missing report is named with its target of make, and nothing is run" {
     BENCH=$BATS_TEST_TMPDIR/none.json
     report
     ended 1
@@ -158,7 +158,7 @@ well_formed() {
     said "report.sh: $ACCURACY is no report: 'make accuracy' makes it anew"
 }
 
-@test "sections that the benchmark has not are left out" {
+@test "sections without measurements are left out" {
     jq '{bench, version, machine, cells}' fixture/bench.json > "$BATS_TEST_TMPDIR/bench.json"
     BENCH=$BATS_TEST_TMPDIR/bench.json
     report
@@ -167,7 +167,7 @@ well_formed() {
     has_none "$OUT/index.html" '<section id=(contacts|article|more|growth)>'
 }
 
-@test "the bus: every row that was measured, and its numbers" {
+@test "the bus has every row that was measured, and its numbers" {
     report
     ended 0
     sed -n '/^<section id=bus>/,/^<.section>/p' "$OUT/index.html" > "$BATS_TEST_TMPDIR/bus.html"
@@ -184,7 +184,7 @@ well_formed() {
     has "$BATS_TEST_TMPDIR/bus.html" "$(jq .status.bytes "$BUS") bytes together"
 }
 
-@test "a bus that was not measured is left out, one section alone is enough, a broken report is refused" {
+@test "a bus that was not measured is left out, one section is enough, a broken report is refused" {
     BUS=$BATS_TEST_TMPDIR/none.json
     report
     ended 0
@@ -203,7 +203,7 @@ well_formed() {
     said "report.sh: $BUS is no report: 'make bench-bus' makes it anew"
 }
 
-@test "a noisy machine, another machine and another version are said" {
+@test "a noisy machine, another machine and another version are reported" {
     jq '.machine.noisy = true | .machine.noise = 0.2 | .machine.cpu = "Other" | .version = "0"' \
         fixture/bench.json > "$BATS_TEST_TMPDIR/bench.json"
     BENCH=$BATS_TEST_TMPDIR/bench.json
@@ -214,7 +214,7 @@ well_formed() {
     has "$OUT/index.html" 'of different versions'
 }
 
-@test "a method that is never wrong, and was, is not called right" {
+@test "an exact method with a wrong answer is not called right" {
     jq '(.cells[0].methods[] | select(.name == "certified")).false_kind = 1' \
         fixture/accuracy.json > "$BATS_TEST_TMPDIR/accuracy.json"
     ACCURACY=$BATS_TEST_TMPDIR/accuracy.json

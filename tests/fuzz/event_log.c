@@ -1,7 +1,7 @@
-/* Any bytes, read as an event log: what is told covers each byte once, and is what a second reader
- * says, which has all of the file before it and looks at each place anew. In which pieces the file
- * comes makes no difference; from any place on the same is read; and a file that becomes shorter
- * ends what is read of it. */
+/* Any bytes, read as an event log: what is reported covers each byte once, and is what a second
+ * reader says, which has all of the file before it and looks at each place anew. In which pieces
+ * the file comes makes no difference; from any place on the same is read; and a file that becomes
+ * shorter ends what is read of it. */
 #include "fuzz.h"
 
 #include "log_pieces.h"
@@ -93,7 +93,7 @@ static const char *damage_text(const struct file *file, size_t at, size_t next)
                               : "an event that is cut off, or has wrong lengths";
 }
 
-/* ---- What is told ---- */
+/* ---- Reports ---- */
 
 static void check_event(const struct file *file, size_t at, const struct log_event *event)
 {

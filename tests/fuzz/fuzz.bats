@@ -85,7 +85,7 @@ finds() {
     finds mesh "isfinite(mesh->vertex[i][axis])"
 }
 
-@test "mesh finds bytes behind the end that are read" {
+@test "mesh finds bytes that are read beyond the end" {
     finds mesh-bytes "AddressSanitizer: heap-buffer-overflow"
 }
 
@@ -93,7 +93,7 @@ finds() {
     finds replay_log "queries == look->events[LOG_PAIR_QUERY] + look->events[LOG_SCENE_QUERY]"
 }
 
-@test "every plant is looked for" {
+@test "every planted fault has a test" {
     local plant
     for plant in tests/fuzz/planted/*.c; do
         plant=${plant##*/}

@@ -12,10 +12,10 @@ _Noreturn void fuzz_failed(const char *file, int line, const char *what)
 
 void *fuzz_room(size_t size)
 {
-    void *room = malloc(size);
-    if (!room && size > 0)
+    void *memory = malloc(size);
+    if (!memory && size > 0)
         fuzz_failed(__FILE__, __LINE__, "memory");
-    return room;
+    return memory;
 }
 
 uint8_t *fuzz_copy(const uint8_t *data, size_t size)

@@ -5,7 +5,7 @@
 #                        of each (10,000,000; of replay_log, each of which replays a log several
 #                        times, a hundredth), a tenth of that guided by values too, and a hundredth
 #                        with inputs of a datagram's size. Exit code 1 if anything was found
-#   fuzz.sh fuzz-afl     likewise with AFL++, FUZZ_SECONDS of each (60)
+#   fuzz.sh fuzz-afl     the same with AFL++, FUZZ_SECONDS of each (60)
 #   fuzz.sh fuzz-merge   makes tests/fuzz/corpus anew: the seeds, what has a name of its own there,
 #                        and the least that reaches all else that the corpus and what was fuzzed so
 #                        far reach
@@ -24,7 +24,7 @@ runs=${FUZZ_RUNS:-10000000}
 seconds=${FUZZ_SECONDS:-60}
 large=66000 # bytes: a little more than a datagram
 
-# Bytes of an input: most have room for what a target looks at, few for much more of it.
+# Bytes of an input: most suffice for what a target reads, few for much more of it.
 length_of() {
     case $1 in
     answer) echo 1280 ;; # the longest seed of a scene
@@ -58,7 +58,7 @@ libfuzzer() {
         $(options_of "$target") "$@"
 }
 
-# The numbers behind a word in the logs of a target: their sum, and the largest.
+# The numbers after a word in the logs of a target: their sum, and the largest.
 numbers_of() {
     sed -n "s/.*$2 *\([0-9][0-9]*\).*/\1/p" "$out/log/$1" "$out/log/$1".* 2> /dev/null
 }
@@ -188,7 +188,7 @@ write_seeds() {
     cp clients/demo/cube.json tests/cases/*.json "$out/seeds/scene_json"
 }
 
-# Of branches alone, not of how often each was taken: those would be hundreds of files.
+# Of branches only, not of how often each was taken: those would be hundreds of files.
 merge_one() {
     target=$1 corpus=tests/fuzz/corpus/$1 old=$out/merged/$1
     rm -rf "$old"

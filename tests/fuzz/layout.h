@@ -24,7 +24,6 @@
 #define LAYOUT_DEFINITION_QUERY "llllB"
 #define LAYOUT_DEFINITION "llllislO"
 #define LAYOUT_STATUS "llscSC"
-#define LAYOUT_NAMES "lcCCS"
 
 /* Whether an encoder of this type can have written the bytes. If so, the generated decoder reads
  * them safely; it reads out of bounds where a count is wrong. */

@@ -1,7 +1,7 @@
-/* Any bytes, read as a mesh, under a name that their number chooses: what is refused is told with a
- * place that is there, and nothing is left of it; what is read is a mesh, no larger than its bytes
- * can be, which written and read again has the same bits. What is a number, and which, is what
- * strtod() says. */
+/* Any bytes, read as a mesh, under a name that their number chooses: what is refused is reported
+ * with a place that is there, and nothing is left of it; what is read is a mesh, no larger than its
+ * bytes can be, which written and read again has the same bits. What is a number, and which, is
+ * what strtod() says. */
 #include "fuzz.h"
 
 #include "mesh.h"
@@ -20,7 +20,7 @@ static bool same_bits(double a, double b)
     return memcmp(&a, &b, sizeof a) == 0 || (isnan(a) && isnan(b));
 }
 
-/* The text that is taken for a number, alone; or where none is, that there is none for strtod(). */
+/* The text that is taken for a number; or where none is, that there is none for strtod(). */
 static void check_number(const uint8_t *at)
 {
     double value;
@@ -111,7 +111,7 @@ static void check_written(const struct mesh *mesh)
     free(bytes);
 }
 
-/* ---- STL alone, as it is written ------------------------------------------------------------- */
+/* ---- STL as it is written ------------------------------------------------------------- */
 
 /* Each coordinate is the float at its place, and no two vertices are the same. */
 static void check_stl(const struct mesh *mesh, const uint8_t *bytes)

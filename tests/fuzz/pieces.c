@@ -16,10 +16,10 @@ void pieces_begin(const uint8_t *bytes, size_t size, size_t piece)
     piece_max = piece;
 }
 
-static ssize_t read_piece(int fd, void *out, size_t room)
+static ssize_t read_piece(int fd, void *out, size_t capacity)
 {
     (void) fd;
-    size_t count = room < piece_max ? room : piece_max;
+    size_t count = capacity < piece_max ? capacity : piece_max;
     if (count > left)
         count = left;
     if (count > 0)
@@ -29,7 +29,7 @@ static ssize_t read_piece(int fd, void *out, size_t room)
     return (ssize_t) count;
 }
 
-/* And with room for so much only, so that a sanitizer sees what is read or written behind it. */
+/* In memory of that size, so that a sanitizer sees what is read or written beyond it. */
 #define allocate_grow(memory, capacity, needed, size) \
     allocate_grow(memory, capacity, (needed) -READ_BYTES + piece_max, size)
 #define read read_piece

@@ -28,7 +28,7 @@ struct placement seeds_body(int64_t id, int shape, int dim, const double *compon
 
 struct handle seeds_handle(const struct placement *placement);
 
-/* The same body by handle alone. */
+/* The same body by handle only. */
 struct placement seeds_by_handle(struct placement placement);
 
 /* Sequence numbers ascend from call to call. */

@@ -315,7 +315,7 @@ static void damage_string(struct damage *damage, size_t at)
     }
 }
 
-/* Returns the place behind a layout that begins at a place. */
+/* Returns the end of a layout that begins at an offset. */
 static size_t damage_layout(struct damage *damage, const char *layout, size_t at);
 
 /* Each of the fields is a count and as many things. */

@@ -113,7 +113,7 @@ static void set_arm(const struct pose *pose, struct solid out[LINKS])
     }
 }
 
-/* ---- Asking ---- */
+/* ---- Queries ---- */
 
 static void query_scene(struct log_client *log_client, const struct solid *solid)
 {

@@ -1,5 +1,5 @@
 /* Clients as a service has them: several at once, whose numbers and bodies run into each other; one
- * that asks again; a service that is busy, forgets bodies, and is started anew. */
+ * that repeats queries; a service that is busy, forgets bodies, and is started anew. */
 #include "kinds.h"
 
 #include "log_client.h"
@@ -103,7 +103,7 @@ static void query_again(struct clients *clients, struct instance *instance, bool
         instance_query_pair(instance, &query, &result);
 }
 
-/* Until there is room: the same number again. */
+/* Until there is capacity: the same number again. */
 static void be_turned_away(struct clients *clients, struct instance *instance)
 {
     struct pair_query query = pair_of(1, 3, 3, 4);
@@ -121,7 +121,7 @@ static void be_turned_away(struct clients *clients, struct instance *instance)
     instance_query_scene(instance, &clients->scene, &clients->scene_result);
 }
 
-/* Never heard on the way; then some that the logger did not see either. */
+/* Lost on the way; then some that the logger did not receive either. */
 static void get_lost(struct clients *clients, struct instance *instance)
 {
     struct pair_query query = pair_of(0, 2, 5, 6);

@@ -1,7 +1,7 @@
 /* A crowd in the plane, of boxes and triangles turned every way, most of them moving: those who
- * walk across those who stand, all of them at once, and neighbours listed. Two answers have no room
- * for all that they find, or are broken off where the service has others waiting: then the query is
- * queried again from where the answer ended. */
+ * walk across those who stand, all of them at once, and neighbours listed. Two answers have no
+ * space for all that they find, or are broken off where the service has others waiting: then the
+ * query is queried again from where the answer ended. */
 #include "kinds.h"
 
 #include "log_client.h"
@@ -56,7 +56,7 @@ static void walk(struct crowd *crowd)
             crowd->solid[i].origin[axis] += step_s * crowd->solid[i].velocity[axis];
 }
 
-/* ---- Asking ---- */
+/* ---- Queries ---- */
 
 /* So many of those who walk, from the first, and of those who stand. */
 static void begin_query(struct crowd *crowd, int32_t which, int32_t want, int walkers, int standing)

@@ -23,7 +23,7 @@ enum { MADE = 0, FAILED = 1, USAGE = 2 };
 static const struct kind kinds[] = {
     {"arm", "a robot arm that swings past a table with parts on it", kind_arm},
     {"stack", "towers that fall and come to rest, all pairs of them", kind_stack},
-    {"crowd", "a crowd in the plane, asked across, listed and all at once", kind_crowd},
+    {"crowd", "a crowd in the plane, across, listed and all at once", kind_crowd},
     {"hard-2d", "the campaigns' hard pairs in 2D", kind_hard_plane},
     {"hard-3d", "the campaigns' hard pairs in 3D, at rest", kind_hard_space},
     {"hard-3d-moving", "the campaigns' hard pairs in 3D, moving", kind_hard_moving},
@@ -46,10 +46,10 @@ static const char usage[] =
     "  --blast WHAT N  N different queries, of pairs or of scenes of 100 bodies\n"
     "  --seed N        of what is drawn (1)\n"
     "  --bodies N      pairs of N bodies, half of them 2D (8192)\n"
-    "  --dim 2|3       pairs of this dimension alone\n"
-    "  --static        pairs at rest alone\n"
-    "  --moving        pairs that move alone\n"
-    "  --whole         pairs of whole bodies alone\n"
+    "  --dim 2|3       pairs of this dimension only\n"
+    "  --static        pairs at rest only\n"
+    "  --moving        pairs that move only\n"
+    "  --whole         pairs of whole bodies only\n"
     "  --by-handle     pairs by handle, as soon as it is known\n"
     "  --box           pairs with boxes\n"
     "  --certificate   pairs with certificates\n"

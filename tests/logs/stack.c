@@ -115,7 +115,7 @@ static void set_placements(const struct stack *stack, int step, struct scene_que
         }
 }
 
-/* ---- Asking ---- */
+/* ---- Queries ---- */
 
 static void query_scene(struct log_client *log_client, const struct stack *stack, int step)
 {

@@ -19,7 +19,7 @@ struct tape {
     enum tape_order order;
     int64_t utime;
     struct event *event; /* [count], that are not yet written */
-    size_t count, room;
+    size_t count, capacity;
     size_t put; /* events so far, dropped ones too */
     bool failed;
 };
@@ -71,14 +71,14 @@ static void write_event(struct tape *tape, int64_t utime, const char *channel, c
 
 static bool make_room(struct tape *tape)
 {
-    if (tape->count < tape->room)
+    if (tape->count < tape->capacity)
         return true;
-    const size_t room = tape->room ? 2 * tape->room : 64;
-    struct event *event = realloc(tape->event, room * sizeof *event);
+    const size_t capacity = tape->capacity ? 2 * tape->capacity : 64;
+    struct event *event = realloc(tape->event, capacity * sizeof *event);
     if (!event)
         return false;
     tape->event = event;
-    tape->room = room;
+    tape->capacity = capacity;
     return true;
 }
 

@@ -4,6 +4,8 @@
  * is. */
 #include "bumpy.h"
 
+#include "allocate.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,16 +22,6 @@ struct grid {
     unsigned *index[2];    /* [k < 0][(i + n) (2 n + 1) + j + n], of the vertex there */
     struct mesh *mesh;
 };
-
-static void *room(size_t count, size_t size)
-{
-    void *memory = malloc(count * size);
-    if (!memory) {
-        fprintf(stderr, "make-mesh: out of memory\n");
-        exit(1);
-    }
-    return memory;
-}
 
 /* From -1 to 1, in 2^21 steps. */
 static double draw(uint64_t *state)
@@ -134,10 +126,10 @@ void bumpy_make(unsigned faces, uint64_t seed, struct mesh *out)
         for (int axis = 0; axis < 3; axis++)
             grid.wave[w][axis] = 0.57 * draw(&seed); /* 0.57^2 * 3 < 1 */
     *out = (struct mesh){0};
-    out->vertex = room(4 * n * n + 2, sizeof *out->vertex);
-    out->face = room(8 * n * n, sizeof *out->face);
+    out->vertex = allocate(4 * n * n + 2, sizeof *out->vertex);
+    out->face = allocate(8 * n * n, sizeof *out->face);
     for (int below = 0; below < 2; below++)
-        grid.index[below] = room((2 * n + 1) * (2 * n + 1), sizeof *grid.index[below]);
+        grid.index[below] = allocate((2 * n + 1) * (2 * n + 1), sizeof *grid.index[below]);
     add_vertices(&grid);
     for (int octant = 0; octant < 8; octant++) {
         const int sign[3] = {octant & 1 ? -1 : 1, octant & 2 ? -1 : 1, octant & 4 ? -1 : 1};

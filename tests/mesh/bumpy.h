@@ -12,8 +12,8 @@ enum { BUMPY_FACES_MIN = 8, BUMPY_FACES_MAX = 100000000 };
  * two faces, in opposite directions; seen from outside corners go round against the clock.
  * Coordinates are multiples of 1e-6 as near as doubles have them, from -1.3 to 1.3: "%.6f" writes
  * what reads back as the same double. They are the same on every machine: of additions, products,
- * quotients and square roots alone, which are all rounded alike. Ends the program where there is no
- * memory. */
+ * quotients and square roots only, which are rounded the same everywhere. Ends the program where
+ * there is no memory. */
 void bumpy_make(unsigned faces, uint64_t seed, struct mesh *out);
 
 #endif

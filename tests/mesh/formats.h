@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-/* Text has six digits behind the point, binary PLY doubles, binary STL the floats nearest to them.
+/* Text has six digits after the point, binary PLY doubles, binary STL the floats nearest to them.
  */
 extern const struct format {
     const char *name; /* "ply-ascii" */

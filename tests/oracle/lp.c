@@ -15,7 +15,7 @@
  * only those at a bound ever bar the way, each by this one bound, so complementing those at 1
  * once and for all shows the steps to be those of the ordinary simplex method on variables
  * >= 0. With Bland's rule (of the columns that may enter, the variable of least number; of the
- * rows that may leave, likewise) such a sequence cannot return to a basis, hence it ends. */
+ * rows that may leave) such a sequence cannot return to a basis, hence it ends. */
 #include "lp.h"
 
 #include <assert.h>

@@ -1,4 +1,4 @@
-/* A small exact linear programme: the engine room of the oracle.
+/* A small exact linear programme: the core of the oracle.
  *
  *     minimise  cost . z   subject to   M z = q,   0 <= z_j <= 1 for every j,
  *

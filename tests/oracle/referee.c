@@ -98,7 +98,7 @@ static void assert_consistent(const struct never_wrong *method, const struct que
 
     decide(method, question, pair, 0, &boxless);
     if (boxless.has_box)
-        fail_of(method, question, "a box that nobody wanted");
+        fail_of(method, question, "a box that was not requested");
     boxless.has_box = answer->has_box;
     memcpy(boxless.box, answer->box, sizeof boxless.box);
     if (!referee_same(answer, &boxless))

@@ -309,8 +309,8 @@ static void add_uneven_pair(struct sample_log *log, int64_t id)
     sample_pair(log, &query);
 }
 
-/* Bodies 1 and 2 overlap always: asked 200 times at steps of 0.01 to 10.24 s, with the pair of 3
- * and 4 in between; not while that is asked 300 times; then in five bursts an hour apart. */
+/* Bodies 1 and 2 overlap always: queried 200 times at steps of 0.01 to 10.24 s, with the pair of 3
+ * and 4 in between; not while that is queried 300 times; then in five bursts an hour apart. */
 static void add_uneven(struct sample_log *log)
 {
     sample_begin(log, "uneven.log");

@@ -1,7 +1,7 @@
 /* How fast logs are gone through, beside what they cannot be faster than:
  *
- *   scenes  fmb replay of a log of scenes, in pairs a second, beside fmb_decide_batch() alone on
- * the same pairs, whose frames have been prepared before; pairs   fmb replay of a log of pair
+ *   scenes  fmb replay of a log of scenes, in pairs a second, beside fmb_decide_batch() by itself
+ * on the same pairs, whose frames have been prepared before; pairs   fmb replay of a log of pair
  * queries, in queries a second; info    fmb log info, in bytes a second, beside cat of the same
  * file to /dev/null.
  *
@@ -31,7 +31,7 @@ static _Noreturn void fail(const char *what)
     exit(1);
 }
 
-/* ---- The batch alone ---- */
+/* ---- The batch by itself ---- */
 
 /* A scene of the log, ready for the batch. */
 struct scene {

@@ -26,16 +26,16 @@ static const char usage[] =
     "  --drop-query N, --repeat-query N  query N is not there, or twice\n"
     "  --client N, --sequence N  client ids or sequence numbers are larger by N\n"
     "  --delay K          results come K events later\n"
-    "  --last, --first    all results come behind all queries, or before them\n"
+    "  --last, --first    all results come after all queries, or before them\n"
     "  --utime N          result N does not echo the utime of its query\n"
-    "  --clock N US       from event N on the clock of the log is behind by so much\n"
+    "  --clock N US       from event N on the clock of the log is late by so much\n"
     "  --version N        event N is of another message type\n"
     "  --old V N          event N is a pair query of version V, 1 or 2\n"
     "  --shorten N        event N lacks its last byte\n"
     "  --garbage N        before event N stands what is no event\n"
     "  --prefix P         channels begin with P\n"
     "  --rename FROM TO   events on channel FROM are on TO\n"
-    "  --events A B       events from A on and before B alone\n";
+    "  --events A B       events from A on and before B only\n";
 
 static _Noreturn void give_up(const char *what)
 {
@@ -56,10 +56,10 @@ struct event {
 static struct event *event;
 static size_t count;
 
-/* All memory that was asked for, to be freed at the end. */
+/* All memory that was allocated, to be freed at the end. */
 struct block {
     struct block *next;
-    max_align_t room[];
+    max_align_t memory[];
 };
 
 static struct block *blocks;
@@ -71,7 +71,7 @@ static void *room_for(size_t size)
         give_up("out of memory");
     block->next = blocks;
     blocks = block;
-    return block->room;
+    return block->memory;
 }
 
 static void free_all(void)

@@ -22,7 +22,7 @@ def lead:
     | never_wrong as $never
     | [.totals[] | select(.wrong > 0)
        | "<code>\(.name)</code> was wrong in \(.share | share_text)"] as $wrong
-    | "<p class=lead>Asked \($queries | grouped) times about pairs that are hard for a reason, "
+    | "<p class=lead>In \($queries | grouped) decisions of pairs that are hard for a reason, "
       + (if $never == [] then "no method was always right"
          else ($never | map("<code>\(.)</code>") | join(" and "))
               + (if ($never | length) == 1 then " was" else " were" end) + " never wrong" end)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # report.sh BENCH.json ACCURACY.json OUT_DIR [BUS.json]: joins what 'make bench', 'make accuracy' and,
 # if the file is there, 'make bench-bus' wrote into one page, OUT_DIR/index.html, and its main picture
-# alone, OUT_DIR/speed-error.svg. Needs jq.
+# only, OUT_DIR/speed-error.svg. Needs jq.
 set -eu
 
 usage='usage: report.sh BENCH.json ACCURACY.json OUT_DIR [BUS.json]'

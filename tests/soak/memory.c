@@ -1,7 +1,7 @@
 /* Does the service's memory stay as it is, whatever is sent to it? The bus is that of
  * LCM_DEFAULT_URL.
  *
- * soak-memory ids PID COUNT: asks scenes of so many bodies in all, each of them new.
+ * soak-memory ids PID COUNT: queries scenes of so many bodies in all, each of them new.
  * soak-memory channels PID COUNT: publishes on so many channels that are none of the service's,
  * each of them new, among queries.
  *
@@ -85,7 +85,7 @@ static bool send_ids(struct soak *soak, int64_t done, int64_t count)
     return true;
 }
 
-/* A query now and then: its answer tells that what came before it was taken in. */
+/* A query from time to time: its answer shows that earlier messages were read. */
 static bool send_channels(struct soak *soak, int64_t done, int64_t count)
 {
     set_bodies(soak, 1);

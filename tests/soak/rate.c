@@ -1,4 +1,4 @@
-/* A client that asks pairs at a given rate, whether they are answered or not, and asks again what
+/* A client that queries pairs at a given rate, whether they are answered or not, and repeats what
  * is not: is none lost, and none wrong? The bus is that of LCM_DEFAULT_URL.
  *
  * soak-rate RATE SECONDS: RATE queries a second. Prints a line of JSON. Exit code 0: each got its
@@ -98,7 +98,7 @@ static void draw(struct soak *soak)
     }
 }
 
-/* ---- Asking ---- */
+/* ---- Queries ---- */
 
 static void send_query(struct soak *soak, struct under_way *slot, int64_t now)
 {

@@ -5,7 +5,7 @@
  * 16 bytes below 2^32: in 32 bits offset plus size wraps and seems to fit, in 64 bits the bytes go
  * 4 GB beyond the message.
  *
- * crash-liblcm empty CHANNEL: headers alone, short ones without a channel's end: negative sizes.
+ * crash-liblcm empty CHANNEL: only headers, short ones without a channel's end: negative sizes.
  *
  * crash-liblcm huge CHANNEL: a fragment of a message of 256 MB.
  *
@@ -79,7 +79,7 @@ static struct sockaddr_in bus_address(void)
     return address;
 }
 
-/* A socket that sends to the bus of this host alone. */
+/* A socket that sends to the bus of this host only. */
 static int open_bus(void)
 {
     struct sockaddr_in address = bus_address();

@@ -4,7 +4,7 @@ load service
 
 bats_require_minimum_version 1.5.0
 
-@test "it says when it is ready, and ends well on SIGTERM and SIGINT" {
+@test "the daemon reports when it is ready, and exits with 0 on SIGTERM and SIGINT" {
     for signal in TERM INT; do
         start_fmbd
         grep -q 'ready: answers FMB_PAIR_QUERY on FMB_PAIR_RESULT, FMB_SCENE_QUERY on FMB_SCENE_RESULT, FMB_DEFINITION_QUERY on FMB_DEFINITION, heartbeat on FMB_STATUS' "$fmbd_log"
@@ -12,7 +12,7 @@ bats_require_minimum_version 1.5.0
     done
 }
 
-@test "SIGTERM under load ends it well, and at once" {
+@test "SIGTERM under load ends the daemon at once with 0" {
     start_fmbd
     random_scene 3 900 > "$BATS_TEST_TMPDIR/scene.json"
     for client in 1 2; do
@@ -27,7 +27,7 @@ bats_require_minimum_version 1.5.0
     [ $((${EPOCHREALTIME/./} - begin)) -lt 2000000 ]
 }
 
-@test "a client that asks before the service is there gets its answers" {
+@test "a client that queries before the service starts gets its answers" {
     random_scene 2 20 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query --json --timeout 0.2 --retries 50 "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus" 3>&- &
     client=$!
@@ -39,7 +39,7 @@ bats_require_minimum_version 1.5.0
     stop_fmbd
 }
 
-@test "a service that dies and comes back costs no answer" {
+@test "no answer is lost when the service dies and restarts" {
     random_scene 3 400 > "$BATS_TEST_TMPDIR/scene.json"
     start_fmbd
     "$FMB" query --json --box --timeout 0.2 --retries 50 "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus" 3>&- &
@@ -55,7 +55,7 @@ bats_require_minimum_version 1.5.0
     stop_fmbd
 }
 
-@test "nobody there: exit code 1, and what to run" {
+@test "without a service a query fails with exit code 1 and a hint" {
     random_scene 2 3 > "$BATS_TEST_TMPDIR/scene.json"
     run "$FMB" query --timeout 0.1 --retries 1 "$BATS_TEST_TMPDIR/scene.json"
     [ "$status" = 1 ]
@@ -70,7 +70,7 @@ many_scenes() {
     for seed in $(seq "$1"); do random_scene 2 3 "$seed" | tr -d '\n'; echo; done
 }
 
-@test "without a service, only the first of many scenes is waited for" {
+@test "without a service, only the first of many scenes takes a timeout" {
     many_scenes 200 > "$BATS_TEST_TMPDIR/scenes.json"
     run --separate-stderr timeout 60 "$FMB" query --json --timeout 0.5 --retries 1 "$BATS_TEST_TMPDIR/scenes.json"
     [ "$status" = 1 ]
@@ -79,7 +79,7 @@ many_scenes() {
     grep -q 'no fmbd answered .* within 1 s, and none sends a heartbeat: later scenes are not answered$' <<< "$stderr"
 }
 
-@test "a query goes on when the service starts late, and when it is restarted" {
+@test "a query continues when the service starts late, and when it is restarted" {
     many_scenes 40 > "$BATS_TEST_TMPDIR/scenes.json"
     "$FMB" query --json --local "$BATS_TEST_TMPDIR/scenes.json" > "$BATS_TEST_TMPDIR/local"
     "$FMBD" 2> "$BATS_TEST_TMPDIR/log" 3>&- &
@@ -104,7 +104,7 @@ many_scenes() {
     stop_fmbd
 }
 
-@test "capacity for one frame: every answer is right all the same" {
+@test "with capacity for one frame every answer is right" {
     start_fmbd --frames 1
     random_scene 3 20 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query --json --box "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
@@ -116,12 +116,12 @@ many_scenes() {
     [ "$(jq -c '[.bodies, .misses, .evictions]' "$BATS_TEST_TMPDIR/status")" = '[1,20,0]' ]
     "$FMB" query --json --certificate "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
     "$FMB" query --json --certificate --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
-    # All but the first and the last are the first of some pair that is queried alone.
+    # All but the first and the last are the first of some single pair.
     [ "$(status_of evictions)" -ge 18 ]
     stop_fmbd
 }
 
-@test "the heartbeat tells what was done" {
+@test "the heartbeat counts the work of the service" {
     start_fmbd --frames 500
     random_scene 2 5 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query "$BATS_TEST_TMPDIR/scene.json"
@@ -132,15 +132,18 @@ many_scenes() {
         .frame_capacity == 500 and .misses == 5 and .hits == 5 * (.scenes - 1)' "$BATS_TEST_TMPDIR/status"
     "$FMB" query --certificate "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" status --json > "$BATS_TEST_TMPDIR/status"
-    jq -e '(.pairs - 10 * .scenes) as $alone | $alone >= 10 and .received == .scenes + $alone and
+    jq -e '(.pairs - 10 * .scenes) as $single | $single >= 10 and .received == .scenes + $single and
         .malformed == 0 and .received == .answered + .unsent and
         .answered == ([.results[]] | add)' "$BATS_TEST_TMPDIR/status"
     run "$FMB" status
     [ "$status" = 0 ]
+    for row in received scenes definitions answered 'pairs decided' 'not sent' malformed waiting; do
+        grep -qE "^ +$row +[0-9,]+" <<< "$output"
+    done
     stop_fmbd
 }
 
-@test "started as root, it becomes nobody, or the user that is named" {
+@test "started as root, the daemon takes the id of nobody, or of the user given" {
     [ "$(id -u)" = 0 ] && [ "$(wc -l < /proc/self/uid_map)" = 1 ] &&
         [ "$(awk '{ print $3 }' /proc/self/uid_map)" -gt 65534 ] || skip "needs root and its ids"
     for user in nobody daemon; do
@@ -157,7 +160,7 @@ many_scenes() {
     [[ "$output" == *"--user"* ]]
 }
 
-@test "where an id does not exist, it warns once and goes on" {
+@test "where an id does not exist, the daemon warns once and continues" {
     [ "$FMB_NETNS" = own ] || skip "needs namespaces"
     unshare -rn true || skip "needs user namespaces"
     unshare -rn sh -c 'ip link set lo up; ip link set lo multicast on
@@ -167,14 +170,14 @@ many_scenes() {
     grep -q ready "$BATS_TEST_TMPDIR/err"
 }
 
-@test "a filter of system calls is in place" {
+@test "a filter of system calls is installed" {
     case $FMB_BUILD in *asan*) skip "sanitizers need other calls" ;; esac
     start_fmbd
     [ "$(awk '/^Seccomp:/ { print $2 }' "/proc/$fmbd/status")" = 2 ]
     stop_fmbd
 }
 
-@test "a service manager is told when it is ready, alive and stopping" {
+@test "a service manager is notified when the daemon is ready, alive and stopping" {
     "$FMB_BUILD/fake-peer" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/received" 3>&- &
     started="${started-} $!"
     wait_until test -S "$BATS_TEST_TMPDIR/notify"
@@ -187,7 +190,7 @@ many_scenes() {
     wait_until stopping
 }
 
-@test "heartbeats and signs of life come while there is always work" {
+@test "heartbeats and watchdog notifications are sent under constant load" {
     "$FMB_BUILD/fake-peer" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/received" 3>&- &
     started="${started-} $!" clients=
     wait_until test -S "$BATS_TEST_TMPDIR/notify"
@@ -211,7 +214,7 @@ many_scenes() {
     stop_fmbd
 }
 
-@test "heartbeats come while queries arrive faster than they are answered" {
+@test "heartbeats are sent while queries arrive faster than they are answered" {
     start_fmbd
     "$FMB_BUILD/fake-peer" flood scene_query 101 60 > /dev/null 3>&- &
     flood=$!
@@ -225,7 +228,7 @@ many_scenes() {
     stop_fmbd
 }
 
-@test "no route for multicast: two lines that say what to run" {
+@test "without a route for multicast the daemon prints the command that adds one" {
     unshare -rn true || skip "needs a network without routes"
     run unshare -rn "$FMBD" --lcm-url udpm://239.8.7.6:7667
     [ "$status" = 1 ]
@@ -234,7 +237,7 @@ many_scenes() {
     [[ "${lines[1]}" == *"ip route add 224.0.0.0/4 dev lo"* ]]
 }
 
-@test "a bus that is none: exit code 1 and a line" {
+@test "an invalid bus is refused with exit code 1 and one line" {
     for url in nonsense foo://bar tcpq://127.0.0.1:1; do
         run timeout 10 "$FMBD" --lcm-url $url
         [ "$status" = 1 ]
@@ -242,7 +245,7 @@ many_scenes() {
     done
 }
 
-@test "a reader of stderr that went away, or does not read, does not stop it" {
+@test "a closed or stalled reader of stderr does not stop the daemon" {
     mkfifo "$BATS_TEST_TMPDIR/pipe"
     for reader in gone asleep; do
         # The reader opens the pipe, so that the daemon can; then it leaves, or sleeps.
@@ -256,7 +259,7 @@ many_scenes() {
         fmbd=$!
         started="$started $fmbd"
         wait_until "$FMB" status --timeout 0.2
-        # Fill the pipe to the brim where nobody reads.
+        # Fill the pipe to the brim without a reader.
         [ $reader = gone ] || timeout 1 dd if=/dev/zero of="$BATS_TEST_TMPDIR/pipe" bs=4096 2> /dev/null || true
         "$FMB_BUILD/fake-peer" FMB_PAIR_QUERY status
         [ "$(status_of malformed)" -gt 100 ]
@@ -264,7 +267,7 @@ many_scenes() {
     done
 }
 
-@test "a second service on the same channels is told of" {
+@test "a second service on the same channels is reported" {
     start_fmbd
     one=$fmbd one_log=$fmbd_log
     start_fmbd
@@ -275,13 +278,13 @@ many_scenes() {
     stop_fmbd
 }
 
-@test "a bus without a port: refused at once" {
+@test "a bus without a port is refused at once" {
     run timeout 5 "$FMBD" --lcm-url udpm://239.255.76.67
     [ "$status" = 1 ]
     [[ "$output" == *"udpm://239.255.76.67:7667"* ]]
 }
 
-@test "wrong options: exit code 2 and a hint; help and version: 0" {
+@test "wrong options are refused with exit code 2 and a hint; help and version exit with 0" {
     for options in --nonsense --frames=0 --frames=-1 --frames=1x --frames=99999999999999999999 --bodies=5 --unfiltered \
         '--prefix=a.*' extra; do
         run "$FMBD" "$options"

@@ -63,15 +63,15 @@ answers() {
     stop_fmbd
 }
 
-@test "Lua: two posed bodies" {
+@test "Lua: two posed bodies have their answer" {
     answers lua
 }
 
-@test "Java: two posed bodies" {
+@test "Java: two posed bodies have their answer" {
     answers java
 }
 
-@test "Lua: bodies whole, then by the handles of the result" {
+@test "Lua: bodies are sent whole, then by the handles of the result" {
     need lua
     start_fmbd
     [ "$(in_lua tests/system/handles.lua | tr '\t\n' ' ,')" = '0 2,0 3,unknown body,' ]
@@ -79,7 +79,7 @@ answers() {
     stop_fmbd
 }
 
-@test "C over plain LCM: a pair, and the largest scene" {
+@test "C over plain LCM: a pair and the largest scene have their answers" {
     start_fmbd
     run "$FMB_BUILD/plain"
     [ "$status" = 0 ]
@@ -89,7 +89,7 @@ status 0, 74 verdicts, 349 handles" ]
     stop_fmbd
 }
 
-@test "Java: the largest scene, and a page of definitions" {
+@test "Java: the largest scene and a page of definitions have their answers" {
     need java
     start_fmbd
     timeout 60 java -Djava.net.preferIPv4Stack=true \
@@ -175,11 +175,11 @@ fails() {
     [ "${lines[-1]}" = 'no fmbd answered' ]
 }
 
-@test "Lua: no service" {
+@test "Lua: a missing service is reported" {
     fails lua
 }
 
-@test "Java: no service" {
+@test "Java: a missing service is reported" {
     fails java
 }
 

@@ -16,7 +16,7 @@ setup() {
     export PKG_CONFIG_PATH=$root/lib/pkgconfig LD_LIBRARY_PATH=$root/lib
 }
 
-@test "the examples query scenes: compiled against what is installed" {
+@test "the examples build against the installed library, and query scenes" {
     for example in scene robot; do
         $compiler -std=c99 -Wall -Wextra -Werror $flags clients/examples/$example.c \
             $(pkg-config --static --cflags --libs fmb-client) -lm -o "$BATS_TEST_TMPDIR/$example"
@@ -58,13 +58,13 @@ END
         $(pkg-config --cflags fmb-client) || ! command -v g++
 }
 
-@test "the client's library shows its own names alone" {
+@test "the client library exports its own names only" {
     nm -g --defined-only "$root/lib/libfmb-client.a" | awk 'NF == 3 { print $3 }' > "$BATS_TEST_TMPDIR/names"
     grep -qx fmb_client_query "$BATS_TEST_TMPDIR/names"
     [ -z "$(grep -v '^fmb_client_\|asan' "$BATS_TEST_TMPDIR/names")" ]
 }
 
-@test "shared libraries have a soname, and show the names of their headers alone" {
+@test "shared libraries have a soname, and export the names of their headers only" {
     for name in fmb fmb-client; do
         file=$root/lib/lib$name.so
         [ "$(readlink "$file")" = lib$name.so.0 ]
@@ -101,7 +101,7 @@ END
 }
 
 # Options of make are those of setup().
-@test "a prefix may hold a space, % and &, or be relative; uninstall removes all that was installed" {
+@test "a prefix may contain a space, % and &, or be relative, and uninstall removes all files" {
     printf '#include <fmb_client.h>\nint main(void) { return !fmb_client_prefix_ok("a"); }\n' \
         > "$BATS_TEST_TMPDIR/small.c"
     for prefix in "$BATS_TEST_TMPDIR/a %n & prefix" "$(realpath --relative-to=. "$BATS_TEST_TMPDIR")/relative"; do

@@ -54,27 +54,27 @@ prints_what_it_shows() {
     matches "$BATS_TEST_TMPDIR/actual" "$BATS_TEST_TMPDIR/expected"
 }
 
-@test "the README's commands print what it shows, and draw its picture" {
+@test "the commands of the README print what it shows, and draw its picture" {
     prints_what_it_shows README.md 6
     grep -q '](clients/demo/table.svg)' README.md
     grep -q '^\$ cmp build/table.svg clients/demo/table.svg$' README.md
 }
 
-@test "so do those of the service's page" {
+@test "the commands of the page of the service print what it shows" {
     prints_what_it_shows service/README.md 3
 }
 
-@test "so do those of the clients' page" {
+@test "the commands of the page of the clients print what it shows" {
     prints_what_it_shows clients/README.md 8
 }
 
-@test "no other page has commands that would not be run" {
+@test "no other page has commands that these tests do not run" {
     found=$(find . -name '*.md' -not -path './build/*' -not -path './.git/*' \
         -exec grep -l '^```console' {} + | sed 's|^\./||' | sort)
     [ "$found" = "$(tr ' ' '\n' <<< "$pages" | sort)" ]
 }
 
-@test "the README's lines of C are those of an example, which prints what it says" {
+@test "the lines of C in the README are those of an example, which prints what it states" {
     example=clients/examples/scene.c
     sed -n '/^```c$/,/^```$/p' README.md | grep -v '^```' | tr -s ' \n' ' ' > "$BATS_TEST_TMPDIR/shown"
     [ -s "$BATS_TEST_TMPDIR/shown" ]
@@ -97,7 +97,7 @@ prints_what_it_shows() {
     done
 }
 
-@test "the demo runs, shows a table, draws a picture and ends" {
+@test "the demo prints a table, draws a picture and ends" {
     session=$BATS_TEST_TMPDIR/session
     run setsid -w sh -c 'echo $$ > "$0"; exec timeout 60 "$@"' "$session" clients/demo/run.sh "$FMB_BUILD" 3>&-
     [ "$status" = 0 ]

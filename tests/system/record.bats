@@ -55,7 +55,7 @@ is() {
     }
 }
 
-@test "what a service and its clients say is in the log, byte for byte" {
+@test "a log has the messages of a service and its clients, byte for byte" {
     start_fmbd
     lcm-logger -q "$BATS_TEST_TMPDIR/witness" 3>&- &
     witness=$!
@@ -90,7 +90,7 @@ is() {
     stop_fmbd
 }
 
-@test "events are numbered from 0, and their times are when they came" {
+@test "events are numbered from 0, and have their times of arrival" {
     start_fmbd
     before=$(date +%s%6N)
     start_record "$log"
@@ -119,7 +119,7 @@ is() {
     events "$log.2" | cmp - "$BATS_TEST_TMPDIR/played"
 }
 
-@test "it ends on SIGINT and SIGTERM with all that came before" {
+@test "SIGINT and SIGTERM end a recording with all earlier messages" {
     for signal in INT TERM; do
         start_record "$log.$signal"
         "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
@@ -129,7 +129,7 @@ is() {
     done
 }
 
-@test "what waits when it is to end is recorded too" {
+@test "messages in the socket at the end are recorded" {
     start_record "$log"
     kill -STOP "$record"
     "$FMB_BUILD/fake-peer" numbers 5 $(seq 100)
@@ -139,7 +139,7 @@ is() {
     is '.events == 100 and .lost == 0'
 }
 
-@test "it reports for people what it recorded" {
+@test "a recording is summarised as text" {
     "$FMB" record "$log" > "$report" 2> "$messages" 3>&- &
     record=$!
     started=$record
@@ -155,7 +155,7 @@ is() {
     [ "$(wc -l < "$messages")" = 2 ]
 }
 
-@test "after a number of messages, or a time, it ends by itself" {
+@test "a recording ends after a number of messages, or a time" {
     "$FMB" record --json --count 7 "$log" > "$report" 2> "$messages" 3>&- &
     record=$!
     started=$record
@@ -171,7 +171,7 @@ is() {
 
 # ---- Files -----------------------------------------------------------------------------------
 
-@test "what is there is overwritten with --force alone" {
+@test "a file is overwritten with --force only" {
     echo precious > "$log"
     run --separate-stderr "$FMB" record --duration 0.1 "$log"
     [ "$status" = 2 ]
@@ -182,14 +182,14 @@ is() {
     [ "$(stat -c %s "$log")" = 0 ]
 }
 
-@test "a file that cannot be created" {
+@test "a file that cannot be created is reported" {
     run --separate-stderr "$FMB" record --duration 0.1 "$BATS_TEST_TMPDIR/no/such/log"
     [ "$status" = 2 ]
     [ "$output" = '' ]
     [ "$stderr" = "fmb: $BATS_TEST_TMPDIR/no/such/log: No such file or directory" ]
 }
 
-@test "files of bounded size divide no event, and one behind the other they are the log" {
+@test "files of bounded size divide no event, and concatenated they are the log" {
     start_record --split-mb 0.05 "$log"
     "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
     finish_record
@@ -215,7 +215,7 @@ is() {
     [ "$(cd "$BATS_TEST_TMPDIR" && echo log.*)" = log.000 ]
 }
 
-@test "of several files the newest are kept" {
+@test "of the files of a rotation the newest are kept" {
     start_record --split-mb 0.05 --max-files 2 "$log"
     "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
     finish_record
@@ -296,13 +296,13 @@ END
     is '.events > 100'
 }
 
-@test "a failure of standard output is reported, whatever becomes of standard output" {
+@test "a failure of standard output is a failure of the recording" {
     run --separate-stderr bash -c '"$0" record --duration 0.1 "$1" > /dev/full' "$FMB" "$log"
     [ "$status" = 1 ]
     [[ $stderr == *"fmb: standard output: No space left on device" ]]
 }
 
-@test "a recording that is killed leaves what it had written soon" {
+@test "a recording that is killed leaves what it has flushed" {
     start_record "$log"
     "$FMB_BUILD/fake-peer" numbers 5 $(seq 300)
     wait_until has_events FMB_PAIR_QUERY "$log" 300
@@ -428,7 +428,7 @@ resolves() {
     stop_fmbd
 }
 
-@test "bodies that cannot be obtained are counted" {
+@test "bodies that the service does not define are counted" {
     start_fmbd
     random_scene 3 12 > "$BATS_TEST_TMPDIR/scene.json"
     start_record "$log"
@@ -481,7 +481,7 @@ END
 
 # ---- What does not come ----------------------------------------------------------------------
 
-@test "what the kernel drops is counted, and what to do about it is reported" {
+@test "datagrams that the kernel drops are counted, with a remedy" {
     url=${LCM_DEFAULT_URL:-udpm://239.255.76.67:7667?ttl=0}
     start_record --lcm-url "$url&recv_buf_size=20000" "$log"
     kill -STOP "$record"
@@ -507,7 +507,7 @@ END
     grep -q "^fmb: lost: $((900 - recorded)) datagrams that the kernel dropped" "$messages"
 }
 
-@test "what cannot be read is recorded and counted" {
+@test "messages that cannot be decoded are recorded and counted" {
     start_record "$log"
     sent=0
     for type in pair_query pair_result scene_query scene_result status; do
@@ -531,7 +531,7 @@ END
 
 # ---- Channels --------------------------------------------------------------------------------
 
-@test "the channels of another prefix are another service's" {
+@test "the channels of another prefix are not recorded" {
     start_fmbd --prefix P
     start_record "$log"
     query --prefix P
@@ -545,7 +545,7 @@ END
     stop_fmbd
 }
 
-@test "other channels are recorded where they are asked for, and the service's own once" {
+@test "other channels are recorded on request, and those of the service once" {
     others=0
     for options in '--channel ONE|T.*O' '--all' ''; do
         start_record --force $options "$log"
@@ -582,7 +582,7 @@ END
     done
 }
 
-@test "packets that crash LCM do nothing to it" {
+@test "packets that crash LCM do not harm the recorder" {
     start_record "$log"
     for packets in wrap short; do
         "$FMB_BUILD/crash-liblcm" $packets FMB_PAIR_QUERY
@@ -595,7 +595,7 @@ END
 
 # ---- The terminal ----------------------------------------------------------------------------
 
-@test "on a terminal it shows how it goes, elsewhere it does not" {
+@test "progress is shown on a terminal only" {
     script -qfc true /dev/null < /dev/null > /dev/null 2>&1 3>&- || skip 'there is no pseudo-terminal'
     mkfifo "$BATS_TEST_TMPDIR/keys"
     script -qfc "$FMB record --json $log > $report" "$BATS_TEST_TMPDIR/screen" \
@@ -622,14 +622,14 @@ END
 
 # ---- Buses -----------------------------------------------------------------------------------
 
-@test "a bus that does not open" {
+@test "a bus that does not open is reported" {
     run --separate-stderr "$FMB" record -l tcpq://127.0.0.1:1 "$log"
     [ "$status" = 1 ]
     [ "$output" = '' ]
     [ ! -e "$log" ]
 }
 
-@test "a recording of nothing" {
+@test "a recording without messages is an empty log" {
     run --separate-stderr "$FMB" record --duration 0.01 --prefix quiet- "$log"
     [ "$status" = 0 ]
     [[ ${lines[0]} =~ ^"$log: 0 messages in 0."[0-9]" s, 0 bytes"$ ]]

@@ -72,7 +72,7 @@ event() {
     cat data >> "$1"
 }
 
-@test "the same as in process, for every kind of log" {
+@test "replays through a service match those in process, for every kind of log" {
     start_fmbd
     for kind in arm stack crowd hard-2d hard-3d hard-3d-moving refused clients foreign; do
         generate $kind $kind.log
@@ -104,7 +104,7 @@ event() {
     stop_fmbd
 }
 
-@test "parts of a log, several logs, and goldens of both" {
+@test "parts of a log, several logs, and goldens of both replay through a service" {
     start_fmbd
     generate arm arm.log
     generate clients clients.log
@@ -127,7 +127,7 @@ event() {
     stop_fmbd
 }
 
-@test "a verdict that was altered is found" {
+@test "an altered verdict is a difference" {
     start_fmbd
     generate --blast pairs 500 pairs.log
     at=$(place_of pairs.log FMB_PAIR_RESULT 217)
@@ -168,7 +168,7 @@ event() {
     stop_fmbd
 }
 
-@test "scenes that are too long for a datagram with the frames of their bodies" {
+@test "scenes too long for a datagram with their frames are sent by handle" {
     generate --blast scenes 60 scenes.log
     "$FMB" log cut --from 0.001 scenes.log -o cut.log
     start_fmbd
@@ -186,7 +186,7 @@ event() {
     stop_fmbd
 }
 
-@test "queries that are longer than a service receives" {
+@test "queries longer than a service receives are counted as not sent" {
     generate hard-2d hard.log
     # A pair whose second placement ends with a velocity of so many zeros.
     for numbers in 8120 8173; do
@@ -206,7 +206,7 @@ event() {
     stop_fmbd
 }
 
-@test "--speed keeps to the times of the log" {
+@test "--speed keeps the times of the log" {
     generate arm arm.log
     first=$(utime_at arm.log FMB_PAIR_QUERY 1)
     last=$(utime_at arm.log FMB_PAIR_QUERY 48)
@@ -223,7 +223,7 @@ event() {
     stop_fmbd
 }
 
-@test "the service is killed and started again, and every query is answered" {
+@test "every query is answered when the service is killed and restarted" {
     generate --blast pairs 20000 --by-handle handles.log
     start_fmbd
     "$FMB" replay --json --bus --timeout 0.1 --retries 100 handles.log > replayed 3>&- &
@@ -240,7 +240,7 @@ event() {
     stop_fmbd
 }
 
-@test "a service that stops again and again is given up only when it stays silent" {
+@test "a service that stops repeatedly is given up only when it does not come back" {
     generate --blast pairs 2000 pairs.log
     start_fmbd
     "$FMB" replay --json --bus --timeout 0.05 --retries 60 --speed 0.015 pairs.log > replayed 3>&- &
@@ -258,7 +258,7 @@ event() {
     stop_fmbd
 }
 
-@test "one datagram in ten lost, and one overtaken" {
+@test "every query is answered when datagrams are lost and reordered" {
     [ "$FMB_NETNS" = own ] || skip "needs a network namespace"
     generate clients clients.log
     generate refused refused.log
@@ -277,7 +277,7 @@ event() {
     stop_fmbd
 }
 
-@test "beside others that query as fast as they can, and damaged results, as many times at once" {
+@test "replays match beside floods and damaged results, several at a time" {
     generate clients clients.log
     generate --blast pairs 300 --by-handle handles.log
     start_fmbd
@@ -299,7 +299,7 @@ event() {
     stop_fmbd
 }
 
-@test "SIGINT ends it with what was answered so far" {
+@test "SIGINT ends a replay with a report so far" {
     generate --blast pairs 5000 pairs.log
     start_fmbd
     # A shell's background job ignores SIGINT; env gives it back.
@@ -319,7 +319,7 @@ event() {
     stop_fmbd
 }
 
-@test "no service, and none any more" {
+@test "a missing service, and one that is gone, are reported" {
     generate arm arm.log
     code=0
     "$FMB" replay --bus --timeout 0.05 --retries 2 arm.log > stdout 2> stderr || code=$?
@@ -348,7 +348,7 @@ event() {
     grep -q '<error message="it answered [0-9]* queries"/>' junit.xml
 }
 
-@test "a log of another prefix, and a bus that is not there" {
+@test "a log of another prefix and a missing bus are reported" {
     generate arm arm.log
     start_fmbd
     replay --prefix P arm.log
@@ -364,7 +364,7 @@ event() {
     [ ! -e golden ]
 }
 
-@test "options that do not go together" {
+@test "options that exclude each other are refused" {
     for options in '--bus --frames 5' '--speed 1' '--timeout 1' '--retries 1' \
         '--lcm-url udpm://239.255.76.67:7667' '--bus --speed -1' '--bus --timeout 0' \
         '--bus --retries x'; do

@@ -17,25 +17,25 @@ replays_the_set() {
     stop_fmbd
 }
 
-@test "the service answers as it did" {
+@test "the service reproduces the answers of the set" {
     replays_the_set "$FMB_BUILD/fmbd"
 }
 
-@test "the service answers as it did with plain C alone" {
+@test "the service reproduces the answers of the set with plain C only" {
     replays_the_set "$FMB_BUILD/capped/fmbd-plain"
 }
 
-@test "the service answers as it did with two lanes" {
+@test "the service reproduces the answers of the set with two lanes" {
     need_set two
     replays_the_set "$FMB_BUILD/capped/fmbd-two"
 }
 
-@test "the service answers as it did with AVX2" {
+@test "the service reproduces the answers of the set with AVX2" {
     need_set avx2
     replays_the_set "$FMB_BUILD/capped/fmbd-avx2"
 }
 
-@test "with a prefix, what an instance with a prefix was asked" {
+@test "a replay with a prefix queries the instance with that prefix" {
     FMBD=$FMB_BUILD/fmbd
     start_fmbd --prefix LAB_
     "$FMB" replay --bus --prefix LAB_ "$LOGS/foreign.log"

@@ -136,7 +136,7 @@ grid_scene() {
     stop_fmbd
 }
 
-@test "a certificate of many digits comes over the bus" {
+@test "a certificate of many digits passes over the bus" {
     start_fmbd
     echo '{"dim": 3, "bodies": [
         {"id": 1, "shape": "face", "origin": [7,0,-7e-60], "velocity": [-0.1,-1e60,0],
@@ -149,7 +149,7 @@ grid_scene() {
     stop_fmbd
 }
 
-@test "a service that lies is believed, but not where a certificate is asked for" {
+@test "a false answer is detected where a certificate is requested" {
     cube='"shape": "cuboid", "components": [[1,0],[0,1]]'
     echo "{\"dim\": 2, \"bodies\": [{\"id\": 1, $cube, \"origin\": [0,0]}, {\"id\": 2, $cube, \"origin\": [2,0]}]}" > "$BATS_TEST_TMPDIR/scene.json"
     for certificate in 'overlapping at 0 (1/2 1/2)' 'separated + a0' 'nonsense'; do
@@ -167,7 +167,7 @@ grid_scene() {
     done
 }
 
-@test "a missing certificate is an error that says so" {
+@test "a missing certificate is an error" {
     random_scene 2 2 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB_BUILD/fake-peer" lie '' 3>&- &
     started="${started-} $!"
@@ -176,7 +176,7 @@ grid_scene() {
     [[ ${lines[2]} == *"  1  2  not decided: no certificate: numbers that span more than 512 bits have none" ]]
 }
 
-@test "watch shows what passes of scenes, in JSON" {
+@test "watch shows the scenes that pass, in JSON" {
     start_fmbd
     "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
     watch=$!
@@ -276,7 +276,7 @@ grid_scene() {
     stop_fmbd
 }
 
-@test "a scene of more bodies than a datagram has room for gives the answers of --local" {
+@test "a scene of more bodies than a datagram holds gives the answers of --local" {
     start_fmbd
     random_scene 3 700 | jq -c '.bodies |= map(.origin |= map(. * 4))' > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query --json --box "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
@@ -307,11 +307,11 @@ grid_scene() {
     started="$started $watch"
     # It prints a line of what passes only once it listens.
     random_scene 2 3 > "$BATS_TEST_TMPDIR/scene.json"
-    heard() {
+    received() {
         "$FMB" query "$BATS_TEST_TMPDIR/scene.json" > /dev/null
         grep -q 'up to pair 3: ' "$BATS_TEST_TMPDIR/watch"
     }
-    wait_until heard
+    wait_until received
     sent=0 to_watch=0 scenes_to_watch=0
     for type in pair_query pair_result scene_query scene_result definition_query definition status; do
         sent=$((sent + $("$FMB_BUILD/fake-peer" FMB_PAIR_QUERY $type)))
@@ -388,7 +388,7 @@ send_crash_packets() {
     stop_fmbd
 }
 
-@test "starts beside packets that crash liblcm" {
+@test "the service starts beside packets that crash liblcm" {
     ( while :; do send_crash_packets; done ) 3>&- &
     started="${started-} $!"
     # Each query is a start of its own, and waits for no heartbeat.

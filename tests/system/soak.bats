@@ -55,13 +55,13 @@ status_was() {
 }
 
 # resident_kb: at the start, then after each tenth. Sanitizers keep what was freed.
-@test "new bodies without end take no memory" {
+@test "an endless stream of new bodies takes no memory" {
     case $FMB_BUILD in *asan*) skip "sanitizers take memory of their own" ;; esac
     FMB_SOAK_IDS=200000 trial ids
     jq -e '.good and (.resident_kb | length) == 11 and .resident_kb[10] - .resident_kb[1] < 200' <<< "$report"
 }
 
-@test "channels of others take no memory" {
+@test "foreign channels take no memory" {
     case $FMB_BUILD in *asan*) skip "sanitizers take memory of their own" ;; esac
     FMB_SOAK_CHANNELS=10000 trial channels
     jq -e '.good and .resident_kb[10] - .resident_kb[1] < 200' <<< "$report"

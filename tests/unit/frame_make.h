@@ -6,8 +6,6 @@
 
 #include <string.h>
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
 static const double unit2[4] = {1, 0, 0, 1};
 /* More numbers than any frame takes follow its nine. */
 static const double unit3[16] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

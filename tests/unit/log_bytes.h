@@ -16,7 +16,7 @@ struct log_bytes {
 
 /* All of these add to the end of the log. */
 
-/* A header alone. What it says of lengths need not be true of what is added next. */
+/* A header without data. What it states of lengths need not be true of what is added next. */
 void log_bytes_header(struct log_bytes *log, int64_t number, int64_t utime, uint32_t channel_length,
                       uint32_t data_size);
 void log_bytes_add(struct log_bytes *log, const void *bytes, size_t size);

@@ -17,9 +17,9 @@ static _Noreturn void give_up(const char *what)
 
 void log_draft_raw(struct log_draft *log, const void *bytes, size_t size)
 {
-    while (log->size + size > log->room) {
-        log->room = 2 * log->room + 4096;
-        log->bytes = realloc(log->bytes, log->room);
+    while (log->size + size > log->capacity) {
+        log->capacity = 2 * log->capacity + 4096;
+        log->bytes = realloc(log->bytes, log->capacity);
         if (!log->bytes)
             give_up("memory");
     }

@@ -7,7 +7,7 @@
 
 struct log_draft {
     unsigned char *bytes; /* owned */
-    size_t size, room;
+    size_t size, capacity;
     int64_t events;
 };
 

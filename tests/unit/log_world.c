@@ -49,9 +49,9 @@ static bool happens(struct log_world *world, int n)
 static void put(struct log_world *world, double at, const char *channel, const void *data,
                 size_t size)
 {
-    if (world->count == world->room) {
-        world->room = world->room ? 2 * world->room : 64;
-        world->event = realloc(world->event, world->room * sizeof *world->event);
+    if (world->count == world->capacity) {
+        world->capacity = world->capacity ? 2 * world->capacity : 64;
+        world->event = realloc(world->event, world->capacity * sizeof *world->event);
         assert_non_null(world->event);
     }
     struct world_event *event = &world->event[world->count++];

@@ -24,7 +24,7 @@ struct world_event {
 
 struct log_world {
     struct world_event *event; /* owned; [count], in the order of the log */
-    size_t count, room;
+    size_t count, capacity;
     uint64_t seed, state; /* of what is drawn */
 };
 

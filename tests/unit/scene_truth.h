@@ -30,8 +30,8 @@ void scene_put_number(struct scene *scene, int32_t i, int k, double value);
 void scene_name(struct placement *placement, const struct handle *handle);
 
 /* Bodies of hard pairs (pair_draw.h), all of this dimension: 2 i and 2 i + 1 are of one. Some are
- * turned or have several frames. Anonymous; the remainder of the query is left alone. moving: -1
- * some, 0 none, 1 such pairs alone. */
+ * turned or have several frames. Anonymous; the remainder of the query is unchanged. moving: -1
+ * some, 0 none, 1 only such pairs. */
 void scene_draw_placements(struct draw *draw, int dim, int moving, int32_t count,
                            struct scene *out);
 

@@ -13,7 +13,7 @@
 typedef int slab_kernel_function(const struct frame_pair *pair, bool along,
                                  struct slab_value out[SLABS_MAX]);
 
-/* On input: likewise, in space. What the coordinate axes make of the pair: more than 0 where one of
+/* On input: the same in space. What the coordinate axes make of the pair: more than 0 where one of
  * them surely parts it; *bound is what the gap was made smaller by. */
 typedef double slab_kernel_axes_function(const struct frame_pair *pair, double *bound);
 

@@ -1,4 +1,6 @@
 /* What a pair query gets: the right answer, or the status that says what is wrong and where. */
+#include "unit.h"
+
 #include "answer_now.h"
 #include "big_endian.h"
 #include "body.h"
@@ -7,13 +9,6 @@
 #include "writer.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static struct answerer *answerer;
 static struct answer_job *job;
@@ -29,25 +24,21 @@ static int set_up_frames(size_t frames)
 
 static int set_up(void **state)
 {
-    (void) state;
     return set_up_frames(2);
 }
 
 static int set_up_many(void **state)
 {
-    (void) state;
     return set_up_frames(300);
 }
 
 static int set_up_one(void **state)
 {
-    (void) state;
     return set_up_frames(1);
 }
 
 static int tear_down(void **state)
 {
-    (void) state;
     answer_job_destroy(job);
     answerer_destroy(answerer);
     return 0;
@@ -181,9 +172,8 @@ static void expect(const struct pair_query *query, enum fmb_status status, const
 /* Ends the counts of a case. */
 enum { END = INT32_MIN };
 
-static void test_answer_and_echo(void **state)
+static void a_pair_is_answered_and_its_ids_are_echoed(void **state)
 {
-    (void) state;
     struct hasher *hasher = hasher_create();
     struct pair_query query = cubes();
     query.want = FMB_WANT_BOX;
@@ -212,9 +202,8 @@ static void test_answer_and_echo(void **state)
 }
 
 /* Also without an id, or with another one. */
-static void test_handles_stand_for_frames(void **state)
+static void handles_stand_for_frames(void **state)
 {
-    (void) state;
     struct pair_query query = stretched(2);
     const struct pair_result first = answer_to(&query);
     for (int64_t id = 0; id < 5; id++) {
@@ -232,9 +221,8 @@ static void test_handles_stand_for_frames(void **state)
     assert_int_equal(counts().hits, 10);
 }
 
-static void test_handles_that_are_not_held(void **state)
+static void unknown_handles_are_refused(void **state)
 {
-    (void) state;
     struct pair_query query = stretched(2);
     struct handle handle = answer_to(&query).handle[1];
     handle.bytes[15] ^= 1;
@@ -247,9 +235,8 @@ static void test_handles_that_are_not_held(void **state)
     expect(&query, FMB_UNKNOWN_BODY, "b.handle: not held; send the frames");
 }
 
-static void test_handle_of_the_other_dimension(void **state)
+static void a_handle_of_the_other_dimension_is_refused(void **state)
 {
-    (void) state;
     const struct geometry_frame square = {.shape = FMB_CUBOID, .components = {1, 0, 0, 1}};
     struct pair_query query = cubes();
     const struct handle handle = answer_to(&query).handle[0];
@@ -260,9 +247,8 @@ static void test_handle_of_the_other_dimension(void **state)
 }
 
 /* With capacity for two: keeping a third body evicts the one not used longest. */
-static void test_eviction(void **state)
+static void evicted_bodies_are_unknown(void **state)
 {
-    (void) state;
     struct pair_query query = stretched(2);
     const struct pair_result first = answer_to(&query);
     query = stretched(3);
@@ -275,9 +261,8 @@ static void test_eviction(void **state)
 
 /* With capacity for one, the second body of a query does not evict the first, which is in use, but
  * is made for this query alone. */
-static void test_capacity_for_one(void **state)
+static void a_cache_of_one_frame_answers_whole_pairs(void **state)
 {
-    (void) state;
     struct pair_query query = stretched(2);
     query.want = FMB_WANT_BOX;
     const struct pair_result first = answer_to(&query);
@@ -302,9 +287,8 @@ static void test_capacity_for_one(void **state)
 }
 
 /* One id with two geometries in one pair: each placement is what it says. */
-static void test_one_id_two_bodies(void **state)
+static void one_id_may_have_two_bodies(void **state)
 {
-    (void) state;
     struct pair_query query = stretched(2);
     query.placement[0].body_id = query.placement[1].body_id = 9;
     for (int repeat = 0; repeat < 3; repeat++) {
@@ -318,9 +302,8 @@ static void test_one_id_two_bodies(void **state)
     assert_int_equal(counts().misses, 2);
 }
 
-static void test_anonymous_bodies_are_not_kept(void **state)
+static void anonymous_bodies_are_not_kept(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     query.placement[0].body_id = query.placement[1].body_id = 0;
     const struct pair_result result = answer_to(&query);
@@ -330,9 +313,8 @@ static void test_anonymous_bodies_are_not_kept(void **state)
     assert_int_equal(counts().misses, 0);
 }
 
-static void test_bad_numbers(void **state)
+static void numbers_that_are_not_finite_are_refused(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     put_number(1, 4, NAN);
     expect(&query, FMB_NOT_FINITE, "b.numbers[4]: not a finite number");
@@ -348,9 +330,8 @@ static void test_bad_numbers(void **state)
     expect(&query, FMB_NOT_FINITE, "a.velocity[1]: not a finite number");
 }
 
-static void test_bad_counts(void **state)
+static void wrong_counts_are_refused(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     set_geometry(&query, 0, 3, 1, FMB_CUBOID, 9);
     expect(&query, FMB_WRONG_COUNT, "a.num_numbers: expected 12 numbers, found 9");
@@ -402,9 +383,8 @@ static void set_vertices(struct pair_query *query, int f, int32_t dim, const int
     placement->geometry = (struct geometry){bytes[f], writer_end(&writer, bytes[f])};
 }
 
-static void test_counts_of_vertices(void **state)
+static void wrong_counts_of_vertices_are_refused(void **state)
 {
-    (void) state;
     static const struct {
         int32_t dim, frames;
         int codes[3];
@@ -476,7 +456,7 @@ static void test_counts_of_vertices(void **state)
          FMB_WRONG_COUNT,
          "b.num_numbers: expected 6442450941 numbers, found 3"},
         {3, 1, {5}, {END}, 3, FMB_WRONG_COUNT, "b.num_counts: expected 1 numbers, found 0"}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = 0; i < COUNT(cases); i++) {
         struct pair_query query = cases[i].dim == 2 ? squares() : cubes();
         set_vertices(&query, 1, cases[i].dim, cases[i].codes, cases[i].counts, cases[i].frames,
                      cases[i].numbers);
@@ -488,9 +468,8 @@ static void test_counts_of_vertices(void **state)
 }
 
 /* With a handle there are no counts. */
-static void test_a_handle_has_no_counts(void **state)
+static void a_handle_has_no_counts(void **state)
 {
-    (void) state;
     static const int32_t counts[] = {4, END};
     struct pair_query query = cubes();
     set_vertices(&query, 0, 3, NULL, counts, 0, 0);
@@ -498,9 +477,8 @@ static void test_a_handle_has_no_counts(void **state)
     expect(&query, FMB_WRONG_COUNT, "a.num_counts: expected 0 numbers, found 1");
 }
 
-static void test_names(void **state)
+static void bad_names_are_refused(void **state)
 {
-    (void) state;
     static const char good[] =
         "0123456789012345678901234567890123456789012345678901234567890\xe2\x82\xac";
     static const char *const bad[] = {
@@ -519,7 +497,7 @@ static void test_names(void **state)
     const struct pair_result named = answer_to(&query);
     assert_int_equal(named.status, FMB_OK);
     assert_memory_equal(&named.handle[0], &unnamed.handle[0], sizeof named.handle[0]);
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    for (size_t i = 0; i < COUNT(bad); i++) {
         query = cubes();
         query.placement[1].name = bad[i];
         expect(&query, FMB_BAD_NAME,
@@ -528,9 +506,8 @@ static void test_names(void **state)
 }
 
 /* A pair query does not look at groups: also where it takes a job. */
-static void test_groups_of_a_pair_do_not_matter(void **state)
+static void groups_of_a_pair_do_not_matter(void **state)
 {
-    (void) state;
     struct geometry_frame frames[2] = {unit_cube, unit_cube};
     for (int count = 1; count <= 2; count++) {
         struct pair_query query = cubes();
@@ -544,9 +521,8 @@ static void test_groups_of_a_pair_do_not_matter(void **state)
     }
 }
 
-static void test_handle_or_frames(void **state)
+static void a_placement_has_a_handle_or_frames(void **state)
 {
-    (void) state;
     const struct handle handle = {{1}};
     struct pair_query query = cubes();
     query.placement[0].handle = handle;
@@ -563,9 +539,8 @@ static void test_handle_or_frames(void **state)
 }
 
 /* The fourth number of the position is the two counts after it, 0; the counts are appended. */
-static void test_four_dimensions(void **state)
+static void four_dimensions(void **state)
 {
-    (void) state;
     static unsigned char message[QUERY_BYTES_MAX];
     struct pair_query query = cubes();
     big_endian_put_32(bytes[1], 4);
@@ -576,9 +551,8 @@ static void test_four_dimensions(void **state)
     assert_string_equal(answer_job_pair_result(job)->detail, "b.dim: neither 2 nor 3");
 }
 
-static void test_bad_shapes_and_dimensions(void **state)
+static void unknown_shapes_and_dimensions_are_refused(void **state)
 {
-    (void) state;
     for (int shape = 0; shape < 256; shape++) {
         if (shape >= FMB_CUBOID && shape <= 7)
             continue;
@@ -603,15 +577,14 @@ static void test_bad_shapes_and_dimensions(void **state)
     expect(&query, FMB_DIMENSIONS_DIFFER, "dim: a 2D body against a 3D one");
 }
 
-static void test_bad_orientations(void **state)
+static void bad_orientations_are_refused(void **state)
 {
-    (void) state;
     static const char detail[] =
         "b.orientation: zero, not finite, or components that differ by more than 2^200";
     const double bad[][4] = {{0, 0, 0, 0},        {-0.0, 0, -0.0, 0},   {NAN, 0, 0, 1},
                              {1, INFINITY, 0, 0}, {0, 0, -INFINITY, 0}, {1, 0, 0x1p-201, 0},
                              {0x1p-1000, 0, 0, 1}};
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    for (size_t i = 0; i < COUNT(bad); i++) {
         struct pair_query query = cubes();
         query.placement[1].orientation_count = 4;
         memcpy(query.placement[1].orientation, bad[i], sizeof bad[i]);
@@ -632,9 +605,8 @@ static void test_bad_orientations(void **state)
 }
 
 /* 0 is a flat frame. */
-static void test_bad_sizes(void **state)
+static void bad_sizes_are_refused(void **state)
 {
-    (void) state;
     struct geometry_frame frames[3] = {box(0, 1), unit_cube, box(3, 1)};
     struct pair_query query = cubes();
     frames[0].components[2] = -0x1p-1074;
@@ -703,9 +675,8 @@ static struct pair_query gratings(int count, double spacing, double distance)
 }
 
 /* Whole and by handle, with every method, in steps: the answer of one call of the engine. */
-static void test_bodies_of_several_frames(void **state)
+static void bodies_of_several_frames_are_answered(void **state)
 {
-    (void) state;
     const double distance[] = {-100, 0, 1.75, 2, 1000};
     for (int i = 0; i < 5; i++)
         for (int k = 0; k < 10; k++) {
@@ -732,9 +703,8 @@ static void test_bodies_of_several_frames(void **state)
 }
 
 /* A turned body is the same body. */
-static void test_turning_bodies_hit(void **state)
+static void turning_bodies_hit(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     for (int i = 0; i < 10; i++) {
         query.placement[1].orientation_count = 4;
@@ -750,9 +720,8 @@ static void test_turning_bodies_hit(void **state)
 }
 
 /* A pair of many frames takes many steps, between which other queries are answered. */
-static void test_many_frames_take_many_steps(void **state)
+static void many_frames_take_many_steps(void **state)
 {
-    (void) state;
     static unsigned char message[QUERY_BYTES_MAX];
     const struct pair_query query = gratings(100, 0.001, 0.5);
     const struct fmb_answer expected = truth(&query);
@@ -771,9 +740,8 @@ static void test_many_frames_take_many_steps(void **state)
     assert_memory_equal(&answer_job_pair_result(job)->answer, &expected, sizeof expected);
 }
 
-static void test_a_job_that_is_stopped(void **state)
+static void a_job_that_is_stopped(void **state)
 {
-    (void) state;
     static unsigned char message[QUERY_BYTES_MAX];
     const struct pair_query query = gratings(100, 0.001, 0.5);
     const size_t size = wire_write_pair_query(&query, message);
@@ -788,9 +756,8 @@ static void test_a_job_that_is_stopped(void **state)
 }
 
 /* What is refused in a job: nothing is cached. */
-static void test_certificates_of_several_frames(void **state)
+static void bodies_of_several_frames_have_no_certificate(void **state)
 {
-    (void) state;
     struct pair_query query = gratings(2, 2, 0);
     query.want = FMB_WANT_CERTIFICATE;
     expect(&query, FMB_CANNOT_DECIDE, "want: a certificate is for bodies of one frame");
@@ -806,9 +773,8 @@ static void test_certificates_of_several_frames(void **state)
 }
 
 /* A body that the cache has no memory for is answered all the same, and its handle is right. */
-static void test_more_frames_than_the_cache(void **state)
+static void a_body_larger_than_the_cache_is_answered(void **state)
 {
-    (void) state;
     const struct pair_query query = gratings(40, 2, 0.5);
     const struct fmb_answer expected = truth(&query);
     const struct pair_result result = answer_to(&query);
@@ -818,9 +784,8 @@ static void test_more_frames_than_the_cache(void **state)
     assert_int_equal(counts().bodies, 0);
 }
 
-static void test_bad_ids(void **state)
+static void bad_ids_are_refused(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     query.placement[1].body_id = QUERY_ID_MAX + 1;
     expect(&query, FMB_BAD_ID, "b.body_id: not from 0 to 2^53 - 1");
@@ -837,11 +802,10 @@ static void test_bad_ids(void **state)
     assert_int_equal(answer_to(&query).status, FMB_OK);
 }
 
-static void test_bad_requests(void **state)
+static void bad_requests_are_refused(void **state)
 {
-    (void) state;
     const double durations[] = {-1, NAN, INFINITY, -5e-324};
-    for (size_t i = 0; i < sizeof durations / sizeof *durations; i++) {
+    for (size_t i = 0; i < COUNT(durations); i++) {
         struct pair_query query = cubes();
         query.duration = durations[i];
         expect(&query, FMB_BAD_DURATION, "duration: negative or not finite");
@@ -857,9 +821,8 @@ static void test_bad_requests(void **state)
         expect(&query, FMB_CANNOT_DECIDE, "method: gives no gaps");
 }
 
-static void test_refused_without_being_read(void **state)
+static void refused_without_being_read(void **state)
 {
-    (void) state;
     const struct pair_query query = cubes();
     struct pair_result result;
     memset(&result, 0xa5, sizeof result);
@@ -885,9 +848,8 @@ static bool certified(const struct pair_query *query, const struct pair_result *
                                  result->answer.verdict, result->certificate, why, sizeof why);
 }
 
-static void test_certificates(void **state)
+static void certificates_are_given_on_request(void **state)
 {
-    (void) state;
     const double apart[] = {0.5, 1, 1.5};
     const enum fmb_verdict verdict[] = {FMB_OVERLAPPING, FMB_TOUCHING, FMB_SEPARATED};
     for (int i = 0; i < 6; i++) {
@@ -916,9 +878,8 @@ static void test_certificates(void **state)
 }
 
 /* Of a body that comes by handle too. */
-static void test_certificate_by_handle(void **state)
+static void bodies_by_handle_have_certificates(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     query.want = FMB_WANT_CERTIFICATE;
     struct pair_query by_handle = query;
@@ -928,9 +889,8 @@ static void test_certificate_by_handle(void **state)
 }
 
 /* The body is kept all the same, and its handle known. */
-static void test_inexact_methods_on_a_flat_frame(void **state)
+static void inexact_methods_do_not_decide_flat_frames(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     put_number(0, 3, 0);
     query.method = fmb_method_by_name("sat")->number;
@@ -944,9 +904,8 @@ static void test_inexact_methods_on_a_flat_frame(void **state)
 }
 
 /* Of bodies of one frame, moving. */
-static void test_gaps(void **state)
+static void gaps_are_given_on_request(void **state)
 {
-    (void) state;
     const double speed[] = {0, -2, -2.5, -7};
     for (int i = 0; i < 4; i++) {
         struct pair_query query = cubes();
@@ -963,9 +922,8 @@ static void test_gaps(void **state)
     }
 }
 
-static void test_a_repeat_gets_the_same(void **state)
+static void a_repeat_gets_the_same(void **state)
 {
-    (void) state;
     struct pair_query query = cubes();
     query.want = FMB_WANT_BOX;
     query.placement[0].velocity_count = 3;
@@ -979,40 +937,42 @@ static void test_a_repeat_gets_the_same(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_answer_and_echo),
-        TEST(test_handles_stand_for_frames),
-        TEST(test_handles_that_are_not_held),
-        TEST(test_handle_of_the_other_dimension),
-        TEST(test_eviction),
-        cmocka_unit_test_setup_teardown(test_capacity_for_one, set_up_one, tear_down),
-        TEST(test_one_id_two_bodies),
-        TEST(test_anonymous_bodies_are_not_kept),
-        TEST(test_bad_numbers),
-        TEST(test_bad_counts),
-        TEST(test_counts_of_vertices),
-        TEST(test_a_handle_has_no_counts),
-        TEST(test_names),
-        TEST(test_groups_of_a_pair_do_not_matter),
-        TEST(test_handle_or_frames),
-        TEST(test_four_dimensions),
-        TEST(test_bad_shapes_and_dimensions),
-        TEST(test_bad_orientations),
-        TEST(test_bad_sizes),
-        cmocka_unit_test_setup_teardown(test_bodies_of_several_frames, set_up_many, tear_down),
-        TEST(test_turning_bodies_hit),
-        cmocka_unit_test_setup_teardown(test_many_frames_take_many_steps, set_up_many, tear_down),
-        TEST(test_a_job_that_is_stopped),
-        cmocka_unit_test_setup_teardown(test_certificates_of_several_frames, set_up_many,
+        TEST(a_pair_is_answered_and_its_ids_are_echoed),
+        TEST(handles_stand_for_frames),
+        TEST(unknown_handles_are_refused),
+        TEST(a_handle_of_the_other_dimension_is_refused),
+        TEST(evicted_bodies_are_unknown),
+        cmocka_unit_test_setup_teardown(a_cache_of_one_frame_answers_whole_pairs, set_up_one,
                                         tear_down),
-        TEST(test_more_frames_than_the_cache),
-        TEST(test_bad_ids),
-        TEST(test_bad_requests),
-        TEST(test_refused_without_being_read),
-        TEST(test_certificates),
-        TEST(test_certificate_by_handle),
-        TEST(test_inexact_methods_on_a_flat_frame),
-        TEST(test_gaps),
-        TEST(test_a_repeat_gets_the_same),
+        TEST(one_id_may_have_two_bodies),
+        TEST(anonymous_bodies_are_not_kept),
+        TEST(numbers_that_are_not_finite_are_refused),
+        TEST(wrong_counts_are_refused),
+        TEST(wrong_counts_of_vertices_are_refused),
+        TEST(a_handle_has_no_counts),
+        TEST(bad_names_are_refused),
+        TEST(groups_of_a_pair_do_not_matter),
+        TEST(a_placement_has_a_handle_or_frames),
+        TEST(four_dimensions),
+        TEST(unknown_shapes_and_dimensions_are_refused),
+        TEST(bad_orientations_are_refused),
+        TEST(bad_sizes_are_refused),
+        cmocka_unit_test_setup_teardown(bodies_of_several_frames_are_answered, set_up_many,
+                                        tear_down),
+        TEST(turning_bodies_hit),
+        cmocka_unit_test_setup_teardown(many_frames_take_many_steps, set_up_many, tear_down),
+        TEST(a_job_that_is_stopped),
+        cmocka_unit_test_setup_teardown(bodies_of_several_frames_have_no_certificate, set_up_many,
+                                        tear_down),
+        TEST(a_body_larger_than_the_cache_is_answered),
+        TEST(bad_ids_are_refused),
+        TEST(bad_requests_are_refused),
+        TEST(refused_without_being_read),
+        TEST(certificates_are_given_on_request),
+        TEST(bodies_by_handle_have_certificates),
+        TEST(inexact_methods_do_not_decide_flat_frames),
+        TEST(gaps_are_given_on_request),
+        TEST(a_repeat_gets_the_same),
     };
     return cmocka_run_group_tests_name("answer", tests, NULL, NULL);
 }

@@ -1,16 +1,10 @@
 /* Clients that follow the rules of msgs/README.md always get right answers, whatever is lost on the
  * way, and whatever others do with the same ids: simulated clients against fmb_decide(). */
+#include "unit.h"
+
 #include "answer_now.h"
 #include "scene_truth.h"
 #include "wire.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 enum { CLIENTS = 5, IDS = 24, PLACEMENTS = 8, CONTENTS = 64 };
 
@@ -239,11 +233,10 @@ static void query_much(void)
     }
 }
 
-static void test_clients_that_share_ids_and_lose_datagrams(void **state)
+static void clients_that_share_ids_and_lose_datagrams(void **state)
 {
     static const size_t frames[] = {1, 6, 24, 100};
-    (void) state;
-    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
+    for (size_t i = 0; i < COUNT(frames); i++) {
         begin(false, frames[i]);
         query_much();
         const struct cache_counts counts = cache_counts(answerer_cache(world.answerer));
@@ -258,9 +251,8 @@ static void test_clients_that_share_ids_and_lose_datagrams(void **state)
 
 /* With capacity for the bodies of all clients each is prepared once, whichever client uses which id
  * for which of them, and no handle is ever unknown. */
-static void test_clients_that_share_ids_do_not_disturb_each_other(void **state)
+static void clients_that_share_ids_do_not_disturb_each_other(void **state)
 {
-    (void) state;
     begin(true, 2 * CONTENTS * SOLID_FRAMES_MAX);
     query_much();
     const struct cache_counts counts = cache_counts(answerer_cache(world.answerer));
@@ -275,8 +267,8 @@ static void test_clients_that_share_ids_do_not_disturb_each_other(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clients_that_share_ids_and_lose_datagrams),
-        cmocka_unit_test(test_clients_that_share_ids_do_not_disturb_each_other),
+        cmocka_unit_test(clients_that_share_ids_and_lose_datagrams),
+        cmocka_unit_test(clients_that_share_ids_do_not_disturb_each_other),
     };
     return cmocka_run_group_tests_name("answer_clients", tests, NULL, NULL);
 }

@@ -1,16 +1,10 @@
 /* What a definition query gets: by handle, or all bodies that are held, page by page. */
+#include "unit.h"
+
 #include "answer_now.h"
 #include "geometry_write.h"
 #include "scene_truth.h"
 #include "wire.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 enum { CAPACITY = 1500 };
 
@@ -22,7 +16,6 @@ static unsigned char bytes[QUERY_BYTES_MAX];
 
 static int set_up(void **state)
 {
-    (void) state;
     const struct answerer_options options = {CAPACITY, .server_id = 99,
                                              .secret = {0x243f6a8885a308d3, 0x13198a2e03707344}};
     answerer = answerer_create(&options);
@@ -33,7 +26,6 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    (void) state;
     hasher_destroy(hasher);
     answerer_destroy(answerer);
     return 0;
@@ -76,9 +68,8 @@ static size_t answer_query(void)
     return size;
 }
 
-static void test_by_handle(void **state)
+static void definitions_are_found_by_handle(void **state)
 {
-    (void) state;
     const int order[] = {5, 2, 2, 8};
     struct handle handle[10];
     for (int n = 0; n < 10; n++)
@@ -107,9 +98,8 @@ static void test_by_handle(void **state)
 }
 
 /* A body that is nearly as large as a message, among small ones: every page ends, and has it. */
-static void test_the_largest_body(void **state)
+static void the_largest_body_is_defined(void **state)
 {
-    (void) state;
     enum { FRAMES = 657 }; /* of 97 bytes each */
     static struct geometry_frame frame[FRAMES];
     static unsigned char geometry_bytes[QUERY_BYTES_MAX];
@@ -161,9 +151,8 @@ static int read_all_pages(size_t body_bytes)
 
 /* Pages are full, and have exactly what is held: also after evictions, and where the last page is
  * full too. */
-static void test_pages(void **state)
+static void definitions_come_in_pages(void **state)
 {
-    (void) state;
     static struct handle handle[CAPACITY];
     for (int dim = 2; dim <= 3; dim++) {
         const size_t body_bytes = HANDLE_BYTES + (dim == 2 ? 65 : 113);
@@ -185,9 +174,8 @@ static void test_pages(void **state)
 }
 
 /* What a recorder requests does not count as use. */
-static void test_definitions_are_no_uses(void **state)
+static void definitions_are_no_uses(void **state)
 {
-    (void) state;
     const struct handle first = keep(2, 0);
     for (int n = 1; n < CAPACITY; n++)
         keep(2, n);
@@ -216,9 +204,8 @@ static void expect(enum fmb_status status, const char *detail)
     assert_int_equal(result.next, 0);
 }
 
-static void test_refusals(void **state)
+static void bad_definition_queries_are_refused(void **state)
 {
-    (void) state;
     keep(2, 0);
     query.first = -1;
     expect(FMB_OVER_LIMIT, "first: there are not so many");
@@ -239,9 +226,8 @@ static void test_refusals(void **state)
     expect(FMB_BAD_ID, "sequence_number: not from 0 to 2^53 - 1");
 }
 
-static void test_refused_without_being_read(void **state)
+static void refused_without_being_read(void **state)
 {
-    (void) state;
     const struct query_header header = {7, 8, 9};
     memset(&result, 0xa5, sizeof result);
     answer_definition_refused(answerer, &header, FMB_BUSY, &result);
@@ -259,9 +245,9 @@ static void test_refused_without_being_read(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_by_handle), TEST(test_the_largest_body),
-        TEST(test_pages),     TEST(test_definitions_are_no_uses),
-        TEST(test_refusals),  TEST(test_refused_without_being_read),
+        TEST(definitions_are_found_by_handle),    TEST(the_largest_body_is_defined),
+        TEST(definitions_come_in_pages),          TEST(definitions_are_no_uses),
+        TEST(bad_definition_queries_are_refused), TEST(refused_without_being_read),
     };
     return cmocka_run_group_tests_name("answer_definition", tests, NULL, NULL);
 }

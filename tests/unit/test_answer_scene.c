@@ -1,6 +1,8 @@
 /* What a scene query gets: the answers of fmb_decide() to each of its pairs, to the bit; as many as
  * one datagram has space for, and the remainder on request; in steps, which may be interrupted; or
  * what is wrong, and where. */
+#include "unit.h"
+
 #include "answer_now.h"
 #include "geometry_write.h"
 #include "scene_truth.h"
@@ -8,16 +10,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 enum { BODIES = 40 };
 
@@ -31,7 +23,6 @@ static unsigned char bytes[2 * QUERY_BYTES_MAX];
 
 static int set_up(void **state)
 {
-    (void) state;
     const struct answerer_options options = {BODIES, .server_id = 99,
                                              .secret = {0x243f6a8885a308d3, 0x13198a2e03707344}};
     answerer = answerer_create(&options);
@@ -45,7 +36,6 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    (void) state;
     answer_job_destroy(job);
     answer_job_destroy(second_job);
     answerer_destroy(answerer);
@@ -157,9 +147,8 @@ static double draw_duration(struct draw *draw)
     return draw_coin(draw) ? 1 : others[draw_int(draw, 0, (int) COUNT(others) - 1)];
 }
 
-static void test_answers_are_those_of_each_pair(void **state)
+static void answers_are_those_of_each_pair(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "scenes, certified");
     for (long round = 0; round < draw_sample(96); round++) {
@@ -171,9 +160,8 @@ static void test_answers_are_those_of_each_pair(void **state)
     }
 }
 
-static void test_answers_of_the_exact_method(void **state)
+static void answers_of_the_exact_method(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "scenes, exact");
     for (long round = 0; round < draw_sample(16); round++) {
@@ -183,9 +171,8 @@ static void test_answers_of_the_exact_method(void **state)
 }
 
 /* Of flat frames they say nothing. */
-static void test_answers_of_inexact_methods(void **state)
+static void answers_of_inexact_methods(void **state)
 {
-    (void) state;
     struct draw draw;
     int undecided = 0;
     draw_begin(&draw, "scenes, inexact");
@@ -209,9 +196,8 @@ static void test_answers_of_inexact_methods(void **state)
 
 /* The scene at which the tree of boxes looks: of all sizes, from the least doubles to the largest,
  * and where many boxes are the same. */
-static void test_no_contact_is_lost_anywhere(void **state)
+static void no_contact_is_lost_anywhere(void **state)
 {
-    (void) state;
     static const double scales[] = {0x1p-1074, 1e-308, 1e-300, 1, 1e150, 1e300, 0x1p1021};
     struct draw draw;
     draw_begin(&draw, "scenes of all sizes");
@@ -243,9 +229,8 @@ static void test_no_contact_is_lost_anywhere(void **state)
 
 /* ---- Parts ---- */
 
-static void test_every_pair_can_be_the_first(void **state)
+static void every_pair_can_be_the_first(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "first pairs");
     for (int32_t which = FMB_PAIRS_ALL; which <= FMB_PAIRS_ACROSS; which++) {
@@ -313,9 +298,8 @@ static int parts_of(int pairs, int pair_bytes, int handles)
     return (pairs + each - 1) / each;
 }
 
-static void test_parts_fill_their_datagrams(void **state)
+static void parts_fill_their_datagrams(void **state)
 {
-    (void) state;
     set_heap(100, 3, true, true);
     query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
     assert_int_equal(answer_all_parts(5 + 16 + 48), parts_of(4950, 5 + 16 + 48, 100));
@@ -338,9 +322,8 @@ static void test_parts_fill_their_datagrams(void **state)
 }
 
 /* As many contacts as fit, then one separated pair for each byte that is left, and one more. */
-static void test_a_datagram_is_filled_to_its_last_byte(void **state)
+static void a_datagram_is_filled_to_its_last_byte(void **state)
 {
-    (void) state;
     enum { HANDLES = 4, CONTACT_BYTES = 1 + 16 };
     const int32_t capacity = QUERY_BYTES_MAX - WIRE_SCENE_RESULT_BYTES - HANDLE_BYTES * HANDLES;
     const int32_t contacts = capacity / CONTACT_BYTES;
@@ -361,9 +344,8 @@ static void test_a_datagram_is_filled_to_its_last_byte(void **state)
 }
 
 /* Near pairs count for the space of a result as contacts do. */
-static void test_near_pairs_fill_their_datagrams(void **state)
+static void near_pairs_fill_their_datagrams(void **state)
 {
-    (void) state;
     set_row(100);
     query->margin = 200;
     assert_int_equal(answer_all_parts(5 + 96), parts_of(4950, 5 + 96, 100));
@@ -375,9 +357,8 @@ static void test_near_pairs_fill_their_datagrams(void **state)
 
 /* As many pairs as a query has space for, of two placements or of many: all verdicts fit, beside
  * the handles. */
-static void test_verdicts_of_listed_pairs_fit(void **state)
+static void verdicts_of_listed_pairs_fit(void **state)
 {
-    (void) state;
     query->which = FMB_PAIRS_LISTED;
     for (int32_t count = 2; count <= 350; count += 348) {
         set_heap(count, 2, false, true);
@@ -399,9 +380,8 @@ static void test_verdicts_of_listed_pairs_fit(void **state)
 
 /* ---- Small queries ---- */
 
-static void test_empty_scenes(void **state)
+static void empty_scenes_are_answered(void **state)
 {
-    (void) state;
     for (int32_t which = FMB_PAIRS_ALL; which <= FMB_PAIRS_ACROSS; which++)
         for (int32_t count = 0; count <= 1; count++)
             for (int32_t split = 0; split <= (which == FMB_PAIRS_ACROSS ? count : 0); split++) {
@@ -415,9 +395,8 @@ static void test_empty_scenes(void **state)
             }
 }
 
-static void test_echo(void **state)
+static void ids_are_echoed(void **state)
 {
-    (void) state;
     set_row(2);
     query->utime = 3;
     query->client_id = 4;
@@ -450,9 +429,8 @@ static void expect(enum fmb_status status, const char *detail)
     assert_int_equal(counts().misses, kept);
 }
 
-static void test_bad_placements(void **state)
+static void bad_placements_are_refused(void **state)
 {
-    (void) state;
     set_row(340);
     scene_put_number(&scene, 3, 7, NAN);
     expect(FMB_NOT_FINITE, "placements[3].numbers[7]: not a finite number");
@@ -485,9 +463,8 @@ static void test_bad_placements(void **state)
 }
 
 /* Placements of dimension 0 are so short that a message has more of them than are valid. */
-static void test_too_many_placements(void **state)
+static void too_many_placements_are_refused(void **state)
 {
-    (void) state;
     enum {
         HEAD = 8 + 3 * 8 + 5 + 8 + 2 * 4 + 8 + 3 * 4,
         COUNT_AT = HEAD,
@@ -508,9 +485,8 @@ static void test_too_many_placements(void **state)
     assert_string_equal(answer_job_scene_result(job)->detail, "num_placements: more than 829");
 }
 
-static void test_bad_counts(void **state)
+static void wrong_counts_are_refused(void **state)
 {
-    (void) state;
     set_row(2);
     query->which = FMB_PAIRS_LISTED;
     query->index_count = 3;
@@ -524,9 +500,8 @@ static void test_bad_counts(void **state)
     expect(FMB_WRONG_COUNT, "num_ignored: not two for each pair");
 }
 
-static void test_bad_pairs(void **state)
+static void bad_pairs_are_refused(void **state)
 {
-    (void) state;
     static const struct {
         unsigned a, b;
         int place;
@@ -558,9 +533,8 @@ static void set_ignored(int32_t i, unsigned a, unsigned b)
     query->ignored[i][1] = b;
 }
 
-static void test_bad_ignored_pairs(void **state)
+static void bad_ignored_pairs_are_refused(void **state)
 {
-    (void) state;
     set_row(7);
     query->ignored_count = 4;
     set_ignored(0, 1, 2);
@@ -586,9 +560,8 @@ static void test_bad_ignored_pairs(void **state)
 }
 
 /* Ignored pairs count in the numbering, and get no answer, wherever the answers begin. */
-static void test_ignored_pairs(void **state)
+static void ignored_pairs_are_left_out(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "ignored pairs");
     for (long round = 0; round < draw_sample(24); round++) {
@@ -614,9 +587,8 @@ static void test_ignored_pairs(void **state)
 }
 
 /* A listed pair within a group is refused; the pairs of others are decided. */
-static void test_listed_pairs_within_a_group(void **state)
+static void listed_pairs_within_a_group_are_refused(void **state)
 {
-    (void) state;
     set_row(5);
     query->which = FMB_PAIRS_LISTED;
     query->index_count = 6;
@@ -651,9 +623,8 @@ static struct handle keep_large_body(int32_t frames)
 }
 
 /* 64 placements of 1024 frames are as many as a query may have. */
-static void test_too_many_frames(void **state)
+static void too_many_frames_are_refused(void **state)
 {
-    (void) state;
     const struct answerer_options options = {2048, .server_id = 99, .secret = {1, 2}};
     answerer_destroy(answerer);
     answerer = answerer_create(&options);
@@ -674,9 +645,8 @@ static void test_too_many_frames(void **state)
     expect(FMB_OVER_LIMIT, "placements[64].num_frames: more than 65536 frames in the query");
 }
 
-static void test_bad_requests(void **state)
+static void bad_requests_are_refused(void **state)
 {
-    (void) state;
     const double durations[] = {-1, NAN, INFINITY, -0x1p-1074};
     set_row(2);
     for (size_t i = 0; i < COUNT(durations); i++) {
@@ -726,9 +696,8 @@ static void test_bad_requests(void **state)
     expect(FMB_BAD_ID, "sequence_number: not from 0 to 2^53 - 1");
 }
 
-static void test_refused_without_being_read(void **state)
+static void refused_without_being_read(void **state)
 {
-    (void) state;
     const struct query_header header = {7, 8, 9};
     memset(&result, 0xa5, sizeof result);
     answer_scene_refused(answerer, &header, FMB_BUSY, &result);
@@ -741,9 +710,8 @@ static void test_refused_without_being_read(void **state)
     assert_true(assert_fits() < 130);
 }
 
-static void test_bytes_that_are_no_query(void **state)
+static void malformed_bytes_are_refused(void **state)
 {
-    (void) state;
     set_row(2);
     const size_t size = wire_write_scene_query(query, bytes);
     assert_non_null(answer_job_begin(job, ANSWER_SCENE, bytes, size - 1));
@@ -754,9 +722,8 @@ static void test_bytes_that_are_no_query(void **state)
 
 /* ---- Handles ---- */
 
-static void test_handles_mixed_with_whole_placements(void **state)
+static void handles_and_whole_placements_may_be_mixed(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "handles");
     query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
@@ -785,9 +752,8 @@ static void test_handles_mixed_with_whole_placements(void **state)
 }
 
 /* Exactly those that are not held are listed, and the cache stays as it was. */
-static void test_handles_that_are_not_held(void **state)
+static void unknown_handles_are_listed(void **state)
 {
-    (void) state;
     set_row(6);
     for (int i = 0; i < 6; i++)
         stretch(i, 1 + i);
@@ -816,9 +782,8 @@ static void test_handles_that_are_not_held(void **state)
 }
 
 /* A body of the other dimension has this handle: that is wrong, whatever is not held besides. */
-static void test_handle_of_the_other_dimension(void **state)
+static void a_handle_of_the_other_dimension_is_refused(void **state)
 {
-    (void) state;
     const struct solid square = {.dim = 2, .shape = FMB_CUBOID, .component = {{1, 0}, {0, 1}}};
     query->placement_count = 1;
     scene_set(&scene, 0, &square, 5);
@@ -831,9 +796,8 @@ static void test_handle_of_the_other_dimension(void **state)
 }
 
 /* Each placement is the body that it says, and both bodies stay. */
-static void test_one_id_with_two_bodies(void **state)
+static void one_id_may_have_two_bodies(void **state)
 {
-    (void) state;
     for (int method = 0; method < 2; method++) {
         query->method = method ? fmb_method_by_name("exact")->number : 0;
         set_row(4);
@@ -854,9 +818,8 @@ static void test_one_id_with_two_bodies(void **state)
 }
 
 /* Bodies in use are not evicted: those that come later are used once. */
-static void test_more_bodies_than_the_cache_holds(void **state)
+static void more_bodies_than_the_cache_holds_are_answered(void **state)
 {
-    (void) state;
     static struct handle handle[3 * BODIES];
     query->want = FMB_WANT_BOX;
     for (int method = 0; method < 2; method++) {
@@ -923,9 +886,8 @@ void *__wrap_aligned_alloc(size_t alignment, size_t size)
 
 /* All memory is allocated at the start, whatever the query: by handle or whole, evicting or not,
  * refused or not. */
-static void test_answers_allocate_nothing(void **state)
+static void answers_allocate_nothing(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "memory");
     assert_true(allocations > 0); /* by set_up() */
@@ -975,9 +937,8 @@ static void evict_all(void)
 
 /* What is answered between the steps, and evicts every body of the scene, does not show in the
  * result. */
-static void test_queries_between_steps_do_not_show(void **state)
+static void queries_between_steps_do_not_show(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "steps");
     query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
@@ -1002,9 +963,8 @@ static void test_queries_between_steps_do_not_show(void **state)
 }
 
 /* After any number of steps; its bodies can be evicted at once. */
-static void test_a_scene_without_answers_stops_as_busy(void **state)
+static void a_scene_without_answers_stops_as_busy(void **state)
 {
-    (void) state;
     int steps = 1;
     for (;; steps++) {
         set_row(BODIES);
@@ -1029,9 +989,8 @@ static void test_a_scene_without_answers_stops_as_busy(void **state)
 }
 
 /* Two jobs of one answerer, in turns. */
-static void test_two_jobs_at_once(void **state)
+static void two_jobs_run_at_once(void **state)
 {
-    (void) state;
     struct draw draw;
     static struct scene second;
     draw_begin(&draw, "two jobs");
@@ -1055,9 +1014,8 @@ static void test_two_jobs_at_once(void **state)
 }
 
 /* A job that is begun anew while it is under way has forgotten the first query. */
-static void test_begun_anew(void **state)
+static void a_job_can_be_begun_anew(void **state)
 {
-    (void) state;
     set_heap(60, 3, true, true);
     for (int steps = 0; steps < 12; steps++) {
         set_heap(60, 3, true, true);
@@ -1070,9 +1028,8 @@ static void test_begun_anew(void **state)
 }
 
 /* A scene that is stopped early has the answers so far, and the next query has the remainder. */
-static void test_scenes_that_are_stopped(void **state)
+static void a_stopped_scene_continues_where_it_ended(void **state)
 {
-    (void) state;
     static const char *const methods[] = {"exact", "certified"};
     struct draw draw;
     draw_begin(&draw, "scenes that are stopped");
@@ -1127,9 +1084,8 @@ static void set_slivers(int32_t count)
 }
 
 /* In the middle of a block too, which the next query has nothing to do with. */
-static void test_exact_pairs_are_one_a_step(void **state)
+static void a_step_decides_one_exact_pair(void **state)
 {
-    (void) state;
     int steps = 0;
     set_slivers(8);
     scene_begin(job, query);
@@ -1157,9 +1113,8 @@ static void test_exact_pairs_are_one_a_step(void **state)
 }
 
 /* No step decides more than a block. */
-static void test_steps_are_short(void **state)
+static void steps_are_short(void **state)
 {
-    (void) state;
     static const struct {
         const char *method;
         int32_t want;
@@ -1183,41 +1138,41 @@ static void test_steps_are_short(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_answers_are_those_of_each_pair),
-        TEST(test_answers_of_the_exact_method),
-        TEST(test_answers_of_inexact_methods),
-        TEST(test_no_contact_is_lost_anywhere),
-        TEST(test_every_pair_can_be_the_first),
-        TEST(test_parts_fill_their_datagrams),
-        TEST(test_a_datagram_is_filled_to_its_last_byte),
-        TEST(test_near_pairs_fill_their_datagrams),
-        TEST(test_verdicts_of_listed_pairs_fit),
-        TEST(test_empty_scenes),
-        TEST(test_echo),
-        TEST(test_bad_placements),
-        TEST(test_too_many_placements),
-        TEST(test_bad_counts),
-        TEST(test_bad_pairs),
-        TEST(test_bad_ignored_pairs),
-        TEST(test_ignored_pairs),
-        TEST(test_listed_pairs_within_a_group),
-        TEST(test_too_many_frames),
-        TEST(test_bad_requests),
-        TEST(test_refused_without_being_read),
-        TEST(test_bytes_that_are_no_query),
-        TEST(test_handles_mixed_with_whole_placements),
-        TEST(test_handles_that_are_not_held),
-        TEST(test_handle_of_the_other_dimension),
-        TEST(test_one_id_with_two_bodies),
-        TEST(test_more_bodies_than_the_cache_holds),
-        TEST(test_answers_allocate_nothing),
-        TEST(test_queries_between_steps_do_not_show),
-        TEST(test_a_scene_without_answers_stops_as_busy),
-        TEST(test_two_jobs_at_once),
-        TEST(test_begun_anew),
-        TEST(test_scenes_that_are_stopped),
-        TEST(test_exact_pairs_are_one_a_step),
-        TEST(test_steps_are_short),
+        TEST(answers_are_those_of_each_pair),
+        TEST(answers_of_the_exact_method),
+        TEST(answers_of_inexact_methods),
+        TEST(no_contact_is_lost_anywhere),
+        TEST(every_pair_can_be_the_first),
+        TEST(parts_fill_their_datagrams),
+        TEST(a_datagram_is_filled_to_its_last_byte),
+        TEST(near_pairs_fill_their_datagrams),
+        TEST(verdicts_of_listed_pairs_fit),
+        TEST(empty_scenes_are_answered),
+        TEST(ids_are_echoed),
+        TEST(bad_placements_are_refused),
+        TEST(too_many_placements_are_refused),
+        TEST(wrong_counts_are_refused),
+        TEST(bad_pairs_are_refused),
+        TEST(bad_ignored_pairs_are_refused),
+        TEST(ignored_pairs_are_left_out),
+        TEST(listed_pairs_within_a_group_are_refused),
+        TEST(too_many_frames_are_refused),
+        TEST(bad_requests_are_refused),
+        TEST(refused_without_being_read),
+        TEST(malformed_bytes_are_refused),
+        TEST(handles_and_whole_placements_may_be_mixed),
+        TEST(unknown_handles_are_listed),
+        TEST(a_handle_of_the_other_dimension_is_refused),
+        TEST(one_id_may_have_two_bodies),
+        TEST(more_bodies_than_the_cache_holds_are_answered),
+        TEST(answers_allocate_nothing),
+        TEST(queries_between_steps_do_not_show),
+        TEST(a_scene_without_answers_stops_as_busy),
+        TEST(two_jobs_run_at_once),
+        TEST(a_job_can_be_begun_anew),
+        TEST(a_stopped_scene_continues_where_it_ended),
+        TEST(a_step_decides_one_exact_pair),
+        TEST(steps_are_short),
     };
     return cmocka_run_group_tests_name("answer_scene", tests, NULL, NULL);
 }

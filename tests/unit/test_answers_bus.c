@@ -1,14 +1,9 @@
 /* fmb query on the bus, where no service answers. */
+#include "unit.h"
+
 #include "answers.h"
 #include "relay.h"
 #include "wire.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static void send_heartbeat(struct relay *relay)
 {
@@ -25,9 +20,8 @@ static void count(void *user, const struct fmb_client_answer *answer)
 
 /* A service that sends heartbeats, even if it does not answer in time, is queried for later scenes.
  */
-static void test_later_scenes_are_queried_if_there_is_a_heartbeat(void **state)
+static void later_scenes_are_queried_if_there_is_a_heartbeat(void **state)
 {
-    (void) state;
     for (int alive = 0; alive < 2; alive++) {
         int pairs = 0;
         const double size[] = {1, 1, 1};
@@ -53,7 +47,7 @@ static void test_later_scenes_are_queried_if_there_is_a_heartbeat(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_later_scenes_are_queried_if_there_is_a_heartbeat),
+        cmocka_unit_test(later_scenes_are_queried_if_there_is_a_heartbeat),
     };
     (void) argc;
     relay_enter(argv);

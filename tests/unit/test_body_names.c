@@ -1,31 +1,22 @@
 /* The names of bodies: the last one counts, what is no name is ignored, and what is written is read
  * again. */
+#include "unit.h"
+
 #include "body_names.h"
 
 #include "allocate.h"
 #include "wire.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 static struct body_names *names;
 
 static int set_up(void **state)
 {
-    (void) state;
     names = body_names_open();
     return 0;
 }
 
 static int tear_down(void **state)
 {
-    (void) state;
     body_names_close(names);
     return 0;
 }
@@ -36,10 +27,9 @@ static void give(int64_t client_id, int64_t body_id, const char *name)
     body_names_take(names, client_id, &placement, 1);
 }
 
-static void test_the_last_name_counts(void **state)
+static void the_last_name_counts(void **state)
 {
     char text[BODY_NAMES_TEXT_MAX];
-    (void) state;
     give(7, 1, "table");
     give(7, 2, "gripper");
     give(8, 1, "shelf");
@@ -55,10 +45,9 @@ static void test_the_last_name_counts(void **state)
     assert_string_equal(body_names_text(names, 8, INT64_MIN, text), "-9223372036854775808");
 }
 
-static void test_what_is_no_name_is_ignored(void **state)
+static void what_is_no_name_is_ignored(void **state)
 {
     char longest[QUERY_NAME_MAX + 2];
-    (void) state;
     memset(longest, 'x', sizeof longest);
     longest[QUERY_NAME_MAX + 1] = '\0';
     give(7, 1, longest);
@@ -93,12 +82,11 @@ static void assert_next(void *user, int64_t client_id, int64_t body_id, const ch
     ++*next;
 }
 
-static void test_written_names_are_read_again(void **state)
+static void written_names_are_read_again(void **state)
 {
     enum { COUNT = 2000 };
     char name[32];
     int64_t next = 0;
-    (void) state;
     again = body_names_open();
     messages = 0;
     for (int i = 0; i < COUNT; i++) {
@@ -114,11 +102,10 @@ static void test_written_names_are_read_again(void **state)
     body_names_close(again);
 }
 
-static void test_messages_that_cannot_be_read(void **state)
+static void messages_that_cannot_be_read(void **state)
 {
     static unsigned char bytes[QUERY_BYTES_MAX];
     struct names *message = allocate(1, sizeof *message);
-    (void) state;
     message->count = 2;
     for (int i = 0; i < 2; i++) {
         message->body_id[i] = 1 + i;
@@ -135,9 +122,8 @@ static void test_messages_that_cannot_be_read(void **state)
     free(message);
 }
 
-static void test_names_are_limited(void **state)
+static void names_are_limited(void **state)
 {
-    (void) state;
     for (int i = 0; i < BODY_NAMES_MAX + 10; i++)
         give(i, 1, "name");
     assert_int_equal(body_names_count(names), BODY_NAMES_MAX);
@@ -148,7 +134,7 @@ static void test_names_are_limited(void **state)
 
 int main(void)
 {
-#define TEST(name) cmocka_unit_test_setup_teardown(test_##name, set_up, tear_down)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
         TEST(the_last_name_counts),
         TEST(what_is_no_name_is_ignored),

@@ -5,14 +5,8 @@
  * The search climbs: it starts from numbers that are likely to round badly (mantissas of ones, an
  * ulp beside a power of two, near cancellation), changes one at a time, and keeps what makes the
  * error of one slab larger relative to its bound. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <math.h>
 
@@ -23,8 +17,6 @@
 #include "slab_kernel.h"
 #include "slab_truth.h"
 #include "slabs.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* slabs.c once more, with fused operations, and with a bound that is wrong (tests.mk). */
 int fused_slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX]);
@@ -141,7 +133,7 @@ static int list_of(const struct subject *subject, const struct pair *pair,
                            : subject->list(slabs, true, out);
 }
 
-/* A pair as a subject may be asked it: kernels want the cuboid first, and the face last. */
+/* A pair as a subject takes it: kernels want the cuboid first, and the face last. */
 static void set_pair(const struct subject *subject, const struct question *question,
                      struct ready *out)
 {
@@ -173,7 +165,7 @@ static double ratio_of(const struct subject *subject, const struct question *que
     return slab_truth_worst(truth, &slab[index / 2 % count]);
 }
 
-/* Whom the search is at. */
+/* The subject of the search. */
 struct climb {
     struct question question;
     int index; /* of the slab */
@@ -226,7 +218,7 @@ static struct climb search_kind(struct draw *draw, const struct subject *subject
 }
 
 /* Searches all kinds (of axes: those in space); each must come to the ratio that is
- * asked, and none beyond 1. */
+ * requested, and none beyond 1. */
 static void attack(const struct subject *subject)
 {
     struct draw draw;
@@ -274,7 +266,6 @@ static bool has_fused_operations(void)
 static void errors_of_slabs_stay_within_their_bounds(void **state)
 {
     static const struct subject slabs = {.name = "slabs", .list = slabs_list, .ratio = 0.01};
-    (void) state;
     attack(&slabs);
 }
 
@@ -282,7 +273,6 @@ static void errors_of_kernels_stay_within_their_bounds(void **state)
 {
     static const struct subject kernel = {
         .name = "kernels", .kernel = slab_kernel_list, .ratio = 0.01};
-    (void) state;
     attack(&kernel);
 }
 
@@ -291,7 +281,6 @@ static void errors_along_axes_stay_within_their_bound(void **state)
     static const struct subject axes = {.name = "axes", .axes = slab_kernel_axes, .ratio = 0.01};
     static const struct subject fused = {
         .name = "fused axes", .axes = fused_slab_kernel_axes, .ratio = 0.01};
-    (void) state;
     attack(&axes);
     if (has_fused_operations())
         attack(&fused);
@@ -301,7 +290,6 @@ static void a_wrong_bound_is_found(void **state)
 {
     static const struct subject planted = {
         .name = "planted slabs", .list = planted_slabs_list, .ratio = 1.01};
-    (void) state;
     attack_planted(&planted);
 }
 
@@ -309,7 +297,6 @@ static void a_wrong_bound_of_kernels_is_found(void **state)
 {
     static const struct subject planted = {
         .name = "planted kernels", .kernel = planted_slab_kernel_list, .ratio = 1.01};
-    (void) state;
     attack_planted(&planted);
 }
 
@@ -320,7 +307,6 @@ static void bounds_hold_with_fused_operations(void **state)
         .name = "fused slabs", .list = fused_slabs_list, .ratio = 0.01};
     static const struct subject kernel = {
         .name = "fused kernels", .kernel = fused_slab_kernel_list, .ratio = 0.01};
-    (void) state;
     if (!has_fused_operations())
         skip();
     attack(&fused);
@@ -339,7 +325,6 @@ static long differences(const struct slab_value *one, const struct slab_value *o
 
 static void fused_operations_are_fused(void **state)
 {
-    (void) state;
 #if defined __x86_64__
     if (!has_fused_operations())
         skip();
@@ -411,7 +396,6 @@ static void bounds_hold_at_the_ends_of_the_range(void **state)
     static const struct subject subjects[] = {
         {.name = "slabs", .list = slabs_list, .ratio = 0},
         {.name = "kernels", .kernel = slab_kernel_list, .ratio = 0}};
-    (void) state;
     struct draw draw;
     struct slab_truth truth;
     long said = 0;
@@ -477,7 +461,6 @@ static struct question draw_end_to_end(struct draw *draw)
 
 static void extents_part_no_pair_that_touches(void **state)
 {
-    (void) state;
     struct draw draw;
     struct slab_truth truth;
     long count[3] = {0};

@@ -7,14 +7,8 @@
  *
  * And boxes of frames whose edges all but depend on each other, and boxes in fixed-width integers,
  * beside exact ones. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <math.h>
 
@@ -199,10 +193,9 @@ static const struct kind kinds[] = {
 /* No end is beyond the real bound, and one of each kind is beyond the planted one. */
 static void bounds_hold_and_smaller_ones_do_not(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "bounds of boxes");
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+    for (size_t i = 0; i < COUNT(kinds); i++) {
         const struct kind kind = kinds[i];
         const double worst = search(&draw, kind, kind.moving ? 200 : 1000, 1.01);
         printf("# %dD %s %s %s: an error %.3g of the planted bound\n", kind.dim,
@@ -381,7 +374,6 @@ static bool prepare_contact(const struct question *question, struct ready *ready
 
 static void boxes_of_edges_that_all_but_depend(void **state)
 {
-    (void) state;
     struct draw draw;
     long met = 0, known = 0;
     double worst = 0;
@@ -412,7 +404,6 @@ static void boxes_of_edges_that_all_but_depend(void **state)
 /* Whatever doubles give. Of hard pairs, and of edges that all but depend on each other. */
 static void boxes_in_integers_hold_the_exact_ones(void **state)
 {
-    (void) state;
     struct draw draw;
     long met = 0, known = 0;
     double worst = 0;

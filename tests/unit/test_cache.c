@@ -1,16 +1,10 @@
 /* Hit, miss, eviction, ids, pages, and bodies or ids that are chosen to collide. */
+#include "unit.h"
+
 #include "cache.h"
 #include "geometry_write.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static const uint64_t secret[2] = {0x243f6a8885a308d3, 0x13198a2e03707344};
 static const uint64_t another_secret[2] = {0xa4093822299f31d0, 0x082efa98ec4e6c89};
@@ -62,9 +56,8 @@ static struct handle keep_geometry(struct cache *cache, int64_t id, const struct
     return handle;
 }
 
-static void test_hit_and_miss(void **state)
+static void a_second_use_is_a_hit(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(4, secret);
     const struct handle handle = keep(cache, 7, 2);
     const struct handle again = keep(cache, 7, 2);
@@ -81,9 +74,8 @@ static void test_hit_and_miss(void **state)
 }
 
 /* As other programs compute it. */
-static void test_handle(void **state)
+static void a_body_is_found_by_its_handle(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(4, secret);
     struct hasher *hasher = hasher_create();
     const struct handle handle = keep(cache, 0, 3);
@@ -94,9 +86,8 @@ static void test_handle(void **state)
     cache_destroy(cache);
 }
 
-static void test_handles_that_are_not_held(void **state)
+static void unknown_handles_are_not_found(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(3, secret);
     const struct handle handle = keep(cache, 1, 1);
     for (int i = 0; i < HANDLE_BYTES; i++) {
@@ -112,9 +103,8 @@ static void test_handles_that_are_not_held(void **state)
 }
 
 /* The ids of bodies do not matter, nor whether there are any. */
-static void test_ids_share_a_body(void **state)
+static void ids_share_a_body(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(4, secret);
     const struct handle handle = keep(cache, 1, 2);
     for (int64_t id = 0; id <= 3; id++) {
@@ -128,9 +118,8 @@ static void test_ids_share_a_body(void **state)
 }
 
 /* As two clients do that number their bodies from 1, or one whose body changes to and fro. */
-static void test_an_id_with_two_bodies(void **state)
+static void an_id_may_have_two_bodies(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(20, secret);
     struct handle handle[2][10];
     for (int round = 0; round < 5; round++)
@@ -148,9 +137,8 @@ static void test_an_id_with_two_bodies(void **state)
     cache_destroy(cache);
 }
 
-static void test_bodies_are_compared_bit_by_bit(void **state)
+static void bodies_are_compared_bit_by_bit(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(8, secret);
     struct geometry_frame frame = {.shape = FMB_CUBOID, .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
@@ -172,9 +160,8 @@ static void test_bodies_are_compared_bit_by_bit(void **state)
 }
 
 /* The body of an id is the one it was before only if no bit of any number has changed. */
-static void test_each_number_of_a_body_counts(void **state)
+static void each_number_of_a_body_counts(void **state)
 {
-    (void) state;
     enum { AT = 4 + 4 + 1 + 4, NUMBERS = 12 }; /* after dim, one shape, and the counts */
     struct cache *cache = cache_create(2 * NUMBERS, secret);
     for (int i = 0; i < NUMBERS; i++) {
@@ -191,9 +178,8 @@ static void test_each_number_of_a_body_counts(void **state)
     cache_destroy(cache);
 }
 
-static void test_the_least_recently_used_is_evicted(void **state)
+static void the_least_recently_used_is_evicted(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(3, secret);
     struct handle handle[5];
     for (int id = 1; id <= 3; id++)
@@ -211,9 +197,8 @@ static void test_the_least_recently_used_is_evicted(void **state)
     cache_destroy(cache);
 }
 
-static void test_capacity_for_one(void **state)
+static void a_cache_of_one_frame_holds_one(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(1, secret);
     const struct handle one = keep(cache, 1, 1), two = keep(cache, 2, 2);
     assert_true(find(cache, one) == 0);
@@ -222,9 +207,8 @@ static void test_capacity_for_one(void **state)
 }
 
 /* An id whose entry holds another body now: the entry is not taken for the id's. */
-static void test_stale_ids(void **state)
+static void ids_of_evicted_bodies_are_forgotten(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(1, secret);
     const struct handle one = keep(cache, 1, 1);
     assert_int_equal(cache_counts(cache).ids, 1);
@@ -242,9 +226,8 @@ static void test_stale_ids(void **state)
 }
 
 /* Against a plain list of all that was ever kept: the same are held, and the same are not. */
-static void test_against_a_list(void **state)
+static void the_cache_matches_a_list(void **state)
 {
-    (void) state;
     enum { BODIES = 40, CAPACITY = 16, ROUNDS = 100000 };
     struct cache *cache = cache_create(CAPACITY, secret);
     struct {
@@ -281,9 +264,8 @@ static void test_against_a_list(void **state)
     cache_destroy(cache);
 }
 
-static void test_pages_have_all_bodies(void **state)
+static void pages_have_all_bodies(void **state)
 {
-    (void) state;
     enum { CAPACITY = 16 };
     struct cache *cache = cache_create(CAPACITY, secret);
     int64_t position = 0;
@@ -309,9 +291,8 @@ static void test_pages_have_all_bodies(void **state)
 }
 
 /* Any placement may be prefetched, of which nothing has been checked. */
-static void test_prefetch(void **state)
+static void prefetching_changes_nothing(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(4, secret);
     struct placement placement = {.body_id = INT64_MIN};
     cache_prefetch(cache, &placement);
@@ -325,9 +306,8 @@ static void test_prefetch(void **state)
     cache_destroy(cache);
 }
 
-static void test_memory_taken_is_as_it_was(void **state)
+static void memory_taken_is_as_it_was(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(1000, secret);
     const struct handle handle = keep(cache, 1, 1);
     cache_prefault(cache);
@@ -380,9 +360,8 @@ static bool has_boxes(struct cache *cache, const struct handle *handle, int coun
 }
 
 /* A body takes as many frames of the capacity as it has. */
-static void test_capacity_in_frames(void **state)
+static void the_capacity_counts_frames(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(40, secret);
     struct handle handle[5];
     for (int i = 0; i < 5; i++) {
@@ -401,9 +380,8 @@ static void test_capacity_in_frames(void **state)
 }
 
 /* Many small bodies go for a large one, but no more than it needs and one more. */
-static void test_a_large_body_among_small_ones(void **state)
+static void a_large_body_among_small_ones(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(100, secret);
     struct handle small[100];
     for (int i = 0; i < 100; i++)
@@ -421,9 +399,8 @@ static void test_a_large_body_among_small_ones(void **state)
     cache_destroy(cache);
 }
 
-static void test_more_frames_than_the_capacity(void **state)
+static void more_frames_than_the_capacity(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(20, secret);
     const struct handle held = keep_boxes(cache, 1, 20, 2);
     const struct geometry geometry = boxes(21, 3);
@@ -438,9 +415,8 @@ static void test_more_frames_than_the_capacity(void **state)
 }
 
 /* A body in use stays where it is, whatever is kept meanwhile, until its last user releases it. */
-static void test_bodies_in_use_stay(void **state)
+static void bodies_in_use_stay(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(30, secret);
     const struct geometry geometry = boxes(10, 4);
     struct handle handle, other;
@@ -463,9 +439,8 @@ static void test_bodies_in_use_stay(void **state)
 }
 
 /* All frames are in use: nothing can be kept, and the id leads nowhere. */
-static void test_all_in_use(void **state)
+static void bodies_in_use_are_not_evicted(void **state)
 {
-    (void) state;
     struct cache *cache = cache_create(2, secret);
     const struct cached *used[2];
     struct handle handle;
@@ -486,9 +461,8 @@ static void test_all_in_use(void **state)
 
 /* Bodies of all sizes, some in use: what is held is what was kept, the counts are those of the
  * pages, and the latest is always held. */
-static void test_bodies_of_all_sizes(void **state)
+static void bodies_of_all_sizes(void **state)
 {
-    (void) state;
     enum { ROUNDS = 20000, CAPACITY = 100, USED = 4 };
     struct cache *cache = cache_create(CAPACITY, secret);
     const struct cached *used[USED] = {NULL};
@@ -553,9 +527,8 @@ static int64_t ids_known(const int64_t id[ATTACK], const uint64_t used[2])
 
 /* With the secret, ids can be computed that push each other out of the table. They do not with
  * another one: nearly as many are known as of any ids. */
-static void test_ids_chosen_to_collide(void **state)
+static void ids_chosen_to_collide(void **state)
 {
-    (void) state;
     static int64_t id[ATTACK];
     choose_ids(secret[1], id);
     assert_int_equal(ids_known(id, secret), 4);
@@ -588,10 +561,9 @@ static int64_t longest_chain(uint64_t multiplier, const uint64_t used[2], int ca
     return longest;
 }
 
-/* Likewise bodies. Chains of 256 bodies in 256 buckets are as short as of any. */
-static void test_bodies_chosen_to_collide(void **state)
+/* Bodies chosen to collide. Chains of 256 bodies in 256 buckets are as short as of any. */
+static void bodies_chosen_to_collide(void **state)
 {
-    (void) state;
     assert_int_equal(longest_chain(secret[0], secret, 256, 8), 256);
     assert_in_range(longest_chain(secret[0], another_secret, 256, 8), 2, 8);
 }
@@ -599,28 +571,28 @@ static void test_bodies_chosen_to_collide(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_hit_and_miss),
-        cmocka_unit_test(test_handle),
-        cmocka_unit_test(test_handles_that_are_not_held),
-        cmocka_unit_test(test_ids_share_a_body),
-        cmocka_unit_test(test_an_id_with_two_bodies),
-        cmocka_unit_test(test_bodies_are_compared_bit_by_bit),
-        cmocka_unit_test(test_each_number_of_a_body_counts),
-        cmocka_unit_test(test_the_least_recently_used_is_evicted),
-        cmocka_unit_test(test_capacity_for_one),
-        cmocka_unit_test(test_stale_ids),
-        cmocka_unit_test(test_against_a_list),
-        cmocka_unit_test(test_pages_have_all_bodies),
-        cmocka_unit_test(test_prefetch),
-        cmocka_unit_test(test_memory_taken_is_as_it_was),
-        cmocka_unit_test(test_capacity_in_frames),
-        cmocka_unit_test(test_a_large_body_among_small_ones),
-        cmocka_unit_test(test_more_frames_than_the_capacity),
-        cmocka_unit_test(test_bodies_in_use_stay),
-        cmocka_unit_test(test_all_in_use),
-        cmocka_unit_test(test_bodies_of_all_sizes),
-        cmocka_unit_test(test_ids_chosen_to_collide),
-        cmocka_unit_test(test_bodies_chosen_to_collide),
+        cmocka_unit_test(a_second_use_is_a_hit),
+        cmocka_unit_test(a_body_is_found_by_its_handle),
+        cmocka_unit_test(unknown_handles_are_not_found),
+        cmocka_unit_test(ids_share_a_body),
+        cmocka_unit_test(an_id_may_have_two_bodies),
+        cmocka_unit_test(bodies_are_compared_bit_by_bit),
+        cmocka_unit_test(each_number_of_a_body_counts),
+        cmocka_unit_test(the_least_recently_used_is_evicted),
+        cmocka_unit_test(a_cache_of_one_frame_holds_one),
+        cmocka_unit_test(ids_of_evicted_bodies_are_forgotten),
+        cmocka_unit_test(the_cache_matches_a_list),
+        cmocka_unit_test(pages_have_all_bodies),
+        cmocka_unit_test(prefetching_changes_nothing),
+        cmocka_unit_test(memory_taken_is_as_it_was),
+        cmocka_unit_test(the_capacity_counts_frames),
+        cmocka_unit_test(a_large_body_among_small_ones),
+        cmocka_unit_test(more_frames_than_the_capacity),
+        cmocka_unit_test(bodies_in_use_stay),
+        cmocka_unit_test(bodies_in_use_are_not_evicted),
+        cmocka_unit_test(bodies_of_all_sizes),
+        cmocka_unit_test(ids_chosen_to_collide),
+        cmocka_unit_test(bodies_chosen_to_collide),
     };
     return cmocka_run_group_tests_name("cache", tests, NULL, NULL);
 }

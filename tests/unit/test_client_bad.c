@@ -1,5 +1,7 @@
 /* The client library over a bus that loses, repeats and delays, with a service that is busy, gone,
  * slow, or forges results. */
+#include "unit.h"
+
 #include "client.h"
 #include "clock.h"
 #include "hostile.h"
@@ -12,19 +14,10 @@
 
 #include <limits.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { PLACEMENTS = 700, ALL_WANTS = FMB_WANT_BOX | FMB_WANT_TIMES };
 
@@ -59,9 +52,8 @@ static struct fmb_scene listed(void)
 
 /* ---- A bad bus ---- */
 
-static void test_what_the_bus_loses_is_sent_again(void **state)
+static void what_the_bus_loses_is_sent_again(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->lose_query = 7;
     relay->lose_result = 5;
@@ -95,9 +87,8 @@ static void ignore_scene(void *user, const struct fmb_client_scene_result *resul
     (void) result;
 }
 
-static void test_messages_that_cannot_be_read_are_counted(void **state)
+static void messages_that_cannot_be_read_are_counted(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     const struct fmb_client_watcher watcher = {.scene = ignore_scene};
     relay_open(relay, 2000);
@@ -128,9 +119,8 @@ static void publish_pair_results(struct relay *relay)
     }
 }
 
-static void test_results_of_another_kind_are_ignored(void **state)
+static void results_of_another_kind_are_ignored(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     relay_open(relay, 2000);
@@ -163,9 +153,8 @@ static void count_pairs(void *user, const struct fmb_client_pair_result *result)
     ++*(int *) user;
 }
 
-static void test_results_of_another_client_reach_only_the_watcher(void **state)
+static void results_of_another_client_reach_only_the_watcher(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     int watched = 0;
@@ -228,9 +217,8 @@ static struct request *send_unsent(enum fmb_client_kind kind, size_t bytes, size
 }
 
 /* A later query of a request may be larger than the first. */
-static void test_larger_queries_of_a_request_are_charged(void **state)
+static void larger_queries_of_a_request_are_charged(void **state)
 {
-    (void) state;
     int status;
     open_unsent();
     for (int i = 0; i < 3; i++) {
@@ -241,9 +229,8 @@ static void test_larger_queries_of_a_request_are_charged(void **state)
 }
 
 /* A request releases its share of the window when it ends. */
-static void test_the_window_is_free_when_all_requests_have_ended(void **state)
+static void the_window_is_free_when_all_requests_have_ended(void **state)
 {
-    (void) state;
     int status;
     open_unsent();
     for (int i = 0; i < 10; i++) {
@@ -260,9 +247,8 @@ static void test_the_window_is_free_when_all_requests_have_ended(void **state)
 }
 
 /* In the end the refusal is the result. Its pauses, a minute in all, are not waited for. */
-static void test_a_service_that_stays_busy_is_given_up(void **state)
+static void a_service_that_stays_busy_is_given_up(void **state)
 {
-    (void) state;
     const struct request_result busy = {
         .kind = FMB_CLIENT_DEFINITION, .status = FMB_BUSY, .detail = ""};
     int status = FMB_OK, refusals = 0;
@@ -291,9 +277,8 @@ static void wait_a_millisecond(void *user, int other_fd, int timeout_ms)
     nanosleep(&(struct timespec){0, 1000000}, NULL);
 }
 
-static void test_results_without_a_query_do_not_prolong_others(void **state)
+static void results_without_a_query_do_not_prolong_others(void **state)
 {
-    (void) state;
     enum { MS = 1000000, TIMEOUT = 20 * MS, TRIES = 3 };
     static struct requests requests, *forged = &requests;
     int status = FMB_OK;
@@ -343,9 +328,8 @@ static double seconds_since(int64_t start)
 
 /* A client may run for hours, and the service be started after it. While there is none, each call
  * takes a timeout, and sends one query alone. */
-static void test_a_service_that_comes_back_is_found(void **state)
+static void a_service_that_comes_back_is_found(void **state)
 {
-    (void) state;
     const double timeout = 0.1;
     const int tries = 10;
     struct relay *relay = relay_new();
@@ -388,9 +372,8 @@ static void hear_third(struct relay *relay)
     relay->deaf = relay->queries < 3;
 }
 
-static void test_a_repeat_finds_the_service(void **state)
+static void a_repeat_finds_the_service(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->deaf = true;
     relay_open(relay, 2000);
@@ -406,9 +389,8 @@ static void test_a_repeat_finds_the_service(void **state)
     relay_close(relay);
 }
 
-static void test_no_service_costs_the_time_of_one_query(void **state)
+static void no_service_costs_the_time_of_one_query(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->deaf = true;
     relay_open(relay, 10);
@@ -430,9 +412,8 @@ static void test_no_service_costs_the_time_of_one_query(void **state)
 
 /* Under one number, the first time soon, then after twice the time each: a datagram that is lost
  * costs milliseconds, and a service that is slow is not flooded. */
-static void test_a_lost_query_is_repeated_soon_and_then_more_rarely(void **state)
+static void a_lost_query_is_repeated_soon_and_then_more_rarely(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     relay_open(relay, 10);
@@ -467,9 +448,8 @@ static void lose_one_and_be_slow(struct relay *relay)
     relay->deaf = relay->queries == 3;
 }
 
-static void test_queries_in_line_are_not_repeated(void **state)
+static void queries_in_line_are_not_repeated(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->before = lose_one_and_be_slow;
     struct tally tally;
@@ -504,9 +484,8 @@ static void be_slow_and_answer_once(struct relay *relay)
 
 /* The time from the last repeat to the result of the first query is not the time that the service
  * takes. A client that measured it would go on to repeat. */
-static void test_a_slow_service_gets_repeats_at_first_only(void **state)
+static void a_slow_service_gets_repeats_at_first_only(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     relay->before = be_slow_and_answer_once;
@@ -528,9 +507,8 @@ static void die(struct relay *relay)
     relay->deaf = relay->queries > 3;
 }
 
-static void test_the_others_have_no_answer(void **state)
+static void the_others_have_no_answer(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->before = die;
     struct relay_truth truth;
@@ -546,9 +524,8 @@ static void test_the_others_have_no_answer(void **state)
     relay_close(relay);
 }
 
-static void test_the_time_for_all_ends_it(void **state)
+static void the_time_for_all_ends_it(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->deaf = true;
     relay_open(relay, 10);
@@ -574,9 +551,8 @@ static void check_slowly(void *user, const struct fmb_client_answer *answer)
     relay_check(user, answer);
 }
 
-static void test_a_caller_that_takes_long_gets_all_answers(void **state)
+static void a_caller_that_takes_long_gets_all_answers(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct relay_truth truth;
     relay_open(relay, 2000);
@@ -596,9 +572,8 @@ static void test_a_caller_that_takes_long_gets_all_answers(void **state)
 
 /* What is under way at once fits into a usual receive buffer: two of the largest datagrams, or many
  * small ones. */
-static void test_what_is_under_way_is_limited(void **state)
+static void what_is_under_way_is_limited(void **state)
 {
-    (void) state;
     struct fmb_scene scene = all_pairs();
     for (int small = 0; small < 2; small++) {
         struct relay *relay = relay_new();
@@ -799,10 +774,9 @@ static const struct {
 };
 
 /* A forged result is ignored: it gives no answer, and counts as malformed. */
-static void test_forged_results_are_ignored(void **state)
+static void forged_results_are_ignored(void **state)
 {
-    (void) state;
-    for (size_t i = 0; i < sizeof lies / sizeof *lies; i++)
+    for (size_t i = 0; i < COUNT(lies); i++)
         for (int of_list = 0; of_list < 2; of_list++) {
             struct fmb_scene scene = of_list ? listed() : all_pairs();
             if (!(of_list ? lies[i].list : lies[i].named))
@@ -865,12 +839,11 @@ static void gaps_unwanted(struct scene_result *result, int turn)
     memset(result->gap, 0, (size_t) result->verdict_count * sizeof *result->gap);
 }
 
-static void test_forged_gaps_are_ignored(void **state)
+static void forged_gaps_are_ignored(void **state)
 {
-    (void) state;
     static relay_lie *const gap_lies[] = {no_gaps, too_far_apart, no_gap, gaps_of_2d,
                                           gaps_unwanted};
-    for (size_t i = 0; i < sizeof gap_lies / sizeof *gap_lies; i++) {
+    for (size_t i = 0; i < COUNT(gap_lies); i++) {
         struct relay *relay = relay_new();
         struct fmb_scene scene = all_pairs();
         scene.placement_count = 200;
@@ -934,11 +907,10 @@ static bool takes(struct part *part, const struct request_result *result)
     return part->done;
 }
 
-static void test_results_of_a_pair_fit_their_query(void **state)
+static void results_of_a_pair_fit_their_query(void **state)
 {
-    (void) state;
     struct fmb_scene scene = listed();
-    for (size_t i = 0; i < sizeof pair_lies / sizeof *pair_lies; i++) {
+    for (size_t i = 0; i < COUNT(pair_lies); i++) {
         const struct pair_result result = {
             .dim = 3,
             .answer = {.verdict = pair_lies[i].verdict,
@@ -953,9 +925,8 @@ static void test_results_of_a_pair_fit_their_query(void **state)
 
 /* The frames that have a gap, of bodies of one frame and of three: named if and only if a body has
  * several, and such that the body has. */
-static void test_frames_of_a_gap_fit_the_bodies(void **state)
+static void frames_of_a_gap_fit_the_bodies(void **state)
 {
-    (void) state;
     static const struct {
         unsigned a, b; /* placements: 0 has one frame, 1 has three */
         bool named;
@@ -968,7 +939,7 @@ static void test_frames_of_a_gap_fit_the_bodies(void **state)
     struct fmb_scene scene = listed();
     static struct scene_result named;
     scene.want = FMB_WANT_GAP;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = 0; i < COUNT(cases); i++) {
         const struct pair_result result = {
             .dim = 3,
             .names_frames = cases[i].named,
@@ -999,9 +970,8 @@ static void lies_at_first(struct scene_result *result, int turn)
         result->end_pair = -7;
 }
 
-static void test_the_right_result_after_forged_ones_is_taken(void **state)
+static void the_right_result_after_forged_ones_is_taken(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->lie = lies_at_first;
     relay_open(relay, 2000);
@@ -1025,9 +995,8 @@ static void step_by_step(struct scene_result *result, int turn)
     keep_first(result, 1);
 }
 
-static void test_steps_of_one_pair_end(void **state)
+static void steps_of_one_pair_end(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->lie = relay->second_lie = step_by_step;
     relay->double_result = 1;
@@ -1054,9 +1023,8 @@ static void in_no_time(struct scene_result *result, int turn)
 }
 
 /* A query lists as many pairs as are decided soon. */
-static void test_slow_services_get_fewer_pairs_a_query(void **state)
+static void slow_services_get_fewer_pairs_a_query(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->lie = for_ever;
     relay_open(relay, 2000);
@@ -1104,9 +1072,8 @@ static uint64_t queries_with(relay_lie *lie)
     return counts.queries - before;
 }
 
-static void test_unknown_bodies_for_ever_are_sent_whole(void **state)
+static void unknown_bodies_for_ever_are_sent_whole(void **state)
 {
-    (void) state;
     assert_int_equal(queries_with(unknown_body), 2); /* by handle, then whole */
 }
 
@@ -1119,16 +1086,14 @@ static void another_unknown_body(struct scene_result *result, int turn)
     result->unknown[0] = (unsigned) turn % 100;
 }
 
-static void test_unknown_bodies_one_by_one_are_sent_whole(void **state)
+static void unknown_bodies_one_by_one_are_sent_whole(void **state)
 {
-    (void) state;
     assert_int_equal(queries_with(another_unknown_body), 3);
 }
 
 /* Of two services on a bus, the one that holds no body answers first. */
-static void test_an_answer_counts_more_than_an_unknown_body(void **state)
+static void an_answer_counts_more_than_an_unknown_body(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     relay_open(relay, 2000);
@@ -1168,9 +1133,8 @@ static void hear_two(struct relay *relay)
     relay->deaf = relay->queries > 2;
 }
 
-static void test_a_late_answer_to_the_query_by_handle_is_taken(void **state)
+static void a_late_answer_to_the_query_by_handle_is_taken(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     relay_open(relay, 2000);
@@ -1201,9 +1165,8 @@ static void no_pair_handle(struct pair_result *result, int turn)
     result->handle[0] = none;
 }
 
-static void test_wrong_handles_of_a_pair_are_malformed(void **state)
+static void wrong_handles_of_a_pair_are_malformed(void **state)
 {
-    (void) state;
     relay_pair_lie *const lie[] = {another_pair_handle, no_pair_handle};
     for (int i = 0; i < 2; i++) {
         struct relay *relay = relay_new();
@@ -1221,9 +1184,8 @@ static void test_wrong_handles_of_a_pair_are_malformed(void **state)
 }
 
 /* The table is full, and a scene begins; only if the scene is small, the table is cleared. */
-static void test_bodies_are_kept_until_the_table_is_full(void **state)
+static void bodies_are_kept_until_the_table_is_full(void **state)
 {
-    (void) state;
     static struct held held;
     static struct requests requests;
     static struct scene_run run = {.requests = &requests, .held = &held};
@@ -1292,9 +1254,8 @@ static uint64_t contradicting(struct fmb_client *client)
     return fmb_client_get_counts(client).contradicting;
 }
 
-static void test_contradicting_second_results_are_counted(void **state)
+static void contradicting_second_results_are_counted(void **state)
 {
-    (void) state;
     static const struct {
         relay_lie *lie;
         bool contradicts;
@@ -1303,7 +1264,7 @@ static void test_contradicting_second_results_are_counted(void **state)
                   {other_service, false},
                   {busy, false},
                   {step_by_step, false}};
-    for (size_t i = 0; i < sizeof second / sizeof *second; i++) {
+    for (size_t i = 0; i < COUNT(second); i++) {
         struct relay *relay = relay_new();
         relay->double_result = 1;
         relay->second_lie = second[i].lie;
@@ -1323,9 +1284,8 @@ static void test_contradicting_second_results_are_counted(void **state)
     }
 }
 
-static void test_contradicting_results_of_pairs_are_counted(void **state)
+static void contradicting_results_of_pairs_are_counted(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay->double_result = 1;
     struct fmb_client_answer answer;
@@ -1343,9 +1303,8 @@ static void test_contradicting_results_of_pairs_are_counted(void **state)
 
 /* Of recent results as many are kept as the numbers have remainders: an old one is not taken for a
  * newer one of the same remainder. */
-static void test_old_results_contradict_nothing(void **state)
+static void old_results_contradict_nothing(void **state)
 {
-    (void) state;
     static struct recent recent;
     struct pair_result pair = {.answer = {.verdict = FMB_SEPARATED}};
     unsigned char bytes[2][QUERY_BYTES_MAX];
@@ -1377,9 +1336,8 @@ static void test_old_results_contradict_nothing(void **state)
 /* ---- The process ---- */
 
 /* LCM's own receiver, which uses select(), aborts there. */
-static void test_many_open_descriptors(void **state)
+static void many_open_descriptors_do_not_matter(void **state)
 {
-    (void) state;
     enum { COUNT = 1100 };
     static int fd[COUNT];
     struct rlimit limit;
@@ -1401,9 +1359,8 @@ static void test_many_open_descriptors(void **state)
     relay_close(relay);
 }
 
-static void test_a_child_that_closes_harms_nothing(void **state)
+static void a_child_that_closes_harms_nothing(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     int status;
     relay_open(relay, 2000);
@@ -1446,9 +1403,8 @@ static void query_within(void *user, const struct fmb_client_answer *answer)
     assert_int_equal(fmb_client_watch(within->client, &watcher), FMB_CLIENT_INSIDE);
 }
 
-static void test_no_call_within_a_callback(void **state)
+static void no_call_within_a_callback(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 2000);
     const struct fmb_scene scene = listed();
@@ -1497,9 +1453,8 @@ static void on_malformed(void *user, const char *what)
 }
 
 /* One client listens to what another one is answered. */
-static void test_watching(void **state)
+static void a_watcher_sees_all_results(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     struct watching watching = {0};
     struct relay_truth truth;
@@ -1541,16 +1496,15 @@ static void test_watching(void **state)
 
 /* ---- Opening ---- */
 
-static void test_wrong_options_are_refused(void **state)
+static void wrong_options_are_refused(void **state)
 {
-    (void) state;
     char why[FMB_CLIENT_WHY_MAX], little[8];
     const struct fmb_client_options wrong[] = {{.prefix = "a.*"},
                                                {.timeout = -1},
                                                {.timeout = NAN},
                                                {.tries = -1},
                                                {.url = "tcpq://127.0.0.1:1"}};
-    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    for (size_t i = 0; i < COUNT(wrong); i++) {
         why[0] = '\0';
         assert_null(fmb_client_open(&wrong[i], why, sizeof why));
         assert_true(strlen(why) > 10);
@@ -1564,45 +1518,45 @@ static void test_wrong_options_are_refused(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_the_bus_loses_is_sent_again),
-        cmocka_unit_test(test_messages_that_cannot_be_read_are_counted),
-        cmocka_unit_test(test_results_of_another_kind_are_ignored),
-        cmocka_unit_test(test_results_of_another_client_reach_only_the_watcher),
-        cmocka_unit_test(test_larger_queries_of_a_request_are_charged),
-        cmocka_unit_test(test_the_window_is_free_when_all_requests_have_ended),
-        cmocka_unit_test(test_a_service_that_stays_busy_is_given_up),
-        cmocka_unit_test(test_results_without_a_query_do_not_prolong_others),
-        cmocka_unit_test(test_a_service_that_comes_back_is_found),
-        cmocka_unit_test(test_a_repeat_finds_the_service),
-        cmocka_unit_test(test_no_service_costs_the_time_of_one_query),
-        cmocka_unit_test(test_a_lost_query_is_repeated_soon_and_then_more_rarely),
-        cmocka_unit_test(test_queries_in_line_are_not_repeated),
-        cmocka_unit_test(test_a_slow_service_gets_repeats_at_first_only),
-        cmocka_unit_test(test_the_others_have_no_answer),
-        cmocka_unit_test(test_the_time_for_all_ends_it),
-        cmocka_unit_test(test_a_caller_that_takes_long_gets_all_answers),
-        cmocka_unit_test(test_what_is_under_way_is_limited),
-        cmocka_unit_test(test_forged_results_are_ignored),
-        cmocka_unit_test(test_forged_gaps_are_ignored),
-        cmocka_unit_test(test_results_of_a_pair_fit_their_query),
-        cmocka_unit_test(test_frames_of_a_gap_fit_the_bodies),
-        cmocka_unit_test(test_the_right_result_after_forged_ones_is_taken),
-        cmocka_unit_test(test_steps_of_one_pair_end),
-        cmocka_unit_test(test_slow_services_get_fewer_pairs_a_query),
-        cmocka_unit_test(test_unknown_bodies_for_ever_are_sent_whole),
-        cmocka_unit_test(test_unknown_bodies_one_by_one_are_sent_whole),
-        cmocka_unit_test(test_an_answer_counts_more_than_an_unknown_body),
-        cmocka_unit_test(test_a_late_answer_to_the_query_by_handle_is_taken),
-        cmocka_unit_test(test_wrong_handles_of_a_pair_are_malformed),
-        cmocka_unit_test(test_bodies_are_kept_until_the_table_is_full),
-        cmocka_unit_test(test_contradicting_second_results_are_counted),
-        cmocka_unit_test(test_contradicting_results_of_pairs_are_counted),
-        cmocka_unit_test(test_old_results_contradict_nothing),
-        cmocka_unit_test(test_many_open_descriptors),
-        cmocka_unit_test(test_a_child_that_closes_harms_nothing),
-        cmocka_unit_test(test_no_call_within_a_callback),
-        cmocka_unit_test(test_watching),
-        cmocka_unit_test(test_wrong_options_are_refused),
+        cmocka_unit_test(what_the_bus_loses_is_sent_again),
+        cmocka_unit_test(messages_that_cannot_be_read_are_counted),
+        cmocka_unit_test(results_of_another_kind_are_ignored),
+        cmocka_unit_test(results_of_another_client_reach_only_the_watcher),
+        cmocka_unit_test(larger_queries_of_a_request_are_charged),
+        cmocka_unit_test(the_window_is_free_when_all_requests_have_ended),
+        cmocka_unit_test(a_service_that_stays_busy_is_given_up),
+        cmocka_unit_test(results_without_a_query_do_not_prolong_others),
+        cmocka_unit_test(a_service_that_comes_back_is_found),
+        cmocka_unit_test(a_repeat_finds_the_service),
+        cmocka_unit_test(no_service_costs_the_time_of_one_query),
+        cmocka_unit_test(a_lost_query_is_repeated_soon_and_then_more_rarely),
+        cmocka_unit_test(queries_in_line_are_not_repeated),
+        cmocka_unit_test(a_slow_service_gets_repeats_at_first_only),
+        cmocka_unit_test(the_others_have_no_answer),
+        cmocka_unit_test(the_time_for_all_ends_it),
+        cmocka_unit_test(a_caller_that_takes_long_gets_all_answers),
+        cmocka_unit_test(what_is_under_way_is_limited),
+        cmocka_unit_test(forged_results_are_ignored),
+        cmocka_unit_test(forged_gaps_are_ignored),
+        cmocka_unit_test(results_of_a_pair_fit_their_query),
+        cmocka_unit_test(frames_of_a_gap_fit_the_bodies),
+        cmocka_unit_test(the_right_result_after_forged_ones_is_taken),
+        cmocka_unit_test(steps_of_one_pair_end),
+        cmocka_unit_test(slow_services_get_fewer_pairs_a_query),
+        cmocka_unit_test(unknown_bodies_for_ever_are_sent_whole),
+        cmocka_unit_test(unknown_bodies_one_by_one_are_sent_whole),
+        cmocka_unit_test(an_answer_counts_more_than_an_unknown_body),
+        cmocka_unit_test(a_late_answer_to_the_query_by_handle_is_taken),
+        cmocka_unit_test(wrong_handles_of_a_pair_are_malformed),
+        cmocka_unit_test(bodies_are_kept_until_the_table_is_full),
+        cmocka_unit_test(contradicting_second_results_are_counted),
+        cmocka_unit_test(contradicting_results_of_pairs_are_counted),
+        cmocka_unit_test(old_results_contradict_nothing),
+        cmocka_unit_test(many_open_descriptors_do_not_matter),
+        cmocka_unit_test(a_child_that_closes_harms_nothing),
+        cmocka_unit_test(no_call_within_a_callback),
+        cmocka_unit_test(a_watcher_sees_all_results),
+        cmocka_unit_test(wrong_options_are_refused),
     };
     (void) argc;
     relay_enter(argv);

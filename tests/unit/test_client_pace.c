@@ -1,18 +1,11 @@
 /* The request engine over a simulated network with loss and delay, and with a simulated clock.
  * Every run is the same on any machine. */
+#include "unit.h"
+
 #include "clock.h"
 #include "query.h"
 #include "request.h"
 #include "scene_run.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static const int64_t us = 1000, ms = 1000000, s = 1000000000; /* nanoseconds */
 
@@ -201,15 +194,14 @@ static const double heavy_loss = 0.3;
 
 /* Half of the queries, or their results, are lost, so that an answer takes 2.04 datagrams. With
  * delay each loss costs a round trip, and the window waits for its oldest query. */
-static void test_a_full_window_keeps_a_share_of_its_rate_under_loss(void **state)
+static void a_full_window_keeps_a_share_of_its_rate_under_loss(void **state)
 {
-    (void) state;
     static const struct {
         int64_t delay_ms;
         int tries;
         double share;
     } network[] = {{0, 6, 0.3}, {20, 60, 0.1}, {100, 60, 0.1}};
-    for (size_t i = 0; i < sizeof network / sizeof *network; i++) {
+    for (size_t i = 0; i < COUNT(network); i++) {
         open_network(0, network[i].delay_ms * ms, 100 * us);
         query_for(60 * s, FMB_CLIENT_RAW_WINDOW);
         const int64_t without = load.answers;
@@ -222,9 +214,8 @@ static void test_a_full_window_keeps_a_share_of_its_rate_under_loss(void **state
     }
 }
 
-static void test_a_lost_single_query_is_repeated_soon(void **state)
+static void a_lost_single_query_is_repeated_soon(void **state)
 {
-    (void) state;
     open_network(heavy_loss, 0, 100 * us);
     query_for(60 * s, 1);
     assert_true(median() < 20 * ms);
@@ -234,9 +225,8 @@ static void test_a_lost_single_query_is_repeated_soon(void **state)
 }
 
 /* A wait does not end before a deadline or a result: the client does not spin. */
-static void test_a_wait_lasts_until_something_is_due(void **state)
+static void a_wait_lasts_until_something_is_due(void **state)
 {
-    (void) state;
     open_network(heavy_loss, 0, 100 * us);
     query_for(10 * s, 1);
     assert_true(net.waits < 4 * net.sent);
@@ -245,9 +235,8 @@ static void test_a_wait_lasts_until_something_is_due(void **state)
 /* ---- Order ---- */
 
 /* One result in five comes after those of some later queries. Fewer than that are repeated. */
-static void test_reordered_results_cause_few_repeats(void **state)
+static void reordered_results_cause_few_repeats(void **state)
 {
-    (void) state;
     open_network(0, 0, 100 * us);
     net.late = 0.2;
     net.lag = ms / 2;
@@ -257,9 +246,8 @@ static void test_reordered_results_cause_few_repeats(void **state)
 
 /* A few queries take long, such as pairs of bodies of many frames; later ones are answered before
  * them. They are repeated once immediately, and then at intervals that double. */
-static void test_slow_queries_that_are_overtaken_back_off(void **state)
+static void slow_queries_that_are_overtaken_back_off(void **state)
 {
-    (void) state;
     open_network(0, 0, 100 * us);
     net.late = 0.002;
     net.lag = 200 * ms;
@@ -272,9 +260,8 @@ static void test_slow_queries_that_are_overtaken_back_off(void **state)
 /* ---- Delay ---- */
 
 /* When the network becomes slow, at first every query is repeated before its result comes. */
-static void test_the_interval_adapts_to_a_longer_delay(void **state)
+static void the_interval_adapts_to_a_longer_delay(void **state)
 {
-    (void) state;
     for (int lossy = 0; lossy < 2; lossy++) {
         open_network(0, 0, 100 * us);
         query_for(s, 1);
@@ -296,9 +283,8 @@ static void test_the_interval_adapts_to_a_longer_delay(void **state)
 /* ---- A busy service ---- */
 
 /* A busy service is queried for a minute, at growing intervals, whatever the timeout is. */
-static void test_a_busy_service_is_queried_for_a_minute(void **state)
+static void a_busy_service_is_queried_for_a_minute(void **state)
 {
-    (void) state;
     open_network(0, 0, 100 * us);
     net.status = FMB_BUSY;
     query_for(70 * s, 1);
@@ -319,9 +305,8 @@ static void count_statuses(void *user, const struct fmb_client_answer *answer)
 
 /* If the requests are given up and the time for the scene ends in the same step, the status is that
  * there is no service. */
-static void test_no_service_takes_precedence_over_late(void **state)
+static void no_service_takes_precedence_over_late(void **state)
 {
-    (void) state;
     enum { PAIRS = 3000 };
     static struct scene_run run;
     static struct held held;
@@ -349,14 +334,14 @@ static void test_no_service_takes_precedence_over_late(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_full_window_keeps_a_share_of_its_rate_under_loss),
-        cmocka_unit_test(test_a_lost_single_query_is_repeated_soon),
-        cmocka_unit_test(test_a_wait_lasts_until_something_is_due),
-        cmocka_unit_test(test_reordered_results_cause_few_repeats),
-        cmocka_unit_test(test_slow_queries_that_are_overtaken_back_off),
-        cmocka_unit_test(test_the_interval_adapts_to_a_longer_delay),
-        cmocka_unit_test(test_a_busy_service_is_queried_for_a_minute),
-        cmocka_unit_test(test_no_service_takes_precedence_over_late),
+        cmocka_unit_test(a_full_window_keeps_a_share_of_its_rate_under_loss),
+        cmocka_unit_test(a_lost_single_query_is_repeated_soon),
+        cmocka_unit_test(a_wait_lasts_until_something_is_due),
+        cmocka_unit_test(reordered_results_cause_few_repeats),
+        cmocka_unit_test(slow_queries_that_are_overtaken_back_off),
+        cmocka_unit_test(the_interval_adapts_to_a_longer_delay),
+        cmocka_unit_test(a_busy_service_is_queried_for_a_minute),
+        cmocka_unit_test(no_service_takes_precedence_over_late),
     };
     return cmocka_run_group_tests_name("client_pace", tests, NULL, NULL);
 }

@@ -1,20 +1,13 @@
 /* The client library against the service: every answer is that of libfmb, to the bit, in the order
  * of the pairs, whatever the size of the scene and whatever the service holds. */
+#include "unit.h"
+
 #include "client_scene.h"
 #include "relay.h"
 #include "wire.h"
 
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 enum { ALL_WANTS = FMB_WANT_BOX | FMB_WANT_TIMES };
 
@@ -49,9 +42,8 @@ static unsigned (*list_of(size_t count, size_t frames))[2]
 
 /* ---- Sizes and orders ---- */
 
-static void test_small_scenes_of_every_kind(void **state)
+static void small_scenes_of_every_kind_are_answered(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 1000);
     struct fmb_client *client = relay_client(relay, 5, 1);
@@ -82,9 +74,8 @@ static void test_small_scenes_of_every_kind(void **state)
     relay_close(relay);
 }
 
-static void test_all_pairs_of_many_bodies(void **state)
+static void all_pairs_of_many_bodies_are_answered(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     const size_t count = relay_size(5000, 1300);
     relay_open(relay, 65536);
@@ -100,9 +91,8 @@ static void test_all_pairs_of_many_bodies(void **state)
 }
 
 /* Results with no room for all answers: nearly all pairs meet. */
-static void test_all_pairs_of_a_crowd(void **state)
+static void all_pairs_of_a_crowd_are_answered(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     const size_t count = relay_size(900, 560);
     relay_open(relay, 65536);
@@ -119,9 +109,8 @@ static void test_all_pairs_of_a_crowd(void **state)
     relay_close(relay);
 }
 
-static void test_many_pairs_listed(void **state)
+static void many_listed_pairs_are_answered(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     const size_t count = relay_size(100000, 20000), frames = 3000;
     relay_open(relay, 65536);
@@ -219,9 +208,8 @@ static unsigned (*all_pairs_of(size_t placements))[2]
 }
 
 /* fmb and sat decide listed pairs only. */
-static void test_every_method(void **state)
+static void every_method_answers(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 1000);
     struct fmb_client *client = relay_client(relay, 5, 1);
@@ -252,9 +240,8 @@ static void test_every_method(void **state)
 }
 
 /* Near pairs, none missed, in the blocks that a large scene is divided into. */
-static void test_near_pairs_of_many_bodies(void **state)
+static void near_pairs_of_many_bodies_are_answered(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 65536);
     struct fmb_client *client = relay_client(relay, 20, 1);
@@ -300,9 +287,8 @@ static void check_certificate(void *user, const struct fmb_client_answer *answer
     giving->given++;
 }
 
-static void test_certificates_of_all_pairs(void **state)
+static void all_pairs_have_certificates(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 20); /* fewer than there are */
     struct fmb_client *client = relay_client(relay, 5, 1);
@@ -347,9 +333,8 @@ static const struct fmb_body *by_vertices(const struct fmb_body *body)
 }
 
 /* Groups, names, a label, and frames by vertices, in queries of every kind. */
-static void test_groups_names_and_vertices(void **state)
+static void groups_names_and_vertices(void **state)
 {
-    (void) state;
     enum { BODIES = 300 };
     struct relay *relay = relay_new();
     relay_open(relay, 4000);
@@ -390,9 +375,8 @@ static void test_groups_names_and_vertices(void **state)
 }
 
 /* Each pair a query of its own: no pair within a group is sent. */
-static void test_groups_where_pairs_are_listed(void **state)
+static void groups_where_pairs_are_listed(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 1000);
     struct fmb_client *client = relay_client(relay, 5, 1);
@@ -410,9 +394,8 @@ static void test_groups_where_pairs_are_listed(void **state)
     relay_close(relay);
 }
 
-static void test_one_pair(void **state)
+static void one_pair_is_answered(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 10);
     struct fmb_client *client = relay_client(relay, 5, 1);
@@ -438,9 +421,8 @@ static void test_one_pair(void **state)
 
 /* ---- Wrong scenes ---- */
 
-static void test_wrong_scenes_are_refused(void **state)
+static void wrong_scenes_are_refused(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 10);
     struct fmb_client *client = relay_client(relay, 5, 1);
@@ -510,9 +492,8 @@ static void count_meeting(void *user, const struct fmb_client_answer *answer)
     *(int *) user += answer->answer.verdict >= FMB_TOUCHING;
 }
 
-static void test_a_scene_of_zeros_queries_all_pairs(void **state)
+static void a_scene_of_zeros_queries_all_pairs(void **state)
 {
-    (void) state;
     static const unsigned pair[1][2] = {{0, 1}};
     struct fmb_placement placement[2] = {{.body = cube_of(1)}};
     struct fmb_scene scene = {.placements = placement, .placement_count = 2};
@@ -532,9 +513,8 @@ static void test_a_scene_of_zeros_queries_all_pairs(void **state)
     relay_close(relay);
 }
 
-static void test_bodies_that_move_need_a_window(void **state)
+static void bodies_that_move_need_a_window(void **state)
 {
-    (void) state;
     struct fmb_placement placement[2] = {{.body = cube_of(1)}};
     struct relay *relay = relay_new();
     relay_open(relay, 10);
@@ -572,9 +552,8 @@ static void count_refusals(void *user, const struct fmb_client_answer *answer)
     ++*(int *) user;
 }
 
-static void test_refusals_of_the_service_are_given(void **state)
+static void refusals_of_the_service_are_given(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     int count = 0;
     relay_open(relay, 10);
@@ -630,9 +609,8 @@ static struct fmb_client_counts query_world(struct world *world)
     return counts;
 }
 
-static void test_bodies_go_by_handle_the_second_time(void **state)
+static void bodies_go_by_handle_the_second_time(void **state)
 {
-    (void) state;
     struct world world;
     open_world(&world, 1000);
     world.frame[50].id = 0;
@@ -661,9 +639,8 @@ static void test_bodies_go_by_handle_the_second_time(void **state)
 }
 
 /* Another client gives the ids to other bodies: neither has to send anything again. */
-static void test_equal_ids_of_two_clients_do_not_matter(void **state)
+static void equal_ids_of_two_clients_do_not_matter(void **state)
 {
-    (void) state;
     struct world world;
     open_world(&world, 1000);
     query_world(&world);
@@ -684,9 +661,8 @@ static void test_equal_ids_of_two_clients_do_not_matter(void **state)
     close_world(&world);
 }
 
-static void test_a_new_service_holds_no_bodies(void **state)
+static void a_new_service_holds_no_bodies(void **state)
 {
-    (void) state;
     struct world world;
     open_world(&world, 1000);
     query_world(&world);
@@ -698,9 +674,8 @@ static void test_a_new_service_holds_no_bodies(void **state)
     close_world(&world);
 }
 
-static void test_a_cache_of_one_body_is_enough(void **state)
+static void a_cache_of_one_body_is_enough(void **state)
 {
-    (void) state;
     for (size_t bodies = 1; bodies <= 64; bodies *= 4) {
         struct world world;
         open_world(&world, bodies);
@@ -719,9 +694,8 @@ static void steal(struct relay *relay)
     stolen++;
 }
 
-static void test_bodies_that_are_never_held_end(void **state)
+static void bodies_that_are_never_held_end(void **state)
 {
-    (void) state;
     struct world world;
     open_world(&world, 1000);
     query_world(&world);
@@ -735,9 +709,8 @@ static void test_bodies_that_are_never_held_end(void **state)
 }
 
 /* The same id twice in a scene, with different components. */
-static void test_an_id_may_stand_twice(void **state)
+static void an_id_may_stand_twice(void **state)
 {
-    (void) state;
     struct world world;
     open_world(&world, 1000);
     for (int i = 10; i < 20; i++)
@@ -749,9 +722,8 @@ static void test_an_id_may_stand_twice(void **state)
 
 /* ---- Ignored pairs, and bodies of many frames ---- */
 
-static void test_ignored_pairs_are_left_out(void **state)
+static void ignored_pairs_are_left_out(void **state)
 {
-    (void) state;
     struct world world;
     open_world(&world, 1000);
     enum { PAIRS = 500 };
@@ -778,9 +750,8 @@ static void test_ignored_pairs_are_left_out(void **state)
 }
 
 /* Two bodies that do not fit into one datagram together: their frames are sent first. */
-static void test_bodies_of_many_frames(void **state)
+static void bodies_of_many_frames_are_answered(void **state)
 {
-    (void) state;
     enum { FRAMES = 500, BODIES = 5 };
     struct relay *relay = relay_new();
     relay_open(relay, 20000);
@@ -842,9 +813,8 @@ static int bytes_of(int geometry)
 
 /* A listed pair in a query that is as large as a datagram, and a byte less, and a few more: then
  * the bodies are sent first. */
-static void test_pairs_that_just_fit_into_a_datagram(void **state)
+static void pairs_that_just_fit_into_a_datagram(void **state)
 {
-    (void) state;
     enum { BOX = 49, MORE = 48 }; /* bytes of a box, and how many more a cuboid has */
     static const unsigned pair[1][2] = {{0, 1}};
     const int most = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES - WIRE_PAIR_BYTES;
@@ -878,9 +848,8 @@ static void test_pairs_that_just_fit_into_a_datagram(void **state)
 }
 
 /* The answers from first_pair on, of lists, of one block and of many. */
-static void test_scenes_may_begin_with_any_pair(void **state)
+static void scenes_may_begin_with_any_pair(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 4000);
     struct fmb_client *client = relay_client(relay, 5, 1);
@@ -911,9 +880,8 @@ static void test_scenes_may_begin_with_any_pair(void **state)
 
 /* ---- Several clients ---- */
 
-static void test_two_clients_in_a_process(void **state)
+static void two_clients_in_a_process(void **state)
 {
-    (void) state;
     struct world world;
     open_world(&world, 1000);
     struct fmb_client *other = relay_client(world.relay, 5, 1);
@@ -957,9 +925,8 @@ static void *run(void *user)
     return NULL;
 }
 
-static void test_clients_in_threads(void **state)
+static void clients_of_several_threads_are_independent(void **state)
 {
-    (void) state;
     struct thread thread[2];
     pthread_t id[2];
     struct fmb_placement *frame = frames_of(600, 3, 6, 1);
@@ -989,32 +956,32 @@ static void test_clients_in_threads(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_small_scenes_of_every_kind),
-        cmocka_unit_test(test_all_pairs_of_many_bodies),
-        cmocka_unit_test(test_all_pairs_of_a_crowd),
-        cmocka_unit_test(test_many_pairs_listed),
-        cmocka_unit_test(test_every_method),
-        cmocka_unit_test(test_near_pairs_of_many_bodies),
-        cmocka_unit_test(test_certificates_of_all_pairs),
-        cmocka_unit_test(test_groups_names_and_vertices),
-        cmocka_unit_test(test_groups_where_pairs_are_listed),
-        cmocka_unit_test(test_one_pair),
-        cmocka_unit_test(test_wrong_scenes_are_refused),
-        cmocka_unit_test(test_a_scene_of_zeros_queries_all_pairs),
-        cmocka_unit_test(test_bodies_that_move_need_a_window),
-        cmocka_unit_test(test_refusals_of_the_service_are_given),
-        cmocka_unit_test(test_bodies_go_by_handle_the_second_time),
-        cmocka_unit_test(test_equal_ids_of_two_clients_do_not_matter),
-        cmocka_unit_test(test_a_new_service_holds_no_bodies),
-        cmocka_unit_test(test_a_cache_of_one_body_is_enough),
-        cmocka_unit_test(test_bodies_that_are_never_held_end),
-        cmocka_unit_test(test_an_id_may_stand_twice),
-        cmocka_unit_test(test_ignored_pairs_are_left_out),
-        cmocka_unit_test(test_bodies_of_many_frames),
-        cmocka_unit_test(test_pairs_that_just_fit_into_a_datagram),
-        cmocka_unit_test(test_scenes_may_begin_with_any_pair),
-        cmocka_unit_test(test_two_clients_in_a_process),
-        cmocka_unit_test(test_clients_in_threads),
+        cmocka_unit_test(small_scenes_of_every_kind_are_answered),
+        cmocka_unit_test(all_pairs_of_many_bodies_are_answered),
+        cmocka_unit_test(all_pairs_of_a_crowd_are_answered),
+        cmocka_unit_test(many_listed_pairs_are_answered),
+        cmocka_unit_test(every_method_answers),
+        cmocka_unit_test(near_pairs_of_many_bodies_are_answered),
+        cmocka_unit_test(all_pairs_have_certificates),
+        cmocka_unit_test(groups_names_and_vertices),
+        cmocka_unit_test(groups_where_pairs_are_listed),
+        cmocka_unit_test(one_pair_is_answered),
+        cmocka_unit_test(wrong_scenes_are_refused),
+        cmocka_unit_test(a_scene_of_zeros_queries_all_pairs),
+        cmocka_unit_test(bodies_that_move_need_a_window),
+        cmocka_unit_test(refusals_of_the_service_are_given),
+        cmocka_unit_test(bodies_go_by_handle_the_second_time),
+        cmocka_unit_test(equal_ids_of_two_clients_do_not_matter),
+        cmocka_unit_test(a_new_service_holds_no_bodies),
+        cmocka_unit_test(a_cache_of_one_body_is_enough),
+        cmocka_unit_test(bodies_that_are_never_held_end),
+        cmocka_unit_test(an_id_may_stand_twice),
+        cmocka_unit_test(ignored_pairs_are_left_out),
+        cmocka_unit_test(bodies_of_many_frames_are_answered),
+        cmocka_unit_test(pairs_that_just_fit_into_a_datagram),
+        cmocka_unit_test(scenes_may_begin_with_any_pair),
+        cmocka_unit_test(two_clients_in_a_process),
+        cmocka_unit_test(clients_of_several_threads_are_independent),
     };
     (void) argc;
     relay_enter(argv);

@@ -1,21 +1,14 @@
 /* Encoded queries through the client library's engine, as fmb replay and fmb record send them. */
+#include "unit.h"
+
 #include "fmb_client_raw.h"
 #include "geometry_write.h"
 #include "relay.h"
 #include "wire.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/ioctl.h>
 #include <time.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { BODIES = 30, PATIENCE_S = 10 };
 
@@ -87,9 +80,8 @@ static void send_pair(struct fmb_client *client, int64_t a, int64_t b, struct pa
         fmb_client_raw_send(client, FMB_CLIENT_PAIR, message, size, size, take_pair, out), FMB_OK);
 }
 
-static void test_many_pairs_over_a_bad_bus(void **state)
+static void many_pairs_are_answered_over_a_bad_bus(void **state)
 {
-    (void) state;
     enum { COUNT = 300 };
     static struct pair pair[COUNT];
     struct relay *relay = relay_new();
@@ -117,9 +109,8 @@ static void test_many_pairs_over_a_bad_bus(void **state)
     relay_close(relay);
 }
 
-static void test_a_window_of_64_is_under_way(void **state)
+static void a_window_of_64_is_under_way(void **state)
 {
-    (void) state;
     static struct pair pair[FMB_CLIENT_RAW_WINDOW];
     struct relay *relay = relay_new();
     relay->deaf = true;
@@ -149,9 +140,8 @@ static void test_a_window_of_64_is_under_way(void **state)
 
 /* No more bytes than a stock receive buffer holds: two of the largest datagrams. */
 /* A query is lost, and its caller comes back only when the time for all its repeats is over. */
-static void test_a_caller_that_was_away_repeats_its_query(void **state)
+static void a_caller_that_was_away_repeats_its_query(void **state)
 {
-    (void) state;
     struct pair pair = {0};
     struct relay *relay = relay_new();
     relay->lose_query = 1;
@@ -167,9 +157,8 @@ static void test_a_caller_that_was_away_repeats_its_query(void **state)
     relay_close(relay);
 }
 
-static void test_large_queries_are_few_at_a_time(void **state)
+static void large_queries_are_few_at_a_time(void **state)
 {
-    (void) state;
     static struct pair pair;
     struct relay *relay = relay_new();
     relay->deaf = true;
@@ -188,9 +177,8 @@ static void test_large_queries_are_few_at_a_time(void **state)
     relay_close(relay);
 }
 
-static void test_messages_that_are_none_are_refused(void **state)
+static void messages_that_are_none_are_refused(void **state)
 {
-    (void) state;
     static unsigned char message[QUERY_BYTES_MAX + 1];
     struct relay *relay = relay_new();
     relay_open(relay, 1000);
@@ -207,9 +195,8 @@ static void test_messages_that_are_none_are_refused(void **state)
 
 /* Other clients' results fill the buffer of a client that is idle: before a query is sent, all of
  * them are read, so that its result has space. */
-static void test_an_idle_client_is_drained_before_a_query(void **state)
+static void an_idle_client_is_drained_before_a_query(void **state)
 {
-    (void) state;
     static struct pair pair;
     struct relay *relay = relay_new();
     relay->deaf = true;
@@ -274,9 +261,8 @@ static void query_definition(struct fmb_client *client, int64_t first, const str
     finish(client);
 }
 
-static void test_scenes_and_definitions(void **state)
+static void scenes_and_definitions_are_answered(void **state)
 {
-    (void) state;
     static struct scene_result scene;
     static struct definition definition;
     struct relay *relay = relay_new();
@@ -302,9 +288,8 @@ static void test_scenes_and_definitions(void **state)
 
 /* ---- The loop ---- */
 
-static void test_a_step_ends_with_another_descriptor(void **state)
+static void a_step_ends_with_another_descriptor(void **state)
 {
-    (void) state;
     static struct pair pair;
     struct relay *relay = relay_new();
     relay->deaf = true;
@@ -334,9 +319,8 @@ static void step_within(void *user, const struct fmb_client_raw_result *result)
         FMB_CLIENT_INSIDE);
 }
 
-static void test_no_call_within_a_callback(void **state)
+static void no_call_within_a_callback(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     unsigned char message[QUERY_BYTES_MAX];
     relay_open(relay, 1000);
@@ -380,9 +364,8 @@ static void tap(void *user, const struct bus_message *message)
     }
 }
 
-static void test_a_tap_gets_all_messages_first(void **state)
+static void a_tap_gets_all_messages_first(void **state)
 {
-    (void) state;
     struct relay *relay = relay_new();
     relay_open(relay, 1000);
     for (int every = 0; every < 2; every++) {
@@ -411,16 +394,16 @@ static void test_a_tap_gets_all_messages_first(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_many_pairs_over_a_bad_bus),
-        cmocka_unit_test(test_a_window_of_64_is_under_way),
-        cmocka_unit_test(test_a_caller_that_was_away_repeats_its_query),
-        cmocka_unit_test(test_large_queries_are_few_at_a_time),
-        cmocka_unit_test(test_messages_that_are_none_are_refused),
-        cmocka_unit_test(test_an_idle_client_is_drained_before_a_query),
-        cmocka_unit_test(test_scenes_and_definitions),
-        cmocka_unit_test(test_a_step_ends_with_another_descriptor),
-        cmocka_unit_test(test_no_call_within_a_callback),
-        cmocka_unit_test(test_a_tap_gets_all_messages_first),
+        cmocka_unit_test(many_pairs_are_answered_over_a_bad_bus),
+        cmocka_unit_test(a_window_of_64_is_under_way),
+        cmocka_unit_test(a_caller_that_was_away_repeats_its_query),
+        cmocka_unit_test(large_queries_are_few_at_a_time),
+        cmocka_unit_test(messages_that_are_none_are_refused),
+        cmocka_unit_test(an_idle_client_is_drained_before_a_query),
+        cmocka_unit_test(scenes_and_definitions_are_answered),
+        cmocka_unit_test(a_step_ends_with_another_descriptor),
+        cmocka_unit_test(no_call_within_a_callback),
+        cmocka_unit_test(a_tap_gets_all_messages_first),
     };
     (void) argc;
     relay_enter(argv);

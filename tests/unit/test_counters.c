@@ -1,13 +1,7 @@
 /* The quantiles of the heartbeat. */
+#include "unit.h"
+
 #include "histogram.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
 
 static int compare(const void *a, const void *b)
 {
@@ -15,9 +9,8 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void test_quantiles(void **state)
+static void quantiles_are_within_a_bucket(void **state)
 {
-    (void) state;
     enum { COUNT = 10007 };
     static int64_t value[COUNT];
     static struct histogram histogram;
@@ -28,7 +21,7 @@ static void test_quantiles(void **state)
         histogram_add(&histogram, value[i]);
     }
     qsort(value, COUNT, sizeof *value, compare);
-    for (size_t i = 0; i < sizeof shares / sizeof *shares; i++) {
+    for (size_t i = 0; i < COUNT(shares); i++) {
         int64_t exact = value[(int) (shares[i] * COUNT + 0.999999) - 1];
         int64_t reported = histogram_quantile(&histogram, shares[i]);
         assert_true(reported >= exact);
@@ -38,9 +31,8 @@ static void test_quantiles(void **state)
     assert_true(histogram.max == value[COUNT - 1]);
 }
 
-static void test_quantiles_at_the_edges(void **state)
+static void quantiles_at_the_edges_are_exact(void **state)
 {
-    (void) state;
     static struct histogram histogram;
     assert_int_equal(histogram_quantile(&histogram, 0.5), 0);
     histogram_add(&histogram, 0);
@@ -53,8 +45,8 @@ static void test_quantiles_at_the_edges(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_quantiles),
-        cmocka_unit_test(test_quantiles_at_the_edges),
+        cmocka_unit_test(quantiles_are_within_a_bucket),
+        cmocka_unit_test(quantiles_at_the_edges_are_exact),
     };
     return cmocka_run_group_tests_name("counters", tests, NULL, NULL);
 }

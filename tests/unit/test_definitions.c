@@ -1,17 +1,11 @@
 /* The bodies of a log by handle: from queries and from definitions, each once. */
+#include "unit.h"
+
 #include "definitions.h"
 #include "geometry_write.h"
 
 #include "allocate.h"
 #include "wire.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 struct body {
     unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
@@ -47,7 +41,7 @@ static void assert_found(struct world *world, const struct body *body)
     assert_memory_equal(found->bytes, body->bytes, found->size);
 }
 
-static int setup(void **state)
+static int set_up(void **state)
 {
     struct world *world = allocate(1, sizeof *world);
     world->definitions = definitions_open();
@@ -56,7 +50,7 @@ static int setup(void **state)
     return 0;
 }
 
-static int teardown(void **state)
+static int tear_down(void **state)
 {
     struct world *world = *state;
     definitions_close(world->definitions);
@@ -66,7 +60,7 @@ static int teardown(void **state)
 }
 
 /* More than the first buckets of a table, every other one twice. */
-static void test_many(void **state)
+static void many_bodies_are_defined(void **state)
 {
     enum { COUNT = 3000 };
     struct world *world = *state;
@@ -91,7 +85,7 @@ static void test_many(void **state)
     }
 }
 
-static void test_pair(void **state)
+static void bodies_of_a_pair_are_defined(void **state)
 {
     struct world *world = *state;
     struct body whole, named;
@@ -117,7 +111,7 @@ static void test_pair(void **state)
         definitions_add_message(world->definitions, LOG_DEFINITION, world->bytes, size));
 }
 
-static void test_scene(void **state)
+static void bodies_of_a_scene_are_defined(void **state)
 {
     struct world *world = *state;
     struct scene_query *query = allocate(1, sizeof *query);
@@ -135,7 +129,7 @@ static void test_scene(void **state)
     free(query);
 }
 
-static void test_definition(void **state)
+static void bodies_of_a_definition_are_defined(void **state)
 {
     struct world *world = *state;
     struct definition *definition = allocate(1, sizeof *definition);
@@ -158,10 +152,10 @@ static void test_definition(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_many, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_pair, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_scene, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_definition, setup, teardown),
+        cmocka_unit_test_setup_teardown(many_bodies_are_defined, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bodies_of_a_pair_are_defined, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bodies_of_a_scene_are_defined, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bodies_of_a_definition_are_defined, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,8 @@
 /* Many pairs at once: what fmb_decide_batch() and fmb_decide_prepared() say is what the
  * method certified says, bit for bit, for each instruction set, in any order, at any address; and
  * that agrees with the exact method, and on samples with the oracle. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <limits.h>
@@ -23,8 +16,6 @@
 #include "pair_draw.h"
 #include "question.h"
 #include "referee.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 enum { FRAMES = 128, PAIRS_MAX = 1000, GUARD = 0xa5, GUARDS = 64 };
 
@@ -118,7 +109,7 @@ static unsigned draw_frame(struct draw *draw)
     return (unsigned) draw_int(draw, 0, FRAMES - 1);
 }
 
-/* Of frames that can be asked together: neighbours in either order, any two, one with itself, an
+/* Of frames that make a pair: neighbours in either order, any two, one with itself, an
  * earlier pair again or the other way round. */
 static void draw_pair(struct draw *draw, struct world *world, size_t i)
 {
@@ -163,7 +154,7 @@ static void expect_right(const struct question *question, const struct pair *pai
         referee_fail(question, why);
 }
 
-/* As the method certified says of a pair that can be asked. */
+/* As the method certified decides a valid pair. */
 static void set_expected(const struct world *world, const unsigned pair[2], bool check_oracle,
                          struct said *out)
 {
@@ -182,7 +173,7 @@ static void set_expected(const struct world *world, const unsigned pair[2], bool
         memcpy(out->box, answer.box, sizeof out->box);
 }
 
-/* Of all pairs; the oracle is asked of one in so many. */
+/* Of all pairs; the oracle decides one in so many. */
 static void set_all_expected(struct world *world, int oracle_of)
 {
     world->status = FMB_OK;
@@ -193,7 +184,7 @@ static void set_all_expected(struct world *world, int oracle_of)
 
 /* ---- Batches ---- */
 
-/* Room for one array of answers with guards on both sides. */
+/* Memory for one array of answers with guards on both sides. */
 struct guarded {
     unsigned char *all;
     size_t size;
@@ -222,7 +213,7 @@ static void expect_guards(const struct guarded *guarded)
     assert_true(is_untouched(guarded->all + GUARDS + guarded->size, GUARDS));
 }
 
-/* How a batch is asked. */
+/* How a batch is called. */
 struct way {
     int instructions;
     bool contacts, boxes;
@@ -274,7 +265,6 @@ static void decide(const struct world *world, const struct fmb_prepared *frames,
 
 static int count_allocations(void **state)
 {
-    (void) state;
     gmp_count_allocations();
     return 0;
 }
@@ -431,7 +421,6 @@ static void expect_all_seen(const struct tally *tally)
 /* All kinds side by side. */
 static void mixed_batches_are_certified(void **state)
 {
-    (void) state;
     struct draw draw;
     struct tally tally = {0};
     struct world *world = world_new();
@@ -451,7 +440,6 @@ static void mixed_batches_are_certified(void **state)
 /* Batches of one kind take shorter ways. */
 static void batches_of_one_kind_are_certified(void **state)
 {
-    (void) state;
     struct draw draw;
     struct tally tally = {0};
     struct cell cells[CELL_WITH_FACES];
@@ -489,7 +477,6 @@ static void set_random_frames(struct draw *draw, const struct cell *cell, struct
 /* Doubles decide random pairs: no verdict is left open, and few contacts and boxes are. */
 static void random_pairs_are_not_left_open(void **state)
 {
-    (void) state;
     struct draw draw;
     struct cell cells[CELL_WITH_FACES];
     struct world *world = world_new();
@@ -534,7 +521,6 @@ static void set_row_of_rectangles(double along, double across, struct world *wor
  * contacts that the filter does not give, 32 in each 128 are decided if that needs no GMP. */
 static void touching_pairs_are_left_open(void **state)
 {
-    (void) state;
     struct world *world = world_new();
     const struct way verdicts = {0}, contacts = {.contacts = true};
     const struct way boxes = {.contacts = true, .boxes = true};
@@ -616,10 +602,9 @@ static size_t decide_verdicts(const struct world *world, const struct way *way,
 }
 
 /* Kernels of instruction sets that fuse operations are unsure of other pairs than those that do
- * not, and every pair that is decided alone leaves another one open. */
+ * not, and every pair that is decided by itself leaves another one open. */
 static void what_is_left_open_does_not_depend_on_instructions(void **state)
 {
-    (void) state;
     struct draw draw;
     struct cell cells[CELL_WITH_FACES];
     struct world *world = world_new();
@@ -651,7 +636,6 @@ static void what_is_left_open_does_not_depend_on_instructions(void **state)
 /* Where blocks begin and end. */
 static void any_count_is_answered(void **state)
 {
-    (void) state;
     static const size_t counts[] = {0, 1, 127, 128, 129, 1000};
     struct draw draw;
     struct world *world = world_new();
@@ -668,7 +652,6 @@ static void any_count_is_answered(void **state)
 /* Arrays may be missing where there is nothing. */
 static void nothing_is_answered(void **state)
 {
-    (void) state;
     const struct fmb_batch batch = {.duration = 1};
     assert_int_equal(fmb_decide_batch(&batch), FMB_OK);
     size_t count = 1, open[1];
@@ -725,7 +708,6 @@ static void shuffle(struct draw *draw, struct world *world)
 
 static void order_does_not_matter(void **state)
 {
-    (void) state;
     struct draw draw;
     struct world *world = world_new();
     draw_begin(&draw, "order_does_not_matter");
@@ -743,17 +725,16 @@ static void order_does_not_matter(void **state)
 /* Any address that doubles may have. */
 static void address_does_not_matter(void **state)
 {
-    (void) state;
     struct draw draw;
     struct world *world = world_new();
-    unsigned char *room = aligned_alloc(64, sizeof world->frame + 64);
-    assert_non_null(room);
+    unsigned char *memory = aligned_alloc(64, sizeof world->frame + 64);
+    assert_non_null(memory);
     draw_begin(&draw, "address_does_not_matter");
     draw_frames(&draw, NULL, 1, world);
     draw_pairs(&draw, 300, world);
     set_all_expected(world, 1000);
     for (size_t at = 0; at < 64; at += 8) {
-        struct fmb_prepared *frames = (struct fmb_prepared *) (void *) (room + at);
+        struct fmb_prepared *frames = (struct fmb_prepared *) (void *) (memory + at);
         memcpy(frames, world->frame, sizeof world->frame);
         for (int instructions = INSTRUCTIONS_BEST; instructions <= INSTRUCTIONS_AVX512;
              instructions++) {
@@ -763,13 +744,13 @@ static void address_does_not_matter(void **state)
         }
         assert_memory_equal(frames, world->frame, sizeof world->frame); /* nothing is written */
     }
-    free(room);
+    free(memory);
     free(world);
 }
 
 /* ---- Tests: what is refused ---- */
 
-/* The frames that cannot be asked are the first ones. */
+/* The refused frames are the first ones. */
 enum { ALL_ZERO, NOT_PREPARED, BAD_FRAMES };
 
 static void spoil_frames(struct world *world)
@@ -855,7 +836,6 @@ static void expect_meet_refuses(const struct world *world)
 
 static void refused_pairs_stop_no_other(void **state)
 {
-    (void) state;
     struct draw draw;
     struct world *world = world_new();
     long seen[FMB_STATUS_COUNT] = {0};
@@ -874,32 +854,6 @@ static void refused_pairs_stop_no_other(void **state)
     assert_true(seen[FMB_NOT_FINITE] + seen[FMB_OVER_LIMIT] + seen[FMB_DIMENSIONS_DIFFER] > 0);
 }
 
-/* All of a frame is finite where it is read, or it is not prepared. */
-static void what_is_not_finite_is_not_prepared(void **state)
-{
-    (void) state;
-    static const double bad[] = {NAN, INFINITY, -INFINITY};
-    static const struct fmb_prepared zero;
-    struct draw draw;
-    draw_begin(&draw, "what_is_not_finite_is_not_prepared");
-    for (long n = draw_sample(400); n > 0; n--) {
-        const struct cell cell = pair_draw_cell(&draw);
-        const int axis = draw_int(&draw, 0, FMB_DIM_MAX - 1);
-        struct question question;
-        struct ready ready;
-        struct fmb_prepared good, found;
-        pair_draw(&draw, &cell, &question);
-        referee_ready(&question, &ready);
-        assert_int_equal(fmb_prepare(&ready.pair.a, 0, 1, &good), FMB_OK);
-        const bool velocity = draw_coin(&draw);
-        struct fmb_placement *frame = &ready.pair.a;
-        (velocity ? frame->velocity : frame->position)[axis] = bad[draw_int(&draw, 0, 2)];
-        const bool read = axis < cell.dim;
-        assert_int_equal(fmb_prepare(frame, 0, 1, &found), read ? FMB_NOT_FINITE : FMB_OK);
-        assert_memory_equal(&found, read ? &zero : &good, sizeof found);
-    }
-}
-
 /* ---- Tests: what is refused as a whole ---- */
 
 static void expect_whole_refused(const struct world *world, const struct way *way,
@@ -916,7 +870,6 @@ static void expect_whole_refused(const struct world *world, const struct way *wa
 
 static void frames_that_move_need_a_window(void **state)
 {
-    (void) state;
     static const double size[3] = {1, 1, 1};
     static const unsigned pair[1][2] = {{0, 1}};
     struct fmb_body cube;
@@ -945,7 +898,6 @@ static void frames_that_move_need_a_window(void **state)
 
 static void durations_that_are_none_are_refused(void **state)
 {
-    (void) state;
     static const double bad[] = {NAN, -NAN, INFINITY, -INFINITY, -1, -0x1p-1074, -DBL_MAX};
     const struct way way = {0, true, true};
     enum fmb_verdict verdict;
@@ -968,7 +920,6 @@ static void durations_that_are_none_are_refused(void **state)
 
 static void instructions_have_names(void **state)
 {
-    (void) state;
     static const int unknown[] = {-1, 5, 1000, INT_MAX, INT_MIN};
     assert_string_equal(instructions_name(INSTRUCTIONS_BEST), "best");
     assert_string_equal(instructions_name(INSTRUCTIONS_PLAIN), "plain");
@@ -992,7 +943,6 @@ int main(void)
         cmocka_unit_test(order_does_not_matter),
         cmocka_unit_test(address_does_not_matter),
         cmocka_unit_test(refused_pairs_stop_no_other),
-        cmocka_unit_test(what_is_not_finite_is_not_prepared),
         cmocka_unit_test(durations_that_are_none_are_refused),
         cmocka_unit_test(frames_that_move_need_a_window),
         cmocka_unit_test(instructions_have_names),

@@ -1,12 +1,6 @@
 /* Boxes, frames from vertices, bodies and placements: what they hold, and what is refused. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <gmp.h>
@@ -33,7 +27,6 @@ static struct fmb_frame make_box(int dim, const double *number, size_t count)
 
 static void boxes_have_a_centre_and_a_size(void **state)
 {
-    (void) state;
     static const double number[6] = {10, 20, 30, 2, 4, 5};
     const struct fmb_frame space = make_box(3, number, 6), plane = make_box(2, number, 4);
     for (int axis = 0; axis < 3; axis++) {
@@ -51,7 +44,6 @@ static void boxes_have_a_centre_and_a_size(void **state)
 
 static void boxes_of_size_0_are_flat(void **state)
 {
-    (void) state;
     for (int zeros = 0; zeros < 16; zeros++) {
         const double number[3] = {zeros & 1 ? 0 : 1, zeros & 2 ? -0.0 : 2, zeros & 4 ? 0 : S};
         const struct fmb_frame space = make_box(3, number, 3), plane = make_box(2, number, 2);
@@ -63,7 +55,6 @@ static void boxes_of_size_0_are_flat(void **state)
 
 static void boxes_of_negative_size_are_refused(void **state)
 {
-    (void) state;
     static const double bad[] = {-1, -S, -M};
     struct fmb_frame frame;
     for (size_t i = 0; i < COUNT(bad); i++)
@@ -79,7 +70,6 @@ static void boxes_of_negative_size_are_refused(void **state)
 
 static void an_origin_left_out_is_0(void **state)
 {
-    (void) state;
     double number[12] = {0, 0, 0, 1, 2, 3, 4, 5, 7, -1, 1, 2};
     for (int shape = FMB_CUBOID; shape <= FMB_BOX; shape++)
         for (int dim = shape == FMB_FACE ? 3 : 2; dim <= 3; dim++) {
@@ -102,7 +92,6 @@ static void an_origin_left_out_is_0(void **state)
 
 static void vertices_that_are_refused(void **state)
 {
-    (void) state;
     static const struct {
         int dim, shape;
         size_t count;
@@ -194,29 +183,33 @@ static void expect_edges(const double *vertices, const struct fmb_frame *frame)
     mpq_clears(edge, term, NULL);
 }
 
-/* Vertices on a line or a plane but for an ulp: whether they are is not what rounded edges say. */
+/* Vertices on a line or a plane but for an ulp: whether they are is not what rounded edges say. Of
+ * any size, down to the least doubles. */
 static void vertices_are_exact(void **state)
 {
-    (void) state;
     struct draw draw;
     long count[2][2] = {{0}};
     draw_begin(&draw, "vertices_are_exact");
     for (long n = draw_sample(40000); n > 0; n--) {
-        const int dim = draw_int(&draw, 2, 3);
+        const int dim = draw_int(&draw, 2, 3), exponent = draw_int(&draw, -1074, 1010);
+        const int shape = dim == 3 && draw_coin(&draw) ? FMB_FACE : FMB_TETRAHEDRON;
+        const int numbers = shape == FMB_FACE ? 9 : (dim + 1) * dim;
         const double unit = draw_coin(&draw) ? 0.1 : 0.25;
         double vertices[12];
         struct fmb_frame frame;
-        for (int k = 0; k < (dim + 1) * dim; k++)
+        for (int k = 0; k < numbers; k++)
             vertices[k] = unit * draw_int(&draw, -3, 3) + (draw_coin(&draw) ? 0 : 1000);
         for (int axis = 0; axis < dim && draw_coin(&draw); axis++) /* the last is a copy */
-            vertices[dim * dim + axis] = vertices[(dim - 1) * dim + axis];
+            vertices[numbers - dim + axis] = vertices[numbers - 2 * dim + axis];
         if (draw_coin(&draw))
             vertices[draw_int(&draw, 0, dim)] += 0x1p-45;
-        assert_int_equal(fmb_frame_make_vertices(dim, FMB_TETRAHEDRON, vertices,
-                                                 (size_t) ((dim + 1) * dim), &frame),
+        const int scaled = draw_coin(&draw) ? numbers : draw_int(&draw, 0, numbers);
+        for (int k = 0; k < scaled; k++)
+            vertices[k] = ldexp(vertices[k], exponent);
+        assert_int_equal(fmb_frame_make_vertices(dim, shape, vertices, (size_t) numbers, &frame),
                          FMB_OK);
         expect_edges(vertices, &frame);
-        const bool flat = are_in_one_plane(dim, vertices);
+        const bool flat = shape == FMB_FACE || are_in_one_plane(dim, vertices);
         assert_int_equal(frame.flat, flat);
         assert_true(memcmp(frame.origin, vertices, (size_t) dim * sizeof *vertices) == 0);
         count[flat][frame.rounded]++;
@@ -245,7 +238,6 @@ static void expect_numbers(const struct fmb_frame *frame, const double *given, s
 
 static void frames_give_the_numbers_they_were_made_of(void **state)
 {
-    (void) state;
     static const int shapes[] = {FMB_CUBOID, FMB_TETRAHEDRON, FMB_FACE, FMB_BOX};
     struct draw draw;
     draw_begin(&draw, "frames_give_the_numbers_they_were_made_of");
@@ -287,7 +279,6 @@ static bool gives_vertices(const double vertices[9])
  * difference, and of some others. */
 static void vertices_are_recovered_exactly(void **state)
 {
-    (void) state;
     enum { LEAST = -1074, MOST = 1023, NEAR = 56 };
     struct draw draw;
     long rounded = 0;
@@ -315,7 +306,6 @@ static void vertices_are_recovered_exactly(void **state)
 
 static void bodies_of_one_frame_hold_it(void **state)
 {
-    (void) state;
     static const double number[6] = {1, 2, 3, 2, 4, 6};
     struct fmb_body body, copy, again;
     const struct fmb_frame frame = make_box(3, number, 6);
@@ -336,7 +326,6 @@ static void bodies_of_one_frame_hold_it(void **state)
 /* The farthest vertex, (4, 8, 12), is 14.97 away; the one opposite, (-2, -4, -6), is nearer. */
 static void no_vertex_is_beyond_the_radius(void **state)
 {
-    (void) state;
     static const double near[6] = {0, 0, 0, 1, 1, 1}, far[6] = {1, 2, 3, 6, 12, 18};
     const struct fmb_frame frames[3] = {make_box(3, near, 6), make_box(3, far, 6),
                                         make_box(3, near, 6)};
@@ -349,11 +338,14 @@ static void no_vertex_is_beyond_the_radius(void **state)
     assert_true(body.radius == frames[1].radius);
 }
 
-/* The three edges at the origin enclose a volume of `thickness`; offset: of the origin along z. */
-static struct fmb_frame make_thin(double thickness, double offset)
+/* The three edges at the origin enclose a volume of `thickness`; the first and edge `second` are
+ * nearly parallel. offset: of the origin along z. */
+static struct fmb_frame make_thin(double thickness, double offset, int second)
 {
-    const double vertex[12] = {0, 0, offset, 1, 0, 0, 1, thickness, 0, 0, 0, 1};
+    double vertex[12] = {0, 0, offset, 1, 0, 0};
     struct fmb_frame frame;
+    vertex[3 * second] = vertex[3 * (5 - second) + 2] = 1;
+    vertex[3 * second + 1] = thickness;
     assert_int_equal(fmb_frame_make_vertices(3, FMB_TETRAHEDRON, vertex, 12, &frame), FMB_OK);
     assert_true(frame.rounded == (offset != 0));
     return frame;
@@ -362,11 +354,11 @@ static struct fmb_frame make_thin(double thickness, double offset)
 /* Rounding might turn a thin frame inside out: doubles decide it only if nothing is rounded. */
 static void thin_frames_are_not_sturdy(void **state)
 {
-    (void) state;
-    for (int rounded = 0; rounded < 2; rounded++) {
+    for (int n = 0; n < 4; n++) {
+        const int rounded = n % 2, second = 2 + n / 2;
         const double offset = rounded ? 0x1p-60 : 0;
-        const struct fmb_frame thick = make_thin(0x1p-43, offset);
-        const struct fmb_frame thin = make_thin(0x1p-45, offset);
+        const struct fmb_frame thick = make_thin(0x1p-43, offset, second);
+        const struct fmb_frame thin = make_thin(0x1p-45, offset, second);
         assert_true(thick.sturdy && thick.in_range);
         assert_true(!thin.sturdy && thin.in_range == !rounded);
     }
@@ -375,7 +367,6 @@ static void thin_frames_are_not_sturdy(void **state)
 /* 2^600 + 2^547 is no double. */
 static void radii_of_large_frames_are_rounded_up(void **state)
 {
-    (void) state;
     static const double number[9] = {0x1p600, 0, 0, 0x1p547, 0, 0, 0x1p547, 0, 0};
     struct fmb_frame frame;
     assert_int_equal(fmb_frame_make(3, FMB_FACE, number, 9, &frame), FMB_OK);
@@ -384,7 +375,6 @@ static void radii_of_large_frames_are_rounded_up(void **state)
 
 static void bodies_that_are_refused(void **state)
 {
-    (void) state;
     static struct fmb_frame frames[FMB_FRAMES_MAX + 1];
     const struct fmb_frame plane = make(2, FMB_CUBOID, unit2), space = make(3, FMB_CUBOID, unit3);
     struct fmb_body body;
@@ -435,7 +425,6 @@ static void expect_status(const struct fmb_placement *placement, enum fmb_status
 
 static void placements_without_a_body_are_refused(void **state)
 {
-    (void) state;
     static const struct fmb_body never_made;
     plane_body = make_body(2, unit2);
     expect_status(&(struct fmb_placement){.body = NULL}, FMB_NO_FRAMES);
@@ -445,7 +434,6 @@ static void placements_without_a_body_are_refused(void **state)
 
 static void placements_that_are_not_finite_are_refused(void **state)
 {
-    (void) state;
     static const double bad[] = {NAN, INFINITY, -INFINITY};
     plane_body = make_body(2, unit2);
     space_body = make_body(3, unit3);
@@ -466,7 +454,6 @@ static void placements_that_are_not_finite_are_refused(void **state)
 
 static void counts_of_orientations(void **state)
 {
-    (void) state;
     plane_body = make_body(2, unit2);
     space_body = make_body(3, unit3);
     for (int dim = 2; dim <= 3; dim++)
@@ -499,7 +486,6 @@ static bool is_too_small(double x, double y)
 
 static void orientations_by_hand(void **state)
 {
-    (void) state;
     static const struct {
         double q[4];
         bool good;
@@ -535,7 +521,6 @@ static void orientations_by_hand(void **state)
 
 static void components_of_orientations_may_be_far_apart(void **state)
 {
-    (void) state;
     struct draw draw;
     long count[2] = {0};
     draw_begin(&draw, "components_of_orientations_may_be_far_apart");
@@ -563,7 +548,6 @@ static void components_of_orientations_may_be_far_apart(void **state)
 
 static void frames_that_a_body_does_not_have(void **state)
 {
-    (void) state;
     static const struct {
         unsigned first, count;
         bool good;

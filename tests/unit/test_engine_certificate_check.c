@@ -1,15 +1,8 @@
 /* The checker of certificates: by hand, and on random texts that say something of small pairs,
  * flat or not. What it says of a point is held against the oracle, what it says of a normal
  * against whole numbers. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <math.h>
@@ -18,8 +11,6 @@
 #include "oracle.h"
 #include "question.h"
 #include "referee.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 enum { TEXT_SIZE = 4000, WHY_SIZE = 200 };
 
@@ -208,7 +199,6 @@ static const struct by_hand cubes_by_hand[] = {
 
 static void cubes_by_hand_are_judged_right(void **state)
 {
-    (void) state;
     for (size_t i = 0; i < COUNT(cubes_by_hand); i++) {
         const struct by_hand *by_hand = &cubes_by_hand[i];
         const struct question question = cubes(by_hand->x, by_hand->moving);
@@ -222,7 +212,6 @@ static void cubes_by_hand_are_judged_right(void **state)
 /* A tetrahedron in space has six edges. */
 static void edges_of_tetrahedra_have_six_names(void **state)
 {
-    (void) state;
     struct question question = cubes(3, false);
     question.a.shape = question.b.shape = FMB_TETRAHEDRON;
     struct ready ready;
@@ -238,7 +227,6 @@ static void edges_of_tetrahedra_have_six_names(void **state)
 
 static void unknown_verdicts_are_not_proved(void **state)
 {
-    (void) state;
     const struct question question = cubes(3, false);
     struct ready ready;
     referee_ready(&question, &ready);
@@ -250,7 +238,6 @@ static void unknown_verdicts_are_not_proved(void **state)
 /* In the plane z = 0 points have two coordinates, and there is a z. */
 static void squares_by_hand_are_judged_right(void **state)
 {
-    (void) state;
     struct question question = {.a = {2, FMB_TETRAHEDRON, {{1, 0}, {0, 1}}, {0}, {0}, false},
                                 .b = {2, FMB_CUBOID, {{1, 0}, {0, 1}}, {0.5, 0.5}, {0}, false},
                                 .duration = 1};
@@ -268,7 +255,6 @@ static void squares_by_hand_are_judged_right(void **state)
 
 static void the_reason_is_optional(void **state)
 {
-    (void) state;
     const struct question question = cubes(3, false);
     struct ready ready;
     char why[4] = "###";
@@ -359,7 +345,6 @@ static void put_event(const char *certificate, const char *event, char *out, siz
 
 static void points_are_where_the_oracle_says(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "points_are_where_the_oracle_says");
     long taken = 0, refused = 0;
@@ -507,7 +492,6 @@ static bool normal_proves(const struct question *question, enum fmb_verdict verd
 
 static void normals_are_what_whole_numbers_say(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "normals_are_what_whole_numbers_say");
     long taken = 0, refused = 0;
@@ -540,7 +524,6 @@ static void normals_are_what_whole_numbers_say(void **state)
 
 static void random_bytes_prove_nothing(void **state)
 {
-    (void) state;
     const struct question question =
         cubes(0, false); /* so that the one right verdict needs a point */
     struct ready ready;
@@ -562,7 +545,6 @@ static void random_bytes_prove_nothing(void **state)
 /* (10^n + 1) / 10^n is beyond 1, and its inverse is not. */
 static void many_digits_are_read(void **state)
 {
-    (void) state;
     enum { ZEROS = 20000 };
     const struct question question = cubes(0, false);
     struct ready ready;
@@ -581,7 +563,6 @@ static void many_digits_are_read(void **state)
 /* Of a box whose corner is beyond the largest double. */
 static void corners_beyond_the_doubles_are_judged(void **state)
 {
-    (void) state;
     struct question question = {{.dim = 3, .shape = FMB_BOX}, {.dim = 3, .shape = FMB_BOX}, 0};
     struct ready ready;
     for (int i = 0; i < 3; i++)

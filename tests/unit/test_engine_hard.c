@@ -1,494 +1,26 @@
-/* The exact method against the oracle on families of pairs that are hard for a reason: verdict,
- * interval and box, tightest doubles, in both orders.
+/* The exact and the certified method against the oracle on pairs that are hard for a reason:
+ * verdict, interval and box, in both orders; families of pairs, and cases that have a name.
  *
  * Each family draws pairs from the seed that it prints (FMB_SEED gives one back); FMB_SAMPLE=10
  * draws ten times as many, FMB_FAST=1 an eighth. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
-#include <math.h>
 
-#include "draw.h"
-#include "question.h"
+#include "hard_pairs.h"
 #include "referee.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
-/* ---- Parts ---- */
-
-static struct solid draw_integer_solid(struct draw *draw, int dim, int most)
-{
-    struct solid solid = {.dim = dim, .shape = question_draw_shape(draw, dim)};
-    for (int i = 0; i < solid_count(&solid); i++)
-        draw_integers(draw, dim, -most, most, solid.component[i]);
-    return solid;
-}
-
-static double draw_duration(struct draw *draw)
-{
-    static const double durations[] = {0, -0.0, 0x1p-1074, 1e-300, 0.5, 1, 3, 1e300, DBL_MAX};
-    return durations[draw_int(draw, 0, (int) COUNT(durations) - 1)];
-}
-
-static int draw_dim(struct draw *draw)
-{
-    return draw_int(draw, 2, 3);
-}
-
-/* A point of the shape, relative to its origin: parameters that are eighths, often at their
- * bounds, so that small integers give an exact point. */
-static void draw_point(struct draw *draw, const struct solid *solid, double point[FMB_DIM_MAX])
-{
-    static const double eighths[] = {0, 0, 1, 0.5, 0.25, 0.125};
-    double left = 1; /* what a tetrahedron may still take */
-    memset(point, 0, FMB_DIM_MAX * sizeof point[0]);
-    for (int i = 0; i < solid_count(solid); i++) {
-        double x = eighths[draw_int(draw, 0, (int) COUNT(eighths) - 1)];
-        if (solid->shape != FMB_CUBOID) {
-            x = fmin(x, left);
-            left -= x;
-        }
-        for (int axis = 0; axis < solid->dim; axis++)
-            point[axis] += x * solid->component[i][axis];
-    }
-}
-
-/* Moves B so that point_a of A and point_b of B coincide at t = 0 (or nearly, as it rounds). */
-static void bring_together(struct question *question, const double *point_a, const double *point_b)
-{
-    for (int axis = 0; axis < question->a.dim; axis++)
-        question->b.origin[axis] = question->a.origin[axis] + (point_a[axis] - point_b[axis]);
-}
-
-static void bring_into_contact(struct draw *draw, struct question *question)
-{
-    double point_a[FMB_DIM_MAX], point_b[FMB_DIM_MAX];
-    draw_point(draw, &question->a, point_a);
-    draw_point(draw, &question->b, point_b);
-    bring_together(question, point_a, point_b);
-}
-
-/* ---- Touching by construction ----
- *
- * Take a direction n, the features of A farthest along n and of B farthest against n (a vertex
- * as a rule; an edge, a face where n is made for it), and one point of each feature; put these
- * points together. The plane across n then parts the two: they have a point in common, and if A
- * is not wholly in that plane, its relative interior is strictly on its own side. So they touch.
- * All numbers are small multiples of 1/4, hence exact. */
-
-static double dot(const double *u, const double *v, int dim)
-{
-    double sum = 0;
-    for (int axis = 0; axis < dim; axis++)
-        sum += u[axis] * v[axis];
-    return sum;
-}
-
-static void cross(const double *u, const double *v, double *out)
-{
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        out[i] = u[j] * v[k] - u[k] * v[j];
-    }
-}
-
-static const double *draw_component(struct draw *draw, const struct solid *solid)
-{
-    return solid->component[draw_int(draw, 0, solid_count(solid) - 1)];
-}
-
-/* A normal of a face of A or of B, of an edge of A and one of B, or any. May be zero. */
-static void draw_direction(struct draw *draw, const struct question *question, double *n)
-{
-    const struct solid *one = draw_coin(draw) ? &question->a : &question->b;
-    const struct solid *other = draw_coin(draw) ? &question->a : &question->b;
-    const double *u = draw_component(draw, one), *v = draw_component(draw, other);
-    if (draw_int(draw, 0, 3) == 0)
-        draw_integers(draw, one->dim, -3, 3, n);
-    else if (one->dim == 3)
-        cross(u, v, n);
-    else
-        n[0] = -u[1], n[1] = u[0];
-}
-
-/* A point of the feature of the solid that is farthest along sign * n. A cuboid takes all
- * components that go up, none that go down, and any quarter of those that lie across n. A
- * tetrahedron (a face) takes the mean of two of its farthest vertices. */
-static void draw_farthest(struct draw *draw, const struct solid *solid, const double *n,
-                          double sign, double *point)
-{
-    const int dim = solid->dim, count = solid_count(solid);
-    memset(point, 0, FMB_DIM_MAX * sizeof point[0]);
-    if (solid->shape == FMB_CUBOID) {
-        for (int i = 0; i < count; i++) {
-            double up = sign * dot(n, solid->component[i], dim);
-            double x = up > 0 ? 1 : up < 0 ? 0 : draw_int(draw, 0, 4) / 4.0;
-            for (int axis = 0; axis < dim; axis++)
-                point[axis] += x * solid->component[i][axis];
-        }
-        return;
-    }
-    static const double zero[FMB_DIM_MAX];
-    const double *farthest[FMB_DIM_MAX + 1] = {zero};
-    int found = 1; /* the origin is a vertex as well */
-    for (int i = 0; i < count; i++) {
-        double gain = sign * (dot(n, solid->component[i], dim) - dot(n, farthest[0], dim));
-        if (gain > 0)
-            found = 0;
-        if (gain >= 0)
-            farthest[found++] = solid->component[i];
-    }
-    const double *p = farthest[draw_int(draw, 0, found - 1)];
-    const double *q = farthest[draw_int(draw, 0, found - 1)];
-    for (int axis = 0; axis < dim; axis++)
-        point[axis] = (p[axis] + q[axis]) / 2;
-}
-
-static bool lies_across(const struct solid *solid, const double *n)
-{
-    for (int i = 0; i < solid_count(solid); i++)
-        if (dot(n, solid->component[i], solid->dim) != 0)
-            return false;
-    return true;
-}
-
-/* A touching static pair, and the direction of its parting plane (from A to B). */
-static void draw_touching(struct draw *draw, struct question *question, double *n)
-{
-    const int dim = draw_dim(draw), most = draw_coin(draw) ? 1 : 6;
-    do {
-        *question = (struct question){.duration = 1};
-        memset(n, 0, FMB_DIM_MAX * sizeof n[0]);
-        question->a = draw_integer_solid(draw, dim, most);
-        question->b = draw_integer_solid(draw, dim, most);
-        draw_integers(draw, dim, -9, 9, question->a.origin);
-        draw_direction(draw, question, n);
-    } while (lies_across(&question->a, n)); /* a zero direction too */
-    double point_a[FMB_DIM_MAX], point_b[FMB_DIM_MAX];
-    draw_farthest(draw, &question->a, n, +1, point_a);
-    draw_farthest(draw, &question->b, n, -1, point_b);
-    bring_together(question, point_a, point_b);
-}
-
-static void touching(struct draw *draw, struct question *question)
-{
-    double n[FMB_DIM_MAX];
-    draw_touching(draw, question, n);
-}
-
-static void touching_far_out(struct draw *draw, struct question *question)
-{
-    touching(draw, question);
-    for (int axis = 0; axis < question->a.dim; axis++) {
-        double far = draw_int(draw, -3, 3) * 0x1p40; /* 40 + 10 bits, all exact */
-        question->a.origin[axis] += far;
-        question->b.origin[axis] += far;
-    }
-}
-
-static void an_ulp_from_touching(struct draw *draw, struct question *question)
-{
-    touching_far_out(draw, question);
-    double *number = &question->b.origin[draw_int(draw, 0, question->a.dim - 1)];
-    *number = nextafter(*number, draw_coin(draw) ? HUGE_VAL : -HUGE_VAL);
-}
-
-/* Gives B the relative velocity w, on top of a velocity of both, and puts it where it is in
- * touching contact at time t of the window. */
-static void touch_at(struct draw *draw, struct question *question, const double *w, double t)
-{
-    double both[FMB_DIM_MAX] = {0};
-    question->a.moving = draw_coin(draw);
-    question->b.moving = true;
-    if (question->a.moving)
-        draw_integers(draw, question->a.dim, -3, 3, both);
-    for (int axis = 0; axis < question->a.dim; axis++) {
-        question->a.velocity[axis] = both[axis];
-        question->b.velocity[axis] = both[axis] + w[axis];
-        question->b.origin[axis] -= t * w[axis];
-    }
-}
-
-static double draw_window(struct draw *draw, struct question *question)
-{
-    static const double windows[] = {0, 0.25, 1, 2, 5};
-    return question->duration = windows[draw_int(draw, 0, (int) COUNT(windows) - 1)];
-}
-
-/* The relative velocity lies in the parting plane: they slide, or graze in an instant. */
-static void sliding(struct draw *draw, struct question *question)
-{
-    double n[FMB_DIM_MAX], any[FMB_DIM_MAX], w[FMB_DIM_MAX] = {0};
-    draw_touching(draw, question, n);
-    draw_integers(draw, question->a.dim, -2, 2, any);
-    if (question->a.dim == 3)
-        cross(n, any, w);
-    else
-        w[0] = -n[1] * any[0], w[1] = n[0] * any[0];
-    touch_at(draw, question, w, draw_window(draw, question) * draw_int(draw, 0, 2) / 2);
-}
-
-/* B has a velocity away from A, and touches as the window opens; or the reverse, and touches as
- * it closes. */
-static void at_the_window_s_end(struct draw *draw, struct question *question)
-{
-    double n[FMB_DIM_MAX], w[FMB_DIM_MAX];
-    draw_touching(draw, question, n);
-    do {
-        draw_integers(draw, question->a.dim, -3, 3, w);
-    } while (dot(n, w, question->a.dim) == 0);
-    bool away = dot(n, w, question->a.dim) > 0;
-    touch_at(draw, question, w,
-             away ? 0 * draw_window(draw, question) : draw_window(draw, question));
-}
-
-/* ---- Contact that nobody promised the kind of ---- */
-
-static void overlap_then_recede(struct draw *draw, struct question *question)
-{
-    const int dim = draw_dim(draw);
-    *question = (struct question){.a = draw_integer_solid(draw, dim, 4),
-                                  .b = draw_integer_solid(draw, dim, 4)};
-    bring_into_contact(draw, question);
-    question_draw_movers(draw, question);
-    draw_integers(draw, dim, -2, 2, question->a.velocity);
-    draw_integers(draw, dim, -5, 5, question->b.velocity);
-    question->duration = draw_duration(draw);
-}
-
-/* Components from a space of the rank asked for, with integer coefficients. */
-static void flatten(struct draw *draw, struct solid *solid, int rank)
-{
-    double basis[FMB_DIM_MAX][FMB_DIM_MAX] = {{0}};
-    for (int r = 0; r < rank; r++)
-        draw_integers(draw, solid->dim, -2, 2, basis[r]);
-    for (int i = 0; i < solid_count(solid); i++)
-        for (int axis = 0; axis < solid->dim; axis++) {
-            solid->component[i][axis] = 0;
-            for (int r = 0; r < rank; r++)
-                solid->component[i][axis] += draw_int(draw, -2, 2) * basis[r][axis];
-        }
-}
-
-static void flat(struct draw *draw, struct question *question)
-{
-    overlap_then_recede(draw, question);
-    flatten(draw, &question->a, draw_int(draw, 0, question->a.dim));
-    flatten(draw, &question->b, draw_int(draw, 0, question->b.dim - 1));
-    bring_into_contact(draw, question);
-}
-
-/* Both in one plane (on one line): the hard case of flat pairs. */
-static void flat_in_one_plane(struct draw *draw, struct question *question)
-{
-    flat(draw, question);
-    const int axis = draw_int(draw, 0, question->a.dim - 1);
-    for (int i = 0; i < FMB_DIM_MAX; i++)
-        question->a.component[i][axis] = question->b.component[i][axis] = 0;
-    question->b.origin[axis] = question->a.origin[axis];
-    if (draw_coin(draw))
-        question->a.velocity[axis] = question->b.velocity[axis] = 1;
-}
-
-/* ---- Numbers of every size ---- */
-
-static struct solid draw_solid(struct draw *draw, int dim, double (*number)(struct draw *))
-{
-    struct solid solid = {.dim = dim, .shape = question_draw_shape(draw, dim)};
-    for (int axis = 0; axis < dim; axis++) {
-        solid.origin[axis] = number(draw);
-        solid.velocity[axis] = number(draw);
-        for (int i = 0; i < solid_count(&solid); i++)
-            solid.component[i][axis] = number(draw);
-    }
-    return solid;
-}
-
-static void draw_pair(struct draw *draw, struct question *question, double (*number)(struct draw *))
-{
-    const int dim = draw_dim(draw);
-    *question = (struct question){draw_solid(draw, dim, number), draw_solid(draw, dim, number),
-                                  draw_duration(draw)};
-    question_draw_movers(draw, question);
-}
-
-static double ordinary(struct draw *draw)
-{
-    return draw_uniform(draw, -100, 100);
-}
-static double any_exponent(struct draw *draw)
-{
-    return draw_log(draw, -1000, 1000);
-}
-static double subnormal(struct draw *draw)
-{
-    return draw_int(draw, -9, 9) * 0x1p-1074;
-}
-static double near_the_end(struct draw *draw)
-{
-    return draw_uniform(draw, -1, 1) * DBL_MAX;
-}
-
-static double of_every_kind(struct draw *draw)
-{
-    switch (draw_int(draw, 0, 7)) {
-    case 0: return draw_coin(draw) ? 0 : -0.0;
-    case 1: return draw_int(draw, -2, 2);
-    case 2: return subnormal(draw);
-    case 3: return near_the_end(draw);
-    case 4: return draw_coin(draw) ? DBL_MAX : -DBL_MAX;
-    case 5: return any_exponent(draw);
-    default: return draw_finite(draw);
-    }
-}
-
-static void ordinary_moving(struct draw *draw, struct question *question)
-{
-    draw_pair(draw, question, ordinary);
-    question->duration = draw_uniform(draw, 0, 4);
-}
-
-static void near_contact(struct draw *draw, struct question *question)
-{
-    draw_pair(draw, question, ordinary);
-    bring_into_contact(draw, question);
-}
-
-static void sizes_mixed(struct draw *draw, struct question *question)
-{
-    draw_pair(draw, question, any_exponent);
-    if (draw_coin(draw))
-        bring_into_contact(draw, question); /* may overflow: see repair() */
-}
-
-static void subnormals(struct draw *draw, struct question *question)
-{
-    draw_pair(draw, question, subnormal);
-}
-
-static void ends_of_the_doubles(struct draw *draw, struct question *question)
-{
-    draw_pair(draw, question, near_the_end);
-    if (draw_coin(draw))
-        bring_into_contact(draw, question);
-}
-
-static void numbers_of_every_kind(struct draw *draw, struct question *question)
-{
-    draw_pair(draw, question, of_every_kind);
-    if (draw_coin(draw))
-        bring_into_contact(draw, question);
-    if (draw_coin(draw))
-        question->duration = fabs(of_every_kind(draw));
-}
-
-/* Each frame of its own size, from 1e-300 to 1e300, in contact or nearly. */
-static void frames_of_two_sizes(struct draw *draw, struct question *question)
-{
-    draw_pair(draw, question, ordinary);
-    double size[2] = {draw_log(draw, -990, 990), draw_log(draw, -990, 990)};
-    for (int i = 0; i < FMB_DIM_MAX; i++)
-        for (int axis = 0; axis < question->a.dim; axis++) {
-            question->a.component[i][axis] *= size[0];
-            question->b.component[i][axis] *= size[1];
-        }
-    bring_into_contact(draw, question);
-}
-
-/* Components that differ from dependent ones by an ulp or two in one number. */
-static void slivers(struct draw *draw, struct question *question)
-{
-    draw_pair(draw, question, ordinary);
-    for (int side = 0; side < 2; side++) {
-        struct solid *solid = side == 0 ? &question->a : &question->b;
-        memcpy(solid->component[1], solid->component[0], sizeof solid->component[1]);
-        double *number = &solid->component[1][draw_int(draw, 0, solid->dim - 1)];
-        for (int steps = draw_int(draw, 0, 2); steps > 0; steps--)
-            *number = nextafter(*number, HUGE_VAL);
-    }
-    bring_into_contact(draw, question);
-}
-
-/* Velocities that do next to nothing, or the same to both. */
-static void idle_velocities(struct draw *draw, struct question *question)
-{
-    overlap_then_recede(draw, question);
-    if (!question->a.moving)
-        question->b.moving = true;
-    for (int axis = 0; axis < question->a.dim; axis++) {
-        double velocity = draw_coin(draw) ? ordinary(draw) : of_every_kind(draw);
-        question->a.velocity[axis] = question->b.velocity[axis] = velocity;
-    }
-    switch (draw_int(draw, 0, 3)) {
-    case 0: memset(question->b.velocity, 0, sizeof question->b.velocity); /* fallthrough */
-    case 1: memset(question->a.velocity, 0, sizeof question->a.velocity); break;
-    case 2: question->a.velocity[0] += subnormal(draw); break;
-    default: break;
-    }
-}
-
-/* ---- The families ---- */
-
-struct family {
-    const char *name;
-    void (*draw_question)(struct draw *draw, struct question *question);
-    int verdict; /* that all pairs must have; 0: all three come up; -1: no promise */
-    long usual;  /* count */
-};
-
-static const struct family families[] = {
-    {"touching", touching, FMB_TOUCHING, 6000},
-    {"touching_far_out", touching_far_out, FMB_TOUCHING, 3000},
-    {"an_ulp_from_touching", an_ulp_from_touching, 0, 3000},
-    {"sliding", sliding, FMB_TOUCHING, 6000},
-    {"at_the_window_s_end", at_the_window_s_end, FMB_TOUCHING, 4000},
-    {"overlap_then_recede", overlap_then_recede, -1, 3000},
-    {"flat", flat, -1, 6000},
-    {"flat_in_one_plane", flat_in_one_plane, -1, 6000},
-    {"ordinary_moving", ordinary_moving, -1, 3000},
-    {"near_contact", near_contact, 0, 3000},
-    {"slivers", slivers, 0, 3000},
-    {"idle_velocities", idle_velocities, -1, 3000},
-    {"frames_of_two_sizes", frames_of_two_sizes, 0, 1000},
-    {"sizes_mixed", sizes_mixed, -1, 1000},
-    {"subnormals", subnormals, -1, 3000},
-    {"ends_of_the_doubles", ends_of_the_doubles, -1, 2000},
-    {"numbers_of_every_kind", numbers_of_every_kind, -1, 1500},
-};
-
-/* What a family computed may have left the finite doubles: it is pulled back to the last one. */
-static void repair(struct question *question)
-{
-    for (int side = 0; side < 2; side++) {
-        struct solid *solid = side == 0 ? &question->a : &question->b;
-        for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-            solid->origin[axis] = fmax(-DBL_MAX, fmin(DBL_MAX, solid->origin[axis]));
-            solid->velocity[axis] = fmax(-DBL_MAX, fmin(DBL_MAX, solid->velocity[axis]));
-            for (int i = 0; i < FMB_DIM_MAX; i++)
-                solid->component[i][axis] =
-                    fmax(-DBL_MAX, fmin(DBL_MAX, solid->component[i][axis]));
-        }
-    }
-}
 
 static void engine_agrees_on_family(void **state)
 {
-    const struct family *family = *state;
+    const struct hard_family *family = *state;
     const long size = draw_sample(family->usual);
     long count[4] = {0};
     struct draw draw;
     draw_begin(&draw, family->name);
     for (long n = 0; n < size; n++) {
         struct question question;
-        family->draw_question(&draw, &question);
-        repair(&question);
+        hard_draw(&draw, family, &question);
         enum fmb_verdict verdict = referee_assert(&question);
         if (family->verdict > 0 && (int) verdict != family->verdict)
             referee_fail(&question, "not the verdict it was made for");
@@ -500,12 +32,260 @@ static void engine_agrees_on_family(void **state)
         assert_true(count[FMB_SEPARATED] && count[FMB_TOUCHING] && count[FMB_OVERLAPPING]);
 }
 
+/* ---- Cases with a name ---- */
+
+#define BOX(x, y, z)          \
+    3, FMB_CUBOID,            \
+    {                         \
+        {x, 0, 0}, {0, y, 0}, \
+        {                     \
+            0, 0, z           \
+        }                     \
+    }
+#define CORNER(x, y, z)       \
+    3, FMB_TETRAHEDRON,       \
+    {                         \
+        {x, 0, 0}, {0, y, 0}, \
+        {                     \
+            0, 0, z           \
+        }                     \
+    }
+#define STILL {0}, false
+
+struct named {
+    const char *name;
+    struct question question;
+    enum fmb_verdict verdict;
+    double contact[2]; /* exactly; < 0: what the oracle accepts */
+};
+
+static const struct named cases[] = {
+    {"overlap_then_recede",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(1, 1, 1), {0.5, 0, 0}, {1, 0, 0}, true}, 2},
+     FMB_OVERLAPPING,
+     {0, 0.5}},
+    {"slide_along_a_face",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(1, 1, 1), {1, -2, 0}, {0, 1, 0}, true}, 4},
+     FMB_TOUCHING,
+     {1, 3}},
+    {"slide_along_the_face_of_a_corner",
+     {{CORNER(4, 4, 4), {0}, STILL}, {BOX(1, 1, 1), {4, 0, 0}, {-1, 1, 0}, true}, 1},
+     FMB_TOUCHING,
+     {0, 1}},
+    {"graze_in_an_instant",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(1, 1, 1), {0, 2, 0}, {1, -1, 0}, true}, 4},
+     FMB_TOUCHING,
+     {1, 1}},
+    {"graze_at_a_vertex",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(-1, -1, -1), {-1, 1, 0}, {1, -1, 0}, true}, 2},
+     FMB_TOUCHING,
+     {-1, -1}},
+    {"graze_at_a_third",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(1, 1, 1), {0, 2, 0}, {3, -3, 0}, true}, 1},
+     FMB_TOUCHING,
+     {-1, -1}},
+    {"arrive_as_the_window_closes",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(1, 1, 1), {3, 0, 0}, {-1, 0, 0}, true}, 2},
+     FMB_TOUCHING,
+     {2, 2}},
+    {"velocity_zero",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(1, 1, 1), {0.5, 0.5, 0.5}, {0}, true}, 2},
+     FMB_OVERLAPPING,
+     {0, 2}},
+    {"velocity_zero_touching",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(1, 1, 1), {1, 1, 1}, {0}, true}, 2},
+     FMB_TOUCHING,
+     {0, 2}},
+    {"velocity_of_a_nanometre",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(1, 1, 1), {1.0000000005, 0, 0}, {-1e-9, 0, 0}, true}, 1},
+     FMB_OVERLAPPING,
+     {-1, -1}},
+    {"velocity_of_a_nanometre_too_slow",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(1, 1, 1), {1.0000000015, 0, 0}, {-1e-9, 0, 0}, true}, 1},
+     FMB_SEPARATED,
+     {-1, -1}},
+    {"thin_and_fast",
+     {{BOX(1e-9, 1, 1), {0}, STILL}, {BOX(1e-9, 1, 1), {-5e8, 0.25, 0.25}, {1e9, 0, 0}, true}, 1},
+     FMB_OVERLAPPING,
+     {-1, -1}},
+    {"thin_and_fast_past",
+     {{BOX(1e-9, 1, 1), {0}, STILL}, {CORNER(1e-9, 1, 1), {-5e8, 1, 0}, {1e9, 1e-9, 0}, true}, 1},
+     FMB_SEPARATED,
+     {-1, -1}},
+    {"no_time",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(1, 1, 1), {0.5, 0, 0}, {1, 0, 0}, true}, 0},
+     FMB_OVERLAPPING,
+     {0, 0}},
+    {"minus_no_time",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(1, 1, 1), {1, 0, 0}, {-1, 0, 0}, true}, -0.0},
+     FMB_TOUCHING,
+     {0, 0}},
+    {"all_time",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(1, 1, 1), {3, 0, 0}, {-1, 0, 0}, true}, DBL_MAX},
+     FMB_OVERLAPPING,
+     {2, 4}},
+    {"all_time_and_slow",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(1, 1, 1), {3, 0, 0}, {-0x1p-1022, 0, 0}, true}, DBL_MAX},
+     FMB_OVERLAPPING,
+     {-1, -1}},
+    {"hardly_any_time",
+     {{BOX(1, 1, 1), {0}, STILL}, {BOX(1, 1, 1), {0.5, 0, 0}, {1, 0, 0}, true}, 0x1p-1074},
+     FMB_OVERLAPPING,
+     {0, 0x1p-1074}},
+    {"hardly_any_time_but_fast",
+     {{BOX(1, 1, 1), {0}, STILL},
+      {BOX(1, 1, 1), {1.75, 0, 0}, {-0x1p1023, 0, 0}, true},
+      0x1.8p-1022},
+     FMB_OVERLAPPING,
+     {-1, -1}},
+    {"hardly_any_time_and_far_too_fast",
+     {{BOX(0x1p-74, 0x1p-74, 0x1p-74), {0}, STILL},
+      {BOX(0x1p-74, 0x1p-74, 0x1p-74), {0x1p-73, 0, 0}, {-0x1p1000, 0, 0}, true},
+      3 * 0x1p-1074},
+     FMB_OVERLAPPING,
+     {0x1p-1074, 3 * 0x1p-1074}},
+    {"both_fast_together",
+     {{BOX(1, 1, 1), {0}, {1e300, -1e300, 0}, true},
+      {BOX(1, 1, 1), {1, 0, 0}, {1e300, -1e300, 0}, true},
+      3},
+     FMB_TOUCHING,
+     {0, 3}},
+    {"both_slow_together",
+     {{BOX(1, 1, 1), {0}, {0x1p-1000, -0x1p-1000, 0}, true},
+      {BOX(1, 1, 1), {0.5, 0, 0}, {0x1p-1000, -0x1p-1000, 0}, true},
+      0x1p-100},
+     FMB_OVERLAPPING,
+     {0, 0x1p-100}},
+    {"subnormal",
+     {{BOX(0x1p-1073, 0x1p-1073, 0x1p-1073), {0}, STILL},
+      {CORNER(0x1p-1074, 0x1p-1074, 0x1p-1074), {0x1p-1073, 0, 0}, {0x1p-1074, 0, 0}, true},
+      1},
+     FMB_TOUCHING,
+     {0, 0}},
+    {"the_largest",
+     {{BOX(1e308, 1e308, 1e308), {0}, STILL},
+      {BOX(1e308, 1e308, -1e308), {1e308, 0, 0}, {-1e308, 0, 1e308}, true},
+      1},
+     FMB_OVERLAPPING,
+     {0, 1}},
+    {"the_largest_far_apart",
+     {{BOX(1e308, 1e308, 1e308), {-DBL_MAX, 0, 0}, STILL},
+      {CORNER(1e308, 1e308, 1e308), {DBL_MAX, 0, 0}, {-DBL_MAX, 0, 0}, true},
+      1},
+     FMB_SEPARATED,
+     {-1, -1}},
+    /* A part of the window, rounded to seconds, is off by less than any double, on the wrong side.
+     */
+    {"hardly_any_time_to_recede",
+     {{2, FMB_CUBOID, {{1, 0}, {0, 1}}, {0}, STILL},
+      {2, FMB_CUBOID, {{1, 0}, {0, 1}}, {0}, {369 * 0x1p1007, 0}, true},
+      173 * 0x1p-1007},
+     FMB_OVERLAPPING,
+     {-1, -1}},
+    {"hardly_any_time_to_arrive",
+     {{2, FMB_CUBOID, {{1, 0}, {0, 1}}, {0}, STILL},
+      {2, FMB_CUBOID, {{1, 0}, {0, 1}}, {-2, 0}, {1161 * 0x1p1006, 0}, true},
+      65 * 0x1p-1006},
+     FMB_OVERLAPPING,
+     {-1, -1}},
+    /* Two edges along the same axis, each the difference of two components: their slab is noise
+     * that a fast drift makes large. */
+    {"noise_of_a_zero_normal",
+     {{3,
+       FMB_TETRAHEDRON,
+       {{0x1.bb4601b010ep-5, -0x1.9f5bc479f616p-5, -0x1.2ee7129a4b90ep-1},
+        {-0x1.0247c11778514p-2, -0x1.9f5bc479f616p-5, -0x1.2ee7129a4b90ep-1},
+        {0x1.bb4601b010ep-5, -0x1.7818e0a09f02p-1, -0x1.2ee7129a4b90ep-1}},
+       {0x1.ea03ce4e4da02p-2, 0x1.c6ae0aa926bccp-3, 0x1.c40cf723bf776p+0},
+       {-0x1.03ec8f602686ap+130, -0x1.0b7f357f606ap+130, 0x1.130550368b288p+130},
+       true},
+      {3,
+       FMB_TETRAHEDRON,
+       {{0x1.c8f7188f55e88p-2, -0x1.2594dabc09dep-5, -0x1.afdb5c21bbddep-1},
+        {-0x1.ed32109c5841p-3, -0x1.2594dabc09dep-5, -0x1.afdb5c21bbddep-1},
+        {0x1.c8f7188f55e88p-2, -0x1.4d87fa43a39cep-1, -0x1.afdb5c21bbddep-1}},
+       {-0x1.eb3dae053bc25p-5, 0x1.e6c1663944f1ap-2, 0x1.f7bc13fe749fdp+0},
+       {0x1.bf8d8052ba7c6p+130, 0x1.8b3941cabb608p+128, 0},
+       true},
+      1},
+     FMB_OVERLAPPING,
+     {-1, -1}},
+    /* A drift with one number so small that its product with an edge underflows, in the one slab
+     * that matters. */
+    {"drift_that_underflows",
+     {{3,
+       FMB_TETRAHEDRON,
+       {{0x1p-400, 0x1p-199, -0x1p-199},
+        {0x1p-400 + 0x1p-451, 0x1p-199, -0x1p-199},
+        {0x1p-202, -0x1p-200, -0x1p-198}},
+       {0x1p-200, -0x1p-199, 0x1p-199},
+       {0},
+       true},
+      {3,
+       FMB_TETRAHEDRON,
+       {{0x1p-199, 0x1p-199, 0x1p-202},
+        {-0x1p-199, 0x1p-198, -0x1p-202},
+        {0x1p-201, 0x1.8p-199, 0x1p-200}},
+       {0x1p-400 + 0x1p-452, 0, -0x1p-641},
+       {0x1p-199, 0, 0x1p-640},
+       true},
+      1},
+     FMB_TOUCHING,
+     {-1, -1}},
+    /* An edge along the drift: the slab does not move, but doubles cannot know which way. */
+    {"edge_along_the_drift",
+     {{2,
+       FMB_CUBOID,
+       {{0x1.7ee0dc30fdc1cp+0, 0x1.7ee0dc30fdc1cp+0},
+        {-0x1.f17dd944afc88p-2, 0x1.f17dd944afc88p-2}},
+       {0},
+       STILL},
+      {2,
+       FMB_CUBOID,
+       {{0x1.7866681c8a667p-7, 0x1.0611c7b0209e8p-9},
+        {0x1.be0a260794a7dp-10, 0x1.9111711cbbbc8p-7}},
+       {-0x1.cb743b6dfd4eep-2, -0x1.d63ebcd0db8dep-2},
+       {0x1.1d9a90aaa19b8p-1, 0x1.1d9a90aaa19b8p-1},
+       true},
+      1},
+     FMB_OVERLAPPING,
+     {-1, -1}},
+    {"plane",
+     {{2, FMB_TETRAHEDRON, {{1, 0}, {0, 1}}, {0}, STILL},
+      {2, FMB_CUBOID, {{1, -1}, {1, 1}}, {1, 0}, {1, -1}, true},
+      1},
+     FMB_TOUCHING,
+     {-1, -1}},
+};
+
+/* The interval of the exact method is the tightest: exact where its ends are doubles. */
+static void case_with_a_name(void **state)
+{
+    const struct named *named = *state;
+    struct fmb_answer exact;
+    if (referee_assert(&named->question) != named->verdict)
+        referee_fail(&named->question, "not the verdict that it has");
+    referee_decide(&named->question, &exact);
+    if (exact.has_contact && named->contact[0] >= 0 &&
+        (exact.contact[0] != named->contact[0] || exact.contact[1] != named->contact[1]))
+        referee_fail(&named->question, "not the times that it has");
+}
+
 int main(void)
 {
-    struct CMUnitTest tests[COUNT(families)];
-    for (size_t i = 0; i < COUNT(families); i++)
-        tests[i] = (struct CMUnitTest){.name = families[i].name,
-                                       .test_func = engine_agrees_on_family,
-                                       .initial_state = (void *) (uintptr_t) &families[i]};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    enum { FAMILIES_MAX = 32 };
+    struct CMUnitTest tests[FAMILIES_MAX + COUNT(cases)];
+    size_t count = 0;
+    for (; hard_family_at(count); count++) {
+        assert_true(count < FAMILIES_MAX);
+        tests[count] =
+            (struct CMUnitTest){.name = hard_family_at(count)->name,
+                                .test_func = engine_agrees_on_family,
+                                .initial_state = (void *) (uintptr_t) hard_family_at(count)};
+    }
+    for (size_t i = 0; i < COUNT(cases); i++)
+        tests[count++] = (struct CMUnitTest){.name = cases[i].name,
+                                             .test_func = case_with_a_name,
+                                             .initial_state = (void *) (uintptr_t) &cases[i]};
+    return _cmocka_run_group_tests("engine_hard", tests, count, NULL, NULL);
 }

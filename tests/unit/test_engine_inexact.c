@@ -1,13 +1,7 @@
 /* The methods fmb and sat: right on ordinary pairs, honest about flat ones and about overflow,
  * harmless on any input. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <math.h>
@@ -16,8 +10,6 @@
 #include "pair_draw.h"
 #include "question.h"
 #include "referee.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 static const char *const inexact[] = {"fmb", "sat"};
 
@@ -101,7 +93,6 @@ static void assert_box_contains(const struct question *question, const struct fm
 
 static void agree_on_ordinary_pairs(void **state)
 {
-    (void) state;
     struct draw draw;
     long count[4] = {0};
     draw_begin(&draw, "agree_on_ordinary_pairs");
@@ -133,7 +124,6 @@ static void agree_on_ordinary_pairs(void **state)
 
 static void unit_cubes_that_share_a_face_touch(void **state)
 {
-    (void) state;
     const struct solid cube = {3, FMB_CUBOID, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0}, {0}, false};
     for (int axis = 0; axis < 3; axis++)
         for (int sign = -1; sign <= 1; sign += 2) {
@@ -155,7 +145,6 @@ static void unit_cubes_that_share_a_face_touch(void **state)
 /* The normal of such a pair of edges is all rounding error: it is no axis to be separated on. */
 static void what_overlaps_deeply_overlaps(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "what_overlaps_deeply_overlaps");
     for (long n = draw_sample(10000); n > 0; n--) {
@@ -190,7 +179,6 @@ static void what_overlaps_deeply_overlaps(void **state)
 
 static void say_so_of_flat_frames(void **state)
 {
-    (void) state;
     const struct solid solid[2] = {
         {2, FMB_CUBOID, {{1, 0}, {0, 1}}, {0}, {0}, false},
         {3, FMB_TETRAHEDRON, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0}, {0}, true},
@@ -248,6 +236,8 @@ static void assert_sane(const struct question *question, const struct fmb_answer
 {
     if (!fmb_verdict_name(answer->verdict))
         referee_fail(question, "no verdict");
+    if (answer->has_contact != (answer->verdict != FMB_SEPARATED))
+        referee_fail(question, "an interval without contact, or none with it");
     const double *contact = answer->contact;
     if (answer->has_contact &&
         !(0 <= contact[0] && contact[0] <= contact[1] && contact[1] <= question->duration))
@@ -258,10 +248,9 @@ static void assert_sane(const struct question *question, const struct fmb_answer
 }
 
 /* Numbers that over- or underflow on the way are not to be taken for an answer: bodies ten sizes
- * apart are separated at any size, or it is said that the method cannot tell. */
+ * apart are separated at any size, or the method reports that it cannot decide. */
 static void say_so_of_numbers_out_of_range(void **state)
 {
-    (void) state;
     const double sizes[] = {1, 1e50, 1e-50, 1e110, 1e-110, 1e200, 1e-200, 1e306, 1e-300, 5e-324};
     for (size_t s = 0; s < COUNT(sizes); s++)
         for (int shape = FMB_CUBOID; shape <= FMB_TETRAHEDRON; shape++)
@@ -286,7 +275,6 @@ static void say_so_of_numbers_out_of_range(void **state)
  * these nothing separates the pair. */
 static void say_so_of_rows_that_overflow(void **state)
 {
-    (void) state;
     const struct question question = {
         {2, FMB_CUBOID, {{1, 0}, {0, 1}}, {0}, {0}, false},
         {2, FMB_CUBOID, {{1e-200, 0}, {1e200, 1e200}}, {-5e199, -4e199}, {0}, false},
@@ -306,7 +294,6 @@ static void say_so_of_rows_that_overflow(void **state)
 /* Both go beyond the largest double, side by side: 0 times infinity is on the way to their box. */
 static void say_so_of_boxes_that_overflow(void **state)
 {
-    (void) state;
     const struct solid square = {2, FMB_CUBOID, {{1, 0}, {0, 1}}, {0}, {1.5e308, 0}, true};
     const struct question question = {square, square, 2};
     struct ready ready;
@@ -335,7 +322,6 @@ static bool harmless(const struct question *question, const char *method)
 
 static void harmless_on_any_input(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "harmless_on_any_input");
     long decided = 0;
@@ -353,7 +339,6 @@ static void harmless_on_any_input(void **state)
 /* Rounding may leave nothing between the bounds of what touches. */
 static void harmless_on_hard_pairs(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "harmless_on_hard_pairs");
     long decided = 0;

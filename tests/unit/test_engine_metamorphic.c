@@ -2,14 +2,8 @@
  * too: to the bit, where the effect is exact in doubles. No oracle is needed.
  *
  * All numbers drawn are small integers, so that every change is exact. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <math.h>
@@ -17,8 +11,6 @@
 #include "draw.h"
 #include "question.h"
 #include "referee.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* ---- Questions ---- */
 
@@ -222,7 +214,6 @@ static bool end_has_moved(double still, double moved, double way, double sign)
 
 static void translation_moves_the_box(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "translation_moves_the_box");
     for (long n = draw_sample(16000); n > 0; n--) {
@@ -248,7 +239,6 @@ static void translation_moves_the_box(void **state)
 /* Boxes of axis-aligned cuboids with integer corners are integers: nothing is rounded. */
 static void translation_moves_whole_boxes_exactly(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "translation_moves_whole_boxes_exactly");
     for (long n = draw_sample(16000); n > 0; n--) {
@@ -280,7 +270,6 @@ static void translation_moves_whole_boxes_exactly(void **state)
 /* Two frames carried along by one more velocity meet as before. */
 static void common_velocity_changes_no_times(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "common_velocity_changes_no_times");
     for (long n = draw_sample(16000); n > 0; n--) {
@@ -301,7 +290,6 @@ static void common_velocity_changes_no_times(void **state)
 /* Start where they end, go back: same verdict, same box, and T - t in place of t. */
 static void time_runs_backwards(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "time_runs_backwards");
     for (long n = draw_sample(16000); n > 0; n--) {

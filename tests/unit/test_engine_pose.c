@@ -1,15 +1,7 @@
-/* Placed bodies: pairs with orientations against the oracle, and the same by every way to decide;
- * what must not change where the whole scene turns, or a quaternion gets longer; bodies of many
- * frames.
- */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
+/* Placed bodies: pairs with orientations of any length against the oracle, and the same by every
+ * way to decide; bodies of many frames. */
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <math.h>
@@ -18,8 +10,6 @@
 #include "draw.h"
 #include "question.h"
 #include "referee.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* ---- Orientations ---- */
 
@@ -332,7 +322,6 @@ static void answers_are_what_the_oracle_says(void **state)
  * where the offset is there, no other slab gives the verdict, or the end of the contact. */
 static void edges_may_be_parallel_in_doubles_only(void **state)
 {
-    (void) state;
     for (int signs = 0; signs < 4; signs++) {
         const double y = signs & 1 ? -1 : 1, z = signs & 2 ? -1 : 1;
         struct question question = {.a = {.dim = 3,
@@ -358,7 +347,6 @@ static void edges_may_be_parallel_in_doubles_only(void **state)
 /* Boxes that touch along an axis, whose true centres, position + centre, are not doubles. */
 static void boxes_touch_about_centres_that_round(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++)
         for (int axis = 0; axis < dim; axis++)
             for (int nudge = -1; nudge <= 1; nudge++) {
@@ -379,7 +367,6 @@ static void boxes_touch_about_centres_that_round(void **state)
 /* Boxes that touch as doubles have them, apart or overlapping by what their places lose. */
 static void boxes_are_apart_by_what_rounding_loses(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++)
         for (int sign = -1; sign <= 1; sign++)
             for (int turned = 0; turned < 2; turned++) {
@@ -408,7 +395,6 @@ static void boxes_hold_travels_that_underflow(void **state)
                                         {0x1p-960, 0x1p-10},
                                         {0x1.8p-300, 0x1.8p-778},
                                         {-0x1p-537, 0x1p-538}};
-    (void) state;
     for (int dim = 2; dim <= 3; dim++)
         for (size_t i = 0; i < COUNT(travels); i++) {
             struct question question = {.a = {.dim = dim, .shape = FMB_BOX, .moving = true},
@@ -426,7 +412,6 @@ static void boxes_hold_travels_that_underflow(void **state)
 /* Of solids of small whole numbers, ends that are short binary fractions are given as such. */
 static void boxes_of_small_numbers_are_plain(void **state)
 {
-    (void) state;
     struct draw draw;
     long ends = 0, plain = 0;
     draw_begin(&draw, "boxes_of_small_numbers_are_plain");
@@ -463,7 +448,7 @@ static void boxes_of_small_numbers_are_plain(void **state)
     assert_true(plain > ends - ends / 30 && ends > 0); /* few are known less well */
 }
 
-/* ---- By every way to ask ---- */
+/* ---- By every function that decides ---- */
 
 enum { PAIRS = 150 };
 
@@ -560,7 +545,6 @@ static void expect_certificates(const struct crowd *crowd)
 
 static void every_way_to_decide_gives_the_same(void **state)
 {
-    (void) state;
     static struct crowd crowd;
     struct draw draw;
     draw_begin(&draw, "every_way_to_decide_gives_the_same");
@@ -571,165 +555,6 @@ static void every_way_to_decide_gives_the_same(void **state)
                 expect_batch(&crowd, (enum instructions) set, wants & 1, wants & 2);
         expect_meet(&crowd);
         expect_certificates(&crowd);
-    }
-}
-
-/* ---- What must not change ---- */
-
-/* out := p q, exact where the products of their numbers are. */
-static void multiply(const double p[4], const double q[4], double out[4])
-{
-    out[0] = p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3];
-    out[1] = p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2];
-    out[2] = p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1];
-    out[3] = p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0];
-}
-
-/* One of the 24 turns of a cube: axis i goes to sign[i] times axis to[i]. */
-struct cube_turn {
-    double q[4];
-    int to[3];
-    double sign[3];
-};
-
-static struct cube_turn draw_cube_turn(struct draw *draw)
-{
-    struct cube_turn turn;
-    double square;
-    do {
-        draw_integers(draw, 4, -1, 1, turn.q);
-        square = turn.q[0] * turn.q[0] + turn.q[1] * turn.q[1] + turn.q[2] * turn.q[2] +
-                 turn.q[3] * turn.q[3];
-    } while (square != 1 && square != 2 && square != 4);
-    for (int i = 0; i < 3; i++) { /* e_i to q e_i q*, the length of which is square */
-        const double unit[4] = {0, i == 0, i == 1, i == 2};
-        const double conjugate[4] = {turn.q[0], -turn.q[1], -turn.q[2], -turn.q[3]};
-        double half[4], image[4];
-        multiply(turn.q, unit, half);
-        multiply(half, conjugate, image);
-        for (int axis = 0; axis < 3; axis++)
-            if (image[1 + axis] != 0) {
-                turn.to[i] = axis;
-                turn.sign[i] = image[1 + axis] / square;
-            }
-    }
-    return turn;
-}
-
-static void turn_vector(const struct cube_turn *turn, double vector[FMB_DIM_MAX])
-{
-    double out[FMB_DIM_MAX];
-    for (int i = 0; i < 3; i++)
-        out[turn->to[i]] = turn->sign[i] * vector[i];
-    memcpy(vector, out, sizeof out);
-}
-
-static void turn_solid(const struct cube_turn *turn, struct solid *solid)
-{
-    static const double identity[4] = {1, 0, 0, 0};
-    double q[4];
-    multiply(turn->q, solid->orientation_count ? solid->orientation : identity, q);
-    memcpy(solid->orientation, q, sizeof q);
-    solid->orientation_count = 4;
-    turn_vector(turn, solid->origin);
-    turn_vector(turn, solid->velocity);
-}
-
-/* On output: the box with its axes exchanged. */
-static void turn_box(const struct cube_turn *turn, double box[2][FMB_DIM_MAX])
-{
-    turn_vector(turn, box[0]);
-    turn_vector(turn, box[1]);
-    for (int axis = 0; axis < 3; axis++)
-        for (int end = 0; end < 2; end++)
-            box[end][axis] += 0.0; /* never -0 */
-    for (int axis = 0; axis < 3; axis++)
-        if (box[0][axis] > box[1][axis]) {
-            const double low = box[1][axis];
-            box[1][axis] = box[0][axis];
-            box[0][axis] = low;
-        }
-}
-
-static void decide_both(const struct question *question, struct fmb_answer *exact,
-                        enum fmb_verdict *certified)
-{
-    struct ready ready;
-    struct fmb_answer answer;
-    referee_ready(question, &ready);
-    referee_decide(question, exact);
-    assert_int_equal(pair_decide(fmb_method_default(), &ready.pair, FMB_WANT_BOX, &answer), FMB_OK);
-    *certified = answer.verdict;
-}
-
-/* The orientations of a pair as whole numbers, so that products with few others are exact. */
-static struct question draw_whole_turns(struct draw *draw, int dim)
-{
-    struct question question;
-    do
-        question = draw_pair(draw);
-    while (question.a.dim != dim);
-    draw_turn(draw, draw_coin(draw) ? whole : whole_of_8_bits, &question.a);
-    draw_turn(draw, draw_coin(draw) ? whole : whole_of_8_bits, &question.b);
-    if (draw_coin(draw))
-        vertex_to_vertex(draw, &question);
-    return question;
-}
-
-static void expect_unchanged(const struct question *question, const struct question *changed,
-                             const struct cube_turn *turn)
-{
-    struct fmb_answer before, after;
-    enum fmb_verdict certified;
-    decide_both(question, &before, &certified);
-    assert_int_equal(certified, before.verdict);
-    if (turn && before.has_box)
-        turn_box(turn, before.box);
-    decide_both(changed, &after, &certified);
-    if (certified != before.verdict)
-        referee_fail(changed, "certified has another verdict than before");
-    if (!referee_same(&before, &after)) {
-        question_print(question);
-        referee_fail(changed, "another answer than before");
-    }
-}
-
-static void scenes_may_turn_by_quarters(void **state)
-{
-    (void) state;
-    struct draw draw;
-    draw_begin(&draw, "scenes_may_turn_by_quarters");
-    for (long n = draw_sample(12000); n > 0; n--) {
-        const struct question question = draw_whole_turns(&draw, 3);
-        const struct cube_turn turn = draw_cube_turn(&draw);
-        struct question turned = question;
-        turn_solid(&turn, &turned.a);
-        turn_solid(&turn, &turned.b);
-        expect_unchanged(&question, &turned, &turn);
-    }
-}
-
-static double draw_factor(struct draw *draw)
-{
-    const double factor =
-        draw_coin(draw) ? draw_int(draw, 1, 9) : ldexp(1, draw_int(draw, -400, 400));
-    return draw_coin(draw) ? factor : -factor;
-}
-
-static void quaternions_may_have_any_length(void **state)
-{
-    (void) state;
-    struct draw draw;
-    draw_begin(&draw, "quaternions_may_have_any_length");
-    for (long n = draw_sample(12000); n > 0; n--) {
-        const struct question question = draw_whole_turns(&draw, draw_int(&draw, 2, 3));
-        struct question longer = question;
-        const double of_a = draw_factor(&draw), of_b = draw_factor(&draw);
-        for (int i = 0; i < 4; i++) {
-            longer.a.orientation[i] *= of_a;
-            longer.b.orientation[i] *= of_b;
-        }
-        expect_unchanged(&question, &longer, NULL);
     }
 }
 
@@ -826,7 +651,6 @@ static void decide_each(const struct fmb_method *method, const struct many *a, c
 
 static void bodies_are_the_hulls_of_their_frames(void **state)
 {
-    (void) state;
     static const char *const names[] = {"exact", "certified"};
     struct draw draw;
     long of_verdict[FMB_OVERLAPPING + 1] = {0};
@@ -878,8 +702,6 @@ int main(void)
         cmocka_unit_test(boxes_hold_travels_that_underflow),
         cmocka_unit_test(boxes_of_small_numbers_are_plain),
         cmocka_unit_test(every_way_to_decide_gives_the_same),
-        cmocka_unit_test(scenes_may_turn_by_quarters),
-        cmocka_unit_test(quaternions_may_have_any_length),
         cmocka_unit_test(bodies_are_the_hulls_of_their_frames),
     };
     struct CMUnitTest tests[COUNT(families) + COUNT(others)];

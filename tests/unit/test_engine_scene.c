@@ -1,14 +1,7 @@
 /* Scenes against fmb_decide() of each pair: the same pairs, numbers and bits, whatever the kind of
  * pairs, the slots, the wants and the first pair. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <math.h>
 
@@ -296,7 +289,6 @@ static void random_scenes(void **state)
 {
     struct draw draw = {0x5ce9e5};
     size_t meeting = 0;
-    (void) state;
     const size_t scenes = (size_t) draw_sample(400);
     for (size_t n = 0; n < scenes; n++) {
         const size_t frames = n % 4 == 0 ? 1 : n % 4 == 1 ? 4 : n % 4 == 2 ? 20 : FRAMES_MAX;
@@ -309,12 +301,11 @@ static void random_scenes(void **state)
     assert_true(near_pairs > 3 * scenes / 4);
 }
 
-/* In a heap, where all boxes meet, there is no room for all pairs at once; in a row there is. */
+/* In a heap, where all boxes meet, there is no memory for all pairs at once; in a row there is. */
 static void heaps_and_rows(void **state)
 {
     struct draw draw = {41};
     size_t meeting = 0;
-    (void) state;
     for (int n = 0; n < 12; n++) {
         const bool heap = n % 2;
         draw_world(&draw, PLACEMENTS_MAX, 1, &world);
@@ -336,7 +327,6 @@ static void heaps_and_rows(void **state)
 static void any_first_pair(void **state)
 {
     struct draw draw = {77};
-    (void) state;
     for (int n = 0; n < 12; n++) {
         draw_world(&draw, 9, n % 2 ? 1 : 20, &world);
         const unsigned long long total = fmb_scene_pair_count(&world.scene);
@@ -349,7 +339,6 @@ static void every_method(void **state)
 {
     struct draw draw = {4};
     size_t refused = 0;
-    (void) state;
     for (int n = 0; n < 60; n++) {
         draw_world(&draw, 8, n % 2 ? 1 : 5, &world);
         world.scene.method = fmb_method_at((size_t) n / 2 % 4);
@@ -377,7 +366,6 @@ static void extremes(void **state)
     static const double scale[] = {1e308, 1e300, 1e150, 1e16, 1e-160, 1e-310};
     struct draw draw = {9};
     size_t meeting = 0;
-    (void) state;
     for (int n = 0; n < 60; n++) {
         draw_world(&draw, 6, 3, &world);
         for (size_t i = 0; i < world.count; i++) {
@@ -431,7 +419,6 @@ static void expect_refusal(const struct fmb_scene *scene, enum fmb_status status
 static void bad_scenes(void **state)
 {
     struct fmb_scene *scene = &world.scene;
-    (void) state;
     draw_good(FMB_PAIRS_LISTED);
     world.pair[3][1] = 5;
     expect_refusal(scene, FMB_BAD_PAIR, "pairs[3]: ");
@@ -507,7 +494,6 @@ static void all_pairs_are_the_default(void **state)
 {
     static const unsigned pair[1][2] = {{0, 1}};
     struct fmb_scene scene = two_cubes(0);
-    (void) state;
     assert_int_equal(check_scene(&scene, 0), 1);
     scene.pairs = pair;
     scene.pair_count = 1;
@@ -519,7 +505,6 @@ static void all_pairs_are_the_default(void **state)
 
 static void bodies_that_move_need_a_window(void **state)
 {
-    (void) state;
     for (int moving = 0; moving < 2; moving++)
         for (int duration = 0; duration < 2; duration++)
             for (int instant = 0; instant < 2; instant++) {
@@ -537,7 +522,6 @@ static void limits_hold(void **state)
 {
     struct fmb_scene_state *out;
     static char memory[1 << 20];
-    (void) state;
     draw_good(FMB_PAIRS_ALL);
     for (int n = 0; n < 4; n++) {
         struct fmb_scene_limits limits = fmb_scene_limits_of(&world.scene);

@@ -1,17 +1,11 @@
 /* The exact method against the oracle in a small world, where nearly everything touches: all
  * numbers are small integers, and every degenerate case there is comes up.
  *
- * In the plane all pairs are asked. In space there are too many (cuboids alone: 19,683 bodies
+ * In the plane all pairs are decided. In space there are too many (of cuboids: 19,683 bodies
  * at 64 places): a seeded sample, whose size is printed; FMB_SAMPLE=10 draws ten times as many,
  * FMB_FAST=1 takes an eighth, and thins out the plane as well. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include "draw.h"
 #include "oracle.h"
@@ -55,7 +49,7 @@ static struct solid with_vectors_exchanged(const struct solid *solid)
 
 /* The set of points of a frame is the same in whatever order its components come (its
  * definition is symmetric in the terms x_i c_i), and the truth does not know the order of the
- * pair: so the oracle is asked once for the questions that the engine gets: both orders of the
+ * pair: so the oracle is called once for the questions that the engine gets: both orders of the
  * vectors of A and of those of B, and with each of them one order of the pair. */
 static void assert_all_orders(const struct question *question, const struct oracle_answer *truth)
 {
@@ -98,7 +92,6 @@ static void print_count(const char *what, const long count[4])
 
 static void all_of_the_plane(void **state)
 {
-    (void) state;
     const char *fast = getenv("FMB_FAST");
     const int step = fast && strcmp(fast, "0") != 0 ? 61 : 1; /* prime to the number of bodies */
     long count[4] = {0};
@@ -161,19 +154,16 @@ static void assert_sample(const char *what, int dim, bool moving, long size)
 
 static void plane_moving(void **state)
 {
-    (void) state;
     assert_sample("plane, moving, a sample of pairs", 2, true, draw_sample(20000));
 }
 
 static void space_static(void **state)
 {
-    (void) state;
     assert_sample("space, static, a sample of pairs", 3, false, draw_sample(32000));
 }
 
 static void space_moving(void **state)
 {
-    (void) state;
     assert_sample("space, moving, a sample of pairs", 3, true, draw_sample(32000));
 }
 

@@ -1,14 +1,7 @@
 /* Which pairs may meet: boxes against rational numbers, trees against testing every frame, whatever
- * the scene; no pair that meets is lost; and what a tree costs is counted in nodes, not in time. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+ * the scene: so no pair that meets is lost. What a tree costs is counted in nodes, not in time. */
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <gmp.h>
@@ -16,12 +9,9 @@
 #include <math.h>
 
 #include "draw.h"
-#include "pair_draw.h"
 #include "question.h"
 #include "referee.h"
 #include "tree.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 enum { GUARD = 0xa5, GUARDS = 64 };
 
@@ -190,7 +180,7 @@ static void nested(struct draw *draw, size_t i, size_t count, struct solid *soli
     }
 }
 
-/* Those that are asked about the middle are all to one side of the rest. */
+/* Queries about the middle lie on one side of all others. */
 static void odd_sequence(struct draw *draw, size_t i, size_t count, struct solid *solid)
 {
     scattered(draw, i, count, solid);
@@ -209,14 +199,12 @@ static mpq_t exact, scratch;
 
 static int set_up(void **state)
 {
-    (void) state;
     mpq_inits(exact, scratch, NULL);
     return 0;
 }
 
 static int tear_down(void **state)
 {
-    (void) state;
     mpq_clears(exact, scratch, NULL);
     return 0;
 }
@@ -286,7 +274,6 @@ static void expect_end(const struct solid *solid, double duration, double low, d
 
 static void boxes_hold_their_frames_and_are_tight(void **state)
 {
-    (void) state;
     static const double durations[] = {0, 0x1p-1074, 1e-300, 0.1, 1, 2, 3, 1e300, DBL_MAX};
     struct draw draw;
     draw_begin(&draw, "boxes_hold_their_frames_and_are_tight");
@@ -310,10 +297,9 @@ static void boxes_hold_their_frames_and_are_tight(void **state)
     }
 }
 
-/* The sum alone, with numbers that are hard to add: the sign of its error is what counts. */
+/* The sum by itself, with numbers that are hard to add: the sign of its error is what counts. */
 static void sums_step_down_just_where_they_were_rounded_up(void **state)
 {
-    (void) state;
     struct draw draw;
     long stepped = 0, kept = 0;
     draw_begin(&draw, "sums_step_down_just_where_they_were_rounded_up");
@@ -351,7 +337,7 @@ struct planted {
     unsigned *found, *expected; /* [count] */
 };
 
-/* At any address, with guards behind. */
+/* At any address, with guards after it. */
 static void plant(struct draw *draw, const struct scene *scene, struct planted *out)
 {
     const size_t offset = (size_t) draw_int(draw, 0, 63);
@@ -379,7 +365,7 @@ static void uproot(struct planted *planted)
     free(planted->expected);
 }
 
-/* By asking every frame, in words that have nothing of the tree's. */
+/* By testing every frame, without code of the tree. */
 static size_t find_all(const struct scene *scene, const struct fmb_prepared *frame, unsigned from,
                        unsigned *out)
 {
@@ -419,7 +405,8 @@ static void query_some(struct draw *draw, const struct scene *scene, struct plan
     }
 }
 
-/* Counts in times[i * count + j] how often fmb_tree_pairs() says the pair, in calls of any room. */
+/* Counts in times[i * count + j] how often fmb_tree_pairs() returns the pair, in calls of any
+ * capacity. */
 static void count_pairs(struct draw *draw, const struct fmb_tree *a, const struct fmb_tree *b,
                         unsigned char *times)
 {
@@ -427,10 +414,10 @@ static void count_pairs(struct draw *draw, const struct fmb_tree *a, const struc
     unsigned pairs[MOST + 1][2];
     struct fmb_tree_cursor cursor = {0};
     for (size_t count = 1; count > 0;) {
-        const size_t room = (size_t) draw_int(draw, FMB_TREE_CAPACITY_MIN, MOST);
-        pairs[room][0] = UINT_MAX;
-        assert_int_equal(fmb_tree_pairs(a, b, &cursor, pairs, room, &count), FMB_OK);
-        assert_true(count <= room && pairs[room][0] == UINT_MAX);
+        const size_t capacity = (size_t) draw_int(draw, FMB_TREE_CAPACITY_MIN, MOST);
+        pairs[capacity][0] = UINT_MAX;
+        assert_int_equal(fmb_tree_pairs(a, b, &cursor, pairs, capacity, &count), FMB_OK);
+        assert_true(count <= capacity && pairs[capacity][0] == UINT_MAX);
         for (size_t k = 0; k < count; k++) {
             assert_true(pairs[k][0] < a->frame_count && pairs[k][1] < b->frame_count);
             times[pairs[k][0] * b->frame_count + pairs[k][1]]++;
@@ -457,7 +444,6 @@ static void expect_same_pairs(struct draw *draw, const struct scene *scene, stru
 
 static void pairs_of_trees_are_what_testing_every_pair_finds(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "pairs_of_trees_are_what_testing_every_pair_finds");
     for (long n = draw_sample(160); n > 0; n--) {
@@ -496,10 +482,9 @@ static size_t draw_count(struct draw *draw)
     }
 }
 
-/* Asked about their own frames, and about those of another scene. */
+/* Queried with their own frames, and with those of another scene. */
 static void trees_find_what_testing_every_frame_finds(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "trees_find_what_testing_every_frame_finds");
     for (long n = draw_sample(240); n > 0; n--) {
@@ -547,7 +532,6 @@ static void expect_sound(const struct fmb_tree *tree)
 
 static void trees_of_every_small_number_are_sound(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "trees_of_every_small_number_are_sound");
     for (size_t count = 0; count < 300; count++) {
@@ -560,101 +544,6 @@ static void trees_of_every_small_number_are_sound(void **state)
         uproot(&planted);
         scene_close(&scene);
     }
-}
-
-/* Neighbours that touch are found, and no others: 27 with itself, inside of the grid. */
-static void cubes_in_a_grid_have_their_neighbours(void **state)
-{
-    (void) state;
-    enum { SIDE = 7, CUBES = SIDE * SIDE * SIDE };
-    struct draw draw;
-    struct scene scene;
-    struct planted planted;
-    draw_begin(&draw, "cubes_in_a_grid_have_their_neighbours");
-    scene_open(CUBES, 1, &scene);
-    for (int i = 0; i < CUBES; i++) {
-        const int place[3] = {i / SIDE / SIDE, i / SIDE % SIDE, i % SIDE};
-        scene.solid[i] = (struct solid){.dim = 3, .shape = FMB_CUBOID};
-        for (int axis = 0; axis < 3; axis++) {
-            scene.solid[i].origin[axis] = place[axis];
-            scene.solid[i].component[axis][axis] = 1;
-        }
-        scene_prepare(&scene, (size_t) i);
-    }
-    plant(&draw, &scene, &planted);
-    for (int i = 0; i < CUBES; i++) {
-        const int place[3] = {i / SIDE / SIDE, i / SIDE % SIDE, i % SIDE};
-        size_t expected = 1;
-        for (int axis = 0; axis < 3; axis++)
-            expected *= place[axis] == 0 || place[axis] == SIDE - 1 ? 2 : 3;
-        const struct aabb box = aabb_of(&scene.frame[i], 1);
-        assert_int_equal(tree_query(&planted.tree, &box, 0, planted.found), expected);
-    }
-    uproot(&planted);
-    scene_close(&scene);
-}
-
-/* ---- No pair is lost ---- */
-
-/* Frames 2 i and 2 i + 1 come from one question, made to be hard. */
-static void draw_hard(struct draw *draw, int dim, struct scene *scene)
-{
-    for (size_t i = 0; i + 1 < scene->count; i += 2) {
-        struct cell cell;
-        struct question question;
-        do {
-            cell = pair_draw_cell(draw);
-        } while (cell.dim != dim);
-        (draw_int(draw, 0, 7) ? pair_draw : pair_draw_stretched)(draw, &cell, &question);
-        if (scene->duration > 0)
-            pair_set_duration(&question, scene->duration);
-        scene->solid[i] = question.a;
-        scene->solid[i + 1] = question.b;
-        scene_prepare(scene, i);
-        scene_prepare(scene, i + 1);
-    }
-}
-
-static bool is_found(const unsigned *found, size_t count, unsigned index)
-{
-    for (size_t k = 0; k < count; k++)
-        if (found[k] == index)
-            return true;
-    return false;
-}
-
-static void pairs_that_meet_are_found(void **state)
-{
-    (void) state;
-    static const double durations[] = {1, 1, 0, 0.1, 3, 1e300};
-    enum { FRAMES = 256 };
-    struct draw draw;
-    long meeting = 0, apart = 0;
-    draw_begin(&draw, "pairs_that_meet_are_found");
-    for (long n = draw_sample(60); n > 0; n--) {
-        struct scene scene;
-        struct planted planted;
-        scene_open(FRAMES, durations[n % (long) COUNT(durations)], &scene);
-        draw_hard(&draw, draw_int(&draw, 2, 3), &scene);
-        plant(&draw, &scene, &planted);
-        for (unsigned i = 0; i < FRAMES; i++) {
-            const struct aabb box = aabb_of(&scene.frame[i], scene.duration);
-            const size_t count = tree_query(&planted.tree, &box, i + 1, planted.found);
-            for (unsigned j = i + 1; j < (i % 2 ? i + 4 : i + 3) && j < FRAMES; j++) {
-                enum fmb_verdict verdict;
-                assert_int_equal(
-                    fmb_decide_prepared(&scene.frame[i], &scene.frame[j], scene.duration, &verdict),
-                    FMB_OK);
-                assert_true(verdict == FMB_SEPARATED || is_found(planted.found, count, j));
-                meeting += verdict != FMB_SEPARATED;
-                apart += !is_found(planted.found, count, j);
-            }
-        }
-        uproot(&planted);
-        scene_close(&scene);
-    }
-    printf("# %ld pairs meet, %ld were left out\n", meeting, apart);
-    assert_true(meeting > 0 && apart > 0);
 }
 
 /* ---- What a tree costs ---- */
@@ -747,7 +636,7 @@ static void clouds_of_every_size(struct draw *draw, size_t i, size_t count, stru
 }
 
 struct cost {
-    double visits, found; /* of a frame that is asked about */
+    double visits, found; /* of a frame that is queried */
 };
 
 static struct cost cost_of(struct draw *draw, drawing *how, size_t count)
@@ -772,7 +661,6 @@ static struct cost cost_of(struct draw *draw, drawing *how, size_t count)
 
 static void queries_cost_no_more_than_a_few_nodes_a_level(void **state)
 {
-    (void) state;
     static const struct {
         const char *name;
         drawing *how;
@@ -797,11 +685,10 @@ static void queries_cost_no_more_than_a_few_nodes_a_level(void **state)
         }
 }
 
-/* Where all are found, no node is asked twice; and of boxes around one centre, those that are too
+/* Where all are found, no node is visited twice; and of boxes around one centre, those that are too
  * small are left out together. */
 static void boxes_with_one_centre_cost_what_is_found(void **state)
 {
-    (void) state;
     enum { FRAMES = 3000 };
     struct draw draw;
     draw_begin(&draw, "boxes_with_one_centre_cost_what_is_found");
@@ -830,7 +717,6 @@ static void boxes_with_one_centre_cost_what_is_found(void **state)
 
 static void queries_that_are_not_supported_are_refused(void **state)
 {
-    (void) state;
     struct draw draw;
     struct scene flat, deep;
     struct planted planted;
@@ -846,11 +732,11 @@ static void queries_that_are_not_supported_are_refused(void **state)
     for (size_t i = 0; i < COUNT(bad); i++) {
         assert_int_equal(fmb_tree_build(deep.frame, 4, bad[i], NULL, &other), FMB_BAD_DURATION);
     }
-    const struct fmb_prepared nobody = {0}, mixed[2] = {flat.frame[0], deep.frame[0]};
-    const struct fmb_prepared one_missing[2] = {flat.frame[0], nobody};
+    const struct fmb_prepared no_frame = {0}, mixed[2] = {flat.frame[0], deep.frame[0]};
+    const struct fmb_prepared one_missing[2] = {flat.frame[0], no_frame};
     assert_int_equal(fmb_tree_build(mixed, 2, 1, NULL, &other), FMB_DIMENSIONS_DIFFER);
     assert_int_equal(fmb_tree_build(one_missing, 2, 1, NULL, &other), FMB_NOT_FINITE);
-    assert_int_equal(fmb_tree_build(&nobody, UINT_MAX, 1, NULL, &other), FMB_OVER_LIMIT);
+    assert_int_equal(fmb_tree_build(&no_frame, UINT_MAX, 1, NULL, &other), FMB_OVER_LIMIT);
     assert_int_equal(other.frame_count, 0);
     struct fmb_tree_cursor cursor = {0};
     unsigned pairs[FMB_TREE_CAPACITY_MIN][2];
@@ -882,8 +768,6 @@ int main(void)
         cmocka_unit_test(trees_of_every_small_number_are_sound),
         cmocka_unit_test(trees_find_what_testing_every_frame_finds),
         cmocka_unit_test(pairs_of_trees_are_what_testing_every_pair_finds),
-        cmocka_unit_test(cubes_in_a_grid_have_their_neighbours),
-        cmocka_unit_test(pairs_that_meet_are_found),
         cmocka_unit_test(queries_cost_no_more_than_a_few_nodes_a_level),
         cmocka_unit_test(boxes_with_one_centre_cost_what_is_found),
         cmocka_unit_test(queries_that_are_not_supported_are_refused),

@@ -1,27 +1,19 @@
 /* Faces by their vertices, exactly: pairs whose edges no double holds, against an oracle that reads
  * nothing but the vertices; many at once; their boxes, and trees of these. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <gmp.h>
 #include <limits.h>
 #include <math.h>
 
+#include "allocate.h"
 #include "batch.h"
 #include "draw.h"
 #include "fmb.h"
 #include "placed_pair.h"
 #include "triangles.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* ---- Points ---- */
 
@@ -377,13 +369,11 @@ static void assert_pairs(const char *what, bool moving, long usual)
 
 static void pairs_at_rest_are_what_their_vertices_say(void **state)
 {
-    (void) state;
     assert_pairs("pairs_at_rest_are_what_their_vertices_say", false, 8000);
 }
 
 static void moving_pairs_are_what_their_vertices_say(void **state)
 {
-    (void) state;
     assert_pairs("moving_pairs_are_what_their_vertices_say", true, 4000);
 }
 
@@ -552,7 +542,6 @@ static long assert_crowd(const struct crowd *crowd)
 
 static void batches_decide_rounded_faces(void **state)
 {
-    (void) state;
     static struct crowd crowd;
     struct draw draw;
     long rounded = 0;
@@ -567,42 +556,10 @@ static void batches_decide_rounded_faces(void **state)
 
 /* ---- Boxes ---- */
 
-static void a_box_holds_all_vertices_at_all_times(void **state)
-{
-    (void) state;
-    struct draw draw;
-    struct drawn drawn;
-    mpq_t way, at, time;
-    draw_begin(&draw, "a_box_holds_all_vertices_at_all_times");
-    mpq_inits(way, at, time, NULL);
-    for (long n = draw_sample(20000); n > 0; n--) {
-        struct arranged arranged;
-        struct fmb_prepared prepared;
-        double box[2][FMB_DIM_MAX];
-        draw_pair(&draw, draw_coin(&draw), &drawn);
-        set_arranged(&drawn, draw_int(&draw, 0, TURNS / 2 - 1), &arranged);
-        assert_int_equal(fmb_prepare(&arranged.pair.a, 0, 1, &prepared), FMB_OK);
-        fmb_box_of(&prepared, drawn.duration, box);
-        const struct triangle *triangle = &drawn.triangle[0];
-        for (int k = 0; k < 18; k++) { /* a corner, an axis, an end of the window */
-            const int corner = k % 3, axis = k / 3 % 3;
-            mpq_set_d(way, triangle->moving ? triangle->velocity[axis] : 0);
-            mpq_set_d(time, k / 9 ? drawn.duration : 0);
-            mpq_mul(way, way, time);
-            mpq_set_d(at, triangle->vertex[corner][axis]);
-            mpq_add(at, at, way);
-            if (!is_beyond(box[0][axis], -1, at) || !is_beyond(box[1][axis], 1, at))
-                fail_of(&drawn, k, "box", axis, corner);
-        }
-    }
-    mpq_clears(way, at, time, NULL);
-}
-
 /* No larger than the rounding of its numbers makes it: with u = 2^-52 of the largest coordinate, an
  * edge is off by at most u on each axis, the frame by 3 u, and two sums step down by 2 u each. */
 static void a_box_is_tight(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "a_box_is_tight");
     for (long n = draw_sample(20000); n > 0; n--) {
@@ -652,13 +609,6 @@ static void put_box(const void *context, unsigned index, double box[2][FMB_DIM_M
     memcpy(box, world->box[index], sizeof world->box[index]);
 }
 
-static void *room(size_t count, size_t size)
-{
-    void *memory = calloc(count + 1, size);
-    assert_non_null(memory);
-    return memory;
-}
-
 /* The triangles have one velocity, and so do their boxes. */
 static void open_world(struct draw *draw, point *pool, size_t count, double duration,
                        struct world *out)
@@ -668,11 +618,11 @@ static void open_world(struct draw *draw, point *pool, size_t count, double dura
         draw_motion(draw, pool, &motion);
     *out = (struct world){.count = count, .duration = duration, .moving = motion.moving};
     memcpy(out->velocity, motion.velocity, sizeof out->velocity);
-    out->box = room(count, sizeof *out->box);
-    out->triangle = room(count, sizeof *out->triangle);
-    out->body = room(count, sizeof *out->body);
-    out->placement = room(count, sizeof *out->placement);
-    out->prepared = room(count, sizeof *out->prepared);
+    out->box = allocate(count, sizeof *out->box);
+    out->triangle = allocate(count, sizeof *out->triangle);
+    out->body = allocate(count, sizeof *out->body);
+    out->placement = allocate(count, sizeof *out->placement);
+    out->prepared = allocate(count, sizeof *out->prepared);
     for (size_t i = 0; i < count; i++) {
         struct triangle *triangle = &out->triangle[i];
         draw_triangle(draw, pool, triangle);
@@ -692,7 +642,7 @@ static void open_world(struct draw *draw, point *pool, size_t count, double dura
     }
     const struct fmb_boxes boxes = {3, put_box, out, motion.moving ? out->velocity : NULL};
     for (int t = 0; t < 2; t++)
-        out->memory[t] = room(1, fmb_tree_bytes(count));
+        out->memory[t] = allocate(1, fmb_tree_bytes(count));
     assert_int_equal(fmb_tree_build_boxes(&boxes, count, duration, out->memory[0], &out->boxes),
                      FMB_OK);
     assert_int_equal(fmb_tree_build(out->prepared, count, duration, out->memory[1], &out->frames),
@@ -755,11 +705,11 @@ static bool boxes_meet(const struct world *a, size_t i, const struct world *b, s
 /* How often each pair is reported. */
 static void count_pairs(const struct fmb_tree *a, const struct fmb_tree *b, unsigned char *times)
 {
-    enum { ROOM = FMB_TREE_CAPACITY_MIN + 5 };
-    unsigned pairs[ROOM][2];
+    enum { CAPACITY = FMB_TREE_CAPACITY_MIN + 5 };
+    unsigned pairs[CAPACITY][2];
     struct fmb_tree_cursor cursor = {0};
     for (size_t count = 1; count > 0;) {
-        assert_int_equal(fmb_tree_pairs(a, b, &cursor, pairs, ROOM, &count), FMB_OK);
+        assert_int_equal(fmb_tree_pairs(a, b, &cursor, pairs, CAPACITY, &count), FMB_OK);
         for (size_t k = 0; k < count; k++)
             times[pairs[k][0] * b->frame_count + pairs[k][1]]++;
     }
@@ -768,7 +718,7 @@ static void count_pairs(const struct fmb_tree *a, const struct fmb_tree *b, unsi
 /* Those whose exact boxes meet, each once; no others where the boxes stand still. */
 static void assert_pairs_of(const struct world *a, const struct world *b)
 {
-    unsigned char *times = room(a->count * b->count, 1);
+    unsigned char *times = allocate(a->count * b->count, 1);
     count_pairs(&a->boxes, &b->boxes, times);
     for (size_t i = 0; i < a->count; i++)
         for (size_t j = 0; j < b->count; j++) {
@@ -786,7 +736,7 @@ static void assert_none_lost(const struct world *a, const struct world *b)
     struct triangles_answer truth;
     triangles_init(&truth);
     for (int kinds = 0; kinds < 4; kinds++) {
-        unsigned char *times = room(a->count * b->count, 1);
+        unsigned char *times = allocate(a->count * b->count, 1);
         count_pairs(kinds & 1 ? &a->frames : &a->boxes, kinds & 2 ? &b->frames : &b->boxes, times);
         for (size_t i = 0; i < a->count; i++)
             for (size_t j = 0; j < b->count; j++) {
@@ -804,7 +754,6 @@ static void assert_none_lost(const struct world *a, const struct world *b)
 
 static void trees_of_boxes_lose_nothing(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "trees_of_boxes_lose_nothing");
     for (long n = draw_sample(400); n > 0; n--) {
@@ -836,7 +785,6 @@ static void put_flat_box(const void *context, unsigned index, double box[2][FMB_
 
 static void boxes_in_the_plane(void **state)
 {
-    (void) state;
     static const double at[4][2] = {{0, 0}, {1, 0}, {0, 0}, {1, -0.0}};
     static const unsigned expected[2][2] = {{0, 2}, {1, 3}};
     const struct fmb_boxes boxes = {2, put_flat_box, at, NULL};
@@ -844,7 +792,7 @@ static void boxes_in_the_plane(void **state)
     struct fmb_tree_cursor cursor = {0};
     unsigned pairs[FMB_TREE_CAPACITY_MIN][2];
     size_t count;
-    void *memory = room(1, fmb_tree_bytes(4));
+    void *memory = allocate(1, fmb_tree_bytes(4));
     assert_int_equal(fmb_tree_build_boxes(&boxes, 4, 1, memory, &tree), FMB_OK);
     assert_int_equal(fmb_tree_pairs(&tree, &tree, &cursor, pairs, FMB_TREE_CAPACITY_MIN, &count),
                      FMB_OK);
@@ -855,7 +803,6 @@ static void boxes_in_the_plane(void **state)
 
 static void boxes_that_cannot_be_are_refused(void **state)
 {
-    (void) state;
     static const double bad[] = {-1, -0x1p-1074, INFINITY, NAN};
     struct fmb_boxes boxes = {3, put_flat_box, NULL, NULL};
     struct fmb_tree tree;
@@ -875,28 +822,6 @@ static void boxes_that_cannot_be_are_refused(void **state)
 
 /* ---- Bodies ---- */
 
-/* component + rest is the difference of the vertices, and component the double next to it. */
-static void assert_edges_exact(const double vertex[3][3], const struct fmb_frame *frame)
-{
-    mpq_t edge, other;
-    mpq_inits(edge, other, NULL);
-    bool rounded = false;
-    for (int k = 0; k < 6; k++) {
-        const int i = k / 3, axis = k % 3;
-        mpq_set_d(edge, frame->component[i][axis]);
-        mpq_set_d(other, frame->remainder[i][axis]);
-        mpq_add(edge, edge, other);
-        mpq_set_d(other, vertex[0][axis]);
-        mpq_add(edge, edge, other);
-        mpq_set_d(other, vertex[i + 1][axis]);
-        assert_int_equal(mpq_cmp(edge, other), 0);
-        assert_true(frame->component[i][axis] == vertex[i + 1][axis] - vertex[0][axis]);
-        rounded = rounded || frame->remainder[i][axis] != 0;
-    }
-    assert_int_equal(frame->rounded, rounded);
-    mpq_clears(edge, other, NULL);
-}
-
 static double any_size(struct draw *draw)
 {
     switch (draw_int(draw, 0, 4)) {
@@ -908,41 +833,10 @@ static double any_size(struct draw *draw)
     }
 }
 
-static void bodies_hold_their_edges_exactly(void **state)
-{
-    (void) state;
-    struct draw draw;
-    long refused = 0, made = 0;
-    draw_begin(&draw, "bodies_hold_their_edges_exactly");
-    for (long n = draw_sample(100000); n > 0; n--) {
-        double vertex[3][3];
-        struct fmb_body body;
-        bool finite = true;
-        for (int k = 0; k < 9; k++)
-            vertex[k / 3][k % 3] = any_size(&draw);
-        for (int k = 3; k < 9; k++)
-            finite = finite && isfinite(vertex[k / 3][k % 3] - vertex[0][k % 3]);
-        const enum fmb_status status = make_face((const double(*)[3]) vertex, &body);
-        assert_int_equal(status, finite ? FMB_OK : FMB_NOT_FINITE);
-        refused += !finite;
-        made += finite;
-        if (finite)
-            assert_edges_exact((const double(*)[3]) vertex, &body.one);
-    }
-    assert_true(refused > 0 && made > 0);
-    for (int k = 0; k < 9; k++) {
-        double vertex[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-        struct fmb_body body;
-        vertex[k / 3][k % 3] = k % 2 ? NAN : -INFINITY;
-        assert_int_equal(make_face((const double(*)[3]) vertex, &body), FMB_NOT_FINITE);
-    }
-}
-
 /* Edges that doubles hold: the body is the same as that of its origin and components, to the byte.
  */
 static void what_does_not_round_is_an_ordinary_face(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "what_does_not_round_is_an_ordinary_face");
     for (long n = draw_sample(2000); n > 0; n--) {
@@ -962,7 +856,6 @@ static void what_does_not_round_is_an_ordinary_face(void **state)
 /* Coordinates up to the largest double, and subnormal ones, in one pair. */
 static void pairs_at_the_ends_of_the_doubles(void **state)
 {
-    (void) state;
     struct draw draw;
     struct triangles_answer truth;
     long arranged = 0;
@@ -992,7 +885,6 @@ static void pairs_at_the_ends_of_the_doubles(void **state)
  * the matrix of the rotation. Rounded, the planes cross. */
 static void rotated_faces_share_their_plane(void **state)
 {
-    (void) state;
     static const double flat[9] = {-0.5, -0.5, 0, 2, 0, 0, 0, 2, 0};
     for (int x = 1; x < 6; x++)
         for (int y = 1; y < 6; y++) {
@@ -1020,12 +912,10 @@ int main(void)
         cmocka_unit_test(moving_pairs_are_what_their_vertices_say),
         cmocka_unit_test(batches_decide_rounded_faces),
         cmocka_unit_test(pairs_at_the_ends_of_the_doubles),
-        cmocka_unit_test(a_box_holds_all_vertices_at_all_times),
         cmocka_unit_test(a_box_is_tight),
         cmocka_unit_test(trees_of_boxes_lose_nothing),
         cmocka_unit_test(boxes_in_the_plane),
         cmocka_unit_test(boxes_that_cannot_be_are_refused),
-        cmocka_unit_test(bodies_hold_their_edges_exactly),
         cmocka_unit_test(what_does_not_round_is_an_ordinary_face),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,13 +1,7 @@
 /* How much exact arithmetic a pair can take, counted and not timed: a search for the pair that
  * takes most stays below the bounds that the service is built on. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include "climb.h"
 #include "exact_work.h"
@@ -104,7 +98,6 @@ static void work_is_bounded(void **state)
  * average 6.5 of 25. */
 static void only_slabs_that_may_have_an_end_are_computed(void **state)
 {
-    (void) state;
     long contacts = 0;
     struct draw draw;
     draw_begin(&draw, "only_slabs_that_may_have_an_end_are_computed");
@@ -135,7 +128,7 @@ int main(void)
                                        {"exact", work_of_exact, {4e6, 12e6}, 8},
                                        {"gaps", work_of_gap, {2e5, 2e6}, 8},
                                        {"certificates", work_of_certificate, {16e6, 20e6}, 8}};
-    enum { SEARCHES = sizeof searches / sizeof *searches };
+    enum { SEARCHES = COUNT(searches) };
     struct CMUnitTest tests[SEARCHES + 1] = {
         cmocka_unit_test(only_slabs_that_may_have_an_end_are_computed)};
     for (size_t i = 0; i < SEARCHES; i++)

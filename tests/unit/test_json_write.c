@@ -1,17 +1,12 @@
 /* What the writer of JSON and the escaper write. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+
+#include "unit.h"
 
 #include "escape.h"
 #include "json_write.h"
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static char *bytes;
 static size_t used;
@@ -40,7 +35,6 @@ static void expect_escaped(const char *string, const char *expected)
 
 static void strings_are_escaped(void **state)
 {
-    (void) state;
     expect_escaped("", "\"\"");
     expect_escaped("a \"b\" \\ c/d", "\"a \\\"b\\\" \\\\ c/d\"");
     expect_escaped("</script><!-- & ]]>", "\"\\u003c/script\\u003e\\u003c!-- \\u0026 ]]\\u003e\"");
@@ -64,8 +58,7 @@ static void what_is_no_utf8_is_replaced(void **state)
                                       "\xf4\x90\x80\x80",
                                       "\xf5\x80\x80\x80",
                                       "\xf0\x9f\x98"};
-    (void) state;
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    for (size_t i = 0; i < COUNT(bad); i++) {
         char expected[64] = "\"", text[16];
         for (size_t k = 0; k < strlen(bad[i]); k++)
             strcat(expected, "\\ufffd");
@@ -88,8 +81,7 @@ static void numbers_are_exact_or_null(void **state)
                  {INFINITY, "null"},
                  {-INFINITY, "null"},
                  {NAN, "null"}};
-    (void) state;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = 0; i < COUNT(cases); i++) {
         struct json_writer json = begin_text(false);
         json_number(&json, NULL, cases[i].value);
         expect_text(&json, cases[i].text);
@@ -98,7 +90,6 @@ static void numbers_are_exact_or_null(void **state)
 
 static void integers_that_scripts_lose_are_strings_in_pages(void **state)
 {
-    (void) state;
     for (int page = 0; page < 2; page++) {
         struct json_writer json = begin_text(page);
         json_begin(&json, NULL, '[');
@@ -136,7 +127,6 @@ static void write_all(struct json_writer *json)
 
 static void commas_and_spaces(void **state)
 {
-    (void) state;
     struct json_writer json = begin_text(false);
     write_all(&json);
     json_number(&json, NULL, 1);
@@ -154,7 +144,6 @@ static void xml_is_escaped(void **state)
 {
     static const char xml[] = "<a b=\"c\"> & \xc3\xa4\t\n\x7f\xff\xef\xbf\xbf\xc2\x80";
     struct json_writer json = begin_text(false);
-    (void) state;
     escape(json.out, ESCAPE_XML, xml, sizeof xml - 1);
     expect_text(&json,
                 "&lt;a b=&quot;c&quot;&gt; &amp; \xc3\xa4\xef\xbf\xbd\n\xef\xbf\xbd"

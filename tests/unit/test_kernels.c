@@ -2,15 +2,8 @@
  * outcome contradicts the exact method, wherever in the lanes a pair lies; those of the second
  * pass, times of contact and boxes are the same everywhere; times and boxes hold the exact ones,
  * and are close to them. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <math.h>
 
@@ -91,7 +84,6 @@ static void expect_size(const struct fmb_frame *frame, int i)
 
 static void sizes_are_lengths_or_a_little_more(void **state)
 {
-    (void) state;
     struct draw draw;
     long sizes = 0;
     draw_begin(&draw, "sizes_are_lengths_or_a_little_more");
@@ -345,7 +337,6 @@ static void expect_same_in_parts(struct draw *draw, kernel_function *function,
 
 static void no_outcome_is_wrong(void **state)
 {
-    (void) state;
     struct draw draw;
     struct subject subject[SUBJECTS_MAX];
     const int subjects = subjects_of_machine(subject);
@@ -380,7 +371,6 @@ static void no_outcome_is_wrong(void **state)
 
 static void random_pairs_are_never_unsure(void **state)
 {
-    (void) state;
     struct draw draw;
     struct subject subject[SUBJECTS_MAX];
     const int subjects = subjects_of_machine(subject);
@@ -404,7 +394,6 @@ static void random_pairs_are_never_unsure(void **state)
 /* With a bound so much smaller each kind says what is wrong. */
 static void a_wrong_bound_is_found(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "a_wrong_bound_is_found");
     for (int kind = 0; kind < KERNEL_KINDS; kind++) {
@@ -445,7 +434,6 @@ static void expect_single(const struct subject *subject, const struct pool *pool
 
 static void no_outcome_of_single_pairs_is_wrong(void **state)
 {
-    (void) state;
     struct draw draw;
     struct subject subject[SUBJECTS_MAX];
     const int count = subjects_of_machine(subject);
@@ -555,7 +543,6 @@ static void draw_near_bound(struct draw *draw, const struct cell *cell, struct q
 /* What a first pass decides depends on its instruction set: the second decides all of it. */
 static void near_a_bound_the_second_pass_decides_what_any_first_does(void **state)
 {
-    (void) state;
     struct draw draw;
     struct subject subject[SUBJECTS_MAX];
     const int subjects = subjects_of_machine(subject);
@@ -578,7 +565,6 @@ static void near_a_bound_the_second_pass_decides_what_any_first_does(void **stat
 
 static void the_second_pass_decides_more_and_the_same_everywhere(void **state)
 {
-    (void) state;
     struct draw draw;
     struct subject subject[SUBJECTS_MAX];
     const int subjects = subjects_of_machine(subject);
@@ -706,7 +692,6 @@ static void expect_same_for_all(struct draw *draw, struct pool *pool, const stru
 
 static void times_hold_the_exact_ones(void **state)
 {
-    (void) state;
     struct draw draw;
     struct subject subject[SUBJECTS_MAX];
     const int subjects = subjects_of_machine(subject);
@@ -778,7 +763,6 @@ static bool ends_hold(const double ends[2], bool enter, const struct end *end, d
  * window. Slabs whose errors are larger than the way matter most. */
 static void ends_of_the_time_are_covered(void **state)
 {
-    (void) state;
     struct draw draw;
     long without_slack = 0, without_spare = 0;
     draw_begin(&draw, "ends_of_the_time_are_covered");
@@ -916,7 +900,6 @@ static void draw_with_zeros(struct draw *draw, const struct cell *cell, struct q
 
 static void boxes_hold_the_exact_ones(void **state)
 {
-    (void) state;
     struct draw draw;
     struct subject subject[SUBJECTS_MAX];
     const int subjects = subjects_of_machine(subject);
@@ -947,7 +930,6 @@ static void boxes_hold_the_exact_ones(void **state)
 /* The sign of a velocity that is 0 changes nothing. */
 static void zeros_of_either_sign_give_the_same_box(void **state)
 {
-    (void) state;
     static const double number[2][12] = {
         {-0x1.29b93b0e53728p-1, 0x1.fe7d95bbfcfb4p-2, -0x1.4737ec628e7p-4, 0x1.a3443e8f46888p-1,
          0x1.930dd59f261bap-1, 0x1.fe96072bfd2cp-2, 0x1.8fa311a71f462p-1, 0x1.df0f151fbe1e2p-1,
@@ -1010,7 +992,6 @@ static void prepare_two(int shape_a, int shape_b, const double number[2][12],
 /* An edge of the first frame, the difference of its last two components, is -0 along x. */
 static void zeros_of_differences_give_the_same_box(void **state)
 {
-    (void) state;
     static const double number[2][12] = {
         {-0x1.09eec8b7476a4p-2, -0x1.934640cbd8e58p-3, -0x1.af6b7330027d8p-2, -0x1.9c636bcf93898p-2,
          -0x1.827fc7900843ep-53, 0, 0, -0x1.016eaf9bc7308p-1, 0, 0, -0x1.b84ac9e5c1cb2p-65,
@@ -1051,7 +1032,6 @@ static void zeros_of_differences_give_the_same_box(void **state)
 /* The second pass once decided this pair in one order, and not in the other. */
 static void the_second_pass_and_boxes_do_not_depend_on_the_order(void **state)
 {
-    (void) state;
     static const double number[2][12] = {
         {0x1.9c5dff39a3f48p-1, 0x1.5e5ec47d71066p-1, -0x1.d262740e711e4p-2, 0x1.6569a6330d254p-2,
          -0x1.4f613f999163p-1, -0x1.85c3329c5d10cp-2, 0x1.5db1c226300ccp-4, 0x1.5dbef81324f06p-2,
@@ -1112,7 +1092,6 @@ static void rotate(const double q[4], const double v[3], double out[3])
  * integers, and are tight. */
 static void boxes_of_bodies_that_rest_are_not_left_open(void **state)
 {
-    (void) state;
     static const double size[2][3] = {{4, 3, 1}, {1, 2, 1.5}};
     static const unsigned pairs[1][2] = {{0, 1}};
     static const struct {
@@ -1132,7 +1111,7 @@ static void boxes_of_bodies_that_rest_are_not_left_open(void **state)
         {{{0.8, 2e-6, 3e-6, 0.6}, {0.9, 1e-6, -2e-6, 0.4}}, 1e-3, true, true},
         {{{0.9, 0.1, 0.3, 0.2}, {0.9, 0.1, 0.3001, 0.2}}, 1e-2, false, false},
     };
-    for (size_t n = 0; n < 2 * (sizeof cases / sizeof *cases); n++) {
+    for (size_t n = 0; n < 2 * (COUNT(cases)); n++) {
         const double(*q)[4] = cases[n / 2].orientation, overlap = cases[n / 2].overlap;
         const bool moving = n % 2, level = cases[n / 2].level;
         struct fmb_body body[2];
@@ -1189,7 +1168,6 @@ static void boxes_of_bodies_that_rest_are_not_left_open(void **state)
 static void boxes_of_nearly_parallel_edges_are_not_left_open(void **state)
 {
     enum { PAIRS = 512 };
-    (void) state;
     struct fmb_body body[2 * PAIRS];
     struct fmb_placement placement[2 * PAIRS] = {0};
     struct fmb_prepared frame[2 * PAIRS];
@@ -1237,7 +1215,6 @@ static void boxes_of_nearly_parallel_edges_are_not_left_open(void **state)
  * highest halfway, where neither extent says so. */
 static void a_wall_that_is_not_certain_bends_along_the_vertical(void **state)
 {
-    (void) state;
     static const double number[2][12] = {{-1, -0.0005, -1, 1, 0, 0, 1, 0x1p-10, 0, 0, 0, 1},
                                          {1, 1, 1}};
     static const double orientation[4] = {0.9, 0.3, 0.2, 0.1};
@@ -1310,7 +1287,6 @@ static void expect_stretched(struct draw *draw, int kind, const struct subject *
 
 static void ends_of_the_range(void **state)
 {
-    (void) state;
     struct draw draw;
     struct subject subject[SUBJECTS_MAX];
     const int subjects = subjects_of_machine(subject);
@@ -1361,7 +1337,6 @@ static bool expect_quick(const struct question *question, unsigned want)
 
 static void quick_decisions_need_no_wide_integers(void **state)
 {
-    (void) state;
     struct draw draw;
     long pairs = 0, open = 0, open_boxes = 0, open_gaps = 0;
     gmp_count_allocations();

@@ -1,13 +1,8 @@
 /* The hash of tables with keys from untrusted input. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+
+#include "unit.h"
 
 #include "keyed_hash.h"
-
-#include <string.h>
 
 /* SipHash-1-3 of the bytes 0, 1, ... with the secret 0, 1, ..., 15: values of an implementation in
  * Python that gives the vector of SipHash-2-4 in its authors' paper. Machines of other byte order
@@ -23,11 +18,10 @@ static void it_is_siphash(void **state)
                  {63, UINT64_C(0x9d199062b7bbb3a8)}};
     unsigned char bytes[64];
     uint64_t secret[2];
-    (void) state;
     for (size_t i = 0; i < sizeof bytes; i++)
         bytes[i] = (unsigned char) i;
     memcpy(secret, bytes, sizeof secret);
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    for (size_t i = 0; i < COUNT(cases); i++)
         assert_int_equal(keyed_hash_of(secret, bytes, cases[i].size), (unsigned) cases[i].value);
 }
 
@@ -36,7 +30,6 @@ static void it_is_siphash(void **state)
 static void upper_bits_reach_the_buckets(void **state)
 {
     enum { KEYS = 4096, BUCKETS = 1024, BUCKET_MAX = 40 };
-    (void) state;
     for (int shift = 0; shift <= 52; shift += 4) {
         int count[BUCKETS] = {0};
         for (uint64_t i = 0; i < KEYS; i++) {
@@ -55,7 +48,6 @@ static void tables_have_a_secret(void **state)
         uint64_t key[2];
         UT_hash_handle hh;
     } entry = {.key = {1, 2}}, *table = NULL, *found;
-    (void) state;
     HASH_ADD(hh, table, key, sizeof entry.key, &entry);
     HASH_FIND(hh, table, entry.key, sizeof entry.key, found);
     assert_ptr_equal(found, &entry);

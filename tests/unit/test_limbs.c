@@ -1,13 +1,7 @@
 /* Slabs in integers of fixed width against the same in GMP (slab_truth.h), in every width, with
  * numbers at the ends of what fits; and whether what is said not to round does not. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <math.h>
 
@@ -183,7 +177,7 @@ static void compare_pair(struct draw *draw, const struct question *question,
 static int draw_unit(struct draw *draw, int bits)
 {
     switch (draw_int(draw, 0, 3)) {
-    case 0: return -1074 + 60; /* room for the window */
+    case 0: return -1074 + 60; /* space for the window */
     case 1: return 1000 - bits;
     case 2: return -bits / 2;
     default: return draw_int(draw, -900, 900 - bits);
@@ -192,7 +186,6 @@ static int draw_unit(struct draw *draw, int bits)
 
 static void limbs_are_gmp(void **state)
 {
-    (void) state;
     struct draw draw;
     struct slab_truth truth;
     draw_begin(&draw, "limbs_are_gmp");
@@ -227,7 +220,6 @@ static struct question cubes_of(double size)
 /* One bit more than fits is refused, one less is not. */
 static void what_does_not_fit_is_refused(void **state)
 {
-    (void) state;
     const int most = widest[WIDTHS - 1];
     for (int bits = most - 1; bits <= most + 1; bits++) {
         struct question question = cubes_of(1);
@@ -410,7 +402,6 @@ static void compare_posed(const struct question *question, struct limbs_pair *li
 
 static void turned_slabs_are_gmp(void **state)
 {
-    (void) state;
     struct draw draw;
     long seen[3] = {0}, same = 0, wider = 0, limbs_of_pair[LIMBS_MAX + 1] = {0};
     draw_begin(&draw, "turned_slabs_are_gmp");
@@ -493,7 +484,6 @@ static bool never_rounds(const struct question *question, struct slab_truth *tru
 /* Numbers of so many bits that about half of the pairs are said to round. */
 static void what_is_said_not_to_round_does_not(void **state)
 {
-    (void) state;
     struct draw draw;
     struct slab_truth truth;
     long count[2] = {0};
@@ -527,7 +517,6 @@ static void expect_limit(struct question question, double last, struct slab_trut
  * a tetrahedron 96 L^2 2 R < 2^53, with L = 2^13: R < 2^27 / 192, the same number. */
 static void the_limit_is_where_it_is_said_to_be(void **state)
 {
-    (void) state;
     struct slab_truth truth;
     slab_truth_init(&truth);
     expect_limit(cubes_of(0x1p15), 699050 - 6 * 0x1p15, &truth);

@@ -1,5 +1,7 @@
 /* A replay of a cut reports for each of its queries what a replay of the whole log reports; and its
  * events are those of the log, byte for byte, after the definitions that they need. */
+#include "unit.h"
+
 #include "log_cut.h"
 
 #include "logged_query.h"
@@ -10,15 +12,7 @@
 #include "wire.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { EVENTS_MAX = 4000 };
 
@@ -31,7 +25,6 @@ static char folder[100];
 static int make_folder(void **state)
 {
     const char *temporary = getenv("TMPDIR");
-    (void) state;
     snprintf(folder, sizeof folder, "%.80s/fmb_cut.XXXXXX", temporary ? temporary : "/tmp");
     return mkdtemp(folder) ? 0 : -1;
 }
@@ -46,8 +39,7 @@ static int remove_folder(void **state)
 {
     static const char *const names[] = {"whole", "cut", "again", "first", "second"};
     char path[PATH_MAX_OF_TESTS];
-    (void) state;
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    for (size_t i = 0; i < COUNT(names); i++)
         unlink(path_of(names[i], path));
     return rmdir(folder);
 }
@@ -163,7 +155,7 @@ static void assert_same_outcomes(const struct query_outcomes *whole,
 
 /* ---- What is in a cut ---- */
 
-/* Reads the logs, one behind the other. */
+/* Reads the logs, one after the other. */
 struct reading {
     struct input input;
     struct log_event event;
@@ -405,7 +397,6 @@ static int worlds(void)
 
 static void cuts_of_small_worlds(void **state)
 {
-    (void) state;
     all = (struct log_cut_counts){.events = 0};
     compared = 0;
     cut_worlds((struct world_options){.seed = 1, .steps = STEPS, .once = true}, worlds());
@@ -415,13 +406,11 @@ static void cuts_of_small_worlds(void **state)
 
 static void cuts_where_clients_repeat_queries(void **state)
 {
-    (void) state;
     cut_worlds((struct world_options){.seed = 1, .steps = STEPS}, worlds());
 }
 
 static void all_is_copied_where_nothing_is_left_out(void **state)
 {
-    (void) state;
     char whole[PATH_MAX_OF_TESTS], cut[PATH_MAX_OF_TESTS];
     const struct world_options options = {.seed = 3, .steps = 100};
     const struct log_choice choice = log_choice_all();
@@ -440,7 +429,6 @@ static void all_is_copied_where_nothing_is_left_out(void **state)
 /* Of the parts of a log each has what the others have not: results go with their queries. */
 static void parts_are_the_whole(void **state)
 {
-    (void) state;
     char whole[PATH_MAX_OF_TESTS], cut[PATH_MAX_OF_TESTS];
     const struct world_options options = {.seed = 9, .steps = 100};
     struct log_world world;
@@ -463,7 +451,6 @@ static void parts_are_the_whole(void **state)
 
 static void several_logs_are_one(void **state)
 {
-    (void) state;
     char whole[PATH_MAX_OF_TESTS], first[PATH_MAX_OF_TESTS], second[PATH_MAX_OF_TESTS],
         cut[PATH_MAX_OF_TESTS], again[PATH_MAX_OF_TESTS];
     const struct world_options options = {.seed = 4, .steps = 80};
@@ -495,7 +482,6 @@ enum { LARGE_BODIES = 700, LARGE_SCENES = 3 };
 /* Three scenes have the bodies whole; in a cut without them they take two definitions. */
 static void many_bodies_are_defined(void **state)
 {
-    (void) state;
     char whole[PATH_MAX_OF_TESTS], cut[PATH_MAX_OF_TESTS], again[PATH_MAX_OF_TESTS];
     struct log_world world;
     channels = log_channels("");
@@ -534,7 +520,6 @@ static void many_bodies_are_defined(void **state)
 /* Of a log that begins late: two of the three scenes that define bodies are not in it. */
 static void undefined_handles_are_counted(void **state)
 {
-    (void) state;
     char whole[PATH_MAX_OF_TESTS], cut[PATH_MAX_OF_TESTS];
     struct log_world world;
     const struct log_choice choice = log_choice_all();
@@ -555,7 +540,6 @@ static void undefined_handles_are_counted(void **state)
 /* Results that stand megabytes after their queries. */
 static void results_come_from_far(void **state)
 {
-    (void) state;
     enum { PAIRS = 40000, BEGIN = 20000, COUNT = 1000 };
     char whole[PATH_MAX_OF_TESTS], cut[PATH_MAX_OF_TESTS];
     struct log_world world;
@@ -578,7 +562,6 @@ static void results_come_from_far(void **state)
 /* What is kept of an event in memory is not all that is copied. */
 static void long_events_are_copied_in_full(void **state)
 {
-    (void) state;
     static unsigned char image[3000001], data[sizeof image];
     char whole[PATH_MAX_OF_TESTS], cut[PATH_MAX_OF_TESTS];
     struct log_world world = {.state = 1};

@@ -1,14 +1,7 @@
 /* What is counted of a log, and that no log makes it take more memory. */
+#include "unit.h"
+
 #include "log_info.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static void take(struct log_info *info, int64_t utime, const char *channel, const void *data,
                  size_t size)
@@ -41,9 +34,8 @@ static void expect_row(const struct log_row *row, const char *channel, bool know
     assert_int_equal(row->type.fingerprint, fingerprint);
 }
 
-static void test_nothing(void **state)
+static void an_empty_log_has_no_channels(void **state)
 {
-    (void) state;
     struct log_info *info = log_info_open();
     log_info_end(info);
     assert_int_equal(info->row_count, 0);
@@ -51,9 +43,8 @@ static void test_nothing(void **state)
     log_info_close(info);
 }
 
-static void test_channels_and_types(void **state)
+static void channels_and_types_are_counted(void **state)
 {
-    (void) state;
     struct log_info *info = log_info_open();
     take(info, 50, "B", "\1\2\3\4\5\6\7\x80...", 11);
     take(info, -9, "A", "\0\0\0\0\0\0\0", 7);
@@ -77,9 +68,8 @@ static void test_channels_and_types(void **state)
 }
 
 /* Rounds over more channels than are counted: the first ones are, whatever came between. */
-static void test_more_channels_than_are_counted(void **state)
+static void further_channels_are_summed(void **state)
 {
-    (void) state;
     enum { MORE = LOG_INFO_ROWS_MAX + 500, ROUNDS = 3 };
     struct log_info *info = log_info_open();
     char channel[32];
@@ -106,9 +96,8 @@ static void test_more_channels_than_are_counted(void **state)
 }
 
 /* Beside a list, searched from its beginning. */
-static void test_against_a_list(void **state)
+static void counts_match_a_list(void **state)
 {
-    (void) state;
     enum { CHANNELS = 12, EVENTS = 20000 };
     static int64_t events[CHANNELS], bytes[CHANNELS];
     struct log_info *info = log_info_open();
@@ -133,9 +122,8 @@ static void test_against_a_list(void **state)
     log_info_close(info);
 }
 
-static void test_damages(void **state)
+static void damages_are_counted(void **state)
 {
-    (void) state;
     struct log_info *info = log_info_open();
     for (int64_t i = 0; i < LOG_INFO_DAMAGES_MAX + 5; i++)
         log_info_damage(info, &(struct log_damage){.offset = i, .length = 2, .what = "no event"});
@@ -150,11 +138,11 @@ static void test_damages(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nothing),
-        cmocka_unit_test(test_channels_and_types),
-        cmocka_unit_test(test_more_channels_than_are_counted),
-        cmocka_unit_test(test_against_a_list),
-        cmocka_unit_test(test_damages),
+        cmocka_unit_test(an_empty_log_has_no_channels),
+        cmocka_unit_test(channels_and_types_are_counted),
+        cmocka_unit_test(further_channels_are_summed),
+        cmocka_unit_test(counts_match_a_list),
+        cmocka_unit_test(damages_are_counted),
     };
     return cmocka_run_group_tests_name("log_info", tests, NULL, NULL);
 }

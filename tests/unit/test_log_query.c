@@ -1,5 +1,7 @@
-/* A query of a log, taken out as a scene of JSON and decided alone, has the answers that were
+/* A query of a log, taken out as a scene of JSON and decided by itself, has the answers that were
  * recorded, to the bit. */
+#include "unit.h"
+
 #include "geometry_write.h"
 #include "log_query.h"
 
@@ -15,15 +17,7 @@
 #include <fcntl.h>
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static char path[128];
 static struct log_query found;
@@ -31,7 +25,6 @@ static struct log_query found;
 static int make_path(void **state)
 {
     const char *temporary = getenv("TMPDIR");
-    (void) state;
     snprintf(path, sizeof path, "%.80s/fmb_query.XXXXXX", temporary ? temporary : "/tmp");
     const int fd = mkstemp(path);
     return fd < 0 ? -1 : close(fd);
@@ -39,7 +32,6 @@ static int make_path(void **state)
 
 static int remove_path(void **state)
 {
-    (void) state;
     log_query_clear(&found);
     return unlink(path);
 }
@@ -225,14 +217,14 @@ static int64_t query_by_result(size_t event, const struct query_header *ids)
     assert_int_equal(found.ids.sequence_number, ids->sequence_number);
     const int64_t compared = decide_found();
 
-    /* It is the same query, however one asks for it. */
+    /* The same query, however it is selected. */
     const int64_t offset = found.offset, number = found.number;
     const struct log_query_options ways[] = {
         {.by = LOG_QUERY_NUMBER, .number = number},
         {.by = LOG_QUERY_OFFSET, .offset = offset},
         {.by = LOG_QUERY_IDS, .client_id = ids->client_id, .sequence_number = ids->sequence_number},
     };
-    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+    for (size_t i = 0; i < COUNT(ways); i++) {
         assert_int_equal(look_for(ways[i]), LOG_QUERY_FOUND);
         assert_true(found.offset == offset || ways[i].by == LOG_QUERY_IDS);
         assert_int_equal(decide_found(), compared);
@@ -254,7 +246,6 @@ static int64_t query_world(const struct log_world *world)
 
 static void single_queries_have_the_same_answers(void **state)
 {
-    (void) state;
     struct log_world world;
     const struct world_options options = {.seed = 11, .steps = getenv("FMB_FAST") ? 15 : 60};
     world_make(&options, &world);
@@ -265,7 +256,6 @@ static void single_queries_have_the_same_answers(void **state)
 
 static void large_scenes_have_the_same_answers(void **state)
 {
-    (void) state;
     struct log_world world;
     world_make_large(700, 1, &world);
     world_write(&world, path);
@@ -276,7 +266,6 @@ static void large_scenes_have_the_same_answers(void **state)
 /* Where the scenes that have the bodies whole are not in the log. */
 static void undefined_handles_are_reported(void **state)
 {
-    (void) state;
     struct log_world world;
     world_make_large(300, 1, &world);
     const struct log_world late = {.event = world.event + 2, .count = 2};
@@ -293,7 +282,6 @@ static void undefined_handles_are_reported(void **state)
 
 static void what_is_not_there_is_not_found(void **state)
 {
-    (void) state;
     struct log_world world = {.state = 1};
     unsigned char geometry[2][GEOMETRY_FRAME_BYTES_MAX];
     const struct pair_query query = {
@@ -310,7 +298,7 @@ static void what_is_not_there_is_not_found(void **state)
         {.by = LOG_QUERY_NUMBER, .number = 3},     {.by = LOG_QUERY_OFFSET, .offset = 1},
         {.by = LOG_QUERY_OFFSET, .offset = 99999}, {.by = LOG_QUERY_IDS, .client_id = 3},
     };
-    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++)
+    for (size_t i = 0; i < COUNT(ways); i++)
         assert_int_equal(look_for(ways[i]), LOG_QUERY_NONE);
     world_clear(&world);
     assert_int_equal(truncate(path, 0), 0);
@@ -344,7 +332,6 @@ static void add_result(struct log_world *world, int64_t utime)
  * its time. */
 static void equal_ids(void **state)
 {
-    (void) state;
     const struct log_query_options by_ids = {
         .by = LOG_QUERY_IDS, .client_id = 3, .sequence_number = 4};
     const struct log_query_options by_result = {.by = LOG_QUERY_NUMBER, .number = 4};
@@ -396,7 +383,6 @@ static void set_placements(const int64_t *ids, int count)
 
 static void bodies_get_ids_that_are_free(void **state)
 {
-    (void) state;
     const int64_t ids[] = {0, 1, 1, 0, 3, QUERY_ID_MAX, QUERY_ID_MAX, 5};
     const int64_t expected[] = {2, 1, 4, 6, 3, QUERY_ID_MAX, 7, 5};
     set_placements(ids, 8);
@@ -424,7 +410,6 @@ static void assert_pairs(const size_t (*expected)[2], size_t count)
 
 static void pairs_are_those_of_the_query(void **state)
 {
-    (void) state;
     const int64_t ids[] = {4, 3, 2, 1};
     set_placements(ids, 4);
     found.query.scene.which = FMB_PAIRS_ACROSS;
@@ -446,7 +431,6 @@ static void pairs_are_those_of_the_query(void **state)
 
 static void numbers_read_back_as_the_same_bits(void **state)
 {
-    (void) state;
     static const double numbers[9] = {-0.0, 5e-324, DBL_MAX,  -DBL_MIN,          1.0 / 3,
                                       1e23, 0.1,    -2.5e-17, 9007199254740993.0};
     const int64_t ids[] = {1, 2};
@@ -471,7 +455,6 @@ static void numbers_read_back_as_the_same_bits(void **state)
 /* Names, groups, the label, and frames by vertices are printed, and read as the same. */
 static void names_groups_and_vertices_are_kept(void **state)
 {
-    (void) state;
     static unsigned char bytes[3][GEOMETRY_FRAME_BYTES_MAX];
     const int64_t ids[] = {1, 2, 3};
     const struct geometry_frame face = {.shape = FMB_FACE,

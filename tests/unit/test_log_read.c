@@ -1,20 +1,15 @@
 /* Good logs, every way to break small ones, and logs that would make a reader slow. */
+#include "unit.h"
+
 #include "log_bytes.h"
 #include "log_read.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <lcm/lcm.h>
-
-#include <cmocka.h>
 
 /* ---- What the reader reads with -------------------------------------------------------------- */
 
@@ -154,15 +149,13 @@ static void make_small(void)
     log_bytes_event(&whole, 30, "C", "\0\0\0", 3);
 }
 
-static void test_an_empty_file_is_a_log_of_no_events(void **state)
+static void an_empty_file_is_a_log_of_no_events(void **state)
 {
-    (void) state;
     assert_int_equal(read_bytes(noise, 0).count, 0);
 }
 
-static void test_an_event_is_what_was_written(void **state)
+static void an_event_is_what_was_written(void **state)
 {
-    (void) state;
     struct log_event event;
     struct log_damage damage;
     whole.size = whole.count = 0;
@@ -183,9 +176,8 @@ static void test_an_event_is_what_was_written(void **state)
 }
 
 /* Names and data as long as can be, and around what is kept. */
-static void test_the_longest(void **state)
+static void the_longest_event_is_read(void **state)
 {
-    (void) state;
     static const size_t sizes[] = {0, LOG_DATA_MAX - 1, LOG_DATA_MAX, LOG_DATA_MAX + 1,
                                    sizeof noise};
     static const int names[] = {1, 63, 64, 65, LOG_CHANNEL_MAX - 1};
@@ -242,9 +234,8 @@ static void expect_same(const struct log_event *event, const lcm_eventlog_event_
 
 /* Of a log of several buffers, read in pieces of any size and by calls that are interrupted, all is
  * as LCM's own reader has it. */
-static void test_lcm_reads_the_same(void **state)
+static void lcm_reads_the_same(void **state)
 {
-    (void) state;
     struct log_event event;
     struct log_damage damage;
     char why[LOG_WHY_MAX];
@@ -273,9 +264,8 @@ static void test_lcm_reads_the_same(void **state)
 
 /* ---- Small logs, broken in every way --------------------------------------------------------- */
 
-static void test_every_truncation(void **state)
+static void every_truncation_is_read_up_to_its_end(void **state)
 {
-    (void) state;
     make_small();
     for (size_t size = 0; size < whole.size; size++) {
         const struct report report = read_bytes(whole.bytes, size);
@@ -304,9 +294,8 @@ static bool is_structure(size_t byte, size_t event)
     return at < 4 || (at >= 20 && at < LOG_HEADER_BYTES);
 }
 
-static void test_every_damaged_byte(void **state)
+static void every_damaged_byte_is_reported(void **state)
 {
-    (void) state;
     make_small();
     for (size_t byte = 0; byte < whole.size; byte++)
         for (int flip = 0; flip < FLIPS; flip++) {
@@ -325,9 +314,8 @@ static void flip_two(size_t one, size_t two, unsigned char first, unsigned char 
     whole.bytes[two] ^= second;
 }
 
-static void test_every_two_damaged_bytes(void **state)
+static void every_two_damaged_bytes_are_reported(void **state)
 {
-    (void) state;
     const size_t step = getenv("FMB_FAST") ? 3 : 1;
     make_small();
     for (size_t one = 0; one < whole.size; one++)
@@ -343,9 +331,8 @@ static void test_every_two_damaged_bytes(void **state)
 }
 
 /* Any bytes between any two events, also such as begin like one. */
-static void test_garbage_everywhere(void **state)
+static void garbage_is_reported_everywhere(void **state)
 {
-    (void) state;
     static const struct {
         const char *bytes;
         size_t size;
@@ -361,7 +348,7 @@ static void test_garbage_everywhere(void **state)
          "an event with impossible lengths"},
         {"\xed\xed\xa1\xda", 4, "no event"},
     };
-    const size_t kinds = sizeof garbage / sizeof *garbage;
+    const size_t kinds = COUNT(garbage);
     make_small();
     for (size_t g = 0; g < kinds; g++)
         for (size_t place = 0; place <= whole.count; place++) {
@@ -377,9 +364,8 @@ static void test_garbage_everywhere(void **state)
 }
 
 /* Between all events too, where none is followed by another. */
-static void test_garbage_between_all(void **state)
+static void garbage_between_all_events_is_reported(void **state)
 {
-    (void) state;
     whole.size = whole.count = 0;
     for (int i = 0; i < 9; i++) {
         log_bytes_event(&whole, i, "CHANNEL", "data", 4);
@@ -398,9 +384,8 @@ static void test_garbage_between_all(void **state)
 static const char wrong[] = "an event that is cut off, or has wrong lengths";
 static const char impossible[] = "an event with impossible lengths";
 
-static void test_lengths_that_lie(void **state)
+static void false_lengths_are_damage(void **state)
 {
-    (void) state;
     static const struct {
         uint32_t channel, data;
         const char *what, *what_last;
@@ -418,7 +403,7 @@ static void test_lengths_that_lie(void **state)
         {40, 5, wrong, "the last event is cut off"},
         {5, 6, wrong, "the last event is cut off"}, /* one byte too far */
     };
-    for (size_t i = 0; i < sizeof lies / sizeof *lies; i++)
+    for (size_t i = 0; i < COUNT(lies); i++)
         for (int last = 0; last < 2; last++) {
             make_small();
             const size_t at = whole.size, begun = whole.count;
@@ -435,9 +420,8 @@ static void test_lengths_that_lie(void **state)
 
 /* An event whose data is shorter than it says, and another log after it: as when a recorder was
  * killed and began anew in the same file. */
-static void test_a_log_after_a_log_that_was_cut_off(void **state)
+static void a_log_after_a_truncated_log_is_read(void **state)
 {
-    (void) state;
     make_small();
     for (size_t size = whole.begin[4] + 1; size < whole.end[4]; size++) {
         inner.size = 0;
@@ -450,9 +434,8 @@ static void test_a_log_after_a_log_that_was_cut_off(void **state)
 }
 
 /* Whole logs in the data of events, the last one too, are data. */
-static void test_a_log_in_a_message(void **state)
+static void a_log_in_a_message_is_data(void **state)
 {
-    (void) state;
     make_small();
     inner = whole;
     whole.size = whole.count = 0;
@@ -505,9 +488,8 @@ static void expect_hole(struct log_reader *reader)
     assert_in_range(reads.bytes, 1, 2 << 20);
 }
 
-static void test_a_hole_of_ten_gigabytes(void **state)
+static void a_hole_of_ten_gigabytes_is_skipped(void **state)
 {
-    (void) state;
     struct log_event event;
     struct log_damage damage;
     char why[LOG_WHY_MAX], path[64];
@@ -524,9 +506,8 @@ static void test_a_hole_of_ten_gigabytes(void **state)
     log_close(reader);
 }
 
-static void test_a_hole_at_the_end(void **state)
+static void a_hole_at_the_end_is_damage(void **state)
 {
-    (void) state;
     struct log_event event;
     struct log_damage damage;
     struct log_reader *reader = open_hole();
@@ -595,16 +576,15 @@ static void garbage_after(void)
 }
 
 /* Not much more is read than the file, in calls that are at most as many as there are headers. */
-static void test_work_grows_only_with_the_size(void **state)
+static void work_grows_only_with_the_size(void **state)
 {
-    (void) state;
     static void (*const units[])(void) = {long_lie,     lies_into_the_buffer, sync_words,
                                           first_bytes,  nested_headers,       ones,
                                           garbage_after};
     struct log_event event;
     struct log_damage damage;
     make_noise(3);
-    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+    for (size_t i = 0; i < COUNT(units); i++) {
         fill_with(units[i]);
         struct log_reader *reader = open_bytes(whole.bytes, whole.size);
         memset(&reads, 0, sizeof reads);
@@ -627,9 +607,8 @@ static void test_work_grows_only_with_the_size(void **state)
 
 /* From each byte of a log that is damaged in several places, what is read is what was read from
  * there on, or from the next event. */
-static void test_seeking_finds_what_reading_found(void **state)
+static void seeking_finds_what_reading_found(void **state)
 {
-    (void) state;
     make_small();
     log_bytes_header(&whole, 5, 40, 5, 1000); /* into the next */
     log_bytes_add(&whole, "D1234five!", 10);
@@ -652,9 +631,8 @@ static void test_seeking_finds_what_reading_found(void **state)
     log_close(reader);
 }
 
-static void test_seeking_in_a_log_of_many_buffers(void **state)
+static void seeking_in_a_log_of_many_buffers(void **state)
 {
-    (void) state;
     struct log_event event;
     struct log_damage damage;
     make_noise(4);
@@ -676,9 +654,8 @@ static void test_seeking_in_a_log_of_many_buffers(void **state)
 
 /* ---- Files that change, and that cannot be read ---------------------------------------------- */
 
-static void test_what_is_written_later_is_not_read(void **state)
+static void what_is_written_later_is_not_read(void **state)
 {
-    (void) state;
     make_small();
     struct log_reader *reader = open_bytes(whole.bytes, whole.begin[2]);
     assert_int_equal(pwrite(log_bytes_descriptor(), whole.bytes, whole.size, 0), whole.size);
@@ -697,9 +674,8 @@ static void expect_failed(struct log_reader *reader, int error)
     }
 }
 
-static void test_a_file_that_becomes_shorter(void **state)
+static void a_file_that_becomes_shorter_ends_reading(void **state)
 {
-    (void) state;
     struct log_event event;
     struct log_damage damage;
     make_noise(5);
@@ -749,9 +725,8 @@ static void read_changed(struct log_reader *reader)
 
 /* The header of an event is read into the buffer several times, since the bytes after it are
  * damaged. It changes before each of these reads. */
-static void test_a_file_that_changes(void **state)
+static void a_file_may_change_while_it_is_read(void **state)
 {
-    (void) state;
     static unsigned char image[4 * LOG_DATA_MAX];
     make_noise(5);
     whole.size = whole.count = 0;
@@ -771,9 +746,8 @@ static void test_a_file_that_changes(void **state)
     reads.change_at = 0;
 }
 
-static void test_data_of_an_event_are_read_in_pieces(void **state)
+static void data_of_an_event_are_read_in_pieces(void **state)
 {
-    (void) state;
     static unsigned char image[3 * LOG_DATA_MAX + 5], data[sizeof image];
     struct log_event event;
     struct log_damage damage;
@@ -795,9 +769,8 @@ static void test_data_of_an_event_are_read_in_pieces(void **state)
 }
 
 /* Also where nothing but a hole is to come. */
-static void test_a_hole_that_becomes_shorter(void **state)
+static void a_hole_that_becomes_shorter_ends_reading(void **state)
 {
-    (void) state;
     struct log_event event;
     struct log_damage damage;
     struct log_reader *reader = open_hole();
@@ -808,9 +781,8 @@ static void test_a_hole_that_becomes_shorter(void **state)
     log_close(reader);
 }
 
-static void test_a_file_that_cannot_be_read(void **state)
+static void a_file_that_cannot_be_read_is_an_error(void **state)
 {
-    (void) state;
     make_small();
     struct log_reader *reader = open_bytes(whole.bytes, whole.size);
     reads.error = EIO;
@@ -827,9 +799,8 @@ static void expect_refused(const char *path, const char *reason)
     assert_string_equal(why, reason);
 }
 
-static void test_what_is_no_file(void **state)
+static void what_is_no_file_is_refused(void **state)
 {
-    (void) state;
     char folder[] = "/tmp/fmb-test-XXXXXX", pipe[64];
     assert_non_null(mkdtemp(folder));
     snprintf(pipe, sizeof pipe, "%s/pipe", folder);
@@ -846,30 +817,30 @@ static void test_what_is_no_file(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_an_empty_file_is_a_log_of_no_events),
-        cmocka_unit_test(test_an_event_is_what_was_written),
-        cmocka_unit_test(test_the_longest),
-        cmocka_unit_test(test_lcm_reads_the_same),
-        cmocka_unit_test(test_every_truncation),
-        cmocka_unit_test(test_every_damaged_byte),
-        cmocka_unit_test(test_every_two_damaged_bytes),
-        cmocka_unit_test(test_garbage_everywhere),
-        cmocka_unit_test(test_garbage_between_all),
-        cmocka_unit_test(test_lengths_that_lie),
-        cmocka_unit_test(test_a_log_after_a_log_that_was_cut_off),
-        cmocka_unit_test(test_a_log_in_a_message),
-        cmocka_unit_test(test_a_hole_of_ten_gigabytes),
-        cmocka_unit_test(test_a_hole_at_the_end),
-        cmocka_unit_test(test_work_grows_only_with_the_size),
-        cmocka_unit_test(test_seeking_finds_what_reading_found),
-        cmocka_unit_test(test_seeking_in_a_log_of_many_buffers),
-        cmocka_unit_test(test_what_is_written_later_is_not_read),
-        cmocka_unit_test(test_a_file_that_becomes_shorter),
-        cmocka_unit_test(test_a_file_that_changes),
-        cmocka_unit_test(test_data_of_an_event_are_read_in_pieces),
-        cmocka_unit_test(test_a_hole_that_becomes_shorter),
-        cmocka_unit_test(test_a_file_that_cannot_be_read),
-        cmocka_unit_test(test_what_is_no_file),
+        cmocka_unit_test(an_empty_file_is_a_log_of_no_events),
+        cmocka_unit_test(an_event_is_what_was_written),
+        cmocka_unit_test(the_longest_event_is_read),
+        cmocka_unit_test(lcm_reads_the_same),
+        cmocka_unit_test(every_truncation_is_read_up_to_its_end),
+        cmocka_unit_test(every_damaged_byte_is_reported),
+        cmocka_unit_test(every_two_damaged_bytes_are_reported),
+        cmocka_unit_test(garbage_is_reported_everywhere),
+        cmocka_unit_test(garbage_between_all_events_is_reported),
+        cmocka_unit_test(false_lengths_are_damage),
+        cmocka_unit_test(a_log_after_a_truncated_log_is_read),
+        cmocka_unit_test(a_log_in_a_message_is_data),
+        cmocka_unit_test(a_hole_of_ten_gigabytes_is_skipped),
+        cmocka_unit_test(a_hole_at_the_end_is_damage),
+        cmocka_unit_test(work_grows_only_with_the_size),
+        cmocka_unit_test(seeking_finds_what_reading_found),
+        cmocka_unit_test(seeking_in_a_log_of_many_buffers),
+        cmocka_unit_test(what_is_written_later_is_not_read),
+        cmocka_unit_test(a_file_that_becomes_shorter_ends_reading),
+        cmocka_unit_test(a_file_may_change_while_it_is_read),
+        cmocka_unit_test(data_of_an_event_are_read_in_pieces),
+        cmocka_unit_test(a_hole_that_becomes_shorter_ends_reading),
+        cmocka_unit_test(a_file_that_cannot_be_read_is_an_error),
+        cmocka_unit_test(what_is_no_file_is_refused),
     };
     return cmocka_run_group_tests_name("log_read", tests, NULL, NULL);
 }

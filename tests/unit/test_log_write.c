@@ -1,5 +1,7 @@
 /* What is written to a log is what LCM's own reader reads, in one file and in several, and no error
  * stays unsaid. */
+#include "unit.h"
+
 #include "log_parts.h"
 #include "log_read.h"
 #include "log_write.h"
@@ -7,19 +9,10 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <lcm/eventlog.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 /* ---- Files of their own ---------------------------------------------------------------------- */
 
@@ -34,14 +27,12 @@ static const char *in_folder(const char *name)
 
 static int make_folder(void **state)
 {
-    (void) state;
     return mkdtemp(folder) ? 0 : -1;
 }
 
 static int remove_folder(void **state)
 {
     char command[300];
-    (void) state;
     snprintf(command, sizeof command, "rm -r %s", folder);
     return system(command);
 }
@@ -65,7 +56,8 @@ static void put_file(const char *name, const char *text)
     fclose(file);
 }
 
-/* ---- Events: each is told by its number ------------------------------------------------------ */
+/* ---- Events: each is identified by its number
+ * ------------------------------------------------------ */
 
 enum { DATA_MAX = 100000 };
 
@@ -177,9 +169,8 @@ int __wrap_fsync(int file)
     return __real_fsync(file);
 }
 
-static void test_a_finished_log_is_on_the_disk(void **state)
+static void a_finished_log_is_on_the_disk(void **state)
 {
-    (void) state;
     struct log_writer *writer = log_begin(output_open_in_place(in_folder("synced"), false));
     assert_non_null(writer);
     assert_true(append_event(to_writer, writer, 0));
@@ -188,9 +179,8 @@ static void test_a_finished_log_is_on_the_disk(void **state)
     assert_int_equal(synced, 1);
 }
 
-static void test_what_is_written_is_read(void **state)
+static void what_is_written_is_read(void **state)
 {
-    (void) state;
     enum { COUNT = 100 };
     int64_t bytes = 0;
     struct log_writer *writer = log_begin(output_open_in_place(in_folder("log"), false));
@@ -204,17 +194,15 @@ static void test_what_is_written_is_read(void **state)
     assert_int_equal(read_events("log", 0), COUNT);
 }
 
-static void test_a_log_of_nothing(void **state)
+static void a_log_without_events_is_empty(void **state)
 {
-    (void) state;
     assert_int_equal(log_finish(log_begin(output_open_in_place(in_folder("empty"), false))), 0);
     assert_int_equal(size_of("empty"), 0);
     assert_int_equal(log_finish(NULL), 0);
 }
 
-static void test_what_was_flushed_is_there(void **state)
+static void what_was_flushed_is_there(void **state)
 {
-    (void) state;
     struct log_writer *writer = log_begin(output_open_in_place(in_folder("flushed"), false));
     for (int i = 0; i < 3; i++) {
         assert_true(append_event(to_writer, writer, i));
@@ -226,9 +214,8 @@ static void test_what_was_flushed_is_there(void **state)
     assert_int_equal(log_finish(writer), 0);
 }
 
-static void test_nothing_is_overwritten_without_force(void **state)
+static void nothing_is_overwritten_without_force(void **state)
 {
-    (void) state;
     put_file("precious", "precious");
     assert_null(log_begin(output_open_in_place(in_folder("precious"), false)));
     assert_int_equal(errno, EEXIST);
@@ -240,9 +227,8 @@ static void test_nothing_is_overwritten_without_force(void **state)
     assert_int_equal(read_events("precious", 3), 1);
 }
 
-static void test_what_cannot_be_created(void **state)
+static void a_file_that_cannot_be_created_is_an_error(void **state)
 {
-    (void) state;
     for (int force = 0; force < 2; force++) {
         assert_null(log_begin(output_open_in_place(in_folder("no/such/folder"), force)));
         assert_int_equal(errno, ENOENT);
@@ -253,9 +239,8 @@ static void test_what_cannot_be_created(void **state)
 
 /* ---- Disks that are full --------------------------------------------------------------------- */
 
-static void test_a_full_disk_is_said(void **state)
+static void a_full_disk_is_said(void **state)
 {
-    (void) state;
     struct log_writer *writer = log_begin(output_open_in_place("/dev/full", true));
     assert_non_null(writer);
     assert_true(append_event(to_writer, writer, 3));
@@ -304,9 +289,8 @@ static void fill(const char *name, rlim_t limit, bool flush)
     assert_true(bytes <= (int64_t) limit && (int64_t) limit < bytes + bytes_of_event(whole));
 }
 
-static void test_a_full_disk_leaves_whole_events(void **state)
+static void a_full_disk_leaves_whole_events(void **state)
 {
-    (void) state;
     for (rlim_t limit = 1000003; limit < 1000003 + 200000; limit += 7919) {
         fill("limited", limit, false);
         fill("limited", limit, true);
@@ -314,9 +298,8 @@ static void test_a_full_disk_leaves_whole_events(void **state)
 }
 
 /* Larger than the buffer. */
-static void test_large_events(void **state)
+static void large_events_are_written(void **state)
 {
-    (void) state;
     static unsigned char data[3000000];
     struct log_writer *writer = log_begin(output_open_in_place(in_folder("large"), true));
     for (size_t i = 0; i < sizeof data; i++)
@@ -356,16 +339,15 @@ static struct log_writer *begin_log(const char *name)
     return writer;
 }
 
-static void test_a_deleted_file_is_noticed(void **state)
+static void a_deleted_file_is_noticed(void **state)
 {
-    (void) state;
     struct log_writer *writer = begin_log("deleted");
     assert_int_equal(unlink(in_folder("deleted")), 0);
     assert_false(log_check(writer));
     assert_int_equal(errno, ESTALE);
     assert_true(append_event(to_writer, writer, 2));
     assert_int_equal(log_finish(writer), ESTALE);
-    /* Also at the end alone, and where another file has taken its place. */
+    /* Also only at the end, and where another file has taken its place. */
     writer = begin_log("deleted");
     put_file("other", "other");
     char other[256];
@@ -374,9 +356,8 @@ static void test_a_deleted_file_is_noticed(void **state)
     assert_int_equal(log_finish(writer), ESTALE);
 }
 
-static void test_a_truncated_file_is_noticed(void **state)
+static void a_truncated_file_is_noticed(void **state)
 {
-    (void) state;
     struct log_writer *writer = begin_log("truncated");
     assert_int_equal(truncate(in_folder("truncated"), 100), 0);
     assert_false(log_check(writer));
@@ -384,9 +365,8 @@ static void test_a_truncated_file_is_noticed(void **state)
 }
 
 /* The bytes written after a truncation are a whole log, whatever error ends it. */
-static void test_a_file_that_was_truncated_gets_no_hole(void **state)
+static void a_file_that_was_truncated_gets_no_hole(void **state)
 {
-    (void) state;
     enum { BEFORE = 400, AFTER = 300 };
     for (int full = 0; full < 2; full++) {
         struct log_writer *writer = log_begin(output_open_in_place(in_folder("copied"), true));
@@ -450,10 +430,9 @@ static const char *part_name(const char *name, long number)
     return out;
 }
 
-/* Files are as full as they can be, and have no more than one event that is too large alone. */
-static void test_several_files_divide_no_event(void **state)
+/* Files are as full as they can be, and have no more than one event that is too large by itself. */
+static void several_files_divide_no_event(void **state)
 {
-    (void) state;
     enum { COUNT = 200, LIMIT = 80000 };
     const struct log_parts_options options = several("parts", LIMIT, false);
     struct log_parts parts;
@@ -475,9 +454,8 @@ static void test_several_files_divide_no_event(void **state)
     log_parts_close(&parts);
 }
 
-static void test_the_newest_files_are_kept(void **state)
+static void the_newest_files_are_kept(void **state)
 {
-    (void) state;
     struct log_parts_options options = several("kept", 80000, false);
     struct log_parts parts;
     options.keep = 3;
@@ -489,9 +467,8 @@ static void test_the_newest_files_are_kept(void **state)
 }
 
 /* A file that the user has removed does not keep the others. */
-static void test_a_file_that_is_gone_is_not_kept(void **state)
+static void a_file_that_is_gone_is_not_kept(void **state)
 {
-    (void) state;
     struct log_parts_options options = several("gone", 80000, false);
     struct log_parts parts;
     options.keep = 3;
@@ -507,23 +484,21 @@ static void test_a_file_that_is_gone_is_not_kept(void **state)
     log_parts_close(&parts);
 }
 
-static void test_a_single_file(void **state)
+static void a_single_file_has_no_number(void **state)
 {
-    (void) state;
-    const struct log_parts_options options = several("alone", 0, false);
+    const struct log_parts_options options = several("single", 0, false);
     struct log_parts parts;
-    put_file("alone.000", "of others");
+    put_file("single.000", "of others");
     write_parts(&options, 100, &parts);
     log_parts_close(&parts);
-    assert_int_equal(read_events("alone", 0), 100);
-    assert_int_equal(size_of("alone.000"), 9);
+    assert_int_equal(read_events("single", 0), 100);
+    assert_int_equal(size_of("single.000"), 9);
 }
 
-static void test_files_of_before_are_overwritten_only_with_force(void **state)
+static void files_of_before_are_overwritten_only_with_force(void **state)
 {
-    (void) state;
     static const char *const others[] = {"run", "run.00", "run.0x1", "run.000.gz", "xrun.000"};
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    for (size_t i = 0; i < COUNT(others); i++)
         put_file(others[i], "of others");
     put_file("run.007", "of before");
     put_file("run.1234", "of before");
@@ -542,13 +517,12 @@ static void test_files_of_before_are_overwritten_only_with_force(void **state)
     assert_true(exists("run.000"));
     assert_false(exists("run.007") || exists("run.1234"));
     log_parts_close(&parts);
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    for (size_t i = 0; i < COUNT(others); i++)
         assert_int_equal(size_of(others[i]), 9);
 }
 
-static void test_a_next_file_that_cannot_be_had(void **state)
+static void a_next_file_that_cannot_be_created_is_an_error(void **state)
 {
-    (void) state;
     const struct log_parts_options options = several("next", 1000, false);
     struct log_parts parts;
     assert_true(log_parts_open(&options, &parts));
@@ -566,24 +540,24 @@ static void test_a_next_file_that_cannot_be_had(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_is_written_is_read),
-        cmocka_unit_test(test_a_log_of_nothing),
-        cmocka_unit_test(test_a_finished_log_is_on_the_disk),
-        cmocka_unit_test(test_what_was_flushed_is_there),
-        cmocka_unit_test(test_nothing_is_overwritten_without_force),
-        cmocka_unit_test(test_what_cannot_be_created),
-        cmocka_unit_test(test_a_full_disk_is_said),
-        cmocka_unit_test(test_a_full_disk_leaves_whole_events),
-        cmocka_unit_test(test_large_events),
-        cmocka_unit_test(test_a_deleted_file_is_noticed),
-        cmocka_unit_test(test_a_truncated_file_is_noticed),
-        cmocka_unit_test(test_a_file_that_was_truncated_gets_no_hole),
-        cmocka_unit_test(test_several_files_divide_no_event),
-        cmocka_unit_test(test_the_newest_files_are_kept),
-        cmocka_unit_test(test_a_file_that_is_gone_is_not_kept),
-        cmocka_unit_test(test_a_single_file),
-        cmocka_unit_test(test_files_of_before_are_overwritten_only_with_force),
-        cmocka_unit_test(test_a_next_file_that_cannot_be_had),
+        cmocka_unit_test(what_is_written_is_read),
+        cmocka_unit_test(a_log_without_events_is_empty),
+        cmocka_unit_test(a_finished_log_is_on_the_disk),
+        cmocka_unit_test(what_was_flushed_is_there),
+        cmocka_unit_test(nothing_is_overwritten_without_force),
+        cmocka_unit_test(a_file_that_cannot_be_created_is_an_error),
+        cmocka_unit_test(a_full_disk_is_said),
+        cmocka_unit_test(a_full_disk_leaves_whole_events),
+        cmocka_unit_test(large_events_are_written),
+        cmocka_unit_test(a_deleted_file_is_noticed),
+        cmocka_unit_test(a_truncated_file_is_noticed),
+        cmocka_unit_test(a_file_that_was_truncated_gets_no_hole),
+        cmocka_unit_test(several_files_divide_no_event),
+        cmocka_unit_test(the_newest_files_are_kept),
+        cmocka_unit_test(a_file_that_is_gone_is_not_kept),
+        cmocka_unit_test(a_single_file_has_no_number),
+        cmocka_unit_test(files_of_before_are_overwritten_only_with_force),
+        cmocka_unit_test(a_next_file_that_cannot_be_created_is_an_error),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

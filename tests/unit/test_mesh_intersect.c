@@ -1,42 +1,28 @@
-/* Which faces of meshes meet: against asking every pair, by an oracle that knows the vertices
- * alone; what faces of one mesh share; where steps put a mesh. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+/* Which faces of meshes intersect: against a test of every pair by an oracle that knows the
+ * vertices only; what faces of one mesh share; where steps put a mesh. */
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <math.h>
 
+#include "allocate.h"
 #include "bumpy.h"
 #include "draw.h"
 #include "mesh_face.h"
 #include "mesh_intersect.h"
 #include "mesh_adjacency.h"
 #include "mesh_transform.h"
+#include "progress_seen.h"
 #include "triangles.h"
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
 /* ---- Meshes ---- */
-
-static void *room(size_t count, size_t size)
-{
-    void *memory = calloc(count + 1, size);
-    assert_non_null(memory);
-    return memory;
-}
 
 static void make_mesh(size_t vertices, size_t faces, struct mesh *out)
 {
     *out = (struct mesh){.vertex_count = vertices, .face_count = faces};
-    out->vertex = room(vertices, sizeof *out->vertex);
-    out->face = room(faces, sizeof *out->face);
+    out->vertex = allocate(vertices, sizeof *out->vertex);
+    out->face = allocate(faces, sizeof *out->face);
 }
 
 /* How far apart the points of a grid are, and where it begins. */
@@ -157,7 +143,8 @@ static void assert_counts(const struct mesh_query *question,
 {
     const bool self = question->a == question->b;
     size_t of[4] = {0}, faces[2] = {0};
-    unsigned char *in[2] = {room(question->a->face_count, 1), room(question->b->face_count, 1)};
+    unsigned char *in[2] = {allocate(question->a->face_count, 1),
+                            allocate(question->b->face_count, 1)};
     for (size_t k = 0; k < meeting->count; k++) {
         of[meeting->pair[k].verdict]++;
         in[0][meeting->pair[k].a] = 1;
@@ -208,7 +195,6 @@ static void assert_meeting_of_two(const struct mesh_query *question)
 
 static void meshes_meet_where_every_pair_says(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "meshes_meet_where_every_pair_says");
     for (long n = draw_sample(150); n > 0; n--) {
@@ -226,7 +212,6 @@ static void meshes_meet_where_every_pair_says(void **state)
 
 static void moving_meshes_meet_where_every_pair_says(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "moving_meshes_meet_where_every_pair_says");
     for (long n = draw_sample(80); n > 0; n--) {
@@ -254,7 +239,6 @@ static void moving_meshes_meet_where_every_pair_says(void **state)
 /* More candidates than are decided at a time, of faces that are as large as the mesh. */
 static void soups_of_more_than_a_block(void **state)
 {
-    (void) state;
     struct draw draw;
     struct mesh mesh[2];
     draw_begin(&draw, "soups_of_more_than_a_block");
@@ -269,7 +253,6 @@ static void soups_of_more_than_a_block(void **state)
 /* Closed ones, one of them pushed into the other. */
 static void closed_meshes_meet_where_every_pair_says(void **state)
 {
-    (void) state;
     static const double way[][3] = {{0, 0, 0}, {0.1, 0.2, 0.3}, {1.9, 0, 0}, {0, 0, 5}};
     for (size_t n = 0; n < COUNT(way); n++) {
         struct mesh mesh[2];
@@ -357,7 +340,6 @@ static void assert_meeting_with_itself(const struct mesh *mesh, const struct fmb
 
 static void a_mesh_meets_itself_where_every_pair_says(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "a_mesh_meets_itself_where_every_pair_says");
     for (long n = draw_sample(300); n > 0; n--) {
@@ -371,7 +353,6 @@ static void a_mesh_meets_itself_where_every_pair_says(void **state)
 /* On a line most faces have no area, and lie upon each other. */
 static void faces_on_a_line_or_in_a_plane(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "faces_on_a_line_or_in_a_plane");
     for (long n = draw_sample(200); n > 0; n--) {
@@ -431,7 +412,6 @@ static void draw_thin(struct draw *draw, double point[NEAR_VERTICES][3])
  * the last bits; products underflow, or overflow. */
 static void faces_nearly_on_lines(void **state)
 {
-    (void) state;
     static const int scales[][2] = {{0, 0},       {0, 0},     {0, 30},     {-400, 0}, {-480, -480},
                                     {-545, -545}, {-552, 20}, {480, -900}, {490, 490}};
     struct draw draw;
@@ -457,7 +437,6 @@ static void faces_nearly_on_lines(void **state)
 /* What is closed shares edges and vertices, and where it does not meet itself nothing else. */
 static void a_closed_mesh_shares_edges_and_vertices(void **state)
 {
-    (void) state;
     for (uint64_t seed = 1; seed < 4; seed++) {
         struct mesh mesh;
         struct mesh_intersection meeting;
@@ -579,7 +558,6 @@ static const struct near_case near_cases[] = {
 
 static void cases_of_two_faces(void **state)
 {
-    (void) state;
     for (size_t n = 0; n < COUNT(near_cases) * 18; n++) {
         const struct near_case *c = &near_cases[n / 18];
         const int turn = (int) (n % 18), swapped = turn / 9;
@@ -661,7 +639,6 @@ static void assert_tetrahedra(const struct mesh_query *question)
 
 static void tetrahedra_are_those_of_the_article(void **state)
 {
-    (void) state;
     static const double velocity[3] = {0.3, -1, 0.1};
     struct draw draw;
     draw_begin(&draw, "tetrahedra_are_those_of_the_article");
@@ -708,7 +685,6 @@ static enum fmb_status intersect_of_size(double size, enum mesh_as as)
 
 static void normals_beyond_the_doubles_are_reported(void **state)
 {
-    (void) state;
     assert_int_equal(intersect_of_size(1, MESH_TETRAHEDRA), FMB_OK);
     assert_int_equal(intersect_of_size(1e200, MESH_TETRAHEDRA), FMB_NOT_FINITE);
     assert_int_equal(intersect_of_size(DBL_MAX / 2, MESH_TETRAHEDRA), FMB_NOT_FINITE);
@@ -716,35 +692,21 @@ static void normals_beyond_the_doubles_are_reported(void **state)
     assert_int_equal(intersect_of_size(0x1p-1074, MESH_FACES), FMB_OK);
 }
 
-/* ---- How far it is ---- */
-
-struct heard {
-    uint64_t done, total;
-    int times;
-};
-
-static void hear(void *context, uint64_t done, uint64_t total)
-{
-    struct heard *heard = context;
-    assert_true(heard->times == 0 || (done >= heard->done && total == heard->total));
-    assert_true(done <= total);
-    *heard = (struct heard){done, total, heard->times + 1};
-}
+/* ---- Progress ---- */
 
 static void progress_goes_on_to_its_end(void **state)
 {
-    (void) state;
     struct draw draw;
     struct mesh mesh[2];
-    struct heard heard = {0};
+    struct progress_seen seen = {0};
     struct mesh_intersection meeting;
     draw_begin(&draw, "progress_goes_on_to_its_end");
     for (int m = 0; m < 2; m++)
         draw_soup(&draw, &grids[0], 3, 100, 200, &mesh[m]);
     const struct mesh_query question = {
-        .a = &mesh[0], .b = &mesh[1], .duration = 1, .report = hear, .context = &heard};
+        .a = &mesh[0], .b = &mesh[1], .duration = 1, .report = progress_seen, .context = &seen};
     assert_int_equal(mesh_intersect(&question, &meeting), FMB_OK);
-    assert_true(heard.times > 10 && heard.done > 0);
+    assert_true(seen.times > 10 && seen.done > 0);
     mesh_intersection_free(&meeting);
     mesh_free(&mesh[0]);
     mesh_free(&mesh[1]);
@@ -752,10 +714,9 @@ static void progress_goes_on_to_its_end(void **state)
 
 static void empty_meshes_meet_nothing(void **state)
 {
-    (void) state;
     struct mesh mesh[3] = {{0}};
     bumpy_make(8, 1, &mesh[1]);
-    make_mesh(5, 0, &mesh[2]); /* vertices alone */
+    make_mesh(5, 0, &mesh[2]); /* only vertices */
     for (int k = 0; k < 9; k++) {
         const struct mesh_query question = {.a = &mesh[k / 3], .b = &mesh[k % 3], .duration = 1};
         struct mesh_intersection meeting;
@@ -794,7 +755,6 @@ static void assert_put(const struct mesh_step *step, int count, const double fro
 
 static void right_angles_are_exact(void **state)
 {
-    (void) state;
     static const double p[3] = {0.1, 1e300, -0x1p-1074};
     static const struct {
         double degrees;
@@ -818,7 +778,6 @@ static void right_angles_are_exact(void **state)
 
 static void other_angles_are_near(void **state)
 {
-    (void) state;
     struct draw draw;
     const double pi = acos(-1);
     draw_begin(&draw, "other_angles_are_near");
@@ -837,7 +796,6 @@ static void other_angles_are_near(void **state)
 
 static void steps_follow_each_other(void **state)
 {
-    (void) state;
     static const double p[3] = {1, 2, 3};
     const struct mesh_step turn = {MESH_ROTATE, 2, {90}}, way = {MESH_TRANSLATE, 0, {10, 0, 0.5}};
     const struct mesh_step twice = {MESH_SCALE, 0, {2, 3, -1}}, mirror = {MESH_MIRROR, 1, {0}};
@@ -856,7 +814,6 @@ static void steps_follow_each_other(void **state)
 /* Each coordinate is rounded once in a translation, and in a scale. */
 static void steps_round_once(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "steps_round_once");
     for (long n = draw_sample(2000); n > 0; n--) {
@@ -873,7 +830,6 @@ static void steps_round_once(void **state)
 
 static void what_goes_too_far_is_reported(void **state)
 {
-    (void) state;
     static const double p[3] = {1, 0, -1}, half[3] = {DBL_MAX / 2, -DBL_MAX / 2, 0};
     const double beyond = nextafter(DBL_MAX / 2, INFINITY);
     double at[3];

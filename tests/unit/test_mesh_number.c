@@ -1,18 +1,11 @@
 /* Numbers of text against strtod(), which rounds as it should. */
+#include "unit.h"
+
 #include "mesh_source.h"
 
 #include <inttypes.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static bool is_fast(void)
 {
@@ -44,7 +37,7 @@ static void expect_same(const char *text)
         fail_msg("'%s' is %.17g, read as %.17g", text, expected, value);
 }
 
-static void test_limits(void **state)
+static void numbers_at_the_limits_round_as_strtod(void **state)
 {
     static const char *const texts[] = {"0",
                                         "-0",
@@ -115,16 +108,14 @@ static void test_limits(void **state)
                                         "4503599627370496.5",
                                         "0.1e1",
                                         "1000000e-6"};
-    (void) state;
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+    for (size_t i = 0; i < COUNT(texts); i++)
         expect_same(texts[i]);
 }
 
 /* As many digits as one likes, with the point anywhere. */
-static void test_drawn_decimals(void **state)
+static void drawn_decimals_round_as_strtod(void **state)
 {
     const int count = is_fast() ? 100000 : 1000000;
-    (void) state;
     for (int i = 0; i < count; i++) {
         char text[64];
         const int digits = 1 + (int) (draw() % 20), point = (int) (draw() % 21);
@@ -144,10 +135,9 @@ static void test_drawn_decimals(void **state)
 }
 
 /* Doubles as programs write them, and what lies just between two. */
-static void test_drawn_doubles(void **state)
+static void drawn_doubles_read_back(void **state)
 {
     const int count = is_fast() ? 20000 : 200000;
-    (void) state;
     for (int i = 0; i < count; i++) {
         char text[2000];
         const uint64_t bits = draw() ^ draw() << 20;
@@ -168,7 +158,7 @@ static void test_drawn_doubles(void **state)
     }
 }
 
-static void test_words(void **state)
+static void nan_and_infinity_are_numbers(void **state)
 {
     static const struct {
         const char *text;
@@ -176,8 +166,7 @@ static void test_words(void **state)
     } words[] = {
         {"nan", NAN},       {"NaN", NAN},        {"-nan", NAN},          {"inf", INFINITY},
         {"+Inf", INFINITY}, {"-inf", -INFINITY}, {"infinity", INFINITY}, {"-INFINITY", -INFINITY}};
-    (void) state;
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+    for (size_t i = 0; i < COUNT(words); i++) {
         const unsigned char *at = (const unsigned char *) words[i].text;
         double value;
         assert_ptr_equal(mesh_number(at, &value), at + strlen(words[i].text));
@@ -185,7 +174,7 @@ static void test_words(void **state)
     }
 }
 
-static void test_where_it_ends(void **state)
+static void a_number_ends_where_strtod_ends(void **state)
 {
     static const struct {
         const char *text;
@@ -195,8 +184,7 @@ static void test_where_it_ends(void **state)
                  {"1e", 1},    {"1e+", 1},  {"1e-x", 1}, {"1.5e", 3},    {"1x", 1},     {"0x10", 1},
                  {"1.5.5", 3}, {"1 2", 1},  {"1-2", 1},  {"infinit", 3}, {"nan(1)", 3}, {"1,5", 1},
                  {"1e5.5", 3}, {"1/2", 1}};
-    (void) state;
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    for (size_t i = 0; i < COUNT(texts); i++) {
         const unsigned char *at = (const unsigned char *) texts[i].text;
         const unsigned char *end = texts[i].length < 0 ? NULL : at + texts[i].length;
         double value;
@@ -205,11 +193,10 @@ static void test_where_it_ends(void **state)
 }
 
 /* Text of many thousand digits. */
-static void test_long(void **state)
+static void long_numbers_round_as_strtod(void **state)
 {
     enum { DIGITS = 20000 };
     static char text[DIGITS + 32];
-    (void) state;
     memset(text, '0', DIGITS);
     strcpy(text + DIGITS, "1");
     expect_same(text);
@@ -225,9 +212,12 @@ static void test_long(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_limits),        cmocka_unit_test(test_drawn_decimals),
-        cmocka_unit_test(test_drawn_doubles), cmocka_unit_test(test_words),
-        cmocka_unit_test(test_where_it_ends), cmocka_unit_test(test_long),
+        cmocka_unit_test(numbers_at_the_limits_round_as_strtod),
+        cmocka_unit_test(drawn_decimals_round_as_strtod),
+        cmocka_unit_test(drawn_doubles_read_back),
+        cmocka_unit_test(nan_and_infinity_are_numbers),
+        cmocka_unit_test(a_number_ends_where_strtod_ends),
+        cmocka_unit_test(long_numbers_round_as_strtod),
     };
     return cmocka_run_group_tests_name("mesh_number", tests, NULL, NULL);
 }

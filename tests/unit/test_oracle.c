@@ -1,12 +1,7 @@
-/* The oracle on cases worked out by hand, so that it can be believed elsewhere. It is asked
+/* The oracle on cases worked out by hand, so that it can be trusted elsewhere. It is called
  * about each case in both orders. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <math.h>
@@ -428,10 +423,9 @@ static const struct known placed[] = {
 /* Equal and opposite orientations are the same: nothing else is said of the length. */
 static void an_orientation_has_no_length(void **state)
 {
-    (void) state;
     static const double lengths[] = {1, -1, 3, 1e-150, 1e150, -0x1p-1000};
     struct question question = placed[0].question;
-    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+    for (size_t i = 0; i < COUNT(lengths); i++) {
         struct fmb_body body[2];
         struct pair pair;
         struct oracle_answer truth;
@@ -448,7 +442,6 @@ static void an_orientation_has_no_length(void **state)
 /* Two unit squares beside each other, and two above: a body of both pairs is one of 2 x 1. */
 static void bodies_of_frames(void **state)
 {
-    (void) state;
     static const double square[2][6] = {{0, 0, 1, 0, 0, 1}, {1, 0, 1, 0, 0, 1}};
     struct fmb_frame frames[2] = {{.dim = 2}, {.dim = 2}};
     for (int i = 0; i < 2; i++) {
@@ -517,29 +510,23 @@ static void assert_all_known(const struct known *known, size_t count)
     }
 }
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
 static void plane_by_hand(void **state)
 {
-    (void) state;
     assert_all_known(plane, COUNT(plane));
 }
 
 static void flat_plane_by_hand(void **state)
 {
-    (void) state;
     assert_all_known(flat_plane, COUNT(flat_plane));
 }
 
 static void space_by_hand(void **state)
 {
-    (void) state;
     assert_all_known(space, COUNT(space));
 }
 
 static void flat_space_by_hand(void **state)
 {
-    (void) state;
     assert_all_known(flat_space, COUNT(flat_space));
 }
 
@@ -558,13 +545,11 @@ static void decide(const struct question *question, struct fmb_body body[2], str
 
 static void placed_by_hand(void **state)
 {
-    (void) state;
     assert_all_known(placed, COUNT(placed));
 }
 
 static void numbers_that_are_no_doubles(void **state)
 {
-    (void) state;
     struct fmb_body body[2];
     struct pair pair;
     struct oracle_answer truth;
@@ -612,7 +597,6 @@ static bool tightest(const struct fmb_answer *answer)
 
 static void checks_accept_what_is_right(void **state)
 {
-    (void) state;
     struct fmb_answer answer = tight_thirds();
     assert_true(design(&answer));
     assert_true(tightest(&answer));
@@ -637,7 +621,6 @@ static void checks_accept_what_is_right(void **state)
 
 static void checks_refuse_what_is_wrong(void **state)
 {
-    (void) state;
     ASSERT_REFUSED(answer.verdict = FMB_TOUCHING);
     ASSERT_REFUSED(answer.has_contact = false);
     ASSERT_REFUSED(answer.has_box = false);
@@ -660,7 +643,6 @@ static void checks_refuse_what_is_wrong(void **state)
 /* Two equal squares with corners at DBL_MAX and 2 DBL_MAX: the box ends beyond the doubles. */
 static void an_end_beyond_the_doubles_is_infinite(void **state)
 {
-    (void) state;
     char why[200];
     const struct solid solid = {2, FMB_CUBOID, {{DBL_MAX, 0}, {0, 1}}, {DBL_MAX, 0}, {0}, false};
     const struct question question = {solid, solid, 1};
@@ -685,7 +667,6 @@ static void an_end_beyond_the_doubles_is_infinite(void **state)
 /* A window so short that a step of doubles is more than 1e-12 of it: the next double will do. */
 static void doubles_too_coarse_for_the_limit(void **state)
 {
-    (void) state;
     char why[200];
     struct question question = thirds;
     question.duration = 0x1p-1072; /* four steps of 2^-1074; x = 0 at 4/3, x = 2 steps at 4 */

@@ -1,10 +1,7 @@
 /* Files that commands write: which existing files are replaced, and which files are left when a
  * command ends early. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+
+#include "unit.h"
 
 #include "output.h"
 
@@ -12,8 +9,6 @@
 #include <errno.h>
 #include <limits.h>
 #include <signal.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -21,16 +16,14 @@
 
 static char folder[] = "/tmp/test_output.XXXXXX";
 
-static int setup(void **state)
+static int set_up(void **state)
 {
-    (void) state;
     strcpy(folder + strlen(folder) - 6, "XXXXXX");
     return !mkdtemp(folder) || chdir(folder) != 0;
 }
 
-static int teardown(void **state)
+static int tear_down(void **state)
 {
-    (void) state;
     DIR *dir = opendir(folder);
     for (struct dirent *entry; (entry = readdir(dir));)
         remove(entry->d_name);
@@ -95,18 +88,16 @@ static mode_t mode_of(const char *path)
 
 /* ---- Existing files ---- */
 
-static void test_without_a_path_no_file_is_opened(void **state)
+static void without_a_path_no_file_is_opened(void **state)
 {
     struct output *output;
-    (void) state;
     assert_true(output_open(&(struct output_options){.kind = OUTPUT_PAGE}, &output));
     assert_null(output);
     assert_true(output_close(output, true));
 }
 
-static void test_a_picture_replaces_an_empty_file_or_a_picture(void **state)
+static void a_picture_replaces_an_empty_file_or_a_picture(void **state)
 {
-    (void) state;
     write_picture("new", false);
     put_file("empty", "");
     write_picture("empty", false);
@@ -115,11 +106,10 @@ static void test_a_picture_replaces_an_empty_file_or_a_picture(void **state)
     assert_int_equal(count_files(), 3);
 }
 
-static void test_only_force_replaces_another_kind(void **state)
+static void only_force_replaces_another_kind(void **state)
 {
     static const char *const others[] = {"{\"dim\": 3}", "<sv", "<svgx", " <svg ", "x"};
-    (void) state;
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+    for (size_t i = 0; i < COUNT(others); i++) {
         put_file("other", others[i]);
         assert_null(open_picture("other", false, NULL));
         assert_file("other", others[i]);
@@ -128,7 +118,7 @@ static void test_only_force_replaces_another_kind(void **state)
     assert_int_equal(count_files(), 1);
 }
 
-static void test_each_kind_replaces_its_own_kind(void **state)
+static void each_kind_replaces_its_own_kind(void **state)
 {
     static const char *const text[] = {
         [OUTPUT_PICTURE] = "<svg x",
@@ -137,7 +127,6 @@ static void test_each_kind_replaces_its_own_kind(void **state)
         [OUTPUT_MESH] = "ply\nformat",
         [OUTPUT_LOG] = "\xed\xa1\xda\x01"};
     const struct output_rules rules = {.force = false}, force = {.force = true};
-    (void) state;
     for (int kind = OUTPUT_PICTURE; kind <= OUTPUT_LOG; kind++)
         for (int old = OUTPUT_PICTURE; old <= OUTPUT_LOG; old++) {
             put_file("file", text[old]);
@@ -149,9 +138,8 @@ static void test_each_kind_replaces_its_own_kind(void **state)
         }
 }
 
-static void test_an_input_is_never_replaced(void **state)
+static void an_input_is_never_replaced(void **state)
 {
-    (void) state;
     for (int force = 0; force < 2; force++) {
         put_file("input", "<svg input");
         assert_int_equal(symlink("input", "symbolic"), 0);
@@ -171,10 +159,9 @@ static void test_an_input_is_never_replaced(void **state)
 
 /* ---- Links, modes, and files that are not regular ---- */
 
-static void test_symbolic_links_stay(void **state)
+static void symbolic_links_stay(void **state)
 {
     char target[64];
-    (void) state;
     assert_int_equal(mkdir("folder", 0777), 0);
     put_file("folder/there", "<svg old");
     assert_int_equal(symlink("there", "folder/link"), 0);
@@ -190,10 +177,9 @@ static void test_symbolic_links_stay(void **state)
     assert_int_equal(unlink("folder/there") + unlink("folder/absent") + unlink("folder/link"), 0);
 }
 
-static void test_new_files_follow_the_umask_and_others_keep_their_mode(void **state)
+static void new_files_follow_the_umask_and_others_keep_their_mode(void **state)
 {
     const mode_t mask = umask(027);
-    (void) state;
     write_picture("new", false);
     assert_int_equal(mode_of("new"), 0640);
     assert_int_equal(umask(mask), 027);
@@ -203,9 +189,8 @@ static void test_new_files_follow_the_umask_and_others_keep_their_mode(void **st
     assert_int_equal(mode_of("old"), 0604);
 }
 
-static void test_a_file_that_cannot_be_opened_is_an_error(void **state)
+static void a_file_that_cannot_be_opened_is_an_error(void **state)
 {
-    (void) state;
     assert_null(open_picture("no/such/folder", true, NULL));
     assert_null(open_picture(".", true, NULL));
     assert_int_equal(symlink("loop", "loop"), 0);
@@ -216,10 +201,9 @@ static void test_a_file_that_cannot_be_opened_is_an_error(void **state)
     assert_int_equal(count_files(), 0);
 }
 
-static void test_a_device_is_written_directly(void **state)
+static void a_device_is_written_directly(void **state)
 {
     struct stat device;
-    (void) state;
     struct output *output = open_picture("/dev/full", false, NULL);
     assert_non_null(output);
     fputs("<svg ", output->file);
@@ -230,9 +214,8 @@ static void test_a_device_is_written_directly(void **state)
 
 /* ---- Closing, and the end of the process ---- */
 
-static void test_an_output_that_is_not_kept_leaves_the_old_file(void **state)
+static void an_output_that_is_not_kept_leaves_the_old_file(void **state)
 {
-    (void) state;
     for (int old = 0; old < 2; old++) {
         if (old)
             put_file("file", "<svg old");
@@ -263,6 +246,9 @@ static int status_of(void (*end)(struct output *output))
     return status;
 }
 
+static const int signals[] = {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM};
+enum { SIGNALS = COUNT(signals) };
+
 static int ended_by;
 
 static void end_by_signal(struct output *output)
@@ -285,12 +271,10 @@ static void end_by_limit(struct output *output)
     exit(output_close(output, true) ? 0 : 1);
 }
 
-static void test_no_temporary_file_is_left_when_a_process_ends(void **state)
+static void no_temporary_file_is_left_when_a_process_ends(void **state)
 {
-    static const int signals[] = {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM};
-    (void) state;
     put_file("file", "<svg old");
-    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
+    for (size_t i = 0; i < SIGNALS; i++) {
         ended_by = signals[i];
         const int status = status_of(end_by_signal);
         assert_true(WIFSIGNALED(status) && WTERMSIG(status) == ended_by);
@@ -305,9 +289,8 @@ static void test_no_temporary_file_is_left_when_a_process_ends(void **state)
     assert_file("file", "<svg old");
 }
 
-static void test_ignored_signals_stay_ignored(void **state)
+static void ignored_signals_stay_ignored(void **state)
 {
-    (void) state;
     signal(SIGHUP, SIG_IGN); /* as nohup does */
     ended_by = SIGHUP;
     const int status = status_of(end_by_signal);
@@ -318,23 +301,26 @@ static void test_ignored_signals_stay_ignored(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_without_a_path_no_file_is_opened, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_a_picture_replaces_an_empty_file_or_a_picture, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(test_only_force_replaces_another_kind, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_each_kind_replaces_its_own_kind, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_an_input_is_never_replaced, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_symbolic_links_stay, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_new_files_follow_the_umask_and_others_keep_their_mode,
-                                        setup, teardown),
-        cmocka_unit_test_setup_teardown(test_a_file_that_cannot_be_opened_is_an_error, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(test_a_device_is_written_directly, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_no_temporary_file_is_left_when_a_process_ends, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(test_ignored_signals_stay_ignored, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_an_output_that_is_not_kept_leaves_the_old_file, setup,
-                                        teardown),
+        cmocka_unit_test_setup_teardown(without_a_path_no_file_is_opened, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_picture_replaces_an_empty_file_or_a_picture, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(only_force_replaces_another_kind, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(each_kind_replaces_its_own_kind, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(an_input_is_never_replaced, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(symbolic_links_stay, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(new_files_follow_the_umask_and_others_keep_their_mode,
+                                        set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_file_that_cannot_be_opened_is_an_error, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(a_device_is_written_directly, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(no_temporary_file_is_left_when_a_process_ends, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(ignored_signals_stay_ignored, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(an_output_that_is_not_kept_leaves_the_old_file, set_up,
+                                        tear_down),
     };
+    /* A shell starts jobs in the background with some of them ignored. */
+    for (size_t i = 0; i < SIGNALS; i++)
+        signal(signals[i], SIG_DFL);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

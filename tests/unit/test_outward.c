@@ -1,13 +1,7 @@
 /* What is rounded outward is outside, and what is inward inside: sums, products, quotients and cuts
  * against rational numbers; the contact and the box that doubles give against the oracle. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <math.h>
 
@@ -20,20 +14,16 @@
 #include "referee.h"
 #include "slab_truth.h"
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
 static mpq_t exact, scratch[2];
 
 static int set_up(void **state)
 {
-    (void) state;
     mpq_inits(exact, scratch[0], scratch[1], NULL);
     return 0;
 }
 
 static int tear_down(void **state)
 {
-    (void) state;
     mpq_clears(exact, scratch[0], scratch[1], NULL);
     return 0;
 }
@@ -90,7 +80,6 @@ static void expect_range(struct interval range, double x, double y, double round
 
 static void sums_hold_the_exact_one(void **state)
 {
-    (void) state;
     struct draw draw;
     long exact_ones = 0;
     draw_begin(&draw, "sums_hold_the_exact_one");
@@ -108,7 +97,6 @@ static void sums_hold_the_exact_one(void **state)
 
 static void sums_of_ranges_hold_those_of_their_ends(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "sums_of_ranges_hold_those_of_their_ends");
     for (long n = draw_sample(200000); n > 0; n--) {
@@ -129,7 +117,6 @@ static void sums_of_ranges_hold_those_of_their_ends(void **state)
 
 static void products_hold_the_exact_one(void **state)
 {
-    (void) state;
     struct draw draw;
     long exact_ones = 0, tiny = 0;
     draw_begin(&draw, "products_hold_the_exact_one");
@@ -174,7 +161,6 @@ static void expect_quotients(double x, double y, bool rounds)
 
 static void quotients_hold_the_exact_one(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "quotients_hold_the_exact_one");
     for (long n = draw_sample(300000); n > 0; n--) {
@@ -223,7 +209,6 @@ static bool holds(struct clip clip, double c, double g, bool part_within)
 
 static void cuts_are_outside_and_inside(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "cuts_are_outside_and_inside");
     for (long n = draw_sample(300000); n > 0; n--) {
@@ -241,7 +226,6 @@ static void cuts_are_outside_and_inside(void **state)
 /* Of an inequality known within errors: whichever of those within is the true one. */
 static void cuts_within_errors_are_outside_and_inside(void **state)
 {
-    (void) state;
     struct draw draw;
     draw_begin(&draw, "cuts_within_errors_are_outside_and_inside");
     for (long n = draw_sample(100000); n > 0; n--) {

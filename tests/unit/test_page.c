@@ -1,9 +1,6 @@
 /* The page of a replay: which queries it keeps, and how it writes them, hostile ones too. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+
+#include "unit.h"
 
 #include "geometry_write.h"
 #include "logged_query.h"
@@ -13,9 +10,6 @@
 #include <cjson/cJSON.h>
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* ---- Tools ----------------------------------------------------------------------------------- */
 
@@ -181,7 +175,7 @@ static struct replayed of_scene(const struct scene_query *query, const struct sc
         .log = "a.log", .outcome = outcome, .scene = query, .scene_then = then, .scene_now = now};
 }
 
-/* The data of a page of this query alone; to be deleted. */
+/* The data of a page of only this query; to be deleted. */
 static cJSON *data_of_one(const struct replayed *replayed)
 {
     struct page *page = page_open("one", BEGIN);
@@ -211,7 +205,6 @@ static void expect_answers(const struct pair_result *then, const struct pair_res
 static void an_empty_page_is_whole(void **state)
 {
     struct page *page = page_open("</script><script>alert(1)</script><!--", BEGIN);
-    (void) state;
     cJSON *data = data_of(page);
     assert_string_equal(member(data, "title")->valuestring,
                         "</script><script>alert(1)</script><!--");
@@ -235,7 +228,6 @@ static void outcomes_are_counted_and_logs_named(void **state)
     const struct pair_query query = pair_query(2);
     const struct pair_result result = overlapping();
     struct page *page = page_open("many", BEGIN);
-    (void) state;
     for (int outcome = REPLAY_SAME; outcome < REPLAY_OUTCOMES; outcome++) {
         struct replayed replayed = of_pair(&query, &result, &result, (enum replay_outcome) outcome);
         char log[] = "\xff_.log";
@@ -270,7 +262,6 @@ static void beyond_the_event_limit_only_differences_are_kept(void **state)
     const struct pair_result result = overlapping();
     struct replayed replayed = of_pair(&query, &result, &result, REPLAY_SAME);
     struct page *page = page_open("many", BEGIN);
-    (void) state;
     for (int i = 0; i < PAGE_EVENTS_MAX + 10; i++, replayed.utime++)
         page_take(page, &replayed);
     replayed.outcome = REPLAY_DIFFERENT;
@@ -294,7 +285,6 @@ static void differences_count_towards_the_limit(void **state)
     const struct pair_result result = overlapping();
     struct replayed replayed = of_pair(&query, &result, &result, REPLAY_DIFFERENT);
     struct page *page = page_open("many", BEGIN);
-    (void) state;
     for (int i = 0; i < PAGE_EVENTS_MAX + 1; i++)
         page_take(page, &replayed);
     replayed.outcome = REPLAY_SAME;
@@ -328,7 +318,6 @@ static void beyond_the_byte_limit_only_differences_are_kept(void **state)
     const int enough = 400;
     struct page *page = page_open("large", BEGIN);
     int64_t taken[] = {0, 0};
-    (void) state;
     for (int outcome = REPLAY_SAME; outcome <= REPLAY_DIFFERENT; outcome++) {
         for (int i = 0; i < enough; i++) {
             const struct replayed replayed =
@@ -362,7 +351,6 @@ static void expect_placements(const struct pair_query *query, const char *expect
 static void shapes_are_kept_once(void **state)
 {
     struct page *page = page_open("rigid", BEGIN);
-    (void) state;
     for (int i = 0; i < 200; i++) {
         struct pair_query query = pair_query(2);
         struct replayed replayed = of_pair(&query, NULL, NULL, REPLAY_UNRECORDED);
@@ -387,7 +375,6 @@ static void shapes_are_kept_once(void **state)
 static void bodies_by_handle_are_shown_where_they_are_defined(void **state)
 {
     struct pair_query query = pair_query(2);
-    (void) state;
     query.placement[0].handle = query.placement[1].handle = make_undefined(0, 2).handle;
     query.placement[0].number_count = query.placement[1].number_count = 0;
     expect_placements(&query, "[[1,0,[0,0],[],[]],[2,0,[0.5,0.5],[],[]]]");
@@ -400,7 +387,6 @@ static void bodies_have_frames_and_poses(void **state)
     static unsigned char bytes[2 * GEOMETRY_FRAME_BYTES_MAX];
     struct geometry_frame frames[2] = {cuboid(2, 1), {.shape = FMB_BOX, .components = {2, 3}}};
     struct pair_query query = pair_query(2);
-    (void) state;
     frames[0].origin[0] = 0.25;
     query.placement[0].geometry =
         (struct geometry){bytes, geometry_write_frames(2, frames, 2, bytes)};
@@ -423,7 +409,6 @@ static void bodies_that_cannot_be_drawn_are_named(void **state)
     struct geometry_frame frame = cuboid(3, 1);
     static unsigned char other_shape[GEOMETRY_FRAME_BYTES_MAX];
     struct placement bad[14];
-    (void) state;
     for (int i = 0; i < 14; i++)
         bad[i] = make_body(9, 3, 1, 0);
     frame.components[8] = NAN;
@@ -458,7 +443,6 @@ static void bodies_that_cannot_be_drawn_are_named(void **state)
 
 static void a_scene_has_all_its_placements(void **state)
 {
-    (void) state;
     make_large_scene(0);
     scene.placement_count = QUERY_PLACEMENTS_MAX + 5;
     const struct replayed replayed = of_scene(&scene, NULL, NULL, REPLAY_UNRECORDED);
@@ -475,7 +459,6 @@ static void a_scene_has_all_its_placements(void **state)
 static void results_of_a_pair_stand_side_by_side(void **state)
 {
     struct pair_result then = overlapping(), now = overlapping();
-    (void) state;
     expect_answers(&then, &now, "[[0,1,[3,null,null,0.5,0.5,1,1]]]");
     expect_answers(&then, NULL, "[[0,1,[3,null,null,0.5,0.5,1,1],null]]");
     expect_answers(NULL, NULL, "[[0,1,null]]");
@@ -498,7 +481,6 @@ static void results_of_a_pair_stand_side_by_side(void **state)
 static void invalid_ends_of_boxes_are_strings(void **state)
 {
     struct pair_result now = overlapping();
-    (void) state;
     now.answer.box[0][0] = INFINITY;
     now.answer.box[0][1] = NAN;
     now.answer.box[1][0] = -INFINITY;
@@ -509,7 +491,6 @@ static void gaps_come_last(void **state)
 {
     struct pair_result then = overlapping(), now;
     struct fmb_gap *gap = &then.answer.gap;
-    (void) state;
     then.answer.has_gap = true;
     gap->bounds[0] = -INFINITY;
     gap->bounds[1] = -0.5;
@@ -537,7 +518,6 @@ static void statuses_are_written(void **state)
     const struct pair_query query = pair_query(2);
     struct pair_result then = overlapping(), now = overlapping();
     const struct replayed replayed = of_pair(&query, &then, &now, REPLAY_BUSY);
-    (void) state;
     then.status = FMB_BUSY;
     strcpy(then.detail, "</script>\xff");
     then.method = 0;
@@ -559,7 +539,6 @@ static void a_different_certificate_is_reported(void **state)
     static const char *const certificates[][2] = {
         {"a", "a"},  {NULL, NULL}, {"a", "b"},
         {NULL, "a"}, {"a", NULL},  {"separated + a0 a1 a2 b0", "separated + a0 a1 a2 b1"}};
-    (void) state;
     for (int i = 0; i < 6; i++) {
         then.certificate = certificates[i][0];
         now.certificate = certificates[i][1];
@@ -611,7 +590,6 @@ static void expect_scene(const char *expected)
 
 static void listed_pairs_have_times_and_boxes(void **state)
 {
-    (void) state;
     make_scene(FMB_PAIRS_LISTED, 5);
     add_verdict(&result_then, 0, 0, FMB_SEPARATED);
     add_verdict(&result_then, 0, 0, FMB_TOUCHING);
@@ -633,7 +611,6 @@ static void listed_pairs_have_times_and_boxes(void **state)
 /* As in the replay's comparison, whose count the page shows. */
 static void times_that_differ_in_the_sign_of_zero_differ(void **state)
 {
-    (void) state;
     make_scene(FMB_PAIRS_LISTED, 2);
     add_verdict(&result_then, 0, 0, FMB_TOUCHING);
     result_then.has_times = true;
@@ -645,7 +622,6 @@ static void times_that_differ_in_the_sign_of_zero_differ(void **state)
 /* The second of the pairs that are named is near; of the third there is none. */
 static void named_pairs_have_gaps(void **state)
 {
-    (void) state;
     make_scene(FMB_PAIRS_ALL, 3);
     scene.margin = 0.5;
     add_verdict(&result_then, 0, 1, FMB_TOUCHING);
@@ -663,7 +639,6 @@ static void named_pairs_have_gaps(void **state)
 
 static void without_times_and_boxes_a_pair_is_its_verdict(void **state)
 {
-    (void) state;
     make_scene(FMB_PAIRS_LISTED, 3);
     add_verdict(&result_then, 0, 0, FMB_TOUCHING);
     add_verdict(&result_then, 0, 0, FMB_OVERLAPPING);
@@ -679,7 +654,6 @@ static void without_times_and_boxes_a_pair_is_its_verdict(void **state)
 /* The second result has more pairs, and both begin with the second pair. */
 static void partial_results_answer_some_pairs(void **state)
 {
-    (void) state;
     make_scene(FMB_PAIRS_LISTED, 5);
     scene.first_pair = 1;
     add_verdict(&result_then, 0, 0, FMB_SEPARATED);
@@ -697,7 +671,6 @@ static void partial_results_answer_some_pairs(void **state)
 
 static void pairs_not_named_are_separated(void **state)
 {
-    (void) state;
     make_scene(FMB_PAIRS_ALL, 4); /* (0,1) (0,2) (0,3) (1,2) (1,3) (2,3) */
     result_then.names_pairs = true;
     result_then.end_pair = 6;
@@ -716,7 +689,6 @@ static void pairs_not_named_are_separated(void **state)
 
 static void pairs_across_are_counted_across(void **state)
 {
-    (void) state;
     make_scene(FMB_PAIRS_ACROSS, 5); /* (0,2) (0,3) (0,4) (1,2) (1,3) (1,4) */
     scene.split = 2;
     scene.first_pair = 1;
@@ -734,7 +706,6 @@ static void pairs_across_are_counted_across(void **state)
 static void verdicts_of_a_scene_are_counted(void **state)
 {
     int64_t count[FMB_OVERLAPPING + 1];
-    (void) state;
     make_scene(FMB_PAIRS_ALL, 4);
     scene.first_pair = 1;
     result_then.names_pairs = true;
@@ -767,7 +738,6 @@ static void ignore(unsigned a, unsigned b)
 static void ignored_pairs_are_not_counted(void **state)
 {
     int64_t count[FMB_OVERLAPPING + 1];
-    (void) state;
     make_scene(FMB_PAIRS_ALL, 5); /* (0,1) to (0,4), (1,2) (1,3) (1,4), (2,3) ... */
     scene.first_pair = 1;
     result_then.names_pairs = true;
@@ -809,7 +779,6 @@ static void ignored_pairs_are_not_counted(void **state)
 static void differing_pairs_are_kept_first(void **state)
 {
     enum { PAIRS = 1064 };
-    (void) state;
     make_scene(FMB_PAIRS_LISTED, 2);
     scene.index_count = 2 * PAIRS;
     for (unsigned i = 0; i < PAIRS; i++) {
@@ -835,7 +804,6 @@ static void differing_pairs_are_kept_first(void **state)
 /* Hostile logs: indices beyond the placements, counts that do not agree. */
 static void results_that_do_not_match_the_query_are_harmless(void **state)
 {
-    (void) state;
     make_scene(FMB_PAIRS_ALL, 2);
     result_then.names_pairs = true;
     result_then.end_pair = INT32_MAX;

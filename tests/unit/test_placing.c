@@ -1,14 +1,8 @@
 /* Rotations and prepared frames, against rational numbers: entries of rotations are within their
  * bound and exact where they say so, and no vertex of a prepared frame is farther from the true one
  * than its error. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
+#include "unit.h"
 
 #include <float.h>
 #include <gmp.h>
@@ -18,8 +12,6 @@
 #include "prepared.h"
 #include "rational_solid.h"
 #include "rotation.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* ---- Orientations ---- */
 
@@ -170,7 +162,6 @@ static int expect_exact_rows(const struct fmb_placement *placement,
 
 static void rotations_are_within_their_bound(void **state)
 {
-    (void) state;
     struct draw draw;
     double worst = 0;
     long of_units[FMB_DIM_MAX + 1] = {0};
@@ -204,7 +195,6 @@ static void rotations_are_within_their_bound(void **state)
 /* The 24 of a cube, each from its quaternion and its negative, at any length. */
 static void turns_of_a_cube_are_exact(void **state)
 {
-    (void) state;
     struct draw draw;
     int found = 0;
     draw_begin(&draw, "turns_of_a_cube_are_exact");
@@ -233,7 +223,6 @@ static void turns_of_a_cube_are_exact(void **state)
 
 static void no_orientation_is_the_identity(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++) {
         const struct fmb_placement placement = {.orientation_count = 0};
         struct rotation_matrix rotation;
@@ -589,7 +578,6 @@ static void expect_box(const struct fmb_placement *placement, const struct fmb_p
 
 static void errors_hold_all_vertices(void **state)
 {
-    (void) state;
     struct draw draw;
     struct seen seen = {0};
     draw_begin(&draw, "errors_hold_all_vertices");
@@ -621,7 +609,6 @@ static void errors_hold_all_vertices(void **state)
 /* A search found it: the origin of the frame is off by more than most, by 0.4 of the error. */
 static void the_error_holds_an_unlucky_vertex(void **state)
 {
-    (void) state;
     static const double number[] = {-0x1.93a4a4446c833p-5,
                                     -0x1.03a280a60335ap-1,
                                     0x1.4b79a7628e95ep-5,

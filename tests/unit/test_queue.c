@@ -1,26 +1,20 @@
 /* Order, capacity; against a flood, against a naive model, and what memory is touched. */
+#include "unit.h"
+
 #include "queue.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 enum { GUARD = 0xa5, CLIENTS = 100 };
 
-/* Datagrams are cut from here, so that each byte of one tells where it is from. */
+/* Datagrams are cut from here, so that each byte of one shows its origin. */
 static unsigned char noise[2 * QUEUE_DATAGRAM_MAX];
 static unsigned char got_bytes[QUEUE_DATAGRAM_MAX + 1];
 
 static int set_up(void **state)
 {
-    (void) state;
     srand(1);
     for (size_t i = 0; i < sizeof noise; i++)
         noise[i] = (unsigned char) (rand() >> 8);
@@ -94,9 +88,8 @@ static void expect_empty(struct queue *queue)
     assert_int_equal(counts.clients, 0);
 }
 
-static void test_a_client_is_served_in_order(void **state)
+static void a_client_is_served_in_order(void **state)
 {
-    (void) state;
     struct queue *queue = create(8);
     expect_empty(queue);
     for (int i = 0; i < 5; i++)
@@ -115,9 +108,8 @@ static void test_a_client_is_served_in_order(void **state)
     queue_destroy(queue);
 }
 
-static void test_lines_are_apart(void **state)
+static void lines_are_independent(void **state)
 {
-    (void) state;
     struct queue *queue = create(32);
     for (int i = 0; i < 4; i++)
         keep(queue, 1, 10 + i, 50);
@@ -136,9 +128,8 @@ static void test_lines_are_apart(void **state)
     queue_destroy(queue);
 }
 
-static void test_sizes_around_whole_chunks(void **state)
+static void queries_may_have_any_size(void **state)
 {
-    (void) state;
     struct queue *queue = create(40);
     for (int chunks = 1; chunks <= 16; chunks++)
         for (int off = -1; off <= 1; off++) {
@@ -155,9 +146,8 @@ static void test_sizes_around_whole_chunks(void **state)
     queue_destroy(queue);
 }
 
-static void test_one_chunk(void **state)
+static void a_queue_of_one_chunk_works(void **state)
 {
-    (void) state;
     struct queue *queue = create(1);
     assert_int_equal(put(queue, 1, 0, QUEUE_CHUNK + 1), QUEUE_REFUSED);
     assert_int_equal(put(queue, 1, 0, QUEUE_DATAGRAM_MAX), QUEUE_REFUSED);
@@ -171,9 +161,8 @@ static void test_one_chunk(void **state)
     queue_destroy(queue);
 }
 
-static void test_the_biggest_holder_loses_its_newest(void **state)
+static void the_biggest_holder_loses_its_newest(void **state)
 {
-    (void) state;
     struct queue *queue = create(10);
     for (int i = 0; i < 6; i++)
         keep(queue, 1, 10 + i, 100);
@@ -198,9 +187,8 @@ static void test_the_biggest_holder_loses_its_newest(void **state)
 }
 
 /* The first would lose 3 chunks, which are not enough: it loses none. */
-static void test_nothing_is_evicted_in_vain(void **state)
+static void nothing_is_evicted_in_vain(void **state)
 {
-    (void) state;
     struct queue *queue = create(19);
     for (int i = 0; i < 19; i++)
         keep(queue, 1, i, 1);
@@ -259,24 +247,21 @@ static void withstand(struct flood flood)
     queue_destroy(queue);
 }
 
-static void test_a_flood_of_small_ones(void **state)
+static void a_flood_of_small_queries_evicts_its_own(void **state)
 {
-    (void) state;
     withstand((struct flood){.chunks = 64, .flooders = 1, .size = 10, .modest_size = 400});
     withstand((struct flood){.chunks = 64, .flooders = 1, .size = 10, .modest_size = 65536});
 }
 
-static void test_a_flood_of_large_ones(void **state)
+static void a_flood_of_large_queries_evicts_its_own(void **state)
 {
-    (void) state;
     withstand((struct flood){.chunks = 64, .flooders = 1, .size = 65536, .modest_size = 400});
     withstand((struct flood){.chunks = 64, .flooders = 1, .size = 65536, .modest_size = 65536});
 }
 
 /* Up to the share that is promised, to the chunk: 21 clients, 16 chunks each. */
-static void test_many_floods(void **state)
+static void many_floods_share_the_queue(void **state)
 {
-    (void) state;
     const size_t chunks = 21 * 16;
     withstand((struct flood){.chunks = chunks, .flooders = 20, .size = 1, .modest_size = 65536});
     withstand((struct flood){.chunks = chunks, .flooders = 20, .size = 9000, .modest_size = 65536});
@@ -479,9 +464,8 @@ static void compare_with_model(int capacity, int operations)
     queue_destroy(queue);
 }
 
-static void test_against_a_model(void **state)
+static void the_queue_matches_a_model(void **state)
 {
-    (void) state;
     compare_with_model(1, 20000);
     compare_with_model(2, 20000);
     compare_with_model(17, 60000);
@@ -500,9 +484,8 @@ static long page_faults(void)
 
 /* A large queue of which few chunks are in use at any time: each would be a fault if it were
  * touched. */
-static void test_what_was_freed_is_used_again(void **state)
+static void what_was_freed_is_used_again(void **state)
 {
-    (void) state;
     enum { CHUNKS = 65536 };
     struct queue *queue = create(CHUNKS);
     long before = page_faults();
@@ -531,9 +514,8 @@ static long faults_of_some_more(struct queue *queue)
 
 /* After a flood as well, when all was touched long ago: a child that shares its pages gets its own
  * copy of those that it writes to, each by a fault. */
-static void test_what_was_freed_last_is_used_first(void **state)
+static void what_was_freed_last_is_used_first(void **state)
 {
-    (void) state;
     enum { CHUNKS = 4096 };
     struct queue *queue = create(CHUNKS);
     for (int i = 0; i < CHUNKS; i++)
@@ -553,9 +535,8 @@ static void test_what_was_freed_last_is_used_first(void **state)
     queue_destroy(queue);
 }
 
-static void test_all_chunks_come_back(void **state)
+static void all_chunks_come_back(void **state)
 {
-    (void) state;
     enum { CHUNKS = 64 };
     struct queue *queue = create(CHUNKS);
     for (int round = 0; round < 3; round++) {
@@ -577,19 +558,19 @@ static void test_all_chunks_come_back(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_client_is_served_in_order),
-        cmocka_unit_test(test_lines_are_apart),
-        cmocka_unit_test(test_sizes_around_whole_chunks),
-        cmocka_unit_test(test_one_chunk),
-        cmocka_unit_test(test_the_biggest_holder_loses_its_newest),
-        cmocka_unit_test(test_nothing_is_evicted_in_vain),
-        cmocka_unit_test(test_a_flood_of_small_ones),
-        cmocka_unit_test(test_a_flood_of_large_ones),
-        cmocka_unit_test(test_many_floods),
-        cmocka_unit_test(test_against_a_model),
-        cmocka_unit_test(test_what_was_freed_is_used_again),
-        cmocka_unit_test(test_what_was_freed_last_is_used_first),
-        cmocka_unit_test(test_all_chunks_come_back),
+        cmocka_unit_test(a_client_is_served_in_order),
+        cmocka_unit_test(lines_are_independent),
+        cmocka_unit_test(queries_may_have_any_size),
+        cmocka_unit_test(a_queue_of_one_chunk_works),
+        cmocka_unit_test(the_biggest_holder_loses_its_newest),
+        cmocka_unit_test(nothing_is_evicted_in_vain),
+        cmocka_unit_test(a_flood_of_small_queries_evicts_its_own),
+        cmocka_unit_test(a_flood_of_large_queries_evicts_its_own),
+        cmocka_unit_test(many_floods_share_the_queue),
+        cmocka_unit_test(the_queue_matches_a_model),
+        cmocka_unit_test(what_was_freed_is_used_again),
+        cmocka_unit_test(what_was_freed_last_is_used_first),
+        cmocka_unit_test(all_chunks_come_back),
     };
     return cmocka_run_group_tests_name("queue", tests, set_up, NULL);
 }

@@ -1,4 +1,6 @@
 /* The bodies of a recording: what is requested, and what each file defines. */
+#include "unit.h"
+
 #include "geometry_write.h"
 #include "record_bodies.h"
 
@@ -6,15 +8,6 @@
 #include "definitions.h"
 #include "log_write.h"
 #include "wire.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 enum { SERVER = 5, CLIENT = 7, RECORDER = 9, SECOND = 1000000000 };
 
@@ -62,7 +55,7 @@ static bool on_names(void *user, const void *bytes, size_t size)
     return true;
 }
 
-static int setup(void **state)
+static int set_up(void **state)
 {
     struct world *world = allocate(1, sizeof *world);
     world->bodies = record_bodies_open(RECORDER);
@@ -73,7 +66,7 @@ static int setup(void **state)
     return 0;
 }
 
-static int teardown(void **state)
+static int tear_down(void **state)
 {
     struct world *world = *state;
     record_bodies_close(world->bodies);
@@ -210,7 +203,7 @@ static void begin(struct world *world)
 /* ---- Tests ------------------------------------------------------------------------------------
  */
 
-static void test_all_are_requested_in_pages(void **state)
+static void all_are_requested_in_pages(void **state)
 {
     struct world *world = *state;
     const struct body body[] = {make_body(world, 1), make_body(world, 2)};
@@ -242,7 +235,7 @@ static void test_all_are_requested_in_pages(void **state)
     assert_file_defines(world, &body[1]);
 }
 
-static void test_each_file_defines_what_it_names(void **state)
+static void each_file_defines_what_it_names(void **state)
 {
     struct world *world = *state;
     const struct body whole = make_body(world, 1), other = make_body(world, 2);
@@ -258,7 +251,7 @@ static void test_each_file_defines_what_it_names(void **state)
     assert_int_equal(record_bodies_counts(world->bodies).unresolved, 0);
 }
 
-static void test_bodies_of_queries_are_requested(void **state)
+static void bodies_of_queries_are_requested(void **state)
 {
     struct world *world = *state;
     const struct body a = make_body(world, 1), b = make_body(world, 2);
@@ -290,7 +283,7 @@ static void test_bodies_of_queries_are_requested(void **state)
 }
 
 /* A definition of all handles takes several pages. */
-static void test_handles_are_requested_in_pages(void **state)
+static void handles_are_requested_in_pages(void **state)
 {
     struct world *world = *state;
     const struct body body[] = {make_body(world, 1), make_body(world, 2)};
@@ -309,7 +302,7 @@ static void test_handles_are_requested_in_pages(void **state)
 }
 
 /* A service that does not answer gets a request for each query, not for each interval. */
-static void test_requests_without_a_result(void **state)
+static void requests_without_a_result_are_repeated(void **state)
 {
     struct world *world = *state;
     const struct body a = make_body(world, 1), b = make_body(world, 2);
@@ -331,7 +324,7 @@ static void test_requests_without_a_result(void **state)
 }
 
 /* A body that a query carries whole before its request is sent is not requested. */
-static void test_bodies_that_come_whole_are_not_requested(void **state)
+static void bodies_that_come_whole_are_not_requested(void **state)
 {
     struct world *world = *state;
     const struct body a = make_body(world, 1), b = make_body(world, 2);
@@ -344,7 +337,7 @@ static void test_bodies_that_come_whole_are_not_requested(void **state)
 }
 
 /* Handles that no service knows do not fill the memory: at most 65,536 are requested. */
-static void test_wanted_handles_are_limited(void **state)
+static void wanted_handles_are_limited(void **state)
 {
     struct world *world = *state;
     enum { MOST = 1 << 16, MORE = 20 };
@@ -364,7 +357,7 @@ static void test_wanted_handles_are_limited(void **state)
 }
 
 /* More than fit into memory: all are dropped, and those that are used are requested again. */
-static void test_dropped_bodies_are_requested_again(void **state)
+static void dropped_bodies_are_requested_again(void **state)
 {
     struct world *world = *state;
     const struct body used = make_body(world, 1), once = make_body(world, 2);
@@ -385,7 +378,7 @@ static void test_dropped_bodies_are_requested_again(void **state)
 
 /* ---- Names ---- */
 
-static void test_each_file_has_the_names(void **state)
+static void each_file_has_the_names(void **state)
 {
     struct world *world = *state;
     const struct body body = make_body(world, 1);
@@ -417,21 +410,21 @@ static void test_each_file_has_the_names(void **state)
 
 /* ---- Sequence numbers ---- */
 
-static void test_skipped_sequence_numbers_are_counted(void **state)
+static void skipped_sequence_numbers_are_counted(void **state)
 {
     struct world *world = *state;
     const struct body body = make_body(world, 1);
     static const struct {
         int64_t number, skipped;
     } steps[] = {{10, 0}, {11, 0}, {11, 0}, {14, 2}, {13, 2}, {15, 2}, {1000000, 2}, {1000001, 2}};
-    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+    for (size_t i = 0; i < COUNT(steps); i++) {
         world->sequence_number = steps[i].number - 1;
         receive_query(world, place_whole(&body), place_whole(&body));
         assert_int_equal(record_bodies_counts(world->bodies).skipped, steps[i].skipped);
     }
 }
 
-static void test_what_cannot_be_read(void **state)
+static void unreadable_messages_are_counted(void **state)
 {
     struct world *world = *state;
     for (int kind = 0; kind < LOG_OTHER; kind++)
@@ -444,18 +437,18 @@ static void test_what_cannot_be_read(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_all_are_requested_in_pages, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_each_file_defines_what_it_names, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_bodies_of_queries_are_requested, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_handles_are_requested_in_pages, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_requests_without_a_result, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_bodies_that_come_whole_are_not_requested, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(test_wanted_handles_are_limited, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_dropped_bodies_are_requested_again, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_each_file_has_the_names, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_skipped_sequence_numbers_are_counted, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_what_cannot_be_read, setup, teardown),
+        cmocka_unit_test_setup_teardown(all_are_requested_in_pages, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(each_file_defines_what_it_names, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bodies_of_queries_are_requested, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(handles_are_requested_in_pages, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(requests_without_a_result_are_repeated, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bodies_that_come_whole_are_not_requested, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(wanted_handles_are_limited, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(dropped_bodies_are_requested_again, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(each_file_has_the_names, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(skipped_sequence_numbers_are_counted, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(unreadable_messages_are_counted, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,7 @@
 /* Two results of a query compared: every way in which they can differ, numbers at their ends,
  * scenes against a naive model, results that lie; and that bytes which look the same are. */
+#include "unit.h"
+
 #include "compare.h"
 #include "geometry_write.h"
 
@@ -8,14 +10,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static const struct compare_options exact = {.tolerance = 0};
 
@@ -46,7 +40,6 @@ static void on_difference(void *user, const struct difference *difference)
 
 static int set_up(void **state)
 {
-    (void) state;
     drawn = 1;
     const struct answerer_options options = {.frames = 2000, .server_id = 99, .secret = {1, 2}};
     answerer = answerer_create(&options);
@@ -56,7 +49,6 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    (void) state;
     answer_job_destroy(job);
     answerer_destroy(answerer);
     return 0;
@@ -159,11 +151,10 @@ enum {
     GAP = FMB_WANT_GAP
 };
 
-static void test_every_kind(void **state)
+static void every_kind_of_difference_is_found(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 1, BOX | CERTIFICATE | GAP);
     const struct pair_result now = answer(&query);
-    (void) state;
     assert_true(now.answer.has_box && now.answer.has_contact && now.certificate);
     assert_true(now.answer.has_gap);
     struct pair_result then = now;
@@ -202,12 +193,11 @@ static void test_every_kind(void **state)
     expect_kind(0, &query, &then, &now, DIFFERENT_STATUS);
 }
 
-static void test_what_is_not_compared(void **state)
+static void other_fields_are_not_compared(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 1, BOX);
     const struct pair_result now = answer(&query);
     struct pair_result then = now;
-    (void) state;
     then.server_id = then.utime = then.compute_ns = -1;
     then.handle[0].bytes[0] ^= 1;
     then.method = 77;
@@ -218,13 +208,12 @@ static void test_what_is_not_compared(void **state)
     expect_same(0, &query, &then, &refused);
 }
 
-static void test_statuses_of_the_moment(void **state)
+static void statuses_of_the_moment_are_not_compared(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 1, BOX);
     const struct pair_result good = answer(&query);
     const struct pair_result busy = {.status = FMB_BUSY}, unknown = {.status = FMB_UNKNOWN_BODY};
     const struct pair_result bad = {.status = FMB_BAD_ID};
-    (void) state;
     for (double tolerance = 0; tolerance < 1; tolerance += 0.5) {
         assert_int_equal(compare_with(tolerance, &query, &busy, &good), REPLAY_BUSY);
         assert_int_equal(compare_with(tolerance, &query, &busy, &bad), REPLAY_BUSY);
@@ -272,12 +261,11 @@ static const struct {
     {0, NAN, NAN, true, true}, /* the same bits */
 };
 
-static void test_ends_of_intervals(void **state)
+static void ends_of_intervals_are_compared(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 1, 0);
     const struct pair_result good = answer(&query);
-    (void) state;
-    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+    for (size_t i = 0; i < COUNT(ends); i++)
         for (int end = 0; end < 2; end++) {
             struct pair_result then = good, now = good;
             then.answer.contact[end] = ends[i].then;
@@ -297,13 +285,12 @@ static void set_box(struct pair_result *result, int side, int axis, double end)
         result->answer.box[1 - side][axis] = 1;
 }
 
-static void test_ends_of_boxes(void **state)
+static void ends_of_boxes_are_compared(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++) {
         const struct pair_query query = pair(dim, 0.5, 0, BOX);
         const struct pair_result good = answer(&query);
-        for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+        for (size_t i = 0; i < COUNT(ends); i++)
             for (int at = 0; at < 2 * dim; at++) {
                 struct pair_result then = good, now = good;
                 set_box(&then, at / dim, at % dim, ends[i].then);
@@ -329,12 +316,11 @@ static void set_gap(struct pair_result *result, int bound, double value)
     gap->witness[1][2] = 1;
 }
 
-static void test_bounds_of_gaps(void **state)
+static void bounds_of_gaps_are_compared(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 0, 0);
     const struct pair_result good = answer(&query);
-    (void) state;
-    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+    for (size_t i = 0; i < COUNT(ends); i++)
         for (int bound = 0; bound < 2; bound++) {
             struct pair_result then = good, now = good;
             set_gap(&then, bound, ends[i].then);
@@ -347,11 +333,10 @@ static void test_bounds_of_gaps(void **state)
 }
 
 /* Of bodies that are small and near the origin. */
-static void test_a_tolerance_is_relative_to_the_largest_coordinate(void **state)
+static void a_tolerance_is_relative_to_the_largest_coordinate(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 0, 0);
     struct pair_result then = answer(&query);
-    (void) state;
     set_gap(&then, 0, 1e-3);
     set_gap(&then, 1, 1e-3);
     then.answer.gap.witness[1][2] = 1e-3;
@@ -362,12 +347,11 @@ static void test_a_tolerance_is_relative_to_the_largest_coordinate(void **state)
 }
 
 /* Nearest points need not be the only ones. */
-static void test_with_a_tolerance_witness_points_may_differ(void **state)
+static void with_a_tolerance_witness_points_may_differ(void **state)
 {
     const struct pair_query query = pair(3, 2, 0, GAP);
     const struct pair_result now = answer(&query);
     struct pair_result then = now;
-    (void) state;
     assert_true(now.answer.gap.has_witness);
     then.answer.gap.witness[0][1] += 0.25;
     then.answer.gap.direction[0] += 0.25;
@@ -377,12 +361,11 @@ static void test_with_a_tolerance_witness_points_may_differ(void **state)
     expect_kind(1, &query, &then, &now, DIFFERENT_GAP);
 }
 
-static void test_with_a_tolerance_certificates_may_differ(void **state)
+static void with_a_tolerance_certificates_may_differ(void **state)
 {
     const struct pair_query query = pair(3, 0.5, 0, CERTIFICATE);
     const struct pair_result now = answer(&query);
     struct pair_result then = now;
-    (void) state;
     then.certificate = NULL;
     expect_same(1e-12, &query, &then, &now);
     then.answer.verdict = FMB_TOUCHING; /* but nothing else that is not a number */
@@ -393,9 +376,8 @@ static void test_with_a_tolerance_certificates_may_differ(void **state)
 }
 
 /* A box of the other dimension is another box, though all numbers that both have be the same. */
-static void test_boxes_of_another_dimension(void **state)
+static void boxes_of_another_dimension_differ(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++) {
         const struct pair_query query = pair(dim, 0.5, 0, BOX);
         struct pair_result now = answer(&query), then;
@@ -700,10 +682,9 @@ static bool through_the_wire(struct scene_result *result)
     return !wire_read_scene_result(bytes, (uint32_t) size, result);
 }
 
-static void test_scenes_against_the_model(void **state)
+static void scenes_compare_as_the_model(void **state)
 {
     int different = 0, same = 0, shorter = 0;
-    (void) state;
     for (int round = 0; round < 10000; round++) {
         draw_scene();
         answer_now();
@@ -731,11 +712,10 @@ static void test_scenes_against_the_model(void **state)
 /* ---- Results that are not of the query ---- */
 
 /* Any result beside any query. */
-static void test_results_of_other_queries(void **state)
+static void results_of_other_queries_differ(void **state)
 {
     static struct scene_result kept[20];
     int count = 0, whole = 0, walked = 0;
-    (void) state;
     for (int round = 0; round < 2000; round++) {
         draw_scene();
         answer_now();
@@ -753,10 +733,9 @@ static void test_results_of_other_queries(void **state)
 }
 
 /* Each byte of a result changed in several ways: what can still be read. */
-static void test_results_changed_byte_by_byte(void **state)
+static void every_changed_byte_is_found(void **state)
 {
     int read = 0;
-    (void) state;
     for (int round = 0; round < 150; round++) {
         draw_scene();
         answer_now();
@@ -782,9 +761,8 @@ static void expect_whole(void)
 }
 
 /* As many pairs as a message has room for, all of them in contact, and nothing else said. */
-static void test_the_most_pairs(void **state)
+static void the_most_pairs_are_compared(void **state)
 {
-    (void) state;
     memset(&scene, 0, sizeof scene);
     scene.duration = 1;
     scene.which = FMB_PAIRS_LISTED;
@@ -811,9 +789,8 @@ static void test_the_most_pairs(void **state)
 /* Indices of a scene with about the most placements that a query can have, and beyond it. */
 enum { PLACEMENTS = 400 };
 
-static void test_the_most_placements(void **state)
+static void the_most_placements_are_compared(void **state)
 {
-    (void) state;
     for (int which = FMB_PAIRS_ALL; which <= FMB_PAIRS_ACROSS; which += 2) {
         memset(&scene, 0, sizeof scene);
         scene.duration = 1;
@@ -860,10 +837,9 @@ static bool looks_same(enum log_kind kind, const unsigned char *a, const unsigne
     return same;
 }
 
-static void test_scenes_whose_bytes_are_the_same(void **state)
+static void scenes_whose_bytes_are_the_same(void **state)
 {
     int same = 0;
-    (void) state;
     for (int round = 0; round < 300; round++) {
         draw_scene();
         if (draw(4) == 0 && scene.placement_count > 0) { /* refused in many ways */
@@ -901,11 +877,10 @@ static struct pair_query drawn_pair(void)
     return query;
 }
 
-static void test_pairs_whose_bytes_are_the_same(void **state)
+static void pairs_whose_bytes_are_the_same(void **state)
 {
     static unsigned char a[QUERY_BYTES_MAX], b[QUERY_BYTES_MAX];
     int same = 0, unknown = 0;
-    (void) state;
     for (int round = 0; round < 1000; round++) {
         const struct pair_query query = drawn_pair();
         const struct pair_result result = answer(&query);
@@ -930,35 +905,34 @@ static void test_pairs_whose_bytes_are_the_same(void **state)
     assert_in_range(unknown, 50, 1000);
 }
 
-static void test_names(void **state)
+static void differences_have_names(void **state)
 {
-    (void) state;
     for (int kind = 0; kind < DIFFERENT_KINDS; kind++)
         assert_true(strlen(difference_name[kind]) > 2);
 }
 
 int main(void)
 {
-#define TEST(name) cmocka_unit_test_setup_teardown(test_##name, set_up, tear_down)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        TEST(every_kind),
-        TEST(what_is_not_compared),
-        TEST(statuses_of_the_moment),
-        TEST(ends_of_intervals),
-        TEST(ends_of_boxes),
-        TEST(bounds_of_gaps),
+        TEST(every_kind_of_difference_is_found),
+        TEST(other_fields_are_not_compared),
+        TEST(statuses_of_the_moment_are_not_compared),
+        TEST(ends_of_intervals_are_compared),
+        TEST(ends_of_boxes_are_compared),
+        TEST(bounds_of_gaps_are_compared),
         TEST(a_tolerance_is_relative_to_the_largest_coordinate),
         TEST(with_a_tolerance_witness_points_may_differ),
         TEST(with_a_tolerance_certificates_may_differ),
-        TEST(boxes_of_another_dimension),
-        TEST(scenes_against_the_model),
-        TEST(results_of_other_queries),
-        TEST(results_changed_byte_by_byte),
-        TEST(the_most_pairs),
-        TEST(the_most_placements),
+        TEST(boxes_of_another_dimension_differ),
+        TEST(scenes_compare_as_the_model),
+        TEST(results_of_other_queries_differ),
+        TEST(every_changed_byte_is_found),
+        TEST(the_most_pairs_are_compared),
+        TEST(the_most_placements_are_compared),
         TEST(scenes_whose_bytes_are_the_same),
         TEST(pairs_whose_bytes_are_the_same),
-        TEST(names),
+        TEST(differences_have_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

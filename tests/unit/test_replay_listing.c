@@ -1,14 +1,7 @@
 /* Which differences are listed, and in which order: against all of them, sorted. */
+#include "unit.h"
+
 #include "listing.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static uint64_t drawn = 1;
 
@@ -84,11 +77,10 @@ static void check(int count, int64_t limit, int order)
     listing_close(listing);
 }
 
-static void test_the_first_ones(void **state)
+static void the_first_differences_are_listed(void **state)
 {
     static const int64_t limits[] = {0, 1, 2, 3, 7, 100, 1000, PUT_MAX, INT32_MAX};
-    (void) state;
-    for (size_t i = 0; i < sizeof limits / sizeof *limits; i++)
+    for (size_t i = 0; i < COUNT(limits); i++)
         for (int order = -1; order <= 1; order++) {
             check(0, limits[i], order);
             for (int count = 1; count <= PUT_MAX; count = 3 * count + 1)
@@ -97,10 +89,9 @@ static void test_the_first_ones(void **state)
 }
 
 /* Of a long certificate the beginning. */
-static void test_long_certificates(void **state)
+static void long_certificates_are_listed(void **state)
 {
     static char text[1000];
-    (void) state;
     memset(text, 'x', sizeof text - 1);
     struct difference found = {.place = {.number = 1}};
     found.then.certificate = text;
@@ -114,8 +105,8 @@ static void test_long_certificates(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_first_ones),
-        cmocka_unit_test(test_long_certificates),
+        cmocka_unit_test(the_first_differences_are_listed),
+        cmocka_unit_test(long_certificates_are_listed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

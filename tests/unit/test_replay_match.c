@@ -1,28 +1,19 @@
 /* Queries and results that wait for each other: order, keys that are the same or nearly so, the
  * end, notes; and against a naive model. */
+#include "unit.h"
+
 #include "match.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static struct match *match;
 
 static int set_up(void **state)
 {
-    (void) state;
     match = match_open();
     return 0;
 }
 
 static int tear_down(void **state)
 {
-    (void) state;
     match_close(match);
     return 0;
 }
@@ -47,9 +38,8 @@ static void take(struct match_key of, int64_t offset)
     match_free(item);
 }
 
-static void test_first_in_first_out(void **state)
+static void the_first_query_is_matched_first(void **state)
 {
-    (void) state;
     for (int i = 0; i < 5; i++)
         add(key(1, 2), i, false);
     take(key(1, 2), 0);
@@ -62,9 +52,8 @@ static void test_first_in_first_out(void **state)
     assert_null(match_any(match));
 }
 
-static void test_keys_that_differ_in_one_number(void **state)
+static void keys_differ_in_any_number(void **state)
 {
-    (void) state;
     struct match_key keys[] = {key(1, 2), key(2, 1), key(1, 2), key(1, 2)};
     keys[2].utime++;
     keys[3].kind = LOG_SCENE_QUERY;
@@ -74,10 +63,9 @@ static void test_keys_that_differ_in_one_number(void **state)
         take(keys[i], i);
 }
 
-static void test_any_ids(void **state)
+static void ids_may_be_any_numbers(void **state)
 {
     static const int64_t ids[] = {INT64_MIN, -1, 0, 1, INT64_MAX};
-    (void) state;
     for (int i = 0; i < 25; i++)
         add(key(ids[i / 5], ids[i % 5]), i, false);
     for (int i = 0; i < 25; i++)
@@ -85,9 +73,8 @@ static void test_any_ids(void **state)
 }
 
 /* A log of one client whose numbers never change: each step takes the same time. */
-static void test_many_with_one_key(void **state)
+static void many_queries_may_have_one_key(void **state)
 {
-    (void) state;
     for (int i = 0; i < 200000; i++)
         add(key(1, 1), i, false);
     for (int i = 0; i < 200000; i++)
@@ -110,10 +97,9 @@ static void on_found(void *user, struct match_item *query, struct match_item *re
     match_free(result);
 }
 
-static void test_results_that_do_not_echo_the_time(void **state)
+static void results_without_the_time_match(void **state)
 {
     struct match_key later = key(1, 2);
-    (void) state;
     later.utime = 9;
     found_count = 0;
     add(key(1, 2), 0, false);
@@ -134,10 +120,9 @@ static void test_results_that_do_not_echo_the_time(void **state)
 
 /* ---- Notes ---- */
 
-static void test_notes(void **state)
+static void notes_are_kept(void **state)
 {
     const struct match_key none = {0}, one = key(1, 2), other = key(1, 3);
-    (void) state;
     assert_null(match_noted(match, &none));
     const struct match_place query_place = {.log = 1, .offset = 77};
     const struct match_place result_place = {.log = 2, .offset = 99};
@@ -154,10 +139,9 @@ static void test_notes(void **state)
 }
 
 /* The last thousand of a client are all there, the first of a million is not. */
-static void test_notes_are_of_the_last_ones(void **state)
+static void notes_are_of_the_last_ones(void **state)
 {
     const struct match_place place = {.offset = 1};
-    (void) state;
     for (int64_t i = 0; i < 1000000; i++) {
         const struct match_key of = key(7, i);
         struct match_item *query = match_new(&of, &place);
@@ -181,9 +165,8 @@ static struct {
     int first, count;
 } queue[KEYS];
 
-static void test_against_a_model(void **state)
+static void matching_agrees_with_a_model(void **state)
 {
-    (void) state;
     memset(queue, 0, sizeof queue);
     srand(1);
     for (int64_t step = 0; step < 40000; step++) {
@@ -203,16 +186,12 @@ static void test_against_a_model(void **state)
 
 int main(void)
 {
-#define TEST(name) cmocka_unit_test_setup_teardown(test_##name, set_up, tear_down)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        TEST(first_in_first_out),
-        TEST(keys_that_differ_in_one_number),
-        TEST(any_ids),
-        TEST(many_with_one_key),
-        TEST(results_that_do_not_echo_the_time),
-        TEST(notes),
-        TEST(notes_are_of_the_last_ones),
-        TEST(against_a_model),
+        TEST(the_first_query_is_matched_first), TEST(keys_differ_in_any_number),
+        TEST(ids_may_be_any_numbers),           TEST(many_queries_may_have_one_key),
+        TEST(results_without_the_time_match),   TEST(notes_are_kept),
+        TEST(notes_are_of_the_last_ones),       TEST(matching_agrees_with_a_model),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

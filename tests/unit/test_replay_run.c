@@ -1,5 +1,7 @@
 /* Whole replays: logs of a service and its clients that are made here and then spoiled in every
  * way. Ranges of time add up to the whole, and all counts agree. */
+#include "unit.h"
+
 #include "geometry_write.h"
 #include "log_draft.h"
 #include "replay_report.h"
@@ -9,15 +11,7 @@
 
 #include <malloc.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static uint64_t drawn = 1;
 
@@ -61,7 +55,6 @@ static void open_log(void)
 
 static int tear_down(void **state)
 {
-    (void) state;
     close_log();
     return 0;
 }
@@ -221,19 +214,17 @@ static struct replay_report replay(void)
 
 /* ---- One thing at a time ---- */
 
-static void test_nothing(void **state)
+static void an_empty_log_has_nothing_to_compare(void **state)
 {
-    (void) state;
     struct replay_report report = replay();
     assert_int_equal(tally_both(&report.tally).queries, 0);
     replay_report_free(&report);
 }
 
 /* The clock of a machine that logs may be set back: what it logs then is no less there. */
-static void test_a_clock_that_goes_back(void **state)
+static void a_clock_that_goes_back_changes_nothing(void **state)
 {
     static const int64_t utimes[] = {1000, 999, -5, INT64_MIN, 0, INT64_MAX, 1001};
-    (void) state;
     for (int i = 0; i < 7; i++)
         log_both(utimes[i], pair(i, whole(1, 1, 0), whole(2, 1, i)));
     struct replay_report report = replay();
@@ -242,9 +233,8 @@ static void test_a_clock_that_goes_back(void **state)
     replay_report_free(&report);
 }
 
-static void test_differences_are_where_they_are(void **state)
+static void differences_are_where_they_are(void **state)
 {
-    (void) state;
     for (int i = 0; i < 20; i++) {
         const struct pair_query query = pair(i, whole(1, 1, 0), whole(2, 1, i));
         struct pair_result result = result_of(&query);
@@ -270,9 +260,8 @@ static void test_differences_are_where_they_are(void **state)
 
 static const double none[] = {0};
 
-static void test_handles_are_defined_before_and_after(void **state)
+static void handles_are_defined_before_and_after(void **state)
 {
-    (void) state;
     log_both(0, pair(1, by_handle(3, 2, 0), whole(2, 1, 2)));
     log_both(1, pair(2, by_handle(3, 2, 0), by_handle(4, 5, 9)));
     log_definition(2, (double[]){1, 2, 0});
@@ -289,9 +278,8 @@ static void test_handles_are_defined_before_and_after(void **state)
 
 /* A body that is sent whole later defines the handles of the queries before it, also where these
  * and their results stand elsewhere; a body without an id does not. */
-static void test_handles_are_defined_by_whole_bodies(void **state)
+static void handles_are_defined_by_whole_bodies(void **state)
 {
-    (void) state;
     for (int anonymous = 0; anonymous < 2; anonymous++) {
         const struct pair_query one = pair(1, by_handle(3, 2, 0), by_handle(4, 1, 2));
         const struct pair_result result = result_of(&one);
@@ -308,9 +296,8 @@ static void test_handles_are_defined_by_whole_bodies(void **state)
     }
 }
 
-static void test_a_verdict_is_compared_where_the_definition_comes_late(void **state)
+static void a_verdict_is_compared_where_the_definition_comes_late(void **state)
 {
-    (void) state;
     const struct pair_query query = pair(1, by_handle(3, 2, 0), by_handle(4, 1, 2));
     struct pair_result result = result_of(&query);
     result.answer.verdict = FMB_OVERLAPPING;
@@ -358,13 +345,12 @@ static void ignore_damage(void *user, int log, const struct log_damage *damage)
 }
 
 /* Its sync word, its lengths or its fingerprint changes. */
-static void test_a_result_that_changes_before_it_can_be_compared(void **state)
+static void a_result_that_changes_before_it_can_be_compared(void **state)
 {
-    (void) state;
     static const int64_t offsets[] = {0, 20, 24, 28 + sizeof WIRE_PAIR_RESULT - 1};
     const struct replay_sink sink = {refuse_difference, ignore_unreadable, ignore_damage, overwrite,
                                      NULL};
-    for (size_t i = 0; i < sizeof offsets / sizeof *offsets; i++) {
+    for (size_t i = 0; i < COUNT(offsets); i++) {
         const struct pair_query query = pair(1, by_handle(3, 2, 0), by_handle(4, 1, 2));
         const struct pair_result result = result_of(&query);
         struct tally tally = {.events = 0};
@@ -381,9 +367,8 @@ static void test_a_result_that_changes_before_it_can_be_compared(void **state)
 }
 
 /* One id, two bodies: handles say which. */
-static void test_two_clients_use_the_same_ids_for_other_bodies(void **state)
+static void two_clients_use_the_same_ids_for_other_bodies(void **state)
 {
-    (void) state;
     for (int i = 0; i < 40; i++) {
         const double edge = i % 2 ? 1 : 3;
         struct pair_query query = pair(i / 2, i < 2 ? whole(1, edge, 0) : by_handle(1, edge, 0),
@@ -397,10 +382,9 @@ static void test_two_clients_use_the_same_ids_for_other_bodies(void **state)
 }
 
 /* More bodies than the cache has space for, one after the other and again. */
-static void test_a_cache_that_is_too_small(void **state)
+static void a_cache_that_is_too_small_leaves_queries_open(void **state)
 {
     struct replay_options with = options();
-    (void) state;
     with.frames = 2;
     for (int i = 0; i < 60; i++)
         log_both(
@@ -414,9 +398,8 @@ static void test_a_cache_that_is_too_small(void **state)
 }
 
 /* A definition whose body is not what its handle says. */
-static void test_a_definition_that_lies(void **state)
+static void a_false_definition_defines_nothing(void **state)
 {
-    (void) state;
     log_definition(0, (double[]){2, 0});
     recorded.bytes[recorded.size - 1] ^= 1;
     log_both(1, pair(1, by_handle(3, 2, 0), whole(4, 1, 0)));
@@ -429,9 +412,8 @@ static void test_a_definition_that_lies(void **state)
 
 /* ---- Results of the moment, and second ones ---- */
 
-static void test_results_of_the_moment(void **state)
+static void results_of_the_moment_are_not_compared(void **state)
 {
-    (void) state;
     for (int i = 0; i < 30; i++) {
         const struct pair_query query = pair(i, by_handle(1, i % 3 ? 1 : 2, 0), whole(2, 1, i));
         const struct pair_result result = status_of(&query, i % 2 ? FMB_BUSY : FMB_UNKNOWN_BODY);
@@ -445,9 +427,8 @@ static void test_results_of_the_moment(void **state)
 }
 
 /* A client repeats a query that was refused, under the same number; or another service answers. */
-static void test_an_answer_after_a_result_of_the_moment(void **state)
+static void an_answer_after_a_result_of_the_moment_is_compared(void **state)
 {
-    (void) state;
     for (int repeats = 0; repeats < 2; repeats++) {
         for (int i = 0; i < 20; i++) {
             const struct pair_query query = pair(i, by_handle(1, i % 2 ? 1 : 2, 0), whole(2, 1, i));
@@ -472,9 +453,8 @@ static void test_an_answer_after_a_result_of_the_moment(void **state)
 }
 
 /* Of two services on one bus each query has two results. The first counts. */
-static void test_second_results(void **state)
+static void second_results_are_counted(void **state)
 {
-    (void) state;
     for (int i = 0; i < 30; i++) {
         const struct pair_query query = pair(i, whole(3, 2, 0), whole(2, 1, i));
         struct pair_result result = result_of(&query);
@@ -498,9 +478,8 @@ static void test_second_results(void **state)
 }
 
 /* The same query again, each time before its handle is defined. */
-static void test_the_same_again_before_it_can_be_answered(void **state)
+static void repeats_before_the_answer_are_the_same(void **state)
 {
-    (void) state;
     const struct pair_query query = pair(1, by_handle(3, 2, 0), whole(2, 1, 2));
     const struct pair_result result = result_of(&query);
     log_pair(0, &query);
@@ -518,10 +497,9 @@ static void test_the_same_again_before_it_can_be_answered(void **state)
 /* ---- Messages that cannot be read, or say little ---- */
 
 /* A query whose header can be read and nothing else: its result is not one of nobody. */
-static void test_a_query_that_cannot_be_read(void **state)
+static void an_unreadable_query_is_counted(void **state)
 {
     unsigned char bytes[QUERY_BYTES_MAX];
-    (void) state;
     for (int i = 0; i < 10; i++) {
         const struct pair_query query = pair(i, whole(3, 2, 0), whole(2, 1, i));
         const struct pair_result result = result_of(&query);
@@ -536,10 +514,9 @@ static void test_a_query_that_cannot_be_read(void **state)
     replay_report_free(&report);
 }
 
-static void test_a_result_that_cannot_be_read(void **state)
+static void an_unreadable_result_is_counted(void **state)
 {
     unsigned char bytes[QUERY_BYTES_MAX];
-    (void) state;
     for (int i = 0; i < 10; i++) {
         const struct pair_query query = pair(i, whole(3, 2, 0), whole(2, 1, i));
         const struct pair_result result = result_of(&query);
@@ -557,14 +534,13 @@ static void test_a_result_that_cannot_be_read(void **state)
 }
 
 /* More than a datagram, and than a log's reader keeps: the service says OVER_LIMIT. */
-static void test_queries_beyond_all_limits(void **state)
+static void queries_beyond_all_limits_replay_as_refused(void **state)
 {
     static unsigned char bytes[200000];
     static struct scene_query query;
     static struct scene_result result;
     static const size_t sizes[] = {QUERY_BYTES_MAX, QUERY_BYTES_MAX + 1, LOG_DATA_MAX,
                                    LOG_DATA_MAX + 1, sizeof bytes};
-    (void) state;
     query.label = "abc"; /* so that whole pairs fill the datagram */
     query.which = FMB_PAIRS_LISTED;
     query.index_count = (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES - 3) / 2;
@@ -585,10 +561,9 @@ static void test_queries_beyond_all_limits(void **state)
 }
 
 /* Times that a result says of itself are counted, whatever they are. */
-static void test_times_that_cannot_be(void **state)
+static void negative_times_are_not_counted(void **state)
 {
     static const int64_t times[] = {INT64_MIN, -1, 0, 1, INT64_MAX};
-    (void) state;
     for (int i = 0; i < 5; i++) {
         const struct pair_query query = pair(i, whole(3, 2, 0), whole(2, 1, i));
         struct pair_result result = result_of(&query);
@@ -604,11 +579,10 @@ static void test_times_that_cannot_be(void **state)
 }
 
 /* Logs of version 1 begin with other fingerprints. */
-static void test_a_log_of_version_1(void **state)
+static void a_log_of_version_1_is_recognised(void **state)
 {
     static const unsigned char bytes[64] = {0x17, 0x04, 0x23, 0x1d, 0xbc, 0x74, 0xa7, 0x2c};
     const struct replay_options with = options();
-    (void) state;
     log_both(0, pair(1, whole(3, 2, 0), whole(2, 1, 2)));
     log_draft_event(&recorded, WIRE_PAIR_QUERY, 1, bytes, sizeof bytes);
     log_both(2, pair(2, whole(3, 2, 0), whole(2, 1, 2)));
@@ -620,12 +594,11 @@ static void test_a_log_of_version_1(void **state)
 }
 
 /* What the help of fmb replay says: some 500 bytes for each pair query that waits. */
-static void test_memory_of_results_after_all_queries(void **state)
+static void results_after_all_queries_take_bounded_memory(void **state)
 {
     const int64_t count = 100000;
     struct pair_query query = pair(0, whole(3, 2, 0), whole(2, 1, 2));
     struct pair_result result = result_of(&query);
-    (void) state;
     for (int i = 0; i < count; i++) {
         query.sequence_number = i;
         log_pair(i, &query);
@@ -983,18 +956,16 @@ static void check_ways(int ways)
     close_log();
 }
 
-static void test_worlds_spoiled_in_one_way(void **state)
+static void worlds_spoiled_in_one_way(void **state)
 {
-    (void) state;
     check_ways(0);
     for (int way = 1; way < EVERYTHING; way *= 2)
         check_ways(way);
     check_ways(BEGIN_LATE | DEFINED);
 }
 
-static void test_worlds_spoiled_in_many_ways(void **state)
+static void worlds_spoiled_in_many_ways(void **state)
 {
-    (void) state;
     for (int round = 0; round < (getenv("FMB_FAST") ? 5 : 40); round++)
         check_ways((int) draw(EVERYTHING + 1));
     check_ways(EVERYTHING);
@@ -1002,42 +973,40 @@ static void test_worlds_spoiled_in_many_ways(void **state)
 
 static int make_hasher(void **state)
 {
-    (void) state;
     hasher = hasher_create();
     return hasher ? 0 : -1;
 }
 
 static int free_hasher(void **state)
 {
-    (void) state;
     hasher_destroy(hasher);
     return 0;
 }
 
 int main(void)
 {
-#define TEST(name) cmocka_unit_test_teardown(test_##name, tear_down)
+#define TEST(name) cmocka_unit_test_teardown(name, tear_down)
     const struct CMUnitTest tests[] = {
-        TEST(nothing),
-        TEST(a_clock_that_goes_back),
+        TEST(an_empty_log_has_nothing_to_compare),
+        TEST(a_clock_that_goes_back_changes_nothing),
         TEST(differences_are_where_they_are),
         TEST(handles_are_defined_before_and_after),
         TEST(handles_are_defined_by_whole_bodies),
         TEST(a_verdict_is_compared_where_the_definition_comes_late),
         TEST(a_result_that_changes_before_it_can_be_compared),
         TEST(two_clients_use_the_same_ids_for_other_bodies),
-        TEST(a_cache_that_is_too_small),
-        TEST(a_definition_that_lies),
-        TEST(results_of_the_moment),
-        TEST(an_answer_after_a_result_of_the_moment),
-        TEST(second_results),
-        TEST(the_same_again_before_it_can_be_answered),
-        TEST(a_query_that_cannot_be_read),
-        TEST(a_result_that_cannot_be_read),
-        TEST(queries_beyond_all_limits),
-        TEST(times_that_cannot_be),
-        TEST(a_log_of_version_1),
-        TEST(memory_of_results_after_all_queries),
+        TEST(a_cache_that_is_too_small_leaves_queries_open),
+        TEST(a_false_definition_defines_nothing),
+        TEST(results_of_the_moment_are_not_compared),
+        TEST(an_answer_after_a_result_of_the_moment_is_compared),
+        TEST(second_results_are_counted),
+        TEST(repeats_before_the_answer_are_the_same),
+        TEST(an_unreadable_query_is_counted),
+        TEST(an_unreadable_result_is_counted),
+        TEST(queries_beyond_all_limits_replay_as_refused),
+        TEST(negative_times_are_not_counted),
+        TEST(a_log_of_version_1_is_recognised),
+        TEST(results_after_all_queries_take_bounded_memory),
         TEST(worlds_spoiled_in_one_way),
         TEST(worlds_spoiled_in_many_ways),
     };

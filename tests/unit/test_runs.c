@@ -1,21 +1,14 @@
 /* Runs of slots against a plain map of them. */
+#include "unit.h"
+
 #include "runs.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 enum { SLOTS = 100 };
 
-static void test_all_slots(void **state)
+static void all_slots_can_be_taken(void **state)
 {
-    (void) state;
     static struct run_slot slot[SLOTS];
     struct runs runs;
     runs_init(&runs, slot, SLOTS);
@@ -29,9 +22,8 @@ static void test_all_slots(void **state)
 }
 
 /* A freed run is merged with both free neighbours, and is what is taken next. */
-static void test_neighbours_are_merged(void **state)
+static void neighbours_are_merged(void **state)
 {
-    (void) state;
     static struct run_slot slot[SLOTS];
     struct runs runs;
     runs_init(&runs, slot, SLOTS);
@@ -53,9 +45,8 @@ static void test_neighbours_are_merged(void **state)
 }
 
 /* A run that was freed last is found, however many shorter ones of its list there are. */
-static void test_the_last_one_is_found(void **state)
+static void the_last_one_is_found(void **state)
 {
-    (void) state;
     static struct run_slot slot[SLOTS];
     struct runs runs;
     runs_init(&runs, slot, SLOTS);
@@ -71,9 +62,8 @@ static void test_the_last_one_is_found(void **state)
 }
 
 /* Of a list, more than the first run is examined. */
-static void test_a_longer_run_of_a_list_is_found(void **state)
+static void a_longer_run_of_a_list_is_found(void **state)
 {
-    (void) state;
     static struct run_slot slot[SLOTS];
     struct runs runs;
     runs_init(&runs, slot, SLOTS);
@@ -88,9 +78,8 @@ static void test_a_longer_run_of_a_list_is_found(void **state)
 
 /* Takes and frees at random: runs never overlap, what is free is counted, and the free run that is
  * returned reaches as far as it can. */
-static void test_against_a_map(void **state)
+static void runs_match_a_map(void **state)
 {
-    (void) state;
     enum { ROUNDS = 200000 };
     static struct run_slot slot[SLOTS];
     int length[SLOTS] = {0}, taken = 0; /* of the run that begins there */
@@ -136,11 +125,9 @@ static void test_against_a_map(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_all_slots),
-        cmocka_unit_test(test_neighbours_are_merged),
-        cmocka_unit_test(test_the_last_one_is_found),
-        cmocka_unit_test(test_a_longer_run_of_a_list_is_found),
-        cmocka_unit_test(test_against_a_map),
+        cmocka_unit_test(all_slots_can_be_taken), cmocka_unit_test(neighbours_are_merged),
+        cmocka_unit_test(the_last_one_is_found),  cmocka_unit_test(a_longer_run_of_a_list_is_found),
+        cmocka_unit_test(runs_match_a_map),
     };
     return cmocka_run_group_tests_name("runs", tests, NULL, NULL);
 }

@@ -1,15 +1,9 @@
 /* Whose turn it is, whether to wait for a client, and what a span of work is charged. */
+#include "unit.h"
+
 #include "anticipation.h"
 #include "meter.h"
 #include "scheduler.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
 
 /* ---- Turns ---- */
 
@@ -17,14 +11,12 @@ static struct scheduler *turns;
 
 static int set_up(void **state)
 {
-    (void) state;
     turns = scheduler_create(0x9e3779b97f4a7c15);
     return turns ? 0 : -1;
 }
 
 static int tear_down(void **state)
 {
-    (void) state;
     scheduler_destroy(turns);
     return 0;
 }
@@ -49,9 +41,8 @@ static void serve(int client, int64_t ns)
 }
 
 /* The client that was served last keeps its turn for a while beyond the others. */
-static void test_turns_last_a_slice(void **state)
+static void turns_last_a_slice(void **state)
 {
-    (void) state;
     int64_t lead_ns;
     const int a = active_client(1), b = active_client(2);
     serve(a, SCHEDULER_SLICE_NS - 1);
@@ -67,9 +58,8 @@ static void test_turns_last_a_slice(void **state)
     assert_true(lead_ns == INT64_MAX);
 }
 
-static void test_least_used_is_next(void **state)
+static void least_used_is_next(void **state)
 {
-    (void) state;
     int64_t lead_ns;
     assert_int_equal(scheduler_next(turns, NULL, NULL, -1, &lead_ns), -1);
     const int a = active_client(1);
@@ -94,9 +84,8 @@ static bool is_odd(const void *user, int client)
     return client % 2;
 }
 
-static void test_clients_that_may_not_be_served_are_passed_over(void **state)
+static void clients_that_may_not_be_served_are_passed_over(void **state)
 {
-    (void) state;
     int64_t lead_ns;
     for (int64_t id = 0; id < 4; id++)
         scheduler_charge(turns, active_client(id), 100 - 10 * id);
@@ -107,9 +96,8 @@ static void test_clients_that_may_not_be_served_are_passed_over(void **state)
 }
 
 /* Each gets as much time as the others, whatever a turn of it takes. */
-static void test_time_is_shared_equally(void **state)
+static void time_is_shared_equally(void **state)
 {
-    (void) state;
     static const int64_t cost[] = {10, 1000, 70};
     int64_t used[3] = {0};
     for (int64_t id = 0; id < 3; id++)
@@ -123,9 +111,8 @@ static void test_time_is_shared_equally(void **state)
         assert_in_range(used[c] - used[0] + 1000, 0, 2000);
 }
 
-static void test_idling_earns_no_credit(void **state)
+static void idling_earns_no_credit(void **state)
 {
-    (void) state;
     const int idle = active_client(1), busy = active_client(2);
     scheduler_deactivate(turns, idle);
     serve(busy, 5000000);
@@ -136,9 +123,8 @@ static void test_idling_earns_no_credit(void **state)
     assert_int_equal(next(), busy);
 }
 
-static void test_debt_is_kept(void **state)
+static void debt_is_kept(void **state)
 {
-    (void) state;
     const int debtor = active_client(1), other = active_client(2);
     serve(debtor, 1000000);
     scheduler_deactivate(turns, debtor);
@@ -150,9 +136,8 @@ static void test_debt_is_kept(void **state)
     assert_int_equal(next(), debtor);
 }
 
-static void test_a_new_id_has_no_advantage_over_an_old_one(void **state)
+static void a_new_id_has_no_advantage_over_an_old_one(void **state)
 {
-    (void) state;
     const int old = active_client(1);
     serve(old, 700);
     const int new = active_client(2);
@@ -161,9 +146,8 @@ static void test_a_new_id_has_no_advantage_over_an_old_one(void **state)
     assert_int_equal(next(), new);
 }
 
-static void test_known_clients_keep_their_number(void **state)
+static void known_clients_keep_their_number(void **state)
 {
-    (void) state;
     for (int64_t id = 0; id < SCHEDULER_CLIENTS; id++)
         assert_int_equal(scheduler_client(turns, id << 41), id);
     for (int64_t id = 0; id < SCHEDULER_CLIENTS; id++)
@@ -171,16 +155,14 @@ static void test_known_clients_keep_their_number(void **state)
 }
 
 /* The first whose debt is paid. */
-static void test_the_one_that_was_idle_longest_is_forgotten(void **state)
+static void the_one_that_was_idle_longest_is_forgotten(void **state)
 {
-    (void) state;
     for (int64_t id = 0; id < SCHEDULER_CLIENTS; id++)
         active_client(id);
     assert_int_equal(scheduler_client(turns, 5000), SCHEDULER_CLIENTS); /* all are active */
     scheduler_deactivate(turns, 7);
     scheduler_deactivate(turns, 3);
-    assert_int_equal(scheduler_client(turns, 5000),
-                     SCHEDULER_CLIENTS); /* those two started behind */
+    assert_int_equal(scheduler_client(turns, 5000), SCHEDULER_CLIENTS); /* those two started late */
     serve(9, 1);
     assert_int_equal(active_client(5000), 7);
     assert_int_equal(scheduler_client(turns, 5000), 7);
@@ -193,9 +175,8 @@ static void test_the_one_that_was_idle_longest_is_forgotten(void **state)
 
 /* Against a list: ids come, idle and come again, in any order. Those that are active keep their
  * number, but for the shared one. */
-static void test_ids_without_end(void **state)
+static void an_endless_stream_of_ids_is_served(void **state)
 {
-    (void) state;
     enum { IDS = 5000 };
     static int64_t active[SCHEDULER_CLIENTS + 1]; /* [client] id + 1; 0: idle */
     static int number[IDS];
@@ -232,9 +213,8 @@ static void accustom(int client, int64_t think_ns, int times)
     }
 }
 
-static void test_fast_clients_are_waited_for(void **state)
+static void fast_clients_are_waited_for(void **state)
 {
-    (void) state;
     anticipation_init(&expectation);
     assert_int_equal(expectation.client, -1);
     assert_true(
@@ -255,9 +235,8 @@ static void test_fast_clients_are_waited_for(void **state)
 }
 
 /* Waiting pays only where the work of another client would take longer. */
-static void test_waiting_is_weighed_against_work(void **state)
+static void waiting_is_weighed_against_work(void **state)
 {
-    (void) state;
     anticipation_init(&expectation);
     accustom(5, 20000, 50);
     assert_false(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 10000, false));
@@ -265,9 +244,8 @@ static void test_waiting_is_weighed_against_work(void **state)
     assert_true(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 30000, false));
 }
 
-static void test_slow_clients_are_not_waited_for(void **state)
+static void slow_clients_are_not_waited_for(void **state)
 {
-    (void) state;
     anticipation_init(&expectation);
     accustom(5, 2 * ANTICIPATION_THINK_NS, 30);
     assert_false(anticipation_begin(&expectation, 5, 1000, INT64_MAX, 1000000, true));
@@ -301,9 +279,8 @@ static void pass(int64_t on_the_wall_ns, int64_t of_the_cpu_ns)
     cpu_ns += of_the_cpu_ns;
 }
 
-static void test_long_spans_leave_out_other_programs(void **state)
+static void long_spans_leave_out_other_programs(void **state)
 {
-    (void) state;
     static const struct meter_clocks clocks = {read_wall, read_cpu};
     struct meter meter;
     meter_init(&meter, &clocks);
@@ -333,20 +310,20 @@ static void test_long_spans_leave_out_other_programs(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_turns_last_a_slice),
-        TEST(test_least_used_is_next),
-        TEST(test_clients_that_may_not_be_served_are_passed_over),
-        TEST(test_time_is_shared_equally),
-        TEST(test_idling_earns_no_credit),
-        TEST(test_debt_is_kept),
-        TEST(test_a_new_id_has_no_advantage_over_an_old_one),
-        TEST(test_known_clients_keep_their_number),
-        TEST(test_the_one_that_was_idle_longest_is_forgotten),
-        TEST(test_ids_without_end),
-        cmocka_unit_test(test_fast_clients_are_waited_for),
-        cmocka_unit_test(test_waiting_is_weighed_against_work),
-        cmocka_unit_test(test_slow_clients_are_not_waited_for),
-        cmocka_unit_test(test_long_spans_leave_out_other_programs),
+        TEST(turns_last_a_slice),
+        TEST(least_used_is_next),
+        TEST(clients_that_may_not_be_served_are_passed_over),
+        TEST(time_is_shared_equally),
+        TEST(idling_earns_no_credit),
+        TEST(debt_is_kept),
+        TEST(a_new_id_has_no_advantage_over_an_old_one),
+        TEST(known_clients_keep_their_number),
+        TEST(the_one_that_was_idle_longest_is_forgotten),
+        TEST(an_endless_stream_of_ids_is_served),
+        cmocka_unit_test(fast_clients_are_waited_for),
+        cmocka_unit_test(waiting_is_weighed_against_work),
+        cmocka_unit_test(slow_clients_are_not_waited_for),
+        cmocka_unit_test(long_spans_leave_out_other_programs),
     };
     return cmocka_run_group_tests_name("turns", tests, NULL, NULL);
 }

@@ -1,22 +1,16 @@
 /* The server, by bytes and a callback: results, counts, hostile bytes. */
+#include "unit.h"
+
 #include "clock.h"
 #include "geometry_write.h"
 #include "hostile.h"
 #include "service.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
-static void test_a_query_gets_one_result(void **state)
+static void a_query_gets_one_result(void **state)
 {
-    (void) state;
     struct pair_query query = service_pair(21, 1);
     query.want = FMB_WANT_BOX;
     query.placement[1].position[0] = 0.25;
@@ -33,9 +27,8 @@ static void test_a_query_gets_one_result(void **state)
     assert_int_equal(service.pair.compute_ns, 100);
 }
 
-static void test_certificates_are_given_where_wanted(void **state)
+static void certificates_are_given_where_wanted(void **state)
 {
-    (void) state;
     const double distance[] = {0.25, 1, 3};
     const char *const begin[] = {"overlapping", "touching", "separated"};
     struct pair_query query = service_pair(21, 1);
@@ -54,9 +47,8 @@ static void test_certificates_are_given_where_wanted(void **state)
     assert_int_equal(service_status()->pairs, 6);
 }
 
-static void test_definitions_are_given(void **state)
+static void definitions_are_given(void **state)
 {
-    (void) state;
     struct pair_query query = service_pair(21, 1);
     query.placement[0].body_id = 1;
     query.placement[1].body_id = 2; /* of the same geometry */
@@ -70,9 +62,8 @@ static void test_definitions_are_given(void **state)
     assert_int_equal(service.definition_bodies, 1);
 }
 
-static void test_status_counts(void **state)
+static void the_heartbeat_counts_the_work(void **state)
 {
-    (void) state;
     struct pair_query query = service_pair(21, 1);
     query.placement[0].body_id = 1;
     query.placement[1].body_id = 2;
@@ -114,9 +105,8 @@ static void test_status_counts(void **state)
 }
 
 /* Of pairs that a method cannot decide. */
-static void test_undecided_pairs_are_not_counted(void **state)
+static void undecided_pairs_are_not_counted(void **state)
 {
-    (void) state;
     static struct scene_query scene;
     static unsigned char bytes[QUERY_BYTES_MAX];
     const struct pair_query pair = service_pair(21, 1);
@@ -174,9 +164,8 @@ static int64_t pairs_counted(const struct scene_query *scene)
     return service_status()->pairs - before;
 }
 
-static void test_ignored_pairs_are_not_counted(void **state)
+static void ignored_pairs_are_not_counted(void **state)
 {
-    (void) state;
     struct scene_query *scene = squares(FMB_PAIRS_ALL, 3, 0);
     ignore(scene, 0, 1);
     ignore(scene, 2, 1);
@@ -215,15 +204,14 @@ static void test_ignored_pairs_are_not_counted(void **state)
     assert_int_equal(pairs_counted(scene), 2);
 }
 
-static void test_pairs_before_the_first_are_not_counted(void **state)
+static void pairs_before_the_first_are_not_counted(void **state)
 {
-    (void) state;
     struct scene_query *scene = squares(FMB_PAIRS_ALL, 10, 0);
     scene->first_pair = 40;
     assert_int_equal(pairs_counted(scene), 5);
 }
 
-/* The bytes on stderr when a heartbeat of this server is heard. */
+/* The bytes on stderr when a heartbeat of this server is received. */
 static long said_of_heartbeat(int64_t server_id)
 {
     unsigned char bytes[WIRE_STATUS_BYTES_MAX];
@@ -249,10 +237,9 @@ static void sleep_ms(long ms)
     nanosleep(&pause, NULL);
 }
 
-/* Another service is reported once; the heartbeats that a server hears of its own are not. */
-static void test_another_service_is_reported(void **state)
+/* Another service is reported once; its own heartbeats are not. */
+static void another_service_is_reported(void **state)
 {
-    (void) state;
     assert_int_equal(said_of_heartbeat(11), 0);
     assert_true(said_of_heartbeat(12) > 50);
     assert_int_equal(said_of_heartbeat(12), 0);
@@ -261,17 +248,15 @@ static void test_another_service_is_reported(void **state)
     assert_true(said_of_heartbeat(13) > 50);
 }
 
-static void test_uptime_is_in_microseconds(void **state)
+static void uptime_is_in_microseconds(void **state)
 {
-    (void) state;
     sleep_ms(20);
     const int64_t uptime_us = service_status()->uptime_us;
     assert_in_range(uptime_us, 20000, (clock_ns() - service.opened_ns) / 1000);
 }
 
-static void test_results_that_the_bus_does_not_take_are_counted(void **state)
+static void results_that_the_bus_does_not_take_are_counted(void **state)
 {
-    (void) state;
     service.refuses = true;
     service_query_pair(21, 1);
     service_settle();
@@ -281,17 +266,15 @@ static void test_results_that_the_bus_does_not_take_are_counted(void **state)
     assert_int_equal(service.status.answered, 0);
 }
 
-static void test_heartbeats_are_due_each_second(void **state)
+static void heartbeats_are_due_each_second(void **state)
 {
-    (void) state;
     assert_int_equal(server_heartbeat_due_ms(service.server), 0);
     service_status();
     assert_in_range(server_heartbeat_due_ms(service.server), 900, 1000);
 }
 
-static void test_what_is_too_long_is_refused(void **state)
+static void what_is_too_long_is_refused(void **state)
 {
-    (void) state;
     static unsigned char bytes[BUS_PAYLOAD_MAX];
     static const struct scene_query scene = {.client_id = 22};
     wire_write_scene_query(&scene, bytes);
@@ -311,14 +294,13 @@ static void send_damage(void *context, const char *what, const unsigned char *by
 }
 
 /* Damaged messages of every type as queries of every kind: counted, not answered, not fatal. */
-static void test_damage_is_counted(void **state)
+static void damage_is_counted(void **state)
 {
-    (void) state;
     static const char *const types[] = {"pair_query",   "pair_result", "scene_query",
                                         "scene_result", "status",      "definition_query",
                                         "definition"};
     size_t sent = 0;
-    for (size_t t = 0; t < sizeof types / sizeof *types; t++)
+    for (size_t t = 0; t < COUNT(types); t++)
         for (enum server_kind kind = SERVER_PAIRS; kind < SERVER_STATUS; kind++)
             sent += hostile_each(types[t], send_damage, &kind);
     assert_true(sent > 1000);
@@ -335,19 +317,19 @@ static void test_damage_is_counted(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_a_query_gets_one_result),
-        TEST(test_certificates_are_given_where_wanted),
-        TEST(test_definitions_are_given),
-        TEST(test_status_counts),
-        TEST(test_undecided_pairs_are_not_counted),
-        TEST(test_ignored_pairs_are_not_counted),
-        TEST(test_pairs_before_the_first_are_not_counted),
-        TEST(test_another_service_is_reported),
-        TEST(test_uptime_is_in_microseconds),
-        TEST(test_results_that_the_bus_does_not_take_are_counted),
-        TEST(test_heartbeats_are_due_each_second),
-        TEST(test_what_is_too_long_is_refused),
-        TEST(test_damage_is_counted),
+        TEST(a_query_gets_one_result),
+        TEST(certificates_are_given_where_wanted),
+        TEST(definitions_are_given),
+        TEST(the_heartbeat_counts_the_work),
+        TEST(undecided_pairs_are_not_counted),
+        TEST(ignored_pairs_are_not_counted),
+        TEST(pairs_before_the_first_are_not_counted),
+        TEST(another_service_is_reported),
+        TEST(uptime_is_in_microseconds),
+        TEST(results_that_the_bus_does_not_take_are_counted),
+        TEST(heartbeats_are_due_each_second),
+        TEST(what_is_too_long_is_refused),
+        TEST(damage_is_counted),
     };
     return cmocka_run_group_tests_name("server", tests, NULL, NULL);
 }

@@ -1,17 +1,12 @@
 /* Which client is served when: the server with clocks that the test moves. */
+#include "unit.h"
+
 #include "anticipation.h"
 #include "geometry_write.h"
 #include "gmp_allocations.h"
 #include "jobs.h"
 #include "quota.h"
 #include "service.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 enum { CHEAP = 1, COSTLY = 2, OTHER = 3, US = 1000, MS = 1000000 };
 
@@ -45,9 +40,8 @@ static void work_for(int64_t ns)
         assert_int_not_equal(server_work(service.server), SERVER_IDLE);
 }
 
-static void test_a_client_is_served_in_order(void **state)
+static void a_client_is_served_in_order(void **state)
 {
-    (void) state;
     for (int i = 0; i < 100; i++)
         service_query_pair(CHEAP, i);
     assert_int_equal(service.count, 0);
@@ -57,9 +51,8 @@ static void test_a_client_is_served_in_order(void **state)
         assert_int_equal(service.result[i].sequence_number, i);
 }
 
-static void test_clients_share_time_not_answers(void **state)
+static void clients_share_time_not_answers(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = 10 * US;
     service.cost_ns[COSTLY] = MS;
     for (int i = 0; i < 3000; i++)
@@ -76,9 +69,8 @@ static void test_clients_share_time_not_answers(void **state)
 
 /* Time is charged to the client of the query that it was spent on, before the query is served too:
  * what it takes to read a datagram, and to refuse it or an older one for which it has no space. */
-static void test_reading_is_charged(void **state)
+static void reading_is_charged(void **state)
 {
-    (void) state;
     const struct pair_query query = service_pair(COSTLY, 2000);
     unsigned char bytes[QUERY_BYTES_MAX];
     service.cost_ns[CHEAP] = service.cost_ns[COSTLY] = 10 * US;
@@ -93,9 +85,8 @@ static void test_reading_is_charged(void **state)
     assert_in_range(answers_to(CHEAP) - answers_to(COSTLY), 900, 1100);
 }
 
-static void test_refusing_is_charged(void **state)
+static void refusing_is_charged(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = service.cost_ns[COSTLY] = 10 * US;
     service.refusal_ns = 100 * US;
     for (int i = 0; i < 9000; i++)
@@ -110,9 +101,8 @@ static void test_refusing_is_charged(void **state)
 }
 
 /* The bus is looked at between two units: no call of server_work() takes much longer than one. */
-static void test_work_is_done_in_short_spans(void **state)
+static void work_is_done_in_short_spans(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = 10 * US;
     service.cost_ns[COSTLY] = 5 * MS;
     for (int i = 0; i < 300; i++)
@@ -128,9 +118,8 @@ static void test_work_is_done_in_short_spans(void **state)
     assert_int_equal(answers_to(COSTLY), 1);
 }
 
-static void test_pairs_do_not_wait_for_scenes_of_their_client(void **state)
+static void pairs_do_not_wait_for_scenes_of_their_client(void **state)
 {
-    (void) state;
     static const int64_t order[] = {3, 4, 1, 2};
     service.tick_ns = US;
     service_query_scene(CHEAP, 1, 300);
@@ -145,9 +134,8 @@ static void test_pairs_do_not_wait_for_scenes_of_their_client(void **state)
         assert_int_equal(service.result[i].sequence_number, order[i]);
 }
 
-static void test_a_new_id_gains_nothing(void **state)
+static void a_new_id_gains_nothing(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = 10 * US;
     for (int i = 0; i < 500; i++)
         service_query_pair(CHEAP, i);
@@ -155,7 +143,7 @@ static void test_a_new_id_gains_nothing(void **state)
     const int before = service.count;
     service_query_pair(OTHER, 1);
     service_settle();
-    /* It begins 1 ms behind, and a turn lasts 0.5 ms more. */
+    /* It begins 1 ms late, and a turn lasts 0.5 ms more. */
     assert_in_range(place_of(OTHER, 1) - before, 140, 160);
     expect_all_ok(501);
 }
@@ -189,22 +177,20 @@ static int64_t answers_in_closed_loop(int64_t think_ns, int64_t span_ns)
 }
 
 /* Without it, there would be one answer for each of COSTLY's: 200. */
-static void test_a_client_in_closed_loop_keeps_its_share(void **state)
+static void a_client_in_closed_loop_keeps_its_share(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = 10 * US;
     service.cost_ns[COSTLY] = 5 * MS;
     for (int i = 0; i < 150; i++)
         service_query_pair(COSTLY, i);
-    /* Alone it would get 1 s / 30 us = 33,333. Beside the other it is charged 20 us for 30 us, the
-     * other 9.95 ms for 5 ms: so it has 749 ms. */
+    /* By itself it would get 1 s / 30 us = 33,333. Beside the other it is charged 20 us for 30 us,
+     * the other 9.95 ms for 5 ms: so it has 749 ms. */
     assert_in_range(answers_in_closed_loop(20 * US, 1000 * MS), 24000, 26000);
     assert_in_range(answers_to(COSTLY), 48, 53);
 }
 
-static void test_a_slow_client_is_not_waited_for(void **state)
+static void a_slow_client_is_not_waited_for(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = 10 * US;
     service.cost_ns[COSTLY] = 100 * US;
     for (int i = 0; i < 8000; i++)
@@ -217,9 +203,8 @@ static void test_a_slow_client_is_not_waited_for(void **state)
 }
 
 /* The same client beside certificates. Each would delay it by more than the wait takes. */
-static void test_a_slow_client_is_anticipated_before_long_work(void **state)
+static void a_slow_client_is_anticipated_before_long_work(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = 10 * US;
     service.cost_ns[COSTLY] = 10 * MS;
     for (int i = 0; i < 100; i++)
@@ -229,9 +214,8 @@ static void test_a_slow_client_is_anticipated_before_long_work(void **state)
     assert_true(answers_in_closed_loop(400 * US, 100 * MS) > 100);
 }
 
-static void test_waiting_ends(void **state)
+static void waiting_for_a_client_ends(void **state)
 {
-    (void) state;
     service.cost_ns[COSTLY] = 5 * MS;
     service_query_pair(CHEAP, 1);
     for (int i = 0; i < 3; i++)
@@ -247,9 +231,8 @@ static void test_waiting_ends(void **state)
 
 /* ---- Scenes ---- */
 
-static void test_scenes_share_time(void **state)
+static void scenes_share_time(void **state)
 {
-    (void) state;
     service.tick_ns = US;
     service_query_scene(CHEAP, 1, 400);
     service_query_scene(COSTLY, 1, 400);
@@ -262,9 +245,8 @@ static void test_scenes_share_time(void **state)
                          service.result[i].client_id == OTHER ? 40 * 39 / 2 : 400 * 399 / 2);
 }
 
-static void test_pairs_pass_long_scenes(void **state)
+static void pairs_pass_long_scenes(void **state)
 {
-    (void) state;
     service.tick_ns = 10 * US;
     service_query_scene(COSTLY, 1, 500);
     for (int i = 0; i < 20; i++)
@@ -282,9 +264,8 @@ static void test_pairs_pass_long_scenes(void **state)
 }
 
 /* A scene of a tenth of a second goes on where no other waits. */
-static void test_long_scenes_stop_where_others_wait(void **state)
+static void long_scenes_stop_where_others_wait(void **state)
 {
-    (void) state;
     service.tick_ns = 20 * US;
     service_query_scene(COSTLY, 1, 500);
     service_settle();
@@ -301,9 +282,8 @@ static void test_long_scenes_stop_where_others_wait(void **state)
     assert_in_range(service.now_ns - begin_ns, 100 * MS, 120 * MS);
 }
 
-static void test_the_longest_job_is_the_one_to_stop(void **state)
+static void the_longest_job_is_the_one_to_stop(void **state)
 {
-    (void) state;
     static const int used_s[] = {2, 4, 3};
     static struct jobs jobs;
     assert_true(jobs_init(&jobs));
@@ -316,9 +296,8 @@ static void test_the_longest_job_is_the_one_to_stop(void **state)
 }
 
 /* It is the one taken last of those that are left. */
-static void test_the_last_job_stops_early(void **state)
+static void the_last_job_stops_early(void **state)
 {
-    (void) state;
     static struct jobs jobs;
     struct job *job[JOBS];
     assert_true(jobs_init(&jobs));
@@ -339,9 +318,8 @@ static void test_the_last_job_stops_early(void **state)
 }
 
 /* More clients than jobs: the longest stops early, and each gets an answer. */
-static void test_more_scenes_than_jobs(void **state)
+static void more_scenes_than_jobs_are_served(void **state)
 {
-    (void) state;
     enum { CLIENTS = 3 * JOBS };
     service.tick_ns = 10 * US;
     for (int64_t client = 1; client <= CLIENTS; client++)
@@ -358,9 +336,8 @@ static void test_more_scenes_than_jobs(void **state)
 
 /* ---- Floods ---- */
 
-static void test_a_full_queue_refuses_the_one_that_holds_most(void **state)
+static void a_full_queue_refuses_the_one_that_holds_most(void **state)
 {
-    (void) state;
     enum { FLOOD = 9000, MODEST = 500 };
     for (int i = 0; i < FLOOD; i++)
         service_query_pair(COSTLY, i);
@@ -391,9 +368,8 @@ static void test_a_full_queue_refuses_the_one_that_holds_most(void **state)
 
 /* Clients fill the queue with one scene each. The query of a further client evicts one of these.
  * The client of that scene is then idle: it gets no turn, and the service does not wait for it. */
-static void test_a_client_whose_only_query_is_evicted_is_idle(void **state)
+static void a_client_whose_only_query_is_evicted_is_idle(void **state)
 {
-    (void) state;
     enum { CROWD = 512, BODIES = 505 };
     for (int64_t client = 1; client <= CROWD; client++) {
         service.batch_ns = client < CROWD ? 2 * MS : 0; /* the last one has used least */
@@ -410,9 +386,8 @@ static void test_a_client_whose_only_query_is_evicted_is_idle(void **state)
     assert_int_equal(service_status()->malformed, 0);
 }
 
-static void test_new_ids_without_end(void **state)
+static void an_endless_stream_of_ids_gains_nothing(void **state)
 {
-    (void) state;
     enum { IDS = 20000 };
     service.cost_ns[CHEAP] = 10 * US;
     int64_t sent = 0;
@@ -429,9 +404,8 @@ static void test_new_ids_without_end(void **state)
 
 /* ---- Quotas ---- */
 
-static void test_queries_expire(void **state)
+static void queries_expire(void **state)
 {
-    (void) state;
     service_query_pair(CHEAP, 1);
     service.now_ns += QUOTA_AGE_NS;
     service_settle();
@@ -452,9 +426,8 @@ static void test_queries_expire(void **state)
     assert_int_equal(service.status.definitions, 1);
 }
 
-static void test_a_repeat_expires_by_its_own_arrival(void **state)
+static void a_repeat_expires_by_its_own_arrival(void **state)
 {
-    (void) state;
     service_query_pair(CHEAP, 1);
     service.now_ns += QUOTA_AGE_NS / 2;
     service_query_pair(CHEAP, 1);
@@ -465,9 +438,8 @@ static void test_a_repeat_expires_by_its_own_arrival(void **state)
 }
 
 /* The second pair waits for the job of the first. */
-static void test_a_query_in_progress_does_not_expire(void **state)
+static void a_query_in_progress_does_not_expire(void **state)
 {
-    (void) state;
     service.tick_ns = US;
     service_query_frames(CHEAP, 1, 900);
     service_query_frames(CHEAP, 2, 900);
@@ -484,9 +456,8 @@ static void test_a_query_in_progress_does_not_expire(void **state)
 }
 
 /* A pair of many frames waits in one FIFO, and then in another for the job of the one before it. */
-static void test_the_age_of_a_pair_of_many_frames(void **state)
+static void a_pair_of_many_frames_ages_from_its_arrival(void **state)
 {
-    (void) state;
     service.tick_ns = US;
     service_query_frames(CHEAP, 1, 900);
     service_query_frames(CHEAP, 2, 900);
@@ -501,9 +472,8 @@ static void test_the_age_of_a_pair_of_many_frames(void **state)
 }
 
 /* When the time that the queries of a client take is known, the newest are refused. */
-static void test_waiting_time_is_limited(void **state)
+static void waiting_time_is_limited(void **state)
 {
-    (void) state;
     enum { SENT = 400 };
     service.cost_ns[COSTLY] = 20 * MS;
     for (int i = 0; i < SENT; i++)
@@ -530,9 +500,8 @@ static void test_waiting_time_is_limited(void **state)
     assert_true(answered > 200);
 }
 
-static void test_waiting_time_of_scenes_is_limited(void **state)
+static void waiting_time_of_scenes_is_limited(void **state)
 {
-    (void) state;
     enum { KNOWN = 256, SENT = 100 };
     service.tick_ns = 10 * MS;
     for (int i = 0; i < KNOWN; i++) {
@@ -549,9 +518,8 @@ static void test_waiting_time_of_scenes_is_limited(void **state)
 }
 
 /* Queries that are dropped take no time, and are no samples of the estimate. */
-static void test_dropped_queries_are_not_in_the_estimate(void **state)
+static void dropped_queries_are_not_in_the_estimate(void **state)
 {
-    (void) state;
     enum { KNOWN = 256 };
     service.cost_ns[COSTLY] = 20 * MS;
     for (int i = 0; i < KNOWN; i++) {
@@ -567,9 +535,8 @@ static void test_dropped_queries_are_not_in_the_estimate(void **state)
     assert_in_range(service_status()->waiting, 40, 60);
 }
 
-static void test_many_clients_share_the_waiting_time(void **state)
+static void many_clients_share_the_waiting_time(void **state)
 {
-    (void) state;
     enum { CLIENTS = 20, KNOWN = 256, SENT = 100 };
     for (int i = 0; i < KNOWN + SENT; i++)
         for (int64_t client = 10; client < 10 + CLIENTS; client++) {
@@ -581,9 +548,8 @@ static void test_many_clients_share_the_waiting_time(void **state)
     assert_in_range(service_status()->waiting * 10 * MS, QUOTA_ALL_NS / 2, QUOTA_ALL_NS * 5 / 4);
 }
 
-static void test_the_only_waiting_query_is_never_refused(void **state)
+static void the_only_waiting_query_is_never_refused(void **state)
 {
-    (void) state;
     service.cost_ns[COSTLY] = 2 * QUOTA_CLIENT_NS;
     for (int i = 0; i < 100; i++) {
         service_query_pair(COSTLY, i);
@@ -597,9 +563,8 @@ static void test_the_only_waiting_query_is_never_refused(void **state)
     assert_int_equal(service.result[100].status, FMB_BUSY);
 }
 
-static void test_thousands_of_cheap_queries_may_wait(void **state)
+static void thousands_of_cheap_queries_may_wait(void **state)
 {
-    (void) state;
     service.cost_ns[CHEAP] = 20 * US;
     for (int i = 0; i < 8000; i++)
         service_query_pair(CHEAP, i);
@@ -608,9 +573,8 @@ static void test_thousands_of_cheap_queries_may_wait(void **state)
 }
 
 /* One query in a hundred takes 10 ms, the others 5 us: 105 us on average. */
-static void test_the_estimate_of_mixed_queries_is_their_mean(void **state)
+static void the_estimate_of_mixed_queries_is_their_mean(void **state)
 {
-    (void) state;
     struct quota quota = {0};
     int64_t most_ns = 0;
     for (int i = 0; i < 10000; i++) {
@@ -625,9 +589,8 @@ static void test_the_estimate_of_mixed_queries_is_their_mean(void **state)
     assert_true(quota_estimate(&quota, QUEUE_SHORT) > 7 * MS);
 }
 
-static void test_a_new_id_has_a_quota_of_its_own(void **state)
+static void a_new_id_has_a_quota_of_its_own(void **state)
 {
-    (void) state;
     enum { EXPENSIVE = 8, CHEAPER = 25 };
     for (int64_t id = 0; id < SCHEDULER_CLIENTS; id++)
         for (int i = 0; i < EXPENSIVE; i++) {
@@ -645,9 +608,8 @@ static void test_a_new_id_has_a_quota_of_its_own(void **state)
     expect_all_ok(SCHEDULER_CLIENTS * EXPENSIVE + (SCHEDULER_CLIENTS - 1) * CHEAPER);
 }
 
-static void test_refusals_are_limited(void **state)
+static void refusals_are_limited(void **state)
 {
-    (void) state;
     enum { SECONDS = 3, RATE = 5000 };
     service.cost_ns[COSTLY] = 100 * MS;
     for (int i = 0; i < SECONDS * RATE; i++) {
@@ -666,9 +628,8 @@ static void test_refusals_are_limited(void **state)
 
 /* ---- Pairs of bodies of several frames ---- */
 
-static void test_a_pair_of_many_frames(void **state)
+static void a_pair_of_many_frames_is_answered_in_steps(void **state)
 {
-    (void) state;
     service.tick_ns = US;
     service_query_frames(COSTLY, 1, 900);
     work_for(MS);
@@ -705,22 +666,19 @@ static void expect_a_free_job(void (*query_frames)(int64_t, int64_t, int), enum 
     assert_int_equal(service.result[1].status, FMB_OK);
 }
 
-static void test_pairs_of_many_frames_do_not_keep_all_jobs(void **state)
+static void pairs_of_many_frames_do_not_keep_all_jobs(void **state)
 {
-    (void) state;
     expect_a_free_job(service_query_frames, SERVER_PAIRS);
 }
 
-static void test_scenes_of_many_frames_do_not_keep_all_jobs(void **state)
+static void scenes_of_many_frames_do_not_keep_all_jobs(void **state)
 {
-    (void) state;
     expect_a_free_job(service_query_frames_scene, SERVER_SCENES);
 }
 
 /* Clients that query without end what takes long do not keep short scenes waiting. */
-static void test_long_jobs_do_not_keep_short_ones_waiting(void **state)
+static void long_jobs_do_not_keep_short_ones_waiting(void **state)
 {
-    (void) state;
     enum { CLIENTS = JOBS + 4, SCENES = 20 };
     for (int i = 0; i < CLIENTS; i++)
         for (int number = 0; number < 2; number++)
@@ -818,9 +776,8 @@ static void expect_short_spans(int count)
     expect_all_ok(count);
 }
 
-static void test_bodies_are_made_in_short_steps(void **state)
+static void bodies_are_made_in_short_steps(void **state)
 {
-    (void) state;
     mp_set_memory_functions(allocate_slowly, gmp_count_reallocate, gmp_release);
     for (int64_t id = 0; id < 2; id++) {
         service_close(NULL);
@@ -838,9 +795,8 @@ static void test_bodies_are_made_in_short_steps(void **state)
 }
 
 /* Neither finds the body, so that both make it. */
-static void test_a_body_that_two_clients_make_is_cached_once(void **state)
+static void a_body_that_two_clients_make_is_cached_once(void **state)
 {
-    (void) state;
     service.tick_ns = 20 * US; /* turns end before bodies do */
     send_flat_scene(CHEAP, 1, 1, FLAT_MOST, 7);
     send_flat_scene(COSTLY, 1, 1, FLAT_MOST, 8);
@@ -860,45 +816,45 @@ static void test_a_body_that_two_clients_make_is_cached_once(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_a_client_is_served_in_order),
-        TEST(test_clients_share_time_not_answers),
-        TEST(test_reading_is_charged),
-        TEST(test_refusing_is_charged),
-        TEST(test_work_is_done_in_short_spans),
-        TEST(test_pairs_do_not_wait_for_scenes_of_their_client),
-        TEST(test_a_new_id_gains_nothing),
-        TEST(test_a_client_in_closed_loop_keeps_its_share),
-        TEST(test_a_slow_client_is_not_waited_for),
-        TEST(test_a_slow_client_is_anticipated_before_long_work),
-        TEST(test_waiting_ends),
-        TEST(test_scenes_share_time),
-        TEST(test_pairs_pass_long_scenes),
-        TEST(test_long_scenes_stop_where_others_wait),
-        TEST(test_the_longest_job_is_the_one_to_stop),
-        TEST(test_the_last_job_stops_early),
-        TEST(test_more_scenes_than_jobs),
-        TEST(test_a_full_queue_refuses_the_one_that_holds_most),
-        TEST(test_a_client_whose_only_query_is_evicted_is_idle),
-        TEST(test_new_ids_without_end),
-        TEST(test_queries_expire),
-        TEST(test_a_repeat_expires_by_its_own_arrival),
-        TEST(test_a_query_in_progress_does_not_expire),
-        TEST(test_the_age_of_a_pair_of_many_frames),
-        TEST(test_waiting_time_is_limited),
-        TEST(test_waiting_time_of_scenes_is_limited),
-        TEST(test_dropped_queries_are_not_in_the_estimate),
-        TEST(test_many_clients_share_the_waiting_time),
-        TEST(test_the_only_waiting_query_is_never_refused),
-        TEST(test_thousands_of_cheap_queries_may_wait),
-        TEST(test_the_estimate_of_mixed_queries_is_their_mean),
-        TEST(test_a_new_id_has_a_quota_of_its_own),
-        TEST(test_refusals_are_limited),
-        TEST(test_a_pair_of_many_frames),
-        TEST(test_pairs_of_many_frames_do_not_keep_all_jobs),
-        TEST(test_scenes_of_many_frames_do_not_keep_all_jobs),
-        TEST(test_long_jobs_do_not_keep_short_ones_waiting),
-        TEST(test_bodies_are_made_in_short_steps),
-        TEST(test_a_body_that_two_clients_make_is_cached_once),
+        TEST(a_client_is_served_in_order),
+        TEST(clients_share_time_not_answers),
+        TEST(reading_is_charged),
+        TEST(refusing_is_charged),
+        TEST(work_is_done_in_short_spans),
+        TEST(pairs_do_not_wait_for_scenes_of_their_client),
+        TEST(a_new_id_gains_nothing),
+        TEST(a_client_in_closed_loop_keeps_its_share),
+        TEST(a_slow_client_is_not_waited_for),
+        TEST(a_slow_client_is_anticipated_before_long_work),
+        TEST(waiting_for_a_client_ends),
+        TEST(scenes_share_time),
+        TEST(pairs_pass_long_scenes),
+        TEST(long_scenes_stop_where_others_wait),
+        TEST(the_longest_job_is_the_one_to_stop),
+        TEST(the_last_job_stops_early),
+        TEST(more_scenes_than_jobs_are_served),
+        TEST(a_full_queue_refuses_the_one_that_holds_most),
+        TEST(a_client_whose_only_query_is_evicted_is_idle),
+        TEST(an_endless_stream_of_ids_gains_nothing),
+        TEST(queries_expire),
+        TEST(a_repeat_expires_by_its_own_arrival),
+        TEST(a_query_in_progress_does_not_expire),
+        TEST(a_pair_of_many_frames_ages_from_its_arrival),
+        TEST(waiting_time_is_limited),
+        TEST(waiting_time_of_scenes_is_limited),
+        TEST(dropped_queries_are_not_in_the_estimate),
+        TEST(many_clients_share_the_waiting_time),
+        TEST(the_only_waiting_query_is_never_refused),
+        TEST(thousands_of_cheap_queries_may_wait),
+        TEST(the_estimate_of_mixed_queries_is_their_mean),
+        TEST(a_new_id_has_a_quota_of_its_own),
+        TEST(refusals_are_limited),
+        TEST(a_pair_of_many_frames_is_answered_in_steps),
+        TEST(pairs_of_many_frames_do_not_keep_all_jobs),
+        TEST(scenes_of_many_frames_do_not_keep_all_jobs),
+        TEST(long_jobs_do_not_keep_short_ones_waiting),
+        TEST(bodies_are_made_in_short_steps),
+        TEST(a_body_that_two_clients_make_is_cached_once),
     };
     return cmocka_run_group_tests_name("server turns", tests, NULL, NULL);
 }

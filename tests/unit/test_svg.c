@@ -1,18 +1,12 @@
 /* The picture: whole, well-formed, and of ordinary numbers, whatever the scene. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+
+#include "unit.h"
 
 #include "svg.h"
 #include "view.h"
 
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
@@ -166,7 +160,6 @@ static void expect_good_picture(const char *text)
 
 static void shows_frames_ids_motion_and_boxes(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++) {
         make_scene(dim, 2, 1, 0.25);
         char *text = draw_one(&pair.scene);
@@ -186,8 +179,7 @@ static void any_numbers_can_be_drawn(void **state)
 {
     static const double numbers[] = {0,     5e-324, 1e-310, 1e-300, 1,       1e6,   1e15,
                                      1e150, 1e300,  1e308,  -1e308, DBL_MAX, -1e15, -DBL_MAX};
-    enum { COUNT = sizeof numbers / sizeof *numbers };
-    (void) state;
+    enum { COUNT = COUNT(numbers) };
     for (int i = 0; i < 2 * COUNT * COUNT * COUNT; i++) {
         make_scene(2 + i % 2, numbers[i / 2 % COUNT], numbers[i / 2 / COUNT % COUNT],
                    numbers[i / 2 / COUNT / COUNT]);
@@ -204,7 +196,6 @@ static void infinite_boxes_and_sums_can_be_drawn(void **state)
         .answer = {.verdict = FMB_OVERLAPPING,
                    .has_box = true,
                    .box = {{-INFINITY, 0, -INFINITY}, {INFINITY, INFINITY, 0}}}};
-    (void) state;
     make_scene(3, DBL_MAX, DBL_MAX, -DBL_MAX);
     pair.body[0].body.one.component[0][0] = pair.body[0].body.one.component[1][0] = -DBL_MAX;
     pair.scene.scene.duration = 1e308;
@@ -221,7 +212,6 @@ static void infinite_boxes_and_sums_can_be_drawn(void **state)
 
 static void empty_scenes_and_no_scene_can_be_drawn(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++) {
         const struct owned_scene scene = {.dim = dim, .scene.duration = 1};
         char *text = draw_one(&scene);
@@ -243,7 +233,6 @@ static void many_scenes_and_bodies_are_cut(void **state)
     struct owned_scene scene = {
         .dim = 2, .scene = {.placements = placements, .placement_count = 1, .duration = 1}};
     struct svg *svg = svg_open();
-    (void) state;
     for (int i = 0; i < BODIES; i++) {
         make_body(&body[i], i + 1, 2, FMB_CUBOID, 1, i);
         placements[i] = body[i].at;
@@ -257,12 +246,40 @@ static void many_scenes_and_bodies_are_cut(void **state)
     free(text);
     svg_close(svg);
 
+    static const unsigned last[1][2] = {{BODIES - 2, BODIES - 1}}; /* touching, and not drawn */
     scene.scene.placement_count = BODIES;
-    scene.scene.which = FMB_PAIRS_LISTED; /* none */
+    scene.scene.which = FMB_PAIRS_LISTED;
+    scene.scene.pairs = last;
+    scene.scene.pair_count = 1;
     text = draw_one(&scene);
     expect_good_picture(text);
     assert_non_null(strstr(text, "5 more bodies"));
+    assert_non_null(strstr(text, "1 more boxes"));
     free(text);
+}
+
+/* Wherever the face is, and in whatever order its corners are. */
+static void the_light_on_a_face_is_that_of_its_normal(void **state)
+{
+    struct view_bounds bounds = view_nothing();
+    const double low[3] = {-2, -2, -2}, high[3] = {2, 2, 2};
+    const struct outline all = outline_box(3, low, high);
+    view_add(&bounds, &all, 3);
+    const struct view view = view_make(3, &bounds, (struct paper){0, 0, 400, 300});
+    for (int axis = 0; axis < 3; axis++) {
+        double first = -1;
+        for (double at = -1; at <= 1; at += 0.5) {
+            double corner[3][3] = {{at, at, at}, {at, at, at}, {at, at, at}};
+            corner[1][(axis + 1) % 3] += 0.5;
+            corner[2][(axis + 2) % 3] += 1;
+            for (int turn = 0; turn < 3; turn++) {
+                const double light =
+                    view_light(&view, corner[turn], corner[(turn + 1) % 3], corner[(turn + 2) % 3]);
+                first = first < 0 ? light : first;
+                assert_true(light > 0 && light < 1 && fabs(light - first) < 1e-12);
+            }
+        }
+    }
 }
 
 /* Steps of time are seen from one place: what rests is drawn at the same place on its panel. */
@@ -270,7 +287,6 @@ static void steps_share_a_view(void **state)
 {
     char card[64], still[200];
     struct svg *svg = svg_open();
-    (void) state;
     make_scene(2, 1, 0, 0);
     take(svg, &pair.scene);
     struct fmb_placement later[] = {pair.placements[0], pair.placements[1]};
@@ -300,7 +316,6 @@ static void steps_share_a_view(void **state)
 /* By 90 degrees: x becomes y, in 3D about the z axis. */
 static void turned_bodies_are_drawn_turned(void **state)
 {
-    (void) state;
     for (int dim = 2; dim <= 3; dim++) {
         struct placed body;
         make_body(&body, 1, dim, FMB_CUBOID, 2, 10);
@@ -320,7 +335,6 @@ static void turned_bodies_are_drawn_turned(void **state)
 static void flat_boxes_are_filled(void **state)
 {
     static const double size[] = {1, 2, 0};
-    (void) state;
     for (int i = 0; i < 100; i++) {
         struct fmb_body body;
         const struct fmb_placement placement = {.body = &body,
@@ -348,6 +362,7 @@ int main(void)
         cmocka_unit_test(infinite_boxes_and_sums_can_be_drawn),
         cmocka_unit_test(empty_scenes_and_no_scene_can_be_drawn),
         cmocka_unit_test(many_scenes_and_bodies_are_cut),
+        cmocka_unit_test(the_light_on_a_face_is_that_of_its_normal),
         cmocka_unit_test(steps_share_a_view),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,13 +1,7 @@
 /* A verdict that its certificate does not show becomes an error. */
+#include "unit.h"
+
 #include "answers.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 /* Two unit squares, the second one at (x, 0), and the right answer. */
 static struct {
@@ -40,9 +34,8 @@ static void place_squares(double x)
 
 static const double apart[] = {0.5, 1, 1.5};
 
-static void test_what_holds_stays_as_it_was(void **state)
+static void what_holds_stays_as_it_was(void **state)
 {
-    (void) state;
     for (int i = 0; i < 3; i++) {
         place_squares(apart[i]);
         struct fmb_client_answer answer = squares.answer;
@@ -67,9 +60,8 @@ static void expect_refuted(const struct fmb_client_answer *answer)
     assert_int_equal(refuted.b, answer->b);
 }
 
-static void test_another_verdict_is_refuted(void **state)
+static void another_verdict_is_refuted(void **state)
 {
-    (void) state;
     for (int i = 0; i < 3; i++)
         for (int verdict = FMB_SEPARATED; verdict <= FMB_OVERLAPPING; verdict++) {
             place_squares(apart[i]);
@@ -82,9 +74,8 @@ static void test_another_verdict_is_refuted(void **state)
 }
 
 /* The certificate of one scene, word for word, beside another one. */
-static void test_another_scene_s_certificate_is_refuted(void **state)
+static void another_scene_s_certificate_is_refuted(void **state)
 {
-    (void) state;
     for (int i = 0; i < 3; i++) {
         place_squares(apart[i]);
         struct fmb_client_answer answer = squares.answer;
@@ -96,14 +87,13 @@ static void test_another_scene_s_certificate_is_refuted(void **state)
     }
 }
 
-static void test_nonsense_is_refuted(void **state)
+static void nonsense_is_refuted(void **state)
 {
-    (void) state;
     static char huge[100000];
     memset(huge, '(', sizeof huge - 1);
     const char *const texts[] = {"", "x", "touching", "\"\\", huge};
     place_squares(1);
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    for (size_t i = 0; i < COUNT(texts); i++) {
         struct fmb_client_answer answer = squares.answer;
         answer.certificate = texts[i];
         expect_refuted(&answer);
@@ -113,10 +103,10 @@ static void test_nonsense_is_refuted(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_holds_stays_as_it_was),
-        cmocka_unit_test(test_another_verdict_is_refuted),
-        cmocka_unit_test(test_another_scene_s_certificate_is_refuted),
-        cmocka_unit_test(test_nonsense_is_refuted),
+        cmocka_unit_test(what_holds_stays_as_it_was),
+        cmocka_unit_test(another_verdict_is_refuted),
+        cmocka_unit_test(another_scene_s_certificate_is_refuted),
+        cmocka_unit_test(nonsense_is_refuted),
     };
     return cmocka_run_group_tests_name("verify", tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* An event that begins at the last place of the buffer where one can is not found behind damage. */
+/* An event that begins at the last place of the buffer where one can is not found after damage. */
 #define _GNU_SOURCE
 #define _FILE_OFFSET_BITS 64
 #include <string.h>
