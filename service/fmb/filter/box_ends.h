@@ -223,10 +223,11 @@ INLINE lanes product_error(lanes x, lanes y, lanes product)
  * is not 0. */
 INLINE lanes product_slack(lanes x, lanes y, lanes product)
 {
-    const lanes_mask exact =
-        ((product_error(x, y, product) == 0) & (lanes_abs(product) >= 0x1p-900)) | (x == 0) |
-        (y == 0);
-    return lanes_select(exact, lanes_of(0), 0x1p-52 * lanes_abs(product) + 0x1p-950);
+    const lanes_mask errorless = product_error(x, y, product) == 0;
+    const lanes_mask normal = lanes_abs(product) >= 0x1p-900;
+    const lanes_mask zero = (x == 0) | (y == 0);
+    return lanes_select((errorless & normal) | zero, lanes_of(0),
+                        0x1p-52 * lanes_abs(product) + 0x1p-950);
 }
 
 /* Adds the end of a component, at x from the origin, to the ends of a frame: [0] how far it reaches
