@@ -73,7 +73,7 @@ finds() {
 
 @test "scene_json finds a number that is not finite" {
     # Of a body, of the window, or as GMP meets it, which takes no infinity.
-    finds scene_json "is_body(&scene->body[i], scene->dim)" "is_finite(scene->duration)" \
+    finds scene_json "is_placement(&scene->placements[i], owner->dim)" "is_finite(scene->duration)" \
         " in turned_box "
 }
 

@@ -1351,7 +1351,7 @@ static void quick_decisions_need_no_wide_integers(void **state)
     }
     printf("# of %ld pairs, %ld left open, %ld with boxes, %ld with gaps\n", pairs, open,
            open_boxes, open_gaps);
-    assert_true(open > 0 && open < open_boxes && open_boxes < pairs);
+    assert_true(open > 0 && open <= open_boxes && open_boxes < pairs); /* few boxes need more */
     assert_true(open < open_gaps && open_gaps < pairs);
 }
 

@@ -81,7 +81,8 @@ static void expect_empty(struct queue *queue)
             assert_int_equal(queue_waiting(queue, client)[line], 0);
             assert_false(queue_pop(queue, client, (enum queue_fifo) line, &got, got_bytes));
         }
-    assert_false(queue_evict(queue, queue_largest(queue), &got, got_bytes));
+    assert_int_equal(queue_largest(queue), -1);
+    assert_false(queue_evict(queue, 0, &got, got_bytes));
     struct queue_counts counts = queue_counts(queue);
     assert_int_equal(counts.datagrams, 0);
     assert_int_equal(counts.chunks, 0);
