@@ -405,7 +405,7 @@ bool limbs_box(const struct fmb_prepared *a, const struct fmb_prepared *b, doubl
     const enum kernel_kind kind = kernel_box_kind(a, b, duration, &swapped);
     if (kind >= KERNEL_KINDS)
         return false;
-    const struct fmb_prepared *const frames[1][2] = {{swapped ? b : a, swapped ? a : b}};
+    const struct fmb_prepared *frames[1][2] = {{swapped ? b : a, swapped ? a : b}};
     const struct fmb_prepared *const *of = frames[0];
     const struct frame_pair given = {
         {of[0]->frame, of[0]->placement}, {of[1]->frame, of[1]->placement}, duration};
@@ -417,7 +417,7 @@ bool limbs_box(const struct fmb_prepared *a, const struct fmb_prepared *b, doubl
     struct box_ends ends;
     struct limbs_pair limbs;
     double reach[2][3];
-    gather_pairs(frames, traits, frame);
+    gather_pairs(traits, frames, frame);
     set_places(traits, frame, duration, &pair, &places);
     set_exact(traits, frame, &pair, &places);
     begin_box(&pair, traits, &places, &of_pair);

@@ -47,7 +47,7 @@ void KERNEL_PASTE(kernel, KERNEL_NAME)(const struct kernel_call *call, enum kern
         struct pair_lanes pair;
         struct box_places places;
         lanes box[2][3];
-        gather_pairs((const struct fmb_prepared *const(*)[2]) & call->pairs[first], traits, frame);
+        gather_pairs(traits, &call->pairs[first], frame);
         set_places(traits, frame, call->duration, &pair, &places);
         find_box(traits, wire, frame, &pair, &places, box);
         for (int i = 0; i < 6; i++) {

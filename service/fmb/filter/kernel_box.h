@@ -18,18 +18,6 @@ INLINE struct kernel_traits traits_of(enum kernel_kind kind)
                                   .box = true};
 }
 
-INLINE void gather_pairs(const struct fmb_prepared *const pairs[][2],
-                         const struct kernel_traits traits, struct frame_lanes pair[2])
-{
-    for (int which = 0; which < 2; which++) {
-        const double *frame[LANES];
-        for (size_t lane = 0; lane < LANES; lane++)
-            frame[lane] = (const double *) pairs[lane][which];
-        gather(traits, frame, &pair[which]);
-        memcpy(pair[which].prepared, frame, sizeof frame);
-    }
-}
-
 /* Sets what is exact: exact, level and apart. */
 INLINE void set_exact(const struct kernel_traits traits, const struct frame_lanes frame[2],
                       const struct pair_lanes *pair, struct box_places *out)

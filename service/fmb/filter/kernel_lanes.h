@@ -149,7 +149,7 @@ struct frame_lanes {
     lanes origin[3], component[3][3], size[3], velocity[3]; /* 2D: the first two of each */
     lanes error;
     lanes_bits summary;
-    const struct fmb_prepared *prepared[LANES]; /* of the second pass */
+    const struct fmb_prepared *prepared[LANES]; /* of the second pass and boxes */
 };
 
 /* Splits the words of prepared frames (prepared.h) into fields. */
@@ -223,10 +223,24 @@ INLINE void gather(const struct kernel_traits traits, const double *const frame[
     if (in_fours < used)
         words[used - 1] = gather_one(frame, used - 1);
     set_frame_lanes(traits, words, out);
-    if (EXACT)
+    if (traits.exact || traits.box)
         memcpy(out->prepared, frame, sizeof out->prepared);
     if (traits.drifts)
         gather_velocity(traits, frame, out);
+}
+
+/* Loads the frames of LANES pairs, [pair][a, b]. */
+INLINE void gather_pairs(const struct kernel_traits traits, const struct fmb_prepared *(*pairs)[2],
+                         struct frame_lanes out[2])
+{
+    UNROLL(2)
+    for (int which = 0; which < 2; which++) {
+        const double *frame[LANES];
+        UNROLL(8)
+        for (size_t lane = 0; lane < LANES; lane++)
+            frame[lane] = (const double *) pairs[lane][which];
+        gather(traits, frame, &out[which]);
+    }
 }
 
 /* Sets the pairs of the frames; duration of the window in seconds. */

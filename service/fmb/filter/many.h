@@ -2,23 +2,6 @@
  * job (kernel_lanes.h). */
 #include "kernel_exact.h"
 
-INLINE void gather_side(const struct kernel_call *call, const struct kernel_traits traits,
-                        size_t first, int which, struct frame_lanes *out)
-{
-    const double *frame[LANES];
-    UNROLL(8)
-    for (size_t lane = 0; lane < LANES; lane++)
-        frame[lane] = (const double *) call->pairs[first + lane][which];
-    gather(traits, frame, out);
-}
-
-INLINE void gather_pairs(const struct kernel_call *call, const struct kernel_traits traits,
-                         size_t first, struct frame_lanes pair[2])
-{
-    gather_side(call, traits, first, 0, &pair[0]);
-    gather_side(call, traits, first, 1, &pair[1]);
-}
-
 #ifdef KERNEL_TIMES
 
 /* Writes lane i to out[i * stride]. */
@@ -40,7 +23,7 @@ INLINE void evaluate_lanes(const struct kernel_traits traits, const struct kerne
 {
     struct frame_lanes frame[2];
     struct pair_lanes pair;
-    gather_pairs(call, traits, first, frame);
+    gather_pairs(traits, &call->pairs[first], frame);
     set_pair(traits, &frame[0], &frame[1], call->duration, &pair);
     put_outcomes(exact_outcomes(traits, &frame[0], &frame[1], call->duration, &pair),
                  &call->outcomes[first]);
@@ -54,7 +37,7 @@ INLINE void evaluate_lanes(const struct kernel_traits traits, const struct kerne
     struct frame_lanes frame[2];
     struct pair_lanes pair;
     struct slabs_result result;
-    gather_pairs(call, traits, first, frame);
+    gather_pairs(traits, &call->pairs[first], frame);
     set_pair(traits, &frame[0], &frame[1], call->duration, &pair);
     evaluate_pair(traits, &pair, &result);
     put_outcomes(outcomes_of(&pair, &result), &call->outcomes[first]);
