@@ -328,7 +328,7 @@ static bool read_vertices(const struct place *at, void *out)
     struct geometry_frame *frame = out;
     const size_t dim = (size_t) dim_of(at);
     const size_t components = (size_t) fmb_component_count((int) dim, frame->shape);
-    double vertices[GEOMETRY_FRAME_NUMBERS_MAX];
+    double vertices[FMB_FRAME_NUMBERS_MAX];
     if (!read_each(at, components + 1, "vertices", read_vector, vertices, dim * sizeof(double)))
         return false;
     frame->by_vertices = true;

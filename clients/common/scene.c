@@ -48,7 +48,7 @@ enum fmb_status scene_make_body(struct owned_scene *scene, size_t count,
     const struct geometry_frame *given = scene->given + scene->given_count - count;
     struct fmb_body *body = scene_alloc(scene, 1, sizeof *body);
     struct fmb_frame one, *frames = count == 1 ? &one : scene_alloc(scene, count, sizeof one);
-    double number[GEOMETRY_FRAME_NUMBERS_MAX];
+    double number[FMB_FRAME_NUMBERS_MAX];
     *out = body;
     for (*bad = 0; *bad < count; ++*bad, given++) {
         const size_t used = geometry_frame_numbers(scene->dim, given, number);

@@ -35,7 +35,7 @@ static void write_vector(struct json_writer *json, const char *key, const double
 /* Writes the members of a frame that do not depend on where its origin is. */
 static void write_shape(struct json_writer *json, int dim, const struct geometry_frame *frame)
 {
-    double vertices[GEOMETRY_FRAME_NUMBERS_MAX];
+    double vertices[FMB_FRAME_NUMBERS_MAX];
     json_string(json, "shape", fmb_shape_name(frame->shape));
     if (frame->shape == FMB_BOX)
         json_numbers(json, "size", frame->components, dim);

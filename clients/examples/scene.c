@@ -1,5 +1,5 @@
-/* One scene, decided in this process or by a service: a row of cubes on a table, one of which
- * falls. With --bus it needs a running fmbd.
+/* One scene, decided in this process or by a service: cubes stand in a row on a table, and another
+ * one falls. With --bus it needs a running fmbd.
  *
  *     cc scene.c $(pkg-config --cflags --libs fmb-client) -o scene && ./scene && ./scene --bus
  *

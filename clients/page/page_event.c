@@ -60,7 +60,7 @@ void page_shapes_close(struct page_shapes *shapes)
 
 static void write_frame(struct json_writer *json, int dim, const struct geometry_frame *frame)
 {
-    double number[GEOMETRY_FRAME_NUMBERS_MAX];
+    double number[FMB_FRAME_NUMBERS_MAX];
     const size_t count = geometry_frame_numbers(dim, frame, number);
     json_begin(json, NULL, '[');
     json_integer(json, NULL, frame->shape);

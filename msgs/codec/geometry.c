@@ -47,7 +47,7 @@ int64_t geometry_number_count(int dim, int code, int32_t vertices)
 }
 
 size_t geometry_frame_numbers(int dim, const struct geometry_frame *frame,
-                              double out[GEOMETRY_FRAME_NUMBERS_MAX])
+                              double out[FMB_FRAME_NUMBERS_MAX])
 {
     const int count = (int) geometry_number_count(dim, frame->shape, 0);
     for (int i = 0; i < count; i++)

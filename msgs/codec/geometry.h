@@ -34,7 +34,7 @@ struct geometry_frame {
  * fmb_frame_make_vertices() take them. Returns how many there are; 0: there is no such shape in
  * this dimension. */
 size_t geometry_frame_numbers(int dim, const struct geometry_frame *frame,
-                              double out[GEOMETRY_FRAME_NUMBERS_MAX]);
+                              double out[FMB_FRAME_NUMBERS_MAX]);
 
 /* Encodes the geometry of a placement that names its body by handle: dim, and no frames. */
 void geometry_write_none(int dim, unsigned char out[GEOMETRY_NONE_BYTES]);

@@ -55,9 +55,8 @@ struct geometry {
 enum {
     /* Bytes of a geometry without frames: dim, counts of frames, of counts, and of numbers. */
     GEOMETRY_NONE_BYTES = 16,
-    /* Most numbers of a frame, and most bytes of a geometry of one frame. */
-    GEOMETRY_FRAME_NUMBERS_MAX = FMB_DIM_MAX + FMB_COMPONENTS_MAX,
-    GEOMETRY_FRAME_BYTES_MAX = GEOMETRY_NONE_BYTES + 1 + 4 + 8 * GEOMETRY_FRAME_NUMBERS_MAX,
+    /* Most bytes of a geometry of one frame. */
+    GEOMETRY_FRAME_BYTES_MAX = GEOMETRY_NONE_BYTES + 1 + 4 + 8 * FMB_FRAME_NUMBERS_MAX,
     /* Least bytes of a frame that is supported, a box in 2D; and hence most frames of a message. */
     GEOMETRY_FRAME_BYTES_MIN = 1 + 8 * 4,
     QUERY_FRAMES_MAX = QUERY_BYTES_MAX / GEOMETRY_FRAME_BYTES_MIN

@@ -13,7 +13,7 @@ int32_t body_frame_count(const struct geometry *geometry)
 
 static void make_frame(int dim, const struct geometry_frame *frame, struct fmb_frame *out)
 {
-    double number[GEOMETRY_FRAME_NUMBERS_MAX];
+    double number[FMB_FRAME_NUMBERS_MAX];
     const size_t count = geometry_frame_numbers(dim, frame, number);
     const enum fmb_status status = (frame->by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
         dim, frame->shape, number, count, out);

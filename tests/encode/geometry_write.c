@@ -39,7 +39,7 @@ size_t geometry_write_frames(int dim, const struct geometry_frame *frames, int c
             writer_int32(&writer, (int32_t) numbers_of(dim, &frames[i], 1) / dim);
     writer_int32(&writer, numbers_of(dim, frames, count));
     for (int i = 0; i < count; i++) {
-        double number[GEOMETRY_FRAME_NUMBERS_MAX];
+        double number[FMB_FRAME_NUMBERS_MAX];
         const size_t numbers = geometry_frame_numbers(dim, &frames[i], number);
         for (size_t k = 0; k < numbers; k++)
             writer_double(&writer, number[k]);

@@ -24,7 +24,7 @@ static void make(const unsigned char *bytes, size_t size, struct model_made *out
     struct geometry_frame frame;
     size_t count = 0;
     while (geometry_next(&reader, &frame)) {
-        double number[GEOMETRY_FRAME_NUMBERS_MAX];
+        double number[FMB_FRAME_NUMBERS_MAX];
         const size_t numbers = geometry_frame_numbers(reader.dim, &frame, number);
         FUZZ_CHECK(count < MODEL_FRAMES_MAX);
         FUZZ_CHECK((frame.by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(

@@ -58,7 +58,7 @@ static void prepare(const struct placement *placement, struct definitions *defin
 {
     const struct geometry *geometry = &placement->geometry;
     struct geometry_frame frame;
-    double numbers[GEOMETRY_FRAME_NUMBERS_MAX];
+    double numbers[FMB_FRAME_NUMBERS_MAX];
     if (placement_by_handle(placement) &&
         !(geometry = definitions_find(definitions, &placement->handle)))
         fail("a handle that the log does not define");

@@ -143,7 +143,7 @@ many_scenes() {
     stop_fmbd
 }
 
-@test "started as root, the daemon takes the id of nobody, or of the user given" {
+@test "started as root, the daemon runs as the user 'nobody', or as the user given" {
     [ "$(id -u)" = 0 ] && [ "$(wc -l < /proc/self/uid_map)" = 1 ] &&
         [ "$(awk '{ print $3 }' /proc/self/uid_map)" -gt 65534 ] || skip "needs root and its ids"
     for user in nobody daemon; do

@@ -157,7 +157,7 @@ static struct fmb_placement place(const struct placement *placement, struct trut
     for (; geometry_next(&reader, &frame); count++) {
         const size_t dim = (size_t) reader.dim;
         const size_t numbers = (size_t) geometry_number_count(reader.dim, frame.shape, 0);
-        double number[GEOMETRY_FRAME_NUMBERS_MAX];
+        double number[FMB_FRAME_NUMBERS_MAX];
         memcpy(number, frame.origin, dim * sizeof *number);
         memcpy(number + dim, frame.components, (numbers - dim) * sizeof *number);
         assert_int_equal(

@@ -788,7 +788,7 @@ static void bodies_of_many_frames_are_answered(void **state)
     relay_close(relay);
 }
 
-/* Returns a body with count boxes and cuboids, of which cuboids are cuboids. */
+/* Returns a body of count frames: cuboids of them are cuboids, the others boxes. */
 static const struct fmb_body *body_of(int count, int cuboids, int unique)
 {
     struct fmb_frame *frame = malloc((size_t) count * sizeof *frame);

@@ -347,8 +347,8 @@ static double difference_error(double x, double y, double difference)
     return fabs(x) >= fabs(y) ? (x - difference) - y : x - (difference + y);
 }
 
-/* Returns the double x of which difference = x - y, rounded, and its error are known: y +
- * difference + error.
+/* Returns the double x = y + difference + error, given the rounded difference x - y and the error
+ * of that rounding.
  *
  * Derivation. Let d be the difference and e its error, both of any sign; if y < 0, change all
  * signs. Sums of magnitude below 2^-1021 are exact; beyond, halves are doubles. Rounding is
