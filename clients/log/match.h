@@ -85,7 +85,7 @@ struct match_list {
 void match_list_add(struct match_list *list, struct match_item *item);
 struct match_item *match_list_take(
     struct match_list *list);                  /* the first item; NULL: none is left */
-void match_list_drop(struct match_list *list); /* match_drop() of all items */
+void match_list_drop(struct match_list *list); /* frees all items */
 
 /* ---- Notes of matches ---- */
 

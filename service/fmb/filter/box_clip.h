@@ -10,10 +10,10 @@
  *      set_space_slabs()
  *   2. clip_segments()        clips the segments of the other frame to these slabs: widened by the
  *                             bound on their error (outer spans), and narrowed by it (inner spans)
- *   3. find_reach()           how far the outer spans reach along each axis; moving in 3D, also the
- *                             crossings of edges that are possible
- *   4. 3 for the inner spans and crossings that are certain, in the lanes in which some outer one
- * is not nearly as certain
+ *   3. add_reach(),           how far the outer spans reach along each axis; moving in 3D, also the
+ *      add_crossings()        crossings of edges that are possible
+ *   4. the same for the inner spans and crossings that are certain, in the lanes in which some
+ * outer one is not nearly as certain
  *
  * Not here: what follows from the ends (box_ends.h); the same in integers (exact/limbs_box.c).
  *

@@ -177,10 +177,7 @@ INLINE lanes largest_place(const struct pair_lanes *pair, const struct kernel_tr
 /* Where the sign of x is minus one, else the other; of -0 too. */
 INLINE lanes choose_by_sign(lanes x, lanes negative, lanes other)
 {
-#if LANES == 8 && defined(__AVX512DQ__)
-    return (lanes) _mm512_mask_blend_pd(_mm512_movepi64_mask((__m512i) x), (__m512d) other,
-                                        (__m512d) negative);
-#elif LANES == 4 && defined(__AVX__)
+#if LANES == 4 && defined(__AVX__)
     return (lanes) _mm256_blendv_pd((__m256d) other, (__m256d) negative, (__m256d) x);
 #elif LANES == 1
     return signbit(x) ? negative : other;
