@@ -40,6 +40,7 @@ GEN := build/msgs
 
 .PHONY: all
 all: programs
+	@$(if $(silent),,echo "built $(programs): try 'make demo', or '$(B)/fmb query --local clients/demo/table.json'")
 
 .PHONY: help
 help:
@@ -48,6 +49,12 @@ help:
 # ---- Flags ----
 
 mode_flags_release := -O2 -g1 -DNDEBUG
+# $(call say,WORK,FILE)COMMAND prints one short line: of a command alone with V=1, nothing with -s.
+flags_of_make := $(firstword -$(MAKEFLAGS))
+silent := $(findstring s,$(flags_of_make))
+say = $(quiet)$(if $(V)$(silent)$(findstring n,$(flags_of_make)),,printf '  %-5s %s\n' $1 $2;)
+quiet := $(if $(V),,@)
+
 mode_flags_debug := -O0 -g3
 mode_flags_asan := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all \
 	-fno-omit-frame-pointer
@@ -77,7 +84,7 @@ hardened_release += -D_FORTIFY_SOURCE=2
 endif
 hardened := $(hardened_$(MODE))
 $(O)/service/fmb/%.o: hardened :=
-compile = $(CC) $(flags) $(hardened) $(whole) -MMD -MP -c $< -o $@
+compile = $(call say,CC,$<) $(CC) $(flags) $(hardened) $(whole) -MMD -MP -c $< -o $@
 link_user := $(mode_link_$(MODE)) $(hardened_link_$(MODE)) $(CFLAGS) $(LDFLAGS)
 
 # The path of a query, from its bytes to those of its result, is faster by a tenth with -O3, and by
@@ -174,7 +181,7 @@ engine_objects := $(call engine_objects_in,$(engine_folders))
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
 $(message_headers:.h=.c) $(message_headers) &: $(message_files)
 	@mkdir -p $(GEN)
-	lcm-gen -c --c-cpath $(GEN) --c-hpath $(GEN) $^
+	$(call say,LCM,$(GEN)) lcm-gen -c --c-cpath $(GEN) --c-hpath $(GEN) $^
 # lcm-gen's own code is not ours to warn about, nor that its decoders copy no bytes to NULL.
 $(O)/msgs/%.o: $(GEN)/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
@@ -197,7 +204,7 @@ $(client): $(client_objects)
 $(product): $(product_objects)
 $(engine) $(client) $(product):
 	@rm -f $@
-	$(AR) qcs $@ $^
+	$(call say,AR,$@) $(AR) qcs $@ $^
 
 # Every layer links with the folders that it may include from, and nothing else: a call that points up
 # fails to link, also where its declaration stands below.
@@ -210,18 +217,18 @@ $(foreach l,$(engine_layers),$(eval $(O)/$l/layer.so: \
 $(foreach l,$(wire_layers),$(eval $(O)/$l/layer.so: $(message_objects) $(engine) \
 	$(call objects_in,$l $(filter $(wire_layers),$(see_$l)))))
 %/layer.so: $(O)/service/fmb/names.o
-	$(CC) $(filter-out -pie,$(link_flags)) -shared -Wl,--no-undefined -o $@ $(filter %.o,$^) \
+	$(call say,LD,$@) $(CC) $(filter-out -pie,$(link_flags)) -shared -Wl,--no-undefined -o $@ $(filter %.o,$^) \
 		$(filter %.a,$^) -Wl,--as-needed $(libraries)
 
 # Libraries: one object that shows the names of the header alone, so that no program's names meet
 # ours.
 define library
 	@mkdir -p $(@D)
-	$(CC) -r -nostdlib -fno-lto -o $(@:.a=.o) $^
-	$(OBJCOPY) --wildcard --keep-global-symbol='$(1)' -R '.gnu.*lto*' $(@:.a=.o)
-	rm -f $@
-	$(AR) rcs $@ $(@:.a=.o)
-	rm $(@:.a=.o)
+	$(call say,AR,$@) $(CC) -r -nostdlib -fno-lto -o $(@:.a=.o) $^
+	$(quiet)$(OBJCOPY) --wildcard --keep-global-symbol='$(1)' -R '.gnu.*lto*' $(@:.a=.o)
+	@rm -f $@
+	$(quiet)$(AR) rcs $@ $(@:.a=.o)
+	@rm $(@:.a=.o)
 endef
 $(B)/libfmb.a: $(engine_objects)
 	$(call library,fmb_*)
@@ -234,15 +241,15 @@ $(B)/libfmb.so.0: shared_needs := -lgmp -lm
 $(B)/libfmb-client.so.0: shared_needs := $(B)/libfmb.so.0 -llcm -lglib-2.0 -lm
 $(B)/libfmb-client.so.0: $(B)/libfmb.so.0
 $(shared_libraries): $(B)/%.so.0: $(B)/%.a
-	echo '{ local: fmb_client_raw_*; };' > $@.map
-	$(CC) $(filter-out -pie,$(link_flags)) -shared -Wl,-soname,$(@F) -Wl,--version-script,$@.map -o $@ \
+	@echo '{ local: fmb_client_raw_*; };' > $@.map
+	$(call say,LD,$@) $(CC) $(filter-out -pie,$(link_flags)) -shared -Wl,-soname,$(@F) -Wl,--version-script,$@.map -o $@ \
 		-Wl,--whole-archive $< -Wl,--no-whole-archive $(shared_needs)
 
 # ---- Programs ----
 
 define link
 	@mkdir -p $(@D)
-	$(CC) $(linking) $(wraps_$(@F)) -o $@ $(filter %.o,$^) \
+	$(call say,LD,$@) $(CC) $(linking) $(wraps_$(@F)) -o $@ $(filter %.o,$^) \
 		-Wl,--start-group $(filter %.a,$^) -Wl,--end-group -Wl,--as-needed $(libraries)
 endef
 linking = $(link_flags)
@@ -282,7 +289,7 @@ $(page_names:%=build/page/%.html): build/page/%.html: $(template)%.html $(page_s
 	@! grep -n -e '</' -e '<!--' $(page_scripts_$*) $(page_styles_$*)
 	@cat $(page_scripts_$*) > $(@D)/$*.scripts
 	@cat $(page_styles_$*) > $(@D)/$*.styles
-	sed -e '/^@PAGE@$$/{r $<' -e 'd;}' $(template)page.html | \
+	$(call say,PAGE,$@) sed -e '/^@PAGE@$$/{r $<' -e 'd;}' $(template)page.html | \
 		sed -e '/^@STAGE@$$/{r $(template)stage.html' -e 'd;}' | \
 		sed -e "s|@SCRIPT_HASH@|$(call page_hash,$(@D)/$*.scripts)|" \
 		-e "s|@STYLE_HASH@|$(call page_hash,$(@D)/$*.styles)|" \
@@ -323,12 +330,12 @@ examples: $(E)/lua/fmb_msgs/init.lua
 $(E)/lua/fmb_msgs/init.lua: $(message_files) Makefile
 	@rm -rf $(E)/lua
 	@mkdir -p $(E)/lua
-	lcm-gen -l --lpath $(E)/lua $(message_files)
+	$(call say,LCM,$(E)/lua) lcm-gen -l --lpath $(E)/lua $(message_files)
 $(E)/java/PosedPair.class: clients/examples/PosedPair.java tests/system/Largest.java $(message_files) Makefile
 	@rm -rf $(E)/java
 	@mkdir -p $(E)/java
-	lcm-gen -j --jpath $(E)/java $(message_files)
-	javac -Xlint:all,-cast,-rawtypes -cp $(lcm_jar):$(E)/java -d $(E)/java $(filter %.java,$^)
+	$(call say,LCM,$(E)/java) lcm-gen -j --jpath $(E)/java $(message_files)
+	$(call say,JAVAC,$@) javac -Xlint:all,-cast,-rawtypes -cp $(lcm_jar):$(E)/java -d $(E)/java $(filter %.java,$^)
 
 # ---- Tests and measurements ----
 
@@ -342,7 +349,7 @@ sources := $(shell find service msgs clients tests -name '*.[ch]')
 headers: $(patsubst %,$(O)/%.ok,$(filter-out tests/unit/% tests/robot/%,$(filter %.h,$(sources))))
 $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(CC) $(flags) $(sees) -fsyntax-only -x c $<
+	$(call say,CC,$<) $(CC) $(flags) $(sees) -fsyntax-only -x c $<
 	@touch $@
 format:
 	@clang-format -i $(sources)
@@ -353,8 +360,8 @@ format-check:
 
 .PHONY: demo
 demo: # builds on all cores, also where packages are installed first
-	+$(MAKE) $(if $(filter -j%,$(MAKEFLAGS)),,-j$$(nproc)) all
-	clients/demo/run.sh $(B)
+	+$(MAKE) $(if $(filter -j%,$(MAKEFLAGS)),,-j$$(nproc)) programs
+	@clients/demo/run.sh $(B)
 
 sed_text = $(subst |,\|,$(subst &,\&,$(subst \,\\,$1)))
 fill_in = sed -e 's|@PREFIX@|$(call sed_text,$(PREFIX))|' -e 's|@LIBDIR@|$(call sed_text,$(LIBDIR))|' \
@@ -414,9 +421,11 @@ $(deps):
 	@missing=$$(for package in $(packages_$@); do \
 		dpkg-query -W -f '$${db:Status-Abbrev}' $$package 2> /dev/null | grep -q '^ii' \
 			|| echo $$package; done); \
-	[ -z "$$missing" ] || { $(as_root) apt-get update -q && \
+	[ "$$missing" ] || { echo 'make $@: all packages are installed already'; exit 0; }; \
+	$(as_root) apt-get update -q && \
 		$(as_root) env DEBIAN_FRONTEND=noninteractive \
-			apt-get install -q -y --no-install-recommends $$missing; }
+			apt-get install -q -y --no-install-recommends $$missing && \
+		echo "make $@: installed" $$missing
 	$(unpack_$@)
 
 # In 'make deps demo' the packages come first, and in 'make clean all' the cleaning, whatever

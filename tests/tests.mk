@@ -49,7 +49,7 @@ $(shared): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in,$(
 		$(patsubst tests/unit/%.c,$(O)/tests/unit/%.o,$(filter-out %/slab_truth.c %/slab_kernel.c \
 			tests/unit/test_%,$(wildcard tests/unit/*.c)))
 	@rm -f $@
-	$(AR) qcs $@ $^
+	$(call say,AR,$@) $(AR) qcs $@ $^
 looks_inside := validate accuracy bench/bench bus/bench-bus logs/generate
 $(looks_inside:%=$(B)/%) $(B)/accuracy-planted: $(shared) $(client) $(product) $(engine)
 $(filter-out $(looks_inside:%=$(B)/%),$(test_programs) $(measures)): \
@@ -124,7 +124,7 @@ fuzz_target = $(firstword $(subst -, ,$1))
 fuzz_archives := $(O)/fuzz.a $(shared) $(client) $(product) $(engine)
 $(O)/fuzz.a: $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o model.o same.o results_pair.o results_scene.o)
 	@rm -f $@
-	$(AR) rcs $@ $^
+	$(call say,AR,$@) $(AR) rcs $@ $^
 # Comparisons of numbers deep in the engine are not what inputs should be made for.
 ifeq ($(MODE),fuzz)
 $(engine_objects): flags += -O2 -fno-sanitize-coverage=trace-cmp
@@ -249,7 +249,7 @@ peer_flags_bullet = $$(pkg-config --cflags $(bullet))
 peer_flags_cgal = -frounding-math # its intervals change the direction of rounding
 $(O)/tests/bench/peers/%.o: tests/bench/peers/%.cc $(O)/settings
 	@mkdir -p $(@D)
-	$(CXX) $(or $(peer_flags_$*),$$(pkg-config --cflags $*)) -std=c++17 -O2 -DNDEBUG -MMD -MP \
+	$(call say,CXX,$<) $(CXX) $(or $(peer_flags_$*),$$(pkg-config --cflags $*)) -std=c++17 -O2 -DNDEBUG -MMD -MP \
 		$(sees) -c $< -o $@
 # The article's elimination once more, with rows in an order that the benchmark chooses.
 $(O)/ordered/eliminate.o: service/fmb/article/eliminate.c $(O)/settings
@@ -264,7 +264,7 @@ $(B)/robot/robot: $(if $(fcl),$(O)/tests/robot/fcl.o)
 $(B)/robot/robot: libraries += $(if $(fcl),$$(pkg-config --libs fcl) -lstdc++)
 $(O)/tests/robot/fcl.o: tests/robot/fcl.cc $(O)/settings
 	@mkdir -p $(@D)
-	$(CXX) $$(pkg-config --cflags fcl) -std=c++17 -O2 -MMD -MP $(sees) -c $< -o $@
+	$(call say,CXX,$<) $(CXX) $$(pkg-config --cflags fcl) -std=c++17 -O2 -MMD -MP $(sees) -c $< -o $@
 $(B)/bus/bench-bus $(B)/bus/robot-bus: | $(B)/bus/echo $(B)/fmbd
 $(B)/replay/bench-replay: linking = $(link_whole)
 
