@@ -10,13 +10,16 @@
 # Measure:  bench (deps-bench first, for other libraries), bench-bus, bench-replay, bench-mesh,
 #           report (deps-report first)
 # Port:     aarch64: fmb for AArch64, which 'make test' then emulates (deps-aarch64 first)
-# Rewrite:  logs, goldens: the regression logs, and the results that they are compared with
+# Rewrite:  logs, goldens: the regression logs, and the results that they are compared with;
+#           abi: the names and sizes that programs linked with the libraries depend on
 #
 # Variables:
 #   MODE=release|debug|asan|fuzz   optimised, for a debugger, with sanitizers, with fuzzers (clang)
 #   INSTRUCTIONS=two               leaves out the AVX2 and AVX-512 kernels, which compile slowly
 #   PEERS=none                     leaves out other libraries from the benchmarks
 #   WERROR=1                       warnings are errors
+#   V=1                            shows commands, not one line a file
+#   HELP_FROM=build                whose programs print the manual; for those of another machine
 #   CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX, LIBDIR, DESTDIR   as usual
 
 VERSION := 0.1.0
@@ -39,22 +42,22 @@ O := build/obj/$(variant)
 GEN := build/msgs
 
 .PHONY: all
-all: programs
+all: programs manual
 	@$(if $(silent),,echo "built $(programs): try 'make demo', or '$(B)/fmb query --local clients/demo/table.json'")
 
 .PHONY: help
 help:
 	@sed -n '/^#/!q; s/^# \{0,1\}//p' Makefile
 
-# ---- Flags ----
-
-mode_flags_release := -O2 -g1 -DNDEBUG
 # $(call say,WORK,FILE)COMMAND prints one short line: of a command alone with V=1, nothing with -s.
 flags_of_make := $(firstword -$(MAKEFLAGS))
 silent := $(findstring s,$(flags_of_make))
 say = $(quiet)$(if $(V)$(silent)$(findstring n,$(flags_of_make)),,printf '  %-5s %s\n' $1 $2;)
 quiet := $(if $(V),,@)
 
+# ---- Flags ----
+
+mode_flags_release := -O2 -g1 -DNDEBUG
 mode_flags_debug := -O0 -g3
 mode_flags_asan := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all \
 	-fno-omit-frame-pointer
@@ -305,6 +308,15 @@ $(O)/page/%.o: build/page/%.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) -Iclients/page
 
+# ---- The manual: what --help prints ----
+
+HELP_FROM ?= $(B)
+M := $(B)/man
+.PHONY: manual
+manual: $(M)/fmb.1
+$(M)/fmb.1: clients/manual/pages.sh clients/manual/man.awk $(HELP_FROM)/fmb $(HELP_FROM)/fmbd
+	$(call say,MAN,$(M)) $< $(HELP_FROM) $(M)
+
 # ---- Settings: everything is built again when flags or lists of files change ----
 
 settings := $(CC) $(flags) $(hardened) $(link_flags) $(link_whole) \
@@ -366,34 +378,42 @@ demo: # builds on all cores, also where packages are installed first
 sed_text = $(subst |,\|,$(subst &,\&,$(subst \,\\,$1)))
 fill_in = sed -e 's|@PREFIX@|$(call sed_text,$(PREFIX))|' -e 's|@LIBDIR@|$(call sed_text,$(LIBDIR))|' \
 	-e 's|@VERSION@|$(VERSION)|'
+root := $(DESTDIR)$(PREFIX)
 .PHONY: install install-strip uninstall
 install: all
-	$(INSTALL) -d "$(DESTDIR)$(PREFIX)/bin" "$(DESTDIR)$(LIBDIR)/pkgconfig" \
-		"$(DESTDIR)$(PREFIX)/include" "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes" \
-		"$(DESTDIR)$(PREFIX)/share/doc/fmb" "$(DESTDIR)$(PREFIX)/lib/systemd/system"
-	$(INSTALL) $(strip_option) $(programs) "$(DESTDIR)$(PREFIX)/bin"
+	$(INSTALL) -d $(foreach d,bin include share/fmb/lcmtypes share/doc/fmb share/man/man1 share/man/man8 \
+		share/bash-completion/completions lib/systemd/system,"$(root)/$d") \
+		"$(DESTDIR)$(LIBDIR)/pkgconfig" "$(DESTDIR)$(LIBDIR)/cmake/fmb"
+	$(INSTALL) $(strip_option) $(programs) "$(root)/bin"
 	$(INSTALL) -m 644 $(B)/libfmb.a $(B)/libfmb-client.a "$(DESTDIR)$(LIBDIR)"
 	$(INSTALL) $(strip_option) -m 644 $(shared_libraries) "$(DESTDIR)$(LIBDIR)"
 	for name in $(basename $(notdir $(shared_libraries))); do \
 		ln -sf $$name.0 "$(DESTDIR)$(LIBDIR)/$$name" || exit; done
 	$(if $(DESTDIR),,$(if $(filter /usr/lib% /usr/local/lib%,$(LIBDIR)),[ $$(id -u) != 0 ] || ldconfig))
 	$(INSTALL) -m 644 service/fmb/fmb.h msgs/codec/fmb_counters.h clients/lib/fmb_client.h \
-		"$(DESTDIR)$(PREFIX)/include"
-	$(INSTALL) -m 644 $(message_files) "$(DESTDIR)$(PREFIX)/share/fmb/lcmtypes"
-	$(INSTALL) -m 644 LICENSE "$(DESTDIR)$(PREFIX)/share/doc/fmb"
+		"$(root)/include"
+	$(INSTALL) -m 644 $(message_files) "$(root)/share/fmb/lcmtypes"
+	$(INSTALL) -m 644 LICENSE "$(root)/share/doc/fmb"
+	$(INSTALL) -m 644 $(M)/*.1 "$(root)/share/man/man1"
+	$(INSTALL) -m 644 $(M)/*.8 "$(root)/share/man/man8"
+	for name in fmb fmbd; do $(INSTALL) -m 644 clients/manual/fmb.bash \
+		"$(root)/share/bash-completion/completions/$$name" || exit; done
 	$(fill_in) service/fmb/fmb.pc.in > "$(DESTDIR)$(LIBDIR)/pkgconfig/fmb.pc"
 	$(fill_in) clients/lib/fmb-client.pc.in > "$(DESTDIR)$(LIBDIR)/pkgconfig/fmb-client.pc"
-	$(subst %,%%,$(fill_in)) service/fmbd.service.in > "$(DESTDIR)$(PREFIX)/lib/systemd/system/fmbd.service"
+	for name in fmb-config fmb-config-version; do $(fill_in) clients/lib/$$name.cmake.in \
+		> "$(DESTDIR)$(LIBDIR)/cmake/fmb/$$name.cmake" || exit; done
+	$(subst %,%%,$(fill_in)) service/fmbd.service.in > "$(root)/lib/systemd/system/fmbd.service"
 
 install-strip: strip_option := -s
 install-strip: install
 
 uninstall:
-	cd "$(DESTDIR)$(PREFIX)" && rm -rf bin/fmbd bin/fmb include/fmb.h include/fmb_counters.h \
-		include/fmb_client.h share/fmb share/doc/fmb lib/systemd/system/fmbd.service
-	cd "$(DESTDIR)$(LIBDIR)" && rm -f libfmb.a libfmb-client.a \
-		libfmb.so libfmb.so.0 libfmb-client.so libfmb-client.so.0 pkgconfig/fmb.pc \
-		pkgconfig/fmb-client.pc
+	cd "$(root)" && rm -rf bin/fmbd bin/fmb include/fmb.h include/fmb_counters.h \
+		include/fmb_client.h share/fmb share/doc/fmb lib/systemd/system/fmbd.service \
+		share/man/man1/fmb.1 share/man/man1/fmb-*.1 share/man/man8/fmbd.8 \
+		share/bash-completion/completions/fmb share/bash-completion/completions/fmbd
+	cd "$(DESTDIR)$(LIBDIR)" && rm -rf libfmb.a libfmb-client.a libfmb.so libfmb.so.0 \
+		libfmb-client.so libfmb-client.so.0 pkgconfig/fmb.pc pkgconfig/fmb-client.pc cmake/fmb
 
 .PHONY: clean
 clean:
@@ -404,7 +424,7 @@ clean:
 packages_deps := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libgmp-dev libglib2.0-dev \
 	libseccomp-dev pkg-config uthash-dev
 packages_deps-test := $(packages_deps) libcmocka-dev bats jq clang clang-format libclang-rt-14-dev \
-	liblcm-java default-jdk-headless liblcm-lua lua5.2 chromium libxml2-utils
+	liblcm-java default-jdk-headless liblcm-lua lua5.2 chromium libxml2-utils g++ cmake man-db
 packages_deps-fuzz := $(packages_deps) clang libclang-rt-14-dev llvm afl++
 packages_deps-bench := libccd-dev libfcl-dev libbullet-dev libode-dev libbox2d-dev libcgal-dev \
 	libmpfr-dev pkg-config

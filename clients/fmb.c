@@ -47,7 +47,7 @@ static const struct menu fmb = {
     "fmb",
     "usage: fmb COMMAND [OPTIONS]\n"
     "\n"
-    "Do two moving frames meet, when, and in which box? Verdicts are exact.\n",
+    "Decides exactly whether rigid bodies meet, when, and in which box.\n",
     "'fmb COMMAND --help' lists the options. 'fmb --version' prints the version.\n"
     "Exit codes: 0 answered, 1 failed, 2 wrong usage, or input that cannot be\n"
     "read or is not a scene. Some commands define them further.\n",

@@ -34,7 +34,7 @@ static const char usage[] =
     "                      1 to %d)\n"
     "  -u, --user NAME     become this user once the bus is open (default nobody if\n"
     "                      started as root)\n"
-    "  -h, --help          print this\n"
+    "  -h, --help          print this help\n"
     "  -V, --version       print the version\n"
     "\n"
     "Exit codes: 0 ended by a signal, 1 no bus, no memory or no such user, 2 wrong\n"

@@ -189,7 +189,7 @@ aarch64:
 .PHONY: tests fast-tests tested-programs unit-tests replay-set test test-fast check
 tests: fast-tests examples $(measures)
 fast-tests: tested-programs unit-tests $(capped_programs)
-tested-programs: programs $(test_programs)
+tested-programs: programs manual $(test_programs)
 unit-tests: $(unit_tests) $(replayers) $(B)/netns
 replay-set: $(B)/fmb $(B)/logs/generate $(filter $(B)/capped/fmb-%,$(capped_programs))
 
@@ -232,6 +232,11 @@ goldens: $(B)/fmb
 	for log in tests/logs/*.log; do \
 		$< replay --force --write-golden $${log%.log}.golden $$log > /dev/null || \
 			[ $$log = tests/logs/foreign.log ] || exit; done
+
+# What the libraries promise to programs linked with them, written down anew; see the CHANGELOG.
+.PHONY: abi
+abi: $(shared_libraries)
+	CC=$(CC) tests/system/abi.sh $(B) > tests/system/abi.txt
 
 # ---- Benchmarks ----
 
