@@ -88,6 +88,11 @@ none() {
         grep -vxFf "$BATS_TEST_TMPDIR/quoted" | none
 }
 
+@test "the page of changes has a section for the version of the Makefile" {
+    version=$(sed -n 's/^VERSION := //p' Makefile)
+    [ "$version" ] && grep -q "^## $version\b" .github/CHANGELOG.md
+}
+
 @test "every target of make in backticks exists" {
     # What make knows; it makes nothing, as there is no such target.
     MAKEFLAGS='' make -npq MODE=debug no-such-target > "$BATS_TEST_TMPDIR/known" 2> /dev/null || true

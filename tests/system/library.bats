@@ -9,7 +9,7 @@ setup() {
     *asan*) options+=(MODE=asan) flags='-fsanitize=address,undefined' ;;
     *) flags= ;;
     esac
-    case $FMB_BUILD in *-clang) options+=(CC=clang) ;; esac
+    case $FMB_BUILD in *-clang) options+=(CC=clang) ;; *-two) options+=(INSTRUCTIONS=two) ;; esac
     compiler=$(case $FMB_BUILD in *-clang) echo clang ;; *) echo gcc ;; esac)
     # What was built is installed as it is.
     make -s -o all "${options[@]}" install PREFIX="$root"
@@ -31,11 +31,13 @@ setup() {
     stop_fmbd
 }
 
-@test "a program that uses both libraries links them in either order, as C and as C++" {
-    cat > "$BATS_TEST_TMPDIR/both.c" << 'END'
+# uses_both FILE: writes a program that uses both libraries.
+uses_both() {
+    cat > "$1" << 'END'
 #include <fmb_client.h>
 #include <string.h>
-int main(void)
+int plugin(void);
+int plugin(void)
 {
     struct fmb_body body;
     const double edges[] = {1, 0, 0, 1};
@@ -43,19 +45,56 @@ int main(void)
     struct fmb_client_options options;
     memset(&options, 0, sizeof options);
     options.prefix = "not a prefix";
-    return fmb_body_make(2, FMB_CUBOID, edges, 4, &body) != FMB_OK ||
-           fmb_client_open(&options, why, sizeof why) != NULL || strlen(why) == 0 ||
-           strcmp(fmb_client_status_text(FMB_BUSY), fmb_status_text(FMB_BUSY)) != 0;
+    return fmb_body_make(2, FMB_CUBOID, edges, 4, &body) == FMB_OK &&
+           fmb_client_open(&options, why, sizeof why) == NULL && strlen(why) > 0 &&
+           strcmp(fmb_client_status_text(FMB_BUSY), fmb_status_text(FMB_BUSY)) == 0;
 }
+#ifndef PLUGIN
+int main(void) { return !plugin(); }
+#endif
 END
+}
+
+@test "a program that uses both libraries links them in either order, as C and as C++" {
+    cd "$BATS_TEST_TMPDIR"
+    uses_both both.c
+    warnings='-Wall -Wextra -Wshadow -Wconversion -Werror'
     for order in 'fmb fmb-client' 'fmb-client fmb'; do
         libraries=$(for name in $order; do pkg-config --static --libs $name; done)
-        $compiler -std=c17 -Wall -Wextra -Werror $flags "$BATS_TEST_TMPDIR/both.c" \
-            $(pkg-config --cflags fmb-client) $libraries -o "$BATS_TEST_TMPDIR/both"
-        "$BATS_TEST_TMPDIR/both"
+        for language in 'c -std=c99' 'c++ -std=c++11' 'c++ -std=c++20'; do
+            $compiler -x $language $warnings $flags both.c -x none $(pkg-config --cflags fmb-client) \
+                $libraries -o both
+            ./both
+        done
     done
-    $compiler -x c++ -fsyntax-only -Wall -Wextra -Wshadow -Werror "$BATS_TEST_TMPDIR/both.c" \
-        $(pkg-config --cflags fmb-client) || ! command -v g++
+}
+
+@test "a project of CMake finds the libraries, shared and static, in a version that will do" {
+    cd "$BATS_TEST_TMPDIR"
+    uses_both both.c
+    cat > CMakeLists.txt << 'END'
+cmake_minimum_required(VERSION 3.13)
+project(both C)
+find_package(fmb ${wanted} REQUIRED)
+find_package(fmb)
+foreach(kind "" "-static")
+    add_executable(both${kind} both.c)
+    target_link_libraries(both${kind} fmb::fmb-client${kind} fmb::fmb${kind})
+endforeach()
+END
+    configure="cmake -S . -B out -DCMAKE_PREFIX_PATH=$root -DCMAKE_C_COMPILER=$compiler"
+    for wanted in '' 0.0.1 "$("$root/bin/fmb" --version | cut -d ' ' -f 2)"; do
+        $configure -DCMAKE_C_FLAGS="$flags" -Dwanted=$wanted
+    done
+    cmake --build out
+    out/both
+    rm "$root"/lib/libfmb*.so*
+    out/both-static
+    for wanted in 0.99 1.0; do
+        run $configure -Dwanted=$wanted
+        [ "$status" != 0 ]
+        [[ $output == *"requested version \"$wanted\""* ]]
+    done
 }
 
 @test "the client library exports its own names only" {
@@ -76,28 +115,35 @@ END
     done
 }
 
-@test "a program runs with the shared libraries, and a shared object holds the archives" {
-    cat > "$BATS_TEST_TMPDIR/plugin.c" << 'END'
-#include <fmb_client.h>
-#include <string.h>
-int plugin(void);
-int plugin(void)
-{
-    struct fmb_body body;
-    const double edges[] = {1, 0, 0, 1};
-    return fmb_body_make(2, FMB_CUBOID, edges, 4, &body) == FMB_OK && fmb_client_prefix_ok("a");
+@test "the names and sizes that programs depend on are those of abi.txt" {
+    CC=$compiler tests/system/abi.sh "$FMB_BUILD" > "$BATS_TEST_TMPDIR/abi"
+    diff tests/system/abi.txt "$BATS_TEST_TMPDIR/abi" || {
+        echo "the ABI changed: where that is meant, see .github/CHANGELOG.md, then 'make abi'"
+        false
+    }
 }
-END
-    printf 'int plugin(void);\nint main(void) { return !plugin(); }\n' > "$BATS_TEST_TMPDIR/main.c"
+
+@test "a program runs with the shared libraries, and a plugin holds the archives" {
     cd "$BATS_TEST_TMPDIR"
-    $compiler $flags plugin.c main.c $(pkg-config --cflags --libs fmb fmb-client) -o with_shared
+    uses_both both.c
+    $compiler $flags both.c $(pkg-config --cflags --libs fmb fmb-client) -o with_shared
     ./with_shared
     for name in fmb fmb-client; do ldd with_shared | grep -q "lib$name.so.0 => $root/"; done
-    $compiler $flags -shared -fPIC plugin.c $(pkg-config --cflags fmb-client) -o libplugin.so \
+    $compiler $flags -shared -fPIC -DPLUGIN both.c $(pkg-config --cflags fmb-client) -o plugin.so \
         "$root/lib/libfmb-client.a" "$root/lib/libfmb.a" -llcm -lglib-2.0 -lgmp -lm
-    $compiler $flags main.c -L. -lplugin -o with_plugin
+    cat > main.c << 'END'
+#include <dlfcn.h>
+int main(void)
+{
+    void *library = dlopen("./plugin.so", RTLD_NOW);
+    int (*plugin)(void);
+    *(void **) &plugin = library ? dlsym(library, "plugin") : 0;
+    return !plugin || !plugin() || dlclose(library) != 0;
+}
+END
+    $compiler $flags main.c -o main -ldl
     rm "$root"/lib/libfmb*
-    LD_LIBRARY_PATH=. ./with_plugin
+    ./main
 }
 
 # Options of make are those of setup().

@@ -1,0 +1,23 @@
+#!/bin/sh
+# abi.sh BUILD_DIR: what programs that were linked earlier depend on: the names that the shared
+# libraries export, and the sizes in bytes of the structs in their headers. 'make abi' puts it into
+# abi.txt, which library.bats compares.
+set -eu
+
+build=$1
+headers='service/fmb/fmb.h msgs/codec/fmb_counters.h clients/lib/fmb_client.h'
+
+for library in libfmb.so.0 libfmb-client.so.0; do
+    nm -D --defined-only "$build/$library" | awk -v library=$library '$2 != "A" { print library, $3 }'
+done
+
+{
+    echo '#include <stdio.h>'
+    for header in $headers; do echo "#include \"$header\""; done
+    echo 'int main(void) {'
+    # shellcheck disable=SC2086
+    sed -n 's/^\(struct [a-z_]*\) {$/printf("\1 %zu\\n", sizeof(\1));/p' $headers
+    echo '}'
+} > "$build/abi.c"
+${CC:-gcc} -I. -Iservice/fmb -Imsgs/codec "$build/abi.c" -o "$build/abi"
+"$build/abi"
