@@ -35,11 +35,18 @@ enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
                                           const struct fmb_prepared *b, double duration,
                                           unsigned want, bool quick, struct fmb_answer *answer);
 
-/* The step that decides the verdict of a pair: the filter; its second pass; integers of fixed
- * width; GMP. For tests and reports. */
-enum certified_path { CERTIFIED_FILTER, CERTIFIED_SECOND, CERTIFIED_LIMBS, CERTIFIED_EXACT };
+/* The rungs of the ladder for the verdict: the filter; its second pass; integers of fixed width;
+ * GMP. */
+enum certified_path {
+    CERTIFIED_FILTER,
+    CERTIFIED_SECOND,
+    CERTIFIED_LIMBS,
+    CERTIFIED_EXACT,
+    CERTIFIED_PATHS
+};
 
-/* Returns the verdict of a checked pair, and in *path the step that decided it. */
+/* Returns the verdict of a checked pair, and in *path the rung that decided it. For tests and
+ * reports. */
 enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path);
 
 /* Returns the verdict of a prepared pair that passes (1 or 2) passes of the filter leave unsure.
