@@ -116,15 +116,15 @@ static bool check_query(const struct log_query *query)
 static void report_ids(struct logged_query *query, const struct fmb_placement *printed)
 {
     int32_t count;
-    const struct placement *placement = logged_query_placements(query, &count);
+    const struct query_placement *placement = logged_query_placements(query, &count);
     for (int32_t i = 0; i < count; i++) {
-        if (placement[i].body_id == printed[i].id)
+        if (placement[i].placed.id == printed[i].id)
             continue;
-        if (placement[i].body_id == 0)
+        if (placement[i].placed.id == 0)
             complain("placement %d, which has no id, is body %" PRId64 "", (int) i, printed[i].id);
         else
             complain("placement %d, one more of body %" PRId64 ", is body %" PRId64 "", (int) i,
-                     placement[i].body_id, printed[i].id);
+                     placement[i].placed.id, printed[i].id);
     }
 }
 

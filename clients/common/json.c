@@ -12,6 +12,7 @@
 #include "keyed_hash.h"
 #include "number.h"
 #include "text.h"
+#include "query.h"
 #include "turned_box.h"
 #include "utf8.h"
 
@@ -293,7 +294,12 @@ static bool read_name(const struct place *at, void *out)
  * its body. */
 struct body {
     struct fmb_placement placement;
-    struct geometry_frame frame; /* unless there are several */
+    /* The frame, unless there are several. */
+    int shape;
+    double origin[FMB_DIM_MAX];            /* or centre */
+    double components[FMB_COMPONENTS_MAX]; /* [component * dim + axis]; of a box its size */
+    double *vertices;                      /* [vertex_count * dim]; NULL: by components */
+    size_t vertex_count;
 };
 
 static bool read_shape(const struct place *at, void *out)
@@ -317,24 +323,20 @@ static bool read_shape(const struct place *at, void *out)
 
 static bool read_components(const struct place *at, void *out)
 {
-    struct geometry_frame *frame = out;
+    struct body *body = out;
     const size_t dim = (size_t) dim_of(at);
-    return read_each(at, (size_t) fmb_component_count((int) dim, frame->shape), "vectors",
-                     read_vector, frame->components, dim * sizeof(double));
+    return read_each(at, (size_t) fmb_component_count((int) dim, body->shape), "vectors",
+                     read_vector, body->components, dim * sizeof(double));
 }
 
 static bool read_vertices(const struct place *at, void *out)
 {
-    struct geometry_frame *frame = out;
+    struct body *body = out;
     const size_t dim = (size_t) dim_of(at);
-    const size_t components = (size_t) fmb_component_count((int) dim, frame->shape);
-    double vertices[FMB_FRAME_NUMBERS_MAX];
-    if (!read_each(at, components + 1, "vertices", read_vector, vertices, dim * sizeof(double)))
-        return false;
-    frame->by_vertices = true;
-    memcpy(frame->origin, vertices, dim * sizeof *vertices);
-    memcpy(frame->components, vertices + dim, components * dim * sizeof *vertices);
-    return true;
+    body->vertex_count = (size_t) fmb_component_count((int) dim, body->shape) + 1;
+    body->vertices = scene_alloc(at->reader->scene, dim * body->vertex_count, sizeof(double));
+    return read_each(at, body->vertex_count, "vertices", read_vector, body->vertices,
+                     dim * sizeof(double));
 }
 
 static bool read_size(const struct place *at, void *out)
@@ -380,11 +382,11 @@ static const struct key body_keys[BODY_KEYS] = {
     [NAME] = {"name", false, read_name, offsetof(struct body, placement.name)},
     [GROUP] = {"group", false, read_group, offsetof(struct body, placement.group)},
     [VELOCITY] = {"velocity", false, read_vector, offsetof(struct body, placement.velocity)},
-    [SHAPE] = {"shape", false, read_shape, offsetof(struct body, frame.shape)},
-    [ORIGIN] = {"origin", false, read_vector, offsetof(struct body, frame.origin)},
-    [COMPONENTS] = {"components", false, read_components, offsetof(struct body, frame)},
-    [VERTICES] = {"vertices", false, read_vertices, offsetof(struct body, frame)},
-    [SIZE] = {"size", false, read_size, offsetof(struct body, frame.components)},
+    [SHAPE] = {"shape", false, read_shape, offsetof(struct body, shape)},
+    [ORIGIN] = {"origin", false, read_vector, offsetof(struct body, origin)},
+    [COMPONENTS] = {"components", false, read_components, 0},
+    [VERTICES] = {"vertices", false, read_vertices, 0},
+    [SIZE] = {"size", false, read_size, offsetof(struct body, components)},
     [POSITION] = {"position", false, read_vector, offsetof(struct body, placement.position)},
     [ORIENTATION] = {"orientation", false, read_orientation, offsetof(struct body, placement)},
     [FRAMES] = {"frames", false, read_frames, offsetof(struct body, placement.body)},
@@ -429,47 +431,67 @@ static bool read_keys(const struct place *at, int first, int end, struct place m
     memset(member, 0, BODY_KEYS * sizeof *member);
     return find_members(at, body_keys + first, end - first, member + first) &&
            read_members(member + first, body_keys + first, SHAPE + 1 - first, out) &&
-           check_keys(member, out->frame.shape, first == SHAPE) &&
+           check_keys(member, out->shape, first == SHAPE) &&
            read_members(member + ORIGIN, body_keys + ORIGIN, end - ORIGIN, out);
 }
 
-/* Reads an element of "frames". Adds its bytes in a message to *bytes: 1 for the shape, 4 for a
- * count, and 8 for each number. */
-static bool read_frame(const struct place *at, size_t *bytes)
+static struct given_frame frame_of(const struct place *at, const struct body *body)
+{
+    const size_t dim = (size_t) dim_of(at);
+    const size_t components = (size_t) fmb_component_count((int) dim, body->shape);
+    if (body->vertices)
+        return (struct given_frame){body->shape, true, dim * body->vertex_count, body->vertices};
+    const size_t count = body->shape == FMB_BOX ? dim : dim * components;
+    double *numbers = scene_alloc(at->reader->scene, dim + count, sizeof *numbers);
+    memcpy(numbers, body->origin, dim * sizeof *numbers);
+    memcpy(numbers + dim, body->components, count * sizeof *numbers);
+    return (struct given_frame){body->shape, false, dim + count, numbers};
+}
+
+/* Reads an element of "frames". */
+static bool read_frame(const struct place *at, struct given_frame *out)
 {
     struct place member[BODY_KEYS];
     struct body body;
-    struct geometry_frame *frame = &body.frame;
-    const int dim = dim_of(at);
     if (!read_keys(at, SHAPE, FRAMES, member, &body))
         return false;
-    if (frame->shape == FMB_BOX)
-        memcpy(frame->origin, body.placement.position, sizeof frame->origin);
+    if (body.shape == FMB_BOX)
+        memcpy(body.origin, body.placement.position, sizeof body.origin);
     if (turns(&body.placement)) {
-        turned_box(dim, body.placement.orientation, frame->origin, frame->components);
-        frame->shape = FMB_CUBOID;
+        turned_box(dim_of(at), body.placement.orientation, body.origin, body.components);
+        body.shape = FMB_CUBOID;
     }
-    *scene_add_given(at->reader->scene) = *frame;
-    *bytes +=
-        1 + (frame->by_vertices ? 4 : 0) + 8 * (size_t) geometry_number_count(dim, frame->shape, 0);
+    *out = frame_of(at, &body);
     return true;
+}
+
+/* Makes a body of frames, whose bytes in a message are limited: 1 for a shape, 4 for a count of
+ * vertices, 8 for a number. */
+static bool make_body(const struct place *at, const struct given_frame *given, size_t count,
+                      const struct fmb_body **out)
+{
+    size_t bytes = 0, bad;
+    for (size_t i = 0; i < count; i++)
+        bytes += 1 + (given[i].by_vertices ? 4 : 0) + 8 * given[i].count;
+    if (bytes > FMB_CLIENT_BODY_BYTES_MAX)
+        return refuse(at, "%s: %zu bytes in a message, which has space for %d",
+                      fmb_status_text(FMB_OVER_LIMIT), bytes, (int) FMB_CLIENT_BODY_BYTES_MAX);
+    const enum fmb_status status = scene_make_body(at->reader->scene, given, count, out, &bad);
+    const struct place frame = {at->reader, at, NULL, NULL, bad};
+    return status == FMB_OK ||
+           refuse(count > 1 && bad < count ? &frame : at, "%s", fmb_status_text(status));
 }
 
 static bool read_frames(const struct place *array, void *out)
 {
     const size_t count = count_elements(array);
-    size_t bytes = 0, bad;
     if (count == SIZE_MAX)
         return false;
+    struct given_frame *given = scene_alloc(array->reader->scene, count, sizeof *given);
     for (struct place at = first_element(array); at.item; next_element(&at))
-        if (!read_frame(&at, &bytes))
+        if (!read_frame(&at, &given[at.index]))
             return false;
-    if (bytes > FMB_CLIENT_BODY_BYTES_MAX)
-        return refuse(array, "%s: %zu bytes in a message, which has space for %d",
-                      fmb_status_text(FMB_OVER_LIMIT), bytes, (int) FMB_CLIENT_BODY_BYTES_MAX);
-    const enum fmb_status status = scene_make_body(array->reader->scene, count, out, &bad);
-    const struct place frame = {array->reader, array, NULL, NULL, bad};
-    return status == FMB_OK || refuse(bad < count ? &frame : array, "%s", fmb_status_text(status));
+    return make_body(array, given, count, out);
 }
 
 /* ---- Bodies ---------------------------------------------------------------------------------- */
@@ -505,16 +527,13 @@ static bool read_body(const struct place *at, void *out)
         !add_id(&member[ID], placement->id, at->index))
         return false;
     if (!member[FRAMES].item) {
-        size_t bad;
         if (member[COMPONENTS].item && !member[POSITION].item && !member[ORIENTATION].item) {
-            memcpy(placement->position, body.frame.origin, sizeof placement->position);
-            memset(body.frame.origin, 0, sizeof body.frame.origin);
+            memcpy(placement->position, body.origin, sizeof placement->position);
+            memset(body.origin, 0, sizeof body.origin);
         }
-        *scene_add_given(at->reader->scene) = body.frame;
-        const enum fmb_status status =
-            scene_make_body(at->reader->scene, 1, &placement->body, &bad);
-        if (status != FMB_OK)
-            return refuse(at, "%s", fmb_status_text(status));
+        const struct given_frame given = frame_of(at, &body);
+        if (!make_body(at, &given, 1, &placement->body))
+            return false;
     }
     *(struct fmb_placement *) out = *placement;
     return true;

@@ -27,34 +27,21 @@ void scene_clear(struct owned_scene *scene)
     for (size_t i = 0; i < scene->memory_count; i++)
         free(scene->memory[i]);
     free(scene->memory);
-    free(scene->given);
     memset(scene, 0, sizeof *scene);
 }
 
 /* ---- Bodies ---- */
 
-struct geometry_frame *scene_add_given(struct owned_scene *scene)
+enum fmb_status scene_make_body(struct owned_scene *scene, const struct given_frame *given,
+                                size_t count, const struct fmb_body **out, size_t *bad)
 {
-    scene->given = allocate_grow(scene->given, &scene->given_capacity, scene->given_count + 1,
-                                 sizeof *scene->given);
-    struct geometry_frame *given = &scene->given[scene->given_count++];
-    *given = (struct geometry_frame){.shape = 0};
-    return given;
-}
-
-enum fmb_status scene_make_body(struct owned_scene *scene, size_t count,
-                                const struct fmb_body **out, size_t *bad)
-{
-    const struct geometry_frame *given = scene->given + scene->given_count - count;
     struct fmb_body *body = scene_alloc(scene, 1, sizeof *body);
     struct fmb_frame one, *frames = count == 1 ? &one : scene_alloc(scene, count, sizeof one);
-    double number[FMB_FRAME_NUMBERS_MAX];
     *out = body;
     for (*bad = 0; *bad < count; ++*bad, given++) {
-        const size_t used = geometry_frame_numbers(scene->dim, given, number);
         const enum fmb_status status =
             (given->by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
-                scene->dim, given->shape, number, used, &frames[*bad]);
+                scene->dim, given->shape, given->numbers, given->count, &frames[*bad]);
         if (status != FMB_OK)
             return status;
     }

@@ -3,7 +3,7 @@
 #ifndef SCENE_H
 #define SCENE_H
 
-#include "geometry.h"
+#include "fmb.h"
 #include "ignored.h"
 
 #include <stdbool.h>
@@ -14,10 +14,7 @@ struct owned_scene {
     struct fmb_scene scene; /* ALL or LISTED; ids are unique */
     struct ignored ignored; /* its ignored pairs */
     int dim;                /* 2 or 3, of all bodies */
-    /* Owned, [given_count]: the frames of all bodies as they were given, one after the other. */
-    struct geometry_frame *given;
-    size_t given_count, given_capacity;
-    void **memory; /* owned, [memory_count]: what the scene points to */
+    void **memory;          /* owned, [memory_count]: what the scene points to */
     size_t memory_count, memory_capacity;
 };
 
@@ -27,13 +24,18 @@ void *scene_alloc(struct owned_scene *scene, size_t count, size_t size);
 /* Returns a copy of a text; NULL for "" and NULL. */
 const char *scene_text(struct owned_scene *scene, const char *text);
 
-/* Appends an element, all 0, to the given frames. */
-struct geometry_frame *scene_add_given(struct owned_scene *scene);
+/* A frame as it is given: what fmb_frame_make() or fmb_frame_make_vertices() takes. */
+struct given_frame {
+    int shape; /* enum fmb_shape */
+    bool by_vertices;
+    size_t count;
+    const double *numbers; /* [count] */
+};
 
-/* Makes a body of the last `count` given frames. On output: FMB_OK and *out; or the status of the
- * engine, and *bad is the first frame that it refuses, or count. */
-enum fmb_status scene_make_body(struct owned_scene *scene, size_t count,
-                                const struct fmb_body **out, size_t *bad);
+/* Makes a body of count frames. On output: FMB_OK and *out; or the status of the engine, and *bad
+ * is the first frame that it refuses, or count. */
+enum fmb_status scene_make_body(struct owned_scene *scene, const struct given_frame *given,
+                                size_t count, const struct fmb_body **out, size_t *bad);
 
 /* Frees what the scene owns, and sets it to {0}, an empty scene. */
 void scene_clear(struct owned_scene *scene);

@@ -32,30 +32,45 @@ static void write_vector(struct json_writer *json, const char *key, const double
         json_numbers(json, key, numbers, dim);
 }
 
-/* Writes the members of a frame that do not depend on where its origin is. */
-static void write_shape(struct json_writer *json, int dim, const struct geometry_frame *frame)
+/* The numbers of a frame, as fmb_frame_make() or fmb_frame_make_vertices() takes them. */
+struct frame_numbers {
+    bool by_vertices;
+    size_t count;
+    double number[FMB_FRAME_NUMBERS_MAX];
+};
+
+static struct frame_numbers numbers_of(const struct fmb_frame *frame)
 {
-    double vertices[FMB_FRAME_NUMBERS_MAX];
-    json_string(json, "shape", fmb_shape_name(frame->shape));
-    if (frame->shape == FMB_BOX)
-        json_numbers(json, "size", frame->components, dim);
-    else if (frame->by_vertices)
-        write_vectors(json, "vertices", vertices, dim,
-                      (int) geometry_frame_numbers(dim, frame, vertices) / dim);
-    else
-        write_vectors(json, "components", frame->components, dim,
-                      fmb_component_count(dim, frame->shape));
+    struct frame_numbers out;
+    out.count = fmb_frame_numbers(frame, &out.by_vertices, out.number);
+    return out;
 }
 
-static void write_frames(struct json_writer *json, int dim, const struct geometry_frame *frame,
-                         unsigned count)
+/* Writes the members of a frame that do not depend on where its origin is. */
+static void write_shape(struct json_writer *json, const struct fmb_frame *frame,
+                        const struct frame_numbers *given)
+{
+    const int dim = frame->dim;
+    json_string(json, "shape", fmb_shape_name((int) frame->shape));
+    if (frame->shape == FMB_BOX)
+        json_numbers(json, "size", given->number + dim, dim);
+    else if (given->by_vertices)
+        write_vectors(json, "vertices", given->number, dim, (int) given->count / dim);
+    else
+        write_vectors(json, "components", given->number + dim, dim, (int) given->count / dim - 1);
+}
+
+static void write_frames(struct json_writer *json, const struct fmb_body *body)
 {
     json_begin(json, "frames", '[');
-    for (; count > 0; count--, frame++) {
+    for (unsigned i = 0; i < body->frame_count; i++) {
+        const struct fmb_frame *frame = fmb_body_frame(body, i);
+        const struct frame_numbers given = numbers_of(frame);
         json_begin(json, NULL, '{');
-        write_shape(json, dim, frame);
-        if (!frame->by_vertices)
-            write_vector(json, frame->shape == FMB_BOX ? "position" : "origin", frame->origin, dim);
+        write_shape(json, frame, &given);
+        if (!given.by_vertices)
+            write_vector(json, frame->shape == FMB_BOX ? "position" : "origin", given.number,
+                         body->dim);
         json_end(json, '}');
     }
     json_end(json, ']');
@@ -63,14 +78,15 @@ static void write_frames(struct json_writer *json, int dim, const struct geometr
 
 /* A body of one frame by vertices, or whose origin or centre is 0, is written as that frame. A
  * frame of components then has the position of the body as its origin, unless the body is turned.
- * given: the frames of the body. */
-static void write_body(struct json_writer *json, const struct fmb_placement *placement,
-                       const struct geometry_frame *given)
+ */
+static void write_body(struct json_writer *json, const struct fmb_placement *placement)
 {
     const int dim = placement->body->dim;
+    const struct fmb_frame *first = fmb_body_frame(placement->body, 0);
+    const struct frame_numbers given = numbers_of(first);
     const bool only =
-        placement->body->frame_count == 1 && (given->by_vertices || is_zero(given->origin, dim));
-    const bool components = only && given->shape != FMB_BOX && !given->by_vertices;
+        placement->body->frame_count == 1 && (given.by_vertices || is_zero(given.number, dim));
+    const bool components = only && first->shape != FMB_BOX && !given.by_vertices;
     json_begin(json, NULL, '{');
     json_integer(json, "id", placement->id);
     if (placement->name)
@@ -78,9 +94,9 @@ static void write_body(struct json_writer *json, const struct fmb_placement *pla
     if (placement->group != 0)
         json_integer(json, "group", placement->group);
     if (only)
-        write_shape(json, dim, given);
+        write_shape(json, first, &given);
     else
-        write_frames(json, dim, given, placement->body->frame_count);
+        write_frames(json, placement->body);
     if (components && placement->orientation_count == 0)
         json_numbers(json, "origin", placement->position, dim);
     else
@@ -91,17 +107,14 @@ static void write_body(struct json_writer *json, const struct fmb_placement *pla
     json_end(json, '}');
 }
 
-static void write_bodies(struct json_writer *json, const struct owned_scene *scene)
+static void write_bodies(struct json_writer *json, const struct fmb_scene *scene)
 {
-    const struct geometry_frame *given = scene->given;
     json_break(json, "\n ");
     json_begin(json, "bodies", '[');
-    for (size_t i = 0; i < scene->scene.placement_count; i++) {
-        const struct fmb_placement *placement = &scene->scene.placements[i];
+    for (size_t i = 0; i < scene->placement_count; i++) {
         if (i > 0)
             json_break(json, "\n            ");
-        write_body(json, placement, given);
-        given += placement->body->frame_count;
+        write_body(json, &scene->placements[i]);
     }
     json_end(json, ']');
 }
@@ -150,7 +163,7 @@ void scene_json_write(FILE *out, struct owned_scene *owner)
     json_number(&json, "duration", scene->duration);
     if (scene->margin > 0)
         json_number(&json, "margin", scene->margin);
-    write_bodies(&json, owner);
+    write_bodies(&json, scene);
     if (scene->which == FMB_PAIRS_LISTED)
         write_pairs(&json, scene->placements, "pairs", scene->pairs, scene->pair_count);
     if (scene->ignored_count > 0)

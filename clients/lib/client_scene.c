@@ -49,42 +49,38 @@ int client_scene_check(const struct fmb_scene *scene, char why[FMB_CLIENT_WHY_MA
 
 /* ---- Placements ---- */
 
-/* Counts of an encoded body. */
-struct geometry_counts {
-    int32_t counts, numbers;
-    size_t bytes;
-};
-
-static struct geometry_counts counts_of(const struct fmb_body *body)
+/* Returns the counts and the size of an encoded body. */
+static struct body_view view_of(const struct fmb_body *body)
 {
-    struct geometry_counts out = {0};
+    struct body_view out = {.dim = body->dim, .frame_count = (int32_t) body->frame_count};
     for (unsigned i = 0; i < body->frame_count; i++) {
         bool by_vertices;
-        out.numbers += (int32_t) fmb_frame_numbers(fmb_body_frame(body, i), &by_vertices, NULL);
-        out.counts += by_vertices;
+        out.number_count +=
+            (int32_t) fmb_frame_numbers(fmb_body_frame(body, i), &by_vertices, NULL);
+        out.count_count += by_vertices;
     }
-    out.bytes = GEOMETRY_NONE_BYTES + body->frame_count + 4 * (size_t) out.counts +
-                sizeof(double) * (size_t) out.numbers;
+    out.size = GEOMETRY_NONE_BYTES + body->frame_count + 4 * (size_t) out.count_count +
+               sizeof(double) * (size_t) out.number_count;
     return out;
 }
 
 size_t client_scene_geometry_bytes(const struct fmb_body *body)
 {
-    return counts_of(body).bytes;
+    return view_of(body).size;
 }
 
-/* Encodes the frames as the geometry of a body (placement_t.lcm). */
-static struct geometry write_frames(const struct fmb_body *body, unsigned char *out)
+/* Encodes the frames of a body (placement_t.lcm). */
+static void write_body(const struct fmb_body *body, struct body_view *out, unsigned char *bytes)
 {
-    const struct geometry_counts sum = counts_of(body);
-    unsigned char *end = out + sum.bytes;
-    struct writer shapes = {out, end};
-    writer_int32(&shapes, body->dim);
-    writer_int32(&shapes, (int32_t) body->frame_count);
-    struct writer counts = {shapes.at + body->frame_count, end};
-    writer_int32(&counts, sum.counts);
-    struct writer numbers = {counts.at + 4 * sum.counts, end};
-    writer_int32(&numbers, sum.numbers);
+    unsigned char *end = bytes + out->size;
+    struct writer shapes = {bytes, end};
+    out->bytes = bytes;
+    writer_int32(&shapes, out->dim);
+    writer_int32(&shapes, out->frame_count);
+    struct writer counts = {shapes.at + out->frame_count, end};
+    writer_int32(&counts, out->count_count);
+    struct writer numbers = {counts.at + 4 * out->count_count, end};
+    writer_int32(&numbers, out->number_count);
     for (unsigned i = 0; i < body->frame_count; i++) {
         const struct fmb_frame *frame = fmb_body_frame(body, i);
         double number[FMB_FRAME_NUMBERS_MAX];
@@ -92,35 +88,25 @@ static struct geometry write_frames(const struct fmb_body *body, unsigned char *
         const size_t count = fmb_frame_numbers(frame, &by_vertices, number);
         *writer_take(&shapes, 1) = (unsigned char) geometry_code((int) frame->shape, by_vertices);
         if (by_vertices)
-            writer_int32(&counts, frame->count + 1);
+            writer_int32(&counts, (int32_t) count / out->dim);
         for (size_t k = 0; k < count; k++)
             writer_double(&numbers, number[k]);
     }
-    return (struct geometry){out, sum.bytes};
 }
 
 void client_scene_placement(const struct fmb_placement *of, const struct handle *handle,
-                            unsigned char *geometry, struct placement *out)
+                            unsigned char *bytes, struct query_placement *out)
 {
     const int dim = of->body->dim;
-    *out = (struct placement){.body_id = of->id,
-                              .dim = dim,
-                              .group = of->group,
-                              .orientation_count = of->orientation_count};
-    memcpy(out->orientation, of->orientation, sizeof out->orientation);
-    for (int axis = 0; axis < dim; axis++) {
-        out->position[axis] = of->position[axis];
-        out->velocity[axis] = of->velocity[axis];
+    *out = (struct query_placement){.placed = *of};
+    for (int axis = 0; axis < dim; axis++)
         if (of->velocity[axis] != 0)
             out->velocity_count = dim;
-    }
     if (handle) {
-        geometry_write_none(dim, geometry);
-        out->geometry = (struct geometry){geometry, GEOMETRY_NONE_BYTES};
-        out->handle = *handle;
+        out->body = geometry_named(dim, handle);
+        out->placed.name = NULL;
     } else {
-        out->frame_count = (int32_t) of->body->frame_count;
-        out->name = of->name;
-        out->geometry = write_frames(of->body, geometry);
+        out->body = view_of(of->body);
+        write_body(of->body, &out->body, bytes);
     }
 }

@@ -12,11 +12,11 @@
 static void set_body(const struct fmb_placement *placement, struct held *held,
                      unsigned char *scratch, struct division_body *out)
 {
-    struct placement converted;
+    struct query_placement converted;
     client_scene_placement(placement, NULL, scratch, &converted);
     out->bytes = out->least = (uint32_t) wire_placement_bytes(&converted);
     if (placement->id != 0)
-        out->entry = held_find(held, &converted.geometry);
+        out->entry = held_find(held, &converted.body);
     if (!out->entry || !out->entry->held)
         return;
     client_scene_placement(placement, &out->entry->handle, scratch, &converted);

@@ -5,29 +5,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-static struct held_body *enter(struct held *held, const struct geometry *geometry,
+static struct held_body *enter(struct held *held, const struct body_view *view,
                                struct held_body **at)
 {
-    struct held_body *body = malloc(sizeof *body + geometry->size);
+    struct held_body *body = malloc(sizeof *body + view->size);
     if (!body)
         return NULL;
-    *body =
-        (struct held_body){.next = *at,
-                           .handle = hasher_handle(held->hasher, geometry->bytes, geometry->size),
-                           .size = geometry->size};
-    memcpy(body->geometry, geometry->bytes, geometry->size);
+    *body = (struct held_body){.next = *at,
+                               .handle = hasher_handle(held->hasher, view->bytes, view->size),
+                               .size = view->size};
+    memcpy(body->bytes, view->bytes, view->size);
     held->count++;
     return *at = body;
 }
 
-struct held_body *held_find(struct held *held, const struct geometry *geometry)
+struct held_body *held_find(struct held *held, const struct body_view *view)
 {
-    const uint64_t hash = digest(0, geometry->bytes, geometry->size);
+    const uint64_t hash = digest(0, view->bytes, view->size);
     struct held_body **at = &held->body[hash >> (64 - HELD_BITS)], *body = *at;
-    while (body && (body->size != geometry->size ||
-                    memcmp(body->geometry, geometry->bytes, body->size) != 0))
+    while (body && (body->size != view->size || memcmp(body->bytes, view->bytes, body->size) != 0))
         body = body->next;
-    return body ? body : enter(held, geometry, at);
+    return body ? body : enter(held, view, at);
 }
 
 void held_clear(struct held *held)

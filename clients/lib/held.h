@@ -1,6 +1,6 @@
 /* The bodies of a client, and whether the service holds them: those are sent by handle.
  *
- * The key is the geometry. The handle of a body is computed when it enters the table. */
+ * The key is the encoded body. The handle of a body is computed when it enters the table. */
 #ifndef HELD_H
 #define HELD_H
 
@@ -15,7 +15,7 @@ struct held_body {
     bool held;              /* a result has shown that the service holds it */
     struct handle handle;
     size_t size;
-    unsigned char geometry[]; /* [size] */
+    unsigned char bytes[]; /* [size], encoded */
 };
 
 /* All 0 but the hasher: empty. */
@@ -25,9 +25,9 @@ struct held {
     struct held_body *body[HELD_MAX]; /* owned, by their digests */
 };
 
-/* Returns the entry of a body with this geometry, which enters the table if it is not there; NULL
- * if out of memory. Valid until held_clear(). */
-struct held_body *held_find(struct held *held, const struct geometry *geometry);
+/* Returns the entry of a body, which enters the table if it is not there; NULL if out of memory.
+ * Valid until held_clear(). */
+struct held_body *held_find(struct held *held, const struct body_view *view);
 
 /* Removes all bodies. */
 void held_clear(struct held *held);

@@ -84,16 +84,16 @@ static struct held_body *entry_of(const struct part *part, int32_t i)
 
 /* Converts the placements: by handle if the service holds the body, else with frames. Returns their
  * bytes; a number above max means that not all of them were converted. */
-static size_t write_placements(struct part *part, size_t max, struct placement *out)
+static size_t write_placements(struct part *part, size_t max, struct query_placement *out)
 {
-    unsigned char *geometry = part->run->geometry;
+    unsigned char *at = part->run->geometry;
     size_t bytes = 0;
     for (int32_t i = 0; i < part->placement_count && bytes <= max; i++) {
         const struct held_body *body = part->unknown < UNKNOWN_MAX ? entry_of(part, i) : NULL;
         part->whole[i] = !body || !body->held;
         client_scene_placement(placement_of(part, (unsigned) i),
-                               part->whole[i] ? NULL : &body->handle, geometry, &out[i]);
-        geometry += out[i].geometry.size;
+                               part->whole[i] ? NULL : &body->handle, at, &out[i]);
+        at += part->whole[i] ? out[i].body.size : 0;
         bytes += wire_placement_bytes(&out[i]);
     }
     return bytes;
@@ -141,7 +141,7 @@ static size_t begin_query(const struct part *part)
 static size_t write_definitions(struct part *part, unsigned char *out)
 {
     struct scene_query *query = &part->run->query;
-    unsigned char *geometry = part->run->geometry;
+    unsigned char *at = part->run->geometry;
     size_t left = begin_query(part);
     const bool may = part->unknown < UNKNOWN_MAX && part->definitions < part->placement_count;
     memset(part->whole, 0, sizeof part->whole);
@@ -149,12 +149,12 @@ static size_t write_definitions(struct part *part, unsigned char *out)
         const struct held_body *body = entry_of(part, i);
         if (!body || body->held)
             continue;
-        struct placement *placement = &query->placement[query->placement_count];
-        client_scene_placement(placement_of(part, (unsigned) i), NULL, geometry, placement);
+        struct query_placement *placement = &query->placement[query->placement_count];
+        client_scene_placement(placement_of(part, (unsigned) i), NULL, at, placement);
         if (wire_placement_bytes(placement) > left)
             break;
         left -= wire_placement_bytes(placement);
-        geometry += placement->geometry.size;
+        at += placement->body.size;
         part->whole[i] = true;
         query->placement_count++;
     }

@@ -66,11 +66,11 @@ static void set(struct body_names *names, int64_t client_id, int64_t body_id, co
     strcpy(entry->name, name);
 }
 
-void body_names_take(struct body_names *names, int64_t client_id, const struct placement *placement,
-                     int32_t count)
+void body_names_take(struct body_names *names, int64_t client_id,
+                     const struct query_placement *placement, int32_t count)
 {
     for (int32_t i = 0; i < count; i++)
-        set(names, client_id, placement[i].body_id, placement[i].name);
+        set(names, client_id, placement[i].placed.id, placement[i].placed.name);
 }
 
 static const char *take_query(struct body_names *names, enum log_kind kind, const void *bytes,
@@ -79,7 +79,7 @@ static const char *take_query(struct body_names *names, enum log_kind kind, cons
     struct logged_query *query = &names->query;
     int32_t count;
     const char *error = logged_query_read(query, kind, bytes, size);
-    const struct placement *placement = logged_query_placements(query, &count);
+    const struct query_placement *placement = logged_query_placements(query, &count);
     if (!error)
         body_names_take(names, logged_query_header(query)->client_id, placement, count);
     return error;

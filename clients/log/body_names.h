@@ -16,8 +16,8 @@ struct body_names *body_names_open(void);
 void body_names_close(struct body_names *names); /* may be NULL */
 
 /* Sets the names that placements of a client's query give to its bodies. */
-void body_names_take(struct body_names *names, int64_t client_id, const struct placement *placement,
-                     int32_t count);
+void body_names_take(struct body_names *names, int64_t client_id,
+                     const struct query_placement *placement, int32_t count);
 
 /* Sets the names of a message: of a query of a pair or a scene, or of a names_t. Returns NULL; or a
  * static text: why it cannot be decoded. */

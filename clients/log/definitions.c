@@ -1,6 +1,5 @@
 #include "definitions.h"
 
-#include "big_endian.h"
 #include "bus.h"
 #include "keyed_hash.h"
 #include "log_write.h"
@@ -12,10 +11,9 @@
 struct defined_body {
     UT_hash_handle by_bytes, by_handle;
     struct defined_body *next; /* the next body whose handle is not computed yet */
-    struct handle handle;
-    struct geometry geometry; /* size 0: of a handle without a body, which is not in by_bytes */
-    int64_t file;             /* the last one that defines the body */
-    bool wanted;              /* without a body: named, and not given up */
+    struct body_view view;     /* size 0: of a handle without a body, which is not in by_bytes */
+    int64_t file;              /* the last one that defines the body */
+    bool wanted;               /* without a body: named, and not given up */
     unsigned char bytes[];
 };
 
@@ -56,7 +54,7 @@ void definitions_close(struct definitions *definitions)
     HASH_CLEAR(by_handle, definitions->by_handle);
     for (; named; named = next) {
         next = named->by_handle.next;
-        if (named->geometry.size == 0)
+        if (named->view.size == 0)
             free(named);
     }
     for (; body; body = next) {
@@ -82,14 +80,15 @@ static void compute_handles(struct definitions *definitions)
 {
     for (struct defined_body *body; (body = definitions->unhashed) != NULL;) {
         definitions->unhashed = body->next;
-        body->handle = hasher_handle(definitions->hasher, body->bytes, body->geometry.size);
-        struct defined_body *wanted = find_hashed(definitions, &body->handle);
+        struct handle *handle = &body->view.handle;
+        *handle = hasher_handle(definitions->hasher, body->bytes, body->view.size);
+        struct defined_body *wanted = find_hashed(definitions, handle);
         if (wanted) {
             HASH_DELETE(by_handle, definitions->by_handle, wanted);
             definitions->bytes -= sizeof *wanted + TABLE_BYTES;
             free(wanted);
         }
-        HASH_ADD(by_handle, definitions->by_handle, handle, sizeof body->handle, body);
+        HASH_ADD(by_handle, definitions->by_handle, view.handle, sizeof *handle, body);
     }
 }
 
@@ -99,31 +98,27 @@ static struct defined_body *find(struct definitions *definitions, const struct h
     return find_hashed(definitions, handle);
 }
 
-static struct defined_body *make(struct definitions *definitions, const struct geometry *geometry)
+static struct defined_body *make(struct definitions *definitions, const struct body_view *view)
 {
-    struct defined_body *body = allocate(1, sizeof *body + geometry->size);
-    if (geometry->size > 0)
-        memcpy(body->bytes, geometry->bytes, geometry->size);
-    body->geometry = (struct geometry){body->bytes, geometry->size};
-    definitions->bytes += sizeof *body + TABLE_BYTES + geometry->size;
+    struct defined_body *body = allocate(1, sizeof *body + view->size);
+    if (view->size > 0)
+        memcpy(body->bytes, view->bytes, view->size);
+    body->view = *view;
+    body->view.bytes = body->bytes;
+    definitions->bytes += sizeof *body + TABLE_BYTES + view->size;
     return body;
 }
 
-static bool has_frames(const struct geometry *geometry)
-{
-    return geometry->size > GEOMETRY_NONE_BYTES && big_endian_32(geometry->bytes + 4) > 0;
-}
-
-bool definitions_add(struct definitions *definitions, const struct geometry *geometry)
+bool definitions_add(struct definitions *definitions, const struct body_view *view)
 {
     struct defined_body *body = NULL;
-    if (!has_frames(geometry))
+    if (view->frame_count == 0)
         return false;
-    HASH_FIND(by_bytes, definitions->by_bytes, geometry->bytes, geometry->size, body);
+    HASH_FIND(by_bytes, definitions->by_bytes, view->bytes, view->size, body);
     const bool is_new = !body;
     if (is_new) {
-        body = make(definitions, geometry);
-        HASH_ADD_KEYPTR(by_bytes, definitions->by_bytes, body->bytes, body->geometry.size, body);
+        body = make(definitions, view);
+        HASH_ADD_KEYPTR(by_bytes, definitions->by_bytes, body->bytes, body->view.size, body);
         body->next = definitions->unhashed;
         definitions->unhashed = body;
     }
@@ -131,9 +126,10 @@ bool definitions_add(struct definitions *definitions, const struct geometry *geo
     return is_new;
 }
 
-bool definitions_add_placement(struct definitions *definitions, const struct placement *placement)
+bool definitions_add_placement(struct definitions *definitions,
+                               const struct query_placement *placement)
 {
-    return placement->body_id != 0 && definitions_add(definitions, &placement->geometry);
+    return placement->placed.id != 0 && definitions_add(definitions, &placement->body);
 }
 
 const char *definitions_add_message(struct definitions *definitions, enum log_kind kind,
@@ -147,35 +143,37 @@ const char *definitions_add_message(struct definitions *definitions, enum log_ki
     if (kind == LOG_DEFINITION) {
         const char *error = wire_read_definition(bytes, size, definitions->hasher, read);
         for (int32_t i = 0; !error && i < read->body_count; i++)
-            definitions_add(definitions, &read->body[i].geometry);
+            definitions_add(definitions, &read->body[i]);
         return error;
     }
     const char *error = logged_query_read(query, kind, bytes, size);
-    const struct placement *placement = logged_query_placements(query, &count);
+    const struct query_placement *placement = logged_query_placements(query, &count);
     for (int32_t i = 0; !error && i < count; i++)
         definitions_add_placement(definitions, &placement[i]);
     return error;
 }
 
-const struct geometry *definitions_find(struct definitions *definitions,
-                                        const struct handle *handle)
+const struct body_view *definitions_find(struct definitions *definitions,
+                                         const struct handle *handle)
 {
     const struct defined_body *body = find(definitions, handle);
-    return body && body->geometry.size > 0 ? &body->geometry : NULL;
+    return body && body->view.size > 0 ? &body->view : NULL;
 }
 
-int32_t definitions_fill(struct definitions *definitions, struct placement *placement,
+int32_t definitions_fill(struct definitions *definitions, struct query_placement *placement,
                          int32_t count)
 {
     int32_t missing = -1;
     for (int32_t i = 0; i < count; i++) {
-        if (!placement_by_handle(&placement[i]))
+        if (!query_by_handle(&placement[i]))
             continue;
-        const struct geometry *geometry = definitions_find(definitions, &placement[i].handle);
-        if (geometry)
-            placement[i].geometry = *geometry;
-        else if (missing < 0)
+        const struct body_view *view = definitions_find(definitions, &placement[i].body.handle);
+        if (view) {
+            placement[i].body = *view;
+            memset(&placement[i].body.handle, 0, sizeof placement[i].body.handle);
+        } else if (missing < 0) {
             missing = i;
+        }
     }
     return missing;
 }
@@ -196,11 +194,10 @@ bool definitions_want(struct definitions *definitions, const struct handle *hand
 {
     struct defined_body *body = find(definitions, handle);
     if (!body) {
-        body = make(definitions, &(struct geometry){.size = 0});
-        body->handle = *handle;
-        HASH_ADD(by_handle, definitions->by_handle, handle, sizeof body->handle, body);
+        body = make(definitions, &(struct body_view){.handle = *handle});
+        HASH_ADD(by_handle, definitions->by_handle, view.handle, sizeof *handle, body);
     }
-    const bool is_new = body->geometry.size == 0 && !body->wanted;
+    const bool is_new = body->view.size == 0 && !body->wanted;
     body->wanted = true;
     return is_new;
 }
@@ -227,24 +224,24 @@ void definitions_begin_file(struct definitions *definitions)
 
 /* The body of a placement by handle, if it is known and the file does not define it; else NULL. */
 static struct defined_body *undefined(struct definitions *definitions,
-                                      const struct placement *placement)
+                                      const struct query_placement *placement)
 {
     struct defined_body *body =
-        placement_by_handle(placement) ? find(definitions, &placement->handle) : NULL;
-    return body && body->geometry.size > 0 && body->file != definitions->file ? body : NULL;
+        query_by_handle(placement) ? find(definitions, &placement->body.handle) : NULL;
+    return body && body->view.size > 0 && body->file != definitions->file ? body : NULL;
 }
 
 enum { DEFINITION_BYTES = WIRE_DEFINITION_BYTES - QUERY_TEXT_MAX + 1 };
 
 /* As if each body took a message of its own. */
-size_t definitions_needed(struct definitions *definitions, const struct placement *placement,
+size_t definitions_needed(struct definitions *definitions, const struct query_placement *placement,
                           int32_t count)
 {
     const size_t each = (size_t) log_event_bytes(BUS_CHANNEL_MAX, DEFINITION_BYTES + HANDLE_BYTES);
     size_t bytes = 0;
     for (int32_t i = 0; i < count; i++) {
         const struct defined_body *body = undefined(definitions, &placement[i]);
-        bytes += body ? each + body->geometry.size : 0;
+        bytes += body ? each + body->view.size : 0;
     }
     return bytes;
 }
@@ -259,24 +256,24 @@ static bool flush(struct definitions *definitions, definition_sink *sink, void *
     return sink(user, definitions->message, size);
 }
 
-/* One geometry always fits: it comes from a message of at most QUERY_BYTES_MAX whose header is no
+/* One body always fits: it comes from a message of at most QUERY_BYTES_MAX whose header is no
  * shorter. */
 static bool pack(struct definitions *definitions, struct defined_body *body, definition_sink *sink,
                  void *user)
 {
     struct definition *written = &definitions->written;
-    const size_t size = HANDLE_BYTES + body->geometry.size;
+    const size_t size = HANDLE_BYTES + body->view.size;
     if ((DEFINITION_BYTES + definitions->size + size > QUERY_BYTES_MAX ||
          written->body_count == QUERY_BODIES_MAX) &&
         !flush(definitions, sink, user))
         return false;
     body->file = definitions->file;
     definitions->size += size;
-    written->body[written->body_count++] = (struct query_body){body->handle, body->geometry};
+    written->body[written->body_count++] = body->view;
     return true;
 }
 
-int32_t definitions_write(struct definitions *definitions, const struct placement *placement,
+int32_t definitions_write(struct definitions *definitions, const struct query_placement *placement,
                           int32_t count, definition_sink *sink, void *user)
 {
     int32_t bodies = 0;

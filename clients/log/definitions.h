@@ -1,9 +1,9 @@
 /* The bodies of a log, by handle.
  *
  * Bodies come from placements that carry them whole, and from definition_t messages, anywhere in
- * the log. Each distinct body is kept once, in some 200 bytes and its geometry (at most 109 bytes
- * for a frame): memory grows with the number of distinct bodies, not with the log. Adding a body
- * costs one look-up. Handles are only computed once one is looked up.
+ * the log. Each distinct body is kept once, in some 200 bytes and its encoded form (at most 109
+ * bytes for a frame): memory grows with the number of distinct bodies, not with the log. Adding a
+ * body costs one look-up. Handles are only computed once one is looked up.
  *
  * A file that is written has to define the handles that its queries name. Per file and body one
  * definition (definition_t of client 0 and server 0) is written, before the first query that needs
@@ -22,12 +22,13 @@ struct definitions;
 struct definitions *definitions_open(void);
 void definitions_close(struct definitions *definitions); /* may be NULL */
 
-/* Adds a body. In: its geometry, which is copied; one without frames (of a placement by handle) is
- * ignored. Returns whether the body is new. */
-bool definitions_add(struct definitions *definitions, const struct geometry *geometry);
+/* Adds a body, which is copied; one without frames (of a placement by handle) is ignored. Its
+ * handle is not read. Returns whether the body is new. */
+bool definitions_add(struct definitions *definitions, const struct body_view *view);
 
 /* Adds the body of a placement if it has frames and an id: services cache no others. */
-bool definitions_add_placement(struct definitions *definitions, const struct placement *placement);
+bool definitions_add_placement(struct definitions *definitions,
+                               const struct query_placement *placement);
 
 /* Adds the bodies with frames of a message: of a query of a pair or a scene, or of a definition.
  * Returns NULL; or a static text: why the message cannot be decoded. Then nothing of it was added.
@@ -35,13 +36,13 @@ bool definitions_add_placement(struct definitions *definitions, const struct pla
 const char *definitions_add_message(struct definitions *definitions, enum log_kind kind,
                                     const void *bytes, uint32_t size);
 
-/* The geometry of a handle, valid until definitions_close(); NULL: no such body was added. */
-const struct geometry *definitions_find(struct definitions *definitions,
-                                        const struct handle *handle);
+/* The body of a handle, valid until definitions_close(); NULL: no such body was added. */
+const struct body_view *definitions_find(struct definitions *definitions,
+                                         const struct handle *handle);
 
-/* Sets the geometry of each placement by handle whose body was added. Returns the first one whose
- * body was not; -1: none. */
-int32_t definitions_fill(struct definitions *definitions, struct placement *placement,
+/* Replaces the handle of each placement whose body was added by that body. Returns the first one
+ * whose body was not; -1: none. */
+int32_t definitions_fill(struct definitions *definitions, struct query_placement *placement,
                          int32_t count);
 
 /* The number of bodies, and the memory they take, tables included, bytes. */
@@ -68,12 +69,12 @@ typedef bool definition_sink(void *user, const void *bytes, size_t size);
 void definitions_begin_file(struct definitions *definitions);
 
 /* Most bytes that definitions_write() writes, events of the log included. */
-size_t definitions_needed(struct definitions *definitions, const struct placement *placement,
+size_t definitions_needed(struct definitions *definitions, const struct query_placement *placement,
                           int32_t count);
 
 /* Writes definitions of the known bodies that the placements name by handle and the file does not
  * define. Returns the number of bodies; -1 as soon as sink returns false. */
-int32_t definitions_write(struct definitions *definitions, const struct placement *placement,
+int32_t definitions_write(struct definitions *definitions, const struct query_placement *placement,
                           int32_t count, definition_sink *sink, void *user);
 
 #endif

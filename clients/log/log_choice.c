@@ -97,11 +97,11 @@ static bool is_chosen(const struct log_choice *choice, int64_t id)
     return false;
 }
 
-bool log_choice_has_body(const struct log_choice *choice, const struct placement *placement,
+bool log_choice_has_body(const struct log_choice *choice, const struct query_placement *placement,
                          int32_t count)
 {
     for (int32_t i = 0; i < count; i++)
-        if (is_chosen(choice, placement[i].body_id))
+        if (is_chosen(choice, placement[i].placed.id))
             return true;
     return choice->body_count == 0;
 }

@@ -34,7 +34,7 @@ bool log_choice_is_all(const struct log_choice *choice);
 /* Check a single condition. Times are log times, microseconds. */
 bool log_choice_has_time(const struct log_choice *choice, int64_t first_utime, int64_t utime);
 bool log_choice_has_channel(const struct log_choice *choice, const struct log_event *event);
-bool log_choice_has_body(const struct log_choice *choice, const struct placement *placement,
+bool log_choice_has_body(const struct log_choice *choice, const struct query_placement *placement,
                          int32_t count);
 
 #endif

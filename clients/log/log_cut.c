@@ -106,7 +106,7 @@ static bool is_chosen_query(struct cutter *cut, int64_t utime)
 {
     const struct log_choice *choice = &cut->options->choice;
     int32_t count;
-    const struct placement *placement = logged_query_placements(&cut->query, &count);
+    const struct query_placement *placement = logged_query_placements(&cut->query, &count);
     return log_choice_has_time(choice, cut->first_utime, utime) &&
            log_choice_has_body(choice, placement, count);
 }
@@ -126,7 +126,7 @@ static void choose_result(struct cutter *cut, enum log_kind kind, const struct m
 static void add_bodies(struct cutter *cut)
 {
     int32_t count;
-    const struct placement *placement = logged_query_placements(&cut->query, &count);
+    const struct query_placement *placement = logged_query_placements(&cut->query, &count);
     body_names_take(cut->names, logged_query_header(&cut->query)->client_id, placement, count);
     for (int32_t i = 0; i < count; i++)
         definitions_add_placement(cut->definitions, &placement[i]);
@@ -279,13 +279,13 @@ static void define(struct cutter *cut, enum log_kind kind, const struct log_even
         definitions_add_message(cut->definitions, kind, event->data, size);
     if (!log_kind_is_query(kind) || logged_query_read(&cut->query, kind, event->data, size))
         return;
-    const struct placement *placement = logged_query_placements(&cut->query, &count);
+    const struct query_placement *placement = logged_query_placements(&cut->query, &count);
     const int32_t bodies =
         definitions_write(cut->definitions, placement, count, write_definition, cut);
     cut->counts->defined += bodies > 0 ? bodies : 0;
     for (int32_t i = 0; i < count; i++)
-        if (placement_by_handle(&placement[i]))
-            definitions_want(cut->definitions, &placement[i].handle);
+        if (query_by_handle(&placement[i]))
+            definitions_want(cut->definitions, &placement[i].body.handle);
     add_bodies(cut);
 }
 

@@ -205,12 +205,12 @@ static bool take_definitions(struct query_search *search, const struct log_event
 }
 
 /* Sets the names of placements without one. */
-static void fill_names(struct log_query *out, struct placement *placement, int32_t count)
+static void fill_names(struct log_query *out, struct query_placement *placement, int32_t count)
 {
     for (int32_t i = 0; i < count; i++)
-        if (!placement[i].name || !*placement[i].name)
-            placement[i].name =
-                body_names_find(out->names, out->ids.client_id, placement[i].body_id);
+        if (!placement[i].placed.name || !*placement[i].placed.name)
+            placement[i].placed.name =
+                body_names_find(out->names, out->ids.client_id, placement[i].placed.id);
 }
 
 static void find_bodies(struct query_search *search)
@@ -223,7 +223,7 @@ static void find_bodies(struct query_search *search)
         refuse(search, error);
         return;
     }
-    struct placement *placement = logged_query_placements(&out->query, &count);
+    struct query_placement *placement = logged_query_placements(&out->query, &count);
     if (definitions_fill(out->definitions, placement, count) < 0)
         return; /* no placement is by handle */
     input_begin(&search->input, 0);
@@ -234,7 +234,7 @@ static void find_bodies(struct query_search *search)
         return;
     begin_line(search);
     fprintf(stderr, ": placement %d, body %" PRId64 ", came by a handle that no log here defines\n",
-            (int) missing, placement[missing].body_id);
+            (int) missing, placement[missing].placed.id);
     search->outcome = LOG_QUERY_NONE;
 }
 

@@ -27,8 +27,8 @@ struct log_query {
     struct query_header ids;
     size_t size; /* bytes in the log */
     unsigned char bytes[LOG_DATA_MAX];
-    /* A placement by handle also has the geometry of its body, from anywhere in the logs. The
-     * counts of its frames and numbers stay 0. It has the last name in the logs of its body. */
+    /* Handles are replaced by their bodies, from anywhere in the logs. A placement without a name
+     * has the last one of its body in the logs. */
     struct logged_query query;
     struct definitions *definitions; /* owned */
     struct body_names *names;        /* owned */

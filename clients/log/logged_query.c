@@ -35,17 +35,17 @@ const struct query_header *logged_query_header(const struct logged_query *query)
     return query->kind == LOG_PAIR_QUERY ? &query->pair.header : &query->scene.header;
 }
 
-struct placement *logged_query_placements(struct logged_query *query, int32_t *count)
+struct query_placement *logged_query_placements(struct logged_query *query, int32_t *count)
 {
     *count = query->kind == LOG_PAIR_QUERY ? 2 : query_stored_placements(&query->scene);
     return query->kind == LOG_PAIR_QUERY ? query->pair.placement : query->scene.placement;
 }
 
-static bool placements_are_whole(const struct placement *placement, int32_t count)
+static bool placements_are_whole(const struct query_placement *placement, int32_t count)
 {
     for (int32_t i = 0; i < count; i++)
-        if (placement[i].dim > FMB_DIM_MAX ||
-            placement[i].orientation_count > QUERY_ORIENTATION_MAX ||
+        if (placement[i].body.dim > FMB_DIM_MAX ||
+            placement[i].placed.orientation_count > QUERY_ORIENTATION_MAX ||
             placement[i].velocity_count > FMB_DIM_MAX)
             return false;
     return true;
@@ -65,7 +65,7 @@ static bool is_whole(const struct logged_query *query)
 static size_t bytes_of(const struct logged_query *query)
 {
     const bool pair = query->kind == LOG_PAIR_QUERY;
-    const struct placement *placement = pair ? query->pair.placement : query->scene.placement;
+    const struct query_placement *placement = pair ? query->pair.placement : query->scene.placement;
     const int32_t count = pair ? 2 : query->scene.placement_count;
     size_t bytes =
         pair ? WIRE_PAIR_QUERY_BYTES : WIRE_SCENE_QUERY_BYTES + wire_text_bytes(query->scene.label);
@@ -95,26 +95,30 @@ int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pa
 
 /* ---- As a scene: bodies ---- */
 
-/* Returns the body of a geometry; NULL if the engine refuses it. */
-static const struct fmb_body *read_body(const struct geometry *geometry, struct owned_scene *out)
+/* Returns the body; NULL if the engine refuses it. */
+static const struct fmb_body *read_body(const struct body_view *view, struct owned_scene *out)
 {
-    struct geometry_reader reader = geometry_begin(geometry);
+    struct geometry_reader reader = geometry_begin(view);
+    struct geometry_frame frame;
+    struct given_frame *given = scene_alloc(out, (size_t) view->frame_count, sizeof *given);
     const struct fmb_body *body;
     size_t count = 0, bad;
-    out->dim = reader.dim;
-    while (geometry_next(&reader, scene_add_given(out)))
-        count++;
-    out->given_count--; /* the last one was not read */
+    for (; geometry_next(&reader, &frame); count++) {
+        double *numbers = scene_alloc(out, frame.count, sizeof *numbers);
+        geometry_numbers(&frame, numbers);
+        given[count] = (struct given_frame){frame.shape, frame.by_vertices, frame.count, numbers};
+    }
+    out->dim = view->dim;
     return reader.frames_left == 0 && reader.counts_left == 0 && reader.numbers_left == 0 &&
-                   scene_make_body(out, count, &body, &bad) == FMB_OK
+                   scene_make_body(out, given, count, &body, &bad) == FMB_OK
                ? body
                : NULL;
 }
 
-bool scene_takes(const struct geometry *geometry)
+bool scene_takes(const struct body_view *view)
 {
     struct owned_scene scene = {.dim = 0};
-    const bool taken = read_body(geometry, &scene);
+    const bool taken = read_body(view, &scene);
     scene_clear(&scene);
     return taken;
 }
@@ -143,44 +147,41 @@ static int64_t free_id(const int64_t *sorted, size_t count, size_t *next, int64_
 }
 
 /* Whether an earlier placement has the same id. Quadratic, but scenes are small. */
-static bool is_repeated(const struct placement *placement, size_t i)
+static bool is_repeated(const struct query_placement *placement, size_t i)
 {
     for (size_t before = 0; before < i; before++)
-        if (placement[before].body_id == placement[i].body_id)
+        if (placement[before].placed.id == placement[i].placed.id)
             return true;
     return false;
 }
 
-static void set_ids(const struct placement *placement, size_t count, struct fmb_placement *out)
+static void set_ids(const struct query_placement *placement, size_t count,
+                    struct fmb_placement *out)
 {
     int64_t *sorted = allocate(count, sizeof *sorted), id = 1;
     size_t next = 0;
     for (size_t i = 0; i < count; i++)
-        sorted[i] = placement[i].body_id;
+        sorted[i] = placement[i].placed.id;
     qsort(sorted, count, sizeof *sorted, compare);
     for (size_t i = 0; i < count; i++)
-        out[i].id = placement[i].body_id == 0 || is_repeated(placement, i)
+        out[i].id = placement[i].placed.id == 0 || is_repeated(placement, i)
                         ? free_id(sorted, count, &next, &id)
-                        : placement[i].body_id;
+                        : placement[i].placed.id;
     free(sorted);
 }
 
 /* grouped: whether the placements keep their groups. */
-static void set_bodies(const struct placement *placement, size_t count, bool grouped,
+static void set_bodies(const struct query_placement *placement, size_t count, bool grouped,
                        struct owned_scene *scene)
 {
     struct fmb_placement *out = scene_alloc(scene, count, sizeof *out);
     scene->dim = FMB_DIM_MAX;
     for (size_t i = 0; i < count; i++) {
-        const struct placement *from = &placement[i];
-        out[i] = (struct fmb_placement){.body = read_body(&from->geometry, scene),
-                                        .orientation_count = from->orientation_count,
-                                        .group = grouped ? from->group : 0,
-                                        .name = copy_text(from->name, scene)};
+        out[i] = placement[i].placed;
+        out[i].body = read_body(&placement[i].body, scene);
         assert(out[i].body);
-        memcpy(out[i].position, from->position, sizeof from->position);
-        memcpy(out[i].velocity, from->velocity, sizeof from->velocity);
-        memcpy(out[i].orientation, from->orientation, sizeof from->orientation);
+        out[i].group = grouped ? out[i].group : 0;
+        out[i].name = copy_text(out[i].name, scene);
     }
     set_ids(placement, count, out);
     scene->scene.placements = out;

@@ -22,7 +22,7 @@ const char *logged_query_read(struct logged_query *out, enum log_kind kind,
 const struct query_header *logged_query_header(const struct logged_query *query);
 
 /* The placements in the struct; *count of them. */
-struct placement *logged_query_placements(struct logged_query *query, int32_t *count);
+struct query_placement *logged_query_placements(struct logged_query *query, int32_t *count);
 
 /* query_pairs_decided() with memory of its own. */
 int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair);
@@ -35,7 +35,7 @@ struct owned_scene;
 
 /* Converts a query to a scene (scene.h) with the same bodies, and the same pairs in the same order.
  * The scene has no method and no wanted results, and only a label that JSON can have; that of a
- * pair has no groups. In: a query that the service accepts, with a geometry for each placement. On
+ * pair has no groups. In: a query that the service accepts, with a body for each placement. On
  * output: *out, which the caller clears, with the pairs from first_pair on: all pairs of a
  * PAIRS_ALL query as such, others listed. Body i is placement i, and keeps its id, unless it has
  * none or an earlier placement has the same id: then it gets the lowest free id. Exits with status
@@ -43,6 +43,6 @@ struct owned_scene;
 void scene_of_query(const struct logged_query *query, struct owned_scene *out);
 
 /* Whether the engine accepts the frames of this body, so that a scene can contain it. */
-bool scene_takes(const struct geometry *geometry);
+bool scene_takes(const struct body_view *view);
 
 #endif

@@ -1,5 +1,6 @@
 #include "page_event.h"
 
+#include "cursor.h"
 #include "geometry.h"
 #include "keyed_hash.h"
 #include "logged_query.h"
@@ -58,22 +59,24 @@ void page_shapes_close(struct page_shapes *shapes)
     page_json_close(&shapes->json);
 }
 
+/* The page has components, which may be rounded. */
 static void write_frame(struct json_writer *json, int dim, const struct geometry_frame *frame)
 {
-    double number[FMB_FRAME_NUMBERS_MAX];
-    const size_t count = geometry_frame_numbers(dim, frame, number);
+    double *number = allocate(frame->count, sizeof *number);
+    geometry_numbers(frame, number);
     json_begin(json, NULL, '[');
     json_integer(json, NULL, frame->shape);
-    for (size_t i = 0; i < count; i++) /* the page has components, which may be rounded */
+    for (size_t i = 0; i < frame->count; i++)
         json_number(json, NULL,
                     frame->by_vertices && i >= (size_t) dim ? number[i] - number[i % (size_t) dim]
                                                             : number[i]);
     json_end(json, ']');
+    free(number);
 }
 
-static void write_shape(struct json_writer *json, const struct geometry *geometry)
+static void write_shape(struct json_writer *json, const struct body_view *body)
 {
-    struct geometry_reader reader = geometry_begin(geometry);
+    struct geometry_reader reader = geometry_begin(body);
     struct geometry_frame frame;
     json_break(json, "\n");
     json_begin(json, NULL, '{');
@@ -85,18 +88,18 @@ static void write_shape(struct json_writer *json, const struct geometry *geometr
     json_end(json, '}');
 }
 
-/* Adds a geometry if it is new. In: all its frames are valid. Returns its index. */
-static size_t index_of_shape(struct page_shapes *shapes, const struct geometry *geometry)
+/* Adds a body if it is new. In: all its frames are valid. Returns its index. */
+static size_t index_of_shape(struct page_shapes *shapes, const struct body_view *body)
 {
     struct page_shape *found;
-    HASH_FIND(hh, shapes->shape, geometry->bytes, geometry->size, found);
+    HASH_FIND(hh, shapes->shape, body->bytes, body->size, found);
     if (found)
         return found->index;
-    found = allocate(1, sizeof *found + geometry->size);
-    memcpy(found->bytes, geometry->bytes, geometry->size);
+    found = allocate(1, sizeof *found + body->size);
+    memcpy(found->bytes, body->bytes, body->size);
     found->index = shapes->count++;
-    HASH_ADD_KEYPTR(hh, shapes->shape, found->bytes, geometry->size, found);
-    write_shape(&shapes->json.json, geometry);
+    HASH_ADD_KEYPTR(hh, shapes->shape, found->bytes, body->size, found);
+    write_shape(&shapes->json.json, body);
     return found->index;
 }
 
@@ -121,27 +124,28 @@ static bool is_orientation(const double *orientation, int count)
 }
 
 /* Whether there are frames and all are valid: logs also contain queries that were refused. */
-static bool has_frames(const struct geometry *geometry, int dim)
+static bool has_frames(const struct body_view *body)
 {
-    struct geometry_reader reader = geometry_begin(geometry);
+    struct geometry_reader reader = geometry_begin(body);
     struct geometry_frame frame;
-    bool good = reader.dim == dim && reader.frames_left > 0;
-    while (good && reader.frames_left > 0)
-        good = geometry_next(&reader, &frame) && are_finite(frame.origin, FMB_DIM_MAX) &&
-               are_finite(frame.components, FMB_COMPONENTS_MAX);
+    bool good = body->frame_count > 0;
+    while (good && reader.frames_left > 0) {
+        good = geometry_next(&reader, &frame);
+        for (size_t i = 0; good && i < frame.count; i++)
+            good = isfinite(cursor_double_at(frame.number + 8 * i));
+    }
     return good && reader.counts_left == 0 && reader.numbers_left == 0;
 }
 
-static bool is_drawable(const struct placement *placement)
+static bool is_drawable(const struct query_placement *placement)
 {
-    const int dim = placement->dim;
-    return placement->frame_count > 0 && has_frames(&placement->geometry, dim) &&
-           are_finite(placement->position, dim) &&
-           (placement->orientation_count == 0 ||
-            placement->orientation_count == (dim == 2 ? 2 : 4)) &&
-           is_orientation(placement->orientation, placement->orientation_count) &&
+    const struct fmb_placement *placed = &placement->placed;
+    const int dim = placement->body.dim;
+    return has_frames(&placement->body) && are_finite(placed->position, dim) &&
+           (placed->orientation_count == 0 || placed->orientation_count == (dim == 2 ? 2 : 4)) &&
+           is_orientation(placed->orientation, placed->orientation_count) &&
            (placement->velocity_count == 0 || placement->velocity_count == dim) &&
-           are_finite(placement->velocity, placement->velocity_count);
+           are_finite(placed->velocity, placement->velocity_count);
 }
 
 static void write_numbers(struct json_writer *out, const double *numbers, int count)
@@ -158,19 +162,20 @@ static void write_handle(struct json_writer *out, const struct handle *handle)
     json_string(out, NULL, text);
 }
 
-static void write_placement(const struct placement *placement, struct page_shapes *shapes,
+static void write_placement(const struct query_placement *placement, struct page_shapes *shapes,
                             struct json_writer *out)
 {
     json_begin(out, NULL, '[');
-    json_integer(out, NULL, placement->body_id);
+    json_integer(out, NULL, placement->placed.id);
     if (is_drawable(placement)) {
-        json_integer(out, NULL, (int64_t) index_of_shape(shapes, &placement->geometry));
-        json_numbers(out, NULL, placement->position, placement->dim);
-        json_numbers(out, NULL, placement->orientation, placement->orientation_count);
-        json_numbers(out, NULL, placement->velocity, placement->velocity_count);
-    } else if (placement_by_handle(placement)) {
+        const struct fmb_placement *placed = &placement->placed;
+        json_integer(out, NULL, (int64_t) index_of_shape(shapes, &placement->body));
+        json_numbers(out, NULL, placed->position, placement->body.dim);
+        json_numbers(out, NULL, placed->orientation, placed->orientation_count);
+        json_numbers(out, NULL, placed->velocity, placement->velocity_count);
+    } else if (query_by_handle(placement)) {
         json_integer(out, NULL, SHAPE_UNKNOWN);
-        write_handle(out, &placement->handle);
+        write_handle(out, &placement->body.handle);
     } else {
         json_integer(out, NULL, SHAPE_NONE);
     }
@@ -181,7 +186,7 @@ static void write_placements(const struct replayed *replayed, struct page_shapes
                              struct json_writer *out)
 {
     const struct scene_query *scene = replayed->scene;
-    const struct placement *placement = scene ? scene->placement : replayed->pair->placement;
+    const struct query_placement *placement = scene ? scene->placement : replayed->pair->placement;
     const int32_t count = scene ? scene->placement_count : 2;
     const int32_t kept = count < QUERY_PLACEMENTS_MAX ? count : QUERY_PLACEMENTS_MAX;
     json_begin(out, "frames", '[');

@@ -103,7 +103,7 @@ enum record_bodies_owner record_bodies_owner(const struct record_bodies *bodies)
 }
 
 /* The placements of the message read; *count: 0: it is no query. */
-static struct placement *placements(const struct record_bodies *bodies, int32_t *count)
+static struct query_placement *placements(const struct record_bodies *bodies, int32_t *count)
 {
     *count = 0;
     return log_kind_is_query(bodies->kind)
@@ -123,14 +123,14 @@ bool record_bodies_begin_file(struct record_bodies *bodies, int64_t utime, defin
 size_t record_bodies_needed(const struct record_bodies *bodies)
 {
     int32_t count;
-    const struct placement *placement = placements(bodies, &count);
+    const struct query_placement *placement = placements(bodies, &count);
     return definitions_needed(bodies->definitions, placement, count);
 }
 
 bool record_bodies_define(struct record_bodies *bodies, definition_sink *sink, void *user)
 {
     int32_t count;
-    const struct placement *placement = placements(bodies, &count);
+    const struct query_placement *placement = placements(bodies, &count);
     const int32_t defined = definitions_write(bodies->definitions, placement, count, sink, user);
     bodies->counts.defined += defined > 0 ? defined : 0;
     return defined >= 0;
@@ -170,12 +170,12 @@ static void keep_query(struct record_bodies *bodies)
 {
     const struct query_header *header = logged_query_header(&bodies->message.query);
     int32_t count;
-    const struct placement *placement = placements(bodies, &count);
+    const struct query_placement *placement = placements(bodies, &count);
     count_skipped(bodies, header);
     body_names_take(bodies->names, header->client_id, placement, count);
     for (int32_t i = 0; i < count; i++)
-        if (placement_by_handle(&placement[i]))
-            want(bodies, &placement[i].handle);
+        if (query_by_handle(&placement[i]))
+            want(bodies, &placement[i].body.handle);
         else
             definitions_add_placement(bodies->definitions, &placement[i]);
 }
@@ -198,7 +198,7 @@ void record_bodies_keep(struct record_bodies *bodies)
     if (log_kind_is_query(bodies->kind))
         keep_query(bodies);
     for (int32_t i = 0; bodies->kind == LOG_DEFINITION && i < definition->body_count; i++)
-        definitions_add(bodies->definitions, &definition->body[i].geometry);
+        definitions_add(bodies->definitions, &definition->body[i]);
     if (record_bodies_owner(bodies) == RECORD_BODIES)
         bodies->counts.defined += definition->body_count;
     make_space(bodies);

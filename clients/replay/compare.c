@@ -122,9 +122,9 @@ static enum replay_outcome transient_outcome(int32_t then, int32_t now)
     return then == FMB_BUSY || now == FMB_BUSY ? REPLAY_BUSY : REPLAY_UNDEFINED;
 }
 
-static int dim_of(const struct placement *placement)
+static int dim_of(const struct query_placement *placement)
 {
-    return placement->dim == 2 ? 2 : 3;
+    return placement->body.dim == 2 ? 2 : 3;
 }
 
 /* A box or gap of another dimension than the query's is ignored. */
@@ -153,7 +153,7 @@ static struct difference difference_of(const struct replayed *replayed,
                                        const struct replayed_pair *pair)
 {
     const bool is_pair = replayed->pair;
-    const struct placement *placement =
+    const struct query_placement *placement =
         is_pair ? replayed->pair->placement : replayed->scene->placement;
     const unsigned count = is_pair ? 2 : (unsigned) query_stored_placements(replayed->scene);
     const int dim = dim_of(&placement[0]);
@@ -164,7 +164,7 @@ static struct difference difference_of(const struct replayed *replayed,
         .now = side_of(&pair->now, replayed->pair_now, replayed->scene_now, dim)};
     for (int f = 0; f < 2; f++)
         if (difference.placement[f] < count)
-            difference.body_id[f] = placement[difference.placement[f]].body_id;
+            difference.body_id[f] = placement[difference.placement[f]].placed.id;
     return difference;
 }
 

@@ -61,19 +61,20 @@ static bool supply(struct local_answerer *local)
 {
     struct cache *cache = answerer_cache(local->answerer);
     int32_t count;
-    const struct placement *placement = answer_job_placements(local->job, &count);
+    const struct query_placement *placement = answer_job_placements(local->job, &count);
     bool defined = true;
     for (int32_t i = 0; i < count; i++)
-        if (placement_by_handle(&placement[i]))
-            is_held(cache, &placement[i].handle);
+        if (query_by_handle(&placement[i]))
+            is_held(cache, &placement[i].body.handle);
     for (int32_t i = 0; i < count; i++) {
-        struct handle handle = placement[i].handle;
-        if (!placement_by_handle(&placement[i]) || is_held(cache, &handle))
+        struct handle handle = placement[i].body.handle;
+        if (!query_by_handle(&placement[i]) || is_held(cache, &handle))
             continue;
-        const struct geometry *geometry = definitions_find(local->definitions, &handle);
+        const struct body_view *found = definitions_find(local->definitions, &handle);
+        struct body_view view = found ? *found : (struct body_view){.size = 0};
         const struct cached *kept =
-            geometry && scene_takes(geometry) ? cache_intern(cache, 0, geometry, &handle) : NULL;
-        defined = defined && geometry;
+            found && scene_takes(found) ? cache_intern(cache, 0, &view) : NULL;
+        defined = defined && found;
         if (kept)
             cache_release(cache, kept);
     }

@@ -54,7 +54,7 @@ static const char *read_query(struct replay *replay, const struct message *query
     int32_t count;
     const char *error = logged_query_read(&replay->query, (enum log_kind) query->key.kind,
                                           query->bytes, query->size);
-    const struct placement *placement = logged_query_placements(&replay->query, &count);
+    const struct query_placement *placement = logged_query_placements(&replay->query, &count);
     if (error)
         return error;
     if (replay->options->names)

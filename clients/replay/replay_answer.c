@@ -57,33 +57,24 @@ bool replay_on_answered(void *user, struct match_item *query, const struct new_r
     return is_last;
 }
 
-/* Replaces handles by the frames of their bodies. */
-static void fill_frames(struct replay *replay, struct placement *placement, int32_t count)
-{
-    definitions_fill(replay->definitions, placement, count);
-    for (int32_t i = 0; i < count; i++)
-        if (placement_by_handle(&placement[i]) &&
-            definitions_find(replay->definitions, &placement[i].handle))
-            memset(&placement[i].handle, 0, sizeof placement[i].handle);
-}
-
 /* Sends the bodies of a query that has no space for their frames ahead of it, as many in one scene
  * query as fit. The query itself then names them by handle. A service caches bodies with an id
  * only. */
-static void supply_service(struct replay *replay, const struct placement *placement, int32_t count)
+static void supply_service(struct replay *replay, const struct query_placement *placement,
+                           int32_t count)
 {
     struct scene_query *supply = &replay->supply;
     for (int32_t next = 0; next < count;) {
         size_t size = WIRE_SCENE_QUERY_BYTES;
         supply->which = FMB_PAIRS_LISTED; /* none */
         for (supply->placement_count = 0; next < count; next++) {
-            struct placement whole = placement[next];
-            if (placement_by_handle(&whole))
+            struct query_placement whole = placement[next];
+            if (query_by_handle(&whole))
                 continue;
             size += wire_placement_bytes(&whole);
             if (size > QUERY_BYTES_MAX)
                 break;
-            whole.body_id = whole.body_id ? whole.body_id : 1;
+            whole.placed.id = whole.placed.id ? whole.placed.id : 1;
             supply->placement[supply->placement_count++] = whole;
         }
         if (supply->placement_count == 0)
@@ -99,8 +90,8 @@ static void send_whole(struct replay *replay, struct match_item *query,
                        const struct message *message)
 {
     int32_t count;
-    struct placement *placement = logged_query_placements(&replay->query, &count);
-    fill_frames(replay, placement, count);
+    struct query_placement *placement = logged_query_placements(&replay->query, &count);
+    definitions_fill(replay->definitions, placement, count);
     const size_t size = logged_query_write(&replay->query, replay->whole);
     query->sent_whole = true;
     if (size > 0) {

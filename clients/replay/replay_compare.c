@@ -123,15 +123,12 @@ static void add_to_page(struct replay *replay, const struct match_item *item,
                         struct replayed replayed)
 {
     int32_t count;
-    struct placement *placement = logged_query_placements(&replay->compared, &count);
+    struct query_placement *placement = logged_query_placements(&replay->compared, &count);
     replayed.log = replay->options->log[item->place.log];
     replayed.event_number = item->place.number;
     replayed.offset = item->place.offset;
     replayed.utime = item->place.utime;
     definitions_fill(replay->definitions, placement, count);
-    for (int32_t i = 0; i < count; i++)
-        if (placement_by_handle(&placement[i]) && placement[i].geometry.size > GEOMETRY_NONE_BYTES)
-            placement[i].frame_count = geometry_begin(&placement[i].geometry).frames_left;
     page_take(replay->options->page, &replayed);
 }
 

@@ -115,8 +115,8 @@ static struct handle group_of(struct replay *replay, int64_t kind, const struct 
     size_t label = 0;
     int64_t number[3] = {kind};
     if (query && kind == LOG_PAIR_QUERY) {
-        number[1] = query->pair.placement[0].body_id;
-        number[2] = query->pair.placement[1].body_id;
+        number[1] = query->pair.placement[0].placed.id;
+        number[2] = query->pair.placement[1].placed.id;
     } else if (query) {
         number[1] = query->scene.first_pair;
         label = query->scene.label ? strlen(query->scene.label) : 0;

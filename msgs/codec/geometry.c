@@ -1,14 +1,13 @@
 #include "geometry.h"
 
 #include "cursor.h"
-#include "writer.h"
 
 #include "fmb_msgs_placement_t.h"
 
 #include <assert.h>
 
-/* Offsets in an encoded geometry, in bytes. */
-enum { DIM_AT = 0, FRAMES_AT = 4, SHAPES_AT = 8 };
+/* The offset of the shapes in an encoded body: after dim and the count of frames. */
+enum { SHAPES_AT = 8 };
 
 /* ---- Shapes ---- */
 
@@ -46,74 +45,54 @@ int64_t geometry_number_count(int dim, int code, int32_t vertices)
     return count > 0 ? dim + count : 0;
 }
 
-size_t geometry_frame_numbers(int dim, const struct geometry_frame *frame,
-                              double out[FMB_FRAME_NUMBERS_MAX])
+struct body_view geometry_named(int dim, const struct handle *handle)
 {
-    const int count = (int) geometry_number_count(dim, frame->shape, 0);
-    for (int i = 0; i < count; i++)
-        out[i] = i < dim ? frame->origin[i] : frame->components[i - dim];
-    return (size_t) count;
-}
-
-/* ---- Writing ---- */
-
-void geometry_write_none(int dim, unsigned char out[GEOMETRY_NONE_BYTES])
-{
-    struct writer writer = {.at = out, .end = out + GEOMETRY_NONE_BYTES};
-    writer_int32(&writer, dim);
-    for (int list = 0; list < 3; list++)
-        writer_int32(&writer, 0);
+    static const unsigned char bytes[FMB_DIM_MAX + 1][GEOMETRY_NONE_BYTES] = {
+        [1][3] = 1, [2][3] = 2, [3][3] = 3}; /* dim is big-endian; no frames */
+    return (struct body_view){
+        .handle = *handle, .dim = dim, .bytes = bytes[dim], .size = GEOMETRY_NONE_BYTES};
 }
 
 /* ---- Reading ---- */
 
-struct geometry_reader geometry_begin(const struct geometry *geometry)
+void geometry_numbers(const struct geometry_frame *frame, double *out)
 {
-    const unsigned char *bytes = geometry->bytes, *shape = bytes + SHAPES_AT;
-    const int32_t frames = (int32_t) big_endian_32(bytes + FRAMES_AT);
-    const int32_t counts = (int32_t) big_endian_32(shape + frames);
-    const unsigned char *count = shape + frames + 4;
-    const unsigned char *numbers = count + 4 * (size_t) counts;
-    return (struct geometry_reader){.dim = (int) big_endian_32(bytes + DIM_AT),
-                                    .frames_left = frames,
-                                    .counts_left = counts,
-                                    .numbers_left = (int32_t) big_endian_32(numbers),
-                                    .shape = shape,
-                                    .count = count,
-                                    .number = numbers + 4};
+    for (size_t i = 0; i < frame->count; i++)
+        out[i] = cursor_double_at(frame->number + 8 * i);
 }
 
-/* Takes the count of a frame by vertices. Returns false if it is not the one of the shape. */
-static bool take_vertices(struct geometry_reader *reader, int64_t numbers)
+struct geometry_reader geometry_begin(const struct body_view *body)
 {
-    if (reader->counts_left == 0 ||
-        (int64_t) reader->dim * (int32_t) big_endian_32(reader->count) != numbers)
-        return false;
-    reader->count += 4;
-    reader->counts_left--;
-    return true;
+    const unsigned char *shape = body->bytes + SHAPES_AT;
+    const unsigned char *count = shape + body->frame_count + 4;
+    return (struct geometry_reader){.dim = body->dim,
+                                    .frames_left = body->frame_count,
+                                    .counts_left = body->count_count,
+                                    .numbers_left = body->number_count,
+                                    .shape = shape,
+                                    .count = count,
+                                    .number = count + 4 * (size_t) body->count_count + 4};
 }
 
 bool geometry_next(struct geometry_reader *reader, struct geometry_frame *out)
 {
     const int dim = reader->dim;
-    memset(out, 0, sizeof *out);
     if (reader->frames_left == 0)
         return false;
     const struct geometry_shape shape = geometry_shape(*reader->shape);
-    const int count = (int) geometry_number_count(dim, *reader->shape, 0);
-    if (count == 0 || reader->numbers_left < count ||
-        (shape.by_vertices && !take_vertices(reader, count)))
+    if (shape.by_vertices && reader->counts_left == 0)
         return false;
-    out->shape = shape.shape;
-    out->by_vertices = shape.by_vertices;
-    for (int axis = 0; axis < dim; axis++)
-        out->origin[axis] = cursor_double_at(reader->number + 8 * axis);
-    for (int i = dim; i < count; i++)
-        out->components[i - dim] = cursor_double_at(reader->number + 8 * i);
+    const int32_t vertices = shape.by_vertices ? (int32_t) big_endian_32(reader->count) : 0;
+    const int64_t count = geometry_number_count(dim, *reader->shape, vertices);
+    if (count == 0 || reader->numbers_left < count ||
+        (shape.by_vertices && count != (int64_t) dim * vertices))
+        return false;
+    *out = (struct geometry_frame){shape.shape, shape.by_vertices, (size_t) count, reader->number};
     reader->shape++;
     reader->frames_left--;
+    reader->count += shape.by_vertices ? 4 : 0;
+    reader->counts_left -= shape.by_vertices;
     reader->number += 8 * count;
-    reader->numbers_left -= count;
+    reader->numbers_left -= (int32_t) count;
     return true;
 }

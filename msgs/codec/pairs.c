@@ -77,7 +77,7 @@ static bool has_undecided(const struct scene_query *query)
 {
     bool grouped = false;
     for (int32_t i = 0; i < query_stored_placements(query) && !grouped; i++)
-        grouped = query->placement[i].group != 0;
+        grouped = query->placement[i].placed.group != 0;
     return query->which != FMB_PAIRS_LISTED && (query->ignored_count > 1 || grouped);
 }
 
@@ -85,7 +85,7 @@ int64_t query_pairs_decided(const struct scene_query *query, int32_t end_pair,
                             struct query_marks *marks)
 {
     int64_t decided = (int64_t) end_pair - query->first_pair;
-    const struct placement *placement = query->placement;
+    const struct query_placement *placement = query->placement;
     const unsigned n = (unsigned) query_stored_placements(query);
     if (!has_undecided(query))
         return decided;
@@ -93,8 +93,8 @@ int64_t query_pairs_decided(const struct scene_query *query, int32_t end_pair,
     for (int32_t k = 0; k < query->ignored_count / 2; k++)
         decided -= count_undecided(query, end_pair, marks, query->ignored[k]);
     for (unsigned a = 0; a < n; a++)
-        for (unsigned b = a + 1; b < n && placement[a].group != 0; b++)
-            if (placement[a].group == placement[b].group)
+        for (unsigned b = a + 1; b < n && placement[a].placed.group != 0; b++)
+            if (placement[a].placed.group == placement[b].placed.group)
                 decided -= count_undecided(query, end_pair, marks, (const unsigned[2]){a, b});
     return decided;
 }

@@ -44,49 +44,48 @@ struct query_header {
         };                                             \
     }
 
-/* A body in body coordinates, encoded: the fields dim to numbers of placement_t (geometry.h reads
- * them). Two bodies are the same if and only if these bytes are (so -0 differs from 0); the handle
- * is their hash. Not owned. */
-struct geometry {
+/* A body as messages define it: by its frames in body coordinates, encoded, or by its handle alone.
+ * Counts are those of the message, 0 or more and not checked. Two bodies are the same if and only
+ * if these bytes are (so -0 differs from 0); the handle is their hash. */
+struct body_view {
+    struct handle handle; /* all 0: none, or not computed */
+    int32_t dim;          /* 0 or more; not checked */
+    int32_t frame_count;  /* 0: by its handle */
+    int32_t count_count;  /* frames by vertices */
+    int32_t number_count; /* of all frames */
+    /* The fields dim to numbers (geometry.h reads them). Not owned: in the message that was read,
+     * or in memory of the writer. */
     const unsigned char *bytes;
     size_t size;
 };
 
 enum {
-    /* Bytes of a geometry without frames: dim, counts of frames, of counts, and of numbers. */
+    /* Bytes of a body without frames: dim, counts of frames, of counts, and of numbers. */
     GEOMETRY_NONE_BYTES = 16,
-    /* Most bytes of a geometry of one frame. */
+    /* Most bytes of a body of one frame that is no hull. */
     GEOMETRY_FRAME_BYTES_MAX = GEOMETRY_NONE_BYTES + 1 + 4 + 8 * FMB_FRAME_NUMBERS_MAX,
     /* Least bytes of a frame that is supported, a box in 2D; and hence most frames of a message. */
     GEOMETRY_FRAME_BYTES_MIN = 1 + 8 * 4,
     QUERY_FRAMES_MAX = QUERY_BYTES_MAX / GEOMETRY_FRAME_BYTES_MIN
 };
 
-/* A body with its pose and velocity. Counts are those of the message, 0 or more and not checked; if
- * there are more numbers than an array holds, the first are stored. */
-struct placement {
-    int64_t body_id;      /* 0: anonymous */
-    struct handle handle; /* all 0: none */
-    int32_t dim;          /* 0 or more; not checked */
-    int32_t frame_count;  /* 0 with a handle */
-    int32_t count_count;  /* frames by vertices; 0 with a handle */
-    int32_t number_count; /* of all frames; 0 with a handle */
-    int32_t orientation_count;
-    int32_t velocity_count;
-    struct geometry geometry; /* points into the message read, or to memory of the writer */
-    /* Ends with a 0; points like geometry; any bytes, not checked. NULL is the same as "". */
-    const char *name;
-    int64_t group; /* 0: none */
-    double position[FMB_DIM_MAX];
-    double orientation[QUERY_ORIENTATION_MAX];
-    double velocity[FMB_DIM_MAX];
+/* A placement, and the body that it places. If there are more numbers than an array holds, the
+ * first are stored; the counts of orientation and velocity are those of the message, 0 or more and
+ * not checked. */
+struct query_placement {
+    /* Its body is NULL: who has the body sets it. The name, any bytes, is in the message or in
+     * memory of the writer; NULL is the same as "". */
+    struct fmb_placement placed;
+    struct body_view body;
+    int32_t velocity_count; /* 0: at rest */
 };
 
 /* Whether the body is given by its handle alone. */
-static inline bool placement_by_handle(const struct placement *placement)
+static inline bool query_by_handle(const struct query_placement *placement)
 {
-    return placement->frame_count == 0 && placement->count_count == 0 &&
-           placement->number_count == 0 && !handle_is_none(&placement->handle);
+    const struct body_view *body = &placement->body;
+    return body->frame_count == 0 && body->count_count == 0 && body->number_count == 0 &&
+           !handle_is_none(&body->handle);
 }
 
 struct pair_query {
@@ -94,7 +93,7 @@ struct pair_query {
     double duration; /* seconds */
     int32_t method;  /* 0: the default */
     int32_t want;
-    struct placement placement[2];
+    struct query_placement placement[2];
 };
 
 struct pair_result {
@@ -124,7 +123,7 @@ enum {
 
 struct scene_query {
     QUERY_HEADER;
-    const char *label; /* any bytes; in memory as placement.name */
+    const char *label; /* any bytes; in memory as the name of a placement */
     double duration;
     int32_t method, want;
     double margin;
@@ -132,7 +131,7 @@ struct scene_query {
     int32_t split, first_pair;
     /* Counts of the message; if they exceed the arrays, the first elements are stored. */
     int32_t placement_count, index_count, ignored_count;
-    struct placement placement[QUERY_PLACEMENTS_MAX];
+    struct query_placement placement[QUERY_PLACEMENTS_MAX];
     /* [pair][a, b], not checked. A negative index is stored as a number above 2^31. */
     unsigned pair[QUERY_PAIRS_MAX][2];
     unsigned ignored[QUERY_PAIRS_MAX][2];
@@ -272,10 +271,7 @@ struct definition {
     char detail[QUERY_TEXT_MAX]; /* "" if OK */
     int64_t next;                /* 0: complete */
     int32_t body_count;
-    struct query_body {
-        struct handle handle;
-        struct geometry geometry; /* points into the message read, or to memory of the writer */
-    } body[QUERY_BODIES_MAX];
+    struct body_view body[QUERY_BODIES_MAX];
 };
 
 /* ---- Names ---- */
@@ -287,7 +283,7 @@ struct names {
     int64_t utime;
     int32_t count;
     int64_t client_id[QUERY_NAMES_MAX], body_id[QUERY_NAMES_MAX];
-    const char *name[QUERY_NAMES_MAX]; /* any bytes; in memory as placement.name */
+    const char *name[QUERY_NAMES_MAX]; /* any bytes; in memory as the name of a placement */
 };
 
 #endif

@@ -58,7 +58,7 @@ struct wire_status {
  * On output: NULL and *out; or a static text of what is wrong, and *out unspecified. Texts longer
  * than the struct holds are truncated; counts of statuses from FMB_STATUS_COUNT on are ignored; if
  * a query has more placements, pairs or handles than the struct holds, the first are stored, and
- * the count is that of the message. Geometries and the certificate of *out point into bytes. */
+ * the count is that of the message. Bodies, texts and the certificate of *out point into bytes. */
 const char *wire_read_pair_query(const void *bytes, uint32_t size, struct pair_query *out);
 const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_result *out);
 const char *wire_read_scene_query(const void *bytes, uint32_t size, struct scene_query *out);
@@ -103,7 +103,7 @@ size_t wire_write_names(const struct names *names, unsigned char out[QUERY_BYTES
  * label, its placements, and WIRE_PAIR_BYTES for each pair listed or ignored. A scene result (size
  * with the longest detail) adds 2 bytes for each unknown body, 16 for each handle, 1 for each
  * verdict, 4 for each named pair, 8 for each number of times and boxes, and wire_gap_bytes() for
- * each gap. A definition adds 16 bytes and the geometry for each body; names 21 bytes and the name
+ * each gap. A definition adds 16 bytes and the encoded body for each; names 21 bytes and the name
  * for each body. A pair result always fits. */
 enum {
     WIRE_PAIR_QUERY_BYTES = 8 + 3 * 8 + 8 + 2 * 4,
@@ -121,7 +121,7 @@ static inline size_t wire_text_bytes(const char *text)
 }
 
 /* Bytes of an encoded placement. */
-size_t wire_placement_bytes(const struct placement *placement);
+size_t wire_placement_bytes(const struct query_placement *placement);
 
 /* Bytes of an encoded gap in a scene: bounds, direction, time and points; frames if they are named.
  */

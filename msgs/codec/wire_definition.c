@@ -34,16 +34,13 @@ size_t wire_write_definition_query(const struct definition_query *query,
 
 /* A body without frames, or that does not match its handle, is an error. Its frames are not
  * checked. */
-static void read_body(struct cursor *cursor, struct hasher *hasher, struct query_body *out)
+static void read_body(struct cursor *cursor, struct hasher *hasher, struct body_view *out)
 {
     struct cursor local = *cursor;
-    struct placement placement;
-    wire_read_handle(&local, &out->handle);
-    wire_read_geometry(&local, &placement);
-    out->geometry = placement.geometry;
+    wire_read_body(&local, out);
     if (!local.error) {
-        const struct handle handle = hasher_handle(hasher, out->geometry.bytes, out->geometry.size);
-        if (placement.frame_count == 0)
+        const struct handle handle = hasher_handle(hasher, out->bytes, out->size);
+        if (out->frame_count == 0)
             cursor_fail(&local, "a body without frames");
         if (!handle_equal(&handle, &out->handle))
             cursor_fail(&local, "a body that does not match its handle");
@@ -80,10 +77,7 @@ size_t wire_write_definition(const struct definition *definition,
     writer_string(&writer, definition->detail);
     writer_int64(&writer, definition->next);
     writer_int32(&writer, definition->body_count);
-    for (int32_t i = 0; i < definition->body_count; i++) {
-        const struct geometry *geometry = &definition->body[i].geometry;
-        wire_write_handle(&writer, &definition->body[i].handle);
-        memcpy(writer_take(&writer, geometry->size), geometry->bytes, geometry->size);
-    }
+    for (int32_t i = 0; i < definition->body_count; i++)
+        wire_write_body(&writer, &definition->body[i]);
     return writer_end(&writer, out);
 }

@@ -44,14 +44,22 @@ void wire_write_handles(struct writer *writer, const struct handle *handles, int
         memcpy(writer_take(writer, size), handles, size);
 }
 
-void wire_read_geometry(struct cursor *cursor, struct placement *out)
+void wire_read_body(struct cursor *cursor, struct body_view *out)
 {
-    const unsigned char *begin = cursor->at, *list;
+    const unsigned char *list;
+    wire_read_handle(cursor, &out->handle);
+    out->bytes = cursor->at;
     out->dim = cursor_int32(cursor);
     out->frame_count = cursor_list(cursor, 1, &list);
     out->count_count = cursor_list(cursor, 4, &list);
     out->number_count = cursor_list(cursor, 8, &list);
-    out->geometry = (struct geometry){begin, (size_t) (cursor->at - begin)};
+    out->size = (size_t) (cursor->at - out->bytes);
+}
+
+void wire_write_body(struct writer *writer, const struct body_view *body)
+{
+    wire_write_handle(writer, &body->handle);
+    memcpy(writer_take(writer, body->size), body->bytes, body->size);
 }
 
 /* Reads count numbers. The first max are stored; if there are fewer, the remainder of out is 0. */
@@ -66,42 +74,42 @@ static void read_numbers(struct cursor *cursor, int32_t count, double *out, int 
         out[i] = i < count ? cursor_double_at(bytes + 8 * i) : 0;
 }
 
-void wire_read_placement(struct cursor *cursor, struct placement *out)
+void wire_read_placement(struct cursor *cursor, struct query_placement *out)
 {
     struct cursor local = *cursor;
-    out->body_id = cursor_int64(&local);
-    wire_read_handle(&local, &out->handle);
-    wire_read_geometry(&local, out);
-    if (out->dim < 0)
+    struct fmb_placement *placed = &out->placed;
+    placed->body = NULL;
+    placed->id = cursor_int64(&local);
+    wire_read_body(&local, &out->body);
+    if (out->body.dim < 0)
         cursor_fail(&local, "negative count");
-    out->name = cursor_take_string(&local);
-    out->group = cursor_int64(&local);
-    read_numbers(&local, out->dim, out->position, FMB_DIM_MAX);
-    out->orientation_count = cursor_count(&local, 8);
-    read_numbers(&local, out->orientation_count, out->orientation, QUERY_ORIENTATION_MAX);
+    placed->name = cursor_take_string(&local);
+    placed->group = cursor_int64(&local);
+    read_numbers(&local, out->body.dim, placed->position, FMB_DIM_MAX);
+    placed->orientation_count = cursor_count(&local, 8);
+    read_numbers(&local, placed->orientation_count, placed->orientation, QUERY_ORIENTATION_MAX);
     out->velocity_count = cursor_count(&local, 8);
-    read_numbers(&local, out->velocity_count, out->velocity, FMB_DIM_MAX);
+    read_numbers(&local, out->velocity_count, placed->velocity, FMB_DIM_MAX);
     *cursor = local;
 }
 
-void wire_write_placement(struct writer *writer, const struct placement *placement)
+void wire_write_placement(struct writer *writer, const struct query_placement *placement)
 {
-    const struct geometry *geometry = &placement->geometry;
-    writer_int64(writer, placement->body_id);
-    wire_write_handle(writer, &placement->handle);
-    memcpy(writer_take(writer, geometry->size), geometry->bytes, geometry->size);
-    wire_write_text(writer, placement->name);
-    writer_int64(writer, placement->group);
-    for (int axis = 0; axis < placement->dim; axis++)
-        writer_double(writer, placement->position[axis]);
-    writer_doubles(writer, placement->orientation, placement->orientation_count);
-    writer_doubles(writer, placement->velocity, placement->velocity_count);
+    const struct fmb_placement *placed = &placement->placed;
+    writer_int64(writer, placed->id);
+    wire_write_body(writer, &placement->body);
+    wire_write_text(writer, placed->name);
+    writer_int64(writer, placed->group);
+    for (int axis = 0; axis < placement->body.dim; axis++)
+        writer_double(writer, placed->position[axis]);
+    writer_doubles(writer, placed->orientation, placed->orientation_count);
+    writer_doubles(writer, placed->velocity, placement->velocity_count);
 }
 
-size_t wire_placement_bytes(const struct placement *placement)
+size_t wire_placement_bytes(const struct query_placement *placement)
 {
-    const size_t numbers =
-        (size_t) (placement->dim + placement->orientation_count + placement->velocity_count);
-    return 8 + HANDLE_BYTES + placement->geometry.size + 4 + wire_text_bytes(placement->name) + 1 +
-           8 + 4 + 4 + sizeof(double) * numbers;
+    const size_t numbers = (size_t) (placement->body.dim + placement->placed.orientation_count +
+                                     placement->velocity_count);
+    return 8 + HANDLE_BYTES + placement->body.size + 4 + wire_text_bytes(placement->placed.name) +
+           1 + 8 + 4 + 4 + sizeof(double) * numbers;
 }

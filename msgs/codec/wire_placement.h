@@ -27,9 +27,9 @@ static inline void wire_write_ids(struct writer *writer, const struct query_head
 const char *wire_read_header(const void *bytes, uint32_t size, int64_t fingerprint,
                              struct query_header *out);
 
-void wire_read_placement(struct cursor *cursor, struct placement *out);
+void wire_read_placement(struct cursor *cursor, struct query_placement *out);
 
-void wire_write_placement(struct writer *writer, const struct placement *placement);
+void wire_write_placement(struct writer *writer, const struct query_placement *placement);
 
 void wire_read_handle(struct cursor *cursor, struct handle *out);
 
@@ -41,9 +41,10 @@ int32_t wire_read_handles(struct cursor *cursor, struct handle *out, int max);
 
 void wire_write_handles(struct writer *writer, const struct handle *handles, int32_t count);
 
-/* Reads the fields dim to numbers of a placement. On output: *out has these fields; its geometry
- * points into the message. The counts are not checked for consistency. */
-void wire_read_geometry(struct cursor *cursor, struct placement *out);
+/* Read and write a body: its handle, and the fields dim to numbers. On output: *out, whose bytes
+ * point into the message. The counts are not checked for consistency. */
+void wire_read_body(struct cursor *cursor, struct body_view *out);
+void wire_write_body(struct writer *writer, const struct body_view *body);
 
 /* Writes a text; NULL is "". */
 static inline void wire_write_text(struct writer *writer, const char *text)

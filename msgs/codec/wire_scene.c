@@ -27,10 +27,10 @@ const char *wire_read_scene_header(const void *bytes, uint32_t size, struct quer
 
 /* Reads placements. Those beyond the capacity of out are decoded and dropped. Returns the count of
  * the message. */
-static int32_t read_placements(struct cursor *cursor, struct placement *out)
+static int32_t read_placements(struct cursor *cursor, struct query_placement *out)
 {
     const int32_t count = cursor_count(cursor, PLACEMENT_BYTES_LEAST);
-    struct placement beyond;
+    struct query_placement beyond;
     for (int32_t i = 0; i < count && !cursor->error; i++)
         wire_read_placement(cursor, i < QUERY_PLACEMENTS_MAX ? &out[i] : &beyond);
     return count;

@@ -30,7 +30,7 @@ void answerer_destroy(struct answerer *answerer);
 struct cache *answerer_cache(struct answerer *answerer);
 
 /* Answers a definition query with as many bodies as fit into one result; its field next is where
- * the next page begins. Neither counts nor pins these bodies. The geometries of the result belong
+ * the next page begins. Neither counts nor pins these bodies. The bodies of the result belong
  * to the cache, and are valid until a body is added. */
 void answer_definition(struct answerer *answerer, const struct definition_query *query,
                        struct definition *result);
@@ -89,7 +89,7 @@ void answer_job_stop(struct answer_job *job);
 
 /* The placements of the query, as decoded; *count of them. Owned by the job, and valid until the
  * next answer_job_begin(). */
-const struct placement *answer_job_placements(const struct answer_job *job, int32_t *count);
+const struct query_placement *answer_job_placements(const struct answer_job *job, int32_t *count);
 
 /* The result: of a pair, or of a scene. On input: a job whose result is complete. Its compute_ns is
  * 0. Owned by the job, and valid until the next answer_job_begin(). A certificate is present if it

@@ -49,13 +49,13 @@ static void append_bodies(const struct cache *cache, const struct definition_que
     int64_t position = query->first, here = position;
     for (const struct cached *cached; (cached = next_body(cache, query, &position));
          here = position) {
-        const size_t size = HANDLE_BYTES + cached->geometry.size;
+        const size_t size = HANDLE_BYTES + cached->view.size;
         if (size > capacity || result->body_count == QUERY_BODIES_MAX) {
             result->next = here;
             return;
         }
         capacity -= size;
-        result->body[result->body_count++] = (struct query_body){cached->handle, cached->geometry};
+        result->body[result->body_count++] = cached->view;
     }
 }
 

@@ -31,7 +31,7 @@ struct answer_job {
     bool is_pair;
     struct answerer *answerer; /* NULL: no body is in use */
     struct check_context context;
-    const struct placement *placements; /* of the query */
+    struct query_placement *placements; /* of the query */
     int32_t placement_count;
     int32_t next;        /* the next placement in FINDING and ADDING */
     int64_t frames;      /* of the placements before next in FINDING, then of all */
@@ -108,12 +108,11 @@ static struct check_context *at(struct answer_job *job, int32_t i)
 static bool check_placements(struct answer_job *job)
 {
     for (int32_t i = 0; i < job->placement_count; i++) {
-        const struct placement *placement = &job->placements[i];
-        if (!check_placement(at(job, i), placement, &job->placed[i]))
+        const struct query_placement *placement = &job->placements[i];
+        if (!check_placement(at(job, i), placement))
             return false;
-        if (!job->is_pair && placement->dim != job->placements[0].dim)
+        if (!job->is_pair && placement->body.dim != job->placements[0].body.dim)
             return check_refuse(at(job, i), FMB_DIMENSIONS_DIFFER, "dim", NULL);
-        job->placed[i].group = job->is_pair ? 0 : placement->group; /* groups are of scenes */
     }
     return true;
 }
@@ -126,7 +125,7 @@ static bool check_pair(struct answer_job *job)
            check_request(context, query->duration, query->method, query->want,
                          FMB_WANT_BOX | FMB_WANT_CERTIFICATE | FMB_WANT_GAP) &&
            check_placements(job) &&
-           (query->placement[0].dim == query->placement[1].dim ||
+           (query->placement[0].body.dim == query->placement[1].body.dim ||
             check_refuse(at(job, -1), FMB_DIMENSIONS_DIFFER, "dim", NULL));
 }
 
@@ -188,13 +187,10 @@ static bool check_ignored(struct check_context *context, struct answer_job *job)
 /* No listed pair may be within a group. */
 static bool check_groups(struct check_context *context, const struct scene_query *query)
 {
-    const struct placement *placement = query->placement;
-    bool groups = false;
-    for (int32_t i = 0; i < query->placement_count; i++)
-        groups = groups || placement[i].group;
-    for (int32_t i = 0; groups && i < query->index_count / 2; i++) {
-        const int64_t group = placement[query->pair[i][0]].group;
-        if (group && group == placement[query->pair[i][1]].group)
+    const struct query_placement *placement = query->placement;
+    for (int32_t i = 0; i < query->index_count / 2; i++) {
+        const int64_t group = placement[query->pair[i][0]].placed.group;
+        if (group != 0 && group == placement[query->pair[i][1]].placed.group)
             return check_refuse_at(context, FMB_BAD_PAIR, "indices", 2 * i, "a pair of one group");
     }
     return true;
@@ -320,10 +316,11 @@ static enum answer_stage check(struct answer_job *job, struct answerer *answerer
 bool answer_job_is_short(const struct answer_job *job, const struct answerer *answerer)
 {
     for (int32_t i = 0; job->is_pair && i < 2; i++) {
-        const struct placement *placement = &job->placements[i];
-        const struct cached *cached =
-            placement_by_handle(placement) ? cache_peek(answerer->cache, &placement->handle) : NULL;
-        if (placement->frame_count > 1 || (cached && cached->body.frame_count > 1))
+        const struct query_placement *placement = &job->placements[i];
+        const struct cached *cached = query_by_handle(placement)
+                                          ? cache_peek(answerer->cache, &placement->body.handle)
+                                          : NULL;
+        if (placement->body.frame_count > 1 || (cached && cached->body.frame_count > 1))
             return false;
     }
     return job->is_pair;
@@ -348,10 +345,10 @@ static bool count_frames(struct answer_job *job, int32_t i, int64_t frames)
  * of a scene. */
 static bool find_one(struct answer_job *job, int32_t i)
 {
-    const struct placement *placement = &job->placements[i];
-    if (!placement_by_handle(placement))
-        return count_frames(job, i, placement->frame_count);
-    const struct cached *cached = cache_find(job->answerer->cache, &placement->handle);
+    const struct query_placement *placement = &job->placements[i];
+    if (!query_by_handle(placement))
+        return count_frames(job, i, placement->body.frame_count);
+    const struct cached *cached = cache_find(job->answerer->cache, &placement->body.handle);
     if (!cached && job->is_pair)
         return refuse_unknown(job, i);
     if (!cached) {
@@ -359,7 +356,7 @@ static bool find_one(struct answer_job *job, int32_t i)
         return true;
     }
     job->used[i] = (struct used_body){&cached->body, cached};
-    if (placement->dim != cached->body.dim)
+    if (placement->body.dim != cached->body.dim)
         return check_refuse(at(job, i), FMB_WRONG_DIMENSION, "dim",
                             "not that of the body with this handle");
     return count_frames(job, i, cached->body.frame_count);
@@ -375,22 +372,21 @@ static bool check_certificate(struct answer_job *job)
 
 /* Finds the body of placement i, which has frames; or makes it, at most *frames frames a call, and
  * adds it to the cache unless it is anonymous or the cache has no memory for it. Returns false
- * while it is not complete. On output: *handle: the handle of a body with an id, which the caller
- * keeps there until the body is complete. */
-static bool intern(struct answer_job *job, int32_t i, int32_t *frames, struct handle *handle)
+ * while it is not complete. A body with an id gets its handle. */
+static bool intern(struct answer_job *job, int32_t i, int32_t *frames)
 {
     struct cache *cache = job->answerer->cache;
     struct query_bodies *own = &job->bodies;
-    const struct geometry *geometry = &job->placements[i].geometry;
-    const int64_t id = job->placements[i].body_id;
+    struct body_view *view = &job->placements[i].body;
+    const int64_t id = job->placements[i].placed.id;
     const struct cached *cached = NULL;
     if (!own->maker.memory) {
-        cached = id ? cache_lookup(cache, id, geometry, handle) : NULL;
+        cached = id ? cache_lookup(cache, id, view) : NULL;
         if (cached) {
             job->used[i] = (struct used_body){&cached->body, cached};
             return true;
         }
-        body_begin(&own->maker, geometry, own->memory + own->used);
+        body_begin(&own->maker, view, own->memory + own->used);
     }
     const struct fmb_body *body = body_continue(&own->maker, frames);
     if (!body)
@@ -398,7 +394,7 @@ static bool intern(struct answer_job *job, int32_t i, int32_t *frames, struct ha
     own->used += BODY_BYTES(body->frame_count);
     own->maker.memory = NULL;
     if (id)
-        cached = cache_add(cache, id, handle, geometry, body);
+        cached = cache_add(cache, id, view, body);
     job->used[i] = (struct used_body){cached ? &cached->body : body, cached};
     return true;
 }
@@ -417,7 +413,7 @@ static enum answer_stage complete_pair(struct answer_job *job, enum fmb_status s
                  fmb_status_text(result->status));
     } else {
         result->method = method->number;
-        result->dim = answer->has_box || answer->has_gap ? job->placements[0].dim : 0;
+        result->dim = answer->has_box || answer->has_gap ? job->placements[0].body.dim : 0;
         result->names_frames = answer->has_gap && job->several_frames;
     }
     return complete(job);
@@ -495,7 +491,7 @@ static void begin_answers(struct answer_job *job)
     result->has_gaps = query->want & FMB_WANT_GAP || query->margin > 0;
     result->names_frames = result->has_gaps && job->several_frames;
     const bool uses_dim = result->has_boxes || result->has_gaps;
-    result->dim = uses_dim && query->placement_count > 0 ? query->placement[0].dim : 0;
+    result->dim = uses_dim && query->placement_count > 0 ? query->placement[0].body.dim : 0;
     job->capacity = QUERY_BYTES_MAX - WIRE_SCENE_RESULT_BYTES - HANDLE_BYTES * result->handle_count;
 }
 
@@ -514,21 +510,32 @@ static enum answer_stage begin_deciding(struct answer_job *job)
     return DECIDING;
 }
 
+/* Notes the handle of a body that came whole with an id in the result. */
+static void note_handle(struct answer_job *job, int32_t i)
+{
+    const struct query_placement *placement = &job->placements[i];
+    if (query_by_handle(placement) || placement->placed.id == 0)
+        return;
+    if (job->is_pair)
+        job->pair_result.handle[i] = placement->body.handle;
+    else
+        job->result.handle[job->result.handle_count++] = placement->body.handle;
+}
+
 /* Adds the bodies of placements that have frames, and fills in the engine's placements. Then begins
  * to decide. */
 static enum answer_stage add(struct answer_job *job)
 {
-    struct scene_result *result = &job->result;
     int32_t frames = BODY_PORTION;
     for (const int32_t end = step_end(job); job->next < end && frames > 0; job->next++) {
         const int32_t i = job->next;
-        struct handle *handle =
-            job->is_pair ? &job->pair_result.handle[i] : &result->handle[result->handle_count];
-        if (!job->used[i].body && !intern(job, i, &frames, handle))
+        if (!job->used[i].body && !intern(job, i, &frames))
             break;
-        if (!job->is_pair && !placement_by_handle(&job->placements[i]))
-            result->handle_count += job->placements[i].body_id != 0;
+        note_handle(job, i);
+        job->placed[i] = job->placements[i].placed;
         job->placed[i].body = job->used[i].body;
+        if (job->is_pair) /* groups are of scenes */
+            job->placed[i].group = 0;
         job->several_frames = job->several_frames || job->used[i].body->frame_count > 1;
     }
     return job->next < job->placement_count ? ADDING : begin_deciding(job);
@@ -711,7 +718,7 @@ void answer_job_stop(struct answer_job *job)
 
 /* ---- The query and its result ---- */
 
-const struct placement *answer_job_placements(const struct answer_job *job, int32_t *count)
+const struct query_placement *answer_job_placements(const struct answer_job *job, int32_t *count)
 {
     *count = job->is_pair ? 2 : query_stored_placements(&job->query);
     return job->placements;

@@ -42,7 +42,7 @@ void answerer_begin_pair(const struct answerer *answerer, const struct pair_quer
     result->header = query->header;
     result->server_id = answerer->server_id;
     for (int f = 0; f < 2; f++)
-        result->body_id[f] = query->placement[f].body_id;
+        result->body_id[f] = query->placement[f].placed.id;
 }
 
 void answerer_begin_scene(const struct answerer *answerer, const struct query_header *query,

@@ -6,17 +6,12 @@
 #include <stdint.h>
 #include <string.h>
 
-int32_t body_frame_count(const struct geometry *geometry)
-{
-    return geometry_begin(geometry).frames_left;
-}
-
 static void make_frame(int dim, const struct geometry_frame *frame, struct fmb_frame *out)
 {
     double number[FMB_FRAME_NUMBERS_MAX];
-    const size_t count = geometry_frame_numbers(dim, frame, number);
+    geometry_numbers(frame, number);
     const enum fmb_status status = (frame->by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
-        dim, frame->shape, number, count, out);
+        dim, frame->shape, number, frame->count, out);
     assert(status == FMB_OK);
     (void) status;
 }
@@ -26,9 +21,9 @@ static struct fmb_frame *frames_of(void *memory)
     return (void *) ((char *) memory + offsetof(struct fmb_body, one));
 }
 
-void body_begin(struct body_maker *maker, const struct geometry *geometry, void *memory)
+void body_begin(struct body_maker *maker, const struct body_view *view, void *memory)
 {
-    *maker = (struct body_maker){.reader = geometry_begin(geometry), .memory = memory};
+    *maker = (struct body_maker){.reader = geometry_begin(view), .memory = memory};
 }
 
 const struct fmb_body *body_continue(struct body_maker *maker, int32_t *frames)
@@ -51,11 +46,11 @@ const struct fmb_body *body_continue(struct body_maker *maker, int32_t *frames)
     return maker->memory;
 }
 
-const struct fmb_body *body_make(const struct geometry *geometry, void *memory)
+const struct fmb_body *body_make(const struct body_view *view, void *memory)
 {
     struct body_maker maker;
     int32_t frames = INT32_MAX;
-    body_begin(&maker, geometry, memory);
+    body_begin(&maker, view, memory);
     return body_continue(&maker, &frames);
 }
 

@@ -1,4 +1,4 @@
-/* Makes bodies from their geometries, with all frames in one block of memory. No shared state. */
+/* Makes bodies of their encoded form, with all frames in one block of memory. No shared state. */
 #ifndef BODY_H
 #define BODY_H
 
@@ -9,9 +9,6 @@
 
 /* Bytes of a body of so many frames, 1 or more. The first frame is at body.one. */
 #define BODY_BYTES(frames) (offsetof(struct fmb_body, one) + (frames) * sizeof(struct fmb_frame))
-
-/* Frames of a geometry. */
-int32_t body_frame_count(const struct geometry *geometry);
 
 /* A body that is made in several steps. */
 struct body_maker {
@@ -24,16 +21,16 @@ struct body_maker {
  * since that requires an exact inverse: a step takes at most 0.2 ms. */
 enum { BODY_PORTION = 16 };
 
-/* Begins to make a body. On input: a geometry whose frames the engine accepts; memory of
+/* Begins to make a body. On input: an encoded body whose frames the engine accepts; memory of
  * BODY_BYTES() of its frames, aligned as a struct fmb_body. Both must outlive the maker. */
-void body_begin(struct body_maker *maker, const struct geometry *geometry, void *memory);
+void body_begin(struct body_maker *maker, const struct body_view *view, void *memory);
 
 /* Makes the next frames, at most *frames, and subtracts their number from *frames. Returns the
  * body, which is at `memory` and may be copied by body_copy() only; NULL: it is not complete. */
 const struct fmb_body *body_continue(struct body_maker *maker, int32_t *frames);
 
 /* Makes a body in one step: body_begin(), then body_continue(). */
-const struct fmb_body *body_make(const struct geometry *geometry, void *memory);
+const struct fmb_body *body_make(const struct body_view *view, void *memory);
 
 /* Copies a body and its frames. On input: memory of BODY_BYTES() of its frames, aligned as a struct
  * fmb_body. */

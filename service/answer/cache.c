@@ -27,7 +27,7 @@ struct cache_entry {
 enum { LINE = 64 }; /* bytes of a cache line */
 
 /* The slots of a body contain this record, then the frames after the first, then the bytes of the
- * geometry. */
+ * encoded body. */
 struct cache_record {
     int32_t ids;  /* number of ids whose latest entry is this one */
     int32_t pins; /* number of uses that are not released */
@@ -288,18 +288,17 @@ static int way_of(const struct latest *way, int64_t id)
     return w;
 }
 
-/* The latest entry of the id, if it is live and has this geometry; otherwise NONE. If the 32-bit
+/* The latest entry of the id, if it is live and has this body; otherwise NONE. If the 32-bit
  * generation has wrapped around and a stale entry seems live, comparing the bytes still finds the
  * right body only. */
-static int32_t find_latest(const struct cache *cache, int64_t id, const struct geometry *geometry)
+static int32_t find_latest(const struct cache *cache, int64_t id, const struct body_view *view)
 {
     const struct latest *way = ways_of(cache, id);
     const int w = way_of(way, id);
     if (w == WAYS || !is_live(cache, &way[w]))
         return NONE;
-    const struct geometry *held = &record_of(cache, way[w].entry)->cached.geometry;
-    const bool same =
-        held->size == geometry->size && memcmp(held->bytes, geometry->bytes, geometry->size) == 0;
+    const struct body_view *held = &record_of(cache, way[w].entry)->cached.view;
+    const bool same = held->size == view->size && memcmp(held->bytes, view->bytes, view->size) == 0;
     return same ? way[w].entry : NONE;
 }
 
@@ -381,52 +380,50 @@ static int32_t take_entry(struct cache *cache, int32_t frames)
 }
 
 /* body NULL: it is made here. */
-static void fill_record(struct cache_record *record, const struct handle *handle,
-                        const struct geometry *geometry, const struct fmb_body *body)
+static void fill_record(struct cache_record *record, const struct body_view *view,
+                        const struct fmb_body *body)
 {
-    const size_t frames = (size_t) body_frame_count(geometry);
-    unsigned char *bytes = (unsigned char *) &record->cached.body + BODY_BYTES(frames);
+    unsigned char *bytes =
+        (unsigned char *) &record->cached.body + BODY_BYTES((size_t) view->frame_count);
     if (body)
         body_copy(body, &record->cached.body);
     else
-        body_make(geometry, &record->cached.body);
-    memcpy(bytes, geometry->bytes, geometry->size);
-    record->cached.handle = *handle;
-    record->cached.geometry = (struct geometry){bytes, geometry->size};
+        body_make(view, &record->cached.body);
+    record->cached.view = *view;
+    record->cached.view.bytes = memcpy(bytes, view->bytes, view->size);
     record->ids = record->pins = 0;
 }
 
 /* Adds a body that is not held. Returns its entry, which is linked everywhere; NONE: there are not
  * enough slots. */
-static int32_t insert(struct cache *cache, const struct handle *handle,
-                      const struct geometry *geometry, const struct fmb_body *body)
+static int32_t insert(struct cache *cache, const struct body_view *view,
+                      const struct fmb_body *body)
 {
-    const int32_t frames = body_frame_count(geometry), e = take_entry(cache, frames);
+    const int32_t e = take_entry(cache, view->frame_count);
     if (e == NONE)
         return NONE;
-    int32_t *bucket = bucket_of(cache, handle);
-    fill_record(record_of(cache, e), handle, geometry, body);
-    cache->entry[e].handle = *handle;
+    int32_t *bucket = bucket_of(cache, &view->handle);
+    fill_record(record_of(cache, e), view, body);
+    cache->entry[e].handle = view->handle;
     cache->entry[e].next = *bucket;
     *bucket = e;
     lru_append(cache, e);
     set_begin(cache, e, true);
     cache->counts.bodies++;
-    cache->counts.frames += frames;
+    cache->counts.frames += view->frame_count;
     return e;
 }
 
-const struct cached *cache_lookup(struct cache *cache, int64_t id, const struct geometry *geometry,
-                                  struct handle *handle)
+const struct cached *cache_lookup(struct cache *cache, int64_t id, struct body_view *view)
 {
-    int32_t e = id ? find_latest(cache, id, geometry) : NONE;
+    int32_t e = id ? find_latest(cache, id, view) : NONE;
     if (e != NONE) {
         cache->counts.hits++;
-        *handle = cache->entry[e].handle;
+        view->handle = cache->entry[e].handle;
         return pin(cache, e);
     }
-    *handle = hasher_handle(cache->hasher, geometry->bytes, geometry->size);
-    e = find(cache, handle);
+    view->handle = hasher_handle(cache->hasher, view->bytes, view->size);
+    e = find(cache, &view->handle);
     if (e == NONE) {
         cache->counts.misses++;
         return NULL;
@@ -437,12 +434,12 @@ const struct cached *cache_lookup(struct cache *cache, int64_t id, const struct 
     return pin(cache, e);
 }
 
-const struct cached *cache_add(struct cache *cache, int64_t id, const struct handle *handle,
-                               const struct geometry *geometry, const struct fmb_body *body)
+const struct cached *cache_add(struct cache *cache, int64_t id, const struct body_view *view,
+                               const struct fmb_body *body)
 {
-    int32_t e = find(cache, handle);
+    int32_t e = find(cache, &view->handle);
     if (e == NONE)
-        e = insert(cache, handle, geometry, body);
+        e = insert(cache, view, body);
     if (e == NONE)
         return NULL;
     if (id)
@@ -450,11 +447,10 @@ const struct cached *cache_add(struct cache *cache, int64_t id, const struct han
     return pin(cache, e);
 }
 
-const struct cached *cache_intern(struct cache *cache, int64_t id, const struct geometry *geometry,
-                                  struct handle *handle)
+const struct cached *cache_intern(struct cache *cache, int64_t id, struct body_view *view)
 {
-    const struct cached *cached = cache_lookup(cache, id, geometry, handle);
-    return cached ? cached : cache_add(cache, id, handle, geometry, NULL);
+    const struct cached *cached = cache_lookup(cache, id, view);
+    return cached ? cached : cache_add(cache, id, view, NULL);
 }
 
 const struct cached *cache_find(struct cache *cache, const struct handle *handle)
@@ -484,18 +480,18 @@ static void prefetch_entry(const struct cache *cache, int32_t e)
     __builtin_prefetch(body + LINE);
 }
 
-void cache_prefetch(const struct cache *cache, const struct placement *placement)
+void cache_prefetch(const struct cache *cache, const struct query_placement *placement)
 {
-    if (placement_by_handle(placement)) {
-        prefetch_entry(cache, *bucket_of(cache, &placement->handle));
+    if (query_by_handle(placement)) {
+        prefetch_entry(cache, *bucket_of(cache, &placement->body.handle));
         return;
     }
-    const struct latest *way = ways_of(cache, placement->body_id);
-    const int w = way_of(way, placement->body_id);
+    const struct latest *way = ways_of(cache, placement->placed.id);
+    const int w = way_of(way, placement->placed.id);
     if (w == WAYS)
         return;
     prefetch_entry(cache, way[w].entry);
-    if (placement->frame_count == 1 && way[w].entry != NONE)
+    if (placement->body.frame_count == 1 && way[w].entry != NONE)
         for (size_t at = sizeof(struct cache_record); at < SLOT_BYTES; at += LINE)
             __builtin_prefetch((const char *) record_of(cache, way[w].entry) + at);
 }

@@ -1,10 +1,10 @@
-/* Cache of bodies by handle: for each its geometry, and the struct fmb_body with its frames and
+/* Cache of bodies by handle: for each its encoded form, and the struct fmb_body with its frames and
  * their inverses.
  *
  * The capacity is a fixed number of frames; a body takes as many as it has. The least recently used
  * body is evicted first, and for a body of several frames its neighbours in memory too. A body in
  * use by a query is pinned: it is not evicted until the query has released it. All memory is
- * allocated by cache_create(). Each geometry has one entry, whatever its ids: two clients that use
+ * allocated by cache_create(). Each body has one entry, whatever its ids: two clients that use
  * the same id for different bodies do not evict each other's. A second table maps an id to its
  * latest entry, so that a body sent again with its frames under the same id is found by comparing
  * bytes, without SHA-256. Both tables are hashed with a secret, so that no client can choose bodies
@@ -38,9 +38,8 @@ void cache_prefault(struct cache *cache);
 
 /* A body in the cache. */
 struct cached {
-    struct handle handle;
-    struct geometry geometry; /* owned by the cache */
-    struct fmb_body body;     /* last: all frames follow each other in memory from body.one on */
+    struct body_view view; /* owned by the cache */
+    struct fmb_body body;  /* last: all frames follow each other in memory from body.one on */
 };
 
 /* Looks up a handle. Returns the body, pinned: it is valid until the caller releases it, once for
@@ -52,23 +51,21 @@ const struct cached *cache_find(struct cache *cache, const struct handle *handle
 /* The same without counting or pinning; valid until a body is added. */
 const struct cached *cache_peek(const struct cache *cache, const struct handle *handle);
 
-/* Looks up a geometry, in time proportional to its bytes. On input: id, or 0 for none; a geometry
- * whose frames the engine accepts. On output: *handle: its handle. Returns the body, pinned
- * as by cache_find(), and counts a hit; or NULL, and counts a miss, if it is not held. */
-const struct cached *cache_lookup(struct cache *cache, int64_t id, const struct geometry *geometry,
-                                  struct handle *handle);
+/* Looks up an encoded body, in time proportional to its bytes. On input: id, or 0 for none; a body
+ * whose frames the engine accepts. On output: view->handle. Returns the body, pinned as by
+ * cache_find(), and counts a hit; or NULL, and counts a miss, if it is not held. */
+const struct cached *cache_lookup(struct cache *cache, int64_t id, struct body_view *view);
 
-/* Adds a body that cache_lookup() did not find, which may evict others. On input: its id, handle,
- * geometry and body, which are copied; body NULL: it is made here, in one step. Returns the body,
- * pinned as by cache_find(); if it has been added since, the one that is held; NULL if it cannot
- * be added: it has more frames than the capacity, or pinned bodies leave no free memory of that
- * length. */
-const struct cached *cache_add(struct cache *cache, int64_t id, const struct handle *handle,
-                               const struct geometry *geometry, const struct fmb_body *body);
+/* Adds a body that cache_lookup() did not find, which may evict others. On input: its id, its
+ * encoded form with the handle, and the body, which are copied; body NULL: it is made here, in one
+ * step. Returns the body, pinned as by cache_find(); if it has been added since, the one that is
+ * held; NULL if it cannot be added: it has more frames than the capacity, or pinned bodies leave no
+ * free memory of that length. */
+const struct cached *cache_add(struct cache *cache, int64_t id, const struct body_view *view,
+                               const struct fmb_body *body);
 
 /* Finds a body, or makes it in one step and adds it: cache_lookup(), then cache_add(). */
-const struct cached *cache_intern(struct cache *cache, int64_t id, const struct geometry *geometry,
-                                  struct handle *handle);
+const struct cached *cache_intern(struct cache *cache, int64_t id, struct body_view *view);
 
 /* Unpins a body. On input: a body that one of the functions above returned pinned, not released
  * since. */
@@ -76,7 +73,7 @@ void cache_release(struct cache *cache, const struct cached *cached);
 
 /* Prefetches the memory that the look-up of a placement's body will touch. On input: any placement,
  * checked or not. */
-void cache_prefetch(const struct cache *cache, const struct placement *placement);
+void cache_prefetch(const struct cache *cache, const struct query_placement *placement);
 
 /* Iterates over all bodies in the order of memory. On input: *position: 0 at the start; any value
  * is safe. Returns the first body at or after *position, and sets *position to the next one; NULL:

@@ -68,71 +68,69 @@ static int32_t vertices_at(const struct geometry_reader *reader, int32_t i)
 }
 
 /* A hull is refused last, so that what is wrong with a body does not depend on its support. */
-static bool check_shapes(struct check_context *context, const struct placement *placement)
+static bool check_shapes(struct check_context *context, const struct body_view *body)
 {
-    const struct geometry_reader reader = geometry_begin(&placement->geometry);
+    const struct geometry_reader reader = geometry_begin(body);
     int64_t numbers = 0;
     int32_t counts = 0, hull = -1;
-    for (int32_t i = 0; i < placement->frame_count; i++) {
+    for (int32_t i = 0; i < body->frame_count; i++) {
         const int code = reader.shape[i];
         const struct geometry_shape shape = geometry_shape(code);
-        const bool counted = shape.by_vertices && counts < placement->count_count;
+        const bool counted = shape.by_vertices && counts < body->count_count;
         const int32_t vertices = counted ? vertices_at(&reader, counts) : 1;
-        const int64_t count = geometry_number_count(placement->dim, code, vertices);
+        const int64_t count = geometry_number_count(body->dim, code, vertices);
         if (shape.shape == 0)
             return check_refuse_at(context, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
         if (count == 0 && shape.shape != FMB_HULL)
             return check_refuse(context, FMB_WRONG_DIMENSION, "dim", "a face is in 3D");
-        if (counted && (count == 0 || count != (int64_t) placement->dim * vertices))
+        if (counted && (count == 0 || count != (int64_t) body->dim * vertices))
             return check_refuse_at(context, FMB_WRONG_COUNT, "counts", counts,
                                    "not a number of vertices of this shape");
         numbers += count;
         counts += shape.by_vertices;
         hull = shape.shape == FMB_HULL ? i : hull;
     }
-    if (!check_count(context, "num_counts", counts, placement->count_count) ||
-        !check_count(context, "num_numbers", numbers, placement->number_count))
+    if (!check_count(context, "num_counts", counts, body->count_count) ||
+        !check_count(context, "num_numbers", numbers, body->number_count))
         return false;
     return hull < 0 || check_refuse_at(context, FMB_NOT_SUPPORTED, "shapes", hull,
                                        "hulls are not supported by this version");
 }
 
-static bool check_numbers(struct check_context *context, const struct placement *placement)
+static bool check_numbers(struct check_context *context, const struct body_view *body)
 {
-    const struct geometry_reader reader = geometry_begin(&placement->geometry);
-    for (int32_t i = 0; i < placement->number_count; i++)
+    const struct geometry_reader reader = geometry_begin(body);
+    for (int32_t i = 0; i < body->number_count; i++)
         if (!isfinite(number_at(&reader, i)))
             return check_refuse_at(context, FMB_NOT_FINITE, "numbers", i, NULL);
     return true;
 }
 
 /* Boxes must not have negative sizes. On input: shapes and numbers have been checked. */
-static bool check_sizes(struct check_context *context, const struct placement *placement)
+static bool check_sizes(struct check_context *context, const struct body_view *body)
 {
-    const struct geometry_reader reader = geometry_begin(&placement->geometry);
-    const int dim = placement->dim;
-    int32_t number = 0;
-    for (int32_t i = 0; i < placement->frame_count; i++) {
-        for (int32_t k = number + dim; reader.shape[i] == FMB_BOX && k < number + 2 * dim; k++)
-            if (number_at(&reader, k) < 0)
-                return check_refuse_at(context, FMB_BAD_SIZE, "numbers", k, "a negative size");
-        number += (int32_t) geometry_number_count(dim, reader.shape[i], 0);
-    }
+    struct geometry_reader reader = geometry_begin(body);
+    struct geometry_frame frame;
+    for (int32_t number = 0; geometry_next(&reader, &frame); number += (int32_t) frame.count)
+        for (int i = body->dim; frame.shape == FMB_BOX && i < 2 * body->dim; i++)
+            if (cursor_double_at(frame.number + 8 * i) < 0)
+                return check_refuse_at(context, FMB_BAD_SIZE, "numbers", number + i,
+                                       "a negative size");
     return true;
 }
 
 /* ---- Placements ---- */
 
 /* A placement has either a handle or frames. */
-static bool check_definition(struct check_context *context, const struct placement *placement)
+static bool check_definition(struct check_context *context, const struct body_view *body)
 {
-    const bool named = !handle_is_none(&placement->handle);
-    if (named && placement->frame_count > 0)
+    const bool named = !handle_is_none(&body->handle);
+    if (named && body->frame_count > 0)
         return check_refuse(context, FMB_WRONG_COUNT, "num_frames", "both a handle and frames");
     if (named)
-        return check_count(context, "num_counts", 0, placement->count_count) &&
-               check_count(context, "num_numbers", 0, placement->number_count);
-    if (placement->frame_count == 0)
+        return check_count(context, "num_counts", 0, body->count_count) &&
+               check_count(context, "num_numbers", 0, body->number_count);
+    if (body->frame_count == 0)
         return check_refuse(context, FMB_NO_FRAMES, "num_frames", "neither a handle nor frames");
     return true;
 }
@@ -145,46 +143,41 @@ static bool check_name(struct check_context *context, const char *name)
 
 /* Applies the engine's rule for orientations, which depends on the dimension of the body only: any
  * body of that dimension will do. */
-static bool check_orientation(struct check_context *context, int dim, struct fmb_placement *placed)
+static bool check_orientation(struct check_context *context, int dim,
+                              const struct fmb_placement *placed)
 {
     static const struct fmb_body any[FMB_DIM_MAX + 1] = {
         [2] = {.dim = 2, .frame_count = 1}, [3] = {.dim = 3, .frame_count = 1}};
-    placed->body = &any[dim];
-    return placed->orientation_count == 0 ||
-           (check_count(context, "num_orientation", dim == 2 ? 2 : 4, placed->orientation_count) &&
-            (fmb_placement_check(placed) == FMB_OK ||
-             check_refuse(context, FMB_BAD_ORIENTATION, "orientation",
-                          "zero, not finite, or components that differ by more than 2^200")));
-}
-
-/* Fills in the engine's placement on the way. */
-static bool check_pose(struct check_context *context, const struct placement *placement,
-                       struct fmb_placement *out)
-{
-    const int dim = placement->dim, velocities = placement->velocity_count;
-    *out = (struct fmb_placement){.orientation_count = placement->orientation_count};
-    memcpy(out->position, placement->position, sizeof out->position);
-    memcpy(out->orientation, placement->orientation, sizeof out->orientation);
-    if (!check_finite(context, "position", out->position, dim) ||
-        !check_orientation(context, dim, out))
+    if (placed->orientation_count == 0)
+        return true;
+    if (!check_count(context, "num_orientation", dim == 2 ? 2 : 4, placed->orientation_count))
         return false;
-    memcpy(out->velocity, placement->velocity, sizeof out->velocity);
-    return velocities == 0 || (check_count(context, "num_velocity", dim, velocities) &&
-                               check_finite(context, "velocity", out->velocity, dim));
+    struct fmb_placement turned = {.body = &any[dim],
+                                   .orientation_count = placed->orientation_count};
+    memcpy(turned.orientation, placed->orientation, sizeof turned.orientation);
+    return fmb_placement_check(&turned) == FMB_OK ||
+           check_refuse(context, FMB_BAD_ORIENTATION, "orientation",
+                        "zero, not finite, or components that differ by more than 2^200");
 }
 
-bool check_placement(struct check_context *context, const struct placement *placement,
-                     struct fmb_placement *out)
+bool check_placement(struct check_context *context, const struct query_placement *placement)
 {
-    const int dim = placement->dim;
-    if (!check_id(context, "body_id", placement->body_id) || !check_definition(context, placement))
+    const struct fmb_placement *placed = &placement->placed;
+    const struct body_view *body = &placement->body;
+    const int dim = body->dim;
+    if (!check_id(context, "body_id", placed->id) || !check_definition(context, body))
         return false;
     if (dim != 2 && dim != 3)
         return check_refuse(context, FMB_WRONG_DIMENSION, "dim", "neither 2 nor 3");
-    return (placement_by_handle(placement) ||
-            (check_shapes(context, placement) && check_numbers(context, placement) &&
-             check_sizes(context, placement))) &&
-           check_name(context, placement->name) && check_pose(context, placement, out);
+    return (query_by_handle(placement) ||
+            (check_shapes(context, body) && check_numbers(context, body) &&
+             check_sizes(context, body))) &&
+           check_name(context, placed->name) &&
+           check_finite(context, "position", placed->position, dim) &&
+           check_orientation(context, dim, placed) &&
+           (placement->velocity_count == 0 ||
+            (check_count(context, "num_velocity", dim, placement->velocity_count) &&
+             check_finite(context, "velocity", placed->velocity, dim)));
 }
 
 /* ---- Queries ---- */

@@ -34,9 +34,7 @@ bool check_ids(struct check_context *context, int64_t client_id, int64_t sequenc
 bool check_request(struct check_context *context, double duration, int32_t method, int32_t want,
                    int32_t wants);
 
-/* All fields of a placement. Frames are valid if and only if fmb_frame_make() accepts them all. On
- * output: *out: the engine's placement, whose body and group the caller sets. */
-bool check_placement(struct check_context *context, const struct placement *placement,
-                     struct fmb_placement *out);
+/* All fields of a placement. Frames are valid if and only if the engine accepts them all. */
+bool check_placement(struct check_context *context, const struct query_placement *placement);
 
 #endif

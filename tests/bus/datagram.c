@@ -37,7 +37,7 @@ void datagram_of_scene(const struct scene_query *query, struct datagram *out)
     out->renewed = 0;
 }
 
-void datagram_renew(struct datagram *datagram, const struct placement *first, int placements)
+void datagram_renew(struct datagram *datagram, const struct query_placement *first, int placements)
 {
     datagram->placement_bytes = wire_placement_bytes(first);
     datagram->renewed = placements;

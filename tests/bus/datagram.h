@@ -29,7 +29,7 @@ void datagram_of_scene(const struct scene_query *query, struct datagram *out);
 
 /* From now on each message has new bodies. On input: placements of one frame in 3D, which all take
  * as many bytes as the first; the first number of its first component is not 0. */
-void datagram_renew(struct datagram *datagram, const struct placement *first, int placements);
+void datagram_renew(struct datagram *datagram, const struct query_placement *first, int placements);
 
 /* On input: sizes from ECHO_BYTES_MIN; a reply of 0: none. */
 void datagram_of_echo(size_t size, size_t reply, struct datagram *out);

@@ -32,35 +32,24 @@ static void read_scene(const struct bus_bench *bench, struct scene_result *out)
 
 /* ---- Placements ---- */
 
-static void set_whole(const struct fmb_placement *from, int64_t body_id, struct placement *out,
-                      unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX])
+static void set_whole(const struct fmb_placement *from, int64_t body_id,
+                      struct query_placement *out, unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX])
 {
     const struct fmb_frame *frame = fmb_body_frame(from->body, 0);
     const int dim = frame->dim;
-    struct geometry_frame own = {.shape = (int) frame->shape};
+    struct plain_frame own = {.shape = (int) frame->shape};
     for (int i = 0; i < frame->count; i++)
         memcpy(own.components + i * dim, frame->component[i], (size_t) dim * sizeof(double));
-    *out = (struct placement){.body_id = body_id,
-                              .dim = dim,
-                              .frame_count = 1,
-                              .number_count = geometry_number_count(dim, frame->shape, 0),
-                              .orientation_count = from->orientation_count,
-                              .velocity_count = dim,
-                              .geometry = {bytes, geometry_write(dim, &own, bytes)}};
-    memcpy(out->position, from->position, sizeof from->position);
-    memcpy(out->orientation, from->orientation, sizeof from->orientation);
-    memcpy(out->velocity, from->velocity, sizeof from->velocity);
+    *out = (struct query_placement){
+        .placed = *from, .velocity_count = dim, .body = geometry_write(dim, &own, bytes)};
+    out->placed.id = body_id;
     if (from->velocity[0] == 0 && from->velocity[1] == 0 && from->velocity[2] == 0)
         out->velocity_count = 0;
 }
 
-static void set_handle(struct placement *placement, struct handle handle)
+static void set_handle(struct query_placement *placement, struct handle handle)
 {
-    static unsigned char none[GEOMETRY_NONE_BYTES];
-    geometry_write_none(placement->dim, none);
-    placement->handle = handle;
-    placement->frame_count = placement->number_count = 0;
-    placement->geometry = (struct geometry){none, sizeof none};
+    placement->body = geometry_named(placement->body.dim, &handle);
 }
 
 /* ---- A pair ---- */

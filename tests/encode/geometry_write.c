@@ -2,53 +2,73 @@
 
 #include "writer.h"
 
-static int numbers_of(int dim, const struct geometry_frame *frames, int count)
+size_t geometry_frame_numbers(int dim, const struct plain_frame *frame,
+                              double out[FMB_FRAME_NUMBERS_MAX])
 {
-    int numbers = 0;
+    const int count = (int) geometry_number_count(dim, frame->shape, 0);
     for (int i = 0; i < count; i++)
-        numbers += (int) geometry_number_count(dim, frames[i].shape, 0);
-    return numbers;
+        out[i] = i < dim ? frame->origin[i] : frame->components[i - dim];
+    return (size_t) count;
 }
 
-static int counts_of(const struct geometry_frame *frames, int count)
+bool geometry_read(struct geometry_reader *reader, struct plain_frame *out)
 {
-    int counts = 0;
-    for (int i = 0; i < count; i++)
-        counts += frames[i].by_vertices;
-    return counts;
+    const size_t dim = (size_t) reader->dim;
+    double number[FMB_FRAME_NUMBERS_MAX];
+    struct geometry_frame frame;
+    if (!geometry_next(reader, &frame) || frame.count > FMB_FRAME_NUMBERS_MAX)
+        return false;
+    geometry_numbers(&frame, number);
+    *out = (struct plain_frame){.shape = frame.shape, .by_vertices = frame.by_vertices};
+    memcpy(out->origin, number, dim * sizeof *number);
+    memcpy(out->components, number + dim, (frame.count - dim) * sizeof *number);
+    return true;
 }
 
-size_t geometry_size(int dim, const struct geometry_frame *frames, int count)
+static struct body_view view_of(int dim, const struct plain_frame *frames, int count)
 {
-    return GEOMETRY_NONE_BYTES + (size_t) count + 4 * (size_t) counts_of(frames, count) +
-           sizeof(double) * (size_t) numbers_of(dim, frames, count);
+    struct body_view out = {.dim = dim, .frame_count = count};
+    for (int i = 0; i < count; i++) {
+        out.number_count += (int32_t) geometry_number_count(dim, frames[i].shape, 0);
+        out.count_count += frames[i].by_vertices;
+    }
+    out.size = GEOMETRY_NONE_BYTES + (size_t) count + 4 * (size_t) out.count_count +
+               sizeof(double) * (size_t) out.number_count;
+    return out;
 }
 
-size_t geometry_write_frames(int dim, const struct geometry_frame *frames, int count,
-                             unsigned char *out)
+size_t geometry_size(int dim, const struct plain_frame *frames, int count)
 {
-    struct writer writer = {.at = out, .end = out + geometry_size(dim, frames, count)};
+    return view_of(dim, frames, count).size;
+}
+
+struct body_view geometry_write_frames(int dim, const struct plain_frame *frames, int count,
+                                       unsigned char *out)
+{
+    struct body_view body = view_of(dim, frames, count);
+    struct writer writer = {.at = out, .end = out + body.size};
+    body.bytes = out;
     writer_int32(&writer, dim);
     writer_int32(&writer, count);
     for (int i = 0; i < count; i++)
         *writer_take(&writer, 1) =
             (unsigned char) geometry_code(frames[i].shape, frames[i].by_vertices);
-    writer_int32(&writer, counts_of(frames, count));
+    writer_int32(&writer, body.count_count);
     for (int i = 0; i < count; i++)
         if (frames[i].by_vertices)
-            writer_int32(&writer, (int32_t) numbers_of(dim, &frames[i], 1) / dim);
-    writer_int32(&writer, numbers_of(dim, frames, count));
+            writer_int32(&writer, (int32_t) geometry_number_count(dim, frames[i].shape, 0) / dim);
+    writer_int32(&writer, body.number_count);
     for (int i = 0; i < count; i++) {
         double number[FMB_FRAME_NUMBERS_MAX];
         const size_t numbers = geometry_frame_numbers(dim, &frames[i], number);
         for (size_t k = 0; k < numbers; k++)
             writer_double(&writer, number[k]);
     }
-    return writer_end(&writer, out);
+    return body;
 }
 
-size_t geometry_write(int dim, const struct geometry_frame *frame,
-                      unsigned char out[GEOMETRY_FRAME_BYTES_MAX])
+struct body_view geometry_write(int dim, const struct plain_frame *frame,
+                                unsigned char out[GEOMETRY_FRAME_BYTES_MAX])
 {
     return geometry_write_frames(dim, frame, 1, out);
 }

@@ -75,14 +75,14 @@ static bool is_good_pair(const struct pair_query *query)
            good_gaps(query->method, query->want & FMB_WANT_GAP) &&
            model_good_placement(&query->placement[0]) &&
            model_good_placement(&query->placement[1]) &&
-           query->placement[0].dim == query->placement[1].dim;
+           query->placement[0].body.dim == query->placement[1].body.dim;
 }
 
 /* The frames of a placement of a good query. */
-static unsigned frames_of(const struct model *model, const struct placement *placement)
+static unsigned frames_of(const struct model *model, const struct query_placement *placement)
 {
     if (!model_by_handle(placement))
-        return (unsigned) placement->frame_count;
+        return (unsigned) placement->body.frame_count;
     struct model_made made;
     return model_find(model, placement, &made) == FMB_UNKNOWN_BODY ? 0 : made.body.frame_count;
 }
@@ -116,7 +116,8 @@ static void check_decided(const struct pair_query *query, const struct pair_resu
     FUZZ_CHECK(result->status == status);
     FUZZ_CHECK(query_same_answer(&result->answer, &answer));
     FUZZ_CHECK(result->method == (status == FMB_OK ? method->number : 0));
-    FUZZ_CHECK(result->dim == (answer.has_box || answer.has_gap ? query->placement[0].dim : 0));
+    FUZZ_CHECK(result->dim ==
+               (answer.has_box || answer.has_gap ? query->placement[0].body.dim : 0));
     FUZZ_CHECK(result->names_frames ==
                (answer.has_gap && (made[0].body.frame_count > 1 || made[1].body.frame_count > 1)));
     if (result->certificate)
@@ -130,7 +131,7 @@ static void check_echo(const struct pair_query *query, const struct pair_result 
     FUZZ_CHECK(result->sequence_number == query->sequence_number);
     FUZZ_CHECK(result->server_id == server_id && result->compute_ns == 0);
     for (int f = 0; f < 2; f++)
-        FUZZ_CHECK(result->body_id[f] == query->placement[f].body_id);
+        FUZZ_CHECK(result->body_id[f] == query->placement[f].placed.id);
     FUZZ_CHECK((result->detail[0] == '\0') == (result->status == FMB_OK));
 }
 
@@ -235,8 +236,8 @@ static bool is_ignored(const struct scene_query *query, const unsigned pair[2])
 
 static bool is_within_group(const struct scene_query *query, const unsigned pair[2])
 {
-    const int64_t group = query->placement[pair[0]].group;
-    return group != 0 && group == query->placement[pair[1]].group;
+    const int64_t group = query->placement[pair[0]].placed.group;
+    return group != 0 && group == query->placement[pair[1]].placed.group;
 }
 
 static bool good_placements(const struct scene_query *query)
@@ -244,7 +245,7 @@ static bool good_placements(const struct scene_query *query)
     bool good = true;
     for (int32_t i = 0; i < query->placement_count; i++)
         good = good && model_good_placement(&query->placement[i]) &&
-               query->placement[i].dim == query->placement[0].dim;
+               query->placement[i].body.dim == query->placement[0].body.dim;
     return good;
 }
 
@@ -318,11 +319,11 @@ static enum fmb_status find_bodies(struct model *model, const struct scene_query
     if (out->unknowns > 0)
         return FMB_UNKNOWN_BODY;
     for (int32_t i = 0; i < query->placement_count; i++) {
-        const struct placement *placement = &query->placement[i];
+        const struct query_placement *placement = &query->placement[i];
         if (model_by_handle(placement))
             continue;
         const struct handle handle = model_keep(model, placement, &out->made[i]);
-        if (placement->body_id)
+        if (placement->placed.id)
             out->handle[out->handles++] = handle;
     }
     return FMB_OK;
@@ -351,7 +352,7 @@ struct reading {
 static void check_contact(struct reading *reading, const struct fmb_answer *answer)
 {
     const struct scene_result *result = reading->result;
-    const int contact = reading->contacts++, dim = reading->query->placement[0].dim;
+    const int contact = reading->contacts++, dim = reading->query->placement[0].body.dim;
     const double *times = &result->times[2 * contact];
     const double *box = &result->boxes[2 * dim * contact];
     FUZZ_CHECK(contact < result->contact_count);
@@ -485,11 +486,11 @@ static void query_scene(struct service *service, const struct scene_query *query
 
 /* ---- Definitions ---- */
 
-static void check_body(const struct model *model, const struct query_body *body)
+static void check_body(const struct model *model, const struct body_view *body)
 {
     const struct model_body *held = model_peek(model, &body->handle);
-    FUZZ_CHECK(held && held->size == body->geometry.size);
-    FUZZ_CHECK(memcmp(held->bytes, body->geometry.bytes, held->size) == 0);
+    FUZZ_CHECK(held && held->view.size == body->size);
+    FUZZ_CHECK(memcmp(held->bytes, body->bytes, body->size) == 0);
 }
 
 /* Each that is held, in the order requested; or all that are held, each once. */
@@ -550,20 +551,20 @@ static void widen(struct spread *spread, double number)
 
 /* Numbers from one end of the doubles to the other take exact arithmetic long: of such queries one
  * in sixteen is answered, as its bytes have it. */
-static bool takes_too_long(const struct placement *placement, int32_t count, const uint8_t *bytes,
-                           size_t size)
+static bool takes_too_long(const struct query_placement *placement, int32_t count,
+                           const uint8_t *bytes, size_t size)
 {
     struct spread spread = {0, 0};
     uint32_t hash = 0;
     for (int32_t i = 0; i < count; i++) {
-        for (int32_t n = 0; n < placement[i].number_count; n++)
+        for (int32_t n = 0; n < placement[i].body.number_count; n++)
             widen(&spread, model_number(&placement[i], n));
         for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-            widen(&spread, placement[i].position[axis]);
-            widen(&spread, placement[i].velocity[axis]);
+            widen(&spread, placement[i].placed.position[axis]);
+            widen(&spread, placement[i].placed.velocity[axis]);
         }
         for (int k = 0; k < QUERY_ORIENTATION_MAX; k++)
-            widen(&spread, placement[i].orientation[k]);
+            widen(&spread, placement[i].placed.orientation[k]);
     }
     for (size_t i = 0; i < size; i++)
         hash = (hash ^ bytes[i]) * 16777619u;
@@ -571,10 +572,10 @@ static bool takes_too_long(const struct placement *placement, int32_t count, con
 }
 
 /* More than the model has memory for. */
-static bool has_many_frames(const struct placement *placement, int32_t count)
+static bool has_many_frames(const struct query_placement *placement, int32_t count)
 {
     for (int32_t i = 0; i < count; i++)
-        if (placement[i].frame_count > MODEL_FRAMES_MAX)
+        if (placement[i].body.frame_count > MODEL_FRAMES_MAX)
             return true;
     return false;
 }

@@ -79,7 +79,7 @@ static bool same_definition(const struct definition *definition,
     for (int32_t i = 0; i < message->num_bodies && same; i++)
         same = memcmp(definition->body[i].handle.bytes, message->bodies[i].handle, HANDLE_BYTES) ==
                    0 &&
-               same_geometry(&definition->body[i].geometry, &message->bodies[i]);
+               same_geometry(&definition->body[i], &message->bodies[i]);
     return same;
 }
 

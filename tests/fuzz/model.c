@@ -6,29 +6,29 @@
 #include <math.h>
 #include <string.h>
 
-bool model_by_handle(const struct placement *placement)
+bool model_by_handle(const struct query_placement *placement)
 {
     bool any = false;
     for (int i = 0; i < HANDLE_BYTES; i++)
-        any = any || placement->handle.bytes[i];
-    return any && placement->frame_count == 0 && placement->count_count == 0 &&
-           placement->number_count == 0;
+        any = any || placement->body.handle.bytes[i];
+    return any && placement->body.frame_count == 0 && placement->body.count_count == 0 &&
+           placement->body.number_count == 0;
 }
 
 /* ---- Bodies ---- */
 
-static void make(const unsigned char *bytes, size_t size, struct model_made *out)
+static void make(const struct body_view *view, struct model_made *out)
 {
-    const struct geometry geometry = {bytes, size};
-    struct geometry_reader reader = geometry_begin(&geometry);
+    struct geometry_reader reader = geometry_begin(view);
     struct geometry_frame frame;
     size_t count = 0;
     while (geometry_next(&reader, &frame)) {
         double number[FMB_FRAME_NUMBERS_MAX];
-        const size_t numbers = geometry_frame_numbers(reader.dim, &frame, number);
-        FUZZ_CHECK(count < MODEL_FRAMES_MAX);
+        FUZZ_CHECK(count < MODEL_FRAMES_MAX && frame.count <= FMB_FRAME_NUMBERS_MAX);
+        geometry_numbers(&frame, number);
         FUZZ_CHECK((frame.by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
-                       reader.dim, frame.shape, number, numbers, &out->frame[count++]) == FMB_OK);
+                       reader.dim, frame.shape, number, frame.count, &out->frame[count++]) ==
+                   FMB_OK);
     }
     FUZZ_CHECK(reader.frames_left == 0 && reader.numbers_left == 0);
     FUZZ_CHECK(fmb_body_make_frames(out->frame, count, &out->body) == FMB_OK);
@@ -37,36 +37,36 @@ static void make(const unsigned char *bytes, size_t size, struct model_made *out
 const struct model_body *model_peek(const struct model *model, const struct handle *handle)
 {
     for (int i = 0; i < model->count; i++)
-        if (memcmp(model->body[i].handle.bytes, handle->bytes, HANDLE_BYTES) == 0)
+        if (memcmp(model->body[i].view.handle.bytes, handle->bytes, HANDLE_BYTES) == 0)
             return &model->body[i];
     return NULL;
 }
 
-enum fmb_status model_find(const struct model *model, const struct placement *placement,
+enum fmb_status model_find(const struct model *model, const struct query_placement *placement,
                            struct model_made *out)
 {
-    const struct model_body *body = model_peek(model, &placement->handle);
+    const struct model_body *body = model_peek(model, &placement->body.handle);
     if (!body)
         return FMB_UNKNOWN_BODY;
-    make(body->bytes, body->size, out);
-    return out->body.dim == placement->dim ? FMB_OK : FMB_WRONG_DIMENSION;
+    make(&body->view, out);
+    return out->body.dim == placement->body.dim ? FMB_OK : FMB_WRONG_DIMENSION;
 }
 
-struct handle model_keep(struct model *model, const struct placement *placement,
+struct handle model_keep(struct model *model, const struct query_placement *placement,
                          struct model_made *out)
 {
-    const struct geometry *geometry = &placement->geometry;
+    const struct body_view *view = &placement->body;
     struct handle handle = {{0}};
-    make(geometry->bytes, geometry->size, out);
-    if (placement->body_id == 0)
+    make(view, out);
+    if (placement->placed.id == 0)
         return handle;
-    handle = hasher_handle(model->hasher, geometry->bytes, geometry->size);
+    handle = hasher_handle(model->hasher, view->bytes, view->size);
     if (!model_peek(model, &handle)) {
         FUZZ_CHECK(model->count < MODEL_BODIES_MAX);
         struct model_body *body = &model->body[model->count++];
-        body->handle = handle;
-        body->size = geometry->size;
-        memcpy(body->bytes, geometry->bytes, geometry->size);
+        body->view = *view;
+        body->view.handle = handle;
+        body->view.bytes = memcpy(body->bytes, view->bytes, view->size);
     }
     return handle;
 }
@@ -91,11 +91,11 @@ static bool are_finite(const double *number, int count)
     return good;
 }
 
-double model_number(const struct placement *placement, int i)
+double model_number(const struct query_placement *placement, int i)
 {
     /* dim, the count of shapes, shapes, the count of counts, counts, the count of numbers */
-    const unsigned char *at = placement->geometry.bytes + 4 + 4 + placement->frame_count + 4 +
-                              4 * placement->count_count + 4 + 8 * i;
+    const unsigned char *at = placement->body.bytes + 4 + 4 + placement->body.frame_count + 4 +
+                              4 * placement->body.count_count + 4 + 8 * i;
     uint64_t bits = 0;
     for (int b = 0; b < 8; b++)
         bits = bits << 8 | at[b];
@@ -105,10 +105,10 @@ double model_number(const struct placement *placement, int i)
 }
 
 /* Number i of the counts of a placement. */
-static int64_t count_at(const struct placement *placement, int i)
+static int64_t count_at(const struct query_placement *placement, int i)
 {
     const unsigned char *at =
-        placement->geometry.bytes + 4 + 4 + placement->frame_count + 4 + 4 * i;
+        placement->body.bytes + 4 + 4 + placement->body.frame_count + 4 + 4 * i;
     return (int32_t) ((uint32_t) at[0] << 24 | (uint32_t) at[1] << 16 | (uint32_t) at[2] << 8 |
                       at[3]);
 }
@@ -127,26 +127,27 @@ static int numbers_of(int dim, int shape)
     }
 }
 
-static bool good_frames(const struct placement *placement)
+static bool good_frames(const struct query_placement *placement)
 {
-    const int dim = placement->dim;
+    const int dim = placement->body.dim;
     const struct handle none = {{0}};
-    bool good = placement->frame_count >= 1 &&
-                memcmp(placement->handle.bytes, none.bytes, HANDLE_BYTES) == 0;
+    bool good = placement->body.frame_count >= 1 &&
+                memcmp(placement->body.handle.bytes, none.bytes, HANDLE_BYTES) == 0;
     int64_t numbers = 0;
     int counts = 0;
-    for (int f = 0; good && f < placement->frame_count; f++) {
-        const int shape = placement->geometry.bytes[8 + f], count = numbers_of(dim, shape);
-        good = count > 0 && numbers + count <= placement->number_count;
+    for (int f = 0; good && f < placement->body.frame_count; f++) {
+        const int shape = placement->body.bytes[8 + f], count = numbers_of(dim, shape);
+        good = count > 0 && numbers + count <= placement->body.number_count;
         for (int i = 0; good && i < count; i++) {
             const double number = model_number(placement, (int) numbers + i);
             good = is_finite(number) && !(shape == FMB_BOX && i >= dim && number < 0);
         }
         if (good && shape >= 6)
-            good = counts < placement->count_count && count_at(placement, counts++) * dim == count;
+            good = counts < placement->body.count_count &&
+                   count_at(placement, counts++) * dim == count;
         numbers += count;
     }
-    return good && numbers == placement->number_count && counts == placement->count_count;
+    return good && numbers == placement->body.number_count && counts == placement->body.count_count;
 }
 
 /* Whether a name is UTF-8 of at most 64 bytes without control characters. */
@@ -159,14 +160,14 @@ static bool good_name(const char *name)
     return good;
 }
 
-static bool good_orientation(const struct placement *placement)
+static bool good_orientation(const struct query_placement *placement)
 {
-    const int count = placement->orientation_count;
-    const double *q = placement->orientation;
+    const int count = placement->placed.orientation_count;
+    const double *q = placement->placed.orientation;
     double least = HUGE_VAL, most = 0;
     if (count == 0)
         return true;
-    if (count != (placement->dim == 2 ? 2 : 4) || !are_finite(q, count))
+    if (count != (placement->body.dim == 2 ? 2 : 4) || !are_finite(q, count))
         return false;
     for (int i = 0; i < count; i++) {
         most = fmax(most, fabs(q[i]));
@@ -175,14 +176,15 @@ static bool good_orientation(const struct placement *placement)
     return most > 0 && !(most > least * 0x1p200);
 }
 
-bool model_good_placement(const struct placement *placement)
+bool model_good_placement(const struct query_placement *placement)
 {
-    const int dim = placement->dim;
-    return good_id(placement->body_id) && (dim == 2 || dim == 3) &&
-           (model_by_handle(placement) || good_frames(placement)) && good_name(placement->name) &&
-           are_finite(placement->position, dim) && good_orientation(placement) &&
+    const int dim = placement->body.dim;
+    return good_id(placement->placed.id) && (dim == 2 || dim == 3) &&
+           (model_by_handle(placement) || good_frames(placement)) &&
+           good_name(placement->placed.name) && are_finite(placement->placed.position, dim) &&
+           good_orientation(placement) &&
            (placement->velocity_count == 0 ||
-            (placement->velocity_count == dim && are_finite(placement->velocity, dim)));
+            (placement->velocity_count == dim && are_finite(placement->placed.velocity, dim)));
 }
 
 bool model_good_request(int64_t client_id, int64_t sequence_number, double duration, int32_t method,
@@ -192,15 +194,16 @@ bool model_good_request(int64_t client_id, int64_t sequence_number, double durat
            method >= 0 && method <= 4 && (want | wants) == wants;
 }
 
-struct fmb_placement model_place(const struct placement *placement, const struct model_made *made)
+struct fmb_placement model_place(const struct query_placement *placement,
+                                 const struct model_made *made)
 {
     struct fmb_placement out = {.body = &made->body,
-                                .orientation_count = placement->orientation_count};
+                                .orientation_count = placement->placed.orientation_count};
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        out.position[axis] = placement->position[axis];
-        out.velocity[axis] = placement->velocity[axis];
+        out.position[axis] = placement->placed.position[axis];
+        out.velocity[axis] = placement->placed.velocity[axis];
     }
-    for (int i = 0; i < placement->orientation_count; i++)
-        out.orientation[i] = placement->orientation[i];
+    for (int i = 0; i < placement->placed.orientation_count; i++)
+        out.orientation[i] = placement->placed.orientation[i];
     return out;
 }

@@ -16,8 +16,7 @@ struct model {
     int count;
     struct hasher *hasher;
     struct model_body {
-        struct handle handle;
-        size_t size;
+        struct body_view view;
         unsigned char bytes[MODEL_BYTES_MAX];
     } body[MODEL_BODIES_MAX];
 };
@@ -29,28 +28,29 @@ struct model_made {
 };
 
 /* Whether a placement and a request are such as msgs/ requires, as far as this version goes. */
-bool model_good_placement(const struct placement *placement);
+bool model_good_placement(const struct query_placement *placement);
 bool model_good_request(int64_t client_id, int64_t sequence_number, double duration, int32_t method,
                         int32_t want, int32_t wants);
-bool model_by_handle(const struct placement *placement);
+bool model_by_handle(const struct query_placement *placement);
 
 /* On input: placements that are good, with at most MODEL_FRAMES_MAX frames. */
 
 /* The body of a placement by handle. OK; UNKNOWN_BODY; or WRONG_DIMENSION. */
-enum fmb_status model_find(const struct model *model, const struct placement *placement,
+enum fmb_status model_find(const struct model *model, const struct query_placement *placement,
                            struct model_made *out);
 
 /* The body of a placement that comes whole. Returns its handle, or none for an anonymous one. */
-struct handle model_keep(struct model *model, const struct placement *placement,
+struct handle model_keep(struct model *model, const struct query_placement *placement,
                          struct model_made *out);
 
 /* The body with this handle; NULL: it is not held. */
 const struct model_body *model_peek(const struct model *model, const struct handle *handle);
 
 /* The body at its place. It points to it. */
-struct fmb_placement model_place(const struct placement *placement, const struct model_made *made);
+struct fmb_placement model_place(const struct query_placement *placement,
+                                 const struct model_made *made);
 
 /* Number i of all frames of a placement. */
-double model_number(const struct placement *placement, int i);
+double model_number(const struct query_placement *placement, int i);
 
 #endif

@@ -30,7 +30,7 @@ static void check_decoder(const struct pair_query *query, const uint8_t *bytes, 
 static void check_writer(const struct pair_query *query, const uint8_t *bytes, size_t size)
 {
     static unsigned char written[QUERY_BYTES_MAX];
-    const struct placement *a = &query->placement[0], *b = &query->placement[1];
+    const struct query_placement *a = &query->placement[0], *b = &query->placement[1];
     if (size > QUERY_BYTES_MAX || !same_can_hold(a) || !same_can_hold(b))
         return;
     same_bytes(written, wire_write_pair_query(query, written), bytes, size);

@@ -46,22 +46,23 @@ static void widen(struct spread *spread, double number)
 
 /* The numbers of a geometry are its last bytes. */
 static void look_at_geometry(struct look *look, struct spread *spread,
-                             const struct geometry *geometry)
+                             const struct body_view *geometry)
 {
     for (size_t at = 8; at + 8 <= geometry->size; at += 8)
         widen(spread, cursor_double_at(geometry->bytes + geometry->size - at));
     look->slow = look->slow || spread->most - spread->least > 100;
 }
 
-static void look_at_placements(struct look *look, const struct placement *placement, int32_t count)
+static void look_at_placements(struct look *look, const struct query_placement *placement,
+                               int32_t count)
 {
     struct spread spread = {0, 0};
     for (int32_t i = 0; i < count; i++) {
         for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-            widen(&spread, placement[i].position[axis]);
-            widen(&spread, placement[i].velocity[axis]);
+            widen(&spread, placement[i].placed.position[axis]);
+            widen(&spread, placement[i].placed.velocity[axis]);
         }
-        look_at_geometry(look, &spread, &placement[i].geometry);
+        look_at_geometry(look, &spread, &placement[i].body);
     }
 }
 
@@ -72,7 +73,7 @@ static void look_at_query(struct look *look, enum log_kind kind, const struct lo
     if (!log_kind_is_query(kind) ||
         logged_query_read(&query, kind, event->data, (uint32_t) event->kept))
         return;
-    const struct placement *placement = logged_query_placements(&query, &count);
+    const struct query_placement *placement = logged_query_placements(&query, &count);
     if (count > PLACEMENTS_MAX ||
         (kind == LOG_SCENE_QUERY && query.scene.index_count > 2 * PAIRS_MAX))
         look->slow = true;
@@ -88,7 +89,7 @@ static void look_at_definition(struct look *look, const struct log_event *event)
     FUZZ_CHECK(hasher);
     if (!wire_read_definition(event->data, (uint32_t) event->kept, hasher, &definition))
         for (int32_t i = 0; i < definition.body_count; i++)
-            look_at_geometry(look, &spread, &definition.body[i].geometry);
+            look_at_geometry(look, &spread, &definition.body[i]);
     hasher_destroy(hasher);
 }
 

@@ -1,5 +1,6 @@
 #include "same.h"
 
+#include "geometry_write.h"
 #include "geometry.h"
 
 #include <stdlib.h>
@@ -29,11 +30,11 @@ static int32_t numbers_of(int32_t dim, int shape)
 }
 
 /* Frame after frame, until one does not fit. */
-static bool same_frames(const struct geometry *geometry, const fmb_msgs_body_t *message)
+static bool same_frames(const struct body_view *geometry, const fmb_msgs_body_t *message)
 {
     const int32_t dim = message->dim;
     struct geometry_reader reader = geometry_begin(geometry);
-    struct geometry_frame frame;
+    struct plain_frame frame;
     int32_t number = 0, f = 0, c = 0;
     for (; f < message->num_frames; f++) {
         const int shape = message->shapes[f];
@@ -42,7 +43,7 @@ static bool same_frames(const struct geometry *geometry, const fmb_msgs_body_t *
         const bool fits = count > 0 && count <= message->num_numbers - number &&
                           (!vertices || (c < message->num_counts &&
                                          (int64_t) dim * message->counts[c++] == count));
-        if (geometry_next(&reader, &frame) != fits)
+        if (geometry_read(&reader, &frame) != fits)
             return false;
         if (!fits)
             return true;
@@ -54,14 +55,14 @@ static bool same_frames(const struct geometry *geometry, const fmb_msgs_body_t *
             return false;
         number += count;
     }
-    return !geometry_next(&reader, &frame) && reader.counts_left == message->num_counts - c &&
+    return !geometry_read(&reader, &frame) && reader.counts_left == message->num_counts - c &&
            reader.numbers_left == message->num_numbers - number;
 }
 
 /* Bytes of a body_t before its geometry: fingerprint and handle. */
 enum { GEOMETRY_AT = 24 };
 
-bool same_geometry(const struct geometry *geometry, const fmb_msgs_body_t *message)
+bool same_geometry(const struct body_view *geometry, const fmb_msgs_body_t *message)
 {
     const int size = fmb_msgs_body_t_encoded_size(message);
     uint8_t *encoded = fuzz_room((size_t) size);
@@ -81,7 +82,7 @@ static bool same_numbers(const double *numbers, int32_t max, const double *messa
            same_doubles(numbers + kept, none, (size_t) (max - kept));
 }
 
-bool same_placement(const struct placement *placement, const fmb_msgs_placement_t *message)
+bool same_placement(const struct query_placement *placement, const fmb_msgs_placement_t *message)
 {
     const fmb_msgs_body_t body = {.dim = message->dim,
                                   .num_frames = message->num_frames,
@@ -90,24 +91,28 @@ bool same_placement(const struct placement *placement, const fmb_msgs_placement_
                                   .counts = message->counts,
                                   .num_numbers = message->num_numbers,
                                   .numbers = message->numbers};
-    return placement->body_id == message->body_id &&
-           memcmp(placement->handle.bytes, message->handle, sizeof message->handle) == 0 &&
-           placement->dim == message->dim && placement->frame_count == message->num_frames &&
-           placement->count_count == message->num_counts &&
-           placement->number_count == message->num_numbers &&
-           strcmp(placement->name, message->name) == 0 && placement->group == message->group &&
-           placement->orientation_count == message->num_orientation &&
+    return placement->placed.id == message->body_id &&
+           memcmp(placement->body.handle.bytes, message->handle, sizeof message->handle) == 0 &&
+           placement->body.dim == message->dim &&
+           placement->body.frame_count == message->num_frames &&
+           placement->body.count_count == message->num_counts &&
+           placement->body.number_count == message->num_numbers &&
+           strcmp(placement->placed.name, message->name) == 0 &&
+           placement->placed.group == message->group &&
+           placement->placed.orientation_count == message->num_orientation &&
            placement->velocity_count == message->num_velocity &&
-           same_geometry(&placement->geometry, &body) &&
-           same_numbers(placement->position, FMB_DIM_MAX, message->position, message->dim) &&
-           same_numbers(placement->orientation, QUERY_ORIENTATION_MAX, message->orientation,
+           same_geometry(&placement->body, &body) &&
+           same_numbers(placement->placed.position, FMB_DIM_MAX, message->position, message->dim) &&
+           same_numbers(placement->placed.orientation, QUERY_ORIENTATION_MAX, message->orientation,
                         message->num_orientation) &&
-           same_numbers(placement->velocity, FMB_DIM_MAX, message->velocity, message->num_velocity);
+           same_numbers(placement->placed.velocity, FMB_DIM_MAX, message->velocity,
+                        message->num_velocity);
 }
 
-bool same_can_hold(const struct placement *placement)
+bool same_can_hold(const struct query_placement *placement)
 {
-    return placement->dim <= FMB_DIM_MAX && placement->orientation_count <= QUERY_ORIENTATION_MAX &&
+    return placement->body.dim <= FMB_DIM_MAX &&
+           placement->placed.orientation_count <= QUERY_ORIENTATION_MAX &&
            placement->velocity_count <= FMB_DIM_MAX;
 }
 

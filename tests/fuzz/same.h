@@ -14,13 +14,13 @@
 bool same_doubles(const double *a, const double *b, size_t count);
 
 /* Of a body the fields from dim on. */
-bool same_geometry(const struct geometry *geometry, const fmb_msgs_body_t *message);
+bool same_geometry(const struct body_view *geometry, const fmb_msgs_body_t *message);
 
-bool same_placement(const struct placement *placement, const fmb_msgs_placement_t *message);
+bool same_placement(const struct query_placement *placement, const fmb_msgs_placement_t *message);
 
-/* Whether a struct placement has capacity for all numbers of the message, so that it can be written
- * again. */
-bool same_can_hold(const struct placement *placement);
+/* Whether a struct query_placement has capacity for all numbers of the message, so that it can be
+ * written again. */
+bool same_can_hold(const struct query_placement *placement);
 
 /* Handles one after the other in size bytes; the first max were kept. */
 bool same_handles(const struct handle *handle, int32_t count, int32_t max, const uint8_t *bytes,

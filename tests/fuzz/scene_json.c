@@ -127,16 +127,14 @@ static void check_scene(struct owned_scene *owner)
 
 /* ---- The same scene ---- */
 
-static bool same_given(const struct geometry_frame *a, const struct geometry_frame *b)
-{
-    return a->shape == b->shape && a->by_vertices == b->by_vertices &&
-           same_doubles(a->origin, b->origin, FMB_DIM_MAX) &&
-           same_doubles(a->components, b->components, FMB_COMPONENTS_MAX);
-}
-
 static bool same_frame(const struct fmb_frame *a, const struct fmb_frame *b)
 {
-    bool same = a->dim == b->dim && a->shape == b->shape && a->count == b->count &&
+    double numbers[2][FMB_FRAME_NUMBERS_MAX];
+    bool by_vertices[2];
+    const size_t count = fmb_frame_numbers(a, &by_vertices[0], numbers[0]);
+    bool same = fmb_frame_numbers(b, &by_vertices[1], numbers[1]) == count &&
+                by_vertices[0] == by_vertices[1] && same_doubles(numbers[0], numbers[1], count) &&
+                a->dim == b->dim && a->shape == b->shape && a->count == b->count &&
                 same_doubles(a->origin, b->origin, FMB_DIM_MAX) &&
                 same_doubles(a->centre, b->centre, FMB_DIM_MAX);
     for (int i = 0; i < FMB_DIM_MAX; i++)
@@ -178,12 +176,9 @@ static bool same_scene(struct owned_scene *left, struct owned_scene *right)
     const struct fmb_scene *a = &left->scene, *b = &right->scene;
     bool same = same_name(a->label, b->label) && left->dim == right->dim &&
                 same_doubles(&a->duration, &b->duration, 1) && a->margin == b->margin &&
-                a->placement_count == b->placement_count && a->which == b->which &&
-                left->given_count == right->given_count;
+                a->placement_count == b->placement_count && a->which == b->which;
     for (size_t i = 0; same && i < a->placement_count; i++)
         same = same_placed(&a->placements[i], &b->placements[i]);
-    for (size_t i = 0; same && i < left->given_count; i++)
-        same = same_given(&left->given[i], &right->given[i]);
     return same && same_decided(left, right);
 }
 

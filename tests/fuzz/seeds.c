@@ -43,70 +43,63 @@ static unsigned char *take_bytes(void)
     return bytes[used++];
 }
 
-struct placement seeds_body(int64_t id, int shape, int dim, const double *components)
+struct query_placement seeds_body(int64_t id, int shape, int dim, const double *components)
 {
     unsigned char *bytes = take_bytes();
     const int numbers = geometry_number_count(dim, shape, 0);
-    struct geometry_frame frame = {.shape = shape};
+    struct plain_frame frame = {.shape = shape};
     memcpy(frame.components, components, (size_t) (numbers - dim) * sizeof(double));
-    return (struct placement){.body_id = id,
-                              .dim = dim,
-                              .frame_count = 1,
-                              .number_count = numbers,
-                              .geometry = {bytes, geometry_write(dim, &frame, bytes)}};
+    return (struct query_placement){.placed.id = id, .body = geometry_write(dim, &frame, bytes)};
 }
 
 /* A body of a box and two frames more, away from its origin. */
-static struct placement several(int64_t id, int dim)
+static struct query_placement several(int64_t id, int dim)
 {
     unsigned char *bytes = take_bytes();
-    struct placement out = {.body_id = id, .dim = dim, .frame_count = 3};
-    struct geometry_frame frames[3] = {{.shape = FMB_BOX, .components = {1, 0.5, 0}},
-                                       {.shape = FMB_CUBOID, .origin = {0, 1}},
-                                       {.shape = FMB_TETRAHEDRON, .origin = {-2, 0.25}}};
+    struct query_placement out = {.placed.id = id, .body.dim = dim, .body.frame_count = 3};
+    struct plain_frame frames[3] = {{.shape = FMB_BOX, .components = {1, 0.5, 0}},
+                                    {.shape = FMB_CUBOID, .origin = {0, 1}},
+                                    {.shape = FMB_TETRAHEDRON, .origin = {-2, 0.25}}};
     for (int i = 0; i < 3; i++) {
         if (i > 0)
             memcpy(frames[i].components, edges[dim], (size_t) (dim * dim) * sizeof(double));
-        out.number_count += geometry_number_count(dim, frames[i].shape, 0);
+        out.body.number_count += geometry_number_count(dim, frames[i].shape, 0);
     }
-    out.geometry = (struct geometry){bytes, geometry_write_frames(dim, frames, 3, bytes)};
+    out.body = geometry_write_frames(dim, frames, 3, bytes);
     return out;
 }
 
-struct placement seeds_placement(int64_t id, int shape, int dim, double at, double speed)
+struct query_placement seeds_placement(int64_t id, int shape, int dim, double at, double speed)
 {
     static const double size[FMB_DIM_MAX] = {1, 1, 1};
-    struct placement out = seeds_body(id, shape, dim, shape == FMB_BOX ? size : edges[dim]);
+    struct query_placement out = seeds_body(id, shape, dim, shape == FMB_BOX ? size : edges[dim]);
     for (int axis = 0; axis < dim; axis++)
-        out.position[axis] = at;
+        out.placed.position[axis] = at;
     out.velocity_count = speed != 0 ? dim : 0;
-    out.velocity[0] = speed;
+    out.placed.velocity[0] = speed;
     return out;
 }
 
-struct handle seeds_handle(const struct placement *placement)
+struct handle seeds_handle(const struct query_placement *placement)
 {
     struct hasher *hasher = hasher_create();
     FUZZ_CHECK(hasher);
-    const struct handle handle =
-        hasher_handle(hasher, placement->geometry.bytes, placement->geometry.size);
+    const struct handle handle = hasher_handle(hasher, placement->body.bytes, placement->body.size);
     hasher_destroy(hasher);
     return handle;
 }
 
-struct placement seeds_by_handle(struct placement placement)
+struct query_placement seeds_by_handle(struct query_placement placement)
 {
-    unsigned char *bytes = take_bytes();
-    placement.handle = seeds_handle(&placement);
-    placement.frame_count = placement.number_count = 0;
-    geometry_write_none(placement.dim, bytes);
-    placement.geometry = (struct geometry){bytes, GEOMETRY_NONE_BYTES};
+    const struct handle handle = seeds_handle(&placement);
+    placement.body = geometry_named(placement.body.dim, &handle);
     return placement;
 }
 
 /* ---- Queries ---- */
 
-struct pair_query seeds_pair(struct placement a, struct placement b, int32_t method, int32_t want)
+struct pair_query seeds_pair(struct query_placement a, struct query_placement b, int32_t method,
+                             int32_t want)
 {
     static int64_t sequence_number;
     return (struct pair_query){.utime = 1,
@@ -144,20 +137,20 @@ static const struct {
     {"both-several", {SEVERAL, SEVERAL}, 2, 0.5, 0, 1, 0, 1e-9},
 };
 
-static struct placement place(int i, int f)
+static struct query_placement place(int i, int f)
 {
     const int shape = pairs[i].shape[f], dim = pairs[i].dim;
-    struct placement out =
+    struct query_placement out =
         shape == SEVERAL ? several(1 + f, dim) : seeds_placement(1 + f, shape, dim, 0, 0);
     if (f == 0)
         return out;
     for (int axis = 0; axis < dim; axis++)
-        out.position[axis] = pairs[i].at;
+        out.placed.position[axis] = pairs[i].at;
     out.velocity_count = pairs[i].speed != 0 ? dim : 0;
-    out.velocity[0] = pairs[i].speed;
-    out.orientation_count = pairs[i].turn != 0 ? 2 * (dim - 1) : 0;
-    out.orientation[0] = out.orientation_count ? 1 : 0;
-    out.orientation[dim == 2 ? 1 : 3] = pairs[i].turn;
+    out.placed.velocity[0] = pairs[i].speed;
+    out.placed.orientation_count = pairs[i].turn != 0 ? 2 * (dim - 1) : 0;
+    out.placed.orientation[0] = out.placed.orientation_count ? 1 : 0;
+    out.placed.orientation[dim == 2 ? 1 : 3] = pairs[i].turn;
     return out;
 }
 

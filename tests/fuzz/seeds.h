@@ -21,18 +21,19 @@ void seeds_meshes(void);
 
 /* A body that spans the unit vectors, at x = y = z = at; moves along x where speed is not 0. Its
  * geometry is valid to the end of the program. */
-struct placement seeds_placement(int64_t id, int shape, int dim, double at, double speed);
+struct query_placement seeds_placement(int64_t id, int shape, int dim, double at, double speed);
 
 /* The same with other components; of a box the full size. */
-struct placement seeds_body(int64_t id, int shape, int dim, const double *components);
+struct query_placement seeds_body(int64_t id, int shape, int dim, const double *components);
 
-struct handle seeds_handle(const struct placement *placement);
+struct handle seeds_handle(const struct query_placement *placement);
 
 /* The same body by handle only. */
-struct placement seeds_by_handle(struct placement placement);
+struct query_placement seeds_by_handle(struct query_placement placement);
 
 /* Sequence numbers ascend from call to call. */
-struct pair_query seeds_pair(struct placement a, struct placement b, int32_t method, int32_t want);
+struct pair_query seeds_pair(struct query_placement a, struct query_placement b, int32_t method,
+                             int32_t want);
 
 /* Pairs of all shapes, methods and wants, turned and of several frames. */
 enum { SEEDS_PAIRS = 12 };

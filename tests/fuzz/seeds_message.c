@@ -140,11 +140,12 @@ static void write_scene_queries(void)
     query->margin = 0.5;
     write_scene_query("margin", query);
     query->label = "shelf \xe2\x82\xac \xff\n";
-    query->placement[1].name = "arm";
-    query->placement[1].group = query->placement[2].group = INT64_MAX;
+    query->placement[1].placed.name = "arm";
+    query->placement[1].placed.group = query->placement[2].placed.group = INT64_MAX;
     write_scene_query("groups", query);
     *query = *seeds_scene(0, FMB_PAIRS_ALL, 0);
-    const struct placement placement = seeds_by_handle(seeds_placement(0, FMB_CUBOID, 2, 0, 0));
+    const struct query_placement placement =
+        seeds_by_handle(seeds_placement(0, FMB_CUBOID, 2, 0, 0));
     query->placement_count = (QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES) / QUERY_PLACEMENT_BYTES_MIN;
     for (int i = 0; i < query->placement_count; i++)
         query->placement[i] = placement;
@@ -284,8 +285,8 @@ static void write_definitions(void)
     seeds_write("definition", "empty", bytes, wire_write_definition(&definition, bytes));
     for (int i = 0; i < 5; i++) {
         const int dim = i < 3 ? 3 : 2;
-        const struct placement body = seeds_placement(0, 1 + i % 3, dim, 0, 0);
-        definition.body[i].geometry = body.geometry;
+        const struct query_placement body = seeds_placement(0, 1 + i % 3, dim, 0, 0);
+        definition.body[i] = body.body;
         definition.body[i].handle = seeds_handle(&body);
     }
     definition.body_count = 5;

@@ -44,7 +44,7 @@ static void add_scene(const struct scene_query *query)
     add_query(wire_write_scene_query(query, bytes));
 }
 
-static void add_definitions(const struct placement *placement)
+static void add_definitions(const struct query_placement *placement)
 {
     static struct definition_query query = {.client_id = 2, .sequence_number = 300};
     query.sequence_number++;
@@ -64,9 +64,9 @@ static void write_talks_about_handles(void)
 {
     const double larger[] = {2, 0, 0, 0, 1, 0, 0, 0, 1}, mirrored[] = {1, 0, 0, 0, 1, 0, 0, 0, -1};
     const double last_bit[] = {1, 0, 0, 0, 1, 0, 0, 0, 1 + 0x1p-52};
-    const struct placement cube = seeds_placement(1, FMB_CUBOID, 3, 0, 0);
-    const struct placement other = seeds_placement(2, FMB_TETRAHEDRON, 3, 0.5, 1);
-    const struct placement by_handle = seeds_by_handle(cube);
+    const struct query_placement cube = seeds_placement(1, FMB_CUBOID, 3, 0, 0);
+    const struct query_placement other = seeds_placement(2, FMB_TETRAHEDRON, 3, 0.5, 1);
+    const struct query_placement by_handle = seeds_by_handle(cube);
     add_pair(seeds_pair(cube, other, 0, BOX));
     add_pair(seeds_pair(by_handle, seeds_by_handle(other), 0, BOX | CERTIFICATE));
     end_talk("handles");
@@ -80,9 +80,9 @@ static void write_talks_about_handles(void)
     add_pair(seeds_pair(cube, other, 0, BOX));
     add_pair(seeds_pair(seeds_body(1, FMB_CUBOID, 3, last_bit), other, 0, BOX));
     end_talk("last-bit");
-    struct placement flat = seeds_by_handle(seeds_placement(5, FMB_CUBOID, 2, 0, 0));
-    flat.dim = cube.dim;
-    flat.geometry = by_handle.geometry;
+    struct query_placement flat = seeds_by_handle(seeds_placement(5, FMB_CUBOID, 2, 0, 0));
+    flat.body.dim = cube.body.dim;
+    flat.body = by_handle.body;
     add_pair(seeds_pair(seeds_placement(5, FMB_CUBOID, 2, 0, 0),
                         seeds_placement(6, FMB_CUBOID, 2, 0, 0), 0, 0));
     add_pair(seeds_pair(cube, flat, 0, 0));
@@ -252,8 +252,8 @@ static void write_replays_of_order(void)
 
 static void write_replays_of_handles(void)
 {
-    const struct placement cube = seeds_placement(1, FMB_CUBOID, 3, 0, 0);
-    const struct placement other = seeds_placement(2, FMB_TETRAHEDRON, 3, 0.5, 0);
+    const struct query_placement cube = seeds_placement(1, FMB_CUBOID, 3, 0, 0);
+    const struct query_placement other = seeds_placement(2, FMB_TETRAHEDRON, 3, 0.5, 0);
     const struct pair_query whole = seeds_pair(cube, other, 0, 0);
     const struct pair_query handles =
         seeds_pair(seeds_by_handle(cube), seeds_by_handle(other), 0, BOX);

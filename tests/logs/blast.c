@@ -86,7 +86,8 @@ static void draw_bodies(struct blasting *blasting)
 }
 
 /* A body at a new place. */
-static void draw_placement(struct blasting *blasting, int i, bool moving, struct placement *out)
+static void draw_placement(struct blasting *blasting, int i, bool moving,
+                           struct query_placement *out)
 {
     struct solid *solid = &blasting->solid[i];
     draw_vector(&blasting->draw, solid->dim, origin_most, solid->origin);
@@ -122,7 +123,7 @@ bool blast_pairs(struct tape *tape, const struct blast *blast)
         draw_pair(blasting, &query);
         if (!choose(&blasting->draw, blast->by_handle, blast->by_handle < 0))
             for (int f = 0; f < 2; f++)
-                log_client_forget(&blasting->log_client, query.placement[f].body_id);
+                log_client_forget(&blasting->log_client, query.placement[f].placed.id);
         log_client_pair(&blasting->log_client, &query, &result);
     }
     end(blasting);
@@ -151,7 +152,7 @@ static void query_scene(struct blasting *blasting)
     struct scene_query *query = &blasting->scene;
     size_t left = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES;
     for (int i = 0; i < BLAST_FRAMES; i++) {
-        struct placement *placement = &query->placement[i];
+        struct query_placement *placement = &query->placement[i];
         draw_placement(blasting, i, false, placement);
         log_client_name(&blasting->log_client, placement);
         left -= wire_placement_bytes(placement);

@@ -72,11 +72,12 @@ static void publish_mismatch(struct foreign *foreign)
 {
     static struct definition definition;
     static unsigned char bytes[QUERY_BYTES_MAX];
-    struct placement placement;
+    struct query_placement placement;
     const struct solid box = part_box(2, (double[]){0, 0, 0}, (double[]){1, 1, 0});
     part_place(&box, 0, &placement);
     definition.body_count = 1;
-    definition.body[0] = (struct query_body){{{1}}, placement.geometry};
+    definition.body[0] = placement.body;
+    definition.body[0].handle = (struct handle){{1}};
     tape_put(foreign->tape, tape_utime(foreign->tape), WIRE_DEFINITION, bytes,
              wire_write_definition(&definition, bytes));
     tape_pass(foreign->tape, 200);

@@ -7,9 +7,9 @@ static bool is_own(int64_t body_id)
     return body_id >= 1 && body_id <= LOG_CLIENT_BODIES_MAX;
 }
 
-void log_client_name(const struct log_client *log_client, struct placement *placement)
+void log_client_name(const struct log_client *log_client, struct query_placement *placement)
 {
-    const int64_t id = placement->body_id;
+    const int64_t id = placement->placed.id;
     if (is_own(id) && !handle_is_none(&log_client->handle[id]))
         part_by_handle(placement, &log_client->handle[id]);
 }
@@ -19,10 +19,10 @@ void log_client_forget(struct log_client *log_client, int64_t body_id)
     log_client->handle[body_id] = (struct handle){{0}};
 }
 
-static void forget_placement(struct log_client *log_client, const struct placement *placement)
+static void forget_placement(struct log_client *log_client, const struct query_placement *placement)
 {
-    if (is_own(placement->body_id))
-        log_client_forget(log_client, placement->body_id);
+    if (is_own(placement->placed.id))
+        log_client_forget(log_client, placement->placed.id);
 }
 
 static void send_pair(struct log_client *log_client, struct pair_query *query,
@@ -62,8 +62,8 @@ static void send_scene(struct log_client *log_client, const struct scene_query *
         log_client_name(log_client, &sent.placement[i]);
     instance_query_scene(log_client->instance, &sent, result);
     for (int32_t i = 0, next = 0; i < sent.placement_count && next < result->handle_count; i++) {
-        const int64_t id = sent.placement[i].body_id;
-        if (id != 0 && !placement_by_handle(&sent.placement[i])) {
+        const int64_t id = sent.placement[i].placed.id;
+        if (id != 0 && !query_by_handle(&sent.placement[i])) {
             if (is_own(id))
                 log_client->handle[id] = result->handle[next];
             next++;

@@ -28,6 +28,6 @@ void log_client_scene(struct log_client *log_client, const struct scene_query *q
 void log_client_forget(struct log_client *log_client, int64_t body_id);
 
 /* Names a body by the handle that the client knows; else leaves it whole. */
-void log_client_name(const struct log_client *log_client, struct placement *placement);
+void log_client_name(const struct log_client *log_client, struct query_placement *placement);
 
 #endif

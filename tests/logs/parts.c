@@ -2,36 +2,29 @@
 
 #include "geometry_write.h"
 
-void part_place(const struct solid *solid, int64_t body_id, struct placement *out)
+void part_place(const struct solid *solid, int64_t body_id, struct query_placement *out)
 {
     static unsigned char bytes[PART_BODIES_MAX][GEOMETRY_FRAME_BYTES_MAX];
     static int next;
-    struct geometry_frame frame = {.shape = (int) solid->shape};
+    struct plain_frame frame = {.shape = (int) solid->shape};
     const int dim = solid->dim, components = solid_count(solid);
     for (int i = 0; i < components; i++)
         for (int axis = 0; axis < dim; axis++)
             frame.components[dim * i + axis] = solid->component[i][axis];
     unsigned char *to = bytes[next];
     next = (next + 1) % PART_BODIES_MAX;
-    *out = (struct placement){.body_id = body_id,
-                              .dim = dim,
-                              .frame_count = 1,
-                              .number_count = dim * (1 + components),
-                              .velocity_count = solid->moving ? dim : 0,
-                              .geometry = {to, geometry_write(dim, &frame, to)}};
+    *out = (struct query_placement){.placed.id = body_id,
+                                    .velocity_count = solid->moving ? dim : 0,
+                                    .body = geometry_write(dim, &frame, to)};
     for (int axis = 0; axis < dim; axis++) {
-        out->position[axis] = solid->origin[axis];
-        out->velocity[axis] = solid->moving ? solid->velocity[axis] : 0;
+        out->placed.position[axis] = solid->origin[axis];
+        out->placed.velocity[axis] = solid->moving ? solid->velocity[axis] : 0;
     }
 }
 
-void part_by_handle(struct placement *placement, const struct handle *handle)
+void part_by_handle(struct query_placement *placement, const struct handle *handle)
 {
-    static unsigned char none[FMB_DIM_MAX + 1][GEOMETRY_NONE_BYTES]; /* [dim] */
-    geometry_write_none(placement->dim, none[placement->dim]);
-    placement->handle = *handle;
-    placement->frame_count = placement->number_count = 0;
-    placement->geometry = (struct geometry){none[placement->dim], GEOMETRY_NONE_BYTES};
+    placement->body = geometry_named(placement->body.dim, handle);
 }
 
 struct solid part_box(int dim, const double origin[3], const double size[3])

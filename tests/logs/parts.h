@@ -11,10 +11,10 @@
 /* The solid as a body of one frame, whole; its origin is the position. The geometry is valid until
  * PART_BODIES_MAX more are placed. */
 enum { PART_BODIES_MAX = 2048 };
-void part_place(const struct solid *solid, int64_t body_id, struct placement *out);
+void part_place(const struct solid *solid, int64_t body_id, struct query_placement *out);
 
 /* The same place and motion, with the handle in place of the frames. */
-void part_by_handle(struct placement *placement, const struct handle *handle);
+void part_by_handle(struct query_placement *placement, const struct handle *handle);
 
 /* A box with its edges along the axes; in 2D z is left out. */
 struct solid part_box(int dim, const double origin[3], const double size[3]);

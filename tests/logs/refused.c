@@ -33,7 +33,7 @@ typedef void spoil_pair(struct pair_query *query);
 
 /* Any geometry: of so many frames of a shape, with so many numbers, all of them 1 but the first
  * dim. */
-static void set_geometry(struct placement *placement, int32_t dim, int32_t frames, int shape,
+static void set_geometry(struct query_placement *placement, int32_t dim, int32_t frames, int shape,
                          int32_t numbers)
 {
     static unsigned char bytes[16][256];
@@ -49,14 +49,15 @@ static void set_geometry(struct placement *placement, int32_t dim, int32_t frame
     writer_int32(&writer, numbers);
     for (int32_t i = 0; i < numbers; i++)
         writer_double(&writer, i < dim ? 0 : 1);
-    placement->dim = dim;
-    placement->frame_count = frames;
-    placement->number_count = numbers;
-    placement->geometry = (struct geometry){begin, writer_end(&writer, begin)};
+    placement->body = (struct body_view){.dim = dim,
+                                         .frame_count = frames,
+                                         .number_count = numbers,
+                                         .bytes = begin,
+                                         .size = writer_end(&writer, begin)};
 }
 
 /* One of the numbers of a body of one frame. */
-static void set_number(struct placement *placement, int i, double number)
+static void set_number(struct query_placement *placement, int i, double number)
 {
     static unsigned char bytes[16][GEOMETRY_FRAME_BYTES_MAX];
     static int next;
@@ -64,9 +65,9 @@ static void set_number(struct placement *placement, int i, double number)
     uint64_t bits;
     next = (next + 1) % COUNT(bytes);
     memcpy(&bits, &number, sizeof bits);
-    memcpy(to, placement->geometry.bytes, placement->geometry.size);
+    memcpy(to, placement->body.bytes, placement->body.size);
     big_endian_put_64(to + 17 + 8 * i, bits);
-    placement->geometry.bytes = to;
+    placement->body.bytes = to;
 }
 
 /* A handle that no service ever held. */
@@ -89,18 +90,18 @@ static void number_too_large(struct pair_query *query)
 
 static void body_below_0(struct pair_query *query)
 {
-    query->placement[0].body_id = INT64_MIN;
+    query->placement[0].placed.id = INT64_MIN;
 }
 
 static void handle_and_frames(struct pair_query *query)
 {
-    query->placement[1].handle = unheard;
+    query->placement[1].body.handle = unheard;
 }
 
 static void handle_and_numbers(struct pair_query *query)
 {
     set_geometry(&query->placement[1], 3, 0, 0, 3);
-    query->placement[1].handle = unheard;
+    query->placement[1].body.handle = unheard;
 }
 
 static void neither_handle_nor_frames(struct pair_query *query)
@@ -150,12 +151,12 @@ static void velocity_2(struct pair_query *query)
 
 static void orientation_3(struct pair_query *query)
 {
-    query->placement[1].orientation_count = 3;
+    query->placement[1].placed.orientation_count = 3;
 }
 
 static void position_nan(struct pair_query *query)
 {
-    query->placement[0].position[2] = NAN;
+    query->placement[0].placed.position[2] = NAN;
 }
 
 static void component_infinite(struct pair_query *query)
@@ -166,7 +167,7 @@ static void component_infinite(struct pair_query *query)
 static void velocity_infinite(struct pair_query *query)
 {
     query->placement[0].velocity_count = 3;
-    query->placement[0].velocity[0] = INFINITY;
+    query->placement[0].placed.velocity[0] = INFINITY;
 }
 
 static void plane_and_space(struct pair_query *query)
@@ -177,8 +178,8 @@ static void plane_and_space(struct pair_query *query)
 /* What later versions do. */
 static void turned(struct pair_query *query)
 {
-    query->placement[0].orientation_count = 4;
-    query->placement[0].orientation[0] = 1;
+    query->placement[0].placed.orientation_count = 4;
+    query->placement[0].placed.orientation[0] = 1;
 }
 
 static void two_frames(struct pair_query *query)
@@ -246,7 +247,7 @@ static void flat_for_fmb(struct pair_query *query)
 
 static void handle_not_held(struct pair_query *query)
 {
-    query->placement[0].body_id = 1;
+    query->placement[0].placed.id = 1;
     part_by_handle(&query->placement[0], &unheard);
 }
 
@@ -392,12 +393,12 @@ static void one_in_plane(struct scene_query *query)
 
 static void one_not_finite(struct scene_query *query)
 {
-    query->placement[3].position[1] = NAN;
+    query->placement[3].placed.position[1] = NAN;
 }
 
 static void one_not_held(struct scene_query *query)
 {
-    query->placement[1].body_id = 99;
+    query->placement[1].placed.id = 99;
     part_by_handle(&query->placement[1], &unheard);
 }
 
@@ -523,7 +524,7 @@ static void query_in_four_dimensions(struct refusing *refusing)
     struct pair_query query = good_pair(refusing);
     struct pair_result result;
     set_geometry(&query.placement[1], 4, 1, FMB_CUBOID, 20);
-    query.placement[1].dim = 3;
+    query.placement[1].body.dim = 3;
     query.utime = tape_utime(refusing->instance->tape);
     const size_t size = wire_write_pair_query(&query, bytes);
     memset(bytes + size, 0, 8);

@@ -57,7 +57,8 @@ static void record_missed(struct scene_result *then)
 
 /* ---- Mixed ----------------------------------------------------------------------------------- */
 
-static struct pair_query pair_of(struct placement a, struct placement b, double duration)
+static struct pair_query pair_of(struct query_placement a, struct query_placement b,
+                                 double duration)
 {
     return (struct pair_query){.duration = duration, .want = FMB_WANT_BOX, .placement = {a, b}};
 }
@@ -66,10 +67,10 @@ static struct pair_query pair_of(struct placement a, struct placement b, double 
 static void add_plane(struct sample_log *log)
 {
     static const double still[] = {2, 0.5}, velocity[] = {1.5, 0.25};
-    struct placement triangle = sample_solid(2, 2, FMB_TETRAHEDRON, 1.5, still);
+    struct query_placement triangle = sample_solid(2, 2, FMB_TETRAHEDRON, 1.5, still);
     for (int i = 0; i < 24; i++) {
         const double at[] = {i * 0.2 - 1, 0.25};
-        struct placement square = sample_solid(1, 2, FMB_CUBOID, 1, at);
+        struct query_placement square = sample_solid(1, 2, FMB_CUBOID, 1, at);
         sample_move(&square, velocity);
         struct pair_query query = pair_of(square, triangle, 0.5);
         query.want |= FMB_WANT_GAP;
@@ -83,10 +84,10 @@ static void add_space(struct sample_log *log)
 {
     static const double plate[] = {2, 0.5, 0, 0, 2, 0.25}, origin[] = {0, 0, 0},
                         velocity[] = {0.5, 0, -1};
-    const struct placement face = sample_body(4, 3, FMB_FACE, plate, origin);
+    const struct query_placement face = sample_body(4, 3, FMB_FACE, plate, origin);
     for (int i = 0; i < 12; i++) {
         const double at[] = {0.25, 0.5, 2.5 - 0.25 * i};
-        struct placement cube = sample_solid(3, 3, FMB_CUBOID, 0.75, at);
+        struct query_placement cube = sample_solid(3, 3, FMB_CUBOID, 0.75, at);
         sample_move(&cube, velocity);
         const struct pair_query query = pair_of(cube, face, 1);
         if (i == 8)
@@ -103,8 +104,8 @@ static void add_size(struct sample_log *log, int64_t id, int dim, double size, d
 {
     const double at[] = {place, place, place}, speed[] = {-size / 2, 0, 0};
     const double beside[] = {place + size / 2, place, place};
-    struct placement a = sample_solid(id, dim, FMB_CUBOID, size, at);
-    struct placement b = sample_solid(id + 1, dim, FMB_TETRAHEDRON, size, beside);
+    struct query_placement a = sample_solid(id, dim, FMB_CUBOID, size, at);
+    struct query_placement b = sample_solid(id + 1, dim, FMB_TETRAHEDRON, size, beside);
     sample_move(&b, speed);
     const struct pair_query query = pair_of(a, b, 1);
     sample_pair(log, &query);
@@ -144,17 +145,17 @@ static void add_outcome(struct sample_log *log, enum replay_outcome outcome,
 static void add_odd(struct sample_log *log)
 {
     static const double origin[] = {0, 0, 0};
-    const struct placement cube = sample_solid(7, 3, FMB_CUBOID, 1, origin);
+    const struct query_placement cube = sample_solid(7, 3, FMB_CUBOID, 1, origin);
     struct pair_query query = pair_of(cube, sample_solid(8, 3, FMB_TETRAHEDRON, 1, origin), 1);
     add_outcome(log, REPLAY_BUSY, &query);
     add_outcome(log, REPLAY_UNRECORDED, &query);
     sample_define(log, &query.placement[1]);
     add_outcome(log, REPLAY_UNKNOWN, &query);
-    query.placement[1].frame_count = query.placement[1].number_count = 0;
-    memset(&query.placement[1].handle, 0x47, sizeof query.placement[1].handle);
+    query.placement[1].body.frame_count = query.placement[1].body.number_count = 0;
+    memset(&query.placement[1].body.handle, 0x47, sizeof query.placement[1].body.handle);
     add_outcome(log, REPLAY_UNDEFINED, &query);
     query = pair_of(cube, sample_solid(INT64_MAX, 3, FMB_TETRAHEDRON, 1, origin), -1);
-    query.placement[0].position[1] = NAN;
+    query.placement[0].placed.position[1] = NAN;
     add_outcome(log, REPLAY_SAME, &query);
 }
 
@@ -208,8 +209,8 @@ enum { LINKS = 3, PARTS = 6 };
 
 /* A link that begins at the joint, and in the plane of the arm, which is turned about z. On output:
  * joint is the end of the link. */
-static struct placement link_body(int64_t id, double joint[3], double yaw, double pitch,
-                                  double length, double thickness)
+static struct query_placement link_body(int64_t id, double joint[3], double yaw, double pitch,
+                                        double length, double thickness)
 {
     const double along[] = {cos(yaw) * cos(pitch), sin(yaw) * cos(pitch), sin(pitch)};
     const double side[] = {-sin(yaw), cos(yaw), 0};
@@ -225,7 +226,7 @@ static struct placement link_body(int64_t id, double joint[3], double yaw, doubl
     return sample_body(id, 3, FMB_CUBOID, components, origin);
 }
 
-static void arm_links(double time, struct placement out[LINKS])
+static void arm_links(double time, struct query_placement out[LINKS])
 {
     static const double length[] = {0.5, 0.45, 0.2}, thickness[] = {0.09, 0.07, 0.05};
     double joint[] = {0, 0, 0.8}, yaw = (60 * sin(0.9 * time) + 10) * degree;
@@ -241,7 +242,7 @@ static void arm_scene(double time, double step, struct scene_query *out)
     static const double table[] = {0.9, 0, 0, 0, 1.6, 0, 0, 0, 0.05},
                         table_at[] = {0.25, -0.8, 0.7};
     static const double column[] = {0.2, 0, 0, 0, 0.2, 0, 0, 0, 0.8}, column_at[] = {-0.1, -0.1, 0};
-    struct placement links[LINKS], next[LINKS];
+    struct query_placement links[LINKS], next[LINKS];
     int count = 0;
     out->placement[count++] = sample_body(1, 3, FMB_CUBOID, table, table_at);
     out->placement[count++] = sample_body(2, 3, FMB_CUBOID, column, column_at);
@@ -250,7 +251,8 @@ static void arm_scene(double time, double step, struct scene_query *out)
     for (int i = 0; i < LINKS; i++) {
         double velocity[3];
         for (int axis = 0; axis < 3; axis++)
-            velocity[axis] = (next[i].position[axis] - links[i].position[axis]) / step;
+            velocity[axis] =
+                (next[i].placed.position[axis] - links[i].placed.position[axis]) / step;
         sample_move(&links[i], velocity);
         out->placement[count++] = links[i];
     }

@@ -35,15 +35,11 @@ bool sample_end(struct sample_log *log, FILE *out)
 
 /* ---- Queries --------------------------------------------------------------------------------- */
 
-static struct placement as_sent(const struct placement *placement)
+static struct query_placement as_sent(const struct query_placement *placement)
 {
-    static unsigned char none[FMB_DIM_MAX + 1][GEOMETRY_NONE_BYTES];
-    struct placement out = *placement;
-    if (handle_is_none(&out.handle))
-        return out;
-    geometry_write_none(out.dim, none[out.dim]);
-    out.frame_count = out.count_count = out.number_count = 0;
-    out.geometry = (struct geometry){none[out.dim], GEOMETRY_NONE_BYTES};
+    struct query_placement out = *placement;
+    if (!handle_is_none(&out.body.handle))
+        out.body = geometry_named(out.body.dim, &out.body.handle);
     return out;
 }
 
@@ -112,26 +108,22 @@ void sample_wait(struct sample_log *log, double seconds)
 
 /* ---- Bodies ---------------------------------------------------------------------------------- */
 
-struct placement sample_body(int64_t id, int dim, enum fmb_shape shape, const double *components,
-                             const double *position)
+struct query_placement sample_body(int64_t id, int dim, enum fmb_shape shape,
+                                   const double *components, const double *position)
 {
     static unsigned char geometry[SAMPLE_BODIES_MAX][GEOMETRY_FRAME_BYTES_MAX];
     static int next;
     const int count = dim * fmb_component_count(dim, (int) shape);
     unsigned char *bytes = geometry[next++ % SAMPLE_BODIES_MAX];
-    struct geometry_frame frame = {.shape = (int) shape};
+    struct plain_frame frame = {.shape = (int) shape};
     memcpy(frame.components, components, (size_t) count * sizeof *components);
-    struct placement out = {.body_id = id,
-                            .dim = dim,
-                            .frame_count = 1,
-                            .number_count = dim + count,
-                            .geometry = {bytes, geometry_write(dim, &frame, bytes)}};
-    memcpy(out.position, position, (size_t) dim * sizeof *position);
+    struct query_placement out = {.placed.id = id, .body = geometry_write(dim, &frame, bytes)};
+    memcpy(out.placed.position, position, (size_t) dim * sizeof *position);
     return out;
 }
 
-struct placement sample_solid(int64_t id, int dim, enum fmb_shape shape, double size,
-                              const double *position)
+struct query_placement sample_solid(int64_t id, int dim, enum fmb_shape shape, double size,
+                                    const double *position)
 {
     double components[FMB_COMPONENTS_MAX] = {0};
     for (int i = 0; i < dim; i++)
@@ -139,15 +131,14 @@ struct placement sample_solid(int64_t id, int dim, enum fmb_shape shape, double 
     return sample_body(id, dim, shape, components, position);
 }
 
-void sample_move(struct placement *placement, const double *velocity)
+void sample_move(struct query_placement *placement, const double *velocity)
 {
-    placement->velocity_count = placement->dim;
-    memcpy(placement->velocity, velocity, (size_t) placement->dim * sizeof *velocity);
+    placement->velocity_count = placement->body.dim;
+    memcpy(placement->placed.velocity, velocity, (size_t) placement->body.dim * sizeof *velocity);
 }
 
-void sample_define(struct sample_log *log, struct placement *placement)
+void sample_define(struct sample_log *log, struct query_placement *placement)
 {
     struct cache *cache = answerer_cache(log->answerer);
-    cache_release(
-        cache, cache_intern(cache, placement->body_id, &placement->geometry, &placement->handle));
+    cache_release(cache, cache_intern(cache, placement->placed.id, &placement->body));
 }

@@ -37,16 +37,16 @@ void sample_wait(struct sample_log *log, double seconds);
 /* A body at rest. components: dim * dim numbers, of a face 6; position: dim numbers. The geometry
  * stays valid until SAMPLE_BODIES_MAX others have been made. */
 enum { SAMPLE_BODIES_MAX = 2 * QUERY_PLACEMENTS_MAX };
-struct placement sample_body(int64_t id, int dim, enum fmb_shape shape, const double *components,
-                             const double *position);
+struct query_placement sample_body(int64_t id, int dim, enum fmb_shape shape,
+                                   const double *components, const double *position);
 
 /* A cube, square, tetrahedron or triangle along the axes, of this size. */
-struct placement sample_solid(int64_t id, int dim, enum fmb_shape shape, double size,
-                              const double *position);
+struct query_placement sample_solid(int64_t id, int dim, enum fmb_shape shape, double size,
+                                    const double *position);
 
-void sample_move(struct placement *placement, const double *velocity);
+void sample_move(struct query_placement *placement, const double *velocity);
 
 /* Makes the service hold the body, and gives the placement its handle. */
-void sample_define(struct sample_log *log, struct placement *placement);
+void sample_define(struct sample_log *log, struct query_placement *placement);
 
 #endif

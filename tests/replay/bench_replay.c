@@ -9,6 +9,7 @@
  * (from memory: the logs have been read once before). Medians. */
 #include "allocate.h"
 #include "definitions.h"
+#include "geometry_write.h"
 #include "child.h"
 #include "input.h"
 #include "machine.h"
@@ -53,27 +54,24 @@ struct scenes {
 };
 
 /* A body of one frame. A placement by handle has the geometry that the log defines. */
-static void prepare(const struct placement *placement, struct definitions *definitions,
+static void prepare(const struct query_placement *placement, struct definitions *definitions,
                     struct placed *placed, struct fmb_prepared *out)
 {
-    const struct geometry *geometry = &placement->geometry;
-    struct geometry_frame frame;
+    const struct body_view *geometry = &placement->body;
+    struct plain_frame frame;
     double numbers[FMB_FRAME_NUMBERS_MAX];
-    if (placement_by_handle(placement) &&
-        !(geometry = definitions_find(definitions, &placement->handle)))
+    if (query_by_handle(placement) &&
+        !(geometry = definitions_find(definitions, &placement->body.handle)))
         fail("a handle that the log does not define");
     struct geometry_reader reader = geometry_begin(geometry);
     const int dim = reader.dim;
-    if (!geometry_next(&reader, &frame))
+    if (!geometry_read(&reader, &frame))
         fail("a frame of the log is none");
     const int count = geometry_number_count(dim, frame.shape, 0);
     memcpy(numbers, frame.origin, (size_t) dim * sizeof *numbers);
     memcpy(numbers + dim, frame.components, (size_t) (count - dim) * sizeof *numbers);
-    placed->placement = (struct fmb_placement){.body = &placed->body,
-                                               .orientation_count = placement->orientation_count};
-    memcpy(placed->placement.position, placement->position, sizeof placement->position);
-    memcpy(placed->placement.velocity, placement->velocity, sizeof placement->velocity);
-    memcpy(placed->placement.orientation, placement->orientation, sizeof placement->orientation);
+    placed->placement = placement->placed;
+    placed->placement.body = &placed->body;
     if (fmb_body_make(dim, frame.shape, numbers, (size_t) count, &placed->body) != FMB_OK ||
         fmb_prepare(&placed->placement, 0, 1, out) != FMB_OK)
         fail("a frame of the log is none");

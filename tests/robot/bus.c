@@ -24,9 +24,9 @@ static void fail(const char *what)
 
 /* ---- Queries ---- */
 
-static struct geometry_frame frame_of(const struct fmb_frame *frame)
+static struct plain_frame frame_of(const struct fmb_frame *frame)
 {
-    struct geometry_frame out = {.shape = (int) frame->shape};
+    struct plain_frame out = {.shape = (int) frame->shape};
     const bool box = frame->shape == FMB_BOX;
     memcpy(out.origin, box ? frame->centre : frame->origin, sizeof out.origin);
     for (int i = 0; i < 3; i++)
@@ -37,21 +37,22 @@ static struct geometry_frame frame_of(const struct fmb_frame *frame)
     return out;
 }
 
-static void set_whole(const struct fmb_placement *from, int body, struct placement *out)
+static void set_whole(const struct fmb_placement *from, int body, struct query_placement *out)
 {
     static unsigned char bytes[ROBOT_BODIES][GEOMETRY_MAX];
-    struct geometry_frame frame[ROBOT_FRAMES];
+    struct plain_frame frame[ROBOT_FRAMES];
     const unsigned count = from->body->frame_count;
-    *out = (struct placement){
-        .body_id = 1 + body, .dim = 3, .frame_count = (int32_t) count, .orientation_count = 4};
+    *out = (struct query_placement){.placed.id = 1 + body,
+                                    .body.dim = 3,
+                                    .body.frame_count = (int32_t) count,
+                                    .placed.orientation_count = 4};
     for (unsigned i = 0; i < count; i++) {
         frame[i] = frame_of(fmb_body_frame(from->body, i));
-        out->number_count += geometry_number_count(3, frame[i].shape, 0);
+        out->body.number_count += geometry_number_count(3, frame[i].shape, 0);
     }
-    out->geometry =
-        (struct geometry){bytes[body], geometry_write_frames(3, frame, (int) count, bytes[body])};
-    memcpy(out->position, from->position, sizeof out->position);
-    memcpy(out->orientation, from->orientation, sizeof out->orientation);
+    out->body = geometry_write_frames(3, frame, (int) count, bytes[body]);
+    memcpy(out->placed.position, from->position, sizeof out->placed.position);
+    memcpy(out->placed.orientation, from->orientation, sizeof out->placed.orientation);
 }
 
 static void set_query(const struct robot *robot, int state, const struct line *line,
@@ -69,14 +70,8 @@ static void set_query(const struct robot *robot, int state, const struct line *l
 
 static void set_handles(const struct handle *handle, struct scene_query *out)
 {
-    static unsigned char none[GEOMETRY_NONE_BYTES];
-    geometry_write_none(3, none);
-    for (int i = 0; i < ROBOT_BODIES; i++) {
-        struct placement *placement = &out->placement[i];
-        placement->handle = handle[i];
-        placement->frame_count = placement->number_count = 0;
-        placement->geometry = (struct geometry){none, sizeof none};
-    }
+    for (int i = 0; i < ROBOT_BODIES; i++)
+        out->placement[i].body = geometry_named(3, &handle[i]);
 }
 
 /* ---- Measuring ---- */

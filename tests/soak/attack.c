@@ -47,29 +47,31 @@ static unsigned char geometries[QUERY_PLACEMENTS_MAX][GEOMETRY_FRAME_BYTES_MAX];
 static unsigned char bytes[QUERY_BYTES_MAX];
 
 /* Its exponents go from one end of the doubles to the other: exact arithmetic takes long. */
-static void set_costly(int i, struct placement *out,
+static void set_costly(int i, struct query_placement *out,
                        unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX])
 {
     static const double numbers[2][12] = {
         {7, 0, -7e-310, -0.1, -1e300, 0, 0x1p-1074, -1e300, 0, -3e-300, 3e-300, 3e-160},
         {0.1, 0, 0, -0.1, 7, -1e150, 1e300, -3e-160, 3e-300, -0x1p-1074, 7, 0.1},
     };
-    struct geometry_frame frame = {.shape = FMB_FACE};
-    *out = (struct placement){.dim = 3, .frame_count = 1, .number_count = 9, .velocity_count = 3};
-    memcpy(out->position, numbers[i % 2], sizeof out->position);
-    memcpy(out->velocity, numbers[i % 2] + 3, sizeof out->velocity);
+    struct plain_frame frame = {.shape = FMB_FACE};
+    *out = (struct query_placement){
+        .body.dim = 3, .body.frame_count = 1, .body.number_count = 9, .velocity_count = 3};
+    memcpy(out->placed.position, numbers[i % 2], sizeof out->placed.position);
+    memcpy(out->placed.velocity, numbers[i % 2] + 3, sizeof out->placed.velocity);
     memcpy(frame.components, numbers[i % 2] + 6, 6 * sizeof(double));
-    out->geometry = (struct geometry){geometry, geometry_write(3, &frame, geometry)};
+    out->body = geometry_write(3, &frame, geometry);
 }
 
 /* A unit square. size: new for a new body. */
-static void set_plain(int64_t id, double x, double size, struct placement *out,
+static void set_plain(int64_t id, double x, double size, struct query_placement *out,
                       unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX])
 {
-    const struct geometry_frame frame = {.shape = FMB_CUBOID, .components = {size, 0, 0, 1}};
-    *out = (struct placement){.body_id = id, .dim = 2, .frame_count = 1, .number_count = 6};
-    out->position[0] = x;
-    out->geometry = (struct geometry){geometry, geometry_write(2, &frame, geometry)};
+    const struct plain_frame frame = {.shape = FMB_CUBOID, .components = {size, 0, 0, 1}};
+    *out = (struct query_placement){
+        .placed.id = id, .body.dim = 2, .body.frame_count = 1, .body.number_count = 6};
+    out->placed.position[0] = x;
+    out->body = geometry_write(2, &frame, geometry);
 }
 
 static size_t write_pair(const struct attacker *attacker, int64_t id, bool costly)

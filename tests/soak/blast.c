@@ -29,13 +29,12 @@ static void prepare_pairs(struct blast *blast)
 {
     static struct pair_query query = {.duration = 1};
     query.client_id = random_id();
-    const struct geometry_frame cube = {.shape = FMB_CUBOID,
-                                        .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    const struct plain_frame cube = {.shape = FMB_CUBOID,
+                                     .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     static unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
-    const struct geometry geometry = {bytes, geometry_write(3, &cube, bytes)};
+    const struct body_view geometry = geometry_write(3, &cube, bytes);
     for (int p = 0; p < 2; p++)
-        query.placement[p] = (struct placement){
-            .body_id = p + 1, .dim = 3, .frame_count = 1, .number_count = 12, .geometry = geometry};
+        query.placement[p] = (struct query_placement){.placed.id = p + 1, .body = geometry};
     blast->channel = WIRE_PAIR_QUERY;
     blast->size = wire_write_pair_query(&query, blast->bytes);
 }

@@ -54,18 +54,19 @@ struct client {
 
 /* ---- Queries ---- */
 
-static void set_cube(int i, struct placement *out, unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX])
+static void set_cube(int i, struct query_placement *out,
+                     unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX])
 {
-    const struct geometry_frame frame = {.shape = FMB_CUBOID,
-                                         .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-    *out = (struct placement){.body_id = i + 1,
-                              .dim = 3,
-                              .frame_count = 1,
-                              .number_count = 12,
-                              .velocity_count = 3,
-                              .position = {0.7 * i, 0.1 * i, 0},
-                              .velocity = {0.1 * (i % 3), 0, 0}};
-    out->geometry = (struct geometry){geometry, geometry_write(3, &frame, geometry)};
+    const struct plain_frame frame = {.shape = FMB_CUBOID,
+                                      .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    *out = (struct query_placement){.placed.id = i + 1,
+                                    .body.dim = 3,
+                                    .body.frame_count = 1,
+                                    .body.number_count = 12,
+                                    .velocity_count = 3,
+                                    .placed.position = {0.7 * i, 0.1 * i, 0},
+                                    .placed.velocity = {0.1 * (i % 3), 0, 0}};
+    out->body = geometry_write(3, &frame, geometry);
 }
 
 static void send_query(struct client *client, long slot)

@@ -62,16 +62,15 @@ static void set_bodies(struct soak *soak, int64_t first)
     query->which = FMB_PAIRS_ALL;
     query->placement_count = BODIES;
     for (int i = 0; i < BODIES; i++) {
-        const struct geometry_frame frame = {.shape = FMB_CUBOID,
-                                             .components = {1, 0, 0, (double) (first + i)}};
-        struct placement *placement = &query->placement[i];
-        *placement = (struct placement){.body_id = first + i,
-                                        .dim = 2,
-                                        .frame_count = 1,
-                                        .number_count = 6,
-                                        .position = {2 * i}};
-        placement->geometry =
-            (struct geometry){soak->geometries[i], geometry_write(2, &frame, soak->geometries[i])};
+        const struct plain_frame frame = {.shape = FMB_CUBOID,
+                                          .components = {1, 0, 0, (double) (first + i)}};
+        struct query_placement *placement = &query->placement[i];
+        *placement = (struct query_placement){.placed.id = first + i,
+                                              .body.dim = 2,
+                                              .body.frame_count = 1,
+                                              .body.number_count = 6,
+                                              .placed.position = {2 * i}};
+        placement->body = geometry_write(2, &frame, soak->geometries[i]);
     }
 }
 

@@ -51,31 +51,34 @@ static double grid(int size)
 }
 
 /* Boxes and tetrahedra with corners on a grid, and between: they often touch. */
-static void draw_placement(struct placement *out, int64_t id, struct fmb_body *body,
+static void draw_placement(struct query_placement *out, int64_t id, struct fmb_body *body,
                            unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX])
 {
-    struct geometry_frame frame = {.shape = 1 + rand() % 2};
+    struct plain_frame frame = {.shape = 1 + rand() % 2};
     for (int i = 0; i < 3; i++)
         frame.components[4 * i] = 1 + rand() % 3;
-    *out = (struct placement){.body_id = id,
-                              .dim = 3,
-                              .frame_count = 1,
-                              .number_count = 12,
-                              .position = {grid(2), grid(2) + rand() % 2 * 0.1, grid(2)}};
+    *out =
+        (struct query_placement){.placed.id = id,
+                                 .body.dim = 3,
+                                 .body.frame_count = 1,
+                                 .body.number_count = 12,
+                                 .placed.position = {grid(2), grid(2) + rand() % 2 * 0.1, grid(2)}};
     if (rand() % 2) { /* a quarter turn and others */
-        out->orientation_count = 4;
-        out->orientation[0] = 1;
-        out->orientation[1 + rand() % 3] = rand() % 3 - 1;
+        out->placed.orientation_count = 4;
+        out->placed.orientation[0] = 1;
+        out->placed.orientation[1 + rand() % 3] = rand() % 3 - 1;
     }
-    out->geometry = (struct geometry){geometry, geometry_write(3, &frame, geometry)};
+    out->body = geometry_write(3, &frame, geometry);
     fmb_body_make(3, frame.shape, frame.components, 9, body);
 }
 
-static struct fmb_placement placed(const struct placement *placement, const struct fmb_body *body)
+static struct fmb_placement placed(const struct query_placement *placement,
+                                   const struct fmb_body *body)
 {
-    struct fmb_placement out = {.body = body, .orientation_count = placement->orientation_count};
-    memcpy(out.position, placement->position, sizeof out.position);
-    memcpy(out.orientation, placement->orientation, sizeof out.orientation);
+    struct fmb_placement out = {.body = body,
+                                .orientation_count = placement->placed.orientation_count};
+    memcpy(out.position, placement->placed.position, sizeof out.position);
+    memcpy(out.orientation, placement->placed.orientation, sizeof out.orientation);
     return out;
 }
 

@@ -143,49 +143,41 @@ static const struct scene_result *answer_scene(struct making *making, size_t siz
 
 /* A box or a corner of its own for each body and form, so that all verdicts come. The geometry is
  * valid until some more are made. */
-static void set_body(int body, int form, struct placement *out)
+static void set_body(int body, int form, struct query_placement *out)
 {
     enum { KEPT = 2048 };
     static unsigned char kept[KEPT][GEOMETRY_FRAME_BYTES_MAX];
     static int next;
     const double size = 0.5 * (1 + (body + form) % 3);
-    struct geometry_frame frame = {.shape = body % 2 ? FMB_CUBOID : FMB_TETRAHEDRON};
+    struct plain_frame frame = {.shape = body % 2 ? FMB_CUBOID : FMB_TETRAHEDRON};
     for (int i = 0; i < 3; i++)
         frame.components[4 * i] = size;
     frame.components[1] = 0.25 * form;
     unsigned char *to = kept[next++ % KEPT];
-    out->dim = 3;
-    out->handle = (struct handle){{0}};
-    out->frame_count = 1;
-    out->number_count = 12;
-    out->geometry = (struct geometry){to, geometry_write(3, &frame, to)};
+    out->body = geometry_write(3, &frame, to);
 }
 
-static void set_handle(const struct handle *handle, struct placement *out)
+static void set_handle(const struct handle *handle, struct query_placement *out)
 {
-    static unsigned char none[GEOMETRY_NONE_BYTES];
-    geometry_write_none(3, none);
-    out->handle = *handle;
-    out->frame_count = out->number_count = 0;
-    out->geometry = (struct geometry){none, sizeof none};
+    out->body = geometry_named(3, handle);
 }
 
-static struct placement draw_placement(struct making *making, int client)
+static struct query_placement draw_placement(struct making *making, int client)
 {
     struct log_world *world = making->world;
     const int body = happens(world, 8) ? 0 : 1 + world_draw(world, BODIES);
-    struct placement placement = {.body_id = body};
+    struct query_placement placement = {.placed.id = body};
     for (int axis = 0; axis < 3; axis++)
-        placement.position[axis] = 0.5 * world_draw(world, 5);
+        placement.placed.position[axis] = 0.5 * world_draw(world, 5);
     if (happens(world, 3)) {
         placement.velocity_count = 3;
-        placement.velocity[world_draw(world, 3)] = 0.5 * (world_draw(world, 7) - 3);
+        placement.placed.velocity[world_draw(world, 3)] = 0.5 * (world_draw(world, 7) - 3);
     }
     set_body(body, making->form[body], &placement);
     if (!handle_is_none(&making->handle[client][body]) && !happens(world, 6))
         set_handle(&making->handle[client][body], &placement);
     if (happens(world, 40))
-        placement.position[0] = 1.0 / 0.0;
+        placement.placed.position[0] = 1.0 / 0.0;
     return placement;
 }
 
@@ -241,7 +233,8 @@ static void send_pair_once(struct making *making, const struct pair_query *query
         answer_pair(making->answerer, query, &result);
     put_result(making, WIRE_PAIR_RESULT, wire_write_pair_result(&result, bytes));
     for (int p = 0; p < 2; p++)
-        take_handle(making, client, query->placement[p].body_id, result.status, &result.handle[p]);
+        take_handle(making, client, query->placement[p].placed.id, result.status,
+                    &result.handle[p]);
 }
 
 static void send_pair(struct making *making, int client)
@@ -300,9 +293,10 @@ static void send_scene(struct making *making, int client)
     memcpy(handles, result->handle, (size_t) count * sizeof *handles);
     put_result(making, WIRE_SCENE_RESULT, wire_write_scene_result(result, bytes));
     for (int i = 0, next = 0; i < scene.placement_count; i++) {
-        const bool whole = scene.placement[i].body_id != 0 && scene.placement[i].frame_count > 0;
+        const bool whole =
+            scene.placement[i].placed.id != 0 && scene.placement[i].body.frame_count > 0;
         const struct handle none = {{0}};
-        take_handle(making, client, scene.placement[i].body_id, status,
+        take_handle(making, client, scene.placement[i].placed.id, status,
                     whole && next < count ? &handles[next++] : &none);
     }
 }
@@ -362,9 +356,9 @@ void world_make(const struct world_options *options, struct log_world *out)
 static void set_row(int first, int count)
 {
     for (int i = 0; i < count; i++) {
-        scene.placement[i] = (struct placement){.body_id = 1 + first + i};
+        scene.placement[i] = (struct query_placement){.placed.id = 1 + first + i};
         set_body(1 + 2 * i, first + i, &scene.placement[i]);
-        scene.placement[i].position[0] = 0.4 * (first + i);
+        scene.placement[i].placed.position[0] = 0.4 * (first + i);
     }
     scene.placement_count = count;
 }
@@ -423,8 +417,8 @@ void world_make_apart(int pairs, struct log_world *out)
         for (int i = 0; i < pairs; i++) {
             query.sequence_number = i;
             for (int p = 0; p < 2; p++) {
-                query.placement[p] = (struct placement){.body_id = 1 + (i + p) % BODIES};
-                query.placement[p].position[0] = i % 3;
+                query.placement[p] = (struct query_placement){.placed.id = 1 + (i + p) % BODIES};
+                query.placement[p].placed.position[0] = i % 3;
                 set_body(1 + (i + p) % BODIES, 0, &query.placement[p]);
             }
             if (results == 0) {

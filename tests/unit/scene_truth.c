@@ -14,29 +14,29 @@
 #include <cmocka.h>
 
 void scene_set_placement(const struct solid *solid, int64_t body_id, unsigned char *bytes,
-                         struct placement *out)
+                         struct query_placement *out)
 {
-    struct geometry_frame frame[SOLID_FRAMES_MAX];
+    struct plain_frame frame[SOLID_FRAMES_MAX];
     const int dim = solid->dim, count = solid_frames(solid);
-    *out = (struct placement){.body_id = body_id,
-                              .dim = dim,
-                              .frame_count = count,
-                              .orientation_count = solid->orientation_count,
-                              .velocity_count = solid->moving ? dim : 0};
+    *out = (struct query_placement){.placed.id = body_id,
+                                    .body.dim = dim,
+                                    .body.frame_count = count,
+                                    .placed.orientation_count = solid->orientation_count,
+                                    .velocity_count = solid->moving ? dim : 0};
     for (int i = 0; i < count; i++) {
         double number[SOLID_NUMBERS_MAX];
         const struct solid one = solid_frame(solid, i);
         const int numbers = solid_numbers(&one, number);
-        frame[i] = (struct geometry_frame){.shape = (int) one.shape};
+        frame[i] = (struct plain_frame){.shape = (int) one.shape};
         memcpy(frame[i].origin, number, (size_t) dim * sizeof *number);
         memcpy(frame[i].components, number + dim, (size_t) (numbers - dim) * sizeof *number);
-        out->number_count += numbers;
+        out->body.number_count += numbers;
     }
-    out->geometry = (struct geometry){bytes, geometry_write_frames(dim, frame, count, bytes)};
-    memcpy(out->position, solid->origin, (size_t) dim * sizeof(double));
-    memcpy(out->orientation, solid->orientation, sizeof out->orientation);
+    out->body = geometry_write_frames(dim, frame, count, bytes);
+    memcpy(out->placed.position, solid->origin, (size_t) dim * sizeof(double));
+    memcpy(out->placed.orientation, solid->orientation, sizeof out->placed.orientation);
     if (solid->moving)
-        memcpy(out->velocity, solid->velocity, (size_t) dim * sizeof(double));
+        memcpy(out->placed.velocity, solid->velocity, (size_t) dim * sizeof(double));
 }
 
 void scene_set(struct scene *scene, int32_t i, const struct solid *solid, int64_t body_id)
@@ -51,14 +51,9 @@ void scene_put_number(struct scene *scene, int32_t i, int k, double value)
     big_endian_put_64(scene->geometry[i] + 4 + 4 + 1 + 4 + 4 + 8 * k, bits);
 }
 
-void scene_name(struct placement *placement, const struct handle *handle)
+void scene_name(struct query_placement *placement, const struct handle *handle)
 {
-    static unsigned char bytes[FMB_DIM_MAX + 1][GEOMETRY_NONE_BYTES];
-    const int dim = placement->dim;
-    geometry_write_none(dim, bytes[dim]);
-    placement->handle = *handle;
-    placement->frame_count = placement->number_count = 0;
-    placement->geometry = (struct geometry){bytes[dim], GEOMETRY_NONE_BYTES};
+    placement->body = geometry_named(placement->body.dim, handle);
 }
 
 /* Some are turned, by a quaternion of small whole numbers; some become a row of frames. */
@@ -147,26 +142,21 @@ struct truth_body {
     struct fmb_body body;
 };
 
-static struct fmb_placement place(const struct placement *placement, struct truth_body *body)
+static struct fmb_placement place(const struct query_placement *placement, struct truth_body *body)
 {
-    struct fmb_placement out = {.body = &body->body,
-                                .orientation_count = placement->orientation_count};
-    struct geometry_reader reader = geometry_begin(&placement->geometry);
+    struct fmb_placement out = placement->placed;
+    struct geometry_reader reader = geometry_begin(&placement->body);
     struct geometry_frame frame;
     size_t count = 0;
+    out.body = &body->body;
     for (; geometry_next(&reader, &frame); count++) {
-        const size_t dim = (size_t) reader.dim;
-        const size_t numbers = (size_t) geometry_number_count(reader.dim, frame.shape, 0);
         double number[FMB_FRAME_NUMBERS_MAX];
-        memcpy(number, frame.origin, dim * sizeof *number);
-        memcpy(number + dim, frame.components, (numbers - dim) * sizeof *number);
+        geometry_numbers(&frame, number);
         assert_int_equal(
-            fmb_frame_make(reader.dim, frame.shape, number, numbers, &body->frame[count]), FMB_OK);
+            fmb_frame_make(reader.dim, frame.shape, number, frame.count, &body->frame[count]),
+            FMB_OK);
     }
     assert_int_equal(fmb_body_make_frames(body->frame, count, &body->body), FMB_OK);
-    memcpy(out.position, placement->position, sizeof out.position);
-    memcpy(out.velocity, placement->velocity, sizeof out.velocity);
-    memcpy(out.orientation, placement->orientation, sizeof out.orientation);
     return out;
 }
 
@@ -269,8 +259,8 @@ static void assert_pair(struct reading *reading, const unsigned pair[2])
 
 static bool is_ignored(const struct scene_query *query, const unsigned pair[2])
 {
-    const int64_t group = query->placement[pair[0]].group;
-    if (group != 0 && group == query->placement[pair[1]].group)
+    const int64_t group = query->placement[pair[0]].placed.group;
+    if (group != 0 && group == query->placement[pair[1]].placed.group)
         return true;
     for (int32_t i = 0; i < query->ignored_count / 2; i++) {
         const unsigned *ignored = query->ignored[i];

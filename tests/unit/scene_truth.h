@@ -18,7 +18,7 @@ struct scene {
 /* A placement that comes whole, its geometry in bytes: GEOMETRY_FRAME_BYTES_MAX for each frame.
  * body_id 0: anonymous. */
 void scene_set_placement(const struct solid *solid, int64_t body_id, unsigned char *bytes,
-                         struct placement *out);
+                         struct query_placement *out);
 
 /* Placement i of the scene. */
 void scene_set(struct scene *scene, int32_t i, const struct solid *solid, int64_t body_id);
@@ -27,7 +27,7 @@ void scene_set(struct scene *scene, int32_t i, const struct solid *solid, int64_
 void scene_put_number(struct scene *scene, int32_t i, int k, double value);
 
 /* The handle in place of the frames. */
-void scene_name(struct placement *placement, const struct handle *handle);
+void scene_name(struct query_placement *placement, const struct handle *handle);
 
 /* Bodies of hard pairs (pair_draw.h), all of this dimension: 2 i and 2 i + 1 are of one. Some are
  * turned or have several frames. Anonymous; the remainder of the query is unchanged. moving: -1

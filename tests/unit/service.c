@@ -141,14 +141,15 @@ static unsigned char bytes[QUERY_BYTES_MAX];
 
 struct pair_query service_pair(int64_t client_id, int64_t sequence_number)
 {
-    const struct geometry_frame frame = {.shape = FMB_CUBOID, .components = {1, 0, 0, 1}};
+    const struct plain_frame frame = {.shape = FMB_CUBOID, .components = {1, 0, 0, 1}};
     struct pair_query query = {
         .client_id = client_id, .sequence_number = sequence_number, .duration = 1};
     for (int i = 0; i < 2; i++) {
-        query.placement[i] =
-            (struct placement){.dim = 2, .frame_count = 1, .number_count = 6, .position = {i, 0}};
-        query.placement[i].geometry =
-            (struct geometry){geometries[i], geometry_write(2, &frame, geometries[i])};
+        query.placement[i] = (struct query_placement){.body.dim = 2,
+                                                      .body.frame_count = 1,
+                                                      .body.number_count = 6,
+                                                      .placed.position = {i, 0}};
+        query.placement[i].body = geometry_write(2, &frame, geometries[i]);
     }
     return query;
 }
@@ -164,21 +165,19 @@ void service_query_pair(int64_t client_id, int64_t sequence_number)
     service_send_pair(&query);
 }
 
-static struct placement grating(int frames)
+static struct query_placement grating(int frames)
 {
-    static struct geometry_frame frame[900];
+    static struct plain_frame frame[900];
     static unsigned char geometry[GEOMETRY_NONE_BYTES + 900 * GEOMETRY_FRAME_BYTES_MIN];
     for (int i = 0; i < frames; i++)
         frame[i] =
-            (struct geometry_frame){.shape = FMB_BOX, .origin = {0.0001 * i}, .components = {1, 1}};
-    const size_t size = geometry_write_frames(2, frame, frames, geometry);
-    return (struct placement){
-        .dim = 2, .frame_count = frames, .number_count = 4 * frames, .geometry = {geometry, size}};
+            (struct plain_frame){.shape = FMB_BOX, .origin = {0.0001 * i}, .components = {1, 1}};
+    return (struct query_placement){.body = geometry_write_frames(2, frame, frames, geometry)};
 }
 
 void service_query_frames(int64_t client_id, int64_t sequence_number, int frames)
 {
-    const struct placement placement = grating(frames);
+    const struct query_placement placement = grating(frames);
     const struct pair_query query = {.client_id = client_id,
                                      .sequence_number = sequence_number,
                                      .duration = 1,
@@ -201,8 +200,7 @@ void service_query_frames_scene(int64_t client_id, int64_t sequence_number, int 
 
 void service_query_scene(int64_t client_id, int64_t sequence_number, int32_t bodies)
 {
-    const struct geometry_frame strip = {.shape = FMB_TETRAHEDRON,
-                                         .components = {3000, 3000, 0, 0.5}};
+    const struct plain_frame strip = {.shape = FMB_TETRAHEDRON, .components = {3000, 3000, 0, 0.5}};
     static struct scene_query query;
     query = (struct scene_query){.client_id = client_id,
                                  .sequence_number = sequence_number,
@@ -210,13 +208,9 @@ void service_query_scene(int64_t client_id, int64_t sequence_number, int32_t bod
                                  .method = fmb_method_by_name("exact")->number,
                                  .which = FMB_PAIRS_ALL,
                                  .placement_count = bodies};
-    const struct geometry geometry = {geometries[0], geometry_write(2, &strip, geometries[0])};
+    const struct body_view geometry = geometry_write(2, &strip, geometries[0]);
     for (int32_t i = 0; i < bodies; i++)
-        query.placement[i] = (struct placement){.dim = 2,
-                                                .frame_count = 1,
-                                                .number_count = 6,
-                                                .geometry = geometry,
-                                                .position = {0, i}};
+        query.placement[i] = (struct query_placement){.body = geometry, .placed.position = {0, i}};
     service_receive(SERVER_SCENES, bytes, wire_write_scene_query(&query, bytes));
 }
 

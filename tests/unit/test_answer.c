@@ -52,30 +52,23 @@ static struct cache_counts counts(void)
 /* Where the geometries of the query are: many frames fit. */
 static unsigned char bytes[2][16384];
 
-static const struct geometry_frame unit_cube = {.shape = FMB_CUBOID,
-                                                .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+static const struct plain_frame unit_cube = {.shape = FMB_CUBOID,
+                                             .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
 
 /* Body f + 1, of several frames. */
-static void set_frames(struct pair_query *query, int f, int dim,
-                       const struct geometry_frame *frames, int count)
+static void set_frames(struct pair_query *query, int f, int dim, const struct plain_frame *frames,
+                       int count)
 {
-    struct placement *placement = &query->placement[f];
-    *placement = (struct placement){.body_id = f + 1, .dim = dim, .frame_count = count};
-    for (int i = 0; i < count; i++)
-        placement->number_count += geometry_number_count(dim, frames[i].shape, 0);
+    struct query_placement *placement = &query->placement[f];
     assert_true(geometry_size(dim, frames, count) <= sizeof bytes[f]);
-    placement->geometry =
-        (struct geometry){bytes[f], geometry_write_frames(dim, frames, count, bytes[f])};
+    *placement = (struct query_placement){
+        .placed.id = f + 1, .body = geometry_write_frames(dim, frames, count, bytes[f])};
 }
 
 /* The handle in place of the frames. */
-static void name(struct placement *placement, const struct handle *handle)
+static void name(struct query_placement *placement, const struct handle *handle)
 {
-    static unsigned char none[FMB_DIM_MAX + 1][GEOMETRY_NONE_BYTES];
-    geometry_write_none(placement->dim, none[placement->dim]);
-    placement->handle = *handle;
-    placement->frame_count = placement->number_count = 0;
-    placement->geometry = (struct geometry){none[placement->dim], GEOMETRY_NONE_BYTES};
+    placement->body = geometry_named(placement->body.dim, handle);
 }
 
 /* Two unit cubes, bodies 1 and 2, the second moved by half an edge. */
@@ -84,7 +77,7 @@ static struct pair_query cubes(void)
     struct pair_query query = {.utime = 3, .client_id = 4, .sequence_number = 5, .duration = 1};
     for (int f = 0; f < 2; f++)
         set_frames(&query, f, 3, &unit_cube, 1);
-    query.placement[1].position[0] = 0.5;
+    query.placement[1].placed.position[0] = 0.5;
     return query;
 }
 
@@ -92,26 +85,26 @@ static struct pair_query cubes(void)
 static struct pair_query stretched(double length)
 {
     struct pair_query query = cubes();
-    struct geometry_frame cuboid = unit_cube;
+    struct plain_frame cuboid = unit_cube;
     cuboid.components[0] = length;
     set_frames(&query, 1, 3, &cuboid, 1);
-    query.placement[1].position[0] = 0.5;
+    query.placement[1].placed.position[0] = 0.5;
     return query;
 }
 
 /* Two unit squares. */
 static struct pair_query squares(void)
 {
-    const struct geometry_frame square = {.shape = FMB_CUBOID, .components = {1, 0, 0, 1}};
+    const struct plain_frame square = {.shape = FMB_CUBOID, .components = {1, 0, 0, 1}};
     struct pair_query query = {.client_id = 4, .duration = 1};
     for (int f = 0; f < 2; f++)
         set_frames(&query, f, 2, &square, 1);
     return query;
 }
 
-static struct geometry_frame box(double centre, double size)
+static struct plain_frame box(double centre, double size)
 {
-    return (struct geometry_frame){
+    return (struct plain_frame){
         .shape = FMB_BOX, .origin = {centre}, .components = {size, size, size}};
 }
 
@@ -128,17 +121,18 @@ static void set_geometry(struct pair_query *query, int f, int32_t dim, int32_t f
                          int32_t numbers)
 {
     unsigned char *at = bytes[f];
-    struct placement *placement = &query->placement[f];
+    struct query_placement *placement = &query->placement[f];
     memset(at, 0, sizeof bytes[f]);
     big_endian_put_32(at, (uint32_t) dim);
     big_endian_put_32(at + 4, (uint32_t) frames);
     memset(at + 8, shape, (size_t) frames);
     big_endian_put_32(at + 8 + frames + 4, (uint32_t) numbers); /* after the number of counts */
-    placement->dim = dim;
-    placement->frame_count = frames;
-    placement->number_count = numbers;
-    placement->geometry =
-        (struct geometry){at, (size_t) (GEOMETRY_NONE_BYTES + frames + 8 * numbers)};
+    placement->body =
+        (struct body_view){.dim = dim,
+                           .frame_count = frames,
+                           .number_count = numbers,
+                           .bytes = at,
+                           .size = (size_t) (GEOMETRY_NONE_BYTES + frames + 8 * numbers)};
 }
 
 static struct pair_result answer_to(const struct pair_query *query)
@@ -187,7 +181,7 @@ static void a_pair_is_answered_and_its_ids_are_echoed(void **state)
     assert_int_equal(result.body_id[0], 1);
     assert_int_equal(result.body_id[1], 2);
     for (int f = 0; f < 2; f++) {
-        const struct geometry *geometry = &query.placement[f].geometry;
+        const struct body_view *geometry = &query.placement[f].body;
         const struct handle handle = hasher_handle(hasher, geometry->bytes, geometry->size);
         assert_true(handle_equal(&result.handle[f], &handle));
     }
@@ -208,10 +202,10 @@ static void handles_stand_for_frames(void **state)
     const struct pair_result first = answer_to(&query);
     for (int64_t id = 0; id < 5; id++) {
         for (int f = 0; f < 2; f++) {
-            query.placement[f].body_id = id;
+            query.placement[f].placed.id = id;
             name(&query.placement[f], &first.handle[f]);
         }
-        query.placement[1].position[0] = 1;
+        query.placement[1].placed.position[0] = 1;
         const struct pair_result result = answer_to(&query);
         assert_int_equal(result.status, FMB_OK);
         assert_int_equal(result.answer.verdict, FMB_TOUCHING);
@@ -237,7 +231,7 @@ static void unknown_handles_are_refused(void **state)
 
 static void a_handle_of_the_other_dimension_is_refused(void **state)
 {
-    const struct geometry_frame square = {.shape = FMB_CUBOID, .components = {1, 0, 0, 1}};
+    const struct plain_frame square = {.shape = FMB_CUBOID, .components = {1, 0, 0, 1}};
     struct pair_query query = cubes();
     const struct handle handle = answer_to(&query).handle[0];
     for (int f = 0; f < 2; f++)
@@ -290,14 +284,14 @@ static void a_cache_of_one_frame_answers_whole_pairs(void **state)
 static void one_id_may_have_two_bodies(void **state)
 {
     struct pair_query query = stretched(2);
-    query.placement[0].body_id = query.placement[1].body_id = 9;
+    query.placement[0].placed.id = query.placement[1].placed.id = 9;
     for (int repeat = 0; repeat < 3; repeat++) {
-        query.placement[0].position[0] = repeat;
+        query.placement[0].placed.position[0] = repeat;
         const struct pair_result result = answer_to(&query);
         assert_int_equal(result.answer.verdict, FMB_OVERLAPPING);
         assert_false(handle_equal(&result.handle[0], &result.handle[1]));
     }
-    query.placement[0].position[0] = 2.75; /* beyond the second, were it a cube */
+    query.placement[0].placed.position[0] = 2.75; /* beyond the second, were it a cube */
     assert_int_equal(answer_to(&query).answer.verdict, FMB_SEPARATED);
     assert_int_equal(counts().misses, 2);
 }
@@ -305,7 +299,7 @@ static void one_id_may_have_two_bodies(void **state)
 static void anonymous_bodies_are_not_kept(void **state)
 {
     struct pair_query query = cubes();
-    query.placement[0].body_id = query.placement[1].body_id = 0;
+    query.placement[0].placed.id = query.placement[1].placed.id = 0;
     const struct pair_result result = answer_to(&query);
     assert_int_equal(result.status, FMB_OK);
     assert_true(handle_is_none(&result.handle[0]) && handle_is_none(&result.handle[1]));
@@ -322,11 +316,11 @@ static void numbers_that_are_not_finite_are_refused(void **state)
     put_number(0, 0, INFINITY);
     expect(&query, FMB_NOT_FINITE, "a.numbers[0]: not a finite number");
     query = cubes();
-    query.placement[0].position[2] = -INFINITY;
+    query.placement[0].placed.position[2] = -INFINITY;
     expect(&query, FMB_NOT_FINITE, "a.position[2]: not a finite number");
     query = cubes();
     query.placement[0].velocity_count = 3;
-    query.placement[0].velocity[1] = INFINITY;
+    query.placement[0].placed.velocity[1] = INFINITY;
     expect(&query, FMB_NOT_FINITE, "a.velocity[1]: not a finite number");
 }
 
@@ -348,12 +342,12 @@ static void wrong_counts_are_refused(void **state)
     query.placement[1].velocity_count = 2;
     expect(&query, FMB_WRONG_COUNT, "b.num_velocity: expected 3 numbers, found 2");
     query = cubes();
-    query.placement[0].orientation_count = 3;
+    query.placement[0].placed.orientation_count = 3;
     expect(&query, FMB_WRONG_COUNT, "a.num_orientation: expected 4 numbers, found 3");
-    query.placement[0].orientation_count = 5;
+    query.placement[0].placed.orientation_count = 5;
     expect(&query, FMB_WRONG_COUNT, "a.num_orientation: expected 4 numbers, found 5");
     query = squares();
-    query.placement[1].orientation_count = 4;
+    query.placement[1].placed.orientation_count = 4;
     expect(&query, FMB_WRONG_COUNT, "b.num_orientation: expected 2 numbers, found 4");
 }
 
@@ -361,7 +355,7 @@ static void wrong_counts_are_refused(void **state)
 static void set_vertices(struct pair_query *query, int f, int32_t dim, const int *codes,
                          const int32_t *counts, int32_t frames, int32_t numbers)
 {
-    struct placement *placement = &query->placement[f];
+    struct query_placement *placement = &query->placement[f];
     struct writer writer = {.at = bytes[f], .end = bytes[f] + sizeof bytes[f]};
     int32_t by_vertices = 0;
     for (int32_t i = 0; counts[i] != END; i++)
@@ -376,11 +370,12 @@ static void set_vertices(struct pair_query *query, int f, int32_t dim, const int
     writer_int32(&writer, numbers);
     for (int32_t i = 0; i < numbers; i++)
         writer_double(&writer, i * i % 7);
-    placement->dim = dim;
-    placement->frame_count = frames;
-    placement->count_count = by_vertices;
-    placement->number_count = numbers;
-    placement->geometry = (struct geometry){bytes[f], writer_end(&writer, bytes[f])};
+    placement->body = (struct body_view){.dim = dim,
+                                         .frame_count = frames,
+                                         .count_count = by_vertices,
+                                         .number_count = numbers,
+                                         .bytes = bytes[f],
+                                         .size = writer_end(&writer, bytes[f])};
 }
 
 static void wrong_counts_of_vertices_are_refused(void **state)
@@ -473,7 +468,7 @@ static void a_handle_has_no_counts(void **state)
     static const int32_t counts[] = {4, END};
     struct pair_query query = cubes();
     set_vertices(&query, 0, 3, NULL, counts, 0, 0);
-    query.placement[0].handle = (struct handle){{1}};
+    query.placement[0].body.handle = (struct handle){{1}};
     expect(&query, FMB_WRONG_COUNT, "a.num_counts: expected 0 numbers, found 1");
 }
 
@@ -492,14 +487,14 @@ static void bad_names_are_refused(void **state)
         "\xc0\x80"};
     struct pair_query query = cubes();
     const struct pair_result unnamed = answer_to(&query);
-    query.placement[0].name = good;
+    query.placement[0].placed.name = good;
     assert_int_equal(strlen(good), 64);
     const struct pair_result named = answer_to(&query);
     assert_int_equal(named.status, FMB_OK);
     assert_memory_equal(&named.handle[0], &unnamed.handle[0], sizeof named.handle[0]);
     for (size_t i = 0; i < COUNT(bad); i++) {
         query = cubes();
-        query.placement[1].name = bad[i];
+        query.placement[1].placed.name = bad[i];
         expect(&query, FMB_BAD_NAME,
                "b.name: a name that is not UTF-8 of at most 64 bytes without controls");
     }
@@ -508,12 +503,12 @@ static void bad_names_are_refused(void **state)
 /* A pair query does not look at groups: also where it takes a job. */
 static void groups_of_a_pair_do_not_matter(void **state)
 {
-    struct geometry_frame frames[2] = {unit_cube, unit_cube};
+    struct plain_frame frames[2] = {unit_cube, unit_cube};
     for (int count = 1; count <= 2; count++) {
         struct pair_query query = cubes();
         set_frames(&query, 0, 3, frames, count);
         const struct pair_result before = answer_to(&query);
-        query.placement[0].group = query.placement[1].group = -7;
+        query.placement[0].placed.group = query.placement[1].placed.group = -7;
         const struct pair_result after = answer_to(&query);
         assert_int_equal(after.status, FMB_OK);
         assert_int_equal(after.answer.verdict, before.answer.verdict);
@@ -525,11 +520,11 @@ static void a_placement_has_a_handle_or_frames(void **state)
 {
     const struct handle handle = {{1}};
     struct pair_query query = cubes();
-    query.placement[0].handle = handle;
+    query.placement[0].body.handle = handle;
     expect(&query, FMB_WRONG_COUNT, "a.num_frames: both a handle and frames");
     query = cubes();
     set_geometry(&query, 1, 3, 0, 0, 2);
-    query.placement[1].handle = handle;
+    query.placement[1].body.handle = handle;
     expect(&query, FMB_WRONG_COUNT, "b.num_numbers: expected 0 numbers, found 2");
     query = cubes();
     set_geometry(&query, 1, 3, 0, 0, 0);
@@ -586,28 +581,29 @@ static void bad_orientations_are_refused(void **state)
                              {0x1p-1000, 0, 0, 1}};
     for (size_t i = 0; i < COUNT(bad); i++) {
         struct pair_query query = cubes();
-        query.placement[1].orientation_count = 4;
-        memcpy(query.placement[1].orientation, bad[i], sizeof bad[i]);
+        query.placement[1].placed.orientation_count = 4;
+        memcpy(query.placement[1].placed.orientation, bad[i], sizeof bad[i]);
         expect(&query, FMB_BAD_ORIENTATION, detail);
-        query.placement[1].handle = (struct handle){{1}}; /* also by handle */
-        name(&query.placement[1], &query.placement[1].handle);
+        query.placement[1].body.handle = (struct handle){{1}}; /* also by handle */
+        name(&query.placement[1], &query.placement[1].body.handle);
         expect(&query, FMB_BAD_ORIENTATION, detail);
     }
     struct pair_query query = squares();
-    query.placement[1].orientation_count = 2;
+    query.placement[1].placed.orientation_count = 2;
     expect(&query, FMB_BAD_ORIENTATION, detail);
-    query.placement[1].orientation[1] = -1e-150;
+    query.placement[1].placed.orientation[1] = -1e-150;
     assert_int_equal(answer_to(&query).status, FMB_OK);
     query = cubes();
-    query.placement[1].orientation_count = 4;
-    memcpy(query.placement[1].orientation, (const double[]){1, 0x1p-200, 0, 0}, 4 * sizeof(double));
+    query.placement[1].placed.orientation_count = 4;
+    memcpy(query.placement[1].placed.orientation, (const double[]){1, 0x1p-200, 0, 0},
+           4 * sizeof(double));
     assert_int_equal(answer_to(&query).status, FMB_OK);
 }
 
 /* 0 is a flat frame. */
 static void bad_sizes_are_refused(void **state)
 {
-    struct geometry_frame frames[3] = {box(0, 1), unit_cube, box(3, 1)};
+    struct plain_frame frames[3] = {box(0, 1), unit_cube, box(3, 1)};
     struct pair_query query = cubes();
     frames[0].components[2] = -0x1p-1074;
     set_frames(&query, 1, 3, frames, 3);
@@ -630,13 +626,14 @@ static void bad_sizes_are_refused(void **state)
 
 /* ---- Bodies of several frames, and poses ---- */
 
-static struct fmb_placement placement_of(struct query_bodies *own, const struct placement *from)
+static struct fmb_placement placement_of(struct query_bodies *own,
+                                         const struct query_placement *from)
 {
-    struct fmb_placement out = {.body = body_make(&from->geometry, own->memory),
-                                .orientation_count = from->orientation_count};
-    memcpy(out.position, from->position, sizeof from->position);
-    memcpy(out.velocity, from->velocity, sizeof from->velocity);
-    memcpy(out.orientation, from->orientation, sizeof from->orientation);
+    struct fmb_placement out = {.body = body_make(&from->body, own->memory),
+                                .orientation_count = from->placed.orientation_count};
+    memcpy(out.position, from->placed.position, sizeof from->placed.position);
+    memcpy(out.velocity, from->placed.velocity, sizeof from->placed.velocity);
+    memcpy(out.orientation, from->placed.orientation, sizeof from->placed.orientation);
     return out;
 }
 
@@ -658,7 +655,7 @@ static struct fmb_answer truth(const struct pair_query *query)
 /* Two gratings of boxes, one turned and moving towards the other. */
 static struct pair_query gratings(int count, double spacing, double distance)
 {
-    struct geometry_frame frames[300];
+    struct plain_frame frames[300];
     struct pair_query query = {.client_id = 4, .duration = 1, .want = FMB_WANT_BOX};
     for (int i = 0; i < count; i++) {
         frames[i] = i % 5 == 4 ? unit_cube : box(0, 1);
@@ -666,11 +663,11 @@ static struct pair_query gratings(int count, double spacing, double distance)
     }
     for (int f = 0; f < 2; f++)
         set_frames(&query, f, 3, frames, count);
-    query.placement[1].position[1] = distance;
-    query.placement[1].orientation_count = 4;
-    memcpy(query.placement[1].orientation, (const double[]){2, 0, 0, 1}, 4 * sizeof(double));
+    query.placement[1].placed.position[1] = distance;
+    query.placement[1].placed.orientation_count = 4;
+    memcpy(query.placement[1].placed.orientation, (const double[]){2, 0, 0, 1}, 4 * sizeof(double));
     query.placement[1].velocity_count = 3;
-    query.placement[1].velocity[1] = -1;
+    query.placement[1].placed.velocity[1] = -1;
     return query;
 }
 
@@ -707,9 +704,9 @@ static void turning_bodies_hit(void **state)
 {
     struct pair_query query = cubes();
     for (int i = 0; i < 10; i++) {
-        query.placement[1].orientation_count = 4;
-        query.placement[1].orientation[0] = 1;
-        query.placement[1].orientation[1] = 0.1 * i;
+        query.placement[1].placed.orientation_count = 4;
+        query.placement[1].placed.orientation[0] = 1;
+        query.placement[1].placed.orientation[1] = 0.1 * i;
         const struct pair_result result = answer_to(&query);
         assert_int_equal(result.status, FMB_OK);
         const struct fmb_answer expected = truth(&query);
@@ -787,9 +784,9 @@ static void a_body_larger_than_the_cache_is_answered(void **state)
 static void bad_ids_are_refused(void **state)
 {
     struct pair_query query = cubes();
-    query.placement[1].body_id = QUERY_ID_MAX + 1;
+    query.placement[1].placed.id = QUERY_ID_MAX + 1;
     expect(&query, FMB_BAD_ID, "b.body_id: not from 0 to 2^53 - 1");
-    query.placement[1].body_id = -1;
+    query.placement[1].placed.id = -1;
     expect(&query, FMB_BAD_ID, "b.body_id: not from 0 to 2^53 - 1");
     query = cubes();
     query.client_id = INT64_MAX;
@@ -798,7 +795,7 @@ static void bad_ids_are_refused(void **state)
     query.sequence_number = -7;
     expect(&query, FMB_BAD_ID, "sequence_number: not from 0 to 2^53 - 1");
     query = cubes();
-    query.placement[0].body_id = QUERY_ID_MAX;
+    query.placement[0].placed.id = QUERY_ID_MAX;
     assert_int_equal(answer_to(&query).status, FMB_OK);
 }
 
@@ -854,9 +851,9 @@ static void certificates_are_given_on_request(void **state)
     const enum fmb_verdict verdict[] = {FMB_OVERLAPPING, FMB_TOUCHING, FMB_SEPARATED};
     for (int i = 0; i < 6; i++) {
         struct pair_query query = cubes();
-        query.placement[1].position[0] = apart[i % 3];
+        query.placement[1].placed.position[0] = apart[i % 3];
         query.placement[0].velocity_count = i >= 3 ? 3 : 0;
-        query.placement[0].velocity[1] = 0.25;
+        query.placement[0].placed.velocity[1] = 0.25;
         query.want = FMB_WANT_CERTIFICATE;
         struct pair_result result = answer_to(&query);
         assert_int_equal(result.answer.verdict, verdict[i % 3]);
@@ -872,7 +869,7 @@ static void certificates_are_given_on_request(void **state)
         query.want = FMB_WANT_BOX;
         assert_null(answer_to(&query).certificate);
         query.want = FMB_WANT_CERTIFICATE;
-        query.placement[0].position[0] = NAN;
+        query.placement[0].placed.position[0] = NAN;
         assert_null(answer_to(&query).certificate);
     }
 }
@@ -910,9 +907,9 @@ static void gaps_are_given_on_request(void **state)
     for (int i = 0; i < 4; i++) {
         struct pair_query query = cubes();
         query.want = FMB_WANT_GAP;
-        query.placement[1].position[0] = 3;
+        query.placement[1].placed.position[0] = 3;
         query.placement[1].velocity_count = 3;
-        query.placement[1].velocity[0] = speed[i];
+        query.placement[1].placed.velocity[0] = speed[i];
         const struct pair_result result = answer_to(&query);
         const struct fmb_answer expected = truth(&query);
         assert_memory_equal(&result.answer, &expected, sizeof expected);
@@ -927,7 +924,7 @@ static void a_repeat_gets_the_same(void **state)
     struct pair_query query = cubes();
     query.want = FMB_WANT_BOX;
     query.placement[0].velocity_count = 3;
-    memcpy(query.placement[0].velocity, (const double[]){0.1, 0.7, 3}, 3 * sizeof(double));
+    memcpy(query.placement[0].placed.velocity, (const double[]){0.1, 0.7, 3}, 3 * sizeof(double));
     struct pair_result first = answer_to(&query), second = answer_to(&query);
     assert_memory_equal(&first, &second, sizeof first);
 }

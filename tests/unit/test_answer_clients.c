@@ -58,7 +58,7 @@ static bool one_in(int n)
     return draw_int(&world.draw, 1, n) == 1;
 }
 
-static struct placement *content_of(const struct client *client, int content)
+static struct query_placement *content_of(const struct client *client, int content)
 {
     return &world.content[client->dim - 2].query.placement[content];
 }
@@ -74,11 +74,11 @@ static void store_handle(struct client *client, int64_t id, const struct handle 
     *known = *handle;
 }
 
-static void shorten(const struct client *client, struct placement *placement)
+static void shorten(const struct client *client, struct query_placement *placement)
 {
-    if (placement->body_id == 0)
+    if (placement->placed.id == 0)
         return;
-    const struct handle *handle = &client->handle[client->content[placement->body_id]];
+    const struct handle *handle = &client->handle[client->content[placement->placed.id]];
     if (handle_is_none(handle) || one_in(8))
         return;
     scene_name(placement, handle);
@@ -95,14 +95,15 @@ static void change_bodies(struct client *client)
 }
 
 /* Any body of the client, somewhere; one in eight is anonymous. */
-static void place(const struct client *client, struct placement *out)
+static void place(const struct client *client, struct query_placement *out)
 {
     const int64_t id = one_in(8) ? 0 : draw_int(&world.draw, 1, IDS);
     const int anywhere = draw_int(&world.draw, 0, CONTENTS - 1);
     *out = *content_of(client, id ? client->content[id] : anywhere);
-    out->body_id = id;
+    out->placed.id = id;
     if (one_in(2))
-        memcpy(out->position, content_of(client, anywhere)->position, sizeof out->position);
+        memcpy(out->placed.position, content_of(client, anywhere)->placed.position,
+               sizeof out->placed.position);
 }
 
 static void place_all(const struct client *client, struct scene_query *out)
@@ -141,7 +142,7 @@ static void send_whole(const struct scene_query *whole, const struct scene_resul
     assert_true(result->unknown_count > 0);
     for (int32_t i = 0; i < result->unknown_count; i++) {
         const unsigned index = result->unknown[i];
-        assert_true(placement_by_handle(&sent->placement[index]));
+        assert_true(query_by_handle(&sent->placement[index]));
         sent->placement[index] = whole->placement[index];
     }
     world.unknown++;
@@ -164,9 +165,9 @@ static void store_handles(struct client *client, const struct scene_query *sent,
 {
     int32_t count = 0;
     for (int32_t i = 0; i < sent->placement_count; i++) {
-        const struct placement *placement = &sent->placement[i];
-        if (placement->body_id && !placement_by_handle(placement))
-            store_handle(client, placement->body_id, &result->handle[count++]);
+        const struct query_placement *placement = &sent->placement[i];
+        if (placement->placed.id && !query_by_handle(placement))
+            store_handle(client, placement->placed.id, &result->handle[count++]);
     }
     assert_int_equal(result->handle_count, count);
 }
@@ -217,8 +218,8 @@ static void query_pair(struct client *client)
     scene_decide(&whole, both, &answer);
     assert_memory_equal(&answer, &result.answer, sizeof answer);
     for (int f = 0; f < 2; f++)
-        if (sent.placement[f].body_id && !placement_by_handle(&sent.placement[f]))
-            store_handle(client, sent.placement[f].body_id, &result.handle[f]);
+        if (sent.placement[f].placed.id && !query_by_handle(&sent.placement[f]))
+            store_handle(client, sent.placement[f].placed.id, &result.handle[f]);
         else
             assert_true(handle_is_none(&result.handle[f]));
     world.answered++;

@@ -47,11 +47,11 @@ static struct handle keep(int dim, int n)
 }
 
 /* What the body was kept with. */
-static int number_of(const struct query_body *body)
+static int number_of(const struct body_view *body)
 {
-    struct geometry_reader reader = geometry_begin(&body->geometry);
-    struct geometry_frame frame;
-    assert_true(geometry_next(&reader, &frame));
+    struct geometry_reader reader = geometry_begin(body);
+    struct plain_frame frame;
+    assert_true(geometry_read(&reader, &frame));
     return (int) frame.components[0] - 1;
 }
 
@@ -101,22 +101,20 @@ static void definitions_are_found_by_handle(void **state)
 static void the_largest_body_is_defined(void **state)
 {
     enum { FRAMES = 657 }; /* of 97 bytes each */
-    static struct geometry_frame frame[FRAMES];
+    static struct plain_frame frame[FRAMES];
     static unsigned char geometry_bytes[QUERY_BYTES_MAX];
     struct cache *cache = answerer_cache(answerer);
-    struct handle handle;
     keep(3, 1);
     for (int i = 0; i < FRAMES; i++)
-        frame[i] = (struct geometry_frame){.shape = FMB_CUBOID, .components = {1 + i}};
-    const struct geometry geometry = {geometry_bytes,
-                                      geometry_write_frames(3, frame, FRAMES, geometry_bytes)};
-    cache_release(cache, cache_intern(cache, 0, &geometry, &handle));
+        frame[i] = (struct plain_frame){.shape = FMB_CUBOID, .components = {1 + i}};
+    struct body_view body = geometry_write_frames(3, frame, FRAMES, geometry_bytes);
+    cache_release(cache, cache_intern(cache, 0, &body));
     keep(3, 2);
     int bodies = 0, pages = 0, found = 0;
     do {
         assert_true(answer_query() <= QUERY_BYTES_MAX);
         for (int i = 0; i < again.body_count; i++)
-            found += handle_equal(&again.body[i].handle, &handle);
+            found += handle_equal(&again.body[i].handle, &body.handle);
         bodies += again.body_count;
         query.first = again.next;
     } while (again.next != 0 && ++pages < 10);

@@ -155,7 +155,7 @@ static void answers_are_those_of_each_pair(void **state)
         scene_draw_placements(&draw, 2 + round % 2, round % 3 - 1, 12, &scene);
         query->duration = draw_duration(&draw);
         for (int i = 0; i < 12; i++)
-            query->placement[i].body_id = draw_int(&draw, 0, 30);
+            query->placement[i].placed.id = draw_int(&draw, 0, 30);
         answer_in_every_way(&draw, "certified");
     }
 }
@@ -435,11 +435,11 @@ static void bad_placements_are_refused(void **state)
     scene_put_number(&scene, 3, 7, NAN);
     expect(FMB_NOT_FINITE, "placements[3].numbers[7]: not a finite number");
     set_row(340);
-    query->placement[339].position[2] = -INFINITY;
+    query->placement[339].placed.position[2] = -INFINITY;
     expect(FMB_NOT_FINITE, "placements[339].position[2]: not a finite number");
     set_row(7);
     query->placement[6].velocity_count = 3;
-    query->placement[6].velocity[1] = INFINITY;
+    query->placement[6].placed.velocity[1] = INFINITY;
     expect(FMB_NOT_FINITE, "placements[6].velocity[1]: not a finite number");
     set_row(7);
     query->placement[5].velocity_count = 2;
@@ -449,14 +449,14 @@ static void bad_placements_are_refused(void **state)
     expect(FMB_UNKNOWN_SHAPE, "placements[5].shapes[0]: unknown shape");
     set_row(7);
     scene_name(&query->placement[2], &(struct handle){{1}});
-    query->placement[2].dim = 2;
+    query->placement[2].body.dim = 2;
     scene_name(&query->placement[2], &(struct handle){{1}});
     expect(FMB_DIMENSIONS_DIFFER, "placements[2].dim: a 2D body against a 3D one");
     set_row(7);
-    query->placement[2].body_id = -1;
+    query->placement[2].placed.id = -1;
     expect(FMB_BAD_ID, "placements[2].body_id: not from 0 to 2^53 - 1");
     set_row(7);
-    query->placement[1].orientation_count = 4;
+    query->placement[1].placed.orientation_count = 4;
     expect(FMB_BAD_ORIENTATION,
            "placements[1].orientation: zero, not finite, or components that differ by more than "
            "2^200");
@@ -577,7 +577,7 @@ static void ignored_pairs_are_left_out(void **state)
             set_ignored(i, a, (a + (unsigned) draw_int(&draw, 1, 9)) % 10);
         }
         for (int32_t i = 0; i < query->placement_count; i++)
-            query->placement[i].group = draw_int(&draw, -1, 2);
+            query->placement[i].placed.group = draw_int(&draw, -1, 2);
         query->label = round % 2 ? "any bytes\n\xff" : NULL;
         const int32_t total = scene_list(query, &pair);
         for (query->first_pair = 0; query->first_pair <= total; query->first_pair++)
@@ -596,11 +596,11 @@ static void listed_pairs_within_a_group_are_refused(void **state)
         query->pair[i][0] = i + 1;
         query->pair[i][1] = i;
     }
-    query->placement[0].group = query->placement[4].group = INT64_MIN;
+    query->placement[0].placed.group = query->placement[4].placed.group = INT64_MIN;
     answer_and_check(query);
-    query->placement[3].group = query->placement[2].group = INT64_MIN;
+    query->placement[3].placed.group = query->placement[2].placed.group = INT64_MIN;
     expect(FMB_BAD_PAIR, "indices[4]: a pair of one group");
-    query->placement[3].group = 0;
+    query->placement[3].placed.group = 0;
     answer_and_check(query);
 }
 
@@ -608,15 +608,14 @@ static void listed_pairs_within_a_group_are_refused(void **state)
 static struct handle keep_large_body(int32_t frames)
 {
     static unsigned char geometry[QUERY_BYTES_MAX];
-    static struct geometry_frame frame[QUERY_FRAMES_MAX];
+    static struct plain_frame frame[QUERY_FRAMES_MAX];
     for (int32_t i = 0; i < frames; i++)
         frame[i] =
-            (struct geometry_frame){.shape = FMB_BOX, .origin = {2 * i, 0}, .components = {1, 1}};
+            (struct plain_frame){.shape = FMB_BOX, .origin = {2 * i, 0}, .components = {1, 1}};
     query->placement_count = 1;
-    query->placement[0] = (struct placement){
-        .body_id = 5, .dim = 2, .frame_count = frames, .number_count = 4 * frames};
-    query->placement[0].geometry =
-        (struct geometry){geometry, geometry_write_frames(2, frame, frames, geometry)};
+    query->placement[0] = (struct query_placement){
+        .placed.id = 5, .body.dim = 2, .body.frame_count = frames, .body.number_count = 4 * frames};
+    query->placement[0].body = geometry_write_frames(2, frame, frames, geometry);
     answer_to(query);
     assert_int_equal(result.status, FMB_OK);
     return result.handle[0];
@@ -634,9 +633,9 @@ static void too_many_frames_are_refused(void **state)
     for (int32_t i = 0; i < 65; i++) {
         query->placement[i] = query->placement[0];
         scene_name(&query->placement[i], &handle);
-        query->placement[i].position[1] = 1.5 * i;
+        query->placement[i].placed.position[1] = 1.5 * i;
     }
-    query->placement[7].position[1] = query->placement[6].position[1] + 0.5;
+    query->placement[7].placed.position[1] = query->placement[6].placed.position[1] + 0.5;
     answer_to(query);
     assert_string_equal(result.detail, "");
     assert_int_equal(result.contact_count, 1);
@@ -731,19 +730,19 @@ static void handles_and_whole_placements_may_be_mixed(void **state)
         int handles = 0;
         scene_draw_placements(&draw, 2 + round % 2, -1, 12, &scene);
         for (int i = 0; i < 12; i++)
-            query->placement[i].body_id = i % 4 ? 100 + i : 0;
+            query->placement[i].placed.id = i % 4 ? 100 + i : 0;
         query->method = round % 4 == 3 ? fmb_method_by_name("exact")->number : 0;
         answer_and_check(query);
         assert_int_equal(result.handle_count, 9);
         other = *query;
         for (int i = 0, h = 0; i < 12; i++) {
-            struct placement *placement = &other.placement[i];
+            struct query_placement *placement = &other.placement[i];
             if (i % 4 && (round % 8 == 7 || draw_coin(&draw)))
                 scene_name(placement, &result.handle[h]);
             h += i % 4 != 0;
             if (draw_coin(&draw))
-                placement->body_id = 0;
-            handles += placement->body_id && !placement_by_handle(placement);
+                placement->placed.id = 0;
+            handles += placement->placed.id && !query_by_handle(placement);
         }
         answer_to(&other);
         scene_assert(query, &result);
@@ -802,7 +801,7 @@ static void one_id_may_have_two_bodies(void **state)
         query->method = method ? fmb_method_by_name("exact")->number : 0;
         set_row(4);
         for (int i = 0; i < 4; i++) {
-            query->placement[i].body_id = 9;
+            query->placement[i].placed.id = 9;
             stretch(i, i % 2 ? 1.5 : 1);
         }
         answer_and_check(query);
@@ -895,7 +894,7 @@ static void answers_allocate_nothing(void **state)
     for (int round = 0; round < 40; round++) {
         scene_draw_placements(&draw, 2 + round % 2, -1, 60, &scene);
         for (int i = 0; i < 60; i++)
-            query->placement[i].body_id = draw_int(&draw, 0, 100);
+            query->placement[i].placed.id = draw_int(&draw, 0, 100);
         query->want = wants[round % 4];
         query->which = round % 3;
         query->split = query->which == FMB_PAIRS_ACROSS ? 20 : 0;
@@ -948,7 +947,7 @@ static void queries_between_steps_do_not_show(void **state)
             query->method = method ? fmb_method_by_name("exact")->number : 0;
             scene_draw_placements(&draw, 2 + round % 2, -1, 36, &scene);
             for (int i = 0; i < 36; i++)
-                query->placement[i].body_id = 1 + i;
+                query->placement[i].placed.id = 1 + i;
             answer_and_check(query);
             again = result;
             scene_begin(job, query);
@@ -1000,7 +999,7 @@ static void two_jobs_run_at_once(void **state)
         second.query = *query;
         scene_draw_placements(&draw, 2, -1, 20, &second);
         for (int i = 0; i < 20; i++)
-            query->placement[i].body_id = second.query.placement[i].body_id = 1 + i;
+            query->placement[i].placed.id = second.query.placement[i].placed.id = 1 + i;
         scene_begin(job, query);
         scene_begin(second_job, &second.query);
         while (!complete[0] || !complete[1]) {
@@ -1035,7 +1034,7 @@ static void a_stopped_scene_continues_where_it_ended(void **state)
     draw_begin(&draw, "scenes that are stopped");
     set_heap(40, 3, true, false);
     for (int i = 0; i < 4; i++)
-        query->placement[36 + i].position[0] = 1e9; /* far from all */
+        query->placement[36 + i].placed.position[0] = 1e9; /* far from all */
     query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
     for (size_t m = 0; m < COUNT(methods); m++)
         for (query->which = FMB_PAIRS_ALL; query->which <= FMB_PAIRS_ACROSS; query->which++) {

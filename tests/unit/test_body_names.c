@@ -23,7 +23,7 @@ static int tear_down(void **state)
 
 static void give(int64_t client_id, int64_t body_id, const char *name)
 {
-    const struct placement placement = {.body_id = body_id, .name = name};
+    const struct query_placement placement = {.placed.id = body_id, .placed.name = name};
     body_names_take(names, client_id, &placement, 1);
 }
 

@@ -10,29 +10,28 @@ static const uint64_t secret[2] = {0x243f6a8885a308d3, 0x13198a2e03707344};
 static const uint64_t another_secret[2] = {0xa4093822299f31d0, 0x082efa98ec4e6c89};
 
 /* The geometry of a cuboid with edges along the axes. Valid until the next call. */
-static struct geometry cuboid(double x, double y)
+static struct body_view cuboid(double x, double y)
 {
     static unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
-    const struct geometry_frame frame = {.shape = FMB_CUBOID,
-                                         .components = {x, 0, 0, 0, y, 0, 0, 0, y}};
-    return (struct geometry){bytes, geometry_write(3, &frame, bytes)};
+    const struct plain_frame frame = {.shape = FMB_CUBOID,
+                                      .components = {x, 0, 0, 0, y, 0, 0, 0, y}};
+    return geometry_write(3, &frame, bytes);
 }
 
 /* Keeps a cube, without using it. */
 static struct handle keep(struct cache *cache, int64_t id, double edge)
 {
-    const struct geometry geometry = cuboid(edge, edge);
-    struct handle handle;
-    const struct cached *cached = cache_intern(cache, id, &geometry, &handle);
-    assert_true(handle_equal(&cached->handle, &handle));
+    struct body_view geometry = cuboid(edge, edge);
+    const struct cached *cached = cache_intern(cache, id, &geometry);
+    assert_true(handle_equal(&cached->view.handle, &geometry.handle));
     assert_int_equal(cached->body.frame_count, 1);
     assert_null(cached->body.frames);
     assert_true(cached->body.one.component[2][2] == edge);
     assert_true(cached->body.one.inverse[2][2] == 1 / edge);
-    assert_int_equal(cached->geometry.size, geometry.size);
-    assert_memory_equal(cached->geometry.bytes, geometry.bytes, geometry.size);
+    assert_int_equal(cached->view.size, geometry.size);
+    assert_memory_equal(cached->view.bytes, geometry.bytes, geometry.size);
     cache_release(cache, cached);
-    return handle;
+    return geometry.handle;
 }
 
 /* The edge of the body with this handle, or 0. */
@@ -41,19 +40,20 @@ static double find(struct cache *cache, struct handle handle)
     const struct cached *cached = cache_find(cache, &handle);
     if (!cached)
         return 0;
-    assert_true(handle_equal(&cached->handle, &handle));
+    assert_true(handle_equal(&cached->view.handle, &handle));
     cache_release(cache, cached);
     return fmb_body_frame(&cached->body, 0)->component[0][0];
 }
 
 /* Keeps a geometry, without using it. */
-static struct handle keep_geometry(struct cache *cache, int64_t id, const struct geometry *geometry)
+static struct handle keep_geometry(struct cache *cache, int64_t id,
+                                   const struct body_view *geometry)
 {
-    struct handle handle;
-    const struct cached *cached = cache_intern(cache, id, geometry, &handle);
+    struct body_view view = *geometry;
+    const struct cached *cached = cache_intern(cache, id, &view);
     assert_non_null(cached);
     cache_release(cache, cached);
-    return handle;
+    return view.handle;
 }
 
 static void a_second_use_is_a_hit(void **state)
@@ -79,7 +79,7 @@ static void a_body_is_found_by_its_handle(void **state)
     struct cache *cache = cache_create(4, secret);
     struct hasher *hasher = hasher_create();
     const struct handle handle = keep(cache, 0, 3);
-    const struct geometry geometry = cuboid(3, 3);
+    const struct body_view geometry = cuboid(3, 3);
     const struct handle expected = hasher_handle(hasher, geometry.bytes, geometry.size);
     assert_true(handle_equal(&handle, &expected));
     hasher_destroy(hasher);
@@ -140,14 +140,14 @@ static void an_id_may_have_two_bodies(void **state)
 static void bodies_are_compared_bit_by_bit(void **state)
 {
     struct cache *cache = cache_create(8, secret);
-    struct geometry_frame frame = {.shape = FMB_CUBOID, .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    struct plain_frame frame = {.shape = FMB_CUBOID, .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
     struct handle handle[5];
     for (int i = 0; i < 5; i++) {
         frame.components[1] = i == 1 ? -0.0 : 0;
         frame.components[8] = i == 2 ? 1 + 0x1p-52 : 1;
         frame.shape = i == 3 ? FMB_TETRAHEDRON : FMB_CUBOID;
-        const struct geometry geometry = {bytes, geometry_write(i == 4 ? 2 : 3, &frame, bytes)};
+        const struct body_view geometry = geometry_write(i == 4 ? 2 : 3, &frame, bytes);
         handle[i] = keep_geometry(cache, 1, &geometry);
         const struct cached *cached = cache_peek(cache, &handle[i]);
         assert_int_equal(cached->body.dim, i == 4 ? 2 : 3);
@@ -165,12 +165,13 @@ static void each_number_of_a_body_counts(void **state)
     enum { AT = 4 + 4 + 1 + 4, NUMBERS = 12 }; /* after dim, one shape, and the counts */
     struct cache *cache = cache_create(2 * NUMBERS, secret);
     for (int i = 0; i < NUMBERS; i++) {
-        const struct geometry geometry = cuboid(1, 1);
+        const struct body_view geometry = cuboid(1, 1);
         unsigned char changed[GEOMETRY_FRAME_BYTES_MAX];
         const struct handle before = keep_geometry(cache, 1, &geometry);
         memcpy(changed, geometry.bytes, geometry.size);
         changed[AT + 8 * i + 7] ^= 1;
-        const struct geometry other = {changed, geometry.size};
+        struct body_view other = geometry;
+        other.bytes = changed;
         const struct handle after = keep_geometry(cache, 1, &other);
         assert_false(handle_equal(&before, &after));
     }
@@ -294,13 +295,14 @@ static void pages_have_all_bodies(void **state)
 static void prefetching_changes_nothing(void **state)
 {
     struct cache *cache = cache_create(4, secret);
-    struct placement placement = {.body_id = INT64_MIN};
+    struct query_placement placement = {.placed.id = INT64_MIN};
     cache_prefetch(cache, &placement);
-    placement.body_id = 1;
+    placement.placed.id = 1;
     cache_prefetch(cache, &placement);
-    placement.handle = keep(cache, 1, 1);
+    placement.body.handle = keep(cache, 1, 1);
     cache_prefetch(cache, &placement);
-    for (placement.frame_count = 1; placement.frame_count < 3; placement.frame_count++)
+    for (placement.body.frame_count = 1; placement.body.frame_count < 3;
+         placement.body.frame_count++)
         cache_prefetch(cache, &placement);
     assert_int_equal(cache_counts(cache).hits, 0);
     cache_destroy(cache);
@@ -321,29 +323,29 @@ enum { FRAMES_MAX = 40 };
 
 /* The geometry of count boxes in 2D, of which the last one is so long. Valid until the next call.
  */
-static struct geometry boxes(int count, double length)
+static struct body_view boxes(int count, double length)
 {
     static unsigned char bytes[GEOMETRY_NONE_BYTES + FRAMES_MAX * GEOMETRY_FRAME_BYTES_MIN];
-    struct geometry_frame frame[FRAMES_MAX] = {0};
+    struct plain_frame frame[FRAMES_MAX] = {0};
     for (int i = 0; i < count; i++) {
         frame[i].shape = FMB_BOX;
         frame[i].origin[0] = 10 * i;
         frame[i].components[0] = i == count - 1 ? length : 1;
         frame[i].components[1] = 1;
     }
-    return (struct geometry){bytes, geometry_write_frames(2, frame, count, bytes)};
+    return geometry_write_frames(2, frame, count, bytes);
 }
 
 static struct handle keep_boxes(struct cache *cache, int64_t id, int count, double length)
 {
-    const struct geometry geometry = boxes(count, length);
+    const struct body_view geometry = boxes(count, length);
     return keep_geometry(cache, id, &geometry);
 }
 
 /* Whether the body is held; as it was kept. */
 static bool has_boxes(struct cache *cache, const struct handle *handle, int count, double length)
 {
-    const struct geometry geometry = boxes(count, length);
+    const struct body_view geometry = boxes(count, length);
     const struct cached *cached = cache_peek(cache, handle);
     if (!cached)
         return false;
@@ -354,8 +356,8 @@ static bool has_boxes(struct cache *cache, const struct handle *handle, int coun
         assert_true(frame->centre[0] == 10 * i);
         assert_true(frame->size[0] == (i == count - 1 ? length : 1));
     }
-    assert_int_equal(cached->geometry.size, geometry.size);
-    assert_memory_equal(cached->geometry.bytes, geometry.bytes, geometry.size);
+    assert_int_equal(cached->view.size, geometry.size);
+    assert_memory_equal(cached->view.bytes, geometry.bytes, geometry.size);
     return true;
 }
 
@@ -403,11 +405,10 @@ static void more_frames_than_the_capacity(void **state)
 {
     struct cache *cache = cache_create(20, secret);
     const struct handle held = keep_boxes(cache, 1, 20, 2);
-    const struct geometry geometry = boxes(21, 3);
-    struct handle handle = {{0}};
-    assert_null(cache_intern(cache, 2, &geometry, &handle));
-    assert_false(handle_is_none(&handle));
-    assert_null(cache_peek(cache, &handle));
+    struct body_view geometry = boxes(21, 3);
+    assert_null(cache_intern(cache, 2, &geometry));
+    assert_false(handle_is_none(&geometry.handle));
+    assert_null(cache_peek(cache, &geometry.handle));
     assert_true(has_boxes(cache, &held, 20, 2));
     assert_int_equal(cache_counts(cache).misses, 2);
     assert_int_equal(cache_counts(cache).ids, 1);
@@ -418,9 +419,9 @@ static void more_frames_than_the_capacity(void **state)
 static void bodies_in_use_stay(void **state)
 {
     struct cache *cache = cache_create(30, secret);
-    const struct geometry geometry = boxes(10, 4);
-    struct handle handle, other;
-    const struct cached *used = cache_intern(cache, 1, &geometry, &handle);
+    struct body_view geometry = boxes(10, 4);
+    const struct cached *used = cache_intern(cache, 1, &geometry);
+    const struct handle handle = geometry.handle;
     assert_ptr_equal(cache_find(cache, &handle), used);
     cache_release(cache, used); /* one user is left */
     for (int i = 0; i < 50; i++) {
@@ -430,8 +431,8 @@ static void bodies_in_use_stay(void **state)
         assert_ptr_equal(cache_peek(cache, &handle), used);
         assert_true(has_boxes(cache, &handle, 10, 4));
     }
-    const struct geometry large = boxes(21, 9);
-    assert_null(cache_intern(cache, 3, &large, &other));
+    struct body_view large = boxes(21, 9);
+    assert_null(cache_intern(cache, 3, &large));
     cache_release(cache, used);
     keep_boxes(cache, 4, 30, 1);
     assert_null(cache_peek(cache, &handle));
@@ -443,13 +444,12 @@ static void bodies_in_use_are_not_evicted(void **state)
 {
     struct cache *cache = cache_create(2, secret);
     const struct cached *used[2];
-    struct handle handle;
     for (int i = 0; i < 2; i++) {
-        const struct geometry geometry = cuboid(1 + i, 1);
-        used[i] = cache_intern(cache, 1 + i, &geometry, &handle);
+        struct body_view geometry = cuboid(1 + i, 1);
+        used[i] = cache_intern(cache, 1 + i, &geometry);
     }
-    const struct geometry geometry = cuboid(3, 1);
-    assert_null(cache_intern(cache, 3, &geometry, &handle));
+    struct body_view geometry = cuboid(3, 1);
+    assert_null(cache_intern(cache, 3, &geometry));
     assert_int_equal(cache_counts(cache).bodies, 2);
     assert_int_equal(cache_counts(cache).evictions, 0);
     cache_release(cache, used[1]);
@@ -470,11 +470,10 @@ static void bodies_of_all_sizes(void **state)
     for (int round = 0; round < ROUNDS; round++) {
         const int count = rand() % 4 ? 1 : 1 + rand() % 12, length = 1 + rand() % 9;
         const int u = rand() % (3 * USED);
-        const struct geometry geometry = boxes(count, length);
-        struct handle handle;
-        const struct cached *cached = cache_intern(cache, rand() % 5, &geometry, &handle);
+        struct body_view geometry = boxes(count, length);
+        const struct cached *cached = cache_intern(cache, rand() % 5, &geometry);
         assert_non_null(cached);
-        assert_true(has_boxes(cache, &handle, count, length));
+        assert_true(has_boxes(cache, &geometry.handle, count, length));
         if (u < USED && used[u])
             cache_release(cache, used[u]);
         if (u < USED)
@@ -485,7 +484,7 @@ static void bodies_of_all_sizes(void **state)
         while ((cached = cache_next(cache, &position))) {
             bodies++;
             frames += cached->body.frame_count;
-            assert_ptr_equal(cache_peek(cache, &cached->handle), cached);
+            assert_ptr_equal(cache_peek(cache, &cached->view.handle), cached);
         }
         assert_int_equal(cache_counts(cache).bodies, bodies);
         assert_int_equal(cache_counts(cache).frames, frames);
@@ -517,7 +516,7 @@ static void choose_ids(uint64_t multiplier, int64_t out[ATTACK])
 static int64_t ids_known(const int64_t id[ATTACK], const uint64_t used[2])
 {
     struct cache *cache = cache_create(CAPACITY_ATTACKED, used);
-    const struct geometry geometry = cuboid(1, 1);
+    const struct body_view geometry = cuboid(1, 1);
     for (int i = 0; i < ATTACK; i++)
         keep_geometry(cache, id[i], &geometry);
     const int64_t ids = cache_counts(cache).ids;
@@ -544,7 +543,7 @@ static int64_t longest_chain(uint64_t multiplier, const uint64_t used[2], int ca
     struct cache *cache = cache_create((size_t) capacity, used);
     struct hasher *hasher = hasher_create();
     for (int kept = 0, n = 1; kept < capacity; n++) {
-        const struct geometry geometry = cuboid(1, n);
+        const struct body_view geometry = cuboid(1, n);
         const struct handle handle = hasher_handle(hasher, geometry.bytes, geometry.size);
         uint64_t half = 0;
         for (int i = 0; i < 8; i++)

@@ -1194,7 +1194,8 @@ static void bodies_are_kept_until_the_table_is_full(void **state)
     struct fmb_body box;
     struct fmb_scene scene = {.placements = bodies, .which = FMB_PAIRS_LISTED};
     uint64_t number = 0;
-    const struct geometry geometry = {(const unsigned char *) &number, sizeof number};
+    const struct body_view geometry = {.bytes = (const unsigned char *) &number,
+                                       .size = sizeof number};
     assert_int_equal(fmb_body_make(3, FMB_BOX, size, 3, &box), FMB_OK);
     for (int i = 0; i < HELD_MAX; i++)
         bodies[i].body = &box;

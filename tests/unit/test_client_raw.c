@@ -13,13 +13,13 @@
 enum { BODIES = 30, PATIENCE_S = 10 };
 
 /* A cube of its own size for each id. */
-static struct placement cube_of(int64_t id, unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX])
+static struct query_placement cube_of(int64_t id, unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX])
 {
     const double size = 1 + 0.01 * (double) id;
-    const struct geometry_frame frame = {.shape = FMB_CUBOID,
-                                         .components = {size, 0, 0, 0, 1, 0, 0, 0, 1}};
-    struct placement out = {.body_id = id, .dim = 3, .frame_count = 1};
-    out.geometry = (struct geometry){geometry, geometry_write(3, &frame, geometry)};
+    const struct plain_frame frame = {.shape = FMB_CUBOID,
+                                      .components = {size, 0, 0, 0, 1, 0, 0, 0, 1}};
+    struct query_placement out = {.placed.id = id, .body.dim = 3, .body.frame_count = 1};
+    out.body = geometry_write(3, &frame, geometry);
     return out;
 }
 

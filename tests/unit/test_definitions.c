@@ -9,8 +9,7 @@
 
 struct body {
     unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
-    struct geometry geometry;
-    struct handle handle;
+    struct body_view view;
 };
 
 struct world {
@@ -21,23 +20,24 @@ struct world {
 
 static void make_body(struct world *world, double size, struct body *out)
 {
-    const struct geometry_frame frame = {.shape = FMB_CUBOID,
-                                         .components = {size, 0, 0, 0, size, 0, 0, 0, size}};
-    out->geometry = (struct geometry){out->bytes, geometry_write(3, &frame, out->bytes)};
-    out->handle = hasher_handle(world->hasher, out->bytes, out->geometry.size);
+    const struct plain_frame frame = {.shape = FMB_CUBOID,
+                                      .components = {size, 0, 0, 0, size, 0, 0, 0, size}};
+    out->view = geometry_write(3, &frame, out->bytes);
+    out->view.handle = hasher_handle(world->hasher, out->bytes, out->view.size);
 }
 
-static struct placement place(const struct body *body)
+static struct query_placement place(const struct body *body)
 {
-    return (struct placement){
-        .body_id = 1, .dim = 3, .frame_count = 1, .number_count = 12, .geometry = body->geometry};
+    struct query_placement out = {.placed.id = 1, .body = body->view};
+    memset(&out.body.handle, 0, sizeof out.body.handle);
+    return out;
 }
 
 static void assert_found(struct world *world, const struct body *body)
 {
-    const struct geometry *found = definitions_find(world->definitions, &body->handle);
+    const struct body_view *found = definitions_find(world->definitions, &body->view.handle);
     assert_non_null(found);
-    assert_int_equal(found->size, body->geometry.size);
+    assert_int_equal(found->size, body->view.size);
     assert_memory_equal(found->bytes, body->bytes, found->size);
 }
 
@@ -67,17 +67,17 @@ static void many_bodies_are_defined(void **state)
     struct body body;
     for (int i = 0; i < COUNT; i++) {
         make_body(world, i + 1, &body);
-        assert_null(definitions_find(world->definitions, &body.handle));
-        definitions_add(world->definitions, &body.geometry);
+        assert_null(definitions_find(world->definitions, &body.view.handle));
+        definitions_add(world->definitions, &body.view);
         if (i % 2 == 0)
-            definitions_add(world->definitions, &body.geometry);
+            definitions_add(world->definitions, &body.view);
         assert_found(world, &body);
     }
-    const struct geometry *first, *again;
+    const struct body_view *first, *again;
     make_body(world, 1, &body);
-    first = definitions_find(world->definitions, &body.handle);
-    definitions_add(world->definitions, &body.geometry);
-    again = definitions_find(world->definitions, &body.handle);
+    first = definitions_find(world->definitions, &body.view.handle);
+    definitions_add(world->definitions, &body.view);
+    again = definitions_find(world->definitions, &body.view.handle);
     assert_ptr_equal(first, again);
     for (int i = 0; i < COUNT; i++) {
         make_body(world, i + 1, &body);
@@ -89,22 +89,19 @@ static void bodies_of_a_pair_are_defined(void **state)
 {
     struct world *world = *state;
     struct body whole, named;
-    unsigned char none[GEOMETRY_NONE_BYTES];
     make_body(world, 1, &whole);
     make_body(world, 2, &named);
-    geometry_write_none(3, none);
     const struct pair_query query = {
         .duration = 1,
-        .placement = {place(&whole),
-                      {.handle = named.handle, .dim = 3, .geometry = {none, sizeof none}}}};
+        .placement = {place(&whole), {.body = geometry_named(3, &named.view.handle)}}};
     const uint32_t size = (uint32_t) wire_write_pair_query(&query, world->bytes);
     assert_null(definitions_add_message(world->definitions, LOG_PAIR_QUERY, world->bytes, size));
     assert_found(world, &whole);
-    assert_null(definitions_find(world->definitions, &named.handle));
-    struct placement anonymous = place(&named);
-    anonymous.body_id = 0;
+    assert_null(definitions_find(world->definitions, &named.view.handle));
+    struct query_placement anonymous = place(&named);
+    anonymous.placed.id = 0;
     assert_false(definitions_add_placement(world->definitions, &anonymous));
-    assert_null(definitions_find(world->definitions, &named.handle));
+    assert_null(definitions_find(world->definitions, &named.view.handle));
     assert_non_null(
         definitions_add_message(world->definitions, LOG_PAIR_QUERY, world->bytes, size - 1));
     assert_non_null(
@@ -136,13 +133,12 @@ static void bodies_of_a_definition_are_defined(void **state)
     struct body body;
     make_body(world, 1, &body);
     definition->body_count = 1;
-    definition->body[0].handle = body.handle;
-    definition->body[0].geometry = body.geometry;
+    definition->body[0] = body.view;
     const uint32_t size = (uint32_t) wire_write_definition(definition, world->bytes);
     world->bytes[size - 1] ^= 1;
     assert_non_null(
         definitions_add_message(world->definitions, LOG_DEFINITION, world->bytes, size));
-    assert_null(definitions_find(world->definitions, &body.handle));
+    assert_null(definitions_find(world->definitions, &body.view.handle));
     world->bytes[size - 1] ^= 1;
     assert_null(definitions_add_message(world->definitions, LOG_DEFINITION, world->bytes, size));
     assert_found(world, &body);

@@ -205,9 +205,8 @@ static void reads_vertices_groups_and_labels(void **state)
     assert_string_equal(scene.scene.label, "shelf \xe2\x82\xac");
     const struct fmb_frame *tetrahedron = fmb_body_frame(scene.scene.placements[0].body, 0);
     assert_int_equal(tetrahedron->shape, FMB_TETRAHEDRON);
-    assert_true(scene.given[0].by_vertices);
     assert_true(tetrahedron->component[0][0] == 1e16 && tetrahedron->remainder[0][0] == -0.1);
-    assert_true(signbit(scene.given[0].origin[1]));
+    assert_true(signbit(tetrahedron->origin[1]));
     assert_true(scene.scene.placements[0].position[0] == 1);
     assert_int_equal(scene.scene.placements[1].body->frame_count, 2);
     assert_int_equal(scene.scene.placements[0].group, -7);

@@ -215,7 +215,7 @@ static bool is_chosen(const struct log_choice *choice, const struct log_event *e
     int32_t count;
     if (!read_query(event, &query))
         return in_time && choice->body_count == 0;
-    const struct placement *placement = logged_query_placements(&query, &count);
+    const struct query_placement *placement = logged_query_placements(&query, &count);
     return in_time && log_choice_has_body(choice, placement, count);
 }
 

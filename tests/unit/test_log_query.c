@@ -356,16 +356,12 @@ static void equal_ids(void **state)
 static unsigned char geometry_bytes[GEOMETRY_FRAME_BYTES_MAX];
 
 /* One body with these components, at rest at the origin. */
-static struct placement place(int64_t id, const double *components)
+static struct query_placement place(int64_t id, const double *components)
 {
-    struct geometry_frame frame = {.shape = FMB_CUBOID};
+    struct plain_frame frame = {.shape = FMB_CUBOID};
     memcpy(frame.components, components, 9 * sizeof *components);
-    return (struct placement){
-        .body_id = id,
-        .dim = 3,
-        .frame_count = 1,
-        .number_count = 12,
-        .geometry = {geometry_bytes, geometry_write(3, &frame, geometry_bytes)}};
+    return (struct query_placement){.placed.id = id,
+                                    .body = geometry_write(3, &frame, geometry_bytes)};
 }
 
 /* Placements of unit cubes with these ids. */
@@ -435,10 +431,10 @@ static void numbers_read_back_as_the_same_bits(void **state)
                                       1e23, 0.1,    -2.5e-17, 9007199254740993.0};
     const int64_t ids[] = {1, 2};
     set_placements(ids, 2);
-    struct placement *placement = &found.query.scene.placement[1];
+    struct query_placement *placement = &found.query.scene.placement[1];
     *placement = place(2, numbers);
-    memcpy(placement->position, numbers, 3 * sizeof *numbers);
-    memcpy(placement->velocity, numbers + 3, 3 * sizeof *numbers);
+    memcpy(placement->placed.position, numbers, 3 * sizeof *numbers);
+    memcpy(placement->placed.velocity, numbers + 3, 3 * sizeof *numbers);
     placement->velocity_count = 3;
     found.query.scene.placement_count = 1;
     found.query.scene.placement[0] = *placement;
@@ -457,26 +453,32 @@ static void names_groups_and_vertices_are_kept(void **state)
 {
     static unsigned char bytes[3][GEOMETRY_FRAME_BYTES_MAX];
     const int64_t ids[] = {1, 2, 3};
-    const struct geometry_frame face = {.shape = FMB_FACE,
-                                        .by_vertices = true,
-                                        .origin = {0.1, -0.0, 0},
-                                        .components = {1e16, 0, 0, 0, 1, 3}};
+    const struct plain_frame face = {.shape = FMB_FACE,
+                                     .by_vertices = true,
+                                     .origin = {0.1, -0.0, 0},
+                                     .components = {1e16, 0, 0, 0, 1, 3}};
     set_placements(ids, 3);
     struct scene_query *query = &found.query.scene;
     query->label = "shelf \xe2\x82\xac";
     for (int i = 0; i < 3; i++) {
-        query->placement[i] = (struct placement){.body_id = i + 1, .dim = 3, .frame_count = 1};
-        query->placement[i].geometry =
-            (struct geometry){bytes[i], geometry_write(3, &face, bytes[i])};
+        query->placement[i] =
+            (struct query_placement){.placed.id = i + 1, .body.dim = 3, .body.frame_count = 1};
+        query->placement[i].body = geometry_write(3, &face, bytes[i]);
     }
-    query->placement[0].name = "arm";
-    query->placement[0].group = query->placement[2].group = INT64_C(-4);
+    query->placement[0].placed.name = "arm";
+    query->placement[0].placed.group = query->placement[2].placed.group = INT64_C(-4);
     struct owned_scene scene = scene_of_found();
     assert_string_equal(scene.scene.label, query->label);
     assert_string_equal(scene.scene.placements[0].name, "arm");
     assert_int_equal(scene.scene.placements[2].group, -4);
     assert_int_equal(scene_count_pairs(&scene), 2);
-    assert_memory_equal(&scene.given[1], &face, sizeof face);
+    double numbers[FMB_FRAME_NUMBERS_MAX];
+    bool by_vertices;
+    assert_int_equal(
+        fmb_frame_numbers(fmb_body_frame(scene.scene.placements[1].body, 0), &by_vertices, numbers),
+        9);
+    assert_memory_equal(numbers, face.origin, sizeof face.origin);
+    assert_memory_equal(numbers + (by_vertices ? 3 : 0), face.components, sizeof *numbers);
     scene_clear(&scene);
     query->label = "a\nb";
     scene = scene_of_found();

@@ -95,49 +95,43 @@ static int count_of(const char *text, const char *part)
 /* Geometries last until as many others have been made. */
 enum { BODIES_MAX = QUERY_PLACEMENTS_MAX + 10 };
 
-static struct geometry encode(int dim, const struct geometry_frame *frame)
+static struct body_view encode(int dim, const struct plain_frame *frame)
 {
     static unsigned char bytes[BODIES_MAX][GEOMETRY_FRAME_BYTES_MAX];
     static int next;
     unsigned char *to = bytes[next++ % BODIES_MAX];
-    return (struct geometry){to, geometry_write(dim, frame, to)};
+    return geometry_write(dim, frame, to);
 }
 
-static struct geometry_frame cuboid(int dim, double size)
+static struct plain_frame cuboid(int dim, double size)
 {
-    struct geometry_frame frame = {.shape = FMB_CUBOID};
+    struct plain_frame frame = {.shape = FMB_CUBOID};
     for (int i = 0; i < dim; i++)
         frame.components[i * dim + i] = size;
     return frame;
 }
 
-static struct placement place(int64_t id, int dim, const struct geometry_frame *frame, double at)
+static struct query_placement place(int64_t id, int dim, const struct plain_frame *frame, double at)
 {
-    struct placement out = {.body_id = id,
-                            .dim = dim,
-                            .frame_count = 1,
-                            .number_count = dim + dim * dim,
-                            .geometry = encode(dim, frame)};
+    struct query_placement out = {.placed.id = id, .body = encode(dim, frame)};
     for (int i = 0; i < dim; i++)
-        out.position[i] = at;
+        out.placed.position[i] = at;
     return out;
 }
 
-static struct placement make_body(int64_t id, int dim, double size, double at)
+static struct query_placement make_body(int64_t id, int dim, double size, double at)
 {
-    const struct geometry_frame frame = cuboid(dim, size);
+    const struct plain_frame frame = cuboid(dim, size);
     return place(id, dim, &frame, at);
 }
 
 /* As a placement by handle that the log does not define. */
-static struct placement make_undefined(int64_t id, int dim)
+static struct query_placement make_undefined(int64_t id, int dim)
 {
-    static unsigned char none[GEOMETRY_NONE_BYTES];
-    struct placement out = {.body_id = id, .dim = dim, .geometry = {none, sizeof none}};
-    geometry_write_none(dim, none);
+    struct handle handle;
     for (int i = 0; i < HANDLE_BYTES; i++)
-        out.handle.bytes[i] = (unsigned char) (0xf7 + i);
-    return out;
+        handle.bytes[i] = (unsigned char) (0xf7 + i);
+    return (struct query_placement){.placed.id = id, .body = geometry_named(dim, &handle)};
 }
 
 static struct pair_query pair_query(int dim)
@@ -306,7 +300,7 @@ static void make_large_scene(int step)
     scene.which = FMB_PAIRS_ALL;
     scene.placement_count = QUERY_PLACEMENTS_MAX;
     for (int i = 0; i < QUERY_PLACEMENTS_MAX; i++) {
-        struct geometry_frame frame = {.shape = FMB_CUBOID};
+        struct plain_frame frame = {.shape = FMB_CUBOID};
         for (int k = 0; k < 9; k++)
             frame.components[k] = (1e14 + 9 * (step * QUERY_PLACEMENTS_MAX + i) + k) / 1e14;
         scene.placement[i] = place(i + 1, 3, &frame, i);
@@ -357,8 +351,8 @@ static void shapes_are_kept_once(void **state)
         query.placement[0] = make_body(1, 2, 1 + i % 100, i);
         query.placement[1] = make_body(2, 3, 1 + i % 100, i);
         query.placement[1].velocity_count = 3;
-        memcpy(query.placement[1].velocity, query.placement[1].position,
-               sizeof query.placement[1].velocity);
+        memcpy(query.placement[1].placed.velocity, query.placement[1].placed.position,
+               sizeof query.placement[1].placed.velocity);
         page_take(page, &replayed);
     }
     cJSON *data = data_of(page);
@@ -372,12 +366,9 @@ static void shapes_are_kept_once(void **state)
 }
 
 /* Replay adds the geometry to placements by handle where the log defines it. */
-static void bodies_by_handle_are_shown_where_they_are_defined(void **state)
+static void bodies_by_handle_that_are_not_defined_are_named(void **state)
 {
     struct pair_query query = pair_query(2);
-    query.placement[0].handle = query.placement[1].handle = make_undefined(0, 2).handle;
-    query.placement[0].number_count = query.placement[1].number_count = 0;
-    expect_placements(&query, "[[1,0,[0,0],[],[]],[2,0,[0.5,0.5],[],[]]]");
     query.placement[1] = make_undefined(2, 2);
     expect_placements(&query, "[[1,0,[0,0],[],[]],[2,-1,\"f7f8f9fafbfcfdfeff00010203040506\"]]");
 }
@@ -385,15 +376,13 @@ static void bodies_by_handle_are_shown_where_they_are_defined(void **state)
 static void bodies_have_frames_and_poses(void **state)
 {
     static unsigned char bytes[2 * GEOMETRY_FRAME_BYTES_MAX];
-    struct geometry_frame frames[2] = {cuboid(2, 1), {.shape = FMB_BOX, .components = {2, 3}}};
+    struct plain_frame frames[2] = {cuboid(2, 1), {.shape = FMB_BOX, .components = {2, 3}}};
     struct pair_query query = pair_query(2);
     frames[0].origin[0] = 0.25;
-    query.placement[0].geometry =
-        (struct geometry){bytes, geometry_write_frames(2, frames, 2, bytes)};
-    query.placement[0].frame_count = 2;
-    query.placement[0].orientation_count = 2;
-    query.placement[0].orientation[0] = 1;
-    query.placement[0].orientation[1] = -2;
+    query.placement[0].body = geometry_write_frames(2, frames, 2, bytes);
+    query.placement[0].placed.orientation_count = 2;
+    query.placement[0].placed.orientation[0] = 1;
+    query.placement[0].placed.orientation[1] = -2;
     const struct replayed replayed = of_pair(&query, NULL, NULL, REPLAY_UNDEFINED);
     cJSON *data = data_of_one(&replayed);
     expect_json(member(event_at(data, 0), "frames"),
@@ -406,34 +395,36 @@ static void bodies_have_frames_and_poses(void **state)
 
 static void bodies_that_cannot_be_drawn_are_named(void **state)
 {
-    struct geometry_frame frame = cuboid(3, 1);
+    struct plain_frame frame = cuboid(3, 1);
     static unsigned char other_shape[GEOMETRY_FRAME_BYTES_MAX];
-    struct placement bad[14];
+    struct query_placement bad[14];
     for (int i = 0; i < 14; i++)
         bad[i] = make_body(9, 3, 1, 0);
     frame.components[8] = NAN;
-    bad[0].geometry = encode(3, &frame);
-    bad[1].position[0] = -INFINITY;
-    bad[2].dim = 2;
-    bad[3].dim = 4;
-    bad[4].frame_count = 0;
+    bad[0].body = encode(3, &frame);
+    bad[1].placed.position[0] = -INFINITY;
+    bad[2].body.dim = 2;
+    bad[3].body.dim = 4;
+    bad[4].body.frame_count = 0;
     bad[5].velocity_count = 2;
-    bad[6].orientation_count = 4;
+    bad[6].placed.orientation_count = 4;
     bad[7].velocity_count = 3;
-    bad[7].velocity[2] = INFINITY;
+    bad[7].placed.velocity[2] = INFINITY;
     bad[8] = make_undefined(9, 3);
-    memset(&bad[8].handle, 0, sizeof bad[8].handle);
-    bad[9].orientation_count = 2;
-    memcpy(other_shape, bad[10].geometry.bytes, bad[10].geometry.size);
+    memset(&bad[8].body.handle, 0, sizeof bad[8].body.handle);
+    bad[9].placed.orientation_count = 2;
+    memcpy(other_shape, bad[10].body.bytes, bad[10].body.size);
     other_shape[8] = 17;
-    bad[10].geometry.bytes = other_shape;
-    bad[11].position[2] = NAN;
+    bad[10].body.bytes = other_shape;
+    bad[11].placed.position[2] = NAN;
     static unsigned char
         longer[GEOMETRY_FRAME_BYTES_MAX + 8]; /* a number more than the frame has */
-    const size_t size = bad[12].geometry.size;
-    memcpy(longer, bad[12].geometry.bytes, size);
+    const size_t size = bad[12].body.size;
+    memcpy(longer, bad[12].body.bytes, size);
     longer[12]++;
-    bad[12].geometry = (struct geometry){longer, size + 8};
+    bad[12].body.number_count++;
+    bad[12].body.bytes = longer;
+    bad[12].body.size = size + 8;
     bad[13].velocity_count = 1;
     for (int i = 0; i < 14; i += 2) {
         const struct pair_query query = {.placement = {bad[i], bad[i + 1]}};
@@ -757,8 +748,9 @@ static void ignored_pairs_are_not_counted(void **state)
     replayed_count(&scene, &result_then, count);
     assert_int_equal(count[FMB_SEPARATED], 2);
     assert_int_equal(count[FMB_TOUCHING], 1);
-    scene.placement[0].group = scene.placement[2].group = 7;
-    scene.placement[3].group = scene.placement[4].group = -7; /* after the last pair */
+    scene.placement[0].placed.group = scene.placement[2].placed.group = 7;
+    scene.placement[3].placed.group = scene.placement[4].placed.group =
+        -7; /* after the last pair */
     assert_int_equal(replayed_decided(&scene, &result_then), 2);
     result_then.status = FMB_BUSY;
     assert_int_equal(replayed_decided(&scene, &result_then), 0);
@@ -836,7 +828,7 @@ int main(void)
         cmocka_unit_test(differences_count_towards_the_limit),
         cmocka_unit_test(beyond_the_byte_limit_only_differences_are_kept),
         cmocka_unit_test(shapes_are_kept_once),
-        cmocka_unit_test(bodies_by_handle_are_shown_where_they_are_defined),
+        cmocka_unit_test(bodies_by_handle_that_are_not_defined_are_named),
         cmocka_unit_test(bodies_have_frames_and_poses),
         cmocka_unit_test(bodies_that_cannot_be_drawn_are_named),
         cmocka_unit_test(a_scene_has_all_its_placements),

@@ -58,37 +58,29 @@ static int tear_down(void **state)
 
 /* A unit cube or square at x = at, y = z = 0, which moves along x where speed is not 0; flat: its
  * first component is 0. What the placements of a test point to stays. */
-static struct placement placed(int64_t id, int dim, double at, double speed, bool flat)
+static struct query_placement placed(int64_t id, int dim, double at, double speed, bool flat)
 {
     static unsigned char bytes[2][2][GEOMETRY_FRAME_BYTES_MAX];
     unsigned char *geometry = bytes[dim - 2][flat];
-    struct geometry_frame frame = {.shape = FMB_CUBOID};
+    struct plain_frame frame = {.shape = FMB_CUBOID};
     for (int i = flat; i < dim; i++)
         frame.components[i * dim + i] = 1;
-    return (struct placement){.body_id = id,
-                              .dim = dim,
-                              .frame_count = 1,
-                              .number_count = dim * (dim + 1),
-                              .geometry = {geometry, geometry_write(dim, &frame, geometry)},
-                              .position = {at},
-                              .velocity_count = speed != 0 ? dim : 0,
-                              .velocity = {speed}};
+    return (struct query_placement){.placed.id = id,
+                                    .body = geometry_write(dim, &frame, geometry),
+                                    .placed.position = {at},
+                                    .velocity_count = speed != 0 ? dim : 0,
+                                    .placed.velocity = {speed}};
 }
 
-static struct placement frame(int64_t id, int dim, double at, double speed)
+static struct query_placement frame(int64_t id, int dim, double at, double speed)
 {
     return placed(id, dim, at, speed, false);
 }
 
 /* By a handle that is not held. */
-static void make_unknown(struct placement *placement)
+static void make_unknown(struct query_placement *placement)
 {
-    static unsigned char bytes[2][GEOMETRY_NONE_BYTES];
-    unsigned char *none = bytes[placement->dim - 2];
-    geometry_write_none(placement->dim, none);
-    placement->geometry = (struct geometry){none, GEOMETRY_NONE_BYTES};
-    placement->frame_count = placement->number_count = 0;
-    placement->handle.bytes[0] = 77;
+    placement->body = geometry_named(placement->body.dim, &(struct handle){{77}});
 }
 
 static struct pair_query pair(int dim, double at, double speed, int32_t want)
@@ -438,7 +430,7 @@ static int number_of(const unsigned pair_of[2], int from, int count)
 static void put_plain(const struct scene_result *result, int i, int *contact, struct plain *out)
 {
     *out = (struct plain){.there = true, .verdict = result->verdict[i]};
-    out->has_gap = result->has_gaps && result->dim == scene.placement[0].dim &&
+    out->has_gap = result->has_gaps && result->dim == scene.placement[0].body.dim &&
                    !isnan(result->gap[i].bounds[0]);
     if (out->has_gap)
         out->gap = result->gap[i];
@@ -449,7 +441,7 @@ static void put_plain(const struct scene_result *result, int i, int *contact, st
         out->has_times = true;
         memcpy(out->times, &result->times[2 * at], sizeof out->times);
     }
-    if (result->has_boxes && result->dim == scene.placement[0].dim) {
+    if (result->has_boxes && result->dim == scene.placement[0].body.dim) {
         out->has_box = true;
         memcpy(out->box, &result->boxes[2 * result->dim * at],
                2 * (size_t) result->dim * sizeof(double));
@@ -501,7 +493,7 @@ static void check_differences(int total)
         assert_false(difference->whole);
         for (int f = 0; f < 2; f++) {
             assert_int_equal(difference->placement[f], requested[i][f]);
-            assert_int_equal(difference->body_id[f], scene.placement[requested[i][f]].body_id);
+            assert_int_equal(difference->body_id[f], scene.placement[requested[i][f]].placed.id);
         }
         assert_int_equal(difference->then.answer.verdict, plain_then[i].verdict);
         assert_int_equal(difference->now.answer.verdict, plain_now[i].verdict);
@@ -846,7 +838,7 @@ static void scenes_whose_bytes_are_the_same(void **state)
             if (draw(2))
                 make_unknown(&scene.placement[0]);
             else
-                scene.placement[0].handle.bytes[0] = 77;
+                scene.placement[0].body.handle.bytes[0] = 77;
         }
         answer_now();
         for (size_t at = 0; at < now_size; at++) {

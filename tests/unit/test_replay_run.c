@@ -75,46 +75,38 @@ static int64_t outcome(const struct replay_report *report, enum replay_outcome w
 static struct hasher *hasher;
 
 /* A cuboid with edges of this length. What the placements of a test point to stays. */
-static struct geometry geometry(double edge)
+static struct body_view geometry(double edge)
 {
     enum { KEPT = 4096 };
     static unsigned char bytes[KEPT][GEOMETRY_FRAME_BYTES_MAX];
     static int next;
-    struct geometry_frame frame = {.shape = FMB_CUBOID};
+    struct plain_frame frame = {.shape = FMB_CUBOID};
     for (int i = 0; i < 3; i++)
         frame.components[4 * i] = edge;
     next = (next + 1) % KEPT;
-    return (struct geometry){bytes[next], geometry_write(3, &frame, bytes[next])};
+    return geometry_write(3, &frame, bytes[next]);
 }
 
 static struct handle handle(double edge)
 {
-    const struct geometry of = geometry(edge);
+    const struct body_view of = geometry(edge);
     return hasher_handle(hasher, of.bytes, of.size);
 }
 
-static struct placement whole(int64_t id, double edge, double at)
+static struct query_placement whole(int64_t id, double edge, double at)
 {
-    return (struct placement){.body_id = id,
-                              .dim = 3,
-                              .frame_count = 1,
-                              .number_count = 12,
-                              .geometry = geometry(edge),
-                              .position = {at}};
+    return (struct query_placement){
+        .placed.id = id, .body = geometry(edge), .placed.position = {at}};
 }
 
-static struct placement by_handle(int64_t id, double edge, double at)
+static struct query_placement by_handle(int64_t id, double edge, double at)
 {
-    static unsigned char none[GEOMETRY_NONE_BYTES];
-    geometry_write_none(3, none);
-    return (struct placement){.body_id = id,
-                              .dim = 3,
-                              .handle = handle(edge),
-                              .geometry = {none, sizeof none},
-                              .position = {at}};
+    const struct handle of = handle(edge);
+    return (struct query_placement){
+        .placed.id = id, .body = geometry_named(3, &of), .placed.position = {at}};
 }
 
-static struct pair_query pair(int64_t number, struct placement a, struct placement b)
+static struct pair_query pair(int64_t number, struct query_placement a, struct query_placement b)
 {
     return (struct pair_query){
         .utime = 5, .client_id = 7, .sequence_number = number, .duration = 1, .placement = {a, b}};
@@ -139,23 +131,25 @@ static void log_definition(int64_t utime, const double *edges)
     static unsigned char bytes[QUERY_BYTES_MAX];
     static struct definition definition;
     memset(&definition, 0, sizeof definition);
-    for (; *edges > 0; edges++)
-        definition.body[definition.body_count++] =
-            (struct query_body){handle(*edges), geometry(*edges)};
+    for (; *edges > 0; edges++) {
+        struct body_view *body = &definition.body[definition.body_count++];
+        *body = geometry(*edges);
+        body->handle = handle(*edges);
+    }
     log_draft_event(&recorded, WIRE_DEFINITION, utime, bytes,
                     wire_write_definition(&definition, bytes));
 }
 
-static double edge_of(const struct placement *placement)
+static double edge_of(const struct query_placement *placement)
 {
-    struct geometry_frame frame;
-    for (double edge = 0.25; placement_by_handle(placement); edge += 0.25) {
+    struct plain_frame frame;
+    for (double edge = 0.25; query_by_handle(placement); edge += 0.25) {
         const struct handle of = handle(edge);
-        if (handle_equal(&of, &placement->handle))
+        if (handle_equal(&of, &placement->body.handle))
             return edge;
     }
-    struct geometry_reader reader = geometry_begin(&placement->geometry);
-    assert_true(geometry_next(&reader, &frame));
+    struct geometry_reader reader = geometry_begin(&placement->body);
+    assert_true(geometry_read(&reader, &frame));
     return frame.components[0];
 }
 
@@ -170,15 +164,16 @@ static struct pair_result result_of(const struct pair_query *query)
                                  .compute_ns = 1000};
     double end[2];
     for (int f = 0; f < 2; f++) {
-        const struct placement *one = &query->placement[f];
+        const struct query_placement *one = &query->placement[f];
         const double edge = edge_of(one);
-        result.body_id[f] = one->body_id;
-        if (one->body_id && !placement_by_handle(one))
+        result.body_id[f] = one->placed.id;
+        if (one->placed.id && !query_by_handle(one))
             result.handle[f] = handle(edge);
-        end[f] = one->position[0] + edge;
+        end[f] = one->placed.position[0] + edge;
     }
-    const double gap = fmax(query->placement[0].position[0], query->placement[1].position[0]) -
-                       fmin(end[0], end[1]);
+    const double gap =
+        fmax(query->placement[0].placed.position[0], query->placement[1].placed.position[0]) -
+        fmin(end[0], end[1]);
     result.answer.verdict = gap > 0 ? FMB_SEPARATED : gap < 0 ? FMB_OVERLAPPING : FMB_TOUCHING;
     result.answer.has_contact = gap <= 0;
     result.answer.contact[1] = gap <= 0 ? query->duration : 0;
@@ -674,11 +669,11 @@ static void end_world(void)
     answerer_destroy(world.answerer);
 }
 
-static struct placement draw_placement(int client)
+static struct query_placement draw_placement(int client)
 {
     const int id = (int) draw(BODIES + 1);
     const double at = 0.5 * (double) draw(8);
-    struct placement out;
+    struct query_placement out;
     if (id && world.body[client][id].held && draw(10) < 6) {
         out = by_handle(id, world.body[client][id].edge, at);
     } else {
@@ -690,16 +685,16 @@ static struct placement draw_placement(int client)
         world.body[client][id].held = false;
     }
     out.velocity_count = draw(3) ? 0 : 3;
-    out.velocity[0] = out.velocity_count ? -1 : 0;
+    out.placed.velocity[0] = out.velocity_count ? -1 : 0;
     return out;
 }
 
-static void learn_status(int client, const struct placement *placement, int32_t status)
+static void learn_status(int client, const struct query_placement *placement, int32_t status)
 {
-    if (placement->body_id)
-        world.body[client][placement->body_id].held =
+    if (placement->placed.id)
+        world.body[client][placement->placed.id].held =
             status == FMB_OK ||
-            (status != FMB_UNKNOWN_BODY && world.body[client][placement->body_id].held);
+            (status != FMB_UNKNOWN_BODY && world.body[client][placement->placed.id].held);
 }
 
 static void delay(int64_t at, bool scene, const unsigned char *bytes, size_t size)

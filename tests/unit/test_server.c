@@ -13,7 +13,7 @@ static void a_query_gets_one_result(void **state)
 {
     struct pair_query query = service_pair(21, 1);
     query.want = FMB_WANT_BOX;
-    query.placement[1].position[0] = 0.25;
+    query.placement[1].placed.position[0] = 0.25;
     service.tick_ns = 100;
     service_send_pair(&query);
     service_settle();
@@ -33,7 +33,7 @@ static void certificates_are_given_where_wanted(void **state)
     const char *const begin[] = {"overlapping", "touching", "separated"};
     struct pair_query query = service_pair(21, 1);
     for (int i = 0; i < 3; i++) {
-        query.placement[1].position[0] = distance[i];
+        query.placement[1].placed.position[0] = distance[i];
         query.want = FMB_WANT_BOX;
         service_send_pair(&query);
         service_settle();
@@ -50,8 +50,8 @@ static void certificates_are_given_where_wanted(void **state)
 static void definitions_are_given(void **state)
 {
     struct pair_query query = service_pair(21, 1);
-    query.placement[0].body_id = 1;
-    query.placement[1].body_id = 2; /* of the same geometry */
+    query.placement[0].placed.id = 1;
+    query.placement[1].placed.id = 2; /* of the same geometry */
     service_send_pair(&query);
     service_query_definitions(22, 5);
     service_settle();
@@ -65,8 +65,8 @@ static void definitions_are_given(void **state)
 static void the_heartbeat_counts_the_work(void **state)
 {
     struct pair_query query = service_pair(21, 1);
-    query.placement[0].body_id = 1;
-    query.placement[1].body_id = 2;
+    query.placement[0].placed.id = 1;
+    query.placement[1].placed.id = 2;
     service.tick_ns = 10;
     service_send_pair(&query);
     service_send_pair(&query);
@@ -110,7 +110,7 @@ static void undecided_pairs_are_not_counted(void **state)
     static struct scene_query scene;
     static unsigned char bytes[QUERY_BYTES_MAX];
     const struct pair_query pair = service_pair(21, 1);
-    const struct geometry_frame flat = {.shape = FMB_CUBOID, .components = {1, 0, 0, 0}};
+    const struct plain_frame flat = {.shape = FMB_CUBOID, .components = {1, 0, 0, 0}};
     unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX];
     scene = (struct scene_query){.client_id = 21,
                                  .duration = 1,
@@ -121,7 +121,7 @@ static void undecided_pairs_are_not_counted(void **state)
                                  .index_count = 4,
                                  .pair = {{0, 1}, {1, 2}}};
     scene.placement[2] = pair.placement[1];
-    scene.placement[2].geometry = (struct geometry){geometry, geometry_write(2, &flat, geometry)};
+    scene.placement[2].body = geometry_write(2, &flat, geometry);
     service_receive(SERVER_SCENES, bytes, wire_write_scene_query(&scene, bytes));
     service_settle();
     assert_int_equal(service.result[0].end_pair, 2);
@@ -140,8 +140,8 @@ static struct scene_query *squares(int32_t which, int32_t placements, int32_t sp
                                  .split = split};
     for (int32_t i = 0; i < placements; i++) {
         scene.placement[i] = pair.placement[0];
-        scene.placement[i].position[0] = 3 * (i % 10);
-        scene.placement[i].position[1] = 3 * (i / 10);
+        scene.placement[i].placed.position[0] = 3 * (i % 10);
+        scene.placement[i].placed.position[1] = 3 * (i / 10);
     }
     return &scene;
 }
@@ -178,9 +178,9 @@ static void ignored_pairs_are_not_counted(void **state)
     scene->first_pair = 3;
     assert_int_equal(pairs_counted(scene), 0);
     scene->first_pair = 0;
-    scene->placement[0].group = scene->placement[2].group = 5;
+    scene->placement[0].placed.group = scene->placement[2].placed.group = 5;
     assert_int_equal(pairs_counted(scene), 0);
-    scene->placement[2].group = -5;
+    scene->placement[2].placed.group = -5;
     ignore(scene, 0, 2);
     assert_int_equal(pairs_counted(scene), 0);
 

@@ -701,11 +701,11 @@ static void long_jobs_do_not_keep_short_ones_waiting(void **state)
 
 /* Cuboids so flat that each inverse requires exact arithmetic. */
 enum { FLAT_MOST = 640 };
-static const struct geometry_frame *flat_cuboids(void)
+static const struct plain_frame *flat_cuboids(void)
 {
-    static struct geometry_frame frame[FLAT_MOST];
+    static struct plain_frame frame[FLAT_MOST];
     for (int i = 0; i < FLAT_MOST; i++)
-        frame[i] = (struct geometry_frame){
+        frame[i] = (struct plain_frame){
             .shape = FMB_CUBOID,
             .origin = {3.0 * i},
             .components = {1, 0.3, 0.2, 0.1, 1, 0.7, 1.1, 1.3, 0.9 + 1e-15 * (1 + i % 3)}};
@@ -714,19 +714,16 @@ static const struct geometry_frame *flat_cuboids(void)
 
 /* Places `count` bodies of `frames` flat cuboids each. id: of the first body; 0: they are
  * anonymous. */
-static void place_flat_bodies(int count, int frames, int64_t id, struct placement *out)
+static void place_flat_bodies(int count, int frames, int64_t id, struct query_placement *out)
 {
     static unsigned char geometry[FLAT_MOST * (GEOMETRY_NONE_BYTES + GEOMETRY_FRAME_BYTES_MAX)];
     unsigned char *at = geometry;
     for (int i = 0; i < count; i++) {
-        const size_t size =
-            geometry_write_frames(3, flat_cuboids() + i % (FLAT_MOST / frames), frames, at);
-        out[i] = (struct placement){.body_id = id ? id + i : 0,
-                                    .dim = 3,
-                                    .frame_count = frames,
-                                    .number_count = 12 * frames,
-                                    .geometry = {at, size}};
-        at += size;
+        out[i] =
+            (struct query_placement){.placed.id = id ? id + i : 0,
+                                     .body = geometry_write_frames(
+                                         3, flat_cuboids() + i % (FLAT_MOST / frames), frames, at)};
+        at += out[i].body.size;
     }
 }
 
@@ -747,7 +744,7 @@ static void send_flat_pair(int64_t client, int64_t number, int frames, int64_t i
 {
     struct pair_query query = {.client_id = client, .sequence_number = number};
     place_flat_bodies(2, frames, id, query.placement);
-    query.placement[1].position[1] = 100;
+    query.placement[1].placed.position[1] = 100;
     service_send_pair(&query);
 }
 

@@ -81,14 +81,14 @@ static void long_lists_are_read(void **state)
     struct pair_query query;
     assert_true(size > 0);
     assert_null(wire_read_pair_query(bytes, (uint32_t) size, &query));
-    assert_int_equal(query.placement[0].dim, 500);
-    assert_int_equal(query.placement[0].frame_count, 300);
-    assert_int_equal(query.placement[0].count_count, 200);
-    assert_int_equal(query.placement[0].number_count, 100);
-    assert_int_equal(query.placement[0].orientation_count, 70);
+    assert_int_equal(query.placement[0].body.dim, 500);
+    assert_int_equal(query.placement[0].body.frame_count, 300);
+    assert_int_equal(query.placement[0].body.count_count, 200);
+    assert_int_equal(query.placement[0].body.number_count, 100);
+    assert_int_equal(query.placement[0].placed.orientation_count, 70);
     assert_int_equal(query.placement[0].velocity_count, 10);
-    assert_int_equal(query.placement[0].geometry.size, 4 + 4 + 300 + 4 + 800 + 4 + 800);
-    assert_int_equal(query.placement[1].dim, 0);
+    assert_int_equal(query.placement[0].body.size, 4 + 4 + 300 + 4 + 800 + 4 + 800);
+    assert_int_equal(query.placement[1].body.dim, 0);
 }
 
 /* ---- Geometries and handles ---- */
@@ -99,16 +99,16 @@ static void geometries_are_read_back(void **state)
         for (int code = 1; code <= 7; code++) {
             const int shape = geometry_shape(code).shape;
             unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
-            struct geometry_frame read;
+            struct plain_frame read;
             if (geometry_number_count(dim, shape, 0) == 0)
                 continue;
-            struct geometry_frame frame = sample_frame(dim, shape);
+            struct plain_frame frame = sample_frame(dim, shape);
             frame.by_vertices = geometry_shape(code).by_vertices;
-            const struct geometry geometry = {bytes, geometry_write(dim, &frame, bytes)};
+            const struct body_view geometry = geometry_write(dim, &frame, bytes);
             assert_int_equal(geometry.size, geometry_size(dim, &frame, 1));
             struct geometry_reader reader = geometry_begin(&geometry);
             assert_int_equal(reader.dim, dim);
-            assert_true(geometry_next(&reader, &read));
+            assert_true(geometry_read(&reader, &read));
             assert_memory_equal(&frame, &read, sizeof frame);
         }
 }
@@ -131,7 +131,7 @@ static void shapes_have_their_count_of_numbers(void **state)
 /* As many frames as a message has space for, of all shapes. */
 static void geometries_of_many_frames_are_read_back(void **state)
 {
-    static struct geometry_frame frames[QUERY_FRAMES_MAX];
+    static struct plain_frame frames[QUERY_FRAMES_MAX];
     static unsigned char bytes[QUERY_BYTES_MAX];
     for (int dim = 2; dim <= 3; dim++) {
         int count = 0;
@@ -142,73 +142,82 @@ static void geometries_of_many_frames_are_read_back(void **state)
             size += 1 + 8 * (size_t) geometry_number_count(dim, frames[count].shape, 0);
         }
         count--;
-        const struct geometry geometry = {bytes, geometry_write_frames(dim, frames, count, bytes)};
+        const struct body_view geometry = geometry_write_frames(dim, frames, count, bytes);
         assert_int_equal(geometry.size, geometry_size(dim, frames, count));
         assert_true(geometry.size <= QUERY_BYTES_MAX);
         struct geometry_reader reader = geometry_begin(&geometry);
-        struct geometry_frame read;
+        struct plain_frame read;
         assert_int_equal(reader.dim, dim);
         assert_int_equal(reader.frames_left, count);
         for (int i = 0; i < count; i++) {
-            assert_true(geometry_next(&reader, &read));
+            assert_true(geometry_read(&reader, &read));
             assert_memory_equal(&frames[i], &read, sizeof read);
         }
-        assert_false(geometry_next(&reader, &read));
+        assert_false(geometry_read(&reader, &read));
         assert_int_equal(reader.numbers_left, 0);
     }
 }
 
 /* What no frame is made of is refused, whatever the counts are. */
-static void inconsistent_geometries_have_no_frames(void **state)
+static void inconsistent_bodies_have_no_frames(void **state)
 {
-    unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX], other[GEOMETRY_FRAME_BYTES_MAX];
-    struct geometry_frame frame = {.shape = FMB_CUBOID};
-    const size_t size = geometry_write(3, &frame, bytes);
-    struct geometry geometry = {other, size};
+    unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
+    const struct plain_frame frame = {.shape = FMB_CUBOID};
+    const struct body_view good = geometry_write(3, &frame, bytes);
     const struct {
-        size_t at;
-        unsigned char byte;
-    } changes[] = {{3, 1},   {3, 4},   {0, 0x80}, {8, 0}, {8, 5},
-                   {8, 255}, {16, 11}, {7, 0},    {8, 6}, {8, 7}};
-    for (size_t i = 0; i < COUNT(changes); i++) {
-        memcpy(other, bytes, size);
-        other[changes[i].at] = changes[i].byte;
-        if (changes[i].at == 7) /* no frame: the list of numbers begins a byte earlier */
-            geometry_write_none(3, other);
-        struct geometry_reader reader = geometry_begin(&geometry);
-        assert_false(geometry_next(&reader, &frame));
+        struct body_view body;
+        unsigned char shape;
+    } bodies[] = {{.body.dim = 1},
+                  {.body.dim = 4},
+                  {.body.dim = INT32_MIN},
+                  {.shape = 255},
+                  {.shape = 9},
+                  {.body.number_count = 11},
+                  {.body.frame_count = -1},
+                  {.shape = FMB_HULL},
+                  {.shape = 6},
+                  {.shape = 7}};
+    for (size_t i = 0; i < COUNT(bodies); i++) {
+        struct body_view body = good;
+        struct plain_frame read;
+        bytes[4 + 4] = bodies[i].shape ? bodies[i].shape : FMB_CUBOID;
+        body.dim = bodies[i].body.dim ? bodies[i].body.dim : 3;
+        body.number_count = bodies[i].body.number_count ? bodies[i].body.number_count : 12;
+        struct geometry_reader reader = geometry_begin(&body);
+        reader.frames_left += bodies[i].body.frame_count;
+        assert_false(geometry_read(&reader, &read));
     }
 }
 
 /* A tetrahedron whose count says more or fewer vertices than it has, or that has none. */
 static void a_frame_by_vertices_has_their_count(void **state)
 {
-    struct geometry_frame frame = sample_frame(3, FMB_TETRAHEDRON), read;
+    struct plain_frame frame = sample_frame(3, FMB_TETRAHEDRON), read;
     frame.by_vertices = true;
     unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
-    const struct geometry geometry = {bytes, geometry_write(3, &frame, bytes)};
+    const struct body_view geometry = geometry_write(3, &frame, bytes);
     for (int count = 0; count < 256; count++) {
         bytes[16] = (unsigned char) count;
         struct geometry_reader reader = geometry_begin(&geometry);
-        assert_int_equal(geometry_next(&reader, &read), count == 4);
+        assert_int_equal(geometry_read(&reader, &read), count == 4);
     }
     bytes[16] = 4;
     struct geometry_reader reader = geometry_begin(&geometry);
     reader.counts_left = 0;
-    assert_false(geometry_next(&reader, &read));
+    assert_false(geometry_read(&reader, &read));
 }
 
 /* The second frame has one number less than it needs. */
 static void a_later_frame_that_does_not_fit_ends_the_geometry(void **state)
 {
-    const struct geometry_frame frames[2] = {sample_frame(3, FMB_BOX), sample_frame(3, FMB_FACE)};
+    const struct plain_frame frames[2] = {sample_frame(3, FMB_BOX), sample_frame(3, FMB_FACE)};
     unsigned char bytes[SAMPLE_BYTES_MAX];
-    struct geometry geometry = {bytes, geometry_write_frames(3, frames, 2, bytes)};
-    struct geometry_frame read;
-    bytes[4 + 4 + 2 + 4 + 3]--;
+    struct body_view geometry = geometry_write_frames(3, frames, 2, bytes);
+    struct plain_frame read;
+    geometry.number_count--;
     struct geometry_reader reader = geometry_begin(&geometry);
-    assert_true(geometry_next(&reader, &read));
-    assert_false(geometry_next(&reader, &read));
+    assert_true(geometry_read(&reader, &read));
+    assert_false(geometry_read(&reader, &read));
 }
 
 /* The handle is what any SHA-256 makes of the bytes between handle and position, as lcm-gen's own
@@ -221,8 +230,8 @@ static void handles_are_hashes_of_the_encoding(void **state)
     assert_memory_equal(handle.bytes, abc, sizeof abc);
 
     unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX], encoded[HOSTILE_BYTES_MAX];
-    struct geometry_frame frame = {.shape = FMB_TETRAHEDRON, .components = {1, 0, 0, 1}};
-    const size_t size = geometry_write(2, &frame, bytes);
+    struct plain_frame frame = {.shape = FMB_TETRAHEDRON, .components = {1, 0, 0, 1}};
+    const size_t size = geometry_write(2, &frame, bytes).size;
     uint8_t shapes[1] = {FMB_TETRAHEDRON};
     double numbers[6] = {0, 0, 1, 0, 0, 1};
     fmb_msgs_body_t body = {
@@ -237,8 +246,8 @@ static void handles_distinguish_zeros(void **state)
     unsigned char bytes[2][GEOMETRY_FRAME_BYTES_MAX];
     struct handle handle[2];
     for (int i = 0; i < 2; i++) {
-        struct geometry_frame frame = {.shape = FMB_CUBOID, .components = {1, i ? -0.0 : 0.0}};
-        const size_t size = geometry_write(2, &frame, bytes[i]);
+        struct plain_frame frame = {.shape = FMB_CUBOID, .components = {1, i ? -0.0 : 0.0}};
+        const size_t size = geometry_write(2, &frame, bytes[i]).size;
         handle[i] = hasher_handle(hasher, bytes[i], size);
         assert_false(handle_is_none(&handle[i]));
     }
@@ -406,7 +415,7 @@ int main(void)
         cmocka_unit_test(shapes_have_their_count_of_numbers),
         cmocka_unit_test(geometries_of_many_frames_are_read_back),
         cmocka_unit_test(a_later_frame_that_does_not_fit_ends_the_geometry),
-        cmocka_unit_test(inconsistent_geometries_have_no_frames),
+        cmocka_unit_test(inconsistent_bodies_have_no_frames),
         cmocka_unit_test(a_frame_by_vertices_has_their_count),
         cmocka_unit_test(handles_are_hashes_of_the_encoding),
         cmocka_unit_test(handles_distinguish_zeros),

@@ -128,7 +128,7 @@ static void the_largest_queries_are_read(void **state)
     set_query(placements, 0, 0);
     for (int i = 0; i < placements; i++) {
         query.placement[i] = sample_placement(4, geometries[i]); /* 2D, by handle, at rest */
-        query.placement[i].name = NULL;
+        query.placement[i].placed.name = NULL;
         assert_int_equal(wire_placement_bytes(&query.placement[i]), QUERY_PLACEMENT_BYTES_MIN);
     }
     const size_t size = wire_write_scene_query(&query, bytes);
@@ -152,7 +152,7 @@ static void lists_beyond_the_capacity_keep_the_first(void **state)
     assert_true(size > 0);
     expect_read(read_query((size_t) size));
     assert_int_equal(query_read.placement_count, count);
-    assert_int_equal(query_read.placement[QUERY_PLACEMENTS_MAX - 1].body_id,
+    assert_int_equal(query_read.placement[QUERY_PLACEMENTS_MAX - 1].placed.id,
                      QUERY_PLACEMENTS_MAX - 1);
 
     message.num_placements = 0;
