@@ -35,64 +35,46 @@ struct watch {
     bool enough;
 };
 
-/* ---- Results of pairs ---- */
+/* ---- As JSON ---- */
 
-/* Writes the members that results of pairs and of scenes have in common. */
-static struct json_writer begin_json(int64_t utime, int64_t client_id, int64_t sequence_number,
-                                     int64_t server_id, int64_t compute_ns)
+/* Writes the answer of a pair, whose bodies have ids. */
+static void write_pair(struct json_writer *json, const struct fmb_client_result *result,
+                       const struct fmb_client_answer *answer)
 {
-    struct json_writer json = json_object(stdout);
-    json_integer(&json, "utime", utime);
-    json_integer(&json, "client_id", client_id);
-    json_integer(&json, "sequence_number", sequence_number);
-    json_integer(&json, "server_id", server_id);
-    json_integer(&json, "compute_ns", compute_ns);
-    return json;
-}
-
-static void print_pair_json(const struct fmb_client_pair_result *result)
-{
-    const struct fmb_client_answer answer = {.status = result->status,
-                                             .text = result->text,
-                                             .answer = result->answer,
-                                             .certificate = result->certificate};
-    struct json_writer json = begin_json(result->utime, result->client_id, result->sequence_number,
-                                         result->server_id, result->compute_ns);
-    json_integer(&json, "a", result->body_id[0]);
-    json_integer(&json, "b", result->body_id[1]);
+    json_integer(json, "a", result->body_id[0]);
+    json_integer(json, "b", result->body_id[1]);
     if (result->status != FMB_OK)
-        json_integer(&json, "status", result->status);
-    report_answer_json(&json, result->dim, result->names_frames, &answer);
-    json_object_end(&json);
+        json_integer(json, "status", result->status);
+    report_answer_json(json, result->dim, result->names_frames, answer);
 }
 
-/* Prints the start of a line. */
-static void print_start(int64_t client_id, int64_t sequence_number, int64_t compute_ns)
-{
-    printf("%16" PRId64 " #%-6" PRId64 " %6.1f us  ", client_id, sequence_number,
-           1e-3 * (double) compute_ns);
-}
+/* Number of answers of a result. */
+struct counts {
+    int64_t verdict[FMB_OVERLAPPING + 1]; /* [0]: without verdict */
+};
 
-static void print_pair_text(const struct fmb_client_pair_result *result,
-                            struct report_columns *columns)
-{
-    print_start(result->client_id, result->sequence_number, result->compute_ns);
-    printf("%4" PRId64 " %4" PRId64 "  ", result->body_id[0], result->body_id[1]);
-    if (result->status == FMB_OK)
-        report_answer_text(stdout, result->dim, &result->answer, columns);
-    else
-        printf("not decided: %s", result->text);
-    putchar('\n');
-}
-
-/* ---- Results of scenes ---- */
-
-/* Writes the pairs of a result. It has their positions in the query, but no ids. */
-static void write_scene_pairs(struct json_writer *json,
-                              const struct fmb_client_scene_result *result)
+static struct counts count_answers(const struct fmb_client_result *result)
 {
     struct fmb_client_cursor cursor = {0};
     struct fmb_client_answer answer;
+    struct counts out = {{0}};
+    while (fmb_client_next_answer(result, &cursor, &answer))
+        out.verdict[answer.answer.verdict]++;
+    return out;
+}
+
+/* Writes the pairs of a scene, which have positions in the query, but no ids. */
+static void write_scene(struct json_writer *json, const struct fmb_client_result *result)
+{
+    const struct counts counts = count_answers(result);
+    struct fmb_client_cursor cursor = {0};
+    struct fmb_client_answer answer;
+    json_integer(json, "end_pair", result->end_pair);
+    json_integer(json, "overlapping", counts.verdict[FMB_OVERLAPPING]);
+    json_integer(json, "touching", counts.verdict[FMB_TOUCHING]);
+    json_integer(json, result->names_pairs ? "near" : "separated", counts.verdict[FMB_SEPARATED]);
+    if (!result->names_pairs)
+        json_integer(json, "undecided", counts.verdict[0]);
     json_begin(json, "pairs", '[');
     while (fmb_client_next_answer(result, &cursor, &answer)) {
         json_begin(json, NULL, '{');
@@ -106,75 +88,71 @@ static void write_scene_pairs(struct json_writer *json,
     json_end(json, ']');
 }
 
-static void print_scene_json(const struct fmb_client_scene_result *result)
+static void print_json(const struct fmb_client_result *result)
 {
-    struct json_writer json = begin_json(result->utime, result->client_id, result->sequence_number,
-                                         result->server_id, result->compute_ns);
-    if (result->status != FMB_OK) {
+    struct fmb_client_cursor cursor = {0};
+    struct fmb_client_answer answer;
+    struct json_writer json = json_object(stdout);
+    json_integer(&json, "utime", result->utime);
+    json_integer(&json, "client_id", result->client_id);
+    json_integer(&json, "sequence_number", result->sequence_number);
+    json_integer(&json, "server_id", result->server_id);
+    json_integer(&json, "compute_ns", result->compute_ns);
+    if (result->is_pair && fmb_client_next_answer(result, &cursor, &answer)) {
+        write_pair(&json, result, &answer);
+    } else if (result->status == FMB_OK) {
+        write_scene(&json, result);
+    } else {
         json_integer(&json, "status", result->status);
         json_string(&json, "error", result->text);
-        json_object_end(&json);
-        return;
     }
-    json_integer(&json, "end_pair", result->end_pair);
-    json_integer(&json, "overlapping", result->overlapping);
-    json_integer(&json, "touching", result->touching);
-    if (result->names_pairs) {
-        json_integer(&json, "near", result->separated);
-    } else {
-        json_integer(&json, "separated", result->separated);
-        json_integer(&json, "undecided", result->undecided);
-    }
-    write_scene_pairs(&json, result);
     json_object_end(&json);
 }
 
-static void print_scene_text(const struct fmb_client_scene_result *result)
+/* ---- For people ---- */
+
+static void print_scene(const struct fmb_client_result *result)
 {
-    print_start(result->client_id, result->sequence_number, result->compute_ns);
-    if (result->status != FMB_OK) {
-        printf("not decided: %s\n", result->text);
-        return;
-    }
+    const struct counts counts = count_answers(result);
+    const int64_t separated = counts.verdict[FMB_SEPARATED];
     printf("up to pair %" PRId64 ": %" PRId64 " overlapping, %" PRId64 " touching",
-           result->end_pair, result->overlapping, result->touching);
-    if (!result->names_pairs || result->separated > 0)
-        printf(", %" PRId64 " %s", result->separated, result->names_pairs ? "near" : "separated");
-    if (result->undecided > 0)
-        printf(", %" PRId64 " not decided", result->undecided);
+           result->end_pair, counts.verdict[FMB_OVERLAPPING], counts.verdict[FMB_TOUCHING]);
+    if (!result->names_pairs || separated > 0)
+        printf(", %" PRId64 " %s", separated, result->names_pairs ? "near" : "separated");
+    if (counts.verdict[0] > 0)
+        printf(", %" PRId64 " not decided", counts.verdict[0]);
+}
+
+static void print_text(const struct fmb_client_result *result, struct report_columns *columns)
+{
+    struct fmb_client_cursor cursor = {0};
+    struct fmb_client_answer answer;
+    printf("%16" PRId64 " #%-6" PRId64 " %6.1f us  ", result->client_id, result->sequence_number,
+           1e-3 * (double) result->compute_ns);
+    if (result->is_pair)
+        printf("%4" PRId64 " %4" PRId64 "  ", result->body_id[0], result->body_id[1]);
+    if (result->status != FMB_OK)
+        printf("not decided: %s", result->text);
+    else if (!result->is_pair)
+        print_scene(result);
+    else if (fmb_client_next_answer(result, &cursor, &answer))
+        report_answer_text(stdout, result->dim, &answer.answer, columns);
     putchar('\n');
 }
 
 /* ---- The command ---- */
 
-static void count(struct watch *watch)
+static void on_result(void *user, const struct fmb_client_result *result)
 {
+    struct watch *watch = user;
+    if (watch->enough)
+        return;
+    if (watch->json)
+        print_json(result);
+    else
+        print_text(result, &watch->columns);
     if (fflush(stdout) != 0 || --watch->count == 0)
         watch->enough = true;
-}
-
-static void on_pair(void *user, const struct fmb_client_pair_result *result)
-{
-    struct watch *watch = user;
-    if (watch->enough)
-        return;
-    if (watch->json)
-        print_pair_json(result);
-    else
-        print_pair_text(result, &watch->columns);
-    count(watch);
-}
-
-static void on_scene(void *user, const struct fmb_client_scene_result *result)
-{
-    struct watch *watch = user;
-    if (watch->enough)
-        return;
-    if (watch->json)
-        print_scene_json(result);
-    else
-        print_scene_text(result);
-    count(watch);
 }
 
 static void on_malformed(void *user, const char *what)
@@ -194,7 +172,7 @@ int cmd_watch(int argc, char **argv)
     };
     struct args args = {"watch", usage, own, .operand = NULL};
     const struct fmb_client_watcher watcher = {
-        .pair = on_pair, .scene = on_scene, .malformed = on_malformed, .user = &watch};
+        .result = on_result, .malformed = on_malformed, .user = &watch};
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;

@@ -38,73 +38,62 @@ static const char *text_of(int32_t status, const char *detail)
     return detail[0] ? detail : fmb_client_status_text(status);
 }
 
-static void show_pair(const struct fmb_client *client, const struct pair_result *result)
+/* Passes the result in client->received to the watcher. */
+static void show(const struct fmb_client *client, bool is_pair)
 {
-    const struct fmb_client_pair_result out = {
-        .utime = result->utime,
-        .client_id = result->client_id,
-        .sequence_number = result->sequence_number,
-        .server_id = result->server_id,
-        .body_id = {result->body_id[0], result->body_id[1]},
-        .status = result->status,
-        .text = text_of(result->status, result->detail),
-        .dim = result->dim,
-        .names_frames = result->names_frames,
-        .answer = result->answer,
-        .certificate = result->certificate,
-        .compute_ns = result->compute_ns,
-    };
-    client->watcher.pair(client->watcher.user, &out);
+    const struct pair_result *pair = &client->received.pair;
+    const struct scene_result *scene = &client->received.scene;
+    const struct query_header *header = is_pair ? &pair->header : &scene->header;
+    struct fmb_client_result out = {.utime = header->utime,
+                                    .client_id = header->client_id,
+                                    .sequence_number = header->sequence_number,
+                                    .is_pair = is_pair,
+                                    .internal = &client->received};
+    if (is_pair) {
+        out.server_id = pair->server_id;
+        out.compute_ns = pair->compute_ns;
+        out.status = pair->status;
+        out.text = text_of(pair->status, pair->detail);
+        out.dim = pair->dim;
+        out.names_frames = pair->names_frames;
+        memcpy(out.body_id, pair->body_id, sizeof out.body_id);
+    } else {
+        out.server_id = scene->server_id;
+        out.compute_ns = scene->compute_ns;
+        out.status = scene->status;
+        out.text = text_of(scene->status, scene->detail);
+        out.dim = scene->dim;
+        out.names_frames = scene->names_frames;
+        out.names_pairs = scene->names_pairs || scene->verdict_count == 0;
+        out.end_pair = scene->end_pair;
+    }
+    client->watcher.result(client->watcher.user, &out);
 }
 
-static void show_scene(const struct fmb_client *client, const struct scene_result *result)
-{
-    int64_t count[FMB_OVERLAPPING + 1] = {0};
-    for (int32_t i = 0; i < result->verdict_count; i++)
-        count[result->verdict[i]]++;
-    const struct fmb_client_scene_result out = {
-        .utime = result->utime,
-        .client_id = result->client_id,
-        .sequence_number = result->sequence_number,
-        .server_id = result->server_id,
-        .status = result->status,
-        .text = text_of(result->status, result->detail),
-        .names_pairs = result->names_pairs || result->verdict_count == 0,
-        .end_pair = result->end_pair,
-        .overlapping = count[FMB_OVERLAPPING],
-        .touching = count[FMB_TOUCHING],
-        .separated = count[FMB_SEPARATED],
-        .undecided = count[0],
-        .compute_ns = result->compute_ns,
-        .dim = result->dim,
-        .names_frames = result->names_frames,
-        .internal = result,
-    };
-    client->watcher.scene(client->watcher.user, &out);
-}
-
-bool fmb_client_next_answer(const struct fmb_client_scene_result *result,
+bool fmb_client_next_answer(const struct fmb_client_result *result,
                             struct fmb_client_cursor *cursor, struct fmb_client_answer *out)
 {
-    const struct scene_result *of = result->internal;
-    const int32_t k = cursor->answers;
-    if (k >= of->verdict_count)
+    const struct pair_result *pair = result->internal;
+    const struct scene_result *scene = result->internal;
+    const int32_t k = cursor->answers++;
+    if (result->is_pair) {
+        *out = (struct fmb_client_answer){.b = 1,
+                                          .status = result->status,
+                                          .text = result->text,
+                                          .answer = pair->answer,
+                                          .certificate = pair->certificate};
+        return k == 0;
+    }
+    if (k >= scene->verdict_count)
         return false;
-    const bool decided = of->verdict[k] != 0;
-    const unsigned number = (unsigned) (of->end_pair - of->verdict_count + k);
-    *out = (struct fmb_client_answer){.a = of->names_pairs ? of->pair[k][0] : number,
-                                      .b = of->names_pairs ? of->pair[k][1] : number,
+    const bool decided = scene->verdict[k] != 0;
+    const unsigned number = (unsigned) (scene->end_pair - scene->verdict_count + k);
+    *out = (struct fmb_client_answer){.a = scene->names_pairs ? scene->pair[k][0] : number,
+                                      .b = scene->names_pairs ? scene->pair[k][1] : number,
                                       .status = decided ? FMB_OK : FMB_CANNOT_DECIDE,
                                       .text = decided ? "" : fmb_status_text(FMB_CANNOT_DECIDE)};
-    wire_scene_answer(of, k, &cursor->contacts, &out->answer);
-    cursor->answers++;
+    wire_scene_answer(scene, k, &cursor->contacts, &out->answer);
     return true;
-}
-
-/* Whether a result is read: results of other clients only for the watcher. */
-static bool is_for(const struct fmb_client *client, const struct query_header *header, bool watched)
-{
-    return watched || header->client_id == client->requests.client_id;
 }
 
 /* Passes a result to the request engine if it is for this client. */
@@ -118,40 +107,44 @@ static void take(struct fmb_client *client, const struct bus_message *message,
         requests_take(&client->requests, &result);
 }
 
+/* Whether a result is read: results of other clients only for the watcher. */
+static bool is_for(const struct fmb_client *client, const struct query_header *header)
+{
+    return client->watcher.result || header->client_id == client->requests.client_id;
+}
+
 static const char *on_pair(struct fmb_client *client, const struct bus_message *message)
 {
-    const bool watched = client->watcher.pair;
+    struct pair_result *result = &client->received.pair;
     const uint32_t size = (uint32_t) message->size;
-    struct pair_result result;
-    const char *error = wire_read_pair_result_header(message->bytes, size, &result.header);
-    if (error || !is_for(client, &result.header, watched))
+    const char *error = wire_read_pair_result_header(message->bytes, size, &result->header);
+    if (error || !is_for(client, &result->header))
         return error;
-    error = wire_read_pair_result(message->bytes, size, &result);
+    error = wire_read_pair_result(message->bytes, size, result);
     if (error)
         return error;
-    if (watched)
-        show_pair(client, &result);
-    take(client, message, &result.header,
+    if (client->watcher.result)
+        show(client, true);
+    take(client, message, &result->header,
          (struct request_result){.kind = FMB_CLIENT_PAIR,
-                                 .status = result.status,
-                                 .detail = result.detail,
-                                 .pair = &result});
+                                 .status = result->status,
+                                 .detail = result->detail,
+                                 .pair = result});
     return NULL;
 }
 
 static const char *on_scene(struct fmb_client *client, const struct bus_message *message)
 {
-    const bool watched = client->watcher.scene;
-    const uint32_t size = (uint32_t) message->size;
     struct scene_result *result = &client->received.scene;
+    const uint32_t size = (uint32_t) message->size;
     const char *error = wire_read_scene_result_header(message->bytes, size, &result->header);
-    if (error || !is_for(client, &result->header, watched))
+    if (error || !is_for(client, &result->header))
         return error;
     error = wire_read_scene_result(message->bytes, size, result);
     if (error)
         return error;
-    if (watched)
-        show_scene(client, result);
+    if (client->watcher.result)
+        show(client, false);
     take(client, message, &result->header,
          (struct request_result){.kind = FMB_CLIENT_SCENE,
                                  .status = result->status,
@@ -280,8 +273,8 @@ int fmb_client_watch(struct fmb_client *client, const struct fmb_client_watcher 
     if (client->inside)
         return FMB_CLIENT_INSIDE;
     client->watcher = *watcher;
-    const bool good = (!watcher->pair || client_listen(client, FMB_CLIENT_PAIR)) &&
-                      (!watcher->scene || client_listen(client, FMB_CLIENT_SCENE)) &&
+    const bool good = (!watcher->result || (client_listen(client, FMB_CLIENT_PAIR) &&
+                                            client_listen(client, FMB_CLIENT_SCENE))) &&
                       (!watcher->heartbeat || client_listen(client, CLIENT_STATUS));
     return good ? FMB_OK : FMB_CLIENT_NO_BUS;
 }

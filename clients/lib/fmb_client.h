@@ -171,34 +171,21 @@ struct fmb_client_counts fmb_client_get_counts(const struct fmb_client *client);
 
 /* ---- Listening ---- */
 
-/* A result on the bus, for any client. Pointers are valid during the callback. */
-struct fmb_client_pair_result {
+/* A result on the bus, for any client: of a pair or of a scene. Pointers are valid during the
+ * callback. */
+struct fmb_client_result {
     int64_t utime; /* of the query, microseconds since 1970 */
-    int64_t client_id, sequence_number, server_id;
-    int64_t body_id[2];
+    int64_t client_id, sequence_number, server_id, compute_ns;
     int status;
     const char *text;  /* as in fmb_client_answer */
-    int dim;           /* of box and gap; 0: there is neither */
-    bool names_frames; /* there is a gap, and a body has several frames */
-    struct fmb_answer answer;
-    const char *certificate; /* NULL: none */
-    int64_t compute_ns;
-};
-
-struct fmb_client_scene_result {
-    int64_t utime, client_id, sequence_number, server_id;
-    int status;
-    const char *text;
-    /* A result of ALL or ACROSS names contacts and near pairs only; all others are separated. A
-     * result without any verdict could be of either kind: this is then true. */
+    int dim;           /* of boxes and gaps; 0: there is neither */
+    bool names_frames; /* there are gaps, and a body has several frames */
+    bool is_pair;
+    int64_t body_id[2]; /* of a pair; of a scene 0 */
+    /* Of a scene. A result of ALL or ACROSS names contacts and near pairs only; all others are
+     * separated. A result without any verdict could be of either kind: this is then true. */
     bool names_pairs;
-    int64_t end_pair; /* the answers end before this pair of the query */
-    int64_t overlapping, touching;
-    int64_t separated; /* where names_pairs, the near ones */
-    int64_t undecided; /* 0 where names_pairs */
-    int64_t compute_ns;
-    int dim;              /* of boxes and gaps; 0: there is neither */
-    bool names_frames;    /* there are gaps, and a body has several frames */
+    int64_t end_pair;     /* the answers end before this pair of the query */
     const void *internal; /* for fmb_client_next_answer() */
 };
 
@@ -207,13 +194,14 @@ struct fmb_client_cursor {
     int32_t answers, contacts;
 };
 
-/* Reads the answers in the result of a scene, one per call, in the order of the pairs. To be called
- * during the callback that receives the result.
+/* Reads the answers in a result, one per call, in the order of the pairs. To be called during the
+ * callback that receives the result.
  * On input: *cursor is {0} before the first call.
- * On output: true and *out; or false, after the last answer. Where names_pairs, a and b are the
- * indices of the placements in the query; otherwise both are the number of the pair in the query's
- * list. The status is FMB_OK, or CANNOT_DECIDE for a pair without verdict. */
-bool fmb_client_next_answer(const struct fmb_client_scene_result *result,
+ * On output: true and *out; or false, after the last answer. A result of a pair has one, with the
+ * status of the result, where a is 0 and b is 1. Of a scene, a and b are the indices of the
+ * placements in the query where names_pairs; otherwise both are the number of the pair in the
+ * query's list. The status is then FMB_OK, or CANNOT_DECIDE for a pair without verdict. */
+bool fmb_client_next_answer(const struct fmb_client_result *result,
                             struct fmb_client_cursor *cursor, struct fmb_client_answer *out);
 
 /* The counters are those of fmb_counters.h; status_t.lcm defines them. */
@@ -228,8 +216,7 @@ struct fmb_client_heartbeat {
 
 /* Callbacks. Messages whose callback is NULL are not received. */
 struct fmb_client_watcher {
-    void (*pair)(void *user, const struct fmb_client_pair_result *result);
-    void (*scene)(void *user, const struct fmb_client_scene_result *result);
+    void (*result)(void *user, const struct fmb_client_result *result);
     void (*heartbeat)(void *user, const struct fmb_client_heartbeat *heartbeat);
     /* A message on one of these channels could not be decoded. what: the reason. */
     void (*malformed)(void *user, const char *what);

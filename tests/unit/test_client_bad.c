@@ -81,7 +81,7 @@ static void publish(void *context, const char *what, const unsigned char *bytes,
     relay_publish(context, WIRE_SCENE_RESULT, bytes, size);
 }
 
-static void ignore_scene(void *user, const struct fmb_client_scene_result *result)
+static void ignore_result(void *user, const struct fmb_client_result *result)
 {
     (void) user;
     (void) result;
@@ -90,7 +90,7 @@ static void ignore_scene(void *user, const struct fmb_client_scene_result *resul
 static void messages_that_cannot_be_read_are_counted(void **state)
 {
     struct relay *relay = relay_new();
-    const struct fmb_client_watcher watcher = {.scene = ignore_scene};
+    const struct fmb_client_watcher watcher = {.result = ignore_result};
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
     assert_int_equal(fmb_client_watch(client, &watcher), FMB_OK);
@@ -147,10 +147,9 @@ static void publish_results_of_another(struct relay *relay)
     }
 }
 
-static void count_pairs(void *user, const struct fmb_client_pair_result *result)
+static void count_pairs(void *user, const struct fmb_client_result *result)
 {
-    (void) result;
-    ++*(int *) user;
+    *(int *) user += result->is_pair;
 }
 
 static void results_of_another_client_reach_only_the_watcher(void **state)
@@ -158,7 +157,7 @@ static void results_of_another_client_reach_only_the_watcher(void **state)
     struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     int watched = 0;
-    const struct fmb_client_watcher watcher = {.pair = count_pairs, .user = &watched};
+    const struct fmb_client_watcher watcher = {.result = count_pairs, .user = &watched};
     relay_draw(placement, 2, 3, 1, 1, 5);
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
@@ -1417,23 +1416,24 @@ static void no_call_within_a_callback(void **state)
 }
 
 struct watching {
-    int64_t pairs, scenes, heartbeats, malformed, overlapping, touching, end_pair;
+    int64_t pairs, scenes, heartbeats, malformed, contacts, end_pair;
     int64_t served, served_scenes; /* as the last heartbeat said */
 };
 
-static void on_pair(void *user, const struct fmb_client_pair_result *result)
-{
-    assert_int_equal(result->status, FMB_OK);
-    assert_int_equal(result->body_id[0], placement[0].id);
-    ((struct watching *) user)->pairs++;
-}
-
-static void on_scene(void *user, const struct fmb_client_scene_result *result)
+static void on_result(void *user, const struct fmb_client_result *result)
 {
     struct watching *watching = user;
-    watching->scenes++;
-    watching->overlapping += result->overlapping;
-    watching->touching += result->touching;
+    struct fmb_client_cursor cursor = {0};
+    struct fmb_client_answer answer;
+    assert_int_equal(result->status, FMB_OK);
+    watching->pairs += result->is_pair;
+    watching->scenes += !result->is_pair;
+    while (fmb_client_next_answer(result, &cursor, &answer))
+        watching->contacts += !result->is_pair && answer.answer.verdict >= FMB_TOUCHING;
+    if (result->is_pair) {
+        assert_int_equal(result->body_id[0], placement[0].id);
+        return;
+    }
     watching->end_pair = result->end_pair;
     assert_true(result->names_pairs);
 }
@@ -1461,8 +1461,7 @@ static void a_watcher_sees_all_results(void **state)
     struct relay_truth truth;
     struct wire_status status = {.received = 2, .scenes = 1};
     unsigned char heartbeat[WIRE_STATUS_BYTES_MAX];
-    const struct fmb_client_watcher watcher = {on_pair, on_scene, on_heartbeat, on_malformed,
-                                               &watching};
+    const struct fmb_client_watcher watcher = {on_result, on_heartbeat, on_malformed, &watching};
     snprintf(status.version, sizeof status.version, "%s", fmb_version());
     relay_open(relay, 2000);
     struct fmb_client *other = relay_client(relay, 5, 1), *watch = relay_client(relay, 5, 1);
@@ -1481,7 +1480,7 @@ static void a_watcher_sees_all_results(void **state)
     /* On a busy machine queries may have been repeated: then their results were too. */
     assert_true(watching.scenes >= 1);
     assert_int_equal(watching.end_pair, 4950);
-    assert_int_equal(watching.overlapping + watching.touching, watching.scenes * truth.count);
+    assert_int_equal(watching.contacts, watching.scenes * truth.count);
     assert_true(watching.pairs >= 1);
     assert_true((uint64_t) (watching.scenes + watching.pairs) <=
                 2 + fmb_client_get_counts(other).repeated);
