@@ -87,9 +87,9 @@ size_t logged_query_write(const struct logged_query *query, unsigned char out[QU
 
 int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair)
 {
-    struct query_marks *marks = allocate_unset(sizeof *marks);
-    const int64_t pairs = query_pairs_decided(query, end_pair, marks);
-    free(marks);
+    unsigned *memory = allocate_unset(QUERY_IGNORED_CAPACITY * sizeof *memory);
+    const int64_t pairs = query_pairs_decided(query, end_pair, memory);
+    free(memory);
     return pairs;
 }
 

@@ -31,70 +31,47 @@ bool query_has_pair(const struct scene_query *query, unsigned a, unsigned b)
     return pair_is_among(numbers_of(query), a, b);
 }
 
-/* ---- Sets of pairs ---- */
+/* ---- Pairs that are not decided ---- */
 
-void query_marks_clear(struct query_marks *marks, unsigned placements)
+void query_ignored(const struct scene_query *query, unsigned memory[QUERY_IGNORED_CAPACITY],
+                   struct ignored *out)
 {
-    marks->placements = placements;
-    memset(marks->bit, 0, placements * placements / 8 + 1);
+    const struct fmb_scene scene = {.placement_count = (size_t) query_stored_placements(query),
+                                    .ignored = query->ignored,
+                                    .ignored_count = (size_t) query->ignored_count / 2};
+    ignored_begin(&scene, memory, out);
 }
 
-static unsigned bit_of(const struct query_marks *marks, const unsigned pair[2])
+/* Whether all ignored indices are in range, as those of a query that was accepted. */
+static bool has_ignored(const struct scene_query *query)
 {
-    const unsigned lower = pair[0] < pair[1] ? pair[0] : pair[1];
-    return lower * marks->placements + (pair[0] + pair[1] - lower);
-}
-
-bool query_is_marked(const struct query_marks *marks, const unsigned pair[2])
-{
-    const unsigned bit = bit_of(marks, pair);
-    return marks->bit[bit / 8] >> bit % 8 & 1;
-}
-
-void query_mark(struct query_marks *marks, const unsigned pair[2])
-{
-    const unsigned bit = bit_of(marks, pair);
-    marks->bit[bit / 8] |= (unsigned char) (1u << bit % 8);
-}
-
-/* ---- Pairs that are decided ---- */
-
-/* Marks a pair that is not decided. Returns 1 if it is one from first_pair to end_pair that was not
- * marked; else 0. */
-static int count_undecided(const struct scene_query *query, int32_t end_pair,
-                           struct query_marks *marks, const unsigned pair[2])
-{
-    const bool ordered = pair[0] < pair[1];
-    const unsigned a = pair[!ordered], b = pair[ordered];
-    if (!query_has_pair(query, a, b) || query_is_marked(marks, pair))
-        return 0;
-    const int64_t number = query_pair_number(query, a, b);
-    query_mark(marks, pair);
-    return number >= query->first_pair && number < end_pair;
-}
-
-static bool has_undecided(const struct scene_query *query)
-{
-    bool grouped = false;
-    for (int32_t i = 0; i < query_stored_placements(query) && !grouped; i++)
-        grouped = query->placement[i].placed.group != 0;
-    return query->which != FMB_PAIRS_LISTED && (query->ignored_count > 1 || grouped);
+    const unsigned n = (unsigned) query_stored_placements(query);
+    for (int32_t k = 0; k < query->ignored_count / 2; k++)
+        if (query->ignored[k][0] >= n || query->ignored[k][1] >= n)
+            return false;
+    return true;
 }
 
 int64_t query_pairs_decided(const struct scene_query *query, int32_t end_pair,
-                            struct query_marks *marks)
+                            unsigned memory[QUERY_IGNORED_CAPACITY])
 {
-    int64_t decided = (int64_t) end_pair - query->first_pair;
+    const struct pair_numbers of = numbers_of(query);
     const struct query_placement *placement = query->placement;
-    const unsigned n = (unsigned) query_stored_placements(query);
-    if (!has_undecided(query))
+    int64_t decided = (int64_t) end_pair - query->first_pair;
+    struct ignored ignored;
+    if (query->which == FMB_PAIRS_LISTED || !has_ignored(query))
         return decided;
-    query_marks_clear(marks, n);
-    for (int32_t k = 0; k < query->ignored_count / 2; k++)
-        decided -= count_undecided(query, end_pair, marks, query->ignored[k]);
-    for (unsigned a = 0; a < n; a++)
-        for (unsigned b = a + 1; b < n && placement[a].placed.group != 0; b++)
-            if (placement[a].placed.group == placement[b].placed.group)
-                decided -= count_undecided(query, end_pair, marks, (const unsigned[2]){a, b});
+    query_ignored(query, memory, &ignored);
+    for (size_t a = 0; a < pair_rows(of); a++) {
+        const int64_t group = placement[a].placed.group;
+        const int64_t before = (int64_t) pairs_before(of, a);
+        size_t b = pair_first_partner(of, a);
+        if (group == 0 && !ignored_has_any(&ignored, (unsigned) a))
+            continue;
+        for (int64_t number = before; b < of.n; b++, number++)
+            decided -= number >= query->first_pair && number < end_pair &&
+                       ((group != 0 && group == placement[b].placed.group) ||
+                        ignored_has(&ignored, (unsigned) a, (unsigned) b));
+    }
     return decided;
 }

@@ -6,6 +6,7 @@
 
 #include "fmb.h"
 #include "handle.h"
+#include "ignored.h"
 
 #include <assert.h>
 #include <stdbool.h>
@@ -148,23 +149,15 @@ int64_t query_pair_count(const struct scene_query *query);
 bool query_has_pair(const struct scene_query *query, unsigned a, unsigned b);
 int64_t query_pair_number(const struct scene_query *query, unsigned a, unsigned b);
 
-/* A set of pairs of placements, in either order: a bit for each. */
-struct query_marks {
-    unsigned placements;
-    unsigned char bit[QUERY_PLACEMENTS_MAX * QUERY_PLACEMENTS_MAX / 8 + 1];
-};
-
-/* Makes the set empty. On input: as many placements as query_stored_placements(). */
-void query_marks_clear(struct query_marks *marks, unsigned placements);
-
-/* On input: indices below the number of placements. */
-bool query_is_marked(const struct query_marks *marks, const unsigned pair[2]);
-void query_mark(struct query_marks *marks, const unsigned pair[2]);
+/* The ignored pairs. On input: indices below the number of placements. */
+enum { QUERY_IGNORED_CAPACITY = 2 * QUERY_PLACEMENTS_MAX + QUERY_PAIRS_MAX };
+void query_ignored(const struct scene_query *query, unsigned memory[QUERY_IGNORED_CAPACITY],
+                   struct ignored *out);
 
 /* The number of pairs from first_pair on and before end_pair that are decided: neither ignored nor
- * within a group. No listed pair is. Uses the memory of marks. */
+ * within a group. No listed pair is. */
 int64_t query_pairs_decided(const struct scene_query *query, int32_t end_pair,
-                            struct query_marks *marks);
+                            unsigned memory[QUERY_IGNORED_CAPACITY]);
 
 /* Capacity of a result: a named pair takes at least five bytes, a number eight. */
 enum {

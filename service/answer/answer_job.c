@@ -9,6 +9,7 @@
 #include "wire.h"
 
 #include <assert.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,10 +40,9 @@ struct answer_job {
     long capacity;       /* bytes of the result of a scene that are left for answers */
     struct fmb_scene scene;
     struct fmb_scene_state *state; /* in memory */
-    void *memory;                  /* owned; fmb_scene_bytes(&limits) bytes */
+    void *memory;                  /* owned; of the state, else of sets of ignored pairs */
     struct used_body used[QUERY_PLACEMENTS_MAX];
     struct fmb_placement placed[QUERY_PLACEMENTS_MAX];
-    struct query_marks marks;
     struct pair_query pair;
     struct pair_result pair_result;
     char certificate[FMB_CERTIFICATE_MAX]; /* of the pair result, if it has one */
@@ -59,6 +59,7 @@ static const struct fmb_scene_limits limits = {.placements = QUERY_PLACEMENTS_MA
 
 struct answer_job *answer_job_create(void)
 {
+    assert(fmb_scene_bytes(&limits) >= 2 * QUERY_IGNORED_CAPACITY * sizeof(unsigned));
     struct answer_job *job = aligned_alloc(_Alignof(struct answer_job), sizeof *job);
     if (!job)
         return NULL;
@@ -169,19 +170,29 @@ static bool check_indices(struct check_context *context, const char *field,
     return true;
 }
 
-/* No listed pair may be ignored. */
+/* No listed pair may be ignored. The listed pairs of each lower index are looked up together, which
+ * takes O(placements + pairs) in all; the first one in the list that is ignored is named. */
 static bool check_ignored(struct check_context *context, struct answer_job *job)
 {
     const struct scene_query *query = &job->query;
+    unsigned *memory = job->memory, first = UINT_MAX;
+    struct ignored ignored, listed;
     if (query->ignored_count == 0 || query->index_count == 0)
         return true;
-    query_marks_clear(&job->marks, (unsigned) query->placement_count);
-    for (int32_t i = 0; i < query->ignored_count / 2; i++)
-        query_mark(&job->marks, query->ignored[i]);
-    for (int32_t i = 0; i < query->index_count / 2; i++)
-        if (query_is_marked(&job->marks, query->pair[i]))
-            return check_refuse_at(context, FMB_BAD_PAIR, "indices", 2 * i, "a pair to ignore");
-    return true;
+    const struct fmb_scene pairs = {.placement_count = (size_t) query->placement_count,
+                                    .ignored = query->pair,
+                                    .ignored_count = (size_t) query->index_count / 2};
+    query_ignored(query, memory, &ignored);
+    ignored_begin(&pairs, memory + QUERY_IGNORED_CAPACITY, &listed);
+    for (unsigned a = 0; a < (unsigned) query->placement_count; a++)
+        for (unsigned at = ignored_has_any(&ignored, a) ? listed.head[a] : 0; at;
+             at = listed.link[at - 1]) {
+            const unsigned b = query->pair[at - 1][0] + query->pair[at - 1][1] - a;
+            if (at <= first && ignored_has(&ignored, a, b))
+                first = at - 1;
+        }
+    return first == UINT_MAX ||
+           check_refuse_at(context, FMB_BAD_PAIR, "indices", 2 * (int) first, "a pair to ignore");
 }
 
 /* No listed pair may be within a group. */
@@ -752,7 +763,7 @@ int32_t answer_job_decided(struct answer_job *job)
     assert(job->stage == COMPLETE);
     if (job->is_pair || *job->context.status != FMB_OK)
         return *job->context.status == FMB_OK;
-    int64_t pairs = query_pairs_decided(&job->query, result->end_pair, &job->marks);
+    int64_t pairs = query_pairs_decided(&job->query, result->end_pair, job->memory);
     for (int32_t i = 0; i < result->verdict_count; i++)
         pairs -= result->verdict[i] == 0;
     return (int32_t) pairs;
