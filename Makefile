@@ -120,7 +120,8 @@ see_service/fmb/tree := $(call fmb,number frame)
 see_service/fmb/exact := $(call fmb,number frame filter)
 see_service/fmb/gap := $(call fmb,number frame exact)
 see_service/fmb/certificate := $(call fmb,number frame exact)
-see_service/fmb/decide := $(call fmb,number frame filter article tree exact gap)
+see_service/fmb/hull := $(call fmb,number frame exact gap)
+see_service/fmb/decide := $(call fmb,number frame filter article tree exact gap hull)
 see_msgs/codec := service/fmb $(GEN)
 see_msgs/common := msgs/codec service/fmb
 see_service/answer := msgs/codec service/fmb
@@ -177,7 +178,7 @@ $(O)/service/fmb/filter/instructions.o: flags += $(if $(INSTRUCTIONS),-DINSTRUCT
 fast_math := tests/bench/gpr tests/bench/lean_sat tests/bench/seidel
 $(fast_math:%=$(O)/%.o): flags += -ffinite-math-only -fno-signed-zeros
 
-engine_folders := $(call fmb,number frame filter article tree exact gap certificate decide)
+engine_folders := $(call fmb,number frame filter article tree exact gap hull certificate decide)
 engine_objects_in = $(filter-out $(left_out),$(call objects_in,$1))
 engine_objects := $(call engine_objects_in,$(engine_folders))
 

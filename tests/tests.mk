@@ -23,7 +23,7 @@ see_tests/replay := clients/replay $(see_clients/replay) tests/unit tests/bench
 see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/unit tests/hostile $(GEN)
 see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
 see_tests/unit/kernels := $(call fmb,number frame filter)
-see_tests/unit := $(call fmb,number frame filter article tree exact gap decide) service clients \
+see_tests/unit := $(call fmb,number frame filter article tree exact gap hull decide) service clients \
 	$(see_clients) tests/encode tests/oracle tests/campaign tests/hostile tests/mesh $(GEN)
 
 # ---- Programs of tests and measurements: the name, and the main file in tests/ ----
@@ -63,7 +63,7 @@ unit_names := $(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c))
 unit_tests := $(unit_names:%=$(B)/tests/%)
 internal_tests := $(addprefix $(B)/tests/,test_bounds test_box_bounds test_engine_batch \
 	test_engine_pose test_engine_tree test_engine_triangle test_limbs test_outward test_kernels \
-	test_placing test_engine_work)
+	test_placing test_engine_work test_hull_frame)
 comma := ,
 wraps = $(addprefix -Wl$(comma)--wrap=,$1)
 wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_addmul z_submul z_add z_sub \

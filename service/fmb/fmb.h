@@ -2,8 +2,10 @@
  *
  * A frame is the set of points o + sum_i x_i c_i with an origin o and component vectors c_i
  * (article, equations 1 and 2), in body coordinates. The parameters x_i run over [0,1] for a
- * cuboid and a box; over x_i >= 0, sum x_i <= 1 for a tetrahedron and a face. A body is one or more
- * frames of one dimension. A placement puts it into the world: its set is exactly
+ * cuboid and a box; over x_i >= 0, sum x_i <= 1 for a tetrahedron and a face. A hull is the convex
+ * hull of 1 to FMB_HULL_VERTICES_MAX vertices; in 2D it is a convex polygon. Vertices inside it and
+ * repeated ones are legal, and it may be flat, a segment or a point. A body is one or more frames
+ * of one dimension. A placement puts it into the world: its set is exactly
  *
  *     { p + R(q) (o + sum_i x_i c_i) + t v }
  *
@@ -116,13 +118,15 @@ int fmb_component_count(int dim, int shape);
 /* ---- Bodies ---- */
 
 /* A frame in body coordinates, and what is computed from it once, such as the inverse of its
- * components. Filled by fmb_frame_make() or fmb_frame_make_vertices() only; the caller may read the
- * fields, and copy the frame. Axes beyond dim and components beyond count are 0. */
+ * components. Filled by fmb_frame_make(), fmb_frame_make_vertices() or fmb_frame_make_hull() only;
+ * the caller may read the fields, and copy the frame. Axes beyond dim and components beyond count
+ * are 0. */
 struct fmb_frame {
     int dim;              /* 2 or 3 */
     enum fmb_shape shape; /* FMB_BOX: components along the axes, component[i][i] the size */
     int count;            /* number of components */
-    bool flat;            /* the volume is exactly zero, as of every face; no inverse */
+    bool flat;            /* the volume is exactly zero, as of every face; no inverse. Of a hull:
+                             unless doubles prove that it is not */
     bool inverted;        /* the inverse is present: not flat, and all its entries are finite */
     double radius;        /* bounds the distance of each vertex from the origin of the body; may be
                              infinite */
@@ -136,9 +140,15 @@ struct fmb_frame {
      * exact components are component + remainder. */
     double remainder[FMB_DIM_MAX][FMB_DIM_MAX];
     double centre[FMB_DIM_MAX]; /* of a box; otherwise 0 */
+    /* Of a hull, otherwise 0 and NULL: its distinct vertices in the order given, x of all, then y,
+     * then z, each padded to vertex_stride numbers. In the memory given to fmb_frame_make_hull().
+     */
+    unsigned vertex_count, vertex_stride;
+    const double *vertices;
     /* Internal (prepared.h). */
     bool in_range, sturdy, rounded;
     int bits[2];
+    unsigned spanning[FMB_DIM_MAX + 1];
     unsigned long long summary;
     double slack, turn_error, size[FMB_DIM_MAX];
 };
@@ -151,7 +161,8 @@ struct fmb_frame {
  *               if count is 0.
  * Out: *out     unspecified if the status is not FMB_OK
  * Returns FMB_OK, FMB_WRONG_DIMENSION, FMB_UNKNOWN_SHAPE, FMB_WRONG_COUNT, FMB_NOT_FINITE,
- * FMB_BAD_SIZE for a negative size, or FMB_NOT_SUPPORTED for a hull. */
+ * FMB_BAD_SIZE for a negative size, or FMB_NOT_SUPPORTED for a hull, which is made by
+ * fmb_frame_make_hull(). */
 enum fmb_status fmb_frame_make(int dim, int shape, const double *numbers, size_t count,
                                struct fmb_frame *out);
 
@@ -164,9 +175,29 @@ enum fmb_status fmb_frame_make(int dim, int shape, const double *numbers, size_t
  * Out: *out      unspecified if the status is not FMB_OK
  * Returns FMB_OK, FMB_WRONG_DIMENSION, FMB_UNKNOWN_SHAPE (a shape that has no vertices),
  * FMB_WRONG_COUNT, FMB_NOT_FINITE (also if a difference exceeds the largest double), or
- * FMB_NOT_SUPPORTED (a hull). */
+ * FMB_NOT_SUPPORTED for a hull, which is made by fmb_frame_make_hull(). */
 enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertices, size_t count,
                                         struct fmb_frame *out);
+
+/* The largest number of vertices of a hull. */
+enum { FMB_HULL_VERTICES_MAX = 1024 };
+
+/* Returns the number of doubles of memory that fmb_frame_make_hull() needs. In: any numbers; out of
+ * range: 0. */
+size_t fmb_hull_doubles(int dim, size_t vertex_count);
+
+/* Makes a hull of its vertices. Of equal vertices (-0 equals 0) the first is kept.
+ *
+ * In:  vertices  [vertex][axis], finite; not used after the call
+ *      count     the number of vertices times dim
+ *      memory    [fmb_hull_doubles(dim, count / dim)], owned by the caller; must outlive the frame
+ *                and all its copies
+ * Out: *out      unspecified if the status is not FMB_OK
+ * Returns FMB_OK, FMB_WRONG_DIMENSION, FMB_WRONG_COUNT (none, or not a multiple of dim),
+ * FMB_OVER_LIMIT (more than FMB_HULL_VERTICES_MAX), or FMB_NOT_FINITE.
+ * Cost: O(n log n). */
+enum fmb_status fmb_frame_make_hull(int dim, const double *vertices, size_t count, double *memory,
+                                    struct fmb_frame *out);
 
 /* Returns the numbers that a frame was made of.
  *
@@ -174,8 +205,9 @@ enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertic
  *                    they are those of fmb_frame_make(), the first dim included. A frame that was
  *                    made of vertices has vertices only if a component is rounded; otherwise its
  *                    origin and components describe it as well.
- *      numbers       [FMB_FRAME_NUMBERS_MAX], the first ones set; or NULL. A zero may have another
- *                    sign.
+ *      numbers       the first ones set; or NULL. A zero may have another sign. The capacity
+ *                    FMB_FRAME_NUMBERS_MAX suffices for every shape but a hull, which has dim
+ *                    times vertex_count.
  * Returns how many there are. A frame made of them gives the same answers, bit for bit. */
 enum { FMB_FRAME_NUMBERS_MAX = FMB_DIM_MAX + FMB_COMPONENTS_MAX };
 size_t fmb_frame_numbers(const struct fmb_frame *frame, bool *by_vertices, double *numbers);
@@ -197,12 +229,14 @@ static inline const struct fmb_frame *fmb_body_frame(const struct fmb_body *body
     return body->frames ? &body->frames[i] : &body->one;
 }
 
-/* Make a body of one frame, which the body contains. In, Out, Returns: as fmb_frame_make() and
- * fmb_frame_make_vertices(). */
+/* Make a body of one frame, which the body contains. In, Out, Returns: as fmb_frame_make(),
+ * fmb_frame_make_vertices() and fmb_frame_make_hull(). */
 enum fmb_status fmb_body_make(int dim, int shape, const double *numbers, size_t count,
                               struct fmb_body *out);
 enum fmb_status fmb_body_make_vertices(int dim, int shape, const double *vertices, size_t count,
                                        struct fmb_body *out);
+enum fmb_status fmb_body_make_hull(int dim, const double *vertices, size_t count, double *memory,
+                                   struct fmb_body *out);
 
 /* Makes a body of several frames. They may overlap: frames of one body are never tested against
  * each other.
@@ -343,7 +377,7 @@ struct fmb_method {
  *   fmb        The article's elimination in doubles: verdict, interval, the article's loose box.
  *   sat        The separating axis theorem in doubles: verdict and interval, no box.
  *
- * fmb and sat are inexact and cannot decide flat frames.
+ * fmb and sat are inexact and cannot decide flat frames and hulls.
  *
  * Cost: exact takes tens of microseconds for numbers of similar size. Its time is bounded for any
  * numbers (exact.c derives the bound). The slowest pairs have exponents that span the whole

@@ -21,6 +21,9 @@ static void set_inverse(const struct placed_frame *placed, struct inexact_pair *
 bool inexact_pair_of(const struct frame_pair *pair, struct inexact_pair *out)
 {
     struct fmb_prepared a, b;
+    if (pair->a.frame->flat || pair->b.frame->flat || pair->a.frame->shape == FMB_HULL ||
+        pair->b.frame->shape == FMB_HULL)
+        return false;
     prepared_set(pair->a, &a);
     prepared_set(pair->b, &b);
     world_frame_of(&a, &out->a);
@@ -28,6 +31,5 @@ bool inexact_pair_of(const struct frame_pair *pair, struct inexact_pair *out)
     set_inverse(&pair->a, out);
     out->duration = pair->duration;
     out->moving = pair_moves(pair);
-    return !pair->a.frame->flat && !pair->b.frame->flat &&
-           relative_motion_of(&out->a, &out->b, pair->duration, &out->motion);
+    return relative_motion_of(&out->a, &out->b, pair->duration, &out->motion);
 }

@@ -316,6 +316,8 @@ static enum fmb_status check(const struct fmb_placement *a, const struct fmb_pla
     const enum fmb_status status = placements_check(a, b, duration);
     if (status == FMB_OK && (a->body->frame_count > 1 || b->body->frame_count > 1))
         return FMB_CANNOT_DECIDE;
+    if (status == FMB_OK && (a->body->one.shape == FMB_HULL || b->body->one.shape == FMB_HULL))
+        return FMB_CANNOT_DECIDE;
     return status;
 }
 

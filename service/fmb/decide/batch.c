@@ -22,6 +22,7 @@
 #include "certified.h"
 #include "exact.h"
 #include "gap.h"
+#include "hull.h"
 #include "inlined.h"
 #include "kernel.h"
 
@@ -581,6 +582,21 @@ static void find_far(struct batch_block *block, const struct batch_job *job, enu
     filter_enlarged(block, job, kind, &enlarged);
 }
 
+static enum gap_outcome gap_of_pair(const struct batch_job *job, size_t i, enum fmb_verdict verdict,
+                                    struct fmb_gap *out)
+{
+    const struct fmb_batch *batch = job->batch;
+    const struct fmb_prepared *a = &batch->frames[batch->pairs[i][0]];
+    const struct fmb_prepared *b = &batch->frames[batch->pairs[i][1]];
+    if (!hull_takes(a->frame, b->frame))
+        return gap_of(a, b, batch->duration, verdict, job->farthest, batch->open != NULL, out);
+    const struct frame_pair frames = {
+        {a->frame, a->placement}, {b->frame, b->placement}, batch->duration};
+    struct hull_pair pair;
+    hull_pair_set(&frames, &pair);
+    return hull_gap_of(&pair, verdict, job->farthest, out);
+}
+
 static void put_gap(const struct batch_job *job, const struct batch_block *block, size_t slot)
 {
     const size_t i = block->first + slot;
@@ -589,16 +605,14 @@ static void put_gap(const struct batch_job *job, const struct batch_block *block
     unsigned char *verdict = &batch->verdicts[i];
     enum gap_outcome outcome = GAP_FAR;
     if (batch_is_contact(*verdict) || (*verdict == FMB_SEPARATED && !block->far[slot]))
-        outcome = gap_of(&batch->frames[batch->pairs[i][0]], &batch->frames[batch->pairs[i][1]],
-                         batch->duration, (enum fmb_verdict) * verdict, job->farthest,
-                         batch->open != NULL, gap);
+        outcome = gap_of_pair(job, i, (enum fmb_verdict) * verdict, gap);
     if (outcome == GAP_KNOWN)
         return;
     *gap = gap_none();
     if (outcome == GAP_FAR)
         return;
     put_nothing(batch, i);
-    *verdict = LEFT_OPEN;
+    *verdict = batch->open ? LEFT_OPEN : 0;
 }
 
 static enum fmb_status decide_block(const struct batch_job *job, size_t first)

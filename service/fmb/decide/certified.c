@@ -25,6 +25,7 @@
 #include "exact.h"
 #include "faces.h"
 #include "gap.h"
+#include "hull.h"
 #include "limbs.h"
 #include "limbs_box.h"
 #include "kernel.h"
@@ -146,9 +147,19 @@ static enum slabs_outcome open_slabs(struct certified *certified)
     return sign > 0 ? SLABS_SEPARATED : sign == 0 ? SLABS_TOUCHING : SLABS_OVERLAPPING;
 }
 
+static enum hull_effort effort_of(bool quick)
+{
+    return quick ? HULL_QUICK : HULL_CERTIFIED;
+}
+
+/* The exact method; of a pair with a hull, that of hull.h. */
 static enum slabs_outcome all_slabs(struct certified *certified)
 {
     struct fmb_answer answer = {0};
+    if (hull_takes(certified->frame[0]->frame, certified->frame[1]->frame))
+        return hull_decide(&certified->pair, 0, effort_of(certified->quick), &answer) == FMB_OK
+                   ? (enum slabs_outcome) answer.verdict
+                   : SLABS_UNSURE;
     if (!certified->quick)
         exact_decide(&certified->pair, 0, &answer);
     memcpy(certified->exact_contact, answer.contact, sizeof answer.contact);
@@ -273,6 +284,9 @@ enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
                                           unsigned want, bool quick, struct fmb_answer *answer)
 {
     struct certified certified;
+    const struct frame_pair pair = {{a->frame, a->placement}, {b->frame, b->placement}, duration};
+    if (hull_takes(a->frame, b->frame))
+        return hull_decide(&pair, want | FMB_WANT_TIMES, effort_of(quick), answer);
     begin(&certified, a, b, duration, true, quick);
     answer->verdict = climb(&certified, CERTIFIED_FILTER);
     if (!answer->verdict)
@@ -296,6 +310,8 @@ enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
                                  struct fmb_answer *answer)
 {
     struct fmb_prepared a, b;
+    if (hull_takes(pair->a.frame, pair->b.frame))
+        return hull_decide(pair, want | FMB_WANT_TIMES, HULL_CERTIFIED, answer);
     prepared_set(pair->a, &a);
     prepared_set(pair->b, &b);
     return certified_decide_prepared(&a, &b, pair->duration, want, false, answer);

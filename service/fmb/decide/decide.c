@@ -3,6 +3,7 @@
 #include "certified.h"
 #include "exact.h"
 #include "gap.h"
+#include "hull.h"
 #include "inexact.h"
 #include "aabb.h"
 
@@ -11,6 +12,8 @@
 static enum fmb_status decide_exactly(const struct frame_pair *pair, unsigned want,
                                       struct fmb_answer *answer)
 {
+    if (hull_takes(pair->a.frame, pair->b.frame))
+        return hull_decide(pair, want, HULL_EXACT, answer);
     const enum fmb_status status = exact_decide(pair, want, answer);
     answer->has_gap = want & FMB_WANT_GAP;
     if (answer->has_gap)

@@ -20,9 +20,10 @@
  * therefore -infinity, and stays so; +infinity does not occur, and no sum is a NaN. The computed
  * error of a sum may be a NaN if the numbers are among the largest: such a sum is lowered.
  *
- * The box of a frame with an error is expanded by the error. If the error or a coordinate is not
- * finite, or the frame is rotated and not usable, the box is that of a ball: no point of the frame
- * is farther than its radius from the position of its body.
+ * The numbers of a hull are those of a cuboid, its box. The box of a frame with an error is
+ * expanded by the error. If the error or a coordinate is not finite, or a frame other than a hull
+ * is rotated and not usable, the box is that of a ball: no point of the frame is farther than its
+ * radius from the position of its body.
  *
  * No shared state. */
 #ifndef FMB_AABB_H
@@ -136,7 +137,8 @@ INLINE bool aabb_needs_ball(const struct fmb_prepared *frame)
 {
     const double error = prepared_error(frame);
     return error != 0 && (!(error <= DBL_MAX) || (frame->placement->orientation_count != 0 &&
-                                                  !(prepared_kind(frame) & PREPARED_USABLE)));
+                                                  !(prepared_kind(frame) & PREPARED_USABLE) &&
+                                                  frame->frame->shape != FMB_HULL));
 }
 
 /* Returns the box of a prepared frame over the window [0, duration]. In: duration is legal. */

@@ -407,6 +407,12 @@ size_t fmb_frame_numbers(const struct fmb_frame *frame, bool *by_vertices, doubl
 {
     const size_t dim = (size_t) frame->dim;
     const bool box = frame->shape == FMB_BOX;
+    if (frame->shape == FMB_HULL) {
+        *by_vertices = true;
+        for (size_t i = 0; numbers && i < dim * frame->vertex_count; i++)
+            numbers[i] = frame->vertices[i % dim * frame->vertex_stride + i / dim];
+        return dim * frame->vertex_count;
+    }
     *by_vertices = frame->rounded;
     if (numbers)
         memcpy(numbers, box ? frame->centre : frame->origin, dim * sizeof *numbers);
@@ -444,6 +450,14 @@ INLINE struct aabb box_at_origin(const struct fmb_frame *frame, const int dim,
     return aabb_of(&prepared, 0);
 }
 
+static struct aabb hull_box_at_origin(const struct fmb_frame *frame,
+                                      const struct fmb_placement *placement)
+{
+    struct fmb_prepared prepared;
+    prepared_set((struct placed_frame){frame, placement}, &prepared);
+    return aabb_of(&prepared, 0);
+}
+
 /* Sets the box of a body: the union of those of its frames, in body coordinates. */
 static void set_body_box(struct fmb_body *out)
 {
@@ -451,8 +465,9 @@ static void set_body_box(struct fmb_body *out)
     struct aabb box;
     for (unsigned i = 0; i < out->frame_count; i++) {
         const struct fmb_frame *frame = fmb_body_frame(out, i);
-        const struct aabb one =
-            frame->dim == 3 ? box_at_origin(frame, 3, &origin) : box_at_origin(frame, 2, &origin);
+        const struct aabb one = frame->shape == FMB_HULL ? hull_box_at_origin(frame, &origin)
+                                : frame->dim == 3        ? box_at_origin(frame, 3, &origin)
+                                                         : box_at_origin(frame, 2, &origin);
         box = i == 0 ? one : aabb_union(box, one);
     }
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
@@ -484,6 +499,15 @@ enum fmb_status fmb_body_make_vertices(int dim, int shape, const double *vertice
                                        struct fmb_body *out)
 {
     const enum fmb_status status = fmb_frame_make_vertices(dim, shape, vertices, count, &out->one);
+    if (status == FMB_OK)
+        set_single_frame(out);
+    return status;
+}
+
+enum fmb_status fmb_body_make_hull(int dim, const double *vertices, size_t count, double *memory,
+                                   struct fmb_body *out)
+{
+    const enum fmb_status status = fmb_frame_make_hull(dim, vertices, count, memory, &out->one);
     if (status == FMB_OK)
         set_single_frame(out);
     return status;

@@ -5,6 +5,8 @@
  * If error is 0, the two are the same. The bounds of the filter hold for the rounded frame, whose
  * numbers are exact; slabs.h derives bounds for the true one.
  *
+ * The numbers of a hull are those of a cuboid, its box in the world. It is not usable.
+ *
  * The summary holds, from its least significant bit: the sizes of components 0, 1 and 2, 16 bits
  * each, then the flags below. A size is the 16 most significant bits of a double, rounded up.
  * Shifted to the top of 64 bits it is a double that is no smaller than the length of the component

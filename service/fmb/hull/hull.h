@@ -1,0 +1,118 @@
+/* Pairs of frames of which at least one is a hull.
+ *
+ * Such a pair is decided from the vertices of both frames: a box, a cuboid, a tetrahedron or a face
+ * is then the hull of its 3 to 8 vertices. With M = { b - a } for points a and b of the frames at
+ * time 0 and w the velocity of b relative to a, the set that decides everything is
+ *
+ *     D = M + [0, T] w,
+ *
+ * the swept difference. The closed sets meet at some time if and only if D contains the origin. Its
+ * vertices are among v_j - v_i + t w for vertices v_i of A and v_j of B and t = 0 or T; none is
+ * stored: D is known by its support function, the greatest n . x, which takes one scan of each
+ * frame's vertices.
+ *
+ *   hull_view_set()      a placed frame as an array of vertices, in body coordinates
+ *   hull_pair_set()      two of them, and bounds on the errors of everything computed below
+ *   hull_support()       the farthest point of D in a direction
+ *   hull_point()         a point of D
+ *   hull_decide()        verdict, contact and box
+ *   hull_gap_of()        the gap
+ *
+ * Accuracy of doubles. Let u = 2^-53, r the radius of a frame: the distance of its vertices from
+ * the origin of its body is at most r. Rounding a direction n to body coordinates, R^T n, or a
+ * vertex to world coordinates, R v, is off by at most 18.3 u |n| or 18.3 u r (rotation.h; the
+ * argument holds for the transposed matrix too). A product n . v is off by 3.01 u |n| r
+ * (support.h). So the value of a vertex in a direction is off by less than 22 u |n| r, plus |n|
+ * slack where the stored vertex is itself off by slack. The offset of the positions is rounded
+ * once: with the product with n it is off by 4.1 u |n| |offset|; the drift w T twice: 5.1 u |n|
+ * |drift|. The sums of these four terms add at most 3.1 u |n| of their lengths together. Each
+ * coordinate of a point of D is a sum of the same four vectors. With
+ *
+ *     reach = r_A + r_B + |offset| + |drift|,
+ *     error = 32 u reach + slack_A + slack_B + 2^-1000,
+ *
+ * where the lengths of offset and drift are bounded by their sums of magnitudes: a value computed
+ * by hull_support() is off by at most error |n|, and a point by at most error (2-norm). 2^-1000
+ * covers underflow for |n| <= 2. The factor between 32 and 22 + 3.1 covers the rounding of the
+ * bounds.
+ *
+ * A pair whose reach is not below 2^300 is not usable: doubles might overflow. No shared state. */
+#ifndef FMB_HULL_H
+#define FMB_HULL_H
+
+#include "gap.h"
+#include "rotation.h"
+#include "support.h"
+
+enum { HULL_SMALL = 8 }; /* the most vertices of a frame that is not a hull */
+
+/* A placed frame as vertices. It points into itself: not to be copied. */
+struct hull_view {
+    struct placed_frame placed;
+    struct support_vertices vertices; /* body coordinates, rounded unless slack is 0 */
+    struct rotation_matrix rotation;
+    double radius; /* at least the distance of each vertex from the origin of the body */
+    double slack;  /* bounds the distance of a stored vertex from the exact one */
+    bool solid;    /* certainly not flat */
+    double centre[FMB_DIM_MAX]; /* a point of the frame, rounded, body coordinates */
+    double small[FMB_DIM_MAX * HULL_SMALL];
+};
+
+void hull_view_set(struct placed_frame placed, struct hull_view *out);
+
+struct hull_pair {
+    const struct frame_pair *frames;
+    struct hull_view view[2];
+    int dim;
+    bool drifts;                /* the velocities differ, and the window is not empty */
+    bool usable;                /* no double overflows */
+    bool swaps;                 /* hull_swaps() of the frames */
+    double offset[FMB_DIM_MAX]; /* position of b - position of a, rounded; beyond dim: 0 */
+    double drift[FMB_DIM_MAX];  /* (velocity of b - velocity of a) T, rounded */
+    double reach, error;        /* as above */
+};
+
+/* Sets a checked pair. It points to frames and into itself: not to be copied. */
+void hull_pair_set(const struct frame_pair *frames, struct hull_pair *out);
+
+/* A point of D by number: vertex of A, vertex of B, and the end of the window, 0 or 1. The end is 0
+ * if the pair does not drift. */
+struct hull_column {
+    unsigned vertex[2], end;
+};
+
+/* Sets *column to the point of D with the greatest n . x as computed; returns n . x, within
+ * error |n| of the greatest of all. Ties: the lowest indices, end 0. In: a usable pair; |n| <= 2,
+ * in world coordinates, 0 beyond dim. */
+double hull_support(const struct hull_pair *pair, const double n[FMB_DIM_MAX],
+                    struct hull_column *column);
+
+/* out := a point of D, within error of the exact one. Coordinates beyond dim are 0. */
+void hull_point(const struct hull_pair *pair, struct hull_column column, double out[FMB_DIM_MAX]);
+
+/* out := R v, a vertex without its position, in world coordinates. */
+void hull_place(const struct hull_view *view, unsigned vertex, double out[FMB_DIM_MAX]);
+
+/* Whether a pair is decided here. */
+static inline bool hull_takes(const struct fmb_frame *a, const struct fmb_frame *b)
+{
+    return a->shape == FMB_HULL || b->shape == FMB_HULL;
+}
+
+/* Returns whether b comes before a in an order that depends on the numbers of both placed frames
+ * only; false both ways for frames that are equal in all numbers. What is computed for a pair in
+ * this order has the same bits for the swapped pair. */
+bool hull_swaps(const struct frame_pair *frames);
+
+/* Decides a checked pair. want: as of fmb_decide(). quick: FMB_CANNOT_DECIDE, with *answer
+ * unspecified, if it needs exact arithmetic. exact: by exact arithmetic throughout. */
+enum hull_effort { HULL_CERTIFIED, HULL_QUICK, HULL_EXACT };
+enum fmb_status hull_decide(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
+                            struct fmb_answer *answer);
+
+/* The gap of a pair with this verdict. Returns GAP_FAR if it is surely greater than farthest, by
+ * more than the width of an enclosure. */
+enum gap_outcome hull_gap_of(const struct hull_pair *pair, enum fmb_verdict verdict,
+                             double farthest, struct fmb_gap *out);
+
+#endif

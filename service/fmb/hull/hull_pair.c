@@ -1,0 +1,193 @@
+/* Placed frames as arrays of vertices, and the support function of their swept difference. */
+#include "hull.h"
+
+#include "hull_frame.h"
+
+#include <math.h>
+
+static const double unit_roundoff = 0x1p-53;
+
+/* ---- Views ---- */
+
+/* Sets the vertices of a frame that is not a hull: o plus each sum of components, or o and o plus
+ * each component. A coordinate passes at most 3 roundings, each of half a unit in the last place of
+ * a number of magnitude at most |o| + sum |c_i|. */
+static void set_small(const struct fmb_frame *frame, struct hull_view *out)
+{
+    const bool simplex = frame_is_simplex(frame);
+    const unsigned count = simplex ? 1u + (unsigned) frame->count : 1u << frame->count;
+    double sum = 0;
+    for (int axis = 0; axis < frame->dim; axis++) {
+        double *to = out->small + axis * HULL_SMALL;
+        sum += fabs(frame->origin[axis]);
+        for (unsigned k = 0; k < HULL_SMALL; k++) {
+            to[k] = frame->origin[axis];
+            for (unsigned i = 0; i < (unsigned) frame->count && k < count; i++)
+                if (simplex ? k == i + 1 : k >> i & 1)
+                    to[k] += frame->component[i][axis];
+        }
+        for (int i = 0; i < frame->count; i++)
+            sum += fabs(frame->component[i][axis]);
+    }
+    out->vertices = (struct support_vertices){out->small, count, HULL_SMALL, frame->dim};
+    out->slack = frame->slack + 3.1 * unit_roundoff * sum;
+    for (int axis = 0; axis < frame->dim; axis++) {
+        double all = 0;
+        for (int i = 0; i < frame->count; i++)
+            all += frame->component[i][axis];
+        out->centre[axis] = frame->origin[axis] + all / (simplex ? frame->count + 1 : 2);
+    }
+}
+
+/* The centre is the mean of the vertices that span the hull. Quarters do not overflow. */
+static void set_hull(const struct fmb_frame *frame, struct hull_view *out)
+{
+    out->vertices = hull_frame_vertices(frame);
+    out->slack = 0;
+    for (int axis = 0; axis < frame->dim; axis++) {
+        const double *x = frame->vertices + (size_t) axis * frame->vertex_stride;
+        const unsigned *at = frame->spanning;
+        out->centre[axis] = frame->dim == 3 ? (0.25 * x[at[0]] + 0.25 * x[at[1]]) +
+                                                  (0.25 * x[at[2]] + 0.25 * x[at[3]])
+                                            : 0.25 * x[at[0]] + (0.25 * x[at[1]] + 0.5 * x[at[2]]);
+    }
+}
+
+void hull_view_set(struct placed_frame placed, struct hull_view *out)
+{
+    const struct fmb_frame *frame = placed.frame;
+    out->placed = placed;
+    out->solid = !frame->flat;
+    out->centre[2] = 0;
+    if (frame->shape == FMB_HULL)
+        set_hull(frame, out);
+    else
+        set_small(frame, out);
+    out->radius = frame->radius + out->slack;
+    rotation_of(placed.placement, frame->dim, &out->rotation);
+}
+
+void hull_place(const struct hull_view *view, unsigned vertex, double out[FMB_DIM_MAX])
+{
+    const struct support_vertices *vertices = &view->vertices;
+    double v[FMB_DIM_MAX] = {0};
+    for (int axis = 0; axis < vertices->dim; axis++)
+        v[axis] = vertices->at[(size_t) axis * vertices->stride + vertex];
+    rotation_apply(&view->rotation, v, out);
+}
+
+/* The vertex with the greatest n . R v, or the greatest -n . R v: sign is 1 or -1. The direction in
+ * body coordinates is the transposed matrix times n; its rows are the columns of R. */
+static struct support farthest(const struct hull_view *view, const double n[FMB_DIM_MAX],
+                               double sign)
+{
+    const struct rotation_matrix *rotation = &view->rotation;
+    double direction[FMB_DIM_MAX] = {sign * n[0], sign * n[1], sign * n[2]};
+    if (rotation->turned) {
+        const double x = direction[0], y = direction[1], z = direction[2];
+        for (int j = 0; j < FMB_DIM_MAX; j++)
+            direction[j] =
+                (rotation_entry(rotation, 0, j) * x + rotation_entry(rotation, 1, j) * y) +
+                rotation_entry(rotation, 2, j) * z;
+    }
+    return support_max(&view->vertices, direction);
+}
+
+/* ---- Pairs ---- */
+
+static double sum_of(const double v[FMB_DIM_MAX])
+{
+    return (fabs(v[0]) + fabs(v[1])) + fabs(v[2]);
+}
+
+static int compare(double x, double y)
+{
+    return (x > y) - (x < y);
+}
+
+static int compare_arrays(const double *x, const double *y, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (x[i] != y[i])
+            return compare(x[i], y[i]);
+    return 0;
+}
+
+static int compare_frames(const struct fmb_frame *a, const struct fmb_frame *b)
+{
+    int order = (int) a->shape - (int) b->shape;
+    if (order == 0 && a->shape == FMB_HULL) {
+        order = (a->vertex_count > b->vertex_count) - (a->vertex_count < b->vertex_count);
+        if (order == 0 && a->vertices != b->vertices)
+            order = compare_arrays(a->vertices, b->vertices, (size_t) a->dim * a->vertex_stride);
+        return order;
+    }
+    if (order == 0)
+        order = compare_arrays(a->shape == FMB_BOX ? a->centre : a->origin,
+                               a->shape == FMB_BOX ? b->centre : b->origin, FMB_DIM_MAX);
+    if (order == 0)
+        order = compare_arrays(a->component[0], b->component[0], FMB_COMPONENTS_MAX);
+    return order ? order : compare_arrays(a->remainder[0], b->remainder[0], FMB_COMPONENTS_MAX);
+}
+
+bool hull_swaps(const struct frame_pair *frames)
+{
+    const struct fmb_placement *a = frames->a.placement, *b = frames->b.placement;
+    const size_t dim = (size_t) frames->a.frame->dim;
+    int order = compare_arrays(a->position, b->position, dim);
+    if (order == 0)
+        order = compare_arrays(a->velocity, b->velocity, dim);
+    if (order == 0)
+        order = a->orientation_count - b->orientation_count;
+    if (order == 0)
+        order = compare_arrays(a->orientation, b->orientation, (size_t) a->orientation_count);
+    return (order ? order : compare_frames(frames->a.frame, frames->b.frame)) > 0;
+}
+
+void hull_pair_set(const struct frame_pair *frames, struct hull_pair *out)
+{
+    const struct fmb_placement *a = frames->a.placement, *b = frames->b.placement;
+    out->frames = frames;
+    out->dim = frames->a.frame->dim;
+    out->drifts = false;
+    hull_view_set(frames->a, &out->view[0]);
+    hull_view_set(frames->b, &out->view[1]);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        const bool used = axis < out->dim;
+        const double speed = used ? b->velocity[axis] - a->velocity[axis] : 0;
+        out->offset[axis] = used ? b->position[axis] - a->position[axis] : 0;
+        out->drift[axis] = speed * frames->duration;
+        out->drifts = out->drifts || (speed != 0 && frames->duration > 0);
+    }
+    out->reach =
+        ((out->view[0].radius + out->view[1].radius) + (sum_of(out->offset) + sum_of(out->drift)));
+    out->error =
+        32 * unit_roundoff * out->reach + (out->view[0].slack + out->view[1].slack) + 0x1p-1000;
+    out->usable = out->reach < 0x1p300;
+}
+
+static double dot(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX])
+{
+    return (x[0] * y[0] + x[1] * y[1]) + x[2] * y[2];
+}
+
+double hull_support(const struct hull_pair *pair, const double n[FMB_DIM_MAX],
+                    struct hull_column *column)
+{
+    const struct support a = farthest(&pair->view[0], n, -1), b = farthest(&pair->view[1], n, 1);
+    const double drift = pair->drifts ? dot(n, pair->drift) : 0;
+    column->vertex[0] = a.index;
+    column->vertex[1] = b.index;
+    column->end = drift > 0;
+    return (a.value + b.value) + (dot(n, pair->offset) + (drift > 0 ? drift : 0));
+}
+
+void hull_point(const struct hull_pair *pair, struct hull_column column, double out[FMB_DIM_MAX])
+{
+    double a[FMB_DIM_MAX], b[FMB_DIM_MAX];
+    hull_place(&pair->view[0], column.vertex[0], a);
+    hull_place(&pair->view[1], column.vertex[1], b);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        out[axis] =
+            (b[axis] - a[axis]) + (pair->offset[axis] + (column.end ? pair->drift[axis] : 0));
+}
