@@ -60,8 +60,9 @@ struct batch_block {
         *slot; /* [k]: the position of pair k in the batch, relative to first; sorted or in_order */
     unsigned char outcome[BLOCK + KERNEL_LANES];
     double contact[BLOCK + KERNEL_LANES][2];
-    bool far[BLOCK]; /* by position relative to first: the gap is surely greater than wanted */
-    int singles;     /* pairs decided one by one so far */
+    bool far[BLOCK];  /* by position relative to first: the gap is surely greater than wanted */
+    int singles;      /* pairs decided one by one so far */
+    unsigned scanned; /* the cost of pairs with a hull so far, in vertices */
     enum fmb_status status; /* of the first pair refused */
 };
 
@@ -255,6 +256,7 @@ static void set_block(const struct batch_job *job, size_t first, struct batch_bl
     block->first = first;
     block->count = left < BLOCK ? left : BLOCK;
     block->singles = 0;
+    block->scanned = 0;
     block->status = FMB_OK;
     block->slot = job->in_order;
     const bool like_first = set_pairs(block);
@@ -312,6 +314,43 @@ static void decide_single(struct batch_block *block, size_t k, unsigned want)
     if (batch->contacts && answer.has_contact)
         memcpy(batch->contacts[i], answer.contact, sizeof answer.contact);
     if (want && answer.has_box)
+        memcpy(batch->boxes[i], answer.box, sizeof answer.box);
+}
+
+/* The largest cost of the pairs with a hull of a block, if the time of a call is bounded: of some
+ * hundred microseconds. */
+enum { SCANNED_MAX = 1 << 15 };
+
+/* Returns the cost of a pair with a hull in doubles, in vertices: a verdict takes a few scans of
+ * all, an end of its contact or box as many. */
+static unsigned cost_of(const struct fmb_batch *batch, const struct fmb_prepared *const pair[2])
+{
+    return (pair[0]->frame->vertex_count + pair[1]->frame->vertex_count + 16) *
+           (1 + (batch->contacts ? 8 : 0) + (batch->boxes ? 24 : 0));
+}
+
+/* Decides pair k, which has a hull, or leaves it open. */
+static void put_hull(struct batch_block *block, size_t k)
+{
+    const struct fmb_batch *batch = block->batch;
+    const struct fmb_prepared *const *pair = block->pair[k];
+    const size_t i = block->first + block->slot[k];
+    const struct frame_pair frames = {{pair[0]->frame, pair[0]->placement},
+                                      {pair[1]->frame, pair[1]->placement},
+                                      batch->duration};
+    const unsigned want =
+        (batch->boxes ? FMB_WANT_BOX : 0) | (batch->contacts ? FMB_WANT_TIMES : 0);
+    const bool late = batch->open && block->scanned >= SCANNED_MAX;
+    struct fmb_answer answer = {0};
+    block->scanned += cost_of(batch, pair);
+    if (late || hull_decide(&frames, want, batch->open ? HULL_QUICK : HULL_CERTIFIED, &answer)) {
+        batch->verdicts[i] = LEFT_OPEN;
+        return;
+    }
+    batch->verdicts[i] = (unsigned char) answer.verdict;
+    if (answer.has_contact)
+        memcpy(batch->contacts[i], answer.contact, sizeof answer.contact);
+    if (answer.has_box)
         memcpy(batch->boxes[i], answer.box, sizeof answer.box);
 }
 
@@ -517,6 +556,11 @@ static void put_unfiltered(struct batch_block *block)
     for (size_t k = block->start[KERNEL_UNUSABLE]; k < block->count; k++) {
         const size_t i = block->first + block->slot[k];
         put_nothing(block->batch, i);
+        if (k < block->start[KERNEL_REFUSED] &&
+            hull_takes(block->pair[k][0]->frame, block->pair[k][1]->frame)) {
+            put_hull(block, k);
+            continue;
+        }
         if (k < block->start[KERNEL_REFUSED]) {
             decide_single(block, k, block->batch->boxes ? FMB_WANT_BOX : 0);
             continue;

@@ -13,7 +13,7 @@ static enum fmb_status decide_exactly(const struct frame_pair *pair, unsigned wa
                                       struct fmb_answer *answer)
 {
     if (hull_takes(pair->a.frame, pair->b.frame))
-        return hull_decide(pair, want, HULL_EXACT, answer);
+        return hull_decide(pair, want | FMB_WANT_TIMES, HULL_EXACT, answer);
     const enum fmb_status status = exact_decide(pair, want, answer);
     answer->has_gap = want & FMB_WANT_GAP;
     if (answer->has_gap)

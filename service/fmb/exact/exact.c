@@ -4,9 +4,7 @@
 
 #include <string.h>
 
-/* Returns the largest exponent u such that all lengths of the pair are multiples of 2^u:
- * components, origins, positions, and displacements v T. */
-static long pair_unit(const struct frame_pair *pair)
+long exact_pair_unit(const struct frame_pair *pair)
 {
     const struct placed_frame *placed[2] = {&pair->a, &pair->b};
     long unit = INTEGER_NO_EXPONENT;
@@ -19,6 +17,8 @@ static long pair_unit(const struct frame_pair *pair)
             lengths = integer_vector_unit(lengths, frame->component[i], dim);
             lengths = integer_vector_unit(lengths, frame->remainder[i], dim);
         }
+        if (frame->shape == FMB_HULL)
+            lengths = frame->bits[0];
         if (frame->shape == FMB_BOX) { /* halves of sizes */
             lengths -= lengths < INTEGER_NO_EXPONENT;
             lengths = integer_vector_unit(lengths, frame->centre, dim);
@@ -70,13 +70,7 @@ void exact_pair_complete(struct exact_pair *pair)
  * are multiplied by scale: n_a n_b, or n_a if n_a = n_b. This changes no sign, no time and no
  * direction. Points are divided by scale at the end. */
 
-struct turn {
-    bool turned;
-    mpz_t row[3][3], norm; /* n R(q) and n; if not turned, norm is 1 and row is not used */
-};
-
-/* Calls one of mpz_init and mpz_clear for every number. */
-static void turn_each(struct turn *turn, void (*call)(mpz_ptr))
+void exact_turn_each(struct exact_turn *turn, void (*call)(mpz_ptr))
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
@@ -99,8 +93,7 @@ static void set_quaternion(const struct fmb_placement *placement, mpz_t q[4], mp
         mpz_divexact(q[i], q[i], divisor);
 }
 
-/* Sets the matrix of a placement. In: all numbers of turn are 0. */
-static void turn_set(const struct fmb_placement *placement, struct turn *turn)
+void exact_turn_set(const struct fmb_placement *placement, struct exact_turn *turn)
 {
     turn->turned = placement->orientation_count != 0;
     mpz_set_ui(turn->norm, 1);
@@ -132,8 +125,7 @@ static void turn_set(const struct fmb_placement *placement, struct turn *turn)
     mpz_clears(q[0], q[1], q[2], q[3], product, NULL);
 }
 
-/* v := n R(q) v times factor. */
-static void turn_vector(const struct turn *turn, const mpz_t factor, mpz_t v[3])
+void exact_turn_vector(const struct exact_turn *turn, const mpz_t factor, mpz_t v[3])
 {
     if (turn->turned) {
         mpz_t out[3];
@@ -165,8 +157,7 @@ static void add_remainders(struct exact_frame *out, const struct fmb_frame *fram
     mpz_clear(remainder);
 }
 
-/* Sets components and origin in body coordinates, in units of 2^unit. */
-static void set_frame(struct exact_frame *out, const struct fmb_frame *frame, long unit)
+void exact_frame_set(struct exact_frame *out, const struct fmb_frame *frame, long unit)
 {
     out->count = frame->count;
     out->simplex = frame_is_simplex(frame);
@@ -188,15 +179,16 @@ static void set_frame(struct exact_frame *out, const struct fmb_frame *frame, lo
 /* Transforms a frame from body to world coordinates. Rotated vectors, which contain the norm of
  * their rotation, are multiplied by factor; all others by scale. */
 static void place_frame(struct exact_frame *out, const struct placed_frame *placed, double duration,
-                        long unit, const struct turn *turn, const mpz_t factor, const mpz_t scale)
+                        long unit, const struct exact_turn *turn, const mpz_t factor,
+                        const mpz_t scale)
 {
     const struct fmb_placement *placement = placed->placement;
     const struct dyadic window = dyadic_of(duration);
     mpz_t position;
     mpz_init(position);
     for (int i = 0; i < out->count; i++)
-        turn_vector(turn, factor, out->component[i]);
-    turn_vector(turn, factor, out->origin);
+        exact_turn_vector(turn, factor, out->component[i]);
+    exact_turn_vector(turn, factor, out->origin);
     for (int axis = 0; axis < placed->frame->dim; axis++) {
         integer_set(position, dyadic_of(placement->position[axis]), unit);
         mpz_addmul(out->origin[axis], position, scale);
@@ -210,13 +202,13 @@ static void place_frame(struct exact_frame *out, const struct placed_frame *plac
 static void set_frames(struct exact_pair *out, const struct frame_pair *pair)
 {
     const struct placed_frame *placed[2] = {&pair->a, &pair->b};
-    struct turn turn[2];
+    struct exact_turn turn[2];
     mpz_t one;
     mpz_init_set_ui(one, 1);
     for (int f = 0; f < 2; f++) {
-        turn_each(&turn[f], mpz_init);
-        turn_set(placed[f]->placement, &turn[f]);
-        set_frame(&out->frame[f], placed[f]->frame, out->unit);
+        exact_turn_each(&turn[f], mpz_init);
+        exact_turn_set(placed[f]->placement, &turn[f]);
+        exact_frame_set(&out->frame[f], placed[f]->frame, out->unit);
     }
     const bool same = mpz_cmp(turn[0].norm, turn[1].norm) == 0;
     mpz_set(out->scale, turn[0].norm);
@@ -226,12 +218,11 @@ static void set_frames(struct exact_pair *out, const struct frame_pair *pair)
         place_frame(&out->frame[f], placed[f], pair->duration, out->unit, &turn[f],
                     same ? one : turn[!f].norm, out->scale);
     for (int f = 0; f < 2; f++)
-        turn_each(&turn[f], mpz_clear);
+        exact_turn_each(&turn[f], mpz_clear);
     mpz_clear(one);
 }
 
-/* Call one of mpz_init and mpz_clear for every number of a frame, or of a pair. */
-static void frame_each(struct exact_frame *frame, void (*call)(mpz_ptr))
+void exact_frame_each(struct exact_frame *frame, void (*call)(mpz_ptr))
 {
     for (int axis = 0; axis < 3; axis++) {
         call(frame->origin[axis]);
@@ -243,10 +234,11 @@ static void frame_each(struct exact_frame *frame, void (*call)(mpz_ptr))
     }
 }
 
+/* Calls one of mpz_init and mpz_clear for every number of a pair. */
 static void pair_each(struct exact_pair *pair, void (*call)(mpz_ptr))
 {
     for (int f = 0; f < 2; f++)
-        frame_each(&pair->frame[f], call);
+        exact_frame_each(&pair->frame[f], call);
     for (int axis = 0; axis < 3; axis++) {
         call(pair->offset[axis]);
         call(pair->drift[axis]);
@@ -375,7 +367,7 @@ void exact_cross_values(struct exact_pair *pair, const struct exact_edge *u,
 void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair, bool difference)
 {
     pair_each(out, mpz_init);
-    out->unit = pair_unit(pair);
+    out->unit = exact_pair_unit(pair);
     out->moving = pair->duration > 0 && pair_moves(pair);
     set_frames(out, pair);
     exact_pair_complete(out);

@@ -65,6 +65,33 @@ struct exact_pair {
     mpz_t scratch[EXACT_SCRATCH];
 };
 
+/* The orientation of a placement. For the smallest integers q proportional to it, n = |q|^2 and n
+ * R(q) is a matrix of integers. */
+struct exact_turn {
+    bool turned;
+    mpz_t row[3][3], norm; /* n R(q) and n; if not turned, norm is 1 and row is not used */
+};
+
+/* Calls one of mpz_init and mpz_clear for every number. */
+void exact_turn_each(struct exact_turn *turn, void (*call)(mpz_ptr));
+
+/* Sets the matrix of a placement. In: all numbers of turn are 0. */
+void exact_turn_set(const struct fmb_placement *placement, struct exact_turn *turn);
+
+/* v := n R(q) v times factor. */
+void exact_turn_vector(const struct exact_turn *turn, const mpz_t factor, mpz_t v[3]);
+
+/* Returns the largest exponent u such that all lengths of the pair are multiples of 2^u:
+ * components, origins, vertices, positions, and displacements v T. */
+long exact_pair_unit(const struct frame_pair *pair);
+
+/* Calls one of mpz_init and mpz_clear for every number of a frame. */
+void exact_frame_each(struct exact_frame *frame, void (*call)(mpz_ptr));
+
+/* Sets components and origin in body coordinates, in units of 2^unit. Changes displacement. In: not
+ * a hull; all numbers are 0. */
+void exact_frame_set(struct exact_frame *out, const struct fmb_frame *frame, long unit);
+
 /* Converts a checked pair. difference: the slabs of the difference are needed.
  * exact_pair_clear() frees what exact_pair_init() allocates. */
 void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair, bool difference);

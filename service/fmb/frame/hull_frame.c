@@ -1,6 +1,7 @@
 /* Frames of shape FMB_HULL: vertices merged and stored, and what is computed from them once. */
 #include "hull_frame.h"
 
+#include "integer.h"
 #include "prepared.h"
 #include "rotation.h"
 #include "support.h"
@@ -144,6 +145,16 @@ static double radius_of(const struct fmb_frame *frame)
     return radius * (1 + 0x1p-40) + 0x1p-1000;
 }
 
+/* Sets bits: those that the coordinates span. */
+static void set_bits(struct fmb_frame *frame)
+{
+    struct dyadic_span span = dyadic_span_begin();
+    for (size_t i = 0; i < (size_t) frame->dim * frame->vertex_stride; i++)
+        dyadic_span_add(&span, dyadic_of(frame->vertices[i]));
+    frame->bits[0] = (int) span.unit;
+    frame->bits[1] = (int) span.top;
+}
+
 /* Vectors from the first vertex to others, scaled to a largest coordinate near 1. */
 struct scaled {
     const struct fmb_frame *frame;
@@ -245,6 +256,7 @@ enum fmb_status fmb_frame_make_hull(int dim, const double *vertices, size_t coun
     out->shape = FMB_HULL;
     store(vertices, count / (size_t) dim, memory, out);
     out->radius = radius_of(out);
+    set_bits(out);
     choose_spanning(out);
     out->summary = (unsigned long long) (PREPARED_VALID | (dim == 3 ? PREPARED_3D : 0))
                    << 3 * PREPARED_SIZE_BITS;

@@ -7,9 +7,10 @@
 
 /* Internal fields of a hull in struct fmb_frame:
  *
- *   spanning    vertices that span it: of dim + 1 vertices chosen one after the other, each spans
- * the largest volume with those before it, as computed in doubles. Vertex 0 again: none adds to the
- * volume turn_error  how far the vertices are moved by a rotation that rounds */
+ *   spanning    dim + 1 vertices, chosen one after the other: each spans the largest volume with
+ *               those before it, as computed in doubles. Vertex 0 again: none adds to the volume
+ *   bits        all coordinates are multiples of 2^bits[0] below 2^bits[1]
+ *   turn_error  how far the vertices are moved by a rotation that rounds */
 
 struct support_vertices hull_frame_vertices(const struct fmb_frame *frame);
 

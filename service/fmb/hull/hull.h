@@ -36,7 +36,8 @@
  * covers underflow for |n| <= 2. The factor between 32 and 22 + 3.1 covers the rounding of the
  * bounds.
  *
- * A pair whose reach is not below 2^300 is not usable: doubles might overflow. No shared state. */
+ * A pair is usable if its reach is within (2^-200, 2^200): no product of four lengths overflows,
+ * nor underflows to less than the bounds count. No shared state. */
 #ifndef FMB_HULL_H
 #define FMB_HULL_H
 
@@ -66,7 +67,6 @@ struct hull_pair {
     int dim;
     bool drifts;                /* the velocities differ, and the window is not empty */
     bool usable;                /* no double overflows */
-    bool swaps;                 /* hull_swaps() of the frames */
     double offset[FMB_DIM_MAX]; /* position of b - position of a, rounded; beyond dim: 0 */
     double drift[FMB_DIM_MAX];  /* (velocity of b - velocity of a) T, rounded */
     double reach, error;        /* as above */
@@ -90,6 +90,10 @@ double hull_support(const struct hull_pair *pair, const double n[FMB_DIM_MAX],
 /* out := a point of D, within error of the exact one. Coordinates beyond dim are 0. */
 void hull_point(const struct hull_pair *pair, struct hull_column column, double out[FMB_DIM_MAX]);
 
+/* Returns the vertex of a view with the greatest n . R v as computed, and that value. It is off by
+ * at most |n| (22 u radius + slack). */
+struct support hull_view_support(const struct hull_view *view, const double n[FMB_DIM_MAX]);
+
 /* out := R v, a vertex without its position, in world coordinates. */
 void hull_place(const struct hull_view *view, unsigned vertex, double out[FMB_DIM_MAX]);
 
@@ -99,19 +103,20 @@ static inline bool hull_takes(const struct fmb_frame *a, const struct fmb_frame 
     return a->shape == FMB_HULL || b->shape == FMB_HULL;
 }
 
-/* Returns whether b comes before a in an order that depends on the numbers of both placed frames
- * only; false both ways for frames that are equal in all numbers. What is computed for a pair in
- * this order has the same bits for the swapped pair. */
-bool hull_swaps(const struct frame_pair *frames);
+/* out := the frames in an order that depends on the numbers of both placed frames only. What is
+ * computed for them in this order has the same bits for the swapped pair. Returns whether they are
+ * exchanged; false both ways for frames that are equal in all numbers. */
+bool hull_order(const struct frame_pair *frames, struct frame_pair *out);
 
-/* Decides a checked pair. want: as of fmb_decide(). quick: FMB_CANNOT_DECIDE, with *answer
- * unspecified, if it needs exact arithmetic. exact: by exact arithmetic throughout. */
+/* Decides a checked pair. want: as of fmb_decide(); the contact too only with FMB_WANT_TIMES.
+ * quick: FMB_CANNOT_DECIDE, with *answer unspecified, if it needs exact arithmetic. exact: by exact
+ * arithmetic throughout. */
 enum hull_effort { HULL_CERTIFIED, HULL_QUICK, HULL_EXACT };
 enum fmb_status hull_decide(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
                             struct fmb_answer *answer);
 
-/* The gap of a pair with this verdict. Returns GAP_FAR if it is surely greater than farthest, by
- * more than the width of an enclosure. */
+/* The gap of a pair in the order of hull_order(), with this verdict. Returns GAP_FAR if it is
+ * surely greater than farthest, by more than the width of an enclosure. */
 enum gap_outcome hull_gap_of(const struct hull_pair *pair, enum fmb_verdict verdict,
                              double farthest, struct fmb_gap *out);
 

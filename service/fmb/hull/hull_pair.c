@@ -76,19 +76,19 @@ void hull_place(const struct hull_view *view, unsigned vertex, double out[FMB_DI
     rotation_apply(&view->rotation, v, out);
 }
 
-/* The vertex with the greatest n . R v, or the greatest -n . R v: sign is 1 or -1. The direction in
- * body coordinates is the transposed matrix times n; its rows are the columns of R. */
-static struct support farthest(const struct hull_view *view, const double n[FMB_DIM_MAX],
-                               double sign)
+/* The direction in body coordinates is the transposed matrix times n: its rows are the columns of
+ * R.
+ */
+struct support hull_view_support(const struct hull_view *view, const double n[FMB_DIM_MAX])
 {
     const struct rotation_matrix *rotation = &view->rotation;
-    double direction[FMB_DIM_MAX] = {sign * n[0], sign * n[1], sign * n[2]};
-    if (rotation->turned) {
-        const double x = direction[0], y = direction[1], z = direction[2];
-        for (int j = 0; j < FMB_DIM_MAX; j++)
-            direction[j] =
-                (rotation_entry(rotation, 0, j) * x + rotation_entry(rotation, 1, j) * y) +
-                rotation_entry(rotation, 2, j) * z;
+    double direction[FMB_DIM_MAX];
+    if (!rotation->turned)
+        return support_max(&view->vertices, n);
+    for (int j = 0; j < FMB_DIM_MAX; j++) {
+        const double xy =
+            rotation_entry(rotation, 0, j) * n[0] + rotation_entry(rotation, 1, j) * n[1];
+        direction[j] = xy + rotation_entry(rotation, 2, j) * n[2];
     }
     return support_max(&view->vertices, direction);
 }
@@ -130,7 +130,7 @@ static int compare_frames(const struct fmb_frame *a, const struct fmb_frame *b)
     return order ? order : compare_arrays(a->remainder[0], b->remainder[0], FMB_COMPONENTS_MAX);
 }
 
-bool hull_swaps(const struct frame_pair *frames)
+static bool swaps(const struct frame_pair *frames)
 {
     const struct fmb_placement *a = frames->a.placement, *b = frames->b.placement;
     const size_t dim = (size_t) frames->a.frame->dim;
@@ -142,6 +142,14 @@ bool hull_swaps(const struct frame_pair *frames)
     if (order == 0)
         order = compare_arrays(a->orientation, b->orientation, (size_t) a->orientation_count);
     return (order ? order : compare_frames(frames->a.frame, frames->b.frame)) > 0;
+}
+
+bool hull_order(const struct frame_pair *frames, struct frame_pair *out)
+{
+    const bool swapped = swaps(frames);
+    *out = (struct frame_pair){swapped ? frames->b : frames->a, swapped ? frames->a : frames->b,
+                               frames->duration};
+    return swapped;
 }
 
 void hull_pair_set(const struct frame_pair *frames, struct hull_pair *out)
@@ -163,7 +171,7 @@ void hull_pair_set(const struct frame_pair *frames, struct hull_pair *out)
         ((out->view[0].radius + out->view[1].radius) + (sum_of(out->offset) + sum_of(out->drift)));
     out->error =
         32 * unit_roundoff * out->reach + (out->view[0].slack + out->view[1].slack) + 0x1p-1000;
-    out->usable = out->reach < 0x1p300;
+    out->usable = out->reach < 0x1p200 && out->reach > 0x1p-200;
 }
 
 static double dot(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX])
@@ -174,7 +182,9 @@ static double dot(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX])
 double hull_support(const struct hull_pair *pair, const double n[FMB_DIM_MAX],
                     struct hull_column *column)
 {
-    const struct support a = farthest(&pair->view[0], n, -1), b = farthest(&pair->view[1], n, 1);
+    const double against[FMB_DIM_MAX] = {-n[0], -n[1], -n[2]};
+    const struct support a = hull_view_support(&pair->view[0], against);
+    const struct support b = hull_view_support(&pair->view[1], n);
     const double drift = pair->drifts ? dot(n, pair->drift) : 0;
     column->vertex[0] = a.index;
     column->vertex[1] = b.index;

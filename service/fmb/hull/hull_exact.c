@@ -1,0 +1,1039 @@
+/* Pairs with a hull in integers: verdict, contact and box from linear programs whose columns are
+ * the vertices of D, priced by the support function (column generation).
+ *
+ * Coordinates. All points are integers, in units of 2^unit / scale of the pair (exact.h), so that
+ * no step rounds. Points enter as 4 x, because the interior point c below is a mean in quarters.
+ *
+ * 1. Span (span_step()). Finds k + 1 points of D that are affinely independent, k the dimension of
+ * D: starting with the points given, it looks for a point off the flat that is spanned so far, in a
+ *    direction orthogonal to it. If all of D is in that flat, that is its affine hull. If this does
+ *    not contain the origin, the frames are separated. Else k coordinates are chosen in which the
+ *    projection of the flat is one to one; D has an interior there. The point c, a mean of the k +
+ * 1 points with weights of 1/4 and 1/2, lies in it.
+ * 2. Shoot (shoot_step()). The linear program
+ *
+ *        minimise sum_i a_i   subject to   sum_i a_i (x_i - c) = -c,  a_i >= 0
+ *
+ *    over vertices x_i of D finds where the ray from c through the origin leaves D: at the origin
+ *    itself if the sum is 1; the sum is less than 1 if and only if the origin is in the relative
+ *    interior of D, 1 if it is on the boundary, and greater if it is outside. Its basis is k
+ * vertices whose cone with apex c contains the ray: geometrically, a portal through which the ray
+ * passes, as in the Minkowski portal refinement of G. Snethen (Game Programming Gems 7, 2008). The
+ * dual solution is the normal N of the portal, N . (x_i - c) = 1. The vertex with the greatest N .
+ * x enters the basis. If N . x < 0 for it, N separates; if 0, the origin is on the face of D in
+ *    direction N, unless it is separated otherwise: the vertices of both frames that attain the
+ *    maximum span that face, the sweep contributes what N . w permits, and step 1 is repeated with
+ *    them. Their dimension is less, so this ends.
+ *    At the end the origin is in the relative interior of a face F of D, of the convex hull of c
+ * and the basis, or it is outside of D.
+ * 3. Heights (height_step()). Each end of contact and box is the optimum of
+ *
+ *        maximise sum_i b_i h(x_i)   subject to   sum_i b_i x_i = 0,  sum_i b_i = 1,  b_i >= 0
+ *
+ *    over the vertices of F, where h is linear in the vertex of A, that of B, and the time: +-t for
+ *    the contact, +-(a + t v_a) along an axis for the box. c and the basis of step 2 are feasible.
+ * A convex combination such as c may stay in the basis, it does not change the optimum.
+ * 4. Verdict. OVERLAPPING if at some t the origin is in the relative interior of M + t w. That is
+ * so if and only if the part of F that is M's has the dimension of M: relint D is the union of
+ *    relint M + t w for 0 < t < T, and every face of D is a face G of M, swept or at one end of the
+ *    window. (If w is in the span of M, only F = D has that dimension. If it is not, D is a prism
+ *    over M, and the faces with G = M are D and both ends.)
+ *
+ * Both programs have one form: minimise or maximise sum a_i h_i subject to sum a_i H_i = q, a >= 0,
+ * with columns H_i of m numbers, m <= 4. With the cofactors C_i of the basis, C_i . H_j = det if
+ * i = j, else 0: the solution is a_i = C_i . q / det, the coordinates of an entering column s in
+ * the basis are C_i . s / det, and the dual solution is sum h_i C_i / det.
+ *
+ * Finite: ties in the choice of the leaving column are broken as if the origin were at (e, e^2,
+ * ...) for a small e > 0 (the lexicographic rule; Dantzig, Orden and Wolfe, 1955): by C_i . q, then
+ * by the coordinates of C_i in order. No basis repeats, and there are finitely many. The optimum
+ * does not depend on the path, so neither does the answer.
+ *
+ * Pricing. The direction is turned into body coordinates exactly and then rounded. One scan in
+ * doubles leaves the vertices within the bound of the greatest value; only these are evaluated
+ * exactly. */
+#include "hull_exact.h"
+
+#include "exact.h"
+#include "integer.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { ROWS = 4, QUARTERS = 4 };
+
+/* A point of D, or a mean of points, times QUARTERS. */
+struct point {
+    struct hull_column column;
+    mpz_t x[3]; /* its coordinates */
+    mpz_t a[3]; /* of the point of A at its time, in the world */
+    int end;    /* 4 t / T */
+};
+
+/* One placed frame. */
+struct side {
+    const struct hull_view *view;
+    struct exact_turn turn;
+    mpz_t factor;               /* of rotated vectors */
+    mpz_t position[3];          /* times scale */
+    mpz_t displacement[3];      /* v T, times scale */
+    mpz_t small[HULL_SMALL][3]; /* vertices in body coordinates, unless it is a hull */
+    unsigned count;             /* of vertices of the face, [0, count) of face */
+    uint16_t face[FMB_HULL_VERTICES_MAX];
+};
+
+enum stage { SPANNING, SHOOTING, RAISING, MEASURING_FACE, MEASURING_ALL, COMPLETE };
+
+struct hull_exact {
+    const struct hull_pair *pair;
+    unsigned want;
+    enum stage stage;
+    long unit;
+    mpz_t scale;
+    struct side side[2];
+    mpz_t drift[3]; /* w T */
+    bool ends[2];   /* of the window, that the face has */
+    bool reduced;   /* the face is not all of D */
+    struct hull_column first[ROWS];
+    unsigned first_count, next_first;
+
+    /* Span: rank + 1 points; the vectors from the first to the others; the direction to be tried.
+     */
+    int rank, attempt;
+    struct point span[ROWS];
+    mpz_t edge[2][3];
+    int axis[3]; /* [rank]: the coordinates of the projection */
+
+    /* Programs. */
+    int rows;
+    struct point centre, basis[ROWS], entering;
+    mpz_t row[ROWS][ROWS], cofactor[ROWS][ROWS], det, dual[ROWS], coordinate[ROWS], enters[ROWS];
+    mpz_t height[ROWS];
+    int target; /* the height: an end of the contact, 0 and 1, or of the box, 2 + 2 axis + end */
+
+    int face_rank;
+    enum fmb_verdict verdict;
+    double contact[2], box[2][FMB_DIM_MAX];
+    mpz_t normal[2][3], body[3], sum, best, scratch[2], denominator, minor[6], vector[3];
+};
+
+/* ---- Memory ---- */
+
+static void vector_each(mpz_t v[3], void (*call)(mpz_ptr))
+{
+    for (int i = 0; i < 3; i++)
+        call(v[i]);
+}
+
+static void point_each(struct point *point, void (*call)(mpz_ptr))
+{
+    vector_each(point->x, call);
+    vector_each(point->a, call);
+}
+
+static void side_each(struct side *side, void (*call)(mpz_ptr))
+{
+    exact_turn_each(&side->turn, call);
+    call(side->factor);
+    vector_each(side->position, call);
+    vector_each(side->displacement, call);
+    for (int i = 0; i < HULL_SMALL; i++)
+        vector_each(side->small[i], call);
+}
+
+static void each(struct hull_exact *e, void (*call)(mpz_ptr))
+{
+    call(e->scale);
+    vector_each(e->drift, call);
+    for (int f = 0; f < 2; f++) {
+        side_each(&e->side[f], call);
+        vector_each(e->edge[f], call);
+        vector_each(e->normal[f], call);
+        call(e->scratch[f]);
+    }
+    for (int i = 0; i < ROWS; i++) {
+        point_each(&e->span[i], call);
+        point_each(&e->basis[i], call);
+        for (int j = 0; j < ROWS; j++) {
+            call(e->row[i][j]);
+            call(e->cofactor[i][j]);
+        }
+        call(e->dual[i]);
+        call(e->coordinate[i]);
+        call(e->enters[i]);
+        call(e->height[i]);
+    }
+    point_each(&e->centre, call);
+    point_each(&e->entering, call);
+    vector_each(e->body, call);
+    vector_each(e->vector, call);
+    for (int i = 0; i < 6; i++)
+        call(e->minor[i]);
+    call(e->det);
+    call(e->denominator);
+    call(e->sum);
+    call(e->best);
+}
+
+/* ---- Points ---- */
+
+static const double *coordinates_of(const struct side *side, unsigned i)
+{
+    return side->view->vertices.at + i;
+}
+
+static bool is_hull(const struct side *side)
+{
+    return side->view->placed.frame->shape == FMB_HULL;
+}
+
+/* out := vertex i in body coordinates. */
+static void get_vertex(const struct hull_exact *e, const struct side *side, unsigned i,
+                       mpz_t out[3])
+{
+    const struct support_vertices *vertices = &side->view->vertices;
+    for (int axis = 0; axis < 3; axis++) {
+        if (!is_hull(side))
+            mpz_set(out[axis], side->small[i][axis]);
+        else if (axis >= vertices->dim)
+            mpz_set_ui(out[axis], 0);
+        else
+            integer_set(out[axis],
+                        dyadic_of(coordinates_of(side, i)[(size_t) axis * vertices->stride]),
+                        e->unit);
+    }
+}
+
+/* sum := n . vertex i, in body coordinates. */
+static void set_value(struct hull_exact *e, const struct side *side, unsigned i, mpz_t n[3])
+{
+    const struct support_vertices *vertices = &side->view->vertices;
+    mpz_set_ui(e->sum, 0);
+    for (int axis = 0; axis < vertices->dim; axis++) {
+        if (!is_hull(side)) {
+            mpz_addmul(e->sum, n[axis], side->small[i][axis]);
+            continue;
+        }
+        const struct dyadic x =
+            dyadic_of(coordinates_of(side, i)[(size_t) axis * vertices->stride]);
+        if (x.mantissa == 0)
+            continue;
+        mpz_mul_si(e->scratch[0], n[axis], x.mantissa);
+        mpz_mul_2exp(e->scratch[0], e->scratch[0], (mp_bitcnt_t) (x.exponent - e->unit));
+        mpz_add(e->sum, e->sum, e->scratch[0]);
+    }
+}
+
+/* out := the world coordinates of vertex i at the end of the window, or at its start. */
+static void place(struct hull_exact *e, const struct side *side, unsigned i, unsigned end,
+                  mpz_t out[3])
+{
+    get_vertex(e, side, i, out);
+    exact_turn_vector(&side->turn, side->factor, out);
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_add(out[axis], out[axis], side->position[axis]);
+        if (end)
+            mpz_add(out[axis], out[axis], side->displacement[axis]);
+    }
+}
+
+static void set_point(struct hull_exact *e, struct hull_column column, struct point *out)
+{
+    out->column = column;
+    out->end = column.end ? QUARTERS : 0;
+    place(e, &e->side[0], column.vertex[0], column.end, out->a);
+    place(e, &e->side[1], column.vertex[1], column.end, out->x);
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_sub(out->x[axis], out->x[axis], out->a[axis]);
+        mpz_mul_2exp(out->x[axis], out->x[axis], 2);
+        mpz_mul_2exp(out->a[axis], out->a[axis], 2);
+    }
+}
+
+static void swap_points(struct point *x, struct point *y)
+{
+    const struct point copy = *x;
+    *x = *y;
+    *y = copy;
+}
+
+/* ---- Pricing ---- */
+
+/* A direction in body coordinates, exact and rounded. */
+struct direction {
+    double n[FMB_DIM_MAX];
+    double least; /* vertices of a smaller value are not the farthest; -infinity if not known */
+};
+
+/* Rounds e->body, scaled to a largest coordinate in [1/2, 1). Each coordinate is truncated to 53
+ * bits, off by at most 2^-52 of itself, and by 2^-1074 if it is far smaller than the largest. The
+ * product with a vertex is off by another 3.01 2^-53 of the magnitudes of its terms (support.h).
+ * With |n| < 2, a value is off by less than 16 2^-53 radius + 2 slack + 2^-1000. */
+static void round_direction(struct hull_exact *e, const struct side *side, struct direction *out)
+{
+    long exponent[3], largest = 0;
+    bool any = false;
+    for (int axis = 0; axis < 3; axis++) {
+        out->n[axis] = mpz_get_d_2exp(&exponent[axis], e->body[axis]);
+        if (out->n[axis] != 0 && (!any || exponent[axis] > largest)) {
+            largest = exponent[axis];
+            any = true;
+        }
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        const long down = largest - exponent[axis];
+        out->n[axis] = out->n[axis] == 0 || down > 1100 ? 0 : ldexp(out->n[axis], (int) -down);
+    }
+    out->least = -INFINITY;
+    if (!(side->view->radius < 0x1p1000))
+        return;
+    const double error = 16 * 0x1p-53 * side->view->radius + 2 * side->view->slack + 0x1p-1000;
+    for (unsigned k = 0; k < side->count; k++)
+        out->least = fmax(out->least, support_value(&side->view->vertices, out->n, side->face[k]));
+    out->least -= 2.1 * error;
+}
+
+/* e->body := n in body coordinates, times a positive factor. */
+static void turn_back(struct hull_exact *e, const struct side *side, mpz_t n[3])
+{
+    for (int j = 0; j < 3; j++) {
+        if (!side->turn.turned) {
+            mpz_set(e->body[j], n[j]);
+            continue;
+        }
+        mpz_set_ui(e->body[j], 0);
+        for (int i = 0; i < 3; i++)
+            mpz_addmul(e->body[j], side->turn.row[i][j], n[i]);
+    }
+}
+
+/* Returns the first vertex of the face with the greatest n . v, in world coordinates. reduce: keeps
+ * those vertices alone in the face. */
+static unsigned price_side(struct hull_exact *e, int f, mpz_t n[3], bool reduce)
+{
+    struct side *side = &e->side[f];
+    struct direction direction;
+    unsigned kept = 0, best = side->face[0];
+    bool known = false; /* e->best is the value of best */
+    turn_back(e, side, n);
+    if (integer_is_zero(e->body))
+        return best;
+    round_direction(e, side, &direction);
+    for (unsigned k = 0; k < side->count; k++) {
+        const unsigned i = side->face[k];
+        if (support_value(&side->view->vertices, direction.n, i) < direction.least)
+            continue;
+        int order = 1;
+        if (kept > 0) {
+            if (!known) {
+                set_value(e, side, best, e->body);
+                mpz_swap(e->sum, e->best);
+                known = true;
+            }
+            set_value(e, side, i, e->body);
+            order = mpz_cmp(e->sum, e->best);
+        }
+        if (order > 0) {
+            if (kept > 0)
+                mpz_swap(e->sum, e->best);
+            best = i;
+            kept = 0;
+        }
+        if (order >= 0) {
+            if (reduce)
+                side->face[kept] = (uint16_t) i;
+            kept++;
+        }
+    }
+    if (reduce)
+        side->count = kept;
+    return best;
+}
+
+/* Prices the vertices of the face: normal[0] for A, normal[1] for B, and the sign of what the end
+ * of the window adds. */
+static struct hull_column price(struct hull_exact *e, int end_sign, bool reduce)
+{
+    struct hull_column out;
+    for (int f = 0; f < 2; f++)
+        out.vertex[f] = price_side(e, f, e->normal[f], reduce);
+    out.end = e->ends[0] && e->ends[1] ? end_sign > 0 : e->ends[1];
+    if (reduce && end_sign != 0 && e->ends[0] && e->ends[1])
+        e->ends[end_sign < 0] = false;
+    return out;
+}
+
+/* out := n . v */
+static void dot(mpz_t n[3], mpz_t v[3], mpz_t out)
+{
+    mpz_mul(out, n[0], v[0]);
+    mpz_addmul(out, n[1], v[1]);
+    mpz_addmul(out, n[2], v[2]);
+}
+
+/* Prices n . x, n = normal[1]. */
+static struct hull_column price_difference(struct hull_exact *e, bool reduce)
+{
+    for (int axis = 0; axis < 3; axis++)
+        mpz_neg(e->normal[0][axis], e->normal[1][axis]);
+    dot(e->normal[1], e->drift, e->sum);
+    return price(e, mpz_sgn(e->sum), reduce);
+}
+
+/* ---- Span ---- */
+
+static void begin_span(struct hull_exact *e, enum stage stage)
+{
+    e->stage = stage;
+    e->rank = -1;
+    e->attempt = 0;
+}
+
+/* Sets normal[1] to direction number attempt orthogonal to the flat spanned so far; returns false
+ * if there is none of this number. Together these directions span the orthogonal complement. */
+static bool set_orthogonal(struct hull_exact *e)
+{
+    mpz_t *n = e->normal[1], *u = e->edge[0], *v = e->edge[1];
+    const int dim = e->pair->dim, attempt = e->attempt;
+    const int i = attempt, j = (attempt + 1) % 3, k = (attempt + 2) % 3;
+    for (int axis = 0; axis < 3; axis++)
+        mpz_set_ui(n[axis], 0);
+    if (e->rank == 0 && attempt < dim) {
+        mpz_set_ui(n[attempt], 1);
+    } else if (e->rank == 1 && dim == 2 && attempt == 0) {
+        mpz_neg(n[0], u[1]);
+        mpz_set(n[1], u[0]);
+    } else if (e->rank == 1 && dim == 3 && attempt < 3) { /* unit vector i x u */
+        (void) i;
+        mpz_neg(n[j], u[k]);
+        mpz_set(n[k], u[j]);
+    } else if (e->rank == 2 && dim == 3 && attempt == 0) {
+        integer_cross(n, u, v, e->scratch[0]);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+/* Whether point is off the flat spanned so far. If so, it is added. e->entering: the point. */
+static bool extend_span(struct hull_exact *e)
+{
+    mpz_t *edge = e->vector;
+    if (e->rank >= 0)
+        for (int axis = 0; axis < 3; axis++)
+            mpz_sub(edge[axis], e->entering.x[axis], e->span[0].x[axis]);
+    if (e->rank == 0 && integer_is_zero(edge))
+        return false;
+    if (e->rank == 1 || e->rank == 2) {
+        mpz_t *normal = e->normal[1];
+        integer_cross(normal, e->edge[0], e->rank == 1 ? edge : e->edge[1], e->scratch[0]);
+        dot(normal, edge, e->sum);
+        if (e->rank == 1 ? integer_is_zero(normal) : mpz_sgn(e->sum) == 0)
+            return false;
+    }
+    e->rank++;
+    if (e->rank == 1 || e->rank == 2)
+        for (int axis = 0; axis < 3; axis++)
+            mpz_swap(e->edge[e->rank - 1][axis], edge[axis]);
+    swap_points(&e->span[e->rank], &e->entering);
+    e->attempt = 0;
+    return true;
+}
+
+/* Whether all points of D have the same n . x as the first: the farthest ones in both directions.
+ * If not, adds one that does not. n: normal[1]. */
+static bool is_constant(struct hull_exact *e)
+{
+    for (int sign = 0; sign < 2; sign++) {
+        set_point(e, price_difference(e, false), &e->entering);
+        dot(e->normal[1], e->entering.x, e->best);
+        dot(e->normal[1], e->span[0].x, e->sum);
+        if (mpz_cmp(e->best, e->sum) != 0)
+            return !extend_span(e);
+        for (int axis = 0; axis < 3; axis++)
+            mpz_neg(e->normal[1][axis], e->normal[1][axis]);
+    }
+    return true;
+}
+
+/* Returns the vertex of the face nearest to a column that may have left it. */
+static struct hull_column column_in_face(const struct hull_exact *e, struct hull_column column)
+{
+    for (int f = 0; f < 2; f++) {
+        const struct side *side = &e->side[f];
+        bool found = false;
+        for (unsigned k = 0; k < side->count && !found; k++)
+            found = side->face[k] == column.vertex[f];
+        column.vertex[f] = found ? column.vertex[f] : side->face[0];
+    }
+    column.end = e->ends[column.end] ? column.end : e->ends[1];
+    return column;
+}
+
+/* One step; returns whether the span is complete. */
+static bool span_step(struct hull_exact *e)
+{
+    while (e->next_first < e->first_count && e->rank < e->pair->dim) {
+        set_point(e, column_in_face(e, e->first[e->next_first++]), &e->entering);
+        extend_span(e);
+    }
+    if (e->rank < 0) {
+        static const struct hull_column some = {{0, 0}, 0};
+        set_point(e, column_in_face(e, some), &e->entering);
+        extend_span(e);
+    }
+    if (e->rank == e->pair->dim || !set_orthogonal(e))
+        return true;
+    if (is_constant(e))
+        e->attempt++;
+    return false;
+}
+
+/* Chooses the coordinates of the projection. Returns whether the flat contains the origin. */
+static bool project(struct hull_exact *e)
+{
+    mpz_t *x = e->span[0].x, *u = e->edge[0], *n = e->normal[0];
+    int axes = 0, dropped = -1;
+    if (e->rank == 0)
+        return integer_is_zero(x);
+    if (e->rank == 1) {
+        for (axes = 0; mpz_sgn(u[axes]) == 0;)
+            axes++;
+        e->axis[0] = axes;
+        integer_cross(n, x, u, e->scratch[0]);
+        return integer_is_zero(n);
+    }
+    mpz_set_ui(e->sum, 0);
+    if (e->rank == 2) {
+        integer_cross(n, u, e->edge[1], e->scratch[0]);
+        for (dropped = 2; mpz_sgn(n[dropped]) == 0;)
+            dropped--;
+        dot(n, x, e->sum);
+    }
+    for (int axis = 0; axis < 3; axis++)
+        if (axis != dropped)
+            e->axis[axes++] = axis;
+    return mpz_sgn(e->sum) == 0;
+}
+
+/* ---- Programs ---- */
+
+/* out[k] := the minor of two rows in the columns of pair k: (0,1) (0,2) (0,3) (1,2) (1,3) (2,3). */
+static const int minor_columns[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+static void set_minors(mpz_t row[ROWS], mpz_t other[ROWS], mpz_t out[6])
+{
+    for (int k = 0; k < 6; k++) {
+        const int i = minor_columns[k][0], j = minor_columns[k][1];
+        mpz_mul(out[k], row[i], other[j]);
+        mpz_submul(out[k], row[j], other[i]);
+    }
+}
+
+/* out := the cofactors of a row of a 4 x 4 matrix, times sign; minor: of two others; row: the last
+ * one. */
+static void expand(mpz_t row[ROWS], mpz_t minor[6], int sign, mpz_t out[ROWS])
+{
+    /* Without column j, the columns a < b < c are left; the minors of (b,c), (a,c) and (a,b). */
+    static const int columns[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
+    static const int minors[4][3] = {{5, 4, 3}, {5, 2, 1}, {4, 2, 0}, {3, 1, 0}};
+    for (int j = 0; j < ROWS; j++) {
+        mpz_mul(out[j], row[columns[j][0]], minor[minors[j][0]]);
+        mpz_submul(out[j], row[columns[j][1]], minor[minors[j][1]]);
+        mpz_addmul(out[j], row[columns[j][2]], minor[minors[j][2]]);
+        if ((sign < 0) != (j % 2 == 1))
+            mpz_neg(out[j], out[j]);
+    }
+}
+
+/* out := the sum of the products of two vectors of rows numbers. */
+static void dot_rows(const struct hull_exact *e, mpz_t x[ROWS], mpz_t y[ROWS], mpz_t out)
+{
+    mpz_mul(out, x[0], y[0]);
+    for (int i = 1; i < e->rows; i++)
+        mpz_addmul(out, x[i], y[i]);
+}
+
+/* Sets cofactor and det of the rows, det > 0. */
+static void set_cofactors(struct hull_exact *e)
+{
+    mpz_t(*h)[ROWS] = e->row, (*c)[ROWS] = e->cofactor;
+    if (e->rows == 1) {
+        mpz_set_ui(c[0][0], 1);
+    } else if (e->rows == 2) {
+        for (int i = 0; i < 2; i++) {
+            mpz_set(c[i][i], h[1 - i][1 - i]);
+            mpz_neg(c[i][1 - i], h[1 - i][i]);
+        }
+    } else if (e->rows == 3) {
+        for (int i = 0; i < 3; i++)
+            integer_cross(c[i], h[(i + 1) % 3], h[(i + 2) % 3], e->scratch[0]);
+    } else {
+        set_minors(h[2], h[3], e->minor);
+        expand(h[1], e->minor, 1, c[0]);
+        expand(h[0], e->minor, -1, c[1]);
+        set_minors(h[0], h[1], e->minor);
+        expand(h[3], e->minor, 1, c[2]);
+        expand(h[2], e->minor, -1, c[3]);
+    }
+    dot_rows(e, c[0], h[0], e->det);
+    if (mpz_sgn(e->det) > 0)
+        return;
+    mpz_neg(e->det, e->det);
+    for (int i = 0; i < e->rows; i++)
+        for (int j = 0; j < e->rows; j++)
+            mpz_neg(c[i][j], c[i][j]);
+}
+
+/* out := the column of a point: relative to the centre, or with a 1. */
+static void set_row(const struct hull_exact *e, const struct point *point, mpz_t out[ROWS])
+{
+    for (int i = 0; i < e->rank; i++) {
+        mpz_set(out[i], point->x[e->axis[i]]);
+        if (e->stage == SHOOTING)
+            mpz_sub(out[i], out[i], e->centre.x[e->axis[i]]);
+    }
+    if (e->stage == RAISING)
+        mpz_set_ui(out[e->rank], 1);
+}
+
+/* out := coordinate j of q. */
+static void set_goal(const struct hull_exact *e, mpz_t out[ROWS])
+{
+    for (int i = 0; i < e->rank; i++) {
+        if (e->stage == SHOOTING)
+            mpz_neg(out[i], e->centre.x[e->axis[i]]);
+        else
+            mpz_set_ui(out[i], 0);
+    }
+    if (e->stage == RAISING)
+        mpz_set_ui(out[e->rank], 1);
+}
+
+/* Compares C_i . q / C_i . s with C_j . q / C_j . s, ties broken by the coordinates of the
+ * cofactors. coordinate: C_i . q; enters: C_i . s, both > 0 for i and j. Returns whether i is
+ * before j. */
+static bool leaves_before(struct hull_exact *e, int i, int j)
+{
+    int order = integer_compare_products(e->coordinate[i], e->enters[j], e->coordinate[j],
+                                         e->enters[i], e->scratch);
+    for (int k = 0; order == 0 && k < e->rows; k++)
+        order = integer_compare_products(e->cofactor[i][k], e->enters[j], e->cofactor[j][k],
+                                         e->enters[i], e->scratch);
+    return order < 0;
+}
+
+/* Sets the rows and their cofactors, and coordinate. */
+static void set_basis(struct hull_exact *e)
+{
+    mpz_t *goal = e->enters;
+    for (int i = 0; i < e->rows; i++)
+        set_row(e, &e->basis[i], e->row[i]);
+    set_cofactors(e);
+    set_goal(e, goal);
+    for (int i = 0; i < e->rows; i++)
+        dot_rows(e, e->cofactor[i], goal, e->coordinate[i]);
+}
+
+/* Replaces a column of the basis by the entering one. */
+static void pivot(struct hull_exact *e)
+{
+    int leaving = -1;
+    set_row(e, &e->entering, e->dual); /* dual is not needed any more */
+    for (int i = 0; i < e->rows; i++)
+        dot_rows(e, e->cofactor[i], e->dual, e->enters[i]);
+    for (int i = 0; i < e->rows; i++)
+        if (mpz_sgn(e->enters[i]) > 0 && (leaving < 0 || leaves_before(e, i, leaving)))
+            leaving = i;
+    swap_points(&e->basis[leaving], &e->entering);
+    mpz_swap(e->height[leaving], e->best); /* set by raise */
+    set_basis(e);
+}
+
+/* ---- Shoot ---- */
+
+/* Sets the centre: the mean of the points of the span, with weights in quarters. */
+static void set_centre(struct hull_exact *e)
+{
+    static const int weights[4][4] = {{4, 0, 0, 0}, {2, 2, 0, 0}, {1, 1, 2, 0}, {1, 1, 1, 1}};
+    struct point *c = &e->centre;
+    c->end = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_set_ui(c->x[axis], 0);
+        mpz_set_ui(c->a[axis], 0);
+    }
+    for (int i = 0; i <= e->rank; i++) {
+        const int weight = weights[e->rank][i];
+        for (int axis = 0; axis < 3; axis++) {
+            mpz_addmul_ui(c->x[axis], e->span[i].x[axis], (unsigned long) weight);
+            mpz_addmul_ui(c->a[axis], e->span[i].a[axis], (unsigned long) weight);
+        }
+        c->end += e->span[i].end * weight;
+    }
+    /* Points are in quarters, and so are weights: exact, all sums of vertices times 4. */
+    c->end /= 4;
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_divexact_ui(c->x[axis], c->x[axis], 4);
+        mpz_divexact_ui(c->a[axis], c->a[axis], 4);
+    }
+}
+
+/* Whether the ray passes through the portal of the basis: no C_i . q < 0, ties broken as in a
+ * pivot. */
+static bool passes(const struct hull_exact *e)
+{
+    for (int i = 0; i < e->rows; i++) {
+        int sign = mpz_sgn(e->coordinate[i]);
+        for (int k = 0; sign == 0 && k < e->rows; k++)
+            sign = mpz_sgn(e->cofactor[i][k]);
+        if (sign < 0)
+            return false;
+    }
+    return true;
+}
+
+/* The ray leaves the simplex of the span through exactly one facet, the first basis. */
+static void begin_shoot(struct hull_exact *e)
+{
+    e->stage = SHOOTING;
+    e->rows = e->rank;
+    set_centre(e);
+    for (int omitted = 0; omitted <= e->rank; omitted++) {
+        for (int i = 0; i < e->rank; i++) {
+            struct point *of = &e->span[i < omitted ? i : i + 1];
+            e->basis[i].column = of->column;
+            e->basis[i].end = of->end;
+            for (int axis = 0; axis < 3; axis++) {
+                mpz_set(e->basis[i].x[axis], of->x[axis]);
+                mpz_set(e->basis[i].a[axis], of->a[axis]);
+            }
+        }
+        set_basis(e);
+        if (passes(e))
+            return;
+    }
+}
+
+static void begin_heights(struct hull_exact *e);
+static void finish(struct hull_exact *e, enum fmb_verdict verdict)
+{
+    e->verdict = verdict;
+    e->stage = COMPLETE;
+}
+
+/* Whether a proper face of D cannot have a part of M of the dimension of M: D has that dimension.
+ */
+static bool is_like_static(const struct hull_exact *e)
+{
+    return !e->pair->drifts || e->pair->view[0].solid || e->pair->view[1].solid;
+}
+
+/* The face of D with N . x = 0, the greatest, becomes D. met: D contains the origin. */
+static void reduce(struct hull_exact *e, bool met)
+{
+    price_difference(e, true);
+    e->reduced = true;
+    if (met && !e->want && is_like_static(e)) {
+        finish(e, FMB_TOUCHING);
+        return;
+    }
+    e->next_first = 0;
+    begin_span(e, SPANNING);
+}
+
+static void shoot_step(struct hull_exact *e)
+{
+    /* N = sum C_i, N . H_i = det: the sum of the solution is N . q / det. */
+    mpz_set_ui(e->sum, 0);
+    for (int i = 0; i < e->rows; i++)
+        mpz_add(e->sum, e->sum, e->coordinate[i]);
+    const int beyond = mpz_cmp(e->sum, e->det);
+    if (beyond < 0) {
+        begin_heights(e);
+        return;
+    }
+    for (int axis = 0; axis < 3; axis++)
+        mpz_set_ui(e->normal[1][axis], 0);
+    for (int j = 0; j < e->rank; j++)
+        for (int i = 0; i < e->rows; i++)
+            mpz_add(e->normal[1][e->axis[j]], e->normal[1][e->axis[j]], e->cofactor[i][j]);
+    set_point(e, price_difference(e, false), &e->entering);
+    dot(e->normal[1], e->entering.x, e->sum);
+    if (mpz_sgn(e->sum) < 0)
+        finish(e, FMB_SEPARATED);
+    else if (mpz_sgn(e->sum) == 0)
+        reduce(e, beyond == 0);
+    else
+        pivot(e);
+}
+
+static void span_done(struct hull_exact *e)
+{
+    if (!project(e))
+        finish(e, FMB_SEPARATED);
+    else if (e->rank == 0)
+        begin_heights(e);
+    else
+        begin_shoot(e);
+}
+
+/* ---- Heights ---- */
+
+enum { TARGET_BOX = 2 };
+
+static int target_axis(const struct hull_exact *e)
+{
+    return (e->target - TARGET_BOX) / 2;
+}
+
+/* The sign of the height: lower ends are maximised negated. */
+static int target_sign(const struct hull_exact *e)
+{
+    return e->target % 2 ? 1 : -1;
+}
+
+/* out := the height of a point. */
+static void set_height(const struct hull_exact *e, const struct point *point, mpz_t out)
+{
+    if (e->target < TARGET_BOX)
+        mpz_set_si(out, point->end);
+    else
+        mpz_set(out, point->a[target_axis(e)]);
+    if (target_sign(e) < 0)
+        mpz_neg(out, out);
+}
+
+static void begin_target(struct hull_exact *e)
+{
+    for (int i = 0; i < e->rows; i++)
+        set_height(e, &e->basis[i], e->height[i]);
+}
+
+static void end_heights(struct hull_exact *e);
+
+/* Begins the next target from target on that is wanted. */
+static void next_target(struct hull_exact *e)
+{
+    if (e->target < TARGET_BOX && !e->pair->drifts)
+        e->target = TARGET_BOX;
+    const bool box = e->want & FMB_WANT_BOX;
+    if (e->want == 0 || e->target >= TARGET_BOX + (box ? 2 * e->pair->dim : 0))
+        end_heights(e);
+    else
+        begin_target(e);
+}
+
+/* Columns: the basis of the last program, and the centre. */
+static void begin_heights(struct hull_exact *e)
+{
+    e->stage = RAISING;
+    e->target = 0;
+    e->rows = e->rank + 1;
+    swap_points(&e->basis[e->rank], e->rank == 0 ? &e->span[0] : &e->centre);
+    if (e->want)
+        set_basis(e);
+    next_target(e);
+}
+
+/* The optimum is dual[rank] / det, in quarters. */
+static void end_target(struct hull_exact *e)
+{
+    const int end = e->target % 2;
+    const enum round_direction direction = end ? ROUND_UP : ROUND_DOWN;
+    if (end == 0)
+        mpz_neg(e->dual[e->rank], e->dual[e->rank]);
+    mpz_mul_2exp(e->denominator, e->det, 2);
+    if (e->target < TARGET_BOX) {
+        const struct dyadic window = dyadic_of(e->pair->frames->duration);
+        mpz_mul_si(e->sum, e->dual[e->rank], window.mantissa);
+        e->contact[end] =
+            integer_ratio_round(e->sum, e->denominator, window.exponent, direction, e->minor);
+    } else {
+        mpz_mul(e->denominator, e->denominator, e->scale);
+        e->box[end][target_axis(e)] =
+            integer_ratio_round(e->dual[e->rank], e->denominator, e->unit, direction, e->minor);
+    }
+    e->target++;
+    next_target(e);
+}
+
+/* Maximises. The dual N = sum h_i C_i; a column is better if det h - N . H > 0. */
+static void height_step(struct hull_exact *e)
+{
+    for (int j = 0; j < e->rows; j++) {
+        mpz_set_ui(e->dual[j], 0);
+        for (int i = 0; i < e->rows; i++)
+            mpz_addmul(e->dual[j], e->height[i], e->cofactor[i][j]);
+    }
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < 3; axis++)
+            mpz_set_ui(e->normal[f][axis], 0);
+    for (int j = 0; j < e->rank; j++) {
+        mpz_neg(e->normal[1][e->axis[j]], e->dual[j]);
+        mpz_set(e->normal[0][e->axis[j]], e->dual[j]);
+    }
+    /* What the end of the window adds, in units of 1 / det. */
+    dot(e->normal[1], e->drift, e->sum);
+    mpz_set(e->scratch[0], e->det);
+    if (target_sign(e) < 0)
+        mpz_neg(e->scratch[0], e->scratch[0]);
+    if (e->target < TARGET_BOX) {
+        mpz_add(e->sum, e->sum, e->scratch[0]);
+    } else {
+        const int axis = target_axis(e);
+        mpz_addmul(e->sum, e->scratch[0], e->side[0].displacement[axis]);
+        mpz_add(e->normal[0][axis], e->normal[0][axis], e->scratch[0]);
+    }
+    set_point(e, price(e, mpz_sgn(e->sum), false), &e->entering);
+    set_row(e, &e->entering, e->enters);
+    dot_rows(e, e->dual, e->enters, e->sum);
+    set_height(e, &e->entering, e->best);
+    mpz_mul(e->scratch[0], e->best, e->det);
+    if (mpz_cmp(e->scratch[0], e->sum) > 0)
+        pivot(e);
+    else
+        end_target(e);
+}
+
+/* ---- Verdict ---- */
+
+static void end_heights(struct hull_exact *e)
+{
+    if (!e->reduced) {
+        finish(e, FMB_OVERLAPPING);
+    } else if (is_like_static(e)) {
+        finish(e, FMB_TOUCHING);
+    } else {
+        e->ends[0] = true;
+        e->ends[1] = false;
+        e->next_first = e->first_count;
+        begin_span(e, MEASURING_FACE);
+    }
+}
+
+static void set_all_vertices(struct hull_exact *e)
+{
+    for (int f = 0; f < 2; f++) {
+        e->side[f].count = e->side[f].view->vertices.count;
+        for (unsigned i = 0; i < e->side[f].count; i++)
+            e->side[f].face[i] = (uint16_t) i;
+    }
+}
+
+static void measured(struct hull_exact *e)
+{
+    if (e->stage == MEASURING_FACE) {
+        e->face_rank = e->rank;
+        set_all_vertices(e);
+        begin_span(e, MEASURING_ALL);
+        return;
+    }
+    finish(e, e->rank == e->face_rank ? FMB_OVERLAPPING : FMB_TOUCHING);
+}
+
+/* ---- Begin and end ---- */
+
+/* Sets the vertices of a frame that is not a hull. */
+static void set_small(struct hull_exact *e, struct side *side)
+{
+    struct exact_frame frame;
+    const unsigned count = side->view->vertices.count;
+    exact_frame_each(&frame, mpz_init);
+    exact_frame_set(&frame, side->view->placed.frame, e->unit);
+    for (unsigned k = 0; k < count; k++)
+        for (int axis = 0; axis < 3; axis++) {
+            mpz_set(side->small[k][axis], frame.origin[axis]);
+            for (unsigned i = 0; i < (unsigned) frame.count; i++)
+                if (frame.simplex ? k == i + 1 : k >> i & 1)
+                    mpz_add(side->small[k][axis], side->small[k][axis], frame.component[i][axis]);
+        }
+    exact_frame_each(&frame, mpz_clear);
+}
+
+static void set_side(struct hull_exact *e, struct side *side, const mpz_t other_norm, bool same)
+{
+    const struct placed_frame *placed = &side->view->placed;
+    const struct dyadic window = dyadic_of(e->pair->frames->duration);
+    if (same)
+        mpz_set_ui(side->factor, 1);
+    else
+        mpz_set(side->factor, other_norm);
+    for (int axis = 0; axis < placed->frame->dim; axis++) {
+        integer_set(side->position[axis], dyadic_of(placed->placement->position[axis]), e->unit);
+        mpz_mul(side->position[axis], side->position[axis], e->scale);
+        integer_set_product(side->displacement[axis], dyadic_of(placed->placement->velocity[axis]),
+                            window, e->unit);
+        mpz_mul(side->displacement[axis], side->displacement[axis], e->scale);
+    }
+    if (!is_hull(side))
+        set_small(e, side);
+}
+
+struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
+                                    const struct hull_column *first, unsigned count)
+{
+    void *(*allocate)(size_t);
+    mp_get_memory_functions(&allocate, NULL, NULL);
+    struct hull_exact *e = allocate(sizeof *e);
+    memset(e, 0, sizeof *e);
+    each(e, mpz_init);
+    e->pair = pair;
+    e->want = want & (FMB_WANT_BOX | FMB_WANT_TIMES);
+    e->unit = exact_pair_unit(pair->frames);
+    for (int f = 0; f < 2; f++) {
+        e->side[f].view = &pair->view[f];
+        exact_turn_set(pair->view[f].placed.placement, &e->side[f].turn);
+    }
+    const bool same = mpz_cmp(e->side[0].turn.norm, e->side[1].turn.norm) == 0;
+    mpz_set(e->scale, e->side[0].turn.norm);
+    if (!same)
+        mpz_mul(e->scale, e->scale, e->side[1].turn.norm);
+    for (int f = 0; f < 2; f++)
+        set_side(e, &e->side[f], e->side[!f].turn.norm, same);
+    for (int axis = 0; axis < 3; axis++)
+        mpz_sub(e->drift[axis], e->side[1].displacement[axis], e->side[0].displacement[axis]);
+    set_all_vertices(e);
+    e->ends[0] = true;
+    e->ends[1] = pair_moves(pair->frames) && pair->frames->duration > 0;
+    memcpy(e->first, first, count * sizeof *first);
+    e->first_count = count;
+    e->contact[1] = pair->frames->duration + 0.0; /* never -0 */
+    begin_span(e, SPANNING);
+    return e;
+}
+
+bool hull_exact_step(struct hull_exact *e)
+{
+    switch (e->stage) {
+    case SPANNING:
+        if (span_step(e))
+            span_done(e);
+        break;
+    case SHOOTING: shoot_step(e); break;
+    case RAISING: height_step(e); break;
+    case MEASURING_FACE:
+    case MEASURING_ALL:
+        if (span_step(e))
+            measured(e);
+        break;
+    case COMPLETE: break;
+    }
+    return e->stage == COMPLETE;
+}
+
+void hull_exact_end(struct hull_exact *e, struct fmb_answer *answer)
+{
+    void (*release)(void *, size_t);
+    if (answer) {
+        answer->verdict = e->verdict;
+        answer->has_contact = e->verdict != FMB_SEPARATED && e->want;
+        answer->has_box = e->verdict != FMB_SEPARATED && e->want & FMB_WANT_BOX;
+        if (answer->has_contact)
+            memcpy(answer->contact, e->contact, sizeof e->contact);
+        if (answer->has_box)
+            memcpy(answer->box, e->box, sizeof e->box);
+    }
+    each(e, mpz_clear);
+    mp_get_memory_functions(NULL, NULL, &release);
+    release(e, sizeof *e);
+}

@@ -1,0 +1,35 @@
+/* Pairs with a hull in integers.
+ *
+ * The state of a decision is advanced in steps, so that a caller can look after other work in
+ * between. Each step prices once: it finds the vertex of D that is farthest in one exact direction.
+ *
+ *     struct hull_exact *exact = hull_exact_begin(pair, want, first, count);
+ *     while (!hull_exact_step(exact))
+ *         ...
+ *     hull_exact_end(exact, answer);
+ *
+ * No shared state. */
+#ifndef FMB_HULL_EXACT_H
+#define FMB_HULL_EXACT_H
+
+#include "hull.h"
+
+struct hull_exact;
+
+/* Begins a decision. It allocates through GMP; hull_exact_end() frees all of it.
+ *
+ * In:  pair    set; must outlive the decision
+ *      want    FMB_WANT_BOX, FMB_WANT_TIMES, or 0 for the verdict alone
+ *      first   [count], count at most 4: points of D near which the origin is expected, such as the
+ *              last simplex of a search in doubles. They save steps, and change no answer */
+struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
+                                    const struct hull_column *first, unsigned count);
+
+/* Performs one step. Returns whether the decision is complete. */
+bool hull_exact_step(struct hull_exact *exact);
+
+/* Sets the answer of a complete decision: verdict, contact and box, with ends rounded outward; the
+ * gap is not touched. Ends the decision, complete or not; answer may be NULL. */
+void hull_exact_end(struct hull_exact *exact, struct fmb_answer *answer);
+
+#endif
