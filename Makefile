@@ -6,6 +6,7 @@
 # Build:    all (default), examples, install, install-strip, uninstall, clean
 # Test:     test (12 minutes), test-fast (one), unit-tests; headers, layers, format,
 #           format-check
+# Packages: deb: of Debian, into build/deb; deb-test: tries them in a chroot (deps-deb first; root)
 # Longer:   validate, accuracy, soak, fuzz, fuzz-afl, fuzz-merge (deps-fuzz first)
 # Measure:  bench (deps-bench first, for other libraries), bench-bus, bench-replay, bench-mesh,
 #           report (deps-report first)
@@ -373,7 +374,7 @@ format-check:
 
 .PHONY: demo
 demo: # builds on all cores, also where packages are installed first
-	+$(MAKE) $(if $(filter -j%,$(MAKEFLAGS)),,-j$$(nproc)) programs
+	+@$(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$$(nproc)) programs
 	@clients/demo/run.sh $(B)
 
 sed_text = $(subst |,\|,$(subst &,\&,$(subst \,\\,$1)))
@@ -416,6 +417,12 @@ uninstall:
 	cd "$(DESTDIR)$(LIBDIR)" && rm -rf libfmb.a libfmb-client.a libfmb.so libfmb.so.0 \
 		libfmb-client.so libfmb-client.so.0 pkgconfig/fmb.pc pkgconfig/fmb-client.pc cmake/fmb
 
+.PHONY: deb deb-test
+deb:
+	.debian/build.sh $(VERSION) $(CURDIR)/build/deb
+deb-test: deb programs
+	FMB_BUILD=$(B) bats --tap tests/deb/deb.bats
+
 .PHONY: clean
 clean:
 	rm -rf build
@@ -430,8 +437,9 @@ packages_deps-fuzz := $(packages_deps) clang libclang-rt-14-dev llvm afl++
 packages_deps-bench := libccd-dev libfcl-dev libbullet-dev libode-dev libbox2d-dev libcgal-dev \
 	libmpfr-dev pkg-config
 packages_deps-report := jq
+packages_deps-deb := $(packages_deps) build-essential debhelper lintian bats debootstrap
 packages_deps-aarch64 := gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
-deps := deps deps-test deps-fuzz deps-bench deps-report deps-aarch64
+deps := deps deps-test deps-fuzz deps-bench deps-report deps-deb deps-aarch64
 
 as_root = $$([ $$(id -u) = 0 ] || echo sudo)
 .PHONY: $(deps)

@@ -84,7 +84,7 @@ none() {
 
 @test "every suite is in the table of tests/README.md" {
     quoted tests/README.md | sort -u > "$BATS_TEST_TMPDIR/quoted"
-    (cd tests && printf '%s\n' unit/test_*.c cli/*.bats system/*.bats fuzz/*.bats) |
+    (cd tests && printf '%s\n' unit/test_*.c cli/*.bats system/*.bats fuzz/*.bats deb/*.bats) |
         grep -vxFf "$BATS_TEST_TMPDIR/quoted" | none
 }
 

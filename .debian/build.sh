@@ -1,0 +1,24 @@
+#!/bin/sh
+# build.sh VERSION FOLDER: builds the packages of Debian into FOLDER, in a copy of the tree, whose
+# recipe is this folder. 'make deps-deb' installs what it needs.
+set -eu
+
+version=$1 folder=$2
+copy=$folder/fmb-$version
+cd "$(dirname "$0")/.."
+for tool in dh lintian; do
+    command -v $tool > /dev/null || { echo "make deb: no $tool here; 'make deps-deb' installs it" >&2; exit 2; }
+done
+
+rm -rf "$folder"
+mkdir -p "$copy"
+tar --exclude=./build --exclude=./.git -c . | tar -x -C "$copy"
+mv "$copy/.debian" "$copy/debian"
+sed -n '/^Permission/,$ { s/^$/./; s/^/ /; p }' LICENSE >> "$copy/debian/copyright"
+{
+    printf 'fmb (%s) unstable; urgency=medium\n\n  * See CHANGELOG.md.\n\n' "$version"
+    printf -- ' -- %s  %s\n' "$(sed -n 's/^Maintainer: //p' .debian/control)" "$(git log -1 --format=%aD 2> /dev/null || date -R)"
+} > "$copy/debian/changelog"
+cd "$copy"
+dpkg-buildpackage -b -us -uc
+lintian --fail-on warning ../*.changes

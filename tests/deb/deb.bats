@@ -1,0 +1,76 @@
+# The packages that 'make deb' built, and the first command of the README, on a bare Debian 12.
+# 'make deb-test' runs this; it needs root, and a mirror of Debian (MIRROR=).
+
+setup_file() {
+    [ "$(id -u)" = 0 ] && command -v debootstrap > /dev/null || return 0
+    export root=$BATS_FILE_TMPDIR/root
+    debootstrap --variant=minbase bookworm "$root" ${MIRROR-} > "$BATS_FILE_TMPDIR/debootstrap" 2>&1 ||
+        { tail "$BATS_FILE_TMPDIR/debootstrap"; return 1; }
+    mount -t proc proc "$root/proc"
+    # Without its own files: build, and what git keeps.
+    mkdir "$root/fmb"
+    tar --exclude=./build --exclude=./.git -c . | tar -x -C "$root/fmb"
+    cp build/deb/*.deb "$root/fmb"
+    inside apt-get update -q
+}
+
+setup() {
+    [ "${root-}" ] || skip "needs root, and debootstrap"
+}
+
+teardown_file() {
+    [ -z "${root-}" ] || umount "$root/proc"
+}
+
+# inside COMMAND...: in the chroot.
+inside() {
+    chroot "$root" env LC_ALL=C DEBIAN_FRONTEND=noninteractive "$@"
+}
+
+get() {
+    inside apt-get install -q -y --no-install-recommends "$@"
+}
+
+@test "the packages install, the programs answer, and the unit waits to be enabled" {
+    get $(cd "$root" && printf './%s ' fmb/fmb_*.deb fmb/fmbd_*.deb)
+    scene=clients/demo/table.json
+    inside fmb query --local --box /fmb/$scene | cmp - <("$FMB_BUILD/fmb" query --local --box $scene)
+    "$FMB_BUILD/netns" chroot "$root" sh -c "fmbd 2> log & until grep -q ready log; do sleep 0.1; done
+        fmb query --box /fmb/$scene; kill \$!; wait" | cmp - <("$FMB_BUILD/fmb" query --local --box $scene)
+    [ -f "$root/lib/systemd/system/fmbd.service" ]
+    grep -q '^ExecStart="/usr/bin/fmbd"$' "$root/lib/systemd/system/fmbd.service"
+    [ -z "$(find "$root/etc/systemd" -name 'fmbd*')" ]
+    for file in man1/fmb-log-cut.1 man8/fmbd.8; do [ -f "$root/usr/share/man/$file.gz" ]; done
+    # Programs of the bus alone need LCM.
+    ! inside dpkg -s libfmb0
+}
+
+@test "programs build against libfmb-dev, and run with the libraries alone" {
+    get $(cd "$root" && printf './%s ' fmb/lib*.deb) gcc libc6-dev pkg-config
+    inside sh -c 'gcc -std=c99 /fmb/clients/examples/scene.c $(pkg-config --cflags --libs fmb-client fmb) -o shared
+        gcc -std=c99 /fmb/clients/examples/scene.c $(pkg-config --cflags fmb-client) -Wl,-Bstatic -lfmb-client -lfmb \
+            -Wl,-Bdynamic -llcm -lglib-2.0 -lgmp -lm -o static'
+    [ "$(inside /shared)" = "$(inside /static)" ]
+    inside apt-get purge -q -y libfmb-dev
+    inside /shared
+    ! inside dpkg -s liblcm-dev || inside apt-get autoremove -q -y
+    inside /shared
+}
+
+@test "nothing remains when the packages are removed" {
+    inside apt-get purge -q -y fmb fmbd libfmb0 libfmb-client0
+    [ -z "$(find "$root" -xdev -path "$root/fmb" -prune -o -path "$root/proc" -prune -o -name '*fmb*' -print)" ]
+}
+
+@test "the first command of the README installs, builds and answers, for a user with sudo" {
+    get git make sudo
+    inside useradd -m user
+    echo 'user ALL=(ALL) NOPASSWD: ALL' > "$root/etc/sudoers.d/user"
+    inside chown -R user /fmb
+    rm "$root"/fmb/*.deb
+    command=$(sed -n '/^make deps demo/s/ *#.*//p' README.md)
+    run inside su user -c "cd /fmb && $command"
+    echo "$output" | tail -n 60
+    [ "$status" = 0 ]
+    [[ $output == *'make deps: installed '*'the picture: build/demo/scene.svg'* ]]
+}
