@@ -312,12 +312,10 @@ static bool read_shape(const struct place *at, void *out)
         if (strcmp(at->item->valuestring, fmb_shape_name(shape)) != 0)
             continue;
         *(int *) out = shape;
-        if (shape == FMB_HULL)
-            return refuse(at, "hulls are not supported by this version");
-        return fmb_component_count(dim, shape) > 0 ||
+        return shape == FMB_HULL || fmb_component_count(dim, shape) > 0 ||
                refuse(at, "there is no %s in %dD", fmb_shape_name(shape), dim);
     }
-    return refuse(at, "unknown shape \"%s\" (there are cuboid, tetrahedron, face, box)",
+    return refuse(at, "unknown shape \"%s\" (there are cuboid, tetrahedron, face, box, hull)",
                   quoted(at->item->valuestring, text));
 }
 
@@ -334,6 +332,14 @@ static bool read_vertices(const struct place *at, void *out)
     struct body *body = out;
     const size_t dim = (size_t) dim_of(at);
     body->vertex_count = (size_t) fmb_component_count((int) dim, body->shape) + 1;
+    if (body->shape == FMB_HULL) {
+        body->vertex_count = count_elements(at);
+        if (body->vertex_count == SIZE_MAX)
+            return false;
+        if (body->vertex_count == 0 || body->vertex_count > FMB_HULL_VERTICES_MAX)
+            return refuse(at, "expected 1 to %d vertices, found %zu", (int) FMB_HULL_VERTICES_MAX,
+                          body->vertex_count);
+    }
     body->vertices = scene_alloc(at->reader->scene, dim * body->vertex_count, sizeof(double));
     return read_each(at, body->vertex_count, "vertices", read_vector, body->vertices,
                      dim * sizeof(double));
@@ -414,6 +420,9 @@ static bool check_keys(const struct place *member, int shape, bool within_frames
         return false;
     if (shape == FMB_BOX)
         return check_absent(member, parts | 1 << VERTICES, "a box") && check_present(&member[SIZE]);
+    if (shape == FMB_HULL)
+        return check_absent(member, parts | 1 << SIZE | pose, "a hull") &&
+               check_present(&member[VERTICES]);
     if (member[VERTICES].item)
         return check_absent(member, shape == FMB_CUBOID ? 1 << VERTICES : 0, "a cuboid") &&
                check_absent(member, parts | 1 << SIZE | pose, "a frame of vertices");

@@ -32,6 +32,17 @@ void scene_clear(struct owned_scene *scene)
 
 /* ---- Bodies ---- */
 
+static enum fmb_status make_frame(struct owned_scene *scene, const struct given_frame *given,
+                                  struct fmb_frame *out)
+{
+    if (given->shape != FMB_HULL)
+        return (given->by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
+            scene->dim, given->shape, given->numbers, given->count, out);
+    const size_t doubles = fmb_hull_doubles(scene->dim, given->count / (size_t) scene->dim);
+    return fmb_frame_make_hull(scene->dim, given->numbers, given->count,
+                               scene_alloc(scene, doubles, sizeof(double)), out);
+}
+
 enum fmb_status scene_make_body(struct owned_scene *scene, const struct given_frame *given,
                                 size_t count, const struct fmb_body **out, size_t *bad)
 {
@@ -39,9 +50,7 @@ enum fmb_status scene_make_body(struct owned_scene *scene, const struct given_fr
     struct fmb_frame one, *frames = count == 1 ? &one : scene_alloc(scene, count, sizeof one);
     *out = body;
     for (*bad = 0; *bad < count; ++*bad, given++) {
-        const enum fmb_status status =
-            (given->by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
-                scene->dim, given->shape, given->numbers, given->count, &frames[*bad]);
+        const enum fmb_status status = make_frame(scene, given, &frames[*bad]);
         if (status != FMB_OK)
             return status;
     }

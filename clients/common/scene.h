@@ -24,7 +24,8 @@ void *scene_alloc(struct owned_scene *scene, size_t count, size_t size);
 /* Returns a copy of a text; NULL for "" and NULL. */
 const char *scene_text(struct owned_scene *scene, const char *text);
 
-/* A frame as it is given: what fmb_frame_make() or fmb_frame_make_vertices() takes. */
+/* A frame as it is given: what fmb_frame_make(), fmb_frame_make_vertices() or fmb_frame_make_hull()
+ * takes. */
 struct given_frame {
     int shape; /* enum fmb_shape */
     bool by_vertices;

@@ -32,11 +32,11 @@ static void write_vector(struct json_writer *json, const char *key, const double
         json_numbers(json, key, numbers, dim);
 }
 
-/* The numbers of a frame, as fmb_frame_make() or fmb_frame_make_vertices() takes them. */
+/* The numbers of a frame, as the function that makes it takes them. */
 struct frame_numbers {
     bool by_vertices;
     size_t count;
-    double number[FMB_FRAME_NUMBERS_MAX];
+    double number[FMB_DIM_MAX * FMB_HULL_VERTICES_MAX];
 };
 
 static struct frame_numbers numbers_of(const struct fmb_frame *frame)

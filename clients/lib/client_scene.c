@@ -83,7 +83,7 @@ static void write_body(const struct fmb_body *body, struct body_view *out, unsig
     writer_int32(&numbers, out->number_count);
     for (unsigned i = 0; i < body->frame_count; i++) {
         const struct fmb_frame *frame = fmb_body_frame(body, i);
-        double number[FMB_FRAME_NUMBERS_MAX];
+        double number[FMB_DIM_MAX * FMB_HULL_VERTICES_MAX];
         bool by_vertices;
         const size_t count = fmb_frame_numbers(frame, &by_vertices, number);
         *writer_take(&shapes, 1) = (unsigned char) geometry_code((int) frame->shape, by_vertices);

@@ -65,8 +65,8 @@ enum {
     GEOMETRY_NONE_BYTES = 16,
     /* Most bytes of a body of one frame that is no hull. */
     GEOMETRY_FRAME_BYTES_MAX = GEOMETRY_NONE_BYTES + 1 + 4 + 8 * FMB_FRAME_NUMBERS_MAX,
-    /* Least bytes of a frame that is supported, a box in 2D; and hence most frames of a message. */
-    GEOMETRY_FRAME_BYTES_MIN = 1 + 8 * 4,
+    /* Least bytes of a frame, a hull of one vertex in 2D; and hence most frames of a message. */
+    GEOMETRY_FRAME_BYTES_MIN = 1 + 4 + 8 * 2,
     QUERY_FRAMES_MAX = QUERY_BYTES_MAX / GEOMETRY_FRAME_BYTES_MIN
 };
 

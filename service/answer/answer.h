@@ -51,7 +51,7 @@ const char *answer_refused(struct answerer *answerer, enum answer_kind kind,
  * result. */
 struct answer_job;
 
-/* Allocates 6 MB of memory. Only large scenes touch most of it. Returns NULL if out of memory.
+/* Allocates 5 MB of memory. Only large scenes touch most of it. Returns NULL if out of memory.
  * answer_job_destroy() accepts NULL, and a job in progress. */
 struct answer_job *answer_job_create(void);
 void answer_job_destroy(struct answer_job *job);
@@ -76,8 +76,9 @@ const char *answer_job_begin(struct answer_job *job, enum answer_kind kind,
  * complete. */
 bool answer_job_step(struct answer_job *job, struct answerer *answerer);
 
-/* Whether a pair query decides at most one pair of frames, as all queries of handles that are not
- * held. The remaining steps then take as long as that pair. On input: as for answer_job_step(). */
+/* Whether a pair query decides at most one pair of frames that are no hulls, as all queries of
+ * handles that are not held. The remaining steps then take as long as that pair. On input: as for
+ * answer_job_step(). */
 bool answer_job_is_short(const struct answer_job *job, const struct answerer *answerer);
 
 /* Whether at least one pair of a scene has been answered. */

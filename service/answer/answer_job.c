@@ -1,7 +1,7 @@
 /* Answers pair and scene queries in stages: CHECKING the fields, FINDING bodies by handle, ADDING
  * bodies that have frames, DECIDING, COMPLETE. answer_job_step() does a
- * part of one stage; a refused query is COMPLETE at once. A pair of bodies of several frames is a
- * scene of one listed pair; a pair of frames is decided at once. */
+ * part of one stage; a refused query is COMPLETE at once. A pair of bodies of several frames, or
+ * with a hull, is a scene of one listed pair; any other pair of frames is decided at once. */
 #include "answerer.h"
 
 #include "body.h"
@@ -37,6 +37,7 @@ struct answer_job {
     int32_t next;        /* the next placement in FINDING and ADDING */
     int64_t frames;      /* of the placements before next in FINDING, then of all */
     bool several_frames; /* of a body */
+    bool in_steps;       /* a pair that takes long: a body has several frames or is a hull */
     long capacity;       /* bytes of the result of a scene that are left for answers */
     struct fmb_scene scene;
     struct fmb_scene_state *state; /* in memory */
@@ -318,20 +319,29 @@ static enum answer_stage check(struct answer_job *job, struct answerer *answerer
     job->answerer = answerer;
     job->next = 0;
     job->frames = 0;
-    job->several_frames = false;
+    job->several_frames = job->in_steps = false;
     return FINDING;
 }
 
 /* ---- Bodies ---- */
 
+/* Whether a body has several frames, or is a hull. */
+static bool is_large(const struct fmb_body *body)
+{
+    return body->frame_count > 1 || body->one.shape == FMB_HULL;
+}
+
 bool answer_job_is_short(const struct answer_job *job, const struct answerer *answerer)
 {
     for (int32_t i = 0; job->is_pair && i < 2; i++) {
-        const struct query_placement *placement = &job->placements[i];
-        const struct cached *cached = query_by_handle(placement)
-                                          ? cache_peek(answerer->cache, &placement->body.handle)
+        const struct body_view *body = &job->placements[i].body;
+        const struct cached *cached = query_by_handle(&job->placements[i])
+                                          ? cache_peek(answerer->cache, &body->handle)
                                           : NULL;
-        if (placement->body.frame_count > 1 || (cached && cached->body.frame_count > 1))
+        struct geometry_reader reader = geometry_begin(body);
+        struct geometry_frame first;
+        if (body->frame_count > 1 || (cached && is_large(&cached->body)) ||
+            (geometry_next(&reader, &first) && first.shape == FMB_HULL))
             return false;
     }
     return job->is_pair;
@@ -402,7 +412,7 @@ static bool intern(struct answer_job *job, int32_t i, int32_t *frames)
     const struct fmb_body *body = body_continue(&own->maker, frames);
     if (!body)
         return false;
-    own->used += BODY_BYTES(body->frame_count);
+    own->used += body_bytes(view);
     own->maker.memory = NULL;
     if (id)
         cached = cache_add(cache, id, view, body);
@@ -430,16 +440,16 @@ static enum answer_stage complete_pair(struct answer_job *job, enum fmb_status s
     return complete(job);
 }
 
-/* Adds the certificate to the result, if there is one. */
-static void certify(struct answer_job *job)
+/* Adds the certificate to the result, if it is wanted and there is one. Then completes the result.
+ */
+static enum answer_stage certify(struct answer_job *job, enum fmb_status status)
 {
-    size_t length;
-    const enum fmb_status status =
-        fmb_certificate(&job->placed[0], &job->placed[1], job->pair.duration, job->certificate,
-                        sizeof job->certificate, &length);
-    assert(status == FMB_OK);
-    (void) status;
+    size_t length = 0;
+    if (status == FMB_OK && job->pair.want & FMB_WANT_CERTIFICATE)
+        status = fmb_certificate(&job->placed[0], &job->placed[1], job->pair.duration,
+                                 job->certificate, sizeof job->certificate, &length);
     job->pair_result.certificate = length > 0 ? job->certificate : NULL;
+    return complete_pair(job, status);
 }
 
 /* Decides a pair of frames. */
@@ -449,17 +459,15 @@ static enum answer_stage decide_frames(struct answer_job *job)
     const enum fmb_status status = fmb_decide(
         fmb_method_by_number(query->method), &job->placed[0], &job->placed[1], query->duration,
         (unsigned) query->want & (FMB_WANT_BOX | FMB_WANT_GAP), &job->pair_result.answer);
-    if (status == FMB_OK && query->want & FMB_WANT_CERTIFICATE)
-        certify(job);
-    return complete_pair(job, status);
+    return certify(job, status);
 }
 
-/* Takes the answer of a pair of bodies of several frames. */
+/* Takes the answer of a pair that was decided in steps. */
 static enum answer_stage take_pair(struct answer_job *job, const struct fmb_scene_answers *answers)
 {
     struct fmb_answer *answer = &job->pair_result.answer;
     if (answers->verdicts[0] == 0)
-        return complete_pair(job, FMB_CANNOT_DECIDE);
+        return certify(job, FMB_CANNOT_DECIDE);
     answer->verdict = (enum fmb_verdict) answers->verdicts[0];
     answer->has_contact = answer->verdict >= FMB_TOUCHING;
     answer->has_box = answer->has_contact && answers->boxes;
@@ -470,7 +478,7 @@ static enum answer_stage take_pair(struct answer_job *job, const struct fmb_scen
         memcpy(answer->box, answers->boxes[0], sizeof answer->box);
     if (answer->has_gap)
         answer->gap = answers->gaps[0];
-    return complete_pair(job, FMB_OK);
+    return certify(job, FMB_OK);
 }
 
 /* ---- Pairs of a scene ---- */
@@ -479,14 +487,15 @@ static enum answer_stage take_pair(struct answer_job *job, const struct fmb_scen
 static struct fmb_scene scene_of_pair(const struct pair_query *query)
 {
     static const unsigned pair[1][2] = {{0, 1}};
-    return (struct fmb_scene){.placement_count = 2,
-                              .duration = query->duration,
-                              .instant = query->duration == 0,
-                              .method = fmb_method_by_number(query->method),
-                              .want = FMB_WANT_TIMES | (unsigned) query->want,
-                              .which = FMB_PAIRS_LISTED,
-                              .pairs = pair,
-                              .pair_count = 1};
+    return (struct fmb_scene){
+        .placement_count = 2,
+        .duration = query->duration,
+        .instant = query->duration == 0,
+        .method = fmb_method_by_number(query->method),
+        .want = FMB_WANT_TIMES | ((unsigned) query->want & ~(unsigned) FMB_WANT_CERTIFICATE),
+        .which = FMB_PAIRS_LISTED,
+        .pairs = pair,
+        .pair_count = 1};
 }
 
 /* Sets the fields of the result of a scene that do not depend on the pairs. */
@@ -509,7 +518,7 @@ static void begin_answers(struct answer_job *job)
 /* Begins the engine's scene, or decides a pair of frames. */
 static enum answer_stage begin_deciding(struct answer_job *job)
 {
-    if (job->is_pair && !job->several_frames)
+    if (job->is_pair && !job->in_steps)
         return decide_frames(job);
     job->scene = job->is_pair ? scene_of_pair(&job->pair) : scene_of(&job->query);
     job->scene.placements = job->placed;
@@ -548,6 +557,7 @@ static enum answer_stage add(struct answer_job *job)
         if (job->is_pair) /* groups are of scenes */
             job->placed[i].group = 0;
         job->several_frames = job->several_frames || job->used[i].body->frame_count > 1;
+        job->in_steps = job->in_steps || is_large(job->used[i].body);
     }
     return job->next < job->placement_count ? ADDING : begin_deciding(job);
 }

@@ -2,17 +2,19 @@
 
 #include "big_endian.h"
 #include "body.h"
+#include "geometry.h"
 #include "runs.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Data structure. A body takes a run of slots, one for each frame. Entry e belongs to the body that
- * begins in slot e - 1. Entries are linked by index: each into the chain of its hash bucket, and
- * all that are not pinned into the LRU list. Entry 0 has no body. It is the sentinel of the LRU
- * list, a ring: its `older` is the newest entry and its `newer` the oldest. Index 0 also ends the
- * chains, so that the buckets can be zeros from calloc(), which are not touched. */
+/* Data structure. A body takes a run of slots, one for each frame, and more for hulls. Entry e
+ * belongs to the body that begins in slot e - 1. Entries are linked by index: each into the chain
+ * of its hash bucket, and all that are not pinned into the LRU list. Entry 0 has no body. It is the
+ * sentinel of the LRU list, a ring: its `older` is the newest entry and its `newer` the oldest.
+ * Index 0 also ends the chains, so that the buckets can be zeros from calloc(), which are not
+ * touched. */
 enum { NONE = 0, SENTINEL = 0 };
 
 /* Entries are stored apart from the bodies, since each use of a body changes its neighbours in the
@@ -26,8 +28,8 @@ struct cache_entry {
 
 enum { LINE = 64 }; /* bytes of a cache line */
 
-/* The slots of a body contain this record, then the frames after the first, then the bytes of the
- * encoded body. */
+/* The slots of a body contain this record, then the frames after the first, then the vertices of
+ * hulls, then the bytes of the encoded body. */
 struct cache_record {
     int32_t ids;  /* number of ids whose latest entry is this one */
     int32_t pins; /* number of uses that are not released */
@@ -38,10 +40,15 @@ static_assert(sizeof(struct cache_record) ==
                   offsetof(struct cache_record, cached.body) + BODY_BYTES(1),
               "the frames of a body follow each other");
 
-/* Bytes of a slot: enough for a body of one frame. A body of n frames fits into n slots. */
+/* Bytes of a slot: enough for a body of one frame. A body of n frames that are no hulls fits into n
+ * slots. A hull of up to 8 k vertices takes at most 8 (3 * 8 k + 4 k) bytes of memory, and 5 + 8 *
+ * 3
+ * * 8 k encoded: its k further slots hold all of them but the 5, for which its frame has space. */
 enum {
     SLOT_BYTES = (sizeof(struct cache_record) + GEOMETRY_FRAME_BYTES_MAX + LINE - 1) / LINE * LINE,
 };
+
+static_assert(SLOT_BYTES >= CACHE_VERTICES * (28 + 24), "a slot holds 8 vertices");
 
 /* The latest entry of an id. It is stale if the generation of the entry has changed since. */
 struct latest {
@@ -326,6 +333,18 @@ static void set_latest(struct cache *cache, int64_t id, int32_t e)
 
 /* ---- Bodies ---- */
 
+/* The number of slots that a body takes. */
+static int32_t slots_of(const struct body_view *view)
+{
+    struct geometry_reader reader = geometry_begin(view);
+    struct geometry_frame frame;
+    int32_t slots = view->frame_count;
+    while (view->count_count > 0 && geometry_next(&reader, &frame))
+        if (frame.shape == FMB_HULL)
+            slots += ((int32_t) frame.count / view->dim + CACHE_VERTICES - 1) / CACHE_VERTICES;
+    return slots;
+}
+
 /* Evicts a body that is not pinned. Returns the first slot of the free run that contains its slots.
  */
 static int32_t evict(struct cache *cache, int32_t e)
@@ -341,7 +360,7 @@ static int32_t evict(struct cache *cache, int32_t e)
     cache->counts.ids -= record->ids;
     cache->counts.evictions++;
     cache->counts.bodies--;
-    cache->counts.frames -= record->cached.body.frame_count;
+    cache->counts.frames -= runs_length(&cache->runs, e - 1);
     return runs_free(&cache->runs, e - 1);
 }
 
@@ -364,17 +383,17 @@ static void evict_around_oldest(struct cache *cache, int32_t slots)
     }
 }
 
-/* An entry for a body of so many frames, whose slots are taken; evicts bodies if necessary. NONE:
- * there are not enough slots. */
-static int32_t take_entry(struct cache *cache, int32_t frames)
+/* An entry for a body that takes so many slots; evicts bodies if necessary. NONE: there are not
+ * enough slots. */
+static int32_t take_entry(struct cache *cache, int32_t slots)
 {
     enum { ATTEMPTS = 4 };
-    if (frames > cache->counts.frame_capacity)
+    if (slots > cache->counts.frame_capacity)
         return NONE;
-    int32_t slot = runs_allocate(&cache->runs, frames);
+    int32_t slot = runs_allocate(&cache->runs, slots);
     for (int i = 0; slot < 0 && i < ATTEMPTS && cache->entry[SENTINEL].newer != SENTINEL; i++) {
-        evict_around_oldest(cache, frames);
-        slot = runs_allocate(&cache->runs, frames);
+        evict_around_oldest(cache, slots);
+        slot = runs_allocate(&cache->runs, slots);
     }
     return slot + 1;
 }
@@ -383,10 +402,9 @@ static int32_t take_entry(struct cache *cache, int32_t frames)
 static void fill_record(struct cache_record *record, const struct body_view *view,
                         const struct fmb_body *body)
 {
-    unsigned char *bytes =
-        (unsigned char *) &record->cached.body + BODY_BYTES((size_t) view->frame_count);
+    unsigned char *bytes = (unsigned char *) &record->cached.body + body_bytes(view);
     if (body)
-        body_copy(body, &record->cached.body);
+        body_copy(view, body, &record->cached.body);
     else
         body_make(view, &record->cached.body);
     record->cached.view = *view;
@@ -399,7 +417,7 @@ static void fill_record(struct cache_record *record, const struct body_view *vie
 static int32_t insert(struct cache *cache, const struct body_view *view,
                       const struct fmb_body *body)
 {
-    const int32_t e = take_entry(cache, view->frame_count);
+    const int32_t slots = slots_of(view), e = take_entry(cache, slots);
     if (e == NONE)
         return NONE;
     int32_t *bucket = bucket_of(cache, &view->handle);
@@ -410,7 +428,7 @@ static int32_t insert(struct cache *cache, const struct body_view *view,
     lru_append(cache, e);
     set_begin(cache, e, true);
     cache->counts.bodies++;
-    cache->counts.frames += view->frame_count;
+    cache->counts.frames += slots;
     return e;
 }
 

@@ -1,7 +1,8 @@
 /* Cache of bodies by handle: for each its encoded form, and the struct fmb_body with its frames and
  * their inverses.
  *
- * The capacity is a fixed number of frames; a body takes as many as it has. The least recently used
+ * The capacity is a fixed number of frames. A body takes as many as it has, and of each hull one
+ * more for each CACHE_VERTICES of its vertices, or part of them. The least recently used
  * body is evicted first, and for a body of several frames its neighbours in memory too. A body in
  * use by a query is pinned: it is not evicted until the query has released it. All memory is
  * allocated by cache_create(). Each body has one entry, whatever its ids: two clients that use
@@ -16,13 +17,13 @@
 
 #include <stdint.h>
 
-enum { CACHE_FRAMES_MAX = 10000000 };
+enum { CACHE_FRAMES_MAX = 10000000, CACHE_VERTICES = 8 };
 
 struct cache;
 
 struct cache_counts {
     int64_t bodies;                  /* held now */
-    int64_t frames, frame_capacity;  /* of these bodies; of the cache */
+    int64_t frames, frame_capacity;  /* that these bodies take; of the cache */
     int64_t ids;                     /* ids whose latest body is held */
     int64_t hits, misses, evictions; /* since cache_create() */
 };
@@ -59,8 +60,8 @@ const struct cached *cache_lookup(struct cache *cache, int64_t id, struct body_v
 /* Adds a body that cache_lookup() did not find, which may evict others. On input: its id, its
  * encoded form with the handle, and the body, which are copied; body NULL: it is made here, in one
  * step. Returns the body, pinned as by cache_find(); if it has been added since, the one that is
- * held; NULL if it cannot be added: it has more frames than the capacity, or pinned bodies leave no
- * free memory of that length. */
+ * held; NULL if it cannot be added: it takes more frames than the capacity, or pinned bodies leave
+ * no free memory of that length. */
 const struct cached *cache_add(struct cache *cache, int64_t id, const struct body_view *view,
                                const struct fmb_body *body);
 

@@ -4,6 +4,7 @@
 #include "geometry.h"
 #include "utf8.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -67,12 +68,11 @@ static int32_t vertices_at(const struct geometry_reader *reader, int32_t i)
     return (int32_t) big_endian_32(reader->count + 4 * (size_t) i);
 }
 
-/* A hull is refused last, so that what is wrong with a body does not depend on its support. */
 static bool check_shapes(struct check_context *context, const struct body_view *body)
 {
     const struct geometry_reader reader = geometry_begin(body);
     int64_t numbers = 0;
-    int32_t counts = 0, hull = -1;
+    int32_t counts = 0;
     for (int32_t i = 0; i < body->frame_count; i++) {
         const int code = reader.shape[i];
         const struct geometry_shape shape = geometry_shape(code);
@@ -86,15 +86,15 @@ static bool check_shapes(struct check_context *context, const struct body_view *
         if (counted && (count == 0 || count != (int64_t) body->dim * vertices))
             return check_refuse_at(context, FMB_WRONG_COUNT, "counts", counts,
                                    "not a number of vertices of this shape");
+        if (vertices > FMB_HULL_VERTICES_MAX)
+            return check_refuse_at(context, FMB_OVER_LIMIT, "counts", counts,
+                                   "more than 1024 vertices");
         numbers += count;
         counts += shape.by_vertices;
-        hull = shape.shape == FMB_HULL ? i : hull;
     }
-    if (!check_count(context, "num_counts", counts, body->count_count) ||
-        !check_count(context, "num_numbers", numbers, body->number_count))
-        return false;
-    return hull < 0 || check_refuse_at(context, FMB_NOT_SUPPORTED, "shapes", hull,
-                                       "hulls are not supported by this version");
+    static_assert(FMB_HULL_VERTICES_MAX == 1024, "the reason of a refusal");
+    return check_count(context, "num_counts", counts, body->count_count) &&
+           check_count(context, "num_numbers", numbers, body->number_count);
 }
 
 static bool check_numbers(struct check_context *context, const struct body_view *body)

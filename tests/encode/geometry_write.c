@@ -72,3 +72,22 @@ struct body_view geometry_write(int dim, const struct plain_frame *frame,
 {
     return geometry_write_frames(dim, frame, 1, out);
 }
+
+struct body_view geometry_write_hull(int dim, const double *vertices, int count, unsigned char *out)
+{
+    const int numbers = dim * count;
+    struct writer writer = {.at = out,
+                            .end = out + GEOMETRY_NONE_BYTES + 1 + 4 + 8 * (size_t) numbers};
+    writer_int32(&writer, dim);
+    writer_int32(&writer, 1);
+    *writer_take(&writer, 1) = FMB_HULL;
+    writer_int32(&writer, 1);
+    writer_int32(&writer, count);
+    writer_doubles(&writer, vertices, numbers);
+    return (struct body_view){.dim = dim,
+                              .frame_count = 1,
+                              .count_count = 1,
+                              .number_count = numbers,
+                              .bytes = out,
+                              .size = writer_end(&writer, out)};
+}

@@ -35,4 +35,9 @@ struct body_view geometry_write_frames(int dim, const struct plain_frame *frames
 struct body_view geometry_write(int dim, const struct plain_frame *frame,
                                 unsigned char out[GEOMETRY_FRAME_BYTES_MAX]);
 
+/* A body of one hull. On input: [count][dim]; out has GEOMETRY_NONE_BYTES + 5 + 8 * dim * count
+ * bytes. */
+struct body_view geometry_write_hull(int dim, const double *vertices, int count,
+                                     unsigned char *out);
+
 #endif

@@ -575,7 +575,8 @@ static bool takes_too_long(const struct query_placement *placement, int32_t coun
 static bool has_many_frames(const struct query_placement *placement, int32_t count)
 {
     for (int32_t i = 0; i < count; i++)
-        if (placement[i].body.frame_count > MODEL_FRAMES_MAX)
+        if (placement[i].body.frame_count > MODEL_FRAMES_MAX ||
+            placement[i].body.number_count > MODEL_NUMBERS_MAX)
             return true;
     return false;
 }

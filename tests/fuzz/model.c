@@ -21,14 +21,22 @@ static void make(const struct body_view *view, struct model_made *out)
 {
     struct geometry_reader reader = geometry_begin(view);
     struct geometry_frame frame;
-    size_t count = 0;
+    size_t count = 0, used = 0;
     while (geometry_next(&reader, &frame)) {
-        double number[FMB_FRAME_NUMBERS_MAX];
-        FUZZ_CHECK(count < MODEL_FRAMES_MAX && frame.count <= FMB_FRAME_NUMBERS_MAX);
+        double number[MODEL_NUMBERS_MAX];
+        struct fmb_frame *to = &out->frame[count++];
+        FUZZ_CHECK(count <= MODEL_FRAMES_MAX && frame.count <= MODEL_NUMBERS_MAX);
         geometry_numbers(&frame, number);
-        FUZZ_CHECK((frame.by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
-                       reader.dim, frame.shape, number, frame.count, &out->frame[count++]) ==
-                   FMB_OK);
+        if (frame.shape == FMB_HULL) {
+            const size_t doubles = fmb_hull_doubles(reader.dim, frame.count / (size_t) reader.dim);
+            FUZZ_CHECK(used + doubles <= MODEL_DOUBLES_MAX);
+            FUZZ_CHECK(fmb_frame_make_hull(reader.dim, number, frame.count, out->vertices + used,
+                                           to) == FMB_OK);
+            used += doubles;
+        } else {
+            FUZZ_CHECK((frame.by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
+                           reader.dim, frame.shape, number, frame.count, to) == FMB_OK);
+        }
     }
     FUZZ_CHECK(reader.frames_left == 0 && reader.numbers_left == 0);
     FUZZ_CHECK(fmb_body_make_frames(out->frame, count, &out->body) == FMB_OK);
@@ -113,8 +121,9 @@ static int64_t count_at(const struct query_placement *placement, int i)
                       at[3]);
 }
 
-/* The numbers of a frame by the comments of placement_t.lcm; 0: no such shape, or a hull. */
-static int numbers_of(int dim, int shape)
+/* The numbers of a frame by the comments of placement_t.lcm; 0: no such shape. vertices: its
+ * count, 0 without one. */
+static int64_t numbers_of(int dim, int shape, int64_t vertices)
 {
     switch (shape) {
     case 6: return dim * (dim + 1);
@@ -123,6 +132,7 @@ static int numbers_of(int dim, int shape)
     case FMB_TETRAHEDRON: return dim + dim * dim;
     case FMB_FACE: return dim == 3 ? 9 : 0;
     case FMB_BOX: return 2 * dim;
+    case FMB_HULL: return vertices > 0 && vertices <= 1024 ? dim * vertices : 0;
     default: return 0;
     }
 }
@@ -136,15 +146,17 @@ static bool good_frames(const struct query_placement *placement)
     int64_t numbers = 0;
     int counts = 0;
     for (int f = 0; good && f < placement->body.frame_count; f++) {
-        const int shape = placement->body.bytes[8 + f], count = numbers_of(dim, shape);
-        good = count > 0 && numbers + count <= placement->body.number_count;
+        const int shape = placement->body.bytes[8 + f];
+        const bool counted = shape == FMB_HULL || shape >= 6;
+        const bool missing = counted && counts == placement->body.count_count;
+        const int64_t vertices = counted && !missing ? count_at(placement, counts++) : 0;
+        const int64_t count = numbers_of(dim, shape, vertices);
+        good = count > 0 && numbers + count <= placement->body.number_count && !missing &&
+               (!counted || vertices * dim == count);
         for (int i = 0; good && i < count; i++) {
             const double number = model_number(placement, (int) numbers + i);
             good = is_finite(number) && !(shape == FMB_BOX && i >= dim && number < 0);
         }
-        if (good && shape >= 6)
-            good = counts < placement->body.count_count &&
-                   count_at(placement, counts++) * dim == count;
         numbers += count;
     }
     return good && numbers == placement->body.number_count && counts == placement->body.count_count;

@@ -9,7 +9,9 @@
 enum {
     MODEL_BODIES_MAX = 24,
     MODEL_FRAMES_MAX = 32, /* of a body */
-    MODEL_BYTES_MAX = GEOMETRY_NONE_BYTES + MODEL_FRAMES_MAX * (1 + 8 * FMB_FRAME_NUMBERS_MAX)
+    MODEL_NUMBERS_MAX = MODEL_FRAMES_MAX * FMB_FRAME_NUMBERS_MAX,
+    MODEL_BYTES_MAX = GEOMETRY_NONE_BYTES + MODEL_FRAMES_MAX * (1 + 4) + 8 * MODEL_NUMBERS_MAX,
+    MODEL_DOUBLES_MAX = 9 * MODEL_NUMBERS_MAX /* a hull of one vertex in 2D takes 17 */
 };
 
 struct model {
@@ -25,6 +27,7 @@ struct model {
 struct model_made {
     struct fmb_body body;
     struct fmb_frame frame[MODEL_FRAMES_MAX];
+    double vertices[MODEL_DOUBLES_MAX]; /* of its hulls */
 };
 
 /* Whether a placement and a request are such as msgs/ requires, as far as this version goes. */
@@ -33,7 +36,8 @@ bool model_good_request(int64_t client_id, int64_t sequence_number, double durat
                         int32_t want, int32_t wants);
 bool model_by_handle(const struct query_placement *placement);
 
-/* On input: placements that are good, with at most MODEL_FRAMES_MAX frames. */
+/* On input: placements that are good, with at most MODEL_FRAMES_MAX frames and
+ * MODEL_NUMBERS_MAX numbers. */
 
 /* The body of a placement by handle. OK; UNKNOWN_BODY; or WRONG_DIMENSION. */
 enum fmb_status model_find(const struct model *model, const struct query_placement *placement,

@@ -1,6 +1,5 @@
 #include "same.h"
 
-#include "geometry_write.h"
 #include "geometry.h"
 
 #include <stdlib.h>
@@ -13,14 +12,16 @@ bool same_doubles(const double *a, const double *b, size_t count)
 
 /* ---- Bodies ---- */
 
-/* Numbers of a frame by the comments of placement_t.lcm; 0: no such shape. */
-static int32_t numbers_of(int32_t dim, int shape)
+/* Numbers of a frame by the comments of placement_t.lcm; 0: no such shape. vertices: its count; 0:
+ * it has none. */
+static int64_t numbers_of(int32_t dim, int shape, int32_t vertices)
 {
     if (dim != 2 && dim != 3)
         return 0;
     switch (shape) {
     case FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON_VERTICES: return dim * (dim + 1);
     case FMB_MSGS_PLACEMENT_T_SHAPE_FACE_VERTICES: return dim == 3 ? 9 : 0;
+    case FMB_MSGS_PLACEMENT_T_SHAPE_HULL: return vertices > 0 ? (int64_t) dim * vertices : 0;
     case FMB_MSGS_PLACEMENT_T_SHAPE_CUBOID:
     case FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON: return dim + dim * dim;
     case FMB_MSGS_PLACEMENT_T_SHAPE_FACE: return dim == 3 ? 9 : 0;
@@ -32,30 +33,32 @@ static int32_t numbers_of(int32_t dim, int shape)
 /* Frame after frame, until one does not fit. */
 static bool same_frames(const struct body_view *geometry, const fmb_msgs_body_t *message)
 {
+    static double read[QUERY_NUMBERS_MAX];
     const int32_t dim = message->dim;
     struct geometry_reader reader = geometry_begin(geometry);
-    struct plain_frame frame;
+    struct geometry_frame frame;
     int32_t number = 0, f = 0, c = 0;
     for (; f < message->num_frames; f++) {
         const int shape = message->shapes[f];
-        const bool vertices = shape >= FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON_VERTICES;
-        const int32_t count = numbers_of(dim, shape);
+        const bool vertices = shape == FMB_MSGS_PLACEMENT_T_SHAPE_HULL ||
+                              shape >= FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON_VERTICES;
+        const int32_t given = vertices && c < message->num_counts ? message->counts[c++] : 0;
+        const int64_t count = numbers_of(dim, shape, given);
         const bool fits = count > 0 && count <= message->num_numbers - number &&
-                          (!vertices || (c < message->num_counts &&
-                                         (int64_t) dim * message->counts[c++] == count));
-        if (geometry_read(&reader, &frame) != fits)
+                          (!vertices || (int64_t) dim * given == count);
+        if (geometry_next(&reader, &frame) != fits)
             return false;
         if (!fits)
             return true;
-        const int by_components = !vertices ? shape : shape == 7 ? FMB_FACE : FMB_TETRAHEDRON;
+        const int by_components = shape < 6 ? shape : shape == 7 ? FMB_FACE : FMB_TETRAHEDRON;
+        geometry_numbers(&frame, read);
         if (reader.dim != dim || frame.shape != by_components || frame.by_vertices != vertices ||
-            !same_doubles(frame.origin, message->numbers + number, (size_t) dim) ||
-            !same_doubles(frame.components, message->numbers + number + dim,
-                          (size_t) (count - dim)))
+            frame.count != (size_t) count ||
+            !same_doubles(read, message->numbers + number, frame.count))
             return false;
-        number += count;
+        number += (int32_t) count;
     }
-    return !geometry_read(&reader, &frame) && reader.counts_left == message->num_counts - c &&
+    return !geometry_next(&reader, &frame) && reader.counts_left == message->num_counts - c &&
            reader.numbers_left == message->num_numbers - number;
 }
 

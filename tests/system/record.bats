@@ -393,6 +393,31 @@ resolves() {
     stop_fmbd
 }
 
+# hulls: a scene of hulls of 1 to 128 vertices, turned and moving, one in a body of several frames.
+hulls() {
+    jq -n '{dim: 3, label: "hulls", bodies: [range(1; 8) as $i | {id: $i,
+        position: [$i * 0.4, $i % 3 * 0.2, 0.1], orientation: [1, $i * 0.1, 0.3, -0.2], velocity: [-0.1 * $i, 0, 0.1]}
+        + ({shape: "hull", vertices: [range(pow(2; $i)) | [(. * $i | sin), (. * 3 | cos), (. * . | sin)]]}
+           | if $i == 4 then {frames: [., {shape: "box", size: [0.2, 0.3, 0.4]}]} else . end)]}'
+}
+
+@test "hulls are answered, recorded, cut and replayed with the bits of --local" {
+    hulls > "$BATS_TEST_TMPDIR/hulls.json"
+    "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/hulls.json" > "$BATS_TEST_TMPDIR/local"
+    start_fmbd
+    start_record "$log"
+    "$FMB" query --json --box "$BATS_TEST_TMPDIR/hulls.json" | cmp - "$BATS_TEST_TMPDIR/local"
+    wait_until has_events FMB_SCENE_RESULT "$log" 1
+    finish_record
+    stop_fmbd
+    "$FMB" replay --json "$log" > "$BATS_TEST_TMPDIR/replay"
+    jq -e '.same >= 1 and .different == 0' "$BATS_TEST_TMPDIR/replay"
+    "$FMB" log cut -o "$BATS_TEST_TMPDIR/cut" --channel FMB_SCENE_QUERY --channel FMB_SCENE_RESULT "$log"
+    "$FMB" replay "$BATS_TEST_TMPDIR/cut"
+    "$FMB" log scene --event 1 "$BATS_TEST_TMPDIR/cut" 2> "$messages" |
+        "$FMB" query --json --box --local | cmp - "$BATS_TEST_TMPDIR/local"
+}
+
 @test "of a rotation that keeps two files each query can be resolved" {
     start_fmbd
     random_scene 3 12 > "$BATS_TEST_TMPDIR/scene.json"

@@ -50,7 +50,7 @@ static struct cache_counts counts(void)
 }
 
 /* Where the geometries of the query are: many frames fit. */
-static unsigned char bytes[2][16384];
+static unsigned char bytes[2][20000];
 
 static const struct plain_frame unit_cube = {.shape = FMB_CUBOID,
                                              .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
@@ -415,20 +415,10 @@ static void wrong_counts_of_vertices_are_refused(void **state)
         {3, 1, {6}, {4, END}, 11, FMB_WRONG_COUNT, "b.num_numbers: expected 12 numbers, found 11"},
         {2, 1, {7}, {3, END}, 6, FMB_WRONG_DIMENSION, "b.dim: a face is in 3D"},
         {3, 1, {8}, {3, END}, 6, FMB_UNKNOWN_SHAPE, "b.shapes[0]: unknown shape"},
-        {3,
-         2,
-         {4, 5},
-         {1, END},
-         9,
-         FMB_NOT_SUPPORTED,
-         "b.shapes[1]: hulls are not supported by this version"},
-        {2,
-         1,
-         {5},
-         {1000, END},
-         2000,
-         FMB_NOT_SUPPORTED,
-         "b.shapes[0]: hulls are not supported by this version"},
+        {3, 2, {4, 5}, {1, END}, 9, FMB_OK, ""},
+        {2, 1, {5}, {1000, END}, 2000, FMB_OK, ""},
+        {2, 1, {5}, {1024, END}, 2048, FMB_OK, ""},
+        {2, 1, {5}, {1025, END}, 2050, FMB_OVER_LIMIT, "b.counts[0]: more than 1024 vertices"},
         {3,
          1,
          {5},
@@ -443,13 +433,7 @@ static void wrong_counts_of_vertices_are_refused(void **state)
          0,
          FMB_WRONG_COUNT,
          "b.counts[0]: not a number of vertices of this shape"},
-        {3,
-         1,
-         {5},
-         {INT32_MAX, END},
-         3,
-         FMB_WRONG_COUNT,
-         "b.num_numbers: expected 6442450941 numbers, found 3"},
+        {3, 1, {5}, {INT32_MAX, END}, 3, FMB_OVER_LIMIT, "b.counts[0]: more than 1024 vertices"},
         {3, 1, {5}, {END}, 3, FMB_WRONG_COUNT, "b.num_counts: expected 1 numbers, found 0"}};
     for (size_t i = 0; i < COUNT(cases); i++) {
         struct pair_query query = cases[i].dim == 2 ? squares() : cubes();

@@ -381,6 +381,51 @@ static void the_capacity_counts_frames(void **state)
     cache_destroy(cache);
 }
 
+/* A hull takes one frame of the capacity, and one for each 8 vertices. Its vertices move with it:
+ * what is held does not depend on the body that it was copied from. */
+static void the_capacity_counts_vertices(void **state)
+{
+    enum { MOST = FMB_HULL_VERTICES_MAX };
+    static unsigned char bytes[GEOMETRY_NONE_BYTES + 5 + 8 * 3 * MOST];
+    static double vertices[3 * MOST], memory[4 * MOST + 64], read[3 * MOST];
+    struct cache *cache = cache_create(2 * (1 + MOST / CACHE_VERTICES), secret);
+    for (int i = 0; i < 3 * MOST; i++)
+        vertices[i] = i * i % 1009 + i / 7.0;
+    int64_t frames = 0;
+    for (int i = 0; i < 9; i++) {
+        static const int counts[] = {1, 7, 8, 9, 150, 16, 1, 100, 102};
+        struct body_view view = geometry_write_hull(i == 5 ? 2 : 3, vertices + i, counts[i], bytes);
+        struct fmb_body body;
+        bool by_vertices;
+        frames += 1 + (counts[i] + 7) / 8;
+        assert_null(cache_lookup(cache, 1 + i, &view));
+        assert_int_equal(
+            fmb_body_make_hull(view.dim, vertices + i, (size_t) view.number_count, memory, &body),
+            FMB_OK);
+        const struct cached *cached =
+            i % 2 ? cache_add(cache, 1 + i, &view, NULL) : cache_intern(cache, 1 + i, &view);
+        memset(memory, 0, sizeof memory);
+        assert_non_null(cached);
+        assert_int_equal(cache_counts(cache).frames, frames);
+        assert_int_equal(fmb_frame_numbers(&cached->body.one, &by_vertices, read),
+                         view.number_count);
+        assert_memory_equal(read, vertices + i, (size_t) view.number_count * sizeof *read);
+        assert_memory_equal(cached->view.bytes, bytes, view.size);
+        cache_release(cache, cached);
+    }
+    cache_destroy(cache);
+    cache = cache_create(2 * (1 + MOST / CACHE_VERTICES), secret);
+    struct body_view most = geometry_write_hull(3, vertices, MOST, bytes);
+    for (int id = 20; id < 22; id++) {
+        vertices[0] = id;
+        most = geometry_write_hull(3, vertices, MOST, bytes);
+        keep_geometry(cache, id, &most);
+    }
+    assert_int_equal(cache_counts(cache).bodies, 2);
+    assert_int_equal(cache_counts(cache).frames, cache_counts(cache).frame_capacity);
+    cache_destroy(cache);
+}
+
 /* Many small bodies go for a large one, but no more than it needs and one more. */
 static void a_large_body_among_small_ones(void **state)
 {
@@ -585,6 +630,7 @@ int main(void)
         cmocka_unit_test(prefetching_changes_nothing),
         cmocka_unit_test(memory_taken_is_as_it_was),
         cmocka_unit_test(the_capacity_counts_frames),
+        cmocka_unit_test(the_capacity_counts_vertices),
         cmocka_unit_test(a_large_body_among_small_ones),
         cmocka_unit_test(more_frames_than_the_capacity),
         cmocka_unit_test(bodies_in_use_stay),

@@ -332,6 +332,64 @@ static const struct fmb_body *by_vertices(const struct fmb_body *body)
     return relay_body(frame, body->frame_count);
 }
 
+/* Returns a body of a hull, alone or behind the first frame of another body: of 1 to 60 vertices,
+ * some of them equal, some of them in a plane. */
+static const struct fmb_body *with_hull(const struct fmb_body *body, int number)
+{
+    enum { MOST = 60, BODIES = 400 };
+    static double memory[BODIES][4 * MOST + 32];
+    static int used;
+    double vertices[FMB_DIM_MAX * MOST];
+    struct fmb_frame frame[2] = {*fmb_body_frame(body, 0)};
+    const int count = 1 + number * 7 % MOST, dim = body->dim;
+    for (int i = 0; i < dim * count; i++)
+        vertices[i] = sin(1.0 + number + i * (i % 5 + 1));
+    for (int i = dim - 1; i < dim * count && number % 4 == 0; i += dim)
+        vertices[i] = 0.5;
+    memcpy(vertices + dim * (count - 1), vertices, (size_t) dim * sizeof *vertices);
+    assert_true(used < BODIES);
+    assert_int_equal(
+        fmb_frame_make_hull(dim, vertices, (size_t) (dim * count), memory[used++], &frame[1]),
+        FMB_OK);
+    return number % 3 ? relay_body(frame + 1, 1) : relay_body(frame, 2);
+}
+
+/* Hulls by themselves and in bodies of several frames, whole and then by handle, in scenes and in
+ * pairs: the bits of fmb_decide(). */
+static void hulls(void **state)
+{
+    enum { BODIES = 120 };
+    struct relay *relay = relay_new();
+    relay_open(relay, 4000);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    for (int dim = 2; dim <= 3; dim++) {
+        struct fmb_placement *body = frames_of(BODIES, dim, dim == 2 ? 25 : 8, 1);
+        for (int i = 0; i < BODIES; i++)
+            body[i].body = i % 4 == 3 ? body[i].body : with_hull(body[i].body, i);
+        struct fmb_scene scene =
+            scene_of(body, BODIES, FMB_PAIRS_ALL, FMB_WANT_TIMES | FMB_WANT_BOX);
+        for (int round = 0; round < 2; round++) /* whole, then by handle */
+            relay_query(client, &scene);
+        for (int i = 1; i < BODIES; i++) {
+            struct fmb_client_answer got;
+            struct fmb_answer expected;
+            const unsigned want = FMB_WANT_BOX;
+            assert_int_equal(fmb_client_query_pair(client, &body[i - 1], 1, want, &got), FMB_OK);
+            assert_int_equal(
+                fmb_decide(fmb_method_default(), &body[i - 1], &body[i], 1, want, &expected),
+                FMB_OK);
+            assert_int_equal(got.answer.verdict, expected.verdict);
+            assert_memory_equal(got.answer.contact, expected.contact, sizeof expected.contact);
+            assert_memory_equal(got.answer.box, expected.box, sizeof expected.box);
+        }
+        free(body);
+    }
+    assert_true(fmb_client_get_counts(client).by_handle > 0);
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    fmb_client_close(client);
+    relay_close(relay);
+}
+
 /* Groups, names, a label, and frames by vertices, in queries of every kind. */
 static void groups_names_and_vertices(void **state)
 {
@@ -964,6 +1022,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(near_pairs_of_many_bodies_are_answered),
         cmocka_unit_test(all_pairs_have_certificates),
         cmocka_unit_test(groups_names_and_vertices),
+        cmocka_unit_test(hulls),
         cmocka_unit_test(groups_where_pairs_are_listed),
         cmocka_unit_test(one_pair_is_answered),
         cmocka_unit_test(wrong_scenes_are_refused),

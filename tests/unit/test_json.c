@@ -220,6 +220,52 @@ static void reads_vertices_groups_and_labels(void **state)
     scene_clear(&scene);
 }
 
+/* A body that is a hull, and one with a hull among its frames. Of repeated vertices the first is
+ * kept. */
+static void reads_hulls(void **state)
+{
+    struct owned_scene scene = read_one(
+        "{\"dim\": 2, \"bodies\": ["
+        "{\"id\": 1, \"shape\": \"hull\", \"position\": [1,0], \"orientation\": [1,0],"
+        " \"vertices\": [[0,0],[0.1,-0],[0,0],[0,1e300],[0.1,0],[-3,2]]},"
+        "{\"id\": 2, \"frames\": [{\"shape\": \"box\", \"size\": [1,1]},"
+        "{\"shape\": \"hull\", \"vertices\": [[7,8]]}]}]}");
+    const struct fmb_frame *hull = fmb_body_frame(scene.scene.placements[0].body, 0);
+    const struct fmb_frame *point = fmb_body_frame(scene.scene.placements[1].body, 1);
+    static const double distinct[] = {0, 0, 0.1, 0, 0, 1e300, -3, 2};
+    double numbers[12];
+    bool by_vertices;
+    assert_int_equal(hull->shape, FMB_HULL);
+    assert_int_equal(fmb_frame_numbers(hull, &by_vertices, numbers), 8);
+    assert_memory_equal(numbers, distinct, sizeof distinct);
+    assert_true(scene.scene.placements[0].position[0] == 1);
+    assert_int_equal(fmb_frame_numbers(point, &by_vertices, numbers), 2);
+    assert_true(by_vertices && numbers[0] == 7 && numbers[1] == 8);
+    scene_clear(&scene);
+}
+
+/* As many vertices as a hull may have, and one more. */
+static void hulls_have_a_limit(void **state)
+{
+    for (int count = FMB_HULL_VERTICES_MAX; count <= FMB_HULL_VERTICES_MAX + 1; count++) {
+        char text[32768] = "{\"dim\":2,\"bodies\":[{\"id\":1,\"shape\":\"hull\",\"vertices\":[";
+        size_t length = strlen(text);
+        for (int i = 0; i < count; i++)
+            length += (size_t) snprintf(text + length, sizeof text - length, "%s[%d,%d]",
+                                        i ? "," : "", i, i * i % 97);
+        snprintf(text + length, sizeof text - length, "]}]}");
+        if (count > FMB_HULL_VERTICES_MAX) {
+            expect_error_in_bytes(text, strlen(text),
+                                  "bodies[0].vertices: expected 1 to 1024 vertices, found 1025");
+            continue;
+        }
+        struct owned_scene scene = read_one(text);
+        const struct fmb_frame *hull = fmb_body_frame(scene.scene.placements[0].body, 0);
+        assert_int_equal(hull->vertex_count, count);
+        scene_clear(&scene);
+    }
+}
+
 /* Against the same sums in long double, which are off by less than half a unit of a double. */
 static void turned_boxes_are_rounded_once(void **state)
 {
@@ -551,7 +597,17 @@ static const struct {
     {"{\"dim\":3,\"bodies\":[{\"id\":1,\"group\":5," CUBE "},{\"id\":2,\"group\":5," CUBE
      "}],\"pairs\":[[2,1]]}",
      "pairs[0]"},
-    {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":[[0,0,0]]}"), "bodies[0].shape"},
+    {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":[]}"), "bodies[0].vertices"},
+    {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":7}"), "bodies[0].vertices"},
+    {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":[[0,0,0],[0,1e999,0]]}"),
+     "bodies[0].vertices[1][1]"},
+    {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":[[0,0,0],[0,0]]}"), "bodies[0].vertices[1]"},
+    {SCENE("{\"id\":1,\"shape\":\"hull\"}"), "bodies[0]"},
+    {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":[[0,0,0]],\"origin\":[0,0,0]}"), "bodies[0]"},
+    {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":[[0,0,0]],\"size\":[1,1,1]}"), "bodies[0]"},
+    {SCENE("{\"id\":1,\"frames\":[{\"shape\":\"hull\",\"vertices\":[[0,0,0]],"
+           "\"position\":[0,0,0]}]}"),
+     "bodies[0].frames[0]"},
     {SCENE("{\"id\":1,\"shape\":\"face\",\"vertices\":[[0,0,0],[1,0,0]]}"), "bodies[0].vertices"},
     {SCENE("{\"id\":1,\"shape\":\"tetrahedron\",\"vertices\":[[0,0,0],[1,0,0],[0,1,0],[0,1]]}"),
      "bodies[0].vertices[3]"},
@@ -790,6 +846,8 @@ int main(void)
         cmocka_unit_test(reads_every_field),
         cmocka_unit_test(reads_poses_frames_names_and_ignored_pairs),
         cmocka_unit_test(reads_vertices_groups_and_labels),
+        cmocka_unit_test(reads_hulls),
+        cmocka_unit_test(hulls_have_a_limit),
         cmocka_unit_test(turned_boxes_are_rounded_once),
         cmocka_unit_test(missing_fields_have_defaults),
         cmocka_unit_test(empty_lists_are_scenes),

@@ -189,6 +189,31 @@ static void inconsistent_bodies_have_no_frames(void **state)
     }
 }
 
+/* A hull, behind a frame without a count. */
+static void hulls_are_read_back(void **state)
+{
+    enum { COUNT_MAX = 2000 };
+    static unsigned char bytes[GEOMETRY_NONE_BYTES + 5 + 8 * 3 * COUNT_MAX];
+    static double vertices[3 * COUNT_MAX], read[3 * COUNT_MAX];
+    for (int i = 0; i < 3 * COUNT_MAX; i++)
+        vertices[i] = i % 2 ? -0.0 : i;
+    for (int count = 1; count <= COUNT_MAX; count = 2 * count + 1) {
+        struct body_view body = geometry_write_hull(3, vertices, count, bytes);
+        struct geometry_reader reader = geometry_begin(&body);
+        struct geometry_frame frame;
+        assert_true(geometry_next(&reader, &frame));
+        assert_int_equal(frame.shape, FMB_HULL);
+        assert_true(frame.by_vertices);
+        assert_int_equal(frame.count, 3 * count);
+        geometry_numbers(&frame, read);
+        assert_memory_equal(read, vertices, frame.count * sizeof *read);
+        assert_false(geometry_next(&reader, &frame));
+        body.number_count--;
+        reader = geometry_begin(&body);
+        assert_false(geometry_next(&reader, &frame));
+    }
+}
+
 /* A tetrahedron whose count says more or fewer vertices than it has, or that has none. */
 static void a_frame_by_vertices_has_their_count(void **state)
 {
@@ -416,6 +441,7 @@ int main(void)
         cmocka_unit_test(geometries_of_many_frames_are_read_back),
         cmocka_unit_test(a_later_frame_that_does_not_fit_ends_the_geometry),
         cmocka_unit_test(inconsistent_bodies_have_no_frames),
+        cmocka_unit_test(hulls_are_read_back),
         cmocka_unit_test(a_frame_by_vertices_has_their_count),
         cmocka_unit_test(handles_are_hashes_of_the_encoding),
         cmocka_unit_test(handles_distinguish_zeros),
