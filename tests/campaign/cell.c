@@ -2,33 +2,51 @@
 
 #include <stdio.h>
 
-static int list(const enum fmb_shape last[2], struct cell *out)
+static bool has_shape(int dim, enum fmb_shape shape)
+{
+    return fmb_component_count(dim, shape) > 0 || shape == FMB_HULL;
+}
+
+bool cell_has_hull(const struct cell *cell)
+{
+    return cell->shape[0] == FMB_HULL || cell->shape[1] == FMB_HULL;
+}
+
+static int list(const enum fmb_shape last[2], bool hulls, struct cell *out)
 {
     int count = 0;
     for (int dim = 2; dim <= 3; dim++)
         for (int moving = 0; moving < 2; moving++)
             for (enum fmb_shape a = FMB_CUBOID; a <= last[dim - 2]; a++)
-                for (enum fmb_shape b = FMB_CUBOID; b <= last[dim - 2]; b++)
-                    if (fmb_component_count(dim, a) && fmb_component_count(dim, b))
-                        out[count++] = (struct cell){dim, moving, {a, b}};
+                for (enum fmb_shape b = FMB_CUBOID; b <= last[dim - 2]; b++) {
+                    const struct cell cell = {dim, moving, {a, b}};
+                    if (has_shape(dim, a) && has_shape(dim, b) && cell_has_hull(&cell) == hulls)
+                        out[count++] = cell;
+                }
     return count;
 }
 
 int cell_list(bool faces, struct cell *out)
 {
     const enum fmb_shape last[2] = {FMB_TETRAHEDRON, faces ? FMB_FACE : FMB_TETRAHEDRON};
-    return list(last, out);
+    return list(last, false, out);
 }
 
 int cell_list_all(struct cell *out)
 {
     const enum fmb_shape last[2] = {FMB_BOX, FMB_BOX};
-    return list(last, out);
+    return list(last, false, out);
+}
+
+int cell_list_hulls(struct cell *out)
+{
+    const enum fmb_shape last[2] = {FMB_HULL, FMB_HULL};
+    return list(last, true, out);
 }
 
 const char *cell_shapes_text(const struct cell *cell, char text[CELL_TEXT_MAX])
 {
-    static const char letters[] = "?CTFB";
+    static const char letters[] = "?CTFBH";
     snprintf(text, CELL_TEXT_MAX, "%c%c", letters[cell->shape[0]], letters[cell->shape[1]]);
     return text;
 }

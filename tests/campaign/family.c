@@ -143,13 +143,15 @@ bool family_has_cell(const struct family *family, const struct cell *cell)
     return !(family->cells & FAMILY_3D && cell->dim != 3) &&
            !(family->cells & FAMILY_MOVING && !cell->moving) &&
            !(family->cells & FAMILY_A_FACE && !a_face) &&
-           !(family->cells & FAMILY_SIMPLICES && !simplices);
+           !(family->cells & FAMILY_SIMPLICES && !simplices) &&
+           !(family->cells & FAMILY_A_HULL) == !cell_has_hull(cell);
 }
 
 int family_cells(const struct family *family, struct cell *out)
 {
-    const int all = family->cells & FAMILY_POSED ? cell_list_all(out)
-                                                 : cell_list(family->cells & FAMILY_FACES, out);
+    const int all = family->cells & FAMILY_A_HULL  ? cell_list_hulls(out)
+                    : family->cells & FAMILY_POSED ? cell_list_all(out)
+                                                   : cell_list(family->cells & FAMILY_FACES, out);
     int count = 0;
     for (int i = 0; i < all; i++)
         if (family_has_cell(family, &out[i]))
@@ -173,6 +175,8 @@ void family_draw(const struct family *family, const struct cell *cell, struct dr
             solid->velocity[axis] = pull_back(solid->velocity[axis]);
             for (int i = 0; i < FMB_DIM_MAX; i++)
                 solid->component[i][axis] = pull_back(solid->component[i][axis]);
+            for (int v = 0; v < solid->vertex_count; v++)
+                solid->vertex[v][axis] = pull_back(solid->vertex[v][axis]);
         }
     }
 }

@@ -11,12 +11,13 @@
 
 /* Which cells a family has, where not all of the ordinary ones. */
 enum {
-    FAMILY_3D = 1,        /* only those in 3D */
-    FAMILY_MOVING = 2,    /* only moving ones */
-    FAMILY_FACES = 4,     /* faces too */
-    FAMILY_A_FACE = 8,    /* and only cells with a face */
-    FAMILY_POSED = 16,    /* all shapes */
-    FAMILY_SIMPLICES = 32 /* only cells of tetrahedra and faces */
+    FAMILY_3D = 1,         /* only those in 3D */
+    FAMILY_MOVING = 2,     /* only moving ones */
+    FAMILY_FACES = 4,      /* faces too */
+    FAMILY_A_FACE = 8,     /* and only cells with a face */
+    FAMILY_POSED = 16,     /* all shapes but hulls */
+    FAMILY_SIMPLICES = 32, /* only cells of tetrahedra and faces */
+    FAMILY_A_HULL = 64     /* all cells with a hull, and no others */
 };
 
 struct family {
@@ -39,7 +40,7 @@ const struct family *family_by_name(const char *name); /* NULL: none of that nam
  * of a family of placed bodies, for CELL_OF_ALL_SHAPES. Returns how many. */
 int family_cells(const struct family *family, struct cell *out);
 
-/* Of a cell with shapes that the family may have: whether it has that one. */
+/* Of a cell with shapes that the family may have, but perhaps a hull: whether it has that one. */
 bool family_has_cell(const struct family *family, const struct cell *cell);
 
 /* Draws a question. What was computed beyond the doubles is pulled back to the last one. */

@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "gap_check.h"
+#include "memory.h"
 
 /* Pairs of a batch: the methods are timed over all of them, one after the other, each decided once,
  * so that no branch is predicted from having seen the pair before. */
@@ -142,22 +143,12 @@ static double median(double *value, size_t count)
     return count ? value[count / 2] : 0;
 }
 
-static void *get_memory(size_t size)
-{
-    void *memory = calloc(1, size);
-    if (!memory) {
-        fprintf(stderr, "out of memory\n");
-        exit(EXIT_FAILURE);
-    }
-    return memory;
-}
-
 void measure_cell(struct measure *measure, long pairs, uint64_t seed)
 {
     const size_t batches = (size_t) (pairs + BATCH - 1) / BATCH;
     const int methods = trial_methods();
-    struct batch *batch = get_memory(sizeof *batch);
-    double *ns = get_memory(TIMES * TRIAL_METHODS_MAX * batches * sizeof *ns);
+    struct batch *batch = memory_get(sizeof *batch);
+    double *ns = memory_get(TIMES * TRIAL_METHODS_MAX * batches * sizeof *ns);
     struct draw draw = cell_draw(seed, measure->family->name, &measure->cell, 0);
     struct oracle_answer truth;
     oracle_init(&truth);
@@ -178,6 +169,8 @@ void measure_cell(struct measure *measure, long pairs, uint64_t seed)
         }
         for (int i = 0; i < batch->count; i++)
             judge_pair(measure, batch, i, &truth);
+        for (int i = 0; i < batch->count; i++)
+            trial_end(&batch->trial[i]);
     }
     for (int m = 0; m < methods; m++) {
         double *at = ns + (size_t) (TIMES * m) * batches;

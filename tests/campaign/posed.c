@@ -49,14 +49,14 @@ static void set_count(struct solid *solid)
     solid->orientation_count = solid->dim == 2 ? 2 : 4;
 }
 
-static void draw_any(struct draw *draw, struct solid *solid)
+void posed_draw_any(struct draw *draw, struct solid *solid)
 {
     set_count(solid);
     for (int i = 0; i < solid->orientation_count; i++)
         solid->orientation[i] = draw_uniform(draw, -1, 1);
 }
 
-static void draw_whole(struct draw *draw, int most, struct solid *solid)
+void posed_draw_whole(struct draw *draw, int most, struct solid *solid)
 {
     set_count(solid);
     do
@@ -72,7 +72,7 @@ static void scale_orientation(double factor, struct solid *solid)
 
 /* ---- Solids ---- */
 
-static void begin(const struct cell *cell, struct question *out)
+void posed_begin(const struct cell *cell, struct question *out)
 {
     *out = (struct question){.duration = 1};
     for (int side = 0; side < 2; side++)
@@ -80,32 +80,57 @@ static void begin(const struct cell *cell, struct question *out)
             (struct solid){.dim = cell->dim, .shape = cell->shape[side], .moving = cell->moving};
 }
 
-/* Components, or the size of a box, and the origin in body coordinates. */
-static void draw_shape(struct draw *draw, double most, struct solid *solid)
+/* Uniform, or where there is a unit whole multiples of it. */
+static double draw_number(struct draw *draw, double most, double unit)
 {
-    const bool box = solid->shape == FMB_BOX;
-    for (int axis = 0; axis < solid->dim; axis++) {
-        solid->local[axis] = draw_uniform(draw, -most, most);
-        for (int i = 0; i < solid_count(solid); i++)
-            if (!box || axis == i)
-                solid->component[i][axis] = draw_uniform(draw, box ? 0 : -most, most);
+    return unit == 0 ? draw_uniform(draw, -most, most)
+                     : unit * draw_int(draw, -(int) most, (int) most);
+}
+
+/* Of few or many vertices; one hull in four has some that are middles of others, or repeat them. */
+static void draw_vertices(struct draw *draw, double most, double unit, struct solid *solid)
+{
+    const bool redundant = draw_int(draw, 0, 3) == 0;
+    solid->vertex_count = draw_int(draw, draw_coin(draw) ? solid->dim + 1 : 1, SOLID_LISTED_MAX);
+    for (int v = 0; v < solid->vertex_count; v++) {
+        double *vertex = solid->vertex[v];
+        const bool middle = v > 0 && redundant && draw_coin(draw);
+        for (int part = 0; part < 2 && middle; part++)
+            vector_add(vertex, 0.5, solid->vertex[draw_int(draw, 0, v - 1)]);
+        for (int axis = 0; axis < solid->dim && !middle; axis++)
+            vertex[axis] = draw_number(draw, most, unit);
     }
 }
 
-/* The same in whole multiples of the unit, of a box the size in even ones. */
-static void draw_whole_shape(struct draw *draw, int most, double unit, struct solid *solid)
+/* The size of a box is positive, and in whole numbers even. The components of a hull are the steps
+ * of a row of frames. */
+static void draw_shape(struct draw *draw, double most, double unit, struct solid *solid)
 {
     const bool box = solid->shape == FMB_BOX;
+    if (solid->shape == FMB_HULL)
+        draw_vertices(draw, most, unit, solid);
     for (int axis = 0; axis < solid->dim; axis++) {
-        solid->local[axis] = unit * draw_int(draw, -most, most);
+        solid->local[axis] = draw_number(draw, most, unit);
         for (int i = 0; i < solid_count(solid); i++)
-            if (!box || axis == i)
-                solid->component[i][axis] =
-                    unit * (box ? 2 * draw_int(draw, 1, most) : draw_int(draw, -most, most));
+            if (!box)
+                solid->component[i][axis] = draw_number(draw, most, unit);
+            else if (axis == i)
+                solid->component[i][axis] = unit == 0 ? draw_uniform(draw, 0, most)
+                                                      : unit * 2 * draw_int(draw, 1, (int) most);
     }
 }
 
-static void draw_velocities(struct draw *draw, bool whole, struct question *question)
+void posed_draw_shape(struct draw *draw, double most, struct solid *solid)
+{
+    draw_shape(draw, most, 0, solid);
+}
+
+void posed_draw_whole_shape(struct draw *draw, int most, double unit, struct solid *solid)
+{
+    draw_shape(draw, most, unit, solid);
+}
+
+void posed_draw_velocities(struct draw *draw, bool whole, struct question *question)
 {
     static const double windows[] = {0.25, 0.5, 1, 1, 2, 4};
     if (!question->a.moving)
@@ -119,7 +144,8 @@ static void draw_velocities(struct draw *draw, bool whole, struct question *ques
 
 /* ---- Contact ---- */
 
-enum { POINTS_MAX = SOLID_FRAMES_MAX * VERTICES_MAX };
+/* Rows of frames have no clouds. */
+enum { POINTS_MAX = SOLID_VERTICES_MAX };
 
 /* The vertices of a body, turned, from its position. */
 struct points {
@@ -132,14 +158,10 @@ static void points_of(const struct solid *solid, struct points *out)
     out->count = 0;
     for (int f = 0; f < solid_frames(solid); f++) {
         const struct solid frame = solid_frame(solid, f);
-        double vertex[VERTICES_MAX][FMB_DIM_MAX];
+        double vertex[SOLID_VERTICES_MAX][FMB_DIM_MAX] = {{0}};
         const int count = solid_vertices(&frame, vertex);
-        for (int v = 0; v < count; v++) {
-            vector_add(vertex[v], 1, frame.local);
-            for (int axis = 0; axis < frame.dim && frame.shape == FMB_BOX; axis++)
-                vertex[v][axis] -= 0.5 * frame.component[axis][axis];
+        for (int v = 0; v < count; v++)
             turn(solid, vertex[v], out->at[out->count++]);
-        }
     }
 }
 
@@ -182,6 +204,14 @@ static void draw_edge(struct draw *draw, const struct solid *solid, double *out)
 {
     const int count = solid_count(solid), i = draw_int(draw, 0, count - 1);
     double edge[FMB_DIM_MAX];
+    if (solid->shape == FMB_HULL) {
+        double vertex[SOLID_VERTICES_MAX][FMB_DIM_MAX] = {{0}};
+        const int last = solid_vertices(solid, vertex) - 1;
+        memcpy(edge, vertex[draw_int(draw, 0, last)], sizeof edge);
+        vector_add(edge, -1, vertex[draw_int(draw, 0, last)]);
+        turn(solid, edge, out);
+        return;
+    }
     memcpy(edge, solid->component[i], sizeof edge);
     if ((solid->shape == FMB_TETRAHEDRON || solid->shape == FMB_FACE) && draw_coin(draw))
         vector_add(edge, -1, solid->component[(i + 1) % count]);
@@ -293,16 +323,21 @@ static void draw_position(struct draw *draw, double far, struct question *questi
         question->a.origin[axis] = draw_uniform(draw, -100, 100) + far * draw_uniform(draw, -3, 3);
 }
 
+void posed_meet_nearly(struct draw *draw, double size, struct question *question)
+{
+    double direction[FMB_DIM_MAX];
+    bring_together(draw, false, question, direction);
+    disturb(draw, direction, size, question);
+}
+
 /* Solids that have their orientation get all else, and meet but for rounding and a little. */
 static void meet_nearly_posed(struct draw *draw, double far, struct question *out)
 {
-    double direction[FMB_DIM_MAX];
-    draw_shape(draw, 100, &out->a);
-    draw_shape(draw, 100, &out->b);
-    draw_velocities(draw, false, out);
+    posed_draw_shape(draw, 100, &out->a);
+    posed_draw_shape(draw, 100, &out->b);
+    posed_draw_velocities(draw, false, out);
     draw_position(draw, far, out);
-    bring_together(draw, false, out, direction);
-    disturb(draw, direction, 100, out);
+    posed_meet_nearly(draw, 100, out);
 }
 
 /* Solids that have a whole orientation get all else, and touch. */
@@ -311,12 +346,12 @@ static void meet_exactly_posed(struct draw *draw, double far, struct question *o
     static const int mosts[] = {1, 3, 9};
     double direction[FMB_DIM_MAX];
     const int most = mosts[draw_int(draw, 0, COUNT(mosts) - 1)];
-    draw_velocities(draw, true, out);
+    posed_draw_velocities(draw, true, out);
     for (int axis = 0; axis < out->a.dim; axis++)
         out->a.origin[axis] = draw_int(draw, -100, 100) + far * draw_int(draw, -3, 3);
     do {
-        draw_whole_shape(draw, most, norm_of(&out->a), &out->a);
-        draw_whole_shape(draw, most, norm_of(&out->b), &out->b);
+        posed_draw_whole_shape(draw, most, norm_of(&out->a), &out->a);
+        posed_draw_whole_shape(draw, most, norm_of(&out->b), &out->b);
     } while (!bring_together(draw, true, out, direction));
 }
 
@@ -330,23 +365,23 @@ static void random_poses(struct draw *draw, const struct family *family, const s
 /* In any poses, nearly touching. */
 static void draw_near(struct draw *draw, double amount, struct question *out)
 {
-    draw_any(draw, &out->a);
-    draw_any(draw, &out->b);
+    posed_draw_any(draw, &out->a);
+    posed_draw_any(draw, &out->b);
     meet_nearly_posed(draw, amount, out);
 }
 
 /* Turned by whole numbers up to most. */
 static void draw_exact(struct draw *draw, int most, double amount, struct question *out)
 {
-    draw_whole(draw, most, &out->a);
-    draw_whole(draw, most, &out->b);
+    posed_draw_whole(draw, most, &out->a);
+    posed_draw_whole(draw, most, &out->b);
     meet_exactly_posed(draw, amount, out);
 }
 
 static void near_poses(struct draw *draw, const struct family *family, const struct cell *cell,
                        struct question *out)
 {
-    begin(cell, out);
+    posed_begin(cell, out);
     draw_near(draw, family->amount, out);
 }
 
@@ -354,7 +389,7 @@ static void near_poses(struct draw *draw, const struct family *family, const str
 static void whole(struct draw *draw, const struct family *family, const struct cell *cell,
                   struct question *out)
 {
-    begin(cell, out);
+    posed_begin(cell, out);
     draw_exact(draw, (int) family->amount, 0, out);
 }
 
@@ -371,12 +406,12 @@ static void fractions(struct draw *draw, const struct family *family, const stru
                       struct question *out)
 {
     double direction[FMB_DIM_MAX];
-    begin(cell, out);
+    posed_begin(cell, out);
     for (int side = 0; side < 2; side++) {
-        draw_whole(draw, (int) family->amount, question_solid(out, side));
-        draw_whole_shape(draw, 9, 1, question_solid(out, side));
+        posed_draw_whole(draw, (int) family->amount, question_solid(out, side));
+        posed_draw_whole_shape(draw, 9, 1, question_solid(out, side));
     }
-    draw_velocities(draw, true, out);
+    posed_draw_velocities(draw, true, out);
     draw_integers(draw, cell->dim, -9, 9, out->a.origin);
     bring_together(draw, false, out, direction);
     if (draw_coin(draw))
@@ -390,7 +425,7 @@ static void quarters_of_libm(struct draw *draw, const struct family *family,
 {
     static const double cosine = 0x1.6a09e667f3bcdp-1, sine = 0x1.6a09e667f3bccp-1;
     (void) family;
-    begin(cell, out);
+    posed_begin(cell, out);
     for (int side = 0; side < 2; side++) {
         struct solid *solid = question_solid(out, side);
         set_count(solid);
@@ -412,13 +447,13 @@ static void shared_pose(struct draw *draw, const struct family *family, const st
                         struct question *out)
 {
     struct solid *a = &out->a, *b = &out->b;
-    begin(cell, out);
+    posed_begin(cell, out);
     a->moving = b->moving = false;
     a->frames = b->frames = (int) family->amount;
     meet_exactly_posed(draw, 0, out);
     vector_add(a->local, 1, a->origin);
     vector_add(b->local, 1, b->origin);
-    draw_any(draw, a);
+    posed_draw_any(draw, a);
     draw_position(draw, 0, out);
     for (int axis = 0; axis < cell->dim; axis++)
         a->velocity[axis] = draw_uniform(draw, -100, 100);
@@ -433,8 +468,8 @@ static void shared_pose(struct draw *draw, const struct family *family, const st
 static void stacked(struct draw *draw, const struct family *family, const struct cell *cell,
                     struct question *out)
 {
-    begin(cell, out);
-    draw_any(draw, &out->a);
+    posed_begin(cell, out);
+    posed_draw_any(draw, &out->a);
     out->b.orientation_count = out->a.orientation_count;
     for (int i = 0; i < out->a.orientation_count; i++)
         out->b.orientation[i] = out->a.orientation[i] + family->amount * draw_uniform(draw, -1, 1);
@@ -453,7 +488,7 @@ static void an_ulp_apart(struct draw *draw, const struct family *family, const s
 static void of_any_length(struct draw *draw, const struct family *family, const struct cell *cell,
                           struct question *out)
 {
-    begin(cell, out);
+    posed_begin(cell, out);
     if (draw_coin(draw)) {
         draw_exact(draw, 3, 0, out);
     } else {
@@ -467,7 +502,7 @@ static void of_any_length(struct draw *draw, const struct family *family, const 
 static void far_poses(struct draw *draw, const struct family *family, const struct cell *cell,
                       struct question *out)
 {
-    begin(cell, out);
+    posed_begin(cell, out);
     if (draw_coin(draw)) {
         draw_exact(draw, 3, family->amount, out);
     } else {
@@ -479,7 +514,7 @@ static void far_poses(struct draw *draw, const struct family *family, const stru
 static void rows(struct draw *draw, const struct family *family, const struct cell *cell,
                  struct question *out)
 {
-    begin(cell, out);
+    posed_begin(cell, out);
     out->a.frames = draw_int(draw, 2, (int) family->amount);
     out->b.frames = draw_int(draw, 1, (int) family->amount);
     if (draw_coin(draw)) {
@@ -496,13 +531,13 @@ static void shared_vertices(struct draw *draw, const struct family *family, cons
     enum { CLOUD = 6 };
     double cloud[CLOUD][FMB_DIM_MAX] = {{0}};
     (void) family;
-    begin(cell, out);
+    posed_begin(cell, out);
     for (int i = 0; i < CLOUD; i++)
         for (int axis = 0; axis < cell->dim; axis++)
             cloud[i][axis] = 50 + draw_uniform(draw, -100, 100);
-    draw_any(draw, &out->a);
+    posed_draw_any(draw, &out->a);
     draw_position(draw, 0, out);
-    draw_velocities(draw, false, out);
+    posed_draw_velocities(draw, false, out);
     memcpy(out->b.orientation, out->a.orientation, sizeof out->b.orientation);
     memcpy(out->b.origin, out->a.origin, sizeof out->b.origin);
     memcpy(out->b.velocity, out->a.velocity, sizeof out->b.velocity);
@@ -553,7 +588,7 @@ static void yaw_on_table(struct draw *draw, const struct family *family, const s
 {
     static const double rolls[4][2] = {{1, 0}, {1, 1}, {0, 1}, {1, -1}};
     (void) family;
-    begin(cell, out);
+    posed_begin(cell, out);
     const double *roll = rolls[cell->shape[1] == FMB_BOX ? draw_int(draw, 0, 3) : 0];
     const double w = draw_uniform(draw, -1, 1), z = draw_uniform(draw, -1, 1);
     set_table(draw, &out->a);
@@ -599,6 +634,8 @@ static void beyond_doubles(struct draw *draw, const struct family *family, const
             solid->local[axis] *= draw_coin(draw) ? large : 1;
             solid->velocity[axis] *= draw_coin(draw) ? large : 1;
             solid->component[axis][axis] *= draw_coin(draw) ? large : 1;
+            for (int v = 0; v < solid->vertex_count; v++)
+                solid->vertex[v][axis] *= draw_coin(draw) ? large : 1;
         }
     }
 }
@@ -659,11 +696,11 @@ const struct family *family_posed_at(size_t index)
 
 void family_draw_posed(struct draw *draw, const struct cell *cell, struct question *out)
 {
-    begin(cell, out);
+    posed_begin(cell, out);
     for (int side = 0; side < 2; side++) {
         struct solid *solid = question_solid(out, side);
-        draw_shape(draw, 100, solid);
-        draw_any(draw, solid);
+        posed_draw_shape(draw, 100, solid);
+        posed_draw_any(draw, solid);
         for (int axis = 0; axis < cell->dim; axis++) {
             solid->origin[axis] = draw_uniform(draw, -100, 100);
             if (cell->moving)

@@ -40,23 +40,6 @@ struct solid *question_solid(struct question *question, int side)
     return side == 0 ? &question->a : &question->b;
 }
 
-int solid_vertices(const struct solid *solid, double vertex[VERTICES_MAX][FMB_DIM_MAX])
-{
-    const int count = solid_count(solid);
-    memset(vertex[0], 0, sizeof vertex[0]);
-    if (solid->shape == FMB_TETRAHEDRON || solid->shape == FMB_FACE) {
-        for (int i = 0; i < count; i++)
-            memcpy(vertex[i + 1], solid->component[i], sizeof vertex[0]);
-        return count + 1;
-    }
-    for (int v = 1; v < 1 << count; v++) {
-        int last = v & 4 ? 2 : v & 2 ? 1 : 0;
-        memcpy(vertex[v], vertex[v ^ 1 << last], sizeof vertex[0]);
-        vector_add(vertex[v], 1, solid->component[last]);
-    }
-    return 1 << count;
-}
-
 void solid_centre(const struct solid *solid, double *out)
 {
     double vertex[VERTICES_MAX][FMB_DIM_MAX];

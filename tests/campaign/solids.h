@@ -14,11 +14,7 @@ double vector_length(const double *vector);
 /* A for side 0, B for 1. */
 struct solid *question_solid(struct question *question, int side);
 
-/* The vertices, relative to the origin. Returns how many. */
-enum { VERTICES_MAX = 8 };
-int solid_vertices(const struct solid *solid, double vertex[VERTICES_MAX][FMB_DIM_MAX]);
-
-/* The mean of the vertices, in world coordinates. */
+/* The mean of the vertices of a solid that is no hull, in world coordinates. */
 void solid_centre(const struct solid *solid, double *out);
 
 #endif

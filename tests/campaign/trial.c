@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "memory.h"
+
 int trial_methods(void)
 {
     int count = 0;
@@ -31,25 +33,42 @@ static void expect_ok(enum fmb_status status, const struct question *question)
 }
 
 static void make_body(const struct question *question, const struct solid *solid,
-                      struct fmb_frame frame[SOLID_FRAMES_MAX], struct fmb_body *out)
+                      struct fmb_frame frame[SOLID_FRAMES_MAX], double **memory,
+                      struct fmb_body *out)
 {
     const int count = solid_frames(solid);
+    double *next = NULL;
+    *memory = NULL;
     for (int i = 0; i < count; i++) {
         double number[SOLID_NUMBERS_MAX];
         const struct solid one = solid_frame(solid, i);
-        const int numbers = solid_numbers(&one, number);
-        expect_ok((one.by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
-                      one.dim, one.shape, number, (size_t) numbers, &frame[i]),
-                  question);
+        const size_t numbers = (size_t) solid_numbers(&one, number);
+        const size_t doubles = fmb_hull_doubles(one.dim, numbers / (size_t) one.dim);
+        if (!solid_is_hull(&one)) {
+            expect_ok((one.by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
+                          one.dim, one.shape, number, numbers, &frame[i]),
+                      question);
+            continue;
+        }
+        if (i == 0)
+            next = *memory = memory_get((size_t) count * doubles * sizeof *next);
+        expect_ok(fmb_frame_make_hull(one.dim, number, numbers, next, &frame[i]), question);
+        next += doubles;
     }
     expect_ok(fmb_body_make_frames(frame, (size_t) count, out), question);
+}
+
+void trial_end(struct trial *trial)
+{
+    free(trial->memory[0]);
+    free(trial->memory[1]);
 }
 
 void trial_begin(const struct question *question, struct trial *out)
 {
     out->question = *question;
-    make_body(question, &question->a, out->frame[0], &out->body[0]);
-    make_body(question, &question->b, out->frame[1], &out->body[1]);
+    make_body(question, &question->a, out->frame[0], &out->memory[0], &out->body[0]);
+    make_body(question, &question->b, out->frame[1], &out->memory[1], &out->body[1]);
     out->pair[0] = (struct pair){solid_placement(&question->a, &out->body[0]),
                                  solid_placement(&question->b, &out->body[1]), question->duration};
     out->pair[1] = (struct pair){out->pair[0].b, out->pair[0].a, out->pair[0].duration};

@@ -16,9 +16,10 @@ int trial_methods(void);
 /* Whether the method is documented never to be wrong. */
 bool trial_never_wrong(const struct fmb_method *method);
 
-/* Not to be copied: the pairs point into body, and bodies into frame. */
+/* Not to be copied: the pairs point into body, bodies into frame, and hulls into memory. */
 struct trial {
     struct question question;
+    double *memory[2]; /* of hulls; NULL: none */
     struct fmb_frame frame[2][SOLID_FRAMES_MAX];
     struct fmb_body body[2];
     struct pair pair[2]; /* (A, B), and (B, A) */
@@ -26,6 +27,9 @@ struct trial {
 
 /* Ends the program, with the question printed, if the engine refuses it: those drawn are legal. */
 void trial_begin(const struct question *question, struct trial *out);
+
+/* Frees the memory of hulls. Without any it need not be called. */
+void trial_end(struct trial *trial);
 
 /* What a method said. status is OK or CANNOT_DECIDE; the latter has an answer of zeros. */
 struct reply {

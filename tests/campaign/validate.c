@@ -94,6 +94,7 @@ static void check_certificate(struct draw *draw, const struct cell *cell, struct
     else if (length > 0 &&
              !pair_certificate_holds(&trial.pair[0], truth.verdict, text, why, sizeof why))
         tally_broken(tally, &question, why);
+    trial_end(&trial);
     oracle_clear(&truth);
 }
 
@@ -141,6 +142,7 @@ static void validate_part(void *context, size_t job)
             validation->certificates[job]++;
             check_certificate(&draw, cell, &validation->tally[job][0]);
         }
+        trial_end(&trial);
     }
 }
 

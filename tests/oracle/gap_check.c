@@ -3,12 +3,8 @@
  * Lower bound: n . (b - a) is least in vertices, at an end of the window. It is compared with
  * lo |n| by their squares.
  *
- * Distance of a point from a frame, and of two frames: nearest.h. Sums of roots are compared in
- * floating point of 512 bits: what that rounds is far below a double's rounding.
- *
- * Depth: a facet of the swept difference has two directions of edges that are independent, so all
- * pairs of edges are tried, the displacement of one frame against the other being an edge too.
- * Where all edges are parallel the depth is 0. */
+ * Distance of a point from a frame, and of two frames: nearest.c; depth: facets.c. Sums of roots
+ * are compared in floating point of 512 bits: what that rounds is far below a double's rounding. */
 #include "gap_check.h"
 
 #include <float.h>
@@ -16,10 +12,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "nearest.h"
+#include "difference.h"
 #include "rational_solid.h"
 
-enum { PRECISION = 512, EDGES_MAX = 6, ALL_EDGES = 2 * EDGES_MAX + 1 };
+enum { PRECISION = 512 };
 
 /* All lengths times scale, which makes those at the start of the window integers: rational numbers
  * without denominators are fast. */
@@ -27,7 +23,9 @@ struct world {
     int dim;
     mpq_t scale;
     struct rational_solid solid[2];
-    mpq_t duration, offset[3], drift[3]; /* of b against a, at the start and over the window */
+    mpq_t duration;
+    rational_vector offset, drift; /* of b against a, at the start and over the window */
+    struct difference difference;
 };
 
 /* Multiplies the denominators of the numbers into the scale, so far as it lacks them. */
@@ -50,13 +48,13 @@ static void set_scale(struct world *world)
         include_denominators(world->solid[s].origin, world->scale);
         include_denominators(world->solid[s].velocity, world->scale);
         for (int i = 0; i < world->solid[s].count; i++)
-            include_denominators(world->solid[s].component[i], world->scale);
+            include_denominators(world->solid[s].column[i], world->scale);
     }
     for (int s = 0; s < 2; s++) {
         multiply(world->solid[s].origin, world->scale);
         multiply(world->solid[s].velocity, world->scale);
         for (int i = 0; i < world->solid[s].count; i++)
-            multiply(world->solid[s].component[i], world->scale);
+            multiply(world->solid[s].column[i], world->scale);
     }
 }
 
@@ -75,6 +73,8 @@ static void world_init(struct world *world, const struct pair *pair, unsigned i,
         mpq_sub(world->drift[axis], world->solid[1].velocity[axis], world->solid[0].velocity[axis]);
         mpq_mul(world->drift[axis], world->drift[axis], world->duration);
     }
+    world->difference = (struct difference){world->dim, &world->solid[0], &world->solid[1],
+                                            world->offset, world->drift};
 }
 
 static void world_clear(struct world *world)
@@ -101,65 +101,6 @@ static void set_length(const struct world *world, double length, mpq_t out)
 
 /* ---- Along a direction ---- */
 
-static void add_range(const mpq_t at, mpq_t least, mpq_t most)
-{
-    mpq_ptr end = mpq_sgn(at) < 0 ? least : most;
-    mpq_add(end, end, at);
-}
-
-static void widen_range(const mpq_t at, mpq_t least, mpq_t most)
-{
-    if (mpq_cmp(at, least) < 0)
-        mpq_set(least, at);
-    if (mpq_cmp(at, most) > 0)
-        mpq_set(most, at);
-}
-
-/* The least and the greatest n . (b - a). */
-static void range_along(struct world *world, rational_vector n, mpq_t least, mpq_t most)
-{
-    mpq_t at, low, high;
-    mpq_inits(at, low, high, NULL);
-    rational_dot(least, n, world->offset);
-    mpq_set(most, least);
-    rational_dot(at, n, world->drift);
-    add_range(at, least, most);
-    for (int side = 0; side < 2; side++) {
-        struct rational_solid *solid = &world->solid[side];
-        mpq_set_ui(low, 0, 1);
-        mpq_set_ui(high, 0, 1);
-        for (int i = 0; i < solid->count; i++) {
-            rational_dot(at, n, solid->component[i]);
-            if (side == 0)
-                mpq_neg(at, at);
-            if (solid->simplex)
-                widen_range(at, low, high);
-            else
-                add_range(at, low, high);
-        }
-        mpq_add(least, least, low);
-        mpq_add(most, most, high);
-    }
-    mpq_clears(at, low, high, NULL);
-}
-
-/* The sign of x - y |n|, y finite. */
-static int compare_with_length(const mpq_t x, const mpq_t y, rational_vector n)
-{
-    const int of_x = mpq_sgn(x), of_y = mpq_sgn(y);
-    if (of_x != of_y || of_x == 0)
-        return of_x > of_y ? 1 : of_x < of_y ? -1 : 0;
-    mpq_t left, right;
-    mpq_inits(left, right, NULL);
-    mpq_mul(left, x, x);
-    rational_dot(right, n, n);
-    mpq_mul(right, right, y);
-    mpq_mul(right, right, y);
-    const int order = mpq_cmp(left, right);
-    mpq_clears(left, right, NULL);
-    return of_x * ((order > 0) - (order < 0));
-}
-
 static void set_direction(const struct fmb_gap *gap, rational_vector n)
 {
     for (int axis = 0; axis < 3; axis++)
@@ -174,72 +115,44 @@ static bool proves(struct world *world, const struct fmb_gap *gap, double bound)
     if (bound == -INFINITY)
         return true;
     rational_vector n;
-    mpq_t least, most, limit;
-    mpq_inits(least, most, limit, NULL);
+    mpq_t least, limit;
+    mpq_inits(least, limit, NULL);
     rational_vector_init(n);
     set_direction(gap, n);
-    range_along(world, n, least, most);
+    difference_end(&world->difference, n, -1, least, NULL);
     set_length(world, bound, limit);
-    const bool holds = compare_with_length(least, limit, n) >= 0;
+    const bool holds = difference_compare(least, limit, n) >= 0;
     rational_vector_clear(n);
-    mpq_clears(least, most, limit, NULL);
+    mpq_clears(least, limit, NULL);
     return holds;
 }
 
 /* ---- The distance of a point from a frame ---- */
-
-static void add_columns(struct nearest *box, struct rational_solid *solid, int s)
-{
-    if (solid->simplex)
-        box->simplex[s] = box->count;
-    for (int i = 0; i < solid->count; i++)
-        box->column[box->count++] = solid->component[i];
-    if (solid->simplex)
-        box->simplex_end[s] = box->count;
-}
 
 /* The square of the distance of the point from the frame of that side at a time. */
 static void point_distance(struct world *world, int side, const mpq_t time, const double *point,
                            mpq_t square)
 {
     struct rational_solid *solid = &world->solid[side];
-    struct nearest box = {0};
-    rational_vector w;
+    rational_vector offset;
     mpq_t at;
-    rational_vector_init(w);
+    rational_vector_init(offset);
     mpq_init(at);
-    add_columns(&box, solid, 0);
     for (int axis = 0; axis < 3; axis++) {
         set_length(world, point[axis], at);
-        mpq_sub(w[axis], solid->origin[axis], at);
-        rational_add_product(w[axis], 1, time, solid->velocity[axis]);
+        mpq_sub(offset[axis], solid->origin[axis], at);
+        rational_add_product(offset[axis], 1, time, solid->velocity[axis]);
     }
-    nearest_square(&box, w, square);
-    rational_vector_clear(w);
+    difference_nearest(&(struct difference){.second = solid, .offset = offset}, square);
+    rational_vector_clear(offset);
     mpq_clear(at);
-}
-
-static void distance(struct world *world, mpq_t square)
-{
-    struct nearest box = {0};
-    for (int axis = 0; axis < 3; axis++)
-        for (int i = 0; i < FMB_DIM_MAX; i++)
-            mpq_neg(world->solid[0].component[i][axis], world->solid[0].component[i][axis]);
-    add_columns(&box, &world->solid[0], 0);
-    add_columns(&box, &world->solid[1], 1);
-    if (mpq_sgn(world->drift[0]) || mpq_sgn(world->drift[1]) || mpq_sgn(world->drift[2]))
-        box.column[box.count++] = world->drift;
-    nearest_square(&box, world->offset, square);
-    for (int axis = 0; axis < 3; axis++)
-        for (int i = 0; i < FMB_DIM_MAX; i++)
-            mpq_neg(world->solid[0].component[i][axis], world->solid[0].component[i][axis]);
 }
 
 void gap_check_distance(const struct pair *pair, mpq_t square)
 {
     struct world world;
     world_init(&world, pair, 0, 0);
-    distance(&world, square);
+    difference_nearest(&world.difference, square);
     mpq_div(square, square, world.scale);
     mpq_div(square, square, world.scale);
     world_clear(&world);
@@ -250,7 +163,7 @@ static int compare_distance(struct world *world, double bound)
 {
     mpq_t square, limit;
     mpq_inits(square, limit, NULL);
-    distance(world, square);
+    difference_nearest(&world->difference, square);
     set_length(world, clamped(bound), limit);
     mpq_mul(limit, limit, limit);
     const int order = mpq_cmp(square, limit);
@@ -324,76 +237,21 @@ static bool points_prove(struct world *world, const struct fmb_gap *gap)
 
 /* ---- Depth ---- */
 
-static int list_edges(struct world *world, rational_vector out[ALL_EDGES])
+/* The sign of minus the depth, minus the bound. */
+static int compare_depth(struct world *world, double bound)
 {
-    int count = 0;
-    for (int side = 0; side < 2; side++) {
-        struct rational_solid *solid = &world->solid[side];
-        for (int i = 0; i < solid->count; i++) {
-            for (int axis = 0; axis < 3; axis++)
-                mpq_set(out[count][axis], solid->component[i][axis]);
-            count++;
-            for (int j = 0; j < i && solid->simplex; j++, count++)
-                for (int axis = 0; axis < 3; axis++)
-                    mpq_sub(out[count][axis], solid->component[i][axis], solid->component[j][axis]);
-        }
-    }
-    for (int axis = 0; axis < 3; axis++)
-        mpq_set(out[count][axis], world->drift[axis]);
-    return count + 1;
-}
-
-static void cross(rational_vector out, rational_vector x, rational_vector y)
-{
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        mpq_set_ui(out[i], 0, 1);
-        rational_add_product(out[i], 1, x[j], y[k]);
-        rational_add_product(out[i], -1, x[k], y[j]);
-    }
-}
-
-/* The sign of the greatest f(n) over the normals of facets, minus the limit. Where there are none,
- * the depth is 0. */
-static int compare_facets(struct world *world, double bound)
-{
-    rational_vector edge[ALL_EDGES], n, up;
-    mpq_t f[2], limit;
-    int order = -2;
-    for (int e = 0; e < ALL_EDGES; e++)
-        rational_vector_init(edge[e]);
-    rational_vector_init(n);
-    rational_vector_init(up);
-    mpq_inits(f[0], f[1], limit, NULL);
+    mpq_t limit;
+    mpq_init(limit);
     set_length(world, clamped(bound), limit);
-    mpq_set_ui(up[2], 1, 1);
-    const int count = list_edges(world, edge);
-    for (int i = 0; i < count && order < 1; i++)
-        for (int j = world->dim == 3 ? 0 : i; j <= i && order < 1; j++) {
-            cross(n, edge[i], world->dim == 3 ? edge[j] : up);
-            if (!mpq_sgn(n[0]) && !mpq_sgn(n[1]) && !mpq_sgn(n[2]))
-                continue;
-            range_along(world, n, f[0], f[1]);
-            mpq_neg(f[1], f[1]); /* of -n */
-            for (int k = 0; k < 2 && order < 1; k++) {
-                const int one = compare_with_length(f[k], limit, n);
-                order = one > order ? one : order;
-            }
-        }
-    if (order == -2)
-        order = -mpq_sgn(limit);
-    for (int e = 0; e < ALL_EDGES; e++)
-        rational_vector_clear(edge[e]);
-    rational_vector_clear(n);
-    rational_vector_clear(up);
-    mpq_clears(f[0], f[1], limit, NULL);
+    const int order = difference_compare_facets(&world->difference, limit);
+    mpq_clear(limit);
     return order;
 }
 
 /* Whether the gap of the frames is at least the bound. */
 static bool is_at_least(struct world *world, double bound)
 {
-    if (compare_facets(world, bound) >= 0)
+    if (compare_depth(world, bound) >= 0)
         return true;
     return bound > 0 && compare_distance(world, bound) >= 0;
 }
@@ -401,7 +259,7 @@ static bool is_at_least(struct world *world, double bound)
 static bool upper_holds(struct world *world, const struct fmb_gap *gap)
 {
     if (!gap->has_witness)
-        return compare_facets(world, gap->bounds[1]) <= 0;
+        return compare_depth(world, gap->bounds[1]) <= 0;
     if (has_finite_witness(gap))
         return points_prove(world, gap);
     return gap->bounds[1] == INFINITY || compare_distance(world, gap->bounds[1]) <= 0;

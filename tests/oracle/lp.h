@@ -14,9 +14,8 @@
 #include <gmp.h>
 #include <stdbool.h>
 
-/* Two tetrahedra have 3 + 1 variables each, time is one more; three axes and two sums are the
- * equations. */
-enum { LP_VARIABLES_MAX = 9, LP_ROWS_MAX = 5, LP_SCRATCH = 6 };
+/* Three axes and two sums of weights are the equations of two hulls. */
+enum { LP_ROWS_MAX = 5, LP_SCRATCH = 6 };
 
 /* The tableau. Row i says, for the variables outside of the basis,
  *
@@ -25,16 +24,17 @@ enum { LP_VARIABLES_MAX = 9, LP_ROWS_MAX = 5, LP_SCRATCH = 6 };
  * Row 0 says the same of the cost. Rows and columns count from 1. */
 struct lp {
     int variables;
-    int rows;                            /* equations that are not redundant */
-    int columns;                         /* variables outside of the basis */
-    int basic[LP_ROWS_MAX + 1];          /* variable; below 0: an artificial one */
-    int nonbasic[LP_VARIABLES_MAX + 1];  /* variable */
-    bool complemented[LP_VARIABLES_MAX]; /* the tableau speaks of 1 - z_j instead of z_j */
-    mpz_t denominator;                   /* > 0 */
-    mpz_t cell[LP_ROWS_MAX + 1][LP_VARIABLES_MAX + 1]; /* [row][column] */
+    int rows;                     /* equations that are not redundant */
+    int columns;                  /* variables outside of the basis */
+    int basic[LP_ROWS_MAX + 1];   /* variable; below 0: an artificial one */
+    int *nonbasic;                /* [variables + 1]: variable */
+    bool *complemented;           /* [variables]: the tableau speaks of 1 - z_j instead of z_j */
+    mpz_t denominator;            /* > 0 */
+    mpz_t *cell[LP_ROWS_MAX + 1]; /* [row][column], variables + 1 columns */
     mpz_t scratch[LP_SCRATCH];
 };
 
+/* Ends the program if there is no memory. */
 void lp_init(struct lp *lp, int variables);
 void lp_clear(struct lp *lp);
 

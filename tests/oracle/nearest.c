@@ -1,132 +1,156 @@
-#include "nearest.h"
-
+/* Method: P. Wolfe, Finding the nearest point in a polytope, Mathematical Programming 11 (1976).
+ *
+ * A corral is a set of vertices, affinely independent, whose affine hull is nearest to the origin
+ * in a point x inside of their hull. x is the answer if no vertex p has x . p < x . x. Otherwise
+ * the p of least x . p joins them; it is independent of them, as x . s = x . x for all of these.
+ * The point of the new affine hull next to the origin is the new x if it has positive weights only;
+ * otherwise x moves towards it until the first weight is 0, and that vertex leaves. Each corral is
+ * nearer than the one before: none returns, and there are finitely many. */
 #include <stdbool.h>
 
-/* Solves the symmetric system m x = r of count unknowns, positive definite or singular; false if it
- * is singular. */
-static bool solve(mpq_t m[NEAREST_MAX][NEAREST_MAX], mpq_t r[NEAREST_MAX], int count)
+#include "difference.h"
+
+enum { CORRAL_MAX = FMB_DIM_MAX + 1 };
+
+struct corral {
+    int count;
+    rational_vector point[CORRAL_MAX];
+    mpq_t weight[CORRAL_MAX];
+    rational_vector x;
+};
+
+/* Solves m x = r, m symmetric and positive definite; m and r are used up. r := x. */
+static void solve(mpq_t m[CORRAL_MAX][CORRAL_MAX], mpq_t r[CORRAL_MAX], int count)
 {
     mpq_t factor;
     mpq_init(factor);
-    bool regular = true;
-    for (int k = 0; k < count && regular; k++) {
-        regular = mpq_sgn(m[k][k]) != 0;
-        for (int i = 0; i < count && regular; i++) {
-            if (i == k || mpq_sgn(m[i][k]) == 0)
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < count; i++) {
+            if (i == k)
                 continue;
             mpq_div(factor, m[i][k], m[k][k]);
             for (int j = k; j < count; j++)
                 rational_add_product(m[i][j], -1, factor, m[k][j]);
             rational_add_product(r[i], -1, factor, r[k]);
         }
-    }
-    for (int k = 0; k < count && regular; k++)
+    for (int k = 0; k < count; k++)
         mpq_div(r[k], r[k], m[k][k]);
     mpq_clear(factor);
-    return regular;
 }
 
-/* least := the least |w + sum x_i column_i|^2 where it is less, over the face in which state[i] is
- * 0, 1, or 2: free; face_sum[s]: the parameters of simplex s sum up to 1. The last of these that is
- * free is then 1 minus the others. */
-static void try_face(const struct nearest *box, rational_vector w, const int state[],
-                     const bool face_sum[2], mpq_t least)
+/* weight := that of the point of the affine hull next to the origin. */
+static void affine_weights(struct corral *corral, mpq_t weight[CORRAL_MAX])
 {
-    mpq_t m[NEAREST_MAX][NEAREST_MAX], r[NEAREST_MAX], sum, at;
-    rational_vector base, column[NEAREST_MAX];
-    int index[NEAREST_MAX], free_count = 0, last[2] = {-1, -1};
-    bool legal = true;
-    mpq_inits(sum, at, NULL);
-    rational_vector_init(base);
-    for (int i = 0; i < NEAREST_MAX; i++) {
-        rational_vector_init(column[i]);
+    mpq_t m[CORRAL_MAX][CORRAL_MAX], r[CORRAL_MAX];
+    rational_vector edge[CORRAL_MAX];
+    const int count = corral->count - 1; /* of edges, from the last point */
+    for (int i = 0; i < CORRAL_MAX; i++) {
+        rational_vector_init(edge[i]);
         mpq_init(r[i]);
-        for (int j = 0; j < NEAREST_MAX; j++)
+        for (int j = 0; j < CORRAL_MAX; j++)
             mpq_init(m[i][j]);
     }
-    for (int axis = 0; axis < 3; axis++)
-        mpq_set(base[axis], w[axis]);
-    for (int s = 0; s < 2; s++) {
-        for (int i = box->simplex[s]; i < box->simplex_end[s]; i++)
-            if (state[i] == 2)
-                last[s] = i;
-        if (face_sum[s] && last[s] < 0)
-            legal = false;
-    }
-    for (int i = 0; i < box->count && legal; i++) {
-        const bool dependent = (face_sum[0] && i == last[0]) || (face_sum[1] && i == last[1]);
-        for (int axis = 0; axis < 3; axis++)
-            if (state[i] == 1 || dependent)
-                mpq_add(base[axis], base[axis], box->column[i][axis]);
-        if (state[i] != 2 || dependent)
-            continue;
-        for (int axis = 0; axis < 3; axis++) {
-            mpq_set(column[free_count][axis], box->column[i][axis]);
-            for (int s = 0; s < 2; s++)
-                if (face_sum[s] && i >= box->simplex[s] && i < box->simplex_end[s])
-                    mpq_sub(column[free_count][axis], column[free_count][axis],
-                            box->column[last[s]][axis]);
-        }
-        index[free_count++] = i;
-    }
-    for (int i = 0; i < free_count; i++) {
-        rational_dot(r[i], column[i], base);
+    for (int i = 0; i < count; i++)
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            mpq_sub(edge[i][axis], corral->point[i][axis], corral->point[count][axis]);
+    for (int i = 0; i < count; i++) {
+        rational_dot(r[i], edge[i], corral->point[count]);
         mpq_neg(r[i], r[i]);
-        for (int j = 0; j < free_count; j++)
-            rational_dot(m[i][j], column[i], column[j]);
+        for (int j = 0; j < count; j++)
+            rational_dot(m[i][j], edge[i], edge[j]);
     }
-    legal = legal && free_count <= 3 && solve(m, r, free_count);
-    for (int i = 0; i < free_count && legal; i++)
-        legal = mpq_sgn(r[i]) >= 0 && mpq_cmp_ui(r[i], 1, 1) <= 0;
-    for (int s = 0; s < 2 && legal; s++) {
-        mpq_set_ui(sum, 0, 1);
-        for (int i = 0; i < free_count; i++)
-            if (index[i] >= box->simplex[s] && index[i] < box->simplex_end[s])
-                mpq_add(sum, sum, r[i]);
-        legal = mpq_cmp_ui(sum, 1, 1) <= 0;
+    solve(m, r, count);
+    mpq_set_ui(weight[count], 1, 1);
+    for (int i = 0; i < count; i++) {
+        mpq_set(weight[i], r[i]);
+        mpq_sub(weight[count], weight[count], r[i]);
     }
-    if (legal) {
-        for (int axis = 0; axis < 3; axis++)
-            for (int i = 0; i < free_count; i++)
-                rational_add_product(base[axis], 1, r[i], column[i][axis]);
-        rational_dot(at, base, base);
-        if (mpq_sgn(least) < 0 || mpq_cmp(at, least) < 0)
-            mpq_set(least, at);
-    }
-    for (int i = 0; i < NEAREST_MAX; i++) {
-        rational_vector_clear(column[i]);
+    for (int i = 0; i < CORRAL_MAX; i++) {
+        rational_vector_clear(edge[i]);
         mpq_clear(r[i]);
-        for (int j = 0; j < NEAREST_MAX; j++)
+        for (int j = 0; j < CORRAL_MAX; j++)
             mpq_clear(m[i][j]);
     }
-    rational_vector_clear(base);
-    mpq_clears(sum, at, NULL);
 }
 
-void nearest_square(const struct nearest *box, rational_vector w, mpq_t square)
+/* Moves the weights towards those, until the first one is 0, which leaves. Returns false if none
+ * did: all are positive. */
+static bool step(struct corral *corral, mpq_t to[CORRAL_MAX])
 {
-    int state[NEAREST_MAX] = {0};
-    mpq_set_si(square, -1, 1);
-    for (;;) {
-        for (int sums = 0; sums < 4; sums++) {
-            const bool face_sum[2] = {sums & 1, sums & 2};
-            bool exists = true;
-            for (int s = 0; s < 2; s++)
-                exists = exists && (!face_sum[s] || box->simplex[s] < box->simplex_end[s]);
-            if (exists)
-                try_face(box, w, state, face_sum, square);
+    int leaving = -1;
+    mpq_t share, least;
+    mpq_inits(share, least, NULL);
+    for (int i = 0; i < corral->count; i++) {
+        if (mpq_sgn(to[i]) > 0)
+            continue;
+        mpq_sub(share, corral->weight[i], to[i]);
+        if (mpq_sgn(share) != 0) /* else both are 0: it was to leave together with another */
+            mpq_div(share, corral->weight[i], share);
+        if (leaving < 0 || mpq_cmp(share, least) < 0) {
+            leaving = i;
+            mpq_set(least, share);
         }
-        int i = 0;
-        for (; i < box->count; i++) {
-            bool simplex = false;
-            for (int s = 0; s < 2; s++)
-                simplex = simplex || (i >= box->simplex[s] && i < box->simplex_end[s]);
-            state[i] += simplex && state[i] == 0 ? 2 : 1;
-            if (state[i] <= 2)
-                break;
-            state[i] = 0;
-        }
-        if (i == box->count)
-            return;
     }
+    if (leaving < 0)
+        mpq_set_ui(least, 1, 1);
+    for (int i = 0; i < corral->count; i++) {
+        mpq_sub(share, to[i], corral->weight[i]);
+        rational_add_product(corral->weight[i], 1, least, share);
+    }
+    if (leaving >= 0) {
+        const int last = --corral->count;
+        mpq_swap(corral->weight[leaving], corral->weight[last]);
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            mpq_swap(corral->point[leaving][axis], corral->point[last][axis]);
+    }
+    mpq_clears(share, least, NULL);
+    return leaving >= 0;
+}
+
+/* Makes a corral of the points again, after one more. */
+static void settle(struct corral *corral)
+{
+    mpq_t to[CORRAL_MAX];
+    for (int i = 0; i < CORRAL_MAX; i++)
+        mpq_init(to[i]);
+    do
+        affine_weights(corral, to);
+    while (step(corral, to));
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        mpq_set_ui(corral->x[axis], 0, 1);
+        for (int i = 0; i < corral->count; i++)
+            rational_add_product(corral->x[axis], 1, corral->weight[i], corral->point[i][axis]);
+    }
+    for (int i = 0; i < CORRAL_MAX; i++)
+        mpq_clear(to[i]);
+}
+
+void difference_nearest(const struct difference *difference, mpq_t square)
+{
+    struct corral corral = {.count = 0};
+    mpq_t at;
+    mpq_init(at);
+    rational_vector_init(corral.x);
+    for (int i = 0; i < CORRAL_MAX; i++) {
+        rational_vector_init(corral.point[i]);
+        mpq_init(corral.weight[i]);
+    }
+    difference_end(difference, difference->offset, -1, at, corral.point[0]);
+    mpq_set_ui(corral.weight[0], 1, 1);
+    corral.count = 1;
+    for (settle(&corral);; settle(&corral)) {
+        rational_dot(square, corral.x, corral.x);
+        if (mpq_sgn(square) == 0)
+            break;
+        difference_end(difference, corral.x, -1, at, corral.point[corral.count]);
+        if (mpq_cmp(at, square) >= 0)
+            break;
+        mpq_set_ui(corral.weight[corral.count++], 0, 1);
+    }
+    rational_vector_clear(corral.x);
+    for (int i = 0; i < CORRAL_MAX; i++) {
+        rational_vector_clear(corral.point[i]);
+        mpq_clear(corral.weight[i]);
+    }
+    mpq_clear(at);
 }

@@ -4,22 +4,20 @@
  *
  *     oA + t vA + sum_i x_i a_i = oB + t vB + sum_i y_i b_i       (an equation an axis)
  *
- * within the bounds of the parameters. Three devices put all variables between 0 and 1 and
- * leave no other inequality:
- *   - the time is t = T tau;
- *   - the sum of a tetrahedron (a face) is made equal: sum x_i + s = 1, with a rest s >= 0;
- *   - what is said of the bounds of a tetrahedron then follows from all of its parameters and
- *     its rest being >= 0, and they are <= 1 of themselves.
+ * within the bounds of the parameters: 0 <= x_i <= 1, and for a hull, a tetrahedron and a face,
+ * whose a_i are all of their vertices, sum x_i = 1. The time is t = T tau, 0 <= tau <= 1.
  *
  * Contact: the programme has a solution.
  *
- * Overlap: it has one in which no parameter and no rest is at a bound, that is, each is > 0
- * and < 1 (time may be at its ends). The image of the open parameter set is the relative
- * interior of the frame, flat or not: linear maps take relative interiors to relative interiors.
- * The solutions are a convex set, so if for each such strict inequality some solution meets it,
- * the mean of these solutions meets them all. Hence: note which inequalities the solutions seen
- * so far meet, minimise the way to those not yet met, all at once, until all are met or the
- * best solution meets no new one; those left are then equations on all solutions.
+ * Overlap: it has one in which no x_i of a cuboid is at a bound, and no x_i of a hull is 0 (time
+ * may be at its ends). The image of the open parameter set is the relative interior of the frame,
+ * flat or not: linear maps take relative interiors to relative interiors. For the hull of n
+ * vertices x_i = s + z_i, with z_i >= 0 and one s >= 0 for all: sum z_i + n s = 1, and s > 0 for
+ * some solution if and only if all x_i > 0 for one. The solutions are a convex set, so if for each
+ * strict inequality some solution meets it, the mean of these solutions meets them all. Hence: note
+ * which inequalities the solutions seen so far meet, minimise the way to those not yet met, all at
+ * once, until all are met or the best solution meets no new one; those left are then equations on
+ * all solutions.
  *
  * Interval and box: the least and greatest t, and coordinate of A's point, over all solutions.
  * The box of the union over the window needs no more than that, as t is one of the variables.
@@ -29,9 +27,16 @@
 #include "oracle.h"
 
 #include "lp.h"
+#include "memory.h"
 #include "rational_solid.h"
 
-enum { NONE = -1 };
+enum { NONE = -1, GOALS_MAX = 4 * FMB_DIM_MAX };
+
+/* A strict inequality: that the variable is not at this place. */
+struct goal {
+    int variable;
+    enum lp_place not ;
+};
 
 /* ---- The programme ---- */
 
@@ -42,11 +47,13 @@ struct model {
     mpq_t duration;
     struct lp lp;
     int first[2]; /* parameter 0 of A, of B */
-    int rest[2];  /* of A, of B; NONE for a cuboid */
+    int least[2]; /* s of A, of B; NONE for a cuboid */
     int tau;      /* NONE for a pair at rest */
     int variables;
-    mpq_t row[LP_VARIABLES_MAX]; /* of coefficients, or costs */
-    mpq_t right;                 /* right hand side, or value of a cost */
+    struct goal goal[GOALS_MAX]; /* of an overlap */
+    int goals;
+    mpq_t *row;  /* [variables]: coefficients, or costs */
+    mpq_t right; /* right hand side, or value of a cost */
     mpq_t scratch;
 };
 
@@ -59,21 +66,36 @@ static bool is_moving(const struct rational_solid solid[2])
     return false;
 }
 
+static void add_goals(struct model *model, int side)
+{
+    if (model->least[side] != NONE) {
+        model->goal[model->goals++] = (struct goal){model->least[side], LP_AT_ZERO};
+        return;
+    }
+    for (int i = 0; i < model->solid[side].count; i++)
+        for (int end = 0; end < 2; end++)
+            model->goal[model->goals++] =
+                (struct goal){model->first[side] + i, end == 0 ? LP_AT_ZERO : LP_AT_ONE};
+}
+
 /* Frame i of a, and frame j of b. */
 static void model_init(struct model *model, const struct pair *pair, unsigned i, unsigned j)
 {
     int next = 0;
+    model->goals = 0;
     model->dim = pair->a.body->dim;
     rational_solid_init(fmb_body_frame(pair->a.body, i), &pair->a, &model->solid[0]);
     rational_solid_init(fmb_body_frame(pair->b.body, j), &pair->b, &model->solid[1]);
     for (int side = 0; side < 2; side++) {
         model->first[side] = next;
         next += model->solid[side].count;
-        model->rest[side] = model->solid[side].simplex ? next++ : NONE;
+        model->least[side] = model->solid[side].hull ? next++ : NONE;
+        add_goals(model, side);
     }
     model->tau = is_moving(model->solid) ? next++ : NONE;
     model->variables = next;
     lp_init(&model->lp, next);
+    model->row = memory_get((size_t) next * sizeof *model->row);
     for (int v = 0; v < next; v++)
         mpq_init(model->row[v]);
     mpq_inits(model->duration, model->right, model->scratch, NULL);
@@ -87,6 +109,7 @@ static void model_clear(struct model *model)
         rational_solid_clear(&model->solid[side]);
     for (int v = 0; v < model->variables; v++)
         mpq_clear(model->row[v]);
+    free(model->row);
     mpq_clears(model->duration, model->right, model->scratch, NULL);
 }
 
@@ -96,13 +119,19 @@ static void zero_row(struct model *model)
         mpq_set_ui(model->row[v], 0, 1);
 }
 
-/* Adds to row the coefficients of sign * (T tau v + sum x_i c_i) along the axis. */
+/* Sets in row the coefficients of sign * (t v + sum x_i c_i) along the axis, except those of the
+ * other frame; of the time it adds. */
 static void add_frame(struct model *model, int side, int axis, int sign)
 {
     struct rational_solid *solid = &model->solid[side];
+    const int least = model->least[side];
     mpq_set_si(model->scratch, sign, 1);
-    for (int i = 0; i < solid->count; i++)
-        mpq_mul(model->row[model->first[side] + i], solid->component[i][axis], model->scratch);
+    for (int i = 0; i < solid->count; i++) {
+        mpq_t *at = &model->row[model->first[side] + i];
+        mpq_mul(*at, solid->column[i][axis], model->scratch);
+        if (least != NONE)
+            mpq_add(model->row[least], model->row[least], *at);
+    }
     if (model->tau != NONE)
         rational_add_product(model->row[model->tau], sign, solid->velocity[axis], model->duration);
 }
@@ -117,67 +146,50 @@ static void add_axis(struct model *model, int axis)
     lp_add_row(&model->lp, model->row, model->right);
 }
 
-/* The equation of a tetrahedron or a face: parameters + rest = 1. */
+/* The equation of a hull: sum z_i + n s = 1. */
 static void add_sum(struct model *model, int side)
 {
-    if (model->rest[side] == NONE)
+    const int count = model->solid[side].count;
+    if (model->least[side] == NONE)
         return;
     zero_row(model);
-    for (int v = model->first[side]; v <= model->rest[side]; v++)
-        mpq_set_ui(model->row[v], 1, 1);
+    for (int i = 0; i < count; i++)
+        mpq_set_ui(model->row[model->first[side] + i], 1, 1);
+    mpq_set_si(model->row[model->least[side]], count, 1);
     mpq_set_ui(model->right, 1, 1);
     lp_add_row(&model->lp, model->row, model->right);
 }
 
-/* The strict inequalities that some solution has met: of variable v, bit 2v is z_v > 0 and bit
- * 2v+1 is z_v < 1. */
-typedef unsigned met_t;
-static met_t above_zero(int variable)
+/* Bit i is goal i: those that the solution meets. */
+static unsigned met_here(const struct model *model)
 {
-    return 1U << (2 * variable);
-}
-static met_t below_one(int variable)
-{
-    return 2U << (2 * variable);
-}
-
-static met_t met_here(const struct model *model)
-{
-    met_t met = 0;
-    for (int v = 0; v < model->variables; v++) {
-        enum lp_place place = lp_place(&model->lp, v);
-        if (place != LP_AT_ZERO)
-            met |= above_zero(v);
-        if (place != LP_AT_ONE)
-            met |= below_one(v);
-    }
+    unsigned met = 0;
+    for (int i = 0; i < model->goals; i++)
+        if (lp_place(&model->lp, model->goal[i].variable) != model->goal[i].not )
+            met |= 1U << i;
     return met;
 }
 
-static met_t met_by_all_parameters(const struct model *model)
-{
-    int parameters = model->tau == NONE ? model->variables : model->tau;
-    return (1U << (2 * parameters)) - 1;
-}
-
 /* Moves as far into the inequalities of missing as these together allow. */
-static void minimise_way_to(struct model *model, met_t missing)
+static void minimise_way_to(struct model *model, unsigned missing)
 {
-    for (int v = 0; v < model->variables; v++) {
-        int toward_one = (missing & above_zero(v)) != 0,
-            toward_zero = (missing & below_one(v)) != 0;
-        mpq_set_si(model->row[v], toward_zero - toward_one, 1);
+    zero_row(model);
+    for (int i = 0; i < model->goals; i++) {
+        const int way = missing >> i & 1 ? model->goal[i].not == LP_AT_ZERO ? -1 : +1 : 0;
+        mpq_set_si(model->scratch, way, 1);
+        mpq_add(model->row[model->goal[i].variable], model->row[model->goal[i].variable],
+                model->scratch);
     }
     lp_minimise(&model->lp, model->row, model->right);
 }
 
 static bool relative_interiors_meet(struct model *model)
 {
-    const met_t all = met_by_all_parameters(model);
-    met_t met = met_here(model) & all;
+    const unsigned all = (1U << model->goals) - 1;
+    unsigned met = met_here(model);
     while (met != all) {
         minimise_way_to(model, all & ~met);
-        met_t now = met | (met_here(model) & all);
+        const unsigned now = met | met_here(model);
         if (now == met)
             return false;
         met = now;

@@ -1,5 +1,7 @@
 #include "question.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -41,10 +43,85 @@ struct solid solid_frame(const struct solid *solid, int i)
     return one;
 }
 
+bool solid_is_hull(const struct solid *solid)
+{
+    return solid->shape == FMB_HULL || solid->as_hull;
+}
+
+static void add(double *to, double times, const double *vector)
+{
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        to[axis] += times * vector[axis];
+}
+
+/* One way to draw in four has vertices inside, one in four equal ones. */
+static void draw_cloud(const struct solid *solid, int count, double (*out)[FMB_DIM_MAX])
+{
+    struct draw draw = {solid->cloud_seed};
+    const int kind = draw_int(&draw, 0, 3);
+    for (int v = 0; v < count; v++) {
+        double unit[FMB_DIM_MAX], square;
+        do {
+            square = 0;
+            for (int i = 0; i < solid->dim; i++) {
+                unit[i] = draw_uniform(&draw, -1, 1);
+                square += unit[i] * unit[i];
+            }
+        } while (square > 1 || square == 0);
+        const bool other = draw_int(&draw, 0, 7) == 0;
+        const double radius = other && kind == 0 ? draw_uniform(&draw, 0, 1) : 1;
+        memcpy(out[v], solid->local, sizeof out[v]);
+        for (int i = 0; i < solid->dim; i++)
+            add(out[v], unit[i] * radius / sqrt(square), solid->component[i]);
+        if (v > 0 && other && kind == 1)
+            memcpy(out[v], out[draw_int(&draw, 0, v - 1)], sizeof out[v]);
+    }
+}
+
+static void pull_back(double *vertex)
+{
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        vertex[axis] = fmax(-DBL_MAX, fmin(DBL_MAX, vertex[axis])); /* NaN becomes DBL_MAX */
+}
+
+int solid_vertices(const struct solid *solid, double (*vertex)[FMB_DIM_MAX])
+{
+    const int components = solid_count(solid);
+    const bool simplex = solid->shape == FMB_TETRAHEDRON || solid->shape == FMB_FACE;
+    const int first = solid->shape == FMB_HULL ? solid->vertex_count
+                      : simplex                ? components + 1
+                                               : 1 << components;
+    for (int v = 0; v < first; v++) {
+        memcpy(vertex[v], solid->local, sizeof vertex[v]);
+        if (solid->shape == FMB_HULL)
+            add(vertex[v], 1, solid->vertex[v]);
+        else if (simplex && solid->by_vertices && v > 0)
+            memcpy(vertex[v], solid->component[v - 1], sizeof vertex[v]);
+        else if (simplex && v > 0)
+            add(vertex[v], 1, solid->component[v - 1]);
+        for (int i = 0; i < components && solid->shape == FMB_BOX; i++)
+            vertex[v][i] += (v >> i & 1 ? 0.5 : -0.5) * solid->component[i][i];
+        for (int i = 0; i < components && solid->shape == FMB_CUBOID; i++)
+            add(vertex[v], v >> i & 1, solid->component[i]);
+    }
+    const int count = first + (solid->shape == FMB_HULL ? solid->cloud : 0);
+    draw_cloud(solid, count - first, vertex + first);
+    for (int v = 0; v < count; v++)
+        pull_back(vertex[v]);
+    return count;
+}
+
 int solid_numbers(const struct solid *solid, double number[SOLID_NUMBERS_MAX])
 {
     const int dim = solid->dim;
     int count = dim;
+    if (solid_is_hull(solid)) {
+        double vertex[SOLID_VERTICES_MAX][FMB_DIM_MAX];
+        const int vertices = solid_vertices(solid, vertex);
+        for (int v = 0; v < vertices; v++)
+            memcpy(number + v * dim, vertex[v], (size_t) dim * sizeof *number);
+        return vertices * dim;
+    }
     memcpy(number, solid->local, (size_t) dim * sizeof *number);
     for (int i = 0; i < solid_count(solid); i++)
         for (int axis = 0; axis < dim; axis++)
@@ -97,6 +174,9 @@ bool question_is_symmetric(const struct question *question)
     const struct solid *a = &question->a, *b = &question->b;
     return a->shape == b->shape && solid_frames(a) == solid_frames(b) &&
            a->by_vertices == b->by_vertices && a->orientation_count == b->orientation_count &&
+           a->as_hull == b->as_hull && a->vertex_count == b->vertex_count && a->cloud == b->cloud &&
+           a->cloud_seed == b->cloud_seed &&
+           same_numbers(a->vertex[0], b->vertex[0], FMB_DIM_MAX * a->vertex_count) &&
            same_numbers(a->component[0], b->component[0], FMB_COMPONENTS_MAX) &&
            same_numbers(a->origin, b->origin, a->dim) && same_numbers(a->local, b->local, a->dim) &&
            same_numbers(a->moving ? a->velocity : rest, b->moving ? b->velocity : rest, a->dim) &&
@@ -130,8 +210,8 @@ static void print_vector(const double *number)
 
 static void print_solid(const char *name, const struct solid *solid)
 {
-    static const char *const shapes[] = {"0", "FMB_CUBOID", "FMB_TETRAHEDRON", "FMB_FACE",
-                                         "FMB_BOX"};
+    static const char *const shapes[] = {"0",        "FMB_CUBOID", "FMB_TETRAHEDRON",
+                                         "FMB_FACE", "FMB_BOX",    "FMB_HULL"};
     const double *q = solid->orientation;
     printf("#   .%s = {%d, %s, {", name, solid->dim, shapes[solid->shape]);
     for (int i = 0; i < FMB_DIM_MAX; i++) {
@@ -143,8 +223,14 @@ static void print_solid(const char *name, const struct solid *solid)
     print_vector(solid->velocity);
     printf(", %s,\n#      ", solid->moving ? "true" : "false");
     print_vector(solid->local);
-    printf(", {%a, %a, %a, %a}, %d, %d, %s},\n", q[0], q[1], q[2], q[3], solid->orientation_count,
-           solid->frames, solid->by_vertices ? "true" : "false");
+    printf(", {%a, %a, %a, %a}, %d, %d, %s, %s,\n#      %d, %d, {", q[0], q[1], q[2], q[3],
+           solid->orientation_count, solid->frames, solid->by_vertices ? "true" : "false",
+           solid->as_hull ? "true" : "false", solid->vertex_count, solid->cloud);
+    for (int v = 0; v < solid->vertex_count; v++) {
+        printf("%s", v ? ", " : "");
+        print_vector(solid->vertex[v]);
+    }
+    printf("}, 0x%llx},\n", (unsigned long long) solid->cloud_seed);
 }
 
 int question_numbers(struct question *question, double *out[QUESTION_NUMBERS_MAX])

@@ -1,13 +1,25 @@
 #include "rational_solid.h"
 
-static void rational_solid_each(struct rational_solid *solid, void (*call)(mpq_ptr))
+#include "memory.h"
+
+static void allocate(struct rational_solid *solid, int count, bool hull)
 {
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        call(solid->origin[axis]);
-        call(solid->velocity[axis]);
-        for (int i = 0; i < FMB_DIM_MAX; i++)
-            call(solid->component[i][axis]);
-    }
+    solid->count = count;
+    solid->hull = hull;
+    solid->column = memory_get((size_t) count * sizeof *solid->column);
+    rational_vector_init(solid->origin);
+    rational_vector_init(solid->velocity);
+    for (int i = 0; i < count; i++)
+        rational_vector_init(solid->column[i]);
+}
+
+void rational_solid_clear(struct rational_solid *solid)
+{
+    rational_vector_clear(solid->origin);
+    rational_vector_clear(solid->velocity);
+    for (int i = 0; i < solid->count; i++)
+        rational_vector_clear(solid->column[i]);
+    free(solid->column);
 }
 
 void rational_add_product(mpq_t sum, int sign, const mpq_t x, const mpq_t y)
@@ -68,24 +80,39 @@ static void add_turned(mpq_t matrix[3][3], mpq_t vector[3], mpq_t out[3])
             rational_add_product(out[row], 1, matrix[row][axis], vector[axis]);
 }
 
-/* In body coordinates: origin, and component + rest; of a box, centre - size / 2. */
+/* In body coordinates: the vertices of a hull, as they are. */
+static void set_vertices(const struct fmb_frame *frame, struct rational_solid *out)
+{
+    allocate(out, (int) frame->vertex_count, true);
+    for (int i = 0; i < out->count; i++)
+        for (int axis = 0; axis < frame->dim; axis++)
+            mpq_set_d(out->column[i][axis], frame->vertices[axis * frame->vertex_stride + i]);
+}
+
+/* The same of other frames: of a box centre - size / 2; component + remainder; a tetrahedron and a
+ * face have the origin itself as a vertex, their last. */
 static void set_local(const struct fmb_frame *frame, struct rational_solid *out)
 {
+    const bool simplex = frame->shape == FMB_TETRAHEDRON || frame->shape == FMB_FACE;
     mpq_t term;
+    if (frame->shape == FMB_HULL) {
+        set_vertices(frame, out);
+        return;
+    }
+    allocate(out, frame->count + simplex, simplex);
     mpq_init(term);
-    out->count = frame->count;
-    out->simplex = frame->shape == FMB_TETRAHEDRON || frame->shape == FMB_FACE;
     for (int axis = 0; axis < frame->dim; axis++) {
         const bool box = frame->shape == FMB_BOX;
         mpq_set_d(out->origin[axis], box ? frame->centre[axis] : frame->origin[axis]);
         for (int i = 0; i < frame->count; i++) {
-            mpq_set_d(out->component[i][axis], frame->component[i][axis]);
+            mpq_set_d(out->column[i][axis], frame->component[i][axis]);
             mpq_set_d(term, frame->remainder[i][axis]);
-            mpq_add(out->component[i][axis], out->component[i][axis], term);
+            mpq_add(out->column[i][axis], out->column[i][axis], term);
         }
-        mpq_div_2exp(term, out->component[axis][axis], 1);
-        if (box)
-            mpq_sub(out->origin[axis], out->origin[axis], term);
+        if (!box)
+            continue;
+        mpq_div_2exp(term, out->column[axis][axis], 1);
+        mpq_sub(out->origin[axis], out->origin[axis], term);
     }
     mpq_clear(term);
 }
@@ -95,53 +122,63 @@ void rational_solid_init(const struct fmb_frame *frame, const struct fmb_placeme
 {
     struct rational_solid local;
     mpq_t matrix[3][3];
-    rational_solid_each(&local, mpq_init);
-    rational_solid_each(out, mpq_init);
     for (int i = 0; i < 9; i++)
         mpq_init(matrix[i / 3][i % 3]);
     set_local(frame, &local);
     set_rotation(placement, matrix);
-    out->count = local.count;
-    out->simplex = local.simplex;
+    allocate(out, local.count, local.hull);
     for (int axis = 0; axis < frame->dim; axis++) {
         mpq_set_d(out->origin[axis], placement->position[axis]);
         mpq_set_d(out->velocity[axis], placement->velocity[axis]);
     }
     add_turned(matrix, local.origin, out->origin);
-    for (int i = 0; i < frame->count; i++)
-        add_turned(matrix, local.component[i], out->component[i]);
+    for (int i = 0; i < local.count; i++)
+        add_turned(matrix, local.column[i], out->column[i]);
     for (int i = 0; i < 9; i++)
         mpq_clear(matrix[i / 3][i % 3]);
-    rational_solid_each(&local, mpq_clear);
+    rational_solid_clear(&local);
 }
 
-void rational_solid_clear(struct rational_solid *solid)
+void rational_solid_support(struct rational_solid *solid, rational_vector n, mpq_t extent,
+                            mpq_t *point)
 {
-    rational_solid_each(solid, mpq_clear);
+    mpq_t at;
+    int best = -1;
+    mpq_init(at);
+    mpq_set_ui(extent, 0, 1);
+    for (int i = 0; i < solid->count; i++) {
+        rational_dot(at, n, solid->column[i]);
+        if (solid->hull && (i == 0 || mpq_cmp(at, extent) > 0)) {
+            best = i;
+            mpq_set(extent, at);
+        }
+        if (solid->hull || mpq_sgn(at) <= 0)
+            continue;
+        mpq_add(extent, extent, at);
+        for (int axis = 0; axis < FMB_DIM_MAX && point; axis++)
+            mpq_add(point[axis], point[axis], solid->column[i][axis]);
+    }
+    for (int axis = 0; axis < FMB_DIM_MAX && point && best >= 0; axis++)
+        mpq_add(point[axis], point[axis], solid->column[best][axis]);
+    mpq_clear(at);
 }
 
-void rational_solid_farthest(const struct rational_solid *solid, const mpq_t duration, int axis,
-                             int sign, mpq_t out)
+void rational_solid_farthest(struct rational_solid *solid, const mpq_t duration, int axis, int sign,
+                             mpq_t out)
 {
-    mpq_t term, most, direction;
-    mpq_inits(term, most, direction, NULL);
-    mpq_set_si(direction, sign, 1);
-    mpq_mul(out, direction, solid->origin[axis]);
-    mpq_mul(term, direction, solid->velocity[axis]);
+    rational_vector direction;
+    mpq_t term;
+    rational_vector_init(direction);
+    mpq_init(term);
+    mpq_set_si(direction[axis], sign, 1);
+    rational_solid_support(solid, direction, out, NULL);
+    rational_add_product(out, 1, direction[axis], solid->origin[axis]);
+    mpq_mul(term, direction[axis], solid->velocity[axis]);
     mpq_mul(term, term, duration);
     if (mpq_sgn(term) > 0)
         mpq_add(out, out, term);
-    for (int i = 0; i < solid->count; i++) {
-        mpq_mul(term, direction, solid->component[i][axis]);
-        if (mpq_sgn(term) <= 0)
-            continue;
-        if (!solid->simplex)
-            mpq_add(most, most, term);
-        else if (mpq_cmp(term, most) > 0)
-            mpq_set(most, term);
-    }
-    mpq_add(out, out, most);
-    mpq_clears(term, most, direction, NULL);
+    rational_vector_clear(direction);
+    mpq_clear(term);
 }
 
 void rational_vector_init(rational_vector v)

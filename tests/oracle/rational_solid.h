@@ -7,26 +7,34 @@
 
 #include "fmb.h"
 
-/* In the world, at the start of the window; axes and components that are not there are 0. */
+/* Three coordinates. */
+typedef mpq_t rational_vector[FMB_DIM_MAX];
+
+/* In the world, at the start of the window; axes that are not there are 0. A point is
+ *
+ *     origin + sum_i x_i column_i,   0 <= x_i <= 1,
+ *
+ * and of a hull (a tetrahedron, a face) also sum_i x_i = 1: its columns are its vertices. */
 struct rational_solid {
-    int count;    /* of components */
-    bool simplex; /* a tetrahedron or a face */
-    mpq_t origin[FMB_DIM_MAX];
-    mpq_t component[FMB_DIM_MAX][FMB_DIM_MAX]; /* [component][axis] */
-    mpq_t velocity[FMB_DIM_MAX];
+    int count; /* of columns */
+    bool hull;
+    rational_vector origin, velocity;
+    rational_vector *column; /* [count] */
 };
 
 void rational_solid_init(const struct fmb_frame *frame, const struct fmb_placement *placement,
                          struct rational_solid *out);
 void rational_solid_clear(struct rational_solid *solid);
 
-/* The greatest of sign * (coordinate of a vertex over the window): a cuboid's sums all components
- * that add, a simplex takes the one that adds most. */
-void rational_solid_farthest(const struct rational_solid *solid, const mpq_t duration, int axis,
-                             int sign, mpq_t out);
+/* The greatest of sign * (coordinate of a vertex over the window). */
+void rational_solid_farthest(struct rational_solid *solid, const mpq_t duration, int axis, int sign,
+                             mpq_t out);
 
-/* Three coordinates. */
-typedef mpq_t rational_vector[FMB_DIM_MAX];
+/* extent := the greatest of n . (a point - the origin). Where point is not NULL, adds such a point
+ * minus the origin, a vertex, to it. */
+void rational_solid_support(struct rational_solid *solid, rational_vector n, mpq_t extent,
+                            mpq_t *point);
+
 void rational_vector_init(rational_vector v);
 void rational_vector_clear(rational_vector v);
 void rational_dot(mpq_t out, rational_vector x, rational_vector y);

@@ -19,12 +19,12 @@ struct programme {
     const struct triangle *pair;
     double duration;
     struct lp lp;
-    mpq_t row[LP_VARIABLES_MAX], value, term;
+    mpq_t row[VARIABLES], value, term;
 };
 
 static void each(struct programme *p, void (*call)(mpq_ptr))
 {
-    for (int v = 0; v < LP_VARIABLES_MAX; v++)
+    for (int v = 0; v < VARIABLES; v++)
         call(p->row[v]);
     call(p->value);
     call(p->term);
@@ -32,7 +32,7 @@ static void each(struct programme *p, void (*call)(mpq_ptr))
 
 static void clear_row(struct programme *p)
 {
-    for (int v = 0; v < LP_VARIABLES_MAX; v++)
+    for (int v = 0; v < VARIABLES; v++)
         mpq_set_ui(p->row[v], 0, 1);
 }
 
@@ -92,7 +92,7 @@ static void close_programme(struct programme *p)
 static void extreme(struct programme *p, int sign, mpq_t out)
 {
     if (sign < 0)
-        for (int v = 0; v < LP_VARIABLES_MAX; v++)
+        for (int v = 0; v < VARIABLES; v++)
             mpq_neg(p->row[v], p->row[v]);
     lp_minimise(&p->lp, p->row, out);
     if (sign < 0)

@@ -1,11 +1,12 @@
 /* The oracle on cases worked out by hand, so that it can be trusted elsewhere. It is called
- * about each case in both orders. */
+ * about each case in both orders, and with either frame or both given as hulls. */
 
 #include "unit.h"
 
 #include <float.h>
 #include <math.h>
 
+#include "gap_check.h"
 #include "oracle.h"
 #include "question.h"
 
@@ -476,12 +477,36 @@ static void bodies_of_frames(void **state)
     oracle_clear(&truth);
 }
 
-static void assert_known(const struct known *known, const struct question *question)
+enum { STRIDE = 8 };
+
+/* Makes the frame the hull of its vertices. */
+static void by_its_vertices(const struct solid *solid, double memory[FMB_DIM_MAX * STRIDE],
+                            struct fmb_frame *out)
 {
+    double vertex[VERTICES_MAX][FMB_DIM_MAX] = {{0}};
+    const int count = solid_vertices(solid, vertex);
+    for (int v = 0; v < count; v++)
+        for (int axis = 0; axis < solid->dim; axis++)
+            memory[axis * STRIDE + v] = vertex[v][axis];
+    *out = (struct fmb_frame){.dim = solid->dim,
+                              .shape = FMB_HULL,
+                              .vertex_count = (unsigned) count,
+                              .vertex_stride = STRIDE,
+                              .vertices = memory};
+}
+
+/* hulls: a sum of 1, A is given by its vertices, and 2, B is. */
+static void assert_known(const struct known *known, const struct question *question, int hulls)
+{
+    double memory[2][FMB_DIM_MAX * STRIDE];
     struct fmb_body body[2];
     struct pair pair;
     struct oracle_answer truth;
     question_pair(question, body, &pair);
+    if (hulls & 1)
+        by_its_vertices(&question->a, memory[0], &body[0].one);
+    if (hulls & 2)
+        by_its_vertices(&question->b, memory[1], &body[1].one);
     oracle_init(&truth);
     oracle_decide(&pair, FMB_WANT_BOX, &truth);
 
@@ -505,8 +530,10 @@ static void assert_all_known(const struct known *known, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         const struct question swapped = question_swapped(&known[i].question);
-        assert_known(&known[i], &known[i].question);
-        assert_known(&known[i], &swapped);
+        for (int hulls = 0; hulls < 4; hulls++) {
+            assert_known(&known[i], &known[i].question, hulls);
+            assert_known(&known[i], &swapped, hulls);
+        }
     }
 }
 
@@ -664,6 +691,50 @@ static void an_end_beyond_the_doubles_is_infinite(void **state)
     assert_false(oracle_check(&pair, FMB_WANT_BOX, &answer, why, sizeof why));
 }
 
+/* ---- Distance and depth ---- */
+
+static bool depth_is(const struct pair *pair, double lower, double upper, double x, double y)
+{
+    char why[200];
+    const struct fmb_gap gap = {.bounds = {lower, upper}, .direction = {x, y}};
+    return gap_check(pair, FMB_OVERLAPPING, &gap, why, sizeof why);
+}
+
+/* The square of corners +-1, with the origin as one more vertex, and the rhombus of corners
+ * (+-1, 0), (0, +-2) at (c, c): along (2, 1) their gap is (3 c - 5) / sqrt(5). */
+static void gaps_of_hulls_by_hand(void **state)
+{
+    static const double square[2 * STRIDE] = {1, -1, 0, 1, -1, 0, 0, 0, 1, 1, 0, -1, -1};
+    static const double rhombus[2 * STRIDE] = {1, -1, 0, 0, 0, 0, 0, 0, 0, 0, 2, -2};
+    const struct fmb_frame frames[2] = {{.dim = 2,
+                                         .shape = FMB_HULL,
+                                         .vertex_count = 5,
+                                         .vertex_stride = STRIDE,
+                                         .vertices = square},
+                                        {.dim = 2,
+                                         .shape = FMB_HULL,
+                                         .vertex_count = 4,
+                                         .vertex_stride = STRIDE,
+                                         .vertices = rhombus}};
+    const struct fmb_body body[2] = {{.dim = 2, .frame_count = 1, .frames = &frames[0]},
+                                     {.dim = 2, .frame_count = 1, .frames = &frames[1]}};
+    struct pair pair = {{.body = &body[0]}, {.body = &body[1], .position = {3, 3}}, 0};
+    mpq_t square_of_distance;
+    mpq_init(square_of_distance);
+    gap_check_distance(&pair, square_of_distance);
+    assert_int_equal(mpq_cmp_ui(square_of_distance, 16, 5), 0);
+    mpq_clear(square_of_distance);
+
+    /* At c = 1 the depth along (2, 1) is 2 / sqrt(5), along the axes it is 1 and more. */
+    const double norm = sqrt(5), depth = 2 / norm;
+    pair.b.position[0] = pair.b.position[1] = 1;
+    const double lower = nextafter(-depth, -1), upper = nextafter(-depth, 0);
+    assert_true(depth_is(&pair, lower, upper, 2 / norm, 1 / norm));
+    assert_false(depth_is(&pair, lower, upper, 1, 0));
+    assert_false(depth_is(&pair, lower + 1e-13, upper + 1e-13, 2 / norm, 1 / norm));
+    assert_false(depth_is(&pair, lower - 1e-13, upper - 1e-13, 2 / norm, 1 / norm));
+}
+
 /* A window so short that a step of doubles is more than 1e-12 of it: the next double will do. */
 static void doubles_too_coarse_for_the_limit(void **state)
 {
@@ -698,6 +769,7 @@ int main(void)
         cmocka_unit_test(checks_accept_what_is_right),
         cmocka_unit_test(checks_refuse_what_is_wrong),
         cmocka_unit_test(an_end_beyond_the_doubles_is_infinite),
+        cmocka_unit_test(gaps_of_hulls_by_hand),
         cmocka_unit_test(doubles_too_coarse_for_the_limit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -121,7 +121,7 @@ static double error_of(const struct rotation_matrix *rotation, struct rational_s
     for (int k = 0; k < rotation->dim * rotation->dim; k++) {
         const int i = k / rotation->dim, j = k % rotation->dim;
         mpq_set_d(error, rotation_entry(rotation, i, j));
-        mpq_sub(error, error, exact->component[j][i]);
+        mpq_sub(error, error, exact->column[j][i]);
         rational_add_product(sum, 1, error, error);
     }
     const double norm = sqrt(mpq_get_d(sum)) * 0x1p53;
@@ -133,8 +133,8 @@ static bool is_unit_row(struct rational_solid *exact, int dim, int row)
 {
     int units = 0;
     for (int j = 0; j < dim; j++)
-        units += mpq_cmp_si(exact->component[j][row], 1, 1) == 0 ||
-                 mpq_cmp_si(exact->component[j][row], -1, 1) == 0;
+        units += mpq_cmp_si(exact->column[j][row], 1, 1) == 0 ||
+                 mpq_cmp_si(exact->column[j][row], -1, 1) == 0;
     return units == 1;
 }
 
@@ -148,8 +148,8 @@ static int expect_exact_rows(const struct fmb_placement *placement,
         bool same = true;
         for (int j = 0; j < rotation->dim; j++)
             same = same &&
-                   (mpq_sgn(exact->component[j][i]) > 0) == (rotation_entry(rotation, i, j) > 0) &&
-                   (mpq_sgn(exact->component[j][i]) < 0) == (rotation_entry(rotation, i, j) < 0);
+                   (mpq_sgn(exact->column[j][i]) > 0) == (rotation_entry(rotation, i, j) > 0) &&
+                   (mpq_sgn(exact->column[j][i]) < 0) == (rotation_entry(rotation, i, j) < 0);
         if (rotation->axis_exact[i] != unit || (unit && !same)) {
             print_orientation(placement);
             fail_msg("row %d: exact %d, expected %d", i, rotation->axis_exact[i], unit);
@@ -351,7 +351,7 @@ static void difference_init(const struct fmb_prepared *prepared, struct rational
         if (i >= out->count || axis >= out->dim)
             continue;
         mpq_set_d(*to, number[out->dim * (1 + i) + axis]);
-        mpq_sub(*to, *to, i < 0 ? exact->origin[axis] : exact->component[i][axis]);
+        mpq_sub(*to, *to, i < 0 ? exact->origin[axis] : exact->column[i][axis]);
     }
 }
 
@@ -479,8 +479,8 @@ static void expect_centred(const struct fmb_placement *placement,
         mpq_add(twice, exact->origin[axis], exact->origin[axis]);
         for (int i = 0; i < difference->count; i++) {
             same = same && mpq_sgn(difference->component[i][axis]) == 0;
-            along += mpq_sgn(exact->component[i][axis]) != 0;
-            mpq_add(twice, twice, exact->component[i][axis]);
+            along += mpq_sgn(exact->column[i][axis]) != 0;
+            mpq_add(twice, twice, exact->column[i][axis]);
         }
         const double at[2] = {placement->position[axis], prepared->frame->centre[axis]};
         for (int k = 0; k < 4; k++) {
@@ -540,7 +540,7 @@ static void expect_sizes(const struct fmb_placement *placement, const struct fmb
     mpq_init(square);
     for (int i = 0; i < exact->count; i++) {
         const double size = prepared_size(prepared->summary, i);
-        set_square(square, exact->component[i]);
+        set_square(square, exact->column[i]);
         const double of_size = ratio_of(square, size);
         set_square(square, difference->component[i]);
         const double of_turn = ratio_of(square, world.relative_error * size);
