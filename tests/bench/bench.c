@@ -162,6 +162,7 @@ int main(int argc, char **argv)
     contacts_run(&bench);
     poses_run(&bench);
     gaps_run(&bench);
+    hulls_run(&bench);
     broad_run(&bench);
     worst_run(&bench);
     print_noise(pinned);

@@ -48,6 +48,7 @@ void contacts_run(struct bench *bench);     /* contacts */
 void poses_run(struct bench *bench);        /* poses */
 void gaps_run(struct bench *bench);         /* gaps */
 void margins_run(struct bench *bench);      /* part of gaps */
+void hulls_run(struct bench *bench);        /* hulls */
 void broad_run(struct bench *bench);        /* broad */
 void worst_run(struct bench *bench);        /* worst */
 

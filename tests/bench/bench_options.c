@@ -6,7 +6,7 @@
 
 static const char *const sections[] = {"cells",   "inverse",      "order",  "hybrid", "box",
                                        "article", "instructions", "growth", "grids",  "contacts",
-                                       "poses",   "gaps",         "broad",  "worst"};
+                                       "poses",   "gaps",         "hulls",  "broad",  "worst"};
 
 enum { SECTIONS = sizeof sections / sizeof *sections };
 

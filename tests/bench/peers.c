@@ -27,19 +27,27 @@ static const struct peer *find(int peer, int *library)
     return NULL;
 }
 
-static bool library_takes(const struct peer_library *library, int dim)
+static bool library_takes(const struct peer_library *library, int needs)
 {
     bool takes = false;
     for (int i = 0; i < library->count; i++)
-        takes = takes || library->peer[i].takes & (dim == 3 ? PEER_3D : PEER_2D);
+        takes = takes || (library->peer[i].takes & needs) == needs;
     return takes;
+}
+
+static int needs_of(const struct peer_solid *solid, size_t count)
+{
+    int needs = solid->dim == 3 ? PEER_3D : PEER_2D;
+    for (size_t i = 0; i < count; i++)
+        needs |= solid[i].hull ? PEER_HULLS : 0;
+    return needs;
 }
 
 struct peers *peers_open(const struct peer_solid *solid, size_t count)
 {
     struct peers *peers = scene_allocate(1, sizeof *peers);
     for (int i = 0; i < LIBRARIES && count > 0; i++)
-        if (library_takes(libraries[i], solid->dim))
+        if (library_takes(libraries[i], needs_of(solid, count)))
             peers->bodies[i] = libraries[i]->open(solid, count);
     return peers;
 }
@@ -71,6 +79,12 @@ bool peer_takes(int peer, int dim, bool moving, bool boxes)
     const int takes = find(peer, &library)->takes;
     return takes & (dim == 3 ? PEER_3D : PEER_2D) && (takes & PEER_MOVING || !moving) &&
            (boxes || !(takes & PEER_BOXES));
+}
+
+bool peer_takes_hulls(int peer)
+{
+    int library;
+    return find(peer, &library)->takes & PEER_HULLS;
 }
 
 void peer_run(const struct peers *peers, int peer, const unsigned (*pair)[2], size_t count,

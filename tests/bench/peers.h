@@ -10,11 +10,16 @@
 extern "C" {
 #endif
 
-/* A cuboid, box or tetrahedron (2D: parallelogram, rectangle, triangle) in world coordinates. */
+/* A cuboid, box or tetrahedron (2D: parallelogram, rectangle, triangle), or a hull, in world
+ * coordinates. */
 struct peer_solid {
     int dim;
     bool box;  /* its components are at right angles */
     int count; /* of vertices: 2^dim, or dim + 1 of a simplex */
+    const double (
+        *hull)[3];   /* [count]: its vertices, about centre; it has no others. NULL: no hull */
+    const int *face; /* of a hull: the number of vertices of a face, their indices, the next face */
+    int faces;
     double origin[3], component[3][3], vertex[8][3];
     double centre[3], size[3], axis[3][3]; /* of a box: components are size times unit axis */
     double velocity[3];                    /* during [0, 1] */
@@ -26,20 +31,23 @@ enum { PEERS_MAX = 16 };
 
 struct peers;
 
-/* The solids are all of one dimension and must outlive the peers. */
+/* The solids are all of one dimension and must outlive the peers. If one is a hull, only libraries
+ * that take hulls may be run. */
 struct peers *peers_open(const struct peer_solid *solid, size_t count);
 void peers_close(struct peers *peers);
 
 /* What a peer answers: a sum. PEER_VERDICT: it is raced for verdicts. */
 enum { PEER_VERDICT = 1, PEER_DISTANCE = 2, PEER_DEPTH = 4 };
 
-/* Which pairs it takes: a sum. Moving ones need the bit; with PEER_BOXES it takes nothing else. */
-enum { PEER_2D = 1, PEER_3D = 2, PEER_MOVING = 4, PEER_BOXES = 8 };
+/* Which pairs it takes: a sum. Moving ones and hulls need their bits; with PEER_BOXES it takes
+ * nothing else. */
+enum { PEER_2D = 1, PEER_3D = 2, PEER_MOVING = 4, PEER_BOXES = 8, PEER_HULLS = 16 };
 
 /* NULL past the last. */
 const char *peer_name(int peer);
 int peer_answers(int peer);
 bool peer_takes(int peer, int dim, bool moving, bool boxes);
+bool peer_takes_hulls(int peer);
 
 /* pair: [count], indices of solids. Writes the gaps: positive for separated, else overlapping or
  * touching; infinite where the peer gives the verdict only; NAN where it failed. */

@@ -27,7 +27,7 @@ contacts() {
     run "$BENCH" --quick --json "$JSON"
     [ "$status" = 0 ]
     jq -e 'all(.cells, .inverse, .order, .hybrid, .box, .article, .instructions, .grids, .contacts,
-                   .poses, .rest, .gaps, .margins, .broad, .worst;
+                   .poses, .rest, .gaps, .margins, .hulls, .broad, .worst;
                length > 0)' "$JSON"
     jq -e '[.cells[] | [.dim, .moving, .shapes, .contact]] | unique | length == 32' "$JSON"
     jq -e 'all(.cells[]; [.methods[].name] | contains(["batch", "single", "query", "fmb", "sat",
@@ -39,6 +39,9 @@ contacts() {
     jq -e '[.gaps[] | [.kind, .gap]] | unique | length == 32' "$JSON"
     jq -e 'all(.gaps[]; [.runs[].name] | contains(["batch", "single", "query"]))' "$JSON"
     jq -e 'any(.margins[]; .near > 0)' "$JSON"
+    jq -e '[.hulls[].pairs_are] | unique | length == 48' "$JSON"
+    jq -e 'all(.hulls[]; [.methods[].name] | contains(["batch", "query", "query+box",
+                                                       "query+gap"]))' "$JSON"
     jq -e '(.growth.bodies | length > 2) and (.growth.pairs | length > 2)' "$JSON"
 }
 

@@ -99,7 +99,7 @@ well_formed() {
         has "$OUT/speed-error.svg" "mark $method"
         has "$OUT/speed-error.svg" "$method"
     done
-    for id in wrong-and-slow families boxes kinds contacts article more growth bus numbers; do
+    for id in wrong-and-slow families boxes kinds contacts hulls article more growth bus numbers; do
         has "$OUT/index.html" "<section id=$id>"
     done
     for target in 'make accuracy' 'make bench' 'make bench-bus' 'make report'; do
@@ -137,6 +137,15 @@ well_formed() {
     [ "$(grep -c '^<tr><td class=w>' "$BATS_TEST_TMPDIR/contacts.html")" = "$(jq '.contacts | length' "$BENCH")" ]
 }
 
+@test "hulls are drawn as contacts are" {
+    report
+    ended 0
+    sed -n '/^<section id=hulls>/,/^<.section>/p' "$OUT/index.html" > "$BATS_TEST_TMPDIR/hulls.html"
+    has "$BATS_TEST_TMPDIR/hulls.html" 'ccd gjk: 50.0 % wrong, 1,730 ns'
+    has "$BATS_TEST_TMPDIR/hulls.html" 'fcl distance, 3D static, random, apart, 152 + 102: 4,200 ns, 25.0 % wrong'
+    [ "$(grep -c '^<tr><td class=w>' "$BATS_TEST_TMPDIR/hulls.html")" = "$(jq '.hulls | length' "$BENCH")" ]
+}
+
 @test "a missing report is named with its target of make, and nothing is run" {
     BENCH=$BATS_TEST_TMPDIR/none.json
     report
@@ -164,7 +173,7 @@ well_formed() {
     report
     ended 0
     has "$OUT/index.html" '<section id=kinds>'
-    has_none "$OUT/index.html" '<section id=(contacts|article|more|growth)>'
+    has_none "$OUT/index.html" '<section id=(contacts|hulls|article|more|growth)>'
 }
 
 @test "the bus has every row that was measured, and its numbers" {

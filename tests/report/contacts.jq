@@ -1,5 +1,5 @@
-# Contacts: how wrong and how slow each method is near contact, beside random pairs; a picture for
-# each space, and a table of all. On input: the benchmark's report.
+# Contacts, and hulls: how wrong and how slow each method is near contact, beside random pairs; a
+# picture for each space, and a table of all. On input: the benchmark's report.
 include "text";
 include "picture";
 include "scatter";
@@ -60,3 +60,12 @@ def contacts_part:
           + "<h3>\($spaces[0].title)</h3>\n" + $spaces[0].picture
           + ([$spaces[1:][] | .title as $title | .picture | details($title)] | add // "")
           + (.contacts | contacts_table | details("Nanoseconds a pair; small: wrong verdicts")) end;
+
+def hulls_part:
+    if (.hulls // []) == [] then "" else
+        ("Convex hulls of 8 to 498 vertices, and one against a box, at rest: far apart, near, "
+         + "touching, a face on a face by a computed turn, and overlapping. An answer is wrong if "
+         + "it contradicts the certified one in whether the two meet, or in the gap by more than "
+         + "1e-9. Large: the median of all rows near contact." | paragraph)
+        + (.hulls | contacts_picture)
+        + (.hulls | contacts_table | details("Nanoseconds a pair; small: wrong answers")) end;

@@ -126,6 +126,7 @@ def parts($bench; $sums; $accuracy; $bus):
       ["boxes", "The box: how tight, at what cost", ($sums | boxes_part + boxes_rows_part)],
       ["kinds", "Speed by kind of pair", ($bench | kinds_part)],
       ["contacts", "Contacts, beside other libraries", ($bench | contacts_part)],
+      ["hulls", "Hulls, beside other libraries", ($bench | hulls_part)],
       ["article", "Beside the article’s Table 1", ($bench | article_part)],
       ["more", "What else was measured", ($bench | others_part)],
       ["growth", "Growth", ($bench | growth_part)],

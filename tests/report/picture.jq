@@ -59,6 +59,8 @@ def style_of:
       "batch+box": {shape: "square", colour: "certified"},
       single: {shape: "circle", colour: "certified", hollow: true},
       query: {shape: "diamond", colour: "certified", hollow: true},
+      "query+box": {shape: "square", colour: "certified", hollow: true},
+      "query+gap": {shape: "up", colour: "certified", hollow: true},
       "sat query": {shape: "diamond", colour: "sat", hollow: true},
       seidel: {shape: "square", colour: "sat"},
       gpr: {shape: "up", colour: "sat"},

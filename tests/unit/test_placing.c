@@ -342,8 +342,8 @@ static void difference_init(const struct fmb_prepared *prepared, struct rational
 {
     const double *number = prepared->number;
     out->dim = prepared->frame->dim;
-    out->count = exact->count;
-    out->simplex = exact->simplex;
+    out->count = prepared->frame->count;
+    out->simplex = exact->hull;
     for (int k = 0; k < (1 + FMB_DIM_MAX) * FMB_DIM_MAX; k++) {
         const int i = k / FMB_DIM_MAX - 1, axis = k % FMB_DIM_MAX;
         mpq_t *to = i < 0 ? &out->origin[axis] : &out->component[i][axis];
@@ -538,7 +538,7 @@ static void expect_sizes(const struct fmb_placement *placement, const struct fmb
         return;
     world_frame_of(prepared, &world);
     mpq_init(square);
-    for (int i = 0; i < exact->count; i++) {
+    for (int i = 0; i < prepared->frame->count; i++) {
         const double size = prepared_size(prepared->summary, i);
         set_square(square, exact->column[i]);
         const double of_size = ratio_of(square, size);
@@ -556,7 +556,7 @@ static void expect_sizes(const struct fmb_placement *placement, const struct fmb
 
 /* The box over a window holds all true vertices at all its times. */
 static void expect_box(const struct fmb_placement *placement, const struct fmb_prepared *prepared,
-                       const struct rational_solid *exact, double duration)
+                       struct rational_solid *exact, double duration)
 {
     double box[2][FMB_DIM_MAX];
     mpq_t end, window, bound;

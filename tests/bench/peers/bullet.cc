@@ -38,7 +38,7 @@ std::unique_ptr<btConvexShape> hull_of(const peer_solid &solid)
 {
     auto hull = std::make_unique<btConvexHullShape>();
     for (int i = 0; i < solid.count; i++)
-        hull->addPoint(vector_of(solid.vertex[i]), false);
+        hull->addPoint(vector_of(solid.hull ? solid.hull[i] : solid.vertex[i]), false);
     hull->recalcLocalAabb();
     return hull;
 }
@@ -51,6 +51,8 @@ Body body_of(const peer_solid &solid)
         out.pose = pose_of(solid);
     } else {
         out.shape = hull_of(solid);
+        if (solid.hull)
+            out.pose.setOrigin(vector_of(solid.centre));
     }
     out.shape->setMargin(0);
     return out;
@@ -91,7 +93,7 @@ double gap(void *bodies, size_t a, size_t b)
 }
 
 const peer methods[] = {
-    {"bullet", PEER_VERDICT | PEER_DISTANCE | PEER_DEPTH, PEER_3D | PEER_MOVING, gap}};
+    {"bullet", PEER_VERDICT | PEER_DISTANCE | PEER_DEPTH, PEER_3D | PEER_MOVING | PEER_HULLS, gap}};
 
 }  // namespace
 

@@ -44,6 +44,19 @@ void add_farthest_of_simplex(const peer_solid &solid, const ccd_vec3_t *way, ccd
         add(out, farthest);
 }
 
+/* Its support functions scan all vertices. */
+void add_farthest_of_hull(const peer_solid &solid, const ccd_vec3_t *way, ccd_vec3_t *out)
+{
+    int farthest = 0;
+    double most = -HUGE_VAL;
+    for (int i = 0; i < solid.count; i++) {
+        const double along = dot(solid.hull[i], way);
+        farthest = along > most ? i : farthest;
+        most = std::fmax(most, along);
+    }
+    add(out, solid.hull[farthest]);
+}
+
 void support(const void *object, const ccd_vec3_t *way, ccd_vec3_t *out)
 {
     const auto *swept = static_cast<const Swept *>(object);
@@ -51,7 +64,9 @@ void support(const void *object, const ccd_vec3_t *way, ccd_vec3_t *out)
     if (++supports > support_limit)
         return ccdVec3Set(out, 0, 0, 0);
     ccdVec3Set(out, solid.origin[0], solid.origin[1], solid.origin[2]);
-    if (solid.count == 4)
+    if (solid.hull)
+        add_farthest_of_hull(solid, way, out);
+    else if (solid.count == 4)
         add_farthest_of_simplex(solid, way, out);
     else
         for (const auto &component : solid.component)
@@ -66,6 +81,8 @@ void centre(const void *object, ccd_vec3_t *out)
     const auto *swept = static_cast<const Swept *>(object);
     const peer_solid &solid = *swept->solid;
     const double part = solid.count == 4 ? 0.25 : 0.5;
+    if (solid.hull)
+        return ccdVec3Set(out, solid.centre[0], solid.centre[1], solid.centre[2]);
     for (int axis = 0; axis < 3; axis++)
         out->v[axis] =
             solid.origin[axis] + 0.5 * swept->drift[axis] +
@@ -135,12 +152,12 @@ void close(void *)
 {
 }
 
-constexpr int moving = PEER_3D | PEER_MOVING;
+constexpr int at_rest = PEER_3D | PEER_HULLS, moving = at_rest | PEER_MOVING;
 
 const peer methods[] = {{"ccd gjk", PEER_VERDICT, moving, gjk},
                         {"ccd mpr", PEER_VERDICT, moving, mpr},
-                        {"ccd epa", PEER_DEPTH, PEER_3D, depth},
-                        {"ccd 1e-10", PEER_DEPTH, PEER_3D, depth_tight}};
+                        {"ccd epa", PEER_DEPTH, at_rest, depth},
+                        {"ccd 1e-10", PEER_DEPTH, at_rest, depth_tight}};
 
 }  // namespace
 

@@ -44,8 +44,26 @@ Object mesh_of(const peer_solid &solid)
     return std::make_unique<fcl::CollisionObjectd>(convex);
 }
 
+Object hull_of(const peer_solid &solid)
+{
+    auto vertices = std::make_shared<std::vector<fcl::Vector3d>>();
+    for (int i = 0; i < solid.count; i++)
+        vertices->push_back(fcl::Vector3d(solid.hull[i]));
+    const int *end = solid.face;
+    for (int i = 0; i < solid.faces; i++)
+        end += 1 + *end;
+    auto faces = std::make_shared<std::vector<int>>(solid.face, end);
+    auto convex = std::make_shared<fcl::Convexd>(vertices, solid.faces, faces);
+    fcl::Transform3d pose = fcl::Transform3d::Identity();
+    pose.translation() = fcl::Vector3d(solid.centre);
+    convex->computeLocalAABB();
+    return std::make_unique<fcl::CollisionObjectd>(convex, pose);
+}
+
 Object object_of(const peer_solid &solid)
 {
+    if (solid.hull)
+        return hull_of(solid);
     return solid.box ? box_of(solid) : mesh_of(solid);
 }
 
@@ -78,9 +96,9 @@ double distance_tight(void *bodies, size_t a, size_t b)
     return fcl::distance(object(bodies, a), object(bodies, b), request, result);
 }
 
-const peer methods[] = {{"fcl", PEER_VERDICT, PEER_3D, collide},
-                        {"fcl distance", PEER_DISTANCE, PEER_3D, distance},
-                        {"fcl 1e-10", PEER_DISTANCE, PEER_3D, distance_tight}};
+const peer methods[] = {{"fcl", PEER_VERDICT, PEER_3D | PEER_HULLS, collide},
+                        {"fcl distance", PEER_DISTANCE, PEER_3D | PEER_HULLS, distance},
+                        {"fcl 1e-10", PEER_DISTANCE, PEER_3D | PEER_HULLS, distance_tight}};
 
 }  // namespace
 
