@@ -34,7 +34,23 @@ std::shared_ptr<fcl::CollisionGeometryd> tetrahedron(const fmb_frame &frame)
     return std::make_shared<fcl::Convexd>(vertices, 4, faces);
 }
 
+/* Rings of a link or of an obstacle: their faces are known. */
+std::shared_ptr<fcl::CollisionGeometryd> hull(const fmb_frame &frame)
+{
+    const rings rings =
+        robot_rings[int(frame.vertex_count) == rings_vertices(robot_rings[0]) ? 0 : 1];
+    int count;
+    auto faces = std::make_shared<std::vector<int>>(rings_faces(rings, nullptr, &count));
+    rings_faces(rings, faces->data(), &count);
+    auto vertices = std::make_shared<std::vector<fcl::Vector3d>>();
+    for (unsigned v = 0; v < frame.vertex_count; v++)
+        vertices->push_back({frame.vertices[v], frame.vertices[frame.vertex_stride + v],
+                             frame.vertices[2 * frame.vertex_stride + v]});
+    return std::make_shared<fcl::Convexd>(vertices, count, faces);
+}
+
 struct Pairs {
+    const robot *states;
     std::set<std::pair<int, int>> met;
 };
 
@@ -45,7 +61,7 @@ bool collide(Object *a, Object *b, void *data)
     int second = static_cast<Part *>(b->getUserData())->body;
     if (first > second)
         std::swap(first, second);
-    if (first == second || (second < ROBOT_LINKS && second == first + 1) ||
+    if (first == second || (second < pairs->states->links && second == first + 1) ||
         pairs->met.count({first, second}))
         return false;
     fcl::CollisionRequestd request;
@@ -78,7 +94,9 @@ static void add(fcl_robot *out, int body, const fmb_frame &frame)
     const bool box = frame.shape == FMB_BOX;
     const double *at = box ? frame.centre : frame.origin;
     std::shared_ptr<fcl::CollisionGeometryd> geometry;
-    if (box)
+    if (frame.shape == FMB_HULL)
+        geometry = hull(frame);
+    else if (box)
         geometry = std::make_shared<fcl::Boxd>(frame.component[0][0], frame.component[1][1],
                                                frame.component[2][2]);
     else
@@ -107,10 +125,11 @@ struct fcl_robot *fcl_robot_create(const struct robot *states)
 {
     auto *out = new fcl_robot;
     out->states = states;
-    for (int body = 0; body < ROBOT_BODIES; body++)
+    const int bodies = states->links + ROBOT_OBSTACLES;
+    for (int body = 0; body < bodies; body++)
         for (unsigned i = 0; i < states->body[body].frame_count; i++)
             add(out, body, *fmb_body_frame(&states->body[body], i));
-    move(out, 0, 0, ROBOT_BODIES);
+    move(out, 0, 0, bodies);
     for (const auto &part : out->parts)
         out->manager.registerObject(part->object.get());
     out->manager.setup();
@@ -124,8 +143,8 @@ void fcl_robot_destroy(struct fcl_robot *robot)
 
 int fcl_robot_decide(struct fcl_robot *robot, int state)
 {
-    Pairs pairs;
-    move(robot, state, 0, ROBOT_LINKS);
+    Pairs pairs = {robot->states, {}};
+    move(robot, state, 0, robot->states->links);
     robot->manager.update();
     robot->manager.collide(&pairs, collide);
     return static_cast<int>(pairs.met.size());

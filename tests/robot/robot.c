@@ -176,6 +176,15 @@ int main(void)
     else
         puts("FCL: not installed (make deps-bench)");
     fcl_robot_destroy(fcl);
+
+    robot_draw_hulls(robot);
+    fcl = fcl_robot_create(robot); /* fewer bodies than before: the memory suffices */
+    printf("Hulls: %d links of %d vertices, %d obstacles of %d\n", robot->links,
+           rings_vertices(robot_rings[0]), ROBOT_OBSTACLES, rings_vertices(robot_rings[1]));
+    report(&(struct way){"bodies with poses", decide_bodies, &bodies});
+    if (fcl)
+        report(&(struct way){"FCL, dynamic AABB tree", decide_fcl, fcl});
+    fcl_robot_destroy(fcl);
     free(corners.body);
     free(corners.in.memory);
     free(corners.ignored);

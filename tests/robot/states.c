@@ -39,6 +39,31 @@ static void draw_link(struct draw *draw, struct fmb_frame frame[ROBOT_FRAMES])
     }
 }
 
+const struct rings robot_rings[2] = {{10, 15}, {10, 10}};
+
+static void make_hull(struct rings rings, const double axis[3], double middle, double *memory,
+                      struct fmb_body *out)
+{
+    double vertex[ROBOT_HULL_DOUBLES / 4][3];
+    const int count = rings_vertices(rings);
+    rings_points(rings, axis, vertex);
+    for (int v = 0; v < count; v++)
+        vertex[v][2] += middle;
+    or_end(fmb_body_make_hull(3, vertex[0], 3 * (size_t) count, memory, out));
+}
+
+/* Ellipsoids: links about the middle of their length. */
+static void draw_hulls(struct draw *draw, struct robot *out)
+{
+    for (int i = 0; i < out->links + ROBOT_OBSTACLES; i++) {
+        double axis[3] = {0.7 * width, 0.5 * width, 0.5 * length};
+        for (int k = 0; k < 3 && i >= out->links; k++)
+            axis[k] = draw_uniform(draw, 0.05, 0.15);
+        make_hull(robot_rings[i >= out->links], axis, i < out->links ? 0.5 * length : 0,
+                  out->hull[i], &out->body[i]);
+    }
+}
+
 static void draw_bodies(struct draw *draw, struct robot *out)
 {
     for (int i = 0; i < ROBOT_LINKS; i++) {
@@ -50,10 +75,6 @@ static void draw_bodies(struct draw *draw, struct robot *out)
         for (int axis = 0; axis < 3; axis++)
             size[axis] = draw_uniform(draw, 0.1, 0.3);
         or_end(fmb_body_make(3, FMB_BOX, size, 3, &out->body[i]));
-    }
-    for (unsigned i = 0; i < ROBOT_NEIGHBOURS; i++) {
-        out->neighbour[i][0] = i;
-        out->neighbour[i][1] = i + 1;
     }
 }
 
@@ -82,11 +103,11 @@ static void draw_turn(struct draw *draw, double most, double out[4])
         out[1 + i] = sin(half) * axis[i] / sqrt(sum);
 }
 
-static void draw_arm(struct draw *draw, struct fmb_placement *placement)
+static void draw_arm(struct draw *draw, int links, struct fmb_placement *placement)
 {
     double q[4], p[3] = {0};
     draw_turn(draw, 6.28, q);
-    for (int i = 0; i < ROBOT_LINKS; i++) {
+    for (int i = 0; i < links; i++) {
         double step[4];
         memcpy(placement[i].orientation, q, sizeof q);
         memcpy(placement[i].position, p, sizeof p);
@@ -99,9 +120,9 @@ static void draw_arm(struct draw *draw, struct fmb_placement *placement)
     }
 }
 
-static void draw_obstacles(struct draw *draw, struct fmb_placement *placement)
+static void draw_obstacles(struct draw *draw, int links, struct fmb_placement *placement)
 {
-    for (int i = ROBOT_LINKS; i < ROBOT_BODIES; i++) {
+    for (int i = links; i < links + ROBOT_OBSTACLES; i++) {
         for (int axis = 0; axis < 3; axis++)
             placement[i].position[axis] = draw_uniform(draw, -hall / 2, hall / 2);
         draw_turn(draw, 6.28, placement[i].orientation);
@@ -112,10 +133,10 @@ static void draw_obstacles(struct draw *draw, struct fmb_placement *placement)
 struct fmb_scene robot_scene(const struct robot *robot, int state)
 {
     return (struct fmb_scene){.placements = robot->placement[state],
-                              .placement_count = ROBOT_BODIES,
+                              .placement_count = (size_t) robot->links + ROBOT_OBSTACLES,
                               .which = FMB_PAIRS_ALL,
                               .ignored = (const unsigned(*)[2]) robot->neighbour,
-                              .ignored_count = ROBOT_NEIGHBOURS};
+                              .ignored_count = (size_t) robot->links - 1};
 }
 
 static size_t contacts_of(const struct robot *robot, int n)
@@ -137,31 +158,50 @@ static size_t contacts_of(const struct robot *robot, int n)
 static void place_obstacles(struct draw *draw, struct robot *out)
 {
     struct fmb_placement *first = out->placement[0];
-    draw_obstacles(draw, first);
-    for (int i = ROBOT_LINKS; i < ROBOT_BODIES; i++)
-        for (int k = ROBOT_LINKS; k < i; k++) {
+    draw_obstacles(draw, out->links, first);
+    for (int i = out->links; i < out->links + ROBOT_OBSTACLES; i++)
+        for (int k = out->links; k < i; k++) {
             struct fmb_answer answer;
             or_end(fmb_decide(fmb_method_default(), &first[i], &first[k], 0, 0, &answer));
             if (answer.verdict == FMB_SEPARATED)
                 continue;
             for (int axis = 0; axis < 3; axis++)
                 first[i].position[axis] = draw_uniform(draw, -hall / 2, hall / 2);
-            k = ROBOT_LINKS - 1; /* all again */
+            k = out->links - 1; /* all again */
         }
     for (int n = 1; n < ROBOT_STATES; n++)
         memcpy(out->placement[n], first, sizeof out->placement[n]);
+}
+
+static void draw_states(struct draw *draw, struct robot *out)
+{
+    for (int i = 0; i < out->links + ROBOT_OBSTACLES; i++)
+        out->placement[0][i].body = &out->body[i];
+    for (unsigned i = 0; i + 1 < (unsigned) out->links; i++) {
+        out->neighbour[i][0] = i;
+        out->neighbour[i][1] = i + 1;
+    }
+    place_obstacles(draw, out);
+    for (int n = 0; n < ROBOT_STATES; n++)
+        for (size_t contacts = 0; contacts < 1 || contacts > ROBOT_CONTACTS_MAX;
+             contacts = contacts_of(out, n))
+            draw_arm(draw, out->links, out->placement[n]);
 }
 
 void robot_draw(struct robot *out)
 {
     struct draw draw = {20260};
     memset(out, 0, sizeof *out);
+    out->links = ROBOT_LINKS;
     draw_bodies(&draw, out);
-    for (int i = 0; i < ROBOT_BODIES; i++)
-        out->placement[0][i].body = &out->body[i];
-    place_obstacles(&draw, out);
-    for (int n = 0; n < ROBOT_STATES; n++)
-        for (size_t contacts = 0; contacts < 1 || contacts > ROBOT_CONTACTS_MAX;
-             contacts = contacts_of(out, n))
-            draw_arm(&draw, out->placement[n]);
+    draw_states(&draw, out);
+}
+
+void robot_draw_hulls(struct robot *out)
+{
+    struct draw draw = {20260};
+    memset(out, 0, sizeof *out);
+    out->links = ROBOT_HULLS;
+    draw_hulls(&draw, out);
+    draw_states(&draw, out);
 }

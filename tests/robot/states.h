@@ -1,22 +1,28 @@
-/* States of a robot among obstacles: 30 links of 16 frames, neighbours ignored, and 100 boxes, at
- * random poses with a few contacts. */
+/* States of a robot among obstacles: 30 links of 16 frames, neighbours ignored, and 100 boxes; or 8
+ * links and 100 obstacles, each a hull of 152 and 102 vertices; at random poses with a few
+ * contacts. */
 #ifndef STATES_H
 #define STATES_H
 
 #include "fmb.h"
+#include "rings.h"
 
 enum {
-    ROBOT_LINKS = 30,
+    ROBOT_LINKS = 30,  /* at most: of frames */
+    ROBOT_HULLS = 8,   /* links that are hulls */
     ROBOT_FRAMES = 16, /* of a link */
     ROBOT_OBSTACLES = 100,
     ROBOT_BODIES = ROBOT_LINKS + ROBOT_OBSTACLES,
     ROBOT_NEIGHBOURS = ROBOT_LINKS - 1,
+    ROBOT_HULL_DOUBLES = 1 << 10, /* suffice for each */
     ROBOT_STATES = 200,
     ROBOT_CONTACTS_MAX = 8 /* pairs of bodies in contact; at least 1 */
 };
 
-/* The robot: bodies 0 to ROBOT_LINKS - 1 are links, the others obstacles. */
+/* The robot: bodies 0 to links - 1 are links, ROBOT_OBSTACLES follow. */
 struct robot {
+    int links;
+    double hull[ROBOT_HULLS + ROBOT_OBSTACLES][ROBOT_HULL_DOUBLES];
     struct fmb_frame frame[ROBOT_LINKS][ROBOT_FRAMES];
     struct fmb_body body[ROBOT_BODIES];
     unsigned neighbour[ROBOT_NEIGHBOURS][2];
@@ -24,8 +30,13 @@ struct robot {
     struct fmb_placement placement[ROBOT_STATES][ROBOT_BODIES];
 };
 
-/* Draws all states. The same on every machine up to the rounding of sin() and cos(). */
+/* Draws all states, of frames and boxes, or of hulls. The same on every machine up to the rounding
+ * of sin() and cos(). */
 void robot_draw(struct robot *out);
+void robot_draw_hulls(struct robot *out);
+
+/* The hulls of a link (0) and of an obstacle (1), see rings.h. */
+extern const struct rings robot_rings[2];
 
 /* The scene of a state. */
 struct fmb_scene robot_scene(const struct robot *robot, int state);
