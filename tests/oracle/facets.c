@@ -5,15 +5,22 @@
  * the largest coordinate after a vertex of each hull was subtracted, so that each is off by at most
  * 2^-52, and edges by their own largest one. A normal is then off by at most 2^-49 an axis, its
  * product with a vector of the difference, whose coordinates are at most 10, by less than 2^-42,
- * and d by less than QUICK_ERROR. */
+ * and d by less than QUICK_ERROR.
+ *
+ * Large hulls have too many pairs of edges. Of these, facets are sampled: the planes through the
+ * farthest points along three directions close to each other, of any directions and of those about
+ * the one that has come nearest to the limit. This may miss a facet that is above it. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "difference.h"
+#include "draw.h"
 #include "memory.h"
 
 static const double QUICK_ERROR = 0x1p-40;
+
+enum { ALL_EDGES_MAX = 1700, SAMPLES = 600 }; /* all pairs of two hulls of 41 vertices */
 
 typedef double vector[FMB_DIM_MAX];
 
@@ -210,6 +217,20 @@ static double dot(const double *x, const double *y)
     return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
 }
 
+static void cross_doubles(const double *x, const double *y, double *out)
+{
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = x[j] * y[k] - x[k] * y[j];
+    }
+}
+
+static void add(double *to, double times, const double *v)
+{
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        to[axis] += times * v[axis];
+}
+
 /* The greatest sign * n . (a point of the solid). */
 static double quick_extent(const struct quick_solid *solid, const double *n, int sign)
 {
@@ -224,15 +245,15 @@ static double quick_extent(const struct quick_solid *solid, const double *n, int
 /* Whether d of the normal sign * (x times y) is surely below the limit. */
 static bool is_far(const struct facets *facets, const double *x, const double *y, int sign)
 {
-    const vector n = {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2],
-                      x[0] * y[1] - x[1] * y[0]};
+    vector n;
+    cross_doubles(x, y, n);
     const double least = sign * dot(n, facets->offset) - quick_extent(&facets->solid[0], n, sign) -
                          quick_extent(&facets->solid[1], n, -sign) +
                          fmin(sign * dot(n, facets->drift), 0);
     return least - facets->limit * sqrt(dot(n, n)) < -QUICK_ERROR;
 }
 
-/* ---- All of it ---- */
+/* ---- Exactly again ---- */
 
 static void facets_init(struct facets *facets, const struct difference *difference,
                         const mpq_t limit)
@@ -273,6 +294,81 @@ static int compare_facet(const struct difference *difference, rational_vector n,
     return order;
 }
 
+/* ---- Sampled ---- */
+
+/* value := d of the direction n, of any length; point := a point where it is attained. */
+static double quick_least(const struct facets *facets, const double *n, double *point)
+{
+    const double length = sqrt(dot(n, n));
+    memcpy(point, facets->offset, sizeof facets->offset);
+    if (dot(n, facets->drift) < 0)
+        add(point, 1, facets->drift);
+    for (int side = 0; side < 2; side++) {
+        const struct quick_solid *solid = &facets->solid[side];
+        const int sign = side == 0 ? -1 : 1;
+        int best = 0;
+        for (int i = 0; i < solid->count; i++) {
+            const double at = sign * dot(n, solid->column[i]);
+            if (!solid->hull && at < 0)
+                add(point, sign, solid->column[i]);
+            else if (at < sign * dot(n, solid->column[best]))
+                best = i;
+        }
+        if (solid->hull)
+            add(point, sign, solid->column[best]);
+    }
+    return dot(n, point) / length;
+}
+
+/* n := the normal of a plane through points of the difference that are farthest along directions
+ * no farther from about than the radius, inwards; 0: these are not three. */
+static void sample_facet(const struct facets *facets, struct draw *draw, const double *about,
+                         double radius, double *n)
+{
+    vector point[3];
+    for (int i = 0; i < 3; i++) {
+        vector way = {0};
+        for (int axis = 0; axis < facets->difference->dim; axis++)
+            way[axis] = about[axis] + draw_uniform(draw, -radius, radius);
+        quick_least(facets, way, point[i]);
+    }
+    add(point[1], -1, point[0]);
+    add(point[2], -1, point[0]);
+    if (facets->difference->dim == 2)
+        memcpy(point[2], (const vector){0, 0, 1}, sizeof point[2]);
+    cross_doubles(point[1], point[2], n);
+    if (dot(n, about) < 0)
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            n[axis] = -n[axis];
+}
+
+static int compare_samples(const struct facets *facets, const mpq_t limit)
+{
+    struct draw draw = {1};
+    vector best = {1}, n, point;
+    rational_vector exact;
+    double most = quick_least(facets, best, point);
+    rational_vector_init(exact);
+    for (int k = 0; k < SAMPLES; k++) {
+        const bool anywhere = k % 2 == 0;
+        sample_facet(facets, &draw, anywhere ? (const vector){0} : best,
+                     anywhere ? 1 : ldexp(1, -k % 40), n);
+        if (dot(n, n) == 0 || !(quick_least(facets, n, point) > most))
+            continue;
+        most = quick_least(facets, n, point);
+        memcpy(best, n, sizeof best);
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            best[axis] /= sqrt(dot(n, n));
+    }
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        mpq_set_d(exact[axis], best[axis]);
+    const int order = compare_facet(facets->difference, exact, 1, limit);
+    rational_vector_clear(exact);
+    return order;
+}
+
+/* ---- The whole ---- */
+
 int difference_compare_facets(const struct difference *difference, const mpq_t limit)
 {
     static const vector quick_up = {0, 0, 1};
@@ -285,7 +381,10 @@ int difference_compare_facets(const struct difference *difference, const mpq_t l
     rational_vector_init(up);
     mpq_set_ui(up[2], 1, 1);
     facets_init(&facets, difference, limit);
-    for (int i = 0; i < facets.edges; i++)
+    const bool large = facets.edges > ALL_EDGES_MAX;
+    if (large)
+        order = compare_samples(&facets, limit);
+    for (int i = 0; !large && i < facets.edges; i++)
         for (int j = space ? 0 : i; j <= i; j++)
             for (int sign = -1; sign <= 1 && order < 1; sign += 2) {
                 if (is_far(&facets, facets.quick_edge[i], space ? facets.quick_edge[j] : quick_up,
@@ -303,5 +402,5 @@ int difference_compare_facets(const struct difference *difference, const mpq_t l
     facets_clear(&facets);
     rational_vector_clear(n);
     rational_vector_clear(up);
-    return any ? order : -mpq_sgn(limit);
+    return any || large ? order : -mpq_sgn(limit);
 }
