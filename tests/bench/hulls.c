@@ -181,6 +181,7 @@ static void make_solid(const struct draft *draft, const int *face, double (*worl
 {
     *out = (struct peer_solid){.dim = 3, .count = draft->count};
     memcpy(out->centre, draft->position, sizeof out->centre);
+    memcpy(out->origin, draft->position, sizeof out->origin);
     memcpy(world, draft->turned, (size_t) draft->count * sizeof *world);
     if (draft->rings.sectors) {
         out->hull = (const double(*)[3]) world;
@@ -190,8 +191,9 @@ static void make_solid(const struct draft *draft, const int *face, double (*worl
     }
     out->box = true;
     memcpy(out->vertex, world, sizeof out->vertex);
-    memcpy(out->origin, world[0], sizeof out->origin);
-    vector_add(out->origin, 1, draft->position);
+    vector_add(out->origin, 1, world[0]);
+    for (int v = 0; v < 8; v++)
+        vector_add(out->vertex[v], 1, draft->position);
     for (int i = 0; i < 3; i++) {
         out->size[i] = 2 * draft->half[i];
         memcpy(out->component[i], world[1 << i], sizeof out->component[i]);
