@@ -129,7 +129,7 @@ see_service/answer := msgs/codec service/fmb
 see_service := service/answer $(wire)
 see_clients/lib := $(wire)
 see_clients/common := clients/lib msgs/common msgs/codec service/fmb msgs/bus
-see_clients/query := clients/common clients/lib msgs/codec msgs/common service/fmb
+see_clients/query := clients/page clients/common clients/lib msgs/codec msgs/common service/fmb
 see_clients/log := clients/common clients/lib $(wire)
 see_clients/page := clients/log $(see_clients/log)
 see_clients/record := clients/log $(see_clients/log)
@@ -192,12 +192,10 @@ $(O)/msgs/%.o: $(GEN)/%.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) -w -fno-sanitize=nonnull-attribute
 
-page_names := replay mesh
 wire_objects := $(call objects_in,$(filter-out service/fmb,$(wire))) $(message_objects)
 client_objects := $(call objects_in,clients/lib)
-product_objects := $(filter-out %/main.o %/fmb.o,$(wire_objects) $(page_names:%=$(O)/page/%.o) \
-	$(call objects_in,service service/answer clients \
-		$(addprefix clients/,common query log page record mesh replay)))
+product_objects := $(filter-out %/main.o %/fmb.o,$(wire_objects) $(call objects_in,service service/answer clients \
+	$(addprefix clients/,common query log page record mesh replay)))
 
 # Of unmerged archives the linker takes what a program needs; what stands before them on its command
 # line replaces the member of that name. Members of two folders may have one name.
@@ -273,42 +271,37 @@ $(demo_programs): $(B)/%: $(O)/clients/demo/%.o
 $(programs) $(demo_programs):
 	$(link)
 
-# ---- Pages: each is one file of text, style and scripts, compiled in as an array ----
+# ---- The page of --html: text, style and scripts in one file, compiled in ----
 
-# Their policy lets nothing run but what has the hash of all between the tags, line ends included.
+# Its policy lets nothing run but what has the hash of all between the tags, line ends included.
 template := clients/page/template/
-page_shared := $(addprefix $(template),page.html stage.html)
-page_styles_replay := $(addprefix $(template),page.css timeline.css)
-page_scripts_replay := $(addprefix $(template),numbers.js verdict.js data.js dom.js clock.js timeline.js \
-	world.js camera.js canvas.js raster.js picture.js scene.js stage.js play.js input.js window.js panel.js \
-	main.js)
-page_styles_mesh := $(addprefix $(template),page.css mesh.css)
-page_scripts_mesh := $(addprefix $(template),numbers.js verdict.js mesh_data.js dom.js world.js camera.js \
-	canvas.js raster.js picture.js mesh_shade.js mesh_stage.js play.js input.js mesh_panel.js mesh_main.js)
+three := /usr/share/javascript/three/
+page_scripts := $(template)data.js $(template)licence.js $(three)three.min.js \
+	$(addprefix $(three)examples/js/,controls/OrbitControls.js math/ConvexHull.js geometries/ConvexGeometry.js) \
+	$(addprefix $(template),solid.js scene.js lanes.js table.js player.js main.js)
 page_hash = sha256-$$({ echo; cat $1; } | sha256sum | cut -c 1-64 | tr a-f A-F | \
 	basenc --base16 -d | base64)
-.SECONDEXPANSION:
-$(page_names:%=build/page/%.html): build/page/%.html: $(template)%.html $(page_shared) \
-		$$(page_styles_$$*) $$(page_scripts_$$*) Makefile
+build/page/page.html: $(template)page.html $(template)page.css $(filter $(template)%,$(page_scripts)) Makefile
 	@mkdir -p $(@D)
-	@! grep -n -e '</' -e '<!--' $(page_scripts_$*) $(page_styles_$*)
-	@cat $(page_scripts_$*) > $(@D)/$*.scripts
-	@cat $(page_styles_$*) > $(@D)/$*.styles
-	$(call say,PAGE,$@) sed -e '/^@PAGE@$$/{r $<' -e 'd;}' $(template)page.html | \
-		sed -e '/^@STAGE@$$/{r $(template)stage.html' -e 'd;}' | \
-		sed -e "s|@SCRIPT_HASH@|$(call page_hash,$(@D)/$*.scripts)|" \
-		-e "s|@STYLE_HASH@|$(call page_hash,$(@D)/$*.styles)|" \
-		-e '/^@STYLE@$$/{r $(@D)/$*.styles' -e 'd;}' \
-		-e '/^@SCRIPT@$$/{r $(@D)/$*.scripts' -e 'd;}' > $@
+	@for file in $(page_scripts); do [ -f $$file ] || \
+		{ echo "there is no $$file: make deps installs it" >&2; exit 1; }; done
+	@! grep -n -e '</' -e '<!--' $(page_scripts) $(template)page.css
+	@awk 1 $(page_scripts) > $(@D)/scripts
+	$(call say,PAGE,$@) sed -e "s|@SCRIPT_HASH@|$(call page_hash,$(@D)/scripts)|" \
+		-e "s|@STYLE_HASH@|$(call page_hash,$(template)page.css)|" \
+		-e '/^@STYLE@$$/{r $(template)page.css' -e 'd;}' \
+		-e '/^@SCRIPT@$$/{r $(@D)/scripts' -e 'd;}' $(template)page.html > $@
 	@[ "$$(grep -c '@[A-Z_]*@' $@)" = 1 ] # @DATA@
+$(O)/clients/page/page_template.o: build/page/page.html
+$(O)/clients/page/page_template.o: flags += -DPAGE_FILE='"build/page/page.html"'
 
-build/page/%.c: build/page/%.html
-	@{ echo '#include "page_template.h"'; echo 'static const unsigned char bytes[] = {'; \
-		od -An -v -tu1 $< | sed 's/ *\([0-9]\{1,\}\)/\1,/g'; echo '};'; \
-		echo 'const struct page_template page_template_$* = {bytes, sizeof bytes};'; } > $@
-$(O)/page/%.o: build/page/%.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile) -Iclients/page
+# The picture of README.md, by chromium.
+.PHONY: picture
+picture: $(B)/fmb
+	$(B)/fmb query --local --html build/table.html clients/demo/table.json > build/table.said
+	chromium --headless --no-sandbox --enable-unsafe-swiftshader --use-angle=swiftshader --hide-scrollbars \
+		--window-size=1100,620 --virtual-time-budget=3000 --screenshot=clients/demo/table.png \
+		"file://$(CURDIR)/build/table.html#t=1.95"
 
 # ---- The manual: what --help prints ----
 
@@ -430,7 +423,7 @@ clean:
 # ---- Packages ----
 
 packages_deps := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libgmp-dev libglib2.0-dev \
-	libseccomp-dev pkg-config uthash-dev
+	libseccomp-dev pkg-config uthash-dev libjs-three
 packages_deps-test := $(packages_deps) libcmocka-dev bats jq clang clang-format libclang-rt-14-dev \
 	liblcm-java default-jdk-headless liblcm-lua lua5.2 chromium libxml2-utils g++ cmake man-db
 packages_deps-fuzz := $(packages_deps) clang libclang-rt-14-dev llvm afl++

@@ -7,8 +7,8 @@
 #include "json.h"
 #include "output.h"
 #include "progress.h"
+#include "query_page.h"
 #include "report.h"
-#include "svg.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -36,8 +36,8 @@ static const char usage[] =
     "                   numbers of the scene alone; a verdict without a valid proof\n"
     "                   counts as not decided. The service then decides each pair by\n"
     "                   a query of its own, which takes longer\n"
-    "  --svg FILE       draw the scenes into FILE; implies --box\n"
-    "  --force          overwrite FILE of --svg even if it is no picture\n"
+    "  --html FILE      write a page that plays the scenes into FILE; implies --box\n"
+    "  --force          overwrite FILE of --html even if it is no page\n"
     "  --method NAME    how to decide: certified (the default: never wrong, and\n"
     "                   fast); exact (boxes and intervals to the last bit); or fmb or\n"
     "                   sat, which are inexact, for comparison\n"
@@ -70,13 +70,13 @@ struct query {
     /* Options. */
     bool local, json, box, gap, certificate;
     const struct fmb_method *method; /* NULL: the default, of this process or of the service */
-    struct output_options picture;
+    struct output_options html;
     double timeout;
     long retries;
     struct args_bus bus;
     const char *input; /* name of the file */
     /* The run. */
-    struct report *report[2];    /* the printed one, and the picture or NULL */
+    struct report *report[2];    /* the printed one, and the page or NULL */
     struct answers_bus *answers; /* NULL: not opened yet */
     const struct fmb_scene *scene;
     struct progress progress;
@@ -89,6 +89,12 @@ static bool take_method(const struct args *args, void *out)
     *method = fmb_method_by_name(optarg);
     return *method ||
            args_error(args, "--method: there are certified, exact, fmb and sat, not '%s'", optarg);
+}
+
+static bool take_svg(const struct args *args, void *out)
+{
+    (void) out;
+    return args_error(args, "--svg: pictures are pages now: --html %s", optarg);
 }
 
 static void take_answer(void *user, const struct fmb_client_answer *answer)
@@ -152,13 +158,13 @@ static int answer_scenes(struct query *query, int fd)
     return !more || query->undecided ? ARGS_FAILED : ARGS_ANSWERED;
 }
 
-static bool write_picture(const struct output_options *options, const struct svg *svg)
+static bool write_page(const struct output_options *options, struct page *page)
 {
     struct output *output;
     if (!output_open(options, &output))
         return false;
     if (output)
-        svg_write(svg, output->file);
+        page_write(page, output->file);
     return output_close(output, true);
 }
 
@@ -166,14 +172,16 @@ static int run_query(struct query *query, int fd)
 {
     struct report_json json = report_json(stdout);
     struct report_text text = report_text(stdout, query->box, query->gap);
-    struct svg *svg = query->picture.path ? svg_open() : NULL;
+    struct query_page page = {.page = NULL};
+    if (query->html.path)
+        page = query_page_open(query->input);
     query->report[0] = query->json ? &json.report : &text.report;
-    query->report[1] = svg ? svg_report(svg) : NULL;
+    query->report[1] = page.page ? &page.report : NULL;
     int code = answer_scenes(query, fd);
     if (query->answers)
         answers_bus_close(query->answers);
-    bool good = code == ARGS_USAGE || write_picture(&query->picture, svg);
-    svg_close(svg);
+    bool good = code == ARGS_USAGE || write_page(&query->html, page.page);
+    page_close(page.page);
     good = output_flush() && good;
     return good || code != ARGS_ANSWERED ? code : ARGS_FAILED;
 }
@@ -182,7 +190,7 @@ int cmd_query(int argc, char **argv)
 {
     struct output_rules rules = {.force = false};
     struct query query = {
-        .picture = {.kind = OUTPUT_PICTURE, .rules = &rules}, .timeout = 0.5, .retries = 5};
+        .html = {.kind = OUTPUT_PAGE, .rules = &rules}, .timeout = 0.5, .retries = 5};
     const struct args_option own[] = {
         {"local", ARGS_FLAG, .out = &query.local},
         {"json", ARGS_FLAG, .out = &query.json},
@@ -190,7 +198,8 @@ int cmd_query(int argc, char **argv)
         {"gap", ARGS_FLAG, .out = &query.gap},
         {"certificate", ARGS_FLAG, .out = &query.certificate},
         {"method", ARGS_OTHER, &query.method, .take = take_method},
-        {"svg", ARGS_TEXT, .out = &query.picture.path},
+        {"html", ARGS_TEXT, .out = &query.html.path},
+        {"svg", ARGS_OTHER, .take = take_svg},
         {"force", ARGS_FLAG, .out = &rules.force},
         {"timeout", ARGS_NUMBER, &query.timeout, .low = 0.001, .high = 3600},
         {"retries", ARGS_INTEGER, &query.retries, .high = 1000},
@@ -207,10 +216,10 @@ int cmd_query(int argc, char **argv)
         complain("%s: %s", query.input, strerror(errno));
         return ARGS_USAGE;
     }
-    query.box = query.box || query.picture.path;
+    query.box = query.box || query.html.path;
     query.bus = args.bus;
     rules.other_input = named ? query.input : "/dev/stdin";
-    code = output_check(&query.picture) ? run_query(&query, fd) : ARGS_USAGE;
+    code = output_check(&query.html) ? run_query(&query, fd) : ARGS_USAGE;
     if (named)
         close(fd);
     return code;

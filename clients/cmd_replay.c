@@ -9,6 +9,7 @@
 #include "input.h"
 #include "listing.h"
 #include "number.h"
+#include "page.h"
 #include "progress.h"
 #include "replay_output.h"
 
@@ -58,7 +59,8 @@ static const char usage[] =
     "  --json               one line of JSON in place of the text\n"
     "  --junit FILE         also write JUnit XML, for CI systems\n"
     "  --limit N            list N differences, and only count the others (1000)\n"
-    "  --html FILE          write a page that shows the replay\n" ARGS_COMMON_USAGE
+    "  --html FILE          write a page that plays the queries, with the "
+    "differences\n" ARGS_COMMON_USAGE
     "\n"
     "With --bus a running fmbd answers, many queries at a time, under a new client\n"
     "id. Bodies that it does not hold are sent whole. SIGINT ends the replay with\n"
@@ -312,7 +314,12 @@ static int run_replay(struct replay_arguments *options)
         !output_check(&options->html) || !replay_extent(&options->replay, &size, &run.first_utime))
         return ARGS_USAGE;
     if (options->html.path)
-        options->replay.page = page_open(options->replay.log[0], run.first_utime);
+        options->replay.page = page_open(&(struct page_options){
+            .kind = PAGE_REPLAY,
+            .title = options->replay.log[0],
+            .sides = {options->replay.golden ? options->replay.golden : "recorded",
+                      options->live ? "answered again by the service" : "answered again"}});
+    options->replay.page_begin = run.first_utime;
     options->replay.names = body_names_open();
     run.differences = listing_open(options->limit);
     struct tally *tally = allocate((size_t) options->replay.log_count, sizeof *tally);

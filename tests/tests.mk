@@ -18,7 +18,6 @@ see_tests/mesh := clients/mesh clients/common tests/bench service/fmb
 see_tests/logs := tests/encode tests/campaign tests/oracle service/answer $(wire) \
 	$(call fmb,frame filter) $(GEN)
 see_tests/soak := tests/encode clients/lib $(wire)
-see_tests/page := tests/encode clients/page $(see_clients/replay)
 see_tests/replay := clients/replay $(see_clients/replay) tests/unit tests/bench
 see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/unit tests/hostile $(GEN)
 see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
@@ -29,7 +28,7 @@ see_tests/unit := $(call fmb,number frame filter article tree exact gap hull dec
 # ---- Programs of tests and measurements: the name, and the main file in tests/ ----
 
 test_programs := plain:system/plain fake-peer:system/fake_peer events:system/events crash-liblcm:system/crash_liblcm \
-	make-page:page/make_page edit-log:replay/edit_log logs/generate:logs/generate logs/describe-log:logs/describe_log \
+	edit-log:replay/edit_log logs/generate:logs/generate logs/describe-log:logs/describe_log \
 	mesh/make-mesh:mesh/make_mesh $(foreach s,load memory rate blast fair relay,soak-$s:soak/$s)
 measures := validate:campaign/validate accuracy:campaign/accuracy bench/bench:bench/bench \
 	bus/bench-bus:bus/bench_bus bus/robot-bus:robot/bus bus/echo:bus/echo robot/robot:robot/robot \
@@ -43,7 +42,7 @@ measures := $(call program_names,$(measures)) $(B)/accuracy-planted
 
 # What the programs of tests share. Those that look into the engine link its objects, the others
 # the library.
-test_folders := $(addprefix tests/,encode oracle hostile campaign mesh bench bus robot soak logs page)
+test_folders := $(addprefix tests/,encode oracle hostile campaign mesh bench bus robot soak logs)
 shared := $(O)/shared.a
 $(shared): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in,$(test_folders))) \
 		$(patsubst tests/unit/%.c,$(O)/tests/unit/%.o,$(filter-out %/slab_truth.c %/slab_kernel.c \
@@ -70,7 +69,7 @@ wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_addmul z_submul
 	z_fdiv_q z_tdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize) limbs_gap_sign limbs_slab)
 wraps_test_log_read := $(call wraps,pread64)
 wraps_test_log_write := $(call wraps,fsync)
-wraps_test_log_cut := $(call wraps,page_open page_take)
+wraps_test_log_cut := $(call wraps,page_take)
 wraps_test_answer_scene := $(call wraps,malloc calloc realloc aligned_alloc)
 wraps_test_bus := $(call wraps,bus_socket_drops sched_yield)
 

@@ -4,6 +4,7 @@
 #include "number.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 static const int64_t integer_max = (INT64_C(1) << 53) - 1;
@@ -89,6 +90,13 @@ void json_number(struct json_writer *json, const char *key, double number)
 {
     char text[NUMBER_TEXT_MAX];
     value(json, key, number_exact(number, text));
+}
+
+void json_rounded(struct json_writer *json, const char *key, double number, int digits)
+{
+    char text[NUMBER_TEXT_MAX];
+    snprintf(text, sizeof text, "%.*g", digits, number);
+    value(json, key, isfinite(number) ? text : "null");
 }
 
 void json_numbers(struct json_writer *json, const char *key, const double *numbers, int count)

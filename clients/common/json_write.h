@@ -42,6 +42,9 @@ void json_integer(struct json_writer *json, const char *key, int64_t value);
 /* A number that reads back as the same bits; null if not finite. */
 void json_number(struct json_writer *json, const char *key, double value);
 
+/* A number of so many significant digits; null if not finite. */
+void json_rounded(struct json_writer *json, const char *key, double number, int digits);
+
 void json_integers(struct json_writer *json, const char *key, const int64_t *integers, int count);
 
 /* A vector, without spaces: [0,0.5,1]. */

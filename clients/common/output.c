@@ -41,7 +41,6 @@ enum { BEGIN_MAX = 64 };
 static const struct {
     const char *name, *begin;
 } kinds[] = {
-    [OUTPUT_PICTURE] = {"a picture (SVG)", "<svg "},
     [OUTPUT_PAGE] = {"a page (HTML)", "<!DOCTYPE html>"},
     [OUTPUT_REPORT] = {"a JUnit report",
                        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites "},

@@ -1,12 +1,13 @@
 #!/bin/sh
-# run.sh BUILD_DIR: lets the service answer a scene, shows the answers, and draws them. Runs in a
+# run.sh BUILD_DIR: lets the service answer a scene, shows the answers, and writes a page that plays
+# them. Runs in a
 # private network, leaves nothing running, and ends by itself.
 set -u
 
 build=${1:?usage: run.sh BUILD_DIR}
 inside=${2-}
 out=$build/demo
-picture=$out/scene.svg
+page=$out/scene.html
 fmbd=
 
 say() {
@@ -22,12 +23,12 @@ explain() {
     say "or the service on the bus"
     echo "$build/fmbd &"
     echo "$build/fmb query --box $out/mine.json"
-    say "--json for programs, --svg FILE for a picture; $build/fmb query --help says more"
+    say "--json for programs, --html FILE for a page; $build/fmb query --help says more"
 }
 
 # query [OPTIONS]: the arm's scenes.
 query() {
-    "$build/arm" | "$build/fmb" query --svg "$picture" "$@"
+    "$build/arm" | "$build/fmb" query --html "$page" "$@"
 }
 
 stop_fmbd() {
@@ -57,7 +58,7 @@ on_the_bus() {
     "$build/fmbd" 2> "$out/fmbd.log" &
     fmbd=$!
     wait_for_fmbd || return 1
-    say "$build/arm | $build/fmb query --svg $picture"
+    say "$build/arm | $build/fmb query --html $page"
     query || return 1
     say "$build/fmb status"
     "$build/fmb" status
@@ -66,7 +67,7 @@ on_the_bus() {
 in_process() {
     say "network namespaces are forbidden here, and there is no route for multicast:" \
         "the same scene without the bus"
-    say "$build/arm | $build/fmb query --local --svg $picture"
+    say "$build/arm | $build/fmb query --local --html $page"
     query --local
 }
 
@@ -83,5 +84,5 @@ if [ $code = 77 ]; then
     code=$?
 fi
 [ $code = 0 ] || exit $code
-say "the picture: $picture"
+say "the page: $page (open it in a browser)"
 explain

@@ -33,10 +33,8 @@ void mesh_write_ply(FILE *out, const struct mesh *mesh, const unsigned char (*fa
 /* Writes both meshes as one PLY file, with colours by verdict. */
 void mesh_report_ply(FILE *out, const struct mesh_report *report);
 
-/* Writes an HTML page: a picture of both meshes that can be rotated, with overlapping and touching
- * faces in colours, and a list of the pairs, MESH_PAGE_PAIRS_MAX at most. The page contains all its
- * data, some 26 bytes for each face, and fetches nothing. The coordinates of the picture are
- * rounded to single precision, relative to the centre. */
+/* Writes an HTML page (page.h) of both meshes, with the pairs, MESH_PAGE_PAIRS_MAX at most. It takes
+ * some 26 bytes for each face. */
 enum { MESH_PAGE_PAIRS_MAX = 20000 };
 void mesh_page_write(FILE *out, const struct mesh_report *report);
 

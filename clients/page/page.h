@@ -1,35 +1,138 @@
-/* A replay as an HTML page: a timeline of contacts for each pair of bodies, with the differences
- * marked, and the scene of any query. The page is one file that fetches nothing. */
+/* Writes an HTML page that plays scenes: one file that fetches nothing. A page is a list of steps.
+ * A step is one query: its placed bodies, a window of time, and the answers to pairs of them.
+ *
+ *     struct page *page = page_open(&options);
+ *     page_step_begin(page, &step);   // for each step, in any order of time:
+ *     page_body(page, &body);         //   each body, in the order of the indices of the pairs
+ *     page_pair(page, a, b, ...);     //   each pair that has an answer
+ *     page_step_end(page);
+ *     page_write(page, out);
+ *
+ * Poses are for pictures: single precision, relative to the first body of the page and to the
+ * extent of the step. Numbers of answers have nine digits, and all digits where two answers
+ * differ. All texts may be any bytes.
+ *
+ * All functions exit with status 1 if memory is exhausted. For one thread at a time. */
 #ifndef PAGE_H
 #define PAGE_H
 
-#include "replayed.h"
+#include "fmb.h"
+#include "json_write.h"
 
 #include <stdio.h>
 
-/* Limits on queries and on the bytes of their data; further queries with differences are kept up to
- * limits of their own. Queries are kept as a whole, so the bytes may exceed their limit by up to a
- * megabyte. Of one query PAGE_PAIRS_MAX pairs are kept (page_event.h). */
+/* A page stays below PAGE_BYTES_MAX, its own text of about a megabyte included. Steps are kept as a
+ * whole up to PAGE_STEPS_BYTES, steps that differ up to PAGE_DIFFERENT_BYTES more. Separated pairs
+ * without a gap within the margin are kept up to PAGE_FAR_BYTES, or else left out of all steps. Of
+ * a step PAGE_PAIRS_MAX pairs that differ are kept, and as many in contact or near. The page says
+ * what was left out. */
 enum {
-    PAGE_EVENTS_MAX = 5000,
-    PAGE_BYTES_MAX = 32 << 20,
-    PAGE_DIFFERENCES_MAX = 1000,
-    PAGE_DIFFERENCES_BYTES_MAX = 16 << 20
+    PAGE_BYTES_MAX = 40 << 20,
+    PAGE_STEPS_BYTES = 30 << 20,
+    PAGE_DIFFERENT_BYTES = 5 << 20,
+    PAGE_FAR_BYTES = 3 << 20,
+    PAGE_PAIRS_MAX = 1000
 };
 
-struct page;
+enum page_kind { PAGE_SCENES, PAGE_REPLAY, PAGE_MESH };
 
-/* Opens an empty page. In: title: the names of the logs, copied; begin: log time from which the
- * page counts seconds, microseconds since 1970. Returns a page, never NULL. Exits with status 1 if
- * memory is exhausted, as page_take() does. */
-struct page *page_open(const char *title, int64_t begin);
+struct page_options {
+    enum page_kind kind;
+    const char *title;
+    const char *sides[2]; /* what the answers then and now are; NULL: there is one side */
+    int pairs_max;        /* in place of PAGE_PAIRS_MAX; 0: that */
+};
+
+/* Copies what options point to. Returns a page, never NULL. */
+struct page *page_open(const struct page_options *options);
 void page_close(struct page *page); /* may be NULL */
 
-/* Adds a query with its results; copies what the page shows. Queries beyond the limits are counted,
- * and the page states how many. */
-void page_take(struct page *page, const struct replayed *replayed);
+/* ---- Steps ---- */
+
+/* How the answers then and now compare, or why there is nothing to compare. Shown as they are. */
+struct page_outcome {
+    const char *text; /* NULL: nothing is compared */
+    bool differs;
+};
+
+/* What was answered to a whole query. */
+struct page_result {
+    bool given;
+    const char *error;  /* NULL: answered */
+    const char *method; /* NULL: not known */
+    int64_t compute_ns;
+    int64_t count[FMB_OVERLAPPING + 1]; /* [verdict] of pairs */
+};
+
+struct page_step {
+    double time;       /* of the begin of the window, seconds since the begin of the page */
+    double duration;   /* of the window, seconds */
+    double margin;     /* 0: none */
+    const char *label; /* NULL or "": none */
+    bool all;          /* pairs of these bodies that are not given are separated */
+    const char *note;  /* NULL: none */
+    /* Of a recording: */
+    const char *log; /* path; NULL: none */
+    int64_t event, offset;
+    struct page_outcome outcome;
+    struct page_result result[2]; /* [then, now] */
+};
+
+void page_step_begin(struct page *page, const struct page_step *step);
+
+/* The frames of a body in body coordinates, one after the other as numbers: shape (enum fmb_shape),
+ * 1 if by vertices, else 0, how many numbers follow, and these: of fmb_frame_make(), or vertices.
+ */
+struct page_frames {
+    double *number; /* owned */
+    size_t count, capacity;
+};
+
+void page_frames_add(struct page_frames *frames, int shape, bool by_vertices, const double *numbers,
+                     size_t count);
+
+struct page_body {
+    int64_t id;       /* 0: anonymous */
+    const char *name; /* NULL: none */
+    int dim;
+    const struct page_frames *frames; /* not empty, all numbers finite */
+    const char *missing; /* not NULL: why the body cannot be drawn; the rest is unset */
+    const double *position, *velocity, *orientation; /* NULL: all 0, and no rotation */
+};
+
+void page_body(struct page *page, const struct page_body *body);
+
+/* An answer to a pair of the step. */
+struct page_answer {
+    const struct fmb_answer *answer; /* NULL: none; verdict 0: the method could not decide */
+    const char *error;               /* not NULL: why there is no verdict */
+};
+
+/* a, b: indices of bodies; of a mesh, of faces. then: NULL: the same as now. */
+void page_pair(struct page *page, int64_t a, int64_t b, int dim, const struct page_answer *then,
+               const struct page_answer *now);
+
+void page_step_end(struct page *page);
+
+/* ---- Meshes: a page of one step, whose bodies are meshes ---- */
+
+struct page_mesh {
+    const char *name;
+    size_t vertex_count, face_count;
+    double (*vertex)[3];
+    unsigned (*face)[3];
+    const unsigned char *verdict; /* [face]: the strongest of its pairs */
+    const double *velocity;       /* NULL: at rest */
+};
+
+void page_mesh(struct page *page, const struct page_mesh *mesh);
+
+/* ---- Writing ---- */
+
+/* Adds a line about the page as a whole. */
+void page_note(struct page *page, const char *note);
 
 /* On output: ferror(out) is set if writing failed. */
-void page_write(const struct page *page, FILE *out);
+void page_write(struct page *page, FILE *out);
 
 #endif

@@ -2,26 +2,29 @@
 
 #include <string.h>
 
-/* Position of the data in the page. */
-static const char mark[] = "@DATA@";
-enum { MARK_LENGTH = sizeof mark - 1 };
+/* PAGE_FILE, of the Makefile, names the page. Its bytes, by the assembler: a compiler would take
+ * a minute for an array of a million numbers. */
+__asm__(
+    ".pushsection .rodata\n"
+    "page_template_first: .incbin \"" PAGE_FILE
+    "\"\n"
+    "page_template_last: .byte 0\n"
+    ".popsection\n");
+extern const char page_template_first[], page_template_last[];
 
-/* The Makefile checks that the page contains the mark once. */
-static size_t find_mark(const struct page_template *page)
+/* Position of the data in the page. The Makefile checks that it is there once. */
+static const char *find_mark(void)
 {
-    size_t at = 0;
-    while (at + MARK_LENGTH < page->size && memcmp(page->bytes + at, mark, MARK_LENGTH) != 0)
-        at++;
-    return at;
+    static const char mark[] = "@DATA@";
+    return strstr(page_template_first, mark);
 }
 
-void page_template_begin(const struct page_template *page, FILE *out)
+void page_template_begin(FILE *out)
 {
-    fwrite(page->bytes, 1, find_mark(page), out);
+    fwrite(page_template_first, 1, (size_t) (find_mark() - page_template_first), out);
 }
 
-void page_template_end(const struct page_template *page, FILE *out)
+void page_template_end(FILE *out)
 {
-    const size_t after = find_mark(page) + MARK_LENGTH;
-    fwrite(page->bytes + after, 1, page->size - after, out);
+    fputs(find_mark() + strlen("@DATA@"), out);
 }

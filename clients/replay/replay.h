@@ -7,7 +7,7 @@
 #include "body_names.h"
 #include "input.h"
 #include "output.h"
-#include "page.h"
+#include "page_replayed.h"
 
 /* Callbacks for the progress and the findings of a replay. None may be NULL. */
 struct replay_sink {
@@ -33,6 +33,7 @@ struct replay_options {
     size_t frames;   /* capacity of the cache in this process */
     struct body_names *names;             /* receives the names of bodies; NULL: none */
     struct page *page;                    /* receives what was replayed; NULL: none */
+    int64_t page_begin;                   /* log time from which it counts, microseconds */
     const struct answer_bus_options *bus; /* the service that answers; NULL: this process */
 };
 

@@ -129,7 +129,8 @@ static void add_to_page(struct replay *replay, const struct match_item *item,
     replayed.offset = item->place.offset;
     replayed.utime = item->place.utime;
     definitions_fill(replay->definitions, placement, count);
-    page_take(replay->options->page, &replayed);
+    page_take(replay->options->page, replay->options->names, replay->options->page_begin,
+              &replayed);
 }
 
 /* ---- Comparing ---- */

@@ -18,7 +18,7 @@ setup() {
 }
 
 # Each option that writes a file, in a command that reads these files.
-commands=('query --local scene.json --svg' 'mesh a.obj b.obj --ply' 'mesh a.obj b.obj --html' 'replay a.log b.log --html'
+commands=('query --local scene.json --html' 'mesh a.obj b.obj --ply' 'mesh a.obj b.obj --html' 'replay a.log b.log --html'
     'replay a.log b.log --junit' 'replay a.log b.log --write-golden' 'log cut a.log b.log -o')
 
 # unchanged: the files are those of the beginning.
@@ -44,7 +44,7 @@ unchanged() {
             unchanged
         done
     done
-    run --separate-stderr "$FMB" query --local --svg scene.json --force < scene.json
+    run --separate-stderr "$FMB" query --local --html scene.json --force < scene.json
     ended 2
     said 'fmb: scene.json: this command reads it: write to another file'
     "$FMB" replay --write-golden golden a.log > text
@@ -75,7 +75,7 @@ unchanged() {
     done
 }
 
-@test "any file replaces an empty one; pages, pictures, reports and meshes replace one of their kind" {
+@test "any file replaces an empty one; pages, reports and meshes replace one of their kind" {
     for command in "${commands[@]}"; do
         : > out
         for time in 1 2; do
@@ -114,20 +114,20 @@ unchanged() {
     run "$FMB" replay --from 1000 b.log --write-golden there/cut.log --force
     ended 2
     cmp there/cut.log a.log
-    # Input that is no scene leaves the picture.
-    "$FMB" query --local scene.json --svg there/cut.log --force > text
-    cp there/cut.log picture
-    run "$FMB" query --local --svg there/cut.log <<< '{"dim": 4}'
+    # Input that is no scene leaves the page.
+    "$FMB" query --local scene.json --html there/cut.log --force > text
+    cp there/cut.log page
+    run "$FMB" query --local --html there/cut.log <<< '{"dim": 4}'
     ended 2
-    cmp there/cut.log picture
+    cmp there/cut.log page
     [ "$(ls -A there)" = cut.log ]
 }
 
 @test "standard output and pipes are written directly, after the answers" {
-    "$FMB" query --local scene.json --json --svg /dev/stdout > text
+    "$FMB" query --local scene.json --json --html /dev/stdout > text
     head -n 1 text | jq -e .pairs > pairs
-    sed -n 2p text | grep -q '^<svg '
-    "$FMB" query --local scene.json --json --svg /dev/stdout | cat | cmp - text
+    sed -n 2p text | grep -qx '<!DOCTYPE html>'
+    "$FMB" query --local scene.json --json --html /dev/stdout | cat | cmp - text
     "$FMB" replay --write-golden golden a.log > said
     mkfifo fifo
     "$FMB" replay --write-golden fifo a.log > said &

@@ -1,65 +1,113 @@
-# The page of a replay: its contents, and what a browser shows. Chromium opens the pages, clicks and
-# presses keys in them (tests/page/drive.js); without Chromium those tests are skipped.
+# The page of --html: its contents, and what a browser shows of scenes, recordings and meshes. Chromium
+# opens the pages, clicks and presses keys in them (tests/page/drive.js); without Chromium those tests
+# are skipped.
 
 bats_require_minimum_version 1.5.0
 
 load ../page/chromium
 
+hostile='<b>x</b></script><script>alert(1)</script><!--'
+
+# edited PAGE FILTER: the page with other data.
+edited() {
+    sed '/^<script type="application\/json"/q' "$1"
+    data "$1" | jq -c "$2"
+    sed '1,/^<script type="application\/json"/d' "$1" | sed -n '/^<\/script>/,$p'
+}
+
+# hulls: turns the frames of shapes.html into hulls of 9, 5, 5, 2 and 1 vertices: a cube with a vertex
+# inside, a square with one inside, a pyramid with a repeated vertex, a segment, a point.
+hulls='.shapes |= ([
+    [[0,0,0],[1,0,0],[0,1,0],[1,1,0],[0,0,1],[1,0,1],[0,1,1],[1,1,1],[0.5,0.5,0.5]],
+    [[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0.5,0.5,0]],
+    [[0,0,0],[1,0,0],[0,1,0],[0,0,1],[0,0,1]], [[0,0,0],[1,1,1]], [[0,0,0]]]
+    | map({dim: 3, frames: ([5, 1, 3 * length] + (. | add))}))'
+
 setup_file() {
-    cd "$BATS_TEST_DIRNAME/../.." || return
-    for page in mixed arm many crowd uneven empty; do
-        "${FMB_BUILD:-build}/make-page" $page > "$BATS_FILE_TMPDIR/$page.html"
-    done
-    cp tests/page/drive.html tests/page/drive.js tests/page/tools.js "$BATS_FILE_TMPDIR"
+    local top fmb logs
+    top=$(realpath "$BATS_TEST_DIRNAME/../..")
+    fmb=$(realpath "$top/${FMB_BUILD:-build}")/fmb
+    logs=$top/tests/logs
+    cp "$top"/tests/page/{drive.html,drive.js,tools.js} "$BATS_FILE_TMPDIR"
+    cp "$top/clients/demo/table.json" "$BATS_FILE_TMPDIR/table.json"
     cd "$BATS_FILE_TMPDIR" || return
+    "$fmb" query --local --gap --html table.html table.json > table.said
+    "${fmb%fmb}arm" | "$fmb" query --local --json --html arm.html > arm.json
+    # Every shape, side by side.
+    "$fmb" query --local --html shapes.html > shapes.said << 'SCENE'
+{"dim": 3, "bodies": [
+  {"id": 1, "shape": "box", "size": [1,1,1]},
+  {"id": 2, "shape": "cuboid", "position": [2,0,0], "origin": [0,0,0], "components": [[1,0,0],[0.3,1,0],[0,0,1]]},
+  {"id": 3, "shape": "tetrahedron", "position": [4,0,0], "origin": [0,0,0], "components": [[1,0,0],[0,1,0],[0,0,1]]},
+  {"id": 4, "shape": "face", "position": [6,0,0], "vertices": [[0,0,0],[1,0,0.1],[0.3,1,0.7]]},
+  {"id": 5, "shape": "tetrahedron", "position": [8,0,0], "vertices": [[0,0,0],[1,0,0.1],[0.3,1,0.7],[0.1,0.7,1.3]]}]}
+SCENE
+    edited shapes.html "$hulls" > hulls.html
+    "$fmb" query --local --html plane.html > plane.said << 'SCENE'
+{"dim": 2, "bodies": [
+  {"id": 1, "shape": "box", "size": [1,1], "orientation": [2,1], "velocity": [0.5,0]},
+  {"id": 2, "shape": "tetrahedron", "position": [1,0], "origin": [0,0], "components": [[1,0],[0,1]]}]}
+SCENE
+    "$fmb" query --local --html hostile.html - > hostile.said << SCENE
+{"dim": 2, "label": "$hostile", "bodies": [{"id": 1, "name": "$hostile", "shape": "box", "size": [1,1]},
+  {"id": 2, "name": "\u202e\"'&amp;", "shape": "box", "size": [1,1]}]}
+SCENE
+    "$fmb" query --local --html empty.html > empty.said <<< '{"dim": 2, "bodies": []}' || true
+    for log in stack crowd refused hard-2d hard-3d; do
+        "$fmb" replay --html $log.html "$logs/$log.log" > replay.said
+    done
+    edited stack.html '.steps |= to_entries | .steps |= map(.value + {t: (.value.t + if .key > 20 then 86400 else 0 end)})' > paused.html
+    "$fmb" replay --golden "$logs/crowd.golden" --html golden.html "$logs/crowd.log" > replay.said || true
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' > b.obj
+    "$fmb" mesh --html mesh.html --json b.obj b.obj --translate 1.5,0.1,0.1 --velocity=-1,0,0 > mesh.json
+    "$fmb" mesh --html self.html --self b.obj > self.said
     sed 's/^start();$/start(); start;/' arm.html > changed.html
-    sed 's/"pairs":.*/"pairs":[/' arm.html > cut.html
+    sed 's/"far":.*/"far":[/' arm.html > cut.html
     command -v chromium > /dev/null || return 0
     as_chromium light 1 &
     light=$!
     as_chromium dark 0
+    as_chromium bare 1 --disable-3d-apis
     wait $light
 }
 
 setup() {
-    local top
-    top=$(realpath "$BATS_TEST_DIRNAME/../..")
-    fmb=$top/${FMB_BUILD:-build}/fmb
-    logs=$top/tests/logs
     cd "$BATS_FILE_TMPDIR" || return
 }
 
 # ---- Contents --------------------------------------------------------------------------------
 
-@test "the page is one file that refers to nothing else" {
-    for page in mixed arm many crowd uneven empty; do
-        data $page.html | jq -e '.events | type == "array"' > /dev/null
+@test "the page is one file that refers to nothing else, with its policy and the licence of three.js" {
+    for page in table arm stack mesh; do
+        data $page.html | jq -e '.steps | type == "array"' > /dev/null
         is_self_contained $page.html
+        has_policy $page.html
+        grep -q 'Copyright (c) 2010-2019 three.js authors' $page.html
     done
 }
 
-@test "the policy of the page permits its own script and style only" {
-    has_policy arm.html
+@test "hostile names and labels end neither script nor page" {
+    [ "$(grep -c '</script>' hostile.html)" = 2 ]
+    [ "$(grep -c '<!--' hostile.html)" = 0 ]
+    data hostile.html | jq -e --arg name "$hostile" '.casts[0][0][2] == $name and .steps[0].label == $name'
+    found light '.hostile | .bold == 0 and (.labels | any(startswith("<b>x</b></script>")))'
 }
 
-@test "hostile strings end neither script nor page" {
-    [ "$(grep -c '</script>' mixed.html)" = 2 ]
-    [ "$(grep -c '<!--' mixed.html)" = 0 ]
-    data mixed.html | jq -e '.title | startswith("</title></script><script>throw")'
-    data mixed.html | jq -e '.logs == ["drive.log", "other ä </script>.log"]'
+@test "the pairs of a mesh's page are those of the program" {
+    jq -c '[.pairs[] | .[:2] + [if .[2] == "overlapping" then 3 else 2 end] | flatten]' mesh.json > expected
+    data mesh.html | jq -c '[.steps[0].pairs[] | [.[0], .[1], .[2][0]]]' > held
+    diff expected held
 }
 
 # ---- In a browser ----------------------------------------------------------------------------
 
-@test "the page opens without errors" {
+@test "the pages open without errors" {
     found light '.done and .error == null'
     [ ! -s light.console ] || {
         cat light.console
         return 1
     }
-    found light '.opened | .scripts == 2 and .bold == 0 and .resources == 0
-        and (.title | startswith("Replay: </title></script>"))
-        and .counts == ["56", "49", "3", "1", "1", "1", "1"]'
+    found light '.opened | .scripts == 2 and .resources == 0 and .title == "table.json"'
 }
 
 @test "errors in a page are detected" {
@@ -69,117 +117,103 @@ setup() {
 }
 
 @test "the page cannot reach the network, nor run foreign scripts" {
-    found dark '.refused.directives == ["connect-src", "img-src", "script-src-attr"]'
-    found dark '.refused.title | startswith("Replay: ")'
+    found dark '.refused.directives == ["connect-src", "img-src", "script-src-attr"] and .refused.title == "standard input"'
 }
 
-@test "rows with differences come first, then those in contact" {
-    found light '.opened.labels[1:6] == ["anonymous – anonymous", "anonymous – 32", "3 – 4", "1 – 2", "7 – 8"]'
-    found light '.filled == ["separated", "overlapping"]'
+@test "a scene opens at the begin of its window, with the answers of the program" {
+    found light '.opened | .counts == "3 pairs: 1 overlapping, 1 touching, 1 separated" and .text == "0.000 s"
+        and .table == ["cube – gripper | overlapping | 1.9 to 2 s | -0.025", "table – cube | touching | 0 to 2 s | 0",
+            "table – gripper | separated | 0.025"]'
+    found light '.opened | .drawn > 40000 and .yellow > 10000 and .red == 0 and .violet > 100'
+    found light '.opened | .lanes == [["none", "overlapping"], ["touching"], ["separated"]]'
+    found light '.opened.labels | sort == ["cube", "gripper", "table"]'
 }
 
-@test "a click on a mark shows its query in two dimensions" {
-    found light '.clicked | .pair == ["1 – 2"] and .verdict == ["overlapping"] and .scene == "Scene, 2D"
-        and .lane == ["1 2"] and .hash == "#0:31" and .query == "Query 31"'
-    found light '.clicked | .drawn > 10000 and .red > 3000 and .violet > 300'
-    found light '.moved.sum != .clicked.sum and .zoomed.red > 1.5 * .moved.red'
+@test "the next contact is red, and has the numbers of the answer" {
+    found light '.contact.text == "1.900 s" and .contact.hash == "#t=1.9" and .contact.red > 1000
+        and .nextContact.text == "0.000 s"'
+    found light '.opened.facts | .pair == "cube – gripper" and .["box z"] == "0.475 to 0.5" and .gap == "-0.025"'
 }
 
-@test "a gap has its size, and a line between the nearest points" {
-    found light '.gap | .verdict == ["separated"] and .texts[:3] == ["pair", "verdict", "gap"]
-        and (.texts[3] | tonumber) > 0.1 and .blue > 20'
-    found light '.clicked.blue == 0'
+@test "the chosen pair has a line between its nearest points" {
+    found light '.gap.chosen == ["table – gripper"] and .gap.blue > .opened.blue + 10'
 }
 
-@test "the body below the pointer is named" {
-    found light '.pointed == ["body 1, parallelogram: overlapping", "body 2, triangle: overlapping"]'
+@test "a scene plays over its window, stops, loops, and is scrubbed and linked to" {
+    found light '.playing == "❚❚" and .played.button == "▶" and .played.text == "2.000 s" and .played.red > 1000'
+    found light '(.played.places[2][2] - .opened.places[2][2] + 0.5 | fabs) < 0.001 and .played.places[0] == .opened.places[0]'
+    found light '.looped > 0 and .looped < 2'
+    found light '.scrubbed.text == "1.000 s" and (.scrubbed.places[2][2] - .opened.places[2][2] + 0.25 | fabs) < 0.001'
+    found light '.linked == "0.500 s"'
 }
 
-@test "the arrow keys step through the queries" {
-    found light '.right.query == "Query 33" and .left.query == "Query 31"'
+@test "views and colours change, the mouse turns the scene, the pointer names a body" {
+    found light '[.opened, .byBody, .top, .pair, .turned] | map(.sum) | unique | length == 5'
+    found light '.pair.drawn != .top.drawn and (.pointed | test("^(cube|gripper|table)(: (touching|overlapping))?$"))'
 }
 
-@test "a difference is reached by the key d, by its flag and by the list" {
-    found light '.opened.flags == 2 and .opened.listed == 3'
-    found light '.opened.chosen | .query == "Query 65" and .outcome == "≠ different"'
-    found light '[.next, .flag] | all(.query == "Query 65" and .outcome == "≠ different"
-        and .verdict == ["touching", "overlapping"] and .pair == ["≠3 – 4"])'
-    found light '.next.changes | contains("verdicttouchingoverlapping")
-        and contains("0.357143 .. 0.6785710.357143 .. 1") and contains("box x0.428571 .. 0.9642860.428571 .. 1.5")'
-    found light '.next.words | contains("verdict touching → overlapping")'
-    found light '.around.query == "Query 107" and .listed.query == "Query 69"'
+@test "every shape is drawn, hulls too" {
+    found light '.shapes | .kinds == [12, 12, 4, 1, 4] and .drawn > 2000 and .bad == 0 and (.table | length) == 10'
+    found light '.hulls | .kinds == [[12, 12], [2, 4], [4, 6], [0, 2], [0, 1]] and .drawn > 2000'
 }
 
-@test "scenes in three dimensions turn, show the view from above, the end of the window and both boxes" {
-    found light '.space | .drawn > 10000 and .red > 3000 and .violet > 300 and .pink > 300'
-    found light '[.space, .turned, .above, .slid] | map(.sum) | unique | length == 4'
-    found light '.slid | .said == "1 s of 1 s" and .bands == 2 and .then == 1'
+@test "two dimensions are seen from above" {
+    found light '.plane | .direction == [0, 0, -1] and .kinds == [2, 1] and .red > 1000'
 }
 
-@test "a scene lists its pairs, one of them selected" {
-    found light '.scene | .pair == ["≠1 – 13", "≠2 – 11", "11 – 12", "12 – 13"] and .drawn > 10000'
-    found light '.other.pressed == ["11 – 12"] and .other.sum != .scene.sum and .near.red > .other.red'
-    found light '.playing == "❚❚"'
+@test "scenes follow each other, filtered, sorted, in contact only" {
+    found light '.arm.counts == "6 scenes · 42 pairs: 3 overlapping, 5 touching, 34 separated" and .arm.last.text == "1.250 s · step 6 of 6"'
+    count=$(jq -s '[.[].pairs[] | [.a, .b]] | unique | length' arm.json)
+    found light "(.arm.rows | length) == $count and .contacts == {rows: 8, said: \"8 of $count pairs\"}"
+    found light '.filtered | .rows == 1 and .said == "1 of 42 pairs" and (.first | contains("lid"))'
+    found light '.sorted | .first < .last and .down == .last'
+    found light '.arm.lane[:2] == ["separated", "none"] and (.arm.lane | index("overlapping")) > 1'
+}
+
+@test "labels never overprint each other" {
+    found light '.arm.overprints == [0, 0, 0, 0, 0] and .crowd.overprints == 0 and .narrow.overprints == 0'
+}
+
+@test "scene, table and time are in view at 1400 x 900, and nothing is wider than 390" {
+    found light '.scrolls <= 900 and (.wide | all(. <= 900)) and .narrow.width <= 390 and .narrow.stage > 300'
+}
+
+@test "a recording plays queries that alternate together, with the gap over time" {
+    found light '.stack.bodies == [16, 16, 16, 16, 16, 16, 16, 16] and .stack.lane == ["overlapping"]'
+    found light '.stack.gap and .stack.gapSaid == "gap of 1 – 12: -0.208034 to -0.146024"'
+    found light '(.stack.facts.query | startswith("event 0 at byte 0 of ")) and (.stack.facts["answered again"] | startswith("119 separated, 1 overlapping, by certified"))'
+}
+
+@test "a long pause is shortened, and times stay those of the log" {
+    found light '.paused.span < 10 and (.paused.end | startswith("86400."))'
+}
+
+@test "differences are marked, and name both recordings" {
+    found light '.crowd | .different > 10 and (.counts | endswith("1 different")) and .rows == 100 and .more == 200 and (.notes | contains("left out"))'
+    found light '.difference | (.text | contains("step ")) and (.facts.query | endswith(": different")) and (.lane | index("difference")) != null'
+    found light '.golden | (.title | contains("crowd.golden and answered again")) and (.facts | keys | any(endswith("crowd.golden")))'
+}
+
+@test "bodies that cannot be drawn, and refusals, are reported" {
+    found light '.refused | .bad == 0 and .missing > 0 and (.outcomes | length) > 10'
 }
 
 @test "numbers of all sizes are drawn" {
-    found light '.sizes | length == 20 and all(.bad == 0)'
-    found light '.sizes | map(select(.query != "Query 83") | .drawn) | min > 10000'
-    found light '.sizes[] | select(.query == "Query 83") | .drawn > 300' # of no size
-    found light '.many.bad == 0 and .crowd.bad == 0'
+    found light '.sizes | length > 20 and all(.bad == 0) and (map(select(.drawn > 100)) | length) > 0.9 * length'
 }
 
-@test "bodies that cannot be drawn are reported" {
-    found light '.sizes[] | select(.query == "Query 101") | .outcome == "not defined" and .missing
-        == ["not drawn: body 8: the log does not define its handle, 47474747474747474747474747474747"]'
-    found light '.sizes[] | select(.query == "Query 103")
-        | .missing == ["not drawn: body 7: it is no body that can be drawn"]'
+@test "faces of meshes that meet are red, and a pair is shown from near" {
+    pairs=$(jq '.pairs | length' mesh.json)
+    found light ".mesh | (.rows | length) == $pairs and (.notes | contains(\"$pairs pairs of faces meet\")) and .red > 1000"
+    found light '(.face.facts.pair | test("^A [0-3] – B [0-3]$")) and .face.violet > 50 and .moved.sum != .mesh.sum and .moved.text == "1.000 s"'
+    found light '.self | .drawn > 10000 and .red == 0 and .rows == 0 and .hidden and (.notes | contains("share no more than an edge"))'
 }
 
-@test "bodies by handle are drawn by their definitions" {
-    found light '.sizes[] | select(.query == "Query 99") | .outcome == "unknown body"
-        and .missing == [] and .verdict == ["overlapping"]'
-    found light '.crowd.missing == []'
+@test "without WebGL table and timeline remain, and one line says so" {
+    found bare '.none | .stage and (.said | startswith("This browser has no WebGL")) and (.rows | length) == 42
+        and (.lane | index("overlapping")) and (.next.text | contains("step"))'
 }
 
-# The first half defined the bodies: log cut puts their definitions before the second half.
-@test "a part of a log shows the bodies that its definitions describe" {
-    "$fmb" log cut --from 1.5 --output part.log "$logs/clients.log"
-    "$fmb" replay --html part.html part.log > part.said
-    data part.html > part.json
-    jq -e '.count == [17, 0, 0, 12, 0, 0] and (.events | length) == 29
-        and all(.events[].frames[]; .[0] > 0 and .[1] >= 0)' part.json
-}
-
-@test "the filter, more rows and zooming work" {
-    found light '.filtered.rows == ["all queries", "3 – 4"] and .filteredPair == .filtered.rows'
-    found light '.filteredNone == {rows: 1, said: "no pair with it"} and .more == [9, 20]'
-    found light '.zoom | .near and .dragged and .back'
-}
-
-@test "large and empty logs are drawn: omitted queries, a pause, a crowd, no query" {
-    found light '.many | .counts[0] == "5,700" and .rows == 9 and .leftOut == 1
-        and .folds == ["24 h without queries"] and .more == "show 40 more of 90 pairs"'
-    found light '.many.note | startswith("699 queries are counted, but not shown, from 86474.985 to 86485.470 s.")
-        and contains("all of them are here")'
-    found light '.crowd | .drawn > 50000 and .rows == 30
-        and (.notes | contains("The answers are those of the pairs 0 to"))'
-    found light '.crowdMore == 230 and .empty == {said: "No query was replayed.", hidden: true}'
-}
-
-@test "bars have no holes where steps are uneven, and end where results stop coming" {
-    found light '.uneven.titles | .[0] == "overlapping, 334 queries from 0.000 s" and length == 6'
-}
-
-@test "texts on the axis do not overlap" {
-    found light '.uneven | .texts > 0 and (.overprints | length == 41 and all(. == 0))'
-}
-
-@test "the scene and its controls are in view at 1400 x 900" {
-    found light '.foldHidden == false and (.fold | length == 3 and all(. <= 900))'
-}
-
-@test "the dark color scheme is followed" {
-    found dark '.dark.ground == "rgb(20, 23, 27)" and .dark.drawn > 10000'
-    found dark '.dark.sum != 0'
+@test "the dark colour scheme is followed" {
+    found dark '.dark.ground == "rgb(20, 23, 27)" and .dark.drawn > 40000'
 }

@@ -203,13 +203,12 @@ $two, \"pairs\": []}"
     is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1], "box": {"min": [4,-1], "max": [4,1]}}, {"a": 1, "b": 3, "verdict": "touching", "contact": [0, 1], "box": {"min": [6,1], "max": [6,1]}}, {"a": 2, "b": 3, "verdict": "separated"}]}'
 }
 
-@test "names stand in tables, and in the picture, escaped" {
+@test "names stand in tables" {
     scene="{\"dim\": 2, \"bodies\": [{\"id\": 1, \"name\": \"Tür <1>\", $square, \"origin\": [0,0]},
         {\"id\": 20, $square, \"origin\": [2,0]}]}"
-    run "$FMB" query --local --svg "$BATS_TEST_TMPDIR/out.svg" <<< "$scene"
+    run "$FMB" query --local <<< "$scene"
     ended 0
     [ "${lines[2]}" = '  Tür <1>       20  separated' ]
-    grep -q '>Tür &lt;1&gt;</text>' "$BATS_TEST_TMPDIR/out.svg"
     query "$scene"
     is '{"pairs": [{"a": 1, "b": 20, "verdict": "separated"}]}'
 }
@@ -577,21 +576,26 @@ all_pairs() {
     [ "$(jq -c '[.pairs | length, (map(select(.verdict == "touching")) | length)]' "$BATS_TEST_TMPDIR/answers")" = '[100000,99900]' ]
 }
 
-# ---- Pictures --------------------------------------------------------------------------------
+# ---- Pages: what they show is tested by page.bats --------------------------------------------
 
-@test "--svg draws the scenes with their boxes" {
-    query "$scene $scene" --svg "$BATS_TEST_TMPDIR/scene.svg"
+@test "--html implies --box" {
+    query "$scene $scene" --html "$BATS_TEST_TMPDIR/scene.html"
     ended 0
     [ "$(jq -s 'map(.pairs[0] | has("box")) | all' <<< "$output")" = true ]
-    [ "$(grep -c '>scene ' "$BATS_TEST_TMPDIR/scene.svg")" = 2 ]
-    [ "$(tail -n 1 "$BATS_TEST_TMPDIR/scene.svg")" = '</svg>' ]
 }
 
-@test "a picture that cannot be written leaves the answers, with exit code 1" {
-    query "$scene" --svg /no/such/folder/scene.svg
+@test "a page that cannot be written leaves the answers, with exit code 1" {
+    query "$scene" --html /no/such/folder/scene.html
     ended 1
     [ "$(jq '.pairs | length' <<< "$output")" = 1 ]
-    said 'fmb: /no/such/folder/scene.svg: No such file or directory'
+    said 'fmb: /no/such/folder/scene.html: No such file or directory'
+}
+
+@test "--svg names the option that replaces it" {
+    query "$scene" --svg scene.svg
+    ended 2
+    said "fmb query: --svg: pictures are pages now: --html scene.svg
+Try 'fmb query --help'."
 }
 
 # ---- The command -----------------------------------------------------------------------------
@@ -676,7 +680,7 @@ Try 'fmb --help'."
 }
 
 @test "wrong options are refused with exit code 2 and a hint" {
-    for options in --frobnicate -x --svg '--method best' '--timeout 1s' '--timeout nan' '--timeout=' \
+    for options in --frobnicate -x --html '--method best' '--timeout 1s' '--timeout nan' '--timeout=' \
         '--retries -1' '--prefix a.*' '--json=1' '--local a b'; do
         # shellcheck disable=SC2086
         wrong query $options
@@ -697,7 +701,7 @@ Try 'fmb query --help'."
     printf x > "$name"
     printf '%s' "$scene" > "$name.json"
     cp "$BATS_TEST_DIRNAME/../logs/stack.log" "$name.log"
-    for arguments in "query --local @" "query @/none" "query --local --svg @/none @.json" "mesh --self @" \
+    for arguments in "query --local @" "query @/none" "query --local --html @/none @.json" "query --svg @" "mesh --self @" \
         "mesh @.obj @.obj" "mesh @.obj @.obj --ply @/none" "log info @" "log info @.log" "log cut --output @/none @.log" \
         "log scene --event 99999 @.log" "log scene --event 1 @" "replay @" "replay @/none" "replay --golden @ @.log" \
         "record @/none" "record --@" "watch @" "log @" "@" "help @" "status --lcm-url @" "status --timeout @" "mesh --as @" "mesh --scale @"; do

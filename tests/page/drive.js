@@ -1,224 +1,238 @@
-/* Opens pages of replays in turn, and operates them as a reader does (tools.js). */
+/* Opens pages in turn, and operates them as a reader does (tools.js). */
 "use strict";
 
-/* ---- What the page shows ---- */
+/* ---- What a page shows ---- */
 
-/* The texts shown while the pointer crosses the scene. */
-async function point() {
-    const box = one("#stage").getBoundingClientRect(), said = new Set();
-    for (let k = 0; k < 1600; k++) {
-        one("#stage").dispatchEvent(new view.PointerEvent("pointermove", {
-            bubbles: true, clientX: box.left + box.width * (k % 40) / 40,
-            clientY: box.top + box.height * Math.floor(k / 40) / 40,
-        }));
-        if (!one("#pointed").hidden)
-            said.add(text("#pointed"));
-    }
-    await drawn();
-    return [...said].sort();
-}
-
-/* Counts of pixels: all that are drawn, and those close to a colour; and a checksum. */
+/* Counts of pixels of the scene: all that are drawn, those of a colour, and a checksum. */
 function picture() {
-    const data = pixels(), count = { drawn: 0, sum: 0, violet: 0, red: 0, pink: 0, blue: 0 };
-    const isNear = (i, red, green, blue) => data[i + 3] > 60 && Math.abs(data[i] - red) < 60
-        && Math.abs(data[i + 1] - green) < 60 && Math.abs(data[i + 2] - blue) < 60;
+    const scene = one("#scene"), canvas = page.createElement("canvas");
+    view.fmb.stage.dirty = true;
+    view.fmb.drawScene();
+    canvas.width = scene.width;
+    canvas.height = scene.height;
+    const to = canvas.getContext("2d");
+    to.drawImage(scene, 0, 0);
+    const { data } = to.getImageData(0, 0, canvas.width, canvas.height);
+    const count = { drawn: 0, red: 0, yellow: 0, blue: 0, violet: 0, sum: 0 };
     for (let i = 0; i < data.length; i += 4) {
-        if (data[i + 3] === 0)
+        const [r, g, b, a] = data.subarray(i, i + 4);
+        if (a < 60)
             continue;
         count.drawn++;
-        count.sum = (count.sum * 31 + data[i] + 2 * data[i + 1] + 3 * data[i + 2] + i) % 1000000007;
-        count.violet += isNear(i, 106, 22, 196) ? 1 : 0;
-        count.red += isNear(i, 228, 120, 112) ? 1 : 0;
-        count.pink += isNear(i, 196, 0, 111) ? 1 : 0;
-        count.blue += isNear(i, 11, 87, 208) ? 1 : 0;
+        count.red += r > g + 90 && r > b + 90 && r > 120 ? 1 : 0;
+        count.yellow += r > 140 && g > 90 && b < g - 70 && r > g + 20 ? 1 : 0;
+        count.blue += b > r + 40 && b > g + 20 && r < 100 ? 1 : 0;
+        count.violet += b > g + 80 && r > g + 40 && b > r + 30 ? 1 : 0;
+        count.sum = (count.sum * 31 + r + 2 * g + 3 * b + i) % 1000000007;
     }
     return count;
 }
 
-/* The texts about the chosen query. */
-function chosen() {
-    return {
-        query: text("#event-head h2"), outcome: text("#event-head .outcome"),
-        pair: texts("#event-pairs .pair"),
-        verdict: texts("#event-pairs tbody tr:first-child .verdict"),
-        scene: text("#scene-title"), hash: view.location.hash,
-    };
+/* The table: each row as a text of its cells. */
+function table() {
+    return all("#pairs tr").map((tr) => [...tr.cells].map((td) => td.textContent).filter(Boolean).join(" | "));
 }
 
-/* Counts texts that stand for a missing or invalid value. */
-function badNumbers() {
-    const shown = all("header, #notes, #top, #bottom").map((element) => element.outerHTML).join("");
-    return (shown.match(/NaN|Infinity|undefined|null|\[object/g) ?? []).length;
+function facts() {
+    return Object.fromEntries(all("#detail dt").map((dt) => [dt.textContent, dt.nextElementSibling.textContent]));
 }
 
-function marks(row, kind) {
-    return all(`.row[data-row="${row}"] ${kind}`);
+function moment() {
+    return { text: text("#moment"), hash: view.location.hash, chosen: texts("tr.chosen td:first-child"), facts: facts() };
 }
 
-/* ---- Actions ---- */
-
-async function mixed() {
-    await open("mixed.html");
-    found.opened = {
-        title: page.title, counts: texts(".count b"), scripts: page.scripts.length,
-        bold: all("dd b, .line b b").length, chosen: chosen(), labels: texts(".label .name"),
-        flags: marks("3 4", ".flag").length, listed: all(".difference").length,
-        resources: view.performance.getEntriesByType("resource").length,
-    };
-    await mouse(marks("1 2", ".run.overlapping")[0], 0.5);
-    found.clicked = {
-        ...chosen(), ...picture(), lane: all(".row.chosen").map((row) => row.dataset.row),
-    };
-    found.pointed = await point();
-    await mouse(marks("1 2", ".run.separated")[0], 0.1);
-    found.gap = { ...chosen(), ...picture(), texts: texts("#event-pairs th, #event-pairs td.number") };
-    await mouse(marks("1 2", ".run.overlapping")[0], 0.5);
-    await mouse(one("#stage"), 0.5, 0.5, [40, 30]);
-    found.moved = picture();
-    await wheel(one("#stage"), -300);
-    found.zoomed = picture();
-    await press("ArrowRight");
-    found.right = chosen();
-    await press("ArrowLeft");
-    found.left = chosen();
+/* Where bodies are, by name: rounded, in units of the page. */
+function places() {
+    const { stage } = view.fmb;
+    return stage.items.map((item) => item.faces.position.toArray().map((x) => Math.round(x * 2 ** stage.exponent * 1e4) / 1e4));
 }
 
-async function difference() {
-    await press("d");
-    found.next = {
-        ...chosen(), changes: text("#event-differences"), words: text(".difference.chosen"),
-    };
-    await press("D");
-    found.around = chosen();
-    await mouse(marks("3 4", ".flag")[0], 0.4, 0.2);
-    found.flag = { ...chosen(), ...picture() };
-    await mouse(all(".difference")[1]);
-    found.listed = chosen();
+function labels() {
+    return all("#labels span").filter((span) => span.style.visibility === "visible");
 }
 
-async function space() {
-    await mouse(all(".difference")[0]);
-    found.space = picture();
-    await mouse(one("#stage"), 0.5, 0.5, [120, -50]);
-    found.turned = picture();
-    await mouse(one('#views [data-view="z"]'));
-    found.above = picture();
-    await mouse(one("#fit-all"));
-    await type("#moment", "1000");
-    found.slid = {
-        ...picture(), said: text("#moment-said"), bands: all(".band").length,
-        then: all(".band.then").length,
-    };
+/* Pairs of visible texts that overprint each other. */
+function overprints() {
+    picture();
+    const boxes = labels().map((span) => span.getBoundingClientRect());
+    return boxes.flatMap((a, i) => boxes.slice(i + 1).filter((b) => a.left < b.right && b.left < a.right
+        && a.top < b.bottom && b.top < a.bottom)).length;
 }
 
-/* The queries with numbers of all sizes, and those after them. */
-async function sizes() {
-    found.sizes = [];
-    await new Promise((done) => {
-        view.addEventListener("hashchange", done, { once: true });
-        view.location.hash = "#0:73";
-    });
-    await drawn();
-    for (let i = 0; i < 100; i++) {
-        found.sizes.push({
-            ...chosen(), drawn: picture().drawn, missing: texts("#not-drawn li"), bad: badNumbers(),
-        });
-        const before = view.location.hash;
-        await press("ArrowRight");
-        if (view.location.hash === before)
-            break;
+/* Texts that stand for a missing or invalid value. */
+function badTexts() {
+    return (page.body.innerText.match(/NaN|Infinity|undefined|null|\[object/g) ?? []).length;
+}
+
+/* The colours along the middle of a lane. */
+function lane(row) {
+    const canvas = all("#pairs canvas")[row], { width, height } = canvas, seen = [];
+    const { data } = canvas.getContext("2d").getImageData(0, height / 2, width, 1);
+    for (let x = 0; x < width; x++) {
+        const [r, g, b, a] = data.subarray(4 * x, 4 * x + 4);
+        const name = a < 60 ? "none" : r > g + 90 && b > g + 60 ? "difference" : r > g + 90 ? "overlapping" : r > b + 90 ? "touching" : "separated";
+        if (seen[seen.length - 1] !== name)
+            seen.push(name);
     }
+    return seen;
 }
 
-async function filter() {
-    await type("#filter", "3");
-    found.filtered = { rows: texts(".label .name"), said: text("#rows-said") };
-    await type("#filter", "4 3");
-    found.filteredPair = texts(".label .name");
-    await type("#filter", "77777");
-    found.filteredNone = { rows: all(".label").length, said: text("#rows-said") };
-    await type("#filter", "");
-    const before = all(".label").length;
-    await mouse(one("#more-rows"));
-    found.more = [before, all(".label").length];
+function wait(ms) {
+    return new Promise((done) => setTimeout(done, ms));
 }
 
-async function zoom() {
-    const runs = () => marks("all", ".run").map((run) => run.getAttribute("x")).join();
-    const before = runs();
-    await wheel(one("#plot"), -400);
-    const near = runs();
-    await mouse(one('.row[data-row="all"] .lane'), 0.5, 0.5, [-90, 0]);
-    const dragged = runs();
-    await press("0");
-    found.zoom = { near: near !== before, dragged: dragged !== near, back: runs() === before };
+async function until(holds) {
+    for (let i = 0; i < 200 && !holds(); i++)
+        await wait(50);
 }
+
+/* ---- A scene ---- */
 
 async function scene() {
-    await open("arm.html#75");
-    found.scene = { ...chosen(), ...picture(), notes: text("#event-pairs") };
-    await mouse(all("#event-pairs .pair")[2]);
-    found.other = { ...picture(), pressed: texts('.pair[aria-pressed="true"]') };
-    await mouse(one("#fit-pair"));
-    found.near = picture();
-    await mouse(one("#play"));
+    await open("table.html");
+    found.opened = {
+        ...moment(), ...picture(), title: page.title, counts: text("#counts"), table: table(), labels: labels().map((span) => span.textContent),
+        scripts: page.scripts.length, resources: view.performance.getEntriesByType("resource").length, places: places(),
+        lanes: [lane(0), lane(1), lane(2)], boxes: view.fmb.stage.items.length, camera: view.fmb.camera.zoom,
+    };
+    await mouse(all("#pairs tr")[2].cells[0]);
+    found.gap = { ...picture(), ...moment() };
+    await press("n");
+    found.contact = { ...picture(), ...moment() };
+    await press("n");
+    found.nextContact = { ...picture(), ...moment(), places: places() };
+    await press("Home");
+    await press("+");
+    await press(" ");
     found.playing = text("#play");
-    await mouse(one("#play"));
-    /* A pair that no result names is separated: its row has more queries than name it. */
-    found.filled = marks("12 21", ".run").map((run) => run.classList[1]);
+    await until(() => !view.fmb.player.playing);
+    found.played = { ...picture(), ...moment(), places: places(), button: text("#play") };
+    one("#loop").checked = true;
+    await press(" ");
+    await wait(300);
+    await press(" ");
+    found.looped = view.fmb.player.s;
+    await type("#scrub", "1");
+    found.scrubbed = { ...moment(), places: places() };
+    view.location.hash = "#t=0.5";
+    await until(() => view.fmb.player.s === 0.5);
+    found.linked = text("#moment");
+    await type("#colour", "body", "change");
+    found.byBody = picture();
+    await press("2");
+    found.top = picture();
+    await press("c");
+    found.pair = picture();
+    await mouse(one("#scene"), 0.5, 0.5);
+    const box = one("#scene").getBoundingClientRect();
+    for (const [kind, target, x] of [["mousedown", one("#scene"), 300], ["mousemove", page, 340], ["mouseup", page, 340]])
+        target.dispatchEvent(new view.MouseEvent(kind, { bubbles: true, clientX: box.left + x, clientY: box.top + 300, button: 0 }));
+    found.turned = picture();
+    one("#scene").dispatchEvent(new view.PointerEvent("pointermove", { clientX: box.left + box.width / 2, clientY: box.top + box.height / 2 }));
+    found.pointed = text("#pointed");
 }
 
-async function large() {
-    await open("many.html");
-    found.many = {
-        counts: texts(".count b"), note: text("#notes"), folds: texts(".fold title"),
-        leftOut: all(".left-out").length, rows: all(".label").length, more: text("#more-rows"),
-        bad: badNumbers(),
-    };
-    await open("crowd.html");
-    found.crowd = {
-        ...picture(), rows: all("#event-pairs tbody tr").length, notes: text("#event-pairs"),
-        missing: texts("#not-drawn li"), bad: badNumbers(),
-    };
-    await mouse(all("#event-pairs button").pop());
-    found.crowdMore = all("#event-pairs tbody tr").length;
+async function shapes() {
+    await open("shapes.html");
+    found.shapes = { ...picture(), table: table(), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length), bad: badTexts() };
+    await open("hulls.html");
+    found.hulls = { ...picture(), kinds: view.fmb.stage.items.map((item) => [item.surface.triangles.length, item.surface.edges.attributes.position.count / 2]) };
+    await open("plane.html");
+    found.plane = { ...picture(), direction: view.fmb.camera.getWorldDirection(view.fmb.camera.position.clone()).toArray().map(Math.round), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length) };
+    await open("hostile.html");
+    found.hostile = { title: page.title, table: table(), bold: all("#pairs b, #labels b").length, labels: texts("#labels span") };
     await open("empty.html");
-    found.empty = { said: text("#said"), hidden: one("#timeline").hidden };
+    found.empty = { counts: text("#counts"), rows: table().length, bad: badTexts() };
 }
 
-/* Pairs of texts on the axis that overprint each other. */
-function overprints() {
-    const boxes = all("#plot .tick text, #plot .fold text, #plot .cursor text")
-        .map((element) => element.getBoundingClientRect());
-    return boxes.flatMap((a, i) => boxes.slice(i + 1).filter((b) => a.left < b.right
-        && b.left < a.right)).length;
+/* ---- Scenes, and recordings ---- */
+
+async function arm() {
+    await open("arm.html");
+    found.arm = { ...moment(), rows: table(), overprints: [], counts: text("#counts"), lane: lane(0) };
+    for (let i = 0; i < 5; i++) {
+        await press("ArrowRight");
+        found.arm.overprints.push(overprints());
+    }
+    found.arm.last = moment();
+    await type("#filter", "GRIP lid");
+    found.filtered = { rows: table().length, said: text("#rows-said"), first: table()[0] };
+    await type("#filter", "");
+    one("#contacts").click();
+    found.contacts = { rows: table().length, said: text("#rows-said") };
+    one("#contacts").click();
+    await mouse(all("#heads th")[0]);
+    const names = texts("#pairs td:first-child");
+    await mouse(all("#heads th")[0]);
+    found.sorted = { first: names[0], last: names[names.length - 1], down: texts("#pairs td:first-child")[0] };
+    frame.style.width = "390px";
+    await wait(100);
+    found.narrow = { width: page.scrollingElement.scrollWidth, stage: one("#stage").clientWidth, overprints: overprints() };
+    frame.style.width = "1400px";
+    await wait(100);
+    found.wide = ["#stage", "#rows", "#play", "#overview", "#scrub"].map((selector) => one(selector).getBoundingClientRect().bottom);
+    found.scrolls = page.scrollingElement.scrollHeight;
 }
 
-/* A log of uneven steps, of pauses; after each step of a wheel over the axis. */
-async function uneven() {
-    await open("uneven.html");
-    const titles = marks("1 2", ".run").map((run) => run.textContent);
-    found.uneven = { titles, texts: texts("#plot .fold text").length, overprints: [overprints()] };
-    for (let i = 0; i < 40; i++) {
-        await press(i < 25 ? "ArrowRight" : i < 32 ? "+" : "-");
-        found.uneven.overprints.push(overprints());
+async function recording() {
+    await open("stack.html");
+    found.stack = { ...moment(), bodies: [], lane: lane(0), gap: !one("#gap").hidden, gapSaid: text("#gap-said") };
+    for (let i = 0; i < 8; i++) {
+        found.stack.bodies.push(view.fmb.stage.items.length);
+        await press("ArrowRight");
+    }
+    await open("paused.html");
+    found.paused = { span: view.fmb.begins[view.fmb.begins.length - 1], end: (await press("End"), text("#moment")) };
+    await open("crowd.html");
+    found.crowd = { ...picture(), overprints: overprints(), counts: text("#counts"), notes: text("#notes"), rows: table().length, different: all("td.different").length };
+    await mouse(one("#more"));
+    found.crowd.more = table().length;
+    await press("d");
+    found.difference = { ...moment(), ...picture(), lane: lane(0) };
+    await open("golden.html");
+    await press("d");
+    found.golden = { title: page.title, ...moment() };
+    await open("refused.html");
+    found.refused = { bad: 0, missing: 0, outcomes: [] };
+    for (let i = 0; i < view.fmb.steps.length; i++) {
+        found.refused.bad += badTexts();
+        found.refused.missing += facts()["not drawn"] ? 1 : 0;
+        found.refused.outcomes.push(facts().query.split(": ").pop());
+        await press("ArrowRight");
     }
 }
 
-/* All that plays the window is in view, where the page is as large as a laptop's. */
-async function fold() {
-    frame.style.width = "1400px";
-    frame.style.height = "900px";
-    await open("arm.html");
-    found.fold = ["#play", "#moment", "#stage"].map((selector) =>
-        one(selector).getBoundingClientRect().bottom);
-    found.foldHidden = one("#window").hidden;
+/* Each query of hard pairs, with numbers of all sizes. */
+async function sizes() {
+    found.sizes = [];
+    for (const name of ["hard-3d.html", "hard-2d.html"]) {
+        await open(name);
+        for (let i = 0; i < view.fmb.steps.length; i += 3) {
+            view.fmb.seek(view.fmb.begins[i]);
+            await press("f");
+            found.sizes.push({ step: i, drawn: picture().drawn, bad: badTexts() });
+        }
+    }
 }
+
+async function meshes() {
+    await open("mesh.html");
+    found.mesh = { ...picture(), title: page.title, notes: text("#notes"), rows: table(), counts: text("#counts") };
+    await mouse(all("#pairs tr")[1].cells[0]);
+    await press("c");
+    found.face = { ...picture(), ...moment() };
+    await press("f");
+    await press("End");
+    found.moved = { ...picture(), ...moment() };
+    await open("self.html");
+    found.self = { ...picture(), notes: text("#notes"), rows: table().length, hidden: one("#time").hidden };
+}
+
+/* ---- Protection ---- */
 
 /* Attempts to fetch, from within the page, are refused. */
 async function network() {
-    await open("mixed.html");
+    await open("arm.html");
     const refused = [];
     page.addEventListener("securitypolicyviolation", (event) => {
         refused.push(event.effectiveDirective);
@@ -229,20 +243,22 @@ async function network() {
     image.setAttribute("onclick", "document.title = 'ran'");
     page.body.append(image);
     image.click();
-    await new Promise((done) => setTimeout(done, 100));
+    await wait(100);
     found.refused = { directives: refused.sort(), title: page.title };
 }
 
 async function dark() {
-    await mouse(all(".difference")[0]);
+    await open("table.html");
     found.dark = { ...picture(), ground: view.getComputedStyle(page.body).backgroundColor };
-}
-
-/* Pages that the test has damaged. */
-async function broken() {
     await open("changed.html");
     await open("cut.html");
 }
 
-const light = [mixed, difference, space, sizes, filter, zoom, scene, large, uneven, fold];
-drive(location.hash === "#dark" ? [network, dark, broken] : light);
+async function noScene() {
+    await open("arm.html");
+    found.none = { stage: one("#stage").hidden, said: text("#no-scene"), rows: table(), lane: lane(0) };
+    await press("n");
+    found.none.next = moment();
+}
+
+drive({ "#dark": [network, dark], "#bare": [noScene] }[location.hash] ?? [scene, shapes, arm, recording, sizes, meshes]);

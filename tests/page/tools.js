@@ -58,15 +58,6 @@ async function mouse(element, x = 0.5, y = 0.5, move = null) {
     await drawn();
 }
 
-async function wheel(element, deltaY) {
-    const box = element.getBoundingClientRect();
-    element.dispatchEvent(new view.WheelEvent("wheel", {
-        bubbles: true, cancelable: true, deltaY,
-        clientX: box.left + box.width / 2, clientY: box.top + box.height / 2,
-    }));
-    await drawn();
-}
-
 async function press(key, shiftKey = false) {
     page.body.dispatchEvent(new view.KeyboardEvent("keydown",
         { key, shiftKey, bubbles: true, cancelable: true }));
@@ -77,11 +68,6 @@ async function type(selector, value, event = "input") {
     one(selector).value = value;
     one(selector).dispatchEvent(new view.Event(event, { bubbles: true }));
     await drawn();
-}
-
-function pixels() {
-    const canvas = one("#stage");
-    return canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
 }
 
 async function drive(parts) {

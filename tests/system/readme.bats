@@ -54,10 +54,9 @@ prints_what_it_shows() {
     matches "$BATS_TEST_TMPDIR/actual" "$BATS_TEST_TMPDIR/expected"
 }
 
-@test "the commands of the README print what it shows, and draw its picture" {
+@test "the commands of the README print what it shows" {
     prints_what_it_shows README.md 6
-    grep -q '](clients/demo/table.svg)' README.md
-    grep -q '^\$ cmp build/table.svg clients/demo/table.svg$' README.md
+    grep -q '](clients/demo/table.png)' README.md
 }
 
 @test "the commands of the page of the service print what it shows" {
@@ -97,13 +96,13 @@ prints_what_it_shows() {
     done
 }
 
-@test "the demo prints a table, draws a picture and ends" {
+@test "the demo prints a table, writes a page and ends" {
     session=$BATS_TEST_TMPDIR/session
     run setsid -w sh -c 'echo $$ > "$0"; exec timeout 60 "$@"' "$session" clients/demo/run.sh "$FMB_BUILD" 3>&-
     [ "$status" = 0 ]
     [[ "$output" == *"overlapping"*"touching"* ]]
-    [[ "$output" == *"the picture: $FMB_BUILD/demo/scene.svg"* ]]
-    grep -q '</svg>' "$FMB_BUILD/demo/scene.svg"
+    [[ "$output" == *"the page: $FMB_BUILD/demo/scene.html"* ]]
+    grep -q '</html>' "$FMB_BUILD/demo/scene.html"
     # Nothing of its session is left (the sixth field of stat).
     [ -z "$(cat /proc/[0-9]*/stat 2> /dev/null | awk -v session="$(cat "$session")" '$6 == session')" ]
 }

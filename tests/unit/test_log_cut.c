@@ -56,19 +56,15 @@ struct query_outcomes {
 
 static struct query_outcomes *taken;
 
-struct page *__wrap_page_open(const char *title, int64_t begin);
-void __wrap_page_take(struct page *page, const struct replayed *replayed);
+void __wrap_page_take(struct page *page, const struct body_names *names, int64_t begin,
+                      const struct replayed *replayed);
 
-struct page *__wrap_page_open(const char *title, int64_t begin)
-{
-    (void) title;
-    (void) begin;
-    return (struct page *) &taken;
-}
-
-void __wrap_page_take(struct page *page, const struct replayed *replayed)
+void __wrap_page_take(struct page *page, const struct body_names *names, int64_t begin,
+                      const struct replayed *replayed)
 {
     (void) page;
+    (void) names;
+    (void) begin;
     assert_true(taken->count < EVENTS_MAX);
     taken->query[taken->count].sequence_number =
         replayed->pair ? replayed->pair->sequence_number : replayed->scene->sequence_number;
@@ -115,7 +111,7 @@ static void replay(char *log, struct query_outcomes *out)
                                      .from = -INFINITY,
                                      .to = INFINITY,
                                      .frames = 1000,
-                                     .page = __wrap_page_open("", 0)};
+                                     .page = (struct page *) &taken};
     struct tally tally = {.events = 0};
     out->count = 0;
     taken = out;

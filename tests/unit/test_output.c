@@ -59,24 +59,23 @@ static void assert_file(const char *name, const char *text)
     assert_string_equal(found, text);
 }
 
-/* Opens a picture at this path, in a command with this input. */
-static struct output *open_picture(const char *path, bool force, const char *input)
+/* Opens a page at this path, in a command with this input. */
+static struct output *open_page(const char *path, bool force, const char *input)
 {
     const struct output_rules rules = {.force = force, .other_input = input};
     struct output *output;
-    const bool opened =
-        output_open(&(struct output_options){path, OUTPUT_PICTURE, &rules}, &output);
+    const bool opened = output_open(&(struct output_options){path, OUTPUT_PAGE, &rules}, &output);
     assert_int_equal(opened, output != NULL);
     return output;
 }
 
-static void write_picture(const char *path, bool force)
+static void write_page(const char *path, bool force)
 {
-    struct output *output = open_picture(path, force, NULL);
+    struct output *output = open_page(path, force, NULL);
     assert_non_null(output);
-    fputs("<svg new", output->file);
+    fputs("<!DOCTYPE html>new", output->file);
     assert_true(output_close(output, true));
-    assert_file(path, "<svg new");
+    assert_file(path, "<!DOCTYPE html>new");
 }
 
 static mode_t mode_of(const char *path)
@@ -96,24 +95,25 @@ static void without_a_path_no_file_is_opened(void **state)
     assert_true(output_close(output, true));
 }
 
-static void a_picture_replaces_an_empty_file_or_a_picture(void **state)
+static void a_page_replaces_an_empty_file_or_a_page(void **state)
 {
-    write_picture("new", false);
+    write_page("new", false);
     put_file("empty", "");
-    write_picture("empty", false);
-    put_file("picture", "<svg old");
-    write_picture("picture", false);
+    write_page("empty", false);
+    put_file("page", "<!DOCTYPE html>old");
+    write_page("page", false);
     assert_int_equal(count_files(), 3);
 }
 
 static void only_force_replaces_another_kind(void **state)
 {
-    static const char *const others[] = {"{\"dim\": 3}", "<sv", "<svgx", " <svg ", "x"};
+    static const char *const others[] = {"{\"dim\": 3}", "<!DO", "<!DOCTYPE htmlx",
+                                         " <!DOCTYPE html>", "x"};
     for (size_t i = 0; i < COUNT(others); i++) {
         put_file("other", others[i]);
-        assert_null(open_picture("other", false, NULL));
+        assert_null(open_page("other", false, NULL));
         assert_file("other", others[i]);
-        write_picture("other", true);
+        write_page("other", true);
     }
     assert_int_equal(count_files(), 1);
 }
@@ -121,14 +121,13 @@ static void only_force_replaces_another_kind(void **state)
 static void each_kind_replaces_its_own_kind(void **state)
 {
     static const char *const text[] = {
-        [OUTPUT_PICTURE] = "<svg x",
         [OUTPUT_PAGE] = "<!DOCTYPE html>\n<html>",
         [OUTPUT_REPORT] = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites n",
         [OUTPUT_MESH] = "ply\nformat",
         [OUTPUT_LOG] = "\xed\xa1\xda\x01"};
     const struct output_rules rules = {.force = false}, force = {.force = true};
-    for (int kind = OUTPUT_PICTURE; kind <= OUTPUT_LOG; kind++)
-        for (int old = OUTPUT_PICTURE; old <= OUTPUT_LOG; old++) {
+    for (int kind = OUTPUT_PAGE; kind <= OUTPUT_LOG; kind++)
+        for (int old = OUTPUT_PAGE; old <= OUTPUT_LOG; old++) {
             put_file("file", text[old]);
             assert_int_equal(
                 output_check(&(struct output_options){"file", (enum output_kind) kind, &rules}),
@@ -141,14 +140,14 @@ static void each_kind_replaces_its_own_kind(void **state)
 static void an_input_is_never_replaced(void **state)
 {
     for (int force = 0; force < 2; force++) {
-        put_file("input", "<svg input");
+        put_file("input", "<!DOCTYPE html>input");
         assert_int_equal(symlink("input", "symbolic"), 0);
         assert_int_equal(link("input", "hard"), 0);
         const char *const path[] = {"input", "./input", "symbolic", "hard"};
         for (size_t i = 0; i < 4; i++)
             for (size_t k = 0; k < 4; k++)
-                assert_null(open_picture(path[i], force, path[k]));
-        assert_file("input", "<svg input");
+                assert_null(open_page(path[i], force, path[k]));
+        assert_file("input", "<!DOCTYPE html>input");
         assert_int_equal(unlink("symbolic") + unlink("hard"), 0);
     }
     /* One of several. */
@@ -163,14 +162,14 @@ static void symbolic_links_stay(void **state)
 {
     char target[64];
     assert_int_equal(mkdir("folder", 0777), 0);
-    put_file("folder/there", "<svg old");
+    put_file("folder/there", "<!DOCTYPE html>old");
     assert_int_equal(symlink("there", "folder/link"), 0);
     assert_int_equal(symlink("folder/link", "link"), 0);
     assert_int_equal(symlink("folder/absent", "dangling"), 0);
-    write_picture("link", false);
-    write_picture("dangling", false);
-    assert_file("folder/there", "<svg new");
-    assert_file("folder/absent", "<svg new");
+    write_page("link", false);
+    write_page("dangling", false);
+    assert_file("folder/there", "<!DOCTYPE html>new");
+    assert_file("folder/absent", "<!DOCTYPE html>new");
     assert_int_equal(readlink("link", target, sizeof target), 11);
     assert_int_equal(readlink("folder/link", target, sizeof target), 5);
     assert_int_equal(count_files(), 3);
@@ -180,23 +179,23 @@ static void symbolic_links_stay(void **state)
 static void new_files_follow_the_umask_and_others_keep_their_mode(void **state)
 {
     const mode_t mask = umask(027);
-    write_picture("new", false);
+    write_page("new", false);
     assert_int_equal(mode_of("new"), 0640);
     assert_int_equal(umask(mask), 027);
-    put_file("old", "<svg old");
+    put_file("old", "<!DOCTYPE html>old");
     assert_int_equal(chmod("old", 0604), 0);
-    write_picture("old", false);
+    write_page("old", false);
     assert_int_equal(mode_of("old"), 0604);
 }
 
 static void a_file_that_cannot_be_opened_is_an_error(void **state)
 {
-    assert_null(open_picture("no/such/folder", true, NULL));
-    assert_null(open_picture(".", true, NULL));
+    assert_null(open_page("no/such/folder", true, NULL));
+    assert_null(open_page(".", true, NULL));
     assert_int_equal(symlink("loop", "loop"), 0);
-    assert_null(open_picture("loop", true, NULL));
+    assert_null(open_page("loop", true, NULL));
     assert_int_equal(unlink("loop"), 0);
-    struct output *output = open_picture("", true, NULL);
+    struct output *output = open_page("", true, NULL);
     assert_false(output_close(output, true));
     assert_int_equal(count_files(), 0);
 }
@@ -204,9 +203,9 @@ static void a_file_that_cannot_be_opened_is_an_error(void **state)
 static void a_device_is_written_directly(void **state)
 {
     struct stat device;
-    struct output *output = open_picture("/dev/full", false, NULL);
+    struct output *output = open_page("/dev/full", false, NULL);
     assert_non_null(output);
-    fputs("<svg ", output->file);
+    fputs("<!DOCTYPE html>", output->file);
     assert_false(output_close(output, true));
     assert_int_equal(stat("/dev/full", &device), 0);
     assert_true(S_ISCHR(device.st_mode));
@@ -218,14 +217,14 @@ static void an_output_that_is_not_kept_leaves_the_old_file(void **state)
 {
     for (int old = 0; old < 2; old++) {
         if (old)
-            put_file("file", "<svg old");
-        struct output *output = open_picture("file", false, NULL);
-        fputs("<svg new", output->file);
+            put_file("file", "<!DOCTYPE html>old");
+        struct output *output = open_page("file", false, NULL);
+        fputs("<!DOCTYPE html>new", output->file);
         assert_int_equal(count_files(), 1 + old);
         assert_true(output_close(output, false));
         assert_int_equal(count_files(), old);
     }
-    assert_file("file", "<svg old");
+    assert_file("file", "<!DOCTYPE html>old");
 }
 
 /* Runs end() in a process that is writing a file and has another one open. Returns its status. */
@@ -234,9 +233,9 @@ static int status_of(void (*end)(struct output *output))
     fflush(NULL); /* else the child writes it once more */
     const pid_t child = fork();
     if (child == 0) {
-        struct output *first = open_picture("file", false, NULL);
-        struct output *second = open_picture("second", false, NULL);
-        fputs("<svg new", first->file);
+        struct output *first = open_page("file", false, NULL);
+        struct output *second = open_page("second", false, NULL);
+        fputs("<!DOCTYPE html>new", first->file);
         fflush(first->file);
         end(second);
         _exit(99);
@@ -273,7 +272,7 @@ static void end_by_limit(struct output *output)
 
 static void no_temporary_file_is_left_when_a_process_ends(void **state)
 {
-    put_file("file", "<svg old");
+    put_file("file", "<!DOCTYPE html>old");
     for (size_t i = 0; i < SIGNALS; i++) {
         ended_by = signals[i];
         const int status = status_of(end_by_signal);
@@ -286,7 +285,7 @@ static void no_temporary_file_is_left_when_a_process_ends(void **state)
     const int ended = status_of(end_by_exit);
     assert_true(WIFEXITED(ended) && WEXITSTATUS(ended) == 1);
     assert_int_equal(count_files(), 2); /* the second was closed */
-    assert_file("file", "<svg old");
+    assert_file("file", "<!DOCTYPE html>old");
 }
 
 static void ignored_signals_stay_ignored(void **state)
@@ -302,8 +301,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(without_a_path_no_file_is_opened, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_picture_replaces_an_empty_file_or_a_picture, set_up,
-                                        tear_down),
+        cmocka_unit_test_setup_teardown(a_page_replaces_an_empty_file_or_a_page, set_up, tear_down),
         cmocka_unit_test_setup_teardown(only_force_replaces_another_kind, set_up, tear_down),
         cmocka_unit_test_setup_teardown(each_kind_replaces_its_own_kind, set_up, tear_down),
         cmocka_unit_test_setup_teardown(an_input_is_never_replaced, set_up, tear_down),

@@ -1,169 +1,112 @@
-/* The selection: a query, a row of the timeline and a pair of the query. Keyboard commands. */
+/* Puts the page together. */
 
-const chosen = { at: -1, row: null, pair: -1 };
-
-/* The row in focus: the clicked one, or that of the chosen pair. */
-function focusRow() {
-    if (chosen.row && chosen.row !== allRow)
-        return chosen.row;
-    const pair = chosenPair() ?? (stage.event?.kind === KIND_PAIR ? stage.pairs[0] : null);
-    return pair ? rowOf.get(rowKey(pair.ids)) : null;
+function showHead() {
+    const count = (verdict) => rows.filter((row) => row.worst === verdict).length;
+    const counts = [OVERLAPPING, TOUCHING, SEPARATED].map((verdict) => `${count(verdict)} ${verdictNames[verdict]}`);
+    one("title").textContent = document.title = isReplay ? `${data.title}: ${data.sides.join(" and ")}` : data.title;
+    one("counts").textContent = [
+        steps.length > 1 ? `${steps.length} ${isReplay ? "queries" : "scenes"}` : "",
+        isMesh ? "" : `${rows.length} pairs: ${counts.join(", ")}`,
+        isReplay ? `${differences.length} different` : "",
+    ].filter(Boolean).join(" · ");
+    one("counts").classList.toggle("different", differences.length > 0);
+    const notes = [...data.notes, ...steps.some((step) => step.more) ? ["Pairs of large steps are left out; the step says how many."] : []];
+    one("notes").textContent = notes.join(" · ");
+    one("notes").classList.toggle("warn", notes.some((note) => note.includes("left out")));
 }
 
-/* Whether the chosen query names the pair of the row. */
-function isNamedRow(row) {
-    return chosen.at >= 0 && row !== undefined && chosen.keys.has(row.key);
-}
-
-function chosenPair() {
-    return chosen.pair >= 0 ? stage.pairs[chosen.pair] : null;
-}
-
-/* The pair to show: that of the row, otherwise the first that differs. */
-function pairToShow(event, row) {
-    const pairs = pairsOf(event);
-    if (event.kind === KIND_PAIR || pairs.length === 0)
-        return -1;
-    const isIt = row && row !== allRow ? (pair) => rowKey(pair.ids) === row.key
-        : (pair) => pair.differs;
-    const found = pairs.find(isIt);
-    return found ? found.index : -1;
-}
-
-/* Puts the query into the address, so that it can be shared. Some browsers limit the rate of
- * changes: then the address is out of date. */
-function setAddress(event) {
-    const name = data.logs.length > 1 ? `${event.log}:${event.n}` : String(event.n);
-    try {
-        history.replaceState(null, "", `#${name}`);
-    } catch (refused) {
-        console.info(refused.message);
-    }
-}
-
-function eventOfAddress() {
-    const [, log, number] = /^#(?:(\d+):)?(\d+)$/.exec(location.hash) ?? [];
-    return number === undefined ? null
-        : events.find((event) => String(event.n) === number && event.log === Number(log ?? 0));
-}
-
-function announce(event) {
-    find("announce").textContent = `query ${event.n} at ${timeText(event.seconds)} s: `
-        + `${verdictName(worstOf(event))}, ${OUTCOMES[event.is]}`;
-}
-
-/* row: of the timeline, or null */
-function choose(at, row) {
-    const event = events[at];
-    chosen.at = at;
-    chosen.row = row;
-    chosen.keys = new Set(pairsOf(event).map((pair) => rowKey(pair.ids)));
-    chosen.pair = pairToShow(event, row);
-    setScene(event);
-    fillEvent(event);
-    markDifference();
-    scrollToEvent(at);
-    redrawTimeline();
-    setAddress(event);
-    announce(event);
-    find("fit-pair").disabled = !chosenPair();
-}
-
-function choosePair(index) {
-    chosen.pair = index;
-    chosen.row = null;
-    find("fit-pair").disabled = !chosenPair();
-    drawBands();
-    redrawStage();
-    redrawTimeline();
-    fillPairs(stage.event);
-}
-
-/* ---- Steps ---- */
-
-/* The queries to step through: those of the row, of the filtered rows, or all. */
-function stepList(inRow) {
-    const row = focusRow();
-    if (inRow && row)
-        return fillRow(row).at;
-    if (timeline.filter.length === 0)
-        return allRow.at;
-    const found = new Set(rows.filter(matches).flatMap((of) => of.at));
-    return [...found].sort((a, b) => a - b);
-}
-
-function stepTo(list, forward, row) {
-    const at = forward ? list.find((of) => of > chosen.at)
-        : list.findLast((of) => of < chosen.at);
-    if (at !== undefined)
-        choose(at, row);
-}
-
-function step(forward, inRow) {
-    stepTo(stepList(inRow), forward, inRow ? chosen.row : null);
-}
-
-function stepDifference(forward) {
-    const list = differing.map((event) => event.at);
-    const before = chosen.at;
-    stepTo(list, forward, null);
-    if (chosen.at === before && list.length > 0) /* wraps around */
-        choose(forward ? list[0] : list[list.length - 1], null);
-}
-
-const KEYS = {
-    ArrowLeft: (key) => step(false, key.shiftKey),
-    ArrowRight: (key) => step(true, key.shiftKey),
-    d: () => stepDifference(true),
-    D: () => stepDifference(false),
-    "+": () => zoomMiddle(1 / 2),
-    "-": () => zoomMiddle(2),
-    0: () => setView(...wholeView()),
-    " ": togglePlaying,
-    Escape: () => choosePair(-1),
+const keys = {
+    " ": () => play(), ArrowLeft: () => move(-1), ArrowRight: () => move(1), Home: () => seek(0), End: () => seek(wholeSpan),
+    n: () => nextContact(), N: () => nextContact(-1), d: () => nextDifference(), D: () => nextDifference(-1),
+    l: () => one("loop").click(), "+": () => setSpeed(1), "-": () => setSpeed(-1), f: () => fit(), c: () => fit(stage.row),
+    1: () => fit(null, directions.iso), 2: () => fit(null, directions.top), 3: () => fit(null, directions.front), 4: () => fit(null, directions.side),
+    0: () => setView(0, wholeSpan), "/": () => one("filter").focus(), Escape: () => stage.row && choose(stage.row),
+    ArrowDown: () => chooseNext(1), ArrowUp: () => chooseNext(-1),
 };
 
-/* ---- Start ---- */
-
-function listenToSteps() {
-    listenToKeys(KEYS);
-    find("previous").addEventListener("click", (click) => step(false, click.shiftKey));
-    find("next").addEventListener("click", (click) => step(true, click.shiftKey));
-    find("previous-difference").addEventListener("click", () => stepDifference(false));
-    find("next-difference").addEventListener("click", () => stepDifference(true));
-    find("more-differences").addEventListener("click", () => {
-        panel.differences += DIFFERENCES_MORE;
-        fillDifferences();
-    });
-    addEventListener("hashchange", () => {
-        const event = eventOfAddress();
-        if (event && event.at !== chosen.at)
-            choose(event.at, null);
-    });
+function setSpeed(by) {
+    one("speed").selectedIndex = Math.min(Math.max(one("speed").selectedIndex + by, 0), speeds.length - 1);
 }
 
-/* The first selection: the query in the address, otherwise the first difference, otherwise the
- * first contact. */
-function firstEvent() {
-    return eventOfAddress() ?? differing[0]
-        ?? events.find((event) => worstOf(event) >= TOUCHING) ?? events[0];
+function chooseNext(by) {
+    const at = table.shown.indexOf(stage.row) + by;
+    if (table.shown[at])
+        choose(table.shown[at]);
+}
+
+function readHash() {
+    const found = /^#t=(-?[0-9.]+(e[+-]?[0-9]+)?)$/.exec(location.hash);
+    if (found && Number.isFinite(Number(found[1])))
+        seek(sOfTime(Number(found[1])));
+}
+
+function watch() {
+    const click = (id, act) => one(id).addEventListener("click", act);
+    click("play", () => play());
+    click("back", () => move(-1));
+    click("next", () => move(1));
+    click("next-contact", () => nextContact());
+    click("next-difference", () => nextDifference());
+    click("more", () => {
+        table.limit += 100;
+        chooseRows();
+    });
+    click("pairs", (event) => {
+        const tr = event.target.closest("tr");
+        if (tr && !event.target.closest(".lane"))
+            choose(rows[tr.dataset.row]);
+    });
+    one("pairs").addEventListener("pointerdown", (event) => {
+        const lane = event.target.closest(".lane");
+        if (lane)
+            seek(sUnder(event, lane.firstChild));
+    });
+    click("camera", (event) => {
+        const to = event.target.dataset.view;
+        if (to)
+            fit(to === "pair" ? stage.row : null, directions[to] ?? null);
+    });
+    one("filter").addEventListener("input", chooseRows);
+    one("contacts").addEventListener("change", chooseRows);
+    one("colour").addEventListener("change", show);
+    one("names").addEventListener("change", () => { stage.dirty = true; });
+    one("scrub").addEventListener("input", () => seek(Number(one("scrub").value)));
+    for (const id of ["overview", "gap-plot"])
+        watchTime(one(id));
+    document.addEventListener("keydown", (event) => {
+        const isTyping = event.target.matches?.("input[type=search], select") || (event.target.id === "scrub" && event.key.startsWith("Arrow"));
+        if (isTyping || event.ctrlKey || event.metaKey || event.altKey || !keys[event.key])
+            return;
+        event.preventDefault();
+        keys[event.key]();
+    });
+    addEventListener("hashchange", readHash);
+    addEventListener("resize", drawTime);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+        readColours();
+        drawTime();
+    });
 }
 
 function start() {
-    fillHeader();
-    fillLegends();
-    fillDifferences();
-    const none = events.length === 0;
-    for (const id of ["timeline", "bottom"])
-        find(id).hidden = none;
-    for (const id of ["previous-difference", "next-difference"])
-        find(id).disabled = differing.length === 0;
-    if (none)
-        return;
-    startTimeline();
-    startStage();
-    listenToSteps();
-    choose(firstEvent().at, null);
+    one("speed").replaceChildren(...speeds.map((speed) => new Option(`${speed} ×`, speed, speed === 1, speed === 1)));
+    one("scrub").max = wholeSpan;
+    one("time").hidden = !canPlay;
+    one("next-difference").hidden = differences.length === 0;
+    readColours();
+    showHead();
+    drawHeads();
+    chooseRows();
+    watch();
+    drawOverview();
+    if (rows.length > 0 && !isMesh)
+        choose(table.shown[0]);
+    show();
+    readHash();
+    requestAnimationFrame(tick);
 }
 
 start();
+
+/* For the console of a browser, and for tests. */
+globalThis.fmb = { data, steps, rows, stage, player, table, view, begins, camera, drawScene, seek };

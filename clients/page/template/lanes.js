@@ -1,0 +1,161 @@
+/* Verdicts and gaps over time. */
+
+const view = { from: 0, to: wholeSpan }; /* the shown part, in s */
+
+/* When the verdict of a row's mark is shown: [from, to] in s. It is the contact interval where windows
+ * do not overlap, and else until the next step of the same bodies, if that comes soon. */
+function spanOf(row, mark) {
+    const i = row.at[mark], step = steps[i], from = begins[i], like = begins[nextLike[i]] ?? Infinity;
+    const to = isReplay && like - from <= recent ? like : begins[i + 1];
+    const answer = nowOf(row.pairs[mark]);
+    if (verdictOf(answer) < TOUCHING || !Array.isArray(answer) || answer[1] === null || step.T === 0 || to - from < 0.999 * step.T)
+        return [from, to];
+    return [from + answer[1], Math.min(from + answer[2], to)];
+}
+
+/* The row as [from, to, verdict], in order; what follows with the same verdict is one. */
+function segmentsOf(row) {
+    if (row.segments)
+        return row.segments;
+    const segments = [];
+    row.at.forEach((i, mark) => {
+        const [from, to] = spanOf(row, mark), verdict = verdictOf(nowOf(row.pairs[mark]));
+        const before = segments[segments.length - 1];
+        if (before && before[2] === verdict && from - before[1] <= 1e-9 * wholeSpan)
+            before[1] = Math.max(to, before[1]);
+        else
+            segments.push([from, to, verdict]);
+    });
+    row.segments = segments;
+    return segments;
+}
+
+/* The times in s at which a pair comes into contact, ascending. */
+let contactBegins = null;
+function contacts() {
+    contactBegins ??= [...new Set(rows.flatMap((row) => segmentsOf(row)
+        .filter(([, , verdict], k, all) => verdict >= TOUCHING && !(k > 0 && all[k - 1][2] >= TOUCHING && all[k - 1][1] >= all[k][0] - 1e-9 * wholeSpan))
+        .map(([from]) => from)))].sort((a, b) => a - b);
+    return contactBegins;
+}
+
+const differences = steps.flatMap((step, i) => step.differs || step.pairs.some(isDifferent) ? [i] : []);
+
+/* A canvas of the size that it has on the page; null: it has none. */
+function fitCanvas(canvas) {
+    const { clientWidth: width, clientHeight: height } = canvas, ratio = Math.min(devicePixelRatio, 2);
+    if (width === 0 || height === 0)
+        return null;
+    canvas.width = width * ratio;
+    canvas.height = height * ratio;
+    const to = canvas.getContext("2d");
+    to.scale(ratio, ratio);
+    return { to, width, height, x: (s) => (s - view.from) / (view.to - view.from) * width };
+}
+
+/* Draws rows into one lane: in each column of pixels the strongest verdict. */
+function drawLane(canvas, some) {
+    const fitted = fitCanvas(canvas);
+    if (!fitted)
+        return;
+    const { to, width, x } = fitted, height = Math.min(fitted.height, 18), worst = new Uint8Array(Math.ceil(width) + 1);
+    for (const row of some) {
+        if (some.length === 1 && steps.some((step) => step.all))
+            worst.fill(SEPARATED);
+        for (const [from, until, verdict] of segmentsOf(row)) {
+            if (until < view.from || from > view.to)
+                continue;
+            const last = Math.min(Math.max(Math.ceil(x(until)), Math.floor(x(from)) + 2), worst.length);
+            for (let column = Math.max(Math.floor(x(from)), 0); column < last; column++)
+                worst[column] = Math.max(worst[column], verdict);
+        }
+    }
+    for (let column = 0, first = 0; column <= width; column++) {
+        if (column < width && worst[column] === worst[first])
+            continue;
+        if (worst[first] > 0) {
+            to.fillStyle = stage.colours[verdictNames[worst[first]]];
+            to.fillRect(first, worst[first] === SEPARATED ? height / 2 - 1 : 2, column - first, worst[first] === SEPARATED ? 2 : height - 4);
+        }
+        first = column;
+    }
+    to.fillStyle = stage.colours.diff;
+    for (const i of some.length === 1 ? some[0].at.filter((_, mark) => isDifferent(some[0].pairs[mark])) : differences)
+        to.fillRect(Math.round(x(begins[i])) - 1, 0, 3, height);
+}
+
+/* The axis below: ticks at round times, and pauses that are left out. */
+function drawOverview() {
+    drawLane(one("overview"), rows);
+    const canvas = one("overview"), to = canvas.getContext("2d"), width = canvas.clientWidth;
+    if (width === 0)
+        return;
+    const span = view.to - view.from, rough = span / (width / 90);
+    const power = 10 ** Math.floor(Math.log10(rough)), every = Math.max([1, 2, 5, 10].find((k) => k * power >= rough) * power, unit ? 0 : 1);
+    to.font = "11px system-ui, sans-serif";
+    to.fillStyle = stage.colours.ink;
+    let free = -Infinity;
+    const first = Math.ceil(timeOf(view.from) / every), last = timeOf(view.to);
+    for (let k = first; k * every <= last && k < first + 1e4; k++) {
+        const s = sOfTime(k * every), i = stepAt(s), x = (s - view.from) / span * width;
+        if (k * every - timeOf(s) > every / 2) { /* within a pause that is left out */
+            k = Math.max(k, Math.ceil(steps[i + 1]?.t / every) - 1);
+            continue;
+        }
+        const text = `${short(k * every)}${unit && ` ${unit}`}`, size = to.measureText(text).width;
+        if (x < free || x + size > width)
+            continue;
+        to.fillText(text, x + 3, 31);
+        to.fillRect(x, 18, 1, 16);
+        free = x + size + 8;
+    }
+    to.fillStyle = stage.colours.dim;
+    pauses.forEach((pause, i) => {
+        if (pause > longestPause)
+            to.fillRect((begins[i + 1] - view.from) / span * width - 2, 0, 3, 34);
+    });
+}
+
+/* ---- The gap of the chosen pair ---- */
+
+/* [[s, gap], ...] of a row; then: of the first of two answers. */
+function gapsOf(row, then = false) {
+    return row.at.flatMap((i, mark) => {
+        const gap = answerOf(then ? row.pairs[mark][2] : nowOf(row.pairs[mark]))?.gap;
+        return gap && gap[0] !== null ? [[begins[i], gap[0]]] : [];
+    });
+}
+
+function drawGap(row) {
+    const gaps = row ? gapsOf(row) : [];
+    one("gap").hidden = gaps.length < 2;
+    const fitted = gaps.length > 1 && fitCanvas(one("gap-plot"));
+    if (!fitted)
+        return;
+    const { to, width, height, x } = fitted, margin = steps[row.at[0]].margin ?? 0;
+    const low = Math.min(0, ...gaps.map(([, gap]) => gap)), high = Math.max(margin, ...gaps.map(([, gap]) => gap)) || 1;
+    const y = (gap) => height - 8 - (gap - low) / (high - low || 1) * (height - 24);
+    const line = (points, colour, dash = []) => {
+        to.strokeStyle = colour;
+        to.setLineDash(dash);
+        to.lineWidth = dash.length ? 1 : 1.6;
+        to.beginPath();
+        /* where answers without a gap lie in between, the line is broken */
+        points.forEach(([s, gap], k) => to[k === 0 || s - points[k - 1][0] > 3 * Math.max(usualPause, wholeSpan / 500) ? "moveTo" : "lineTo"](x(s), y(gap)));
+        to.stroke();
+    };
+    for (const level of margin ? [0, margin] : [0]) {
+        to.strokeStyle = stage.colours.rule;
+        to.setLineDash(level ? [4, 4] : []);
+        to.strokeRect(0, y(level), width, 0);
+    }
+    if (row.differs)
+        line(gapsOf(row, true), stage.colours.diff, [5, 3]);
+    line(gaps, stage.colours.gap);
+    gaps.forEach(([s, gap]) => {
+        to.fillStyle = stage.colours.gap;
+        if (gaps.length < 200)
+            to.fillRect(x(s) - 1.5, y(gap) - 1.5, 3, 3);
+    });
+    one("gap-said").textContent = `gap of ${row.name}: ${interval(Math.min(...gaps.map(([, gap]) => gap)), Math.max(...gaps.map(([, gap]) => gap)))}`;
+}

@@ -1,0 +1,138 @@
+/* The clock, the moment that is shown, and what moves it. */
+
+const player = { s: 0, playing: false, last: 0 };
+const speeds = [0.1, 0.25, 0.5, 1, 2, 5, 10];
+const canPlay = steps.length > 1 || steps.some((step) => step.v);
+
+/* Shows the moment player.s. */
+function show() {
+    const i = stepAt(player.s);
+    if (i !== table.step) {
+        table.step = i;
+        if (!player.playing && table.sort !== null)
+            chooseRows();
+        fillRows();
+        drawDetail();
+    }
+    drawMoment(i, player.s);
+    one("scrub").value = player.s;
+    document.documentElement.style.setProperty("--head", (player.s - view.from) / (view.to - view.from));
+    one("moment").textContent = momentText(i);
+    one("play").textContent = player.playing ? "❚❚" : "▶";
+}
+
+function momentText(i) {
+    if (steps.length === 0)
+        return "nothing to show";
+    const time = unit ? `${timeOf(player.s).toFixed(3)} s` : "";
+    return [time, steps.length > 1 ? `step ${i + 1} of ${steps.length}` : "", steps[i].label ?? ""].filter(Boolean).join(" · ");
+}
+
+function setHash() {
+    try {
+        history.replaceState(null, "", `#t=${Number(timeOf(player.s).toFixed(6))}`);
+    } catch (error) { /* of a page inside another one: the link stays as it was */ }
+}
+
+function seek(s) {
+    player.s = Math.min(Math.max(s, 0), wholeSpan);
+    if (player.s < view.from || player.s > view.to)
+        setView(0, wholeSpan);
+    show();
+    if (!player.playing)
+        setHash();
+}
+
+function play(on = !player.playing) {
+    player.playing = on && canPlay;
+    player.last = performance.now();
+    if (player.playing && player.s >= wholeSpan)
+        player.s = 0;
+    show();
+    if (!player.playing) {
+        if (table.sort !== null)
+            chooseRows();
+        setHash();
+    }
+}
+
+/* Advances by the time that has passed; at the end it begins again, or stops. */
+function tick(now) {
+    if (player.playing) {
+        /* scenes without duration: ten a second; windows shorter than a second in one */
+        const rate = Number(one("speed").value) * (unit ? steps.length > 1 ? 1 : Math.min(wholeSpan / 2, 1) : 10);
+        const s = player.s + (now - player.last) / 1000 * rate;
+        player.last = now;
+        player.s = s <= wholeSpan ? s : one("loop").checked ? s % wholeSpan : wholeSpan;
+        if (player.s === wholeSpan && !one("loop").checked)
+            play(false);
+        else
+            show();
+    }
+    drawScene();
+    requestAnimationFrame(tick);
+}
+
+/* ---- Steps ---- */
+
+/* The next step, or the one before; of one step, a twentieth of its window. */
+function move(by) {
+    play(false);
+    if (steps.length > 1)
+        seek(begins[Math.min(Math.max(stepAt(player.s) + by, 0), steps.length - 1)]);
+    else
+        seek(player.s + by * wholeSpan / 20);
+}
+
+/* The first of ascending times after this moment, or before it; else from the other end. */
+function jump(times, by) {
+    play(false);
+    const small = 1e-9 * wholeSpan;
+    const found = by > 0 ? times.find((s) => s > player.s + small) : times.filter((s) => s < player.s - small).pop();
+    if (times.length > 0)
+        seek(found ?? (by > 0 ? times[0] : times[times.length - 1]));
+}
+
+const nextContact = (by = 1) => jump(contacts(), by);
+const nextDifference = (by = 1) => {
+    jump(differences.map((i) => begins[i]), by);
+    const row = rows.find((each) => isDifferent(pairAt(each, stepAt(player.s)) ?? []));
+    if (row && row !== stage.row)
+        choose(row);
+};
+
+/* ---- The shown part of the time ---- */
+
+function setView(from, to) {
+    const span = Math.min(Math.max(to - from, wholeSpan / 1e5), wholeSpan);
+    view.from = Math.min(Math.max(from, 0), wholeSpan - span);
+    view.to = view.from + span;
+    drawTime();
+}
+
+function drawTime() {
+    drawOverview();
+    drawLanes();
+    drawGap(stage.row);
+    show();
+}
+
+function sUnder(event, element) {
+    const box = element.getBoundingClientRect();
+    return view.from + (event.clientX - box.left) / box.width * (view.to - view.from);
+}
+
+/* A wheel zooms about the pointer, a press moves to it, and so does a drag. */
+function watchTime(element) {
+    element.addEventListener("wheel", (event) => {
+        event.preventDefault();
+        const s = sUnder(event, element), factor = Math.exp(event.deltaY / 400);
+        setView(s - (s - view.from) * factor, s + (view.to - s) * factor);
+    }, { passive: false });
+    element.addEventListener("pointerdown", (event) => {
+        element.setPointerCapture?.(event.pointerId);
+        seek(sUnder(event, element));
+    });
+    element.addEventListener("pointermove", (event) => event.buttons & 1 && seek(sUnder(event, element)));
+    element.addEventListener("dblclick", () => setView(0, wholeSpan));
+}

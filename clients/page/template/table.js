@@ -1,0 +1,179 @@
+/* The table of pairs: their answers at this moment, and a lane of verdicts over time. */
+
+const table = { shown: [], limit: 100, sort: null, down: false, step: -1, cells: [] };
+const hasContacts = steps.some((step) => step.T > 0 && step.pairs.some((pair) => answerOf(nowOf(pair))?.contact));
+const hasGaps = steps.some((step) => step.pairs.some((pair) => answerOf(nowOf(pair))?.gap));
+const columns = [
+    { title: "pair", text: (row) => row.name, value: (row) => row.name },
+    { title: "verdict", text: (row, answer) => verdictText(row, answer), value: (row, answer) => answer ? -answer.verdict : 1 },
+    { title: "contact", text: (row, answer) => contactText(answer), value: (row, answer) => answer?.contact?.[0] ?? Infinity },
+    { title: "gap", text: (row, answer) => answer?.gap ? interval(...answer.gap.slice(0, 2)) : "", value: (row, answer) => answer?.gap?.[0] ?? Infinity },
+    { title: "over time", value: (row) => segmentsOf(row).find(([, , verdict]) => verdict >= TOUCHING)?.[0] ?? Infinity },
+].filter((column) => (column.title !== "contact" || hasContacts) && (column.title !== "gap" || hasGaps)
+    && (column.title !== "over time" || steps.length > 1 || hasContacts));
+const collator = new Intl.Collator(undefined, { numeric: true });
+
+function verdictText(row, answer) {
+    if (!answer)
+        return "";
+    return answer.error ?? verdictNames[answer.verdict];
+}
+
+function contactText(answer) {
+    return answer?.contact ? `${interval(...answer.contact)} s` : "";
+}
+
+function currentAnswer(row) {
+    const pair = pairNow(row, Math.max(table.step, 0));
+    return pair && answerOf(nowOf(pair));
+}
+
+/* ---- Which rows ---- */
+
+function isFound(row) {
+    const words = one("filter").value.toLowerCase().split(/\s+/).filter(Boolean), name = row.name.toLowerCase();
+    return words.every((word) => name.includes(word)) && (!one("contacts").checked || row.worst >= TOUCHING);
+}
+
+/* At first: those that differ, then by the strongest verdict, in the order of the steps. */
+function compareRows(a, b) {
+    if (table.sort === null)
+        return b.differs - a.differs || b.worst - a.worst || a.index - b.index;
+    const [x, y] = [a, b].map((row) => columns[table.sort].value(row, currentAnswer(row)));
+    const order = typeof x === "string" ? collator.compare(x, y) : x === y ? 0 : x < y ? -1 : 1;
+    return (table.down ? -order : order) || a.index - b.index;
+}
+
+function chooseRows() {
+    const found = rows.filter(isFound).sort(compareRows);
+    table.shown = found.slice(0, table.limit);
+    one("more").hidden = found.length <= table.limit;
+    one("more").textContent = `show ${Math.min(100, found.length - table.limit)} more`;
+    one("rows-said").textContent = found.length === rows.length ? `${rows.length} pairs` : `${found.length} of ${rows.length} pairs`;
+    one("pairs").replaceChildren(...table.shown.map(makeRow));
+    table.cells = [...one("pairs").rows].map((tr) => [...tr.cells]);
+    fillRows();
+    drawLanes();
+}
+
+function makeRow(row) {
+    const tr = document.createElement("tr");
+    tr.dataset.row = row.index;
+    tr.className = row === stage.row ? "chosen" : "";
+    for (const column of columns) {
+        const td = tr.insertCell();
+        if (!column.text) {
+            td.className = "lane";
+            td.append(document.createElement("canvas"), Object.assign(document.createElement("i"), { className: "head" }));
+        }
+    }
+    tr.cells[0].textContent = row.name;
+    tr.cells[0].classList.toggle("different", row.differs);
+    return tr;
+}
+
+/* Writes the answers of this moment where they have changed. */
+function fillRows() {
+    table.shown.forEach((row, n) => {
+        const answer = currentAnswer(row), cells = table.cells[n];
+        columns.forEach((column, k) => {
+            const text = k > 0 && column.text ? column.text(row, answer) : null;
+            if (text !== null && cells[k].textContent !== text)
+                cells[k].textContent = text;
+        });
+        const name = `verdict v${answer?.verdict ?? 0}`;
+        if (cells[1].className !== name)
+            cells[1].className = answer ? name : "";
+    });
+}
+
+function drawLanes() {
+    table.cells.forEach((cells, n) => {
+        const canvas = cells[columns.length - 1].querySelector("canvas");
+        if (canvas)
+            drawLane(canvas, [table.shown[n]]);
+    });
+}
+
+function drawHeads() {
+    one("heads").replaceChildren(...columns.map((column, k) => {
+        const th = document.createElement("th");
+        th.textContent = column.title + (table.sort === k ? table.down ? " ▾" : " ▴" : "");
+        th.addEventListener("click", () => {
+            table.down = table.sort === k && !table.down;
+            table.sort = k;
+            drawHeads();
+            chooseRows();
+        });
+        return th;
+    }));
+}
+
+/* ---- The chosen pair, and the step ---- */
+
+function choose(row) {
+    stage.row = row === stage.row ? null : row;
+    [...one("pairs").rows].forEach((tr) => tr.classList.toggle("chosen", stage.row !== null && Number(tr.dataset.row) === stage.row.index));
+    drawGap(stage.row);
+    table.step = -1;
+    show();
+}
+
+function addFact(list, name, text, differs = false) {
+    const dt = document.createElement("dt"), dd = document.createElement("dd");
+    dt.textContent = name;
+    dd.textContent = text;
+    dd.classList.toggle("different", differs);
+    list.append(dt, dd);
+}
+
+function factsOf(answer) {
+    if (!answer)
+        return { verdict: "no answer" };
+    const facts = { verdict: answer.error ?? verdictNames[answer.verdict] };
+    if (answer.contact)
+        facts.contact = `${interval(...answer.contact)} s`;
+    const dim = (answer.box?.length ?? 0) / 2;
+    for (let axis = 0; axis < dim; axis++)
+        facts[`box ${"xyz"[axis]}`] = interval(answer.box[axis], answer.box[dim + axis]);
+    if (answer.gap)
+        facts.gap = interval(...answer.gap.slice(0, 2));
+    return facts;
+}
+
+/* Facts of two answers, side by side where they differ. */
+function addComparison(list, pair) {
+    const now = factsOf(answerOf(nowOf(pair))), then = isDifferent(pair) ? factsOf(answerOf(pair[2])) : now;
+    for (const name of new Set([...Object.keys(then), ...Object.keys(now)]))
+        addFact(list, name, then[name] === now[name] ? now[name]
+            : `${data.sides[0]}: ${then[name] ?? "none"} · ${data.sides[1]}: ${now[name] ?? "none"}`, then[name] !== now[name]);
+    /* what differs may be beyond the digits, or a direction */
+    if (isDifferent(pair) && JSON.stringify(pair[2]) !== JSON.stringify(pair[3]) && Object.keys(now).every((name) => now[name] === then[name]))
+        addFact(list, "numbers", `${data.sides[0]}: ${JSON.stringify(pair[2])} · ${data.sides[1]}: ${JSON.stringify(pair[3])}`, true);
+}
+
+function resultText([error, method, ns, ...counts]) {
+    return error ?? `${counts.slice(0, 3).map((count, k) => count ? `${count} ${verdictNames[k + 1]}` : "").filter(Boolean).join(", ") || "no pairs"}${method ? `, by ${method}` : ""}, ${short(ns / 1000)} µs`;
+}
+
+function drawDetail() {
+    const step = steps[table.step], list = document.createElement("dl");
+    if (!step)
+        return;
+    const pair = stage.row && pairNow(stage.row, table.step);
+    if (stage.row)
+        addFact(list, "pair", stage.row.name);
+    if (pair)
+        addComparison(list, pair);
+    if (step.label)
+        addFact(list, "label", step.label);
+    if (step.outcome)
+        addFact(list, "query", `event ${step.event} at byte ${step.offset} of ${data.logs[step.log]}: ${step.outcome}`, step.differs);
+    step.result?.forEach((result, side) => result && addFact(list, data.sides[side], resultText(result)));
+    if (step.note)
+        addFact(list, "note", step.note);
+    if (step.more)
+        addFact(list, "left out", `${step.more} more pairs of this step`);
+    step.bodies.forEach(([id, shape, name], index) => typeof shape === "string" && addFact(list, "not drawn", `${name || `body ${id || `#${index}`}`}: ${shape}`));
+    one("detail").replaceChildren(list);
+}
