@@ -42,10 +42,12 @@ void query_ignored(const struct scene_query *query, unsigned memory[QUERY_IGNORE
     ignored_begin(&scene, memory, out);
 }
 
-/* Whether all ignored indices are in range, as those of a query that was accepted. */
-static bool has_ignored(const struct scene_query *query)
+/* Whether split and the ignored indices are in range, as those of a query that was accepted. */
+static bool is_in_range(const struct scene_query *query)
 {
     const unsigned n = (unsigned) query_stored_placements(query);
+    if (query->split < 0 || (unsigned) query->split > n)
+        return false;
     for (int32_t k = 0; k < query->ignored_count / 2; k++)
         if (query->ignored[k][0] >= n || query->ignored[k][1] >= n)
             return false;
@@ -59,7 +61,7 @@ int64_t query_pairs_decided(const struct scene_query *query, int32_t end_pair,
     const struct query_placement *placement = query->placement;
     int64_t decided = (int64_t) end_pair - query->first_pair;
     struct ignored ignored;
-    if (query->which == FMB_PAIRS_LISTED || !has_ignored(query))
+    if (query->which == FMB_PAIRS_LISTED || !is_in_range(query))
         return decided;
     query_ignored(query, memory, &ignored);
     for (size_t a = 0; a < pair_rows(of); a++) {

@@ -155,7 +155,8 @@ void query_ignored(const struct scene_query *query, unsigned memory[QUERY_IGNORE
                    struct ignored *out);
 
 /* The number of pairs from first_pair on and before end_pair that are decided: neither ignored nor
- * within a group. No listed pair is. */
+ * within a group. No listed pair is. All of a query whose split or ignored pairs are out of range.
+ */
 int64_t query_pairs_decided(const struct scene_query *query, int32_t end_pair,
                             unsigned memory[QUERY_IGNORED_CAPACITY]);
 
