@@ -185,6 +185,8 @@ engine_objects := $(call engine_objects_in,$(engine_folders))
 
 message_objects := $(message_names:%=$(O)/msgs/fmb_msgs_%.o)
 $(message_headers:.h=.c) $(message_headers) &: $(message_files)
+	@command -v lcm-gen > /dev/null || { \
+		echo "make: no lcm-gen here; 'make deps' installs what building needs" >&2; exit 1; }
 	@mkdir -p $(GEN)
 	$(call say,LCM,$(GEN)) lcm-gen -c --c-cpath $(GEN) --c-hpath $(GEN) $^
 # lcm-gen's own code is not ours to warn about, nor that its decoders copy no bytes to NULL.
