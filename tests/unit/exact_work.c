@@ -2,10 +2,10 @@
 
 #include <gmp.h>
 
-#include "limbs.h"
+#include "integer.h"
 
 double exact_work;
-long exact_slabs;
+long exact_ends;
 
 static double larger(size_t x, size_t y)
 {
@@ -76,29 +76,38 @@ void __wrap___gmpz_tdiv_qr(mpz_ptr q, mpz_ptr r, mpz_srcptr num, mpz_srcptr den)
     __real___gmpz_tdiv_qr(q, r, num, den);
 }
 
-/* A slab of n limbs: 3 normals of 6 products; 8 extents and origins, offset and drift, of 3
- * products each; and 6 factors. Each product costs n^2. */
-static void count_slab(const struct limbs_pair *pair)
+/* Rows of products of wide integers. */
+mp_limb_t __real___gmpn_addmul_1(mp_ptr out, mp_srcptr x, mp_size_t n, mp_limb_t y);
+mp_limb_t __wrap___gmpn_addmul_1(mp_ptr out, mp_srcptr x, mp_size_t n, mp_limb_t y);
+mp_limb_t __wrap___gmpn_addmul_1(mp_ptr out, mp_srcptr x, mp_size_t n, mp_limb_t y)
 {
-    exact_work += (3 * 6 + (8 + 2) * 3 + 6) * (double) pair->limbs * pair->limbs;
+    exact_work += (double) n;
+    return __real___gmpn_addmul_1(out, x, n, y);
 }
 
-int __real_limbs_gap_sign(struct limbs_pair *pair, struct slab_normal normal);
-int __wrap_limbs_gap_sign(struct limbs_pair *pair, struct slab_normal normal);
-int __wrap_limbs_gap_sign(struct limbs_pair *pair, struct slab_normal normal)
+mp_limb_t __real___gmpn_submul_1(mp_ptr out, mp_srcptr x, mp_size_t n, mp_limb_t y);
+mp_limb_t __wrap___gmpn_submul_1(mp_ptr out, mp_srcptr x, mp_size_t n, mp_limb_t y);
+mp_limb_t __wrap___gmpn_submul_1(mp_ptr out, mp_srcptr x, mp_size_t n, mp_limb_t y)
 {
-    count_slab(pair);
-    return __real_limbs_gap_sign(pair, normal);
+    exact_work += (double) n;
+    return __real___gmpn_submul_1(out, x, n, y);
 }
 
-void __real_limbs_slab(struct limbs_pair *pair, struct slab_normal normal, mpz_t low, mpz_t high,
-                       mpz_t start, mpz_t slope);
-void __wrap_limbs_slab(struct limbs_pair *pair, struct slab_normal normal, mpz_t low, mpz_t high,
-                       mpz_t start, mpz_t slope);
-void __wrap_limbs_slab(struct limbs_pair *pair, struct slab_normal normal, mpz_t low, mpz_t high,
-                       mpz_t start, mpz_t slope)
+void __real___gmpn_mul_n(mp_ptr out, mp_srcptr x, mp_srcptr y, mp_size_t n);
+void __wrap___gmpn_mul_n(mp_ptr out, mp_srcptr x, mp_srcptr y, mp_size_t n);
+void __wrap___gmpn_mul_n(mp_ptr out, mp_srcptr x, mp_srcptr y, mp_size_t n)
 {
-    count_slab(pair);
-    exact_slabs++;
-    __real_limbs_slab(pair, normal, low, high, start, slope);
+    exact_work += (double) n * (double) n;
+    __real___gmpn_mul_n(out, x, y, n);
+}
+
+double __real_integer_ratio_round(const mpz_t num, const mpz_t den, long unit,
+                                  enum round_direction direction, mpz_t scratch[2]);
+double __wrap_integer_ratio_round(const mpz_t num, const mpz_t den, long unit,
+                                  enum round_direction direction, mpz_t scratch[2]);
+double __wrap_integer_ratio_round(const mpz_t num, const mpz_t den, long unit,
+                                  enum round_direction direction, mpz_t scratch[2])
+{
+    exact_ends++;
+    return __real_integer_ratio_round(num, den, unit, direction, scratch);
 }

@@ -1,14 +1,14 @@
-/* Counts the exact arithmetic of the code under test, in GMP and in integers of fixed width: the
+/* Counts the exact arithmetic of the code under test, in GMP and in wide integers: the
  * link wraps the functions (tests.mk). */
 #ifndef EXACT_WORK_H
 #define EXACT_WORK_H
 
 /* The work so far, in products of limbs of about half a nanosecond each: n m for a product of n and
  * m limbs, and for a division of n + m - 1 limbs by m; n^2 for an operation on fractions of n
- * limbs; n for a sum; and an upper bound for a slab in integers of fixed width. */
+ * limbs; n for a sum. Without integers of up to LIMBS_NARROW limbs, whose work is small. */
 extern double exact_work;
 
-/* Number of slabs of contacts that were computed in integers of fixed width. */
-extern long exact_slabs;
+/* Number of ends of contacts and boxes that were computed exactly. */
+extern long exact_ends;
 
 #endif

@@ -1303,13 +1303,14 @@ static bool needs_wide_limbs(const struct frame_pair *pair, unsigned want)
 {
     const bool faces = pair->a.frame->shape == FMB_FACE && pair->b.frame->shape == FMB_FACE;
     enum certified_path path;
-    struct limbs_pair limbs;
+    struct limbs_question question;
     certified_verdict(pair, &path);
-    if (want & FMB_WANT_BOX && limbs_prepare_faces(pair, limbs_span_of(pair), &limbs) &&
-        limbs.limbs > CERTIFIED_QUICK_LIMBS)
-        return true;
-    return (faces || path == CERTIFIED_LIMBS) && limbs_prepare(pair, limbs_span_of(pair), &limbs) &&
-           limbs.limbs > CERTIFIED_QUICK_LIMBS;
+    if (pair->duration > 0 && pair_moves(pair))
+        return true; /* GMP rounds exact times, unless they are the ends of the window */
+    limbs_question_set(pair, limbs_span_of(pair), want & FMB_WANT_BOX ? LIMBS_FLAT : LIMBS_SLABS,
+                       &question);
+    return (want & FMB_WANT_BOX || faces || path == CERTIFIED_LIMBS) &&
+           question.limbs > LIMBS_NARROW;
 }
 
 /* Returns whether it is left open. */

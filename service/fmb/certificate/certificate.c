@@ -50,9 +50,8 @@ enum {
 /* A direction that certificates can name. */
 struct named {
     char name[3];
-    int owner; /* 0, 1: an edge of that frame; 2: of neither */
-    /* Not 0. Of z, which is no vector of the pair, plus is -1. */
-    struct exact_edge edge;
+    enum { OF_A, OF_B, OF_NEITHER, OFFSET } owner; /* of edges, the frame */
+    mpz_t *vector;                                 /* not 0 */
 };
 
 struct normal_search {
@@ -84,16 +83,16 @@ static void search_each(struct normal_search *search, void (*call)(mpz_ptr))
 }
 
 static void add_direction(struct normal_search *search, char letter, int number, int owner,
-                          struct exact_edge edge)
+                          mpz_t *vector)
 {
-    if (integer_is_zero(edge.vector))
+    if (integer_is_zero(vector))
         return;
     struct named *named = &search->direction[search->directions++];
     named->name[0] = letter;
     named->name[1] = number < 0 ? '\0' : (char) ('0' + number);
     named->name[2] = '\0';
     named->owner = owner;
-    named->edge = edge;
+    named->vector = vector;
 }
 
 static void set_directions(struct normal_search *search, int dim)
@@ -102,10 +101,10 @@ static void set_directions(struct normal_search *search, int dim)
     for (int f = 0; f < 2; f++)
         for (int e = 0; e < pair->frame[f].edges; e++)
             add_direction(search, f ? 'b' : 'a', e, f, pair->frame[f].edge[e]);
-    add_direction(search, 'v', -1, 2, (struct exact_edge){EXACT_DRIFT, -1, pair->drift});
+    add_direction(search, 'v', -1, OF_NEITHER, pair->drift);
     mpz_set_ui(search->z[2], dim == 2);
-    add_direction(search, 'z', -1, 2, (struct exact_edge){-1, -1, search->z});
-    add_direction(search, 'd', -1, 2, (struct exact_edge){EXACT_OFFSET, -1, pair->offset});
+    add_direction(search, 'z', -1, OF_NEITHER, search->z);
+    add_direction(search, 'd', -1, OFFSET, pair->offset);
 }
 
 static bool varies(const struct exact_range *range)
@@ -125,17 +124,12 @@ static int proving_sign(struct normal_search *search)
     return least >= 0 ? 1 : most <= 0 ? -1 : 0;
 }
 
-static void set_values(struct normal_search *search)
-{
-    for (int k = 0; k < EXACT_VECTORS; k++)
-        exact_dot(search->pair, search->value[k], search->normal, k);
-}
-
-/* Whether the normal of search->value, or its opposite, proves the verdict; if so, search->text
+/* Whether search->normal, or its opposite, proves the verdict; if so, search->text
  * says which. */
-static bool try_values(struct normal_search *search, const char *format, ...)
+static bool try_normal(struct normal_search *search, const char *format, ...)
 {
-    int sign = proving_sign(search);
+    exact_set_values(search->pair, search->normal, search->value);
+    const int sign = proving_sign(search);
     if (sign == 0)
         return false;
     va_list names;
@@ -147,17 +141,6 @@ static bool try_values(struct normal_search *search, const char *format, ...)
     return true;
 }
 
-static void set_product_values(struct normal_search *search, const struct exact_edge *u,
-                               const struct exact_edge *v)
-{
-    if (u->plus >= 0 && v->plus >= 0) {
-        exact_cross_values(search->pair, u, v, search->value);
-        return;
-    }
-    integer_cross(search->normal, u->vector, v->vector, search->scratch);
-    set_values(search);
-}
-
 /* u x v: first the faces of each frame; then an edge of one with one of the other, with v, or
  * with z. */
 static bool try_products(struct normal_search *search)
@@ -166,10 +149,10 @@ static bool try_products(struct normal_search *search)
         for (int i = 0; i < search->directions; i++)
             for (int j = i + 1; j < search->directions; j++) {
                 const struct named *u = &search->direction[i], *v = &search->direction[j];
-                if ((u->owner != v->owner) != mixed || v->edge.plus == EXACT_OFFSET)
+                if ((u->owner != v->owner) != mixed || v->owner == OFFSET)
                     continue;
-                set_product_values(search, &u->edge, &v->edge);
-                if (try_values(search, "%s x %s", u->name, v->name))
+                integer_cross(search->normal, u->vector, v->vector, search->scratch);
+                if (try_normal(search, "%s x %s", u->name, v->name))
                     return true;
             }
     return false;
@@ -180,9 +163,8 @@ static bool try_directions(struct normal_search *search)
     for (int i = 0; i < search->directions; i++) {
         const struct named *u = &search->direction[i];
         for (int axis = 0; axis < 3; axis++)
-            mpz_set(search->normal[axis], u->edge.vector[axis]);
-        set_values(search);
-        if (try_values(search, "%s", u->name))
+            mpz_set(search->normal[axis], u->vector[axis]);
+        if (try_normal(search, "%s", u->name))
             return true;
     }
     return false;
@@ -196,13 +178,12 @@ static bool try_within_plane(struct normal_search *search)
     do {
         v++;
         assert(v < u + search->directions);
-        integer_cross(search->plane, u->edge.vector, v->edge.vector, search->scratch);
+        integer_cross(search->plane, u->vector, v->vector, search->scratch);
     } while (integer_is_zero(search->plane));
     for (int i = 0; i < search->directions; i++) {
         const struct named *w = &search->direction[i];
-        integer_cross(search->normal, search->plane, w->edge.vector, search->scratch);
-        set_values(search);
-        if (try_values(search, "(%s x %s) x %s", u->name, v->name, w->name))
+        integer_cross(search->normal, search->plane, w->vector, search->scratch);
+        if (try_normal(search, "(%s x %s) x %s", u->name, v->name, w->name))
             return true;
     }
     return false;
@@ -298,9 +279,9 @@ static bool pair_is_wide(const struct exact_pair *exact)
 static void write_certificate(struct certificate_writer *writer, const struct frame_pair *pair)
 {
     struct exact_pair exact;
-    exact_pair_init(&exact, pair, true);
+    exact_pair_init(&exact, pair);
     if (!pair_is_wide(&exact)) {
-        const enum fmb_verdict verdict = exact_verdict(&exact, pair->duration, NULL);
+        const enum fmb_verdict verdict = exact_verdict(pair, NULL);
         write_text(writer, fmb_verdict_name(verdict));
         if (verdict != FMB_OVERLAPPING)
             write_normal(writer, &exact, pair->a.frame->dim, verdict);

@@ -188,6 +188,7 @@ static void add_point(void *context, const struct exact_point *point)
 /* A line at + s direction through a point of ri Q, along a direction of Q. */
 struct chord {
     struct exact_pair *exact;
+    int frame;
     mpq_t *at, *direction; /* [coordinate] */
     bool bounded;
     mpq_t low, high; /* where the line leaves Q: s from low to high */
@@ -196,6 +197,7 @@ struct chord {
     mpq_t place[3], way[3];
     mpq_t value, slope; /* of what is bounded: value + s slope */
     mpq_t bound[2], number;
+    mpz_t values[EXACT_VECTORS]; /* a normal . each vector of the pair */
 };
 
 static void chord_each(struct chord *chord, void (*call)(mpq_ptr))
@@ -253,16 +255,17 @@ static void dot(mpq_t out, mpz_t normal[3], mpq_t v[3], mpq_t scratch)
     }
 }
 
-static bool shorten_to_slab(void *context, struct slab *slab)
+static void shorten_to_slab(void *context, mpz_t normal[3])
 {
     struct chord *chord = context;
-    slab_set_normal(slab, chord->exact->scratch[0]);
-    dot(chord->value, slab->normal, chord->place, chord->number);
-    dot(chord->slope, slab->normal, chord->way, chord->number);
-    mpq_set_z(chord->bound[0], slab->low);
-    mpq_set_z(chord->bound[1], slab->high);
+    exact_set_values(chord->exact, normal, chord->values);
+    exact_extent(chord->exact, chord->frame, chord->values, mpq_numref(chord->bound[0]),
+                 mpq_numref(chord->bound[1]));
+    mpz_set_ui(mpq_denref(chord->bound[0]), 1);
+    mpz_set_ui(mpq_denref(chord->bound[1]), 1);
+    dot(chord->value, normal, chord->place, chord->number);
+    dot(chord->slope, normal, chord->way, chord->number);
     shorten(chord);
-    return true;
 }
 
 /* At the time t the point p lies at p - t v - o from the origin of the frame. */
@@ -283,7 +286,8 @@ static void shorten_to_frame(struct chord *chord, const struct placed_frame *pla
         mpq_set_z(chord->number, exact->frame[f].origin[axis]);
         mpq_sub(chord->place[axis], chord->place[axis], chord->number);
     }
-    slabs_walk(chord->exact, f ? SLABS_OF_B : SLABS_OF_A, shorten_to_slab, chord);
+    chord->frame = f;
+    limbs_functions_of(&exact->question)->normals(&exact->question, f, shorten_to_slab, chord);
 }
 
 /* Moves the point along its line to where coordinate k, which is 1 in the direction, is the
@@ -305,6 +309,8 @@ static void move_point(struct hull *hull, mpq_t at[COORDINATES], struct exact_pa
 {
     struct chord chord = {.exact = exact, .at = at};
     chord_each(&chord, mpq_init);
+    for (int k = 0; k < EXACT_VECTORS; k++)
+        mpz_init(chord.values[k]);
     for (int k = 0; k < COORDINATES; k++) {
         if (!hull->has[k])
             continue;
@@ -317,6 +323,8 @@ static void move_point(struct hull *hull, mpq_t at[COORDINATES], struct exact_pa
         simplify(&chord, k);
     }
     chord_each(&chord, mpq_clear);
+    for (int k = 0; k < EXACT_VECTORS; k++)
+        mpz_clear(chord.values[k]);
 }
 
 /* ---- The point ---- */

@@ -27,7 +27,6 @@
 #include "gap.h"
 #include "hull.h"
 #include "limbs.h"
-#include "limbs_box.h"
 #include "kernel.h"
 
 #include <math.h>
@@ -90,7 +89,8 @@ static bool are_faces(const struct certified *certified)
 
 static bool drifts(const struct certified *certified)
 {
-    return certified->kind < KERNEL_KINDS && certified->kind & KERNEL_DRIFTS;
+    return certified->pair.duration > 0 &&
+           kernel_pair_drifts(certified->frame[0], certified->frame[1]);
 }
 
 /* ---- Rungs ---- */
@@ -132,18 +132,19 @@ static enum slabs_outcome second_pass(struct certified *certified)
 static enum slabs_outcome open_slabs(struct certified *certified)
 {
     struct slab_value slab[SLABS_MAX];
-    struct limbs_pair limbs;
-    if (!find_slabs(certified) || !limbs_prepare(&certified->pair, certified->span, &limbs) ||
-        (certified->quick && limbs.limbs > CERTIFIED_QUICK_LIMBS))
+    struct slab_normal normal[SLABS_MAX];
+    struct limbs_question question;
+    int open = 0;
+    if (!find_slabs(certified))
+        return SLABS_UNSURE;
+    limbs_question_set(&certified->pair, certified->span, LIMBS_SLABS, &question);
+    if (certified->quick && question.limbs > LIMBS_NARROW)
         return SLABS_UNSURE;
     const int count = slabs_list(&certified->slabs, true, slab);
-    int sign = -1;
-    for (int i = 0; i < count && sign <= 0; i++) {
-        if (slab[i].error == 0 ? !certified->slabs.inexact : slab_gap(&slab[i]) < -slab[i].error)
-            continue;
-        const int one = limbs_gap_sign(&limbs, slab[i].normal);
-        sign = one > sign ? one : sign;
-    }
+    for (int i = 0; i < count; i++)
+        if (slab[i].error == 0 ? certified->slabs.inexact : slab_gap(&slab[i]) >= -slab[i].error)
+            normal[open++] = slab[i].normal;
+    const int sign = limbs_functions_of(&question)->gap_sign(&question, normal, open);
     return sign > 0 ? SLABS_SEPARATED : sign == 0 ? SLABS_TOUCHING : SLABS_OVERLAPPING;
 }
 
@@ -155,15 +156,18 @@ static enum hull_effort effort_of(bool quick)
 /* The exact method; of a pair with a hull, that of hull.h. */
 static enum slabs_outcome all_slabs(struct certified *certified)
 {
+    struct limbs_question question;
     struct fmb_answer answer = {0};
+    const bool times = certified->times && !certified->quick && drifts(certified);
     if (hull_takes(certified->frame[0]->frame, certified->frame[1]->frame))
         return hull_decide(&certified->pair, 0, effort_of(certified->quick), &answer) == FMB_OK
                    ? (enum slabs_outcome) answer.verdict
                    : SLABS_UNSURE;
-    if (!certified->quick)
-        exact_decide(&certified->pair, 0, &answer);
-    memcpy(certified->exact_contact, answer.contact, sizeof answer.contact);
-    return (enum slabs_outcome) answer.verdict;
+    limbs_question_set(&certified->pair, limbs_span_of(&certified->pair), LIMBS_FLAT, &question);
+    if (certified->quick && question.limbs > LIMBS_NARROW)
+        return SLABS_UNSURE;
+    return (enum slabs_outcome) limbs_functions_of(&question)->verdict(
+        &question, times ? certified->exact_contact : NULL);
 }
 
 typedef enum slabs_outcome rung_function(struct certified *certified);
@@ -181,7 +185,7 @@ static enum certified_path rung_of_faces(struct certified *certified)
     enum faces_planes planes = FACES_UNDECIDED;
     if (find_slabs(certified))
         planes = faces_planes_of(&certified->pair, &certified->slabs, certified->span,
-                                 &certified->projection);
+                                 certified->quick, &certified->projection);
     if (planes == FACES_SHARED) {
         const struct frame_pair *plane = &certified->projection.pair;
         prepared_set(plane->a, &certified->projected[0]);
@@ -227,7 +231,7 @@ static bool set_contact(struct certified *certified, double contact[2])
 {
     contact[0] = 0;
     contact[1] = certified->pair.duration + 0.0; /* never -0 */
-    if (certified->kind < KERNEL_KINDS && !drifts(certified))
+    if (!drifts(certified))
         return true;
     memcpy(contact, certified->contact, sizeof certified->contact);
     if (!isnan(contact[0]) && !never_rounds(certified))
@@ -259,8 +263,16 @@ bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, d
 bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
                           double duration, bool quick, double box[2][FMB_DIM_MAX])
 {
-    const struct frame_pair pair = {{a->frame, a->placement}, {b->frame, b->placement}, duration};
-    if (limbs_box(a, b, duration, quick ? CERTIFIED_QUICK_LIMBS : LIMBS_MAX, box))
+    bool swapped;
+    const enum kernel_kind kind = kernel_box_kind(a, b, duration, &swapped);
+    const struct fmb_prepared *const frame[2] = {swapped ? b : a, swapped ? a : b};
+    const struct frame_pair pair = {
+        {frame[0]->frame, frame[0]->placement}, {frame[1]->frame, frame[1]->placement}, duration};
+    struct limbs_question question;
+    limbs_question_set(&pair, limbs_span_of(&pair), LIMBS_FLAT, &question);
+    if (quick && question.limbs > LIMBS_NARROW)
+        return false;
+    if (kind < KERNEL_KINDS && limbs_functions_of(&question)->box(&question, frame, box))
         return true;
     if (!quick)
         exact_box(&pair, box);

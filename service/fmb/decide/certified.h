@@ -24,13 +24,10 @@
 enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
                                  struct fmb_answer *answer);
 
-/* The widest integers of a quick decision, in limbs: 512 bits. A slab then takes at most 1,000
- * products of limbs (most take 100 to 300), and a pair has at most SLABS_MAX slabs. */
-enum { CERTIFIED_QUICK_LIMBS = 8 };
-
 /* The same answer from prepared frames. quick: returns FMB_CANNOT_DECIDE, with *answer unspecified,
- * if the answer needs GMP or wider integers. A quick decision takes tens of microseconds at most
- * and allocates nothing. */
+ * if the answer needs integers wider than LIMBS_NARROW, or GMP. A quick decision takes tens of
+ * microseconds at most and allocates nothing: a slab takes at most 1,000 products of limbs (most
+ * take 100 to 300), and a pair has at most SLABS_MAX slabs. */
 enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
                                           const struct fmb_prepared *b, double duration,
                                           unsigned want, bool quick, struct fmb_answer *answer);

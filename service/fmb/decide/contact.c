@@ -68,47 +68,6 @@ static double seconds(double tau, double duration, int side)
 
 /* ---- Exact ends ---- */
 
-struct exact_slab {
-    mpz_t low, high, start, slope, scratch[2];
-};
-
-static void exact_slab_each(struct exact_slab *slab, void (*call)(mpz_ptr))
-{
-    call(slab->low);
-    call(slab->high);
-    call(slab->start);
-    call(slab->slope);
-    call(slab->scratch[0]);
-    call(slab->scratch[1]);
-}
-
-/* Turns the normal of a slab so that the offset rises along it. */
-static void turn(struct exact_slab *slab)
-{
-    mpz_neg(slab->slope, slab->slope);
-    mpz_neg(slab->start, slab->start);
-    mpz_neg(slab->low, slab->low);
-    mpz_neg(slab->high, slab->high);
-    mpz_swap(slab->low, slab->high);
-}
-
-/* The time at which the offset, which rises, enters the slab (end 0) or leaves it, in seconds,
- * rounded outward; 0 or the duration where it does so before or after the window. Overwrites the
- * bound. */
-static double exact_time(struct exact_slab *slab, int end, double duration)
-{
-    mpz_ptr bound = end ? slab->high : slab->low;
-    mpz_sub(bound, bound, slab->start);
-    if (mpz_sgn(bound) < 0)
-        return 0; /* only entered: the pair is in contact */
-    if (mpz_cmp(bound, slab->slope) > 0)
-        return duration;
-    const struct dyadic window = dyadic_of(duration);
-    mpz_mul_si(bound, bound, window.mantissa);
-    return integer_ratio_round(bound, slab->slope, window.exponent, end ? ROUND_UP : ROUND_DOWN,
-                               slab->scratch);
-}
-
 /* Whether the end of a slab might be beyond the one that surely holds for all, by more than may be
  * neglected. inexact: as in struct slabs_pair. */
 static bool contends(const struct slab_value *slab, bool inexact, const struct times *times,
@@ -124,28 +83,19 @@ static bool contends(const struct slab_value *slab, bool inexact, const struct t
 
 /* Moves the ends that are not good to the exact times of the slabs that might be beyond them. */
 static void settle(const struct slab_value *slabs, int count, bool inexact,
-                   struct limbs_pair *limbs, const struct times *times, double duration,
+                   const struct limbs_question *question, const struct times *times,
                    double contact[2])
 {
-    struct exact_slab exact;
-    exact_slab_each(&exact, mpz_init);
+    struct slab_normal normal[SLABS_MAX];
+    bool open[SLABS_MAX][2];
+    int opened = 0;
     for (int i = 0; i < count; i++) {
-        bool open[2];
         for (int end = 0; end < 2; end++)
-            open[end] = !good_end(times, end) && contends(&slabs[i], inexact, times, end);
-        if (!open[0] && !open[1])
-            continue;
-        limbs_slab(limbs, slabs[i].normal, exact.low, exact.high, exact.start, exact.slope);
-        if (mpz_sgn(exact.slope) == 0)
-            continue;
-        if (mpz_sgn(exact.slope) < 0)
-            turn(&exact);
-        if (open[0])
-            contact[0] = fmax(contact[0], exact_time(&exact, 0, duration));
-        if (open[1])
-            contact[1] = fmin(contact[1], exact_time(&exact, 1, duration));
+            open[opened][end] = !good_end(times, end) && contends(&slabs[i], inexact, times, end);
+        normal[opened] = slabs[i].normal;
+        opened += open[opened][0] || open[opened][1];
     }
-    exact_slab_each(&exact, mpz_clear);
+    limbs_functions_of(question)->clip_contact(question, normal, open, opened, contact);
 }
 
 bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs_pair, bool rounds,
@@ -153,7 +103,7 @@ bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs_pa
 {
     struct slab_value slabs[SLABS_MAX];
     struct times times = {{0, 1}, {0, 1}};
-    struct limbs_pair limbs;
+    struct limbs_question question;
     if (pair->duration < least_duration)
         return false;
     const int count = slabs_list(slabs_pair, rounds, slabs);
@@ -163,8 +113,9 @@ bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs_pa
     contact[1] = seconds(times.outer.high, pair->duration, 1);
     if (good_end(&times, 0) && good_end(&times, 1))
         return true;
-    if (!exact || !limbs_prepare(pair, span, &limbs))
+    if (!exact)
         return false;
-    settle(slabs, count, slabs_pair->inexact, &limbs, &times, pair->duration, contact);
+    limbs_question_set(pair, span, LIMBS_SLABS, &question);
+    settle(slabs, count, slabs_pair->inexact, &question, &times, contact);
     return true;
 }

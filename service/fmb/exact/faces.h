@@ -25,9 +25,11 @@ enum faces_planes {
  * In:  pair        two faces with areas, in range
  *      slabs       the same pair, prepared
  *      span        of the pair: limbs_span_of()
+ *      quick       no integers wider than LIMBS_NARROW
  * Out: projection  set if FACES_SHARED is returned, otherwise unspecified; contains pointers into
  *                  itself and must not be copied */
 enum faces_planes faces_planes_of(const struct frame_pair *pair, const struct slabs_pair *slabs,
-                                  struct dyadic_span span, struct faces_projection *projection);
+                                  struct dyadic_span span, bool quick,
+                                  struct faces_projection *projection);
 
 #endif

@@ -1,34 +1,47 @@
-/* Slabs in fixed-width integers: the step between doubles and GMP.
+/* Slabs in integers: the rungs above doubles.
  *
- * A slab that the filter leaves open is computed here by itself, in two's complement integers of 2
- * to LIMBS_MAX limbs of 64 bits, without allocation. Nothing rounds. A pair whose numbers need more
- * bits is left to the exact method. */
+ * A question about a pair is answered in integers of as many limbs of 64 bits as the numbers of the
+ * pair need. Nothing rounds. There are two sets of the same functions: of LIMBS_NARROW limbs at
+ * most, without allocation, and of LIMBS_WIDE limbs, which suffice for every pair. */
 #ifndef FMB_LIMBS_H
 #define FMB_LIMBS_H
 
-#include "limbs_rotation.h"
-#include "slabs.h"
+#include "integer.h"
+#include "pair.h"
 
-/* The coordinates of an edge: those of its frame, of the other frame, and of the world. */
-enum limbs_view { LIMBS_OWN, LIMBS_ACROSS, LIMBS_WORLD, LIMBS_VIEWS };
+struct slab_normal; /* slabs.h, as are these */
+struct slabs_pair;
 
-/* A pair. Lengths are integers times 2^unit of its span. Contains pointers into itself: must not be
- * copied. */
-struct limbs_pair {
-    const struct fmb_frame *frame[2];
+enum {
+    LIMBS_NARROW = 8,
+    LIMBS_AS_DOUBLES = 15, /* the most that a double holds without overflow */
+    LIMBS_WIDE = 166
+};
+
+/* A quaternion: the smallest integers proportional to an orientation, times 2^unit. */
+struct limbs_quaternion {
+    bool turned; /* R is not the identity; else the rest is 0 */
+    int bits;    /* the magnitudes of all integers are below 2^bits */
+    long unit;
+    struct dyadic at[4]; /* w, x, y, z */
+};
+
+/* Converts the orientation of a placement. */
+void limbs_quaternion_set(const struct fmb_placement *placement, struct limbs_quaternion *out);
+
+/* The normals that a question needs. */
+enum limbs_use {
+    LIMBS_SLABS, /* those of slabs_list() */
+    LIMBS_FLAT   /* also those in the planes of faces and of flat frames */
+};
+
+/* A question about a checked pair. */
+struct limbs_question {
+    const struct frame_pair *pair;
+    struct dyadic_span span; /* of the pair */
+    struct limbs_quaternion q[2];
+    bool same; /* both are the same rotation */
     int limbs; /* of a number */
-    /* For a box: half of its components, and its centre as the origin. */
-    struct limbs_vector component[2][FMB_DIM_MAX], origin[2];
-    struct limbs_vector offset, drift; /* of the positions */
-    /* Matrices by rows, NULL for the identity: from a frame to the world and back, and to the other
-     * frame. */
-    const struct limbs_vector *to_world[2], *from_world[2], *across[2];
-    const struct limbs_factor *norm[2], *all; /* factors of these matrices; NULL: 1 */
-    const struct limbs_factor *common;        /* of equal orientations; otherwise NULL */
-    struct limbs_rotation rotation[2], relative;
-    /* Edges, computed when they are needed, and their storage. */
-    const struct limbs_vector *view[2][SLABS_EDGES][LIMBS_VIEWS];
-    struct limbs_vector storage[2][SLABS_EDGES][LIMBS_VIEWS];
 };
 
 /* Returns the span of all lengths of a pair: components, origins, positions, and displacements v T.
@@ -39,17 +52,9 @@ struct dyadic_span limbs_span_of(const struct frame_pair *pair);
  * slabs_pair. */
 bool limbs_never_round(const struct slabs_pair *pair, struct dyadic_span span);
 
-/* Converts a pair. Returns false if its numbers, times those of the orientations, need more than
- * LIMBS_MAX limbs. */
-bool limbs_prepare(const struct frame_pair *pair, struct dyadic_span span, struct limbs_pair *out);
-
-/* The same, also for products with normals in the planes of faces. */
-bool limbs_prepare_faces(const struct frame_pair *pair, struct dyadic_span span,
-                         struct limbs_pair *out);
-
-/* Returns the sign of the gap of a slab; -1 if its normal is zero and the slab is void. Edges are
- * in the order of slabs_list(): of a, of b, the drift. */
-int limbs_gap_sign(struct limbs_pair *pair, struct slab_normal normal);
+/* Sets a question. *pair must outlive it. */
+void limbs_question_set(const struct frame_pair *pair, struct dyadic_span span, enum limbs_use use,
+                        struct limbs_question *out);
 
 /* The planes of two faces. */
 struct limbs_planes {
@@ -57,25 +62,55 @@ struct limbs_planes {
     bool shared;   /* they are the same plane at all times of the window */
 };
 
-struct limbs_planes limbs_planes_of(struct limbs_pair *pair);
-
-/* Computes the numbers of a slab_value exactly, times a common positive factor. */
-void limbs_slab(struct limbs_pair *pair, struct slab_normal normal, mpz_t low, mpz_t high,
-                mpz_t start, mpz_t slope);
-
-/* Products of a normal with the vectors of a pair, times one positive factor. */
-struct limbs_products {
-    limbs_number component[2][FMB_DIM_MAX]; /* [frame][component]; of a box, of half of it */
-    limbs_number offset; /* from the origin of frame 0 to that of frame 1; of a box, its centre */
-    limbs_number drift;
+/* Called for each point: of frame f, from vertex v s / den of the way to vertex w, at the time tau
+ * / den of the window. Vertices as in struct clip_wire, at the start of the window. */
+struct limbs_visitor {
+    void (*visit)(void *context, int f, int v, int w, const mpz_t s, const mpz_t tau,
+                  const mpz_t den);
+    void *context;
 };
 
-/* Computes the products of the normal of a slab. Returns false if it is zero. */
-bool limbs_products_of(struct limbs_pair *pair, struct slab_normal normal,
-                       struct limbs_products *out);
+/* Called for each normal, [axis]. */
+typedef void (*limbs_normal_visit)(void *context, mpz_t normal[3]);
 
-/* The same for a normal in the plane of frame f, a face: that of the face times one of its edges.
- * On input, the pair is prepared for this. */
-void limbs_products_in_face(struct limbs_pair *pair, int f, int edge, struct limbs_products *out);
+/* Edges are numbered as in slabs.h. */
+struct limbs_functions {
+    /* Decides a pair by all its slabs, flat frames included. If contact is not NULL and the pair is
+     * in contact, it is set to [first, last], in seconds, rounded outward; GMP then allocates. In:
+     * use LIMBS_FLAT. */
+    enum fmb_verdict (*verdict)(const struct limbs_question *question, double contact[2]);
+    /* Returns the largest sign of the gaps of slabs. A slab whose normal is zero has the sign -1.
+     */
+    int (*gap_sign)(const struct limbs_question *question, const struct slab_normal *normal,
+                    int count);
+    /* The planes of two faces with areas. */
+    struct limbs_planes (*planes)(const struct limbs_question *question);
+    /* Moves an end of the contact (0: first, 1: last) of a pair in contact to where the offset
+     * enters or leaves a slab, in seconds, rounded outward, if that is within the contact. open:
+     * the ends. GMP allocates. */
+    void (*clip_contact)(const struct limbs_question *question, const struct slab_normal *normal,
+                         const bool open[][2], int count, double contact[2]);
+    /* Computes the box of two prepared frames in contact, the same pair, in the order of
+     * kernel_box_kind(), within the limit of fmb.h. Returns false if doubles do not give the
+     * coordinates of points so closely. In: frames that are not flat, other than faces with an
+     * area; use LIMBS_FLAT. */
+    bool (*box)(const struct limbs_question *question, const struct fmb_prepared *const frame[2],
+                double box[2][FMB_DIM_MAX]);
+    /* Visits the points of points_walk(). In: use LIMBS_FLAT. GMP allocates. */
+    void (*points)(const struct limbs_question *question, const struct limbs_visitor *visitor);
+    /* Visits the normals of slabs whose intersection is frame f, in world coordinates, each times a
+     * positive factor. In: use LIMBS_FLAT. GMP allocates. */
+    void (*normals)(const struct limbs_question *question, int f, limbs_normal_visit visit,
+                    void *context);
+};
+
+extern const struct limbs_functions limbs_narrow, limbs_wide;
+
+/* The functions for a question. */
+static inline const struct limbs_functions *limbs_functions_of(
+    const struct limbs_question *question)
+{
+    return question->limbs <= LIMBS_NARROW ? &limbs_narrow : &limbs_wide;
+}
 
 #endif

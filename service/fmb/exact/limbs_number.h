@@ -1,20 +1,25 @@
-/* Fixed-width integers of n limbs, modulo 2^(64 n). In inlined functions n is a constant for the
- * usual widths. */
+/* Integers of n limbs, modulo 2^(64 n), in two's complement. A file that includes this header and
+ * those that include it sets LIMBS_MAX, the capacity of its numbers: limbs_narrow.c and
+ * limbs_wide.c. In inlined functions n is a constant for the usual widths. */
 #ifndef FMB_LIMBS_NUMBER_H
 #define FMB_LIMBS_NUMBER_H
 
-#include "inlined.h"
 #include "integer.h"
-#include "pair.h"
+#include "limbs.h"
 
 #include <stdint.h>
 #include <string.h>
 
-/* Above 8 to 12 limbs GMP is as fast on average, and far faster for the slowest pairs, since it
- * skips the zero limbs of numbers whose exponents are far apart: of the pairs that need 13 to 24
- * limbs, the slowest took 0.7 ms here and 0.2 ms in GMP. (test_engine_work.c bounds the
- * difference.) */
-enum { LIMBS_MAX = 12 };
+#ifndef LIMBS_MAX
+#define LIMBS_MAX LIMBS_NARROW
+#endif
+
+/* Always inlined: sums and products of a few limbs. */
+#define LIMBS_INLINE static inline __attribute__((always_inline))
+#define LIMBS_UNROLL _Pragma("GCC unroll 6")
+
+/* Not every file uses all functions. */
+#define LIMBS_FUNCTION static __attribute__((unused))
 
 /* A two's complement integer, least significant limb first. Only the first limbs, as many as the
  * pair has, are used. */
@@ -32,12 +37,12 @@ struct limbs_vector {
 
 typedef unsigned __int128 two_limbs;
 
-INLINE bool is_negative(const int n, const uint64_t *x)
+LIMBS_INLINE bool is_negative(const int n, const uint64_t *x)
 {
     return n > 0 && x[n - 1] >> 63;
 }
 
-INLINE bool is_zero(const int n, const uint64_t *x)
+LIMBS_INLINE bool is_zero(const int n, const uint64_t *x)
 {
     uint64_t bits = 0;
     for (int i = 0; i < n; i++)
@@ -45,32 +50,40 @@ INLINE bool is_zero(const int n, const uint64_t *x)
     return bits == 0;
 }
 
-INLINE void add(const int n, uint64_t *x, const uint64_t *y)
+LIMBS_INLINE void add(const int n, uint64_t *x, const uint64_t *y)
 {
     bool carry = false;
-    UNROLL(6)
+    LIMBS_UNROLL
     for (int i = 0; i < n; i++) {
         const bool first = __builtin_add_overflow(x[i], y[i], &x[i]);
         carry = __builtin_add_overflow(x[i], (uint64_t) carry, &x[i]) | first;
     }
 }
 
-INLINE void subtract(const int n, uint64_t *x, const uint64_t *y)
+LIMBS_INLINE void subtract(const int n, uint64_t *x, const uint64_t *y)
 {
     bool borrow = false;
-    UNROLL(6)
+    LIMBS_UNROLL
     for (int i = 0; i < n; i++) {
         const bool first = __builtin_sub_overflow(x[i], y[i], &x[i]);
         borrow = __builtin_sub_overflow(x[i], (uint64_t) borrow, &x[i]) | first;
     }
 }
 
+/* Returns the number of limbs that hold x with a sign; 0 for 0. */
+LIMBS_FUNCTION int limbs_needed(int n, const uint64_t *x)
+{
+    while (n > 0 && x[n - 1] == (n > 1 && is_negative(n - 1, x) ? UINT64_MAX : 0))
+        n--;
+    return n;
+}
+
 /* out := out + x y, or out - x y. Neither half of a sum of two limbs and a product overflows. */
-INLINE void add_row(const int n, uint64_t *out, bool minus, const uint64_t *x, uint64_t y)
+LIMBS_INLINE void add_row(const int n, uint64_t *out, bool minus, const uint64_t *x, uint64_t y)
 {
     uint64_t carry = 0;
     if (minus) {
-        UNROLL(6)
+        LIMBS_UNROLL
         for (int i = 0; i < n; i++) {
             two_limbs sum = (two_limbs) out[i] - (two_limbs) x[i] * y - carry;
             out[i] = (uint64_t) sum;
@@ -78,7 +91,7 @@ INLINE void add_row(const int n, uint64_t *out, bool minus, const uint64_t *x, u
         }
         return;
     }
-    UNROLL(6)
+    LIMBS_UNROLL
     for (int i = 0; i < n; i++) {
         two_limbs sum = (two_limbs) out[i] + (two_limbs) x[i] * y + carry;
         out[i] = (uint64_t) sum;
@@ -86,11 +99,60 @@ INLINE void add_row(const int n, uint64_t *out, bool minus, const uint64_t *x, u
     }
 }
 
+/* A wide number: its limbs before first are 0, and from end on those of its sign. */
+struct wide_number {
+    const uint64_t *at;
+    int first, end;
+    bool negative;
+};
+
+static inline struct wide_number wide_number_of(int n, const uint64_t *x)
+{
+    const int end = limbs_needed(n, x);
+    int first = 0;
+    while (first < end && x[first] == 0)
+        first++;
+    return (struct wide_number){x, first, end, is_negative(end, x)};
+}
+
+/* The same for wide numbers, whose span is often short, and which have many limbs of 0, since
+ * exponents are far apart. x is its limbs before end, without a sign, minus 2^(64 end) if it is
+ * negative. */
+LIMBS_FUNCTION void add_wide_product(int n, uint64_t *out, bool minus, const uint64_t *one,
+                                     const uint64_t *other)
+{
+    struct wide_number x = wide_number_of(n, one), y = wide_number_of(n, other);
+    if (x.end - x.first > y.end - y.first) {
+        const struct wide_number longer = x;
+        x = y;
+        y = longer;
+    }
+    minus = minus != y.negative;
+    bool carry = true; /* -y = ~y + 1 */
+    for (int j = y.first; j < y.end && x.first < x.end; j++) {
+        const uint64_t limb = y.negative ? ~y.at[j] + carry : y.at[j];
+        const int first = j + x.first, end = j + x.end < n ? j + x.end : n;
+        carry = carry && limb == 0;
+        if (limb == 0 || first >= end)
+            continue;
+        const mp_limb_t rest =
+            (minus ? mpn_submul_1 : mpn_addmul_1)(out + first, x.at + x.first, end - first, limb);
+        if (end == n)
+            continue;
+        mpn_add_1(out + end, out + end, n - end, !minus ? rest : x.negative ? limb : 0);
+        mpn_sub_1(out + end, out + end, n - end, minus ? rest : x.negative ? limb : 0);
+    }
+}
+
 /* The same for y of ny limbs, with a sign. */
-INLINE void add_product(const int n, uint64_t *out, bool minus, const uint64_t *x, const int ny,
-                        const uint64_t *y)
+LIMBS_INLINE void add_product(const int n, uint64_t *out, bool minus, const uint64_t *x,
+                              const int ny, const uint64_t *y)
 {
     const bool negative = is_negative(ny, y);
+    if (LIMBS_MAX > LIMBS_NARROW) {
+        add_wide_product(n, out, minus, x, y);
+        return;
+    }
     add_row(n, out, minus != negative, x, negative ? -y[0] : y[0]);
     bool carry = y[0] == 0; /* -y = ~y + 1 */
     for (int j = 1; j < ny; j++) {
@@ -101,8 +163,8 @@ INLINE void add_product(const int n, uint64_t *out, bool minus, const uint64_t *
 }
 
 /* out := x . y */
-INLINE void dot_limbs(const int n, const struct limbs_vector *x, const struct limbs_vector *y,
-                      uint64_t *out)
+LIMBS_INLINE void dot_limbs(const int n, const struct limbs_vector *x, const struct limbs_vector *y,
+                            uint64_t *out)
 {
     memset(out, 0, (size_t) n * sizeof *out);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
@@ -111,36 +173,111 @@ INLINE void dot_limbs(const int n, const struct limbs_vector *x, const struct li
 }
 
 /* Calls function with n as a constant if it is one of these. */
-#define WITH_LIMBS(n, function, ...)          \
-    switch (n) {                              \
-    case 2: function(2, __VA_ARGS__); break;  \
-    case 3: function(3, __VA_ARGS__); break;  \
-    case 4: function(4, __VA_ARGS__); break;  \
-    case 5: function(5, __VA_ARGS__); break;  \
-    default: function(n, __VA_ARGS__); break; \
+#define WITH_LIMBS(n, function, ...)              \
+    switch (LIMBS_MAX > LIMBS_NARROW ? 0 : (n)) { \
+    case 2: function(2, __VA_ARGS__); break;      \
+    case 3: function(3, __VA_ARGS__); break;      \
+    case 4: function(4, __VA_ARGS__); break;      \
+    case 5: function(5, __VA_ARGS__); break;      \
+    default: function(n, __VA_ARGS__); break;     \
     }
+
+/* -1, 0 or 1 */
+LIMBS_INLINE int sign_of(const int n, const uint64_t *x)
+{
+    return is_negative(n, x) ? -1 : !is_zero(n, x);
+}
+
+LIMBS_INLINE bool is_less(const int n, const uint64_t *x, const uint64_t *y)
+{
+    limbs_number difference;
+    memcpy(difference, x, (size_t) n * sizeof *x);
+    subtract(n, difference, y);
+    return is_negative(n, difference);
+}
 
 /* ---- Not inlined ---- */
 
-/* Returns the number of limbs that hold x with a sign; 0 for 0. */
-int limbs_needed(int n, const uint64_t *x);
-
-/* Sets limbs and other_than_0 of a vector. The functions below read them of y and v only. */
-void limbs_trim(int n, struct limbs_vector *v);
+/* Sets limbs and other_than_0 of a vector. Functions read them of the factors y and v only. */
+LIMBS_FUNCTION void limbs_trim(int n, struct limbs_vector *v)
+{
+    v->limbs = 0;
+    v->other_than_0 = 0;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        const int limbs = limbs_needed(n, v->at[axis]);
+        v->limbs = limbs > v->limbs ? limbs : v->limbs;
+        v->other_than_0 |= (unsigned) (limbs > 0) << axis;
+    }
+}
 
 /* out := x y 2^-unit. In: the result is an integer. */
-void limbs_set_product(int n, uint64_t *out, struct dyadic x, struct dyadic y, long unit);
+LIMBS_FUNCTION void limbs_set_product(int n, uint64_t *out, struct dyadic x, struct dyadic y,
+                                      long unit)
+{
+    const __int128 product = (__int128) x.mantissa * y.mantissa;
+    const long shift = x.exponent + y.exponent - unit;
+    memset(out, 0, (size_t) n * sizeof *out);
+    if (product == 0)
+        return;
+    const two_limbs magnitude = (two_limbs) (product < 0 ? -product : product);
+    const int word = (int) (shift / 64), bit = (int) (shift % 64);
+    const uint64_t part[3] = {(uint64_t) magnitude << bit, (uint64_t) (magnitude >> (64 - bit)),
+                              bit ? (uint64_t) (magnitude >> 64) >> (64 - bit) : 0};
+    for (int i = 0; i < 3 && word + i < n; i++)
+        out[word + i] = part[i];
+    if (product < 0) {
+        limbs_number negative = {0};
+        subtract(n, negative, out);
+        memcpy(out, negative, (size_t) n * sizeof *out);
+    }
+}
 
 /* out := out + x y, or out - x y; y of ny limbs. */
-void limbs_add_product(int n, uint64_t *out, bool minus, const uint64_t *x, int ny,
-                       const uint64_t *y);
+LIMBS_FUNCTION void limbs_add_product(int n, uint64_t *out, bool minus, const uint64_t *x, int ny,
+                                      const uint64_t *y)
+{
+    WITH_LIMBS(n, add_product, out, minus, x, ny, y);
+}
 
-/* out := x x y, or y x x if swapped. */
-void limbs_cross(int n, const struct limbs_vector *x, const struct limbs_vector *y, bool swapped,
-                 struct limbs_vector *out);
+/* out := x x y, or y x x where swapped. */
+LIMBS_INLINE void cross_limbs(const int n, const struct limbs_vector *x,
+                              const struct limbs_vector *y, bool swapped, struct limbs_vector *out)
+{
+    for (int i = 0; i < 3; i++)
+        memset(out->at[i], 0, (size_t) n * sizeof *out->at[i]);
+    for (int k = 0; k < 3; k++) {
+        const int i = k == 2 ? 0 : k + 1, j = 3 - i - k;
+        if (!(y->other_than_0 >> k & 1))
+            continue;
+        add_product(n, out->at[j], !swapped, x->at[i], y->limbs, y->at[k]);
+        add_product(n, out->at[i], swapped, x->at[j], y->limbs, y->at[k]);
+    }
+}
+
+LIMBS_FUNCTION void limbs_cross(int n, const struct limbs_vector *x, const struct limbs_vector *y,
+                                bool swapped, struct limbs_vector *out)
+{
+    WITH_LIMBS(n, cross_limbs, x, y, swapped, out);
+}
+
+LIMBS_INLINE void transform_limbs(const int n, const struct limbs_vector row[FMB_DIM_MAX],
+                                  const struct limbs_vector *v, struct limbs_vector *out)
+{
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        const bool shorter = row[axis].limbs < v->limbs;
+        dot_limbs(n, shorter ? v : &row[axis], shorter ? &row[axis] : v, out->at[axis]);
+    }
+}
 
 /* out := row . v; returns out, or v itself if row is NULL (the identity). */
-const struct limbs_vector *limbs_transform(int n, const struct limbs_vector *row,
-                                           const struct limbs_vector *v, struct limbs_vector *out);
+LIMBS_FUNCTION const struct limbs_vector *limbs_transform(int n, const struct limbs_vector *row,
+                                                          const struct limbs_vector *v,
+                                                          struct limbs_vector *out)
+{
+    if (!row)
+        return v;
+    WITH_LIMBS(n, transform_limbs, row, v, out);
+    return out;
+}
 
 #endif

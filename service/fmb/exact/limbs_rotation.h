@@ -1,19 +1,9 @@
-/* Rotations in fixed-width integers: the matrix n R(q), n = |q|^2, of a quaternion q scaled to
- * integers. n of the functions is the number of limbs of all integers. No shared state. */
+/* Rotations in integers of n limbs: the matrix m R(q), m = |q|^2, of a quaternion q scaled to
+ * integers. */
 #ifndef FMB_LIMBS_ROTATION_H
 #define FMB_LIMBS_ROTATION_H
 
 #include "limbs_number.h"
-
-/* A quaternion scaled to integers: given / 2^unit, or the smallest integers proportional to it if
- * given spans at most 62 bits. */
-struct limbs_quaternion {
-    bool turned;        /* R is not the identity */
-    int bits;           /* the magnitudes of all integers are below 2^bits */
-    double given[4];    /* w, x, y, z */
-    long unit;          /* all of given are multiples of 2^unit */
-    int64_t reduced[4]; /* the components, if bits <= 62 */
-};
 
 /* A factor > 0. */
 struct limbs_factor {
@@ -21,25 +11,91 @@ struct limbs_factor {
     limbs_number at;
 };
 
-/* A matrix of integers n R, R a rotation. */
+/* A matrix of integers m R, R a rotation. */
 struct limbs_rotation {
-    struct limbs_vector row[2][FMB_DIM_MAX]; /* of n R; of n R^-1, its transpose */
-    struct limbs_factor norm;                /* n */
+    struct limbs_vector row[2][FMB_DIM_MAX]; /* of m R; of m R^-1, its transpose */
+    struct limbs_factor norm;                /* m */
 };
 
-/* Converts the orientation of a placement. If the rotation is the identity, only given and turned
- * are set; other fields are 0. */
-void limbs_set_quaternion(const struct fmb_placement *placement, struct limbs_quaternion *out);
+/* A quaternion in integers of as many limbs as they need. */
+struct quaternion_limbs {
+    int limbs;
+    limbs_number at[4];
+};
 
-/* Returns true only if both are the same rotation; may return false for equal ones whose integers
- * have more than 62 bits. */
-bool limbs_same_rotation(const struct limbs_quaternion *a, const struct limbs_quaternion *b);
+LIMBS_FUNCTION void set_quaternion_limbs(int n, const struct limbs_quaternion *q,
+                                         struct quaternion_limbs *out)
+{
+    static const struct dyadic one = {1, 0};
+    out->limbs = q->bits / 64 + 1;
+    for (int i = 0; i < 4; i++)
+        limbs_set_product(n, out->at[i], q->at[i], one, q->unit);
+}
 
-/* Computes n R(q). */
-void limbs_set_rotation(int n, const struct limbs_quaternion *q, struct limbs_rotation *out);
+/* Sets the rows of the transposed matrix. */
+LIMBS_FUNCTION void set_inverse(int n, struct limbs_vector row[FMB_DIM_MAX],
+                                struct limbs_vector out[FMB_DIM_MAX])
+{
+    for (int i = 0; i < 3; i++) {
+        limbs_trim(n, &row[i]);
+        for (int j = 0; j < 3; j++)
+            memcpy(out[i].at[j], row[j].at[i], (size_t) n * sizeof(uint64_t));
+        limbs_trim(n, &out[i]);
+    }
+}
 
-/* Computes the rotation of b relative to a: n_a n_b R_a^-1 R_b. */
-void limbs_set_relative(int n, const struct limbs_rotation *a, const struct limbs_rotation *b,
-                        struct limbs_rotation *out);
+/* Computes m R(q). */
+LIMBS_FUNCTION void limbs_set_rotation(int n, const struct limbs_quaternion *quaternion,
+                                       struct limbs_rotation *out)
+{
+    const size_t size = (size_t) n * sizeof(uint64_t);
+    struct quaternion_limbs components;
+    const struct quaternion_limbs *q = &components;
+    limbs_number product;
+    set_quaternion_limbs(n, quaternion, &components);
+    memset(out->norm.at, 0, size);
+    for (int i = 0; i < 3; i++)
+        memset(out->row[0][i].at[i], 0, size);
+    for (int k = 0; k < 4; k++) { /* ww, and v_k v_k: + in row k, else - */
+        memset(product, 0, size);
+        limbs_add_product(n, product, false, q->at[k], q->limbs, q->at[k]);
+        add(n, out->norm.at, product);
+        for (int i = 0; i < 3; i++) {
+            uint64_t *entry = out->row[0][i].at[i];
+            if (k == 0 || k == 1 + i)
+                add(n, entry, product);
+            else
+                subtract(n, entry, product);
+        }
+    }
+    for (int i = 0; i < 3; i++) { /* 2 (v_i v_j - w v_k) and 2 (v_i v_j + w v_k), cyclic */
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        uint64_t *less = out->row[0][i].at[j], *more = out->row[0][j].at[i];
+        memset(less, 0, size);
+        limbs_add_product(n, less, false, q->at[1 + i], q->limbs, q->at[1 + j]);
+        add(n, less, less);
+        memcpy(more, less, size);
+        memset(product, 0, size);
+        limbs_add_product(n, product, false, q->at[0], q->limbs, q->at[1 + k]);
+        add(n, product, product);
+        subtract(n, less, product);
+        add(n, more, product);
+    }
+    out->norm.limbs = limbs_needed(n, out->norm.at);
+    set_inverse(n, out->row[0], out->row[1]);
+}
+
+/* Computes the rotation of b relative to a: m_a m_b R_a^-1 R_b. Its columns are the columns of R_b,
+ * transformed by R_a^-1. */
+LIMBS_FUNCTION void limbs_set_relative(int n, const struct limbs_rotation *a,
+                                       const struct limbs_rotation *b, struct limbs_rotation *out)
+{
+    for (int i = 0; i < 3; i++)
+        limbs_transform(n, a->row[1], &b->row[1][i], &out->row[1][i]);
+    set_inverse(n, out->row[1], out->row[0]);
+    memset(out->norm.at, 0, sizeof out->norm.at);
+    limbs_add_product(n, out->norm.at, false, a->norm.at, b->norm.limbs, b->norm.at);
+    out->norm.limbs = limbs_needed(n, out->norm.at);
+}
 
 #endif

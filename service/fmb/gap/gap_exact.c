@@ -179,8 +179,7 @@ static void set_support(struct solver *solver, mpz_t n[3], struct exact_corner *
 static void set_extent(struct solver *solver, mpz_t n[3])
 {
     struct exact_pair *pair = &solver->pair;
-    for (int k = 0; k < EXACT_VECTORS; k++)
-        integer_dot(solver->value[k], n, exact_vector(pair, k), solver->t[0]);
+    exact_set_values(pair, n, solver->value);
     exact_ranges(pair, solver->value, solver->range, &solver->all);
 }
 
@@ -364,7 +363,7 @@ static int list_edges(struct exact_pair *pair, mpz_t *edge[2 * EXACT_EDGES_MAX +
     int count = 0;
     for (int f = 0; f < 2; f++)
         for (int e = 0; e < pair->frame[f].edges; e++)
-            edge[count++] = pair->frame[f].edge[e].vector;
+            edge[count++] = pair->frame[f].edge[e];
     edge[count++] = pair->drift;
     return count;
 }
@@ -536,7 +535,7 @@ void gap_exact(const struct frame_pair *pair, enum fmb_verdict verdict, struct f
 {
     struct solver solver = {.dim = pair->a.frame->dim};
     memset(out, 0, sizeof *out);
-    exact_pair_init(&solver.pair, pair, true);
+    exact_pair_init(&solver.pair, pair);
     solver_each(&solver, mpz_init);
     round_pair(&solver.pair, solver.t[0]);
     answer(&solver, verdict, pair->duration, out);

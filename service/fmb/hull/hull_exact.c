@@ -979,7 +979,7 @@ struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
     each(e, mpz_init);
     e->pair = pair;
     e->want = want & (FMB_WANT_BOX | FMB_WANT_TIMES);
-    e->unit = exact_pair_unit(pair->frames);
+    e->unit = limbs_span_of(pair->frames).unit;
     for (int f = 0; f < 2; f++) {
         e->side[f].view = &pair->view[f];
         exact_turn_set(pair->view[f].placed.placement, &e->side[f].turn);
