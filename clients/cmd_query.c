@@ -27,6 +27,14 @@ static const char usage[] =
     "                   decides\n"
     "  --json           one line of JSON for each scene, exact; without it, tables\n"
     "                   for people, rounded\n"
+    "  --csv            one line of CSV for each pair, exact, after a line of column\n"
+    "                   names\n"
+    "  --contacts       print only the pairs that touch, overlap or are near, and\n"
+    "                   those that could not be decided\n"
+    "  --all            print all pairs in tables too, which otherwise leave out the\n"
+    "                   separated pairs of a scene after the first 20\n"
+    "  --fail-if WHAT   exit with 3, after all scenes, if a pair is overlapping;\n"
+    "                   touching: or only touches; near: or is within the margin\n"
     "  --box            give the box of the intersection too\n"
     "  --gap            give the signed distance too: how far apart the bodies are,\n"
     "                   or minus how deep they overlap, as two bounds; with --json\n"
@@ -64,11 +72,18 @@ static const char usage[] =
     "   \"ignore\": [[1,3]]}\n"
     "\n"
     "Exit codes: 0 answered; 1 a pair could not be decided, or no service answered; 2\n"
-    "wrong usage, or input that cannot be read or is not a scene.\n";
+    "wrong usage, or input that cannot be read or is not a scene; 3 otherwise, if a\n"
+    "pair is as --fail-if says.\n";
+
+/* What --fail-if takes, each includes those above it; and the exit code. */
+enum severity { SEPARATED, NEAR, TOUCHING, OVERLAPPING };
+enum { FAILED_IF = 3 };
 
 struct query {
     /* Options. */
-    bool local, json, box, gap, certificate;
+    bool local, json, csv, certificate;
+    struct report_rows rows;         /* their options */
+    enum severity fail_if;           /* SEPARATED: not given */
     const struct fmb_method *method; /* NULL: the default, of this process or of the service */
     struct output_options html;
     double timeout;
@@ -80,7 +95,8 @@ struct query {
     struct answers_bus *answers; /* NULL: not opened yet */
     const struct fmb_scene *scene;
     struct progress progress;
-    bool undecided; /* a pair has no verdict */
+    bool undecided;      /* a pair has no verdict */
+    enum severity worst; /* of all pairs */
 };
 
 static bool take_method(const struct args *args, void *out)
@@ -97,6 +113,31 @@ static bool take_svg(const struct args *args, void *out)
     return args_error(args, "--svg: pictures are pages now: --html %s", optarg);
 }
 
+static bool take_fail_if(const struct args *args, void *out)
+{
+    static const char *const name[] = {
+        [NEAR] = "near", [TOUCHING] = "touching", [OVERLAPPING] = "overlapping"};
+    enum severity *fail_if = out;
+    if (*fail_if != SEPARATED)
+        return args_error(args,
+                          "--fail-if: given twice; near includes touching, and both include "
+                          "overlapping");
+    for (*fail_if = NEAR; *fail_if <= OVERLAPPING; ++*fail_if)
+        if (strcmp(optarg, name[*fail_if]) == 0)
+            return true;
+    return args_error(args, "--fail-if: there are overlapping, touching and near, not '%s'",
+                      optarg);
+}
+
+static enum severity severity_of(double margin, const struct fmb_answer *answer)
+{
+    switch (answer->verdict) {
+    case FMB_OVERLAPPING: return OVERLAPPING;
+    case FMB_TOUCHING: return TOUCHING;
+    default: return report_is_near(margin, answer) ? NEAR : SEPARATED;
+    }
+}
+
 static void take_answer(void *user, const struct fmb_client_answer *answer)
 {
     struct query *query = user;
@@ -107,6 +148,8 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
     for (int i = 0; i < 2 && query->report[i]; i++)
         query->report[i]->pair(query->report[i], &checked);
     query->undecided = query->undecided || checked.status != FMB_OK;
+    const enum severity severity = severity_of(query->scene->margin, &checked.answer);
+    query->worst = severity > query->worst ? severity : query->worst;
     progress_to(&query->progress, query->progress.done + 1, query->progress.total);
 }
 
@@ -117,8 +160,9 @@ static bool answer_scene(struct query *query, struct owned_scene *owner)
     struct fmb_scene *scene = &owner->scene;
     bool more = true;
     scene->method = query->method;
-    scene->want = FMB_WANT_TIMES | (query->box ? FMB_WANT_BOX : 0) |
-                  (query->gap ? FMB_WANT_GAP : 0) | (query->certificate ? FMB_WANT_CERTIFICATE : 0);
+    scene->want = FMB_WANT_TIMES | (query->rows.box ? FMB_WANT_BOX : 0) |
+                  (query->rows.gap ? FMB_WANT_GAP : 0) |
+                  (query->certificate ? FMB_WANT_CERTIFICATE : 0);
     query->scene = scene;
     for (int i = 0; i < 2 && query->report[i]; i++) {
         query->report[i]->scene = owner;
@@ -155,7 +199,10 @@ static int answer_scenes(struct query *query, int fd)
     json_close(reader);
     if (wrong)
         return ARGS_USAGE;
-    return !more || query->undecided ? ARGS_FAILED : ARGS_ANSWERED;
+    if (!more || query->undecided)
+        return ARGS_FAILED;
+    return query->fail_if != SEPARATED && query->worst >= query->fail_if ? FAILED_IF
+                                                                         : ARGS_ANSWERED;
 }
 
 static bool write_page(const struct output_options *options, struct page *page)
@@ -170,12 +217,11 @@ static bool write_page(const struct output_options *options, struct page *page)
 
 static int run_query(struct query *query, int fd)
 {
-    struct report_json json = report_json(stdout);
-    struct report_text text = report_text(stdout, query->box, query->gap);
+    struct report_rows rows = report_rows(&query->rows);
     struct query_page page = {.page = NULL};
     if (query->html.path)
         page = query_page_open(query->input);
-    query->report[0] = query->json ? &json.report : &text.report;
+    query->report[0] = &rows.report;
     query->report[1] = page.page ? &page.report : NULL;
     int code = answer_scenes(query, fd);
     if (query->answers)
@@ -183,19 +229,25 @@ static int run_query(struct query *query, int fd)
     bool good = code == ARGS_USAGE || write_page(&query->html, page.page);
     page_close(page.page);
     good = output_flush() && good;
-    return good || code != ARGS_ANSWERED ? code : ARGS_FAILED;
+    return good || code == ARGS_USAGE ? code : ARGS_FAILED;
 }
 
 int cmd_query(int argc, char **argv)
 {
     struct output_rules rules = {.force = false};
-    struct query query = {
-        .html = {.kind = OUTPUT_PAGE, .rules = &rules}, .timeout = 0.5, .retries = 5};
+    struct query query = {.html = {.kind = OUTPUT_PAGE, .rules = &rules},
+                          .timeout = 0.5,
+                          .retries = 5,
+                          .rows = {.out = stdout}};
     const struct args_option own[] = {
         {"local", ARGS_FLAG, .out = &query.local},
         {"json", ARGS_FLAG, .out = &query.json},
-        {"box", ARGS_FLAG, .out = &query.box},
-        {"gap", ARGS_FLAG, .out = &query.gap},
+        {"csv", ARGS_FLAG, .out = &query.csv},
+        {"contacts", ARGS_FLAG, .out = &query.rows.contacts},
+        {"all", ARGS_FLAG, .out = &query.rows.all},
+        {"fail-if", ARGS_OTHER, &query.fail_if, .take = take_fail_if},
+        {"box", ARGS_FLAG, .out = &query.rows.box},
+        {"gap", ARGS_FLAG, .out = &query.rows.gap},
         {"certificate", ARGS_FLAG, .out = &query.certificate},
         {"method", ARGS_OTHER, &query.method, .take = take_method},
         {"html", ARGS_TEXT, .out = &query.html.path},
@@ -209,6 +261,9 @@ int cmd_query(int argc, char **argv)
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
+    if (!args_exclude(&args, query.csv, query.json, "--csv and --json") ||
+        !args_exclude(&args, query.rows.contacts, query.rows.all, "--contacts and --all"))
+        return ARGS_USAGE;
     const bool named = args.operand_count > 0 && strcmp(args.operands[0], "-") != 0;
     const int fd = named ? open(args.operands[0], O_RDONLY) : STDIN_FILENO;
     query.input = named ? args.operands[0] : "standard input";
@@ -216,7 +271,8 @@ int cmd_query(int argc, char **argv)
         complain("%s: %s", query.input, strerror(errno));
         return ARGS_USAGE;
     }
-    query.box = query.box || query.html.path;
+    query.rows.box = query.rows.box || query.html.path;
+    query.rows.form = query.csv ? REPORT_CSV : query.json ? REPORT_JSON : REPORT_TABLE;
     query.bus = args.bus;
     rules.other_input = named ? query.input : "/dev/stdin";
     code = output_check(&query.html) ? run_query(&query, fd) : ARGS_USAGE;

@@ -147,7 +147,8 @@ int cmd_status(int argc, char **argv)
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    const enum listen_end end = listen_until(&args.bus, &watcher, &status.printed, status.timeout);
+    const enum listen_end end =
+        listen_until(&args.bus, &watcher, NULL, NULL, &status.printed, status.timeout);
     if (end == LISTEN_TIMEOUT)
         advise(&status, &args.bus);
     return end == LISTEN_ENOUGH && output_flush() ? ARGS_ANSWERED : ARGS_FAILED;

@@ -13,5 +13,6 @@ int cmd_mesh(int argc, char **argv);
 int cmd_log_info(int argc, char **argv);
 int cmd_log_cut(int argc, char **argv);
 int cmd_log_scene(int argc, char **argv);
+int cmd_log_results(int argc, char **argv);
 
 #endif

@@ -30,7 +30,7 @@ static const struct command commands[] = {
     {"record", "write what passes on the bus to a log", cmd_record},
     {"status", "print the heartbeat of the service", cmd_status},
     {"replay", "answer the queries of a log again, and compare", cmd_replay},
-    {"log", "inspect and cut event logs, extract scenes", cmd_log},
+    {"log", "inspect and cut event logs, print results and scenes", cmd_log},
     {"mesh", "decide which faces of two triangle meshes meet", cmd_mesh},
     {"help", "help on a command: fmb help query", cmd_help},
     {.name = NULL},
@@ -39,6 +39,7 @@ static const struct command commands[] = {
 static const struct command log_commands[] = {
     {"info", "what is in a log, and whether all of it is whole", cmd_log_info},
     {"cut", "copy a part of a log into a new one, or repair one", cmd_log_cut},
+    {"results", "print the results of a log, as a table, JSON or CSV", cmd_log_results},
     {"scene", "print a query of a log as a scene", cmd_log_scene},
     {.name = NULL},
 };

@@ -39,6 +39,11 @@ bool args_integer(const struct args *args, long low, long high, long *out)
                       low, high, optarg);
 }
 
+bool args_exclude(const struct args *args, bool one, bool other, const char *names)
+{
+    return !(one && other) || args_error(args, "%s exclude each other", names);
+}
+
 bool args_check_span(const struct args *args, double from, double to)
 {
     return from < to || args_error(args, "--to: expected more than --from, %g, found %g", from, to);

@@ -52,9 +52,10 @@ void escape(FILE *out, enum escape form, const char *text, size_t size)
         char buffer[16];
         uint32_t code;
         const size_t length = utf8_decode(at, (size_t) (end - at), &code);
-        const char *escaped = form == ESCAPE_JSON  ? json_of(code, buffer)
-                              : form == ESCAPE_XML ? xml_of(code)
-                                                   : terminal_of(code, buffer);
+        const char *escaped = form == ESCAPE_JSON                 ? json_of(code, buffer)
+                              : form == ESCAPE_XML                ? xml_of(code)
+                              : form == ESCAPE_CSV && code == '"' ? "\"\""
+                                                                  : terminal_of(code, buffer);
         if (escaped) {
             fwrite(kept, 1, (size_t) (at - kept), out);
             fputs(escaped, out);
@@ -67,8 +68,13 @@ void escape(FILE *out, enum escape form, const char *text, size_t size)
 
 size_t escape_characters(const char *text)
 {
+    const unsigned char *at = (const unsigned char *) text, *end = at + strlen(text);
     size_t count = 0;
-    for (; *text; text++)
-        count += ((unsigned char) *text & 0xc0) != 0x80;
+    while (at < end) {
+        char buffer[16];
+        uint32_t code;
+        at += utf8_decode(at, (size_t) (end - at), &code);
+        count += utf8_is_control(code) ? strlen(terminal_of(code, buffer)) : 1;
+    }
     return count;
 }

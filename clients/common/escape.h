@@ -1,4 +1,4 @@
-/* Escapes text in UTF-8 for JSON, XML and terminals. */
+/* Escapes text in UTF-8 for JSON, XML, terminals and CSV. */
 #ifndef ESCAPE_H
 #define ESCAPE_H
 
@@ -8,15 +8,16 @@
 
 /* ESCAPE_JSON: the inside of a JSON string, also where the JSON stands in a <script> of a page.
  * ESCAPE_XML: the text of an element, or of an attribute in double quotes; of XML, HTML and SVG.
- * ESCAPE_TERMINAL: a line for people; control characters become \xNN. */
-enum escape { ESCAPE_JSON, ESCAPE_XML, ESCAPE_TERMINAL };
+ * ESCAPE_TERMINAL: a line for people; control characters become \xNN.
+ * ESCAPE_CSV: the inside of a quoted field; as a line for people, with quotes doubled. */
+enum escape { ESCAPE_JSON, ESCAPE_XML, ESCAPE_TERMINAL, ESCAPE_CSV };
 
 /* Writes `size` bytes of UTF-8; each byte that is not part of valid UTF-8 becomes U+FFFD. JSON is
  * written in printable ASCII. In XML, control characters other than the line feed become U+FFFD
  * too. */
 void escape(FILE *out, enum escape form, const char *text, size_t size);
 
-/* Returns the number of characters of a valid text. */
+/* Returns the number of characters that ESCAPE_TERMINAL writes. */
 size_t escape_characters(const char *text);
 
 #endif

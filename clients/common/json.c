@@ -145,11 +145,30 @@ static bool check_present(const struct place *member)
     return member->item || refuse(member->parent, "missing key \"%s\"", member->key);
 }
 
+/* Returns a note on what other libraries have; or "". */
+static const char *not_yet(const char *word)
+{
+    static const char *const curved[] = {"radius", "sphere", "capsule", "cylinder"};
+    for (size_t i = 0; i < sizeof curved / sizeof *curved; i++)
+        if (strcmp(word, curved[i]) == 0)
+            return "curved shapes are not supported yet; ";
+    return "";
+}
+
+static bool refuse_key(const struct place *at, const char *found, const struct key *keys, int count)
+{
+    char text[QUOTED_MAX + 4], list[ERROR_MAX / 2] = "";
+    for (int i = 0; i < count; i++)
+        snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", i > 0 ? ", " : "",
+                 keys[i].name);
+    return refuse(at, "unknown key \"%s\" (%sthere are %s)", quoted(found, text), not_yet(found),
+                  list);
+}
+
 /* On output: member[i] is the value of keys[i]; its item is NULL if it is missing. */
 static bool find_members(const struct place *at, const struct key *keys, int count,
                          struct place *member)
 {
-    char text[QUOTED_MAX + 4];
     if (!cJSON_IsObject(at->item))
         return refuse_kind(at, "an object");
     for (int i = 0; i < count; i++)
@@ -159,7 +178,7 @@ static bool find_members(const struct place *at, const struct key *keys, int cou
         while (i < count && strcmp(keys[i].name, child->string) != 0)
             i++;
         if (i == count)
-            return refuse(at, "unknown key \"%s\"", quoted(child->string, text));
+            return refuse_key(at, child->string, keys, count);
         if (member[i].item)
             return refuse(at, "repeated key \"%s\"", keys[i].name);
         member[i].item = child;
@@ -315,8 +334,8 @@ static bool read_shape(const struct place *at, void *out)
         return shape == FMB_HULL || fmb_component_count(dim, shape) > 0 ||
                refuse(at, "there is no %s in %dD", fmb_shape_name(shape), dim);
     }
-    return refuse(at, "unknown shape \"%s\" (there are cuboid, tetrahedron, face, box, hull)",
-                  quoted(at->item->valuestring, text));
+    return refuse(at, "unknown shape \"%s\" (%sthere are cuboid, tetrahedron, face, box, hull)",
+                  quoted(at->item->valuestring, text), not_yet(at->item->valuestring));
 }
 
 static bool read_components(const struct place *at, void *out)

@@ -2,6 +2,7 @@
 
 #include "clock.h"
 #include "complain.h"
+#include "fmb_client_raw.h"
 #include "process.h"
 
 #include <errno.h>
@@ -34,11 +35,12 @@ static enum listen_end listen_to(struct fmb_client *client, int signals, const b
 
 /* Signals come last: until the bus is open they end the process. */
 enum listen_end listen_until(const struct args_bus *bus, const struct fmb_client_watcher *watcher,
-                             const bool *enough, double timeout)
+                             bus_handler *tap, void *user, const bool *enough, double timeout)
 {
     enum listen_end end = LISTEN_FAILED;
     struct fmb_client *client = args_open_client(bus, (struct fmb_client_options){0});
-    if (client && fmb_client_watch(client, watcher) != FMB_OK) {
+    if (client && !(watcher ? fmb_client_watch(client, watcher) == FMB_OK
+                            : fmb_client_raw_listen(client, false, tap, user))) {
         complain("cannot listen on %s", args_bus_name(bus));
     } else if (client) {
         const int signals = signals_open();

@@ -3,13 +3,15 @@
 #define LISTEN_H
 
 #include "args.h"
+#include "bus.h"
 
 enum listen_end { LISTEN_ENOUGH, LISTEN_SIGNAL, LISTEN_TIMEOUT, LISTEN_FAILED };
 
-/* Opens the bus and receives until a callback of the watcher sets *enough, which is false at first.
- * timeout: seconds; negative: no limit. SIGINT and SIGTERM end it once the bus is open, and stay
- * blocked. LISTEN_FAILED: the bus or the signals failed, which was reported on stderr. */
+/* Opens the bus and receives until a callback sets *enough, which is false at first: the callbacks
+ * of the watcher; or, where that is NULL, tap, which gets all messages on the service's channels,
+ * and user. timeout: seconds; negative: no limit. SIGINT and SIGTERM end it once the bus is open,
+ * and stay blocked. LISTEN_FAILED: the bus or the signals failed, which was reported on stderr. */
 enum listen_end listen_until(const struct args_bus *bus, const struct fmb_client_watcher *watcher,
-                             const bool *enough, double timeout);
+                             bus_handler *tap, void *user, const bool *enough, double timeout);
 
 #endif

@@ -1,4 +1,4 @@
-/* Prints answers. A struct report is an output format. */
+/* Prints answers: a row is a pair of bodies and its answer, in a table, in JSON or in CSV. */
 #ifndef REPORT_H
 #define REPORT_H
 
@@ -9,6 +9,81 @@
 
 #include <stdio.h>
 
+/* ---- Rows ---- */
+
+enum report_form { REPORT_TABLE, REPORT_JSON, REPORT_CSV };
+
+/* The value of an integer that a row does not have. */
+#define REPORT_NONE INT64_MIN
+
+/* Texts may be any bytes, zero-terminated; NULL or "": none. */
+struct report_row {
+    int64_t utime;     /* of the query, microseconds since 1970; REPORT_NONE: not known */
+    int64_t scene;     /* its number; REPORT_NONE: not known */
+    const char *label; /* of the scene */
+    int64_t id[2];     /* 0: anonymous; REPORT_NONE: not known */
+    const char *name[2];
+    int dim;                            /* of box and gap */
+    bool names_frames;                  /* of the gap: a body has several frames */
+    const struct fmb_client_answer *of; /* a and b are not used */
+};
+
+/* Whether a separated pair is near: its scene has a margin, and the gap is no larger. */
+bool report_is_near(double margin, const struct fmb_answer *answer);
+
+/* Writes the members of a row, without braces:
+ *
+ *     "a": 1, "b": 2, "names": ["table", null], "verdict": "overlapping", "contact": [0, 1],
+ *     "box": {"min": [0.5,0,0], "max": [1,1,1]}, "gap": [-0.25, -0.25], "frames": [0, 3],
+ *     "direction": [0,0,1]
+ *
+ *     "a": 1, "b": 3, "verdict": "separated", "gap": [2, 2], "direction": [1,0,0],
+ *     "witness": {"time": 0, "a": [1,0,0], "b": [3,0,0]}
+ *
+ * names are there if a body has one. frames are the indices, from 0, of the frames of a and b that
+ * have the gap, where a or b has several. Doubles read back bit for bit. null is an infinite end of
+ * a box, outward; or an infinite bound of a gap, positive where separated, else negative. A
+ * "certificate" comes last; a pair that could not be decided has an "error" in place of the
+ * verdict. */
+void report_row_json(struct json_writer *json, const struct report_row *row);
+
+/* The members from the verdict on, and "names". */
+void report_answer_json(struct json_writer *json, int dim, bool names_frames,
+                        const struct fmb_client_answer *answer);
+void report_names_json(struct json_writer *json, const char *const name[2]);
+
+/* Write CSV: the line of column names, and a row. RFC 4180, but lines end in a line feed alone.
+ * Columns without a value are empty; texts are quoted and have no control characters; doubles read
+ * back bit for bit, infinite ones are inf and -inf. */
+void report_csv_begin(FILE *out);
+void report_row_csv(FILE *out, const struct report_row *row);
+
+/* The widths of the columns of a table. A row with longer names, or with numbers of more digits
+ * than usual, widens them for the rows below it. */
+struct report_columns {
+    int body, contact, gap;
+    int box[FMB_DIM_MAX][2]; /* [axis][low, high] */
+};
+
+/* Returns the widths for ids of up to four digits and numbers of up to six. */
+struct report_columns report_columns(void);
+
+/* Prints the line of column names. gap, box: whether rows have them. */
+void report_headings(FILE *out, const struct report_columns *columns, bool gap, bool box);
+
+/* Prints a line of a table for people; a certificate, which is shortened if it is long, has a line
+ * of its own. indent: the columns of the line that are printed already.
+ *
+ *      table  cube  overlapping  0.25 to 0.5 s         -0.5          x        0 .. 1 ... */
+void report_row_text(FILE *out, int indent, const struct report_row *row,
+                     struct report_columns *columns);
+
+/* Writes the contact interval, such as "0.25 to 0.5 s", into text. Returns the number of digits. */
+enum { REPORT_TEXT_MAX = 2 * NUMBER_TEXT_MAX + 8 };
+int report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX]);
+
+/* ---- Scenes ---- */
+
 /* For each scene, the caller sets scene, and calls begin, then pair for each answer in the order of
  * the pairs, then end. */
 struct report {
@@ -18,66 +93,29 @@ struct report {
     struct owned_scene *scene;
 };
 
-/* One line, one JSON object, for each scene; flushed at its end:
- *
- *     {"label": "shelf",
- *      "pairs": [{"a": 1, "b": 2, "verdict": "overlapping", "contact": [0, 1],
- *                 "box": {"min": [0.5,0,0], "max": [1,1,1]},
- *                 "gap": [-0.25, -0.25], "frames": [0, 3], "direction": [0,0,1]},
- *                {"a": 1, "b": 3, "verdict": "separated", "gap": [2, 2], "direction": [1,0,0],
- *                 "witness": {"time": 0, "a": [1,0,0], "b": [3,0,0]}}]}
- *
- * label is that of the scene, where it has one. frames are the indices, from 0, of the frames of a
- * and b that have the gap, where a or b has several. Doubles read back bit for bit. null is an
- * infinite end of a box, outward; or an infinite bound of a gap, positive where separated, else
- * negative. A "certificate" comes last; a pair that could not be decided has an "error" in place of
- * the verdict. */
-struct report_json {
+/* Most rows of separated pairs that are not near in the table of a scene, unless all are wanted. */
+enum { REPORT_SEPARATED_MAX = 20 };
+
+/* Prints the rows of scenes, which are numbered from 1: one line of JSON for each, {"label": ...,
+ * "pairs": [...]}; or CSV; or tables, each with counts at its end. Numbers in tables have six
+ * digits, or more where the ends of an interval would have the same digits. Flushed at the end of
+ * each scene. */
+struct report_rows {
     struct report report;
-    struct json_writer json;
-};
-
-struct report_json report_json(FILE *out);
-
-/* The widths of the columns of a table. A row with numbers of more digits than usual widens them
- * for the rows below it. */
-struct report_columns {
-    int contact, gap;
-    int box[FMB_DIM_MAX][2]; /* [axis][low, high] */
-};
-
-/* Returns the widths for numbers of up to six digits. */
-struct report_columns report_columns(void);
-
-/* A table for people, and counts at its end. Numbers have six digits, or more where the ends of an
- * interval would have the same digits. Certificates are printed below their rows, long ones
- * shortened. */
-struct report_text {
-    struct report report;
+    /* Set by the caller. */
     FILE *out;
-    bool box, gap; /* wanted; each has a column */
-    size_t scenes;
-    int id_width;                        /* of names, or else ids */
-    struct report_columns columns;       /* of the scene */
+    enum report_form form;
+    bool box, gap;      /* wanted: columns of tables */
+    bool contacts, all; /* rows: no separated pairs but near ones; in tables all */
+    /* Private. */
+    int64_t scenes;
+    struct json_writer json;
+    struct report_columns columns;
     uint64_t count[FMB_OVERLAPPING + 1]; /* [verdict] of the scene; [0]: not decided */
-    uint64_t near;                       /* of those separated, where the scene has a margin */
+    uint64_t near, left_out;             /* of those separated */
 };
 
-struct report_text report_text(FILE *out, bool box, bool gap);
-
-/* Writes the members of an answer as report_json does, without braces: "verdict": ..., or
- * "error": ... a and b are not used. names_frames: a body has several frames. */
-void report_answer_json(struct json_writer *json, int dim, bool names_frames,
-                        const struct fmb_client_answer *answer);
-
-/* Prints verdict, contact, gap and box for people, in columns, without a line feed:
- *
- *     overlapping  0.25 to 0.5 s         -0.5          x        0 .. 1         y     -0.5 .. 0.5 */
-void report_answer_text(FILE *out, int dim, const struct fmb_answer *answer,
-                        struct report_columns *columns);
-
-/* Writes the contact interval, such as "0.25 to 0.5 s", into text. Returns the number of digits. */
-enum { REPORT_TEXT_MAX = 2 * NUMBER_TEXT_MAX + 8 };
-int report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX]);
+/* options: with the members that the caller sets. Writes the column names of CSV. */
+struct report_rows report_rows(const struct report_rows *options);
 
 #endif

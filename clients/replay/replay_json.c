@@ -36,12 +36,7 @@ static void write_names(struct json_writer *json, const struct body_names *names
     const int64_t *id = difference->body_id;
     const char *name[2] = {body_names_find(names, difference->client_id, id[0]),
                            body_names_find(names, difference->client_id, id[1])};
-    if (!name[0] && !name[1])
-        return;
-    json_begin(json, "names", '[');
-    json_string(json, NULL, name[0]);
-    json_string(json, NULL, name[1]);
-    json_end(json, ']');
+    report_names_json(json, name);
 }
 
 static void write_difference(struct json_writer *json, const struct body_names *names,

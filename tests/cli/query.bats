@@ -178,7 +178,7 @@ $two, \"pairs\": []}"
                     {"shape": "cuboid", "origin": [0,0,0], "components": [[1,0,0],[0,1,0],[0,0,1]]}]},
         {"id": 3, "shape": "cuboid", "origin": [8,0,0.25], "components": [[1,0,0],[0,1,0],[0,0,1]]}]}' --box
     ended 0
-    is '{"pairs": [{"a": 1, "b": 2, "verdict": "overlapping", "contact": [0, 1], "box": {"min": [0.375,-0.5,0], "max": [1,0.25,0.25]}}, {"a": 1, "b": 3, "verdict": "separated"}, {"a": 2, "b": 3, "verdict": "separated"}]}'
+    is '{"pairs": [{"a": 1, "b": 2, "names": ["table", "tool"], "verdict": "overlapping", "contact": [0, 1], "box": {"min": [0.375,-0.5,0], "max": [1,0.25,0.25]}}, {"a": 1, "b": 3, "names": ["table", null], "verdict": "separated"}, {"a": 2, "b": 3, "names": ["tool", null], "verdict": "separated"}]}'
 }
 
 # A quarter turn puts the corner of one square onto that of the other.
@@ -210,7 +210,7 @@ $two, \"pairs\": []}"
     ended 0
     [ "${lines[2]}" = '  Tür <1>       20  separated' ]
     query "$scene"
-    is '{"pairs": [{"a": 1, "b": 20, "verdict": "separated"}]}'
+    is '{"pairs": [{"a": 1, "b": 20, "names": ["T\u00fcr \u003c1\u003e", null], "verdict": "separated"}]}'
 }
 
 @test "ignored pairs are left out, in either order, once or more" {
@@ -222,6 +222,135 @@ $two, \"pairs\": []}"
     is '{"pairs": [{"a": 1, "b": 3, "verdict": "touching", "contact": [0, 1]}]}'
     query "$bodies, \"ignore\": [[2,1]], \"pairs\": [[3,1]]}"
     is '{"pairs": [{"a": 3, "b": 1, "verdict": "touching", "contact": [0, 1]}]}'
+}
+
+# ---- Rows ------------------------------------------------------------------------------------
+
+# row N [MEMBERS]: squares 1 to N in a row, of which 1 and 2 overlap, and 2 and 3 touch.
+row() {
+    awk -v n="$1" -v members="${2-}" 'BEGIN {
+        printf "{\"dim\": 2, %s\"bodies\": [", members
+        for (i = 1; i <= n; i++)
+            printf "%s{\"id\": %d, \"shape\": \"box\", \"size\": [1,1], \"position\": [%g,0]}",
+                i == 1 ? "" : ", ", i, i <= 2 ? 0.5 * i : i == 3 ? 2 : 3 * i
+        print "]}"
+    }'
+}
+
+@test "a table leaves out separated pairs after the first 20, and says how many" {
+    run "$FMB" query --local <<< "$(row 10)"
+    ended 0
+    [ "$(grep -c '  separated$' <<< "$output")" = 20 ]
+    [ "${lines[-2]}" = '  ... and 23 more separated (--all shows them)' ]
+    [ "${lines[-1]}" = '1 overlapping, 1 touching, 43 separated' ]
+    run "$FMB" query --local --all <<< "$(row 10)"
+    [ "${#lines[@]}" = 48 ]
+    run "$FMB" query --local <<< "$(row 7)"
+    [ "$(grep -c '  separated$' <<< "$output")" = 19 ]
+    [[ $output != *...* ]]
+    # Near pairs are never left out, in whatever place.
+    run "$FMB" query --local <<< "$(row 10 '"margin": 2, ')"
+    [ "$(grep -c '  separated$' <<< "$output")" = 20 ]
+    [ "$(grep -c '  separated  ' <<< "$output")" = 7 ]
+    [ "${lines[-2]}" = '  ... and 16 more separated (--all shows them)' ]
+    [ "${lines[-1]}" = '1 overlapping, 1 touching, 43 separated (7 near)' ]
+    # JSON and CSV have all of them.
+    query "$(row 10)"
+    [ "$(jq '.pairs | length' <<< "$output")" = 45 ]
+    run "$FMB" query --local --csv <<< "$(row 10)"
+    [ "${#lines[@]}" = 46 ]
+}
+
+@test "--contacts prints pairs that touch, overlap or are near" {
+    query "$(row 10 '"margin": 2, ')" --contacts
+    ended 0
+    [ "$(jq -c '[.pairs[] | [.a, .b]]' <<< "$output")" = '[[1,2],[1,3],[2,3],[4,5],[5,6],[6,7],[7,8],[8,9],[9,10]]' ]
+    run "$FMB" query --local --contacts <<< "$(row 10)"
+    ended 0
+    [ "${lines[-1]}" = '1 overlapping, 1 touching, 43 separated' ]
+    [ "${#lines[@]}" = 5 ]
+    run --separate-stderr "$FMB" query --local --contacts --csv <<< "$(row 10)"
+    [ "${#lines[@]}" = 3 ]
+    # A pair that could not be decided is one to look at.
+    query '{"dim": 2, "bodies": [
+        {"id": 1, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[1,0]]},
+        {"id": 2, "shape": "cuboid", "origin": [9,0], "components": [[1,0],[0,1]]}]}' --method sat --contacts
+    ended 1
+    jq -e '.pairs[0].error' <<< "$output"
+}
+
+@test "--csv has a line of names, and a line for each pair of all scenes" {
+    run --separate-stderr "$FMB" query --local --csv --box <<< "{\"dim\": 2, \"margin\": 0.25, \"label\": \"a, \\\"b\\\"\", \"bodies\": [
+        {\"id\": 1, \"name\": \"a \\\"b\\\", c\", $square, \"origin\": [0,0]},
+        {\"id\": 20, $square, \"origin\": [1,0.125]},
+        {\"id\": 3, \"name\": \"ü\", $square, \"origin\": [3,0]}]} $scene"
+    ended 0
+    is 'utime,scene,label,a,b,name_a,name_b,verdict,contact_first,contact_last,gap_low,gap_high,min_x,min_y,min_z,max_x,max_y,max_z,error
+,1,"a, ""b""",1,20,"a ""b"", c",,touching,0,1,0,0,1,0.125,,1,1,,
+,1,"a, ""b""",1,3,"a ""b"", c","ü",separated,,,,,,,,,,,
+,1,"a, ""b""",20,3,,"ü",separated,,,,,,,,,,,
+,2,,1,2,,,touching,0,1,,,1,0,0,1,1,1,'
+    run --separate-stderr "$FMB" query --local --csv --method sat <<< '{"dim": 2, "bodies": [
+        {"id": 1, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[1,0]]},
+        {"id": 2, "shape": "cuboid", "origin": [9,0], "components": [[1,0],[0,1]]}]}'
+    ended 1
+    [[ ${lines[1]} == ',1,,1,2,,,,,,,,,,,,,,"'?*'"' ]]
+}
+
+@test "an infinite end of a box is inf in CSV" {
+    far='{"dim": 2, "bodies": [
+        {"id": 1, "shape": "box", "size": [1e308,1], "position": [1.7e308,0]},
+        {"id": 2, "shape": "box", "size": [1e308,0.1], "position": [1.7e308,0.3]}]}'
+    query "$far" --box
+    json=$(jq -r '.pairs[0].box | [.min[], .max[]] | map(. // "inf") | join(",")' <<< "$output")
+    run "$FMB" query --local --csv --box <<< "$far"
+    ended 0
+    cut -d , -f 13,14,16,17 <<< "${lines[1]}" | grep -x '.*,.*,inf,.*'
+    jq -en --arg json "$json" --arg csv "$(cut -d , -f 13,14,16,17 <<< "${lines[1]}")" \
+        '[$json, $csv] | map(split(",") | map(tonumber? // "inf")) | .[0] == .[1]'
+}
+
+@test "a label stands in the table and before the pairs" {
+    query "$(row 2 '"label": "shelf <1>", ')"
+    [[ $output == '{"label": "shelf \u003c1\u003e", "pairs": [{"a": 1, '* ]]
+    run "$FMB" query --local <<< "$(row 2 '"label": "shelf <1>", ')"
+    [ "${lines[0]}" = 'scene 1 (shelf <1>): 2 bodies in 2D, 1 pair, 0 to 1 s' ]
+}
+
+# fails CODE TEXT OPTIONS: with the answers of all scenes of the text.
+fails() {
+    query "$2" "${@:3}"
+    ended "$1"
+    [ "$(wc -l <<< "$output")" = "$(grep -o '"dim"' <<< "$2" | wc -l)" ]
+}
+
+@test "--fail-if exits with 3 after all scenes" {
+    apart='{"dim": 2, "margin": 1, "bodies": [{"id": 1, "shape": "box", "size": [1,1]}, {"id": 2, "shape": "box", "size": [1,1], "position": [9,0]}]}'
+    near=${apart/9/1.5}
+    touching=${apart/9/1}
+    overlapping=${apart/9/0.5}
+    fails 0 "$apart" --fail-if near
+    fails 3 "$apart $near $apart" --fail-if near
+    fails 0 "$apart $near $apart" --fail-if touching
+    fails 3 "$touching $near" --fail-if touching
+    fails 3 "$touching $near" --fail-if near
+    fails 0 "$touching $near" --fail-if overlapping
+    for what in near touching overlapping; do
+        fails 3 "$overlapping $apart" --fail-if $what
+    done
+    fails 0 "$overlapping $apart"
+    # Without a margin no pair is near.
+    fails 0 "${near/\"margin\": 1, /}" --fail-if near
+}
+
+@test "with --fail-if, 1 and 2 keep their meaning" {
+    flat='{"dim": 2, "bodies": [{"id": 1, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[1,0]]},
+        {"id": 2, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[0,1]]}]}'
+    fails 1 "$scene $flat" --fail-if touching --method sat
+    query "$scene {}" --fail-if touching
+    ended 2
+    query "$scene" --fail-if touching --html /no/such/folder/scene.html
+    ended 1
 }
 
 # ---- Gaps ------------------------------------------------------------------------------------
@@ -507,6 +636,16 @@ refused() {
     said 'fmb: standard input: bodies[0].orientation: expected 2 numbers, found 4'
 }
 
+@test "an unknown key or shape lists what there is" {
+    query '{"dim": 3, "bodies": [{"id": 1, "radius": 1}]}'
+    ended 2
+    said 'fmb: standard input: bodies[0]: unknown key "radius" (curved shapes are not supported yet; there are id, name, group, velocity, shape, origin, components, vertices, size, position, orientation, frames)'
+    query '{"dim": 3, "bodies": [{"id": 1, "shape": "sphere"}]}'
+    said 'fmb: standard input: bodies[0].shape: unknown shape "sphere" (curved shapes are not supported yet; there are cuboid, tetrahedron, face, box, hull)'
+    query '{"dim": 3, "bodys": []}'
+    said 'fmb: standard input: unknown key "bodys" (there are label, dim, duration, margin, bodies, pairs, ignore)'
+}
+
 @test "an empty input is refused" {
     run "$FMB" query --local < /dev/null
     ended 2
@@ -623,7 +762,7 @@ Try 'fmb query --help'."
 }
 
 @test "help fits 80 columns" {
-    for words in '' query watch record status replay log 'log info' 'log cut' 'log scene' mesh; do
+    for words in '' query watch record status replay log 'log info' 'log cut' 'log scene' 'log results' mesh; do
         run "$FMB" $words --help
         ended 0
         [ "$(wc -L <<< "$output")" -le 80 ]
@@ -681,7 +820,8 @@ Try 'fmb --help'."
 
 @test "wrong options are refused with exit code 2 and a hint" {
     for options in --frobnicate -x --html '--method best' '--timeout 1s' '--timeout nan' '--timeout=' \
-        '--retries -1' '--prefix a.*' '--json=1' '--local a b'; do
+        '--retries -1' '--prefix a.*' '--json=1' '--local a b' --fail-if '--fail-if separated' \
+        '--fail-if near --fail-if near' '--csv --json' '--contacts --all'; do
         # shellcheck disable=SC2086
         wrong query $options
     done

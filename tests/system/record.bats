@@ -668,3 +668,39 @@ END
         "[[\"$log.000\"],0,0,0,true]" ]
     [ "$(wc -l < "$report")" = 1 ]
 }
+
+# The bodies of the demo's table, of which two are renamed in the log to bytes that are no text.
+@test "watch prints what a recording holds, with the names and labels that clients sent" {
+    sed 's/{"dim"/{"label": "shelf", "dim"/' clients/demo/table.json > "$BATS_TEST_TMPDIR/table.json"
+    start_fmbd
+    "$FMB" watch --json > "$BATS_TEST_TMPDIR/watch" 3>&- &
+    started="$started $!"
+    watches() {
+        query && [ -s "$BATS_TEST_TMPDIR/watch" ]
+    }
+    wait_until watches
+    start_record "$log"
+    for options in '' --box --certificate --gap; do
+        # shellcheck disable=SC2086
+        "$FMB" query $options "$BATS_TEST_TMPDIR/table.json" > /dev/null || [ "$options" = --certificate ]
+        query $options
+    done
+    finish_record
+    stop_fmbd
+    "$FMB" log results --json --all "$log" > "$BATS_TEST_TMPDIR/results"
+    grep -q '"label": "shelf".*"names": \["table", "cube"\]' "$BATS_TEST_TMPDIR/results"
+    jq -en --slurpfile watch "$BATS_TEST_TMPDIR/watch" --slurpfile results "$BATS_TEST_TMPDIR/results" '
+        def contacts: if .pairs then .pairs |= map(select(.verdict != "separated" or .gap)) else . end;
+        ($results | map(del(.scene) | contacts)) as $found
+        | ($found | length) >= 8 and $found - ($watch | map(contacts)) == []'
+    "$FMB" log results "$log" | grep ' of shelf: '
+    "$FMB" log results "$log" | grep ' table     cube  touching '
+    LC_ALL=C sed 's/cube/\x1b,"\xff/g; s/shelf/a\n\x9b"b/g' "$log" > "$log.raw"
+    "$FMB" log results --json "$log.raw" | jq -es 'any(.[]; .pairs and any(.pairs[]; .names == ["table", "\u001b,\"\ufffd"]))'
+    "$FMB" log results --csv "$log.raw" > "$BATS_TEST_TMPDIR/csv"
+    grep -q '^[0-9]*,[0-9]*,"a\\x0a�""b",1,2,"table","\\x1b,""�",touching,' "$BATS_TEST_TMPDIR/csv"
+    "$FMB" log results "$log.raw" > "$BATS_TEST_TMPDIR/table"
+    grep -q ' table  \\x1b,"�  touching ' "$BATS_TEST_TMPDIR/table"
+    grep -qF ' of a\x0a�"b: ' "$BATS_TEST_TMPDIR/table"
+    ! LC_ALL=C grep -q -e $'\033' -e $'\233' "$BATS_TEST_TMPDIR/csv" "$BATS_TEST_TMPDIR/table"
+}

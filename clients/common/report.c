@@ -1,0 +1,153 @@
+#include "report.h"
+
+#include "escape.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+/* Width of one end of a box among large numbers, which %g prints with an exponent. */
+enum { LARGE_END_WIDTH = 12 };
+static const double large_end = 1e5;
+
+/* A table of large coordinates, such as those of maps, has wide columns from its first row on. */
+static struct report_columns columns_for(const struct owned_scene *scene)
+{
+    struct report_columns columns = report_columns();
+    char text[SCENE_LABEL_MAX];
+    columns.body = 1;
+    for (size_t i = 0; i < scene->scene.placement_count; i++) {
+        const struct fmb_placement *body = &scene->scene.placements[i];
+        const int width = (int) escape_characters(scene_label(body, text));
+        columns.body = width > columns.body ? width : columns.body;
+        for (int axis = 0; axis < scene->dim; axis++)
+            if (fabs(body->position[axis]) >= large_end)
+                columns.box[axis][0] = columns.box[axis][1] = LARGE_END_WIDTH;
+    }
+    return columns;
+}
+
+/* ---- The beginning and the end of a scene ---- */
+
+static void begin_json(struct report_rows *rows)
+{
+    json_begin(&rows->json, NULL, '{');
+    if (rows->report.scene->scene.label)
+        json_string(&rows->json, "label", rows->report.scene->scene.label);
+    json_begin(&rows->json, "pairs", '[');
+}
+
+static void begin_table(struct report_rows *rows)
+{
+    const struct fmb_scene *scene = &rows->report.scene->scene;
+    const uint64_t count = scene_count_pairs(rows->report.scene);
+    char duration[NUMBER_TEXT_MAX], pairs[NUMBER_TEXT_MAX];
+    rows->columns = columns_for(rows->report.scene);
+    fprintf(rows->out, "%sscene %" PRId64, rows->scenes > 1 ? "\n" : "", rows->scenes);
+    if (scene->label)
+        fprintf(rows->out, " (%s)", scene->label);
+    fprintf(rows->out, ": %zu bod%s in %dD, %s pair%s, 0 to %s s\n", scene->placement_count,
+            scene->placement_count == 1 ? "y" : "ies", rows->report.scene->dim,
+            number_grouped((int64_t) count, pairs), count == 1 ? "" : "s",
+            number_short(scene->duration, duration));
+    if (count > 0)
+        report_headings(rows->out, &rows->columns, rows->gap || scene->margin > 0, rows->box);
+}
+
+static void end_table(const struct report_rows *rows)
+{
+    static const enum fmb_verdict order[] = {FMB_OVERLAPPING, FMB_TOUCHING, FMB_SEPARATED};
+    char count[NUMBER_TEXT_MAX];
+    if (rows->left_out > 0)
+        fprintf(rows->out, "  ... and %s more separated (--all shows them)\n",
+                number_grouped((int64_t) rows->left_out, count));
+    for (int i = 0; i < 3; i++)
+        fprintf(rows->out, "%s%s %s", i ? ", " : "",
+                number_grouped((int64_t) rows->count[order[i]], count),
+                fmb_verdict_name((int) order[i]));
+    if (rows->report.scene->scene.margin > 0)
+        fprintf(rows->out, " (%s near)", number_grouped((int64_t) rows->near, count));
+    if (rows->count[0] > 0)
+        fprintf(rows->out, ", %s not decided", number_grouped((int64_t) rows->count[0], count));
+    putc('\n', rows->out);
+}
+
+static void begin_scene(struct report *report)
+{
+    struct report_rows *rows = (struct report_rows *) report;
+    rows->scenes++;
+    memset(rows->count, 0, sizeof rows->count);
+    rows->near = rows->left_out = 0;
+    if (rows->form == REPORT_JSON)
+        begin_json(rows);
+    else if (rows->form == REPORT_TABLE)
+        begin_table(rows);
+}
+
+static void end_scene(struct report *report)
+{
+    struct report_rows *rows = (struct report_rows *) report;
+    if (rows->form == REPORT_JSON) {
+        json_end(&rows->json, ']');
+        json_object_end(&rows->json);
+    } else if (rows->form == REPORT_TABLE) {
+        end_table(rows);
+    }
+    fflush(rows->out);
+}
+
+/* ---- Rows ---- */
+
+static struct report_row row_of(const struct report_rows *rows, const struct fmb_client_answer *of)
+{
+    const struct fmb_scene *scene = &rows->report.scene->scene;
+    const struct fmb_placement *a = &scene->placements[of->a], *b = &scene->placements[of->b];
+    return (struct report_row){
+        .utime = REPORT_NONE,
+        .scene = rows->scenes,
+        .label = scene->label,
+        .id = {a->id, b->id},
+        .name = {a->name, b->name},
+        .dim = rows->report.scene->dim,
+        .names_frames = a->body->frame_count > 1 || b->body->frame_count > 1,
+        .of = of,
+    };
+}
+
+static void print_row(struct report_rows *rows, const struct report_row *row)
+{
+    if (rows->form == REPORT_TABLE) {
+        report_row_text(rows->out, 0, row, &rows->columns);
+    } else if (rows->form == REPORT_CSV) {
+        report_row_csv(rows->out, row);
+    } else {
+        json_begin(&rows->json, NULL, '{');
+        report_row_json(&rows->json, row);
+        json_end(&rows->json, '}');
+    }
+}
+
+static void take_pair(struct report *report, const struct fmb_client_answer *of)
+{
+    struct report_rows *rows = (struct report_rows *) report;
+    const bool near = report_is_near(report->scene->scene.margin, &of->answer);
+    const bool apart = of->answer.verdict == FMB_SEPARATED && !near;
+    const struct report_row row = row_of(rows, of);
+    rows->count[of->answer.verdict]++;
+    rows->near += near;
+    if (apart && rows->form == REPORT_TABLE && !rows->contacts && !rows->all &&
+        rows->count[FMB_SEPARATED] - rows->near > REPORT_SEPARATED_MAX)
+        rows->left_out++;
+    else if (!apart || !rows->contacts)
+        print_row(rows, &row);
+}
+
+struct report_rows report_rows(const struct report_rows *options)
+{
+    struct report_rows rows = *options;
+    rows.report = (struct report){begin_scene, take_pair, end_scene, NULL};
+    rows.json = (struct json_writer){.out = rows.out};
+    if (rows.form == REPORT_CSV)
+        report_csv_begin(rows.out);
+    return rows;
+}

@@ -1,0 +1,290 @@
+#include "report.h"
+
+#include "escape.h"
+#include "utf8.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+bool report_is_near(double margin, const struct fmb_answer *answer)
+{
+    return margin > 0 && answer->verdict == FMB_SEPARATED && answer->has_gap &&
+           answer->gap.bounds[0] <= margin;
+}
+
+static bool has_text(const char *text)
+{
+    return text && *text;
+}
+
+/* ---- JSON ---- */
+
+static void write_interval(struct json_writer *json, const char *key, const double ends[2])
+{
+    json_begin(json, key, '[');
+    json_number(json, NULL, ends[0]);
+    json_number(json, NULL, ends[1]);
+    json_end(json, ']');
+}
+
+static void write_gap(struct json_writer *json, int dim, const struct fmb_gap *gap,
+                      bool names_frames)
+{
+    write_interval(json, "gap", gap->bounds);
+    if (names_frames)
+        json_integers(json, "frames", (const int64_t[]){gap->frame[0], gap->frame[1]}, 2);
+    json_numbers(json, "direction", gap->direction, dim);
+    if (!gap->has_witness)
+        return;
+    json_begin(json, "witness", '{');
+    json_number(json, "time", gap->time);
+    json_numbers(json, "a", gap->witness[0], dim);
+    json_numbers(json, "b", gap->witness[1], dim);
+    json_end(json, '}');
+}
+
+void report_answer_json(struct json_writer *json, int dim, bool names_frames,
+                        const struct fmb_client_answer *of)
+{
+    const struct fmb_answer *answer = &of->answer;
+    if (of->status != FMB_OK) {
+        json_string(json, "error", of->text);
+        return;
+    }
+    json_string(json, "verdict", fmb_verdict_name((int) answer->verdict));
+    if (answer->has_contact)
+        write_interval(json, "contact", answer->contact);
+    if (answer->has_box) {
+        json_begin(json, "box", '{');
+        json_numbers(json, "min", answer->box[0], dim);
+        json_numbers(json, "max", answer->box[1], dim);
+        json_end(json, '}');
+    }
+    if (answer->has_gap)
+        write_gap(json, dim, &answer->gap, names_frames);
+    if (of->certificate)
+        json_string(json, "certificate", of->certificate);
+}
+
+void report_names_json(struct json_writer *json, const char *const name[2])
+{
+    if (!has_text(name[0]) && !has_text(name[1]))
+        return;
+    json_begin(json, "names", '[');
+    for (int i = 0; i < 2; i++)
+        json_string(json, NULL, has_text(name[i]) ? name[i] : NULL);
+    json_end(json, ']');
+}
+
+void report_row_json(struct json_writer *json, const struct report_row *row)
+{
+    json_integer(json, "a", row->id[0]);
+    json_integer(json, "b", row->id[1]);
+    report_names_json(json, row->name);
+    report_answer_json(json, row->dim, row->names_frames, row->of);
+}
+
+/* ---- CSV ---- */
+
+void report_csv_begin(FILE *out)
+{
+    fputs(
+        "utime,scene,label,a,b,name_a,name_b,verdict,contact_first,contact_last,gap_low,gap_high,"
+        "min_x,min_y,min_z,max_x,max_y,max_z,error\n",
+        out);
+}
+
+/* A log has millions of rows, most of them without numbers. So integers are not printed by
+ * fprintf(), and single characters not with a lock. */
+static void csv_integer(FILE *out, int64_t integer)
+{
+    char text[NUMBER_TEXT_MAX], *digit = text + sizeof text;
+    uint64_t rest = integer < 0 ? -(uint64_t) integer : (uint64_t) integer;
+    if (integer != REPORT_NONE) {
+        *--digit = ',';
+        do
+            *--digit = (char) ('0' + rest % 10);
+        while (rest /= 10);
+        if (integer < 0)
+            *--digit = '-';
+    } else {
+        *--digit = ',';
+    }
+    fwrite(digit, 1, (size_t) (text + sizeof text - digit), out);
+}
+
+/* Without the comma after it. */
+static void csv_text(FILE *out, const char *text)
+{
+    if (!has_text(text))
+        return;
+    putc_unlocked('"', out);
+    escape(out, ESCAPE_CSV, text, strlen(text));
+    putc_unlocked('"', out);
+}
+
+/* numbers: NULL: the row has none. count: of numbers, and of columns. */
+static void csv_numbers(FILE *out, const double *number, int count, int columns)
+{
+    char text[NUMBER_TEXT_MAX];
+    for (int i = 0; i < columns; i++) {
+        if (number && i < count)
+            fputs(isinf(number[i]) ? number[i] < 0 ? "-inf" : "inf" : number_exact(number[i], text),
+                  out);
+        putc_unlocked(',', out);
+    }
+}
+
+void report_row_csv(FILE *out, const struct report_row *row)
+{
+    const struct fmb_answer *answer = &row->of->answer;
+    csv_integer(out, row->utime);
+    csv_integer(out, row->scene);
+    csv_text(out, row->label);
+    putc_unlocked(',', out);
+    csv_integer(out, row->id[0]);
+    csv_integer(out, row->id[1]);
+    for (int i = 0; i < 2; i++) {
+        csv_text(out, row->name[i]);
+        putc_unlocked(',', out);
+    }
+    if (row->of->status == FMB_OK)
+        fputs(fmb_verdict_name((int) answer->verdict), out);
+    putc_unlocked(',', out);
+    csv_numbers(out, answer->has_contact ? answer->contact : NULL, 2, 2);
+    csv_numbers(out, answer->has_gap ? answer->gap.bounds : NULL, 2, 2);
+    for (int end = 0; end < 2; end++)
+        csv_numbers(out, answer->has_box ? answer->box[end] : NULL, row->dim, FMB_DIM_MAX);
+    csv_text(out, row->of->status == FMB_OK ? "" : row->of->text);
+    putc_unlocked('\n', out);
+}
+
+/* ---- Tables ---- */
+
+enum { BODY_WIDTH = 4, VERDICT_WIDTH = 11, CONTACT_WIDTH = 20, GAP_WIDTH = 12 };
+
+/* Width of one end of a box. */
+enum { END_WIDTH = 8 };
+
+/* Characters of a certificate that are printed. Most are shorter; some have thousands of digits. */
+enum { CERTIFICATE_WIDTH = 200 };
+
+struct report_columns report_columns(void)
+{
+    struct report_columns columns = {
+        .body = BODY_WIDTH, .contact = CONTACT_WIDTH, .gap = GAP_WIDTH};
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        columns.box[axis][0] = columns.box[axis][1] = END_WIDTH;
+    return columns;
+}
+
+void report_headings(FILE *out, const struct report_columns *columns, bool gap, bool box)
+{
+    fprintf(out, "  %*s  %*s  %-*s  %-*s", columns->body, "a", columns->body, "b", VERDICT_WIDTH,
+            "verdict", gap || box ? columns->contact : 0, "contact");
+    if (gap)
+        fprintf(out, "  %-*s", box ? columns->gap : 0, "gap");
+    fputs(box ? "  box\n" : "\n", out);
+}
+
+/* Returns the width to print text with. If it has more digits than usual, the rows below probably
+ * have too: the column becomes wider. Any other text that is too long exceeds its column. */
+static int widen(int *width, int digits, const char *text)
+{
+    int length = (int) strlen(text);
+    if (digits > NUMBER_SHORT_DIGITS && length > *width)
+        *width = length;
+    return *width;
+}
+
+int report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX])
+{
+    char first[NUMBER_TEXT_MAX], last[NUMBER_TEXT_MAX];
+    int digits = number_ends(answer->contact[0], answer->contact[1], first, last);
+    snprintf(text, REPORT_TEXT_MAX, "%s to %s s", first, last);
+    return digits;
+}
+
+/* Writes one number if the bounds have the same digits. */
+static int gap_text(const struct fmb_gap *gap, char text[REPORT_TEXT_MAX])
+{
+    char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
+    number_short(gap->bounds[0], low);
+    number_short(gap->bounds[1], high);
+    const bool same = strcmp(low, high) == 0;
+    snprintf(text, REPORT_TEXT_MAX, same ? "%s" : "%s .. %s", low, high);
+    return same ? NUMBER_SHORT_DIGITS : NUMBER_SHORT_DIGITS + 1;
+}
+
+/* The ends are aligned in columns, so that boxes in successive rows can be compared. There are no
+ * blanks at the end of the line. */
+static void text_box(FILE *out, int dim, const struct fmb_answer *answer,
+                     struct report_columns *columns)
+{
+    char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
+    for (int axis = 0; axis < dim; axis++) {
+        bool last = axis == dim - 1;
+        int digits = number_ends(answer->box[0][axis], answer->box[1][axis], low, high);
+        fprintf(out, "  %c %*s .. %-*s", "xyz"[axis], widen(&columns->box[axis][0], digits, low),
+                low, last ? 0 : widen(&columns->box[axis][1], digits, high), high);
+    }
+}
+
+static void text_answer(FILE *out, int dim, const struct fmb_answer *answer,
+                        struct report_columns *columns)
+{
+    char text[REPORT_TEXT_MAX] = "";
+    const char *verdict = fmb_verdict_name((int) answer->verdict);
+    if (!answer->has_contact && !answer->has_gap) {
+        fputs(verdict, out);
+        return;
+    }
+    int digits = answer->has_contact ? report_contact_text(answer, text) : 0;
+    fprintf(out, "%-*s  %-*s", VERDICT_WIDTH, verdict,
+            answer->has_gap || answer->has_box ? widen(&columns->contact, digits, text) : 0, text);
+    if (answer->has_gap) {
+        digits = gap_text(&answer->gap, text);
+        fprintf(out, "  %-*s", answer->has_box ? widen(&columns->gap, digits, text) : 0, text);
+    }
+    if (answer->has_box)
+        text_box(out, dim, answer, columns);
+}
+
+static void text_certificate(FILE *out, int indent, const char *certificate)
+{
+    char length[NUMBER_TEXT_MAX];
+    size_t characters = strlen(certificate);
+    fprintf(out, "%*s%.*s", indent, "", CERTIFICATE_WIDTH, certificate);
+    if (characters > CERTIFICATE_WIDTH)
+        fprintf(out, "... (%s characters)", number_grouped((int64_t) characters, length));
+    putc('\n', out);
+}
+
+/* Prints the name, or else the id. */
+static void text_body(FILE *out, const char *name, int64_t id, int *width)
+{
+    char text[NUMBER_TEXT_MAX];
+    snprintf(text, sizeof text, "%" PRId64, id);
+    if (!has_text(name))
+        name = text;
+    const int length = (int) escape_characters(name);
+    *width = length > *width ? length : *width;
+    fprintf(out, "  %*s", *width - length, "");
+    escape(out, ESCAPE_TERMINAL, name, strlen(name));
+}
+
+void report_row_text(FILE *out, int indent, const struct report_row *row,
+                     struct report_columns *columns)
+{
+    for (int i = 0; i < 2; i++)
+        text_body(out, row->name[i], row->id[i], &columns->body);
+    fputs("  ", out);
+    if (row->of->status != FMB_OK)
+        fprintf(out, "not decided: %s", row->of->text);
+    else
+        text_answer(out, row->dim, &row->of->answer, columns);
+    putc('\n', out);
+    if (row->of->certificate)
+        text_certificate(out, indent + 2 * columns->body + 6, row->of->certificate);
+}

@@ -1,0 +1,57 @@
+/* Prints the results of a service as rows (report.h), with the ids and names of their bodies.
+ *
+ * The result of a scene has indices of placements: what they stand for is in its query. So queries
+ * are kept until their result has come, the newest up to RESULTS_BYTES_MAX bytes, and names as in
+ * body_names.h: memory is bounded. Of several results of a query with the same ids and time of
+ * sending the first is printed, and what it takes to see that is kept as long as the query; results
+ * that depend on the moment (busy, unknown body) are all printed.
+ *
+ *   Table   a pair on a line. A scene on a line of its own with counts, and its pairs below it.
+ *   JSON    a line for each result: {"utime": ..., "client_id": ..., "sequence_number": ...,
+ *           "server_id": ..., "compute_ns": ...}, and then for a pair the members of its row; for a
+ *           scene "end_pair", counts of verdicts, and "pairs" with rows. "scene": the number of the
+ *           query's event, where it has one. "label": of the scene. "status": where it is not OK,
+ *           with "error".
+ *   CSV     the rows.
+ *
+ * For one thread at a time. */
+#ifndef RESULTS_H
+#define RESULTS_H
+
+#include "log_kind.h"
+#include "report.h"
+
+enum { RESULTS_BYTES_MAX = 16 << 20 };
+
+/* Which pairs are printed, besides those that could not be decided. */
+enum results_pairs {
+    RESULTS_CONTACTS, /* that touch, overlap or are near */
+    RESULTS_NAMED,    /* that the result names */
+    RESULTS_ALL       /* and the other pairs of the query, which are separated */
+};
+
+struct results_options {
+    FILE *out; /* not owned */
+    enum report_form form;
+    enum results_pairs pairs;
+};
+
+struct results;
+
+/* Writes the column names of CSV. Exits with status 1 if memory is exhausted. */
+struct results *results_open(const struct results_options *options);
+void results_close(struct results *results);
+
+/* What a scene's result gets whose query did not come before it. Only its counts are printed. */
+extern const char results_no_query[];
+
+/* Takes a message: prints it if it is a result, keeps it if it is a query, and the names of
+ * queries and names_t messages; others have no effect. number: of its event; or REPORT_NONE.
+ * Returns NULL; results_no_query; or a static text: why the message cannot be read. */
+const char *results_take(struct results *results, enum log_kind kind, int64_t number,
+                         const void *bytes, uint32_t size);
+
+/* Number of messages printed. */
+int64_t results_count(const struct results *results);
+
+#endif
