@@ -137,7 +137,7 @@ static const char *take_query(struct results *results, enum log_kind kind, int64
     while (results->kept_bytes > RESULTS_BYTES_MAX)
         drop(results, results->kept);
     int32_t count;
-    const struct placement *placement = logged_query_placements(&results->query, &count);
+    const struct query_placement *placement = logged_query_placements(&results->query, &count);
     body_names_take(results->names, ids.client_id, placement, count);
     return NULL;
 }
@@ -155,10 +155,10 @@ static bool is_printed(const struct results *results, const struct fmb_client_an
 
 /* Sets the name of a placement, or of a body whose query is not known (NULL). */
 static void set_name(const struct results *results, int64_t client_id,
-                     const struct placement *placement, struct report_row *row, int i)
+                     const struct query_placement *placement, struct report_row *row, int i)
 {
-    row->name[i] = placement && placement->name && *placement->name
-                       ? placement->name
+    row->name[i] = placement && placement->placed.name && *placement->placed.name
+                       ? placement->placed.name
                        : body_names_find(results->names, client_id, row->id[i]);
 }
 
@@ -306,12 +306,12 @@ static bool result_matches(const struct scene_query *query, const struct scene_r
 static void print_scene_row(struct results *results, struct report_row *row, const unsigned pair[2],
                             const struct fmb_client_answer *answer)
 {
-    const struct placement *placement = results->query.scene.placement;
+    const struct query_placement *placement = results->query.scene.placement;
     row->of = answer;
     if (!is_printed(results, answer))
         return;
     for (int i = 0; i < 2; i++) {
-        row->id[i] = placement[pair[i]].body_id;
+        row->id[i] = placement[pair[i]].placed.id;
         set_name(results, results->scene.client_id, &placement[pair[i]], row, i);
     }
     print_row(results, row);
@@ -341,9 +341,9 @@ static struct unnamed begin_unnamed(struct results *results)
 static bool is_decided(const struct results *results, struct unnamed *at)
 {
     const struct scene_query *query = &results->query.scene;
-    const int64_t group = query->placement[at->a].group;
+    const int64_t group = query->placement[at->a].placed.group;
     return at->number >= query->first_pair && at->number < results->scene.end_pair &&
-           !(group != 0 && group == query->placement[at->b].group) &&
+           !(group != 0 && group == query->placement[at->b].placed.group) &&
            !ignored_has(&at->ignored, (unsigned) at->a, (unsigned) at->b);
 }
 
