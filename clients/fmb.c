@@ -39,8 +39,8 @@ static const struct command commands[] = {
 static const struct command log_commands[] = {
     {"info", "what is in a log, and whether all of it is whole", cmd_log_info},
     {"cut", "copy a part of a log into a new one, or repair one", cmd_log_cut},
-    {"results", "print the results of a log, as a table, JSON or CSV", cmd_log_results},
     {"scene", "print a query of a log as a scene", cmd_log_scene},
+    {"results", "print the results of a log, as a table, JSON or CSV", cmd_log_results},
     {.name = NULL},
 };
 
