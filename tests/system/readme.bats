@@ -55,8 +55,29 @@ prints_what_it_shows() {
 }
 
 @test "the commands of the README print what it shows" {
-    prints_what_it_shows README.md 6
+    prints_what_it_shows README.md 11
+    # The curve has the six steps, whose points have the same size.
+    [ "$(grep -c "^.*<use xlink:href='#gpPt0' transform=" "$FMB_BUILD/path.svg")" = 7 ]
     grep -q '](clients/demo/table.png)' README.md
+}
+
+@test "the lines of Python in the README draw the clearance of its path" {
+    python=/usr/bin/python3
+    $python -c 'import pandas, matplotlib' 2> /dev/null || skip "no pandas or matplotlib"
+    mkdir "$BATS_TEST_TMPDIR/build"
+    "$FMB_BUILD/arm" | "$FMB" query --local --gap --csv > "$BATS_TEST_TMPDIR/build/path.csv"
+    sed -n '/^```python$/,/^```$/p' README.md | grep -v '^```' > "$BATS_TEST_TMPDIR/plot.py"
+    (
+        cd "$BATS_TEST_TMPDIR"
+        MPLBACKEND=agg MPLCONFIGDIR=. $python plot.py
+    )
+    [ "$(head -c 4 "$BATS_TEST_TMPDIR/build/path.png" | tail -c 3)" = PNG ]
+    # What pandas makes of it is what jq makes of JSON.
+    (
+        cd "$BATS_TEST_TMPDIR"
+        $python -c "$(head -n 2 plot.py); print([float(gap) for gap in steps.gap_low.min()])"
+    ) | jq -e --slurpfile json <("$FMB_BUILD/arm" | "$FMB" query --local --gap --json) \
+        '. == [$json[] | [.pairs[].gap[0]] | min]'
 }
 
 @test "the commands of the page of the service print what it shows" {
