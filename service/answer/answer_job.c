@@ -670,8 +670,11 @@ static enum answer_stage decide(struct answer_job *job)
     if (job->is_pair)
         return answers.count > 0 ? take_pair(job, &answers) : DECIDING;
     const size_t count = append_all(job, &answers);
-    if (count < answers.count)
-        return complete_at(job, fmb_scene_number(job->state, count));
+    if (count < answers.count) {
+        const unsigned long long end = fmb_scene_number(job->state, count);
+        fmb_scene_end(job->state);
+        return complete_at(job, end);
+    }
     return done ? complete_at(job, fmb_scene_next_pair(job->state)) : DECIDING;
 }
 
@@ -728,6 +731,8 @@ bool answer_job_has_answers(const struct answer_job *job)
 void answer_job_stop(struct answer_job *job)
 {
     assert(job->answerer);
+    if (job->stage == DECIDING)
+        fmb_scene_end(job->state);
     if (answer_job_has_answers(job)) {
         job->result.end_pair = (int32_t) fmb_scene_next_pair(job->state);
     } else {

@@ -617,7 +617,8 @@ enum fmb_status fmb_tree_pairs(const struct fmb_tree *a, const struct fmb_tree *
  *
  * The answers are those of fmb_decide() for each pair, bit for bit. Frames of one body are never
  * tested against each other, nor are placements of one group. Only exact arithmetic allocates
- * memory.
+ * memory; after the last step none is left, and a scene that is abandoned before frees it by
+ * fmb_scene_end().
  *
  * Thread safety: one state must not be used by two threads at the same time. Different states share
  * nothing. */
@@ -736,8 +737,13 @@ enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
  * Out: *answers  the answers of this step
  * Returns whether the scene is complete.
  * Cost: tens of microseconds, except for a step that decides one pair of frames in exact
- * arithmetic, and for the step that finds which placements may meet. */
+ * arithmetic, and for the step that finds which placements may meet. The exact decision of a pair
+ * with a hull is divided into several steps. */
 bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *answers);
+
+/* Ends a scene. Required only of one that is abandoned: a decision in exact arithmetic that a step
+ * has left unfinished holds memory. The state must not be used any more. */
+void fmb_scene_end(struct fmb_scene_state *state);
 
 /* Returns the number of the first pair that has not been answered. It equals the number of pairs if
  * the scene is complete. */

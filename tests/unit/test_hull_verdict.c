@@ -276,6 +276,51 @@ static void inexact_methods_refuse_hulls(void **state)
                      FMB_CANNOT_DECIDE);
 }
 
+/* Puts two cubes onto each other in a computed tilt: doubles do not decide them. */
+static void rest_in_a_tilt(struct draw *draw, struct hull cube[2], struct fmb_placement at[2])
+{
+    double q[4], square = 0;
+    for (int k = 0; k < 4; k++) {
+        q[k] = draw_uniform(draw, 0.1, 1);
+        square += q[k] * q[k];
+    }
+    for (int f = 0; f < 2; f++) {
+        cube[f].count = 8;
+        for (int i = 0; i < 24; i++)
+            cube[f].vertices[i] = i / 3 >> i % 3 & 1;
+        make_hull(3, &cube[f]);
+        at[f] = (struct fmb_placement){.body = &cube[f].body, .orientation_count = 4};
+        memcpy(at[f].orientation, q, sizeof q);
+    }
+    at[1].position[0] = (q[0] * q[0] + q[1] * q[1] - q[2] * q[2] - q[3] * q[3]) / square;
+    at[1].position[1] = 2 * (q[1] * q[2] + q[0] * q[3]) / square;
+    at[1].position[2] = 2 * (q[1] * q[3] - q[0] * q[2]) / square;
+}
+
+/* A scene that is abandoned within an exact decision frees its memory (which a sanitizer checks).
+ */
+static void a_scene_may_be_abandoned(void **state)
+{
+    struct draw draw;
+    draw_begin(&draw, "abandoned");
+    for (int steps = 1; steps < 20; steps++) {
+        struct hull cube[2];
+        struct fmb_placement at[2];
+        struct fmb_scene_state *scene_state;
+        struct fmb_scene_answers answers;
+        rest_in_a_tilt(&draw, cube, at);
+        const struct fmb_scene scene = {
+            .placements = at, .placement_count = 2, .want = FMB_WANT_BOX | FMB_WANT_TIMES};
+        const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
+        void *memory = malloc(fmb_scene_bytes(&limits));
+        assert_int_equal(fmb_scene_begin(&scene, &limits, memory, &scene_state), FMB_OK);
+        for (int i = 0; i < steps && !fmb_scene_step(scene_state, &answers); i++)
+            ;
+        fmb_scene_end(scene_state);
+        free(memory);
+    }
+}
+
 /* A batch and a scene give the bits of single pairs. */
 static void batch_and_scene_agree_with_single_pairs(void **state)
 {
@@ -295,6 +340,8 @@ static void batch_and_scene_agree_with_single_pairs(void **state)
                 placement[i].orientation[k] = draw_uniform(&draw, 0.1, 1);
         }
     }
+    for (int i = 0; i < BODIES / 2; i += 2)
+        rest_in_a_tilt(&draw, &hull[i], &placement[i]);
     const struct fmb_scene scene = {.placements = placement,
                                     .placement_count = BODIES,
                                     .duration = 1,
@@ -339,6 +386,7 @@ int main(void)
         cmocka_unit_test(segments_that_part),
         cmocka_unit_test(the_list_of_vertices_does_not_matter),
         cmocka_unit_test(inexact_methods_refuse_hulls),
+        cmocka_unit_test(a_scene_may_be_abandoned),
         cmocka_unit_test(batch_and_scene_agree_with_single_pairs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -636,9 +636,7 @@ static enum gap_outcome gap_of_pair(const struct batch_job *job, size_t i, enum 
         return gap_of(a, b, batch->duration, verdict, job->farthest, batch->open != NULL, out);
     const struct frame_pair frames = {
         {a->frame, a->placement}, {b->frame, b->placement}, batch->duration};
-    struct hull_pair pair;
-    hull_pair_set(&frames, &pair);
-    return hull_gap_of(&pair, verdict, job->farthest, out);
+    return hull_gap(&frames, verdict, job->farthest, out);
 }
 
 static void put_gap(const struct batch_job *job, const struct batch_block *block, size_t slot)

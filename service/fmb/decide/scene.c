@@ -18,6 +18,7 @@
 
 #include "batch.h"
 #include "gap.h"
+#include "hull.h"
 
 #include <assert.h>
 #include <limits.h>
@@ -80,6 +81,8 @@ struct fmb_scene_state {
     struct frame_pair_cursor cursor;
     size_t answered; /* in the last step, starting with the pair of bodies first_answer */
     size_t first_answer;
+    struct hull_decision hull; /* of the first open pair of frames, if it has a hull */
+    struct fmb_answer hull_answer;
     struct scene_block block;
 };
 
@@ -507,14 +510,20 @@ static void decide_batch(struct fmb_scene_state *state, size_t first, size_t cou
     (void) status;
 }
 
+/* Returns pair of frames k of the block. */
+static struct frame_pair frames_at(const struct fmb_scene_state *state, size_t k)
+{
+    const struct fmb_prepared *a = &state->frames.slot[state->block.frames[k][0]];
+    const struct fmb_prepared *b = &state->frames.slot[state->block.frames[k][1]];
+    return (struct frame_pair){
+        {a->frame, a->placement}, {b->frame, b->placement}, state->scene.duration};
+}
+
 /* Decides the only pair of the block, by a method without a batch. */
 static void decide_single(struct fmb_scene_state *state)
 {
     struct scene_block *block = &state->block;
-    const struct fmb_prepared *a = &state->frames.slot[block->frames[0][0]];
-    const struct fmb_prepared *b = &state->frames.slot[block->frames[0][1]];
-    const struct frame_pair pair = {
-        {a->frame, a->placement}, {b->frame, b->placement}, state->scene.duration};
+    const struct frame_pair pair = frames_at(state, 0);
     struct fmb_answer answer = {0};
     const unsigned want =
         (state->scene.want & FMB_WANT_BOX) | (has_gaps(&state->scene) ? FMB_WANT_GAP : 0);
@@ -702,13 +711,57 @@ static void place_some(struct fmb_scene_state *state)
         state->stage = SEARCHING;
 }
 
+/* Goes on with the decision of open pair of frames k, which has a hull. Returns whether it is
+ * complete.
+ */
+static bool step_hull(struct fmb_scene_state *state, size_t k)
+{
+    struct scene_outcomes *outcomes = &state->block.outcomes;
+    struct fmb_answer *answer = &state->hull_answer;
+    const struct frame_pair frames = frames_at(state, k);
+    bool done = false;
+    if (state->hull.exact) {
+        done = hull_decision_step(&state->hull, answer);
+    } else {
+        *answer = (struct fmb_answer){0};
+        done =
+            hull_decision_begin(&frames, state->scene.want, HULL_CERTIFIED, &state->hull, answer);
+    }
+    if (!done)
+        return false;
+    outcomes->verdict[k] = (unsigned char) answer->verdict;
+    if (answer->has_contact)
+        memcpy(outcomes->contact[k], answer->contact, sizeof answer->contact);
+    if (answer->has_box)
+        memcpy(outcomes->box[k], answer->box, sizeof answer->box);
+    if (has_gaps(&state->scene)) {
+        const enum gap_outcome gap =
+            hull_gap(&frames, answer->verdict, farthest_of_frames(state), &outcomes->gap[k]);
+        outcomes->verdict[k] = gap == GAP_UNSURE ? 0 : outcomes->verdict[k];
+        outcomes->gap[k] = gap == GAP_KNOWN ? outcomes->gap[k] : gap_none();
+    }
+    return true;
+}
+
 static void decide_some(struct fmb_scene_state *state)
 {
     struct scene_block *block = &state->block;
-    if (block->next_open < block->open_count)
-        decide_batch(state, block->open[block->next_open++], 1, NULL, NULL);
-    else
+    if (block->next_open == block->open_count) {
         begin_block(state);
+        return;
+    }
+    const size_t k = block->open[block->next_open];
+    const struct frame_pair frames = frames_at(state, k);
+    if (!hull_takes(frames.a.frame, frames.b.frame))
+        decide_batch(state, k, 1, NULL, NULL);
+    else if (!step_hull(state, k))
+        return;
+    block->next_open++;
+}
+
+void fmb_scene_end(struct fmb_scene_state *state)
+{
+    hull_decision_end(&state->hull);
 }
 
 bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *answers)

@@ -78,7 +78,7 @@ static bool frames_swap(const struct placed_frame *a, const struct placed_frame 
 }
 
 /* Converts a gap to that of the swapped pair. No number becomes -0. */
-static void turn_round(struct fmb_gap *gap)
+void gap_turn_round(struct fmb_gap *gap)
 {
     double first[FMB_DIM_MAX];
     memcpy(first, gap->witness[0], sizeof first);
@@ -242,7 +242,7 @@ enum gap_outcome gap_of(const struct fmb_prepared *a, const struct fmb_prepared 
     enum gap_outcome outcome =
         gap_in_doubles(swaps ? b : a, swaps ? a : b, duration, verdict, farthest, out);
     if (outcome == GAP_KNOWN && swaps)
-        turn_round(out);
+        gap_turn_round(out);
     if (outcome != GAP_UNSURE || quick)
         return outcome;
     const struct frame_pair pair = {first, second, duration};
@@ -258,7 +258,7 @@ void gap_exact_any_order(const struct frame_pair *pair, enum fmb_verdict verdict
                                        pair->duration};
     gap_exact(&ordered, verdict, out);
     if (swaps)
-        turn_round(out);
+        gap_turn_round(out);
 }
 
 /* ---- Bodies of several frames ---- */
@@ -314,8 +314,8 @@ void gap_include(struct fmb_gap *all, const struct fmb_gap *one, const struct aa
     raise(&raised, a, b);
     x = raised;
     if (swaps) {
-        turn_round(&x);
-        turn_round(&y);
+        gap_turn_round(&x);
+        gap_turn_round(&y);
     }
     const bool first = !gap_is_known(all);
     const double lower = first ? -x.bounds[0] : interval_max(-x.bounds[0], -y.bounds[0]);

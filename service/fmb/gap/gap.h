@@ -118,6 +118,9 @@ void gap_exact_any_order(const struct frame_pair *pair, enum fmb_verdict verdict
 double gap_far_threshold(const struct fmb_prepared *a, const struct fmb_prepared *b,
                          double duration, double farthest);
 
+/* Makes a gap that of the swapped pair. */
+void gap_turn_round(struct fmb_gap *gap);
+
 /* The gap of a prepared pair with this verdict. quick: returns GAP_UNSURE if it needs GMP. */
 enum gap_outcome gap_of(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                         enum fmb_verdict verdict, double farthest, bool quick, struct fmb_gap *out);

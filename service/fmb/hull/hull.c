@@ -4,17 +4,7 @@
 #include "hull_exact.h"
 #include "hull_search.h"
 
-static void decide_exactly(const struct hull_pair *pair, unsigned want,
-                           const struct hull_simplex *start, struct fmb_answer *answer)
-{
-    struct hull_column first[FMB_DIM_MAX + 1];
-    for (unsigned i = 0; i < start->count; i++)
-        first[i] = start->vertex[i].column;
-    struct hull_exact *exact = hull_exact_begin(pair, want, first, start->count);
-    while (!hull_exact_step(exact))
-        ;
-    hull_exact_end(exact, answer);
-}
+#include <math.h>
 
 /* Sets contact and box of an overlap that doubles prove. Returns false if they are not tight
  * enough. */
@@ -27,26 +17,74 @@ static bool answer_in_doubles(const struct hull_pair *pair, unsigned want,
            (!answer->has_box || hull_box(pair, simplex, answer->box));
 }
 
-enum fmb_status hull_decide(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
-                            struct fmb_answer *answer)
+bool hull_decision_begin(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
+                         struct hull_decision *out, struct fmb_answer *answer)
+{
+    struct hull_simplex simplex = {.count = 0};
+    struct hull_column first[FMB_DIM_MAX + 1];
+    hull_order(frames, &out->frames);
+    hull_pair_set(&out->frames, &out->pair);
+    out->exact = NULL;
+    answer->verdict =
+        effort != HULL_EXACT && out->pair.usable ? hull_search(&out->pair, &simplex) : 0;
+    if (answer->verdict == FMB_SEPARATED)
+        return true;
+    if (answer->verdict == FMB_OVERLAPPING) {
+        if (answer_in_doubles(&out->pair, want, &simplex, answer))
+            return true;
+        simplex.count = 0; /* the centre is no column */
+    }
+    for (unsigned i = 0; i < simplex.count; i++)
+        first[i] = simplex.vertex[i].column;
+    if (effort != HULL_QUICK)
+        out->exact = hull_exact_begin(&out->pair, want, first, simplex.count);
+    return false;
+}
+
+bool hull_decision_step(struct hull_decision *decision, struct fmb_answer *answer)
+{
+    if (!hull_exact_step(decision->exact))
+        return false;
+    hull_exact_end(decision->exact, answer);
+    decision->exact = NULL;
+    return true;
+}
+
+void hull_decision_end(struct hull_decision *decision)
+{
+    if (decision->exact)
+        hull_exact_end(decision->exact, NULL);
+    decision->exact = NULL;
+}
+
+enum gap_outcome hull_gap(const struct frame_pair *frames, enum fmb_verdict verdict,
+                          double farthest, struct fmb_gap *out)
 {
     struct frame_pair ordered;
     struct hull_pair pair;
-    struct hull_simplex simplex = {.count = 0};
-    if (want & FMB_WANT_GAP)
-        return FMB_CANNOT_DECIDE;
-    hull_order(frames, &ordered);
+    const bool swapped = hull_order(frames, &ordered);
     hull_pair_set(&ordered, &pair);
-    answer->verdict = effort != HULL_EXACT && pair.usable ? hull_search(&pair, &simplex) : 0;
-    if (answer->verdict == FMB_SEPARATED ||
-        (answer->verdict == FMB_OVERLAPPING && answer_in_doubles(&pair, want, &simplex, answer)))
-        return FMB_OK;
-    if (effort == HULL_QUICK)
-        return FMB_CANNOT_DECIDE;
-    if (answer->verdict == FMB_OVERLAPPING)
-        simplex.count = 0;
-    decide_exactly(&pair, want, &simplex, answer);
-    return FMB_OK;
+    const enum gap_outcome outcome = hull_gap_of(&pair, verdict, farthest, out);
+    if (outcome == GAP_KNOWN && swapped)
+        gap_turn_round(out);
+    return outcome;
+}
+
+enum fmb_status hull_decide(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
+                            struct fmb_answer *answer)
+{
+    struct hull_decision decision;
+    if (!hull_decision_begin(frames, want, effort, &decision, answer)) {
+        if (effort == HULL_QUICK)
+            return FMB_CANNOT_DECIDE;
+        while (!hull_decision_step(&decision, answer))
+            ;
+    }
+    answer->has_gap = want & FMB_WANT_GAP;
+    return !answer->has_gap ||
+                   hull_gap(frames, answer->verdict, INFINITY, &answer->gap) == GAP_KNOWN
+               ? FMB_OK
+               : FMB_CANNOT_DECIDE;
 }
 
 enum gap_outcome hull_gap_of(const struct hull_pair *pair, enum fmb_verdict verdict,

@@ -15,7 +15,7 @@
  *   hull_pair_set()      two of them, and bounds on the errors of everything computed below
  *   hull_support()       the farthest point of D in a direction
  *   hull_point()         a point of D
- *   hull_decide()        verdict, contact and box
+ *   hull_decide()        verdict, contact and box; hull_decision_step(): the same in steps
  *   hull_gap_of()        the gap
  *
  * Accuracy of doubles. Let u = 2^-53, r the radius of a frame: the distance of its vertices from
@@ -108,10 +108,37 @@ static inline bool hull_takes(const struct fmb_frame *a, const struct fmb_frame 
  * exchanged; false both ways for frames that are equal in all numbers. */
 bool hull_order(const struct frame_pair *frames, struct frame_pair *out);
 
-/* Decides a checked pair. want: as of fmb_decide(); the contact too only with FMB_WANT_TIMES.
- * quick: FMB_CANNOT_DECIDE, with *answer unspecified, if it needs exact arithmetic. exact: by exact
- * arithmetic throughout. */
-enum hull_effort { HULL_CERTIFIED, HULL_QUICK, HULL_EXACT };
+/* How much a decision may do: doubles alone; doubles, and integers for what they leave open;
+ * integers alone. */
+enum hull_effort { HULL_QUICK, HULL_CERTIFIED, HULL_EXACT };
+
+struct hull_exact;
+
+/* A decision that may have to go on in integers, in steps. It points to itself: not to be copied.
+ */
+struct hull_decision {
+    struct frame_pair frames; /* in the order of hull_order() */
+    struct hull_pair pair;
+    struct hull_exact *exact; /* NULL: complete */
+};
+
+/* Begins the decision of a checked pair. want: as of fmb_decide(); the contact too only with
+ * FMB_WANT_TIMES; the gap is not for this function. Returns whether it is complete, with *answer
+ * set. Otherwise, of a quick one, it is for the exact method, and ends here; or
+ * hull_decision_step() has to be called until it is complete. */
+bool hull_decision_begin(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
+                         struct hull_decision *out, struct fmb_answer *answer);
+
+/* Performs a step of a decision that is not complete: some ten microseconds for numbers of similar
+ * size, and less than a millisecond for any. Returns whether it is complete, with *answer set; its
+ * memory is then freed. */
+bool hull_decision_step(struct hull_decision *decision, struct fmb_answer *answer);
+
+/* Frees the memory of a decision, complete or not. */
+void hull_decision_end(struct hull_decision *decision);
+
+/* Decides a checked pair, with the gap if it is wanted. Returns FMB_CANNOT_DECIDE, with *answer
+ * unspecified, if the decision is quick and needs integers. */
 enum fmb_status hull_decide(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
                             struct fmb_answer *answer);
 
@@ -119,5 +146,9 @@ enum fmb_status hull_decide(const struct frame_pair *frames, unsigned want, enum
  * surely greater than farthest, by more than the width of an enclosure. */
 enum gap_outcome hull_gap_of(const struct hull_pair *pair, enum fmb_verdict verdict,
                              double farthest, struct fmb_gap *out);
+
+/* The gap of a checked pair in any order. */
+enum gap_outcome hull_gap(const struct frame_pair *frames, enum fmb_verdict verdict,
+                          double farthest, struct fmb_gap *out);
 
 #endif

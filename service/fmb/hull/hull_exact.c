@@ -55,8 +55,10 @@
 #include "hull_exact.h"
 
 #include "exact.h"
+#include "hull_search.h"
 #include "integer.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -110,6 +112,9 @@ struct hull_exact {
     mpz_t row[ROWS][ROWS], cofactor[ROWS][ROWS], det, dual[ROWS], coordinate[ROWS], enters[ROWS];
     mpz_t height[ROWS];
     int target; /* the height: an end of the contact, 0 and 1, or of the box, 2 + 2 axis + end */
+
+    enum { GUESS_UNKNOWN, GUESS_GIVEN, GUESS_NONE } guesses;
+    struct hull_guess guess;
 
     int face_rank;
     enum fmb_verdict verdict;
@@ -265,10 +270,11 @@ struct direction {
     double least; /* vertices of a smaller value are not the farthest; -infinity if not known */
 };
 
-/* Rounds e->body, scaled to a largest coordinate in [1/2, 1). Each coordinate is truncated to 53
- * bits, off by at most 2^-52 of itself, and by 2^-1074 if it is far smaller than the largest. The
- * product with a vertex is off by another 3.01 2^-53 of the magnitudes of its terms (support.h).
- * With |n| < 2, a value is off by less than 16 2^-53 radius + 2 slack + 2^-1000. */
+/* Rounds e->body, scaled to a largest coordinate in [1/32, 1/16), so that no sum of products
+ * overflows. Each coordinate is truncated to 53 bits, off by at most 2^-52 of itself, and by
+ * 2^-1074 if it is far smaller than the largest. The product with a vertex is off by another 3.01
+ * 2^-53 of the magnitudes of its terms (support.h). With |n| < 1/9, a value is off by less than
+ * 2^-53 radius + slack + 2^-1000. */
 static void round_direction(struct hull_exact *e, const struct side *side, struct direction *out)
 {
     long exponent[3], largest = 0;
@@ -282,12 +288,12 @@ static void round_direction(struct hull_exact *e, const struct side *side, struc
     }
     for (int axis = 0; axis < 3; axis++) {
         const long down = largest - exponent[axis];
-        out->n[axis] = out->n[axis] == 0 || down > 1100 ? 0 : ldexp(out->n[axis], (int) -down);
+        out->n[axis] = out->n[axis] == 0 || down > 1100 ? 0 : ldexp(out->n[axis], (int) -down - 4);
     }
     out->least = -INFINITY;
-    if (!(side->view->radius < 0x1p1000))
+    if (!(side->view->radius <= DBL_MAX))
         return;
-    const double error = 16 * 0x1p-53 * side->view->radius + 2 * side->view->slack + 0x1p-1000;
+    const double error = 0x1p-53 * side->view->radius + side->view->slack + 0x1p-1000;
     for (unsigned k = 0; k < side->count; k++)
         out->least = fmax(out->least, support_value(&side->view->vertices, out->n, side->face[k]));
     out->least -= 2.1 * error;
@@ -803,8 +809,35 @@ static void set_height(const struct hull_exact *e, const struct point *point, mp
         mpz_neg(out, out);
 }
 
+/* Replaces the basis by a guess in doubles of the optimal one, if its simplex contains the origin.
+ * Saves steps, and changes no answer. The points of the span are not needed any more. */
+static void guess_basis(struct hull_exact *e)
+{
+    struct hull_column column[ROWS];
+    if (e->guesses == GUESS_UNKNOWN)
+        e->guesses = !e->reduced && e->rank == e->pair->dim && e->pair->usable &&
+                             hull_guess_begin(e->pair, &e->guess)
+                         ? GUESS_GIVEN
+                         : GUESS_NONE;
+    if (e->guesses == GUESS_NONE ||
+        !hull_guess_basis(&e->guess, e->target < TARGET_BOX ? -1 : target_axis(e), target_sign(e),
+                          column))
+        return;
+    for (int i = 0; i < e->rows; i++) {
+        set_point(e, column[i], &e->span[i]);
+        swap_points(&e->span[i], &e->basis[i]);
+    }
+    set_basis(e);
+    if (mpz_sgn(e->det) > 0 && passes(e))
+        return;
+    for (int i = 0; i < e->rows; i++)
+        swap_points(&e->span[i], &e->basis[i]);
+    set_basis(e);
+}
+
 static void begin_target(struct hull_exact *e)
 {
+    guess_basis(e);
     for (int i = 0; i < e->rows; i++)
         set_height(e, &e->basis[i], e->height[i]);
 }

@@ -36,7 +36,7 @@ static const double unit_roundoff = 0x1p-53;
 /* Limits of fmb.h, with a margin for the rounding of their comparison. */
 static const double limit = 1e-12 * (1 - 0x1p-10);
 
-enum { PIVOTS_MAX = 40 };
+enum { PIVOTS_MAX = 100 };
 
 /* A point of the basis. */
 struct high_point {
@@ -197,9 +197,10 @@ static bool is_inside(const struct program *program)
     return hull_simplex_contains_origin(program->pair, &simplex);
 }
 
-/* Maximises the height. *outer: the upper bound. Returns whether it is within the limit, relative
- * to scale, or to the largest coordinate. */
-static bool maximise(struct program *program, double *outer)
+/* Maximises the height. prove: returns whether the upper bound *outer is within the limit, relative
+ * to the largest coordinate. Otherwise: returns whether an optimum was found, up to rounding
+ * errors. */
+static bool maximise(struct program *program, bool prove, double *outer)
 {
     const struct hull_pair *pair = program->pair;
     const bool box = program->axis >= 0;
@@ -211,14 +212,13 @@ static bool maximise(struct program *program, double *outer)
         const double length = sqrt(dot(program->normal, program->normal)) * (1 + 0x1p-40);
         const double found = find_highest(program, &highest);
         const double out = 1.25 * (length + box) * pair->error + program->extra;
-        const double in = (1.25 * (length + box) * pair->error + program->extra) +
-                          (length * hull_point_error(pair) + program->residual);
+        const double in = out + (length * hull_point_error(pair) + program->residual);
         const double scale = box ? largest_coordinate(program) : 1;
         *outer = found + out;
-        if (*outer - (program->level - in) <= limit * scale)
+        if (prove && *outer - (program->level - in) <= limit * scale)
             return is_inside(program);
         if (!(found - program->level > 2 * (out + in)))
-            return false;
+            return !prove;
         hull_point(pair, highest.column, highest.at);
         if (!pivot(program, &highest))
             return false;
@@ -252,7 +252,7 @@ bool hull_contact(const struct hull_pair *pair, const struct hull_simplex *simpl
     for (int end = 0; end < 2; end++) {
         double tau;
         program.sign = end ? 1 : -1;
-        if (!maximise(&program, &tau))
+        if (!maximise(&program, true, &tau))
             return false;
         /* The product is rounded outward: 2^-1074 covers underflow. */
         if (end && tau < 1)
@@ -276,9 +276,37 @@ bool hull_box(const struct hull_pair *pair, const struct hull_simplex *simplex,
             program.extra =
                 8 * unit_roundoff *
                 (fabs(program.position[program.axis]) + fabs(program.path[program.axis]));
-            if (!maximise(&program, &height))
+            if (!maximise(&program, true, &height))
                 return false;
             box[end][program.axis] = program.sign * height + 0.0; /* never -0 */
         }
+    return true;
+}
+
+/* ---- Guesses ---- */
+
+bool hull_guess_begin(const struct hull_pair *pair, struct hull_guess *out)
+{
+    struct hull_vertex centre;
+    hull_pair_set(pair->frames, &out->pair);
+    hull_centre(pair, &centre);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        out->pair.offset[axis] -= 0x1p-30 * centre.at[axis];
+    return hull_search(&out->pair, &out->simplex) == FMB_OVERLAPPING;
+}
+
+bool hull_guess_basis(const struct hull_guess *guess, int axis, double sign,
+                      struct hull_column out[FMB_DIM_MAX + 1])
+{
+    struct program program = {.axis = axis, .sign = sign};
+    double outer;
+    begin(&guess->pair, &guess->simplex, &program);
+    if (!maximise(&program, false, &outer))
+        return false;
+    for (int i = 0; i <= guess->pair.dim; i++) {
+        if (program.basis[i].vertex.is_centre)
+            return false;
+        out[i] = program.basis[i].vertex.column;
+    }
     return true;
 }

@@ -79,7 +79,7 @@ struct search {
     struct hull_vertex centre, portal[FMB_DIM_MAX], last;
 };
 
-static void set_centre(const struct hull_pair *pair, struct hull_vertex *out)
+void hull_centre(const struct hull_pair *pair, struct hull_vertex *out)
 {
     double a[FMB_DIM_MAX], b[FMB_DIM_MAX];
     rotation_apply(&pair->view[0].rotation, pair->view[0].centre, a);
@@ -279,7 +279,7 @@ enum fmb_verdict hull_search(const struct hull_pair *pair, struct hull_simplex *
 {
     struct search s = {.pair = pair};
     bool found = false;
-    set_centre(pair, &s.centre);
+    hull_centre(pair, &s.centre);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         s.n[axis] = -s.centre.at[axis];
     if (!(dot(s.n, s.n) > 0x1p-100 * pair->reach * pair->reach)) { /* a ray in any direction */

@@ -17,6 +17,9 @@ struct hull_simplex {
     struct hull_vertex vertex[FMB_DIM_MAX + 1];
 };
 
+/* Sets the centre of D: a point of it, rounded. */
+void hull_centre(const struct hull_pair *pair, struct hull_vertex *out);
+
 /* Returns SEPARATED if a direction proves it, OVERLAPPING if a simplex of points of D proves it,
  * which is then *out, and 0 if doubles do not decide. *out then holds points of D near which the
  * origin is expected, none of them a centre. In: a usable pair. */
@@ -38,5 +41,22 @@ bool hull_contact(const struct hull_pair *pair, const struct hull_simplex *simpl
                   double contact[2]);
 bool hull_box(const struct hull_pair *pair, const struct hull_simplex *simplex,
               double box[2][FMB_DIM_MAX]);
+
+/* Guesses of optimal bases, for the start of the exact method. The origin is moved into D a little,
+ * so that the simplex method does not stand on the boundary of D, where doubles cannot tell bases
+ * apart. Points to itself: not to be copied. */
+struct hull_guess {
+    struct hull_pair pair; /* moved */
+    struct hull_simplex simplex;
+};
+
+/* Returns whether there will be guesses. In: a usable pair. */
+bool hull_guess_begin(const struct hull_pair *pair, struct hull_guess *out);
+
+/* Guesses dim + 1 points of D that contain the origin in their simplex, and whose plane is highest
+ * over it. axis: of the box, or -1: the contact. sign: of the height, 1 or -1. Returns false if
+ * there is no guess. */
+bool hull_guess_basis(const struct hull_guess *guess, int axis, double sign,
+                      struct hull_column out[FMB_DIM_MAX + 1]);
 
 #endif
