@@ -137,7 +137,7 @@ static void report_command(const struct log_query *query)
     fprintf(stderr,
             "fmb: event %" PRId64 " (offset %" PRId64 "), client %" PRId64
             ", sequence number %" PRId64 "; to repeat it: fmb query --local --json",
-            query->number, query->offset, query->ids.client_id, query->ids.sequence_number);
+            query->number, query->offset, query->key.client_id, query->key.sequence_number);
     if (method != 0)
         fprintf(stderr, " --method %s", fmb_method_by_number(method)->name);
     fprintf(stderr, "%s%s%s\n", want & FMB_WANT_BOX ? " --box" : "",

@@ -145,18 +145,16 @@ static void take_query(struct cutter *cut, enum log_kind kind, struct match_plac
 static bool take_message(struct cutter *cut, const struct log_event *event, enum log_kind kind)
 {
     const bool is_result = log_kind_is_result(kind);
-    struct query_header ids;
+    struct match_key key;
     struct match_place place = {.log = cut->input.log,
                                 .number = cut->event,
                                 .offset = event->offset,
                                 .utime = event->utime};
-    if (kind >= LOG_STATUS || log_kind_ids(kind, event, &ids) ||
+    if (kind >= LOG_STATUS || match_key_of(kind, event, &key) ||
         (!is_result && logged_query_read(&cut->query, kind, event->data, (uint32_t) event->kept)))
         return false;
     if (!is_result)
         take_query(cut, kind, &place);
-    const struct match_key key = {log_kind_query_of(kind), ids.client_id, ids.sequence_number,
-                                  ids.utime};
     struct match_item *other = match_take(cut->match, &key, &place, is_result);
     if (other)
         choose_result(cut, log_kind_result_of(log_kind_query_of(kind)),

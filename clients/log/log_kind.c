@@ -34,21 +34,6 @@ enum log_kind log_kind_of(const struct log_channels *channels, const struct log_
     return LOG_OTHER;
 }
 
-const char *log_kind_ids(enum log_kind kind, const struct log_event *event,
-                         struct query_header *out)
-{
-    const uint32_t size = (uint32_t) event->kept;
-    if (log_kind_is_result(kind) && event->kept < event->size)
-        return "longer than any message of this type";
-    switch (kind) {
-    case LOG_PAIR_QUERY: return wire_read_pair_header(event->data, size, out);
-    case LOG_PAIR_RESULT: return wire_read_pair_result_header(event->data, size, out);
-    case LOG_SCENE_QUERY: return wire_read_scene_header(event->data, size, out);
-    case LOG_SCENE_RESULT: return wire_read_scene_result_header(event->data, size, out);
-    default: return "neither a query nor a result";
-    }
-}
-
 int log_kind_old_version(enum log_kind kind, const struct log_event *event)
 {
     return kind != LOG_OTHER && event->kept >= 8

@@ -1,5 +1,4 @@
-/* Classifies the events of a log by the service's channels, and reads the ids of messages. No
- * shared state. */
+/* Classifies the events of a log by the service's channels. No shared state. */
 #ifndef LOG_KIND_H
 #define LOG_KIND_H
 
@@ -54,12 +53,6 @@ static inline enum log_kind log_kind_result_of(enum log_kind query)
 {
     return query == LOG_PAIR_QUERY ? LOG_PAIR_RESULT : LOG_SCENE_RESULT;
 }
-
-/* Reads the ids of a query or result, and nothing else. Returns NULL; or a static text: why they
- * cannot be read. A query may be longer than the kept data of the event: the service refuses such
- * queries. */
-const char *log_kind_ids(enum log_kind kind, const struct log_event *event,
-                         struct query_header *out);
 
 /* The version of the message type of an event on a channel of the service, if it is an old one,
  * such as 1; else 0. */

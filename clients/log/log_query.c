@@ -20,11 +20,12 @@ struct query_search {
     struct input input;
     enum log_query_outcome outcome; /* the search ends if this is not FOUND */
     bool of_result;                 /* a result was found: the search is for its query */
-    /* Matching events: their number, and the offsets of the first ones. `kind` and the event in
-     * `out` are those of the first match. */
+    /* Matching events: their number, and the offsets of the first ones. `kind`, `error` and the
+     * event in `out` are those of the first match. */
     int64_t count;
     int64_t listed[LISTED_MAX]; /* offsets */
     enum log_kind kind;
+    const char *error; /* why the key of the first match cannot be read; NULL: it can */
 };
 
 static void fail(struct query_search *search, const char *what, int error)
@@ -61,41 +62,32 @@ static void for_each_event(struct query_search *search,
 
 /* ---- The event ---- */
 
-static bool has_ids(const struct query_search *search, const struct log_event *event)
+/* Whether the event is the query with the requested ids, or that of the result that was found. */
+static bool is_query(const struct query_search *search, const struct log_event *event)
 {
     const struct log_query_options *options = search->options;
     const enum log_kind kind = log_kind_of(&search->channels, event);
-    struct query_header ids;
-    return log_kind_is_query(kind) && !log_kind_ids(kind, event, &ids) &&
-           ids.client_id == options->client_id && ids.sequence_number == options->sequence_number;
-}
-
-/* Whether the event is the query of the result that was found. */
-static bool has_result(const struct query_search *search, const struct log_event *event)
-{
-    const enum log_kind kind = log_kind_of(&search->channels, event);
-    const struct query_header *result = &search->out->ids;
-    struct query_header ids;
-    return kind == log_kind_query_of(search->kind) && !log_kind_ids(kind, event, &ids) &&
-           ids.client_id == result->client_id && ids.sequence_number == result->sequence_number &&
-           ids.utime == result->utime;
+    struct match_key key;
+    if (!log_kind_is_query(kind) || match_key_of(kind, event, &key))
+        return false;
+    return search->of_result ? match_key_equal(&key, &search->out->key)
+                             : key.client_id == options->client_id &&
+                                   key.sequence_number == options->sequence_number;
 }
 
 static bool matches(const struct query_search *search, const struct log_event *event)
 {
-    if (search->of_result)
-        return has_result(search, event);
-    switch (search->options->by) {
-    case LOG_QUERY_NUMBER: return event->number == search->options->number;
-    case LOG_QUERY_OFFSET: return event->offset == search->options->offset;
-    default: return has_ids(search, event);
-    }
+    if (search->of_result || search->options->by == LOG_QUERY_IDS)
+        return is_query(search, event);
+    return search->options->by == LOG_QUERY_NUMBER ? event->number == search->options->number
+                                                   : event->offset == search->options->offset;
 }
 
 static void keep_event(struct query_search *search, const struct log_event *event)
 {
     struct log_query *out = search->out;
     search->kind = log_kind_of(&search->channels, event);
+    search->error = match_key_of(search->kind, event, &out->key);
     out->number = event->number;
     out->offset = event->offset;
     out->size = event->size;
@@ -173,21 +165,8 @@ static void find_event(struct query_search *search)
         refuse(search, search->of_result ? "a result, whose query is not here" : "there is none");
     else if (search->kind >= LOG_STATUS)
         refuse(search, "neither a query nor a result of this service (--prefix chooses it)");
-}
-
-/* Reads the ids of the first matching event. */
-static bool read_ids(struct query_search *search)
-{
-    struct log_query *out = search->out;
-    const struct log_event event = {
-        .data = out->bytes,
-        .size = out->size,
-        .kept = out->size < LOG_DATA_MAX ? out->size : LOG_DATA_MAX,
-    };
-    const char *error = log_kind_ids(search->kind, &event, &out->ids);
-    if (error)
-        refuse(search, error);
-    return !error;
+    else if (search->error)
+        refuse(search, search->error);
 }
 
 /* ---- Its bodies ---- */
@@ -210,7 +189,7 @@ static void fill_names(struct log_query *out, struct query_placement *placement,
     for (int32_t i = 0; i < count; i++)
         if (!placement[i].placed.name || !*placement[i].placed.name)
             placement[i].placed.name =
-                body_names_find(out->names, out->ids.client_id, placement[i].placed.id);
+                body_names_find(out->names, out->key.client_id, placement[i].placed.id);
 }
 
 static void find_bodies(struct query_search *search)
@@ -243,7 +222,7 @@ static void find_bodies(struct query_search *search)
 static void run(struct query_search *search)
 {
     find_event(search);
-    if (search->outcome != LOG_QUERY_FOUND || !read_ids(search))
+    if (search->outcome != LOG_QUERY_FOUND)
         return;
     search->of_result = log_kind_is_result(search->kind);
     if (search->of_result)

@@ -4,7 +4,7 @@
 
 #include "body_names.h"
 #include "definitions.h"
-#include "log_read.h"
+#include "match.h"
 
 struct log_query_options {
     /* Read as one log, in this order. The last one contains the query or its result; the others
@@ -24,7 +24,7 @@ struct log_query_options {
 
 struct log_query {
     int64_t number, offset; /* of its event, in the last log */
-    struct query_header ids;
+    struct match_key key;
     size_t size; /* bytes in the log */
     unsigned char bytes[LOG_DATA_MAX];
     /* Handles are replaced by their bodies, from anywhere in the logs. A placement without a name

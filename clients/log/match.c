@@ -1,5 +1,7 @@
 #include "match.h"
 
+#include "wire.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,6 +15,24 @@ struct match {
     struct match_item *items, always;
     struct match_note note[NOTES];
 };
+
+const char *match_key_of(enum log_kind kind, const struct log_event *event, struct match_key *out)
+{
+    static const char *(*const read[LOG_STATUS])(const void *bytes, uint32_t size,
+                                                 struct query_header *out) = {
+        [LOG_PAIR_QUERY] = wire_read_pair_header,
+        [LOG_PAIR_RESULT] = wire_read_pair_result_header,
+        [LOG_SCENE_QUERY] = wire_read_scene_header,
+        [LOG_SCENE_RESULT] = wire_read_scene_result_header};
+    struct query_header ids = {.utime = 0};
+    const char *error = kind >= LOG_STATUS ? "neither a query nor a result"
+                        : log_kind_is_result(kind) && event->kept < event->size
+                            ? "longer than any message of this type"
+                            : read[kind](event->data, (uint32_t) event->kept, &ids);
+    *out =
+        (struct match_key){log_kind_query_of(kind), ids.client_id, ids.sequence_number, ids.utime};
+    return error;
+}
 
 struct match *match_open(void)
 {
@@ -193,5 +213,5 @@ void match_note(struct match *match, const struct match_item *query,
 const struct match_note *match_noted(const struct match *match, const struct match_key *key)
 {
     const struct match_note *note = &match->note[note_of(key)];
-    return memcmp(&note->key, key, sizeof *key) == 0 ? note : NULL;
+    return match_key_equal(&note->key, key) ? note : NULL;
 }

@@ -16,6 +16,16 @@ struct match_key {
     int64_t utime; /* of the query, microseconds since 1970, which results echo */
 };
 
+/* Reads the key of a query or result, and nothing else. Returns NULL; or a static text: why it
+ * cannot be read. A query may be longer than the kept data of the event: the service refuses such
+ * queries. */
+const char *match_key_of(enum log_kind kind, const struct log_event *event, struct match_key *out);
+
+static inline bool match_key_equal(const struct match_key *a, const struct match_key *b)
+{
+    return memcmp(a, b, sizeof *a) == 0;
+}
+
 /* The position of an event. */
 struct match_place {
     int32_t log;   /* index of the log */

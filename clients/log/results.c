@@ -3,7 +3,7 @@
 #include "body_names.h"
 #include "escape.h"
 #include "ignored.h"
-#include "keyed_hash.h"
+#include "match.h"
 #include "pair_number.h"
 #include "wire.h"
 
@@ -16,13 +16,9 @@ const char results_no_query[] = "its query did not come before it";
 /* Columns of a line before the bodies of a pair. */
 enum { INDENT = 35 };
 
-struct query_key {
-    int64_t kind, client_id, sequence_number, utime;
-};
-
 struct kept_query {
     UT_hash_handle hh; /* in the order of arrival */
-    struct query_key key;
+    struct match_key key;
     int64_t number; /* of its event */
     bool answered;  /* a result was printed that does not depend on the moment */
     uint32_t size;
@@ -48,7 +44,7 @@ struct results {
 
 /* What results of both kinds have. */
 struct outcome {
-    struct query_key key;
+    struct match_key key;
     int64_t server_id, compute_ns;
     int status;
     const char *detail;
@@ -90,7 +86,7 @@ int64_t results_count(const struct results *results)
     return results->count;
 }
 
-static struct kept_query *find(const struct results *results, const struct query_key *key)
+static struct kept_query *find(const struct results *results, const struct match_key *key)
 {
     struct kept_query *query = NULL;
     if (results->kept)
@@ -114,13 +110,13 @@ static const char *take_query(struct results *results, enum log_kind kind, int64
                               const void *bytes, uint32_t size)
 {
     const struct log_event event = {.data = bytes, .size = size, .kept = size};
-    struct query_header ids;
-    const char *error = log_kind_ids(kind, &event, &ids);
+    struct match_key key;
+    const char *error = match_key_of(kind, &event, &key);
     if (error)
         return error;
     struct kept_query *query = allocate_unset(sizeof *query + size), *again;
     memset(query, 0, sizeof *query);
-    query->key = (struct query_key){kind, ids.client_id, ids.sequence_number, ids.utime};
+    query->key = key;
     query->number = number;
     query->size = size;
     memcpy(query->bytes, bytes, size);
@@ -138,7 +134,7 @@ static const char *take_query(struct results *results, enum log_kind kind, int64
         drop(results, results->kept);
     int32_t count;
     const struct query_placement *placement = logged_query_placements(&results->query, &count);
-    body_names_take(results->names, ids.client_id, placement, count);
+    body_names_take(results->names, key.client_id, placement, count);
     return NULL;
 }
 

@@ -10,13 +10,9 @@
 
 static const char *read_key(enum log_kind kind, const struct log_event *event, struct message *out)
 {
-    struct query_header ids = {.utime = 0};
-    const char *error = log_kind_ids(kind, event, &ids);
-    out->key =
-        (struct match_key){log_kind_query_of(kind), ids.client_id, ids.sequence_number, ids.utime};
     out->bytes = event->data;
     out->size = (uint32_t) event->kept;
-    return error;
+    return match_key_of(kind, event, &out->key);
 }
 
 /* ---- The first reading ---- */

@@ -179,19 +179,18 @@ static void pair_event(struct replay *replay, struct recording *golden,
                        const struct log_event *event, enum log_kind kind,
                        struct replay_pair *numbered, struct replay_pair **pairs)
 {
-    struct query_header ids;
+    struct match_key key;
     bool is_new;
     const bool by_type = log_kind_is_result(kind);
-    if (log_kind_ids(kind, event, &ids) || is_matched(replay, ids.client_id) ||
+    if (match_key_of(kind, event, &key) || is_matched(replay, key.client_id) ||
         (!by_type && logged_query_read(&replay->query, kind, event->data, (uint32_t) event->kept)))
         return;
-    const struct match_key key = {log_kind_query_of(kind), ids.client_id, ids.sequence_number, 0};
     const struct pair_key unique = key_of_ids(&key);
     struct replay_pair *pair = take(pairs, &unique, &is_new);
     if (!is_new)
         return;
     const struct handle group = group_of(replay, key.kind, by_type ? NULL : &replay->query);
-    const struct pair_key number = next_key(golden, ids.client_id, &group);
+    const struct pair_key number = next_key(golden, key.client_id, &group);
     const struct replay_pair *query = find(numbered, &number);
     if (query) {
         pair->query = query->query;

@@ -95,13 +95,13 @@ static void look_at_definition(struct look *look, const struct log_event *event)
 
 static void look_at_event(struct look *look, enum log_kind kind, const struct log_event *event)
 {
-    struct query_header ids;
+    struct match_key key;
     look->events[kind]++;
     look->old_version = look->old_version || log_kind_old_version(kind, event);
     look_at_query(look, kind, event);
     if (kind == LOG_DEFINITION)
         look_at_definition(look, event);
-    look->results += log_kind_is_result(kind) && !log_kind_ids(kind, event, &ids);
+    look->results += log_kind_is_result(kind) && !match_key_of(kind, event, &key);
 }
 
 static struct look look_at(const char *path)

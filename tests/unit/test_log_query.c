@@ -182,7 +182,7 @@ static int64_t decide_found(void)
 
 /* ---- Worlds ---- */
 
-static struct query_header ids_of(const struct world_event *event, enum log_kind *kind)
+static struct match_key key_of(const struct world_event *event, enum log_kind *kind)
 {
     const struct log_channels channels = log_channels("");
     const struct log_event logged = {.channel = event->channel,
@@ -190,11 +190,13 @@ static struct query_header ids_of(const struct world_event *event, enum log_kind
                                      .data = event->bytes,
                                      .size = event->size,
                                      .kept = event->size};
-    struct query_header ids = {.client_id = -1};
+    struct match_key key;
     *kind = log_kind_of(&channels, &logged);
-    if (*kind >= LOG_STATUS || log_kind_ids(*kind, &logged, &ids))
+    if (match_key_of(*kind, &logged, &key)) {
         *kind = LOG_OTHER;
-    return ids;
+        key.client_id = -1;
+    }
+    return key;
 }
 
 /* The result of an event's ids, which says that they were decided. */
@@ -208,13 +210,13 @@ static bool read_recorded(const struct world_event *event, enum log_kind kind)
 }
 
 /* The query that a result has, by the number of its event. */
-static int64_t query_by_result(size_t event, const struct query_header *ids)
+static int64_t query_by_result(size_t event, const struct match_key *ids)
 {
     const struct log_query_options by_number = {.by = LOG_QUERY_NUMBER, .number = (int64_t) event};
     if (look_for(by_number) != LOG_QUERY_FOUND)
         return 0;
-    assert_int_equal(found.ids.client_id, ids->client_id);
-    assert_int_equal(found.ids.sequence_number, ids->sequence_number);
+    assert_int_equal(found.key.client_id, ids->client_id);
+    assert_int_equal(found.key.sequence_number, ids->sequence_number);
     const int64_t compared = decide_found();
 
     /* The same query, however it is selected. */
@@ -237,7 +239,7 @@ static int64_t query_world(const struct log_world *world)
     int64_t compared = 0;
     for (size_t i = 0; i < world->count; i++) {
         enum log_kind kind;
-        const struct query_header ids = ids_of(&world->event[i], &kind);
+        const struct match_key ids = key_of(&world->event[i], &kind);
         if (log_kind_is_result(kind) && read_recorded(&world->event[i], kind))
             compared += query_by_result(i, &ids);
     }
