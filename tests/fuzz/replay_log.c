@@ -231,7 +231,9 @@ static void check_reporting(struct replay_options options, int64_t limit, bool p
     struct reporting reporting = {.list = listing_open(limit), .options = &options};
     const struct replay_sink sink = {on_found, on_unreadable, on_damage, on_progress, &reporting};
     struct tally tally = {.events = 0};
-    options.page = page ? page_open(options.log[0], 0) : NULL;
+    const struct page_options shown = {
+        .kind = PAGE_REPLAY, .title = "fuzz", .sides = {"then", "now"}};
+    options.page = page ? page_open(&shown) : NULL;
     FUZZ_CHECK(replay_run(&options, &sink, &tally));
     char *json = report_all_json(&reporting, &tally);
     FUZZ_CHECK(reporting.reported == (reporting.found < limit ? reporting.found : limit));
