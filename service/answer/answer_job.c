@@ -429,6 +429,7 @@ static enum answer_stage complete_pair(struct answer_job *job, enum fmb_status s
     struct pair_result *result = &job->pair_result;
     const struct fmb_answer *answer = &result->answer;
     if (status != FMB_OK) {
+        result->answer = (struct fmb_answer){.has_contact = false};
         result->status = (int32_t) status;
         snprintf(result->detail, sizeof result->detail, "method %s: %s", method->name,
                  fmb_status_text(result->status));

@@ -446,6 +446,43 @@ static void wrong_counts_of_vertices_are_refused(void **state)
     }
 }
 
+/* Hulls that meet, one of them in steps of a scene of its own: what libfmb says, whatever is
+ * wanted.
+ */
+static void pairs_of_hulls_are_answered_as_by_libfmb(void **state)
+{
+    static const double vertices[2][8] = {{0, 0, 2, 0, 0, 2, 2, 2}, {1, 1, 3, 1, 3, 3, 1, 3}};
+    for (int32_t want = 0; want < 16; want++) {
+        static double memory[2][64];
+        struct fmb_body body[2];
+        struct fmb_placement placed[2];
+        struct pair_query query = squares();
+        struct fmb_answer expected;
+        char certificate[FMB_CERTIFICATE_MAX];
+        size_t length;
+        if (want & FMB_WANT_TIMES)
+            continue;
+        query.want = want;
+        for (int f = 0; f < 2; f++) {
+            query.placement[f].body = geometry_write_hull(2, vertices[f], 4, bytes[f]);
+            assert_int_equal(fmb_body_make_hull(2, vertices[f], 8, memory[f], &body[f]), FMB_OK);
+            placed[f] = query.placement[f].placed;
+            placed[f].body = &body[f];
+        }
+        enum fmb_status status =
+            fmb_decide(fmb_method_default(), &placed[0], &placed[1], query.duration,
+                       (unsigned) want & ~(unsigned) FMB_WANT_CERTIFICATE, &expected);
+        if (status == FMB_OK && want & FMB_WANT_CERTIFICATE)
+            status = fmb_certificate(&placed[0], &placed[1], query.duration, certificate,
+                                     sizeof certificate, &length);
+        const struct pair_result result = answer_to(&query);
+        assert_int_equal(result.status == FMB_OK, status == FMB_OK);
+        assert_int_equal(result.answer.verdict, status == FMB_OK ? expected.verdict : 0);
+        assert_int_equal(result.certificate != NULL,
+                         status == FMB_OK && want & FMB_WANT_CERTIFICATE && length > 0);
+    }
+}
+
 /* With a handle there are no counts. */
 static void a_handle_has_no_counts(void **state)
 {
@@ -930,6 +967,7 @@ int main(void)
         TEST(numbers_that_are_not_finite_are_refused),
         TEST(wrong_counts_are_refused),
         TEST(wrong_counts_of_vertices_are_refused),
+        TEST(pairs_of_hulls_are_answered_as_by_libfmb),
         TEST(a_handle_has_no_counts),
         TEST(bad_names_are_refused),
         TEST(groups_of_a_pair_do_not_matter),
