@@ -1,5 +1,5 @@
-/* Queries in progress: scenes, and pairs of bodies of several frames. At most one job per client,
- * JOBS in total. All memory is allocated by jobs_init(). No shared state. */
+/* Queries in progress: scenes, and pairs with a hull or a body of several frames. At most one job
+ * per client, JOBS in total. All memory is allocated by jobs_init(). No shared state. */
 #ifndef JOBS_H
 #define JOBS_H
 

@@ -261,8 +261,8 @@ static bool answer_short(struct server *server)
     return true;
 }
 
-/* Answers a query at once, or begins a job for it; a pair of bodies of several frames from the FIFO
- * of short queries is moved to that of scenes if the client has other scenes or no job is free.
+/* Answers a query at once, or begins a job for it; a pair that takes several steps, from the FIFO
+ * of short queries, is moved to that of scenes if the client has other scenes or no job is free.
  * (The queue has capacity for it, from which it has just been popped.) Returns the job; NULL: none.
  */
 static struct job *begin(struct server *server, const struct queue_datagram *query,

@@ -3,12 +3,12 @@
  * Queries are put into a queue (queue.h), so that the bus is read before anything is computed.
  * Clients share compute time (scheduler.h): of the clients with a query, the one that has used
  * least is served next. A client's pair and definition queries do not wait for its own scenes;
- * pairs of bodies of several frames do. Scenes are answered in steps; between them other clients
- * are served and the bus is read. If the queue is full, the client that holds most of it gets
- * FMB_BUSY for its newest query; so does a client whose waiting queries exceed its quota (quota.h).
- * Queries that have waited too long, and refusals beyond the quota of a client, get no result; they
- * are counted. If all jobs (jobs.h) are in use and another client needs one, the job that has used
- * most time ends: with the pairs answered so far, or as FMB_BUSY.
+ * pairs with a hull or a body of several frames do. Scenes are answered in steps; between them
+ * other clients are served and the bus is read. If the queue is full, the client that holds most of
+ * it gets FMB_BUSY for its newest query; so does a client whose waiting queries exceed its quota
+ * (quota.h). Queries that have waited too long, and refusals beyond the quota of a client, get no
+ * result; they are counted. If all jobs (jobs.h) are in use and another client needs one, the job
+ * that has used most time ends: with the pairs answered so far, or as FMB_BUSY.
  *
  * What each part of fair sharing is for:
  *
