@@ -26,9 +26,9 @@ explain() {
     say "--json for programs, --html FILE for a page; $build/fmb query --help says more"
 }
 
-# query [OPTIONS]: the arm's scenes.
+# query [OPTIONS]: what meets in the scenes of the arm.
 query() {
-    "$build/arm" | "$build/fmb" query --html "$page" "$@"
+    "$build/arm" | "$build/fmb" query --contacts --html "$page" "$@"
 }
 
 stop_fmbd() {
@@ -58,7 +58,7 @@ on_the_bus() {
     "$build/fmbd" 2> "$out/fmbd.log" &
     fmbd=$!
     wait_for_fmbd || return 1
-    say "$build/arm | $build/fmb query --html $page"
+    say "$build/arm | $build/fmb query --contacts --html $page"
     query || return 1
     say "$build/fmb status"
     "$build/fmb" status
@@ -67,7 +67,7 @@ on_the_bus() {
 in_process() {
     say "network namespaces are forbidden here, and there is no route for multicast:" \
         "the same scene without the bus"
-    say "$build/arm | $build/fmb query --local --html $page"
+    say "$build/arm | $build/fmb query --contacts --local --html $page"
     query --local
 }
 

@@ -72,5 +72,5 @@ get() {
     run inside su user -c "cd /fmb && $command"
     echo "$output" | tail -n 60
     [ "$status" = 0 ]
-    [[ $output == *'make deps: installed '*'the picture: build/demo/scene.svg'* ]]
+    [[ $output == *'make deps: installed '*'the page: build/demo/scene.html'* ]]
 }

@@ -122,6 +122,9 @@ prints_what_it_shows() {
     run setsid -w sh -c 'echo $$ > "$0"; exec timeout 60 "$@"' "$session" clients/demo/run.sh "$FMB_BUILD" 3>&-
     [ "$status" = 0 ]
     [[ "$output" == *"overlapping"*"touching"* ]]
+    # What meets, and how many pairs do not.
+    ! grep '[a-z]  separated *$' <<< "$output" || false
+    [[ "$output" == *", 37 separated"* ]]
     [[ "$output" == *"the page: $FMB_BUILD/demo/scene.html"* ]]
     grep -q '</html>' "$FMB_BUILD/demo/scene.html"
     # Nothing of its session is left (the sixth field of stat).
