@@ -129,6 +129,8 @@ $(O)/fuzz.a: $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o model.o same.o results
 ifeq ($(MODE),fuzz)
 $(engine_objects): flags += -O2 -fno-sanitize-coverage=trace-cmp
 endif
+# The parts of a fuzz target are named in its rule by the stem.
+.SECONDEXPANSION:
 $(fuzz_targets:%=$(B)/tests/test_fuzz_%): $(B)/tests/test_fuzz_%: $(O)/tests/fuzz/replay.o \
 		$(O)/tests/fuzz/%.o $$(fuzz_pieces_$$*) $(fuzz_archives)
 	$(link)
