@@ -59,18 +59,6 @@ struct program {
     double part[FMB_DIM_MAX][FMB_DIM_MAX]; /* coordinate 1 + i of p is part[i] . (p - p_0) */
 };
 
-static double dot(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX])
-{
-    return (x[0] * y[0] + x[1] * y[1]) + x[2] * y[2];
-}
-
-static void cross(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX], double out[FMB_DIM_MAX])
-{
-    out[0] = x[1] * y[2] - x[2] * y[1];
-    out[1] = x[2] * y[0] - x[0] * y[2];
-    out[2] = x[0] * y[1] - x[1] * y[0];
-}
-
 /* ---- Points ---- */
 
 static void set_high_point(const struct program *program, const struct hull_vertex *vertex,
@@ -122,8 +110,8 @@ static void set_plane(struct program *program)
     if (dim == 2)
         edge[2][2] = 1;
     for (int i = 0; i < dim; i++)
-        cross(edge[(i + 1) % 3], edge[(i + 2) % 3], program->part[i]);
-    determinant = dot(edge[0], program->part[0]);
+        gap_cross(edge[(i + 1) % 3], edge[(i + 2) % 3], program->part[i]);
+    determinant = gap_dot(edge[0], program->part[0]);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
         program->normal[axis] = 0;
         for (int i = 0; i < dim; i++) {
@@ -131,12 +119,12 @@ static void set_plane(struct program *program)
             program->normal[axis] += (p[1 + i].h - p[0].h) * program->part[i][axis];
         }
     }
-    program->level = p[0].h - dot(program->normal, p[0].vertex.at);
+    program->level = p[0].h - gap_dot(program->normal, p[0].vertex.at);
     program->residual = 0;
     for (int i = 0; i <= dim; i++)
         program->residual =
             fmax(program->residual,
-                 fabs(p[i].h - (dot(program->normal, p[i].vertex.at) + program->level)));
+                 fabs(p[i].h - (gap_dot(program->normal, p[i].vertex.at) + program->level)));
 }
 
 /* Returns the greatest h - normal . x of a vertex of D, which is *out. */
@@ -146,7 +134,7 @@ static double find_highest(const struct program *program, struct hull_vertex *ou
     const double *n = program->normal;
     double of_a[FMB_DIM_MAX] = {n[0], n[1], n[2]};
     const double of_b[FMB_DIM_MAX] = {-n[0], -n[1], -n[2]};
-    double later = pair->drifts ? -dot(n, pair->drift) : 0, still = -dot(n, pair->offset);
+    double later = pair->drifts ? -gap_dot(n, pair->drift) : 0, still = -gap_dot(n, pair->offset);
     if (program->axis < 0) {
         later += program->sign;
     } else {
@@ -172,8 +160,8 @@ static bool pivot(struct program *program, const struct hull_vertex *vertex)
     int leaving = -1;
     for (int i = 1; i <= dim; i++) {
         const double *part = program->part[i - 1];
-        from_origin[i] = -dot(part, first);
-        from_vertex[i] = dot(part, vertex->at) - dot(part, first);
+        from_origin[i] = -gap_dot(part, first);
+        from_vertex[i] = gap_dot(part, vertex->at) - gap_dot(part, first);
         from_origin[0] -= from_origin[i];
         from_vertex[0] -= from_vertex[i];
     }
@@ -209,7 +197,7 @@ static bool maximise(struct program *program, bool prove, double *outer)
     for (int pivots = 0; pivots < PIVOTS_MAX; pivots++) {
         struct hull_vertex highest;
         set_plane(program);
-        const double length = sqrt(dot(program->normal, program->normal)) * (1 + 0x1p-40);
+        const double length = sqrt(gap_dot(program->normal, program->normal)) * (1 + 0x1p-40);
         const double found = find_highest(program, &highest);
         const double out = 1.25 * (length + box) * pair->error + program->extra;
         const double in = out + (length * hull_point_error(pair) + program->residual);

@@ -174,22 +174,17 @@ void hull_pair_set(const struct frame_pair *frames, struct hull_pair *out)
     out->usable = out->reach < 0x1p200 && out->reach > 0x1p-200;
 }
 
-static double dot(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX])
-{
-    return (x[0] * y[0] + x[1] * y[1]) + x[2] * y[2];
-}
-
 double hull_support(const struct hull_pair *pair, const double n[FMB_DIM_MAX],
                     struct hull_column *column)
 {
     const double against[FMB_DIM_MAX] = {-n[0], -n[1], -n[2]};
     const struct support a = hull_view_support(&pair->view[0], against);
     const struct support b = hull_view_support(&pair->view[1], n);
-    const double drift = pair->drifts ? dot(n, pair->drift) : 0;
+    const double drift = pair->drifts ? gap_dot(n, pair->drift) : 0;
     column->vertex[0] = a.index;
     column->vertex[1] = b.index;
     column->end = drift > 0;
-    return (a.value + b.value) + (dot(n, pair->offset) + (drift > 0 ? drift : 0));
+    return (a.value + b.value) + (gap_dot(n, pair->offset) + (drift > 0 ? drift : 0));
 }
 
 void hull_point(const struct hull_pair *pair, struct hull_column column, double out[FMB_DIM_MAX])

@@ -33,18 +33,6 @@
 
 enum { SUPPORTS_MAX = 60 }; /* enough for hulls of a thousand vertices: most take less than 12 */
 
-static double dot(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX])
-{
-    return (x[0] * y[0] + x[1] * y[1]) + x[2] * y[2];
-}
-
-static void cross(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX], double out[FMB_DIM_MAX])
-{
-    out[0] = x[1] * y[2] - x[2] * y[1];
-    out[1] = x[2] * y[0] - x[0] * y[2];
-    out[2] = x[0] * y[1] - x[1] * y[0];
-}
-
 static void subtract(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX],
                      double out[FMB_DIM_MAX])
 {
@@ -61,7 +49,7 @@ static void negate(double v[FMB_DIM_MAX])
 /* Scales n to unit length, up to rounding. Returns false if it is too short. */
 static bool normalise(double n[FMB_DIM_MAX])
 {
-    const double square = dot(n, n);
+    const double square = gap_dot(n, n);
     if (!(square > 0x1p-960))
         return false;
     const double scale = 1 / sqrt(square);
@@ -111,14 +99,14 @@ static int sign_of(const struct hull_pair *pair, const struct hull_vertex *const
     const double e = hull_point_error(pair);
     double length[FMB_DIM_MAX], value, bound;
     for (int i = 0; i < pair->dim; i++)
-        length[i] = sqrt(dot(p[i]->at, p[i]->at)) + e;
+        length[i] = sqrt(gap_dot(p[i]->at, p[i]->at)) + e;
     double normal[FMB_DIM_MAX];
     if (pair->dim == 2) {
         value = p[0]->at[0] * p[1]->at[1] - p[0]->at[1] * p[1]->at[0];
         bound = length[0] + length[1];
     } else {
-        cross(p[1]->at, p[2]->at, normal);
-        value = dot(p[0]->at, normal);
+        gap_cross(p[1]->at, p[2]->at, normal);
+        value = gap_dot(p[0]->at, normal);
         bound = length[1] * length[2] + length[0] * (length[1] + length[2]);
     }
     bound = 1.2 * e * bound + 0x1p-900;
@@ -166,21 +154,21 @@ static bool find_portal(struct search *s)
     struct hull_vertex *v = s->portal;
     const double *c = s->centre.at;
     double u[FMB_DIM_MAX], w[FMB_DIM_MAX];
-    cross(c, v[0].at, s->n);
-    if (!(dot(s->n, s->n) > 0x1p-80 * dot(c, c) * dot(v[0].at, v[0].at))) {
+    gap_cross(c, v[0].at, s->n);
+    if (!(gap_dot(s->n, s->n) > 0x1p-80 * gap_dot(c, c) * gap_dot(v[0].at, v[0].at))) {
         /* The ray passes close to the vertex: any direction across the ray will do. */
         const int axis = fabs(c[0]) < fabs(c[1]) ? (fabs(c[0]) < fabs(c[2]) ? 0 : 2)
                                                  : (fabs(c[1]) < fabs(c[2]) ? 1 : 2);
         const double unit[FMB_DIM_MAX] = {axis == 0, axis == 1, axis == 2};
-        cross(c, unit, s->n);
+        gap_cross(c, unit, s->n);
     }
     if (!find(s))
         return false;
     v[1] = s->last;
     subtract(v[0].at, c, u);
     subtract(v[1].at, c, w);
-    cross(u, w, s->n);
-    if (dot(s->n, c) > 0) {
+    gap_cross(u, w, s->n);
+    if (gap_dot(s->n, c) > 0) {
         v[1] = v[0];
         v[0] = s->last;
         negate(s->n);
@@ -188,18 +176,18 @@ static bool find_portal(struct search *s)
     while (find(s)) {
         double side[FMB_DIM_MAX];
         v[2] = s->last;
-        cross(v[0].at, v[2].at, side);
-        if (dot(side, c) < 0) {
+        gap_cross(v[0].at, v[2].at, side);
+        if (gap_dot(side, c) < 0) {
             v[1] = v[2];
         } else {
-            cross(v[2].at, v[1].at, side);
-            if (dot(side, c) >= 0)
+            gap_cross(v[2].at, v[1].at, side);
+            if (gap_dot(side, c) >= 0)
                 return true;
             v[0] = v[2];
         }
         subtract(v[0].at, c, u);
         subtract(v[1].at, c, w);
-        cross(u, w, s->n);
+        gap_cross(u, w, s->n);
     }
     return false;
 }
@@ -216,10 +204,10 @@ static void set_normal(struct search *s)
         s->n[2] = 0;
     } else {
         subtract(v[2].at, v[0].at, w);
-        cross(u, w, s->n);
+        gap_cross(u, w, s->n);
     }
     subtract(v[0].at, s->centre.at, w);
-    if (dot(s->n, w) < 0)
+    if (gap_dot(s->n, w) < 0)
         negate(s->n);
 }
 
@@ -235,11 +223,11 @@ static void advance(struct search *s)
         v[(turn > 0) == (first > 0) ? 0 : 1] = s->last;
         return;
     }
-    cross(s->last.at, c, side);
-    if (dot(v[0].at, side) > 0)
-        v[dot(v[1].at, side) > 0 ? 0 : 2] = s->last;
+    gap_cross(s->last.at, c, side);
+    if (gap_dot(v[0].at, side) > 0)
+        v[gap_dot(v[1].at, side) > 0 ? 0 : 2] = s->last;
     else
-        v[dot(v[2].at, side) > 0 ? 1 : 0] = s->last;
+        v[gap_dot(v[2].at, side) > 0 ? 1 : 0] = s->last;
 }
 
 /* Moves the portal outward until the origin is certainly inside, or no vertex is farther out than
@@ -248,12 +236,12 @@ static bool refine(struct search *s, struct hull_simplex *out)
 {
     do {
         set_normal(s);
-        const bool inside = dot(s->n, s->portal[0].at) >= 0;
+        const bool inside = gap_dot(s->n, s->portal[0].at) >= 0;
         if (inside && encloses(s, out))
             return true;
         if (!find(s))
             return false;
-        if (s->value - dot(s->n, s->portal[0].at) <= 4 * s->pair->error)
+        if (s->value - gap_dot(s->n, s->portal[0].at) <= 4 * s->pair->error)
             return false;
         advance(s);
     } while (true);
@@ -282,7 +270,7 @@ enum fmb_verdict hull_search(const struct hull_pair *pair, struct hull_simplex *
     hull_centre(pair, &s.centre);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         s.n[axis] = -s.centre.at[axis];
-    if (!(dot(s.n, s.n) > 0x1p-100 * pair->reach * pair->reach)) { /* a ray in any direction */
+    if (!(gap_dot(s.n, s.n) > 0x1p-100 * pair->reach * pair->reach)) { /* a ray in any direction */
         s.n[0] = 1;
         s.n[1] = s.n[2] = 0;
         s.centre.at[0] = -0x1p-52 * pair->reach;
