@@ -382,7 +382,10 @@ struct fmb_method {
  * Cost: exact takes tens of microseconds for numbers of similar size. Its time is bounded for any
  * numbers (exact.c derives the bound). The slowest pairs have exponents that span the whole
  * range of doubles: up to 0.3 ms for a verdict and 1.5 ms with box and gap; if the components of
- * orientations are 2^200 apart, 1 ms and 6 ms. The same bounds hold for certified. */
+ * orientations are 2^200 apart, 1 ms and 6 ms. The same bounds hold for certified. They are not those
+ * of pairs with a hull: doubles decide these by a few scans of all vertices, and exact arithmetic, for
+ * pairs that touch or nearly do, takes some milliseconds for the largest hulls. A scene divides it
+ * into steps. */
 
 /* Return a method from a static table, valid for the life of the program. Thread safe.
  * fmb_method_at() returns NULL if index is past the last method; fmb_method_by_name() and

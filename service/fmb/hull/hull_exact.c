@@ -1028,7 +1028,8 @@ struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
     set_all_vertices(e);
     e->ends[0] = true;
     e->ends[1] = pair_moves(pair->frames) && pair->frames->duration > 0;
-    memcpy(e->first, first, count * sizeof *first);
+    for (unsigned i = 0; i < count; i++)
+        e->first[i] = first[i];
     e->first_count = count;
     e->contact[1] = pair->frames->duration + 0.0; /* never -0 */
     begin_span(e, SPANNING);
