@@ -9,9 +9,10 @@
 # Packages: deb: of Debian, into build/deb; deb-test: tries them in a chroot (deps-deb first; root)
 # Longer:   validate, accuracy, soak, fuzz, fuzz-afl, fuzz-merge (deps-fuzz first)
 # Measure:  bench (deps-bench first, for other libraries), bench-bus, bench-replay, bench-mesh,
-#           report (deps-report first)
+#           bench-page, report (deps-report first)
 # Port:     aarch64: fmb for AArch64, which 'make test' then emulates (deps-aarch64 first)
 # Rewrite:  logs, goldens: the regression logs, and the results that they are compared with;
+#           picture: that of README.md;
 #           abi: the names and sizes that programs linked with the libraries depend on
 #
 # Variables:

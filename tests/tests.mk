@@ -276,7 +276,7 @@ $(B)/bus/bench-bus $(B)/bus/robot-bus: | $(B)/bus/echo $(B)/fmbd
 $(B)/replay/bench-replay: linking = $(link_whole)
 
 # Minutes each. What bench and bench-bus measured is in report.json then, for 'make report'.
-.PHONY: bench bench-bus bench-replay bench-mesh report
+.PHONY: bench bench-bus bench-replay bench-mesh bench-page report
 bench: $(B)/bench/bench $(B)/robot/robot
 	$< --json $(B)/bench/report.json
 	$(B)/robot/robot
@@ -303,6 +303,10 @@ $(B)/mesh/bumpy.ply: $(B)/mesh/make-mesh
 	$< --faces 70000 --format ply-ascii > $@
 bench-mesh: $(B)/mesh/bench-mesh $(B)/fmb $(if $(MESH),,$(B)/mesh/bumpy.ply)
 	$< $(B)/fmb $(or $(MESH),$(B)/mesh/bumpy.ply) $(if $(MESH),1000,60)
+
+# A page of 10,000 scenes, by Chromium without a GPU.
+bench-page: $(B)/fmb
+	tests/page/bench.sh $(B)
 
 # One page of what bench, accuracy and bench-bus measured; runs none of them.
 report:

@@ -62,7 +62,7 @@ SCENE
     "$fmb" mesh --html mesh.html --json b.obj b.obj --translate 1.5,0.1,0.1 --velocity=-1,0,0 > mesh.json
     "$fmb" mesh --html self.html --self b.obj > self.said
     sed 's/^start();$/start(); start;/' arm.html > changed.html
-    sed 's/"far":.*/"far":[/' arm.html > cut.html
+    sed 's/^{"kind":/{"kind"/' arm.html > cut.html
     command -v chromium > /dev/null || return 0
     as_chromium light 1 &
     light=$!

@@ -48,10 +48,12 @@ function fitCanvas(canvas) {
         return null;
     canvas.width = width * ratio;
     canvas.height = height * ratio;
-    const to = canvas.getContext("2d");
+    const to = canvas.getContext("2d", { willReadFrequently: true }); /* a hundred on the GPU would be slow */
     to.scale(ratio, ratio);
     return { to, width, height, x: (s) => (s - view.from) / (view.to - view.from) * width };
 }
+
+const namesContacts = steps.some((step) => step.all); /* other pairs are separated */
 
 /* Draws rows into one lane: in each column of pixels the strongest verdict. */
 function drawLane(canvas, some) {
@@ -59,9 +61,9 @@ function drawLane(canvas, some) {
     if (!fitted)
         return;
     const { to, width, x } = fitted, height = Math.min(fitted.height, 18), worst = new Uint8Array(Math.ceil(width) + 1);
+    if (some.length === 1 && namesContacts)
+        worst.fill(SEPARATED);
     for (const row of some) {
-        if (some.length === 1 && steps.some((step) => step.all))
-            worst.fill(SEPARATED);
         for (const [from, until, verdict] of segmentsOf(row)) {
             if (until < view.from || from > view.to)
                 continue;

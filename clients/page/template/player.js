@@ -4,10 +4,16 @@ const player = { s: 0, playing: false, last: 0 };
 const speeds = [0.1, 0.25, 0.5, 1, 2, 5, 10];
 const canPlay = steps.length > 1 || steps.some((step) => step.v);
 
-/* Shows the moment player.s. */
+/* Shows the moment player.s. While it plays, the table follows five times a second: to paint it takes
+ * longer than the scene. */
 function show() {
-    const i = stepAt(player.s);
-    if (i !== table.step) {
+    const i = stepAt(player.s), head = (player.s - view.from) / (view.to - view.from);
+    const isDue = !player.playing || performance.now() - table.time > 200;
+    if (isDue) {
+        table.time = performance.now();
+        document.documentElement.style.setProperty("--lane-head", head);
+    }
+    if (isDue && i !== table.step) {
         table.step = i;
         if (!player.playing && table.sort !== null)
             chooseRows();
@@ -16,7 +22,7 @@ function show() {
     }
     drawMoment(i, player.s);
     one("scrub").value = player.s;
-    document.documentElement.style.setProperty("--head", (player.s - view.from) / (view.to - view.from));
+    one("time").style.setProperty("--head", head);
     one("moment").textContent = momentText(i);
     one("play").textContent = player.playing ? "❚❚" : "▶";
 }

@@ -115,18 +115,27 @@ gapEnds.frustumCulled = false;
 world.add(bodies, boxes, boxesThen, gapLine, gapEnds, picked);
 [boxes, boxesThen, gapLine, gapEnds, picked].forEach((object) => { object.renderOrder = 2; });
 
+/* Few materials for all bodies: three.js prepares each one. */
+const faceMaterials = new Map(), edgeMaterial = new THREE.LineBasicMaterial();
+
+/* The material of faces of a colour; null: of a mesh, whose faces have colours of their own. */
+function faceMaterial(colour) {
+    if (!faceMaterials.has(colour))
+        faceMaterials.set(colour, new THREE.MeshLambertMaterial({
+            side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+            color: colour ?? 0xffffff, vertexColors: colour === null ? THREE.VertexColors : THREE.NoColors,
+        }));
+    return faceMaterials.get(colour);
+}
+
 /* An item draws a body: faces, edges, and in a page of one step dashed edges where it ends. */
 function makeItem(key, shape, source) {
     const surface = surfaceOf(shape), mesh = Boolean(surface.verdicts);
     if (mesh)
         colourMesh(surface, source.k === 1);
-    const material = new THREE.MeshLambertMaterial({
-        side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-        vertexColors: mesh ? THREE.VertexColors : THREE.NoColors,
-    });
     const item = {
-        key, shape, surface, source, faces: new THREE.Mesh(surface.faces, material),
-        edges: new THREE.LineSegments(surface.edges, new THREE.LineBasicMaterial({ color: stage.colours.edge })),
+        key, shape, surface, source, faces: new THREE.Mesh(surface.faces, faceMaterial(mesh ? null : stage.colours.none)),
+        edges: new THREE.LineSegments(surface.edges, edgeMaterial),
     };
     item.faces.userData.item = item;
     item.objects = [item.faces, item.edges];
@@ -274,7 +283,7 @@ function colourOf(k, step, state) {
     if (state.verdict < TOUCHING)
         return none;
     const full = state.verdict === OVERLAPPING ? overlapping : touching;
-    return state.now ? full : new THREE.Color(none).lerp(new THREE.Color(full), 0.3);
+    return state.now ? full : `#${new THREE.Color(none).lerp(new THREE.Color(full), 0.3).getHexString()}`;
 }
 
 const boxEdges = cuboidOf([0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]).edges;
@@ -325,7 +334,7 @@ function drawMoment(i, s) {
         item.state = stream.states[k];
         item.objects.forEach((object) => placeObject(object, item, stream.part));
         if (!item.surface.verdicts)
-            item.faces.material.color.set(colourOf(k, stream.step, item.state));
+            item.faces.material = faceMaterial(colourOf(k, stream.step, item.state));
     }
     drawAnswers();
     stage.dirty = true;
@@ -419,11 +428,8 @@ function readColours() {
     for (const object of [gapLine, gapEnds])
         object.material.color.set(stage.colours.gap);
     picked.material.color.set(stage.colours.box);
-    stage.items.forEach((item) => {
-        item.edges.material.color.set(stage.colours.edge);
-        if (item.surface.verdicts)
-            colourMesh(item.surface, item.source.k === 1);
-    });
+    edgeMaterial.color.set(stage.colours.edge);
+    stage.items.filter((item) => item.surface.verdicts).forEach((item) => colourMesh(item.surface, item.source.k === 1));
 }
 
 /* Draws if something has changed. */

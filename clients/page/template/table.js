@@ -1,6 +1,6 @@
 /* The table of pairs: their answers at this moment, and a lane of verdicts over time. */
 
-const table = { shown: [], limit: 100, sort: null, down: false, step: -1, cells: [] };
+const table = { shown: [], limit: 100, sort: null, down: false, step: -1, time: 0, cells: [] };
 const hasContacts = steps.some((step) => step.T > 0 && step.pairs.some((pair) => answerOf(nowOf(pair))?.contact));
 const hasGaps = steps.some((step) => step.pairs.some((pair) => answerOf(nowOf(pair))?.gap));
 const columns = [
