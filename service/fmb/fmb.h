@@ -373,19 +373,17 @@ struct fmb_method {
  *   certified  The default. Never wrong. Doubles with bounds on their errors decide nearly all
  *              pairs. Exact arithmetic decides those that are too close for doubles, and flat
  *              frames that are not faces with an area.
- *   exact      Never wrong. Uses exact arithmetic (GMP) throughout.
+ *   exact      Never wrong. Uses exact arithmetic throughout.
  *   fmb        The article's elimination in doubles: verdict, interval, the article's loose box.
  *   sat        The separating axis theorem in doubles: verdict and interval, no box.
  *
  * fmb and sat are inexact and cannot decide flat frames and hulls.
  *
  * Cost: exact takes tens of microseconds for numbers of similar size. Its time is bounded for any
- * numbers (exact.c derives the bound). The slowest pairs have exponents that span the whole
- * range of doubles: up to 0.3 ms for a verdict and 1.5 ms with box and gap; if the components of
- * orientations are 2^200 apart, 1 ms and 6 ms. The same bounds hold for certified. They are not those
- * of pairs with a hull: doubles decide these by a few scans of all vertices, and exact arithmetic, for
- * pairs that touch or nearly do, takes some milliseconds for the largest hulls. A scene divides it
- * into steps. */
+ * numbers: the slowest pairs, whose exponents span the whole range of doubles, take up to 6 ms with
+ * box and gap. The same bound holds for certified. It is not that of pairs with a hull: doubles
+ * decide these by a few scans of all vertices, and exact arithmetic, for pairs that touch or nearly
+ * do, takes some milliseconds for the largest hulls. A scene divides it into steps. */
 
 /* Return a method from a static table, valid for the life of the program. Thread safe.
  * fmb_method_at() returns NULL if index is past the last method; fmb_method_by_name() and

@@ -1,5 +1,5 @@
-/* Counts the exact arithmetic of the code under test, in GMP and in wide integers: the
- * link wraps the functions (tests.mk). */
+/* Counts the exact arithmetic of the code under test, in GMP and in wide integers: the link
+ * wraps the functions (tests.mk). */
 #ifndef EXACT_WORK_H
 #define EXACT_WORK_H
 

@@ -5,7 +5,7 @@
  * The search climbs: it changes a number at a time, and keeps what makes the error of one end
  * larger relative to its bound.
  *
- * And boxes of frames whose edges all but depend on each other, and boxes in fixed-width integers,
+ * And boxes of frames whose edges all but depend on each other, and boxes in integers,
  * beside exact ones. */
 
 #include "unit.h"

@@ -1,7 +1,7 @@
 /* Writes certificates: proofs of a verdict that do not rely on the engine. certificate_point.c
  * finds the point; this file finds the normal.
  *
- * As in exact_slabs.c, let D = A - B be the Minkowski difference of both frames with their origins
+ * As in limbs_decide.h, let D = A - B be the Minkowski difference of both frames with their origins
  * at 0. Let W be the segment of the offset w of the frames, offset + tau drift, tau in [0,1]. The
  * frames meet where W meets D, and overlap where W meets ri D, the relative interior. Let S = W -
  * D: all b - a of all points and times. A normal N then proves

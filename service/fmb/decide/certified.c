@@ -9,17 +9,17 @@
  *
  *   1. first_pass()     the filter in doubles (kernel.h)
  *   2. second_pass()    its second pass (slabs_exact.h)
- *   3. open_slabs()     each slab that doubles leave open, in fixed-width integers (limbs.h)
- *   4. all_slabs()      the exact method (exact.h)
+ *   3. open_slabs()     each slab that doubles leave open, in integers (limbs.h)
+ *   4. all_slabs()      all slabs, in integers: of flat frames, and where doubles do not reach
  *
  * Two faces that no slab separates touch if their planes cross. If they stay in one plane, the
  * verdict is that of their projections, two triangles in 2D: these take the place of the pair, and
  * the ladder is climbed again.
  *
- * Then set_contact(), set_box() and gap_of() compute what else is wanted: in doubles, what these do
- * not give within the limits of fmb.h in fixed-width integers, and the rest by the exact method.
- * Each step depends on the numbers of the pair only, so that every caller gets the same bits. The
- * error bounds are derived in slabs.c, slabs_lanes.h, box_clip.h and contact.c. */
+ * Then set_contact(), certified_box() and gap_of() compute what else is wanted: in doubles, and
+ * what these do not give within the limits of fmb.h in integers. Each step depends on the numbers
+ * of the pair only, so that every caller gets the same bits. The error bounds are derived in
+ * slabs.c, slabs_lanes.h, box_clip.h and contact.c. */
 #include "certified.h"
 
 #include "exact.h"

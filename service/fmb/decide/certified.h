@@ -2,12 +2,11 @@
  * leave open.
  *
  *     verdict   the filter: axes and slabs in doubles (kernel.h, slabs.c). If it is unsure: its
- *               second pass (slabs_exact.h), the open slabs in integers (limbs.c), or the exact
- *               method. For two faces in one plane: the verdict of two triangles in 2D (faces.c)
+ *               second pass (slabs_exact.h), the open slabs in integers (limbs.h), or all slabs. For two faces in one plane: the verdict of two triangles in 2D (faces.c)
  *     contact   the filter bounds the times in the same pass (slabs_lanes.h). If a bound is not
  *               tight enough, or nothing rounds: the slabs one by one (contact.c)
  *     box       from what is left of the edges and where they cross, in doubles (box_clip.h) or in
- *               fixed-width integers (limbs_box.c)
+ *               integers (limbs_box.h)
  *     gap       given the verdict, in steps of its own (gap.h)
  *
  * Contact and box are computed as two enclosures: the outer one surely contains the exact value,
@@ -32,8 +31,8 @@ enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
                                           const struct fmb_prepared *b, double duration,
                                           unsigned want, bool quick, struct fmb_answer *answer);
 
-/* The rungs of the ladder for the verdict: the filter; its second pass; integers of fixed width;
- * GMP. */
+/* The rungs of the ladder for the verdict: the filter; its second pass; the slabs that these leave
+ * open, in integers; all slabs, in integers. */
 enum certified_path {
     CERTIFIED_FILTER,
     CERTIFIED_SECOND,
@@ -62,7 +61,7 @@ bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs, b
 bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                    double box[2][FMB_DIM_MAX]);
 
-/* The same where doubles do not give it: in fixed-width integers, or else by the exact method.
+/* The same where doubles do not give it.
  * quick: returns false if it needs GMP or wider integers. */
 bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
                           double duration, bool quick, double box[2][FMB_DIM_MAX]);

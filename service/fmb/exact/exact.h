@@ -1,4 +1,4 @@
-/* The method exact, and pairs in integers of any size (GMP), for certificates and gaps.
+/* The method exact; and pairs in integers of GMP, for exact points, certificates and gaps.
  *
  * Everything is three-dimensional here: a 2D frame lies in the plane z = 0.
  *

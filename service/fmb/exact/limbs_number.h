@@ -53,6 +53,10 @@ LIMBS_INLINE bool is_zero(const int n, const uint64_t *x)
 LIMBS_INLINE void add(const int n, uint64_t *x, const uint64_t *y)
 {
     bool carry = false;
+    if (LIMBS_MAX > LIMBS_NARROW) {
+        mpn_add_n(x, x, y, n);
+        return;
+    }
     LIMBS_UNROLL
     for (int i = 0; i < n; i++) {
         const bool first = __builtin_add_overflow(x[i], y[i], &x[i]);
@@ -63,6 +67,10 @@ LIMBS_INLINE void add(const int n, uint64_t *x, const uint64_t *y)
 LIMBS_INLINE void subtract(const int n, uint64_t *x, const uint64_t *y)
 {
     bool borrow = false;
+    if (LIMBS_MAX > LIMBS_NARROW) {
+        mpn_sub_n(x, x, y, n);
+        return;
+    }
     LIMBS_UNROLL
     for (int i = 0; i < n; i++) {
         const bool first = __builtin_sub_overflow(x[i], y[i], &x[i]);
@@ -73,6 +81,11 @@ LIMBS_INLINE void subtract(const int n, uint64_t *x, const uint64_t *y)
 /* Returns the number of limbs that hold x with a sign; 0 for 0. */
 LIMBS_FUNCTION int limbs_needed(int n, const uint64_t *x)
 {
+    const uint64_t sign = is_negative(n, x) ? UINT64_MAX : 0;
+    while (LIMBS_MAX > LIMBS_NARROW && n > 4 &&
+           ((x[n - 1] ^ sign) | (x[n - 2] ^ sign) | (x[n - 3] ^ sign) | (x[n - 4] ^ sign) |
+            ((x[n - 5] ^ sign) >> 63)) == 0)
+        n -= 4;
     while (n > 0 && x[n - 1] == (n > 1 && is_negative(n - 1, x) ? UINT64_MAX : 0))
         n--;
     return n;
@@ -106,10 +119,11 @@ struct wide_number {
     bool negative;
 };
 
-static inline struct wide_number wide_number_of(int n, const uint64_t *x)
+static inline struct wide_number wide_number_of(const uint64_t *x, int end)
 {
-    const int end = limbs_needed(n, x);
     int first = 0;
+    while (first + 4 <= end && (x[first] | x[first + 1] | x[first + 2] | x[first + 3]) == 0)
+        first += 4;
     while (first < end && x[first] == 0)
         first++;
     return (struct wide_number){x, first, end, is_negative(end, x)};
@@ -118,10 +132,9 @@ static inline struct wide_number wide_number_of(int n, const uint64_t *x)
 /* The same for wide numbers, whose span is often short, and which have many limbs of 0, since
  * exponents are far apart. x is its limbs before end, without a sign, minus 2^(64 end) if it is
  * negative. */
-LIMBS_FUNCTION void add_wide_product(int n, uint64_t *out, bool minus, const uint64_t *one,
-                                     const uint64_t *other)
+LIMBS_FUNCTION void add_wide_product(int n, uint64_t *out, bool minus, struct wide_number x,
+                                     struct wide_number y)
 {
-    struct wide_number x = wide_number_of(n, one), y = wide_number_of(n, other);
     if (x.end - x.first > y.end - y.first) {
         const struct wide_number longer = x;
         x = y;
@@ -137,20 +150,21 @@ LIMBS_FUNCTION void add_wide_product(int n, uint64_t *out, bool minus, const uin
             continue;
         const mp_limb_t rest =
             (minus ? mpn_submul_1 : mpn_addmul_1)(out + first, x.at + x.first, end - first, limb);
-        if (end == n)
-            continue;
-        mpn_add_1(out + end, out + end, n - end, !minus ? rest : x.negative ? limb : 0);
-        mpn_sub_1(out + end, out + end, n - end, minus ? rest : x.negative ? limb : 0);
+        const uint64_t high = x.negative ? limb : 0; /* 2^(64 end) times this is subtracted */
+        if (end < n && (rest >= high) != minus)
+            mpn_add_1(out + end, out + end, n - end, minus ? high - rest : rest - high);
+        else if (end < n)
+            mpn_sub_1(out + end, out + end, n - end, minus ? rest - high : high - rest);
     }
 }
 
-/* The same for y of ny limbs, with a sign. */
-LIMBS_INLINE void add_product(const int n, uint64_t *out, bool minus, const uint64_t *x,
+/* The same for x and y of nx and ny limbs, with a sign. x has n limbs, too. */
+LIMBS_INLINE void add_product(const int n, uint64_t *out, bool minus, int nx, const uint64_t *x,
                               const int ny, const uint64_t *y)
 {
     const bool negative = is_negative(ny, y);
     if (LIMBS_MAX > LIMBS_NARROW) {
-        add_wide_product(n, out, minus, x, y);
+        add_wide_product(n, out, minus, wide_number_of(x, nx), wide_number_of(y, ny));
         return;
     }
     add_row(n, out, minus != negative, x, negative ? -y[0] : y[0]);
@@ -169,7 +183,7 @@ LIMBS_INLINE void dot_limbs(const int n, const struct limbs_vector *x, const str
     memset(out, 0, (size_t) n * sizeof *out);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         if (y->other_than_0 >> axis & 1)
-            add_product(n, out, false, x->at[axis], y->limbs, y->at[axis]);
+            add_product(n, out, false, x->limbs, x->at[axis], y->limbs, y->at[axis]);
 }
 
 /* Calls function with n as a constant if it is one of these. */
@@ -198,7 +212,8 @@ LIMBS_INLINE bool is_less(const int n, const uint64_t *x, const uint64_t *y)
 
 /* ---- Not inlined ---- */
 
-/* Sets limbs and other_than_0 of a vector. Functions read them of the factors y and v only. */
+/* Sets limbs and other_than_0 of a vector. Functions read them of the factors y and v only; of wide
+ * numbers, limbs of all. */
 LIMBS_FUNCTION void limbs_trim(int n, struct limbs_vector *v)
 {
     v->limbs = 0;
@@ -236,7 +251,8 @@ LIMBS_FUNCTION void limbs_set_product(int n, uint64_t *out, struct dyadic x, str
 LIMBS_FUNCTION void limbs_add_product(int n, uint64_t *out, bool minus, const uint64_t *x, int ny,
                                       const uint64_t *y)
 {
-    WITH_LIMBS(n, add_product, out, minus, x, ny, y);
+    const int nx = LIMBS_MAX > LIMBS_NARROW ? limbs_needed(n, x) : n;
+    WITH_LIMBS(n, add_product, out, minus, nx, x, ny, y);
 }
 
 /* out := x x y, or y x x where swapped. */
@@ -249,8 +265,8 @@ LIMBS_INLINE void cross_limbs(const int n, const struct limbs_vector *x,
         const int i = k == 2 ? 0 : k + 1, j = 3 - i - k;
         if (!(y->other_than_0 >> k & 1))
             continue;
-        add_product(n, out->at[j], !swapped, x->at[i], y->limbs, y->at[k]);
-        add_product(n, out->at[i], swapped, x->at[j], y->limbs, y->at[k]);
+        add_product(n, out->at[j], !swapped, x->limbs, x->at[i], y->limbs, y->at[k]);
+        add_product(n, out->at[i], swapped, x->limbs, x->at[j], y->limbs, y->at[k]);
     }
 }
 
@@ -258,6 +274,8 @@ LIMBS_FUNCTION void limbs_cross(int n, const struct limbs_vector *x, const struc
                                 bool swapped, struct limbs_vector *out)
 {
     WITH_LIMBS(n, cross_limbs, x, y, swapped, out);
+    if (LIMBS_MAX > LIMBS_NARROW)
+        limbs_trim(n, out);
 }
 
 LIMBS_INLINE void transform_limbs(const int n, const struct limbs_vector row[FMB_DIM_MAX],
@@ -277,6 +295,8 @@ LIMBS_FUNCTION const struct limbs_vector *limbs_transform(int n, const struct li
     if (!row)
         return v;
     WITH_LIMBS(n, transform_limbs, row, v, out);
+    if (LIMBS_MAX > LIMBS_NARROW)
+        limbs_trim(n, out);
     return out;
 }
 

@@ -4,7 +4,7 @@
  * - B. A moving pair meets if and only if this holds at some time of its window, that is, if the
  * offset at the start lies in D swept back along the drift (over the whole window): S = D - [0,1]
  * drift. D and S are polytopes, the intersections of a fixed list of slabs: the result of the
- * article's elimination done on paper (exact_slabs.c derives the list; the drift is one more edge,
+ * article's elimination done on paper (limbs_decide.h derives the list; the drift is one more edge,
  * and adds the planes of each edge with the drift). The relative interior of S is the interior of D
  * swept in the same way, the ends of the window included: a union of open sets. So a pair is
  *
