@@ -37,109 +37,90 @@ static const char usage[] =
     "that cannot be read, is damaged or was recorded by an old version, a message\n"
     "that cannot be read, no results, or results whose query is not in the logs.\n";
 
-/* Most messages that are reported; the others are counted. */
-enum { COMPLAINTS_MAX = 20 };
+/* The first of the messages with the same flaw. */
+struct flaw {
+    int64_t count;
+    int log;
+    int64_t offset;
+    const char *what;
+};
 
 struct printing {
     const struct args *args;
     struct results *results;
     struct log_channels channels;
     struct input input;
-    struct progress progress;
-    int64_t unreadable; /* messages */
-    /* Results of scenes whose query is missing, and the place of the first one. */
-    int64_t without_query, first_offset;
-    int first_log;
+    struct flaw unreadable, no_query;
 };
 
-/* Reports what is wrong at a place. Returns ARGS_USAGE. */
-static int complain_at(struct printing *printing, int log, int64_t offset, const char *what)
+static void note(struct flaw *flaw, int log, int64_t offset, const char *what)
 {
-    progress_end(&printing->progress);
-    fflush(stdout);
-    complain("%s: offset %" PRId64 ": %s", printing->args->operands[log], offset, what);
-    return ARGS_USAGE;
+    if (flaw->count++ == 0) {
+        flaw->log = log;
+        flaw->offset = offset;
+        flaw->what = what;
+    }
 }
 
-/* Returns ARGS_RUN; or the exit code if the next events are not to be read. */
-static int take_event(struct printing *printing, const struct log_event *event)
+/* Returns false if later events are not to be read: of an old version. */
+static bool take_event(struct printing *printing, const struct log_event *event)
 {
     const enum log_kind kind = log_kind_of(&printing->channels, event);
-    const int log = printing->input.log;
-    char what[96];
-    if (kind == LOG_OTHER)
-        return ARGS_RUN;
-    const int version = log_kind_old_version(kind, event);
-    if (version) {
-        snprintf(what, sizeof what, "recorded by version %d, whose messages are others", version);
-        return complain_at(printing, log, event->offset, what);
-    }
-    const char *error =
-        results_take(printing->results, kind, event->number, event->data, (uint32_t) event->kept);
-    if (error == results_no_query && printing->without_query++ == 0) {
-        printing->first_log = log;
-        printing->first_offset = event->offset;
-    } else if (error && error != results_no_query && printing->unreadable++ < COMPLAINTS_MAX) {
-        snprintf(what, sizeof what, "event %" PRId64 ": %s", event->number, error);
-        complain_at(printing, log, event->offset, what);
-    }
-    return ARGS_RUN;
+    const bool old = log_kind_old_version(kind, event) != 0;
+    const char *error = old ? "recorded by an old version, whose messages are others"
+                            : results_take(printing->results, kind, event->number, event->data,
+                                           (uint32_t) event->kept);
+    if (error)
+        note(error == results_no_query ? &printing->no_query : &printing->unreadable,
+             printing->input.log, event->offset, error);
+    return !old;
 }
 
 /* Damage ends the run, with the rows before it. */
-static int take_all(struct printing *printing)
+static void take_all(struct printing *printing)
 {
+    struct progress progress = progress_begin("bytes", input_size(&printing->input));
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
-    int code = ARGS_RUN;
-    printing->progress = progress_begin("bytes", input_size(&printing->input));
-    while (code == ARGS_RUN && !ferror(stdout) &&
+    bool more = true;
+    while (more && !ferror(stdout) &&
            (outcome = input_next(&printing->input, &event, &damage)) != LOG_END) {
-        if (outcome == LOG_EVENT)
-            code = take_event(printing, &event);
-        else if (outcome == LOG_DAMAGE)
-            code = complain_at(printing, printing->input.log, damage.offset, damage.what);
-        else
-            code =
-                complain_at(printing, printing->input.log, printing->input.passed, strerror(errno));
-        progress_to(&printing->progress, printing->input.passed, printing->progress.total);
+        more = outcome == LOG_EVENT && take_event(printing, &event);
+        if (outcome != LOG_EVENT)
+            note(&printing->unreadable, printing->input.log,
+                 outcome == LOG_DAMAGE ? damage.offset : printing->input.passed,
+                 outcome == LOG_DAMAGE ? damage.what : strerror(errno));
+        progress_to(&progress, printing->input.passed, progress.total);
     }
-    progress_end(&printing->progress);
-    return code;
+    progress_end(&progress);
 }
 
-/* Reports what is missing. Returns the exit code. */
-static int report_missing(struct printing *printing)
+/* Returns whether there are none. */
+static bool report_flaws(const struct args *args, const struct flaw *flaw, const char *remedy)
 {
-    char what[128];
-    if (printing->unreadable > COMPLAINTS_MAX)
-        complain("%" PRId64 " more messages could not be read",
-                 printing->unreadable - COMPLAINTS_MAX);
-    if (printing->without_query > 0) {
-        snprintf(what, sizeof what,
-                 "the queries of %" PRId64
-                 " results, of this one first, did not come before them: give the earlier log, too",
-                 printing->without_query);
-        return complain_at(printing, printing->first_log, printing->first_offset, what);
-    }
-    if (results_count(printing->results) == 0)
-        complain("%s: no results of this service (--prefix chooses it)",
-                 printing->args->operands[0]);
-    else if (printing->unreadable == 0)
-        return ARGS_ANSWERED;
-    return ARGS_USAGE;
+    char count[64] = "";
+    if (flaw->count > 1)
+        snprintf(count, sizeof count, ", the first of %" PRId64, flaw->count);
+    if (flaw->count > 0)
+        complain("%s: offset %" PRId64 ": %s%s%s", args->operands[flaw->log], flaw->offset,
+                 flaw->what, count, remedy);
+    return flaw->count == 0;
 }
 
-static int run_results(const struct args *args, const struct results_options *options)
+static int run_results(const struct args *args, enum report_form form, enum results_pairs pairs)
 {
     struct printing printing = {.args = args, .channels = log_channels(args->bus.prefix)};
     int code = ARGS_USAGE;
     if (input_open(&printing.input, args->operands, args->operand_count)) {
-        printing.results = results_open(options);
-        code = take_all(&printing);
-        if (code == ARGS_RUN)
-            code = report_missing(&printing);
+        printing.results = results_open(stdout, form, pairs);
+        take_all(&printing);
+        fflush(stdout);
+        bool good = report_flaws(args, &printing.unreadable, "");
+        if (good && results_count(printing.results) == 0)
+            complain("%s: no results of this service (--prefix chooses it)", args->operands[0]);
+        good = report_flaws(args, &printing.no_query, ": give the log before it, too") && good;
+        code = good && results_count(printing.results) > 0 ? ARGS_ANSWERED : ARGS_USAGE;
         results_close(printing.results);
     }
     input_close(&printing.input);
@@ -162,10 +143,9 @@ int cmd_log_results(int argc, char **argv)
         return code;
     if (!args_exclude(&args, csv, json, "--csv and --json"))
         return ARGS_USAGE;
-    const struct results_options options = {.out = stdout,
-                                            .form = csv    ? REPORT_CSV
-                                                    : json ? REPORT_JSON
-                                                           : REPORT_TABLE,
-                                            .pairs = all ? RESULTS_ALL : RESULTS_CONTACTS};
-    return run_results(&args, &options);
+    return run_results(&args,
+                       csv    ? REPORT_CSV
+                       : json ? REPORT_JSON
+                              : REPORT_TABLE,
+                       all ? RESULTS_ALL : RESULTS_CONTACTS);
 }

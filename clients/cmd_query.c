@@ -75,15 +75,14 @@ static const char usage[] =
     "wrong usage, or input that cannot be read or is not a scene; 3 otherwise, if a\n"
     "pair is as --fail-if says.\n";
 
-/* What --fail-if takes, each includes those above it; and the exit code. */
-enum severity { SEPARATED, NEAR, TOUCHING, OVERLAPPING };
+/* The exit code of --fail-if. */
 enum { FAILED_IF = 3 };
 
 struct query {
     /* Options. */
     bool local, json, csv, certificate;
     struct report_rows rows;         /* their options */
-    enum severity fail_if;           /* SEPARATED: not given */
+    int fail_if;                     /* least severity; 0: not given */
     const struct fmb_method *method; /* NULL: the default, of this process or of the service */
     struct output_options html;
     double timeout;
@@ -95,8 +94,8 @@ struct query {
     struct answers_bus *answers; /* NULL: not opened yet */
     const struct fmb_scene *scene;
     struct progress progress;
-    bool undecided;      /* a pair has no verdict */
-    enum severity worst; /* of all pairs */
+    bool undecided; /* a pair has no verdict */
+    int worst;      /* severity of all pairs */
 };
 
 static bool take_method(const struct args *args, void *out)
@@ -113,29 +112,26 @@ static bool take_svg(const struct args *args, void *out)
     return args_error(args, "--svg: pictures are pages now: --html %s", optarg);
 }
 
+/* How close a pair comes: twice the verdict, and 1 more if it is near. */
+static int severity(double margin, const struct fmb_answer *answer)
+{
+    return 2 * (int) answer->verdict + report_is_near(margin, answer);
+}
+
 static bool take_fail_if(const struct args *args, void *out)
 {
-    static const char *const name[] = {
-        [NEAR] = "near", [TOUCHING] = "touching", [OVERLAPPING] = "overlapping"};
-    enum severity *fail_if = out;
-    if (*fail_if != SEPARATED)
+    int *fail_if = out;
+    if (*fail_if)
         return args_error(args,
                           "--fail-if: given twice; near includes touching, and both include "
                           "overlapping");
-    for (*fail_if = NEAR; *fail_if <= OVERLAPPING; ++*fail_if)
-        if (strcmp(optarg, name[*fail_if]) == 0)
-            return true;
-    return args_error(args, "--fail-if: there are overlapping, touching and near, not '%s'",
+    *fail_if = strcmp(optarg, "overlapping") == 0 ? 2 * FMB_OVERLAPPING
+               : strcmp(optarg, "touching") == 0  ? 2 * FMB_TOUCHING
+               : strcmp(optarg, "near") == 0      ? 2 * FMB_SEPARATED + 1
+                                                  : 0;
+    return *fail_if ||
+           args_error(args, "--fail-if: there are overlapping, touching and near, not '%s'",
                       optarg);
-}
-
-static enum severity severity_of(double margin, const struct fmb_answer *answer)
-{
-    switch (answer->verdict) {
-    case FMB_OVERLAPPING: return OVERLAPPING;
-    case FMB_TOUCHING: return TOUCHING;
-    default: return report_is_near(margin, answer) ? NEAR : SEPARATED;
-    }
 }
 
 static void take_answer(void *user, const struct fmb_client_answer *answer)
@@ -148,8 +144,8 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
     for (int i = 0; i < 2 && query->report[i]; i++)
         query->report[i]->pair(query->report[i], &checked);
     query->undecided = query->undecided || checked.status != FMB_OK;
-    const enum severity severity = severity_of(query->scene->margin, &checked.answer);
-    query->worst = severity > query->worst ? severity : query->worst;
+    const int found = severity(query->scene->margin, &checked.answer);
+    query->worst = found > query->worst ? found : query->worst;
     progress_to(&query->progress, query->progress.done + 1, query->progress.total);
 }
 
@@ -201,8 +197,7 @@ static int answer_scenes(struct query *query, int fd)
         return ARGS_USAGE;
     if (!more || query->undecided)
         return ARGS_FAILED;
-    return query->fail_if != SEPARATED && query->worst >= query->fail_if ? FAILED_IF
-                                                                         : ARGS_ANSWERED;
+    return query->fail_if && query->worst >= query->fail_if ? FAILED_IF : ARGS_ANSWERED;
 }
 
 static bool write_page(const struct output_options *options, struct page *page)
@@ -238,7 +233,7 @@ int cmd_query(int argc, char **argv)
     struct query query = {.html = {.kind = OUTPUT_PAGE, .rules = &rules},
                           .timeout = 0.5,
                           .retries = 5,
-                          .rows = {.out = stdout}};
+                          .rows = {.printer.out = stdout}};
     const struct args_option own[] = {
         {"local", ARGS_FLAG, .out = &query.local},
         {"json", ARGS_FLAG, .out = &query.json},
@@ -272,7 +267,7 @@ int cmd_query(int argc, char **argv)
         return ARGS_USAGE;
     }
     query.rows.box = query.rows.box || query.html.path;
-    query.rows.form = query.csv ? REPORT_CSV : query.json ? REPORT_JSON : REPORT_TABLE;
+    query.rows.printer.form = query.csv ? REPORT_CSV : query.json ? REPORT_JSON : REPORT_TABLE;
     query.bus = args.bus;
     rules.other_input = named ? query.input : "/dev/stdin";
     code = output_check(&query.html) ? run_query(&query, fd) : ARGS_USAGE;

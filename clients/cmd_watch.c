@@ -66,8 +66,7 @@ int cmd_watch(int argc, char **argv)
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    watch.results = results_open(&(struct results_options){
-        .out = stdout, .form = json ? REPORT_JSON : REPORT_TABLE, .pairs = RESULTS_NAMED});
+    watch.results = results_open(stdout, json ? REPORT_JSON : REPORT_TABLE, RESULTS_NAMED);
     watch.channels = log_channels(args.bus.prefix);
     const enum listen_end end =
         listen_until(&args.bus, NULL, on_message, &watch, &watch.enough, -1);

@@ -1,7 +1,5 @@
 #include "report.h"
 
-#include "escape.h"
-
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -14,11 +12,10 @@ static const double large_end = 1e5;
 static struct report_columns columns_for(const struct owned_scene *scene)
 {
     struct report_columns columns = report_columns();
-    char text[SCENE_LABEL_MAX];
     columns.body = 1;
     for (size_t i = 0; i < scene->scene.placement_count; i++) {
         const struct fmb_placement *body = &scene->scene.placements[i];
-        const int width = (int) escape_characters(scene_label(body, text));
+        const int width = report_body_width(body->name, body->id);
         columns.body = width > columns.body ? width : columns.body;
         for (int axis = 0; axis < scene->dim; axis++)
             if (fabs(body->position[axis]) >= large_end)
@@ -31,10 +28,10 @@ static struct report_columns columns_for(const struct owned_scene *scene)
 
 static void begin_json(struct report_rows *rows)
 {
-    json_begin(&rows->json, NULL, '{');
+    json_begin(&rows->printer.json, NULL, '{');
     if (rows->report.scene->scene.label)
-        json_string(&rows->json, "label", rows->report.scene->scene.label);
-    json_begin(&rows->json, "pairs", '[');
+        json_string(&rows->printer.json, "label", rows->report.scene->scene.label);
+    json_begin(&rows->printer.json, "pairs", '[');
 }
 
 static void begin_table(struct report_rows *rows)
@@ -42,16 +39,17 @@ static void begin_table(struct report_rows *rows)
     const struct fmb_scene *scene = &rows->report.scene->scene;
     const uint64_t count = scene_count_pairs(rows->report.scene);
     char duration[NUMBER_TEXT_MAX], pairs[NUMBER_TEXT_MAX];
-    rows->columns = columns_for(rows->report.scene);
-    fprintf(rows->out, "%sscene %" PRId64, rows->scenes > 1 ? "\n" : "", rows->scenes);
+    rows->printer.columns = columns_for(rows->report.scene);
+    fprintf(rows->printer.out, "%sscene %" PRId64, rows->scenes > 1 ? "\n" : "", rows->scenes);
     if (scene->label)
-        fprintf(rows->out, " (%s)", scene->label);
-    fprintf(rows->out, ": %zu bod%s in %dD, %s pair%s, 0 to %s s\n", scene->placement_count,
+        fprintf(rows->printer.out, " (%s)", scene->label);
+    fprintf(rows->printer.out, ": %zu bod%s in %dD, %s pair%s, 0 to %s s\n", scene->placement_count,
             scene->placement_count == 1 ? "y" : "ies", rows->report.scene->dim,
             number_grouped((int64_t) count, pairs), count == 1 ? "" : "s",
             number_short(scene->duration, duration));
     if (count > 0)
-        report_headings(rows->out, &rows->columns, rows->gap || scene->margin > 0, rows->box);
+        report_headings(rows->printer.out, &rows->printer.columns, rows->gap || scene->margin > 0,
+                        rows->box);
 }
 
 static void end_table(const struct report_rows *rows)
@@ -59,17 +57,18 @@ static void end_table(const struct report_rows *rows)
     static const enum fmb_verdict order[] = {FMB_OVERLAPPING, FMB_TOUCHING, FMB_SEPARATED};
     char count[NUMBER_TEXT_MAX];
     if (rows->left_out > 0)
-        fprintf(rows->out, "  ... and %s more separated (--all shows them)\n",
+        fprintf(rows->printer.out, "  ... and %s more separated (--all shows them)\n",
                 number_grouped((int64_t) rows->left_out, count));
     for (int i = 0; i < 3; i++)
-        fprintf(rows->out, "%s%s %s", i ? ", " : "",
+        fprintf(rows->printer.out, "%s%s %s", i ? ", " : "",
                 number_grouped((int64_t) rows->count[order[i]], count),
                 fmb_verdict_name((int) order[i]));
     if (rows->report.scene->scene.margin > 0)
-        fprintf(rows->out, " (%s near)", number_grouped((int64_t) rows->near, count));
+        fprintf(rows->printer.out, " (%s near)", number_grouped((int64_t) rows->near, count));
     if (rows->count[0] > 0)
-        fprintf(rows->out, ", %s not decided", number_grouped((int64_t) rows->count[0], count));
-    putc('\n', rows->out);
+        fprintf(rows->printer.out, ", %s not decided",
+                number_grouped((int64_t) rows->count[0], count));
+    putc('\n', rows->printer.out);
 }
 
 static void begin_scene(struct report *report)
@@ -78,22 +77,22 @@ static void begin_scene(struct report *report)
     rows->scenes++;
     memset(rows->count, 0, sizeof rows->count);
     rows->near = rows->left_out = 0;
-    if (rows->form == REPORT_JSON)
+    if (rows->printer.form == REPORT_JSON)
         begin_json(rows);
-    else if (rows->form == REPORT_TABLE)
+    else if (rows->printer.form == REPORT_TABLE)
         begin_table(rows);
 }
 
 static void end_scene(struct report *report)
 {
     struct report_rows *rows = (struct report_rows *) report;
-    if (rows->form == REPORT_JSON) {
-        json_end(&rows->json, ']');
-        json_object_end(&rows->json);
-    } else if (rows->form == REPORT_TABLE) {
+    if (rows->printer.form == REPORT_JSON) {
+        json_end(&rows->printer.json, ']');
+        json_object_end(&rows->printer.json);
+    } else if (rows->printer.form == REPORT_TABLE) {
         end_table(rows);
     }
-    fflush(rows->out);
+    fflush(rows->printer.out);
 }
 
 /* ---- Rows ---- */
@@ -114,19 +113,6 @@ static struct report_row row_of(const struct report_rows *rows, const struct fmb
     };
 }
 
-static void print_row(struct report_rows *rows, const struct report_row *row)
-{
-    if (rows->form == REPORT_TABLE) {
-        report_row_text(rows->out, 0, row, &rows->columns);
-    } else if (rows->form == REPORT_CSV) {
-        report_row_csv(rows->out, row);
-    } else {
-        json_begin(&rows->json, NULL, '{');
-        report_row_json(&rows->json, row);
-        json_end(&rows->json, '}');
-    }
-}
-
 static void take_pair(struct report *report, const struct fmb_client_answer *of)
 {
     struct report_rows *rows = (struct report_rows *) report;
@@ -135,19 +121,19 @@ static void take_pair(struct report *report, const struct fmb_client_answer *of)
     const struct report_row row = row_of(rows, of);
     rows->count[of->answer.verdict]++;
     rows->near += near;
-    if (apart && rows->form == REPORT_TABLE && !rows->contacts && !rows->all &&
+    if (apart && rows->printer.form == REPORT_TABLE && !rows->contacts && !rows->all &&
         rows->count[FMB_SEPARATED] - rows->near > REPORT_SEPARATED_MAX)
         rows->left_out++;
     else if (!apart || !rows->contacts)
-        print_row(rows, &row);
+        report_row_print(&rows->printer, 0, &row);
 }
 
 struct report_rows report_rows(const struct report_rows *options)
 {
     struct report_rows rows = *options;
     rows.report = (struct report){begin_scene, take_pair, end_scene, NULL};
-    rows.json = (struct json_writer){.out = rows.out};
-    if (rows.form == REPORT_CSV)
-        report_csv_begin(rows.out);
+    rows.printer.json = (struct json_writer){.out = rows.printer.out};
+    if (rows.printer.form == REPORT_CSV)
+        report_csv_begin(rows.printer.out);
     return rows;
 }

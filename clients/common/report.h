@@ -65,6 +65,9 @@ struct report_columns {
     int box[FMB_DIM_MAX][2]; /* [axis][low, high] */
 };
 
+/* Returns the number of characters of a name, or else of an id. */
+int report_body_width(const char *name, int64_t id);
+
 /* Returns the widths for ids of up to four digits and numbers of up to six. */
 struct report_columns report_columns(void);
 
@@ -78,9 +81,16 @@ void report_headings(FILE *out, const struct report_columns *columns, bool gap, 
 void report_row_text(FILE *out, int indent, const struct report_row *row,
                      struct report_columns *columns);
 
-/* Writes the contact interval, such as "0.25 to 0.5 s", into text. Returns the number of digits. */
-enum { REPORT_TEXT_MAX = 2 * NUMBER_TEXT_MAX + 8 };
-int report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX]);
+/* A destination of rows. */
+struct report_printer {
+    FILE *out; /* not owned */
+    enum report_form form;
+    struct json_writer json;       /* with the same out */
+    struct report_columns columns; /* of the table */
+};
+
+/* Prints a row: in JSON as an element of an array. indent: as for report_row_text(). */
+void report_row_print(struct report_printer *printer, int indent, const struct report_row *row);
 
 /* ---- Scenes ---- */
 
@@ -103,14 +113,11 @@ enum { REPORT_SEPARATED_MAX = 20 };
 struct report_rows {
     struct report report;
     /* Set by the caller. */
-    FILE *out;
-    enum report_form form;
-    bool box, gap;      /* wanted: columns of tables */
-    bool contacts, all; /* rows: no separated pairs but near ones; in tables all */
+    struct report_printer printer; /* out and form */
+    bool box, gap;                 /* wanted: columns of tables */
+    bool contacts, all;            /* rows: no separated pairs but near ones; in tables all */
     /* Private. */
     int64_t scenes;
-    struct json_writer json;
-    struct report_columns columns;
     uint64_t count[FMB_OVERLAPPING + 1]; /* [verdict] of the scene; [0]: not decided */
     uint64_t near, left_out;             /* of those separated */
 };

@@ -170,6 +170,9 @@ enum { END_WIDTH = 8 };
 /* Characters of a certificate that are printed. Most are shorter; some have thousands of digits. */
 enum { CERTIFICATE_WIDTH = 200 };
 
+/* Bytes of the text of an interval. */
+enum { TEXT_MAX = 2 * NUMBER_TEXT_MAX + 8 };
+
 struct report_columns report_columns(void)
 {
     struct report_columns columns = {
@@ -198,22 +201,23 @@ static int widen(int *width, int digits, const char *text)
     return *width;
 }
 
-int report_contact_text(const struct fmb_answer *answer, char text[REPORT_TEXT_MAX])
+/* Writes the contact interval, such as "0.25 to 0.5 s". Returns the number of digits. */
+static int contact_text(const struct fmb_answer *answer, char text[TEXT_MAX])
 {
     char first[NUMBER_TEXT_MAX], last[NUMBER_TEXT_MAX];
     int digits = number_ends(answer->contact[0], answer->contact[1], first, last);
-    snprintf(text, REPORT_TEXT_MAX, "%s to %s s", first, last);
+    snprintf(text, TEXT_MAX, "%s to %s s", first, last);
     return digits;
 }
 
 /* Writes one number if the bounds have the same digits. */
-static int gap_text(const struct fmb_gap *gap, char text[REPORT_TEXT_MAX])
+static int gap_text(const struct fmb_gap *gap, char text[TEXT_MAX])
 {
     char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
     number_short(gap->bounds[0], low);
     number_short(gap->bounds[1], high);
     const bool same = strcmp(low, high) == 0;
-    snprintf(text, REPORT_TEXT_MAX, same ? "%s" : "%s .. %s", low, high);
+    snprintf(text, TEXT_MAX, same ? "%s" : "%s .. %s", low, high);
     return same ? NUMBER_SHORT_DIGITS : NUMBER_SHORT_DIGITS + 1;
 }
 
@@ -234,13 +238,13 @@ static void text_box(FILE *out, int dim, const struct fmb_answer *answer,
 static void text_answer(FILE *out, int dim, const struct fmb_answer *answer,
                         struct report_columns *columns)
 {
-    char text[REPORT_TEXT_MAX] = "";
+    char text[TEXT_MAX] = "";
     const char *verdict = fmb_verdict_name((int) answer->verdict);
     if (!answer->has_contact && !answer->has_gap) {
         fputs(verdict, out);
         return;
     }
-    int digits = answer->has_contact ? report_contact_text(answer, text) : 0;
+    int digits = answer->has_contact ? contact_text(answer, text) : 0;
     fprintf(out, "%-*s  %-*s", VERDICT_WIDTH, verdict,
             answer->has_gap || answer->has_box ? widen(&columns->contact, digits, text) : 0, text);
     if (answer->has_gap) {
@@ -261,24 +265,29 @@ static void text_certificate(FILE *out, int indent, const char *certificate)
     putc('\n', out);
 }
 
-/* Prints the name, or else the id. */
-static void text_body(FILE *out, const char *name, int64_t id, int *width)
+static const char *body_text(const char *name, int64_t id, char text[NUMBER_TEXT_MAX])
+{
+    snprintf(text, NUMBER_TEXT_MAX, "%" PRId64, id);
+    return has_text(name) ? name : text;
+}
+
+int report_body_width(const char *name, int64_t id)
 {
     char text[NUMBER_TEXT_MAX];
-    snprintf(text, sizeof text, "%" PRId64, id);
-    if (!has_text(name))
-        name = text;
-    const int length = (int) escape_characters(name);
-    *width = length > *width ? length : *width;
-    fprintf(out, "  %*s", *width - length, "");
-    escape(out, ESCAPE_TERMINAL, name, strlen(name));
+    return (int) escape_characters(body_text(name, id, text));
 }
 
 void report_row_text(FILE *out, int indent, const struct report_row *row,
                      struct report_columns *columns)
 {
-    for (int i = 0; i < 2; i++)
-        text_body(out, row->name[i], row->id[i], &columns->body);
+    for (int i = 0; i < 2; i++) {
+        char text[NUMBER_TEXT_MAX];
+        const char *name = body_text(row->name[i], row->id[i], text);
+        const int width = report_body_width(row->name[i], row->id[i]);
+        columns->body = width > columns->body ? width : columns->body;
+        fprintf(out, "  %*s", columns->body - width, "");
+        escape(out, ESCAPE_TERMINAL, name, strlen(name));
+    }
     fputs("  ", out);
     if (row->of->status != FMB_OK)
         fprintf(out, "not decided: %s", row->of->text);
@@ -287,4 +296,17 @@ void report_row_text(FILE *out, int indent, const struct report_row *row,
     putc('\n', out);
     if (row->of->certificate)
         text_certificate(out, indent + 2 * columns->body + 6, row->of->certificate);
+}
+
+void report_row_print(struct report_printer *printer, int indent, const struct report_row *row)
+{
+    if (printer->form == REPORT_TABLE) {
+        report_row_text(printer->out, indent, row, &printer->columns);
+    } else if (printer->form == REPORT_CSV) {
+        report_row_csv(printer->out, row);
+    } else {
+        json_begin(&printer->json, NULL, '{');
+        report_row_json(&printer->json, row);
+        json_end(&printer->json, '}');
+    }
 }

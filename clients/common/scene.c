@@ -3,8 +3,6 @@
 #include "allocate.h"
 #include "pair_number.h"
 
-#include <inttypes.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -57,14 +55,6 @@ enum fmb_status scene_make_body(struct owned_scene *scene, const struct given_fr
     return fmb_body_make_frames(frames, count, body);
 }
 
-const char *scene_label(const struct fmb_placement *placement, char text[SCENE_LABEL_MAX])
-{
-    if (placement->name)
-        return placement->name;
-    snprintf(text, SCENE_LABEL_MAX, "%" PRId64, placement->id);
-    return text;
-}
-
 /* ---- Pairs ---- */
 
 void scene_begin_ignored(struct owned_scene *scene)
@@ -83,7 +73,7 @@ bool scene_leaves_out(struct owned_scene *scene, unsigned a, unsigned b)
 bool scene_next_pair(struct owned_scene *owner, struct scene_cursor *cursor, unsigned out[2])
 {
     const struct fmb_scene *scene = &owner->scene;
-    const struct pair_numbers all = {.n = scene->placement_count};
+    const struct pair_numbers all = pair_numbers_of(scene);
     if (scene->which == FMB_PAIRS_LISTED) {
         if (cursor->listed == scene->pair_count)
             return false;

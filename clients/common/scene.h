@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 struct owned_scene {
-    struct fmb_scene scene; /* ALL or LISTED; ids are unique */
+    struct fmb_scene scene; /* ids are unique */
     struct ignored ignored; /* its ignored pairs */
     int dim;                /* 2 or 3, of all bodies */
     void **memory;          /* owned, [memory_count]: what the scene points to */
@@ -40,10 +40,6 @@ enum fmb_status scene_make_body(struct owned_scene *scene, const struct given_fr
 
 /* Frees what the scene owns, and sets it to {0}, an empty scene. */
 void scene_clear(struct owned_scene *scene);
-
-/* Returns the name of a body; if it has none, its id, written into text. */
-enum { SCENE_LABEL_MAX = 24 };
-const char *scene_label(const struct fmb_placement *placement, char text[SCENE_LABEL_MAX]);
 
 /* Sets ignored from the placements and the ignored pairs of the scene. */
 void scene_begin_ignored(struct owned_scene *scene);

@@ -38,17 +38,16 @@ static const char *text_of(int32_t status, const char *detail)
     return detail[0] ? detail : fmb_client_status_text(status);
 }
 
-/* Passes the result in client->received to the watcher. */
-static void show(const struct fmb_client *client, bool is_pair)
+struct fmb_client_result fmb_client_raw_result_of(bool is_pair, const void *result)
 {
-    const struct pair_result *pair = &client->received.pair;
-    const struct scene_result *scene = &client->received.scene;
+    const struct pair_result *pair = result;
+    const struct scene_result *scene = result;
     const struct query_header *header = is_pair ? &pair->header : &scene->header;
     struct fmb_client_result out = {.utime = header->utime,
                                     .client_id = header->client_id,
                                     .sequence_number = header->sequence_number,
                                     .is_pair = is_pair,
-                                    .internal = &client->received};
+                                    .internal = result};
     if (is_pair) {
         out.server_id = pair->server_id;
         out.compute_ns = pair->compute_ns;
@@ -67,6 +66,13 @@ static void show(const struct fmb_client *client, bool is_pair)
         out.names_pairs = scene->names_pairs || scene->verdict_count == 0;
         out.end_pair = scene->end_pair;
     }
+    return out;
+}
+
+/* Passes the result in client->received to the watcher. */
+static void show(const struct fmb_client *client, bool is_pair)
+{
+    const struct fmb_client_result out = fmb_client_raw_result_of(is_pair, &client->received);
     client->watcher.result(client->watcher.user, &out);
 }
 

@@ -2,9 +2,10 @@
 
 #include "body_names.h"
 #include "escape.h"
+#include "fmb_client_raw.h"
 #include "ignored.h"
 #include "match.h"
-#include "pair_number.h"
+#include "scene.h"
 #include "wire.h"
 
 #include <inttypes.h>
@@ -26,39 +27,32 @@ struct kept_query {
 };
 
 struct results {
-    struct results_options options;
+    struct report_printer printer;
+    enum results_pairs pairs;
     int64_t count;
-    struct json_writer json;
-    struct report_columns columns;
     struct body_names *names;
     struct kept_query *kept; /* table */
     size_t kept_bytes;
-    const struct kept_query *decoded; /* whose query is in `query`, with texts in its bytes */
+    struct kept_query *decoded; /* whose query is in `query`, with texts in its bytes */
     struct logged_query query;
-    union {
+    union { /* the result */
         struct pair_result pair;
         struct scene_result scene;
     };
+    /* The pairs of its query, if it does not list them: which, placements and ignored ones. */
+    struct owned_scene all;
+    struct fmb_placement placement[QUERY_PLACEMENTS_MAX];
     unsigned ignored[2 * QUERY_PLACEMENTS_MAX + QUERY_PAIRS_MAX];
 };
 
-/* What results of both kinds have. */
-struct outcome {
-    struct match_key key;
-    int64_t server_id, compute_ns;
-    int status;
-    const char *detail;
-};
-
-struct results *results_open(const struct results_options *options)
+struct results *results_open(FILE *out, enum report_form form, enum results_pairs pairs)
 {
     struct results *results = allocate(1, sizeof *results);
-    results->options = *options;
-    results->json.out = options->out;
-    results->columns = report_columns();
+    results->printer = (struct report_printer){out, form, {.out = out}, report_columns()};
+    results->pairs = pairs;
     results->names = body_names_open();
-    if (options->form == REPORT_CSV)
-        report_csv_begin(options->out);
+    if (form == REPORT_CSV)
+        report_csv_begin(out);
     return results;
 }
 
@@ -95,7 +89,7 @@ static struct kept_query *find(const struct results *results, const struct match
 }
 
 /* Decodes a kept query into results->query. */
-static const char *decode(struct results *results, const struct kept_query *kept)
+static const char *decode(struct results *results, struct kept_query *kept)
 {
     const char *error = NULL;
     if (results->decoded != kept)
@@ -140,140 +134,44 @@ static const char *take_query(struct results *results, enum log_kind kind, int64
 
 /* ---- Rows ---- */
 
-static bool is_printed(const struct results *results, const struct fmb_client_answer *of)
+/* The columns of a line of a table before the bodies of a pair. */
+static void print_start(const struct results *results, const struct fmb_client_result *of)
 {
-    const double margin = results->decoded && results->query.kind == LOG_SCENE_QUERY
-                              ? results->query.scene.margin
-                              : 0;
-    return results->options.pairs != RESULTS_CONTACTS || of->answer.verdict != FMB_SEPARATED ||
-           report_is_near(margin, &of->answer);
+    fprintf(results->printer.out, "%16" PRId64 " #%-6" PRId64 " %6.1f us", of->client_id,
+            of->sequence_number, 1e-3 * (double) of->compute_ns);
 }
 
-/* Sets the name of a placement, or of a body whose query is not known (NULL). */
-static void set_name(const struct results *results, int64_t client_id,
-                     const struct query_placement *placement, struct report_row *row, int i)
+/* Prints a row if it is wanted. placements: indices, if the query is known. */
+static void print_row(struct results *results, const struct fmb_client_result *of,
+                      struct report_row *row, const unsigned placements[2])
 {
-    row->name[i] = placement && placement->placed.name && *placement->placed.name
-                       ? placement->placed.name
-                       : body_names_find(results->names, client_id, row->id[i]);
-}
-
-/* Prints a row of a scene. */
-static void print_row(struct results *results, const struct report_row *row)
-{
-    struct json_writer *json = &results->json;
-    switch (results->options.form) {
-    case REPORT_TABLE:
-        fprintf(results->options.out, "%*s", INDENT, "");
-        report_row_text(results->options.out, INDENT, row, &results->columns);
-        break;
-    case REPORT_CSV: report_row_csv(results->options.out, row); break;
-    case REPORT_JSON:
-        json_begin(json, NULL, '{');
-        report_row_json(json, row);
-        json_end(json, '}');
-        break;
-    }
-}
-
-/* Begins a line of JSON, or of a table. */
-static void begin_line(struct results *results, const struct outcome *of,
-                       const struct report_row *row)
-{
-    struct json_writer *json = &results->json;
-    if (results->options.form == REPORT_TABLE)
-        fprintf(results->options.out, "%16" PRId64 " #%-6" PRId64 " %6.1f us", of->key.client_id,
-                of->key.sequence_number, 1e-3 * (double) of->compute_ns);
-    if (results->options.form != REPORT_JSON)
+    const bool table = results->printer.form == REPORT_TABLE;
+    const double margin = of->is_pair ? 0 : results->query.scene.margin;
+    int32_t count;
+    const struct query_placement *placement = logged_query_placements(&results->query, &count);
+    if (results->pairs == RESULTS_CONTACTS && row->of->answer.verdict == FMB_SEPARATED &&
+        !report_is_near(margin, &row->of->answer))
         return;
-    json_begin(json, NULL, '{');
-    json_integer(json, "utime", of->key.utime);
-    json_integer(json, "client_id", of->key.client_id);
-    json_integer(json, "sequence_number", of->key.sequence_number);
-    json_integer(json, "server_id", of->server_id);
-    json_integer(json, "compute_ns", of->compute_ns);
-    if (row->scene != REPORT_NONE)
-        json_integer(json, "scene", row->scene);
-    if (row->label && *row->label)
-        json_string(json, "label", row->label);
-    if (of->status != FMB_OK)
-        json_integer(json, "status", of->status);
-}
-
-static struct fmb_client_answer refusal(int status, const char *detail)
-{
-    return (struct fmb_client_answer){.status = status,
-                                      .text = status == FMB_OK ? ""
-                                              : *detail        ? detail
-                                                               : fmb_client_status_text(status)};
-}
-
-/* Finds the query of a result, and decodes it. On output: *row without bodies, and whether the
- * result is printed: it is not a second one. Without its query results->decoded is NULL. */
-static bool begin_result(struct results *results, const struct outcome *of, struct report_row *row)
-{
-    struct kept_query *kept = find(results, &of->key);
-    if (kept && kept->answered)
-        return false;
-    if (!kept || decode(results, kept))
-        results->decoded = NULL;
-    if (kept)
-        kept->answered = of->status != FMB_BUSY && of->status != FMB_UNKNOWN_BODY;
-    results->count++;
-    *row = (struct report_row){.utime = of->key.utime,
-                               .scene = kept ? kept->number : REPORT_NONE,
-                               .label = results->decoded && of->key.kind == LOG_SCENE_QUERY
-                                            ? results->query.scene.label
-                                            : NULL,
-                               .id = {REPORT_NONE, REPORT_NONE}};
-    return true;
-}
-
-/* ---- Results of pairs ---- */
-
-static void print_pair(struct results *results)
-{
-    const struct pair_result *result = &results->pair;
-    const struct outcome of = {
-        {LOG_PAIR_QUERY, result->client_id, result->sequence_number, result->utime},
-        result->server_id,
-        result->compute_ns,
-        result->status,
-        result->detail};
-    struct fmb_client_answer answer = refusal(result->status, result->detail);
-    struct report_row row;
-    if (!begin_result(results, &of, &row))
-        return;
-    answer.answer = result->answer;
-    answer.certificate = result->certificate;
-    row.dim = result->dim;
-    row.names_frames = result->names_frames;
-    row.of = &answer;
     for (int i = 0; i < 2; i++) {
-        row.id[i] = result->body_id[i];
-        set_name(results, result->client_id,
-                 results->decoded ? &results->query.pair.placement[i] : NULL, &row, i);
+        const struct fmb_placement *placed =
+            results->decoded ? &placement[placements[i]].placed : NULL;
+        row->id[i] = of->is_pair ? of->body_id[i] : placed->id;
+        row->name[i] = placed && placed->name && *placed->name
+                           ? placed->name
+                           : body_names_find(results->names, of->client_id, row->id[i]);
     }
-    if (!is_printed(results, &answer))
-        return;
-    begin_line(results, &of, &row);
-    if (results->options.form == REPORT_TABLE)
-        report_row_text(results->options.out, INDENT, &row, &results->columns);
-    else if (results->options.form == REPORT_CSV)
-        report_row_csv(results->options.out, &row);
-    else
-        report_row_json(&results->json, &row);
-    if (results->options.form == REPORT_JSON)
-        json_object_end(&results->json);
+    if (table && of->is_pair)
+        print_start(results, of);
+    else if (table)
+        fprintf(results->printer.out, "%*s", INDENT, "");
+    report_row_print(&results->printer, INDENT, row);
 }
 
-/* ---- Results of scenes ---- */
+/* ---- The pairs of a scene ---- */
 
-static const char no_match[] = "does not match its query";
-
-static bool are_below(const unsigned (*pair)[2], int32_t count, unsigned limit)
+static bool are_below(const unsigned (*pair)[2], int64_t count, unsigned limit)
 {
-    for (int32_t k = 0; k < count; k++)
+    for (int64_t k = 0; k < count; k++)
         if (pair[k][0] >= limit || pair[k][1] >= limit)
             return false;
     return true;
@@ -282,184 +180,180 @@ static bool are_below(const unsigned (*pair)[2], int32_t count, unsigned limit)
 /* Whether the indices of a result, and those of its query, are in range. */
 static bool result_matches(const struct scene_query *query, const struct scene_result *result)
 {
-    const int32_t n = query_stored_placements(query);
+    const int32_t n = query_stored_placements(query), count = result->verdict_count;
     const int32_t listed = query->index_count / 2, ignored = query->ignored_count / 2;
     if (query->placement_count != n || query->split < 0 || query->split > n ||
         query->first_pair < 0 || listed > QUERY_PAIRS_MAX || ignored > QUERY_PAIRS_MAX ||
         !are_below(query->ignored, ignored, (unsigned) n))
         return false;
-    if (query->which != FMB_PAIRS_LISTED) {
-        for (int32_t k = 0; k < result->verdict_count; k++)
-            if (!result->names_pairs ||
-                !query_has_pair(query, result->pair[k][0], result->pair[k][1]))
-                return false;
-        return true;
-    }
-    return !result->names_pairs && query->first_pair <= listed - result->verdict_count &&
-           are_below(query->pair + query->first_pair, result->verdict_count, (unsigned) n);
+    if (query->which == FMB_PAIRS_LISTED)
+        return !result->names_pairs && query->first_pair == result->end_pair - count &&
+               result->end_pair <= listed &&
+               are_below(query->pair + query->first_pair, count, (unsigned) n);
+    for (int32_t k = 0; k < count; k++)
+        if (!result->names_pairs || !query_has_pair(query, result->pair[k][0], result->pair[k][1]))
+            return false;
+    return true;
 }
 
-static void print_scene_row(struct results *results, struct report_row *row, const unsigned pair[2],
-                            const struct fmb_client_answer *answer)
-{
-    const struct query_placement *placement = results->query.scene.placement;
-    row->of = answer;
-    if (!is_printed(results, answer))
-        return;
-    for (int i = 0; i < 2; i++) {
-        row->id[i] = placement[pair[i]].placed.id;
-        set_name(results, results->scene.client_id, &placement[pair[i]], row, i);
-    }
-    print_row(results, row);
-}
-
-/* The pairs of a query that its result does not name. */
-struct unnamed {
-    struct pair_numbers numbers;
-    size_t a, b; /* of pair_find() */
-    int64_t number;
-    struct ignored ignored;
-};
-
-static struct unnamed begin_unnamed(struct results *results)
+static void begin_all(struct results *results)
 {
     const struct scene_query *query = &results->query.scene;
-    const size_t n = (size_t) query->placement_count;
-    const struct fmb_scene scene = {.placement_count = n,
-                                    .ignored = query->ignored,
-                                    .ignored_count = (size_t) (query->ignored_count / 2)};
-    struct unnamed unnamed = {
-        .numbers = {query->which == FMB_PAIRS_ACROSS, n, (size_t) query->split}};
-    ignored_begin(&scene, results->ignored, &unnamed.ignored);
-    return unnamed;
+    for (int32_t i = 0; i < query->placement_count; i++)
+        results->placement[i] = query->placement[i].placed;
+    results->all.scene = (struct fmb_scene){.placements = results->placement,
+                                            .placement_count = (size_t) query->placement_count,
+                                            .which = (enum fmb_pairs) query->which,
+                                            .split = (size_t) query->split,
+                                            .ignored = query->ignored,
+                                            .ignored_count = (size_t) (query->ignored_count / 2)};
+    ignored_begin(&results->all.scene, results->ignored, &results->all.ignored);
 }
 
-static bool is_decided(const struct results *results, struct unnamed *at)
+/* Prints the pairs that the result does not name and that come before one that it names; NULL: all
+ * that are left. */
+static void print_separated(struct results *results, const struct fmb_client_result *of,
+                            struct report_row *row, struct scene_cursor *at,
+                            const struct fmb_client_answer *until)
 {
     const struct scene_query *query = &results->query.scene;
-    const int64_t group = query->placement[at->a].placed.group;
-    return at->number >= query->first_pair && at->number < results->scene.end_pair &&
-           !(group != 0 && group == query->placement[at->b].placed.group) &&
-           !ignored_has(&at->ignored, (unsigned) at->a, (unsigned) at->b);
-}
-
-/* Prints those before a pair that the result names; NULL: all that are left. */
-static void print_unnamed(struct results *results, struct report_row *row, struct unnamed *at,
-                          const unsigned named[2])
-{
-    const struct fmb_client_answer separated = {.text = "", .answer = {.verdict = FMB_SEPARATED}};
-    for (bool more = true; more && pair_find(at->numbers, &at->a, &at->b); at->b++, at->number++) {
-        const unsigned pair[2] = {(unsigned) at->a, (unsigned) at->b};
-        more = !(named && pair[0] == named[0] && pair[1] == named[1]);
-        if (more && is_decided(results, at))
-            print_scene_row(results, row, pair, &separated);
+    const struct fmb_client_answer separated = {.answer = {.verdict = FMB_SEPARATED}};
+    unsigned pair[2];
+    row->of = &separated;
+    while (scene_next_pair(&results->all, at, pair) &&
+           !(until && pair[0] == until->a && pair[1] == until->b)) {
+        const int64_t number = query_pair_number(query, pair[0], pair[1]);
+        if (number >= query->first_pair && number < of->end_pair)
+            print_row(results, of, row, pair);
     }
 }
 
-static void print_scene_rows(struct results *results, struct report_row *row)
+static void print_rows(struct results *results, const struct fmb_client_result *of,
+                       struct report_row *row)
 {
-    const struct scene_query *query = &results->query.scene;
-    const struct scene_result *result = &results->scene;
-    const bool unnamed = results->options.pairs == RESULTS_ALL && query->which != FMB_PAIRS_LISTED;
-    struct unnamed others = {.number = 0};
-    int32_t contact = 0;
-    if (unnamed)
-        others = begin_unnamed(results);
-    row->dim = result->dim;
-    row->names_frames = result->names_frames;
-    for (int32_t k = 0; k < result->verdict_count; k++) {
-        const unsigned *pair =
-            result->names_pairs ? result->pair[k] : query->pair[query->first_pair + k];
-        struct fmb_client_answer answer =
-            refusal(result->verdict[k] ? FMB_OK : FMB_CANNOT_DECIDE, "");
-        wire_scene_answer(result, k, &contact, &answer.answer);
-        if (unnamed)
-            print_unnamed(results, row, &others, pair);
-        print_scene_row(results, row, pair, &answer);
+    const bool listed = !of->is_pair && results->query.scene.which == FMB_PAIRS_LISTED;
+    const bool all = !of->is_pair && !listed && results->pairs == RESULTS_ALL;
+    struct fmb_client_cursor cursor = {0};
+    struct scene_cursor at = {0};
+    struct fmb_client_answer answer;
+    if (all)
+        begin_all(results);
+    while (fmb_client_next_answer(of, &cursor, &answer)) {
+        if (all)
+            print_separated(results, of, row, &at, &answer);
+        row->of = &answer;
+        print_row(
+            results, of, row,
+            listed ? results->query.scene.pair[answer.a] : (const unsigned[]){answer.a, answer.b});
     }
-    if (unnamed)
-        print_unnamed(results, row, &others, NULL);
+    if (all)
+        print_separated(results, of, row, &at, NULL);
 }
 
-/* Prints the counts of verdicts: what the result names and is separated is near, unless the query
- * lists its pairs. */
-static void print_counts(struct results *results, const struct report_row *row)
+/* ---- Results ---- */
+
+static void begin_json(struct json_writer *json, const struct fmb_client_result *of,
+                       const struct report_row *row)
 {
-    const struct scene_result *result = &results->scene;
-    const bool names_pairs =
-        results->decoded ? results->query.scene.which != FMB_PAIRS_LISTED : result->names_pairs;
+    json_begin(json, NULL, '{');
+    json_integer(json, "utime", of->utime);
+    json_integer(json, "client_id", of->client_id);
+    json_integer(json, "sequence_number", of->sequence_number);
+    json_integer(json, "server_id", of->server_id);
+    json_integer(json, "compute_ns", of->compute_ns);
+    if (row->scene != REPORT_NONE)
+        json_integer(json, "scene", row->scene);
+    if (row->label && *row->label)
+        json_string(json, "label", row->label);
+    if (of->status != FMB_OK)
+        json_integer(json, "status", of->status);
+    else if (!of->is_pair)
+        json_integer(json, "end_pair", of->end_pair);
+}
+
+/* What a result names and is separated is near, unless the query lists its pairs. */
+static void print_counts(const struct results *results, const struct fmb_client_result *of,
+                         const char *label)
+{
     int64_t count[FMB_OVERLAPPING + 1] = {0};
-    for (int32_t k = 0; k < result->verdict_count; k++)
-        count[result->verdict[k]]++;
-    if (results->options.form == REPORT_JSON) {
-        json_integer(&results->json, "end_pair", result->end_pair);
-        json_integer(&results->json, "overlapping", count[FMB_OVERLAPPING]);
-        json_integer(&results->json, "touching", count[FMB_TOUCHING]);
-        json_integer(&results->json, names_pairs ? "near" : "separated", count[FMB_SEPARATED]);
-        if (!names_pairs)
-            json_integer(&results->json, "undecided", count[0]);
-    } else if (results->options.form == REPORT_TABLE) {
-        FILE *out = results->options.out;
-        fprintf(out, "  up to pair %" PRId32, result->end_pair);
-        if (row->label && *row->label) {
-            fputs(" of ", out);
-            escape(out, ESCAPE_TERMINAL, row->label, strlen(row->label));
-        }
-        fprintf(out, ": %" PRId64 " overlapping, %" PRId64 " touching", count[FMB_OVERLAPPING],
-                count[FMB_TOUCHING]);
-        if (!names_pairs || count[FMB_SEPARATED] > 0)
-            fprintf(out, ", %" PRId64 " %s", count[FMB_SEPARATED],
-                    names_pairs ? "near" : "separated");
-        if (count[0] > 0)
-            fprintf(out, ", %" PRId64 " not decided", count[0]);
-        putc('\n', out);
+    FILE *out = results->printer.out;
+    for (int32_t k = 0; k < results->scene.verdict_count; k++)
+        count[results->scene.verdict[k]]++;
+    fprintf(out, "  up to pair %" PRId64, of->end_pair);
+    if (label && *label) {
+        fputs(" of ", out);
+        escape(out, ESCAPE_TERMINAL, label, strlen(label));
     }
+    fprintf(out, ": %" PRId64 " overlapping, %" PRId64 " touching, %" PRId64 " %s",
+            count[FMB_OVERLAPPING], count[FMB_TOUCHING], count[FMB_SEPARATED],
+            of->names_pairs ? "near" : "separated");
+    if (count[0] > 0)
+        fprintf(out, ", %" PRId64 " not decided", count[0]);
+    putc('\n', out);
 }
 
-static void print_refused_scene(struct results *results, struct report_row *row,
-                                const struct fmb_client_answer *answer)
+static void print_refused(struct results *results, const struct fmb_client_result *of,
+                          struct report_row *row)
 {
-    row->of = answer;
-    if (results->options.form == REPORT_TABLE)
-        fprintf(results->options.out, "  not decided: %s\n", answer->text);
-    else if (results->options.form == REPORT_CSV)
-        report_row_csv(results->options.out, row);
+    const struct fmb_client_answer refused = {.status = of->status, .text = of->text};
+    row->of = &refused;
+    if (results->printer.form == REPORT_JSON)
+        json_string(&results->printer.json, "error", of->text);
+    else if (results->printer.form == REPORT_CSV)
+        report_row_csv(results->printer.out, row);
     else
-        json_string(&results->json, "error", answer->text);
+        fprintf(results->printer.out, "  not decided: %s\n", of->text);
 }
 
-static const char *print_scene(struct results *results)
+static void print(struct results *results, const struct fmb_client_result *of,
+                  struct report_row *row)
 {
-    const struct scene_result *result = &results->scene;
-    const struct outcome of = {
-        {LOG_SCENE_QUERY, result->client_id, result->sequence_number, result->utime},
-        result->server_id,
-        result->compute_ns,
-        result->status,
-        result->detail};
-    const struct fmb_client_answer answer = refusal(result->status, result->detail);
-    struct report_row row;
-    if (!begin_result(results, &of, &row))
-        return NULL;
-    if (result->status == FMB_OK && results->decoded &&
-        !result_matches(&results->query.scene, result))
-        return no_match;
-    begin_line(results, &of, &row);
-    if (result->status != FMB_OK) {
-        print_refused_scene(results, &row, &answer);
-    } else {
-        print_counts(results, &row);
-        if (results->decoded) {
-            if (results->options.form == REPORT_JSON)
-                json_begin(&results->json, "pairs", '[');
-            print_scene_rows(results, &row);
-            if (results->options.form == REPORT_JSON)
-                json_end(&results->json, ']');
-        }
+    struct json_writer *json = results->printer.form == REPORT_JSON ? &results->printer.json : NULL;
+    const bool refused = !of->is_pair && of->status != FMB_OK;
+    if (json)
+        begin_json(json, of, row);
+    if (!of->is_pair && results->printer.form == REPORT_TABLE)
+        print_start(results, of);
+    if (refused)
+        print_refused(results, of, row);
+    else if (!of->is_pair && results->printer.form == REPORT_TABLE)
+        print_counts(results, of, row->label);
+    if (!refused && (of->is_pair || results->decoded)) {
+        if (json)
+            json_begin(json, "pairs", '[');
+        print_rows(results, of, row);
+        if (json)
+            json_end(json, ']');
     }
-    if (results->options.form == REPORT_JSON)
-        json_object_end(&results->json);
-    return result->status == FMB_OK && !results->decoded ? results_no_query : NULL;
+    if (json)
+        json_object_end(json);
+}
+
+/* Of several results of a query the first is printed, and those that depend on the moment. */
+static const char *print_result(struct results *results, bool is_pair)
+{
+    const struct fmb_client_result of = fmb_client_raw_result_of(is_pair, &results->pair);
+    const struct match_key key = {is_pair ? LOG_PAIR_QUERY : LOG_SCENE_QUERY, of.client_id,
+                                  of.sequence_number, of.utime};
+    struct kept_query *kept = find(results, &key);
+    if (kept && kept->answered)
+        return NULL;
+    if (!kept || decode(results, kept))
+        results->decoded = NULL;
+    const struct scene_query *scene = results->decoded && !is_pair ? &results->query.scene : NULL;
+    if (scene && of.status == FMB_OK && !result_matches(scene, &results->scene))
+        return "does not match its query";
+    if (kept)
+        kept->answered = of.status != FMB_BUSY && of.status != FMB_UNKNOWN_BODY;
+    results->count++;
+    struct report_row row = {.utime = of.utime,
+                             .scene = kept ? kept->number : REPORT_NONE,
+                             .label = scene ? scene->label : NULL,
+                             .id = {REPORT_NONE, REPORT_NONE},
+                             .dim = of.dim,
+                             .names_frames = of.names_frames};
+    print(results, &of, &row);
+    return is_pair || scene || of.status != FMB_OK ? NULL : results_no_query;
 }
 
 /* ---- Messages ---- */
@@ -467,19 +361,14 @@ static const char *print_scene(struct results *results)
 const char *results_take(struct results *results, enum log_kind kind, int64_t number,
                          const void *bytes, uint32_t size)
 {
-    const char *error = NULL;
+    const char *error;
     switch (kind) {
     case LOG_PAIR_QUERY:
     case LOG_SCENE_QUERY: return take_query(results, kind, number, bytes, size);
     case LOG_NAMES: return body_names_take_message(results->names, kind, bytes, size);
-    case LOG_PAIR_RESULT:
-        error = wire_read_pair_result(bytes, size, &results->pair);
-        if (!error)
-            print_pair(results);
-        return error;
-    case LOG_SCENE_RESULT:
-        error = wire_read_scene_result(bytes, size, &results->scene);
-        return error ? error : print_scene(results);
+    case LOG_PAIR_RESULT: error = wire_read_pair_result(bytes, size, &results->pair); break;
+    case LOG_SCENE_RESULT: error = wire_read_scene_result(bytes, size, &results->scene); break;
     default: return NULL;
     }
+    return error ? error : print_result(results, kind == LOG_PAIR_RESULT);
 }

@@ -8,10 +8,10 @@
  *
  *   Table   a pair on a line. A scene on a line of its own with counts, and its pairs below it.
  *   JSON    a line for each result: {"utime": ..., "client_id": ..., "sequence_number": ...,
- *           "server_id": ..., "compute_ns": ...}, and then for a pair the members of its row; for a
- *           scene "end_pair", counts of verdicts, and "pairs" with rows. "scene": the number of the
- *           query's event, where it has one. "label": of the scene. "status": where it is not OK,
- *           with "error".
+ *           "server_id": ..., "compute_ns": ..., "pairs": [...]}, with a row for each pair that is
+ *           printed. Before the pairs: "scene", the number of the query's event, where it has one;
+ *           "label" and "end_pair" of a scene; "status" where it is not OK. A scene that is refused
+ *           has "error" in place of its pairs.
  *   CSV     the rows.
  *
  * For one thread at a time. */
@@ -30,16 +30,10 @@ enum results_pairs {
     RESULTS_ALL       /* and the other pairs of the query, which are separated */
 };
 
-struct results_options {
-    FILE *out; /* not owned */
-    enum report_form form;
-    enum results_pairs pairs;
-};
-
 struct results;
 
-/* Writes the column names of CSV. Exits with status 1 if memory is exhausted. */
-struct results *results_open(const struct results_options *options);
+/* Writes the column names of CSV. out is not owned. Exits with status 1 if memory is exhausted. */
+struct results *results_open(FILE *out, enum report_form form, enum results_pairs pairs);
 void results_close(struct results *results);
 
 /* What a scene's result gets whose query did not come before it. Only its counts are printed. */

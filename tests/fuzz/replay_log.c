@@ -1,11 +1,12 @@
 /* Any bytes, as an event log that is replayed: all counts agree and all is reported; a second
- * replay reports the same, and so do ranges of time, taken together. */
+ * replay reports the same, and so do ranges of time, taken together. Its results are rows. */
 #include "fuzz.h"
 
 #include "cursor.h"
 #include "log_draft.h"
 #include "replay_output.h"
 #include "replay_report.h"
+#include "results.h"
 #include "wire.h"
 
 #include <cjson/cJSON.h>
@@ -321,6 +322,68 @@ static void check_replays(const struct replay_options *options, int64_t size, ui
     replay_report_free(&report);
 }
 
+/* ---- Rows ---- */
+
+/* Prints the results of a log. Returns the text, to be freed; *count: of the results. */
+static char *rows_of(const char *path, enum report_form form, enum results_pairs pairs,
+                     int64_t *count)
+{
+    const struct log_channels channels = log_channels("");
+    char *text, why[LOG_WHY_MAX];
+    size_t size;
+    struct log_event event;
+    struct log_damage damage;
+    enum log_outcome outcome;
+    FILE *out = open_memstream(&text, &size);
+    FUZZ_CHECK(out);
+    struct results *results = results_open(out, form, pairs);
+    struct log_reader *reader = log_open(path, why);
+    while ((outcome = log_next(reader, &event, &damage)) != LOG_END)
+        if (outcome == LOG_EVENT)
+            results_take(results, log_kind_of(&channels, &event), event.number, event.data,
+                         (uint32_t) event.kept);
+    *count = results_count(results);
+    log_close(reader);
+    results_close(results);
+    FUZZ_CHECK(fclose(out) == 0 && strlen(text) == size);
+    return text;
+}
+
+/* Each line of CSV has as many columns as the first one. */
+static void check_csv(const char *text)
+{
+    int columns = 0, expected = 0;
+    bool quoted = false;
+    for (; *text; text++) {
+        FUZZ_CHECK(*text == '\n' || (unsigned char) *text >= ' ');
+        quoted = quoted != (*text == '"');
+        columns += *text == ',' && !quoted;
+        if (*text != '\n')
+            continue;
+        FUZZ_CHECK(!quoted && (expected == 0 || columns == expected));
+        expected = columns;
+        columns = 0;
+    }
+}
+
+static void check_rows(const char *path)
+{
+    int64_t count;
+    char *json = rows_of(path, REPORT_JSON, RESULTS_ALL, &count);
+    int64_t lines = 0;
+    for (const char *at = json; *at; lines++) {
+        cJSON *line = cJSON_ParseWithOpts(at, &at, false);
+        FUZZ_CHECK(cJSON_IsObject(line) && *at++ == '\n');
+        cJSON_Delete(line);
+    }
+    FUZZ_CHECK(lines <= count);
+    char *csv = rows_of(path, REPORT_CSV, RESULTS_CONTACTS, &count);
+    check_csv(csv);
+    free(rows_of(path, REPORT_TABLE, RESULTS_NAMED, &count));
+    free(json);
+    free(csv);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char path[LOG_DRAFT_PATH_MAX];
@@ -329,8 +392,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const struct look look = look_at(path);
     const struct replay_options options = {
         .log = paths, .log_count = 1, .prefix = "", .from = -INFINITY, .to = INFINITY, .frames = 4};
-    if (!look.slow)
+    if (!look.slow) {
         check_replays(&options, (int64_t) size, hash_of(data, size), &look);
+        check_rows(path);
+    }
     close(file);
     return 0;
 }
