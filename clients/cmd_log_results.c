@@ -5,7 +5,7 @@
 #include "complain.h"
 #include "input.h"
 #include "progress.h"
-#include "results.h"
+#include "result_rows.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -47,7 +47,7 @@ struct flaw {
 
 struct printing {
     const struct args *args;
-    struct results *results;
+    struct result_rows *results;
     struct log_channels channels;
     struct input input;
     struct flaw unreadable, no_query;
@@ -68,10 +68,10 @@ static bool take_event(struct printing *printing, const struct log_event *event)
     const enum log_kind kind = log_kind_of(&printing->channels, event);
     const bool old = log_kind_old_version(kind, event) != 0;
     const char *error = old ? "recorded by an old version, whose messages are others"
-                            : results_take(printing->results, kind, event->number, event->data,
-                                           (uint32_t) event->kept);
+                            : result_rows_take(printing->results, kind, event->number, event->data,
+                                               (uint32_t) event->kept);
     if (error)
-        note(error == results_no_query ? &printing->no_query : &printing->unreadable,
+        note(error == result_rows_no_query ? &printing->no_query : &printing->unreadable,
              printing->input.log, event->offset, error);
     return !old;
 }
@@ -108,20 +108,20 @@ static bool report_flaws(const struct args *args, const struct flaw *flaw, const
     return flaw->count == 0;
 }
 
-static int run_results(const struct args *args, enum report_form form, enum results_pairs pairs)
+static int run_results(const struct args *args, enum report_form form, enum result_rows_pairs pairs)
 {
     struct printing printing = {.args = args, .channels = log_channels(args->bus.prefix)};
     int code = ARGS_USAGE;
     if (input_open(&printing.input, args->operands, args->operand_count)) {
-        printing.results = results_open(stdout, form, pairs);
+        printing.results = result_rows_open(stdout, form, pairs);
         take_all(&printing);
         fflush(stdout);
         bool good = report_flaws(args, &printing.unreadable, "");
-        if (good && results_count(printing.results) == 0)
+        if (good && result_rows_count(printing.results) == 0)
             complain("%s: no results of this service (--prefix chooses it)", args->operands[0]);
         good = report_flaws(args, &printing.no_query, ": give the log before it, too") && good;
-        code = good && results_count(printing.results) > 0 ? ARGS_ANSWERED : ARGS_USAGE;
-        results_close(printing.results);
+        code = good && result_rows_count(printing.results) > 0 ? ARGS_ANSWERED : ARGS_USAGE;
+        result_rows_close(printing.results);
     }
     input_close(&printing.input);
     return output_flush() ? code : ARGS_FAILED;
@@ -147,5 +147,5 @@ int cmd_log_results(int argc, char **argv)
                        csv    ? REPORT_CSV
                        : json ? REPORT_JSON
                               : REPORT_TABLE,
-                       all ? RESULTS_ALL : RESULTS_CONTACTS);
+                       all ? RESULT_ROWS_ALL : RESULT_ROWS_CONTACTS);
 }

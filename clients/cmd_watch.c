@@ -4,7 +4,7 @@
 #include "args.h"
 #include "complain.h"
 #include "listen.h"
-#include "results.h"
+#include "result_rows.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -29,7 +29,7 @@ static const char usage[] =
     "wrong usage.\n";
 
 struct watch {
-    struct results *results;
+    struct result_rows *results;
     struct log_channels channels;
     long count; /* results until the end; 0: no end */
     uint64_t malformed;
@@ -44,12 +44,12 @@ static void on_message(void *user, const struct bus_message *message)
     const enum log_kind kind = log_kind_of(&watch->channels, &event);
     if (watch->enough)
         return;
-    const char *error =
-        results_take(watch->results, kind, REPORT_NONE, message->bytes, (uint32_t) message->size);
-    watch->malformed += error && error != results_no_query;
+    const char *error = result_rows_take(watch->results, kind, REPORT_NONE, message->bytes,
+                                         (uint32_t) message->size);
+    watch->malformed += error && error != result_rows_no_query;
     if (log_kind_is_result(kind) && fflush(stdout) != 0)
         watch->enough = true;
-    if (watch->count > 0 && results_count(watch->results) == watch->count)
+    if (watch->count > 0 && result_rows_count(watch->results) == watch->count)
         watch->enough = true;
 }
 
@@ -66,11 +66,11 @@ int cmd_watch(int argc, char **argv)
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    watch.results = results_open(stdout, json ? REPORT_JSON : REPORT_TABLE, RESULTS_NAMED);
+    watch.results = result_rows_open(stdout, json ? REPORT_JSON : REPORT_TABLE, RESULT_ROWS_NAMED);
     watch.channels = log_channels(args.bus.prefix);
     const enum listen_end end =
         listen_until(&args.bus, NULL, on_message, &watch, &watch.enough, -1);
-    results_close(watch.results);
+    result_rows_close(watch.results);
     if (watch.malformed > 0)
         complain("%" PRIu64 " messages could not be read", watch.malformed);
     if (ferror(stdout))

@@ -181,3 +181,18 @@ rows() {
         "$FMB" log results --csv "$log" > /dev/null
     )
 }
+
+@test "a result whose query came too long before it is counted" {
+    "$build/logs/generate" --blast scenes 300 "$T/whole.log"
+    "$build/edit-log" --last "$T/whole.log" "$log"
+    "$FMB" log results --json "$T/whole.log" > "$T/expected"
+    results --json "$log"
+    ended 2
+    [[ $stderr =~ 'the first of '([0-9]+)': give the log before it, too' ]]
+    lost=${BASH_REMATCH[1]}
+    [ "$lost" -gt 10 ] && [ "$lost" -lt 100 ]
+    # The first ones; the others are whole.
+    jq -c 'del(.scene)' <<< "$output" | tail -n +$((lost + 1)) |
+        cmp - <(jq -c 'del(.scene)' "$T/expected" | tail -n +$((lost + 1)))
+    [ "$(jq -c 'select(has("pairs") | not)' <<< "$output" | wc -l)" = "$lost" ]
+}

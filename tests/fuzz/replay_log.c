@@ -6,7 +6,7 @@
 #include "log_draft.h"
 #include "replay_output.h"
 #include "replay_report.h"
-#include "results.h"
+#include "result_rows.h"
 #include "wire.h"
 
 #include <cjson/cJSON.h>
@@ -325,7 +325,7 @@ static void check_replays(const struct replay_options *options, int64_t size, ui
 /* ---- Rows ---- */
 
 /* Prints the results of a log. Returns the text, to be freed; *count: of the results. */
-static char *rows_of(const char *path, enum report_form form, enum results_pairs pairs,
+static char *rows_of(const char *path, enum report_form form, enum result_rows_pairs pairs,
                      int64_t *count)
 {
     const struct log_channels channels = log_channels("");
@@ -336,15 +336,15 @@ static char *rows_of(const char *path, enum report_form form, enum results_pairs
     enum log_outcome outcome;
     FILE *out = open_memstream(&text, &size);
     FUZZ_CHECK(out);
-    struct results *results = results_open(out, form, pairs);
+    struct result_rows *results = result_rows_open(out, form, pairs);
     struct log_reader *reader = log_open(path, why);
     while ((outcome = log_next(reader, &event, &damage)) != LOG_END)
         if (outcome == LOG_EVENT)
-            results_take(results, log_kind_of(&channels, &event), event.number, event.data,
-                         (uint32_t) event.kept);
-    *count = results_count(results);
+            result_rows_take(results, log_kind_of(&channels, &event), event.number, event.data,
+                             (uint32_t) event.kept);
+    *count = result_rows_count(results);
     log_close(reader);
-    results_close(results);
+    result_rows_close(results);
     FUZZ_CHECK(fclose(out) == 0 && strlen(text) == size);
     return text;
 }
@@ -369,7 +369,7 @@ static void check_csv(const char *text)
 static void check_rows(const char *path)
 {
     int64_t count;
-    char *json = rows_of(path, REPORT_JSON, RESULTS_ALL, &count);
+    char *json = rows_of(path, REPORT_JSON, RESULT_ROWS_ALL, &count);
     int64_t lines = 0;
     for (const char *at = json; *at; lines++) {
         cJSON *line = cJSON_ParseWithOpts(at, &at, false);
@@ -377,9 +377,9 @@ static void check_rows(const char *path)
         cJSON_Delete(line);
     }
     FUZZ_CHECK(lines <= count);
-    char *csv = rows_of(path, REPORT_CSV, RESULTS_CONTACTS, &count);
+    char *csv = rows_of(path, REPORT_CSV, RESULT_ROWS_CONTACTS, &count);
     check_csv(csv);
-    free(rows_of(path, REPORT_TABLE, RESULTS_NAMED, &count));
+    free(rows_of(path, REPORT_TABLE, RESULT_ROWS_NAMED, &count));
     free(json);
     free(csv);
 }

@@ -1,4 +1,4 @@
-#include "results.h"
+#include "result_rows.h"
 
 #include "body_names.h"
 #include "escape.h"
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char results_no_query[] = "its query did not come before it";
+const char result_rows_no_query[] = "its query did not come before it";
 
 /* Columns of a line before the bodies of a pair. */
 enum { INDENT = 35 };
@@ -26,9 +26,9 @@ struct kept_query {
     unsigned char bytes[];
 };
 
-struct results {
+struct result_rows {
     struct report_printer printer;
-    enum results_pairs pairs;
+    enum result_rows_pairs pairs;
     int64_t count;
     struct body_names *names;
     struct kept_query *kept; /* table */
@@ -45,9 +45,9 @@ struct results {
     unsigned ignored[2 * QUERY_PLACEMENTS_MAX + QUERY_PAIRS_MAX];
 };
 
-struct results *results_open(FILE *out, enum report_form form, enum results_pairs pairs)
+struct result_rows *result_rows_open(FILE *out, enum report_form form, enum result_rows_pairs pairs)
 {
-    struct results *results = allocate(1, sizeof *results);
+    struct result_rows *results = allocate(1, sizeof *results);
     results->printer = (struct report_printer){out, form, {.out = out}, report_columns()};
     results->pairs = pairs;
     results->names = body_names_open();
@@ -58,7 +58,7 @@ struct results *results_open(FILE *out, enum report_form form, enum results_pair
 
 /* ---- Queries ---- */
 
-static void drop(struct results *results, struct kept_query *query)
+static void drop(struct result_rows *results, struct kept_query *query)
 {
     if (results->decoded == query)
         results->decoded = NULL;
@@ -67,7 +67,7 @@ static void drop(struct results *results, struct kept_query *query)
     free(query);
 }
 
-void results_close(struct results *results)
+void result_rows_close(struct result_rows *results)
 {
     while (results->kept)
         drop(results, results->kept);
@@ -75,12 +75,12 @@ void results_close(struct results *results)
     free(results);
 }
 
-int64_t results_count(const struct results *results)
+int64_t result_rows_count(const struct result_rows *results)
 {
     return results->count;
 }
 
-static struct kept_query *find(const struct results *results, const struct match_key *key)
+static struct kept_query *find(const struct result_rows *results, const struct match_key *key)
 {
     struct kept_query *query = NULL;
     if (results->kept)
@@ -89,7 +89,7 @@ static struct kept_query *find(const struct results *results, const struct match
 }
 
 /* Decodes a kept query into results->query. */
-static const char *decode(struct results *results, struct kept_query *kept)
+static const char *decode(struct result_rows *results, struct kept_query *kept)
 {
     const char *error = NULL;
     if (results->decoded != kept)
@@ -100,7 +100,7 @@ static const char *decode(struct results *results, struct kept_query *kept)
 }
 
 /* A query that is sent again replaces the earlier one. */
-static const char *take_query(struct results *results, enum log_kind kind, int64_t number,
+static const char *take_query(struct result_rows *results, enum log_kind kind, int64_t number,
                               const void *bytes, uint32_t size)
 {
     const struct log_event event = {.data = bytes, .size = size, .kept = size};
@@ -124,7 +124,7 @@ static const char *take_query(struct results *results, enum log_kind kind, int64
     }
     results->kept_bytes += sizeof *query + size;
     HASH_ADD(hh, results->kept, key, sizeof query->key, query);
-    while (results->kept_bytes > RESULTS_BYTES_MAX)
+    while (results->kept_bytes > RESULT_ROWS_BYTES_MAX)
         drop(results, results->kept);
     int32_t count;
     const struct query_placement *placement = logged_query_placements(&results->query, &count);
@@ -135,21 +135,21 @@ static const char *take_query(struct results *results, enum log_kind kind, int64
 /* ---- Rows ---- */
 
 /* The columns of a line of a table before the bodies of a pair. */
-static void print_start(const struct results *results, const struct fmb_client_result *of)
+static void print_start(const struct result_rows *results, const struct fmb_client_result *of)
 {
     fprintf(results->printer.out, "%16" PRId64 " #%-6" PRId64 " %6.1f us", of->client_id,
             of->sequence_number, 1e-3 * (double) of->compute_ns);
 }
 
 /* Prints a row if it is wanted. placements: indices, if the query is known. */
-static void print_row(struct results *results, const struct fmb_client_result *of,
+static void print_row(struct result_rows *results, const struct fmb_client_result *of,
                       struct report_row *row, const unsigned placements[2])
 {
     const bool table = results->printer.form == REPORT_TABLE;
     const double margin = of->is_pair ? 0 : results->query.scene.margin;
     int32_t count;
     const struct query_placement *placement = logged_query_placements(&results->query, &count);
-    if (results->pairs == RESULTS_CONTACTS && row->of->answer.verdict == FMB_SEPARATED &&
+    if (results->pairs == RESULT_ROWS_CONTACTS && row->of->answer.verdict == FMB_SEPARATED &&
         !report_is_near(margin, &row->of->answer))
         return;
     for (int i = 0; i < 2; i++) {
@@ -196,7 +196,7 @@ static bool result_matches(const struct scene_query *query, const struct scene_r
     return true;
 }
 
-static void begin_all(struct results *results)
+static void begin_all(struct result_rows *results)
 {
     const struct scene_query *query = &results->query.scene;
     for (int32_t i = 0; i < query->placement_count; i++)
@@ -212,7 +212,7 @@ static void begin_all(struct results *results)
 
 /* Prints the pairs that the result does not name and that come before one that it names; NULL: all
  * that are left. */
-static void print_separated(struct results *results, const struct fmb_client_result *of,
+static void print_separated(struct result_rows *results, const struct fmb_client_result *of,
                             struct report_row *row, struct scene_cursor *at,
                             const struct fmb_client_answer *until)
 {
@@ -228,11 +228,11 @@ static void print_separated(struct results *results, const struct fmb_client_res
     }
 }
 
-static void print_rows(struct results *results, const struct fmb_client_result *of,
+static void print_rows(struct result_rows *results, const struct fmb_client_result *of,
                        struct report_row *row)
 {
     const bool listed = !of->is_pair && results->query.scene.which == FMB_PAIRS_LISTED;
-    const bool all = !of->is_pair && !listed && results->pairs == RESULTS_ALL;
+    const bool all = !of->is_pair && !listed && results->pairs == RESULT_ROWS_ALL;
     struct fmb_client_cursor cursor = {0};
     struct scene_cursor at = {0};
     struct fmb_client_answer answer;
@@ -272,7 +272,7 @@ static void begin_json(struct json_writer *json, const struct fmb_client_result 
 }
 
 /* What a result names and is separated is near, unless the query lists its pairs. */
-static void print_counts(const struct results *results, const struct fmb_client_result *of,
+static void print_counts(const struct result_rows *results, const struct fmb_client_result *of,
                          const char *label)
 {
     int64_t count[FMB_OVERLAPPING + 1] = {0};
@@ -292,7 +292,7 @@ static void print_counts(const struct results *results, const struct fmb_client_
     putc('\n', out);
 }
 
-static void print_refused(struct results *results, const struct fmb_client_result *of,
+static void print_refused(struct result_rows *results, const struct fmb_client_result *of,
                           struct report_row *row)
 {
     const struct fmb_client_answer refused = {.status = of->status, .text = of->text};
@@ -305,7 +305,7 @@ static void print_refused(struct results *results, const struct fmb_client_resul
         fprintf(results->printer.out, "  not decided: %s\n", of->text);
 }
 
-static void print(struct results *results, const struct fmb_client_result *of,
+static void print(struct result_rows *results, const struct fmb_client_result *of,
                   struct report_row *row)
 {
     struct json_writer *json = results->printer.form == REPORT_JSON ? &results->printer.json : NULL;
@@ -330,7 +330,7 @@ static void print(struct results *results, const struct fmb_client_result *of,
 }
 
 /* Of several results of a query the first is printed, and those that depend on the moment. */
-static const char *print_result(struct results *results, bool is_pair)
+static const char *print_result(struct result_rows *results, bool is_pair)
 {
     const struct fmb_client_result of = fmb_client_raw_result_of(is_pair, &results->pair);
     const struct match_key key = {is_pair ? LOG_PAIR_QUERY : LOG_SCENE_QUERY, of.client_id,
@@ -353,13 +353,13 @@ static const char *print_result(struct results *results, bool is_pair)
                              .dim = of.dim,
                              .names_frames = of.names_frames};
     print(results, &of, &row);
-    return is_pair || scene || of.status != FMB_OK ? NULL : results_no_query;
+    return is_pair || scene || of.status != FMB_OK ? NULL : result_rows_no_query;
 }
 
 /* ---- Messages ---- */
 
-const char *results_take(struct results *results, enum log_kind kind, int64_t number,
-                         const void *bytes, uint32_t size)
+const char *result_rows_take(struct result_rows *results, enum log_kind kind, int64_t number,
+                             const void *bytes, uint32_t size)
 {
     const char *error;
     switch (kind) {
