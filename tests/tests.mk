@@ -5,7 +5,7 @@
 
 # The oracle shares no code with the engine, but the pair of frames that both are given.
 see_tests/oracle := service/fmb service/fmb/frame
-see_tests/campaign := tests/oracle $(call fmb,number frame filter exact decide)
+see_tests/campaign := tests/oracle $(call fmb,number frame filter exact gap hull decide)
 see_tests/bench := tests/campaign tests/oracle $(call fmb,number frame filter article tree exact decide) \
 	clients/common
 see_tests/bench/peers := tests/bench

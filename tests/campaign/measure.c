@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "gap_check.h"
+#include "hull.h"
 #include "memory.h"
 
 /* Pairs of a batch: the methods are timed over all of them, one after the other, each decided once,
@@ -99,7 +100,12 @@ static enum certified_path path_of(const struct pair *pair)
                                               {fmb_body_frame(pair->b.body, j), &pair->b},
                                               pair->duration};
             enum certified_path path;
-            certified_verdict(&frames, &path);
+            struct fmb_answer answer;
+            if (!hull_takes(frames.a.frame, frames.b.frame))
+                certified_verdict(&frames, &path);
+            else
+                path = hull_decide(&frames, 0, HULL_QUICK, &answer) == FMB_OK ? CERTIFIED_FILTER
+                                                                              : CERTIFIED_EXACT;
             most = path > most ? path : most;
         }
     return most;
