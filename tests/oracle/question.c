@@ -168,17 +168,26 @@ static bool same_numbers(const double *x, const double *y, int count)
     return true;
 }
 
+/* As they are rounded. */
+static bool same_vertices(const struct solid *a, const struct solid *b)
+{
+    double vertex[2][SOLID_VERTICES_MAX][FMB_DIM_MAX] = {{{0}}};
+    const int count = solid_is_hull(a) ? solid_vertices(a, vertex[0]) : 0;
+    return !solid_is_hull(a) || (solid_vertices(b, vertex[1]) == count &&
+                                 same_numbers(vertex[0][0], vertex[1][0], FMB_DIM_MAX * count));
+}
+
 bool question_is_symmetric(const struct question *question)
 {
     static const double rest[FMB_DIM_MAX];
     const struct solid *a = &question->a, *b = &question->b;
     return a->shape == b->shape && solid_frames(a) == solid_frames(b) &&
            a->by_vertices == b->by_vertices && a->orientation_count == b->orientation_count &&
-           a->as_hull == b->as_hull && a->vertex_count == b->vertex_count && a->cloud == b->cloud &&
-           a->cloud_seed == b->cloud_seed &&
-           same_numbers(a->vertex[0], b->vertex[0], FMB_DIM_MAX * a->vertex_count) &&
-           same_numbers(a->component[0], b->component[0], FMB_COMPONENTS_MAX) &&
-           same_numbers(a->origin, b->origin, a->dim) && same_numbers(a->local, b->local, a->dim) &&
+           a->as_hull == b->as_hull && same_vertices(a, b) &&
+           ((solid_is_hull(a) && solid_frames(a) == 1) ||
+            (same_numbers(a->component[0], b->component[0], FMB_COMPONENTS_MAX) &&
+             same_numbers(a->local, b->local, a->dim))) &&
+           same_numbers(a->origin, b->origin, a->dim) &&
            same_numbers(a->moving ? a->velocity : rest, b->moving ? b->velocity : rest, a->dim) &&
            same_numbers(a->orientation, b->orientation, a->orientation_count);
 }
