@@ -7,9 +7,10 @@
  * product with a vector of the difference, whose coordinates are at most 10, by less than 2^-42,
  * and d by less than QUICK_ERROR.
  *
- * Large hulls have too many pairs of edges. Of these, facets are sampled: the planes through the
- * farthest points along three directions close to each other, of any directions and of those about
- * the one that has come nearest to the limit. This may miss a facet that is above it. */
+ * Large hulls have too many pairs of edges, and thin ones of many vertices too many that are not
+ * far. Of these, facets are sampled: the planes through the farthest points along three directions
+ * close to each other, of any directions and of those about the one that has come nearest to the
+ * limit. This may miss a facet that is above it. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -20,7 +21,9 @@
 
 static const double QUICK_ERROR = 0x1p-40;
 
-enum { ALL_EDGES_MAX = 1700, SAMPLES = 600 }; /* all pairs of two hulls of 41 vertices */
+/* All pairs of edges of two hulls of 41 vertices; so many products of a normal and a column, twice
+ * those of all pairs of edges of two hulls of 12 vertices; planes. */
+enum { ALL_EDGES_MAX = 1700, WORK_MAX = 1000000, SAMPLES = 600 };
 
 typedef double vector[FMB_DIM_MAX];
 
@@ -381,11 +384,11 @@ int difference_compare_facets(const struct difference *difference, const mpq_t l
     rational_vector_init(up);
     mpq_set_ui(up[2], 1, 1);
     facets_init(&facets, difference, limit);
-    const bool large = facets.edges > ALL_EDGES_MAX;
-    if (large)
-        order = compare_samples(&facets, limit);
+    const long columns = facets.solid[0].count + facets.solid[1].count;
+    long work = 0;
+    bool large = facets.edges > ALL_EDGES_MAX;
     for (int i = 0; !large && i < facets.edges; i++)
-        for (int j = space ? 0 : i; j <= i; j++)
+        for (int j = space ? 0 : i; !large && j <= i; j++)
             for (int sign = -1; sign <= 1 && order < 1; sign += 2) {
                 if (is_far(&facets, facets.quick_edge[i], space ? facets.quick_edge[j] : quick_up,
                            sign)) {
@@ -398,7 +401,11 @@ int difference_compare_facets(const struct difference *difference, const mpq_t l
                 const int one = compare_facet(difference, n, sign, limit);
                 order = one > order ? one : order;
                 any = true;
+                work += columns;
+                large = work > WORK_MAX;
             }
+    if (large && order < 1)
+        order = compare_samples(&facets, limit);
     facets_clear(&facets);
     rational_vector_clear(n);
     rational_vector_clear(up);
