@@ -1,16 +1,8 @@
 /* The gap of a separated pair, in doubles.
  *
- * Method. Wolfe's algorithm for the point of a polytope next to the origin. It holds a simplex of
- * vertices of P and the weights of its point next to the origin. The direction of that point comes
- * from the simplex: the vertex, what is left of it across an edge, or the normal of a triangle; not
- * from the point itself, which is a small difference of large numbers where frames are close. The
- * vertex of P with the least n . p gives f(n), a lower bound; it is added to the simplex until that
- * bound and the distance agree. Where the new simplex has its point next to the origin outside, the
- * old point moves toward it as far as the weights stay positive, and vertices that are left without
- * weight are dropped.
- *
- * Nothing is believed of this but the direction and the weights. Both bounds are derived from them:
- * the lower one is f(n) less its error, the upper one the distance of the witness points.
+ * Method. The point of P next to the origin (gap_simplex.h). Both bounds are derived from its
+ * direction and weights: the lower one is f(n) less its error, the upper one the distance of the
+ * witness points.
  *
  * Accuracy, with u = 2^-53. The direction n has any length. f(n) is n . p for a vertex p: a sum of
  * products of a coordinate of n with one of the offset, rounded once, of the drift, rounded twice,
@@ -24,34 +16,12 @@
  * cuboid are cut off at 1, those of a simplex may be 4 u too large in all. So the point is within
  * 7.01 u |..|_1 + 4 u sum |c_i|, which is below 16 u far, from a point of the rounded frame at this
  * time, and that within the error of the frame from the true one. */
-#include "gap.h"
+#include "gap_simplex.h"
 
 #include "interval.h"
 
 #include <math.h>
 #include <string.h>
-
-enum { CORNERS = 4, STEPS_MAX = 32 };
-
-/* A vertex of P. */
-struct corner {
-    double at[3];
-    unsigned bits; /* bit k: vector k is added to the offset */
-};
-
-struct simplex {
-    int count;
-    struct corner corner[CORNERS];
-    double weight[CORNERS];
-    double edge[CORNERS - 1][3], normal[3]; /* from the first corner; of a triangle */
-    double inverse;                         /* of two corners: 1 / the square of the edge */
-};
-
-static void subtract(const double x[3], const double y[3], double out[3])
-{
-    for (int axis = 0; axis < 3; axis++)
-        out[axis] = x[axis] - y[axis];
-}
 
 /* ---- Vertices ---- */
 
@@ -83,8 +53,9 @@ INLINE unsigned least_of(int first, const lanes at[GAP_LANES])
 }
 
 /* The vertex with the least n . p. */
-INLINE void support(const struct gap_pair *pair, const double n[3], struct corner *out)
+INLINE void support(const void *context, const double n[3], struct gap_corner *out)
 {
+    const struct gap_pair *pair = context;
     const unsigned of_a = 7, of_b = 7 << GAP_OF_B;
     lanes at[GAP_LANES], part[GAP_LANES];
     unsigned bits = 0;
@@ -106,144 +77,9 @@ INLINE void support(const struct gap_pair *pair, const double n[3], struct corne
     }
 }
 
-static bool has_corner(const struct simplex *simplex, unsigned bits)
-{
-    for (int i = 0; i < simplex->count; i++)
-        if (simplex->corner[i].bits == bits)
-            return true;
-    return false;
-}
-
-/* The vertex in the direction of the origin from the middle of the vectors. */
-static void set_first(const struct gap_pair *pair, struct simplex *out)
-{
-    double n[3];
-    for (int axis = 0; axis < 3; axis++)
-        n[axis] = pair->offset[axis] + 0.5 * sum_of(pair->vector[axis]);
-    support(pair, n, &out->corner[0]);
-    out->weight[0] = 1;
-    out->count = 1;
-}
-
-/* ---- The point of a simplex next to the origin ---- */
-
-/* x less its part along e: twice, the second time for what the first one rounds. */
-static void reject(const double x[3], const double e[3], double inverse, double out[3])
-{
-    memcpy(out, x, 3 * sizeof *out);
-    for (int step = 0; step < 2; step++) {
-        const double share = gap_dot(out, e) * inverse;
-        for (int axis = 0; axis < 3; axis++)
-            out[axis] -= share * e[axis];
-    }
-}
-
-/* The direction of the point, of any length; *square is that of its length. False if there is
- * none. */
-static bool direction_of(const struct simplex *simplex, bool plane, double n[3], double *square)
-{
-    const double *w = simplex->corner[0].at;
-    if (simplex->count == 1) {
-        memcpy(n, w, 3 * sizeof *n);
-    } else if (simplex->count == 3) {
-        if (plane) /* it holds the origin, but for rounding */
-            return false;
-        memcpy(n, simplex->normal, 3 * sizeof *n);
-    } else if (plane) {
-        n[0] = -simplex->edge[0][1];
-        n[1] = simplex->edge[0][0];
-        n[2] = 0;
-    } else {
-        reject(w, simplex->edge[0], simplex->inverse, n);
-    }
-    const double sign = copysign(1, gap_dot(n, w));
-    for (int axis = 0; axis < 3; axis++)
-        n[axis] *= sign;
-    *square = gap_dot(n, n);
-    return *square >= 0x1p-950; /* else it may have underflowed */
-}
-
-/* Weights of the point of the affine hull next to the origin; false if the corners are not affinely
- * independent. */
-static bool affine_weights(struct simplex *simplex, double out[CORNERS])
-{
-    const double *w = simplex->corner[0].at;
-    double(*e)[3] = simplex->edge, *n = simplex->normal, other[3], total;
-    for (int i = 1; i < simplex->count; i++)
-        subtract(simplex->corner[i].at, w, e[i - 1]);
-    if (simplex->count == 2) {
-        total = gap_dot(e[0], e[0]);
-        out[1] = -gap_dot(w, e[0]);
-    } else if (simplex->count == 3) {
-        gap_cross(e[0], e[1], n);
-        total = gap_dot(n, n);
-        gap_cross(e[1], w, other);
-        out[1] = gap_dot(other, n);
-        gap_cross(w, e[0], other);
-        out[2] = gap_dot(other, n);
-    } else {
-        for (int i = 0; i < 3; i++) {
-            gap_cross(e[(i + 1) % 3], e[(i + 2) % 3], other);
-            out[1 + i] = -gap_dot(other, w);
-            total = gap_dot(other, e[i]);
-        }
-    }
-    const double inverse = 1 / total;
-    simplex->inverse = inverse;
-    out[0] = 1;
-    for (int i = 1; i < simplex->count; i++) {
-        out[i] *= inverse;
-        out[0] -= out[i];
-    }
-    return fabs(inverse) <= 0x1p1000;
-}
-
-static void drop(struct simplex *simplex, int i)
-{
-    simplex->count--;
-    for (; i < simplex->count; i++) {
-        simplex->corner[i] = simplex->corner[i + 1];
-        simplex->weight[i] = simplex->weight[i + 1];
-    }
-}
-
-/* Moves the point to the one next to the origin, and drops corners without weight. False where
- * rounding keeps it from moving: the corners are dependent, or hold the origin. */
-static bool move(struct simplex *simplex)
-{
-    for (;;) {
-        double aim[CORNERS], step = 1;
-        int first = -1;
-        if (simplex->count == 1) {
-            simplex->weight[0] = 1;
-            return true;
-        }
-        if (!affine_weights(simplex, aim))
-            return false;
-        for (int i = 0; i < simplex->count; i++) {
-            if (aim[i] > 0)
-                continue;
-            const double part = simplex->weight[i] / (simplex->weight[i] - aim[i]);
-            if (first < 0 || part < step) {
-                step = part;
-                first = i;
-            }
-        }
-        if (first < 0) {
-            memcpy(simplex->weight, aim, sizeof aim);
-            return simplex->count < CORNERS;
-        }
-        if (!(step >= 0)) /* none of both is positive */
-            step = 0;
-        for (int i = 0; i < simplex->count; i++)
-            simplex->weight[i] += step * (aim[i] - simplex->weight[i]);
-        drop(simplex, first);
-    }
-}
-
 /* ---- Bounds ---- */
 
-static void set_witness(const struct gap_pair *pair, const struct simplex *simplex,
+static void set_witness(const struct gap_pair *pair, const struct gap_simplex *simplex,
                         struct fmb_gap *out)
 {
     lanes share[GAP_LANES] = {{0}}, part[GAP_LANES];
@@ -269,7 +105,7 @@ static void set_witness(const struct gap_pair *pair, const struct simplex *simpl
         out->witness[1][axis] = b[axis] + (out->time * of_b[axis] + at_b) + 0.0;
     }
     const double error = pair->error + 0x1p-49 * (pair->far[0] + pair->far[1]);
-    subtract(out->witness[1], out->witness[0], apart);
+    gap_subtract(out->witness[1], out->witness[0], apart);
     out->has_witness = true;
     out->bounds[1] = (sqrt(gap_dot(apart, apart)) + error) * (1 + 0x1p-49);
 }
@@ -278,32 +114,16 @@ enum gap_outcome gap_distance(const struct gap_pair *pair, double farthest, stru
 {
     const double error = gap_error(pair), close = 0x1p-47 * pair->reach;
     const double far = farthest + 0x1p-38 * (pair->far[0] + pair->far[1]) + error;
-    struct simplex simplex;
-    double n[3], square, of_direction = 1, f = -INFINITY;
-    set_first(pair, &simplex);
-    for (int step = 0; step < STEPS_MAX; step++) {
-        if (!direction_of(&simplex, pair->dim == 2, n, &square))
-            break;
-        struct corner *next = &simplex.corner[simplex.count];
-        support(pair, n, next);
-        f = gap_dot(n, next->at);
-        if (farthest < INFINITY && f > far * sqrt(square))
-            return GAP_FAR;
-        for (int axis = 0; axis < 3; axis++)
-            out->direction[axis] = n[axis];
-        of_direction = square;
-        const double above = gap_dot(n, simplex.corner[0].at) - f;
-        if (above <= 0 || above * above <= close * close * square ||
-            has_corner(&simplex, next->bits))
-            break;
-        simplex.weight[simplex.count++] = 0;
-        if (!move(&simplex))
-            return GAP_UNSURE;
-    }
-    const double inverse = 1 / sqrt(of_direction);
+    struct gap_simplex simplex;
+    double toward[3], f;
+    /* The origin from the middle of the vectors. */
     for (int axis = 0; axis < 3; axis++)
-        out->direction[axis] *= inverse;
-    out->bounds[0] = f * inverse - error;
+        toward[axis] = pair->offset[axis] + 0.5 * sum_of(pair->vector[axis]);
+    const enum gap_outcome outcome =
+        gap_nearest(pair, support, pair->dim, toward, close, far, &simplex, out->direction, &f);
+    if (outcome != GAP_KNOWN)
+        return outcome;
+    out->bounds[0] = f - error;
     set_witness(pair, &simplex, out);
     return gap_is_tight(pair, out->bounds) ? GAP_KNOWN : GAP_UNSURE;
 }

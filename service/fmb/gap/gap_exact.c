@@ -6,13 +6,7 @@
  * within UNITS_ERROR of the true one: so the numbers stay short whatever the exponents of the pair
  * are.
  *
- * Separated: the algorithm of Gilbert, Johnson and Keerthi, on the vertices of P. It holds a
- * simplex of at most 4 of them, the point of P next to the origin being that of the simplex so far,
- * and adds the vertex that lies farthest in the direction of the origin. The distance decreases
- * strictly with each, so that it ends. The next simplex is found by Johnson's conditions: of all
- * subsets of the vertices at hand the one, affinely independent, whose affine hull has its point
- * next to the origin strictly inside of the subset, with no other vertex nearer along that
- * direction.
+ * Separated: the point of P next to the origin (gap_exact_simplex.h).
  *
  * In contact: the slabs of all pairs of edges, the drift being one. Each facet of P, where P has a
  * volume, is spanned by two of its edges; where P is flat, its plane is, and f is 0 there. Where
@@ -32,6 +26,7 @@
 #include "gap.h"
 
 #include "exact.h"
+#include "gap_exact_simplex.h"
 #include "integer.h"
 
 #include <assert.h>
@@ -40,25 +35,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { LENGTH_BITS = 100, DIRECTION_BITS = 160, UNITS_ERROR = 20, CORNERS = 4, SCRATCH = 4 };
-
-/* A vertex of P. */
-struct exact_corner {
-    unsigned bits[2]; /* of each frame: its components that are added to its origin */
-    bool late;        /* at the end of the window */
-    mpz_t at[3];
-};
+enum { LENGTH_BITS = 100, DIRECTION_BITS = 160, UNITS_ERROR = 20, SCRATCH = 4 };
 
 struct solver {
     struct exact_pair pair; /* rounded */
     int dim;
-    int count;
-    struct exact_corner pool[CORNERS + 1],
-        *corner[CORNERS + 1];     /* the first are those of the simplex */
-    mpz_t weight[CORNERS], total; /* of the point next to the origin, over total */
-    mpz_t normal[3];              /* a multiple of that point */
-    bool zero;                    /* the point is the origin */
-    mpz_t edge[3][3], other[3];
+    struct exact_simplex simplex;
+    mpz_t normal[3];
     mpz_t best[3];                    /* the normal with the greatest f */
     mpz_t value[EXACT_VECTORS];       /* a normal . each vector of the pair */
     struct exact_range range[2], all; /* of it over the frames, and over P */
@@ -67,14 +50,8 @@ struct solver {
 
 static void solver_each(struct solver *solver, void (*call)(mpz_ptr))
 {
-    for (int i = 0; i < CORNERS; i++)
-        call(solver->weight[i]);
+    exact_simplex_each(&solver->simplex, call);
     for (int axis = 0; axis < 3; axis++) {
-        for (int i = 0; i <= CORNERS; i++)
-            call(solver->pool[i].at[axis]);
-        for (int i = 0; i < 3; i++)
-            call(solver->edge[i][axis]);
-        call(solver->other[axis]);
         call(solver->normal[axis]);
         call(solver->best[axis]);
     }
@@ -85,7 +62,6 @@ static void solver_each(struct solver *solver, void (*call)(mpz_ptr))
     for (int f = 0; f < 2; f++)
         exact_range_each(&solver->range[f], call);
     exact_range_each(&solver->all, call);
-    call(solver->total);
 }
 
 /* ---- Rounding ---- */
@@ -141,8 +117,9 @@ static void round_pair(struct exact_pair *pair, mpz_t largest)
 /* ---- P along a direction ---- */
 
 /* Sets the corner of P where n . p is least. */
-static void set_support(struct solver *solver, mpz_t n[3], struct exact_corner *out)
+static void set_support(void *context, mpz_t n[3], struct exact_corner *out)
 {
+    struct solver *solver = context;
     struct exact_pair *pair = &solver->pair;
     mpz_t *at = &solver->t[0], *most = &solver->t[1], *scratch = &solver->t[2];
     for (int f = 0; f < 2; f++) {
@@ -181,153 +158,6 @@ static void set_extent(struct solver *solver, mpz_t n[3])
     struct exact_pair *pair = &solver->pair;
     exact_set_values(pair, n, solver->value);
     exact_ranges(pair, solver->value, solver->range, &solver->all);
-}
-
-/* ---- The point of a simplex next to the origin ---- */
-
-static void subtract(mpz_t out[3], mpz_t x[3], mpz_t y[3])
-{
-    for (int axis = 0; axis < 3; axis++)
-        mpz_sub(out[axis], x[axis], y[axis]);
-}
-
-/* weight[0] := total - all others. False if one of them is not positive. */
-static bool complete_weights(struct solver *solver, int count)
-{
-    mpz_set(solver->weight[0], solver->total);
-    for (int i = 1; i < count; i++)
-        mpz_sub(solver->weight[0], solver->weight[0], solver->weight[i]);
-    for (int i = 0; i < count; i++)
-        if (mpz_sgn(solver->weight[i]) <= 0)
-            return false;
-    return true;
-}
-
-/* w - (w . e / e . e) e, times e . e; the weight of w + e is -w . e. */
-static bool set_of_two(struct solver *solver, mpz_t w[3])
-{
-    mpz_t *e = solver->edge[0];
-    integer_dot(solver->total, e, e, solver->t[0]);
-    integer_dot(solver->weight[1], w, e, solver->t[0]);
-    mpz_neg(solver->weight[1], solver->weight[1]);
-    if (!complete_weights(solver, 2))
-        return false;
-    for (int axis = 0; axis < 3; axis++) {
-        mpz_mul(solver->normal[axis], w[axis], solver->total);
-        mpz_addmul(solver->normal[axis], solver->weight[1], e[axis]);
-    }
-    return true;
-}
-
-/* With n = d x e: the weights of w + d and w + e are (-w x e) . n and (d x -w) . n over n . n. */
-static bool set_of_three(struct solver *solver, mpz_t w[3])
-{
-    mpz_t *d = solver->edge[0], *e = solver->edge[1], *n = solver->normal;
-    integer_cross(n, d, e, solver->t[0]);
-    integer_dot(solver->total, n, n, solver->t[0]);
-    integer_cross(solver->other, e, w, solver->t[0]);
-    integer_dot(solver->weight[1], solver->other, n, solver->t[0]);
-    integer_cross(solver->other, w, d, solver->t[0]);
-    integer_dot(solver->weight[2], solver->other, n, solver->t[0]);
-    if (mpz_sgn(solver->total) == 0 || !complete_weights(solver, 3))
-        return false;
-    integer_dot(solver->t[1], n, w, solver->t[0]);
-    for (int axis = 0; axis < 3 && mpz_sgn(solver->t[1]) <= 0; axis++)
-        if (mpz_sgn(solver->t[1]) == 0)
-            mpz_set_ui(n[axis], 0);
-        else
-            mpz_neg(n[axis], n[axis]);
-    return true;
-}
-
-/* The origin in a tetrahedron: Cramer's rule. */
-static bool set_of_four(struct solver *solver, mpz_t w[3])
-{
-    for (int i = 0; i < 3; i++) {
-        mpz_t *e = solver->edge[(i + 1) % 3], *f = solver->edge[(i + 2) % 3];
-        integer_cross(solver->other, e, f, solver->t[0]);
-        integer_dot(solver->weight[1 + i], solver->other, w, solver->t[0]);
-        integer_dot(solver->total, solver->other, solver->edge[i], solver->t[0]);
-    }
-    for (int i = 1; i < 4; i++)
-        if (mpz_sgn(solver->total) >= 0)
-            mpz_neg(solver->weight[i], solver->weight[i]);
-    mpz_abs(solver->total, solver->total);
-    for (int axis = 0; axis < 3; axis++)
-        mpz_set_ui(solver->normal[axis], 0);
-    return mpz_sgn(solver->total) != 0 && complete_weights(solver, 4);
-}
-
-/* Whether the point next to the origin is that of the corners [member[0], ...]. */
-static bool try_subset(struct solver *solver, const int member[], int count)
-{
-    mpz_t *w = solver->corner[member[0]]->at;
-    for (int i = 1; i < count; i++)
-        subtract(solver->edge[i - 1], solver->corner[member[i]]->at, w);
-    if (count == 1) {
-        mpz_set_ui(solver->total, 1);
-        mpz_set_ui(solver->weight[0], 1);
-        for (int axis = 0; axis < 3; axis++)
-            mpz_set(solver->normal[axis], w[axis]);
-    } else if (!(count == 2   ? set_of_two(solver, w)
-                 : count == 3 ? set_of_three(solver, w)
-                              : set_of_four(solver, w))) {
-        return false;
-    }
-    for (int i = 0; i < solver->count; i++) {
-        subtract(solver->other, solver->corner[i]->at, w);
-        integer_dot(solver->t[1], solver->normal, solver->other, solver->t[0]);
-        if (mpz_sgn(solver->t[1]) < 0)
-            return false;
-    }
-    return true;
-}
-
-/* Reduces the simplex to the corners that the point next to the origin needs; the last one is
- * always among them. */
-static void reduce(struct solver *solver)
-{
-    const int last = solver->count - 1;
-    for (unsigned mask = 0; mask < 1U << last; mask++) {
-        struct exact_corner *corner[CORNERS + 1];
-        int member[CORNERS] = {last}, count = 1;
-        for (int i = 0; i < last; i++)
-            if (mask >> i & 1)
-                member[count++] = i;
-        if (!try_subset(solver, member, count))
-            continue;
-        memcpy(corner, solver->corner, sizeof corner);
-        solver->count = count;
-        for (int i = 0; i < count; i++)
-            solver->corner[i] = corner[member[i]];
-        for (int i = 0; i <= CORNERS; i++)
-            if (i != last && !(i < last && mask >> i & 1))
-                solver->corner[count++] = corner[i];
-        return;
-    }
-    assert(!"one subset holds the point");
-}
-
-/* Finds the point of P next to the origin. */
-static void solve(struct solver *solver)
-{
-    for (int axis = 0; axis < 3; axis++)
-        mpz_set(solver->normal[axis], solver->pair.offset[axis]);
-    for (int i = 0; i <= CORNERS; i++)
-        solver->corner[i] = &solver->pool[i];
-    set_support(solver, solver->normal, solver->corner[0]);
-    for (solver->count = 1;; solver->count++) {
-        reduce(solver);
-        solver->zero = integer_is_zero(solver->normal);
-        if (solver->zero)
-            return;
-        struct exact_corner *next = solver->corner[solver->count];
-        set_support(solver, solver->normal, next);
-        subtract(solver->other, next->at, solver->corner[0]->at);
-        integer_dot(solver->t[1], solver->normal, solver->other, solver->t[0]);
-        if (mpz_sgn(solver->t[1]) >= 0)
-            return;
-    }
 }
 
 /* ---- Slabs ---- */
@@ -457,19 +287,19 @@ static double set_witness(struct solver *solver, int f, double out[FMB_DIM_MAX])
     mpz_t *at = &solver->t[0], *weight = &solver->t[1];
     double error = 0;
     for (int axis = 0; axis < solver->dim; axis++) {
-        mpz_mul(*at, solver->total, frame->origin[axis]);
-        for (int c = 0; c < solver->count; c++) {
-            const struct exact_corner *corner = solver->corner[c];
+        mpz_mul(*at, solver->simplex.total, frame->origin[axis]);
+        for (int c = 0; c < solver->simplex.count; c++) {
+            const struct exact_corner *corner = solver->simplex.corner[c];
             mpz_set_ui(*weight, 0);
             if (corner->late)
                 mpz_set(*weight, frame->displacement[axis]);
             for (int i = 0; i < frame->count; i++)
                 if (corner->bits[f] >> i & 1)
                     mpz_add(*weight, *weight, frame->component[i][axis]);
-            mpz_addmul(*at, solver->weight[c], *weight);
+            mpz_addmul(*at, solver->simplex.weight[c], *weight);
         }
-        out[axis] =
-            integer_ratio_round(*at, solver->total, solver->pair.unit, ROUND_DOWN, solver->t + 2);
+        out[axis] = integer_ratio_round(*at, solver->simplex.total, solver->pair.unit, ROUND_DOWN,
+                                        solver->t + 2);
         error += fmin(fabs(out[axis]), DBL_MAX) * 0x1p-51 + 0x1p-1073;
     }
     return error;
@@ -481,15 +311,15 @@ static double set_time(struct solver *solver, double duration, struct fmb_gap *o
     const struct dyadic window = dyadic_of(duration);
     double way = 0;
     mpz_set_ui(solver->t[0], 0);
-    for (int c = 0; c < solver->count; c++)
-        if (solver->corner[c]->late)
-            mpz_add(solver->t[0], solver->t[0], solver->weight[c]);
+    for (int c = 0; c < solver->simplex.count; c++)
+        if (solver->simplex.corner[c]->late)
+            mpz_add(solver->t[0], solver->t[0], solver->simplex.weight[c]);
     out->time = 0;
     if (mpz_sgn(solver->t[0]) == 0)
         return 0;
     mpz_mul_si(solver->t[0], solver->t[0], window.mantissa);
-    out->time = integer_ratio_round(solver->t[0], solver->total, window.exponent, ROUND_DOWN,
-                                    solver->t + 1);
+    out->time = integer_ratio_round(solver->t[0], solver->simplex.total, window.exponent,
+                                    ROUND_DOWN, solver->t + 1);
     for (int f = 0; f < 2; f++)
         for (int axis = 0; axis < 3; axis++)
             way += fabs(mpz_get_d(solver->pair.frame[f].displacement[axis]));
@@ -513,14 +343,15 @@ static void answer(struct solver *solver, enum fmb_verdict verdict, double durat
 {
     double greatest = 0;
     if (verdict == FMB_SEPARATED) {
-        solve(solver);
-        integer_dot(solver->all.low, solver->normal, solver->corner[0]->at, solver->t[0]);
-        set_upper(solver, solver->zero ? 0 : over_length(solver, solver->all.low, solver->normal),
+        struct exact_simplex *simplex = &solver->simplex;
+        exact_simplex_solve(simplex, solver->pair.offset, set_support, solver);
+        integer_dot(solver->all.low, simplex->normal, simplex->corner[0]->at, solver->t[0]);
+        set_upper(solver, simplex->zero ? 0 : over_length(solver, solver->all.low, simplex->normal),
                   duration, out);
         for (int axis = 0; axis < 3; axis++)
-            mpz_set(solver->best[axis], solver->normal[axis]);
+            mpz_set(solver->best[axis], simplex->normal[axis]);
     }
-    if (verdict != FMB_SEPARATED || solver->zero)
+    if (verdict != FMB_SEPARATED || solver->simplex.zero)
         greatest = best_slab(solver);
     set_direction(solver->best, out->direction);
     if (verdict == FMB_TOUCHING)
