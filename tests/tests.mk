@@ -62,7 +62,8 @@ unit_names := $(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c))
 unit_tests := $(unit_names:%=$(B)/tests/%)
 internal_tests := $(addprefix $(B)/tests/,test_bounds test_box_bounds test_engine_batch \
 	test_engine_pose test_engine_tree test_engine_triangle test_limbs test_outward test_kernels \
-	test_placing test_engine_work test_hull_frame test_hull_verdict test_hull_bounds)
+	test_placing test_engine_work test_hull_frame test_hull_verdict test_hull_bounds \
+	test_hull_gap test_hull_certificate)
 comma := ,
 wraps = $(addprefix -Wl$(comma)--wrap=,$1)
 wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_addmul z_submul z_add z_sub \

@@ -46,9 +46,12 @@
  * may read the same input. Inputs are never modified.
  *
  * Memory: only exact arithmetic allocates: in the method exact, in certified for the few pairs that
- * need it, in certificates, and in fmb_frame_make() for a frame that is nearly flat. It allocates
- * through GMP, which ends the process if memory is exhausted, and frees the memory before the
- * function returns. Functions use up to 100 kB of stack.
+ * need it, in certificates, and in fmb_frame_make() for a frame that is nearly flat; and for
+ * the gap of a pair with a hull that is rounded by more than the limit, or whose depth takes more
+ * than a hundred vertices of the Minkowski difference, as of concentric balls: 50 kB, 24 bytes for
+ * each vertex, and 200 bytes for each facet that is found. All is allocated through GMP, which ends
+ * the process if memory is exhausted, and freed before the function, or the scene, returns its last
+ * answer. Functions use up to 100 kB of stack.
  *
  * Determinism: the answers are the same bits on every machine with 64-bit longs whose doubles are
  * IEEE 754 binary64, rounded to nearest. The library is compiled without contraction. The caller
@@ -304,7 +307,7 @@ enum fmb_want {
  * Upper bound. For a separated pair the witness points prove it: |b - a| plus the distances of the
  * two points from their frames at that time is at most bounds[1]. For an overlapping pair,
  * bounds[1] is minus the smallest depth over all facets of the Minkowski difference of the two,
- * swept over the window.
+ * swept over the window; of a pair with a hull, of a polytope inside of it.
  *
  * Width. bounds[1] - bounds[0] is at most 1e-12 of the largest magnitude of a coordinate of any
  * vertex of either body over the window, plus 32 * 2^-1074. (In a window shorter than 2^-1000 s the
@@ -784,7 +787,23 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  *   touching     N . (b - a) >= 0 for all those points and times, and N is not constant on at least
  *                one of the frames, so that no point is ever in both relative interiors. At TIME
  *                the point is in both frames.
- *   overlapping  At TIME the point is in the relative interiors of both frames. */
+ *   overlapping  At TIME the point is in the relative interiors of both frames.
+ *
+ * Of a pair with a hull the forms are
+ *
+ *     separated normal (X Y Z)
+ *     touching normal (X Y Z) at TIME (X Y Z) a WEIGHTS b WEIGHTS
+ *     overlapping at TIME (X Y Z) a WEIGHTS b WEIGHTS
+ *
+ * with a normal N of rational numbers, and WEIGHTS one or more of INDEX:WEIGHT, in ascending order
+ * of the indices, separated by spaces: vertices of the frame, and positive rational numbers whose
+ * sum is
+ * 1. The vertices of a hull are those of struct fmb_frame, from 0. Vertex 0 of a tetrahedron or a
+ * face is its origin, vertex i + 1 the end of c_i; vertex k of a cuboid or a box is the origin plus
+ * the c_i for which bit i of k is set. These certificates state, besides the above, that the point
+ * is the sum of the weights times the vertices of each frame at TIME; and, if overlapping, that
+ * these vertices have the same affine hull as the frame: so the point is in its relative interior.
+ */
 
 /* The capacity that every certificate fits into, its terminating 0 included. */
 enum { FMB_CERTIFICATE_MAX = 16384 };
@@ -805,15 +824,15 @@ enum { FMB_CERTIFICATE_MAX = 16384 };
  * text is empty. The span is measured as follows. Let 2^e be the largest power of two that divides
  * every coordinate of every component, origin, position and v T of the pair, and half of every size
  * of a box. Let n be |q|^2 for the smallest integers q that are proportional to the
- * orientation; 1 without one. Multiply the components and origins in the world, and v T, by the
- * product of both n, or by one if they are equal. The pair spans at most 512 bits if the magnitude
- * of each coordinate is then less than 2^(e + 512).
+ * orientation; 1 without one. Multiply the components and origins in the world, of a pair with a
+ * hull the vertices, and v T, by the product of both n, or by one if they are equal. The pair spans
+ * at most 512 bits if the magnitude of each coordinate is then less than 2^(e + 512).
  *
  * Most certificates are shorter than 200 bytes; of frames that are flat or touch, some thousand are
  * possible. The text is also empty if it would exceed the capacity above; no such pair is known.
  * The coordinates are chosen one after the other, each the simplest number on a line segment.
- * Cost: 50 microseconds for numbers of similar size, 6 ms at most. Memory is allocated as by the
- * exact method. */
+ * Cost: 50 microseconds for numbers of similar size, 6 ms at most; of a pair with a hull 3
+ * microseconds for each vertex, 50 ms at most. Memory is allocated as by the exact method. */
 enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
                                 double duration, char *text, size_t size, size_t *length);
 

@@ -29,8 +29,10 @@
  *   r = 0: d, since S is the point d.
  *
  * The rank need not be known: the first normal that proves the verdict is taken. */
+#include "certificate_hull.h"
 #include "certificate_point.h"
 #include "exact.h"
+#include "hull.h"
 #include "integer.h"
 
 #include <assert.h>
@@ -205,24 +207,19 @@ static void find_normal(struct exact_pair *pair, int dim, enum fmb_verdict verdi
 
 /* ---- The text ---- */
 
-struct certificate_writer {
-    char text[FMB_CERTIFICATE_MAX];
-    size_t length; /* of all that was written, beyond the end of text too */
-};
-
 static size_t used_of(const struct certificate_writer *writer)
 {
     return writer->length < FMB_CERTIFICATE_MAX ? writer->length : FMB_CERTIFICATE_MAX;
 }
 
-static void write_text(struct certificate_writer *writer, const char *text)
+void certificate_write_text(struct certificate_writer *writer, const char *text)
 {
     const size_t used = used_of(writer);
     writer->length +=
         (size_t) snprintf(writer->text + used, FMB_CERTIFICATE_MAX - used, "%s", text);
 }
 
-static void write_number(struct certificate_writer *writer, const mpq_t number)
+void certificate_write_number(struct certificate_writer *writer, const mpq_t number)
 {
     const size_t used = used_of(writer);
     writer->length +=
@@ -234,8 +231,8 @@ static void write_normal(struct certificate_writer *writer, struct exact_pair *e
 {
     char normal[NORMAL_TEXT_SIZE];
     find_normal(exact, dim, verdict, normal);
-    write_text(writer, " ");
-    write_text(writer, normal);
+    certificate_write_text(writer, " ");
+    certificate_write_text(writer, normal);
 }
 
 static void write_point(struct certificate_writer *writer, struct exact_pair *exact,
@@ -244,24 +241,21 @@ static void write_point(struct certificate_writer *writer, struct exact_pair *ex
     struct certificate_point point;
     certificate_point_init(&point);
     certificate_point_find(&point, exact, pair);
-    write_text(writer, " at ");
-    write_number(writer, point.time);
+    certificate_write_text(writer, " at ");
+    certificate_write_number(writer, point.time);
     for (int axis = 0; axis < pair->a.frame->dim; axis++) {
-        write_text(writer, axis == 0 ? " (" : " ");
-        write_number(writer, point.place[axis]);
+        certificate_write_text(writer, axis == 0 ? " (" : " ");
+        certificate_write_number(writer, point.place[axis]);
     }
-    write_text(writer, ")");
+    certificate_write_text(writer, ")");
     certificate_point_clear(&point);
 }
 
-/* The span that fmb.h defines, in bits. Fractions of more would take milliseconds each to reduce.
- */
-enum { SPAN_MAX = 512 };
-
 static bool is_wide(const mpz_t v[3])
 {
-    return mpz_sizeinbase(v[0], 2) > SPAN_MAX || mpz_sizeinbase(v[1], 2) > SPAN_MAX ||
-           mpz_sizeinbase(v[2], 2) > SPAN_MAX;
+    return mpz_sizeinbase(v[0], 2) > CERTIFICATE_SPAN_MAX ||
+           mpz_sizeinbase(v[1], 2) > CERTIFICATE_SPAN_MAX ||
+           mpz_sizeinbase(v[2], 2) > CERTIFICATE_SPAN_MAX;
 }
 
 static bool pair_is_wide(const struct exact_pair *exact)
@@ -282,7 +276,7 @@ static void write_certificate(struct certificate_writer *writer, const struct fr
     exact_pair_init(&exact, pair);
     if (!pair_is_wide(&exact)) {
         const enum fmb_verdict verdict = exact_verdict(pair, NULL);
-        write_text(writer, fmb_verdict_name(verdict));
+        certificate_write_text(writer, fmb_verdict_name(verdict));
         if (verdict != FMB_OVERLAPPING)
             write_normal(writer, &exact, pair->a.frame->dim, verdict);
         if (verdict != FMB_SEPARATED)
@@ -297,8 +291,6 @@ static enum fmb_status check(const struct fmb_placement *a, const struct fmb_pla
     const enum fmb_status status = placements_check(a, b, duration);
     if (status == FMB_OK && (a->body->frame_count > 1 || b->body->frame_count > 1))
         return FMB_CANNOT_DECIDE;
-    if (status == FMB_OK && (a->body->one.shape == FMB_HULL || b->body->one.shape == FMB_HULL))
-        return FMB_CANNOT_DECIDE;
     return status;
 }
 
@@ -311,7 +303,10 @@ enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_
     if (status == FMB_OK) {
         const struct frame_pair pair = {
             {fmb_body_frame(a->body, 0), a}, {fmb_body_frame(b->body, 0), b}, duration};
-        write_certificate(&writer, &pair);
+        if (hull_takes(pair.a.frame, pair.b.frame))
+            certificate_hull_write(&writer, &pair);
+        else
+            write_certificate(&writer, &pair);
     }
     *length = writer.length < FMB_CERTIFICATE_MAX ? writer.length : 0;
     if (*length >= size)

@@ -22,7 +22,7 @@
  * has a solution, with <= in place of < for the closed frame. Gaussian elimination removes one
  * unknown for each independent equation, Fourier's method the others; what remains are comparisons
  * of numbers with 0. */
-#include "fmb.h"
+#include "certificate_check.h"
 
 #include <assert.h>
 #include <math.h>
@@ -32,7 +32,6 @@
 #include <gmp.h>
 
 enum {
-    AXES = 3, /* in 2D all lies in the plane z = 0 */
     UNKNOWNS = 3,
     COLUMNS = UNKNOWNS + 1,
     EDGES_MAX = 6,
@@ -60,20 +59,31 @@ struct proof {
 
 /* ---- Vectors ---- */
 
-static void each_axis(mpq_t vector[AXES], void (*call)(mpq_ptr))
+void check_each_axis(mpq_t vector[AXES], void (*call)(mpq_ptr))
 {
     for (int axis = 0; axis < AXES; axis++)
         call(vector[axis]);
 }
 
-static void subtract(mpq_t out[AXES], mpq_t u[AXES], mpq_t v[AXES])
+void check_copy(mpq_t out[AXES], mpq_t v[AXES])
+{
+    for (int axis = 0; axis < AXES; axis++)
+        mpq_set(out[axis], v[axis]);
+}
+
+void check_set(mpq_t out[AXES], int dim, const double *v)
+{
+    for (int axis = 0; axis < dim; axis++)
+        mpq_set_d(out[axis], v[axis]);
+}
+
+void check_subtract(mpq_t out[AXES], mpq_t u[AXES], mpq_t v[AXES])
 {
     for (int axis = 0; axis < AXES; axis++)
         mpq_sub(out[axis], u[axis], v[axis]);
 }
 
-/* out := out + factor v. factor is none of the numbers of out. */
-static void add_multiple(mpq_t *out, const mpq_t factor, mpq_t *v, int numbers)
+void check_add_multiple(mpq_t *out, const mpq_t factor, mpq_t *v, int numbers)
 {
     mpq_t product;
     mpq_init(product);
@@ -84,7 +94,7 @@ static void add_multiple(mpq_t *out, const mpq_t factor, mpq_t *v, int numbers)
     mpq_clear(product);
 }
 
-static void dot(mpq_t out, mpq_t u[AXES], mpq_t v[AXES])
+void check_dot(mpq_t out, mpq_t u[AXES], mpq_t v[AXES])
 {
     mpq_t product;
     mpq_init(product);
@@ -117,48 +127,48 @@ static void proof_each(struct proof *proof, void (*call)(mpq_ptr))
 {
     for (int f = 0; f < 2; f++) {
         for (int e = 0; e < EDGES_MAX; e++)
-            each_axis(proof->side[f].edge[e], call);
-        each_axis(proof->side[f].origin, call);
-        each_axis(proof->side[f].velocity, call);
+            check_each_axis(proof->side[f].edge[e], call);
+        check_each_axis(proof->side[f].origin, call);
+        check_each_axis(proof->side[f].velocity, call);
     }
-    each_axis(proof->v, call);
-    each_axis(proof->d, call);
-    each_axis(proof->z, call);
-    each_axis(proof->normal, call);
-    each_axis(proof->point, call);
+    check_each_axis(proof->v, call);
+    check_each_axis(proof->d, call);
+    check_each_axis(proof->z, call);
+    check_each_axis(proof->normal, call);
+    check_each_axis(proof->point, call);
     call(proof->time);
     call(proof->duration);
 }
 
 /* v := R(q) v, as fmb.h defines it, with the plane of 2D in space. */
-static void turn(const struct fmb_placement *placement, mpq_t v[AXES])
+void check_turn(const struct fmb_placement *placement, mpq_t v[AXES])
 {
     mpq_t q[4], norm, along, product, cross_of_v[AXES], out[AXES];
     mpq_inits(q[0], q[1], q[2], q[3], norm, along, product, NULL);
-    each_axis(cross_of_v, mpq_init);
-    each_axis(out, mpq_init);
+    check_each_axis(cross_of_v, mpq_init);
+    check_each_axis(out, mpq_init);
     mpq_set_d(q[0], placement->orientation[0]);
     for (int i = 1; i < placement->orientation_count; i++)
         mpq_set_d(q[placement->orientation_count == 2 ? 3 : i], placement->orientation[i]);
 
     /* With r = (x, y, z): n R v = (ww - r.r) v + 2 (r.v) r + 2 w (r x v), n = ww + r.r. */
-    dot(norm, q + 1, q + 1);
-    dot(along, q + 1, v);
+    check_dot(norm, q + 1, q + 1);
+    check_dot(along, q + 1, v);
     cross(cross_of_v, q + 1, v);
     mpq_mul(product, q[0], q[0]);
     mpq_sub(product, product, norm);
-    add_multiple(out, product, v, AXES);
+    check_add_multiple(out, product, v, AXES);
     mpq_add(along, along, along);
-    add_multiple(out, along, q + 1, AXES);
+    check_add_multiple(out, along, q + 1, AXES);
     mpq_add(along, q[0], q[0]);
-    add_multiple(out, along, cross_of_v, AXES);
+    check_add_multiple(out, along, cross_of_v, AXES);
     mpq_mul(product, q[0], q[0]);
     mpq_add(norm, norm, product);
     for (int axis = 0; axis < AXES; axis++)
         mpq_div(v[axis], out[axis], norm);
 
-    each_axis(out, mpq_clear);
-    each_axis(cross_of_v, mpq_clear);
+    check_each_axis(out, mpq_clear);
+    check_each_axis(cross_of_v, mpq_clear);
     mpq_clears(q[0], q[1], q[2], q[3], norm, along, product, NULL);
 }
 
@@ -193,9 +203,9 @@ static void set_side(struct side *side, const struct fmb_placement *placement)
     mpq_init(position);
     set_frame(side, fmb_body_frame(placement->body, 0));
     if (placement->orientation_count > 0) {
-        turn(placement, side->origin);
+        check_turn(placement, side->origin);
         for (int i = 0; i < side->count; i++)
-            turn(placement, side->edge[i]);
+            check_turn(placement, side->edge[i]);
     }
     for (int axis = 0; axis < placement->body->dim; axis++) {
         mpq_set_d(position, placement->position[axis]);
@@ -205,7 +215,7 @@ static void set_side(struct side *side, const struct fmb_placement *placement)
     side->edges = side->count;
     for (int i = 0; side->simplex && i < side->count; i++)
         for (int j = i + 1; j < side->count; j++)
-            subtract(side->edge[side->edges++], side->edge[j], side->edge[i]);
+            check_subtract(side->edge[side->edges++], side->edge[j], side->edge[i]);
     mpq_clear(position);
 }
 
@@ -223,8 +233,8 @@ static void set_pair(struct proof *proof, const struct fmb_placement *a,
     set_side(&proof->side[1], b);
     proof->moving =
         !is_zero_vector(proof->side[0].velocity) || !is_zero_vector(proof->side[1].velocity);
-    subtract(proof->v, proof->side[1].velocity, proof->side[0].velocity);
-    subtract(proof->d, proof->side[1].origin, proof->side[0].origin);
+    check_subtract(proof->v, proof->side[1].velocity, proof->side[0].velocity);
+    check_subtract(proof->d, proof->side[1].origin, proof->side[0].origin);
     mpq_set_ui(proof->z[2], 1, 1);
 }
 
@@ -233,7 +243,7 @@ static void set_pair(struct proof *proof, const struct fmb_placement *a,
  * Each of these takes something from the beginning of *at, and returns false if that does not
  * begin so; *at is then somewhere within the text. */
 
-static bool take(const char **at, const char *word)
+bool check_take(const char **at, const char *word)
 {
     size_t length = strlen(word);
     if (strncmp(*at, word, length) != 0)
@@ -242,23 +252,23 @@ static bool take(const char **at, const char *word)
     return true;
 }
 
-static bool is_digit(char c)
+bool check_is_digit(char c)
 {
     return c >= '0' && c <= '9';
 }
 
 /* A natural number without leading zeros. */
-static bool take_digits(const char **at, mpz_t out)
+bool check_take_digits(const char **at, mpz_t out)
 {
     enum { DIGITS_AT_ONCE = 18 }; /* 10^18 < 2^63 */
     mpz_set_ui(out, 0);
-    if (take(at, "0")) /* a digit after it is nothing that can follow a number */
+    if (check_take(at, "0")) /* a digit after it is nothing that can follow a number */
         return true;
-    if (!is_digit(**at))
+    if (!check_is_digit(**at))
         return false;
-    while (is_digit(**at)) {
+    while (check_is_digit(**at)) {
         unsigned long digits = 0, power = 1;
-        for (int i = 0; i < DIGITS_AT_ONCE && is_digit(**at); i++) {
+        for (int i = 0; i < DIGITS_AT_ONCE && check_is_digit(**at); i++) {
             digits = digits * 10 + (unsigned long) (*(*at)++ - '0');
             power *= 10;
         }
@@ -272,7 +282,7 @@ static bool take_digits(const char **at, mpz_t out)
 static bool take_denominator(const char **at, mpz_t out)
 {
     mpz_set_ui(out, 1);
-    return !take(at, "/") || (take_digits(at, out) && mpz_cmp_ui(out, 1) > 0);
+    return !check_take(at, "/") || (check_take_digits(at, out) && mpz_cmp_ui(out, 1) > 0);
 }
 
 static bool in_lowest_terms(const mpq_t x)
@@ -285,35 +295,37 @@ static bool in_lowest_terms(const mpq_t x)
     return lowest;
 }
 
-static bool take_number(const char **at, mpq_t out)
+bool check_take_number(const char **at, mpq_t out)
 {
-    bool negative = take(at, "-");
-    if (!take_digits(at, mpq_numref(out)) || (negative && mpq_sgn(out) == 0))
+    bool negative = check_take(at, "-");
+    if (!check_take_digits(at, mpq_numref(out)) || (negative && mpq_sgn(out) == 0))
         return false;
     if (negative)
         mpq_neg(out, out);
     return take_denominator(at, mpq_denref(out)) && in_lowest_terms(out);
 }
 
-static bool take_point(const char **at, struct proof *proof)
+bool check_take_point(const char **at, int dim, mpq_t out[AXES])
 {
-    for (int axis = 0; axis < proof->dim; axis++)
-        if (!take(at, axis == 0 ? " (" : " ") || !take_number(at, proof->point[axis]))
+    for (int axis = 0; axis < dim; axis++)
+        if (!check_take(at, axis == 0 ? " (" : " ") || !check_take_number(at, out[axis]))
             return false;
-    return take(at, ")");
+    return check_take(at, ")");
 }
 
 /* The vector that has this name in this pair; NULL: none has. */
 static mpq_t *take_vector(const char **at, struct proof *proof)
 {
-    if (take(at, "v"))
+    if (check_take(at, "v"))
         return proof->v;
-    if (take(at, "d"))
+    if (check_take(at, "d"))
         return proof->d;
-    if (proof->dim == 2 && take(at, "z"))
+    if (proof->dim == 2 && check_take(at, "z"))
         return proof->z;
-    struct side *side = take(at, "a") ? &proof->side[0] : take(at, "b") ? &proof->side[1] : NULL;
-    if (!side || !is_digit(**at) || **at - '0' >= side->edges)
+    struct side *side = check_take(at, "a")   ? &proof->side[0]
+                        : check_take(at, "b") ? &proof->side[1]
+                                              : NULL;
+    if (!side || !check_is_digit(**at) || **at - '0' >= side->edges)
         return NULL;
     return side->edge[*(*at)++ - '0'];
 }
@@ -322,7 +334,7 @@ static mpq_t *take_vector(const char **at, struct proof *proof)
 static bool take_product(const char **at, struct proof *proof, mpq_t out[AXES])
 {
     mpq_t *u = take_vector(at, proof);
-    mpq_t *v = u && take(at, " x ") ? take_vector(at, proof) : NULL;
+    mpq_t *v = u && check_take(at, " x ") ? take_vector(at, proof) : NULL;
     if (!v)
         return false;
     cross(out, u, v);
@@ -333,12 +345,12 @@ static bool take_product(const char **at, struct proof *proof, mpq_t out[AXES])
 static bool take_double_product(const char **at, struct proof *proof, mpq_t out[AXES])
 {
     mpq_t product[AXES], *w = NULL;
-    each_axis(product, mpq_init);
-    if (take(at, "(") && take_product(at, proof, product) && take(at, ") x "))
+    check_each_axis(product, mpq_init);
+    if (check_take(at, "(") && take_product(at, proof, product) && check_take(at, ") x "))
         w = take_vector(at, proof);
     if (w)
         cross(out, product, w);
-    each_axis(product, mpq_clear);
+    check_each_axis(product, mpq_clear);
     return w;
 }
 
@@ -352,16 +364,15 @@ static bool take_direction(const char **at, struct proof *proof, mpq_t out[AXES]
         return false;
     if (*ahead == ' ' && ahead[1] == 'x')
         return take_product(at, proof, out);
-    for (int axis = 0; axis < AXES; axis++)
-        mpq_set(out[axis], u[axis]);
+    check_copy(out, u);
     *at = ahead;
     return true;
 }
 
 static bool take_normal(const char **at, struct proof *proof)
 {
-    bool negative = take(at, " - ");
-    if (!negative && !take(at, " + "))
+    bool negative = check_take(at, " - ");
+    if (!negative && !check_take(at, " + "))
         return false;
     if (!take_direction(at, proof, proof->normal))
         return false;
@@ -374,14 +385,14 @@ static bool take_normal(const char **at, struct proof *proof)
 static const char *flaw_of_text(struct proof *proof, enum fmb_verdict verdict, const char *text)
 {
     const char *at = text, *name = fmb_verdict_name(verdict);
-    if (!name || !take(&at, name))
+    if (!name || !check_take(&at, name))
         return "the text does not begin with the verdict";
     if (verdict != FMB_OVERLAPPING && !take_normal(&at, proof))
         return "the verdict is not followed by a normal of this pair";
     if (verdict != FMB_SEPARATED) {
-        if (!take(&at, " at ") || !take_number(&at, proof->time))
+        if (!check_take(&at, " at ") || !check_take_number(&at, proof->time))
             return "there is no time in lowest terms where it is due";
-        if (!take_point(&at, proof))
+        if (!check_take_point(&at, proof->dim, proof->point))
             return "the time is not followed by a point of this dimension in lowest terms";
     }
     return *at == '\0' ? NULL : "something follows the certificate";
@@ -403,7 +414,7 @@ static void set_range(struct side *side, mpq_t normal[AXES], mpq_t low, mpq_t hi
         mpq_set_ui(value, 0, 1);
         for (int i = 0; i < side->count; i++)
             if (side->simplex ? vertex == i + 1 : vertex >> i & 1) {
-                dot(part, normal, side->edge[i]);
+                check_dot(part, normal, side->edge[i]);
                 mpq_add(value, value, part);
             }
         if (mpq_cmp(value, low) < 0)
@@ -421,9 +432,9 @@ static void set_gap(struct proof *proof, const mpq_t low_b, const mpq_t high_a, 
     mpq_t part;
     mpq_init(part);
     mpq_sub(gap, low_b, high_a);
-    dot(part, proof->normal, proof->d);
+    check_dot(part, proof->normal, proof->d);
     mpq_add(gap, gap, part);
-    dot(part, proof->normal, proof->v);
+    check_dot(part, proof->normal, proof->v);
     mpq_mul(part, part, proof->duration);
     if (mpq_sgn(part) < 0)
         mpq_add(gap, gap, part);
@@ -511,7 +522,7 @@ static void substitute(mpq_t row[COLUMNS], mpq_t equation[COLUMNS], int k)
     if (mpq_sgn(row[k]) != 0) {
         mpq_div(factor, row[k], equation[k]);
         mpq_neg(factor, factor);
-        add_multiple(row, factor, equation, COLUMNS);
+        check_add_multiple(row, factor, equation, COLUMNS);
     }
     mpq_clear(factor);
 }
@@ -541,8 +552,8 @@ static void combine(mpq_t out[COLUMNS], mpq_t positive[COLUMNS], mpq_t negative[
     mpq_neg(size, negative[k]);
     for (int i = 0; i < COLUMNS; i++)
         mpq_set_ui(out[i], 0, 1);
-    add_multiple(out, size, positive, COLUMNS);
-    add_multiple(out, positive[k], negative, COLUMNS);
+    check_add_multiple(out, size, positive, COLUMNS);
+    check_add_multiple(out, positive[k], negative, COLUMNS);
     mpq_clear(size);
 }
 
@@ -647,8 +658,6 @@ static const char *flaw_of_placements(const struct fmb_placement *a, const struc
         return fmb_status_text(FMB_BAD_DURATION);
     if (a->body->frame_count > 1 || b->body->frame_count > 1)
         return "a body of several frames has no certificate";
-    if (a->body->one.shape == FMB_HULL || b->body->one.shape == FMB_HULL)
-        return "a pair with a hull has no certificate";
     return NULL;
 }
 
@@ -657,7 +666,10 @@ bool fmb_certificate_holds(const struct fmb_placement *a, const struct fmb_place
                            size_t size)
 {
     const char *flaw = flaw_of_placements(a, b, duration);
-    if (!flaw) {
+    if (!flaw && (fmb_body_frame(a->body, 0)->shape == FMB_HULL ||
+                  fmb_body_frame(b->body, 0)->shape == FMB_HULL)) {
+        flaw = check_hulls(a, b, duration, verdict, text);
+    } else if (!flaw) {
         struct proof proof;
         proof_each(&proof, mpq_init);
         set_pair(&proof, a, b, duration);

@@ -6,7 +6,7 @@
  *
  * Steps (gap_of()):
  *
- *   1. frames_swap()    puts the pair into an order that depends on its numbers only
+ *   1. gap_frames_swap()    puts the pair into an order that depends on its numbers only
  *   2. gap_pair_set()   collects offset, vectors, error and scale in doubles
  *   3. gap_in_doubles() gap_axis_aligned(), then gap_distance() or gap_depth() by the verdict
  *   4. gap_exact()      integers, if the enclosure is wider than the limit
@@ -50,6 +50,10 @@ static int compare_frames(const struct fmb_frame *x, const struct fmb_frame *y)
 {
     int order = (int) x->shape - (int) y->shape;
     if (order == 0)
+        order = (x->vertex_count > y->vertex_count) - (x->vertex_count < y->vertex_count);
+    if (order == 0 && x->vertices != y->vertices)
+        order = compare(x->vertices, y->vertices, x->dim * (int) x->vertex_stride);
+    if (order == 0)
         order = compare(x->origin, y->origin, FMB_DIM_MAX);
     if (order == 0)
         order = compare(x->centre, y->centre, FMB_DIM_MAX);
@@ -69,7 +73,7 @@ bool gap_swaps(const struct fmb_placement *a, const struct fmb_placement *b)
 }
 
 /* Equal frames in equal placements have the order of their bodies. */
-static bool frames_swap(const struct placed_frame *a, const struct placed_frame *b)
+bool gap_frames_swap(const struct placed_frame *a, const struct placed_frame *b)
 {
     int order = compare_placements(a->placement, b->placement);
     if (order == 0)
@@ -77,7 +81,6 @@ static bool frames_swap(const struct placed_frame *a, const struct placed_frame 
     return order == 0 ? gap_swaps(a->placement, b->placement) : order > 0;
 }
 
-/* Converts a gap to that of the swapped pair. No number becomes -0. */
 void gap_turn_round(struct fmb_gap *gap)
 {
     double first[FMB_DIM_MAX];
@@ -238,7 +241,7 @@ enum gap_outcome gap_of(const struct fmb_prepared *a, const struct fmb_prepared 
                         enum fmb_verdict verdict, double farthest, bool quick, struct fmb_gap *out)
 {
     const struct placed_frame first = {a->frame, a->placement}, second = {b->frame, b->placement};
-    const bool swaps = frames_swap(&first, &second);
+    const bool swaps = gap_frames_swap(&first, &second);
     enum gap_outcome outcome =
         gap_in_doubles(swaps ? b : a, swaps ? a : b, duration, verdict, farthest, out);
     if (outcome == GAP_KNOWN && swaps)
@@ -253,7 +256,7 @@ enum gap_outcome gap_of(const struct fmb_prepared *a, const struct fmb_prepared 
 void gap_exact_any_order(const struct frame_pair *pair, enum fmb_verdict verdict,
                          struct fmb_gap *out)
 {
-    const bool swaps = frames_swap(&pair->a, &pair->b);
+    const bool swaps = gap_frames_swap(&pair->a, &pair->b);
     const struct frame_pair ordered = {swaps ? pair->b : pair->a, swaps ? pair->a : pair->b,
                                        pair->duration};
     gap_exact(&ordered, verdict, out);

@@ -118,12 +118,15 @@ void gap_exact_any_order(const struct frame_pair *pair, enum fmb_verdict verdict
 double gap_far_threshold(const struct fmb_prepared *a, const struct fmb_prepared *b,
                          double duration, double farthest);
 
-/* Makes a gap that of the swapped pair. */
-void gap_turn_round(struct fmb_gap *gap);
-
 /* The gap of a prepared pair with this verdict. quick: returns GAP_UNSURE if it needs GMP. */
 enum gap_outcome gap_of(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                         enum fmb_verdict verdict, double farthest, bool quick, struct fmb_gap *out);
+
+/* Returns whether the gap of these frames is computed for the swapped pair. */
+bool gap_frames_swap(const struct placed_frame *a, const struct placed_frame *b);
+
+/* Converts a gap to that of the swapped pair. No number becomes -0. */
+void gap_turn_round(struct fmb_gap *gap);
 
 /* ---- Bodies of several frames ---- */
 

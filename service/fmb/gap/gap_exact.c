@@ -31,7 +31,6 @@
 
 #include <assert.h>
 #include <float.h>
-#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -252,24 +251,6 @@ static double above(const struct solver *solver, double units)
     return -below(solver, -units);
 }
 
-/* n / |n|; numbers 2^100 times smaller than the largest become 0. */
-static void set_direction(mpz_t n[3], double out[FMB_DIM_MAX])
-{
-    long exponent[3], top = LONG_MIN;
-    for (int axis = 0; axis < 3; axis++) {
-        out[axis] = mpz_get_d_2exp(&exponent[axis], n[axis]);
-        if (out[axis] != 0 && exponent[axis] > top)
-            top = exponent[axis];
-    }
-    for (int axis = 0; axis < 3; axis++)
-        out[axis] = out[axis] == 0 || exponent[axis] < top - 100
-                        ? 0
-                        : ldexp(out[axis], (int) (exponent[axis] - top));
-    const double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
-    for (int axis = 0; axis < 3; axis++)
-        out[axis] /= length;
-}
-
 /* f of a direction of unit length but for rounding, in units. */
 static double value_of(struct solver *solver, const double direction[FMB_DIM_MAX])
 {
@@ -353,7 +334,7 @@ static void answer(struct solver *solver, enum fmb_verdict verdict, double durat
     }
     if (verdict != FMB_SEPARATED || solver->simplex.zero)
         greatest = best_slab(solver);
-    set_direction(solver->best, out->direction);
+    exact_direction(solver->best, out->direction);
     if (verdict == FMB_TOUCHING)
         return;
     out->bounds[0] = below(solver, value_of(solver, out->direction));

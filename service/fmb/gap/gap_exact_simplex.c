@@ -3,6 +3,8 @@
 #include "integer.h"
 
 #include <assert.h>
+#include <limits.h>
+#include <math.h>
 #include <string.h>
 
 void exact_simplex_each(struct exact_simplex *simplex, void (*call)(mpz_ptr))
@@ -161,4 +163,21 @@ void exact_simplex_solve(struct exact_simplex *simplex, mpz_t toward[3], exact_s
         if (mpz_sgn(simplex->t[1]) >= 0)
             return;
     }
+}
+
+void exact_direction(mpz_t n[3], double out[3])
+{
+    long exponent[3], top = LONG_MIN;
+    for (int axis = 0; axis < 3; axis++) {
+        out[axis] = mpz_get_d_2exp(&exponent[axis], n[axis]);
+        if (out[axis] != 0 && exponent[axis] > top)
+            top = exponent[axis];
+    }
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = out[axis] == 0 || exponent[axis] < top - 100
+                        ? 0
+                        : ldexp(out[axis], (int) (exponent[axis] - top));
+    const double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] /= length;
 }

@@ -42,4 +42,7 @@ typedef void exact_support(void *context, mpz_t n[3], struct exact_corner *out);
 void exact_simplex_solve(struct exact_simplex *simplex, mpz_t toward[3], exact_support *support,
                          void *context);
 
+/* out := n / |n|, rounded; numbers 2^100 times smaller than the largest become 0. In: not 0. */
+void exact_direction(mpz_t n[3], double out[3]);
+
 #endif

@@ -57,19 +57,6 @@ void hull_decision_end(struct hull_decision *decision)
     decision->exact = NULL;
 }
 
-enum gap_outcome hull_gap(const struct frame_pair *frames, enum fmb_verdict verdict,
-                          double farthest, struct fmb_gap *out)
-{
-    struct frame_pair ordered;
-    struct hull_pair pair;
-    const bool swapped = hull_order(frames, &ordered);
-    hull_pair_set(&ordered, &pair);
-    const enum gap_outcome outcome = hull_gap_of(&pair, verdict, farthest, out);
-    if (outcome == GAP_KNOWN && swapped)
-        gap_turn_round(out);
-    return outcome;
-}
-
 enum fmb_status hull_decide(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
                             struct fmb_answer *answer)
 {
@@ -85,11 +72,4 @@ enum fmb_status hull_decide(const struct frame_pair *frames, unsigned want, enum
                    hull_gap(frames, answer->verdict, INFINITY, &answer->gap) == GAP_KNOWN
                ? FMB_OK
                : FMB_CANNOT_DECIDE;
-}
-
-enum gap_outcome hull_gap_of(const struct hull_pair *pair, enum fmb_verdict verdict,
-                             double farthest, struct fmb_gap *out)
-{
-    (void) pair, (void) verdict, (void) farthest, (void) out;
-    return GAP_UNSURE;
 }

@@ -16,7 +16,7 @@
  *   hull_support()       the farthest point of D in a direction
  *   hull_point()         a point of D
  *   hull_decide()        verdict, contact and box; hull_decision_step(): the same in steps
- *   hull_gap_of()        the gap
+ *   hull_gap()           the gap; hull_gap_step(): the same in steps
  *
  * Accuracy of doubles. Let u = 2^-53, r the radius of a frame: the distance of its vertices from
  * the origin of its body is at most r. Rounding a direction n to body coordinates, R^T n, or a
@@ -142,13 +142,19 @@ void hull_decision_end(struct hull_decision *decision);
 enum fmb_status hull_decide(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
                             struct fmb_answer *answer);
 
-/* The gap of a pair in the order of hull_order(), with this verdict. Returns GAP_FAR if it is
- * surely greater than farthest, by more than the width of an enclosure. */
-enum gap_outcome hull_gap_of(const struct hull_pair *pair, enum fmb_verdict verdict,
-                             double farthest, struct fmb_gap *out);
-
-/* The gap of a checked pair in any order. */
+/* The gap of a checked pair with this verdict. Returns GAP_KNOWN or, if the gap is surely greater
+ * than farthest, by more than the width of an enclosure, GAP_FAR. */
 enum gap_outcome hull_gap(const struct frame_pair *frames, enum fmb_verdict verdict,
                           double farthest, struct fmb_gap *out);
+
+/* The same in steps of less than a millisecond. hull_gap_begin() returns GAP_UNSURE if there are
+ * steps to be done, with *work set: hull_gap_step() is then called until it returns something else,
+ * or hull_gap_end(), which abandons the work. Both allocate through GMP; nothing is left at the
+ * end. */
+struct hull_gap_work;
+enum gap_outcome hull_gap_begin(const struct frame_pair *frames, enum fmb_verdict verdict,
+                                double farthest, struct fmb_gap *out, struct hull_gap_work **work);
+enum gap_outcome hull_gap_step(struct hull_gap_work *work, struct fmb_gap *out);
+void hull_gap_end(struct hull_gap_work *work);
 
 #endif

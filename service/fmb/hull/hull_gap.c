@@ -1,0 +1,437 @@
+/* The gap of a pair with a hull: its order, its bounds, and the choice of step (hull_gap.h).
+ *
+ * Accuracy, with u = 2^-53.
+ *
+ * Lower bound of a distance. The direction n that is returned is of unit length up to 6 u. The
+ * least n . x over D is minus the greatest of hull_support() for -n, which is off by error |n|; the
+ * length moves it by 6 u reach, less than another error. If it is taken from the point found, n . p
+ * in place of that value, the point and the value of its vertices are each off by one more error.
+ *
+ * Upper bound. A witness point is a sum of weights times vertices R v, of the position and of the
+ * displacement times a fraction of the window. Each R v is off by at most 18.3 u r, and by the
+ * slack (hull.h); weights sum to 1 within 8 u, negative ones of rounding included; each term passes
+ * at most 8 roundings. So the point is within 35 u of the sum of its lengths, and the slack, of a
+ * point of the frame: less than 2^-47 far for both frames. The fraction of the window is off by 2 u
+ * or, in the shortest windows, by 2^-1074 over the duration: "late" bounds how far that moves the
+ * frames. */
+#include "hull_gap.h"
+
+#include "gap_exact_simplex.h"
+#include "gap_simplex.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { VERTEX_BITS = 10 };
+_Static_assert(FMB_HULL_VERTICES_MAX <= 1 << VERTEX_BITS, "bits of a corner");
+
+/* ---- Points ---- */
+
+static unsigned bits_of(struct hull_column column)
+{
+    return column.vertex[0] | column.vertex[1] << VERTEX_BITS | column.end << 2 * VERTEX_BITS;
+}
+
+static struct hull_column column_of(unsigned bits)
+{
+    const unsigned mask = (1U << VERTEX_BITS) - 1;
+    return (struct hull_column){{bits & mask, bits >> VERTEX_BITS & mask}, bits >> 2 * VERTEX_BITS};
+}
+
+INLINE double largest_of(const double v[FMB_DIM_MAX])
+{
+    const double x = fabs(v[0]), y = fabs(v[1]), z = fabs(v[2]), most = x > y ? x : y;
+    return most > z ? most : z;
+}
+
+/* The vertex of D with the least n . p, n of any length. */
+INLINE void support(const void *context, const double n[FMB_DIM_MAX], struct gap_corner *out)
+{
+    const struct hull_gap *gap = context;
+    const double inverse = -1 / (largest_of(n) + 0x1p-1000);
+    const double outward[FMB_DIM_MAX] = {inverse * n[0], inverse * n[1], inverse * n[2]};
+    struct hull_column column;
+    hull_support(gap->pair, outward, &column);
+    hull_point(gap->pair, column, out->at);
+    out->bits = bits_of(column);
+}
+
+/* ---- Scale ---- */
+
+static double sum_of(const double v[FMB_DIM_MAX])
+{
+    return (fabs(v[0]) + fabs(v[1])) + fabs(v[2]);
+}
+
+/* Returns a lower bound of the largest coordinate of a vertex of a frame over the window, up to
+ * rounding: that of its vertices, two of a hull, and, since the displacement is the difference of
+ * two points, half of that. */
+static double least_of(const struct hull_gap *gap, int f)
+{
+    const struct hull_view *view = &gap->pair->view[f];
+    const bool hull = view->placed.frame->shape == FMB_HULL;
+    double least = 0.5 * largest_of(gap->displacement[f]);
+    for (unsigned i = 0; i < (hull ? 2 : view->vertices.count); i++) {
+        double at[FMB_DIM_MAX];
+        hull_place(view, hull && i == 1 ? view->placed.frame->spanning[1] : i, at);
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            at[axis] += gap->position[f][axis];
+        least = fmax(least, largest_of(at));
+    }
+    return least;
+}
+
+/* The limit on the width, relative to the largest coordinate; fmb.h states 1e-12. */
+static const double limit = 0.9e-12;
+
+/* Completes what position, displacement and duration determine. least: a lower bound of the largest
+ * coordinate of a vertex over the window. */
+static void set_bounds(struct hull_gap *gap, double least)
+{
+    const struct hull_pair *pair = gap->pair;
+    int exponent;
+    gap->far = gap->late = 0;
+    for (int f = 0; f < 2; f++) {
+        const double way = sum_of(gap->displacement[f]);
+        gap->far += sum_of(gap->position[f]) + way + pair->view[f].radius;
+        gap->late += way;
+    }
+    gap->late *=
+        gap->duration < 0x1p-900 && gap->duration > 0 ? fmin(0x1p-1073 / gap->duration, 1) : 0;
+    gap->tight = limit * (least * (1 - 0x1p-40) - 0x1p-47 * gap->far - pair->error);
+    frexp(pair->reach * (1 + 0x1p-40), &exponent);
+    gap->scale = ldexp(1, MESH_BITS - (exponent > -200 ? exponent : -200));
+}
+
+static bool is_tight(const struct hull_gap *gap, const struct fmb_gap *out)
+{
+    return out->bounds[1] - out->bounds[0] <= gap->tight;
+}
+
+/* ---- Distance ---- */
+
+/* Sets the time, the witness points and the upper bound. */
+static void set_witness(const struct hull_gap *gap, int count, const unsigned bits[],
+                        const double weight[], struct fmb_gap *out)
+{
+    double apart[FMB_DIM_MAX], late = 0;
+    for (int f = 0; f < 2; f++) {
+        double at[FMB_DIM_MAX] = {0};
+        late = 0;
+        for (int c = 0; c < count; c++) {
+            const struct hull_column column = column_of(bits[c]);
+            double vertex[FMB_DIM_MAX];
+            hull_place(&gap->pair->view[f], column.vertex[f], vertex);
+            late += column.end ? weight[c] : 0;
+            for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+                at[axis] += weight[c] * vertex[axis];
+        }
+        late = late < 0 ? 0 : late > 1 ? 1 : late;
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            out->witness[f][axis] =
+                gap->position[f][axis] + (late * gap->displacement[f][axis] + at[axis]);
+    }
+    const double slack = gap->pair->view[0].slack + gap->pair->view[1].slack;
+    const double error = 0x1p-47 * gap->far + gap->late + slack + 0x1p-1000;
+    gap_subtract(out->witness[1], out->witness[0], apart);
+    out->has_witness = true;
+    out->time = late * gap->duration;
+    out->bounds[1] = (sqrt(gap_dot(apart, apart)) + error) * (1 + 0x1p-49);
+}
+
+/* Sets the lower bound that the direction proves. */
+static void set_lower(const struct hull_gap *gap, struct fmb_gap *out)
+{
+    const double outward[FMB_DIM_MAX] = {-out->direction[0], -out->direction[1],
+                                         -out->direction[2]};
+    struct hull_column column;
+    out->bounds[0] = -(hull_support(gap->pair, outward, &column) + 2 * gap->pair->error);
+}
+
+static enum gap_outcome distance(const struct hull_gap *gap, double farthest, struct fmb_gap *out)
+{
+    const struct hull_pair *pair = gap->pair;
+    const double far = farthest + 4 * pair->error + gap->tight;
+    double toward[FMB_DIM_MAX], f, at[2][FMB_DIM_MAX];
+    unsigned bits[GAP_CORNERS];
+    struct gap_simplex simplex;
+    for (int i = 0; i < 2; i++)
+        rotation_apply(&pair->view[i].rotation, pair->view[i].centre, at[i]);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        toward[axis] = (at[1][axis] - at[0][axis]) + (pair->offset[axis] + 0.5 * pair->drift[axis]);
+    const enum gap_outcome outcome = gap_nearest(gap, support, pair->dim, toward, pair->error, far,
+                                                 &simplex, out->direction, &f);
+    if (outcome != GAP_KNOWN)
+        return outcome;
+    for (int c = 0; c < simplex.count; c++)
+        bits[c] = simplex.corner[c].bits;
+    out->bounds[0] = f - 4 * pair->error;
+    set_witness(gap, simplex.count, bits, simplex.weight, out);
+    return is_tight(gap, out) ? GAP_KNOWN : GAP_UNSURE;
+}
+
+/* ---- Distance on the grid ---- */
+
+static void grid_support(void *context, mpz_t n[3], struct exact_corner *out)
+{
+    const struct hull_gap *gap = context;
+    double direction[FMB_DIM_MAX];
+    struct gap_corner corner;
+    exact_direction(n, direction);
+    support(gap, direction, &corner);
+    out->bits[0] = corner.bits;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        mpz_set_d(out->at[axis], corner.at[axis] * gap->scale);
+}
+
+/* Finds a direction in which the distance is 0, up to the width of an enclosure. */
+static void set_direction(const struct hull_gap *gap, struct fmb_gap *out)
+{
+    struct hull_depth depth;
+    if (hull_depth_begin(&depth, gap))
+        while (!hull_depth_step(&depth, 1))
+            ;
+    hull_depth_end(&depth, out);
+}
+
+/* The point of D next to the origin, with every vertex rounded to the grid. If that is the origin,
+ * the depth gives the direction. */
+static enum gap_outcome distance_on_grid(const struct hull_gap *gap, struct fmb_gap *out)
+{
+    struct exact_simplex simplex;
+    unsigned bits[EXACT_CORNERS];
+    double weight[EXACT_CORNERS];
+    exact_simplex_each(&simplex, mpz_init);
+    mpz_set_ui(simplex.other[0], 1);
+    exact_simplex_solve(&simplex, simplex.other, grid_support, (void *) gap);
+    for (int c = 0; c < simplex.count; c++) {
+        bits[c] = simplex.corner[c]->bits[0];
+        weight[c] = mpz_get_d(simplex.weight[c]) / mpz_get_d(simplex.total);
+    }
+    if (simplex.zero)
+        set_direction(gap, out);
+    else
+        exact_direction(simplex.normal, out->direction);
+    set_lower(gap, out);
+    set_witness(gap, simplex.count, bits, weight, out);
+    exact_simplex_each(&simplex, mpz_clear);
+    return is_tight(gap, out) ? GAP_KNOWN : GAP_UNSURE;
+}
+
+/* ---- Pairs ---- */
+
+/* A pair in the order of hull_order(). It points into itself. */
+struct hull_gap_work {
+    struct frame_pair frames;
+    struct hull_pair pair;
+    bool swapped;
+    enum fmb_verdict verdict;
+    double farthest;
+    enum { GAP_DEPTH, GAP_PLACING, GAP_PLACED_DEPTH } stage; /* what comes next */
+    bool flat;                                               /* the depth needs no step */
+    struct hull_gap gap;
+    struct hull_gap_placed placed;
+    struct hull_depth depth;
+};
+
+/* Sets the gap in doubles. Returns false if doubles cannot bound it. */
+static bool set_gap(const struct hull_pair *pair, struct hull_gap *out)
+{
+    const struct placed_frame frames[2] = {pair->frames->a, pair->frames->b};
+    *out = (struct hull_gap){.pair = pair, .duration = pair->frames->duration};
+    if (!(pair->reach >= 0x1p-200 && pair->reach <= 0x1p200))
+        return false;
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < pair->dim; axis++) {
+            out->position[f][axis] = frames[f].placement->position[axis];
+            out->displacement[f][axis] = frames[f].placement->velocity[axis] * out->duration;
+        }
+    set_bounds(out, fmax(least_of(out, 0), least_of(out, 1)));
+    return out->far <= 0x1p900;
+}
+
+static enum gap_outcome solve_distance(const struct hull_gap *gap, double farthest,
+                                       struct fmb_gap *out)
+{
+    memset(out, 0, sizeof *out);
+    const enum gap_outcome outcome = distance(gap, farthest, out);
+    return outcome == GAP_UNSURE ? distance_on_grid(gap, out) : outcome;
+}
+
+static enum gap_outcome end_depth(struct hull_depth *depth, enum fmb_verdict verdict,
+                                  struct fmb_gap *out)
+{
+    memset(out, 0, sizeof *out);
+    const bool known = hull_depth_end(depth, out);
+    if (verdict == FMB_TOUCHING)
+        out->bounds[0] = out->bounds[1] = 0;
+    return known ? GAP_KNOWN : GAP_UNSURE;
+}
+
+/* Completes a gap of the ordered pair: no number is -0. */
+static enum gap_outcome complete(enum gap_outcome outcome, bool swapped, struct fmb_gap *out)
+{
+    out->time += 0.0;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        out->direction[axis] += 0.0;
+        for (int f = 0; f < 2; f++)
+            out->witness[f][axis] += 0.0;
+    }
+    if (outcome == GAP_KNOWN && swapped)
+        gap_turn_round(out);
+    return outcome;
+}
+
+/* Scales lengths by 2^exponent. Numbers that become subnormal are rounded: each coordinate of a
+ * witness point, and a bound, by less than 2^-1074. */
+static void scale_lengths(struct fmb_gap *gap, int exponent)
+{
+    const bool separated = gap->has_witness;
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            gap->witness[f][axis] = ldexp(gap->witness[f][axis], exponent);
+    const double lower = ldexp(gap->bounds[0], exponent), upper = ldexp(gap->bounds[1], exponent);
+    if (gap->bounds[0] != 0)
+        gap->bounds[0] = lower - 0x1p-1074;
+    if (gap->bounds[1] != 0)
+        gap->bounds[1] = upper + (separated ? 8 : 1) * 0x1p-1074;
+    if (!separated && gap->bounds[1] > 0)
+        gap->bounds[1] = 0;
+}
+
+/* ---- Steps ---- */
+
+/* Facets raised, and batches of vertices placed, in one step: of 2,048 vertices, less than a
+ * millisecond. */
+enum { RAISED_AT_ONCE = 128, PLACED_AT_ONCE = 40 };
+
+/* In doubles, a depth in one step. *late: it takes more. */
+static enum gap_outcome solve_at_once(const struct hull_gap *gap, enum fmb_verdict verdict,
+                                      double farthest, bool *late, struct fmb_gap *out)
+{
+    struct hull_depth depth;
+    if (verdict == FMB_SEPARATED)
+        return solve_distance(gap, farthest, out);
+    *late = hull_depth_begin(&depth, gap) && !hull_depth_step(&depth, RAISED_AT_ONCE);
+    return end_depth(&depth, verdict, out);
+}
+
+static void begin_placing(struct hull_gap_work *work)
+{
+    work->stage = GAP_PLACING;
+    hull_gap_place_begin(&work->pair, &work->placed);
+}
+
+enum gap_outcome hull_gap_begin(const struct frame_pair *frames, enum fmb_verdict verdict,
+                                double farthest, struct fmb_gap *out, struct hull_gap_work **work)
+{
+    struct frame_pair ordered = *frames;
+    struct hull_pair pair;
+    struct hull_gap gap;
+    bool late = false;
+    const bool swapped = gap_frames_swap(&frames->a, &frames->b);
+    if (swapped) {
+        ordered.a = frames->b;
+        ordered.b = frames->a;
+    }
+    hull_pair_set(&ordered, &pair);
+    const bool good = set_gap(&pair, &gap);
+    const enum gap_outcome outcome =
+        good ? solve_at_once(&gap, verdict, farthest, &late, out) : GAP_UNSURE;
+    if (outcome != GAP_UNSURE)
+        return complete(outcome, swapped, out);
+    void *(*allocate)(size_t);
+    mp_get_memory_functions(&allocate, NULL, NULL);
+    struct hull_gap_work *begun = allocate(sizeof *begun);
+    begun->frames = ordered;
+    begun->swapped = swapped;
+    begun->verdict = verdict;
+    begun->farthest = farthest;
+    begun->flat = false;
+    hull_pair_set(&begun->frames, &begun->pair);
+    if (late) {
+        begun->stage = GAP_DEPTH;
+        set_gap(&begun->pair, &begun->gap);
+        hull_depth_begin(&begun->depth, &begun->gap);
+    } else {
+        begin_placing(begun);
+    }
+    *work = begun;
+    return GAP_UNSURE;
+}
+
+/* With vertices that are placed exactly the enclosure is tight. With L the largest coordinate of a
+ * vertex, or half a displacement, reach is below 10.4 L and far below 17 L, and
+ *
+ *     a distance is enclosed within   5 error + 2^-47 far + rounding   < 3000 u L,
+ *     a depth within                  3 error + 50 units               < 4000 u L,
+ *
+ * where error is below 36 u reach, and a unit of the grid below 4 u reach. The limit is 8100 u L.
+ */
+static void begin_placed(struct hull_gap_work *work)
+{
+    work->gap = (struct hull_gap){.pair = &work->placed.pair, .duration = work->frames.duration};
+    memcpy(work->gap.displacement, work->placed.displacement, sizeof work->gap.displacement);
+    set_bounds(&work->gap, work->placed.least);
+    if (work->verdict == FMB_SEPARATED || work->placed.least == 0)
+        return;
+    work->stage = GAP_PLACED_DEPTH;
+    work->flat = !hull_depth_begin(&work->depth, &work->gap);
+}
+
+static enum gap_outcome solve_placed(struct hull_gap_work *work, struct fmb_gap *out)
+{
+    if (work->placed.least == 0) { /* two points at the origin of the world */
+        memset(out, 0, sizeof *out);
+        out->direction[0] = 1;
+        return GAP_KNOWN;
+    }
+    const double farthest = ldexp(work->farthest, (int) -work->placed.exponent);
+    const enum gap_outcome outcome = solve_distance(&work->gap, farthest, out);
+    return outcome == GAP_FAR ? GAP_FAR : GAP_KNOWN;
+}
+
+void hull_gap_end(struct hull_gap_work *work)
+{
+    void (*release)(void *, size_t);
+    mp_get_memory_functions(NULL, NULL, &release);
+    if (work->stage != GAP_PLACING)
+        hull_mesh_end(&work->depth.mesh);
+    if (work->stage != GAP_DEPTH)
+        hull_gap_place_end(&work->placed);
+    release(work, sizeof *work);
+}
+
+enum gap_outcome hull_gap_step(struct hull_gap_work *work, struct fmb_gap *out)
+{
+    enum gap_outcome outcome = GAP_UNSURE;
+    if (work->stage == GAP_PLACING && hull_gap_place_step(&work->placed, PLACED_AT_ONCE)) {
+        begin_placed(work);
+        if (work->verdict == FMB_SEPARATED || work->placed.least == 0)
+            outcome = solve_placed(work, out);
+    } else if (work->stage != GAP_PLACING &&
+               (work->flat || hull_depth_step(&work->depth, RAISED_AT_ONCE))) {
+        outcome = end_depth(&work->depth, work->verdict, out);
+        if (outcome == GAP_UNSURE && work->stage == GAP_DEPTH)
+            begin_placing(work);
+        else
+            outcome = GAP_KNOWN;
+    }
+    if (outcome == GAP_UNSURE)
+        return GAP_UNSURE;
+    if (outcome == GAP_KNOWN && work->stage != GAP_DEPTH && work->placed.least > 0)
+        scale_lengths(out, (int) work->placed.exponent);
+    complete(outcome, work->swapped, out);
+    hull_gap_end(work);
+    return outcome;
+}
+
+enum gap_outcome hull_gap(const struct frame_pair *frames, enum fmb_verdict verdict,
+                          double farthest, struct fmb_gap *out)
+{
+    struct hull_gap_work *work;
+    enum gap_outcome outcome = hull_gap_begin(frames, verdict, farthest, out, &work);
+    while (outcome == GAP_UNSURE)
+        outcome = hull_gap_step(work, out);
+    return outcome;
+}

@@ -1,0 +1,68 @@
+/* The gap of a pair with a hull, in steps. D, reach and error: hull.h.
+ *
+ * A separated pair: the point of D next to the origin, first in doubles (gap_simplex.h), then on a
+ * grid (gap_exact_simplex.h). A pair in contact: the depth, from a polytope inside of D
+ * (hull_mesh.h) and the direction in which D reaches least far. What is not tight because the
+ * positions cancel, or because numbers are too large or too small, is done again with vertices that
+ * are placed exactly and then rounded (hull_gap_place.c). */
+#ifndef FMB_HULL_GAP_H
+#define FMB_HULL_GAP_H
+
+#include "hull.h"
+#include "hull_mesh.h"
+
+#include <gmp.h>
+
+/* A pair in doubles, and what its bounds need. */
+struct hull_gap {
+    const struct hull_pair *pair;
+    /* Of each frame: what is added to R v at time 0, and at the end of the window. */
+    double position[2][FMB_DIM_MAX], displacement[2][FMB_DIM_MAX];
+    double duration;
+    double far;   /* bounds the sum of both frames' coordinates over the window */
+    double late;  /* bounds how far the frames move in the error of a time, relative to a window */
+    double tight; /* the greatest width of an enclosure */
+    double scale; /* the grid of a mesh: a power of two */
+};
+
+/* The depth of D, in steps. If D does not contain the origin, up to the width of an enclosure, the
+ * depth is 0. It points to gap and into itself: not to be copied. */
+struct hull_depth {
+    const struct hull_gap *gap;
+    double least; /* value of a direction */
+    double direction[FMB_DIM_MAX];
+    bool closed; /* the mesh is */
+    bool zero;   /* the depth is 0, up to the width of an enclosure */
+    struct hull_mesh mesh;
+};
+
+/* Returns false if there are no steps to be done. hull_depth_end() frees what the others allocate.
+ */
+bool hull_depth_begin(struct hull_depth *depth, const struct hull_gap *gap);
+
+/* Performs some steps, each of one scan of the vertices. Returns whether the depth is known. */
+bool hull_depth_step(struct hull_depth *depth, int count);
+
+/* Sets bounds, which enclose it also if it is not known, and direction. Returns whether they are
+ * tight. */
+bool hull_depth_end(struct hull_depth *depth, struct fmb_gap *out);
+
+/* A pair with its vertices in the world, lengths divided by 2^exponent. It points into itself. */
+struct hull_gap_placed {
+    struct hull_pair pair;
+    long exponent;
+    double displacement[2][FMB_DIM_MAX];
+    double least; /* the largest coordinate, or half a displacement if that is larger */
+    double *memory[2];
+    bool measures; /* the first pass */
+    unsigned next; /* batch of vertices */
+    mpz_t at[FMB_DIM_MAX];
+};
+
+/* Place a pair exactly, some vertices in each step, until that returns true. hull_gap_place_end()
+ * frees what they allocate. pair->frames must outlive it. */
+void hull_gap_place_begin(const struct hull_pair *pair, struct hull_gap_placed *out);
+bool hull_gap_place_step(struct hull_gap_placed *placed, int count);
+void hull_gap_place_end(struct hull_gap_placed *placed);
+
+#endif

@@ -1,0 +1,202 @@
+/* The depth of a pair in contact: the distance from the origin to the boundary of D.
+ *
+ * Method. An expanding polytope: a mesh of points of D, of which the lowest facet is raised again
+ * and again by the point of D that is farthest along its normal. The least value of that point in
+ * any direction tried bounds the depth from above; the least height of the mesh, from below. If D
+ * is thin in some direction, the first points find that, and the depth is 0 up to the width of an
+ * enclosure.
+ *
+ * Proof of the lower bound of the depth. Let the height of every facet of the mesh be at least rho
+ * > 0. Then every facet is seen from inside by the origin, and since the mesh is closed, each ray
+ * from the origin meets a facet; there it is at a distance of at least rho. So the hull of the
+ * points contains the ball of radius rho, and n . p >= rho for one of them for every unit vector n.
+ * The points are off by the error of the pair and, on the grid, by less than sqrt(3) units: so D
+ * reaches to rho less both in every direction.
+ *
+ * Accuracy. The greatest n . x is off by error |n|, where |n| is 1 up to 6 u; that is 6 u reach,
+ * less than another error. A height is off by less than MESH_ERROR units. */
+#include "hull_gap.h"
+
+#include <math.h>
+#include <string.h>
+
+/* In units of the grid. A facet whose height is less than TOLERANCE below the depth is not raised.
+ * ROUNDING: of heights, and of points. */
+static const double TOLERANCE = 2 * MESH_ERROR, ROUNDING = MESH_ERROR + 2;
+
+/* Finds the point of D that is farthest in a direction of unit length. Returns whether the depth is
+ * now known to be 0. */
+static bool scan(struct hull_depth *depth, const double n[FMB_DIM_MAX], int64_t at[FMB_DIM_MAX])
+{
+    const struct hull_gap *gap = depth->gap;
+    struct hull_column column;
+    double point[FMB_DIM_MAX];
+    const double value = hull_support(gap->pair, n, &column);
+    hull_point(gap->pair, column, point);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        at[axis] = (int64_t) (point[axis] * gap->scale);
+    if (value < depth->least) {
+        depth->least = value;
+        memcpy(depth->direction, n, sizeof depth->direction);
+    }
+    return depth->least + 2 * gap->pair->error <= gap->tight;
+}
+
+/* Makes n a unit vector; false if it is too short. */
+static bool normalise(double n[FMB_DIM_MAX], double shortest)
+{
+    const double length = sqrt(gap_dot(n, n));
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        n[axis] /= length;
+    return length > shortest;
+}
+
+static void negate(double n[FMB_DIM_MAX])
+{
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        n[axis] = -n[axis];
+}
+
+/* How far the points p and first are apart along n, in units. */
+static double height_of(const double n[FMB_DIM_MAX], const int64_t p[FMB_DIM_MAX],
+                        const int64_t first[FMB_DIM_MAX])
+{
+    const double d[FMB_DIM_MAX] = {(double) (p[0] - first[0]), (double) (p[1] - first[1]),
+                                   (double) (p[2] - first[2])};
+    return gap_dot(n, d);
+}
+
+/* Adds the point farthest along n or, if that is not off the points so far, along -n. Returns false
+ * if D is thin along n. *known: the depth is 0. */
+static bool add_off(struct hull_depth *depth, double n[FMB_DIM_MAX], bool *known)
+{
+    for (int side = 0; side < 2; side++, negate(n)) {
+        int64_t at[FMB_DIM_MAX];
+        *known = scan(depth, n, at);
+        if (*known)
+            return false;
+        if (height_of(n, at, depth->mesh.point[0].at) > TOLERANCE) {
+            hull_mesh_add_point(&depth->mesh, at);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The direction from the middle of D to the origin. */
+static void set_first(const struct hull_pair *pair, double n[FMB_DIM_MAX])
+{
+    double at[2][FMB_DIM_MAX];
+    for (int f = 0; f < 2; f++)
+        rotation_apply(&pair->view[f].rotation, pair->view[f].centre, at[f]);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        n[axis] = (at[0][axis] - at[1][axis]) - (pair->offset[axis] + 0.5 * pair->drift[axis]);
+    if (normalise(n, 0x1p-40 * pair->reach))
+        return;
+    n[0] = 1;
+    n[1] = n[2] = 0;
+}
+
+/* The direction from the line of the first two points to the origin or, if that is on it, any
+ * direction across. */
+static void set_second(const struct hull_mesh *mesh, double n[FMB_DIM_MAX])
+{
+    const int64_t *p = mesh->point[0].at, *q = mesh->point[1].at;
+    double e[FMB_DIM_MAX] = {(double) (q[0] - p[0]), (double) (q[1] - p[1]),
+                             (double) (q[2] - p[2])};
+    const double size = fabs(e[0]) + fabs(e[1]) + fabs(e[2]);
+    double across[FMB_DIM_MAX];
+    normalise(e, 0);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        n[axis] = (double) -p[axis];
+    /* Twice, the second time for what the first one rounds. */
+    for (int step = 0; step < 2; step++) {
+        const double along = gap_dot(n, e);
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            n[axis] -= along * e[axis];
+    }
+    if (mesh->dim == 3 && normalise(n, 0x1p-20 * size))
+        return;
+    const int i = mesh->dim == 2 ? 2 : fabs(e[0]) > fabs(e[1]);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        across[axis] = axis == i;
+    gap_cross(e, across, n);
+    normalise(n, 0);
+}
+
+/* Finds dim + 1 points of D that span a volume; false if D is thin, or if *known: the depth is 0.
+ */
+static bool find_first(struct hull_depth *depth, bool *known)
+{
+    struct hull_mesh *mesh = &depth->mesh;
+    double n[FMB_DIM_MAX];
+    int64_t at[FMB_DIM_MAX];
+    set_first(depth->gap->pair, n);
+    *known = scan(depth, n, at);
+    if (*known)
+        return false;
+    hull_mesh_add_point(mesh, at);
+    negate(n);
+    if (!add_off(depth, n, known))
+        return false;
+    set_second(mesh, n);
+    if (!add_off(depth, n, known) || mesh->dim == 2)
+        return mesh->points == 3;
+    hull_mesh_first_normal(mesh, n);
+    if (height_of(n, (int64_t[FMB_DIM_MAX]){0, 0, 0}, mesh->point[0].at) < 0)
+        negate(n);
+    return add_off(depth, n, known);
+}
+
+/* Raises the lowest facet. Returns false if it is as far out as D, or the depth is known to be 0.
+ */
+static bool raise_lowest(struct hull_depth *depth)
+{
+    const double scale = depth->gap->scale;
+    struct hull_mesh *mesh = &depth->mesh;
+    const int f = hull_mesh_lowest(mesh);
+    const double height = mesh->facet[f].height;
+    int64_t at[FMB_DIM_MAX];
+    if (depth->least * scale - height <= TOLERANCE)
+        return false;
+    depth->zero = scan(depth, mesh->facet[f].normal, at);
+    if (depth->zero || depth->least * scale - height <= TOLERANCE ||
+        hull_mesh_side(mesh, f, at) <= 0)
+        return false;
+    hull_mesh_extend(mesh, f, at);
+    return true;
+}
+
+bool hull_depth_begin(struct hull_depth *depth, const struct hull_gap *gap)
+{
+    depth->gap = gap;
+    depth->least = INFINITY;
+    hull_mesh_begin(&depth->mesh, gap->pair->dim);
+    depth->closed = find_first(depth, &depth->zero);
+    if (depth->closed)
+        hull_mesh_close(&depth->mesh);
+    return depth->closed;
+}
+
+bool hull_depth_step(struct hull_depth *depth, int count)
+{
+    for (; count > 0; count--)
+        if (!raise_lowest(depth))
+            return true;
+    return false;
+}
+
+bool hull_depth_end(struct hull_depth *depth, struct fmb_gap *out)
+{
+    const struct hull_gap *gap = depth->gap;
+    const double error = gap->pair->error;
+    double upper = 0;
+    if (depth->closed && !depth->zero)
+        upper = error - (hull_mesh_least_height(&depth->mesh) - ROUNDING) / gap->scale;
+    hull_mesh_end(&depth->mesh);
+    out->bounds[0] = -(depth->least + 2 * error);
+    out->bounds[1] = upper < 0 ? upper : 0;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        out->direction[axis] = -depth->direction[axis];
+    return out->bounds[1] - out->bounds[0] <= gap->tight;
+}
