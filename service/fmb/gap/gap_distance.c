@@ -53,7 +53,7 @@ INLINE unsigned least_of(int first, const lanes at[GAP_LANES])
 }
 
 /* The vertex with the least n . p. */
-INLINE void support(const void *context, const double n[3], struct gap_corner *out)
+static void support(const void *context, const double n[3], struct gap_corner *out)
 {
     const struct gap_pair *pair = context;
     const unsigned of_a = 7, of_b = 7 << GAP_OF_B;

@@ -45,7 +45,7 @@ INLINE double largest_of(const double v[FMB_DIM_MAX])
 }
 
 /* The vertex of D with the least n . p, n of any length. */
-INLINE void support(const void *context, const double n[FMB_DIM_MAX], struct gap_corner *out)
+static void support(const void *context, const double n[FMB_DIM_MAX], struct gap_corner *out)
 {
     const struct hull_gap *gap = context;
     const double inverse = -1 / (largest_of(n) + 0x1p-1000);
