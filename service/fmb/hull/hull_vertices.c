@@ -1,21 +1,18 @@
 /* Method. The conversion of the method exact (exact.h) places frames. A hull is given to it as
- * cuboids that have three vertices each as components, and their origin at the position of the
- * body: a component is then a vertex without the position. */
+ * cuboids that have three vertices (2D: two) each as components, and their origin at the position
+ * of the body: a component is then a vertex without the position. */
 #include "hull_vertices.h"
 
-#include <string.h>
-
-enum { AT_ONCE = 3 };
-
-/* Sets a part of a hull; components beyond count are 0. */
+/* Sets a part of a hull: a cuboid; components beyond count are 0. */
 static void set_part(const struct fmb_frame *frame, unsigned first, unsigned count,
                      struct fmb_frame *out)
 {
-    *out = (struct fmb_frame){.dim = frame->dim, .shape = FMB_CUBOID, .count = AT_ONCE};
+    double numbers[FMB_COMPONENTS_MAX] = {0};
+    const size_t dim = (size_t) frame->dim;
     for (unsigned k = 0; k < count; k++)
-        for (int axis = 0; axis < frame->dim; axis++)
-            out->component[k][axis] =
-                frame->vertices[(size_t) axis * frame->vertex_stride + first + k];
+        for (size_t axis = 0; axis < dim; axis++)
+            numbers[k * dim + axis] = frame->vertices[axis * frame->vertex_stride + first + k];
+    fmb_frame_make(frame->dim, FMB_CUBOID, numbers, dim * dim, out);
 }
 
 unsigned hull_vertex_count(const struct fmb_frame *frame)
@@ -37,7 +34,7 @@ bool hull_vertices_visit(const struct frame_pair *frames, unsigned number, hull_
         const struct fmb_frame *frame = placed[f]->frame;
         const unsigned all = hull_vertex_count(frame);
         batch.small[f] = frame->shape != FMB_HULL;
-        const unsigned at_once = batch.small[f] ? all : AT_ONCE;
+        const unsigned at_once = batch.small[f] ? all : (unsigned) frame->dim;
         batch.first[f] = number * at_once < all ? number * at_once : all;
         batch.count[f] = all - batch.first[f] < at_once ? all - batch.first[f] : at_once;
         more = more || batch.first[f] + batch.count[f] < all;
