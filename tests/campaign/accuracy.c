@@ -24,15 +24,6 @@ static const struct option option_list[] = {{"pairs", required_argument, NULL, O
                                             {"help", no_argument, NULL, OPTION_HELP},
                                             {NULL, 0, NULL, 0}};
 
-/* Those of placed bodies after the others. */
-static const struct family *any_family_at(size_t index)
-{
-    size_t others = 0;
-    while (family_at(others))
-        others++;
-    return index < others ? family_at(index) : family_posed_at(index - others);
-}
-
 static void help(void)
 {
     printf(
@@ -42,7 +33,8 @@ static void help(void)
         "counts what is wrong, by an oracle that shares no code with the engine.\n"
         "\n"
         "  --pairs N      of each family and cell: dimension, motion, shapes (%ld)\n"
-        "  --family NAME  this family; may be repeated (all)\n"
+        "  --family NAME  this family, or those whose names begin so up to a dash; may be\n"
+        "                 repeated (all)\n"
         "  --seed S       what to draw from\n"
         "  --workers N    threads (one a processor); the counts do not depend on it\n"
         "  --cells        a line a cell, not a family\n"
@@ -53,8 +45,8 @@ static void help(void)
         "\n"
         "Families:\n",
         usual_pairs);
-    for (size_t i = 0; any_family_at(i); i++)
-        printf("  %-20s  %s\n", any_family_at(i)->name, any_family_at(i)->summary);
+    for (size_t i = 0; family_any_at(i); i++)
+        printf("  %-20s  %s\n", family_any_at(i)->name, family_any_at(i)->summary);
 }
 
 struct campaign {
@@ -82,13 +74,13 @@ static bool list_cells(struct campaign *campaign)
     const struct options *options = campaign->options;
     size_t families = (size_t) options->families;
     if (families == 0)
-        while (any_family_at(families))
+        while (family_any_at(families))
             families++;
     campaign->measure = calloc(families * CELL_OF_ALL_SHAPES, sizeof *campaign->measure);
     if (!campaign->measure)
         return false;
     for (size_t i = 0; i < families; i++)
-        add_cells(campaign, options->families ? options->family[i] : any_family_at(i));
+        add_cells(campaign, options->families ? options->family[i] : family_any_at(i));
     return true;
 }
 

@@ -48,17 +48,25 @@ static bool take_seed(const struct options_program *program, uint64_t *out)
     return refuse(program, "--seed: expected an integer below 2^64, found '%s'", optarg);
 }
 
+/* A name, or the beginning of some up to a dash: "hull-". */
+static bool is_named(const struct family *family)
+{
+    const size_t length = strlen(optarg);
+    return strcmp(family->name, optarg) == 0 ||
+           (length > 0 && optarg[length - 1] == '-' && strncmp(family->name, optarg, length) == 0);
+}
+
 static bool take_family(const struct options_program *program, struct options *out)
 {
-    const struct family *family = family_by_name(optarg);
-    for (size_t i = 0; !family && family_posed_at(i); i++)
-        family = strcmp(family_posed_at(i)->name, optarg) == 0 ? family_posed_at(i) : NULL;
-    if (!family)
-        return refuse(program, "--family: there is no '%s'", optarg);
-    if (out->families == OPTIONS_FAMILIES_MAX)
-        return refuse(program, "--family: at most %d", OPTIONS_FAMILIES_MAX);
-    out->family[out->families++] = family;
-    return true;
+    const int before = out->families;
+    for (size_t i = 0; family_any_at(i); i++) {
+        if (!is_named(family_any_at(i)))
+            continue;
+        if (out->families == OPTIONS_FAMILIES_MAX)
+            return refuse(program, "--family: at most %d", OPTIONS_FAMILIES_MAX);
+        out->family[out->families++] = family_any_at(i);
+    }
+    return out->families > before || refuse(program, "--family: there is no '%s'", optarg);
 }
 
 static bool take(const struct options_program *program, int option, char **argv,

@@ -11,7 +11,7 @@
 /* Exit codes: FOUND, a method was wrong that never must be. */
 enum { EXIT_NONE_WRONG = 0, EXIT_FOUND = 1, EXIT_USAGE = 2 };
 
-enum { OPTIONS_FAMILIES_MAX = 100 };
+enum { OPTIONS_FAMILIES_MAX = 200 };
 
 struct options {
     long pairs;

@@ -13,13 +13,10 @@ static struct solid *solid_of(struct question *question, int side)
 
 static const struct family *any_family(struct draw *draw)
 {
-    size_t ordinary = 0, all;
-    while (family_at(ordinary))
-        ordinary++;
-    for (all = ordinary; family_posed_at(all - ordinary);)
+    int all = 0;
+    while (family_any_at((size_t) all))
         all++;
-    const size_t at = (size_t) draw_int(draw, 0, (int) all - 1);
-    return at < ordinary ? family_at(at) : family_posed_at(at - ordinary);
+    return family_any_at((size_t) draw_int(draw, 0, all - 1));
 }
 
 void hull_of_shape(struct draw *draw, const struct family *family, const struct cell *cell,
@@ -153,7 +150,7 @@ void hull_cloud(struct draw *draw, const struct family *family, const struct cel
         if (solid->shape == FMB_HULL) {
             const int thin = draw_int(draw, 1, cell->dim - 1);
             solid->vertex_count = 0;
-            solid->cloud = draw_int(draw, SOLID_LISTED_MAX + 1, (int) family->amount);
+            solid->cloud = (int) (13 * exp2(draw_uniform(draw, 0, log2(family->amount / 13))));
             solid->cloud_seed = draw_bits(draw);
             for (int i = 0; i < cell->dim; i++)
                 for (int axis = 0; axis < cell->dim; axis++)

@@ -21,9 +21,9 @@
 
 static const double QUICK_ERROR = 0x1p-40;
 
-/* All pairs of edges of two hulls of 41 vertices; so many products of a normal and a column, twice
- * those of all pairs of edges of two hulls of 12 vertices; planes. */
-enum { ALL_EDGES_MAX = 1700, WORK_MAX = 1000000, SAMPLES = 600 };
+/* All pairs of edges of two hulls of 41 vertices; so many products of a normal and a column, which
+ * all pairs of edges of two hulls of 12 vertices take; planes. */
+enum { ALL_EDGES_MAX = 1700, WORK_MAX = 430000, SAMPLES = 600 };
 
 typedef double vector[FMB_DIM_MAX];
 
@@ -49,13 +49,17 @@ void difference_end(const struct difference *difference, rational_vector n, int 
                     mpq_t *point)
 {
     rational_vector with, against;
-    mpq_t at;
+    mpq_t at,
+        scale; /* which makes the direction integers: no fraction is reduced for each vertex */
     rational_vector_init(with);
     rational_vector_init(against);
-    mpq_init(at);
+    mpq_inits(at, scale, NULL);
+    mpq_set_ui(scale, 1, 1);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        mpz_lcm(mpq_numref(scale), mpq_numref(scale), mpq_denref(n[axis]));
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        mpq_neg(sign > 0 ? against[axis] : with[axis], n[axis]);
-        mpq_set(sign > 0 ? with[axis] : against[axis], n[axis]);
+        mpq_mul(sign > 0 ? with[axis] : against[axis], n[axis], scale);
+        mpq_neg(sign > 0 ? against[axis] : with[axis], sign > 0 ? with[axis] : against[axis]);
         if (point)
             mpq_set_ui(point[axis], 0, 1);
     }
@@ -76,11 +80,12 @@ void difference_end(const struct difference *difference, rational_vector n, int 
     }
     rational_dot(at, with, difference->offset);
     mpq_add(end, end, at);
+    mpq_div(end, end, scale);
     if (sign < 0)
         mpq_neg(end, end);
     rational_vector_clear(with);
     rational_vector_clear(against);
-    mpq_clear(at);
+    mpq_clears(at, scale, NULL);
 }
 
 int difference_compare(const mpq_t x, const mpq_t y, rational_vector n)
