@@ -350,7 +350,8 @@ function beginStep(i) {
         stage.solids.clear();
         old.clear();
     }
-    stage.streams = streamsOf(i).map((j) => ({ i: j, step: steps[j], poses: posesOf(steps[j]) }));
+    /* what is of another size by far is not drawn beside it */
+    stage.streams = streamsOf(i).filter((j) => Math.abs(exponentOfStep(steps[j]) - exponent) <= 16).map((j) => ({ i: j, step: steps[j], poses: posesOf(steps[j]) }));
     const sources = new Map();
     for (const stream of stage.streams)
         stream.step.bodies.forEach((body, k) => {
