@@ -58,9 +58,7 @@ struct campaign {
 static void add_cells(struct campaign *campaign, const struct family *family)
 {
     struct cell cell[CELL_OF_ALL_SHAPES];
-    const bool named = campaign->options->families > 0;
-    /* The gaps of hulls are not there yet. */
-    const int count = family->cells & FAMILY_A_HULL && !named ? 0 : family_cells(family, cell);
+    const int count = family_cells(family, cell);
     for (int i = 0; i < count; i++) {
         struct measure *measure = &campaign->measure[campaign->measures++];
         measure->family = family;

@@ -17,7 +17,11 @@
 #include "workers.h"
 
 /* A cell is drawn in parts, so that all workers have something to do till the end. */
-enum { PARTS = 16, CELLS = CELL_ORDINARY + CELL_OF_ALL_SHAPES, JOBS = CELLS * PARTS };
+enum {
+    PARTS = 16,
+    CELLS = CELL_ORDINARY + CELL_OF_ALL_SHAPES + CELL_WITH_A_HULL,
+    JOBS = CELLS * PARTS
+};
 
 /* Each so many pairs of placed bodies, one of a hard family gets a certificate. */
 enum { CERTIFIED_ONE_IN = 64 };
@@ -257,6 +261,7 @@ int main(int argc, char **argv)
     }
     cell_list(false, validation.cell);
     cell_list_all(validation.cell + CELL_ORDINARY);
+    cell_list_hulls(validation.cell + CELL_ORDINARY + CELL_OF_ALL_SHAPES);
     workers_do("validate", options.workers, JOBS, validate_part, &validation);
     uint64_t broken = print_report(&validation);
     free(validation.tally);
