@@ -33,8 +33,8 @@ void mesh_write_ply(FILE *out, const struct mesh *mesh, const unsigned char (*fa
 /* Writes both meshes as one PLY file, with colours by verdict. */
 void mesh_report_ply(FILE *out, const struct mesh_report *report);
 
-/* Writes an HTML page (page.h) of both meshes, with the pairs, MESH_PAGE_PAIRS_MAX at most. It takes
- * some 26 bytes for each face. */
+/* Writes an HTML page (page.h) of both meshes, with the pairs, MESH_PAGE_PAIRS_MAX at most. It
+ * takes some 26 bytes for each face. */
 enum { MESH_PAGE_PAIRS_MAX = 20000 };
 void mesh_page_write(FILE *out, const struct mesh_report *report);
 

@@ -9,8 +9,8 @@ void bounds_range(const struct bounds *bounds, double range[2])
 }
 
 /* The open interval (p, q) meets the closed interval [u, v], u <= v, if and only if p < q, p < v
- * and u < q. (limbs_decide.h has the same rule for exact ratios: that method is to share nothing with
- * the others.) */
+ * and u < q. (limbs_decide.h has the same rule for exact ratios: that method is to share nothing
+ * with the others.) */
 enum fmb_verdict bounds_verdict(const struct bounds *bounds)
 {
     double p = bounds->strict[0], q = bounds->strict[1];

@@ -1,10 +1,10 @@
 /* The gap of a pair in contact, in doubles.
  *
  * Method. f at the normals of all facets that P can have: of the faces of both frames, of each edge
- * of A with each edge of B and, where the pair drifts, of each edge with the drift (limbs_decide.h);
- * in 2D of each edge. The greatest f is the gap; its direction proves the lower bound, all of them
- * the upper one. In 3D they are bounded first (gap_bounds.c), and only those that may be near
- * the greatest are made.
+ * of A with each edge of B and, where the pair drifts, of each edge with the drift
+ * (limbs_decide.h); in 2D of each edge. The greatest f is the gap; its direction proves the lower
+ * bound, all of them the upper one. In 3D they are bounded first (gap_bounds.c), and only those
+ * that may be near the greatest are made.
  *
  * Accuracy, with u = 2^-53 and R the reach. The f of a direction at hand is within gap_error() of
  * that of the same direction for the true P. The greatest f moves by no more than P does, so that
