@@ -18,7 +18,7 @@ see_tests/mesh := clients/mesh clients/common tests/bench service/fmb
 see_tests/logs := tests/encode tests/campaign tests/oracle service/answer $(wire) \
 	$(call fmb,frame filter) $(GEN)
 see_tests/soak := tests/encode clients/lib $(wire)
-see_tests/replay := clients/replay $(see_clients/replay) tests/unit tests/bench
+see_tests/replay := clients/replay $(see_clients/replay) tests/unit tests/bench tests/encode
 see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/unit tests/hostile $(GEN)
 see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
 see_tests/unit/kernels := $(call fmb,number frame filter)

@@ -636,7 +636,13 @@ static enum gap_outcome gap_of_pair(const struct batch_job *job, size_t i, enum 
         return gap_of(a, b, batch->duration, verdict, job->farthest, batch->open != NULL, out);
     const struct frame_pair frames = {
         {a->frame, a->placement}, {b->frame, b->placement}, batch->duration};
-    return hull_gap(&frames, verdict, job->farthest, out);
+    if (!batch->open)
+        return hull_gap(&frames, verdict, job->farthest, out);
+    struct hull_gap_work *work;
+    const enum gap_outcome outcome = hull_gap_begin(&frames, verdict, job->farthest, out, &work);
+    if (outcome == GAP_UNSURE)
+        hull_gap_end(work);
+    return outcome;
 }
 
 static void put_gap(const struct batch_job *job, const struct batch_block *block, size_t slot)

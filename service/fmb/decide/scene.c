@@ -83,6 +83,7 @@ struct fmb_scene_state {
     size_t first_answer;
     struct hull_decision hull; /* of the first open pair of frames, if it has a hull */
     struct fmb_answer hull_answer;
+    struct hull_gap_work *hull_gap; /* its gap, which comes after the decision; NULL: not begun */
     struct scene_block block;
 };
 
@@ -711,15 +712,28 @@ static void place_some(struct fmb_scene_state *state)
         state->stage = SEARCHING;
 }
 
-/* Goes on with the decision of open pair of frames k, which has a hull. Returns whether it is
- * complete.
- */
+/* Puts the gap of open pair of frames k, which has a hull, unless it needs another step. Returns
+ * whether it is complete. */
+static bool put_hull_gap(struct fmb_scene_state *state, size_t k, enum gap_outcome outcome)
+{
+    if (outcome == GAP_UNSURE)
+        return false;
+    state->hull_gap = NULL;
+    if (outcome == GAP_FAR)
+        state->block.outcomes.gap[k] = gap_none();
+    return true;
+}
+
+/* Goes on with the decision of open pair of frames k, which has a hull, and then with its gap.
+ * Returns whether they are complete. */
 static bool step_hull(struct fmb_scene_state *state, size_t k)
 {
     struct scene_outcomes *outcomes = &state->block.outcomes;
     struct fmb_answer *answer = &state->hull_answer;
     const struct frame_pair frames = frames_at(state, k);
     bool done = false;
+    if (state->hull_gap)
+        return put_hull_gap(state, k, hull_gap_step(state->hull_gap, &outcomes->gap[k]));
     if (state->hull.exact) {
         done = hull_decision_step(&state->hull, answer);
     } else {
@@ -734,13 +748,11 @@ static bool step_hull(struct fmb_scene_state *state, size_t k)
         memcpy(outcomes->contact[k], answer->contact, sizeof answer->contact);
     if (answer->has_box)
         memcpy(outcomes->box[k], answer->box, sizeof answer->box);
-    if (has_gaps(&state->scene)) {
-        const enum gap_outcome gap =
-            hull_gap(&frames, answer->verdict, farthest_of_frames(state), &outcomes->gap[k]);
-        outcomes->verdict[k] = gap == GAP_UNSURE ? 0 : outcomes->verdict[k];
-        outcomes->gap[k] = gap == GAP_KNOWN ? outcomes->gap[k] : gap_none();
-    }
-    return true;
+    if (!has_gaps(&state->scene))
+        return true;
+    return put_hull_gap(state, k,
+                        hull_gap_begin(&frames, answer->verdict, farthest_of_frames(state),
+                                       &outcomes->gap[k], &state->hull_gap));
 }
 
 static void decide_some(struct fmb_scene_state *state)
@@ -762,6 +774,8 @@ static void decide_some(struct fmb_scene_state *state)
 void fmb_scene_end(struct fmb_scene_state *state)
 {
     hull_decision_end(&state->hull);
+    if (state->hull_gap)
+        hull_gap_end(state->hull_gap);
 }
 
 bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *answers)
