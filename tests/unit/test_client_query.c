@@ -368,12 +368,15 @@ static void hulls(void **state)
             body[i].body = i % 4 == 3 ? body[i].body : with_hull(body[i].body, i);
         struct fmb_scene scene =
             scene_of(body, BODIES, FMB_PAIRS_ALL, FMB_WANT_TIMES | FMB_WANT_BOX);
-        for (int round = 0; round < 2; round++) /* whole, then by handle */
+        for (int round = 0; round < 3; round++) { /* whole, by handle, with gaps */
+            scene.want |= round == 2 ? FMB_WANT_GAP : 0;
+            scene.margin = round == 2 ? 0.25 : 0;
             relay_query(client, &scene);
+        }
         for (int i = 1; i < BODIES; i++) {
             struct fmb_client_answer got;
             struct fmb_answer expected;
-            const unsigned want = FMB_WANT_BOX;
+            const unsigned want = FMB_WANT_BOX | FMB_WANT_GAP;
             assert_int_equal(fmb_client_query_pair(client, &body[i - 1], 1, want, &got), FMB_OK);
             assert_int_equal(
                 fmb_decide(fmb_method_default(), &body[i - 1], &body[i], 1, want, &expected),
@@ -381,6 +384,7 @@ static void hulls(void **state)
             assert_int_equal(got.answer.verdict, expected.verdict);
             assert_memory_equal(got.answer.contact, expected.contact, sizeof expected.contact);
             assert_memory_equal(got.answer.box, expected.box, sizeof expected.box);
+            assert_true(query_same_gap(&got.answer.gap, &expected.gap));
         }
         free(body);
     }
