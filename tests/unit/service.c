@@ -168,7 +168,7 @@ void service_query_pair(int64_t client_id, int64_t sequence_number)
 static struct query_placement grating(int frames)
 {
     static struct plain_frame frame[900];
-    static unsigned char geometry[GEOMETRY_NONE_BYTES + 900 * GEOMETRY_FRAME_BYTES_MIN];
+    static unsigned char geometry[900 * GEOMETRY_FRAME_BYTES_MAX];
     for (int i = 0; i < frames; i++)
         frame[i] =
             (struct plain_frame){.shape = FMB_BOX, .origin = {0.0001 * i}, .components = {1, 1}};
