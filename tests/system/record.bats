@@ -356,7 +356,7 @@ END
 
 # feed COUNT: the same scene so often, of one client: its bodies go by handle from the second on.
 feed() {
-    yes "$(cat "$BATS_TEST_TMPDIR/scene.json")" | head -n "$1" # a scene is a line
+    yes "$(tr '\n' ' ' < "$BATS_TEST_TMPDIR/scene.json")" | head -n "$1"
 }
 
 # resolves FILE...: a replay finds each query the same, and all bodies defined.

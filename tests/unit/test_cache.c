@@ -325,7 +325,7 @@ enum { FRAMES_MAX = 40 };
  */
 static struct body_view boxes(int count, double length)
 {
-    static unsigned char bytes[GEOMETRY_NONE_BYTES + FRAMES_MAX * GEOMETRY_FRAME_BYTES_MIN];
+    static unsigned char bytes[FRAMES_MAX * GEOMETRY_FRAME_BYTES_MAX];
     struct plain_frame frame[FRAMES_MAX] = {0};
     for (int i = 0; i < count; i++) {
         frame[i].shape = FMB_BOX;
