@@ -535,8 +535,10 @@ static int64_t put_pairs(struct page *page, struct json_writer *json)
     json_begin(json, "pairs", '[');
     for (int rank = 0; rank < RANK_FAR; rank++) {
         const int64_t count = page->pair_count[rank];
+        const size_t size =
+            count > 0 ? (size_t) text_size(&page->pairs[rank]) : 0; /* moves bytes */
         if (count > 0)
-            put_element(json, page->pairs[rank].bytes, text_size(&page->pairs[rank]));
+            put_element(json, page->pairs[rank].bytes, size);
         dropped += count > page->pairs_max ? count - page->pairs_max : 0;
     }
     json_end(json, ']');

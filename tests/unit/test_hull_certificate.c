@@ -158,7 +158,7 @@ static void flaws_are_named(void **state)
         {"overlapping at 0 (1 0) a 1:1 b 0:1", "span the first frame", FMB_OVERLAPPING},
         {"overlapping at 0 (1 1/2) a 1:1/2 2:1/2 b 0:1/2 3:1/2", "span the first", FMB_OVERLAPPING},
     };
-    double memory[2][16];
+    double memory[2][64];
     struct fmb_body body[2];
     assert_int_equal(fmb_body_make_hull(2, a, COUNT(a), memory[0], &body[0]), FMB_OK);
     assert_int_equal(fmb_body_make_hull(2, b, COUNT(b), memory[1], &body[1]), FMB_OK);
