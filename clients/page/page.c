@@ -563,7 +563,8 @@ static void put_far(struct page *page)
     json_break(json, "\n");
     json_begin(json, NULL, '[');
     json_integer(json, NULL, page->kept);
-    put_element(json, pairs->bytes, text_size(pairs));
+    const size_t size = (size_t) text_size(pairs); /* moves bytes */
+    put_element(json, pairs->bytes, size);
     json_end(json, ']');
 }
 
