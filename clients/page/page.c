@@ -57,7 +57,8 @@ static void put_element(struct json_writer *json, const char *bytes, size_t size
 static void put_elements(struct json_writer *json, const char *key, struct text *text)
 {
     json_begin(json, key, '[');
-    fwrite(text->bytes, 1, text_size(text), json->out);
+    const size_t size = text_size(text); /* moves bytes */
+    fwrite(text->bytes, 1, size, json->out);
     json_end(json, ']');
 }
 
