@@ -101,15 +101,13 @@ static void csv_integer(FILE *out, int64_t integer)
 {
     char text[NUMBER_TEXT_MAX], *digit = text + sizeof text;
     uint64_t rest = integer < 0 ? -(uint64_t) integer : (uint64_t) integer;
+    *--digit = ',';
     if (integer != REPORT_NONE) {
-        *--digit = ',';
         do
             *--digit = (char) ('0' + rest % 10);
         while (rest /= 10);
         if (integer < 0)
             *--digit = '-';
-    } else {
-        *--digit = ',';
     }
     fwrite(digit, 1, (size_t) (text + sizeof text - digit), out);
 }

@@ -45,20 +45,26 @@ static void text_close(struct text *text)
     free(text->bytes);
 }
 
-/* Appends an element that is JSON. */
-static void put_element(struct json_writer *json, const char *bytes, size_t size)
+/* Copies a text. Its bytes may move while its size is taken. */
+static void put_text(struct json_writer *json, struct text *text)
+{
+    const size_t size = text_size(text);
+    fwrite(text->bytes, 1, size, json->out);
+}
+
+/* Appends a text of elements that are JSON. */
+static void put_element(struct json_writer *json, struct text *text)
 {
     json_break(json, "\n");
     json_begin(json, NULL, ' '); /* nothing but the comma */
-    fwrite(bytes, 1, size, json->out);
+    put_text(json, text);
     json->comma = true;
 }
 
 static void put_elements(struct json_writer *json, const char *key, struct text *text)
 {
     json_begin(json, key, '[');
-    const size_t size = text_size(text); /* moves bytes */
-    fwrite(text->bytes, 1, size, json->out);
+    put_text(json, text);
     json_end(json, ']');
 }
 
@@ -536,10 +542,8 @@ static int64_t put_pairs(struct page *page, struct json_writer *json)
     json_begin(json, "pairs", '[');
     for (int rank = 0; rank < RANK_FAR; rank++) {
         const int64_t count = page->pair_count[rank];
-        const size_t size =
-            count > 0 ? (size_t) text_size(&page->pairs[rank]) : 0; /* moves bytes */
         if (count > 0)
-            put_element(json, page->pairs[rank].bytes, size);
+            put_element(json, &page->pairs[rank]);
         dropped += count > page->pairs_max ? count - page->pairs_max : 0;
     }
     json_end(json, ']');
@@ -564,8 +568,7 @@ static void put_far(struct page *page)
     json_break(json, "\n");
     json_begin(json, NULL, '[');
     json_integer(json, NULL, page->kept);
-    const size_t size = (size_t) text_size(pairs); /* moves bytes */
-    put_element(json, pairs->bytes, size);
+    put_element(json, pairs);
     json_end(json, ']');
 }
 
@@ -581,7 +584,7 @@ void page_step_end(struct page *page)
     if (is_new) {
         json_break(&page->casts.text.json, "\n");
         json_begin(&page->casts.text.json, NULL, '[');
-        fwrite(page->cast.bytes, 1, size, page->casts.text.json.out);
+        put_text(&page->casts.text.json, &page->cast);
         json_end(&page->casts.text.json, ']');
     }
     json_break(json, "\n");

@@ -442,7 +442,7 @@ void hulls_run(struct bench *bench)
     if (!bench_wants(bench, "hulls"))
         return;
     printf(
-        "\nHulls by their vertices, the numbers of which come last; nanoseconds a pair at rest,\n"
+        "\nHulls by their vertices, whose numbers come last; nanoseconds a pair at rest,\n"
         "distinct pairs, all in turn. batch: verdicts of prepared frames; query: fmb_decide() of\n"
         "placements; +box, +gap: with these. Others are given the vertices turned, and rounded.\n"
         "In parentheses, the percentage of their answers that are wrong: in whether the two meet,\n"

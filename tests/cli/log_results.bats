@@ -162,7 +162,7 @@ rows() {
     wrong 'log results' --csv --csv=1 "$log"
 }
 
-@test "a closed pipe ends the command, without a word where nobody asked for signals" {
+@test "a closed pipe ends the command, silently unless SIGPIPE is ignored" {
     run --separate-stderr bash -c "'$FMB' log results --csv --all tests/logs/crowd.log | head -n 1"
     ended 0
     said ''

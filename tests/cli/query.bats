@@ -226,7 +226,7 @@ $two, \"pairs\": []}"
 
 # ---- Rows ------------------------------------------------------------------------------------
 
-# row N [MEMBERS]: squares 1 to N in a row, of which 1 and 2 overlap, and 2 and 3 touch.
+# row N [MEMBERS]: squares 1 to N in a row: 1 and 2 overlap, 2 and 3 touch.
 row() {
     awk -v n="$1" -v members="${2-}" 'BEGIN {
         printf "{\"dim\": 2, %s\"bodies\": [", members

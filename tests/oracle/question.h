@@ -78,7 +78,7 @@ enum { QUESTION_NUMBERS_MAX = 2 * (FMB_DIM_MAX + 2) * FMB_DIM_MAX };
 int question_numbers(struct question *question, double *out[QUESTION_NUMBERS_MAX]);
 
 /* In: solids of one frame, not by vertices, no hulls. Out: the pair, with bodies in body[0] and
- * body[1], of which only what the oracle reads is filled: not enough for the engine. */
+ * body[1], with only the fields that the oracle reads: not enough for the engine. */
 void question_pair(const struct question *question, struct fmb_body body[2], struct pair *pair);
 
 /* Whether a and b are equal in all numbers. */

@@ -669,7 +669,7 @@ END
     [ "$(wc -l < "$report")" = 1 ]
 }
 
-# The bodies of the demo's table, of which two are renamed in the log to bytes that are no text.
+# The bodies of the demo's table; two are renamed in the log to bytes that are no text.
 @test "watch prints what a recording holds, with the names and labels that clients sent" {
     sed 's/{"dim"/{"label": "shelf", "dim"/' clients/demo/table.json > "$BATS_TEST_TMPDIR/table.json"
     start_fmbd

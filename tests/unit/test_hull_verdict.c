@@ -186,7 +186,7 @@ static void points_and_lines_meet(void **state)
     assert_int_equal(verdict_of(&s, &by, 1), FMB_OVERLAPPING);
 }
 
-/* Plates in one plane, one of which leaves it: they overlap at the time 0 and at no other. */
+/* Plates in one plane that one of them leaves: they overlap at time 0 and at no other time. */
 static void plates_that_part(void **state)
 {
     struct hull plate = {{0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0, 1, 1, 0}, {0}, 5, {0}};

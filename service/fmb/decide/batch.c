@@ -660,7 +660,7 @@ static void put_gap(const struct batch_job *job, const struct batch_block *block
     if (outcome == GAP_FAR)
         return;
     put_nothing(batch, i);
-    *verdict = batch->open ? LEFT_OPEN : 0;
+    *verdict = LEFT_OPEN;
 }
 
 static enum fmb_status decide_block(const struct batch_job *job, size_t first)

@@ -6,10 +6,10 @@
  *
  * Steps (gap_of()):
  *
- *   1. gap_frames_swap()    puts the pair into an order that depends on its numbers only
- *   2. gap_pair_set()   collects offset, vectors, error and scale in doubles
- *   3. gap_in_doubles() gap_axis_aligned(), then gap_distance() or gap_depth() by the verdict
- *   4. gap_exact()      integers, if the enclosure is wider than the limit
+ *   1. gap_frames_swap()  puts the pair into an order that depends on its numbers only
+ *   2. gap_pair_set()     collects offset, vectors, error and scale in doubles
+ *   3. gap_in_doubles()   gap_axis_aligned(), then gap_distance() or gap_depth() by the verdict
+ *   4. gap_exact()        integers, if the enclosure is wider than the limit
  *
  * Each file proves its own bounds: gap_axis_aligned.c, gap_distance.c, gap_depth.c with
  * gap_bounds.c, and gap_exact.c. The functions for bodies of several frames take the least gap of

@@ -1,4 +1,4 @@
-/* Pairs of frames of which at least one is a hull.
+/* Pairs of frames with at least one hull.
  *
  * Such a pair is decided from the vertices of both frames: a box, a cuboid, a tetrahedron or a face
  * is then the hull of its 3 to 8 vertices. With M = { b - a } for points a and b of the frames at
@@ -105,7 +105,7 @@ static inline bool hull_takes(const struct fmb_frame *a, const struct fmb_frame 
 
 /* out := the frames in an order that depends on the numbers of both placed frames only. What is
  * computed for them in this order has the same bits for the swapped pair. Returns whether they are
- * exchanged; false both ways for frames that are equal in all numbers. */
+ * exchanged (gap_frames_swap()). */
 bool hull_order(const struct frame_pair *frames, struct frame_pair *out);
 
 /* How much a decision may do: doubles alone; doubles, and integers for what they leave open;

@@ -325,15 +325,11 @@ static void begin_placing(struct hull_gap_work *work)
 enum gap_outcome hull_gap_begin(const struct frame_pair *frames, enum fmb_verdict verdict,
                                 double farthest, struct fmb_gap *out, struct hull_gap_work **work)
 {
-    struct frame_pair ordered = *frames;
+    struct frame_pair ordered;
     struct hull_pair pair;
     struct hull_gap gap;
     bool late = false;
-    const bool swapped = gap_frames_swap(&frames->a, &frames->b);
-    if (swapped) {
-        ordered.a = frames->b;
-        ordered.b = frames->a;
-    }
+    const bool swapped = hull_order(frames, &ordered);
     hull_pair_set(&ordered, &pair);
     const bool good = set_gap(&pair, &gap);
     const enum gap_outcome outcome =

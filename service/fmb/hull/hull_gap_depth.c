@@ -1,6 +1,6 @@
 /* The depth of a pair in contact: the distance from the origin to the boundary of D.
  *
- * Method. An expanding polytope: a mesh of points of D, of which the lowest facet is raised again
+ * Method. An expanding polytope: a mesh of points of D, whose lowest facet is raised again
  * and again by the point of D that is farthest along its normal. The least value of that point in
  * any direction tried bounds the depth from above; the least height of the mesh, from below. If D
  * is thin in some direction, the first points find that, and the depth is 0 up to the width of an

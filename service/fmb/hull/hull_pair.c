@@ -100,53 +100,9 @@ static double sum_of(const double v[FMB_DIM_MAX])
     return (fabs(v[0]) + fabs(v[1])) + fabs(v[2]);
 }
 
-static int compare(double x, double y)
-{
-    return (x > y) - (x < y);
-}
-
-static int compare_arrays(const double *x, const double *y, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        if (x[i] != y[i])
-            return compare(x[i], y[i]);
-    return 0;
-}
-
-static int compare_frames(const struct fmb_frame *a, const struct fmb_frame *b)
-{
-    int order = (int) a->shape - (int) b->shape;
-    if (order == 0 && a->shape == FMB_HULL) {
-        order = (a->vertex_count > b->vertex_count) - (a->vertex_count < b->vertex_count);
-        if (order == 0 && a->vertices != b->vertices)
-            order = compare_arrays(a->vertices, b->vertices, (size_t) a->dim * a->vertex_stride);
-        return order;
-    }
-    if (order == 0)
-        order = compare_arrays(a->shape == FMB_BOX ? a->centre : a->origin,
-                               a->shape == FMB_BOX ? b->centre : b->origin, FMB_DIM_MAX);
-    if (order == 0)
-        order = compare_arrays(a->component[0], b->component[0], FMB_COMPONENTS_MAX);
-    return order ? order : compare_arrays(a->remainder[0], b->remainder[0], FMB_COMPONENTS_MAX);
-}
-
-static bool swaps(const struct frame_pair *frames)
-{
-    const struct fmb_placement *a = frames->a.placement, *b = frames->b.placement;
-    const size_t dim = (size_t) frames->a.frame->dim;
-    int order = compare_arrays(a->position, b->position, dim);
-    if (order == 0)
-        order = compare_arrays(a->velocity, b->velocity, dim);
-    if (order == 0)
-        order = a->orientation_count - b->orientation_count;
-    if (order == 0)
-        order = compare_arrays(a->orientation, b->orientation, (size_t) a->orientation_count);
-    return (order ? order : compare_frames(frames->a.frame, frames->b.frame)) > 0;
-}
-
 bool hull_order(const struct frame_pair *frames, struct frame_pair *out)
 {
-    const bool swapped = swaps(frames);
+    const bool swapped = gap_frames_swap(&frames->a, &frames->b);
     *out = (struct frame_pair){swapped ? frames->b : frames->a, swapped ? frames->a : frames->b,
                                frames->duration};
     return swapped;

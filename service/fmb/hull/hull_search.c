@@ -10,7 +10,7 @@
  * Accuracy. The search itself may be wrong in any way; what it claims is proven:
  *
  *   SEPARATED    by a direction n: all of D has n . x <= value + error |n| < 0 (hull.h).
- *   OVERLAPPING  by a simplex with vertices p_0 to p_dim in D, one of which may be the centre: the
+ *   OVERLAPPING  by a simplex with vertices p_0 to p_dim in D (one may be the centre): the
  *                origin is inside if all coordinates of the origin, ratios of determinants of dim
  *                of the points, certainly are of one sign. Then it is in the interior of D, and
  * that is the union of the interiors of M + t w if M has a volume: if a frame is solid, or the
