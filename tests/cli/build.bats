@@ -3,7 +3,7 @@
 # make_arm OPTIONS: one program of one file, elsewhere, anew.
 make_arm() {
     rm -rf "$BATS_TEST_TMPDIR"/[bo]
-    run env -u MAKEFLAGS make O="$BATS_TEST_TMPDIR/o" B="$BATS_TEST_TMPDIR/b" "$@" "$BATS_TEST_TMPDIR/b/arm"
+    run env -u MAKEFLAGS -u MAKELEVEL make O="$BATS_TEST_TMPDIR/o" B="$BATS_TEST_TMPDIR/b" "$@" "$BATS_TEST_TMPDIR/b/arm"
     [ "$status" = 0 ]
     [ -x "$BATS_TEST_TMPDIR/b/arm" ]
 }
@@ -20,7 +20,7 @@ make_arm() {
 
 @test "without lcm-gen, make says what to run" {
     make=$(command -v make)
-    run env -u MAKEFLAGS PATH=/nonexistent "$make" GEN="$BATS_TEST_TMPDIR" "$BATS_TEST_TMPDIR/fmb_msgs_body_t.h"
+    run env -u MAKEFLAGS -u MAKELEVEL PATH=/nonexistent "$make" GEN="$BATS_TEST_TMPDIR" "$BATS_TEST_TMPDIR/fmb_msgs_body_t.h"
     [ "$status" != 0 ]
     [[ $output == *"no lcm-gen here; 'make deps' installs"* ]]
 }
