@@ -130,11 +130,12 @@ static struct page_result result_of_scene(const struct scene_query *query,
 
 /* ---- Pairs ----------------------------------------------------------------------------------- */
 
+/* Whether both results answer the pair, differently. A result may end before it. */
 static bool differs(const struct replayed_pair *pair)
 {
-    return pair->then.answered != pair->now.answered ||
-           (pair->then.answered && (pair->then.dim != pair->now.dim ||
-                                    !query_same_answer(&pair->then.answer, &pair->now.answer)));
+    return pair->then.answered && pair->now.answered &&
+           (pair->then.dim != pair->now.dim ||
+            !query_same_answer(&pair->then.answer, &pair->now.answer));
 }
 
 static struct page_answer answer_of(const struct replayed_side *side)
@@ -150,7 +151,8 @@ static void add_pairs(struct page *page, const struct replayed *replayed)
     while (replayed_pairs_next(&pairs, &pair)) {
         const struct page_answer then = answer_of(&pair.then), now = answer_of(&pair.now);
         const int dim = pair.now.dim ? pair.now.dim : pair.then.dim;
-        page_pair(page, pair.a, pair.b, dim, differs(&pair) ? &then : NULL, &now);
+        page_pair(page, pair.a, pair.b, dim, differs(&pair) ? &then : NULL,
+                  pair.now.answered ? &now : &then);
     }
 }
 

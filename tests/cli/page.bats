@@ -53,9 +53,12 @@ SCENE
   {"id": 2, "name": "\u202e\"'&amp;", "shape": "box", "size": [1,1]}]}
 SCENE
     "$fmb" query --local --html empty.html > empty.said <<< '{"dim": 2, "bodies": []}' || true
-    for log in stack crowd refused hard-2d hard-3d; do
+    for log in stack refused hard-2d hard-3d; do
         "$fmb" replay --html $log.html "$logs/$log.log" > replay.said
     done
+    # A recording whose last scene says another verdict of its first pair.
+    "${fmb%fmb}edit-log" --flip 8 "$logs/crowd.log" crowd.log
+    "$fmb" replay --html crowd.html crowd.log > replay.said || true
     edited stack.html '.steps |= to_entries | .steps |= map(.value + {t: (.value.t + if .key > 20 then 86400 else 0 end)})' > paused.html
     "$fmb" replay --golden "$logs/crowd.golden" --html golden.html "$logs/crowd.log" > replay.said || true
     printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' > b.obj
@@ -189,7 +192,7 @@ setup() {
 }
 
 @test "differences are marked, and name both recordings" {
-    found light '.crowd | .different > 10 and (.counts | endswith("1 different")) and .rows == 100 and .more == 200 and (.notes | contains("left out"))'
+    found light '.crowd | .different == 1 and (.counts | endswith("1 different")) and .rows == 100 and .more == 200 and (.notes | contains("left out"))'
     found light '.difference | (.text | contains("step ")) and (.facts.query | endswith(": different")) and (.lane | index("difference")) != null'
     found light '.golden | (.title | contains("crowd.golden and answered again")) and (.facts | keys | any(endswith("crowd.golden")))'
 }
@@ -199,7 +202,8 @@ setup() {
 }
 
 @test "numbers of all sizes are drawn" {
-    found light '.sizes | length > 20 and all(.bad == 0) and (map(select(.drawn > 100)) | length) > 0.9 * length'
+    # Bodies may be smaller than a pixel beside each other: then their names show where they are.
+    found light '.sizes | length > 100 and all(.bad == 0 and (.drawn > 100 or .labels > 0)) and (map(select(.drawn > 100)) | length) > 0.7 * length'
 }
 
 @test "faces of meshes that meet are red, and a pair is shown from near" {

@@ -26,7 +26,7 @@ as_chromium() {
 # found PART FILTER: the jq filter must be true of PART.json.
 found() {
     command -v chromium > /dev/null || skip 'there is no chromium'
-    jq -e "$2" "$1.json" > /dev/null || {
+    [ -s "$1.json" ] && jq -e "$2" "$1.json" > /dev/null || {
         echo "not so: $2"
         jq -c "${2%%[^.a-zA-Z]*}" "$1.json" | head -c 3000
         [ -s "$1.json" ] || tail -n 20 "$1.log"

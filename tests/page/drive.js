@@ -59,6 +59,12 @@ function overprints() {
         && a.top < b.bottom && b.top < a.bottom)).length;
 }
 
+/* The links to a moment are written ten times a second at most. */
+async function momentLinked() {
+    await wait(200);
+    return moment();
+}
+
 /* Texts that stand for a missing or invalid value. */
 function badTexts() {
     return (page.body.innerText.match(/NaN|Infinity|undefined|null|\[object/g) ?? []).length;
@@ -98,7 +104,7 @@ async function scene() {
     await mouse(all("#pairs tr")[2].cells[0]);
     found.gap = { ...picture(), ...moment() };
     await press("n");
-    found.contact = { ...picture(), ...moment() };
+    found.contact = { ...picture(), ...await momentLinked() };
     await press("n");
     found.nextContact = { ...picture(), ...moment(), places: places() };
     await press("Home");
@@ -121,6 +127,7 @@ async function scene() {
     found.byBody = picture();
     await press("2");
     found.top = picture();
+    await mouse(all("#pairs tr")[0].cells[0]);
     await press("c");
     found.pair = picture();
     await mouse(one("#scene"), 0.5, 0.5);
@@ -138,6 +145,7 @@ async function shapes() {
     await open("hulls.html");
     found.hulls = { ...picture(), kinds: view.fmb.stage.items.map((item) => [item.surface.triangles.length, item.surface.edges.attributes.position.count / 2]) };
     await open("plane.html");
+    await press("n");
     found.plane = { ...picture(), direction: view.fmb.camera.getWorldDirection(view.fmb.camera.position.clone()).toArray().map(Math.round), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length) };
     await open("hostile.html");
     found.hostile = { title: page.title, table: table(), bold: all("#pairs b, #labels b").length, labels: texts("#labels span") };
@@ -209,8 +217,8 @@ async function sizes() {
         await open(name);
         for (let i = 0; i < view.fmb.steps.length; i += 3) {
             view.fmb.seek(view.fmb.begins[i]);
-            await press("f");
-            found.sizes.push({ step: i, drawn: picture().drawn, bad: badTexts() });
+            await press("c"); /* all bodies may be far apart for their sizes */
+            found.sizes.push({ step: i, drawn: picture().drawn, bad: badTexts(), labels: labels().length });
         }
     }
 }

@@ -34,8 +34,8 @@ function chooseNext(by) {
         choose(table.shown[at]);
 }
 
-function readHash() {
-    const found = /^#t=(-?[0-9.]+(e[+-]?[0-9]+)?)$/.exec(location.hash);
+function readHash(url) {
+    const found = /#t=(-?[0-9.]+(e[+-]?[0-9]+)?)$/.exec(url);
     if (found && Number.isFinite(Number(found[1])))
         seek(sOfTime(Number(found[1])));
 }
@@ -80,7 +80,7 @@ function watch() {
         event.preventDefault();
         keys[event.key]();
     });
-    addEventListener("hashchange", readHash);
+    addEventListener("hashchange", (event) => readHash(event.newURL));
     addEventListener("resize", drawTime);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
         readColours();
@@ -102,7 +102,7 @@ function start() {
     if (rows.length > 0 && !isMesh)
         choose(table.shown[0]);
     show();
-    readHash();
+    readHash(location.href);
     requestAnimationFrame(tick);
 }
 

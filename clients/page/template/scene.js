@@ -380,7 +380,10 @@ function beginLabels() {
     if (names.join("\n") !== stage.names) {
         stage.names = names.join("\n");
         one("labels").replaceChildren(...names.map((name) => Object.assign(document.createElement("span"), { textContent: name })));
-        stage.labels = [...one("labels").children].map((label) => ({ label, width: label.offsetWidth, height: label.offsetHeight }));
+        stage.labels = [...one("labels").children].map((label) => {
+            const { width, height } = label.getBoundingClientRect();
+            return { label, width: Math.ceil(width), height: Math.ceil(height) };
+        });
     }
     stage.labels.forEach((label, n) => { label.item = stage.items[n]; });
 }
