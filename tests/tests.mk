@@ -68,7 +68,7 @@ comma := ,
 wraps = $(addprefix -Wl$(comma)--wrap=,$1)
 wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_addmul z_submul z_add z_sub \
 	z_fdiv_q z_tdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize n_addmul_1 n_submul_1 \
-	n_mul_n) integer_ratio_round)
+	n_add_n n_sub_n n_mul_n) integer_ratio_round)
 wraps_test_log_read := $(call wraps,pread64)
 wraps_test_log_write := $(call wraps,fsync)
 wraps_test_log_cut := $(call wraps,page_take)

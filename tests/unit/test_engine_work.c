@@ -116,7 +116,7 @@ static void only_slabs_that_may_have_an_end_are_computed(void **state)
 int main(void)
 {
     static struct search searches[] = {{"bodies", work_of_body, {2e4, 2e4}, 8},
-                                       {"verdicts", work_of_verdict, {1e6, 3e6}, 8},
+                                       {"verdicts", work_of_verdict, {4e5, 3e6}, 8},
                                        {"all", work_of_all, {4e6, 12e6}, 8},
                                        {"exact", work_of_exact, {4e6, 12e6}, 8},
                                        {"gaps", work_of_gap, {2e5, 2e6}, 8},

@@ -112,50 +112,87 @@ LIMBS_INLINE void add_row(const int n, uint64_t *out, bool minus, const uint64_t
     }
 }
 
-/* A wide number: its limbs before first are 0, and from end on those of its sign. */
-struct wide_number {
-    const uint64_t *at;
-    int first, end;
-    bool negative;
+/* Digits. An integer in two's complement is the sum of its limbs as signed integers, each increased
+ * by 1 where the limb below it is negative: limb i is a digit of magnitude at most 2^63, times
+ * 2^(64 i). The digits of limbs that repeat a sign are 0. Since exponents are far apart, most
+ * digits of wide numbers are. */
+enum {
+    DIGITS_APART = 4,                                            /* zeros that end a run */
+    DIGIT_RUNS = (LIMBS_MAX + DIGITS_APART) / (1 + DIGITS_APART) /* the most runs of a number */
 };
 
-static inline struct wide_number wide_number_of(const uint64_t *x, int end)
+/* The runs of digits of a number with few zeros, and the number of digits other than 0. */
+struct digit_runs {
+    const uint64_t *at;
+    int digits, count;
+    struct {
+        int first, end;
+    } run[DIGIT_RUNS];
+};
+
+static inline bool is_negative_below(const uint64_t *x, int i)
 {
-    int first = 0;
-    while (first + 4 <= end && (x[first] | x[first + 1] | x[first + 2] | x[first + 3]) == 0)
-        first += 4;
-    while (first < end && x[first] == 0)
-        first++;
-    return (struct wide_number){x, first, end, is_negative(end, x)};
+    return i > 0 && x[i - 1] >> 63;
 }
 
-/* The same for wide numbers, whose span is often short, and which have many limbs of 0, since
- * exponents are far apart. x is its limbs before end, without a sign, minus 2^(64 end) if it is
- * negative. */
-LIMBS_FUNCTION void add_wide_product(int n, uint64_t *out, bool minus, struct wide_number x,
-                                     struct wide_number y)
+static inline void find_digits(const uint64_t *x, int limbs, struct digit_runs *out)
 {
-    if (x.end - x.first > y.end - y.first) {
-        const struct wide_number longer = x;
-        x = y;
-        y = longer;
-    }
-    minus = minus != y.negative;
-    bool carry = true; /* -y = ~y + 1 */
-    for (int j = y.first; j < y.end && x.first < x.end; j++) {
-        const uint64_t limb = y.negative ? ~y.at[j] + carry : y.at[j];
-        const int first = j + x.first, end = j + x.end < n ? j + x.end : n;
-        carry = carry && limb == 0;
-        if (limb == 0 || first >= end)
+    uint64_t sign = 0; /* of the limb below, in all bits */
+    out->at = x;
+    out->digits = out->count = 0;
+    for (int i = 0; i < limbs; i++) {
+        while (i + 4 <= limbs && x[i] == sign && x[i + 1] == sign && x[i + 2] == sign &&
+               x[i + 3] == sign)
+            i += 4;
+        if (i == limbs || x[i] == sign)
             continue;
-        const mp_limb_t rest =
-            (minus ? mpn_submul_1 : mpn_addmul_1)(out + first, x.at + x.first, end - first, limb);
-        const uint64_t high = x.negative ? limb : 0; /* 2^(64 end) times this is subtracted */
-        if (end < n && (rest >= high) != minus)
-            mpn_add_1(out + end, out + end, n - end, minus ? high - rest : rest - high);
-        else if (end < n)
-            mpn_sub_1(out + end, out + end, n - end, minus ? rest - high : high - rest);
+        sign = -(x[i] >> 63);
+        if (out->count == 0 || i - out->run[out->count - 1].end >= DIGITS_APART)
+            out->run[out->count++].first = i;
+        out->run[out->count - 1].end = i + 1;
+        out->digits++;
     }
+}
+
+/* out := out + x 2^(64 i), or out - x 2^(64 i). */
+static inline void add_limb(int n, uint64_t *out, bool minus, uint64_t x, int i)
+{
+    if (x == 0 || i >= n)
+        return;
+    if (minus)
+        mpn_sub_1(out + i, out + i, n - i, x);
+    else
+        mpn_add_1(out + i, out + i, n - i, x);
+}
+
+/* The same for the digits of wide numbers. A run of x is its limbs without a sign, minus 2^(64 end)
+ * if the last of them is negative, plus 2^(64 first) if the limb below it is. */
+LIMBS_FUNCTION void add_digits(int n, uint64_t *out, bool minus, const struct digit_runs *x,
+                               const struct digit_runs *y)
+{
+    if (x->digits < y->digits) {
+        const struct digit_runs *fewer = x;
+        x = y;
+        y = fewer;
+    }
+    for (int k = 0; k < y->count; k++)
+        for (int j = y->run[k].first; j < y->run[k].end; j++) {
+            const uint64_t limb = y->at[j] + is_negative_below(y->at, j);
+            const bool less = minus != (y->at[j] >> 63);
+            const uint64_t digit = y->at[j] >> 63 ? -limb : limb;
+            for (int r = 0; r < x->count && digit > 0; r++) {
+                const int first = x->run[r].first, to = j + x->run[r].end, end = to < n ? to : n;
+                const uint64_t *at = x->at + first;
+                if (j + first >= n)
+                    break;
+                const uint64_t high = is_negative_below(x->at, x->run[r].end) ? digit : 0;
+                const uint64_t rest = (less ? mpn_submul_1 : mpn_addmul_1)(
+                    out + j + first, at, end - (j + first), digit);
+                add_limb(n, out, less != (rest < high), rest < high ? high - rest : rest - high,
+                         end);
+                add_limb(n, out, less, is_negative_below(x->at, first) ? digit : 0, j + first);
+            }
+        }
 }
 
 /* The same for x and y of nx and ny limbs, with a sign. x has n limbs, too. */
@@ -164,7 +201,10 @@ LIMBS_INLINE void add_product(const int n, uint64_t *out, bool minus, int nx, co
 {
     const bool negative = is_negative(ny, y);
     if (LIMBS_MAX > LIMBS_NARROW) {
-        add_wide_product(n, out, minus, wide_number_of(x, nx), wide_number_of(y, ny));
+        struct digit_runs of_x, of_y;
+        find_digits(x, nx, &of_x);
+        find_digits(y, ny, &of_y);
+        add_digits(n, out, minus, &of_x, &of_y);
         return;
     }
     add_row(n, out, minus != negative, x, negative ? -y[0] : y[0]);
