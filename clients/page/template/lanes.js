@@ -41,9 +41,11 @@ function contacts() {
 
 const differences = steps.flatMap((step, i) => step.differs || step.pairs.some(isDifferent) ? [i] : []);
 
+const sizeOf = ({ clientWidth: width, clientHeight: height }) => ({ width, height });
+
 /* A canvas of the size that it has on the page; null: it has none. */
-function fitCanvas(canvas) {
-    const { clientWidth: width, clientHeight: height } = canvas, ratio = Math.min(devicePixelRatio, 2);
+function fitCanvas(canvas, { width, height } = sizeOf(canvas)) {
+    const ratio = Math.min(devicePixelRatio, 2);
     if (width === 0 || height === 0)
         return null;
     canvas.width = width * ratio;
@@ -56,8 +58,8 @@ function fitCanvas(canvas) {
 const namesContacts = steps.some((step) => step.all); /* other pairs are separated */
 
 /* Draws rows into one lane: in each column of pixels the strongest verdict. */
-function drawLane(canvas, some) {
-    const fitted = fitCanvas(canvas);
+function drawLane(canvas, some, size = sizeOf(canvas)) {
+    const fitted = fitCanvas(canvas, size);
     if (!fitted)
         return;
     const { to, width, x } = fitted, height = Math.min(fitted.height, 18), worst = new Uint8Array(Math.ceil(width) + 1);

@@ -87,12 +87,10 @@ function fillRows() {
     });
 }
 
+/* Takes all sizes before it draws, or the browser would lay the table out again for each lane. */
 function drawLanes() {
-    table.cells.forEach((cells, n) => {
-        const canvas = cells[columns.length - 1].querySelector("canvas");
-        if (canvas)
-            drawLane(canvas, [table.shown[n]]);
-    });
+    const canvases = table.cells.map((cells) => cells[columns.length - 1].querySelector("canvas"));
+    canvases.map((canvas) => canvas && sizeOf(canvas)).forEach((size, n) => size && drawLane(canvases[n], [table.shown[n]], size));
 }
 
 function drawHeads() {
