@@ -135,8 +135,9 @@ see_clients/log := clients/common clients/lib $(wire)
 see_clients/page := clients/log $(see_clients/log)
 see_clients/record := clients/log $(see_clients/log)
 see_clients/mesh := clients/page clients/common msgs/common service/fmb
+see_clients/scene := clients/mesh clients/common clients/lib msgs/codec msgs/common service/fmb
 see_clients/replay := clients/page clients/log service/answer $(see_clients/log)
-see_clients := $(addprefix clients/,query record mesh replay) $(see_clients/replay)
+see_clients := $(addprefix clients/,query record mesh scene replay) $(see_clients/replay)
 see_clients/demo :=
 see_clients/examples := clients/lib msgs/codec service/fmb
 
@@ -198,7 +199,7 @@ $(O)/msgs/%.o: $(GEN)/%.c $(O)/settings | $(message_headers)
 wire_objects := $(call objects_in,$(filter-out service/fmb,$(wire))) $(message_objects)
 client_objects := $(call objects_in,clients/lib)
 product_objects := $(filter-out %/main.o %/fmb.o,$(wire_objects) $(call objects_in,service service/answer clients \
-	$(addprefix clients/,common query log page record mesh replay)))
+	$(addprefix clients/,common query log page record mesh scene replay)))
 
 # Of unmerged archives the linker takes what a program needs; what stands before them on its command
 # line replaces the member of that name. Members of two folders may have one name.
@@ -259,7 +260,7 @@ define link
 		-Wl,--start-group $(filter %.a,$^) -Wl,--end-group -Wl,--as-needed $(libraries)
 endef
 linking = $(link_flags)
-libraries := -lcjson -llcm -lglib-2.0 -lseccomp -lgmp -lm
+libraries := -lcjson -lexpat -llcm -lglib-2.0 -lseccomp -lgmp -lm
 
 # fmb queries the bus through the library alone.
 programs := $(B)/fmbd $(B)/fmb
@@ -425,8 +426,8 @@ clean:
 
 # ---- Packages ----
 
-packages_deps := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libgmp-dev libglib2.0-dev \
-	libseccomp-dev pkg-config uthash-dev libjs-three
+packages_deps := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libexpat1-dev libgmp-dev \
+	libglib2.0-dev libseccomp-dev pkg-config uthash-dev libjs-three
 packages_deps-test := $(packages_deps) libcmocka-dev bats jq clang clang-format libclang-rt-14-dev \
 	liblcm-java default-jdk-headless liblcm-lua lua5.2 chromium libxml2-utils g++ cmake man-db \
 	gnuplot-nox

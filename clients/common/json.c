@@ -493,14 +493,12 @@ static bool read_frame(const struct place *at, struct given_frame *out)
     return true;
 }
 
-/* Makes a body of frames, whose bytes in a message are limited: 1 for a shape, 4 for a count of
- * vertices, 8 for a number. */
+/* Makes a body of frames, whose bytes in a message are limited. */
 static bool make_body(const struct place *at, const struct given_frame *given, size_t count,
                       const struct fmb_body **out)
 {
-    size_t bytes = 0, bad;
-    for (size_t i = 0; i < count; i++)
-        bytes += 1 + (given[i].by_vertices ? 4 : 0) + 8 * given[i].count;
+    const size_t bytes = scene_body_bytes(given, count);
+    size_t bad;
     if (bytes > FMB_CLIENT_BODY_BYTES_MAX)
         return refuse(at, "%s: %zu bytes in a message, which has space for %d",
                       fmb_status_text(FMB_OVER_LIMIT), bytes, (int) FMB_CLIENT_BODY_BYTES_MAX);

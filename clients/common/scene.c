@@ -41,6 +41,14 @@ static enum fmb_status make_frame(struct owned_scene *scene, const struct given_
                                scene_alloc(scene, doubles, sizeof(double)), out);
 }
 
+size_t scene_body_bytes(const struct given_frame *given, size_t count)
+{
+    size_t bytes = 0;
+    for (size_t i = 0; i < count; i++)
+        bytes += 1 + (given[i].by_vertices ? 4 : 0) + 8 * given[i].count;
+    return bytes;
+}
+
 enum fmb_status scene_make_body(struct owned_scene *scene, const struct given_frame *given,
                                 size_t count, const struct fmb_body **out, size_t *bad)
 {

@@ -23,6 +23,12 @@ explain() {
     say "or the service on the bus"
     echo "$build/fmbd &"
     echo "$build/fmb query --box $out/mine.json"
+    robot=$(dirname "$0")/robot
+    say "a robot of URDF, with meshes, on a path; where it overlaps what is around it"
+    echo "$build/fmb scene $robot/robot.urdf --joints-csv $robot/path.csv --with $robot/world.json |"
+    echo "    $build/fmb query --local --contacts"
+    "$build/fmb" scene "$robot/robot.urdf" --joints-csv "$robot/path.csv" --with "$robot/world.json" |
+        "$build/fmb" query --local --contacts | grep -e '^scene' -e '  overlapping'
     say "--json for programs, --html FILE for a page; $build/fmb query --help says more"
 }
 

@@ -95,6 +95,7 @@ void mesh_free(struct mesh *mesh)
 {
     free(mesh->vertex);
     free(mesh->face);
+    free(mesh->object);
     *mesh = (struct mesh){0};
 }
 

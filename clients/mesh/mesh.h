@@ -35,6 +35,8 @@ struct mesh {
     size_t vertex_count, face_count; /* both below 2^32 - 1 */
     double (*vertex)[3];             /* owned; [vertex][x, y, z]; NULL if there are none */
     unsigned (*face)[3]; /* owned; [face][corner], indices of vertices; NULL if there are none */
+    /* Owned; [object_count]: the number of faces before each object (o) of OBJ. NULL: no objects */
+    size_t *object, object_count;
 };
 
 /* Most bytes of an error text, final 0 included: one line that states what is wrong and where.

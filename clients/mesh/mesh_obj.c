@@ -3,10 +3,12 @@
  * other than f are an error. */
 #include "mesh_source.h"
 
+#include "allocate.h"
+
 #include <math.h>
 #include <string.h>
 
-enum what { VERTEX, FACE, SKIPPED, SURFACE, UNKNOWN };
+enum what { VERTEX, FACE, OBJECT, SKIPPED, SURFACE, UNKNOWN };
 
 /* The most frequent statements come first. The first DETECTED identify a file without an extension.
  */
@@ -16,7 +18,7 @@ static const struct {
     enum what what;
 } statements[] = {
     {"v", VERTEX},          {"f", FACE},           {"vn", SKIPPED},       {"vt", SKIPPED},
-    {"o", SKIPPED},         {"g", SKIPPED},        {"s", SKIPPED},        {"usemtl", SKIPPED},
+    {"o", OBJECT},          {"g", SKIPPED},        {"s", SKIPPED},        {"usemtl", SKIPPED},
     {"mtllib", SKIPPED},    {"vp", SKIPPED},       {"l", SKIPPED},        {"p", SKIPPED},
     {"mg", SKIPPED},        {"maplib", SKIPPED},   {"usemap", SKIPPED},   {"bevel", SKIPPED},
     {"lod", SKIPPED},       {"c_interp", SKIPPED}, {"d_interp", SKIPPED}, {"shadow_obj", SKIPPED},
@@ -34,6 +36,7 @@ static const struct {
 
 struct obj {
     struct mesh_build build;
+    size_t object_capacity;
     /* The largest index used, from 1, and its position: the vertex may follow its first use. */
     uint64_t largest;
     const unsigned char *largest_at;
@@ -205,6 +208,14 @@ static bool read_face(struct obj *obj)
     return mesh_add_face(&obj->build, corner);
 }
 
+static void add_object(struct obj *obj)
+{
+    struct mesh *mesh = obj->build.mesh;
+    mesh->object = allocate_grow(mesh->object, &obj->object_capacity, mesh->object_count + 1,
+                                 sizeof *mesh->object);
+    mesh->object[mesh->object_count++] = mesh->face_count;
+}
+
 /* ---- The file -------------------------------------------------------------------------------- */
 
 static bool read_statement(struct obj *obj)
@@ -222,9 +233,12 @@ static bool read_statement(struct obj *obj)
                                 "%s defines what is no triangle: make triangles of it first",
                                 mesh_word(source, begin, text));
     source->at += length;
-    if (what == SKIPPED)
-        skip_statement(source);
-    return what == SKIPPED || (what == VERTEX ? read_vertex(obj) : read_face(obj));
+    if (what == VERTEX || what == FACE)
+        return what == VERTEX ? read_vertex(obj) : read_face(obj);
+    if (what == OBJECT)
+        add_object(obj);
+    skip_statement(source);
+    return true;
 }
 
 static bool read_statements(struct obj *obj)

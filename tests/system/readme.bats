@@ -55,7 +55,7 @@ prints_what_it_shows() {
 }
 
 @test "the commands of the README print what it shows" {
-    prints_what_it_shows README.md 11
+    prints_what_it_shows README.md 15
     # The curve has the six steps, whose points have the same size.
     [ "$(grep -c "^.*<use xlink:href='#gpPt0' transform=" "$FMB_BUILD/path.svg")" = 7 ]
     grep -q '](clients/demo/table.png)' README.md
@@ -113,7 +113,7 @@ prints_what_it_shows() {
     for library in lcm glib-2.0 gmp seccomp; do
         readelf -d "$FMB_BUILD/fmbd" | grep -q "NEEDED.*\[lib$library\.so"
     done
-    for library in lcm glib-2.0 gmp cjson; do
+    for library in lcm glib-2.0 gmp cjson expat; do
         readelf -d "$FMB_BUILD/fmb" | grep -q "NEEDED.*\[lib$library\.so"
     done
 }

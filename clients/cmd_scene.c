@@ -1,0 +1,168 @@
+/* fmb scene: prints a robot of a URDF file as scenes. */
+#include "commands.h"
+
+#include "args.h"
+#include "complain.h"
+#include "joints.h"
+#include "number.h"
+#include "robot_scene.h"
+#include "scene_json.h"
+
+#include <float.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char usage[] =
+    "usage: fmb scene [OPTIONS] ROBOT.urdf\n"
+    "\n"
+    "Prints a robot as a scene, as 'fmb query' takes it: a body for each link, with\n"
+    "its name, of its <collision> elements. A link without one is no body. With a\n"
+    "table of joint values, prints a scene for each row:\n"
+    "\n"
+    "  fmb scene robot.urdf --joints-csv path.csv --with world.json |\n"
+    "    fmb query --local --contacts --fail-if overlapping\n"
+    "\n"
+    "ROBOT.urdf may be '-', standard input. Mesh files are named from its folder.\n"
+    "\n"
+    "Poses:\n"
+    "  --joints LIST        NAME=VALUE,...: values of joints, in radians, or lengths of\n"
+    "                       prismatic ones; the others are 0. A value beyond the\n"
+    "                       limits of its joint is an error\n"
+    "  --joints-csv FILE    a table with a column for each joint that moves, named in\n"
+    "                       its first line, and columns \"label\" and \"time\", or not.\n"
+    "                       A row with a time lasts until that of the next row\n"
+    "\n"
+    "Shapes. Boxes are boxes. A mesh (STL, OBJ, PLY) is its convex hull, of at most\n"
+    "1024 vertices; those inside are left out.\n"
+    "  --sides N            sides of the hulls that enclose cylinders and spheres, a\n"
+    "                       multiple of 4 up to 44 (16). They are outside by at most\n"
+    "                       r (1 / cos(pi/N) - 1) of cylinders of radius r, and\n"
+    "                       r tan(pi/N)^2 of spheres: for 16 by 0.02 r and 0.04 r\n"
+    "  --objects            a hull for each object (o) of an OBJ file, for convex\n"
+    "                       decompositions\n"
+    "  --package-path DIRS  folders of packages, separated by colons: a mesh file\n"
+    "                       package://NAME/FILE is NAME/FILE in the first that has it\n"
+    "\n"
+    "Scenes:\n"
+    "  --with SCENE.json    adds the bodies of a scene, with its ignored pairs,\n"
+    "                       duration and margin. Links have the ids from 1 on; bodies\n"
+    "                       that have one of these get another id, which is reported\n"
+    "  --margin M           the margin\n"
+    "  -h, --help\n"
+    "\n"
+    "A link and the one above it are ignored. Joints are revolute, continuous,\n"
+    "prismatic or fixed. Mimic joints, COLLADA (.dae), xacro, SRDF and SDF are not\n"
+    "supported. Poses are rounded to doubles: give a margin where that matters.\n"
+    "\n"
+    "Exit codes: 0 printed; 2 wrong usage, or a file that cannot be read or is not\n"
+    "valid. Then no scene is printed.\n";
+
+struct scene_options {
+    struct robot_body_options body;
+    long sides;
+    const char *joints, *table, *world;
+    double margin; /* negative: not given */
+};
+
+/* Places and prints the scenes of all rows; with print false, only checks them. */
+static bool print_rows(struct robot_scene *scene, struct joint_table *table, bool print)
+{
+    struct fmb_scene *out = &scene->owner.scene;
+    const double duration = out->duration;
+    enum joint_row row = joint_table_next(table);
+    const double begin = table->time;
+    bool good = true;
+    while (good && row == JOINT_ROW) {
+        const double time = table->time;
+        char label[sizeof table->label], place[64];
+        strcpy(label, table->label);
+        snprintf(place, sizeof place, "row of line %lu", table->line);
+        good = robot_scene_place(scene, table->joints->value, table->has_time ? time - begin : 0,
+                                 place);
+        row = joint_table_next(table);
+        out->label = *label ? label : NULL;
+        if (table->has_time)
+            out->duration = row == JOINT_ROW ? table->time - time : 0;
+        if (print)
+            scene_json_write(stdout, &scene->owner);
+        out->label = NULL;
+        good = good && !ferror(stdout);
+    }
+    out->duration = duration;
+    return good && row != JOINT_ROW_BAD;
+}
+
+static bool print_table(struct robot_scene *scene, struct joints *joints, const char *path)
+{
+    struct joint_table table;
+    const bool good = joint_table_open(path, joints, &table) && joints_check(joints) &&
+                      print_rows(scene, &table, false) && joint_table_rewind(&table) &&
+                      print_rows(scene, &table, true);
+    joint_table_close(&table);
+    return good;
+}
+
+static void report_outside(const struct robot *robot, const struct robot_scene *scene, int sides)
+{
+    char text[NUMBER_TEXT_MAX];
+    if (scene->outside > 0) /* rounded up */
+        complain(
+            "%s: hulls of %d sides enclose its cylinders and spheres; they are outside by at "
+            "most %s",
+            robot->path, sides, number_short(scene->outside * (1 + 1e-5), text));
+}
+
+static bool print_robot(const struct scene_options *options, const struct robot *robot,
+                        struct robot_scene *scene)
+{
+    struct joints joints;
+    bool good = robot_scene_make(robot, &options->body, scene) &&
+                (!options->world || robot_scene_add_world(scene, options->world));
+    if (!good)
+        return false;
+    if (options->margin >= 0)
+        scene->owner.scene.margin = options->margin;
+    report_outside(robot, scene, options->body.sides);
+    good = joints_open(robot, options->joints, &joints);
+    if (good && options->table) {
+        good = print_table(scene, &joints, options->table);
+    } else if (good) {
+        good = joints_check(&joints) && robot_scene_place(scene, joints.value, 0, robot->path);
+        if (good)
+            scene_json_write(stdout, &scene->owner);
+    }
+    joints_clear(&joints);
+    return good;
+}
+
+int cmd_scene(int argc, char **argv)
+{
+    struct scene_options options = {.sides = ROBOT_SIDES, .margin = -1};
+    const struct args_option own[] = {
+        {"joints", ARGS_TEXT, .out = &options.joints},
+        {"joints-csv", ARGS_TEXT, .out = &options.table},
+        {"sides", ARGS_INTEGER, &options.sides, .low = 4, .high = ROBOT_SIDES_MAX},
+        {"objects", ARGS_FLAG, .out = &options.body.objects},
+        {"package-path", ARGS_TEXT, .out = &options.body.package_path},
+        {"with", ARGS_TEXT, .out = &options.world},
+        {"margin", ARGS_NUMBER, &options.margin, .high = DBL_MAX},
+        {.name = NULL},
+    };
+    struct args args = {"scene",          usage, own, .operand = "ROBOT.urdf", .operands_min = 1,
+                        .operands_max = 1};
+    const int code = args_parse(&args, argc, argv);
+    if (code != ARGS_RUN)
+        return code;
+    if (options.sides % 4 != 0) {
+        args_error(&args, "--sides: expected a multiple of 4, found %ld", options.sides);
+        return ARGS_USAGE;
+    }
+    options.body.sides = (int) options.sides;
+    struct robot robot;
+    struct robot_scene scene = {.robot_bodies = 0};
+    bool good = robot_read(args.operands[0], &robot) && print_robot(&options, &robot, &scene);
+    robot_scene_clear(&scene);
+    robot_clear(&robot);
+    good = output_flush() && good;
+    return good ? ARGS_ANSWERED : ARGS_USAGE;
+}

@@ -1,0 +1,130 @@
+/* Method. The hull of the selected points grows until it contains all points, as the engine decides
+ * exactly. Where a point is separated from it, the direction of their gap says where the hull lacks
+ * something: the point that is farthest that way is selected, if it is not yet, else the separated
+ * one. Rounding of that search only costs selected points that are no vertices; in the end, and
+ * where there are too many, those in the hull of the others are removed. */
+#include "mesh_hull.h"
+
+#include "allocate.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct growing {
+    const double (*point)[3];
+    size_t count;
+    bool *used;                   /* [count] */
+    size_t selected;              /* number of those used */
+    double (*vertex)[3], *memory; /* of the hull */
+    double *point_memory;         /* of the hull of a point */
+    struct fmb_body hull;
+    enum fmb_status status;
+};
+
+/* Makes the hull of the points that are used. Returns false on error. */
+static bool make_hull(struct growing *growing)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < growing->count && count < growing->selected; i++)
+        if (growing->used[i])
+            memcpy(growing->vertex[count++], growing->point[i], sizeof *growing->vertex);
+    growing->status =
+        fmb_body_make_hull(3, growing->vertex[0], 3 * count, growing->memory, &growing->hull);
+    return growing->status == FMB_OK;
+}
+
+/* Whether a point is outside of the hull. On output: the direction to it, if it is not NULL. False
+ * on error too. */
+static bool is_outside(struct growing *growing, size_t i, double direction[3])
+{
+    struct fmb_body point;
+    const struct fmb_placement hull = {.body = &growing->hull}, at = {.body = &point};
+    struct fmb_answer answer = {.verdict = 0};
+    growing->status = fmb_body_make_hull(3, growing->point[i], 3, growing->point_memory, &point);
+    if (growing->status == FMB_OK)
+        growing->status = fmb_decide(fmb_method_default(), &hull, &at, 0, 0, &answer);
+    if (growing->status != FMB_OK || answer.verdict != FMB_SEPARATED)
+        return false;
+    if (direction) {
+        growing->status = fmb_decide(fmb_method_default(), &hull, &at, 0, FMB_WANT_GAP, &answer);
+        memcpy(direction, answer.gap.direction, 3 * sizeof *direction);
+    }
+    return growing->status == FMB_OK;
+}
+
+static size_t farthest(const struct growing *growing, const double direction[3])
+{
+    size_t best = 0;
+    double most = -INFINITY;
+    for (size_t i = 0; i < growing->count; i++) {
+        const double *p = growing->point[i];
+        const double along = direction[0] * p[0] + direction[1] * p[1] + direction[2] * p[2];
+        if (along > most) {
+            most = along;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* Removes points that are in the hull of the others. Returns false on error. */
+static bool prune(struct growing *growing)
+{
+    for (size_t i = 0; i < growing->count && growing->selected > 1; i++) {
+        if (!growing->used[i])
+            continue;
+        growing->used[i] = false;
+        growing->selected--;
+        if (!make_hull(growing))
+            return false;
+        growing->used[i] = is_outside(growing, i, NULL);
+        growing->selected += growing->used[i];
+        if (growing->status != FMB_OK)
+            return false;
+    }
+    return make_hull(growing);
+}
+
+/* Selects a point. Returns false on error, and if there are too many. */
+static bool select_point(struct growing *growing, size_t i)
+{
+    if (growing->selected == FMB_HULL_VERTICES_MAX && !prune(growing))
+        return false;
+    if (growing->selected == FMB_HULL_VERTICES_MAX)
+        return false;
+    growing->used[i] = true;
+    growing->selected++;
+    return make_hull(growing);
+}
+
+static bool grow(struct growing *growing)
+{
+    double direction[3];
+    if (!select_point(growing, 0))
+        return false;
+    for (size_t i = 0; growing->status == FMB_OK && i < growing->count; i++)
+        while (!growing->used[i] && is_outside(growing, i, direction)) {
+            const size_t best = farthest(growing, direction);
+            if (!select_point(growing, growing->used[best] ? i : best))
+                return false;
+        }
+    return growing->status == FMB_OK && prune(growing);
+}
+
+enum fmb_status mesh_hull(const double (*point)[3], size_t count, double (*vertex)[3],
+                          size_t *found)
+{
+    struct growing growing = {
+        .point = point,
+        .count = count,
+        .vertex = vertex,
+        .used = allocate(count, sizeof *growing.used),
+        .memory = allocate(fmb_hull_doubles(3, FMB_HULL_VERTICES_MAX), sizeof *growing.memory),
+        .point_memory = allocate(fmb_hull_doubles(3, 1), sizeof *growing.point_memory)};
+    *found = grow(&growing) ? growing.selected : 0;
+    free(growing.used);
+    free(growing.memory);
+    free(growing.point_memory);
+    return growing.status;
+}

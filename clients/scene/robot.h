@@ -1,0 +1,95 @@
+/* A robot of rigid links and joints, as a URDF file describes it, and the poses of its links.
+ * robot_read() makes one, robot_place() poses it for any values of its joints.
+ * Not here: links as bodies of the engine (robot_body.h), values of joints (joints.h).
+ *
+ * Errors are reported on stderr, in one line that names the file, the line and the link or joint.
+ */
+#ifndef ROBOT_H
+#define ROBOT_H
+
+#include "keyed_hash.h"
+#include "pose.h"
+#include "scene.h"
+
+enum robot_shape { ROBOT_BOX, ROBOT_CYLINDER, ROBOT_SPHERE, ROBOT_MESH };
+
+/* A <collision>. */
+struct robot_element {
+    unsigned long line;
+    struct pose origin; /* in its link */
+    enum robot_shape shape;
+    /* Of a box its full sizes; of a cylinder about z radius and length; of a sphere its radius; of
+     * a mesh a factor for each axis. */
+    double size[3];
+    const char *file; /* of a mesh, as the URDF names it */
+};
+
+enum robot_joint_type { ROBOT_REVOLUTE, ROBOT_CONTINUOUS, ROBOT_PRISMATIC, ROBOT_FIXED };
+
+/* A link or a joint in the table of its name. */
+struct robot_name {
+    UT_hash_handle hh;
+    const char *name;
+    unsigned long line;
+    unsigned index;
+};
+
+struct robot_joint {
+    const struct robot_name *name;
+    enum robot_joint_type type;
+    struct pose origin;        /* in the parent */
+    double axis[3];            /* of length 1 */
+    double limit[2];           /* lower, upper; radians, or lengths; infinite: none */
+    const char *link_names[2]; /* of the parent and of the child */
+    unsigned link[2];          /* the same as indices */
+};
+
+#define ROBOT_ROOT UINT32_MAX
+
+struct robot_link {
+    const struct robot_name *name;
+    size_t element, element_count; /* its range of robot.elements */
+    unsigned joint;                /* whose child it is; of the root ROBOT_ROOT */
+};
+
+/* Most links, joints and collision elements of a file, each; and most bytes. */
+enum { ROBOT_COUNT_MAX = 65536, ROBOT_BYTES_MAX = 1 << 24 };
+
+struct robot {
+    const char *path; /* of the file */
+    struct robot_link *links;
+    struct robot_joint *joints;
+    struct robot_element *elements;
+    size_t link_count, joint_count, element_count; /* at least one link */
+    unsigned *order;                               /* [link_count]: each after its parent */
+    /* Private. */
+    size_t link_capacity, joint_capacity, element_capacity;
+    struct robot_name *link_names, *joint_names; /* tables */
+    struct owned_scene memory;                   /* of texts and entries of tables */
+};
+
+/* Reads a file; "-" is standard input. Returns false after an error. The caller passes the robot to
+ * robot_clear() in either case. */
+bool robot_read(const char *path, struct robot *out);
+void robot_clear(struct robot *robot);
+
+/* Connects links and joints by their names, and sets order. Returns false after an error: they are
+ * no tree. Called by robot_read(). */
+bool robot_connect(struct robot *robot);
+
+/* Adds a copy of a name to a table. Returns NULL, and *first, if it is in the table. */
+struct robot_name *robot_add_name(struct robot *robot, struct robot_name **table, const char *name,
+                                  const struct robot_name **first);
+
+/* Returns the joint of a name, or NULL. */
+const struct robot_joint *robot_find_joint(const struct robot *robot, const char *name);
+
+/* Returns the pose of every link in the coordinates of the root, by forward kinematics. In: value:
+ * [joint_count], radians or lengths, of magnitudes up to TURN_RADIANS_MAX where they turn; not read
+ * of fixed joints. Out: pose: [link_count]. */
+void robot_place(const struct robot *robot, const double *value, struct pose *pose);
+
+/* Reads count finite numbers that are separated by white space, and nothing else. */
+bool robot_numbers(const char *text, int count, double *out);
+
+#endif

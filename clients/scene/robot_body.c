@@ -1,0 +1,326 @@
+#include "robot_body.h"
+
+#include "allocate.h"
+#include "complain.h"
+#include "fmb_client.h"
+#include "mesh_hull.h"
+#include "mesh.h"
+#include "output.h"
+#include "turn.h"
+#include "turned_box.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+/* The frames of the body that is being made. */
+struct frames {
+    const struct robot *robot;
+    const struct robot_link *link;
+    const struct robot_body_options *options;
+    struct owned_scene *scene;
+    const struct pose *placed; /* of the current element in the body; NULL: at its origin */
+    struct given_frame *frame; /* owned */
+    size_t count, capacity;
+    double *outside;
+};
+
+/* Reports an error of an element. Returns false. */
+__attribute__((format(printf, 3, 4))) static bool refuse(const struct frames *frames,
+                                                         const struct robot_element *element,
+                                                         const char *format, ...)
+{
+    char text[8192];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    complain("%s: line %lu: link '%s': %s", frames->robot->path, element->line,
+             frames->link->name->name, text);
+    return false;
+}
+
+static void add_frame(struct frames *frames, const struct given_frame *given)
+{
+    frames->frame =
+        allocate_grow(frames->frame, &frames->capacity, frames->count + 1, sizeof *frames->frame);
+    frames->frame[frames->count++] = *given;
+}
+
+/* Adds a hull; places its vertices, [count][axis], which the scene owns. */
+static void add_hull(struct frames *frames, double (*vertex)[3], size_t count)
+{
+    for (size_t i = 0; i < count && frames->placed; i++)
+        pose_apply(frames->placed, vertex[i]);
+    add_frame(frames, &(struct given_frame){FMB_HULL, true, 3 * count, vertex[0]});
+}
+
+/* ---- Boxes, cylinders and spheres ---- */
+
+static void add_box(struct frames *frames, const struct robot_element *element)
+{
+    double *numbers = scene_alloc(frames->scene, 12, sizeof *numbers);
+    const bool turned = frames->placed && !pose_is_straight(frames->placed);
+    memcpy(numbers + 3, element->size, sizeof element->size);
+    if (frames->placed)
+        memcpy(numbers, frames->placed->p, sizeof frames->placed->p);
+    if (turned)
+        turned_box(3, frames->placed->q, numbers, numbers + 3);
+    add_frame(frames, &(struct given_frame){turned ? FMB_CUBOID : FMB_BOX, false, turned ? 12 : 6,
+                                            numbers});
+}
+
+/* Hulls that enclose. Let N be the sides, k = cos(pi / N), and e_i the directions at (i + 1/2) of N
+ * equal parts of the full turn. A convex set contains a ball if its extent in every direction does.
+ *
+ * - The N vertices (s / k) e_i are a regular polygon whose edges have the distance s from the
+ *   centre. So two of them, at +-h, contain the cylinder of radius s and length 2 h.
+ * - The same polygon, as the section of a solid of revolution, is rings of radius (s / k) sin and
+ *   height (s / k) cos of the N/2 angles from the pole. Their hull contains the sphere of radius s,
+ *   and is contained in the hull of the polygons about the rings.
+ *
+ * The farthest points are vertices: at s / k from the axis, or, as a ring's radius is divided by k
+ * once more, at most s / k^2 from the centre. 1 / k^2 - 1 = tan(pi / N)^2. With N a multiple of 4,
+ * sides face along all axes, so that the hulls rest where the shapes would.
+ *
+ * Rounding. Vertices that are off by d reduce each extent by at most d. With u = 2^-53: cosines,
+ * sines and k are off by TURN_ERROR = 8 u, and k >= 0.7. So s / k is off by 16 u of itself, and its
+ * product with a direction by 9 u s / k more on each axis: 42 u s in all. The radius of a ring is
+ * off by 38 u of at most 2 s: the vertices of a sphere are off by less than 150 u s. ENCLOSE, 512
+ * u, is more than either. Numbers that are subnormal have absolute errors of a few 2^-1074: TINY.
+ * Where the hull is placed within a body, pose_apply() moves a vertex by at most sqrt(3) POSE_ERROR
+ * (|p|_1 + |x|_1) + sqrt(3) 2^-1000, |x|_1 < 4 (r + h): the radius and the half length are that
+ * much larger first. */
+#define ENCLOSE 0x1p-44
+#define TINY 0x1p-990
+
+struct enclosure {
+    int sides;
+    double turn[ROBOT_SIDES_MAX][2]; /* cosine and sine of e_i */
+    double k, radius, half;          /* radius: s / k; half: h */
+};
+
+static struct enclosure enclose(const struct frames *frames, double radius, double length)
+{
+    struct enclosure out = {.sides = frames->options->sides, .half = length / 2};
+    double k[2], grow = 0;
+    turn_degrees(180.0 / out.sides, k);
+    for (int i = 0; i < out.sides; i++)
+        turn_degrees((i + 0.5) * 360 / out.sides, out.turn[i]);
+    if (2 * out.half < length) /* subnormal */
+        out.half += DBL_TRUE_MIN;
+    if (frames->placed) {
+        const double *p = frames->placed->p;
+        grow = TINY +
+               2 * POSE_ERROR * (fabs(p[0]) + fabs(p[1]) + fabs(p[2]) + 4 * (radius + out.half));
+        out.half = (out.half + grow) * (1 + DBL_EPSILON);
+    }
+    out.k = k[0];
+    out.radius = (radius + grow) * (1 + ENCLOSE) / k[0] + TINY;
+    return out;
+}
+
+/* On output: a ring of vertices about the z axis. */
+static void set_ring(const struct enclosure *enclosure, double radius, double z, double (*out)[3])
+{
+    for (int i = 0; i < enclosure->sides; i++) {
+        out[i][0] = radius * enclosure->turn[i][0];
+        out[i][1] = radius * enclosure->turn[i][1];
+        out[i][2] = z;
+    }
+}
+
+static void report_outside(const struct frames *frames, double distance)
+{
+    if (distance > *frames->outside)
+        *frames->outside = distance;
+}
+
+static void add_cylinder(struct frames *frames, const struct robot_element *element)
+{
+    const double radius = element->size[0];
+    const struct enclosure enclosure = enclose(frames, radius, element->size[1]);
+    const size_t count = 2 * (size_t) enclosure.sides;
+    double(*vertex)[3] = scene_alloc(frames->scene, count, sizeof *vertex);
+    set_ring(&enclosure, enclosure.radius, -enclosure.half, vertex);
+    set_ring(&enclosure, enclosure.radius, enclosure.half, vertex + enclosure.sides);
+    add_hull(frames, vertex, count);
+    report_outside(frames, radius * (1 / enclosure.k - 1));
+}
+
+static void add_sphere(struct frames *frames, const struct robot_element *element)
+{
+    const double radius = element->size[0];
+    const struct enclosure enclosure = enclose(frames, radius, 0);
+    const int rings = enclosure.sides / 2;
+    const size_t count = (size_t) (enclosure.sides * rings);
+    double(*vertex)[3] = scene_alloc(frames->scene, count, sizeof *vertex);
+    for (int i = 0; i < rings; i++)
+        set_ring(&enclosure, enclosure.radius * enclosure.turn[i][1] / enclosure.k,
+                 enclosure.radius * enclosure.turn[i][0], vertex + i * enclosure.sides);
+    add_hull(frames, vertex, count);
+    report_outside(frames, radius * (1 / (enclosure.k * enclosure.k) - 1));
+}
+
+/* ---- Meshes ---- */
+
+/* Returns the path of a file in a package, "NAME/REST": in the first folder of the package path
+ * that has it. NULL if none does. The caller frees it. */
+static char *find_in_packages(const char *folders, const char *name)
+{
+    while (folders && *folders) {
+        const size_t length = strcspn(folders, ":"), size = length + strlen(name) + 2;
+        char *path = allocate(size, 1);
+        snprintf(path, size, "%.*s/%s", (int) length, folders, name);
+        if (access(path, F_OK) == 0)
+            return path;
+        free(path);
+        folders += length + (folders[length] == ':');
+    }
+    return NULL;
+}
+
+/* Returns the path of a mesh, which the caller frees; or NULL after an error. */
+static char *find_mesh(const struct frames *frames, const struct robot_element *element)
+{
+    static const char package[] = "package://", scheme[] = "file://";
+    const char *file = element->file;
+    if (strncmp(file, package, sizeof package - 1) == 0) {
+        char *path = find_in_packages(frames->options->package_path, file + sizeof package - 1);
+        if (!path)
+            refuse(frames, element, "%s: in no folder of --package-path%s%s", file,
+                   frames->options->package_path ? " " : ", which is not given",
+                   frames->options->package_path ? frames->options->package_path : "");
+        return path;
+    }
+    if (strncmp(file, scheme, sizeof scheme - 1) == 0)
+        file += sizeof scheme - 1;
+    return output_beside(frames->robot->path, file);
+}
+
+static bool is_collada(const char *file)
+{
+    const char *dot = strrchr(file, '.');
+    return dot && strcasecmp(dot, ".dae") == 0;
+}
+
+/* Adds the hull of the faces from `first` to before `end`, if there are any. */
+static bool add_faces(struct frames *frames, const struct robot_element *element, const char *path,
+                      const struct mesh *mesh, size_t first, size_t end)
+{
+    bool *used = allocate(mesh->vertex_count, sizeof *used);
+    double(*point)[3] = allocate(mesh->vertex_count, sizeof *point);
+    double(*vertex)[3] = scene_alloc(frames->scene, FMB_HULL_VERTICES_MAX, sizeof *vertex);
+    size_t count = 0, found = 0;
+    for (size_t corner = 3 * first; corner < 3 * end; corner++) {
+        const unsigned v = mesh->face[corner / 3][corner % 3];
+        for (int axis = 0; axis < 3 && !used[v]; axis++)
+            point[count][axis] = mesh->vertex[v][axis] * element->size[axis] + 0.0; /* no -0 */
+        count += !used[v];
+        used[v] = true;
+    }
+    enum fmb_status status = FMB_OK;
+    if (count > 0)
+        status = mesh_hull((const double(*)[3]) point, count, vertex, &found);
+    free(used);
+    free(point);
+    if (status != FMB_OK)
+        return refuse(frames, element, "%s: %s", path, fmb_status_text((int) status));
+    if (count > 0 && found == 0)
+        return refuse(frames, element,
+                      "%s: the hull of %zu vertices has more than %d of them: simplify the mesh, "
+                      "or divide it into objects (--objects)",
+                      path, count, (int) FMB_HULL_VERTICES_MAX);
+    if (count > 0)
+        add_hull(frames, vertex, found);
+    return true;
+}
+
+static bool add_objects(struct frames *frames, const struct robot_element *element,
+                        const char *path, const struct mesh *mesh)
+{
+    const size_t before = frames->count;
+    const size_t objects = frames->options->objects ? mesh->object_count : 0;
+    bool good = true;
+    for (size_t i = 0; good && i <= objects; i++)
+        good = add_faces(frames, element, path, mesh, i > 0 ? mesh->object[i - 1] : 0,
+                         i < objects ? mesh->object[i] : mesh->face_count);
+    return good && (frames->count > before || refuse(frames, element, "%s: it has no faces", path));
+}
+
+static bool add_mesh(struct frames *frames, const struct robot_element *element)
+{
+    char error[MESH_ERROR_MAX];
+    struct mesh mesh;
+    if (is_collada(element->file))
+        return refuse(frames, element, "%s: COLLADA is not supported: convert it to STL or OBJ",
+                      element->file);
+    char *path = find_mesh(frames, element);
+    if (!path)
+        return false;
+    const bool good = mesh_read(path, NULL, &mesh, error)
+                          ? add_objects(frames, element, path, &mesh)
+                          : refuse(frames, element, "%s: %s", path, error);
+    mesh_free(&mesh);
+    free(path);
+    return good;
+}
+
+/* ---- Bodies ---- */
+
+static bool add_element(struct frames *frames, const struct robot_element *element)
+{
+    switch (element->shape) {
+    case ROBOT_BOX: add_box(frames, element); return true;
+    case ROBOT_CYLINDER: add_cylinder(frames, element); return true;
+    case ROBOT_SPHERE: add_sphere(frames, element); return true;
+    default: return add_mesh(frames, element);
+    }
+}
+
+static const struct fmb_body *make_body(struct frames *frames, const struct robot_element *first)
+{
+    const struct fmb_body *body;
+    const size_t bytes = scene_body_bytes(frames->frame, frames->count);
+    size_t bad;
+    if (bytes > FMB_CLIENT_BODY_BYTES_MAX) {
+        refuse(
+            frames, first,
+            "%zu frames take %zu bytes in a message, which has space for %d: simplify its meshes",
+            frames->count, bytes, (int) FMB_CLIENT_BODY_BYTES_MAX);
+        return NULL;
+    }
+    const enum fmb_status status =
+        scene_make_body(frames->scene, frames->frame, frames->count, &body, &bad);
+    if (status == FMB_OK)
+        return body;
+    refuse(frames, first, "%s", fmb_status_text((int) status));
+    return NULL;
+}
+
+const struct fmb_body *robot_body(const struct robot *robot, const struct robot_link *link,
+                                  const struct robot_body_options *options,
+                                  struct owned_scene *scene, struct pose *origin, double *outside)
+{
+    struct frames frames = {
+        .robot = robot, .link = link, .options = options, .scene = scene, .outside = outside};
+    const struct robot_element *element = &robot->elements[link->element];
+    const struct fmb_body *body = NULL;
+    bool good = true;
+    *origin = link->element_count == 1 ? element->origin : POSE_NONE;
+    for (size_t i = 0; good && i < link->element_count; i++) {
+        const struct pose *at = &element[i].origin;
+        const bool none = pose_is_straight(at) && at->p[0] == 0 && at->p[1] == 0 && at->p[2] == 0;
+        frames.placed = link->element_count == 1 || none ? NULL : at;
+        good = add_element(&frames, &element[i]);
+    }
+    if (good)
+        body = make_body(&frames, element);
+    free(frames.frame);
+    return body;
+}

@@ -1,0 +1,35 @@
+/* Links of a robot as bodies of the engine. Boxes are boxes; spheres and cylinders are hulls that
+ * enclose them; a mesh is the hull of the vertices of its faces, or a hull for each object. */
+#ifndef ROBOT_BODY_H
+#define ROBOT_BODY_H
+
+#include "robot.h"
+
+/* The sides of the hulls of cylinders and spheres: a multiple of 4. */
+enum { ROBOT_SIDES = 16, ROBOT_SIDES_MAX = 44 };
+
+struct robot_body_options {
+    int sides;
+    bool objects;             /* of an OBJ: a hull for each */
+    const char *package_path; /* folders of packages, separated by colons; NULL: none */
+};
+
+/* Makes the body of a link that has collision elements, at least one. If it has only one, the body
+ * stands at the origin of that element, and has the numbers of the file; with several, it stands at
+ * that of the link, and the numbers of elements with an origin are rounded.
+ *
+ * Hulls contain the cylinders and spheres, exactly, where the body stands. Their points are outside
+ * by at most the distance *outside, rounding aside:
+ *
+ *     r (1 / cos(pi / sides) - 1)  of a cylinder of radius r
+ *     r tan(pi / sides)^2          of a sphere
+ *
+ * In:     scene     of dim 3; owns the body
+ * In/out: *outside  becomes the distance, if it is larger
+ * Out:    *origin   of the body, in the link
+ * Returns NULL after an error, which was reported on stderr. */
+const struct fmb_body *robot_body(const struct robot *robot, const struct robot_link *link,
+                                  const struct robot_body_options *options,
+                                  struct owned_scene *scene, struct pose *origin, double *outside);
+
+#endif

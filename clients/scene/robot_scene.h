@@ -1,0 +1,39 @@
+/* A robot and the bodies around it as a scene, which is posed and printed any number of times. */
+#ifndef ROBOT_SCENE_H
+#define ROBOT_SCENE_H
+
+#include "robot_body.h"
+
+struct robot_scene {
+    /* The bodies of links come first, in the order of the file; then those of the world. Neighbours
+     * are ignored: a link with a body, and the nearest one above it that has a body. */
+    struct owned_scene owner;
+    double outside; /* as of robot_body() */
+    /* Private. */
+    const struct robot *robot;
+    struct fmb_placement *placements; /* of the scene */
+    unsigned *link;                   /* [robot_bodies] */
+    struct pose *origin;              /* [robot_bodies], in the link */
+    struct pose *pose;                /* [link_count] */
+    size_t robot_bodies;
+    struct owned_scene world; /* owned */
+};
+
+/* Makes a scene at rest of a robot; its bodies have the ids from 1 on. Links without collision
+ * elements have no body; these are reported, in one line. Returns false after an error, which was
+ * reported. The caller passes the scene to robot_scene_clear() in either case. */
+bool robot_scene_make(const struct robot *robot, const struct robot_body_options *options,
+                      struct robot_scene *out);
+void robot_scene_clear(struct robot_scene *scene);
+
+/* Adds the bodies, ignored pairs, duration and margin of a file of one scene in 3D. Bodies whose
+ * ids those of links have get others, which is reported. To be called once at most. */
+bool robot_scene_add_world(struct robot_scene *scene, const char *path);
+
+/* Sets the poses, for values of the joints as robot_place() takes them; and moves the bodies of the
+ * world to where they are after this time, in seconds. place: of the values, for messages. Returns
+ * false after an error: a pose is beyond the doubles. */
+bool robot_scene_place(struct robot_scene *scene, const double *value, double time,
+                       const char *place);
+
+#endif

@@ -1,0 +1,442 @@
+# fmb scene: what is typed, what is printed, exit codes. Geometry: tests/unit/test_urdf.c.
+
+load ran
+
+setup() {
+    cd "$BATS_TEST_DIRNAME/../.." || return
+    FMB=$(realpath "${FMB_BUILD:-build}")/fmb
+    DEMO=$(realpath clients/demo/robot)
+    cd "$BATS_TEST_TMPDIR" || return
+    box='<collision><geometry><box size="1 2 3"/></geometry></collision>'
+    limit='<limit lower="-1" upper="2"/>'
+    # A base, an arm on it, and a tool at its end.
+    robot "<link name='base'>$box</link><link name='arm'>$box</link><link name='tool'>$box</link>
+        <joint name='turn' type='revolute'><origin xyz='0 0 4'/><parent link='base'/><child link='arm'/>
+          <axis xyz='0 0 1'/>$limit</joint>
+        <joint name='slide' type='prismatic'><parent link='arm'/><child link='tool'/>
+          <axis xyz='0 3 0'/>$limit</joint>"
+}
+
+# robot ELEMENTS: writes robot.urdf.
+robot() {
+    printf '<?xml version="1.0"?>\n<robot name="r">\n%s\n</robot>\n' "$1" > robot.urdf
+}
+
+# link ELEMENTS: writes a robot of one link.
+link() {
+    robot "<link name='a'>$1</link>"
+}
+
+scene() {
+    run --separate-stderr "$FMB" scene "$@"
+}
+
+# shows FILTER: what jq makes of the scenes, a line each.
+shows() {
+    ended 0
+    output=$(jq -c "$1" <<< "$output")
+}
+
+# refused TEXT ARGUMENTS...: one line, which contains the text, and no scene.
+refused() {
+    local text=$1
+    shift
+    scene "$@"
+    ended 2
+    is ''
+    [[ $stderr == "fmb: "*"$text"* && $stderr != *$'\n'* ]] || {
+        echo "expected: $text"
+        echo "found:    $stderr"
+        return 1
+    }
+}
+
+# triangle FILE: of STL, in ASCII.
+triangle() {
+    printf 'solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n' > "$1"
+}
+
+# ---- Bodies ----------------------------------------------------------------------------------
+
+@test "a link is a body of its name, and neighbours are ignored" {
+    scene robot.urdf
+    said ''
+    ended 0
+    is '{"dim": 3, "duration": 0,
+ "bodies": [{"id": 1, "name": "base", "shape": "box", "size": [1,2,3]},
+            {"id": 2, "name": "arm", "shape": "box", "size": [1,2,3], "position": [0,0,4]},
+            {"id": 3, "name": "tool", "shape": "box", "size": [1,2,3], "position": [0,0,4]}],
+ "ignore": [[1, 2], [2, 3]]}'
+    run --separate-stderr "$FMB" scene - < robot.urdf
+    shows '.bodies | length'
+    is 3
+}
+
+@test "links without collision elements have no body, which is said once; their neighbours are neighbours" {
+    joints=
+    for i in 1 2 3 4 5 6 7 8 9; do
+        joints+="<link name='l$i'/><joint name='j$i' type='fixed'><parent link='$([ $i = 1 ] && echo a || echo l$((i - 1)))'/><child link='l$i'/></joint>"
+    done
+    robot "<link name='a'>$box</link>$joints<link name='b'>$box</link>
+        <joint name='last' type='fixed'><parent link='l9'/><child link='b'/></joint>"
+    scene robot.urdf
+    said 'fmb: robot.urdf: no <collision>, so no body: l1, l2, l3, l4, l5, l6, l7, l8, and 1 more'
+    shows '[.bodies[].name, .ignore]'
+    is '["a","b",[[1,2]]]'
+}
+
+@test "a box keeps its numbers; beside others it is turned to a cuboid" {
+    turned='<origin xyz="1 2 3" rpy="0 0 0.5"/><geometry><box size="1 2 3"/></geometry>'
+    link "<collision>$turned</collision>"
+    scene robot.urdf
+    shows '.bodies[0] | [.shape, .size, .position, .orientation[1:3]]'
+    is '["box",[1,2,3],[1,2,3],[0,0]]'
+    link "<collision>$turned</collision>$box<collision><origin xyz='5 0 0'/><geometry><box size='1 1 1'/></geometry></collision>"
+    scene robot.urdf
+    shows '.bodies[0] | [has("position"), [.frames[] | .shape, .position]]'
+    is '[false,["cuboid",null,"box",null,"box",[5,0,0]]]'
+}
+
+@test "cylinders and spheres are hulls, tight along the axes, and it is said how far outside they are" {
+    link '<collision><geometry><cylinder radius="1" length="3"/></geometry></collision>'
+    scene robot.urdf
+    said 'fmb: robot.urdf: hulls of 16 sides enclose its cylinders and spheres; they are outside by at most 0.0195914'
+    shows '.bodies[0] | [.shape, (.vertices | length, (map(.[2]) | min, max)), ((.vertices | map(.[0]) | max) - 1 | . > 0 and . < 1e-12)]'
+    is '["hull",32,-1.5,1.5,true]'
+    link '<collision><geometry><sphere radius="1"/></geometry></collision>'
+    scene robot.urdf --sides 8
+    said 'fmb: robot.urdf: hulls of 8 sides enclose its cylinders and spheres; they are outside by at most 0.171575'
+    shows '.bodies[0].vertices | [length, ([0,1,2][] as $axis | (map(.[$axis]) | max) - 1 | . > 0 and . < 1e-12)]'
+    is '[32,true,true,true]'
+}
+
+# ---- Meshes ----------------------------------------------------------------------------------
+
+@test "a mesh is the hull of its vertices, scaled, without those inside and repeated ones" {
+    printf 'v %s\n' '0 0 0' '4 0 0' '0 4 0' '0 0 4' '1 1 1' '0 0 0' '9 9 9' > m.obj
+    printf 'f %s\n' '1 2 3' '1 2 5' '6 4 2' >> m.obj
+    mkdir folder
+    mv m.obj folder
+    link "<collision><origin xyz='1 0 0'/><geometry><mesh filename='folder/m.obj' scale='1 -1 0.5'/></geometry></collision>"
+    scene robot.urdf
+    shows '.bodies[0] | [.shape, .vertices, .position]'
+    is '["hull",[[0,0,0],[4,0,0],[0,-4,0],[0,0,2]],[1,0,0]]'
+    link "<collision><geometry><mesh filename='package://folder/m.obj'/></geometry></collision>"
+    refused "robot.urdf: line 3: link 'a': package://folder/m.obj: in no folder of --package-path, which is not given" robot.urdf
+    refused 'in no folder of --package-path /nowhere' robot.urdf --package-path /nowhere
+    scene robot.urdf --package-path "/nowhere:$PWD"
+    shows '.bodies[0].vertices | length'
+    is 4
+    link "<collision><geometry><mesh filename='file://$PWD/folder/m.obj'/></geometry></collision>"
+    scene robot.urdf
+    ended 0
+}
+
+@test "an OBJ is a hull for each object where that is wanted" {
+    for option in '' --objects; do
+        scene "$DEMO/robot.urdf" $option
+        shows '.bodies[] | select(.name == "hand") | .frames // [.] | map(.vertices | length)'
+        [ "$output" = "$([ "$option" ] && echo '[8,8,8]' || echo '[12]')" ]
+    done
+}
+
+# 20,000 triangles around a cylinder, in rings, and in its ends; 100 sides.
+@test "an STL of 20,000 triangles loads" {
+    awk 'BEGIN {
+        print "solid"
+        for (i = 0; i < 100; i++) for (j = 0; j < 100; j++) for (k = 0; k < 2; k++) {
+            print "facet normal 0 0 0\nouter loop"
+            for (c = 0; c < 3; c++) {
+                a = ((i + (c > k)) % 100) * 0.06283185307179586; z = j + (k ? c > 0 : c > 1)
+                printf "vertex %.9g %.9g %g\n", cos(a) * (1 - z * (100 - z) / 9000), sin(a) * (1 - z * (100 - z) / 9000), z
+            }
+            print "endloop\nendfacet"
+        }
+        print "endsolid"
+    }' > m.stl
+    [ "$(grep -c facet m.stl)" = 40000 ]
+    link "<collision><geometry><mesh filename='m.stl'/></geometry></collision>"
+    scene robot.urdf
+    shows '.bodies[0].vertices | length'
+    is 200
+}
+
+@test "a hull of too many vertices is refused with their number" {
+    awk 'BEGIN { for (i = 0; i < 1100; i++) print "v", i, i * i, 0; for (i = 3; i <= 1100; i++) print "f 1 2", i }' > m.obj
+    link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
+    refused "line 3: link 'a': m.obj: the hull of 1100 vertices has more than 1024 of them: simplify the mesh" robot.urdf
+}
+
+# ---- Poses -----------------------------------------------------------------------------------
+
+@test "joints move links" {
+    scene robot.urdf --joints slide=2,turn=0.5
+    shows '.bodies | [.[1].position, .[2].position, .[1].orientation, .[1].orientation == .[2].orientation] |
+        flatten | map(if type == "number" then . * 1000 | round else . end)'
+    is '[0,0,4000,-959,1755,4000,969,0,0,247,true]'
+}
+
+@test "a value beyond a limit, or of no joint, is an error, never clamped" {
+    refused "--joints: joint 'turn': 2.0000000000000004 is beyond its limits, -1 to 2" robot.urdf --joints turn=2.0000000000000004
+    refused "--joints: joint 'slide': -1.5 is beyond its limits, -1 to 2" robot.urdf --joints turn=2,slide=-1.5
+    refused "--joints: 'elbow' is no joint of robot.urdf" robot.urdf --joints elbow=1
+    refused "--joints: joint 'turn' is given twice" robot.urdf --joints turn=1,turn=1
+    refused "--joints: expected name=value,..., found 'turn'" robot.urdf --joints turn
+    refused "expected name=value,..., found ''" robot.urdf --joints turn=1,
+    refused "--joints: joint 'turn': expected a finite number, found '1e999'" robot.urdf --joints turn=1e999
+    sed -i 's/lower="-1"/lower="0.5"/' robot.urdf
+    refused "without a value by --joints: joint 'turn': 0 is beyond its limits, 0.5 to 2" robot.urdf
+    scene robot.urdf --joints turn=2,slide=0.5
+    ended 0
+    sed -i "s/'revolute'/'continuous'/" robot.urdf
+    scene robot.urdf --joints turn=1000000,slide=1
+    ended 0
+    refused "is beyond 1048576 radians" robot.urdf --joints turn=-2000000,slide=1
+    sed -i "s/'continuous'/'fixed'/" robot.urdf
+    refused "--joints: 'turn' is a fixed joint of robot.urdf" robot.urdf --joints turn=0
+}
+
+@test "a table gives a scene for each row, with label and time" {
+    printf '\xef\xbb\xbftime, slide ,label\r\n0,1,\r\n\r\n0.25,2,"a ""b"", c"\r\n1,-0.5,end' > t.csv
+    sed -i 's/ slide /slide/' t.csv
+    scene robot.urdf --joints turn=0 --joints-csv t.csv
+    said ''
+    shows '[.label, .duration, .bodies[2].position[1]]'
+    is '["t = 0",0.25,1]
+["a \"b\", c, t = 0.25",0.75,2]
+["end, t = 1",0,-0.5]'
+    printf 'turn,slide\n1,0\n' > t.csv
+    scene robot.urdf --joints-csv t.csv
+    shows '[has("label"), .duration]'
+    is '[false,0]'
+}
+
+# The output is empty, so that a query of it fails too.
+@test "an error anywhere in a table prints no scene" {
+    # bad TEXT LINE...: lines of the table.
+    bad() {
+        printf '%s\n' "${@:2}" > t.csv
+        refused "$1" robot.urdf --joints-csv t.csv
+    }
+    bad "t.csv: line 3: joint 'turn': 3 is beyond its limits, -1 to 2" turn,slide 1,1 3,1
+    bad "t.csv: line 2: joint 'turn': expected a finite number, found 'x'" turn,slide x,1
+    bad "t.csv: line 3: 1 columns, where the first line has 2" turn,slide 1,1 1
+    bad "t.csv: line 2: 3 columns" turn,slide 1,1,1
+    bad "t.csv: line 1: there is no column for joint 'slide': add it, or give the joint by --joints" turn
+    bad "t.csv: line 1: 'elbow' is no joint of robot.urdf" turn,slide,elbow
+    bad "t.csv: line 1: joint 'turn' is given twice" turn,slide,turn
+    bad "t.csv: line 1: column 'time' is there twice" turn,time,slide,time
+    bad "t.csv: line 3: column 'time': earlier than in the row before" turn,slide,time 1,1,2 1,1,1
+    bad "t.csv: line 2: column 'time': expected a finite number" turn,slide,time 1,1,
+    bad "t.csv: line 2: a quote stands where it should not" turn,slide '"1,1'
+    bad "t.csv: line 2: the label, with the time, has more than 64 bytes" turn,slide,label "1,1,$(printf '%065d' 0)"
+    : > t.csv
+    refused 't.csv: there is no line of joint names' robot.urdf --joints-csv t.csv
+    refused 'none.csv: No such file' robot.urdf --joints-csv none.csv
+    refused '/dev/null: no regular file' robot.urdf --joints-csv /dev/null
+    head -c 2000000 /dev/zero > t.csv
+    refused 't.csv: line 1: a zero byte, or more than 1048575 bytes' robot.urdf --joints-csv t.csv
+}
+
+# ---- The world -------------------------------------------------------------------------------
+
+@test "a world adds its bodies, ignored pairs, duration and margin; clashing ids change, and that is said" {
+    cube='"shape": "box", "size": [1,1,1]'
+    echo "{\"dim\": 3, \"duration\": 2, \"margin\": 0.5, \"bodies\": [{\"id\": 3, \"name\": \"x\", $cube},
+        {\"id\": 7, $cube, \"group\": 4}, {\"id\": 1, $cube, \"velocity\": [1,0,0]}], \"ignore\": [[1,7]]}" > world.json
+    scene robot.urdf --with world.json
+    said 'fmb: world.json: ids 1 to 3 are those of links: 2 of its bodies get, in their order, the ids from 8 on'
+    shows '[.duration, .margin, [.bodies[].id], .bodies[3].name, .bodies[4].group, .ignore]'
+    is '[2,0.5,[1,2,3,8,7,9],"x",4,[[1,2],[2,3],[7,9]]]'
+    # With times, its bodies move on from row to row.
+    printf 'turn,slide,time\n0,0,10\n0,0,10.5\n' > t.csv
+    scene robot.urdf --with world.json --joints-csv t.csv --margin 0
+    shows '[.duration, has("margin"), .bodies[5].position]'
+    is '[0.5,false,null]
+[0,false,[0.5,0,0]]'
+}
+
+@test "a world that is not one scene in 3D of all pairs is refused" {
+    cube='"shape": "box", "size": [1,1,1]'
+    echo "{\"dim\": 3, \"bodies\": [{\"id\": 3, $cube}, {\"id\": 4, $cube}], \"pairs\": [[3,4]]}" > world.json
+    refused 'world.json: "pairs" would leave out the robot' robot.urdf --with world.json
+    echo '{"dim": 2, "bodies": []}' > world.json
+    refused 'world.json: expected a scene in 3D' robot.urdf --with world.json
+    echo '{"dim": 3, "bodies": []} {"dim": 3, "bodies": []}' > world.json
+    refused 'world.json: expected one scene, found a second one' robot.urdf --with world.json
+    echo '{"dim": 3, "bodies": [{"id": 0}]}' > world.json
+    refused 'world.json: bodies[0]' robot.urdf --with world.json
+    refused 'none.json: No such file' robot.urdf --with none.json
+}
+
+# ---- Bad robots ------------------------------------------------------------------------------
+
+@test "links and joints that are no tree are refused" {
+    # joined PARENT CHILD...: three links, and joints.
+    joined() {
+        local text="<link name='a'/>
+<link name='b'/>
+<link name='c'>$box</link>"
+        while [ $# != 0 ]; do
+            text+="
+<joint name='$1$2' type='fixed'><parent link='$1'/><child link='$2'/></joint>"
+            shift 2
+        done
+        robot "$text"
+    }
+    joined a b b c c b
+    refused "robot.urdf: line 8: joint 'cb': its child 'b' is the child of joint 'ab' already" robot.urdf
+    joined b c c b
+    refused "robot.urdf: line 6: joint 'bc': the joints from 'c' lead back to it: expected a tree" robot.urdf
+    joined a b b c c a
+    refused "lead back to it" robot.urdf
+    joined a a b c
+    refused "line 6: joint 'aa': the joints from 'a' lead back to it" robot.urdf
+    joined a b
+    refused "robot.urdf: line 5: link 'c' has no parent, and nor has link 'a': expected one root" robot.urdf
+    joined a b a d
+    refused "robot.urdf: line 7: joint 'ad': its child 'd' is no link of the file" robot.urdf
+    joined a b d c
+    refused "joint 'dc': its parent 'd' is no link of the file" robot.urdf
+}
+
+@test "elements that are missing, repeated or wrong are refused with line and element" {
+    shape() {
+        link "
+<collision>$1</collision>"
+        refused "robot.urdf: line 4: link 'a': $2" robot.urdf
+    }
+    shape '' '<collision> has no <geometry> with a shape'
+    shape '<geometry/>' '<collision> has no <geometry> with a shape'
+    shape '<geometry><box/></geometry>' '<box> has no size'
+    shape '<geometry><box size="1 2"/></geometry>' "<box>: size is '1 2', expected 3 finite numbers"
+    shape '<geometry><box size="1 2 3 4"/></geometry>' "<box>: size is '1 2 3 4', expected 3 finite numbers"
+    shape '<geometry><box size="1 2 nan"/></geometry>' "<box>: size is '1 2 nan', expected 3 finite numbers"
+    shape '<geometry><box size="1 -2 3"/></geometry>' '<box>: size is negative'
+    shape '<geometry><box size="1 ${w} 3"/></geometry>' "<box>: size is '1 \${w} 3', expected 3 finite numbers (expand the file by xacro first)"
+    shape '<geometry><capsule radius="1"/></geometry>' '<capsule>: expected a box, cylinder, sphere or mesh'
+    shape '<geometry><sphere radius="1"/><sphere radius="1"/></geometry>' '<sphere>: there is a shape already'
+    shape '<geometry><cylinder radius="1"/></geometry>' '<cylinder> has no length'
+    shape '<geometry><sphere radius="1.79e308"/></geometry>' 'not a finite number'
+    shape '<origin rpy="1e9 0 0"/>' '<origin>: rpy is beyond 1048576 radians'
+    shape '<geometry><mesh/></geometry>' '<mesh> has no filename'
+    joint() {
+        robot "<link name='a'>$box</link><link name='b'/>
+<joint name='j' type='$1'>$2</joint>"
+        refused "robot.urdf: line 4: $3" robot.urdf
+    }
+    ends='<parent link="a"/><child link="b"/>'
+    joint floating "$ends" "joint 'j': its type is 'floating', expected revolute, continuous, prismatic or fixed"
+    joint planar "$ends" "joint 'j': its type is 'planar'"
+    joint fixed '<parent link="a"/>' "joint 'j': there is no <child>"
+    joint fixed '<child link="a"/>' "joint 'j': there is no <parent>"
+    joint fixed "$ends<parent link='a'/>" "joint 'j': there is a second <parent>"
+    joint revolute "$ends" "joint 'j': there is no <limit>, which a joint of this type has"
+    joint revolute "$ends<limit lower='2' upper='1'/>" "joint 'j': <limit>: lower is above upper"
+    joint prismatic "$ends<axis xyz='0 0 0'/>$limit" "joint 'j': <axis>: xyz is 0"
+    joint revolute "$ends<mimic joint='k'/>$limit" "joint 'j': <mimic>: mimic joints are not supported"
+    robot "<link name='a'/>
+<link name='a'/>"
+    refused "robot.urdf: line 4: there is a link 'a' already, in line 3" robot.urdf
+    robot "<link name='$(printf '%065d' 0)'/>"
+    refused 'has more than 64 bytes' robot.urdf
+    robot '<link/>'
+    refused 'robot.urdf: line 3: <link> has no name' robot.urdf
+    robot ''
+    refused 'robot.urdf: there is no <link> in <robot>' robot.urdf
+    robot '<link name="a"/>'
+    scene robot.urdf
+    ended 2
+    [[ $stderr == *'robot.urdf: no link has a <collision>' ]]
+    refused 'none.urdf: No such file' none.urdf
+}
+
+@test "a missing or broken mesh is refused" {
+    mesh() {
+        link "<collision><geometry><mesh filename='$1'/></geometry></collision>"
+        refused "robot.urdf: line 3: link 'a': $2" robot.urdf
+    }
+    mesh none.stl 'none.stl: No such file'
+    mesh m.DAE 'm.DAE: COLLADA is not supported: convert it to STL or OBJ'
+    printf 'v 0 0 0\nv 1 0 x\n' > m.obj
+    mesh m.obj "m.obj: line 2: 'x' is no number"
+    printf 'v 0 0 0\nv 1 0 0\n' > m.obj
+    mesh m.obj 'm.obj: it has no faces'
+    triangle m.stl
+    link "<collision><geometry><mesh filename='m.stl' scale='1e308 1e308 1'/></geometry></collision>"
+    scene robot.urdf
+    ended 0
+    # More than a message holds.
+    { for i in 1 2 3; do echo "o $i"; awk 'BEGIN { for (i = 0; i < 1000; i++) print "v", i, i * i, 0; for (i = 3; i <= 1000; i++) print "f -1000 -999 -" i - 2 }'; done; } > m.obj
+    link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
+    refused '3 frames take 72015 bytes in a message, which has space for 63500' robot.urdf --objects
+}
+
+@test "other formats and wrong XML are refused" {
+    for text in '<sdf version="1.6"/>|line 1: <sdf>: SDF is not supported' \
+        '<robot><link name="a"/><group name="g"/></robot>|line 1: <group>: SRDF is not supported' \
+        '<robot><disable_collisions/></robot>|line 1: <disable_collisions>: SRDF is not supported' \
+        '<robot xmlns:xacro="x"><xacro:macro name="m"/></robot>|line 1: <xacro:macro>: expand the file by xacro first' \
+        '<html/>|line 1: <html> is no <robot>' \
+        '<robot>|line 2: XML: no element found' \
+        '<robot></link></robot>|line 1: XML: mismatched tag' \
+        '<robot name="a" name="b"/>|line 1: XML: duplicate attribute' \
+        '|line 2: XML: no element found'; do
+        echo "${text%|*}" > robot.urdf
+        refused "robot.urdf: ${text##*|}" robot.urdf
+    done
+    head -c 17000000 /dev/zero | tr '\0' ' ' > robot.urdf
+    refused 'robot.urdf: more than 16777216 bytes' robot.urdf
+}
+
+# Within 1 s and 256 MB.
+@test "entities neither expand nor name files" {
+    limited() {
+        # shellcheck disable=SC2016
+        run --separate-stderr timeout 5 bash -c 'ulimit -v 262144; exec "$0" scene robot.urdf' "$FMB"
+        ended 2
+        is ''
+        said 'fmb: robot.urdf: line 1: <!DOCTYPE>: document types and entities are not supported: remove it'
+    }
+    {
+        echo '<!DOCTYPE robot [<!ENTITY a "aaaaaaaaaaaaaaaaaaaa">'
+        for pair in ba cb dc ed fe gf hg ih ji; do
+            printf '<!ENTITY %s "%s">\n' "${pair:0:1}" "$(printf "&${pair:1};%.0s" 1 2 3 4 5 6 7 8 9 10)"
+        done
+        echo ']><robot name="&j;"><link name="a">&j;</link></robot>'
+    } > robot.urdf
+    limited
+    echo '<!DOCTYPE robot [<!ENTITY f SYSTEM "/etc/passwd">]><robot><link name="&f;"/></robot>' > robot.urdf
+    limited
+    echo '<!DOCTYPE robot SYSTEM "http://127.0.0.1/x.dtd"><robot><link name="a&f;"/></robot>' > robot.urdf
+    limited
+}
+
+# ---- The command -----------------------------------------------------------------------------
+
+@test "wrong usage is refused" {
+    wrong scene
+    wrong scene a b
+    wrong scene a --sides 3
+    wrong scene a --sides 18
+    wrong scene a --sides 48
+    wrong scene a --margin -1
+}
+
+@test "a planned path is checked" {
+    cd "$DEMO" || return
+    check() {
+        "$FMB" scene robot.urdf --joints-csv path.csv --with world.json "$@" 2> /dev/null |
+            "$FMB" query --local --csv --contacts --fail-if overlapping
+    }
+    run check
+    ended 3
+    [ "$(grep -c overlapping <<< "$output")" = 3 ]
+    # Between the fingers, if the hand is not one hull.
+    run check --objects
+    ended 3
+    grep overlapping <<< "$output" | sed 's/,overlapping.*//' > "$BATS_TEST_TMPDIR/found"
+    run cat "$BATS_TEST_TMPDIR/found"
+    is ',4,"swing, t = 1.5",4,102,"forearm","post"
+,4,"swing, t = 1.5",5,102,"hand","post"'
+}
