@@ -33,8 +33,8 @@ struct given_frame {
     const double *numbers; /* [count] */
 };
 
-/* Returns the bytes of a body of these frames in a message: 1 for a shape, 4 for a count of vertices,
- * 8 for a number. At most FMB_CLIENT_BODY_BYTES_MAX can be queried. */
+/* Returns the bytes of a body of these frames in a message: 1 for a shape, 4 for a count of
+ * vertices, 8 for a number. At most FMB_CLIENT_BODY_BYTES_MAX can be queried. */
 size_t scene_body_bytes(const struct given_frame *given, size_t count);
 
 /* Makes a body of count frames. On output: FMB_OK and *out; or the status of the engine, and *bad
