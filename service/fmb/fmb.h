@@ -133,7 +133,9 @@ struct fmb_frame {
     bool inverted;        /* the inverse is present: not flat, and all its entries are finite */
     double radius;        /* bounds the distance of each vertex from the origin of the body; may be
                              infinite */
-    /* Of a box it is rounded: the exact origin is centre - size / 2. */
+    /* Of a box it is rounded: the exact origin is centre - size / 2. Of a hull, origin and
+     * components are those of its box in body coordinates, sizes rounded up: a cuboid that contains
+     * it. */
     double origin[FMB_DIM_MAX];
     double component[FMB_DIM_MAX][FMB_DIM_MAX]; /* [component][axis] */
     /* [axis][component], rounded: x_i = sum_axis inverse[axis][i] p[axis] for p = sum x_i c_i. The

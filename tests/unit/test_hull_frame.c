@@ -103,33 +103,66 @@ static void support_is_the_first_of_the_greatest(void **state)
     }
 }
 
+/* out := R(q) v in long double, by the formula of fmb.h. In 2D q is (w, z). */
+static void turn(const double *q, int dim, const double *v, long double out[3])
+{
+    const long double w = q[0], x = dim == 3 ? q[1] : 0, y = dim == 3 ? q[2] : 0;
+    const long double z = dim == 3 ? q[3] : q[1], norm = w * w + x * x + y * y + z * z;
+    const long double r[3][3] = {
+        {w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)},
+        {2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)},
+        {2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z}};
+    for (int axis = 0; axis < 3; axis++) {
+        out[axis] = 0;
+        for (int i = 0; i < dim; i++)
+            out[axis] += r[axis][i] / norm * v[i];
+    }
+}
+
+/* Vertices, flat hulls among them, and placements of very different sizes. */
 static void box_holds_each_placed_vertex(void **state)
 {
     struct draw draw;
     draw_begin(&draw, "boxes");
-    for (int turn = 0; turn < 2000; turn++) {
-        const int dim = 2 + turn % 2, span = turn % 5 == 4 ? 1000 : 15;
-        const size_t count = 1 + (size_t) turn % 20;
-        double vertices[3 * 20];
+    for (int trial = 0; trial < 4000; trial++) {
+        const int dim = 2 + trial % 2, span = trial % 5 == 4 ? 1023 : 15;
+        const size_t count = 1 + (size_t) trial % 20;
+        double vertices[3 * 20], largest = 0;
         struct fmb_body body;
         for (size_t i = 0; i < 3 * count; i++)
-            vertices[i] = draw_log(&draw, -span, span);
+            vertices[i] = trial % 7 == 6 && i % (size_t) dim == 1 ? 1
+                          : trial % 13 == 12 ? (draw_coin(&draw) ? DBL_MAX : -DBL_MAX)
+                                             : draw_log(&draw, -span, span);
         assert_int_equal(fmb_body_make_hull(dim, vertices, count * (size_t) dim, memory, &body),
                          FMB_OK);
-        struct fmb_placement placement = {.body = &body};
+        struct fmb_placement placement = {.body = &body, .orientation = {1}};
+        placement.orientation_count = trial % 3 ? dim == 3 ? 4 : 2 : 0;
+        if (!placement.orientation_count)
+            placement.orientation[0] = 0;
+        for (int i = 0; i < placement.orientation_count; i++)
+            placement.orientation[i] = draw_log(&draw, -20, trial % 11 ? 0 : -18);
         for (int axis = 0; axis < dim; axis++)
             placement.position[axis] = draw_log(&draw, -15, 15);
         struct fmb_prepared prepared;
         double box[2][3];
+        const double none[4] = {1};
+        const double *q = placement.orientation_count ? placement.orientation : none;
         assert_int_equal(fmb_prepare(&placement, 0, 1, &prepared), FMB_OK);
         fmb_box_of(&prepared, 0, box);
-        for (size_t i = 0; i < count; i++)
+        for (size_t i = 0; i < count * (size_t) dim; i++)
+            largest = fmax(largest, fabs(vertices[i]));
+        for (size_t i = 0; i < count; i++) {
+            const double *v = vertices + i * (size_t) dim;
+            long double turned[3];
+            turn(q, dim, v, turned);
             for (int axis = 0; axis < dim; axis++) {
-                const double v = vertices[i * (size_t) dim + (size_t) axis];
-                assert_true(body.box[0][axis] <= v && v <= body.box[1][axis]);
-                const long double x = (long double) placement.position[axis] + v;
-                assert_true(box[0][axis] <= x && x <= box[1][axis]);
+                /* What long double may lose, which is less than what the box is expanded by. */
+                const long double error = placement.orientation_count ? 0x1p-60L * largest : 0;
+                const long double x = placement.position[axis] + turned[axis];
+                assert_true(body.box[0][axis] <= v[axis] && v[axis] <= body.box[1][axis]);
+                assert_true(box[0][axis] <= x + error && x - error <= box[1][axis]);
             }
+        }
     }
 }
 

@@ -11,7 +11,8 @@
  *   3. put_verdicts()   writes the results; pairs that are still unsure, and contacts that the
  *      put_contacts()   filter does not give, are decided one by one (certified.h) or left open
  *   4. put_all_boxes()  runs the filter for boxes on the pairs in contact
- *   5. put_unfiltered() decides or refuses the pairs that the filter does not take
+ *   5. put_unfiltered() decides or refuses the pairs that the filter does not take; of hulls it
+ *                       first filters the cuboids that contain them
  *   6. find_far()       skips gaps that are surely greater than wanted; put_gap() computes the
  *      put_gap()        others
  *
@@ -329,8 +330,19 @@ static unsigned cost_of(const struct fmb_batch *batch, const struct fmb_prepared
            (1 + (batch->contacts ? 8 : 0) + (batch->boxes ? 24 : 0));
 }
 
+/* Returns whether the cuboids that contain the hulls of a pair are certainly separated. */
+static bool bounds_are_apart(const struct batch_job *job, const struct fmb_prepared *const pair[2])
+{
+    bool swapped;
+    const enum kernel_kind kind =
+        kernel_kind_of_bounds(pair[0], pair[1], job->batch->duration, &swapped);
+    return kind < KERNEL_KINDS &&
+           job->kernels.single[kind](pair[swapped], pair[!swapped], job->batch->duration) ==
+               SLABS_SEPARATED;
+}
+
 /* Decides pair k, which has a hull, or leaves it open. */
-static void put_hull(struct batch_block *block, size_t k)
+static void put_hull(struct batch_block *block, const struct batch_job *job, size_t k)
 {
     const struct fmb_batch *batch = block->batch;
     const struct fmb_prepared *const *pair = block->pair[k];
@@ -342,6 +354,10 @@ static void put_hull(struct batch_block *block, size_t k)
         (batch->boxes ? FMB_WANT_BOX : 0) | (batch->contacts ? FMB_WANT_TIMES : 0);
     const bool late = batch->open && block->scanned >= SCANNED_MAX;
     struct fmb_answer answer = {0};
+    if (bounds_are_apart(job, pair)) {
+        batch->verdicts[i] = FMB_SEPARATED;
+        return;
+    }
     block->scanned += cost_of(batch, pair);
     if (late || hull_decide(&frames, want, batch->open ? HULL_QUICK : HULL_CERTIFIED, &answer)) {
         batch->verdicts[i] = LEFT_OPEN;
@@ -551,14 +567,14 @@ static enum fmb_status refusal(const struct fmb_prepared *const pair[2])
                                                                             : FMB_NOT_FINITE;
 }
 
-static void put_unfiltered(struct batch_block *block)
+static void put_unfiltered(struct batch_block *block, const struct batch_job *job)
 {
     for (size_t k = block->start[KERNEL_UNUSABLE]; k < block->count; k++) {
         const size_t i = block->first + block->slot[k];
         put_nothing(block->batch, i);
         if (k < block->start[KERNEL_REFUSED] &&
             hull_takes(block->pair[k][0]->frame, block->pair[k][1]->frame)) {
-            put_hull(block, k);
+            put_hull(block, job, k);
             continue;
         }
         if (k < block->start[KERNEL_REFUSED]) {
@@ -670,7 +686,7 @@ static enum fmb_status decide_block(const struct batch_job *job, size_t first)
     for (int kind = block.kinds[0]; kind < block.kinds[1]; kind++)
         if (block.start[kind] < block.start[kind + 1])
             filter_kind(&block, job, (enum kernel_kind) kind);
-    put_unfiltered(&block);
+    put_unfiltered(&block, job);
     if (!job->batch->gaps)
         return block.status;
     memset(block.far, 0, sizeof block.far);

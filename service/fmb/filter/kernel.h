@@ -22,7 +22,7 @@ enum kernel_kind {
     KERNEL_AXIS_ALIGNED = 1 << 4, /* 3D: edges or drift may be parallel to the same axis */
     KERNEL_FACE = 1 << 5,         /* b is a face */
     KERNEL_KINDS = 1 << 6,
-    KERNEL_UNUSABLE = KERNEL_KINDS, /* doubles cannot decide the pair */
+    KERNEL_UNUSABLE = KERNEL_KINDS, /* slabs in doubles cannot decide the pair */
     KERNEL_REFUSED                  /* a frame is not valid, or the dimensions differ */
 };
 
@@ -43,7 +43,7 @@ static inline struct kernel_kinds kernel_kinds_of(unsigned kind_a, unsigned kind
     const unsigned both = kind_a & kind_b, any = kind_a | kind_b;
     if (!(both & PREPARED_VALID) || ((kind_a ^ kind_b) & PREPARED_3D))
         return (struct kernel_kinds){KERNEL_REFUSED, KERNEL_REFUSED, false, false};
-    if (!(both & PREPARED_USABLE))
+    if (!(both & PREPARED_USABLE) || any & PREPARED_HULL)
         return (struct kernel_kinds){KERNEL_UNUSABLE, KERNEL_UNUSABLE, false, false};
     const unsigned shapes = PREPARED_TETRAHEDRON | PREPARED_FACE, space = both & PREPARED_3D;
     const unsigned same_shape = (both & PREPARED_TETRAHEDRON) << 1 | (both & PREPARED_FACE);
@@ -77,6 +77,19 @@ static inline enum kernel_kind kernel_kind_of(const struct fmb_prepared *a,
                                               bool *swapped)
 {
     const struct kernel_kinds kinds = kernel_kinds_of(prepared_kind(a), prepared_kind(b), duration);
+    *swapped = kinds.swapped;
+    return kinds.moving && kernel_pair_drifts(a, b) ? kinds.drifting : kinds.at_rest;
+}
+
+/* The same with the cuboids that contain hulls in their place. What these kernels separate is
+ * separated. */
+static inline enum kernel_kind kernel_kind_of_bounds(const struct fmb_prepared *a,
+                                                     const struct fmb_prepared *b, double duration,
+                                                     bool *swapped)
+{
+    const unsigned kind_a = prepared_kind(a) & ~(unsigned) PREPARED_HULL;
+    const unsigned kind_b = prepared_kind(b) & ~(unsigned) PREPARED_HULL;
+    const struct kernel_kinds kinds = kernel_kinds_of(kind_a, kind_b, duration);
     *swapped = kinds.swapped;
     return kinds.moving && kernel_pair_drifts(a, b) ? kinds.drifting : kinds.at_rest;
 }

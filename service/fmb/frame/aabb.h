@@ -20,7 +20,7 @@
  * therefore -infinity, and stays so; +infinity does not occur, and no sum is a NaN. The computed
  * error of a sum may be a NaN if the numbers are among the largest: such a sum is lowered.
  *
- * The numbers of a hull are those of a cuboid, its box. The box of a frame with an error is
+ * The numbers of a hull are those of a cuboid that contains it. The box of a frame with an error is
  * expanded by the error. If the error or a coordinate is not finite, or a frame other than a hull
  * is rotated and not usable, the box is that of a ball: no point of the frame is farther than its
  * radius from the position of its body.

@@ -255,8 +255,7 @@ static double turn_error_of(const struct fmb_frame *frame)
     for (int i = 0; i < frame->count; i++)
         lengths += frame->in_range ? prepared_size(frame->summary, i) : sum_of(frame->component[i]);
     const double of_origin = (MATRIX_ERROR + PRODUCT_ERROR) * frame->radius;
-    const double of_components =
-        (frame->shape == FMB_BOX ? 1.1 * 0x1p-53 : PRODUCT_ERROR) * lengths;
+    const double of_components = (frame_has_axes(frame) ? 1.1 * 0x1p-53 : PRODUCT_ERROR) * lengths;
     return (1 + 0x1p-40) * (of_origin + of_components) + 0x1p-1060; /* where products underflow */
 }
 
@@ -269,6 +268,27 @@ static void complete(struct fmb_frame *frame)
     frame->radius = radius_of(frame);
     frame->slack = slack_of(frame);
     frame->turn_error = turn_error_of(frame);
+}
+
+/* Sizes are rounded up: a difference that rounds is off by at most half a unit in its last place. A
+ * point of the hull is therefore exactly the origin plus fractions in [0, 1] of the components, and
+ * turn_error_of() holds for it. That of the components holds also where tiny coordinates become 0:
+ * they have one coordinate before they are rotated. From 2^1000 on sums might overflow. */
+void frame_set_bounds(const double bounds[2][FMB_DIM_MAX], struct fmb_frame *out)
+{
+    out->count = out->dim;
+    for (int axis = 0; axis < out->dim; axis++) {
+        const double low = bounds[0][axis], high = bounds[1][axis], size = high - low;
+        const bool exact = prepared_exact_sum(high, -low, size);
+        out->origin[axis] = low;
+        out->component[axis][axis] = fmin(exact ? size : size * (1 + 0x1p-52), DBL_MAX);
+        out->flat = out->flat || size == 0;
+    }
+    measure(out);
+    out->summary = prepared_summary_of(out);
+    out->radius = radius_of(out);
+    out->slack = out->radius < 0x1p1000 ? 0 : INFINITY;
+    out->turn_error = turn_error_of(out);
 }
 
 void frame_set_plane_triangle(const double components[2][2], struct fmb_frame *out)
@@ -450,14 +470,6 @@ INLINE struct aabb box_at_origin(const struct fmb_frame *frame, const int dim,
     return aabb_of(&prepared, 0);
 }
 
-static struct aabb hull_box_at_origin(const struct fmb_frame *frame,
-                                      const struct fmb_placement *placement)
-{
-    struct fmb_prepared prepared;
-    prepared_set((struct placed_frame){frame, placement}, &prepared);
-    return aabb_of(&prepared, 0);
-}
-
 /* Sets the box of a body: the union of those of its frames, in body coordinates. */
 static void set_body_box(struct fmb_body *out)
 {
@@ -465,9 +477,8 @@ static void set_body_box(struct fmb_body *out)
     struct aabb box;
     for (unsigned i = 0; i < out->frame_count; i++) {
         const struct fmb_frame *frame = fmb_body_frame(out, i);
-        const struct aabb one = frame->shape == FMB_HULL ? hull_box_at_origin(frame, &origin)
-                                : frame->dim == 3        ? box_at_origin(frame, 3, &origin)
-                                                         : box_at_origin(frame, 2, &origin);
+        const struct aabb one =
+            frame->dim == 3 ? box_at_origin(frame, 3, &origin) : box_at_origin(frame, 2, &origin);
         box = i == 0 ? one : aabb_union(box, one);
     }
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {

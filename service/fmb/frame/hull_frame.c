@@ -3,7 +3,6 @@
 
 #include "integer.h"
 #include "prepared.h"
-#include "rotation.h"
 #include "support.h"
 
 #include <math.h>
@@ -145,6 +144,23 @@ static double radius_of(const struct fmb_frame *frame)
     return radius * (1 + 0x1p-40) + 0x1p-1000;
 }
 
+/* Sets the box of the vertices, and what is derived from it as of a cuboid. */
+static void set_box(struct fmb_frame *frame)
+{
+    double box[2][FMB_DIM_MAX];
+    get_vertex(frame, 0, box[0]);
+    get_vertex(frame, 0, box[1]);
+    for (unsigned i = 1; i < frame->vertex_count; i++) {
+        double v[FMB_DIM_MAX];
+        get_vertex(frame, i, v);
+        for (int axis = 0; axis < frame->dim; axis++) {
+            box[0][axis] = v[axis] < box[0][axis] ? v[axis] : box[0][axis];
+            box[1][axis] = v[axis] > box[1][axis] ? v[axis] : box[1][axis];
+        }
+    }
+    frame_set_bounds((const double(*)[FMB_DIM_MAX]) box, frame);
+}
+
 /* Sets bits: those that the coordinates span. */
 static void set_bits(struct fmb_frame *frame)
 {
@@ -255,53 +271,9 @@ enum fmb_status fmb_frame_make_hull(int dim, const double *vertices, size_t coun
     out->dim = dim;
     out->shape = FMB_HULL;
     store(vertices, count / (size_t) dim, memory, out);
-    out->radius = radius_of(out);
+    set_box(out);
     set_bits(out);
+    out->radius = radius_of(out);
     choose_spanning(out);
-    out->summary = (unsigned long long) (PREPARED_VALID | (dim == 3 ? PREPARED_3D : 0))
-                   << 3 * PREPARED_SIZE_BITS;
-    out->turn_error = ROTATION_ERROR * out->radius * (1 + 0x1p-40);
     return FMB_OK;
-}
-
-/* ---- The box of a placed hull ---- */
-
-/* Sets one axis: {lower, size}. Returns the error.
- *
- * The computed extremes of row . v are within turn_error of the exact ones (rotation.h), 0 if the
- * rotation is exact. The sums are exact, or off by half a unit in the last place of their result: a
- * whole one is counted. */
-static double set_axis(const struct support_vertices *vertices, const double row[FMB_DIM_MAX],
-                       double position, double *lower, double *size)
-{
-    double against[FMB_DIM_MAX];
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        against[axis] = -row[axis];
-    const double high = support_max(vertices, row).value,
-                 low = -support_max(vertices, against).value;
-    const double from = position + low, length = high - low;
-    double error = 0;
-    if (!prepared_exact_sum(position, low, from))
-        error += 0x1p-52 * fabs(from);
-    if (!prepared_exact_sum(high, -low, length))
-        error += 0x1p-52 * length;
-    *lower = from;
-    *size = length + 0.0;
-    return error;
-}
-
-double hull_frame_box(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
-                      const double position[FMB_DIM_MAX], double lower[FMB_DIM_MAX],
-                      double size[FMB_DIM_MAX])
-{
-    const struct support_vertices vertices = hull_frame_vertices(frame);
-    double error = rotation->exact ? 0 : frame->turn_error;
-    for (int axis = 0; axis < frame->dim; axis++) {
-        const double row[FMB_DIM_MAX] = {rotation_entry(rotation, axis, 0),
-                                         rotation_entry(rotation, axis, 1),
-                                         rotation_entry(rotation, axis, 2)};
-        error += set_axis(&vertices, row, position[axis], &lower[axis], &size[axis]);
-    }
-    const double sum = error + (frame->radius + fabs(lower[0]) + fabs(lower[1]));
-    return sum < 0x1p1000 ? error * (1 + 0x1p-40) : INFINITY;
 }

@@ -20,6 +20,12 @@ enum fmb_status placements_check(const struct fmb_placement *a, const struct fmb
                                  double duration);
 
 /* Returns whether the frame is a simplex: a tetrahedron or a face. */
+/* Returns whether component i is a multiple of axis i of the body. */
+static inline bool frame_has_axes(const struct fmb_frame *frame)
+{
+    return frame->shape == FMB_BOX || frame->shape == FMB_HULL;
+}
+
 static inline bool frame_is_simplex(const struct fmb_frame *frame)
 {
     return frame->shape == FMB_TETRAHEDRON || frame->shape == FMB_FACE;

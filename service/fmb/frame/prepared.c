@@ -1,6 +1,5 @@
 #include "prepared.h"
 
-#include "hull_frame.h"
 #include "inlined.h"
 #include "rotation.h"
 
@@ -61,6 +60,7 @@ unsigned long long prepared_summary_of(const struct fmb_frame *frame)
     unsigned kind = PREPARED_VALID;
     kind |= frame->shape == FMB_TETRAHEDRON ? PREPARED_TETRAHEDRON : 0;
     kind |= frame->shape == FMB_FACE ? PREPARED_FACE : 0;
+    kind |= frame->shape == FMB_HULL ? PREPARED_HULL : 0;
     kind |= frame->dim == 3 ? PREPARED_3D : 0;
     kind |= frame->in_range ? PREPARED_USABLE : 0;
     kind |= plain ? PREPARED_PLAIN : 0;
@@ -133,7 +133,7 @@ INLINE void rotate_components(const struct fmb_frame *frame, const struct rotati
         const double *c = frame->component[i];
         if (i == 2 && rotation->dim == 2)
             continue; /* not used in 2D */
-        if (frame->shape == FMB_BOX) {
+        if (frame_has_axes(frame)) {
             const rotation_two xy = rotation->xy[i] * c[i];
             memcpy(out[i], &xy, sizeof xy);
             out[i][2] = rotation->z[i] * c[i];
@@ -294,40 +294,13 @@ static void set_unrotated(const struct fmb_frame *frame, const struct fmb_placem
 
 INLINE bool is_unrotated(const struct fmb_frame *frame, const struct fmb_placement *placement)
 {
-    return placement->orientation_count == 0 && is_zero(frame->origin) && frame->shape != FMB_HULL;
-}
-
-/* set() of a hull: the numbers are those of a cuboid, its box in the world. */
-static __attribute__((noinline)) void set_hull(const struct fmb_frame *frame,
-                                               const struct rotation_matrix *rotation,
-                                               const struct fmb_placement *placement,
-                                               struct fmb_prepared *out)
-{
-    struct world_numbers numbers = {.error = 0};
-    double size[FMB_DIM_MAX] = {0};
-    numbers.error = hull_frame_box(frame, rotation, placement->position, numbers.origin, size);
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        numbers.component[axis][axis] = size[axis];
-    out->summary = frame->summary;
-    if (placement_moves(placement, frame->dim))
-        out->summary |= in_summary(PREPARED_MOVING);
-    out->frame = frame;
-    out->placement = placement;
-    if (frame->dim == 2)
-        set_numbers_2d(numbers.origin, numbers.component, numbers.error, placement->velocity,
-                       out->number);
-    else
-        memcpy(out->number, &numbers, sizeof numbers);
+    return placement->orientation_count == 0 && is_zero(frame->origin);
 }
 
 /* Prepares a frame with a given rotation. */
 INLINE void set(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
                 const struct fmb_placement *placement, struct fmb_prepared *out)
 {
-    if (frame->shape == FMB_HULL) {
-        set_hull(frame, rotation, placement, out);
-        return;
-    }
     if (rotation->general && rotates_in_range(frame, rotation)) {
         set_in_general_orientation(frame, rotation, placement, out);
         return;

@@ -5,7 +5,8 @@
  * If error is 0, the two are the same. The bounds of the filter hold for the rounded frame, whose
  * numbers are exact; slabs.h derives bounds for the true one.
  *
- * The numbers of a hull are those of a cuboid, its box in the world. It is not usable.
+ * The numbers of a hull are those of a cuboid that contains it: its box in body coordinates,
+ * placed.
  *
  * The summary holds, from its least significant bit: the sizes of components 0, 1 and 2, 16 bits
  * each, then the flags below. A size is the 16 most significant bits of a double, rounded up.
@@ -52,7 +53,8 @@ enum {
     /* A box whose origin is rounded along an axis of exact components. Along each axis of exact
      * components it extends from position + centre, which are those of its placement and of its
      * frame, by half of a component to either side. */
-    PREPARED_CENTRED = 1 << 14
+    PREPARED_CENTRED = 1 << 14,
+    PREPARED_HULL = 1 << 15 /* the frame is part of what its numbers describe */
 };
 
 /* Indices of the 8-byte words of struct fmb_prepared; the summary is word 0. In 2D the velocity
@@ -114,6 +116,13 @@ static inline bool prepared_exact_sum(double x, double y, double sum)
  * In: components  [component][axis], each number 0 or of a magnitude in [2^-400, 2^200], so that
  *                 doubles decide exactly whether the triangle is flat */
 void frame_set_plane_triangle(const double components[2][2], struct fmb_frame *out);
+
+/* Sets all fields of a hull that describe the cuboid between two corners as if it were the frame.
+ * Their slack is infinite if numbers might overflow.
+ *
+ * In:  bounds  [lower, upper][axis], finite: contains the hull
+ *      *out    its dim and shape, otherwise 0 */
+void frame_set_bounds(const double bounds[2][FMB_DIM_MAX], struct fmb_frame *out);
 
 /* Returns whether a duration in seconds is legal: finite and not negative. */
 bool prepared_is_duration(double duration);
