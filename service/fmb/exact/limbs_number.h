@@ -25,12 +25,30 @@
  * pair has, are used. */
 typedef uint64_t limbs_number[LIMBS_MAX];
 
+/* Digits. An integer in two's complement is the sum of its limbs as signed integers, each increased
+ * by 1 where the limb below it is negative: limb i is a digit of magnitude at most 2^63, times
+ * 2^(64 i). The digits of limbs that repeat a sign are 0. Since exponents are far apart, most
+ * digits of wide numbers are. */
+enum {
+    DIGITS_APART = 4,                                            /* zeros that end a run */
+    DIGIT_RUNS = (LIMBS_MAX + DIGITS_APART) / (1 + DIGITS_APART) /* the most runs of a number */
+};
+
+/* The runs of digits of a number with few zeros, and the number of digits other than 0. */
+struct digit_runs {
+    unsigned char digits, count;
+    struct {
+        unsigned char first, end;
+    } run[DIGIT_RUNS];
+};
+
 /* A vector. limbs: the number of limbs that hold each coordinate with its sign. other_than_0: bit i
- * is set if coordinate i is not 0. */
+ * is set if coordinate i is not 0. digits: of wide numbers. */
 struct limbs_vector {
     int limbs;
     unsigned other_than_0;
     limbs_number at[FMB_DIM_MAX];
+    struct digit_runs digits[FMB_DIM_MAX];
 };
 
 /* ---- Inlined ---- */
@@ -112,33 +130,15 @@ LIMBS_INLINE void add_row(const int n, uint64_t *out, bool minus, const uint64_t
     }
 }
 
-/* Digits. An integer in two's complement is the sum of its limbs as signed integers, each increased
- * by 1 where the limb below it is negative: limb i is a digit of magnitude at most 2^63, times
- * 2^(64 i). The digits of limbs that repeat a sign are 0. Since exponents are far apart, most
- * digits of wide numbers are. */
-enum {
-    DIGITS_APART = 4,                                            /* zeros that end a run */
-    DIGIT_RUNS = (LIMBS_MAX + DIGITS_APART) / (1 + DIGITS_APART) /* the most runs of a number */
-};
-
-/* The runs of digits of a number with few zeros, and the number of digits other than 0. */
-struct digit_runs {
-    const uint64_t *at;
-    int digits, count;
-    struct {
-        int first, end;
-    } run[DIGIT_RUNS];
-};
-
 static inline bool is_negative_below(const uint64_t *x, int i)
 {
     return i > 0 && x[i - 1] >> 63;
 }
 
-static inline void find_digits(const uint64_t *x, int limbs, struct digit_runs *out)
+/* Finds the runs; returns the number of limbs that hold x with a sign; 0 for 0. */
+static inline int find_digits(const uint64_t *x, int limbs, struct digit_runs *out)
 {
     uint64_t sign = 0; /* of the limb below, in all bits */
-    out->at = x;
     out->digits = out->count = 0;
     for (int i = 0; i < limbs; i++) {
         while (i + 4 <= limbs && x[i] == sign && x[i + 1] == sign && x[i + 2] == sign &&
@@ -148,10 +148,11 @@ static inline void find_digits(const uint64_t *x, int limbs, struct digit_runs *
             continue;
         sign = -(x[i] >> 63);
         if (out->count == 0 || i - out->run[out->count - 1].end >= DIGITS_APART)
-            out->run[out->count++].first = i;
-        out->run[out->count - 1].end = i + 1;
+            out->run[out->count++].first = (unsigned char) i;
+        out->run[out->count - 1].end = (unsigned char) (i + 1);
         out->digits++;
     }
+    return out->count > 0 ? out->run[out->count - 1].end : 0;
 }
 
 /* out := out + x 2^(64 i), or out - x 2^(64 i). */
@@ -165,46 +166,44 @@ static inline void add_limb(int n, uint64_t *out, bool minus, uint64_t x, int i)
         mpn_add_1(out + i, out + i, n - i, x);
 }
 
-/* The same for the digits of wide numbers. A run of x is its limbs without a sign, minus 2^(64 end)
- * if the last of them is negative, plus 2^(64 first) if the limb below it is. */
-LIMBS_FUNCTION void add_digits(int n, uint64_t *out, bool minus, const struct digit_runs *x,
-                               const struct digit_runs *y)
+/* out := out + x y, or out - x y. A run of x is its limbs without a sign, minus 2^(64 end) if the
+ * last of them is negative, plus 2^(64 first) if the limb below it is. */
+LIMBS_FUNCTION void add_digits(int n, uint64_t *out, bool minus, const uint64_t *x,
+                               const struct digit_runs *of_x, const uint64_t *y,
+                               const struct digit_runs *of_y)
 {
-    if (x->digits < y->digits) {
-        const struct digit_runs *fewer = x;
-        x = y;
-        y = fewer;
+    if (of_x->digits < of_y->digits) {
+        add_digits(n, out, minus, y, of_y, x, of_x);
+        return;
     }
-    for (int k = 0; k < y->count; k++)
-        for (int j = y->run[k].first; j < y->run[k].end; j++) {
-            const uint64_t limb = y->at[j] + is_negative_below(y->at, j);
-            const bool less = minus != (y->at[j] >> 63);
-            const uint64_t digit = y->at[j] >> 63 ? -limb : limb;
-            for (int r = 0; r < x->count && digit > 0; r++) {
-                const int first = x->run[r].first, to = j + x->run[r].end, end = to < n ? to : n;
-                const uint64_t *at = x->at + first;
-                if (j + first >= n)
+    for (int k = 0; k < of_y->count; k++)
+        for (int j = of_y->run[k].first; j < of_y->run[k].end; j++) {
+            const uint64_t limb = y[j] + is_negative_below(y, j);
+            const bool less = minus != (y[j] >> 63);
+            const uint64_t digit = y[j] >> 63 ? -limb : limb;
+            for (int r = 0; r < of_x->count && digit > 0; r++) {
+                const int from = of_x->run[r].first, to = of_x->run[r].end;
+                const int first = j + from, end = j + to < n ? j + to : n;
+                if (first >= n)
                     break;
-                const uint64_t high = is_negative_below(x->at, x->run[r].end) ? digit : 0;
-                const uint64_t rest = (less ? mpn_submul_1 : mpn_addmul_1)(
-                    out + j + first, at, end - (j + first), digit);
+                const uint64_t high = is_negative_below(x, to) ? digit : 0;
+                const uint64_t rest =
+                    (less ? mpn_submul_1 : mpn_addmul_1)(out + first, x + from, end - first, digit);
                 add_limb(n, out, less != (rest < high), rest < high ? high - rest : rest - high,
                          end);
-                add_limb(n, out, less, is_negative_below(x->at, first) ? digit : 0, j + first);
+                add_limb(n, out, less, is_negative_below(x, from) ? digit : 0, first);
             }
         }
 }
 
-/* The same for x and y of nx and ny limbs, with a sign. x has n limbs, too. */
-LIMBS_INLINE void add_product(const int n, uint64_t *out, bool minus, int nx, const uint64_t *x,
-                              const int ny, const uint64_t *y)
+/* The same for y of ny limbs, with a sign, of narrow numbers; or of wide ones with these digits. */
+LIMBS_INLINE void add_product(const int n, uint64_t *out, bool minus, const uint64_t *x,
+                              const struct digit_runs *of_x, const int ny, const uint64_t *y,
+                              const struct digit_runs *of_y)
 {
     const bool negative = is_negative(ny, y);
     if (LIMBS_MAX > LIMBS_NARROW) {
-        struct digit_runs of_x, of_y;
-        find_digits(x, nx, &of_x);
-        find_digits(y, ny, &of_y);
-        add_digits(n, out, minus, &of_x, &of_y);
+        add_digits(n, out, minus, x, of_x, y, of_y);
         return;
     }
     add_row(n, out, minus != negative, x, negative ? -y[0] : y[0]);
@@ -216,6 +215,14 @@ LIMBS_INLINE void add_product(const int n, uint64_t *out, bool minus, int nx, co
     }
 }
 
+/* The same for coordinates i and k of vectors. */
+LIMBS_INLINE void add_product_of(const int n, uint64_t *out, bool minus,
+                                 const struct limbs_vector *x, int i, const struct limbs_vector *y,
+                                 int k)
+{
+    add_product(n, out, minus, x->at[i], &x->digits[i], y->limbs, y->at[k], &y->digits[k]);
+}
+
 /* out := x . y */
 LIMBS_INLINE void dot_limbs(const int n, const struct limbs_vector *x, const struct limbs_vector *y,
                             uint64_t *out)
@@ -223,7 +230,7 @@ LIMBS_INLINE void dot_limbs(const int n, const struct limbs_vector *x, const str
     memset(out, 0, (size_t) n * sizeof *out);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         if (y->other_than_0 >> axis & 1)
-            add_product(n, out, false, x->limbs, x->at[axis], y->limbs, y->at[axis]);
+            add_product_of(n, out, false, x, axis, y, axis);
 }
 
 /* Calls function with n as a constant if it is one of these. */
@@ -245,6 +252,8 @@ LIMBS_INLINE int sign_of(const int n, const uint64_t *x)
 LIMBS_INLINE bool is_less(const int n, const uint64_t *x, const uint64_t *y)
 {
     limbs_number difference;
+    if (LIMBS_MAX > LIMBS_NARROW)
+        return is_negative(n, x) != is_negative(n, y) ? is_negative(n, x) : mpn_cmp(x, y, n) < 0;
     memcpy(difference, x, (size_t) n * sizeof *x);
     subtract(n, difference, y);
     return is_negative(n, difference);
@@ -252,14 +261,15 @@ LIMBS_INLINE bool is_less(const int n, const uint64_t *x, const uint64_t *y)
 
 /* ---- Not inlined ---- */
 
-/* Sets limbs and other_than_0 of a vector. Functions read them of the factors y and v only; of wide
- * numbers, limbs of all. */
+/* Sets limbs and other_than_0 of a vector, and of wide numbers the digits. Functions read the
+ * former of the factors y and v only, the latter of all. */
 LIMBS_FUNCTION void limbs_trim(int n, struct limbs_vector *v)
 {
     v->limbs = 0;
     v->other_than_0 = 0;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        const int limbs = limbs_needed(n, v->at[axis]);
+        const int limbs = LIMBS_MAX > LIMBS_NARROW ? find_digits(v->at[axis], n, &v->digits[axis])
+                                                   : limbs_needed(n, v->at[axis]);
         v->limbs = limbs > v->limbs ? limbs : v->limbs;
         v->other_than_0 |= (unsigned) (limbs > 0) << axis;
     }
@@ -291,8 +301,12 @@ LIMBS_FUNCTION void limbs_set_product(int n, uint64_t *out, struct dyadic x, str
 LIMBS_FUNCTION void limbs_add_product(int n, uint64_t *out, bool minus, const uint64_t *x, int ny,
                                       const uint64_t *y)
 {
-    const int nx = LIMBS_MAX > LIMBS_NARROW ? limbs_needed(n, x) : n;
-    WITH_LIMBS(n, add_product, out, minus, nx, x, ny, y);
+    struct digit_runs of_x, of_y;
+    if (LIMBS_MAX > LIMBS_NARROW) {
+        find_digits(x, n, &of_x);
+        find_digits(y, ny, &of_y);
+    }
+    WITH_LIMBS(n, add_product, out, minus, x, &of_x, ny, y, &of_y);
 }
 
 /* out := x x y, or y x x where swapped. */
@@ -305,8 +319,8 @@ LIMBS_INLINE void cross_limbs(const int n, const struct limbs_vector *x,
         const int i = k == 2 ? 0 : k + 1, j = 3 - i - k;
         if (!(y->other_than_0 >> k & 1))
             continue;
-        add_product(n, out->at[j], !swapped, x->limbs, x->at[i], y->limbs, y->at[k]);
-        add_product(n, out->at[i], swapped, x->limbs, x->at[j], y->limbs, y->at[k]);
+        add_product_of(n, out->at[j], !swapped, x, i, y, k);
+        add_product_of(n, out->at[i], swapped, x, j, y, k);
     }
 }
 
