@@ -74,11 +74,10 @@ static bool print_rows(struct robot_scene *scene, struct joint_table *table, boo
     bool good = true;
     while (good && row == JOINT_ROW) {
         const double time = table->time;
-        char label[sizeof table->label], place[64];
+        char label[sizeof table->label];
         strcpy(label, table->label);
-        snprintf(place, sizeof place, "row of line %lu", table->line);
         good = robot_scene_place(scene, table->joints->value, table->has_time ? time - begin : 0,
-                                 place);
+                                 table->place);
         row = joint_table_next(table);
         out->label = *label ? label : NULL;
         if (table->has_time)

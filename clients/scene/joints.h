@@ -10,8 +10,8 @@
 
 struct joints {
     const struct robot *robot;
-    double *value;       /* [joint_count]; 0 unless given */
-    unsigned char *from; /* [joint_count], private: where the value is from */
+    double *value; /* [joint_count]; 0 unless given */
+    bool *given;   /* [joint_count], private: by the text, or in a column */
 };
 
 /* In: text: "name=value,name=value"; NULL: none. Returns false after an error. The caller passes
@@ -31,6 +31,7 @@ struct joint_table {
     double time;                    /* not before that of the row before */
     char label[QUERY_NAME_MAX + 1]; /* the label, and "t = " with the time; may be "" */
     unsigned long line;             /* in the file, from 1 */
+    char *place;                    /* its file and line, for messages */
     /* Private. */
     struct joints *joints;
     const char *path;

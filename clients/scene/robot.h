@@ -53,7 +53,7 @@ struct robot_link {
 };
 
 /* Most links, joints and collision elements of a file, each; and most bytes. */
-enum { ROBOT_COUNT_MAX = 65536, ROBOT_BYTES_MAX = 1 << 24 };
+enum { ROBOT_COUNT_MAX = 65536, ROBOT_BYTES_MAX = 1 << 23 };
 
 struct robot {
     const char *path; /* of the file */
