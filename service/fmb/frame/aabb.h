@@ -123,6 +123,27 @@ INLINE void aabb_of_axes(const struct fmb_prepared *frame, const int dim, struct
         out->end[axis] = aabb_sum_down(out->end[axis], lanes_of(-error));
 }
 
+/* The box of a hull that is rotated, at rest. The sums may round here: the boxes of hulls are
+ * loose.
+ *
+ * Let M be the sum of the terms other than o, each at most 0. Four sums of numbers of magnitudes at
+ * most |o| + |M| + error round by at most 2^-53 of that each, which 2^-50 (|o| + |M|) and the
+ * factor cover. Where the product underflows, the sums are exact. */
+INLINE void aabb_of_turned_hull(const struct fmb_prepared *frame, const int dim, struct aabb *out)
+{
+    const double error = frame->number[(dim == 3 ? PREPARED_ERROR_3D : PREPARED_ERROR_2D) - 1];
+    UNROLL(3)
+    for (int axis = 0; axis < dim; axis++) {
+        const double *number = frame->number + axis;
+        const lanes origin = {number[0], -number[0]};
+        lanes others = aabb_of_extent(number[dim]) + aabb_of_extent(number[2 * dim]);
+        if (dim == 3)
+            others += aabb_of_extent(number[3 * dim]);
+        const lanes outward = (error + 0x1p-50 * (lanes_abs(origin) - others)) * (1 + 0x1p-50);
+        out->end[axis] = (origin + others) - outward;
+    }
+}
+
 /* The box of the ball that contains a frame at rest. */
 INLINE void aabb_of_ball(const struct fmb_prepared *frame, struct aabb *out)
 {
@@ -149,6 +170,8 @@ INLINE struct aabb aabb_of(const struct fmb_prepared *frame, double duration)
     struct aabb out = {{{0}}};
     if (aabb_needs_ball(frame))
         aabb_of_ball(frame, &out);
+    else if (kind & PREPARED_HULL && prepared_error(frame) != 0)
+        dim == 3 ? aabb_of_turned_hull(frame, 3, &out) : aabb_of_turned_hull(frame, 2, &out);
     else if (dim == 3)
         aabb_of_axes(frame, 3, &out);
     else
