@@ -3,6 +3,7 @@
 #include "pair_number.h"
 #include "tree.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Placements whose partners are searched for before the caller resets searches: tens of
@@ -73,8 +74,80 @@ static bool list_pairs(struct scene_pairs *pairs)
     return true;
 }
 
+typedef float floats __attribute__((vector_size(16)));
+typedef int32_t floats_mask __attribute__((vector_size(16)));
+
+enum { FLOATS = 4 };
+
+/* Bit i is 1 if the mask is set in lane i. */
+INLINE unsigned mask_bits(floats_mask mask)
+{
+#if defined(__SSE2__)
+    return (unsigned) _mm_movemask_ps((__m128) mask);
+#else
+    unsigned bits = 0;
+    for (int i = 0; i < FLOATS; i++)
+        bits |= (unsigned) (mask[i] & 1) << i;
+    return bits;
+#endif
+}
+
+/* x <= y implies (float) x <= (float) y, also where these are infinite: boxes that overlap do so in
+ * floats too. */
+static void set_rough(struct scene_pairs *pairs)
+{
+    const size_t count = pairs->scene->placement_count;
+    for (size_t i = 0; i < count + SCENE_FEW_BLOCK; i++)
+        for (int axis = 0; axis < 2; axis++)
+            for (int end = 0; end < 2; end++)
+                pairs->rough[axis][end][i] = i < count ? (float) pairs->box[i].end[axis][end] : NAN;
+}
+
+/* Returns as bits which of the boxes first to first + SCENE_FEW_BLOCK - 1 may overlap that of a. */
+INLINE uint32_t find_rough(const struct scene_pairs *pairs, unsigned first)
+{
+    uint32_t overlap = 0;
+    floats most[2][2];
+    for (int axis = 0; axis < 2; axis++)
+        for (int end = 0; end < 2; end++)
+            most[axis][end] = (floats){0} - pairs->rough[axis][!end][pairs->a];
+    UNROLL(8)
+    for (unsigned k = 0; k < SCENE_FEW_BLOCK; k += FLOATS) {
+        floats at[2][2];
+        for (int axis = 0; axis < 2; axis++)
+            for (int end = 0; end < 2; end++)
+                memcpy(&at[axis][end], &pairs->rough[axis][end][first + k], sizeof(floats));
+        const floats_mask x = (at[0][0] <= most[0][0]) & (at[0][1] <= most[0][1]);
+        const floats_mask y = (at[1][0] <= most[1][0]) & (at[1][1] <= most[1][1]);
+        overlap |= mask_bits(x & y) << k;
+    }
+    return overlap;
+}
+
+/* out := the placements from `from` on whose boxes overlap that of a, ascending. Returns how many.
+ */
+static size_t find_among_few(const struct scene_pairs *pairs, unsigned from, unsigned *out)
+{
+    const size_t count = pairs->scene->placement_count;
+    const struct aabb probe = aabb_probe(&pairs->box[pairs->a]);
+    size_t found = 0;
+    for (unsigned first = from; first < count; first += SCENE_FEW_BLOCK)
+        for (uint32_t rough = find_rough(pairs, first); rough; rough &= rough - 1) {
+            out[found] = first + (unsigned) __builtin_ctz(rough);
+            found += aabb_overlaps(&pairs->box[out[found]], &probe);
+        }
+    return found;
+}
+
 static void find_partners(struct scene_pairs *pairs, unsigned from)
 {
+    pairs->given = 0;
+    if (pairs->few) {
+        pairs->found = pairs->space;
+        pairs->found_count = find_among_few(pairs, from, pairs->found);
+        remove_ignored(pairs);
+        return;
+    }
     if (pairs->listed) {
         const unsigned *start = &pairs->start[pairs->a];
         pairs->found = pairs->partner + start[0];
@@ -88,7 +161,6 @@ static void find_partners(struct scene_pairs *pairs, unsigned from)
     }
     for (size_t i = 0; pairs->first && i < pairs->found_count; i++)
         pairs->found[i] += pairs->first;
-    pairs->given = 0;
     remove_ignored(pairs);
 }
 
@@ -102,6 +174,15 @@ static void box_at(const void *context, unsigned index, double box[2][FMB_DIM_MA
     }
 }
 
+static void build_tree(struct scene_pairs *pairs, void *memory)
+{
+    const struct fmb_scene *scene = pairs->scene;
+    const struct fmb_boxes boxes = {
+        .dim = scene->placements->body->dim, .at = box_at, .context = pairs};
+    fmb_tree_build_boxes(&boxes, scene->placement_count - pairs->first, 0, memory, &pairs->tree);
+    pairs->listed = scene->which == FMB_PAIRS_ALL && list_pairs(pairs);
+}
+
 static void begin_search(struct scene_pairs *pairs, void *memory)
 {
     const struct fmb_scene *scene = pairs->scene;
@@ -109,10 +190,11 @@ static void begin_search(struct scene_pairs *pairs, void *memory)
     pairs->first = scene->which == FMB_PAIRS_ACROSS ? (unsigned) scene->split : 0;
     if (pair_rows(numbers) == 0)
         return;
-    const struct fmb_boxes boxes = {
-        .dim = scene->placements->body->dim, .at = box_at, .context = pairs};
-    fmb_tree_build_boxes(&boxes, scene->placement_count - pairs->first, 0, memory, &pairs->tree);
-    pairs->listed = scene->which == FMB_PAIRS_ALL && list_pairs(pairs);
+    pairs->few = scene->placement_count <= SCENE_FEW;
+    if (pairs->few)
+        set_rough(pairs);
+    else
+        build_tree(pairs, memory);
     ignored_begin(scene, pairs->ignored_memory, &pairs->ignored);
     while (pairs->a < pair_rows(numbers) &&
            pairs_before(numbers, pairs->a + 1) <= scene->first_pair)
@@ -132,7 +214,7 @@ void scene_pairs_begin(struct scene_pairs *pairs, const struct fmb_scene *scene,
     pairs->a = 0;
     pairs->found_count = pairs->given = 0;
     pairs->searches = 0;
-    pairs->listed = false;
+    pairs->listed = pairs->few = false;
     if (scene->which != FMB_PAIRS_LISTED)
         begin_search(pairs, tree);
 }
@@ -147,7 +229,8 @@ static size_t next_found(struct scene_pairs *pairs, unsigned (*out)[2], size_t m
             out[count++][1] = pairs->found[pairs->given++];
         } else if (pairs->searches == SEARCHES_MAX) {
             break;
-        } else if (pairs->searches += !pairs->listed, ++pairs->a < pair_rows(numbers)) {
+        } else if (pairs->searches += !(pairs->listed || pairs->few),
+                   ++pairs->a < pair_rows(numbers)) {
             find_partners(pairs, (unsigned) pair_first_partner(numbers, pairs->a));
         }
     }
