@@ -9,7 +9,7 @@
 # Packages: deb: of Debian, into build/deb; deb-test: tries them in a chroot (deps-deb first; root)
 # Longer:   validate, accuracy, soak, fuzz, fuzz-afl, fuzz-merge (deps-fuzz first)
 # Measure:  bench (deps-bench first, for other libraries), bench-bus, bench-replay, bench-mesh,
-#           bench-page, report (deps-report first)
+#           bench-page, bench-python, report (deps-report first)
 # Port:     aarch64: fmb for AArch64, which 'make test' then emulates (deps-aarch64 first)
 # Rewrite:  logs, goldens: the regression logs, and the results that they are compared with;
 #           picture: that of README.md;
@@ -22,6 +22,7 @@
 #   WERROR=1                       warnings are errors
 #   V=1                            shows commands, not one line a file
 #   HELP_FROM=build                whose programs print the manual; for those of another machine
+#   PYTHONDIR                      where fmb.py goes
 #   CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX, LIBDIR, DESTDIR   as usual
 
 VERSION := 0.1.0
@@ -34,6 +35,10 @@ PREFIX ?= /usr/local
 override PREFIX := $(if $(filter /%,$(firstword $(PREFIX))),$(PREFIX),$(shell realpath -m '$(PREFIX)'))
 LIBDIR ?= $(PREFIX)/lib
 INSTALL ?= install
+# Debian's Python, and where it finds modules under PREFIX: in /usr those of every version.
+python := $(firstword $(wildcard /usr/bin/python3) python3)
+PYTHONDIR ?= $(PREFIX)/lib/$(if $(filter /usr,$(PREFIX)),python3,$(shell $(python) -c \
+	'import sys; print("python%d.%d" % sys.version_info[:2])' 2> /dev/null || echo python3))/dist-packages
 OBJCOPY ?= objcopy
 
 # The default build lies in build/, others in build/VARIANT.
@@ -140,6 +145,7 @@ see_clients/replay := clients/page clients/log service/answer $(see_clients/log)
 see_clients := $(addprefix clients/,query record mesh scene replay) $(see_clients/replay)
 see_clients/demo :=
 see_clients/examples := clients/lib msgs/codec service/fmb
+see_clients/python := clients/lib $(wire)
 
 # Before the rules whose prerequisites they are.
 message_names := body_t definition_query_t definition_t names_t pair_query_t pair_result_t placement_t \
@@ -197,7 +203,7 @@ $(O)/msgs/%.o: $(GEN)/%.c $(O)/settings | $(message_headers)
 	$(compile) -w -fno-sanitize=nonnull-attribute
 
 wire_objects := $(call objects_in,$(filter-out service/fmb,$(wire))) $(message_objects)
-client_objects := $(call objects_in,clients/lib)
+client_objects := $(call objects_in,clients/lib clients/python)
 product_objects := $(filter-out %/main.o %/fmb.o,$(wire_objects) $(call objects_in,service service/answer clients \
 	$(addprefix clients/,common query log page record mesh scene replay)))
 
@@ -216,7 +222,7 @@ $(engine) $(client) $(product):
 # Every layer links with the folders that it may include from, and nothing else: a call that points up
 # fails to link, also where its declaration stands below.
 engine_layers := $(filter-out service/fmb,$(engine_folders))
-wire_layers := msgs/codec msgs/bus msgs/common service/answer clients/lib
+wire_layers := msgs/codec msgs/bus msgs/common service/answer clients/lib clients/python
 .PHONY: layers
 layers: $(engine_layers:%=$(O)/%/layer.so) $(wire_layers:%=$(O)/%/layer.so)
 $(foreach l,$(engine_layers),$(eval $(O)/$l/layer.so: \
@@ -232,7 +238,7 @@ $(foreach l,$(wire_layers),$(eval $(O)/$l/layer.so: $(message_objects) $(engine)
 define library
 	@mkdir -p $(@D)
 	$(call say,AR,$@) $(CC) -r -nostdlib -fno-lto -o $(@:.a=.o) $^
-	$(quiet)$(OBJCOPY) --wildcard --keep-global-symbol='$(1)' -R '.gnu.*lto*' $(@:.a=.o)
+	$(quiet)$(OBJCOPY) --wildcard $(1:%=--keep-global-symbol='%') -R '.gnu.*lto*' $(@:.a=.o)
 	@rm -f $@
 	$(quiet)$(AR) rcs $@ $(@:.a=.o)
 	@rm $(@:.a=.o)
@@ -240,7 +246,7 @@ endef
 $(B)/libfmb.a: $(engine_objects)
 	$(call library,fmb_*)
 $(B)/libfmb-client.a: $(client_objects) $(wire_objects)
-	$(call library,fmb_client_*)
+	$(call library,fmb_client_* fmb_flat_*)
 
 # The same as shared libraries, with the names of their headers alone.
 shared_libraries := $(B)/libfmb.so.0 $(B)/libfmb-client.so.0
@@ -382,7 +388,7 @@ root := $(DESTDIR)$(PREFIX)
 install: all
 	$(INSTALL) -d $(foreach d,bin include share/fmb/lcmtypes share/doc/fmb share/man/man1 share/man/man8 \
 		share/bash-completion/completions lib/systemd/system,"$(root)/$d") \
-		"$(DESTDIR)$(LIBDIR)/pkgconfig" "$(DESTDIR)$(LIBDIR)/cmake/fmb"
+		"$(DESTDIR)$(LIBDIR)/pkgconfig" "$(DESTDIR)$(LIBDIR)/cmake/fmb" "$(DESTDIR)$(PYTHONDIR)"
 	$(INSTALL) $(strip_option) $(programs) "$(root)/bin"
 	$(INSTALL) -m 644 $(B)/libfmb.a $(B)/libfmb-client.a "$(DESTDIR)$(LIBDIR)"
 	$(INSTALL) $(strip_option) -m 644 $(shared_libraries) "$(DESTDIR)$(LIBDIR)"
@@ -390,7 +396,8 @@ install: all
 		ln -sf $$name.0 "$(DESTDIR)$(LIBDIR)/$$name" || exit; done
 	$(if $(DESTDIR),,$(if $(filter /usr/lib% /usr/local/lib%,$(LIBDIR)),[ $$(id -u) != 0 ] || ldconfig))
 	$(INSTALL) -m 644 service/fmb/fmb.h msgs/codec/fmb_counters.h clients/lib/fmb_client.h \
-		"$(root)/include"
+		clients/python/fmb_flat.h "$(root)/include"
+	$(INSTALL) -m 644 clients/python/fmb.py "$(DESTDIR)$(PYTHONDIR)"
 	$(INSTALL) -m 644 $(message_files) "$(root)/share/fmb/lcmtypes"
 	$(INSTALL) -m 644 LICENSE "$(root)/share/doc/fmb"
 	$(INSTALL) -m 644 $(M)/*.1 "$(root)/share/man/man1"
@@ -408,11 +415,12 @@ install-strip: install
 
 uninstall:
 	cd "$(root)" && rm -rf bin/fmbd bin/fmb include/fmb.h include/fmb_counters.h \
-		include/fmb_client.h share/fmb share/doc/fmb lib/systemd/system/fmbd.service \
+		include/fmb_client.h include/fmb_flat.h share/fmb share/doc/fmb lib/systemd/system/fmbd.service \
 		share/man/man1/fmb.1 share/man/man1/fmb-*.1 share/man/man8/fmbd.8 \
 		share/bash-completion/completions/fmb share/bash-completion/completions/fmbd
 	cd "$(DESTDIR)$(LIBDIR)" && rm -rf libfmb.a libfmb-client.a libfmb.so libfmb.so.0 \
 		libfmb-client.so libfmb-client.so.0 pkgconfig/fmb.pc pkgconfig/fmb-client.pc cmake/fmb
+	rm -f "$(DESTDIR)$(PYTHONDIR)"/fmb.py "$(DESTDIR)$(PYTHONDIR)"/__pycache__/fmb.*.pyc
 
 .PHONY: deb deb-test
 deb:
@@ -430,12 +438,12 @@ packages_deps := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libexpat1-dev 
 	libglib2.0-dev libseccomp-dev pkg-config uthash-dev libjs-three
 packages_deps-test := $(packages_deps) libcmocka-dev bats jq clang clang-format libclang-rt-14-dev \
 	liblcm-java default-jdk-headless liblcm-lua lua5.2 chromium libxml2-utils g++ cmake man-db \
-	gnuplot-nox
+	gnuplot-nox python3 python3-numpy
 packages_deps-fuzz := $(packages_deps) clang libclang-rt-14-dev llvm afl++
 packages_deps-bench := libccd-dev libfcl-dev libbullet-dev libode-dev libbox2d-dev libcgal-dev \
 	libmpfr-dev pkg-config
 packages_deps-report := jq
-packages_deps-deb := $(packages_deps) build-essential debhelper lintian bats debootstrap
+packages_deps-deb := $(packages_deps) build-essential debhelper dh-python python3 lintian bats debootstrap
 packages_deps-aarch64 := gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
 deps := deps deps-test deps-fuzz deps-bench deps-report deps-deb deps-aarch64
 

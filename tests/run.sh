@@ -31,7 +31,7 @@ first="$first test_client_bad cli/replay.bats cli/log.bats test_kernels test_eng
 first="$first cli/mesh.bats cli/mesh_page.bats cli/report.bats test_replay_compare"
 slow='system/soak.bats system/fairness.bats system/record.bats system/replay_bus.bats cli/replay.bats'
 slow="$slow cli/mesh.bats cli/log.bats cli/log_cut.bats cli/log_scene.bats system/examples.bats system/library.bats"
-slow="$slow system/bus.bats cli/page.bats cli/mesh_page.bats cli/campaign.bats cli/bench.bats cli/report.bats"
+slow="$slow system/python.bats system/bus.bats cli/page.bats cli/mesh_page.bats cli/campaign.bats cli/bench.bats cli/report.bats"
 
 # A suite writes TAP; 77 means that it cannot run here.
 #   unit BUILD NAME | bats BUILD FILE | netns BUILD FILE | headers BUILD -

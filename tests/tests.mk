@@ -17,6 +17,7 @@ see_tests/system := tests/hostile $(GEN)
 see_tests/mesh := clients/mesh clients/common tests/bench service/fmb
 see_tests/logs := tests/encode tests/campaign tests/oracle service/answer $(wire) \
 	$(call fmb,frame filter) $(GEN)
+see_tests/python := tests/bench service/fmb
 see_tests/soak := tests/encode clients/lib $(wire)
 see_tests/replay := clients/replay $(see_clients/replay) tests/unit tests/bench tests/encode
 see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/unit tests/hostile $(GEN)
@@ -32,7 +33,8 @@ test_programs := plain:system/plain fake-peer:system/fake_peer events:system/eve
 	mesh/make-mesh:mesh/make_mesh $(foreach s,load memory rate blast fair relay,soak-$s:soak/$s)
 measures := validate:campaign/validate accuracy:campaign/accuracy bench/bench:bench/bench \
 	bus/bench-bus:bus/bench_bus bus/robot-bus:robot/bus bus/echo:bus/echo robot/robot:robot/robot \
-	replay/bench-replay:replay/bench_replay mesh/bench-mesh:mesh/bench_mesh
+	replay/bench-replay:replay/bench_replay mesh/bench-mesh:mesh/bench_mesh \
+	python/bench-batch:python/bench_batch
 mains := $(foreach p,$(test_programs) $(measures),$(lastword $(subst :, ,$p)))
 $(foreach p,$(test_programs) $(measures),$(eval \
 	$(B)/$(firstword $(subst :, ,$p)): $(O)/tests/$(lastword $(subst :, ,$p)).o))
@@ -277,7 +279,7 @@ $(B)/bus/bench-bus $(B)/bus/robot-bus: | $(B)/bus/echo $(B)/fmbd
 $(B)/replay/bench-replay: linking = $(link_whole)
 
 # Minutes each. What bench and bench-bus measured is in report.json then, for 'make report'.
-.PHONY: bench bench-bus bench-replay bench-mesh bench-page report
+.PHONY: bench bench-bus bench-replay bench-mesh bench-page bench-python report
 bench: $(B)/bench/bench $(B)/robot/robot
 	$< --json $(B)/bench/report.json
 	$(B)/robot/robot
@@ -308,6 +310,10 @@ bench-mesh: $(B)/mesh/bench-mesh $(B)/fmb $(if $(MESH),,$(B)/mesh/bumpy.ply)
 # A page of 10,000 scenes, by Chromium without a GPU.
 bench-page: $(B)/fmb
 	tests/page/bench.sh $(B)
+
+# fmb.py beside the same work in C.
+bench-python: $(B)/python/bench-batch $(shared_libraries)
+	LD_LIBRARY_PATH=$(B) PYTHONPATH=clients/python $(python) tests/python/bench.py $< $(B)/python/scene
 
 # One page of what bench, accuracy and bench-bus measured; runs none of them.
 report:

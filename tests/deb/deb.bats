@@ -57,8 +57,13 @@ get() {
     inside /shared
 }
 
+@test "Python finds the module, and decides in process" {
+    get $(cd "$root" && printf './%s ' fmb/python3-fmb_*.deb fmb/libfmb0_*.deb fmb/libfmb-client0_*.deb)
+    [ "$(inside python3 -c 'import fmb; print(fmb.Scene([fmb.box([1, 1])] * 2).pair(0, 1, 0).verdict.name)')" = OVERLAPPING ]
+}
+
 @test "nothing remains when the packages are removed" {
-    inside apt-get purge -q -y fmb fmbd libfmb0 libfmb-client0
+    inside apt-get purge -q -y fmb fmbd libfmb0 libfmb-client0 python3-fmb
     [ -z "$(find "$root" -xdev -path "$root/fmb" -prune -o -path "$root/proc" -prune -o -name '*fmb*' -print)" ]
 }
 

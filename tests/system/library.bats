@@ -100,7 +100,7 @@ END
 @test "the client library exports its own names only" {
     nm -g --defined-only "$root/lib/libfmb-client.a" | awk 'NF == 3 { print $3 }' > "$BATS_TEST_TMPDIR/names"
     grep -qx fmb_client_query "$BATS_TEST_TMPDIR/names"
-    [ -z "$(grep -v '^fmb_client_\|asan' "$BATS_TEST_TMPDIR/names")" ]
+    [ -z "$(grep -v '^fmb_client_\|^fmb_flat_\|asan' "$BATS_TEST_TMPDIR/names")" ]
 }
 
 @test "shared libraries have a soname, and export the names of their headers only" {
@@ -108,10 +108,11 @@ END
         file=$root/lib/lib$name.so
         [ "$(readlink "$file")" = lib$name.so.0 ]
         objdump -p "$file" | grep -q "SONAME *lib$name.so.0\$"
-        header=$root/include/${name/-/_}.h
+        headers=$root/include/${name/-/_}.h
+        [ "$name" = fmb ] || headers="$headers $root/include/fmb_flat.h"
         nm -D --defined-only "$file" | awk '$2 != "A" { print $3 }' > "$BATS_TEST_TMPDIR/names"
         grep -qx "${name/-/_}_status_text" "$BATS_TEST_TMPDIR/names"
-        for shown in $(cat "$BATS_TEST_TMPDIR/names"); do grep -q "[ *]$shown(" "$header"; done
+        for shown in $(cat "$BATS_TEST_TMPDIR/names"); do grep -q "[ *]$shown(" $headers; done
     done
 }
 
@@ -144,6 +145,13 @@ END
     $compiler $flags main.c -o main -ldl
     rm "$root"/lib/libfmb*
     ./main
+}
+
+@test "Python finds the module in the folder of its version, and runs with the shared libraries" {
+    [ -x /usr/bin/python3 ] || skip "needs python3"
+    folder=$root/lib/$(/usr/bin/python3 -c 'import sys; print("python%d.%d" % sys.version_info[:2])')/dist-packages
+    [ "$(PYTHONPATH=$folder /usr/bin/python3 -c 'import fmb; print(fmb.version(), fmb.__file__)')" = \
+        "$("$root/bin/fmb" --version | cut -d ' ' -f 2) $folder/fmb.py" ]
 }
 
 # Options of make are those of setup().

@@ -66,7 +66,7 @@ prints_what_it_shows() {
     $python -c 'import pandas, matplotlib' 2> /dev/null || skip "no pandas or matplotlib"
     mkdir "$BATS_TEST_TMPDIR/build"
     "$FMB_BUILD/arm" | "$FMB" query --local --gap --csv > "$BATS_TEST_TMPDIR/build/path.csv"
-    sed -n '/^```python$/,/^```$/p' README.md | grep -v '^```' > "$BATS_TEST_TMPDIR/plot.py"
+    sed -n '/^import pandas$/,/^```$/p' README.md | grep -v '^```' > "$BATS_TEST_TMPDIR/plot.py"
     (
         cd "$BATS_TEST_TMPDIR"
         MPLBACKEND=agg MPLCONFIGDIR=. $python plot.py

@@ -1,0 +1,687 @@
+"""Exact collision queries of rigid bodies: which overlap, touch or are separated, when, in which
+box, and how far apart they are. In process, or by the service fmbd on an LCM bus.
+
+    import fmb
+
+    table = fmb.box([2, 1, 0.25])
+    cube = fmb.box([0.25, 0.25, 0.25])
+    scene = fmb.Scene([table, cube], names=["table", "cube"])
+    scene.place(positions=[[0, 0, 0.125], [0.5, 0, 0.375]])
+    for answer in scene.decide(duration=0):
+        print(answer.names, answer.verdict.name)    # ('table', 'cube') TOUCHING
+
+fmb.h of libfmb defines shapes, verdicts, and how tight the numbers are. Lengths have any unit,
+times are in seconds, velocities per second; orientations are quaternions (w, x, y, z), in 2D (w, z),
+of any length but 0. Every window is [0, duration].
+
+Arrays that are passed in are nested sequences, or objects with a buffer (of numpy, for example) of
+float64 or int64 in C order, which are not copied. Arrays that come out are numpy's where it is
+installed, and else memoryviews of the same shape and type.
+
+Input that is refused raises an exception whose text begins with the argument: TypeError, ValueError,
+or Error, a ValueError with the status of fmb.h. A bus that fails raises BusError. A pair that has no
+answer, of a scene that was accepted, has a status other than 0, and no verdict.
+
+A scene and a client may be used by several threads; calls on one of them wait for each other.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import enum
+import itertools
+import math
+import operator
+import threading
+from array import array
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
+
+try:
+    import numpy
+except ImportError:
+    numpy = None  # type: ignore[assignment]
+if TYPE_CHECKING:
+    Array = Union["numpy.ndarray", memoryview, Sequence[Any]]
+
+__all__ = ["Answer", "Answers", "Body", "BusError", "Client", "Error", "OVERLAPPING", "SEPARATED",
+           "Scene", "TOUCHING", "Verdict", "box", "compound", "cuboid", "face", "hull",
+           "status_text", "tetrahedron", "version"]
+
+# ---- The library: fmb_flat.h ----
+
+_ABI = 1
+_SONAME = "libfmb-client.so.0"
+_WHY_MAX = 512
+
+
+def _load() -> ctypes.CDLL:
+    try:
+        library = ctypes.CDLL(_SONAME)
+    except OSError as error:
+        raise ImportError(f"fmb: {error}: install it, or put its folder into LD_LIBRARY_PATH") from None
+    try:
+        found = library.fmb_flat_abi()
+    except AttributeError:
+        found = 0
+    if found != _ABI:
+        raise ImportError(f"fmb: {_SONAME} has interface {found}, this file needs {_ABI}: install both "
+                          "of one version")
+    integer, size, long, real, text, pointer = (
+        ctypes.c_int, ctypes.c_size_t, ctypes.c_int64, ctypes.c_double, ctypes.c_char_p,
+        ctypes.c_void_p)
+    for name, result, arguments in (
+            ("fmb_version", text, ()),
+            ("fmb_client_status_text", text, (integer,)),
+            ("fmb_client_close", None, (pointer,)),
+            ("fmb_flat_open", pointer, (text, text, real, integer, real, text, size)),
+            ("fmb_flat_body_make", integer, (integer, size) + 4 * (pointer,)),
+            ("fmb_flat_body_free", None, (pointer,)),
+            ("fmb_flat_scene_make", integer, (size,) + 5 * (pointer,)),
+            ("fmb_flat_scene_free", None, (pointer,)),
+            ("fmb_flat_why", text, (pointer,)),
+            ("fmb_flat_place", integer, (pointer, size, size, pointer, pointer, pointer)),
+            ("fmb_flat_pair", integer, (pointer, pointer, long, long, real, integer, pointer)),
+            ("fmb_flat_decide", integer, (pointer, pointer, real, integer, integer, real, long,
+                                          pointer, size, pointer, size, text)),
+            ("fmb_flat_count", size, (pointer,)),
+            ("fmb_flat_answers", None, 11 * (pointer,))):
+        function = getattr(library, name)
+        function.restype, function.argtypes = result, arguments
+    return library
+
+
+_lib = _load()
+_WANT_BOX, _WANT_TIMES, _WANT_GAP = 1, 4, 8
+_NO_MEMORY = -4
+
+
+class Error(ValueError):
+    """Input was refused. status: the number of fmb.h."""
+
+    def __init__(self, message: str, status: int = 0) -> None:
+        super().__init__(message)
+        self.status = status
+
+
+class BusError(ConnectionError):
+    """The bus failed, or a pair had no answer. status: the number of fmb_client.h, 0 for a client
+    that cannot be opened or is closed."""
+
+    def __init__(self, message: str, status: int = 0) -> None:
+        super().__init__(message)
+        self.status = status
+
+
+def version() -> str:
+    """The version of the library, "major.minor.patch"."""
+    return _lib.fmb_version().decode()
+
+
+def status_text(status: int) -> str:
+    """The text of a status, for people."""
+    return _lib.fmb_client_status_text(status).decode()
+
+
+def _error(status: int, message: str) -> Exception:
+    if status == _NO_MEMORY:
+        return MemoryError(message)
+    return (BusError if status < 0 else Error)(message, status)
+
+
+class _Handle:
+    """Owner of an object of the library."""
+
+    _handle: Optional[int] = None
+    _free: Any = None
+
+    def __del__(self) -> None:
+        if self._handle:
+            self._free(self._handle)
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        raise TypeError(f"fmb: a {type(self).__name__} cannot be copied")
+
+
+# ---- Arguments ----
+
+_TYPES = {"d": ("float64", "d"), "q": ("int64", "ql")}
+
+
+def _float(name: str, value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: expected a number, found {value!r:.40}") from None
+
+
+def _int(name: str, value: Any) -> int:
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name}: expected an integer, found {value!r:.40}") from None
+    if not -2**63 <= number < 2**63:
+        raise ValueError(f"{name}: {number} is out of range")
+    return number
+
+
+def _text(name: str, value: Optional[str]) -> Optional[bytes]:
+    if value is None:
+        return None
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: expected a str, found {value!r:.40}")
+    if "\0" in value:
+        raise ValueError(f"{name}: contains a NUL")
+    return value.encode("utf-8", "surrogatepass")  # which the library refuses
+
+
+def _flat(name: str, value: Any, code: str, shape: tuple) -> tuple[memoryview, tuple]:
+    """An array as a buffer, and its shape. shape: the one expected, a str where any length will
+    do."""
+    type_name, formats = _TYPES[code]
+    try:
+        view = memoryview(value)
+    except (TypeError, ValueError):
+        view, found = _from_sequence(name, value, code, shape)
+    else:
+        found = view.shape
+        if view.format not in formats:
+            raise TypeError(f"{name}: expected {type_name}, found {getattr(value, 'dtype', view.format)}")
+    if len(found) != len(shape) or any(s != f for s, f in zip(shape, found) if s.__class__ is int):
+        raise ValueError(f"{name}: expected shape {_shape_text(shape)}, found {_shape_text(found)}")
+    if not view.c_contiguous:
+        raise ValueError(f"{name}: not in C order; numpy.ascontiguousarray() makes it so")
+    return view, found
+
+
+def _from_sequence(name: str, value: Any, code: str, shape: tuple) -> tuple[memoryview, tuple]:
+    out = array(code)
+    try:
+        if len(shape) == 1:
+            out.extend(value)
+            return memoryview(out), (len(out),)
+        width = shape[1] if shape[1].__class__ is int else len(value[0])
+        for i, row in enumerate(value):
+            if len(row) != width:
+                raise ValueError(f"{name}[{i}]: expected {width} numbers, found {len(row)}")
+            out.extend(row)
+        found = len(value), width
+        return memoryview(out).cast("B").cast(code, found) if out else memoryview(out), found
+    except (TypeError, OverflowError, LookupError) as error:
+        raise TypeError(f"{name}: expected {_TYPES[code][0]} of shape {_shape_text(shape)}: "
+                        f"{error}") from None
+
+
+def _shape_text(shape: tuple) -> str:
+    return f"({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
+
+
+def _pointer(buffer: Any) -> Any:
+    """A pointer to a buffer, which lives as long; NULL for None."""
+    if buffer is None:
+        return None
+    view = memoryview(buffer)
+    if not view.nbytes:  # not NULL
+        return ctypes.byref(ctypes.c_int64())
+    if view.readonly:
+        return ctypes.byref((ctypes.c_char * view.nbytes).from_buffer_copy(view))
+    return ctypes.byref(ctypes.c_char.from_buffer(view))
+
+
+# ---- Bodies ----
+
+
+class Body(_Handle):
+    """A rigid body of one or more frames, in body coordinates; it may be placed any number of times,
+    in any scene. Made by box(), cuboid(), tetrahedron(), face(), hull() and compound().
+
+    dim: 2 or 3
+    """
+
+    _free = _lib.fmb_flat_body_free
+
+    def __init__(self, name: str, dim: int, frames: Sequence[tuple[int, array]]) -> None:
+        self.dim = dim
+        self._frames = frames
+        shapes = array("i", [code for code, _ in frames])
+        counts = array("q", [len(numbers) for _, numbers in frames])
+        numbers = array("d")
+        for _, more in frames:
+            numbers.extend(more)
+        handle = ctypes.c_void_p()
+        status = _lib.fmb_flat_body_make(dim, len(frames), _pointer(shapes), _pointer(counts),
+                                         _pointer(numbers), ctypes.byref(handle))
+        if status:
+            raise _error(status, f"{name}: {status_text(status)}")
+        self._handle = handle.value
+
+
+# Values of placement_t.shapes.
+_CUBOID, _TETRAHEDRON, _FACE, _BOX, _HULL, _TETRAHEDRON_VERTICES, _FACE_VERTICES = range(1, 8)
+
+
+def _numbers(name: str, value: Any, shape: tuple) -> tuple[array, int]:
+    """The numbers of an argument of a body, and their dimension, the length of its last axis."""
+    buffer, found = _flat(name, value, "d", shape)
+    if found[-1] not in (2, 3):
+        raise ValueError(f"{name}: expected 2 or 3 axes, found {found[-1]}")
+    numbers = array("d", memoryview(buffer).tobytes())
+    if not all(map(math.isfinite, numbers)):
+        raise Error(f"{name}: {status_text(7)}", 7)
+    return numbers, found[-1]
+
+
+def _frame(code: int, name: str, value: Any, shape: tuple, origin_name: str, origin: Any) -> Body:
+    numbers, dim = _numbers(name, value, shape)
+    if origin is not None:
+        numbers = _numbers(origin_name, origin, (dim,))[0] + numbers
+    return Body(name, dim, [(code, numbers)])
+
+
+def box(size: Array, centre: Optional[Array] = None) -> Body:
+    """A box along the axes of the body.
+
+    size: (dim,), full lengths of the edges, 0 or more
+    centre: (dim,); None: 0
+    """
+    return _frame(_BOX, "size", size, ("dim",), "centre", centre)
+
+
+def cuboid(components: Array, origin: Optional[Array] = None) -> Body:
+    """A cuboid, the set origin + sum x_i components[i] with all x_i in [0, 1].
+
+    components: (dim, dim), [component][axis]
+    origin: (dim,); None: 0
+    """
+    return _frame(_CUBOID, "components", components, ("n", "dim"), "origin", origin)
+
+
+def tetrahedron(components: Optional[Array] = None, origin: Optional[Array] = None, *,
+                vertices: Optional[Array] = None) -> Body:
+    """A tetrahedron, in 2D a triangle: the set origin + sum x_i components[i] with x_i >= 0 and
+    sum x_i <= 1; or that of its vertices, which are taken exactly.
+
+    components: (dim, dim), [component][axis]
+    origin: (dim,); None: 0
+    vertices: (dim + 1, dim), in place of both
+    """
+    return _simplex(_TETRAHEDRON, _TETRAHEDRON_VERTICES, components, origin, vertices)
+
+
+def face(components: Optional[Array] = None, origin: Optional[Array] = None, *,
+         vertices: Optional[Array] = None) -> Body:
+    """A triangle in 3D, by origin and two components, or by its vertices.
+
+    components: (2, 3), [component][axis]
+    origin: (3,); None: 0
+    vertices: (3, 3), in place of both
+    """
+    return _simplex(_FACE, _FACE_VERTICES, components, origin, vertices)
+
+
+def _simplex(code: int, code_vertices: int, components: Any, origin: Any, vertices: Any) -> Body:
+    if (components is None) == (vertices is None):
+        raise TypeError("components: expected these, or vertices")
+    if vertices is None:
+        return _frame(code, "components", components, ("n", "dim"), "origin", origin)
+    if origin is not None:
+        raise TypeError("origin: goes with components")
+    return _frame(code_vertices, "vertices", vertices, ("n", "dim"), "", None)
+
+
+def hull(vertices: Array) -> Body:
+    """The convex hull of 1 to 1,024 vertices, in any order; it may be flat.
+
+    vertices: (n, dim)
+    """
+    return _frame(_HULL, "vertices", vertices, ("n", "dim"), "", None)
+
+
+def compound(bodies: Iterable[Body]) -> Body:
+    """One rigid body of the frames of others, which are never tested against each other."""
+    parts = _bodies(bodies)
+    return Body("bodies", parts[0].dim, [frame for part in parts for frame in part._frames])
+
+
+def _bodies(bodies: Iterable[Body]) -> tuple[Body, ...]:
+    try:
+        out = tuple(bodies)
+    except TypeError:
+        raise TypeError(f"bodies: expected a sequence, found {bodies!r:.40}") from None
+    if not out:
+        raise ValueError("bodies: there is none")
+    for i, body in enumerate(out):
+        if not isinstance(body, Body):
+            raise TypeError(f"bodies[{i}]: expected a Body, found {body!r:.40}")
+        if body.dim != out[0].dim:
+            raise Error(f"bodies[{i}]: {status_text(8)}", 8)
+    return out
+
+
+# ---- Answers ----
+
+
+class Verdict(enum.IntEnum):
+    SEPARATED = 1
+    TOUCHING = 2
+    OVERLAPPING = 3
+
+
+SEPARATED, TOUCHING, OVERLAPPING = Verdict
+_VERDICTS = (None,) + tuple(Verdict)
+
+Vector = tuple[float, ...]
+
+
+class Answer(NamedTuple):
+    """The answer to one pair. A field that was not wanted, or that the pair does not have, is
+    None."""
+
+    a: int  #: indices of the bodies in the scene
+    b: int
+    names: tuple[Optional[str], Optional[str]]
+    status: int  #: 0; or why there is no verdict, see status_text()
+    verdict: Optional[Verdict]
+    contact: Optional[tuple[float, float]]  #: first and last time of contact, seconds
+    box: Optional[tuple[Vector, Vector]]  #: lower and upper corner of the intersection, (dim,) each
+    gap: Optional[tuple[float, float]]  #: lower and upper bound of the signed distance
+    direction: Optional[Vector]  #: of the gap, from a to b, (dim,)
+    time: Optional[float]  #: of the least distance, seconds; separated pairs have it
+    witness: Optional[tuple[Vector, Vector]]  #: the nearest points of a and b at that time
+    frames: Optional[tuple[int, int]]  #: of a and b, which have this gap
+
+
+def _answer(names: Any, dim: int, a: int, b: int, status: int, verdict: int, contact: Any, box: Any,
+            gap: Any, direction: Any, time: Any, witness: Any, frames: Any) -> Answer:
+    """Of lists of numbers; None, or NaN for the first, where there are none. Vectors may be longer
+    than dim."""
+
+    def two(values: Any) -> Any:
+        if values is None or values[0] != values[0]:
+            return None
+        half = len(values) // 2
+        return tuple(values[:dim]), tuple(values[half:half + dim])
+
+    has_gap = gap is not None and gap[0] == gap[0]
+    return Answer(a, b, (names[a], names[b]), status, _VERDICTS[verdict],
+                  (contact[0], contact[1]) if contact and contact[0] == contact[0] else None,
+                  two(box), (gap[0], gap[1]) if has_gap else None,
+                  tuple(direction[:dim]) if has_gap else None,
+                  time[0] if has_gap and time[0] == time[0] else None,
+                  two(witness) if has_gap else None,
+                  (int(frames[0]), int(frames[1])) if has_gap else None)
+
+
+class Answers(Sequence):
+    """The answers to n pairs, in their order. A sequence of Answer, and an array for each field;
+    None where it was not wanted.
+
+    pairs: (n, 2) int64, [pair][a, b], indices of bodies; of a list of pairs the array that was given
+    verdicts: (n,) uint8, of Verdict; 0: none, the status says why
+    statuses: (n,) int32, 0, or why there is no verdict
+    contacts: (n, 2), first and last time of contact, seconds; NaN for pairs that never meet
+    boxes: (n, 2, dim), [pair][lower, upper][axis] of the intersection; NaN for pairs that never meet
+    gaps: (n, 2), lower and upper bound of the signed distance; NaN where there is none: the arrays
+        below then have no meaning
+    directions: (n, dim), of the gap, from a to b
+    times: (n,), of the least distance, seconds; NaN unless the pair is separated
+    witnesses: (n, 2, dim), [pair][of a, of b], the nearest points at that time; NaN likewise
+    frames: (n, 2) int64, of a and b, which have this gap
+    """
+
+    def __init__(self, handle: int, dim: int, names: Any, pairs: Any, wanted: int) -> None:
+        self._dim, self._names = dim, names
+        self._count = n = _lib.fmb_flat_count(handle)
+        contact, corners, gap = wanted & _WANT_TIMES, wanted & _WANT_BOX, wanted & _WANT_GAP
+
+        def new(wanted: Any, code: str, *shape: int) -> Any:
+            if not wanted:
+                return None
+            if numpy is not None:
+                return numpy.zeros((n,) + shape, code)
+            out = memoryview(bytearray(n * math.prod(shape) * array(code).itemsize))
+            return out.cast(code, (n,) + shape) if n else out.cast(code)
+
+        columns = (new(pairs is None, "q", 2), new(True, "B"), new(True, "i"), new(contact, "d", 2),
+                   new(corners, "d", 2, dim), new(gap, "d", 2), new(gap, "d", dim), new(gap, "d"),
+                   new(gap, "d", 2, dim), new(gap, "q", 2))
+        _lib.fmb_flat_answers(handle, *map(_pointer, columns))
+        (self.pairs, self.verdicts, self.statuses, self.contacts, self.boxes, self.gaps,
+         self.directions, self.times, self.witnesses, self.frames) = columns
+        if pairs is not None:
+            self.pairs = pairs if numpy is None else numpy.asarray(pairs)
+
+    def __len__(self) -> int:
+        return self._count
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, slice):
+            return [self[k] for k in range(*index.indices(self._count))]
+        k = range(self._count)[index]
+
+        def row(column: Any, code: str = "d") -> Any:
+            if column is None:
+                return None
+            values = memoryview(column).cast("B").cast(code)
+            width = len(values) // self._count
+            return values[k * width:(k + 1) * width].tolist()
+
+        a, b = row(self.pairs, "q")
+        return _answer(self._names, self._dim, a, b, int(self.statuses[k]), int(self.verdicts[k]),
+                       row(self.contacts), row(self.boxes), row(self.gaps), row(self.directions),
+                       row(self.times), row(self.witnesses), row(self.frames, "q"))
+
+
+# ---- The bus ----
+
+
+class Client(_Handle):
+    """A client of fmbd on an LCM bus. One client sends each body once, so keep it.
+
+    url: of the bus, udpm://[GROUP:PORT][?ttl=N]; None: LCM_DEFAULT_URL, or else this host alone
+    prefix: of the service's channels
+    timeout: the longest time before a query is sent again, seconds
+    tries: a query is given up after this many timeouts
+    within: time limit for each scene, seconds; 0: none
+
+    Raises BusError if the bus cannot be opened or an option is wrong.
+    """
+
+    _free = _lib.fmb_client_close
+
+    def __init__(self, url: Optional[str] = None, prefix: Optional[str] = None, *,
+                 timeout: float = 0.5, tries: int = 6, within: float = 0) -> None:
+        self._lock = threading.Lock()
+        why = ctypes.create_string_buffer(_WHY_MAX)
+        tries = _int("tries", tries)
+        if not 0 < tries < 2**31:
+            raise ValueError(f"tries: {tries} is out of range")
+        self._handle = _lib.fmb_flat_open(_text("url", url), _text("prefix", prefix),
+                                          _float("timeout", timeout), tries,
+                                          _float("within", within), why, _WHY_MAX)
+        if not self._handle:
+            raise BusError(why.value.decode(errors="replace"))
+
+    def close(self) -> None:
+        """Closes the client, which may not be used any more."""
+        with self._lock:
+            self.__del__()
+            self._handle = None
+
+    def __enter__(self) -> Client:
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
+
+
+_NO_LOCK = contextlib.nullcontext()
+
+
+def _lock_of(client: Optional[Client]) -> Any:
+    if client is None:
+        return _NO_LOCK
+    if not isinstance(client, Client):
+        raise TypeError(f"client: expected a Client, found {client!r:.40}")
+    return client._lock
+
+
+def _handle_of(client: Optional[Client]) -> Optional[int]:
+    if client is not None and not client._handle:
+        raise BusError("client: it is closed")
+    return client and client._handle
+
+
+# ---- Scenes ----
+
+
+class Scene(_Handle):
+    """Placed bodies. Their number, and what is given here but poses and velocities, stays; place()
+    and move() set the others for each query.
+
+    bodies: n bodies of one dimension; one body may stand at several places
+    positions: (n, dim), world coordinates of the origins of the bodies at time 0; None: 0
+    orientations: (n, 4), (w, x, y, z), in 2D (n, 2), (w, z); None: not rotated
+    velocities: (n, dim), per second; None: at rest
+    names: n texts of at most 64 bytes of UTF-8, or None each
+    groups: (n,) int64; bodies of one group other than 0 are not tested against each other
+    ids: (n,) int64, 1 to 2^53 - 1, under which the service keeps the bodies, 0: it does not; None:
+        1 to n
+    """
+
+    _free = _lib.fmb_flat_scene_free
+
+    def __init__(self, bodies: Iterable[Body], *, positions: Optional[Array] = None,
+                 orientations: Optional[Array] = None, velocities: Optional[Array] = None,
+                 names: Optional[Sequence[Optional[str]]] = None, groups: Optional[Array] = None,
+                 ids: Optional[Array] = None) -> None:
+        self._lock = threading.Lock()
+        self._answer = (ctypes.c_double * 23)()
+        self.bodies = _bodies(bodies)
+        self.dim = self.bodies[0].dim
+        n = len(self.bodies)
+        self.names = (None,) * n if names is None else tuple(names)
+        if len(self.names) != n:
+            raise ValueError(f"names: expected {n}, found {len(self.names)}")
+        texts = [_text(f"names[{i}]", name) for i, name in enumerate(self.names)]
+        handle = ctypes.c_void_p()
+        status = _lib.fmb_flat_scene_make(
+            n, (ctypes.c_void_p * n)(*[body._handle for body in self.bodies]),
+            _pointer(_flat("ids", range(1, n + 1) if ids is None else ids, "q", (n,))[0]),
+            _pointer(_flat("groups", [0] * n if groups is None else groups, "q", (n,))[0]),
+            (ctypes.c_char_p * n)(*texts), ctypes.byref(handle))
+        self._handle = handle.value
+        self._check(status)
+        self.place(positions, orientations, velocities)
+
+    def __len__(self) -> int:
+        return len(self.bodies)
+
+    def _check(self, status: int, name: str = "") -> None:
+        if status:
+            raise _error(status, name + _lib.fmb_flat_why(self._handle).decode()
+                         if self._handle else status_text(status))
+
+    def place(self, positions: Optional[Array] = None, orientations: Optional[Array] = None,
+              velocities: Optional[Array] = None) -> None:
+        """Sets positions (n, dim), orientations (n, 4), in 2D (n, 2), and velocities (n, dim) of all
+        bodies; None: as they are."""
+        n = len(self.bodies)
+        self._place(0, n, (n,), positions=positions, orientations=orientations,
+                    velocities=velocities)
+
+    def move(self, index: int, position: Optional[Array] = None,
+             orientation: Optional[Array] = None, velocity: Optional[Array] = None) -> None:
+        """Sets position (dim,), orientation (4,), in 2D (2,), and velocity (dim,) of one body; None:
+        as they are."""
+        index = _int("index", index)
+        if not 0 <= index < len(self.bodies):
+            raise IndexError(f"index: there is no body {index}")
+        self._place(index, 1, (), position=position, orientation=orientation, velocity=velocity)
+
+    def _place(self, first: int, count: int, rows: tuple, **poses: Any) -> None:
+        widths = (self.dim, 2 if self.dim == 2 else 4, self.dim)
+        pointers = [None if value is None else _pointer(_flat(name, value, "d", rows + (width,))[0])
+                    for (name, value), width in zip(poses.items(), widths)]
+        with self._lock:
+            status = _lib.fmb_flat_place(self._handle, first, count, *pointers)
+            if status and not rows:  # "positions[0]: ..." is about position
+                argument, _, text = _lib.fmb_flat_why(self._handle).decode().partition("[0]")
+                raise _error(status, next(n for n in poses if n[:4] == argument[:4]) + text)
+            self._check(status)
+
+    def pair(self, a: int, b: int, duration: float, *, box: bool = False, gap: bool = False,
+             client: Optional[Client] = None) -> Answer:
+        """Decides one pair over the window [0, duration], seconds. Groups are not considered. Raises
+        Error or BusError if it has no answer.
+
+        a, b: indices of bodies
+        box, gap: wanted besides verdict and contact
+        client: None: in process
+        """
+        a, b, duration = _int("a", a), _int("b", b), _float("duration", duration)
+        with self._lock, _lock_of(client):
+            self._check(_lib.fmb_flat_pair(
+                self._handle, _handle_of(client), a, b, duration,
+                (_WANT_BOX if box else 0) + (_WANT_GAP if gap else 0), self._answer), "pair: ")
+            row = self._answer[:]
+        return _answer(self.names, self.dim, a, b, 0, int(row[0]), row[1:3],
+                       row[3:9] if box else None, row[9:11] if gap else None, row[11:14],
+                       row[14:15], row[15:21], row[21:23])
+
+    def decide(self, duration: float, *, pairs: Optional[Array] = None,
+               split: Optional[int] = None, ignored: Optional[Array] = None, margin: float = 0,
+               instant: bool = False, contacts: bool = False, boxes: bool = False,
+               gaps: bool = False, label: Optional[str] = None,
+               client: Optional[Client] = None) -> Answers:
+        """Decides pairs over the window [0, duration], seconds.
+
+        pairs: (m, 2) int64, indices of bodies: the answers are of each of these pairs. None: all
+            pairs; the answers are of those that touch, overlap, are near or have no verdict, and
+            all others are separated
+        split: the first split bodies against all others, in place of all pairs
+        ignored: (m, 2) int64, pairs that are left out; not with pairs
+        margin: separated pairs at most this far apart are near, and have gaps, as those that meet
+        instant: the window is [0, 0] even if bodies move; duration is 0
+        contacts, boxes, gaps: wanted besides verdicts
+        label: for people who watch the bus, at most 64 bytes
+        client: None: in process
+
+        The pairs of a list take least time, and those of bodies of one frame without a margin least
+        of all.
+        """
+        if pairs is not None and split is not None:
+            raise ValueError("split: not with pairs")
+        listed = None if pairs is None else _flat("pairs", pairs, "q", ("m", 2))[0]
+        left_out = None if ignored is None else _flat("ignored", ignored, "q", ("m", 2))[0]
+        first = -1 if split is None else _int("split", split)
+        if split is not None and first < 0:
+            raise ValueError("split: it is negative")
+        margin = _float("margin", margin)
+        want = (_WANT_TIMES if contacts else 0) + (_WANT_BOX if boxes else 0) + (
+            _WANT_GAP if gaps else 0)
+        with self._lock, _lock_of(client):
+            self._check(_lib.fmb_flat_decide(
+                self._handle, _handle_of(client), _float("duration", duration), bool(instant), want,
+                margin, first, _pointer(listed), 0 if listed is None else len(listed),
+                _pointer(left_out), 0 if left_out is None else len(left_out),
+                _text("label", label)))
+            return Answers(self._handle, self.dim, self.names, listed,
+                           want | (_WANT_GAP if margin else 0))
+
+    def stream(self, duration: float, positions: Optional[Iterable[Array]] = None,
+               orientations: Optional[Iterable[Array]] = None,
+               velocities: Optional[Iterable[Array]] = None, **options: Any) -> Iterator[Answers]:
+        """Yields the answers of one scene after the other. positions, orientations and velocities
+        have one more axis than those of place(), the scenes, or are iterables of its arrays; options
+        are those of decide()."""
+        given = {name: values for name, values in (
+            ("positions", positions), ("orientations", orientations), ("velocities", velocities))
+            if values is not None}
+        for poses in itertools.zip_longest(*given.values()):
+            for name, pose in zip(given, poses):
+                if pose is None:
+                    raise ValueError(f"{name}: fewer scenes than the others")
+            self.place(**dict(zip(given, poses)))
+            yield self.decide(duration, **options)

@@ -1,0 +1,523 @@
+#include "fmb_flat.h"
+
+#include "fmb_client.h"
+#include "geometry.h"
+#include "query.h"
+#include "utf8.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+int fmb_flat_abi(void)
+{
+    return FMB_FLAT_ABI;
+}
+
+/* ---- Bodies ---- */
+
+struct fmb_flat_body {
+    struct fmb_body body;
+    struct fmb_frame *frames;
+    double *vertices; /* of hulls */
+};
+
+/* The doubles that the hulls need. */
+static size_t hull_doubles(int dim, size_t count, const int32_t *shapes, const int64_t *counts)
+{
+    size_t sum = 0;
+    for (size_t i = 0; i < count && dim > 0; i++)
+        if (shapes[i] == FMB_HULL)
+            sum += fmb_hull_doubles(dim, (size_t) counts[i] / (size_t) dim);
+    return sum;
+}
+
+static int make_body(int dim, size_t count, const int32_t *shapes, const int64_t *counts,
+                     const double *numbers, struct fmb_flat_body *out)
+{
+    double *vertices = out->vertices;
+    for (size_t i = 0; i < count; i++) {
+        const struct geometry_shape shape = geometry_shape(shapes[i]);
+        const size_t n = (size_t) counts[i];
+        const enum fmb_status status =
+            shape.shape == FMB_HULL
+                ? fmb_frame_make_hull(dim, numbers, n, vertices, &out->frames[i])
+            : shape.by_vertices
+                ? fmb_frame_make_vertices(dim, shape.shape, numbers, n, &out->frames[i])
+                : fmb_frame_make(dim, shape.shape, numbers, n, &out->frames[i]);
+        if (status != FMB_OK)
+            return (int) status;
+        if (shape.shape == FMB_HULL)
+            vertices += fmb_hull_doubles(dim, n / (size_t) dim);
+        numbers += n;
+    }
+    return (int) fmb_body_make_frames(out->frames, count, &out->body);
+}
+
+int fmb_flat_body_make(int dim, size_t count, const int32_t *shapes, const int64_t *counts,
+                       const double *numbers, struct fmb_flat_body **out)
+{
+    if (count > FMB_FRAMES_MAX)
+        return FMB_OVER_LIMIT;
+    struct fmb_flat_body *body = calloc(1, sizeof *body);
+    int status = FMB_CLIENT_NO_MEMORY;
+    if (body) {
+        body->frames = malloc((count + 1) * sizeof *body->frames);
+        body->vertices = malloc((hull_doubles(dim, count, shapes, counts) + 1) * sizeof(double));
+        if (body->frames && body->vertices)
+            status = make_body(dim, count, shapes, counts, numbers, body);
+    }
+    if (status == FMB_OK)
+        *out = body;
+    else
+        fmb_flat_body_free(body);
+    return status;
+}
+
+void fmb_flat_body_free(struct fmb_flat_body *body)
+{
+    if (!body)
+        return;
+    free(body->frames);
+    free(body->vertices);
+    free(body);
+}
+
+/* ---- Scenes ---- */
+
+/* An array that grows. */
+struct column {
+    void *data;
+    size_t capacity;
+};
+
+/* Columns of the answers. */
+enum { PAIRS, VERDICTS, STATUSES, CONTACTS, BOXES, GAPS, COLUMN_COUNT };
+
+static const size_t column_width[COLUMN_COUNT] = {
+    sizeof(unsigned[2]), sizeof(unsigned char),          sizeof(int32_t),
+    sizeof(double[2]),   sizeof(double[2][FMB_DIM_MAX]), sizeof(struct fmb_gap)};
+
+struct fmb_flat_scene {
+    size_t placement_count;
+    int dim;
+    bool single; /* each body has one frame */
+    struct fmb_placement *placements;
+    char *names;
+    struct fmb_prepared *prepared;
+    struct column listed, ignored; /* unsigned [][2]: indices of placements */
+    struct column memory;          /* bytes: of a struct fmb_scene_state */
+    struct column column[COLUMN_COUNT];
+    bool has[COLUMN_COUNT]; /* the last answers have this column */
+    size_t count;           /* of the last answers */
+    char why[FMB_CLIENT_WHY_MAX];
+};
+
+static bool reserve(struct column *column, size_t count, size_t width)
+{
+    if (count <= column->capacity)
+        return true;
+    const size_t half_more = column->capacity + column->capacity / 2;
+    const size_t capacity = count > half_more ? count : half_more;
+    void *data = capacity < SIZE_MAX / width ? realloc(column->data, capacity * width) : NULL;
+    if (!data)
+        return false;
+    column->data = data;
+    column->capacity = capacity;
+    return true;
+}
+
+/* Sets the reason of a status. argument: NULL: none. */
+static int refuse(struct fmb_flat_scene *scene, int status, const char *argument, size_t index)
+{
+    const char *text = fmb_client_status_text(status);
+    if (argument)
+        snprintf(scene->why, sizeof scene->why, "%s[%zu]: %s", argument, index, text);
+    else
+        snprintf(scene->why, sizeof scene->why, "%s", text);
+    return status;
+}
+
+static int fill_scene(struct fmb_flat_scene *scene, struct fmb_flat_body *const *bodies,
+                      const int64_t *ids, const int64_t *groups, const char *const *names)
+{
+    char *end = scene->names;
+    for (size_t i = 0; i < scene->placement_count; i++) {
+        struct fmb_placement *placement = &scene->placements[i];
+        placement->body = &bodies[i]->body;
+        placement->id = ids[i];
+        placement->group = groups[i];
+        if (placement->body->dim != scene->dim)
+            return refuse(scene, FMB_DIMENSIONS_DIFFER, "bodies", i);
+        if (!query_id_ok(ids[i]))
+            return refuse(scene, FMB_BAD_ID, "ids", i);
+        scene->single = scene->single && placement->body->frame_count == 1;
+        if (!names[i])
+            continue;
+        if (strlen(names[i]) > QUERY_NAME_MAX || !utf8_is_text(names[i]))
+            return refuse(scene, FMB_BAD_NAME, "names", i);
+        placement->name = strcpy(end, names[i]);
+        end += strlen(names[i]) + 1;
+    }
+    return FMB_OK;
+}
+
+int fmb_flat_scene_make(size_t count, struct fmb_flat_body *const *bodies, const int64_t *ids,
+                        const int64_t *groups, const char *const *names,
+                        struct fmb_flat_scene **out)
+{
+    struct fmb_flat_scene *scene = calloc(1, sizeof *scene);
+    if (!scene)
+        return FMB_CLIENT_NO_MEMORY;
+    *out = scene;
+    if (count == 0 || count > INT_MAX)
+        return refuse(scene, count ? FMB_OVER_LIMIT : FMB_NO_FRAMES, NULL, 0);
+    size_t bytes = 1;
+    for (size_t i = 0; i < count; i++)
+        bytes += names[i] ? strlen(names[i]) + 1 : 0;
+    scene->placement_count = count;
+    scene->dim = bodies[0]->body.dim;
+    scene->single = true;
+    scene->placements = calloc(count, sizeof *scene->placements);
+    scene->prepared = aligned_alloc(64, count * sizeof *scene->prepared);
+    scene->names = malloc(bytes);
+    if (!scene->placements || !scene->prepared || !scene->names)
+        return refuse(scene, FMB_CLIENT_NO_MEMORY, NULL, 0);
+    return fill_scene(scene, bodies, ids, groups, names);
+}
+
+void fmb_flat_scene_free(struct fmb_flat_scene *scene)
+{
+    if (!scene)
+        return;
+    free(scene->placements);
+    free(scene->prepared);
+    free(scene->names);
+    free(scene->listed.data);
+    free(scene->ignored.data);
+    free(scene->memory.data);
+    for (int c = 0; c < COLUMN_COUNT; c++)
+        free(scene->column[c].data);
+    free(scene);
+}
+
+const char *fmb_flat_why(const struct fmb_flat_scene *scene)
+{
+    return scene->why;
+}
+
+/* A placement with row i of the arrays. */
+static struct fmb_placement with_row(const struct fmb_flat_scene *scene, size_t placement, size_t i,
+                                     const double *positions, const double *orientations,
+                                     const double *velocities)
+{
+    struct fmb_placement out = scene->placements[placement];
+    const size_t dim = (size_t) scene->dim, turns = dim == 2 ? 2 : 4;
+    if (positions)
+        memcpy(out.position, positions + i * dim, dim * sizeof(double));
+    if (velocities)
+        memcpy(out.velocity, velocities + i * dim, dim * sizeof(double));
+    if (orientations) {
+        memcpy(out.orientation, orientations + i * turns, turns * sizeof(double));
+        out.orientation_count = (int) turns;
+    }
+    return out;
+}
+
+static bool is_finite(const double *vector)
+{
+    return isfinite(vector[0]) && isfinite(vector[1]) && isfinite(vector[2]);
+}
+
+int fmb_flat_place(struct fmb_flat_scene *scene, size_t first, size_t count,
+                   const double *positions, const double *orientations, const double *velocities)
+{
+    if (first > scene->placement_count || count > scene->placement_count - first)
+        return refuse(scene, FMB_BAD_PAIR, "placements", first);
+    for (size_t i = 0; i < count; i++) {
+        const struct fmb_placement placed =
+            with_row(scene, first + i, i, positions, orientations, velocities);
+        const enum fmb_status status = fmb_placement_check(&placed);
+        if (status != FMB_OK)
+            return refuse(scene, (int) status,
+                          !is_finite(placed.position)   ? "positions"
+                          : !is_finite(placed.velocity) ? "velocities"
+                                                        : "orientations",
+                          i);
+    }
+    for (size_t i = 0; i < count; i++)
+        scene->placements[first + i] =
+            with_row(scene, first + i, i, positions, orientations, velocities);
+    return FMB_OK;
+}
+
+/* ---- One pair ---- */
+
+static void flatten(const struct fmb_answer *answer, double *out)
+{
+    const struct fmb_gap *gap = &answer->gap;
+    for (int i = 0; i < FMB_FLAT_ANSWER_NUMBERS; i++)
+        out[i] = NAN;
+    out[FMB_FLAT_VERDICT] = answer->verdict;
+    if (answer->has_contact)
+        memcpy(out + FMB_FLAT_CONTACT, answer->contact, sizeof answer->contact);
+    if (answer->has_box)
+        memcpy(out + FMB_FLAT_BOX, answer->box, sizeof answer->box);
+    if (!answer->has_gap)
+        return;
+    memcpy(out + FMB_FLAT_GAP, gap->bounds, sizeof gap->bounds);
+    memcpy(out + FMB_FLAT_DIRECTION, gap->direction, sizeof gap->direction);
+    out[FMB_FLAT_FRAME] = gap->frame[0];
+    out[FMB_FLAT_FRAME + 1] = gap->frame[1];
+    if (!gap->has_witness)
+        return;
+    out[FMB_FLAT_TIME] = gap->time;
+    memcpy(out + FMB_FLAT_WITNESS, gap->witness, sizeof gap->witness);
+}
+
+int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64_t a, int64_t b,
+                  double duration, unsigned want, double *out)
+{
+    const int64_t count = (int64_t) scene->placement_count;
+    if (a < 0 || a >= count || b < 0 || b >= count || a == b)
+        return refuse(scene, FMB_BAD_PAIR, NULL, 0);
+    if (!client) {
+        struct fmb_answer answer;
+        const enum fmb_status status = fmb_decide(fmb_method_default(), &scene->placements[a],
+                                                  &scene->placements[b], duration, want, &answer);
+        flatten(&answer, out);
+        return status == FMB_OK ? FMB_OK : refuse(scene, (int) status, NULL, 0);
+    }
+    const struct fmb_placement pair[2] = {scene->placements[a], scene->placements[b]};
+    struct fmb_client_answer answer;
+    const int status = fmb_client_query_pair(client, pair, duration, want, &answer);
+    flatten(&answer.answer, out);
+    if (status != FMB_OK)
+        snprintf(scene->why, sizeof scene->why, "%s", answer.text);
+    return status;
+}
+
+/* ---- Many pairs ---- */
+
+/* Converts indices of placements. One that is no unsigned becomes UINT_MAX, which is none. */
+static bool convert(struct column *column, const int64_t *pairs, size_t count)
+{
+    if (!reserve(column, count, sizeof(unsigned[2])))
+        return false;
+    unsigned *out = column->data;
+    for (size_t i = 0; i < 2 * count; i++)
+        out[i] = (uint64_t) pairs[i] < UINT_MAX ? (unsigned) pairs[i] : UINT_MAX;
+    return true;
+}
+
+static bool reserve_answers(struct fmb_flat_scene *scene, size_t count)
+{
+    bool ok = true;
+    for (int c = 0; c < COLUMN_COUNT; c++)
+        ok = ok && (!scene->has[c] || reserve(&scene->column[c], count, column_width[c]));
+    return ok;
+}
+
+static void *column_if(struct fmb_flat_scene *scene, int column)
+{
+    return scene->has[column] ? scene->column[column].data : NULL;
+}
+
+/* Listed pairs of bodies of one frame, without a margin. scene: checked. */
+static int decide_batch(struct fmb_flat_scene *flat, const struct fmb_scene *scene)
+{
+    if (!reserve_answers(flat, scene->pair_count))
+        return FMB_CLIENT_NO_MEMORY;
+    for (size_t i = 0; i < flat->placement_count; i++)
+        fmb_prepare(&flat->placements[i], 0, 1, &flat->prepared[i]);
+    flat->count = scene->pair_count;
+    return (int) fmb_decide_batch(&(struct fmb_batch){.frames = flat->prepared,
+                                                      .frame_count = flat->placement_count,
+                                                      .pairs = scene->pairs,
+                                                      .pair_count = scene->pair_count,
+                                                      .duration = scene->duration,
+                                                      .instant = scene->instant,
+                                                      .verdicts = column_if(flat, VERDICTS),
+                                                      .contacts = column_if(flat, CONTACTS),
+                                                      .boxes = column_if(flat, BOXES),
+                                                      .gaps = column_if(flat, GAPS)});
+}
+
+static int decide_steps(struct fmb_flat_scene *flat, const struct fmb_scene *scene)
+{
+    const struct fmb_scene_limits limits = fmb_scene_limits_of(scene);
+    struct fmb_scene_state *state;
+    struct fmb_scene_answers answers;
+    if (!reserve(&flat->memory, fmb_scene_bytes(&limits), 1))
+        return FMB_CLIENT_NO_MEMORY;
+    const enum fmb_status status = fmb_scene_begin(scene, &limits, flat->memory.data, &state);
+    for (bool done = status != FMB_OK; !done;) {
+        done = fmb_scene_step(state, &answers);
+        if (!reserve_answers(flat, flat->count + answers.count)) {
+            fmb_scene_end(state);
+            return FMB_CLIENT_NO_MEMORY;
+        }
+        const void *from[COLUMN_COUNT] = {answers.pairs,    answers.verdicts, NULL,
+                                          answers.contacts, answers.boxes,    answers.gaps};
+        for (int c = 0; c < COLUMN_COUNT; c++)
+            if (flat->has[c] && answers.count)
+                memcpy((char *) flat->column[c].data + flat->count * column_width[c], from[c],
+                       answers.count * column_width[c]);
+        flat->count += answers.count;
+    }
+    return (int) status;
+}
+
+/* What receives the answers of a client. */
+struct delivery {
+    struct fmb_flat_scene *scene;
+    bool failed; /* out of memory */
+};
+
+static void append(void *user, const struct fmb_client_answer *of)
+{
+    struct delivery *delivery = user;
+    struct fmb_flat_scene *scene = delivery->scene;
+    const struct fmb_answer *answer = &of->answer;
+    const size_t k = scene->count;
+    delivery->failed = delivery->failed || !reserve_answers(scene, k + 1);
+    if (delivery->failed)
+        return;
+    scene->count++;
+    ((unsigned char *) scene->column[VERDICTS].data)[k] = (unsigned char) answer->verdict;
+    ((int32_t *) scene->column[STATUSES].data)[k] = of->status;
+    if (scene->has[PAIRS])
+        memcpy((unsigned(*)[2]) scene->column[PAIRS].data + k, (unsigned[2]){of->a, of->b},
+               sizeof(unsigned[2]));
+    for (int i = 0; scene->has[CONTACTS] && i < 2; i++)
+        ((double(*)[2]) scene->column[CONTACTS].data)[k][i] =
+            answer->has_contact ? answer->contact[i] : NAN;
+    for (int i = 0; scene->has[BOXES] && i < 2; i++)
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            ((double(*)[2][FMB_DIM_MAX]) scene->column[BOXES].data)[k][i][axis] =
+                answer->has_box ? answer->box[i][axis] : NAN;
+    if (scene->has[GAPS])
+        ((struct fmb_gap *) scene->column[GAPS].data)[k] =
+            answer->has_gap ? answer->gap : (struct fmb_gap){.bounds = {NAN, NAN}};
+}
+
+static int decide_on_bus(struct fmb_flat_scene *flat, struct fmb_client *client,
+                         const struct fmb_scene *scene)
+{
+    struct delivery delivery = {.scene = flat};
+    const int status = fmb_client_query(client, scene, append, &delivery);
+    if (status != FMB_OK)
+        snprintf(flat->why, sizeof flat->why, "%s", fmb_client_why(client));
+    return delivery.failed ? FMB_CLIENT_NO_MEMORY : status;
+}
+
+int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, double duration,
+                    int instant, unsigned want, double margin, int64_t split, const int64_t *pairs,
+                    size_t pair_count, const int64_t *ignored, size_t ignored_count,
+                    const char *label)
+{
+    flat->count = 0;
+    if (!convert(&flat->listed, pairs, pairs ? pair_count : 0) ||
+        !convert(&flat->ignored, ignored, ignored ? ignored_count : 0))
+        return refuse(flat, FMB_CLIENT_NO_MEMORY, NULL, 0);
+    const struct fmb_scene scene = {.placements = flat->placements,
+                                    .placement_count = flat->placement_count,
+                                    .duration = duration,
+                                    .instant = instant,
+                                    .want = want,
+                                    .margin = margin,
+                                    .which = pairs        ? FMB_PAIRS_LISTED
+                                             : split >= 0 ? FMB_PAIRS_ACROSS
+                                                          : FMB_PAIRS_ALL,
+                                    .split = !pairs && split >= 0 ? (size_t) split : 0,
+                                    .pairs = flat->listed.data,
+                                    .pair_count = pairs ? pair_count : 0,
+                                    .ignored = flat->ignored.data,
+                                    .ignored_count = ignored ? ignored_count : 0,
+                                    .label = label};
+    flat->has[PAIRS] = !pairs;
+    flat->has[VERDICTS] = true;
+    flat->has[STATUSES] = client;
+    flat->has[CONTACTS] = want & FMB_WANT_TIMES;
+    flat->has[BOXES] = want & FMB_WANT_BOX;
+    flat->has[GAPS] = want & FMB_WANT_GAP || margin > 0;
+    if (client)
+        return decide_on_bus(flat, client, &scene);
+    int status = (int) fmb_scene_check(&scene, flat->why, sizeof flat->why);
+    if (status == FMB_OK) {
+        status = pairs && flat->single && margin == 0 ? decide_batch(flat, &scene)
+                                                      : decide_steps(flat, &scene);
+        if (status != FMB_OK)
+            refuse(flat, status, NULL, 0);
+    }
+    return status;
+}
+
+size_t fmb_flat_count(const struct fmb_flat_scene *scene)
+{
+    return scene->count;
+}
+
+/* Copies vectors of dim axes, where both are there; from: the first, in rows of stride bytes with
+ * `vectors` vectors each. */
+static void spread(const struct fmb_flat_scene *scene, const void *from, size_t stride, int vectors,
+                   int dim, double *out)
+{
+    for (size_t k = 0; from && out && k < scene->count; k++) {
+        const double *row = (const void *) ((const char *) from + k * stride);
+        for (int v = 0; v < vectors; v++, row += FMB_DIM_MAX, out += dim)
+            memcpy(out, row, (size_t) dim * sizeof(double));
+    }
+}
+
+void fmb_flat_answers(const struct fmb_flat_scene *scene, int64_t *pairs, uint8_t *verdicts,
+                      int32_t *statuses, double *contacts, double *boxes, double *gaps,
+                      double *directions, double *times, double *witnesses, int64_t *frames)
+{
+    const size_t n = scene->count;
+    const struct column *column = scene->column;
+    const unsigned(*pair)[2] = scene->has[PAIRS] ? column[PAIRS].data : NULL;
+    const unsigned char *verdict = column[VERDICTS].data;
+    const int32_t *status = scene->has[STATUSES] ? column[STATUSES].data : NULL;
+    const struct fmb_gap *gap = n && scene->has[GAPS] ? column[GAPS].data : NULL;
+    for (size_t k = 0; pairs && pair && k < n; k++) {
+        pairs[2 * k] = pair[k][0];
+        pairs[2 * k + 1] = pair[k][1];
+    }
+    if (verdicts && n)
+        memcpy(verdicts, verdict, n);
+    for (size_t k = 0; statuses && k < n; k++)
+        if (!verdict[k])
+            statuses[k] = status ? status[k] : FMB_CANNOT_DECIDE;
+    if (contacts && n && scene->has[CONTACTS])
+        memcpy(contacts, column[CONTACTS].data, n * sizeof(double[2]));
+    spread(scene, scene->has[BOXES] ? column[BOXES].data : NULL, column_width[BOXES], 2, scene->dim,
+           boxes);
+    if (!gap)
+        return;
+    spread(scene, gap->bounds, sizeof *gap, 1, 2, gaps);
+    spread(scene, gap->direction, sizeof *gap, 1, scene->dim, directions);
+    spread(scene, &gap->time, sizeof *gap, 1, 1, times);
+    spread(scene, gap->witness, sizeof *gap, 2, scene->dim, witnesses);
+    for (size_t k = 0; k < n; k++) {
+        if (times && !gap[k].has_witness)
+            times[k] = NAN;
+        for (int i = 0; witnesses && !gap[k].has_witness && i < 2 * scene->dim; i++)
+            witnesses[k * 2 * (size_t) scene->dim + (size_t) i] = NAN;
+        for (int i = 0; frames && i < 2; i++)
+            frames[2 * k + (size_t) i] = gap[k].frame[i];
+    }
+}
+
+/* ---- The bus ---- */
+
+struct fmb_client *fmb_flat_open(const char *url, const char *prefix, double timeout, int tries,
+                                 double within, char *why, size_t size)
+{
+    return fmb_client_open(
+        &(struct fmb_client_options){
+            .url = url, .prefix = prefix, .timeout = timeout, .tries = tries, .within = within},
+        why, size);
+}

@@ -1,0 +1,138 @@
+/* libfmb and libfmb-client for languages that call C without a compiler: functions of numbers, flat
+ * arrays and opaque handles. No struct, no bool, no callback crosses this interface. fmb.py uses
+ * it; fmb.h and fmb_client.h define what the numbers mean.
+ *
+ * Arrays are row-major and belong to the caller, who may change them after the call. dim is that of
+ * the bodies, 2 or 3.
+ *
+ * Status: a function that returns int returns FMB_OK (0) or a value of enum fmb_status (positive)
+ * or enum fmb_client_status (negative).
+ *
+ * Threads: a scene, and a client, may be used by one thread at a time. Bodies are only read. */
+#ifndef FMB_FLAT_H
+#define FMB_FLAT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The number of this interface: it is raised with each change to what is there. fmb_flat_abi()
+ * returns that of the library. */
+enum { FMB_FLAT_ABI = 1 };
+int fmb_flat_abi(void);
+
+/* ---- Bodies ---- */
+
+struct fmb_flat_body;
+
+/* Makes a body.
+ * In:  count    of frames
+ *      shapes   [count], values of placement_t.shapes
+ *      counts   [count]: how many of the numbers each frame has
+ *      numbers  frame after frame, in the order of placement_t.numbers
+ * Out: *out     unless the status is FMB_OK, unchanged; to be freed after the scenes that use it
+ * Returns a status of fmb_frame_make(), fmb_frame_make_vertices(), fmb_frame_make_hull() or
+ * fmb_body_make_frames(); or NO_MEMORY. */
+int fmb_flat_body_make(int dim, size_t count, const int32_t *shapes, const int64_t *counts,
+                       const double *numbers, struct fmb_flat_body **out);
+void fmb_flat_body_free(struct fmb_flat_body *body); /* may be NULL */
+
+/* ---- A scene: placed bodies, and the last answers ---- */
+
+struct fmb_flat_scene;
+
+/* Makes a scene of bodies at the origin, not rotated and at rest.
+ * In:  bodies  [count], of one dimension; they must outlive the scene
+ *      ids     [count], 0 to 2^53 - 1
+ *      groups  [count]
+ *      names   [count], a name NULL: none
+ * Out: *out    also with a status other than NO_MEMORY, for fmb_flat_why(); to be freed
+ * Returns FMB_OK, FMB_NO_FRAMES (count is 0), FMB_DIMENSIONS_DIFFER, FMB_BAD_ID, FMB_BAD_NAME,
+ * FMB_OVER_LIMIT (2^31 bodies), or NO_MEMORY. */
+int fmb_flat_scene_make(size_t count, struct fmb_flat_body *const *bodies, const int64_t *ids,
+                        const int64_t *groups, const char *const *names,
+                        struct fmb_flat_scene **out);
+void fmb_flat_scene_free(struct fmb_flat_scene *scene); /* may be NULL */
+
+/* What was wrong in the last call that returned a status: "positions[3]: not a finite number". */
+const char *fmb_flat_why(const struct fmb_flat_scene *scene);
+
+/* Sets poses and velocities of placements first to first + count - 1; with a status, of none.
+ * In:  positions     [count][dim], or NULL: as they are
+ *      orientations  [count][4], in 2D [count][2], or NULL: as they are
+ *      velocities    [count][dim], per second, or NULL: as they are
+ * Returns FMB_OK, FMB_NOT_FINITE, FMB_BAD_ORIENTATION, or FMB_BAD_PAIR (no such placements). */
+int fmb_flat_place(struct fmb_flat_scene *scene, size_t first, size_t count,
+                   const double *positions, const double *orientations, const double *velocities);
+
+/* The numbers of the answer to one pair, NAN where it has none; axes beyond dim are 0. */
+enum {
+    FMB_FLAT_VERDICT,        /* enum fmb_verdict */
+    FMB_FLAT_CONTACT,        /* first, last */
+    FMB_FLAT_BOX = 3,        /* [lower, upper][3] */
+    FMB_FLAT_GAP = 9,        /* lower, upper bound */
+    FMB_FLAT_DIRECTION = 11, /* [3] */
+    FMB_FLAT_TIME = 14,      /* of the least distance */
+    FMB_FLAT_WITNESS = 15,   /* [of a, of b][3] */
+    FMB_FLAT_FRAME = 21,     /* of a, of b */
+    FMB_FLAT_ANSWER_NUMBERS = 23
+};
+
+struct fmb_client;
+
+/* Decides one pair; groups are not considered.
+ * In:  client  NULL: in process, as fmb_decide(); or as fmb_client_query_pair()
+ *      want    a sum of FMB_WANT_BOX and FMB_WANT_GAP; contacts are always given
+ * Out: answer  [FMB_FLAT_ANSWER_NUMBERS]
+ * Returns a status of these functions; FMB_BAD_PAIR if a or b is no placement, or both are one. */
+int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64_t a, int64_t b,
+                  double duration, unsigned want, double *answer);
+
+/* Decides pairs, and keeps the answers in the scene until the next call: of each pair of a list;
+ * otherwise of those that touch, overlap, are near, or have no verdict.
+ * In:  client   NULL: in process; or as fmb_client_query()
+ *      instant  not 0: the window is [0, 0] even if bodies move
+ *      want     a sum of FMB_WANT_TIMES, FMB_WANT_BOX and FMB_WANT_GAP
+ *      split    pairs of the first split placements with the others; negative: all pairs
+ *      pairs    [pair_count][2], the list; NULL: no list. split is then not read
+ *      ignored  [ignored_count][2]; none with a list
+ *      label    for clients, or NULL
+ * Returns a status of fmb_scene_check() or fmb_client_query(); or NO_MEMORY. */
+int fmb_flat_decide(struct fmb_flat_scene *scene, struct fmb_client *client, double duration,
+                    int instant, unsigned want, double margin, int64_t split, const int64_t *pairs,
+                    size_t pair_count, const int64_t *ignored, size_t ignored_count,
+                    const char *label);
+
+/* The number of the answers that the scene keeps. */
+size_t fmb_flat_count(const struct fmb_flat_scene *scene);
+
+/* Copies the answers. Each array may be NULL. Those that were not wanted are left as they are; with
+ * a margin other than 0 there are gaps.
+ * Out: pairs       [n][a, b]; of a list they are not set
+ *      verdicts    [n], enum fmb_verdict; 0: none
+ *      statuses    [n]: set to why there is no verdict; those of pairs with one are left as they
+ *                  are, so that memory that the system has zeroed stays untouched
+ *      contacts    [n][first, last], NAN unless they meet
+ *      boxes       [n][lower, upper][dim], NAN unless they meet
+ *      gaps        [n][lower, upper bound], NAN: none, as are the arrays below
+ *      directions  [n][dim]
+ *      times       [n], NAN unless separated
+ *      witnesses   [n][of a, of b][dim], NAN unless separated
+ *      frames      [n][of a, of b] */
+void fmb_flat_answers(const struct fmb_flat_scene *scene, int64_t *pairs, uint8_t *verdicts,
+                      int32_t *statuses, double *contacts, double *boxes, double *gaps,
+                      double *directions, double *times, double *witnesses, int64_t *frames);
+
+/* ---- The bus ---- */
+
+/* As fmb_client_open() with these options; to be closed with fmb_client_close(). */
+struct fmb_client *fmb_flat_open(const char *url, const char *prefix, double timeout, int tries,
+                                 double within, char *why, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,404 @@
+"""fmb.py. FMB is the program to compare with; the tests of the bus need a running fmbd, and BUS=1."""
+
+import copy
+import glob
+import itertools
+import json
+import math
+import os
+import random
+import subprocess
+import threading
+import unittest
+from array import array
+
+import fmb
+
+BUS = os.environ.get("BUS")
+
+
+def body_of(json_body):
+    made = []
+    for frame in json_body.get("frames", [json_body]):
+        given = {key: frame[key] for key in ("components", "origin", "vertices", "size") if key in frame}
+        if "frames" in json_body and "position" in frame:
+            given["centre"] = frame["position"]
+        made.append(getattr(fmb, frame["shape"])(**given))
+    return made[0] if len(made) == 1 else fmb.compound(made)
+
+
+def scene_of(json_scene):
+    """A scene, and its listed pairs."""
+    bodies = json_scene["bodies"]
+    dim = json_scene["dim"]
+    scene = fmb.Scene([body_of(body) for body in bodies],
+                      positions=[body.get("position", [0] * dim) for body in bodies],
+                      velocities=[body.get("velocity", [0] * dim) for body in bodies],
+                      names=[body.get("name") for body in bodies],
+                      groups=[body.get("group", 0) for body in bodies],
+                      ids=[body["id"] for body in bodies])
+    for i, body in enumerate(bodies):
+        if "orientation" in body:
+            scene.move(i, orientation=body["orientation"])
+    index = {body["id"]: i for i, body in enumerate(bodies)}
+    pairs = json_scene.get("pairs", list(itertools.combinations(index, 2)))
+    return scene, [(index[a], index[b]) for a, b in pairs]
+
+
+def random_scene(dim, count, seed):
+    draw = random.Random(seed)
+
+    def vector(size, n=dim):
+        return [size * (draw.random() - 0.5) for _ in range(n)]
+
+    def frame():
+        shape = draw.choice(["box", "cuboid", "tetrahedron", "hull"] + ["face"] * (dim == 3))
+        if shape == "box":
+            return {"shape": shape, "size": [0.5 + draw.random() for _ in range(dim)]}
+        if shape == "hull":
+            return {"shape": shape, "vertices": [vector(2) for _ in range(draw.randrange(1, 12))]}
+        corners = 3 if shape == "face" else dim + 1
+        if shape != "cuboid" and draw.random() < 0.5:
+            return {"shape": shape, "vertices": [vector(2) for _ in range(corners)]}
+        return {"shape": shape, "origin": vector(1), "components": [vector(2) for _ in range(corners - 1)]}
+
+    bodies = []
+    for i in range(count):
+        body = {"id": i + 1, "name": f"body {i}", "position": vector(4), "velocity": vector(1)}
+        if draw.random() < 0.7:
+            body["orientation"] = vector(1, 4 if dim == 3 else 2)
+        body["frames"] = [frame() for _ in range(draw.choice([1, 1, 3]))]
+        bodies.append(body)
+    return {"dim": dim, "duration": 0.7, "bodies": bodies}
+
+
+def as_json(answer):
+    """An answer as fmb query prints it, but for ids."""
+    out = {"verdict": answer.verdict.name.lower()}
+    if answer.contact:
+        out["contact"] = list(answer.contact)
+    if answer.box:
+        out["box"] = {end: [x if math.isfinite(x) else None for x in corner]
+                      for end, corner in zip(("min", "max"), answer.box)}
+    if answer.gap:
+        out["gap"] = list(answer.gap)
+        out["direction"] = list(answer.direction)
+        if answer.frames != (0, 0):
+            out["frames"] = list(answer.frames)
+        if answer.witness:
+            out["witness"] = dict(zip("ab", map(list, answer.witness)), time=answer.time)
+    return out
+
+
+def of_json(pair):
+    out = {key: value for key, value in pair.items() if key not in ("a", "b", "names")}
+    if out.get("frames") == [0, 0]:
+        del out["frames"]
+    return out
+
+
+WANTED = {"contacts": True, "boxes": True, "gaps": True}
+
+
+class Answers(unittest.TestCase):
+    """In process; Bus repeats them on the bus."""
+
+    client = None
+    maxDiff = None
+
+    def test_cases_have_their_answers(self):
+        for path in glob.glob("tests/cases/*.json"):
+            with self.subTest(path), open(path, encoding="utf-8") as file:
+                case = json.load(file)
+                scene, pairs = scene_of(case["scene"])
+                duration = case["scene"].get("duration", 1)
+                answers = scene.decide(duration, pairs=pairs, instant=duration == 0, contacts=True,
+                                       boxes=True, client=self.client)
+                self.assertEqual([as_json(a) for a in answers],
+                                 [of_json(pair) for pair in case["answer"]["pairs"]])
+
+    def test_answers_are_those_of_fmb_query(self):
+        scenes = [random_scene(dim, 14, seed) for dim in (2, 3) for seed in range(4)]
+        lines = subprocess.run([os.environ["FMB"], "query", "--local", "--json", "--box", "--gap"],
+                               input="\n".join(map(json.dumps, scenes)), check=True, text=True,
+                               capture_output=True).stdout.splitlines()
+        seen = set()
+        for json_scene, line in zip(scenes, lines, strict=True):
+            scene, pairs = scene_of(json_scene)
+            expected = json.loads(line)["pairs"]
+            answers = scene.decide(0.7, pairs=pairs, client=self.client, **WANTED)
+            self.assertEqual([as_json(a) for a in answers], [of_json(pair) for pair in expected])
+            self.assertEqual([list(a.names) for a in answers], [pair["names"] for pair in expected])
+            seen.update(a.verdict for a in answers)
+            # The batch, of bodies of one frame alone.
+            single = [i for i, body in enumerate(json_scene["bodies"]) if len(body["frames"]) == 1]
+            part, _ = scene_of(dict(json_scene, bodies=[json_scene["bodies"][i] for i in single]))
+            listed = list(itertools.combinations(range(len(single)), 2))
+            of_part = part.decide(0.7, pairs=listed, client=self.client, **WANTED)
+            by_pair = dict(zip(pairs, answers))
+            self.assertEqual([as_json(a) for a in of_part],
+                             [as_json(by_pair[single[a], single[b]]) for a, b in listed])
+        self.assertEqual(seen, {fmb.SEPARATED, fmb.OVERLAPPING})
+
+    def test_ways_to_name_pairs_agree(self):
+        scene, pairs = scene_of(random_scene(3, 20, 9))
+        listed = list(scene.decide(0.7, pairs=pairs, client=self.client, **WANTED))
+        meet = [a for a in listed if a.verdict > fmb.SEPARATED]
+        self.assertGreater(len(meet), 5)
+        self.assertLess(len(meet), len(listed))
+        every = scene.decide(0.7, client=self.client, **WANTED)
+        self.assertEqual(list(every), meet)
+        self.assertEqual([every[-1], every[1:3]], [meet[-1], meet[1:3]])
+        across = scene.decide(0.7, split=6, client=self.client, **WANTED)
+        self.assertEqual(list(across), [a for a in meet if a.a < 6 <= a.b])
+        ignored = [(a.b, a.a) for a in meet[::2]]
+        left = scene.decide(0.7, ignored=ignored, client=self.client, **WANTED)
+        self.assertEqual(list(left), meet[1::2])
+        for answer in listed[:40]:
+            self.assertEqual(scene.pair(answer.a, answer.b, 0.7, box=True, gap=True, client=self.client),
+                             answer)
+        near = [a for a in listed if a.gap[0] <= 0.3]
+        margin = scene.decide(0.7, margin=0.3, contacts=True, boxes=True, client=self.client)
+        self.assertEqual(list(margin), near)
+        self.assertGreater(len(near), len(meet))
+
+    def test_groups_are_not_tested_against_each_other(self):
+        cube = fmb.box([1, 1, 1])
+        scene = fmb.Scene([cube] * 3, groups=[5, 0, 5])
+        self.assertEqual([(a.a, a.b) for a in scene.decide(0, client=self.client)], [(0, 1), (1, 2)])
+        with self.assertRaisesRegex(fmb.Error, r"^pairs\[1\]: "):
+            scene.decide(0, pairs=[(0, 1), (2, 0)], client=self.client)
+
+    def test_a_stream_is_a_scene_after_the_other(self):
+        cube = fmb.box([1, 1, 1])
+        scene = fmb.Scene([cube, cube])
+        steps = [[[0, 0, 0], [x, 0, 0]] for x in (0.5, 1.0, 1.5)]
+        verdicts = [answers[0].verdict for answers in
+                    scene.stream(0, steps, pairs=[(0, 1)], client=self.client)]
+        self.assertEqual(verdicts, [fmb.OVERLAPPING, fmb.TOUCHING, fmb.SEPARATED])
+        falling = scene.stream(1, velocities=[[[0, 0, 0], [v, 0, 0]] for v in (0.0, -1.0)],
+                               pairs=[(0, 1)], contacts=True, client=self.client)
+        self.assertEqual([answers[0].contact for answers in falling], [None, (0.5, 1)])
+        with self.assertRaisesRegex(ValueError, "^velocities: "):
+            list(scene.stream(0, steps, velocities=[], client=self.client))
+
+    def test_a_moving_body_needs_a_window_or_an_instant(self):
+        scene = fmb.Scene([fmb.box([1, 1])] * 2, velocities=[[1, 0], [0, 0]])
+        with self.assertRaisesRegex(fmb.Error, "^duration: ") as caught:
+            scene.decide(0, client=self.client)
+        self.assertEqual(caught.exception.status, 9)
+        self.assertEqual(len(scene.decide(0, instant=True, client=self.client)), 1)
+
+
+@unittest.skipUnless(BUS, "needs fmbd")
+class Bus(Answers):
+    @classmethod
+    def setUpClass(cls):
+        cls.client = fmb.Client()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.client.close()
+
+    def test_a_closed_client_is_refused(self):
+        scene = fmb.Scene([fmb.box([1, 1])] * 2)
+        with fmb.Client() as client:
+            self.assertEqual(len(scene.decide(0, client=client)), 1)
+        client.close()
+        for call in (lambda: scene.decide(0, client=client), lambda: scene.pair(0, 1, 0, client=client)):
+            with self.assertRaisesRegex(fmb.BusError, "^client: "):
+                call()
+
+    def test_without_a_service_pairs_have_a_status(self):
+        scene = fmb.Scene([fmb.box([1, 1])] * 3)
+        with fmb.Client(prefix="none", timeout=0.01, tries=2) as client:
+            answers = scene.decide(0, pairs=[(0, 1), (1, 2)], client=client, **WANTED)
+            self.assertEqual(list(answers.statuses), [-2, -2])
+            self.assertEqual(list(answers.verdicts), [0, 0])
+            self.assertEqual(answers[1][3:], (-2,) + 8 * (None,))
+            self.assertIn("no fmbd", fmb.status_text(-2))
+            with self.assertRaisesRegex(fmb.BusError, "^pair: .*fmbd") as caught:
+                scene.pair(0, 1, 0, client=client)
+            self.assertLess(caught.exception.status, 0)
+
+    def test_names_and_labels_are_on_the_bus(self):
+        scene = fmb.Scene([fmb.box([1, 1])] * 2, names=["tafel \u00e4", None])
+        answers = scene.decide(0, label="a label", client=self.client)
+        self.assertEqual(answers[0].names, ("tafel \u00e4", None))
+        with self.assertRaisesRegex(fmb.Error, "^label: "):
+            scene.decide(0, label="x" * 65, client=self.client)
+
+
+class Arrays(unittest.TestCase):
+    def setUp(self):
+        self.scene = fmb.Scene([fmb.box([1, 1, 1])] * 3, positions=[[0, 0, 0], [0.5, 0, 0], [3, 0, 0]])
+
+    def check(self, array_of, **options):
+        answers = self.scene.decide(0, contacts=True, boxes=True, gaps=True, **options)
+        shapes = {"pairs": (2,), "verdicts": (), "statuses": (), "contacts": (2,), "boxes": (2, 3),
+                  "gaps": (2,), "directions": (3,), "times": (), "witnesses": (2, 3), "frames": (2,)}
+        for name, shape in shapes.items():
+            column = getattr(answers, name)
+            self.assertIsInstance(column, array_of, name)
+            self.assertEqual(column.shape, (len(answers),) + shape, name)
+        return answers
+
+    def test_results_have_the_shapes_that_are_documented(self):
+        array_of = fmb.numpy.ndarray if fmb.numpy else memoryview
+        self.assertEqual(self.check(array_of).pairs.tolist(), [[0, 1]])
+        listed = self.check(array_of, pairs=[[2, 0], [1, 0]])
+        self.assertEqual(listed.verdicts.tolist(), [fmb.SEPARATED, fmb.OVERLAPPING])
+        self.assertEqual(listed.pairs.tolist(), [[2, 0], [1, 0]])
+        self.assertTrue(math.isnan(listed.contacts.tolist()[0][0]))
+        self.assertEqual(listed.witnesses.tolist()[0][0][0], 2.5)
+        self.assertTrue(math.isnan(listed.times.tolist()[1]))
+        nothing = self.scene.decide(0)
+        self.assertEqual([nothing.contacts, nothing.boxes, nothing.gaps], [None] * 3)
+        flat = fmb.Scene([fmb.box([1, 1])] * 2).decide(0, boxes=True)
+        self.assertEqual(flat.boxes.tolist(), [[[-0.5, -0.5], [0.5, 0.5]]])
+        for none in (self.scene.decide(0, pairs=[], **WANTED), self.scene.decide(0, split=0, **WANTED)):
+            self.assertEqual((len(none), list(none), len(none.gaps)), (0, [], 0))
+
+    def test_answers_outlive_the_next_call(self):
+        first = self.scene.decide(0, contacts=True)
+        self.scene.place(positions=[[0, 0, 0], [5, 0, 0], [9, 0, 0]])
+        self.assertEqual(len(self.scene.decide(0, contacts=True)), 0)
+        self.assertEqual([(a.a, a.b, a.contact) for a in first], [(0, 1, (0, 0))])
+
+    def test_refused_poses_change_nothing(self):
+        before = self.scene.pair(0, 1, 0, box=True)
+        for pose in ({"positions": [[1, 1, 1], [2, 2, 2], [3, 3, math.inf]]},
+                     {"positions": [[1, 1, 1]] * 3, "orientations": [[1, 0, 0, 0]] * 2 + [[0] * 4]}):
+            with self.assertRaises(fmb.Error):
+                self.scene.place(**pose)
+            self.assertEqual(self.scene.pair(0, 1, 0, box=True), before)
+
+    def test_buffers_are_taken_without_numpy(self):
+        positions = memoryview(array("d", [0, 0, 0, 9, 0, 0, 1, 0, 0])).cast("B").cast("d", (3, 3))
+        pairs = memoryview(bytes(array("q", [0, 1, 0, 2]))).cast("q", (2, 2))  # read-only
+        self.scene.place(positions)
+        self.assertEqual(list(self.scene.decide(0, pairs=pairs).verdicts), [1, 2])
+
+    def refused(self, error, start, call):
+        with self.subTest(start):
+            with self.assertRaises(error) as caught:
+                call()
+            self.assertTrue(str(caught.exception).startswith(start + ": "), str(caught.exception))
+            self.assertNotIn("\n", str(caught.exception))
+
+    def test_what_is_wrong_is_refused_by_the_name_of_the_argument(self):
+        scene, box, nan = self.scene, fmb.box([1, 1, 1]), math.nan
+        for error, start, call in (
+                (ValueError, "positions", lambda: scene.place([[0, 0, 0]])),
+                (ValueError, "positions[0]", lambda: scene.place([[0, 0]] * 3)),
+                (ValueError, "positions[1]", lambda: scene.place([[0, 0, 0], [0, 0], [0, 0, 0]])),
+                (TypeError, "positions", lambda: scene.place([0, 0, 0])),
+                (TypeError, "positions", lambda: scene.place([["a", 0, 0]] * 3)),
+                (TypeError, "positions", lambda: scene.place(array("f", [0] * 9))),
+                (ValueError, "positions", lambda: scene.place(array("d", [0] * 9))),
+                (fmb.Error, "positions[2]", lambda: scene.place([[0, 0, 0], [0, 0, 0], [0, nan, 0]])),
+                (fmb.Error, "velocities[0]", lambda: scene.place(velocities=[[nan, 0, 0]] * 3)),
+                (fmb.Error, "orientations[0]", lambda: scene.place(orientations=[[0, 0, 0, 0]] * 3)),
+                (ValueError, "orientations[0]", lambda: scene.place(orientations=[[1, 0]] * 3)),
+                (fmb.Error, "velocity", lambda: scene.move(1, velocity=[nan, 0, 0])),
+                (fmb.Error, "orientation", lambda: scene.move(1, orientation=[0, 0, 0, 0])),
+                (ValueError, "position", lambda: scene.move(1, [0, 0])),
+                (IndexError, "index", lambda: scene.move(3, [0, 0, 0])),
+                (TypeError, "pairs", lambda: scene.decide(0, pairs=[[0.5, 1]])),
+                (TypeError, "pairs", lambda: scene.decide(0, pairs=[[0, 2**70]])),
+                (TypeError, "pairs", lambda: scene.decide(0, pairs=7)),
+                (ValueError, "pairs[0]", lambda: scene.decide(0, pairs=[[0, 1, 2]])),
+                (fmb.Error, "pairs[1]", lambda: scene.decide(0, pairs=[[0, 1], [0, 3]])),
+                (fmb.Error, "pairs[0]", lambda: scene.decide(0, pairs=[[-1, 1]])),
+                (fmb.Error, "pairs[0]", lambda: scene.decide(0, pairs=[[2**32, 1]])),
+                (fmb.Error, "pairs[0]", lambda: scene.decide(0, pairs=[[1, 1]])),
+                (fmb.Error, "ignored[0]", lambda: scene.decide(0, ignored=[[0, 3]])),
+                (fmb.Error, "ignored_count", lambda: scene.decide(0, ignored=[[0, 1]], pairs=[[0, 1]])),
+                (ValueError, "split", lambda: scene.decide(0, split=1, pairs=[[0, 1]])),
+                (ValueError, "split", lambda: scene.decide(0, split=-1)),
+                (fmb.Error, "split", lambda: scene.decide(0, split=4)),
+                (fmb.Error, "margin", lambda: scene.decide(0, margin=-1)),
+                (fmb.Error, "duration", lambda: scene.decide(nan)),
+                (fmb.Error, "duration", lambda: scene.decide(1, instant=True)),
+                (TypeError, "duration", lambda: scene.decide(None)),
+                (TypeError, "client", lambda: scene.decide(0, client="udpm://")),
+                (TypeError, "label", lambda: scene.decide(0, label=b"x")),
+                (fmb.Error, "pair", lambda: scene.pair(0, 0, 1)),
+                (fmb.Error, "pair", lambda: scene.pair(0, 3, 1)),
+                (fmb.Error, "pair", lambda: scene.pair(0, 1, -1)),
+                (ValueError, "a", lambda: scene.pair(2**64, 1, 1)),
+                (TypeError, "b", lambda: scene.pair(0, 1.0, 1)),
+                (fmb.Error, "size", lambda: fmb.box([1, -1, 1])),
+                (fmb.Error, "size", lambda: fmb.box([1, math.inf, 1])),
+                (ValueError, "size", lambda: fmb.box([1])),
+                (ValueError, "centre", lambda: fmb.box([1, 1, 1], [0, 0])),
+                (fmb.Error, "components", lambda: fmb.cuboid([[1, 0, 0]])),
+                (TypeError, "components", fmb.tetrahedron),
+                (TypeError, "origin", lambda: fmb.face(vertices=[[0, 0, 0]] * 3, origin=[0, 0, 0])),
+                (fmb.Error, "vertices", lambda: fmb.face(vertices=[[0, 0]] * 3)),
+                (fmb.Error, "vertices", lambda: fmb.hull([[0, 0, i] for i in range(1025)])),
+                (ValueError, "vertices[1]", lambda: fmb.hull([[0, 0, 0], [0, 0]])),
+                (TypeError, "vertices", lambda: fmb.hull([])),
+                (ValueError, "bodies", lambda: fmb.compound([])),
+                (TypeError, "bodies[1]", lambda: fmb.Scene([box, None])),
+                (TypeError, "bodies", lambda: fmb.Scene(box)),
+                (fmb.Error, "bodies[1]", lambda: fmb.Scene([box, fmb.box([1, 1])])),
+                (ValueError, "names", lambda: fmb.Scene([box], names=["a", "b"])),
+                (TypeError, "names[0]", lambda: fmb.Scene([box], names=[1])),
+                (ValueError, "names[0]", lambda: fmb.Scene([box], names=["a\0b"])),
+                (fmb.Error, "names[0]", lambda: fmb.Scene([box], names=["x" * 65])),
+                (fmb.Error, "names[0]", lambda: fmb.Scene([box], names=["\ud800"])),
+                (fmb.Error, "ids[0]", lambda: fmb.Scene([box], ids=[2**53])),
+                (ValueError, "groups", lambda: fmb.Scene([box], groups=[1, 2])),
+                (TypeError, "groups", lambda: fmb.Scene([box], groups=["a"])),
+                (fmb.BusError, "prefix", lambda: fmb.Client(prefix="no prefix")),
+                (ValueError, "tries", lambda: fmb.Client(tries=0)),
+                (TypeError, "timeout", lambda: fmb.Client(timeout="x")),
+                (TypeError, "fmb", lambda: copy.copy(scene))):
+            self.refused(error, start, call)
+        self.assertEqual(scene.pair(0, 1, 0).verdict, fmb.OVERLAPPING)
+
+    @unittest.skipUnless(fmb.numpy, "needs numpy")
+    def test_arrays_of_numpy_have_to_be_of_the_type_and_in_order(self):
+        numpy, scene = fmb.numpy, self.scene
+        good = numpy.array([[0.0, 0, 0], [1, 0, 0], [9, 0, 0]])
+        scene.place(good)
+        pairs = numpy.argwhere(numpy.tri(3, k=-1))  # not in C order
+        self.refused(ValueError, "pairs", lambda: scene.decide(0, pairs=pairs))
+        pairs = numpy.ascontiguousarray(pairs)
+        self.assertEqual(scene.decide(0, pairs=pairs).verdicts.tolist(), [2, 1, 1])
+        good.setflags(write=False)
+        scene.place(good)
+        for error, start, call in (
+                (TypeError, "positions", lambda: scene.place(good.astype("f4"))),
+                (TypeError, "positions", lambda: scene.place(good.astype(int))),
+                (TypeError, "positions", lambda: scene.place(good.astype(">f8"))),
+                (TypeError, "positions", lambda: scene.place(good.astype(object))),
+                (ValueError, "positions", lambda: scene.place(numpy.asfortranarray(good))),
+                (ValueError, "positions", lambda: scene.place(numpy.zeros((3, 6))[:, ::2])),
+                (ValueError, "positions", lambda: scene.place(good[:2])),
+                (TypeError, "pairs", lambda: scene.decide(0, pairs=numpy.array([[0.0, 1.0]]))),
+                (TypeError, "pairs", lambda: scene.decide(0, pairs=numpy.array([[0, 1]], "u4"))),
+                (ValueError, "pairs", lambda: scene.decide(0, pairs=numpy.array([0, 1])))):
+            self.refused(error, start, call)
+
+    def test_threads_may_share_a_scene(self):
+        scene, pairs = scene_of(random_scene(3, 12, 3))
+        expected = list(scene.decide(0.7, pairs=pairs, **WANTED))
+        wrong = []
+
+        def work():
+            for _ in range(20):
+                if list(scene.decide(0.7, pairs=pairs, **WANTED)) != expected:
+                    wrong.append(1)
+
+        threads = [threading.Thread(target=work) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(wrong, [])
+
+
+if __name__ == "__main__":
+    unittest.main()
