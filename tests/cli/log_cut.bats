@@ -40,18 +40,9 @@ outcomes() {
         jq -c '[.channels[] | [.queries, .same, .different, .busy, .unknown_body, .no_result]]'
 }
 
-# u32 FILE OFFSET
-u32() {
-    od -An -tu1 -j "$2" -N 4 "$1" | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4 }'
-}
-
 # offset_of LOG N: of the event with index N.
 offset_of() {
-    local at=0
-    for ((i = 0; i < $2; i++)); do
-        at=$((at + 28 + $(u32 "$1" $((at + 20))) + $(u32 "$1" $((at + 24)))))
-    done
-    echo "$at"
+    "$FMB_BUILD/edit-log" --offset "$2" "$1"
 }
 
 # split LOG N: into $T/first.log, with N events, and $T/second.log.

@@ -36,16 +36,13 @@ rows() {
     for scene in $(jq -r .scene "$T/all" | sort -un); do
         "$FMB" log scene --event "$scene" tests/logs/arm.log > "$T/scene" 2> "$T/said"
         # shellcheck disable=SC2046
-        "$FMB" $(sed -n 's/.*to repeat it: fmb //p' "$T/said") "$T/scene" > "$T/answer"
-        jq -es --slurpfile answer "$T/answer" --argjson scene "$scene" '
-            map(select(.scene == $scene)) | length == 1 and
-            .[0].pairs == $answer[0].pairs' "$T/all"
-        jq -es --slurpfile answer "$T/answer" --argjson scene "$scene" '
-            [.[] | select(.scene == $scene) | .pairs[] | [.a, .b, .verdict]] ==
-            [$answer[0].pairs[] | select(.verdict != "separated") | [.a, .b, .verdict]]' "$T/contacts"
+        "$FMB" $(sed -n 's/.*to repeat it: fmb //p' "$T/said") "$T/scene" >> "$T/answers"
         found=$((found + 1))
     done
     [ "$found" = 72 ]
+    jq -es --slurpfile answers "$T/answers" 'length == 72 and (sort_by(.scene) | map(.pairs)) == ($answers | map(.pairs))' "$T/all"
+    jq -es --slurpfile answers "$T/answers" '(sort_by(.scene) | map([.pairs[] | [.a, .b, .verdict]])) ==
+        ($answers | map([.pairs[] | select(.verdict != "separated") | [.a, .b, .verdict]]))' "$T/contacts"
 }
 
 @test "all pairs of a scene are there with --all, without those that are ignored" {
@@ -186,13 +183,13 @@ rows() {
     "$build/logs/generate" --blast scenes 300 "$T/whole.log"
     "$build/edit-log" --last "$T/whole.log" "$log"
     "$FMB" log results --json "$T/whole.log" > "$T/expected"
-    results --json "$log"
-    ended 2
-    [[ $stderr =~ 'the first of '([0-9]+)': give the log before it, too' ]]
+    status=0
+    "$FMB" log results --json "$log" > "$T/rows" 2> "$T/said" || status=$?
+    [ "$status" = 2 ]
+    [[ $(< "$T/said") =~ 'the first of '([0-9]+)': give the log before it, too' ]]
     lost=${BASH_REMATCH[1]}
     [ "$lost" -gt 10 ] && [ "$lost" -lt 100 ]
     # The first ones; the others are whole.
-    jq -c 'del(.scene)' <<< "$output" | tail -n +$((lost + 1)) |
-        cmp - <(jq -c 'del(.scene)' "$T/expected" | tail -n +$((lost + 1)))
-    [ "$(jq -c 'select(has("pairs") | not)' <<< "$output" | wc -l)" = "$lost" ]
+    cmp <(tail -n +$((lost + 1)) "$T/rows" | sed 's/"scene":[^,]*,//') <(tail -n +$((lost + 1)) "$T/expected" | sed 's/"scene":[^,]*,//')
+    [ "$(grep -vc '"pairs":' "$T/rows")" = "$lost" ]
 }

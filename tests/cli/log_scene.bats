@@ -47,11 +47,7 @@ u32() {
 
 # offset_of LOG N: of the event with index N.
 offset_of() {
-    local at=0
-    for ((i = 0; i < $2; i++)); do
-        at=$((at + 28 + $(u32 "$1" $((at + 20))) + $(u32 "$1" $((at + 24)))))
-    done
-    echo "$at"
+    "$FMB_BUILD/edit-log" --offset "$2" "$1"
 }
 
 # split LOG N: into $T/first.log, with N events, and $T/second.log.
@@ -67,15 +63,16 @@ split_at() {
     scenes=0
     certificates=0
     for ((event = 0; event < 146; event++)); do
-        run --separate-stderr "$FMB" log scene "$log" --event "$event"
-        [ "$status" = 0 ] || continue
+        "$FMB" log scene "$log" --event "$event" > "$T/scene" 2> "$T/said" || continue
         scenes=$((scenes + 1))
+        stderr=$(< "$T/said")
         said "to repeat it: fmb query --local --json"
         command=${stderr##*to repeat it: fmb }
         [[ "$command" != *--certificate* ]] || certificates=$((certificates + 1))
         # shellcheck disable=SC2086
-        "$FMB" ${command} <<< "$output" | jq -e '.pairs | length > 0 and all(has("verdict"))' > "$T/jq"
+        "$FMB" ${command} < "$T/scene" >> "$T/answers"
     done
+    jq -es "length == $scenes and all(.[].pairs; length > 0 and all(has(\"verdict\")))" "$T/answers" > "$T/jq"
     # A query and its result are the same scene.
     [ "$scenes" = 144 ]
     [ "$certificates" -gt 0 ]
@@ -133,11 +130,12 @@ split_at() {
     # By itself the second log does not define all handles.
     unknown=0
     for ((event = 60; event < 120; event += 2)); do
-        run --separate-stderr "$FMB" log scene "$T/second.log" --event "$event"
+        status=0
+        "$FMB" log scene "$T/second.log" --event "$event" > "$T/scene" 2> "$T/said" || status=$?
         [ "$status" != 0 ] || continue
         [ "$status" = 1 ]
-        [ -z "$output" ]
-        said 'came by a handle that no log here defines'
+        [ ! -s "$T/scene" ]
+        grep -q 'came by a handle that no log here defines' "$T/said"
         unknown=$((unknown + 1))
     done
     [ "$unknown" -gt 0 ]
@@ -170,10 +168,12 @@ split_at() {
     generate refused "$log"
     found=0
     for ((event = 0; event < 230; event += step)); do
-        run --separate-stderr "$FMB" log scene "$log" --event "$event"
+        status=0
+        "$FMB" log scene "$log" --event "$event" > "$T/scene" 2> "$T/said" || status=$?
+        stderr=$(< "$T/said")
         [[ "$stderr" == *'which has no id, is body '* || "$stderr" == *', one more of body '* ]] || continue
         [ "$status" = 0 ]
-        answers > "$T/answers" || [ "$?" = 1 ]
+        "$FMB" query --local --json "$T/scene" > "$T/answers" || [ "$?" = 1 ]
         found=$((found + 1))
     done
     [ "$found" -gt 0 ]
@@ -186,9 +186,10 @@ split_at() {
     [ "$stderr" = 'fmb: event 22: the service refuses it: a.num_numbers: expected 12 numbers, found 11' ]
     # None of them makes it fail in another way.
     for ((event = 0; event < 230; event += step)); do
-        run --separate-stderr "$FMB" log scene "$log" --event "$event"
-        [ "$status" -le 1 ]
-        [ "$status" = 0 ] || [ -z "$output" ]
+        "$FMB" log scene "$log" --event "$event" > "$T/scene" 2> "$T/said" || {
+            [ "$?" = 1 ]
+            [ ! -s "$T/scene" ]
+        }
     done
 }
 
