@@ -6,8 +6,7 @@ setup() {
     BUILD=${FMB_BUILD:-build}
     JSON=$BATS_TEST_TMPDIR/report.json
     cd "$BATS_TEST_DIRNAME/../.." || return
-    pairs=6
-    case ${FMB_FAST:-0} in 0) ;; *) pairs=4 ;; esac
+    pairs=3
 }
 
 @test "accuracy: no exact method is wrong, and families have the properties that they state" {

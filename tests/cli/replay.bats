@@ -31,7 +31,6 @@ edit() {
 replay() {
     run --separate-stderr "$FMB" replay --json "$@"
     [ "${#lines[@]}" = 1 ]
-    jq -e . <<< "$output" > /dev/null
 }
 
 # counts EXPRESSION: jq says true of the report.
@@ -292,12 +291,12 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 }
 
 @test "many logs are read as one" {
-    for i in $(seq 0 145); do
-        "$EDIT" --events $i $((i + 1)) arm.log part.$i.log
+    for i in $(seq 0 3 145); do
+        "$EDIT" --events "$i" $((i + 3)) arm.log "part.$i.log"
         parts+=("part.$i.log")
     done
     [ "$(report_of "${parts[@]}" | jq -c .same)" = 72 ]
-    ulimit -S -n 40
+    ulimit -S -n 30
     replay "${parts[@]}"
     ended 0
     counts '.same == 72'
@@ -422,7 +421,9 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 }
 
 @test "a recording by another client is compared in order" {
-    for log in arm clients blast moving; do
+    local logs='arm clients blast moving'
+    [ -z "${FMB_FAST-}" ] || logs='arm moving'
+    for log in $logs; do
         replay --golden $log.log $log.log
         own=$(jq -c '[.queries, .same, .busy, .unknown_body, .not_defined, .no_result]' <<< "$output")
         for other in '--client 5' '--sequence 100000' '--client 5 --sequence 100000' \

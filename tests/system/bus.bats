@@ -10,11 +10,9 @@ setup() {
 
 # Processes that run the programs of this build, in this network namespace.
 remaining_processes() {
-    for process in /proc/[0-9]*; do
-        [ "$(readlink "$process/ns/net")" = "$(readlink /proc/self/ns/net)" ] || continue
-        case $(readlink "$process/exe") in
-        */fmbd | */bus/echo | */bus/bench-bus) echo "$process" ;;
-        esac
+    local program
+    for program in $(find /proc/[0-9]*/exe -maxdepth 0 \( -lname '*/fmbd' -o -lname '*/bus/echo' -o -lname '*/bus/bench-bus' \)); do
+        [ "$(readlink "${program%exe}ns/net")" != "$(readlink /proc/self/ns/net)" ] || echo "$program"
     done 2> /dev/null
 }
 
