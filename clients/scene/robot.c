@@ -50,7 +50,6 @@ void robot_clear(struct robot *robot)
     free(robot->links);
     free(robot->joints);
     free(robot->elements);
-    free(robot->order);
     scene_clear(&robot->memory);
 }
 
@@ -81,72 +80,44 @@ static bool connect_joint(struct robot *robot, struct robot_joint *joint)
     return true;
 }
 
-/* Returns the first root from a link on, or link_count. */
-static size_t find_root(const struct robot *robot, size_t link)
-{
-    while (link < robot->link_count && robot->links[link].joint != ROBOT_ROOT)
-        link++;
-    return link;
-}
-
-/* Sets order: a queue, to which the children of each link are added. Returns its length. */
-static size_t set_order(struct robot *robot, size_t root)
-{
-    /* Lists of the joints of each parent, in the order of the file. */
-    unsigned *first = allocate(robot->link_count, sizeof *first);
-    unsigned *next = allocate(robot->joint_count, sizeof *next);
-    size_t count = 0;
-    memset(first, 0xff, robot->link_count * sizeof *first);
-    for (size_t j = robot->joint_count; j-- > 0;) {
-        unsigned *head = &first[robot->joints[j].link[0]];
-        next[j] = *head;
-        *head = (unsigned) j;
-    }
-    robot->order = allocate(robot->link_count, sizeof *robot->order);
-    if (root < robot->link_count)
-        robot->order[count++] = (unsigned) root;
-    for (size_t at = 0; at < count; at++)
-        for (unsigned j = first[robot->order[at]]; j != ROBOT_ROOT; j = next[j])
-            robot->order[count++] = robot->joints[j].link[1];
-    free(first);
-    free(next);
-    return count;
-}
-
-/* Reports a cycle of links. None of its links was reached from the root; from any other such link
- * the way up leads to a cycle, and link_count steps lead into it. */
-static void complain_cycle(const struct robot *robot, size_t reached)
-{
-    unsigned char *seen = allocate(robot->link_count, 1);
-    unsigned link = 0;
-    for (size_t i = 0; i < reached; i++)
-        seen[robot->order[i]] = 1;
-    while (seen[link])
-        link++;
-    free(seen);
-    for (size_t i = 0; i < robot->link_count; i++)
-        link = robot->joints[robot->links[link].joint].link[0];
-    const struct robot_name *joint = robot->joints[robot->links[link].joint].name;
-    complain("%s: line %lu: joint '%s': the joints from '%s' lead back to it: expected a tree",
-             robot->path, joint->line, joint->name, robot->links[link].name->name);
-}
-
 bool robot_connect(struct robot *robot)
 {
+    const size_t count = robot->link_count;
+    size_t *depth = scene_alloc(&robot->memory, count, sizeof *depth), placed = 0;
+    unsigned root = 0;
     for (size_t i = 0; i < robot->joint_count; i++)
         if (!connect_joint(robot, &robot->joints[i]))
             return false;
-    const size_t root = find_root(robot, 0), other = find_root(robot, root + 1);
-    if (other < robot->link_count) {
-        complain("%s: line %lu: link '%s' has no parent, and nor has link '%s': expected one root",
-                 robot->path, robot->links[other].name->line, robot->links[other].name->name,
-                 robot->links[root].name->name);
-        return false;
+    for (unsigned i = 0; i < count; i++) {
+        unsigned up = i;
+        while (robot->links[up].joint != ROBOT_ROOT && depth[i] < count) {
+            up = robot->joints[robot->links[up].joint].link[0];
+            depth[i]++;
+        }
+        const struct robot_link *top = &robot->links[up];
+        if (top->joint != ROBOT_ROOT) { /* so many steps lead into a cycle */
+            const struct robot_name *joint = robot->joints[top->joint].name;
+            complain(
+                "%s: line %lu: joint '%s': the joints from '%s' lead back to it: expected a "
+                "tree",
+                robot->path, joint->line, joint->name, top->name->name);
+            return false;
+        }
+        if (i > 0 && up != root) {
+            complain(
+                "%s: line %lu: link '%s' has no parent, and nor has link '%s': expected one "
+                "root",
+                robot->path, top->name->line, top->name->name, robot->links[root].name->name);
+            return false;
+        }
+        root = up;
     }
-    const size_t reached = set_order(robot, root);
-    if (reached < robot->link_count)
-        complain_cycle(robot, reached);
-    return reached == robot->link_count;
+    robot->order = scene_alloc(&robot->memory, count, sizeof *robot->order);
+    for (size_t d = 0; placed < count; d++)
+        for (unsigned i = 0; i < count; i++)
+            if (depth[i] == d)
+                robot->order[placed++] = i;
+    return true;
 }
 
 /* ---- Forward kinematics ---- */

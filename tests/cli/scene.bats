@@ -292,6 +292,8 @@ triangle() {
     refused "lead back to it" robot.urdf
     joined a a b c
     refused "line 6: joint 'aa': the joints from 'a' lead back to it" robot.urdf
+    joined b a
+    refused "robot.urdf: line 5: link 'c' has no parent, and nor has link 'b': expected one root" robot.urdf
     joined a b
     refused "robot.urdf: line 5: link 'c' has no parent, and nor has link 'a': expected one root" robot.urdf
     joined a b a d
