@@ -82,7 +82,7 @@ def _load() -> ctypes.CDLL:
             ("fmb_flat_scene_free", None, (pointer,)),
             ("fmb_flat_why", text, (pointer,)),
             ("fmb_flat_place", integer, (pointer, size, size, pointer, pointer, pointer)),
-            ("fmb_flat_pair", integer, (pointer, pointer, long, long, real, integer, pointer)),
+            ("fmb_flat_pair", integer, (pointer, pointer, long, long, real, integer)),
             ("fmb_flat_decide", integer, (pointer, pointer, real, integer, integer, real, long,
                                           pointer, size, pointer, size, text)),
             ("fmb_flat_count", size, (pointer,)),
@@ -392,25 +392,21 @@ class Answer(NamedTuple):
     frames: Optional[tuple[int, int]]  #: of a and b, which have this gap
 
 
-def _answer(names: Any, dim: int, a: int, b: int, status: int, verdict: int, contact: Any, box: Any,
-            gap: Any, direction: Any, time: Any, witness: Any, frames: Any) -> Answer:
-    """Of lists of numbers; None, or NaN for the first, where there are none. Vectors may be longer
-    than dim."""
+def _answer(names: Any, a: int, b: int, status: int, verdict: int, contact: Any, box: Any, gap: Any,
+            direction: Any, time: Any, witness: Any, frames: Any) -> Answer:
+    """Of lists of numbers; None, or NaN for the first, where there are none."""
 
-    def two(values: Any) -> Any:
-        if values is None or values[0] != values[0]:
-            return None
-        half = len(values) // 2
-        return tuple(values[:dim]), tuple(values[half:half + dim])
+    def known(values: Any) -> Any:
+        return None if values is None or values[0] != values[0] else tuple(values)
 
-    has_gap = gap is not None and gap[0] == gap[0]
-    return Answer(a, b, (names[a], names[b]), status, _VERDICTS[verdict],
-                  (contact[0], contact[1]) if contact and contact[0] == contact[0] else None,
-                  two(box), (gap[0], gap[1]) if has_gap else None,
-                  tuple(direction[:dim]) if has_gap else None,
-                  time[0] if has_gap and time[0] == time[0] else None,
-                  two(witness) if has_gap else None,
-                  (int(frames[0]), int(frames[1])) if has_gap else None)
+    def halves(values: Any) -> Any:
+        values = known(values)
+        return values and (values[:len(values) // 2], values[len(values) // 2:])
+
+    gap = known(gap)
+    return Answer(a, b, (names[a], names[b]), status, _VERDICTS[verdict], known(contact), halves(box),
+                  gap, *(tuple(direction), known(time) and time[0], halves(witness), tuple(frames))
+                  if gap else (None,) * 4)
 
 
 class Answers(Sequence):
@@ -431,7 +427,7 @@ class Answers(Sequence):
     """
 
     def __init__(self, handle: int, dim: int, names: Any, pairs: Any, wanted: int) -> None:
-        self._dim, self._names = dim, names
+        self._names = names
         self._count = n = _lib.fmb_flat_count(handle)
         contact, corners, gap = wanted & _WANT_TIMES, wanted & _WANT_BOX, wanted & _WANT_GAP
 
@@ -468,7 +464,7 @@ class Answers(Sequence):
             return values[k * width:(k + 1) * width].tolist()
 
         a, b = row(self.pairs, "q")
-        return _answer(self._names, self._dim, a, b, int(self.statuses[k]), int(self.verdicts[k]),
+        return _answer(self._names, a, b, int(self.statuses[k]), int(self.verdicts[k]),
                        row(self.contacts), row(self.boxes), row(self.gaps), row(self.directions),
                        row(self.times), row(self.witnesses), row(self.frames, "q"))
 
@@ -557,10 +553,14 @@ class Scene(_Handle):
                  names: Optional[Sequence[Optional[str]]] = None, groups: Optional[Array] = None,
                  ids: Optional[Array] = None) -> None:
         self._lock = threading.Lock()
-        self._answer = (ctypes.c_double * 23)()
         self.bodies = _bodies(bodies)
-        self.dim = self.bodies[0].dim
+        self.dim = dim = self.bodies[0].dim
         n = len(self.bodies)
+        real = ctypes.c_double
+        # The columns of fmb_flat_answers() for one answer, verdicts first.
+        self._one = (ctypes.c_uint8 * 1, ctypes.c_int32 * 1, real * 2, real * (2 * dim), real * 2,
+                     real * dim, real * 1, real * (2 * dim), ctypes.c_int64 * 2)
+        self._one = tuple(column() for column in self._one)
         self.names = (None,) * n if names is None else tuple(names)
         if len(self.names) != n:
             raise ValueError(f"names: expected {n}, found {len(self.names)}")
@@ -624,11 +624,11 @@ class Scene(_Handle):
         with self._lock, _lock_of(client):
             self._check(_lib.fmb_flat_pair(
                 self._handle, _handle_of(client), a, b, duration,
-                (_WANT_BOX if box else 0) + (_WANT_GAP if gap else 0), self._answer), "pair: ")
-            row = self._answer[:]
-        return _answer(self.names, self.dim, a, b, 0, int(row[0]), row[1:3],
-                       row[3:9] if box else None, row[9:11] if gap else None, row[11:14],
-                       row[14:15], row[15:21], row[21:23])
+                (_WANT_BOX if box else 0) + (_WANT_GAP if gap else 0)), "pair: ")
+            one = self._one
+            _lib.fmb_flat_answers(self._handle, None, *one)
+            return _answer(self.names, a, b, 0, one[0][0], one[2][:], one[3][:] if box else None,
+                           *[column[:] for column in one[4:]] if gap else (None,) * 5)
 
     def decide(self, duration: float, *, pairs: Optional[Array] = None,
                split: Optional[int] = None, ignored: Optional[Array] = None, margin: float = 0,

@@ -24,16 +24,6 @@ struct fmb_flat_body {
     double *vertices; /* of hulls */
 };
 
-/* The doubles that the hulls need. */
-static size_t hull_doubles(int dim, size_t count, const int32_t *shapes, const int64_t *counts)
-{
-    size_t sum = 0;
-    for (size_t i = 0; i < count && dim > 0; i++)
-        if (shapes[i] == FMB_HULL)
-            sum += fmb_hull_doubles(dim, (size_t) counts[i] / (size_t) dim);
-    return sum;
-}
-
 static int make_body(int dim, size_t count, const int32_t *shapes, const int64_t *counts,
                      const double *numbers, struct fmb_flat_body *out)
 {
@@ -61,11 +51,15 @@ int fmb_flat_body_make(int dim, size_t count, const int32_t *shapes, const int64
 {
     if (count > FMB_FRAMES_MAX)
         return FMB_OVER_LIMIT;
+    size_t doubles = 0;
+    for (size_t i = 0; i < count && dim > 0; i++)
+        if (shapes[i] == FMB_HULL)
+            doubles += fmb_hull_doubles(dim, (size_t) counts[i] / (size_t) dim);
     struct fmb_flat_body *body = calloc(1, sizeof *body);
     int status = FMB_CLIENT_NO_MEMORY;
     if (body) {
         body->frames = malloc((count + 1) * sizeof *body->frames);
-        body->vertices = malloc((hull_doubles(dim, count, shapes, counts) + 1) * sizeof(double));
+        body->vertices = malloc((doubles + 1) * sizeof(double));
         if (body->frames && body->vertices)
             status = make_body(dim, count, shapes, counts, numbers, body);
     }
@@ -112,6 +106,7 @@ struct fmb_flat_scene {
     struct column column[COLUMN_COUNT];
     bool has[COLUMN_COUNT]; /* the last answers have this column */
     size_t count;           /* of the last answers */
+    bool failed;            /* to keep them: out of memory */
     char why[FMB_CLIENT_WHY_MAX];
 };
 
@@ -253,53 +248,7 @@ int fmb_flat_place(struct fmb_flat_scene *scene, size_t first, size_t count,
     return FMB_OK;
 }
 
-/* ---- One pair ---- */
-
-static void flatten(const struct fmb_answer *answer, double *out)
-{
-    const struct fmb_gap *gap = &answer->gap;
-    for (int i = 0; i < FMB_FLAT_ANSWER_NUMBERS; i++)
-        out[i] = NAN;
-    out[FMB_FLAT_VERDICT] = answer->verdict;
-    if (answer->has_contact)
-        memcpy(out + FMB_FLAT_CONTACT, answer->contact, sizeof answer->contact);
-    if (answer->has_box)
-        memcpy(out + FMB_FLAT_BOX, answer->box, sizeof answer->box);
-    if (!answer->has_gap)
-        return;
-    memcpy(out + FMB_FLAT_GAP, gap->bounds, sizeof gap->bounds);
-    memcpy(out + FMB_FLAT_DIRECTION, gap->direction, sizeof gap->direction);
-    out[FMB_FLAT_FRAME] = gap->frame[0];
-    out[FMB_FLAT_FRAME + 1] = gap->frame[1];
-    if (!gap->has_witness)
-        return;
-    out[FMB_FLAT_TIME] = gap->time;
-    memcpy(out + FMB_FLAT_WITNESS, gap->witness, sizeof gap->witness);
-}
-
-int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64_t a, int64_t b,
-                  double duration, unsigned want, double *out)
-{
-    const int64_t count = (int64_t) scene->placement_count;
-    if (a < 0 || a >= count || b < 0 || b >= count || a == b)
-        return refuse(scene, FMB_BAD_PAIR, NULL, 0);
-    if (!client) {
-        struct fmb_answer answer;
-        const enum fmb_status status = fmb_decide(fmb_method_default(), &scene->placements[a],
-                                                  &scene->placements[b], duration, want, &answer);
-        flatten(&answer, out);
-        return status == FMB_OK ? FMB_OK : refuse(scene, (int) status, NULL, 0);
-    }
-    const struct fmb_placement pair[2] = {scene->placements[a], scene->placements[b]};
-    struct fmb_client_answer answer;
-    const int status = fmb_client_query_pair(client, pair, duration, want, &answer);
-    flatten(&answer.answer, out);
-    if (status != FMB_OK)
-        snprintf(scene->why, sizeof scene->why, "%s", answer.text);
-    return status;
-}
-
-/* ---- Many pairs ---- */
+/* ---- Deciding ---- */
 
 /* Converts indices of placements. One that is no unsigned becomes UINT_MAX, which is none. */
 static bool convert(struct column *column, const int64_t *pairs, size_t count)
@@ -370,20 +319,14 @@ static int decide_steps(struct fmb_flat_scene *flat, const struct fmb_scene *sce
     return (int) status;
 }
 
-/* What receives the answers of a client. */
-struct delivery {
-    struct fmb_flat_scene *scene;
-    bool failed; /* out of memory */
-};
-
+/* Takes an answer of a client. Out of memory, this and all later ones are left out. */
 static void append(void *user, const struct fmb_client_answer *of)
 {
-    struct delivery *delivery = user;
-    struct fmb_flat_scene *scene = delivery->scene;
+    struct fmb_flat_scene *scene = user;
     const struct fmb_answer *answer = &of->answer;
     const size_t k = scene->count;
-    delivery->failed = delivery->failed || !reserve_answers(scene, k + 1);
-    if (delivery->failed)
+    scene->failed = scene->failed || !reserve_answers(scene, k + 1);
+    if (scene->failed)
         return;
     scene->count++;
     ((unsigned char *) scene->column[VERDICTS].data)[k] = (unsigned char) answer->verdict;
@@ -403,14 +346,47 @@ static void append(void *user, const struct fmb_client_answer *of)
             answer->has_gap ? answer->gap : (struct fmb_gap){.bounds = {NAN, NAN}};
 }
 
+/* Begins answers with these columns. */
+static void begin_answers(struct fmb_flat_scene *scene, bool pairs, bool statuses, unsigned want)
+{
+    scene->count = 0;
+    scene->failed = false;
+    scene->has[PAIRS] = pairs;
+    scene->has[VERDICTS] = true;
+    scene->has[STATUSES] = statuses;
+    scene->has[CONTACTS] = want & FMB_WANT_TIMES;
+    scene->has[BOXES] = want & FMB_WANT_BOX;
+    scene->has[GAPS] = want & FMB_WANT_GAP;
+}
+
+int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64_t a, int64_t b,
+                  double duration, unsigned want)
+{
+    const uint64_t count = scene->placement_count;
+    struct fmb_client_answer answer = {.status = FMB_BAD_PAIR};
+    begin_answers(scene, false, true, want | FMB_WANT_TIMES);
+    if ((uint64_t) a < count && (uint64_t) b < count && a != b) {
+        const struct fmb_placement pair[2] = {scene->placements[a], scene->placements[b]};
+        if (client)
+            fmb_client_query_pair(client, pair, duration, want, &answer);
+        else
+            answer.status = (int) fmb_decide(fmb_method_default(), &pair[0], &pair[1], duration,
+                                             want, &answer.answer);
+    }
+    append(scene, &answer);
+    if (answer.status != FMB_OK)
+        snprintf(scene->why, sizeof scene->why, "%s",
+                 client && answer.text ? answer.text : fmb_client_status_text(answer.status));
+    return scene->failed ? refuse(scene, FMB_CLIENT_NO_MEMORY, NULL, 0) : answer.status;
+}
+
 static int decide_on_bus(struct fmb_flat_scene *flat, struct fmb_client *client,
                          const struct fmb_scene *scene)
 {
-    struct delivery delivery = {.scene = flat};
-    const int status = fmb_client_query(client, scene, append, &delivery);
+    const int status = fmb_client_query(client, scene, append, flat);
     if (status != FMB_OK)
         snprintf(flat->why, sizeof flat->why, "%s", fmb_client_why(client));
-    return delivery.failed ? FMB_CLIENT_NO_MEMORY : status;
+    return flat->failed ? refuse(flat, FMB_CLIENT_NO_MEMORY, NULL, 0) : status;
 }
 
 int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, double duration,
@@ -418,7 +394,7 @@ int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, doub
                     size_t pair_count, const int64_t *ignored, size_t ignored_count,
                     const char *label)
 {
-    flat->count = 0;
+    begin_answers(flat, !pairs, client, margin > 0 ? want | FMB_WANT_GAP : want);
     if (!convert(&flat->listed, pairs, pairs ? pair_count : 0) ||
         !convert(&flat->ignored, ignored, ignored ? ignored_count : 0))
         return refuse(flat, FMB_CLIENT_NO_MEMORY, NULL, 0);
@@ -437,12 +413,6 @@ int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, doub
                                     .ignored = flat->ignored.data,
                                     .ignored_count = ignored ? ignored_count : 0,
                                     .label = label};
-    flat->has[PAIRS] = !pairs;
-    flat->has[VERDICTS] = true;
-    flat->has[STATUSES] = client;
-    flat->has[CONTACTS] = want & FMB_WANT_TIMES;
-    flat->has[BOXES] = want & FMB_WANT_BOX;
-    flat->has[GAPS] = want & FMB_WANT_GAP || margin > 0;
     if (client)
         return decide_on_bus(flat, client, &scene);
     int status = (int) fmb_scene_check(&scene, flat->why, sizeof flat->why);

@@ -68,28 +68,14 @@ const char *fmb_flat_why(const struct fmb_flat_scene *scene);
 int fmb_flat_place(struct fmb_flat_scene *scene, size_t first, size_t count,
                    const double *positions, const double *orientations, const double *velocities);
 
-/* The numbers of the answer to one pair, NAN where it has none; axes beyond dim are 0. */
-enum {
-    FMB_FLAT_VERDICT,        /* enum fmb_verdict */
-    FMB_FLAT_CONTACT,        /* first, last */
-    FMB_FLAT_BOX = 3,        /* [lower, upper][3] */
-    FMB_FLAT_GAP = 9,        /* lower, upper bound */
-    FMB_FLAT_DIRECTION = 11, /* [3] */
-    FMB_FLAT_TIME = 14,      /* of the least distance */
-    FMB_FLAT_WITNESS = 15,   /* [of a, of b][3] */
-    FMB_FLAT_FRAME = 21,     /* of a, of b */
-    FMB_FLAT_ANSWER_NUMBERS = 23
-};
-
 struct fmb_client;
 
-/* Decides one pair; groups are not considered.
+/* Decides one pair, and keeps the answer in the scene, as the only one; groups are not considered.
  * In:  client  NULL: in process, as fmb_decide(); or as fmb_client_query_pair()
  *      want    a sum of FMB_WANT_BOX and FMB_WANT_GAP; contacts are always given
- * Out: answer  [FMB_FLAT_ANSWER_NUMBERS]
  * Returns a status of these functions; FMB_BAD_PAIR if a or b is no placement, or both are one. */
 int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64_t a, int64_t b,
-                  double duration, unsigned want, double *answer);
+                  double duration, unsigned want);
 
 /* Decides pairs, and keeps the answers in the scene until the next call: of each pair of a list;
  * otherwise of those that touch, overlap, are near, or have no verdict.
