@@ -103,7 +103,8 @@ static void add(fcl_robot *out, int body, const fmb_frame &frame)
         geometry = tetrahedron(frame);
     geometry->computeLocalAABB();
     part->local = fcl::Transform3d::Identity();
-    part->local.translation() = fcl::Vector3d(at[0], at[1], at[2]);
+    if (frame.shape != FMB_HULL) /* whose vertices are where they are in its body */
+        part->local.translation() = fcl::Vector3d(at[0], at[1], at[2]);
     part->body = body;
     part->object = std::make_unique<Object>(geometry);
     part->object->setUserData(part.get());
