@@ -426,7 +426,7 @@ class Answers(Sequence):
     frames: (n, 2) int64, of a and b, which have this gap
     """
 
-    def __init__(self, handle: int, dim: int, names: Any, pairs: Any, wanted: int) -> None:
+    def __init__(self, handle: int, dim: int, names: Any, pairs: Any, wanted: int, on_bus: bool) -> None:
         self._names = names
         self._count = n = _lib.fmb_flat_count(handle)
         contact, corners, gap = wanted & _WANT_TIMES, wanted & _WANT_BOX, wanted & _WANT_GAP
@@ -435,18 +435,25 @@ class Answers(Sequence):
             if not wanted:
                 return None
             if numpy is not None:
-                return numpy.zeros((n,) + shape, code)
+                return numpy.empty((n,) + shape, code)
             out = memoryview(bytearray(n * math.prod(shape) * array(code).itemsize))
             return out.cast(code, (n,) + shape) if n else out.cast(code)
 
-        columns = (new(pairs is None, "q", 2), new(True, "B"), new(True, "i"), new(contact, "d", 2),
+        columns = (new(pairs is None, "q", 2), new(True, "B"), new(on_bus, "i"), new(contact, "d", 2),
                    new(corners, "d", 2, dim), new(gap, "d", 2), new(gap, "d", dim), new(gap, "d"),
                    new(gap, "d", 2, dim), new(gap, "q", 2))
         _lib.fmb_flat_answers(handle, *map(_pointer, columns))
-        (self.pairs, self.verdicts, self.statuses, self.contacts, self.boxes, self.gaps,
+        (self.pairs, self.verdicts, self._statuses, self.contacts, self.boxes, self.gaps,
          self.directions, self.times, self.witnesses, self.frames) = columns
         if pairs is not None:
             self.pairs = pairs if numpy is None else numpy.asarray(pairs)
+
+    @property
+    def statuses(self) -> Any:
+        if self._statuses is None:  # in process each pair has a verdict
+            zeros = array("i", bytes(4 * self._count))
+            self._statuses = memoryview(zeros) if numpy is None else numpy.asarray(zeros)
+        return self._statuses
 
     def __len__(self) -> int:
         return self._count
@@ -668,7 +675,7 @@ class Scene(_Handle):
                 _pointer(left_out), 0 if left_out is None else len(left_out),
                 _text("label", label)))
             return Answers(self._handle, self.dim, self.names, listed,
-                           want | (_WANT_GAP if margin else 0))
+                           want | (_WANT_GAP if margin else 0), client is not None)
 
     def stream(self, duration: float, positions: Optional[Iterable[Array]] = None,
                orientations: Optional[Iterable[Array]] = None,

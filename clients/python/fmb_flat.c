@@ -458,9 +458,8 @@ void fmb_flat_answers(const struct fmb_flat_scene *scene, int64_t *pairs, uint8_
     }
     if (verdicts && n)
         memcpy(verdicts, verdict, n);
-    for (size_t k = 0; statuses && k < n; k++)
-        if (!verdict[k])
-            statuses[k] = status ? status[k] : FMB_CANNOT_DECIDE;
+    if (statuses && status && n)
+        memcpy(statuses, status, n * sizeof *status);
     if (contacts && n && scene->has[CONTACTS])
         memcpy(contacts, column[CONTACTS].data, n * sizeof(double[2]));
     spread(scene, scene->has[BOXES] ? column[BOXES].data : NULL, column_width[BOXES], 2, scene->dim,

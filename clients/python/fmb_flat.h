@@ -99,8 +99,8 @@ size_t fmb_flat_count(const struct fmb_flat_scene *scene);
  * a margin other than 0 there are gaps.
  * Out: pairs       [n][a, b]; of a list they are not set
  *      verdicts    [n], enum fmb_verdict; 0: none
- *      statuses    [n]: set to why there is no verdict; those of pairs with one are left as they
- *                  are, so that memory that the system has zeroed stays untouched
+ *      statuses    [n], FMB_OK, or why there is no verdict; of answers in process, which all have
+ *                  one, they are not set
  *      contacts    [n][first, last], NAN unless they meet
  *      boxes       [n][lower, upper][dim], NAN unless they meet
  *      gaps        [n][lower, upper bound], NAN: none, as are the arrays below

@@ -1,5 +1,5 @@
 """bench.py BENCH_BATCH FILE: fmb.py beside the same work in C, which the program BENCH_BATCH does;
-FILE is for the scene. CPU time, medians of nine rounds, nanoseconds."""
+FILE is for the scene. Nanoseconds of CPU time; medians of five turns of both."""
 
 import statistics
 import subprocess
@@ -11,7 +11,7 @@ import numpy
 import fmb
 
 
-def median(work, count):
+def nanoseconds(work, count):
     work()
     times = []
     for _ in range(9):
@@ -21,12 +21,12 @@ def median(work, count):
     return statistics.median(times)
 
 
-def main(program, path):
-    in_c = {}
-    for line in subprocess.run([program, path], check=True, capture_output=True, text=True).stdout.splitlines():
-        name, value = line.split()
-        in_c[name] = float(value)
+def in_c(program, path):
+    printed = subprocess.run([program, path], check=True, capture_output=True, text=True).stdout
+    return {name: float(value) for name, value in map(str.split, printed.splitlines())}
 
+
+def in_python(path):
     with open(path, "rb") as file:
         boxes, count = numpy.fromfile(file, "i8", 2)
         sizes, positions, orientations = (
@@ -34,12 +34,6 @@ def main(program, path):
         pairs = numpy.fromfile(file, "i8", 2 * count).reshape(count, 2)
     scene = fmb.Scene([fmb.box(size) for size in sizes], positions=positions,
                       orientations=orientations)
-
-    print("listed pairs of boxes, ns a pair     C  Python  rate of C's")
-    for name, options in (("verdicts", {}), ("contacts", {"contacts": True}), ("gaps", {"gaps": True})):
-        ns = median(lambda: scene.decide(1, pairs=pairs, **options), count)
-        print(f"{name:30} {in_c[name]:8.1f}{ns:8.1f}{in_c[name] / ns:13.2f}")
-
     some = pairs[:20000].tolist()
 
     def singles():
@@ -51,10 +45,26 @@ def main(program, path):
             scene.move(a, (1.0, 2.0, 3.0))
             scene.pair(a, b, 1)
 
+    return {"verdicts": nanoseconds(lambda: scene.decide(1, pairs=pairs), count),
+            "contacts": nanoseconds(lambda: scene.decide(1, pairs=pairs, contacts=True), count),
+            "gaps": nanoseconds(lambda: scene.decide(1, pairs=pairs, gaps=True), count),
+            "pair": nanoseconds(singles, len(some)), "moved": nanoseconds(moved, len(some))}
+
+
+def main(program, path):
+    turns = [(in_c(program, path), in_python(path)) for _ in range(5)]
+
+    def median(value):
+        return statistics.median(value(c, python) for c, python in turns)
+
+    print("listed pairs of boxes, ns a pair     C  Python  rate of C's")
+    for name in ("verdicts", "contacts", "gaps"):
+        print(f"{name:30}{median(lambda c, p: c[name]):8.1f}{median(lambda c, p: p[name]):8.1f}"
+              f"{median(lambda c, p: c[name] / p[name]):13.2f}")
     print("a single pair, ns                    C  Python  more than in C")
-    for name, work in (("pair()", singles), ("move() and pair()", moved)):
-        ns = median(work, len(some))
-        print(f"{name:30} {in_c['pair']:8.0f}{ns:8.0f}{ns - in_c['pair']:16.0f}")
+    for name, what in (("pair", "pair()"), ("moved", "move() and pair()")):
+        print(f"{what:30}{median(lambda c, p: c['pair']):8.0f}{median(lambda c, p: p[name]):8.0f}"
+              f"{median(lambda c, p: p[name] - c['pair']):16.0f}")
 
 
 main(*sys.argv[1:])
