@@ -19,7 +19,7 @@
 extern "C" {
 #endif
 
-/* The number of this interface: it is raised with each change to what is there. fmb_flat_abi()
+/* The number of this interface: it is raised where a function changes or goes. fmb_flat_abi()
  * returns that of the library. */
 enum { FMB_FLAT_ABI = 1 };
 int fmb_flat_abi(void);
