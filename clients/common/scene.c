@@ -1,7 +1,6 @@
 #include "scene.h"
 
 #include "allocate.h"
-#include "pair_number.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -78,28 +77,14 @@ bool scene_leaves_out(struct owned_scene *scene, unsigned a, unsigned b)
            ignored_has(&scene->ignored, a < b ? a : b, a < b ? b : a);
 }
 
-bool scene_next_pair(struct owned_scene *owner, struct scene_cursor *cursor, unsigned out[2])
+bool scene_next_pair(struct owned_scene *scene, struct pair_cursor *cursor, unsigned out[2])
 {
-    const struct fmb_scene *scene = &owner->scene;
-    const struct pair_numbers all = pair_numbers_of(scene);
-    if (scene->which == FMB_PAIRS_LISTED) {
-        if (cursor->listed == scene->pair_count)
-            return false;
-        memcpy(out, scene->pairs[cursor->listed++], sizeof *scene->pairs);
-        return true;
-    }
-    while (pair_find(all, &cursor->a, &cursor->b)) {
-        out[0] = (unsigned) cursor->a;
-        out[1] = (unsigned) cursor->b++;
-        if (!scene_leaves_out(owner, out[0], out[1]))
-            return true;
-    }
-    return false;
+    return pair_next(&scene->scene, &scene->ignored, cursor, out);
 }
 
 uint64_t scene_count_pairs(struct owned_scene *scene)
 {
-    struct scene_cursor cursor = {0};
+    struct pair_cursor cursor = {0};
     unsigned pair[2];
     uint64_t count = 0;
     if (scene->scene.which == FMB_PAIRS_LISTED)

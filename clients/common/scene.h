@@ -33,32 +33,29 @@ struct given_frame {
     const double *numbers; /* [count] */
 };
 
-/* Returns the bytes of a body of these frames in a message: 1 for a shape, 4 for a count of
- * vertices, 8 for a number. At most FMB_CLIENT_BODY_BYTES_MAX can be queried. */
+/* Returns an upper bound of the bytes of a body of these frames in a message: 1 for a shape, 4 for
+ * a count of vertices, 8 for a number; repeated vertices of hulls are not sent. At most
+ * FMB_CLIENT_BODY_BYTES_MAX can be queried. */
 size_t scene_body_bytes(const struct given_frame *given, size_t count);
 
 /* Makes a body of count frames. On output: FMB_OK and *out; or the status of the engine, and *bad
- * is the first frame that it refuses, or count. */
+ * is the first frame that it refuses, or count. given is not used after the call. */
 enum fmb_status scene_make_body(struct owned_scene *scene, const struct given_frame *given,
                                 size_t count, const struct fmb_body **out, size_t *bad);
 
 /* Frees what the scene owns, and sets it to {0}, an empty scene. */
 void scene_clear(struct owned_scene *scene);
 
-/* Sets ignored from the placements and the ignored pairs of the scene. */
+/* Sets ignored from the placements and the ignored pairs of the scene. json_next() and
+ * scene_of_query() call it; the functions below need it. They mark pairs in ignored: a scene is for
+ * one thread at a time. */
 void scene_begin_ignored(struct owned_scene *scene);
 
 /* Whether a pair is ignored, in either order, or within a group. */
 bool scene_leaves_out(struct owned_scene *scene, unsigned a, unsigned b);
 
-/* Iterates over the pairs to be decided, in the order of the scene; {0} at first. */
-struct scene_cursor {
-    size_t listed; /* of the next listed pair */
-    size_t a, b;   /* all pairs: of pair_find() */
-};
-
-/* Returns true and the next pair, or false after the last one. */
-bool scene_next_pair(struct owned_scene *scene, struct scene_cursor *cursor, unsigned out[2]);
+/* pair_next() of the scene. */
+bool scene_next_pair(struct owned_scene *scene, struct pair_cursor *cursor, unsigned out[2]);
 
 /* Returns the number of these pairs. Cost: O(placements^2) with ALL. */
 uint64_t scene_count_pairs(struct owned_scene *scene);

@@ -12,8 +12,9 @@ int client_scene_check(const struct fmb_scene *scene, char why[FMB_CLIENT_WHY_MA
 /* Bytes of the encoded frames of a body. */
 size_t client_scene_geometry_bytes(const struct fmb_body *body);
 
-/* Converts a checked placement. handle: of its body; NULL: the frames are sent, in bytes: memory of
- * client_scene_geometry_bytes(), which must outlive *out. */
+/* Converts a checked placement; service/answer/body.h makes a body of the result. handle: of its
+ * body; NULL: the frames are sent, in bytes: memory of client_scene_geometry_bytes(), which must
+ * outlive *out. */
 void client_scene_placement(const struct fmb_placement *of, const struct handle *handle,
                             unsigned char *bytes, struct query_placement *out);
 

@@ -25,14 +25,6 @@ static void set_body(const struct fmb_placement *placement, struct held *held,
 
 /* ---- Pairs that are not decided ---- */
 
-bool division_leaves_out(struct division *division, const unsigned pair[2])
-{
-    const struct fmb_scene *scene = division->scene;
-    return ignored_has(&division->ignored, pair[0], pair[1]) ||
-           pair_is_within_group(scene, pair[0], pair[1]) ||
-           pair_number(pair_numbers_of(scene), pair[0], pair[1]) < scene->first_pair;
-}
-
 int32_t division_ignored(struct division *division, const struct part *part, int32_t max,
                          unsigned (*out)[2])
 {
@@ -166,31 +158,13 @@ static void add_pair(struct division *division, const unsigned pair[2], struct p
     out->bytes += WIRE_PAIR_BYTES;
 }
 
-static bool next_pair(struct division *division, struct division_cursor *at, unsigned out[2])
-{
-    const struct fmb_scene *scene = division->scene;
-    if (scene->which == FMB_PAIRS_LISTED) {
-        if (at->listed == scene->pair_count)
-            return false;
-        memcpy(out, scene->pairs[at->listed++], sizeof *scene->pairs);
-        return true;
-    }
-    do {
-        if (!pair_find(pair_numbers_of(scene), &at->a, &at->b))
-            return false;
-        out[0] = (unsigned) at->a;
-        out[1] = (unsigned) at->b++;
-    } while (division_leaves_out(division, out));
-    return true;
-}
-
 static bool next_list(struct division *division, int32_t pairs_max, struct part *out)
 {
-    struct division_cursor ahead = division->at;
+    struct pair_cursor ahead = division->at;
     unsigned pair[2];
     out->which = FMB_PAIRS_LISTED;
     division->part++;
-    while (out->total < pairs_max && next_pair(division, &ahead, pair)) {
+    while (out->total < pairs_max && pair_next(division->scene, &division->ignored, &ahead, pair)) {
         if (out->total > 0 && out->bytes + bytes_of_pair(division, pair) > QUERY_BYTES_MAX)
             break;
         add_pair(division, pair, out);

@@ -25,21 +25,15 @@ struct division_body {
     uint16_t index;          /* in that part */
 };
 
-/* Pairs in order: the next one. */
-struct division_cursor {
-    size_t listed;
-    size_t a, b; /* ALL and ACROSS; b is 0 before the first */
-};
-
 struct division {
     const struct fmb_scene *scene;
     struct division_body *body; /* owned, [placement_count] */
     struct ignored ignored;
     unsigned *ignored_memory; /* owned */
     bool single, blocks;
-    bool by_handle;            /* the exception: bytes are least of all bodies */
-    struct division_cursor at; /* without blocks: after the parts so far */
-    uint64_t part;             /* without blocks: number of the last part, from 1 */
+    bool by_handle;        /* the exception: bytes are least of all bodies */
+    struct pair_cursor at; /* without blocks: after the parts so far */
+    uint64_t part;         /* without blocks: number of the last part, from 1 */
     /* Block i has the placements start[i] to start[i + 1] - 1. The first row_count begin rows. */
     unsigned *start; /* owned, [block_count + 1]; NULL without blocks */
     size_t block_count, row_count;
@@ -56,10 +50,6 @@ void division_end(struct division *division);
 /* Returns true and the next part, of at most pairs_max pairs if they are listed; or false after the
  * last one. Sets the first fields of *out, up to column. */
 bool division_next(struct division *division, int32_t pairs_max, struct part *out);
-
-/* ALL and ACROSS: whether the pair is not decided: it is ignored, within a group, or before
- * first_pair. */
-bool division_leaves_out(struct division *division, const unsigned pair[2]);
 
 /* Writes the ignored pairs of a part, as indices in the part. Returns their number, at most max; 0
  * without blocks. */

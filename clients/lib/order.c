@@ -36,7 +36,8 @@ static void deliver(const struct order *order, struct part_answers *answers, int
     const bool answered = number < answers->answered;
     const bool far = !found || (found->answer.verdict == FMB_SEPARATED &&
                                 !part_is_near(scene, &found->answer.gap));
-    if ((answered && far && !all) || (!listed && division_leaves_out(order->division, pair)))
+    if ((answered && far && !all) ||
+        (!listed && pair_is_left_out(scene, &order->division->ignored, pair[0], pair[1])))
         return;
     struct fmb_client_answer out = {.a = pair[0], .b = pair[1], .text = ""};
     if (!answered) {

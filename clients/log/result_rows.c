@@ -213,7 +213,7 @@ static void begin_all(struct result_rows *results)
 /* Prints the pairs that the result does not name and that come before one that it names; NULL: all
  * that are left. */
 static void print_separated(struct result_rows *results, const struct fmb_client_result *of,
-                            struct report_row *row, struct scene_cursor *at,
+                            struct report_row *row, struct pair_cursor *at,
                             const struct fmb_client_answer *until)
 {
     const struct scene_query *query = &results->query.scene;
@@ -234,7 +234,7 @@ static void print_rows(struct result_rows *results, const struct fmb_client_resu
     const bool listed = !of->is_pair && results->query.scene.which == FMB_PAIRS_LISTED;
     const bool all = !of->is_pair && !listed && results->pairs == RESULT_ROWS_ALL;
     struct fmb_client_cursor cursor = {0};
-    struct scene_cursor at = {0};
+    struct pair_cursor at = {0};
     struct fmb_client_answer answer;
     if (all)
         begin_all(results);

@@ -62,7 +62,7 @@ void answers_bus_close(struct answers_bus *answers)
 /* A scene, and the state of its answers. */
 struct bus_scene {
     struct owned_scene *scene;
-    struct scene_cursor delivered; /* pairs so far */
+    struct pair_cursor delivered; /* pairs so far */
     fmb_client_sink *sink;
     void *user;
 };
@@ -125,7 +125,7 @@ static bool advise(struct answers_bus *answers, const char *kind)
 /* Returns the list of all pairs of a scene. The caller frees it. */
 static unsigned (*list_pairs(struct owned_scene *scene, size_t *count))[2]
 {
-    struct scene_cursor cursor = {0};
+    struct pair_cursor cursor = {0};
     *count = (size_t) scene_count_pairs(scene);
     unsigned(*pair)[2] = allocate(*count, sizeof *pair);
     for (size_t i = 0; i < *count && scene_next_pair(scene, &cursor, pair[i]); i++)

@@ -21,14 +21,16 @@ static void decide(const struct fmb_scene *scene, struct fmb_client_answer *out,
         status = fmb_certificate(a, b, scene->duration, text, FMB_CERTIFICATE_MAX, &length);
     out->certificate = length > 0 ? text : NULL;
     out->status = status;
-    out->text = gap && !method->certain ? "method: gives no gaps" : fmb_status_text(status);
+    out->text = gap && !method->certain ? "method: gives no gaps"
+                : status == FMB_OK      ? ""
+                                        : fmb_status_text(status);
     if (status != FMB_OK)
         memset(&out->answer, 0, sizeof out->answer);
 }
 
 void answers_local(struct owned_scene *scene, fmb_client_sink *sink, void *user)
 {
-    struct scene_cursor cursor = {0};
+    struct pair_cursor cursor = {0};
     struct fmb_client_answer answer;
     char text[FMB_CERTIFICATE_MAX];
     unsigned pair[2];

@@ -74,7 +74,7 @@ enum {
  * first are stored; the counts of orientation and velocity are those of the message, 0 or more and
  * not checked. */
 struct query_placement {
-    /* Its body is NULL: who has the body sets it. The name, any bytes, is in the message or in
+    /* Its body is NULL: who decides sets it in a copy. The name, any bytes, is in the message or in
      * memory of the writer; NULL is the same as "". */
     struct fmb_placement placed;
     struct body_view body;
@@ -91,7 +91,7 @@ static inline bool query_by_handle(const struct query_placement *placement)
 
 struct pair_query {
     QUERY_HEADER;
-    double duration; /* seconds */
+    double duration; /* seconds; 0 stands for the instant of a struct fmb_scene, too */
     int32_t method;  /* 0: the default */
     int32_t want;
     struct query_placement placement[2];

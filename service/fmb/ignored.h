@@ -13,7 +13,7 @@
 #ifndef FMB_IGNORED_H
 #define FMB_IGNORED_H
 
-#include "fmb.h"
+#include "pair_number.h"
 
 #include <string.h>
 
@@ -80,6 +80,41 @@ static inline bool pair_is_within_group(const struct fmb_scene *scene, unsigned 
 {
     const int64_t group = scene->placements[a].group;
     return group != 0 && group == scene->placements[b].group;
+}
+
+/* Whether a pair of ALL or ACROSS is not decided: it is ignored, within a group, or before
+ * first_pair. In: one of these pairs; the ignored ones of the scene. */
+static inline bool pair_is_left_out(const struct fmb_scene *scene, struct ignored *ignored,
+                                    unsigned a, unsigned b)
+{
+    return ignored_has(ignored, a, b) || pair_is_within_group(scene, a, b) ||
+           pair_number(pair_numbers_of(scene), a, b) < scene->first_pair;
+}
+
+/* Iterates over the pairs to be decided, in the order of the scene; {0} at first. */
+struct pair_cursor {
+    size_t listed; /* of the next listed pair */
+    size_t a, b;   /* ALL and ACROSS: of pair_find() */
+};
+
+/* Returns true and the next pair, or false after the last one. A list is taken from cursor->listed
+ * on. */
+static inline bool pair_next(const struct fmb_scene *scene, struct ignored *ignored,
+                             struct pair_cursor *cursor, unsigned out[2])
+{
+    if (scene->which == FMB_PAIRS_LISTED) {
+        if (cursor->listed == scene->pair_count)
+            return false;
+        memcpy(out, scene->pairs[cursor->listed++], sizeof *scene->pairs);
+        return true;
+    }
+    do {
+        if (!pair_find(pair_numbers_of(scene), &cursor->a, &cursor->b))
+            return false;
+        out[0] = (unsigned) cursor->a;
+        out[1] = (unsigned) cursor->b++;
+    } while (pair_is_left_out(scene, ignored, out[0], out[1]));
+    return true;
 }
 
 #endif

@@ -163,7 +163,7 @@ static bool same_placed(const struct fmb_placement *a, const struct fmb_placemen
 /* Whether both have the same pairs that are to be decided. */
 static bool same_decided(struct owned_scene *a, struct owned_scene *b)
 {
-    struct scene_cursor of_a = {0}, of_b = {0};
+    struct pair_cursor of_a = {0}, of_b = {0};
     unsigned p[2], q[2];
     while (scene_next_pair(a, &of_a, p))
         if (!scene_next_pair(b, &of_b, q) || p[0] != q[0] || p[1] != q[1])

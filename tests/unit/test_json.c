@@ -177,7 +177,7 @@ static void reads_poses_frames_names_and_ignored_pairs(void **state)
     assert_true(scene.scene.placements[2].position[0] == 1);
     assert_int_equal(scene.scene.ignored_count, 3);
     assert_int_equal(scene_count_pairs(&scene), 1);
-    struct scene_cursor cursor = {0};
+    struct pair_cursor cursor = {0};
     unsigned pair[2];
     assert_true(scene_next_pair(&scene, &cursor, pair));
     assert_true(pair[0] == 0 && pair[1] == 2);
@@ -199,7 +199,7 @@ static void reads_vertices_groups_and_labels(void **state)
         "{\"id\": 4, \"group\": 9007199254740991, \"shape\": \"box\", \"size\": [1,1,1]},"
         "{\"id\": 5, \"group\": -7, \"shape\": \"box\", \"size\": [1,1,1]}],"
         "\"ignore\": [[5,1],[3,4]]}");
-    struct scene_cursor cursor = {0};
+    struct pair_cursor cursor = {0};
     unsigned pair[2];
     int pairs = 0;
     assert_string_equal(scene.scene.label, "shelf \xe2\x82\xac");
@@ -292,7 +292,7 @@ static void turned_boxes_are_rounded_once(void **state)
 static void missing_fields_have_defaults(void **state)
 {
     struct owned_scene scene = read_one(SCENE(BODY(3) "," BODY(9007199254740991) "," BODY(5)));
-    struct scene_cursor cursor = {0};
+    struct pair_cursor cursor = {0};
     unsigned pair[2];
     static const size_t order[][2] = {{0, 1}, {0, 2}, {1, 2}};
     assert_true(scene.scene.duration == 1);
@@ -314,7 +314,7 @@ static void empty_lists_are_scenes(void **state)
     static const char *const texts[] = {SCENE(""), SCENE(BODY(1)), SCENE_PAIRS("[]"),
                                         "{\"dim\":2,\"bodies\":[],\"pairs\":[]}"};
     for (size_t i = 0; i < COUNT(texts); i++) {
-        struct scene_cursor cursor = {0};
+        struct pair_cursor cursor = {0};
         unsigned pair[2];
         struct owned_scene scene = read_one(texts[i]);
         assert_int_equal(scene_count_pairs(&scene), 0);

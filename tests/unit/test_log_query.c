@@ -395,7 +395,7 @@ static void bodies_get_ids_that_are_free(void **state)
 static void assert_pairs(const size_t (*expected)[2], size_t count)
 {
     struct owned_scene scene = scene_of_found();
-    struct scene_cursor cursor = {0};
+    struct pair_cursor cursor = {0};
     unsigned pair[2];
     for (size_t k = 0; k < count; k++) {
         assert_true(scene_next_pair(&scene, &cursor, pair));
