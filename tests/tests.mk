@@ -18,7 +18,7 @@ see_tests/mesh := clients/mesh clients/common tests/bench service/fmb
 see_tests/logs := tests/encode tests/campaign tests/oracle service/answer $(wire) \
 	$(call fmb,frame filter) $(GEN)
 see_tests/python := tests/bench service/fmb
-see_tests/soak := tests/encode clients/lib $(wire)
+see_tests/soak := tests/encode tests/campaign $(see_tests/campaign) clients/lib $(wire)
 see_tests/replay := clients/replay $(see_clients/replay) tests/unit tests/bench tests/encode
 see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/unit tests/hostile $(GEN)
 see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
@@ -30,7 +30,7 @@ see_tests/unit := $(call fmb,number frame filter article tree exact gap hull dec
 
 test_programs := plain:system/plain fake-peer:system/fake_peer events:system/events crash-liblcm:system/crash_liblcm \
 	edit-log:replay/edit_log logs/generate:logs/generate logs/describe-log:logs/describe_log \
-	mesh/make-mesh:mesh/make_mesh $(foreach s,load memory rate blast fair relay,soak-$s:soak/$s)
+	mesh/make-mesh:mesh/make_mesh $(foreach s,load memory rate blast fair relay families,soak-$s:soak/$s)
 measures := validate:campaign/validate accuracy:campaign/accuracy bench/bench:bench/bench \
 	bus/bench-bus:bus/bench_bus bus/robot-bus:robot/bus bus/echo:bus/echo robot/robot:robot/robot \
 	replay/bench-replay:replay/bench_replay mesh/bench-mesh:mesh/bench_mesh \
@@ -51,7 +51,7 @@ $(shared): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in,$(
 			tests/unit/test_%,$(wildcard tests/unit/*.c)))
 	@rm -f $@
 	$(call say,AR,$@) $(AR) qcs $@ $^
-looks_inside := validate accuracy bench/bench bus/bench-bus logs/generate
+looks_inside := validate accuracy bench/bench bus/bench-bus logs/generate soak-families
 $(looks_inside:%=$(B)/%) $(B)/accuracy-planted: $(shared) $(client) $(product) $(engine)
 $(filter-out $(looks_inside:%=$(B)/%),$(test_programs) $(measures)): \
 	$(shared) $(client) $(product) $(B)/libfmb.a
