@@ -27,7 +27,7 @@ sanitized="$sanitized system/soak.bats cli/query.bats cli/record.bats cli/replay
 first='system/service.bats system/daemon.bats system/bus.bats test_engine_small_world fuzz/fuzz.bats'
 first="$first test_engine_triangle system/fairness.bats system/replay_bus.bats system/soak.bats system/record.bats"
 first="$first cli/campaign.bats test_engine_pose test_client_query test_server_turns test_engine_scene"
-first="$first test_client_bad cli/replay.bats cli/log.bats test_kernels test_engine_hard test_engine_batch"
+first="$first test_limbs test_client_bad cli/replay.bats cli/log.bats test_kernels test_engine_hard test_engine_batch"
 first="$first cli/mesh.bats cli/mesh_page.bats cli/report.bats test_replay_compare"
 slow='system/soak.bats system/fairness.bats system/record.bats system/replay_bus.bats cli/replay.bats'
 slow="$slow cli/mesh.bats cli/log.bats cli/log_cut.bats cli/log_scene.bats system/examples.bats system/library.bats"
@@ -43,7 +43,11 @@ run_suite() {
     case $build in
     "$release") sample=${FMB_FAST:+1} sample=${sample:-0.7} ;;
     "$programs") sample=1; export FMB_FAST=1 ;;
-    "$units") sample=0.5; export FMB_FAST=1; [ "$what" != test_kernels ] || sample=1 ;;
+    "$units")
+        sample=0.5
+        export FMB_FAST=1
+        case $what in test_kernels) sample=1 ;; test_limbs) sample=0.2 ;; esac
+        ;;
     esac
     export FMB_SAMPLE="${FMB_SAMPLE-$sample}"
     case $kind in
