@@ -74,8 +74,8 @@ enum {
  * first are stored; the counts of orientation and velocity are those of the message, 0 or more and
  * not checked. */
 struct query_placement {
-    /* Its body is NULL: who decides sets it in a copy. The name, any bytes, is in the message or in
-     * memory of the writer; NULL is the same as "". */
+    /* Its body is NULL: the code that decides the pair sets it in a copy. The name, any bytes, is
+     * in the message or in memory of the writer; NULL is the same as "". */
     struct fmb_placement placed;
     struct body_view body;
     int32_t velocity_count; /* 0: at rest */
@@ -91,7 +91,7 @@ static inline bool query_by_handle(const struct query_placement *placement)
 
 struct pair_query {
     QUERY_HEADER;
-    double duration; /* seconds; 0 stands for the instant of a struct fmb_scene, too */
+    double duration; /* seconds; also 0 for a struct fmb_scene with instant set */
     int32_t method;  /* 0: the default */
     int32_t want;
     struct query_placement placement[2];

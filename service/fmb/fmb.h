@@ -315,8 +315,8 @@ enum fmb_want {
  * vertex of either body over the window, plus 32 * 2^-1074. (In a window shorter than 2^-1000 s the
  * time of the least distance may not be a double. bounds[1] then includes the distance that the
  * frames travel in the error of the time.) The lower bound of a separated pair may therefore be
- * below 0, by less than the width: it is what the direction proves, and the verdict says more. If
- * the bodies touch, both bounds are 0, and the direction proves 0 up to the same width. A bound
+ * below 0, by less than the width: it is what the direction proves; the verdict is exact. If the
+ * bodies touch, both bounds are 0, and the direction proves 0 up to the same width. A bound
  * whose magnitude exceeds the largest double is infinite, with its sign.
  *
  * Order. The swapped pair has the same bounds, the negated direction, and the points and frames

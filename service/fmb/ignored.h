@@ -82,8 +82,8 @@ static inline bool pair_is_within_group(const struct fmb_scene *scene, unsigned 
     return group != 0 && group == scene->placements[b].group;
 }
 
-/* Whether a pair of ALL or ACROSS is not decided: it is ignored, within a group, or before
- * first_pair. In: one of these pairs; the ignored ones of the scene. */
+/* Whether a pair of FMB_PAIRS_ALL or FMB_PAIRS_ACROSS is not decided: it is ignored, within a
+ * group, or before first_pair. In: such a pair; the ignored pairs of the scene. */
 static inline bool pair_is_left_out(const struct fmb_scene *scene, struct ignored *ignored,
                                     unsigned a, unsigned b)
 {
@@ -91,14 +91,14 @@ static inline bool pair_is_left_out(const struct fmb_scene *scene, struct ignore
            pair_number(pair_numbers_of(scene), a, b) < scene->first_pair;
 }
 
-/* Iterates over the pairs to be decided, in the order of the scene; {0} at first. */
+/* A position in the pairs to be decided, which are in the order of the scene. Initialize to {0}. */
 struct pair_cursor {
-    size_t listed; /* of the next listed pair */
-    size_t a, b;   /* ALL and ACROSS: of pair_find() */
+    size_t listed; /* index of the next listed pair */
+    size_t a, b;   /* FMB_PAIRS_ALL and FMB_PAIRS_ACROSS: of pair_find() */
 };
 
-/* Returns true and the next pair, or false after the last one. A list is taken from cursor->listed
- * on. */
+/* Returns true and the next pair, or false after the last one. A list of pairs begins at
+ * cursor->listed. */
 static inline bool pair_next(const struct fmb_scene *scene, struct ignored *ignored,
                              struct pair_cursor *cursor, unsigned out[2])
 {

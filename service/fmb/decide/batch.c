@@ -11,8 +11,8 @@
  *   3. put_verdicts()   writes the results; pairs that are still unsure, and contacts that the
  *      put_contacts()   filter does not give, are decided one by one (certified.h) or left open
  *   4. put_all_boxes()  runs the filter for boxes on the pairs in contact
- *   5. put_unfiltered() decides or refuses the pairs that the filter does not take; of hulls it
- *                       first filters the cuboids that contain them
+ *   5. put_unfiltered() decides or refuses the pairs that the filter does not take; for hulls it
+ *                       first applies the filter to the cuboids that contain them
  *   6. find_far()       skips gaps that are surely greater than wanted; put_gap() computes the
  *      put_gap()        others
  *
@@ -331,7 +331,8 @@ static unsigned cost_of(const struct fmb_batch *batch, const struct fmb_prepared
 }
 
 /* Returns whether the cuboids that contain the hulls of a pair are certainly separated. */
-static bool bounds_are_apart(const struct batch_job *job, const struct fmb_prepared *const pair[2])
+static bool bounds_are_separated(const struct batch_job *job,
+                                 const struct fmb_prepared *const pair[2])
 {
     bool swapped;
     const enum kernel_kind kind =
@@ -354,7 +355,7 @@ static void put_hull(struct batch_block *block, const struct batch_job *job, siz
         (batch->boxes ? FMB_WANT_BOX : 0) | (batch->contacts ? FMB_WANT_TIMES : 0);
     const bool late = batch->open && block->scanned >= SCANNED_MAX;
     struct fmb_answer answer = {0};
-    if (bounds_are_apart(job, pair)) {
+    if (bounds_are_separated(job, pair)) {
         batch->verdicts[i] = FMB_SEPARATED;
         return;
     }

@@ -27,14 +27,14 @@ typedef uint64_t limbs_number[LIMBS_MAX];
 
 /* Digits. An integer in two's complement is the sum of its limbs as signed integers, each increased
  * by 1 where the limb below it is negative: limb i is a digit of magnitude at most 2^63, times
- * 2^(64 i). The digits of limbs that repeat a sign are 0. Since exponents are far apart, most
- * digits of wide numbers are. */
+ * 2^(64 i). The digit of a limb that only repeats the sign of the limb below it is 0. Since
+ * exponents are far apart, most digits of wide numbers are 0. */
 enum {
-    DIGITS_APART = 4,                                            /* zeros that end a run */
+    DIGITS_APART = 4,                                            /* so many zeros end a run */
     DIGIT_RUNS = (LIMBS_MAX + DIGITS_APART) / (1 + DIGITS_APART) /* the most runs of a number */
 };
 
-/* The runs of digits of a number with few zeros, and the number of digits other than 0. */
+/* The digits of a number: its runs, which contain few zeros, and how many digits are not 0. */
 struct digit_runs {
     unsigned char digits, count;
     struct {
@@ -43,7 +43,7 @@ struct digit_runs {
 };
 
 /* A vector. limbs: the number of limbs that hold each coordinate with its sign. other_than_0: bit i
- * is set if coordinate i is not 0. digits: of wide numbers. */
+ * is set if coordinate i is not 0. digits: set for wide numbers only. */
 struct limbs_vector {
     int limbs;
     unsigned other_than_0;
@@ -135,7 +135,7 @@ static inline bool is_negative_below(const uint64_t *x, int i)
     return i > 0 && x[i - 1] >> 63;
 }
 
-/* Finds the runs; returns the number of limbs that hold x with a sign; 0 for 0. */
+/* Sets the digits of x. Returns the number of limbs that hold x with its sign; 0 for 0. */
 static inline int find_digits(const uint64_t *x, int limbs, struct digit_runs *out)
 {
     uint64_t sign = 0; /* of the limb below, in all bits */
@@ -166,8 +166,9 @@ static inline void add_limb(int n, uint64_t *out, bool minus, uint64_t x, int i)
         mpn_add_1(out + i, out + i, n - i, x);
 }
 
-/* out := out + x y, or out - x y. A run of x is its limbs without a sign, minus 2^(64 end) if the
- * last of them is negative, plus 2^(64 first) if the limb below it is. */
+/* out := out + x y, or out - x y. The value of a run of x is that of its limbs as unsigned
+ * integers, minus 2^(64 end) if the last of them is negative, plus 2^(64 first) if the limb below
+ * the run is negative. */
 LIMBS_FUNCTION void add_digits(int n, uint64_t *out, bool minus, const uint64_t *x,
                                const struct digit_runs *of_x, const uint64_t *y,
                                const struct digit_runs *of_y)
@@ -179,7 +180,7 @@ LIMBS_FUNCTION void add_digits(int n, uint64_t *out, bool minus, const uint64_t 
     for (int k = 0; k < of_y->count; k++)
         for (int j = of_y->run[k].first; j < of_y->run[k].end; j++) {
             const uint64_t limb = y[j] + is_negative_below(y, j);
-            const bool less = minus != (y[j] >> 63);
+            const bool subtracted = minus != (y[j] >> 63);
             const uint64_t digit = y[j] >> 63 ? -limb : limb;
             for (int r = 0; r < of_x->count && digit > 0; r++) {
                 const int from = of_x->run[r].first, to = of_x->run[r].end;
@@ -187,16 +188,17 @@ LIMBS_FUNCTION void add_digits(int n, uint64_t *out, bool minus, const uint64_t 
                 if (first >= n)
                     break;
                 const uint64_t high = is_negative_below(x, to) ? digit : 0;
-                const uint64_t rest =
-                    (less ? mpn_submul_1 : mpn_addmul_1)(out + first, x + from, end - first, digit);
-                add_limb(n, out, less != (rest < high), rest < high ? high - rest : rest - high,
-                         end);
-                add_limb(n, out, less, is_negative_below(x, from) ? digit : 0, first);
+                const uint64_t rest = (subtracted ? mpn_submul_1 : mpn_addmul_1)(
+                    out + first, x + from, end - first, digit);
+                add_limb(n, out, subtracted != (rest < high),
+                         rest < high ? high - rest : rest - high, end);
+                add_limb(n, out, subtracted, is_negative_below(x, from) ? digit : 0, first);
             }
         }
 }
 
-/* The same for y of ny limbs, with a sign, of narrow numbers; or of wide ones with these digits. */
+/* out := out + x y, or out - x y. y has ny limbs with its sign. of_x, of_y: the digits; read for
+ * wide numbers only. */
 LIMBS_INLINE void add_product(const int n, uint64_t *out, bool minus, const uint64_t *x,
                               const struct digit_runs *of_x, const int ny, const uint64_t *y,
                               const struct digit_runs *of_y)
@@ -261,8 +263,8 @@ LIMBS_INLINE bool is_less(const int n, const uint64_t *x, const uint64_t *y)
 
 /* ---- Not inlined ---- */
 
-/* Sets limbs and other_than_0 of a vector, and of wide numbers the digits. Functions read the
- * former of the factors y and v only, the latter of all. */
+/* Sets limbs and other_than_0 of a vector, and digits if numbers are wide. Functions read limbs and
+ * other_than_0 of the factors y and v only, digits of all factors. */
 LIMBS_FUNCTION void limbs_trim(int n, struct limbs_vector *v)
 {
     v->limbs = 0;

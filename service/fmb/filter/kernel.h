@@ -81,8 +81,8 @@ static inline enum kernel_kind kernel_kind_of(const struct fmb_prepared *a,
     return kinds.moving && kernel_pair_drifts(a, b) ? kinds.drifting : kinds.at_rest;
 }
 
-/* The same with the cuboids that contain hulls in their place. What these kernels separate is
- * separated. */
+/* kernel_kind_of() with each hull replaced by the cuboid that contains it. If the kernel separates
+ * the cuboids, the frames are separated. */
 static inline enum kernel_kind kernel_kind_of_bounds(const struct fmb_prepared *a,
                                                      const struct fmb_prepared *b, double duration,
                                                      bool *swapped)

@@ -124,7 +124,7 @@ INLINE void aabb_of_axes(const struct fmb_prepared *frame, const int dim, struct
 }
 
 /* The box of a hull that is rotated, at rest. The sums may round here: the boxes of hulls are
- * loose.
+ * not tight anyway.
  *
  * Let M be the sum of the terms other than o, each at most 0. Four sums of numbers of magnitudes at
  * most |o| + |M| + error round by at most 2^-53 of that each, which 2^-50 (|o| + |M|) and the

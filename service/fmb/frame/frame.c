@@ -272,8 +272,9 @@ static void complete(struct fmb_frame *frame)
 
 /* Sizes are rounded up: a difference that rounds is off by at most half a unit in its last place. A
  * point of the hull is therefore exactly the origin plus fractions in [0, 1] of the components, and
- * turn_error_of() holds for it. That of the components holds also where tiny coordinates become 0:
- * they have one coordinate before they are rotated. From 2^1000 on sums might overflow. */
+ * turn_error_of() holds for it. Its bound for the components also holds where tiny coordinates
+ * become 0: a component has one coordinate before it is rotated. From 2^1000 on, sums might
+ * overflow. */
 void frame_set_bounds(const double bounds[2][FMB_DIM_MAX], struct fmb_frame *out)
 {
     out->count = out->dim;

@@ -144,7 +144,7 @@ static double radius_of(const struct fmb_frame *frame)
     return radius * (1 + 0x1p-40) + 0x1p-1000;
 }
 
-/* Sets the box of the vertices, and what is derived from it as of a cuboid. */
+/* Sets the box of the vertices, and the fields that are derived from it as from a cuboid. */
 static void set_box(struct fmb_frame *frame)
 {
     double box[2][FMB_DIM_MAX];

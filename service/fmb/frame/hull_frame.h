@@ -4,8 +4,8 @@
 
 #include "support.h"
 
-/* Internal fields of a hull in struct fmb_frame that are not those of the cuboid that contains it
- * (frame_set_bounds()):
+/* Internal fields of a hull in struct fmb_frame. frame_set_bounds() sets the others, which describe
+ * the cuboid that contains the hull.
  *
  *   spanning    dim + 1 vertices, chosen one after the other: each spans the largest volume with
  *               those before it, as computed in doubles. Vertex 0 again: none adds to the volume

@@ -19,13 +19,13 @@ struct frame_pair {
 enum fmb_status placements_check(const struct fmb_placement *a, const struct fmb_placement *b,
                                  double duration);
 
-/* Returns whether the frame is a simplex: a tetrahedron or a face. */
-/* Returns whether component i is a multiple of axis i of the body. */
+/* Returns whether component i is parallel to axis i of the body, for every i. */
 static inline bool frame_has_axes(const struct fmb_frame *frame)
 {
     return frame->shape == FMB_BOX || frame->shape == FMB_HULL;
 }
 
+/* Returns whether the frame is a simplex: a tetrahedron or a face. */
 static inline bool frame_is_simplex(const struct fmb_frame *frame)
 {
     return frame->shape == FMB_TETRAHEDRON || frame->shape == FMB_FACE;

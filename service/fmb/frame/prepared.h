@@ -54,7 +54,7 @@ enum {
      * components it extends from position + centre, which are those of its placement and of its
      * frame, by half of a component to either side. */
     PREPARED_CENTRED = 1 << 14,
-    PREPARED_HULL = 1 << 15 /* the frame is part of what its numbers describe */
+    PREPARED_HULL = 1 << 15 /* a hull: its numbers describe a cuboid that contains it */
 };
 
 /* Indices of the 8-byte words of struct fmb_prepared; the summary is word 0. In 2D the velocity
@@ -117,8 +117,8 @@ static inline bool prepared_exact_sum(double x, double y, double sum)
  *                 doubles decide exactly whether the triangle is flat */
 void frame_set_plane_triangle(const double components[2][2], struct fmb_frame *out);
 
-/* Sets all fields of a hull that describe the cuboid between two corners as if it were the frame.
- * Their slack is infinite if numbers might overflow.
+/* Sets the fields of a hull that describe a cuboid, as if the cuboid between two corners were the
+ * frame. The slack is infinite if numbers might overflow.
  *
  * In:  bounds  [lower, upper][axis], finite: contains the hull
  *      *out    its dim and shape, otherwise 0 */

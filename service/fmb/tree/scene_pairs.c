@@ -92,8 +92,8 @@ INLINE unsigned mask_bits(floats_mask mask)
 #endif
 }
 
-/* x <= y implies (float) x <= (float) y, also where these are infinite: boxes that overlap do so in
- * floats too. */
+/* Rounding is monotonic: x <= y implies (float) x <= (float) y, infinities included. So boxes that
+ * overlap also overlap in floats. */
 static void set_rough(struct scene_pairs *pairs)
 {
     const size_t count = pairs->scene->placement_count;
@@ -103,7 +103,8 @@ static void set_rough(struct scene_pairs *pairs)
                 pairs->rough[axis][end][i] = i < count ? (float) pairs->box[i].end[axis][end] : NAN;
 }
 
-/* Returns as bits which of the boxes first to first + SCENE_FEW_BLOCK - 1 may overlap that of a. */
+/* Returns which of the boxes first to first + SCENE_FEW_BLOCK - 1 may overlap that of a, one bit
+ * per box. */
 INLINE uint32_t find_rough(const struct scene_pairs *pairs, unsigned first)
 {
     uint32_t overlap = 0;
@@ -124,8 +125,8 @@ INLINE uint32_t find_rough(const struct scene_pairs *pairs, unsigned first)
     return overlap;
 }
 
-/* out := the placements from `from` on whose boxes overlap that of a, ascending. Returns how many.
- */
+/* out := the placements from `from` on whose boxes overlap that of a, ascending. Returns their
+ * number. */
 static size_t find_among_few(const struct scene_pairs *pairs, unsigned from, unsigned *out)
 {
     const size_t count = pairs->scene->placement_count;

@@ -7,7 +7,7 @@
 #include "ignored.h"
 #include "scene_frames.h"
 
-/* Few placements are tested all against all: a tree takes longer to build. */
+/* Up to SCENE_FEW placements are tested all against all: building a tree would take longer. */
 enum { SCENE_FEW = 128, SCENE_FEW_BLOCK = 32 };
 
 /* Filled in by scene_pairs_begin(). */
@@ -15,7 +15,7 @@ struct scene_pairs {
     const struct fmb_scene *scene;
     unsigned long long next; /* FMB_PAIRS_LISTED: the pair */
     /* FMB_PAIRS_ALL and FMB_PAIRS_ACROSS: the partners of a are found[0] to found[found_count - 1];
-     * given of these pairs have been enumerated. The tree, if the placements are not few, contains
+     * given of these pairs have been enumerated. Unless the placements are few, the tree contains
      * those from first on. */
     const struct aabb *box; /* [placement] */
     struct fmb_tree tree;
@@ -30,8 +30,8 @@ struct scene_pairs {
     unsigned *start;     /* [placement + 2] */
     unsigned *partner;   /* [scene_pairs_capacity()] */
     unsigned (*pair)[2]; /* [scene_pairs_capacity()], scratch */
-    bool few;
-    /* few: the first two axes of each box, {low, -high}, rounded. NAN after the last one. */
+    bool few;            /* at most SCENE_FEW placements: no tree */
+    /* If few: the first two axes of each box, {low, -high}, rounded; NAN after the last one. */
     float rough[2][2][SCENE_FEW + SCENE_FEW_BLOCK]; /* [axis][end][placement] */
     struct ignored ignored;
     unsigned *ignored_memory; /* [ignored_capacity()] */
