@@ -15,47 +15,51 @@
 static const char usage[] =
     "usage: fmb scene [OPTIONS] ROBOT.urdf\n"
     "\n"
-    "Prints a robot as a scene, as 'fmb query' takes it: a body for each link, with\n"
-    "its name, of its <collision> elements. A link without one is no body. With a\n"
-    "table of joint values, prints a scene for each row:\n"
+    "Prints a robot as a scene for 'fmb query': a body for each link, with its name,\n"
+    "made of its <collision> elements. A link without any has no body. With a table\n"
+    "of joint values, prints a scene for each row:\n"
     "\n"
     "  fmb scene robot.urdf --joints-csv path.csv --with world.json |\n"
     "    fmb query --local --contacts --fail-if overlapping\n"
     "\n"
-    "ROBOT.urdf may be '-', standard input. Mesh files are named from its folder.\n"
+    "ROBOT.urdf may be '-', standard input. Paths of mesh files are relative to its\n"
+    "folder, or with '-' to the current one.\n"
     "\n"
     "Poses:\n"
-    "  --joints LIST        NAME=VALUE,...: values of joints, in radians, or lengths of\n"
-    "                       prismatic ones; the others are 0. A value beyond the\n"
-    "                       limits of its joint is an error\n"
+    "  --joints LIST        NAME=VALUE,...: values of joints, in radians, or lengths\n"
+    "                       of prismatic joints; joints that are not named have 0. A\n"
+    "                       value outside the limits of its joint is an error\n"
     "  --joints-csv FILE    a table with a column for each joint that moves, named in\n"
-    "                       its first line, and columns \"label\" and \"time\", or not.\n"
-    "                       A row with a time lasts until that of the next row\n"
+    "                       its first line, and optional columns \"label\" and \"time\".\n"
+    "                       With times, a row lasts until the time of the next row\n"
     "\n"
-    "Shapes. Boxes are boxes. A mesh (STL, OBJ, PLY) is its convex hull, of at most\n"
-    "1024 vertices; those inside are left out.\n"
+    "Shapes. Boxes stay boxes. A mesh (STL, OBJ, PLY) becomes its convex hull, of at\n"
+    "most 1024 vertices; vertices of the mesh inside the hull do not count.\n"
     "  --sides N            sides of the hulls that enclose cylinders and spheres, a\n"
-    "                       multiple of 4 up to 44 (16). They are outside by at most\n"
-    "                       r (1 / cos(pi/N) - 1) of cylinders of radius r, and\n"
-    "                       r tan(pi/N)^2 of spheres: for 16 by 0.02 r and 0.04 r\n"
+    "                       multiple of 4 up to 44 (16). A hull extends beyond a\n"
+    "                       cylinder of radius r by at most r (1 / cos(pi/N) - 1),\n"
+    "                       beyond a sphere by at most r tan(pi/N)^2: with 16 sides,\n"
+    "                       0.02 r and 0.04 r\n"
     "  --objects            a hull for each object (o) of an OBJ file, for convex\n"
     "                       decompositions\n"
-    "  --package-path DIRS  folders of packages, separated by colons: a mesh file\n"
-    "                       package://NAME/FILE is NAME/FILE in the first that has it\n"
+    "  --package-path DIRS  where packages are searched for, separated by colons: a\n"
+    "                       mesh file package://NAME/FILE is NAME/FILE in the first\n"
+    "                       folder that has it\n"
     "\n"
     "Scenes:\n"
     "  --with SCENE.json    adds the bodies of a scene, with its ignored pairs,\n"
-    "                       duration and margin. Links have the ids from 1 on; bodies\n"
-    "                       that have one of these get another id, which is reported\n"
-    "  --margin M           the margin\n"
+    "                       duration and margin. Links have the ids from 1 on; a body\n"
+    "                       with one of these gets another id, which is reported\n"
+    "  --margin M           the margin, in place of that of the scene\n"
     "  -h, --help\n"
     "\n"
-    "A link and the one above it are ignored. Joints are revolute, continuous,\n"
-    "prismatic or fixed. Mimic joints, COLLADA (.dae), xacro, SRDF and SDF are not\n"
-    "supported. Poses are rounded to doubles: give a margin where that matters.\n"
+    "A link is not tested against its parent, or, if that has no body, against the\n"
+    "nearest link above that has one. Joints are revolute, continuous, prismatic or\n"
+    "fixed. Mimic joints, COLLADA (.dae), xacro, SRDF and SDF are not supported.\n"
+    "Poses are rounded to doubles: give a margin where that matters.\n"
     "\n"
     "Exit codes: 0 printed; 2 wrong usage, or a file that cannot be read or is not\n"
-    "valid. Then no scene is printed.\n";
+    "valid: no scene is printed.\n";
 
 struct scene_options {
     struct robot_body_options body;
@@ -64,7 +68,7 @@ struct scene_options {
     double margin; /* negative: not given */
 };
 
-/* Places and prints the scenes of all rows; with print false, only checks them. */
+/* Places and prints the scenes of all rows; if print is false, only checks them. */
 static bool print_rows(struct robot_scene *scene, struct joint_table *table, bool print)
 {
     struct fmb_scene *out = &scene->owner.scene;
@@ -106,7 +110,7 @@ static void report_outside(const struct robot *robot, const struct robot_scene *
     char text[NUMBER_TEXT_MAX];
     if (scene->outside > 0) /* rounded up */
         complain(
-            "%s: hulls of %d sides enclose its cylinders and spheres; they are outside by at "
+            "%s: hulls of %d sides enclose its cylinders and spheres, and extend beyond them by at "
             "most %s",
             robot->path, sides, number_short(scene->outside * (1 + 1e-5), text));
 }

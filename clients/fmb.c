@@ -31,7 +31,7 @@ static const struct command commands[] = {
     {"status", "print the heartbeat of the service", cmd_status},
     {"replay", "answer the queries of a log again, and compare", cmd_replay},
     {"log", "inspect and cut event logs, print results and scenes", cmd_log},
-    {"scene", "print a robot (URDF) as a scene, or a scene for each pose of a table", cmd_scene},
+    {"scene", "print a URDF robot as a scene, or one for each row of joint values", cmd_scene},
     {"mesh", "decide which faces of two triangle meshes meet", cmd_mesh},
     {"help", "help on a command: fmb help query", cmd_help},
     {.name = NULL},

@@ -14,13 +14,13 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* place: of the value, for messages. */
+/* place: where the value is given, for messages. */
 static bool check_value(const struct robot_joint *joint, double value, const char *place)
 {
     char found[NUMBER_TEXT_MAX], low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
     number_exact(value, found);
     if (!(value >= joint->limit[0] && value <= joint->limit[1])) {
-        complain("%s: joint '%s': %s is beyond its limits, %s to %s", place, joint->name->name,
+        complain("%s: joint '%s': %s is outside its limits, %s to %s", place, joint->name->name,
                  found, number_exact(joint->limit[0], low), number_exact(joint->limit[1], high));
         return false;
     }
@@ -48,7 +48,7 @@ static unsigned take_joint(struct joints *joints, const char *name, const char *
 {
     const struct robot_joint *joint = robot_find_joint(joints->robot, name);
     if (!joint || joint->type == ROBOT_FIXED) {
-        complain("%s: '%.64s' is %s of %s", place, name, joint ? "a fixed joint" : "no joint",
+        complain("%s: '%.64s' is %s of %s", place, name, joint ? "a fixed joint" : "not a joint",
                  joints->robot->path);
         return UINT32_MAX;
     }
@@ -96,7 +96,7 @@ bool joints_check(const struct joints *joints)
 {
     for (size_t j = 0; j < joints->robot->joint_count; j++)
         if (joints->robot->joints[j].type != ROBOT_FIXED && !joints->given[j] &&
-            !check_value(&joints->robot->joints[j], 0, "without a value by --joints"))
+            !check_value(&joints->robot->joints[j], 0, "by default (--joints sets other values)"))
             return false;
     return true;
 }
@@ -105,7 +105,7 @@ bool joints_check(const struct joints *joints)
 
 enum { TEXT_MAX = 1 << 20, PLACE_MAX = 4200 };
 
-/* Columns that are no joints. */
+/* Columns that are not of joints. */
 #define COLUMN_TIME (UINT32_MAX - 2)
 #define COLUMN_LABEL (UINT32_MAX - 1)
 
@@ -146,8 +146,8 @@ static size_t split(char *at, char **field, size_t capacity)
     }
 }
 
-/* Reads the next line that is not empty, and divides it into fields: those of the columns, if the
- * table has some. */
+/* Reads the next line that is not empty, and divides it into fields: those of the columns, once
+ * these are known. */
 static enum joint_row read_line(struct joint_table *table, size_t *found)
 {
     static const char mark[] = "\xef\xbb\xbf"; /* UTF-8 byte order mark */
@@ -157,7 +157,7 @@ static enum joint_row read_line(struct joint_table *table, size_t *found)
         if (!fgets(text, TEXT_MAX, table->file))
             return ferror(table->file) ? refuse(table, "%s", strerror(errno)) : JOINT_ROW_END;
         if (!strchr(text, '\n') && !feof(table->file))
-            return refuse(table, "a zero byte, or more than %d bytes", TEXT_MAX - 1);
+            return refuse(table, "has a zero byte, or more than %d bytes", TEXT_MAX - 1);
         text[strcspn(text, "\r\n")] = '\0';
     } while (text[0] == '\0');
     text += table->line == 1 && strncmp(text, mark, strlen(mark)) == 0 ? strlen(mark) : 0;
@@ -170,13 +170,12 @@ static enum joint_row read_line(struct joint_table *table, size_t *found)
         table->columns = most;
     }
     *found = split(text, table->field, table->columns);
-    return *found != SIZE_MAX ? JOINT_ROW
-                              : refuse(table, "a quote stands where it should not, or is missing");
+    return *found != SIZE_MAX ? JOINT_ROW : refuse(table, "a quote is misplaced or missing");
 }
 
 /* ---- The table ---- */
 
-/* Returns the column of a name; UINT32_MAX after an error. */
+/* Returns the joint of column i, COLUMN_TIME or COLUMN_LABEL; UINT32_MAX after an error. */
 static unsigned take_column(struct joint_table *table, size_t i)
 {
     const char *name = table->field[i];
@@ -187,7 +186,7 @@ static unsigned take_column(struct joint_table *table, size_t i)
         return take_joint(table->joints, name, table->place);
     for (size_t k = 0; k < i; k++)
         if (table->column[k] == column) {
-            refuse(table, "column '%s' is there twice", name);
+            refuse(table, "column '%s' appears twice", name);
             return UINT32_MAX;
         }
     table->has_time = table->has_time || column == COLUMN_TIME;
@@ -198,7 +197,7 @@ static bool read_columns(struct joint_table *table)
 {
     const enum joint_row outcome = read_line(table, &table->columns);
     if (outcome == JOINT_ROW_END)
-        complain("%s: there is no line of joint names", table->path);
+        complain("%s: expected a line of joint names, found none", table->path);
     if (outcome != JOINT_ROW)
         return false;
     for (size_t i = 0; i < table->columns; i++)
@@ -207,8 +206,7 @@ static bool read_columns(struct joint_table *table)
     const struct robot *robot = table->joints->robot;
     for (size_t j = 0; j < robot->joint_count; j++)
         if (robot->joints[j].type != ROBOT_FIXED && !table->joints->given[j]) {
-            refuse(table,
-                   "there is no column for joint '%s': add it, or give the joint by --joints",
+            refuse(table, "no column for joint '%s': add one, or give its value by --joints",
                    robot->joints[j].name->name);
             return false;
         }
@@ -227,7 +225,8 @@ bool joint_table_open(const char *path, struct joints *joints, struct joint_tabl
     if (!out->file || fstat(fileno(out->file), &about) != 0)
         complain("%s: %s", path, strerror(errno));
     else if (!S_ISREG(about.st_mode))
-        complain("%s: no regular file: it is read twice, so that an error prints no scene", path);
+        complain("%s: not a regular file, which is needed because it is read twice: save it to one",
+                 path);
     else
         return read_columns(out);
     return false;
@@ -258,7 +257,8 @@ static enum joint_row take_time(struct joint_table *table, const char *text)
     if (!robot_numbers(text, 1, &time))
         return refuse(table, "column 'time': expected a finite number, found '%.64s'", text);
     if (time < table->time || time - table->time > DBL_MAX)
-        return refuse(table, "column 'time': earlier than in the row before, or too much later");
+        return refuse(table,
+                      "column 'time': earlier than in the previous row, or too far after it");
     table->time = time;
     return JOINT_ROW;
 }
@@ -276,8 +276,8 @@ static enum joint_row set_label(struct joint_table *table, const char *text)
     return size <= QUERY_NAME_MAX && utf8_is_text(label)
                ? JOINT_ROW
                : refuse(table,
-                        "the label, with the time, has more than %d bytes, or control "
-                        "characters",
+                        "the label, time included, has more than %d bytes, or is not UTF-8 without "
+                        "control characters",
                         (int) QUERY_NAME_MAX);
 }
 
@@ -287,7 +287,7 @@ enum joint_row joint_table_next(struct joint_table *table)
     size_t found;
     enum joint_row outcome = read_line(table, &found);
     if (outcome == JOINT_ROW && found != table->columns)
-        return refuse(table, "%zu columns, where the first line has %zu", found, table->columns);
+        return refuse(table, "%zu columns, but the first line has %zu", found, table->columns);
     for (size_t i = 0; outcome == JOINT_ROW && i < found; i++) {
         const unsigned column = table->column[i];
         if (column == COLUMN_LABEL)

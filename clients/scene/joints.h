@@ -1,5 +1,5 @@
-/* Values of the joints of a robot: from a text, and from the rows of a CSV file. A value beyond the
- * limits of its joint is an error. Errors are reported on stderr in one line. */
+/* Values of the joints of a robot: from a text, and from the rows of a CSV file. A value outside
+ * the limits of its joint is an error. Errors are reported on stderr in one line. */
 #ifndef JOINTS_H
 #define JOINTS_H
 
@@ -23,15 +23,15 @@ void joints_clear(struct joints *joints);
 bool joints_check(const struct joints *joints);
 
 /* A CSV file (RFC 4180, without line breaks in fields). Its first line has the names of columns, in
- * any order: one for each joint that moves and has no value in joints, and "time", in seconds, and
- * "label", or not. Memory holds one line. */
+ * any order: one for each joint that moves and has no value in joints; optional are "time", in
+ * seconds, and "label". Memory holds one line. */
 struct joint_table {
     /* Of the current row. */
     bool has_time;
-    double time;                    /* not before that of the row before */
-    char label[QUERY_NAME_MAX + 1]; /* the label, and "t = " with the time; may be "" */
+    double time;                    /* not before that of the previous row */
+    char label[QUERY_NAME_MAX + 1]; /* the label, then "t = " and the time; may be "" */
     unsigned long line;             /* in the file, from 1 */
-    char *place;                    /* its file and line, for messages */
+    char *place;                    /* the file and line, for messages */
     /* Private. */
     struct joints *joints;
     const char *path;
@@ -50,7 +50,7 @@ void joint_table_close(struct joint_table *table);
 enum joint_row { JOINT_ROW, JOINT_ROW_END, JOINT_ROW_BAD /* after an error */ };
 enum joint_row joint_table_next(struct joint_table *table);
 
-/* Goes back to before the first row. */
+/* Goes back to the first row. */
 bool joint_table_rewind(struct joint_table *table);
 
 #endif

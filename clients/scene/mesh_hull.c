@@ -1,8 +1,8 @@
 /* Method. The hull of the selected points grows until it contains all points, as the engine decides
- * exactly. Where a point is separated from it, the direction of their gap says where the hull lacks
- * something: the point that is farthest that way is selected, if it is not yet, else the separated
- * one. Rounding of that search only costs selected points that are no vertices; in the end, and
- * where there are too many, those in the hull of the others are removed. */
+ * exactly. If a point is separated from it, the point that is farthest in the direction of their
+ * gap is selected; if that one is selected already, the separated point. Rounding in this search
+ * can only select points that are not vertices. At the end, and when there are too many, selected
+ * points that are in the hull of the others are removed. */
 #include "mesh_hull.h"
 
 #include "allocate.h"
@@ -15,7 +15,7 @@ struct growing {
     const double (*point)[3];
     size_t count;
     bool *used;                   /* [count] */
-    size_t selected;              /* number of those used */
+    size_t selected;              /* number of used points */
     double (*vertex)[3], *memory; /* of the hull */
     double *point_memory;         /* of the hull of a point */
     struct fmb_body hull;
@@ -34,8 +34,8 @@ static bool make_hull(struct growing *growing)
     return growing->status == FMB_OK;
 }
 
-/* Whether a point is outside of the hull. On output: the direction to it, if it is not NULL. False
- * on error too. */
+/* Whether a point is outside the hull; false also on error. direction, unless NULL: receives the
+ * direction from the hull to the point. */
 static bool is_outside(struct growing *growing, size_t i, double direction[3])
 {
     struct fmb_body point;

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-bool pose_is_straight(const struct pose *pose)
+bool pose_is_translation(const struct pose *pose)
 {
     return pose->q[1] == 0 && pose->q[2] == 0 && pose->q[3] == 0;
 }
@@ -27,7 +27,7 @@ void pose_apply(const struct pose *pose, double x[3])
         x[i] = (row[i][0] * from[0] + row[i][1] * from[1] + row[i][2] * from[2]) / n + pose->p[i];
 }
 
-/* The product a b. A zero part of a or b leaves no rounding error where it stands. */
+/* The product a b of quaternions. Products with a component that is 0 add no rounding error. */
 static void multiply(const double a[4], const double b[4], double out[4])
 {
     const double product[4] = {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],

@@ -5,30 +5,30 @@
 
 #include <stdbool.h>
 
-/* The length of q is 1 but for rounding. */
+/* The length of q is 1 except for rounding. */
 struct pose {
     double p[3], q[4]; /* q: w, x, y, z */
 };
 
 #define POSE_NONE ((struct pose){{0, 0, 0}, {1, 0, 0, 0}})
 
-/* Whether the pose does not turn. */
-bool pose_is_straight(const struct pose *pose);
+/* Whether the pose is a translation: its rotation is the identity. */
+bool pose_is_translation(const struct pose *pose);
 
-/* Maps x in place. A number is in error by at most POSE_ERROR times the sum of the magnitudes of
- * all numbers of p and x, and 2^-1000. */
+/* Maps x in place. The error of a coordinate is at most POSE_ERROR times the sum of the magnitudes
+ * of all coordinates of p and x, plus 2^-1000. */
 #define POSE_ERROR 0x1p-48
 void pose_apply(const struct pose *pose, double x[3]);
 
 /* Returns the map x -> outer(inner(x)). */
 struct pose pose_compose(const struct pose *outer, const struct pose *inner);
 
-/* On output: the rotation by an angle about an axis of length 1. In: radians, at most
+/* On output: the rotation by an angle about an axis of length 1. In: radians, of magnitude at most
  * TURN_RADIANS_MAX. */
 void pose_turn(const double axis[3], double radians, double q[4]);
 
-/* On output: the rotation by roll, pitch and yaw about the axes x, y and z, which stay in place,
- * one after the other. In: as of pose_turn(). */
+/* On output: the rotation by roll, pitch and yaw about the fixed axes x, y and z, in this order.
+ * In: as of pose_turn(). */
 void pose_turn_rpy(const double rpy[3], double q[4]);
 
 #endif

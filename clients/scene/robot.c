@@ -63,7 +63,7 @@ static bool connect_joint(struct robot *robot, struct robot_joint *joint)
         const struct robot_name *found;
         HASH_FIND(hh, robot->link_names, name, strlen(name), found);
         if (!found) {
-            complain("%s: line %lu: joint '%s': its %s '%s' is no link of the file", robot->path,
+            complain("%s: line %lu: joint '%s': its %s '%s' is not a link of the file", robot->path,
                      joint->name->line, joint->name->name, ends[end], name);
             return false;
         }
@@ -71,7 +71,7 @@ static bool connect_joint(struct robot *robot, struct robot_joint *joint)
     }
     struct robot_link *child = &robot->links[joint->link[1]];
     if (child->joint != ROBOT_ROOT) {
-        complain("%s: line %lu: joint '%s': its child '%s' is the child of joint '%s' already",
+        complain("%s: line %lu: joint '%s': its child '%s' is already the child of joint '%s'",
                  robot->path, joint->name->line, joint->name->name, child->name->name,
                  robot->joints[child->joint].name->name);
         return false;
@@ -95,7 +95,7 @@ bool robot_connect(struct robot *robot)
             depth[i]++;
         }
         const struct robot_link *top = &robot->links[up];
-        if (top->joint != ROBOT_ROOT) { /* so many steps lead into a cycle */
+        if (top->joint != ROBOT_ROOT) { /* a path this long runs into a cycle */
             const struct robot_name *joint = robot->joints[top->joint].name;
             complain(
                 "%s: line %lu: joint '%s': the joints from '%s' lead back to it: expected a "
@@ -105,7 +105,7 @@ bool robot_connect(struct robot *robot)
         }
         if (i > 0 && up != root) {
             complain(
-                "%s: line %lu: link '%s' has no parent, and nor has link '%s': expected one "
+                "%s: line %lu: link '%s' has no parent, and neither has link '%s': expected one "
                 "root",
                 robot->path, top->name->line, top->name->name, robot->links[root].name->name);
             return false;

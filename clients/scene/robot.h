@@ -26,7 +26,7 @@ struct robot_element {
 
 enum robot_joint_type { ROBOT_REVOLUTE, ROBOT_CONTINUOUS, ROBOT_PRISMATIC, ROBOT_FIXED };
 
-/* A link or a joint in the table of its name. */
+/* An entry of the table of links or of joints, by name. */
 struct robot_name {
     UT_hash_handle hh;
     const char *name;
@@ -38,7 +38,7 @@ struct robot_joint {
     const struct robot_name *name;
     enum robot_joint_type type;
     struct pose origin;        /* in the parent */
-    double axis[3];            /* of length 1 */
+    double axis[3];            /* unit length */
     double limit[2];           /* lower, upper; radians, or lengths; infinite: none */
     const char *link_names[2]; /* of the parent and of the child */
     unsigned link[2];          /* the same as indices */
@@ -49,10 +49,10 @@ struct robot_joint {
 struct robot_link {
     const struct robot_name *name;
     size_t element, element_count; /* its range of robot.elements */
-    unsigned joint;                /* whose child it is; of the root ROBOT_ROOT */
+    unsigned joint;                /* whose child it is; ROBOT_ROOT for the root */
 };
 
-/* Most links, joints and collision elements of a file, each; and most bytes. */
+/* Limits of a file: links, joints and collision elements, each; and bytes. */
 enum { ROBOT_COUNT_MAX = 8192, ROBOT_BYTES_MAX = 1 << 23 };
 
 struct robot {
@@ -74,22 +74,23 @@ bool robot_read(const char *path, struct robot *out);
 void robot_clear(struct robot *robot);
 
 /* Connects links and joints by their names, and sets order. Returns false after an error: they are
- * no tree. Called by robot_read(). Cost: O(link_count * depth of the tree). */
+ * not a tree. Called by robot_read(). Cost: O(link_count * depth of the tree). */
 bool robot_connect(struct robot *robot);
 
-/* Adds a copy of a name to a table. Returns NULL, and *first, if it is in the table. */
+/* Adds a copy of a name to a table. If the name is in the table already, returns NULL, and *first
+ * is its entry. */
 struct robot_name *robot_add_name(struct robot *robot, struct robot_name **table, const char *name,
                                   const struct robot_name **first);
 
 /* Returns the joint of a name, or NULL. */
 const struct robot_joint *robot_find_joint(const struct robot *robot, const char *name);
 
-/* Returns the pose of every link in the coordinates of the root, by forward kinematics. In: value:
- * [joint_count], radians or lengths, of magnitudes up to TURN_RADIANS_MAX where they turn; not read
- * of fixed joints. Out: pose: [link_count]. */
+/* Computes the pose of every link in the coordinates of the root, by forward kinematics. In: value:
+ * [joint_count], radians, of magnitudes up to TURN_RADIANS_MAX, or lengths; not read of fixed
+ * joints. Out: pose: [link_count]. */
 void robot_place(const struct robot *robot, const double *value, struct pose *pose);
 
-/* Reads count finite numbers that are separated by white space, and nothing else. */
+/* Reads count finite numbers, separated by white space. Returns false if the text is not that. */
 bool robot_numbers(const char *text, int count, double *out);
 
 #endif

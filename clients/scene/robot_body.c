@@ -18,7 +18,7 @@
 #include <strings.h>
 #include <unistd.h>
 
-/* The frames of the body that is being made. */
+/* The frames of the body under construction. */
 struct frames {
     const struct robot *robot;
     const struct robot_link *link;
@@ -65,7 +65,7 @@ static void add_hull(struct frames *frames, double (*vertex)[3], size_t count)
 static void add_box(struct frames *frames, const struct robot_element *element)
 {
     double *numbers = scene_alloc(frames->scene, 12, sizeof *numbers);
-    const bool turned = frames->placed && !pose_is_straight(frames->placed);
+    const bool turned = frames->placed && !pose_is_translation(frames->placed);
     memcpy(numbers + 3, element->size, sizeof element->size);
     if (frames->placed)
         memcpy(numbers, frames->placed->p, sizeof frames->placed->p);
@@ -75,18 +75,19 @@ static void add_box(struct frames *frames, const struct robot_element *element)
                                             numbers});
 }
 
-/* Hulls that enclose. Let N be the sides, k = cos(pi / N), and e_i the directions at (i + 1/2) of N
- * equal parts of the full turn. A convex set contains a ball if its extent in every direction does.
+/* Enclosing hulls. Let N be the number of sides, k = cos(pi / N), and e_i the directions at
+ * (i + 1/2) of N equal parts of the full turn. A convex set contains a ball if its extent in every
+ * direction does.
  *
  * - The N vertices (s / k) e_i are a regular polygon whose edges have the distance s from the
  *   centre. So two of them, at +-h, contain the cylinder of radius s and length 2 h.
- * - The same polygon, as the section of a solid of revolution, is rings of radius (s / k) sin and
- *   height (s / k) cos of the N/2 angles from the pole. Their hull contains the sphere of radius s,
- *   and is contained in the hull of the polygons about the rings.
+ * - Rotated about an axis, the vertices of the same polygon become rings of radius (s / k) sin and
+ *   height (s / k) cos of the N/2 angles from the pole. The hull of the rings contains the sphere
+ *   of radius s, and the hull of the polygons about the rings contains the rings.
  *
  * The farthest points are vertices: at s / k from the axis, or, as a ring's radius is divided by k
- * once more, at most s / k^2 from the centre. 1 / k^2 - 1 = tan(pi / N)^2. With N a multiple of 4,
- * sides face along all axes, so that the hulls rest where the shapes would.
+ * once more, at most s / k^2 from the centre. 1 / k^2 - 1 = tan(pi / N)^2. N is a multiple of 4,
+ * so that the hulls have sides normal to each axis, and rest where the shapes would.
  *
  * Rounding. Vertices that are off by d reduce each extent by at most d. With u = 2^-53: cosines,
  * sines and k are off by TURN_ERROR = 8 u, and k >= 0.7. So s / k is off by 16 u of itself, and its
@@ -125,7 +126,7 @@ static struct enclosure enclose(const struct frames *frames, double radius, doub
     return out;
 }
 
-/* On output: a ring of vertices about the z axis. */
+/* Sets a ring of vertices about the z axis. */
 static void set_ring(const struct enclosure *enclosure, double radius, double z, double (*out)[3])
 {
     for (int i = 0; i < enclosure->sides; i++) {
@@ -189,13 +190,14 @@ static char *find_in_packages(const char *folders, const char *name)
 static char *find_mesh(const struct frames *frames, const struct robot_element *element)
 {
     static const char package[] = "package://", scheme[] = "file://";
-    const char *file = element->file;
+    const char *file = element->file, *folders = frames->options->package_path;
     if (strncmp(file, package, sizeof package - 1) == 0) {
-        char *path = find_in_packages(frames->options->package_path, file + sizeof package - 1);
+        char *path = find_in_packages(folders, file + sizeof package - 1);
         if (!path)
-            refuse(frames, element, "%s: in no folder of --package-path%s%s", file,
-                   frames->options->package_path ? " " : ", which is not given",
-                   frames->options->package_path ? frames->options->package_path : "");
+            refuse(frames, element, "%s: %s%s", file,
+                   folders ? "not found in --package-path "
+                           : "give the folders that packages are in by --package-path",
+                   folders ? folders : "");
         return path;
     }
     if (strncmp(file, scheme, sizeof scheme - 1) == 0)
@@ -209,7 +211,7 @@ static bool is_collada(const char *file)
     return dot && strcasecmp(dot, ".dae") == 0;
 }
 
-/* Adds the hull of the faces from `first` to before `end`, if there are any. */
+/* Adds the hull of faces first to end - 1, if there are any. */
 static bool add_faces(struct frames *frames, const struct robot_element *element, const char *path,
                       const struct mesh *mesh, size_t first, size_t end)
 {
@@ -250,7 +252,8 @@ static bool add_objects(struct frames *frames, const struct robot_element *eleme
     for (size_t i = 0; good && i <= objects; i++)
         good = add_faces(frames, element, path, mesh, i > 0 ? mesh->object[i - 1] : 0,
                          i < objects ? mesh->object[i] : mesh->face_count);
-    return good && (frames->count > before || refuse(frames, element, "%s: it has no faces", path));
+    return good &&
+           (frames->count > before || refuse(frames, element, "%s: the mesh has no faces", path));
 }
 
 static bool add_mesh(struct frames *frames, const struct robot_element *element)
@@ -315,7 +318,8 @@ const struct fmb_body *robot_body(const struct robot *robot, const struct robot_
     *origin = link->element_count == 1 ? element->origin : POSE_NONE;
     for (size_t i = 0; good && i < link->element_count; i++) {
         const struct pose *at = &element[i].origin;
-        const bool none = pose_is_straight(at) && at->p[0] == 0 && at->p[1] == 0 && at->p[2] == 0;
+        const bool none =
+            pose_is_translation(at) && at->p[0] == 0 && at->p[1] == 0 && at->p[2] == 0;
         frames.placed = link->element_count == 1 || none ? NULL : at;
         good = add_element(&frames, &element[i]);
     }

@@ -14,18 +14,18 @@ struct robot_body_options {
     const char *package_path; /* folders of packages, separated by colons; NULL: none */
 };
 
-/* Makes the body of a link that has collision elements, at least one. If it has only one, the body
- * stands at the origin of that element, and has the numbers of the file; with several, it stands at
- * that of the link, and the numbers of elements with an origin are rounded.
+/* Makes the body of a link that has at least one collision element. If it has only one, the origin
+ * of the body is that of the element, and its numbers are those of the file. If it has several, the
+ * origin is that of the link, and the numbers of elements with an origin are rounded.
  *
- * Hulls contain the cylinders and spheres, exactly, where the body stands. Their points are outside
- * by at most the distance *outside, rounding aside:
+ * Hulls contain their cylinders and spheres, exactly, in body coordinates. They extend beyond them
+ * by at most the distance *outside, apart from rounding:
  *
  *     r (1 / cos(pi / sides) - 1)  of a cylinder of radius r
  *     r tan(pi / sides)^2          of a sphere
  *
  * In:     scene     of dim 3; owns the body
- * In/out: *outside  becomes the distance, if it is larger
+ * In/out: *outside  raised to that distance, if it is less
  * Out:    *origin   of the body, in the link
  * Returns NULL after an error, which was reported on stderr. */
 const struct fmb_body *robot_body(const struct robot *robot, const struct robot_link *link,

@@ -17,7 +17,7 @@
 
 /* ---- The robot ---- */
 
-/* Names the links without a body: the first ones, if there are many. */
+/* Reports the links without a body; if there are many, the first ones by name. */
 static void report_empty(const struct robot *robot)
 {
     enum { NAMED = 8 };
@@ -30,16 +30,16 @@ static void report_empty(const struct robot *robot)
     if (count > NAMED)
         snprintf(more, sizeof more, ", and %zu more", count - NAMED);
     if (count > 0)
-        complain("%s: no <collision>, so no body: %s%s", robot->path, names, more);
+        complain("%s: links without <collision> have no body: %s%s", robot->path, names, more);
 }
 
-/* Ignores each body of a link and that of the nearest link above which has one. */
+/* Ignores each pair of a link's body and the body of the nearest link above it that has one. */
 static void ignore_neighbours(struct robot_scene *scene)
 {
     const struct robot *robot = scene->robot;
     struct fmb_scene *out = &scene->owner.scene;
     unsigned(*ignored)[2] = scene_alloc(&scene->owner, robot->link_count, sizeof *ignored);
-    /* Of each link its own body, or else that of the nearest link above; UINT32_MAX: none. */
+    /* Of each link its own body, or else that of the nearest link above it; UINT32_MAX: none. */
     unsigned *body = allocate(robot->link_count, sizeof *body);
     memset(body, 0xff, robot->link_count * sizeof *body);
     for (unsigned i = 0; i < scene->robot_bodies; i++)
@@ -126,7 +126,7 @@ static bool read_world(const char *path, struct owned_scene *out)
     return good;
 }
 
-/* Gives the bodies of the world other ids where links have theirs. */
+/* Gives new ids to the bodies of the world whose ids are those of links. */
 static bool set_ids(struct robot_scene *scene, const char *path, size_t count)
 {
     static const int64_t id_max = ((int64_t) 1 << DBL_MANT_DIG) - 1;
@@ -142,12 +142,14 @@ static bool set_ids(struct robot_scene *scene, const char *path, size_t count)
             changed++;
         }
     if (last > id_max)
-        complain("%s: its largest id leaves none for bodies that have ids of links, 1 to %zu", path,
-                 scene->robot_bodies);
+        complain(
+            "%s: ids 1 to %zu are those of links, and none is left above its largest id: give its "
+            "bodies smaller ids",
+            path, scene->robot_bodies);
     else if (changed > 0)
         complain(
-            "%s: ids 1 to %zu are those of links: %zu of its bodies get, in their order, the "
-            "ids from %" PRId64 " on",
+            "%s: ids 1 to %zu are those of links: %zu of its bodies get new ids, in order, from "
+            "%" PRId64 " on",
             path, scene->robot_bodies, changed, first);
     return last <= id_max;
 }
@@ -164,7 +166,7 @@ bool robot_scene_add_world(struct robot_scene *scene, const char *path)
         complain("%s: %s", path,
                  scene->world.dim != 3
                      ? "expected a scene in 3D"
-                     : "\"pairs\" would leave out the robot: expected \"ignore\", or a \"group\"");
+                     : "\"pairs\" would leave out the robot: use \"ignore\" or \"group\"");
         return false;
     }
     struct fmb_placement *placements =
@@ -191,11 +193,11 @@ bool robot_scene_add_world(struct robot_scene *scene, const char *path)
 
 /* ---- Poses ---- */
 
-/* Sets the pose of a placement. Parts of the quaternion that the engine refuses, and rounding
- * errors exceed by far, become 0; no number is -0. */
+/* Sets the pose of a placement. Components of the quaternion so small that the engine refuses them,
+ * far below rounding errors, become 0; no number is -0. */
 static void set_pose(const struct pose *pose, struct fmb_placement *out)
 {
-    out->orientation_count = pose_is_straight(pose) ? 0 : 4;
+    out->orientation_count = pose_is_translation(pose) ? 0 : 4;
     for (int i = 0; i < 3; i++)
         out->position[i] = pose->p[i] + 0.0;
     for (int i = 0; i < 4; i++)

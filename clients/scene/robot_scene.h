@@ -1,4 +1,4 @@
-/* A robot and the bodies around it as a scene, which is posed and printed any number of times. */
+/* A robot and the bodies around it as a scene, which can be posed any number of times. */
 #ifndef ROBOT_SCENE_H
 #define ROBOT_SCENE_H
 
@@ -26,13 +26,13 @@ bool robot_scene_make(const struct robot *robot, const struct robot_body_options
                       struct robot_scene *out);
 void robot_scene_clear(struct robot_scene *scene);
 
-/* Adds the bodies, ignored pairs, duration and margin of a file of one scene in 3D. Bodies whose
- * ids those of links have get others, which is reported. To be called once at most. */
+/* Adds the bodies, ignored pairs, duration and margin of a file of one scene in 3D. A body whose
+ * id is that of a link gets another one, which is reported. To be called once at most. */
 bool robot_scene_add_world(struct robot_scene *scene, const char *path);
 
-/* Sets the poses, for values of the joints as robot_place() takes them; and moves the bodies of the
- * world to where they are after this time, in seconds. place: of the values, for messages. Returns
- * false after an error: a pose is beyond the doubles. */
+/* Sets the poses for values of the joints, as of robot_place(), and moves the bodies of the world
+ * to where they are at this time, in seconds. place: where the values are given, for messages.
+ * Returns false after an error: a pose exceeds the range of doubles. */
 bool robot_scene_place(struct robot_scene *scene, const double *value, double time,
                        const char *place);
 

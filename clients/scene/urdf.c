@@ -1,9 +1,9 @@
-/* Reads URDF. Expat's events become a tree of elements; what is known is read from it, all else
- * (<visual>, <inertial>, <gazebo>, ...) is not looked at.
+/* Reads URDF. Expat's events become a tree of elements; links and joints are read from it, and
+ * all else (<visual>, <inertial>, <gazebo>, ...) is ignored.
  *
- * A file is not trusted. A document type declaration is refused: so entities are neither declared
- * nor loaded, and nothing expands. Bytes, links, joints and elements are bounded (robot.h); nothing
- * recurses. */
+ * Files are not trusted. A document type declaration is refused, so that entities are neither
+ * declared nor loaded, and nothing expands. Bytes, links, joints and elements are bounded
+ * (robot.h); nothing recurses. */
 #include "robot.h"
 
 #include "allocate.h"
@@ -23,15 +23,15 @@ struct node {
     const char *name;
     const char **attributes; /* name, value (NULL: ""), ..., NULL */
     unsigned long line;
-    struct node *parent, *child, *last, *next; /* first and last child; next one of the parent */
+    struct node *parent, *child, *last, *next; /* first and last child; next sibling */
 };
 
-/* After the first error, functions do nothing that is seen. */
+/* After the first error, functions report nothing more, and their results are not used. */
 struct reader {
     XML_Parser xml;
     struct robot *robot;
     struct node document, *at;       /* at: the open element */
-    const char *kind;                /* of what is being read: "link"; NULL: not known yet */
+    const char *kind;                /* "link" or "joint", which is being read; NULL: neither */
     const struct robot_name *within; /* its name */
     bool failed;
 };
@@ -54,7 +54,7 @@ __attribute__((format(printf, 3, 4))) static void refuse(struct reader *reader, 
 
 /* ---- The tree ---- */
 
-/* As refuse(), and ends the parser. */
+/* As refuse(), and stops the parser. */
 static void stop(struct reader *reader, const char *name, const char *why)
 {
     refuse(reader, XML_GetCurrentLineNumber(reader->xml), "<%.64s>: %s", name, why);
@@ -78,7 +78,7 @@ static void XMLCALL on_begin(void *user, const XML_Char *name, const XML_Char **
     *(parent->last ? &parent->last->next : &parent->child) = node;
     reader->at = parent->last = node;
     if (strncmp(name, "xacro:", 6) == 0)
-        stop(reader, name, "expand the file by xacro first");
+        stop(reader, name, "expand the file with xacro first");
 }
 
 static void XMLCALL on_end(void *user, const XML_Char *name)
@@ -92,7 +92,7 @@ static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char 
                                const XML_Char *public, int internal)
 {
     (void) name, (void) system, (void) public, (void) internal;
-    stop(user, "!DOCTYPE", "document types and entities are not supported: remove it");
+    stop(user, "!DOCTYPE", "document types and entities are not supported: remove the declaration");
 }
 
 static bool parse(struct reader *reader, FILE *file)
@@ -125,7 +125,8 @@ static bool is(const struct node *node, const char *name)
 }
 
 /* Returns the only element of this name in a parent, or NULL. */
-static const struct node *only(struct reader *reader, const struct node *parent, const char *name)
+static const struct node *find_child(struct reader *reader, const struct node *parent,
+                                     const char *name)
 {
     const struct node *found = NULL;
     for (const struct node *node = parent->child; node; node = node->next) {
@@ -137,8 +138,8 @@ static const struct node *only(struct reader *reader, const struct node *parent,
 }
 
 /* Returns the value of an attribute; NULL if it is missing, which is an error if it is required. */
-static const char *find(struct reader *reader, const struct node *node, const char *name,
-                        bool required)
+static const char *find_attribute(struct reader *reader, const struct node *node, const char *name,
+                                  bool required)
 {
     for (const char **at = node->attributes; *at; at += 2)
         if (strcmp(at[0], name) == 0 && at[1])
@@ -148,15 +149,15 @@ static const char *find(struct reader *reader, const struct node *node, const ch
     return NULL;
 }
 
-/* Reads count numbers; those of a missing attribute are unchanged. */
+/* Reads count numbers. A missing attribute leaves out unchanged. */
 static void read_numbers(struct reader *reader, const struct node *node, const char *name,
                          bool required, int count, double *out)
 {
-    const char *value = find(reader, node, name, required);
+    const char *value = find_attribute(reader, node, name, required);
     if (value && !robot_numbers(value, count, out))
         refuse(reader, node->line, "<%s>: %s is '%.64s', expected %d finite number%s%s", node->name,
                name, value, count, count > 1 ? "s" : "",
-               strstr(value, "${") ? " (expand the file by xacro first)" : "");
+               strstr(value, "${") ? " (expand the file with xacro first)" : "");
 }
 
 static void read_sizes(struct reader *reader, const struct node *node, const char *name, int count,
@@ -170,7 +171,7 @@ static void read_sizes(struct reader *reader, const struct node *node, const cha
 
 static void read_origin(struct reader *reader, const struct node *parent, struct pose *out)
 {
-    const struct node *node = only(reader, parent, "origin");
+    const struct node *node = find_child(reader, parent, "origin");
     double rpy[3] = {0};
     *out = POSE_NONE;
     if (!node)
@@ -188,20 +189,20 @@ static void read_origin(struct reader *reader, const struct node *parent, struct
 static const struct robot_name *begin(struct reader *reader, const struct node *node,
                                       struct robot_name **table)
 {
-    const char *name = find(reader, node, "name", true);
+    const char *name = find_attribute(reader, node, "name", true);
     const struct robot_name *first;
     struct robot_name *added = NULL;
     if (!name)
         return NULL;
     if (HASH_COUNT(*table) == ROBOT_COUNT_MAX)
-        refuse(reader, node->line, "more than %d elements <%s>", (int) ROBOT_COUNT_MAX, node->name);
+        refuse(reader, node->line, "more than %d <%s> elements", (int) ROBOT_COUNT_MAX, node->name);
     else if (strlen(name) > QUERY_NAME_MAX || !utf8_is_text(name))
         refuse(reader, node->line,
                "<%s>: the name '%.80s' has more than %d bytes, or control "
                "characters",
                node->name, name, (int) QUERY_NAME_MAX);
     else if (!(added = robot_add_name(reader->robot, table, name, &first)))
-        refuse(reader, node->line, "there is a %s '%s' already, in line %lu", node->name, name,
+        refuse(reader, node->line, "there is already a %s '%s', in line %lu", node->name, name,
                first->line);
     if (!added)
         return NULL;
@@ -227,7 +228,7 @@ static void read_shape(struct reader *reader, const struct node *node, struct ro
         read_sizes(reader, node, "radius", 1, out->size);
     } else if (is(node, "mesh")) {
         out->shape = ROBOT_MESH;
-        out->file = find(reader, node, "filename", true);
+        out->file = find_attribute(reader, node, "filename", true);
         out->size[0] = out->size[1] = out->size[2] = 1;
         read_numbers(reader, node, "scale", false, 3, out->size);
     } else {
@@ -238,14 +239,14 @@ static void read_shape(struct reader *reader, const struct node *node, struct ro
 static void read_collision(struct reader *reader, const struct node *node)
 {
     struct robot *robot = reader->robot;
-    const struct node *geometry = only(reader, node, "geometry");
+    const struct node *geometry = find_child(reader, node, "geometry");
     const struct node *shape = geometry ? geometry->child : NULL;
     if (robot->element_count == ROBOT_COUNT_MAX)
-        refuse(reader, node->line, "more than %d elements <collision>", (int) ROBOT_COUNT_MAX);
+        refuse(reader, node->line, "more than %d <collision> elements", (int) ROBOT_COUNT_MAX);
     if (!shape)
         refuse(reader, node->line, "<collision> has no <geometry> with a shape");
     else if (shape->next)
-        refuse(reader, shape->next->line, "<%.64s>: there is a shape already", shape->next->name);
+        refuse(reader, shape->next->line, "<%.64s>: there is already a shape", shape->next->name);
     if (reader->failed)
         return;
     robot->elements = allocate_grow(robot->elements, &robot->element_capacity,
@@ -280,7 +281,7 @@ static void read_link(struct reader *reader, const struct node *node)
 static void read_type(struct reader *reader, const struct node *node, struct robot_joint *out)
 {
     static const char *const types[] = {"revolute", "continuous", "prismatic", "fixed"};
-    const char *type = find(reader, node, "type", true);
+    const char *type = find_attribute(reader, node, "type", true);
     for (int i = 0; type && i < 4; i++)
         if (strcmp(types[i], type) == 0) {
             out->type = (enum robot_joint_type) i;
@@ -291,7 +292,7 @@ static void read_type(struct reader *reader, const struct node *node, struct rob
            type ? type : "");
 }
 
-/* Divided by the largest component first, the length does not overflow. */
+/* Components are first divided by the largest one, so that the length does not overflow. */
 static void read_axis(struct reader *reader, const struct node *node, struct robot_joint *out)
 {
     double most = 0, square = 0;
@@ -317,16 +318,17 @@ static void read_joint(struct reader *reader, const struct node *node)
         return;
     read_type(reader, node, &joint);
     read_origin(reader, node, &joint.origin);
-    const struct node *axis = only(reader, node, "axis"), *limit = only(reader, node, "limit");
-    const struct node *mimic = only(reader, node, "mimic");
+    const struct node *axis = find_child(reader, node, "axis"),
+                      *limit = find_child(reader, node, "limit");
+    const struct node *mimic = find_child(reader, node, "mimic");
     if (mimic)
         refuse(reader, mimic->line,
                "<mimic>: mimic joints are not supported: remove <mimic>, and "
                "give the joint its value");
     for (int end = 0; end < 2; end++) {
-        const struct node *link = only(reader, node, ends[end]);
+        const struct node *link = find_child(reader, node, ends[end]);
         if (link)
-            joint.link_names[end] = find(reader, link, "link", true);
+            joint.link_names[end] = find_attribute(reader, link, "link", true);
         else
             refuse(reader, node->line, "there is no <%s>", ends[end]);
     }
@@ -335,7 +337,7 @@ static void read_joint(struct reader *reader, const struct node *node)
     if (joint.type == ROBOT_REVOLUTE || joint.type == ROBOT_PRISMATIC) {
         joint.limit[0] = joint.limit[1] = 0;
         if (!limit) {
-            refuse(reader, node->line, "there is no <limit>, which a joint of this type has");
+            refuse(reader, node->line, "there is no <limit>, which a joint of this type needs");
             return;
         }
         read_numbers(reader, limit, "lower", false, 1, &joint.limit[0]);
@@ -356,7 +358,8 @@ static void read_robot(struct reader *reader, const struct node *robot)
                                        "disable_collisions"};
     if (!is(robot, "robot"))
         refuse(reader, robot->line,
-               "<%.64s> is no <robot>: SDF and others are not supported: give the robot as URDF",
+               "expected <robot>, found <%.64s>: SDF and others are not supported: give the robot "
+               "as URDF",
                robot->name);
     for (const struct node *node = robot->child; node && !reader->failed; node = node->next) {
         reader->kind = NULL;
@@ -371,7 +374,7 @@ static void read_robot(struct reader *reader, const struct node *robot)
     }
     reader->kind = NULL;
     if (reader->robot->link_count == 0)
-        refuse(reader, robot->line, "there is no <link> in <robot>");
+        refuse(reader, robot->line, "<robot> has no <link>");
 }
 
 bool robot_read(const char *path, struct robot *out)

@@ -1,4 +1,4 @@
-# fmb scene: what is typed, what is printed, exit codes. Geometry: tests/unit/test_urdf.c.
+# fmb scene: arguments, output, exit codes. Geometry: tests/unit/test_urdf.c.
 
 load ran
 
@@ -27,7 +27,7 @@ link() {
     robot "<link name='a'>$1</link>"
 }
 
-# Of few processes: bats' run takes several.
+# Starts few processes: run of bats starts several.
 scene() {
     status=0
     "$FMB" scene "$@" > output.txt 2> stderr.txt || status=$?
@@ -36,7 +36,7 @@ scene() {
     output=${output%$'\n'} stderr=${stderr%$'\n'}
 }
 
-# shows FILTER: what jq makes of the scenes, a line each.
+# shows FILTER: applies a jq filter to the scenes, a line each.
 shows() {
     ended 0
     output=$(jq -c "$1" <<< "$output")
@@ -77,7 +77,7 @@ triangle() {
     is 3
 }
 
-@test "links without collision elements have no body, which is said once; their neighbours are neighbours" {
+@test "links without collision elements have no body, which is reported once; the links beside them become neighbours" {
     joints=
     for i in 1 2 3 4 5 6 7 8 9; do
         joints+="<link name='l$i'/><joint name='j$i' type='fixed'><parent link='$([ $i = 1 ] && echo a || echo l$((i - 1)))'/><child link='l$i'/></joint>"
@@ -85,12 +85,12 @@ triangle() {
     robot "<link name='a'>$box</link>$joints<link name='b'>$box</link>
         <joint name='last' type='fixed'><parent link='l9'/><child link='b'/></joint>"
     scene robot.urdf
-    said 'fmb: robot.urdf: no <collision>, so no body: l1, l2, l3, l4, l5, l6, l7, l8, and 1 more'
+    said 'fmb: robot.urdf: links without <collision> have no body: l1, l2, l3, l4, l5, l6, l7, l8, and 1 more'
     shows '[.bodies[].name, .ignore]'
     is '["a","b",[[1,2]]]'
 }
 
-@test "a box keeps its numbers; beside others it is turned to a cuboid" {
+@test "a box keeps its numbers; beside others, if rotated, it is a cuboid" {
     turned='<origin xyz="1 2 3" rpy="0 0 0.5"/><geometry><box size="1 2 3"/></geometry>'
     link "<collision>$turned</collision>"
     scene robot.urdf
@@ -102,15 +102,15 @@ triangle() {
     is '[false,["cuboid",null,"box",null,"box",[5,0,0]]]'
 }
 
-@test "cylinders and spheres are hulls, tight along the axes, and it is said how far outside they are" {
+@test "cylinders and spheres are hulls, tight along the axes, and how far they extend beyond them is reported" {
     link '<collision><geometry><cylinder radius="1" length="3"/></geometry></collision>'
     scene robot.urdf
-    said 'fmb: robot.urdf: hulls of 16 sides enclose its cylinders and spheres; they are outside by at most 0.0195914'
+    said 'fmb: robot.urdf: hulls of 16 sides enclose its cylinders and spheres, and extend beyond them by at most 0.0195914'
     shows '.bodies[0] | [.shape, (.vertices | length, (map(.[2]) | min, max)), ((.vertices | map(.[0]) | max) - 1 | . > 0 and . < 1e-12)]'
     is '["hull",32,-1.5,1.5,true]'
     link '<collision><geometry><sphere radius="1"/></geometry></collision>'
     scene robot.urdf --sides 8
-    said 'fmb: robot.urdf: hulls of 8 sides enclose its cylinders and spheres; they are outside by at most 0.171575'
+    said 'fmb: robot.urdf: hulls of 8 sides enclose its cylinders and spheres, and extend beyond them by at most 0.171575'
     shows '.bodies[0].vertices | [length, ([0,1,2][] as $axis | (map(.[$axis]) | max) - 1 | . > 0 and . < 1e-12)]'
     is '[32,true,true,true]'
 }
@@ -127,8 +127,8 @@ triangle() {
     shows '.bodies[0] | [.shape, .vertices, .position]'
     is '["hull",[[0,0,0],[4,0,0],[0,-4,0],[0,0,2]],[1,0,0]]'
     link "<collision><geometry><mesh filename='package://folder/m.obj'/></geometry></collision>"
-    refused "robot.urdf: line 3: link 'a': package://folder/m.obj: in no folder of --package-path, which is not given" robot.urdf
-    refused 'in no folder of --package-path /nowhere' robot.urdf --package-path /nowhere
+    refused "robot.urdf: line 3: link 'a': package://folder/m.obj: give the folders that packages are in by --package-path" robot.urdf
+    refused 'not found in --package-path /nowhere' robot.urdf --package-path /nowhere
     scene robot.urdf --package-path "/nowhere:$PWD"
     shows '.bodies[0].vertices | length'
     is 4
@@ -137,7 +137,7 @@ triangle() {
     ended 0
 }
 
-@test "an OBJ is a hull for each object where that is wanted" {
+@test "with --objects, an OBJ is a hull for each object" {
     for option in '' --objects; do
         scene "$DEMO/robot.urdf" $option
         shows '.bodies[] | select(.name == "hand") | .frames // [.] | map(.vertices | length)'
@@ -166,7 +166,7 @@ triangle() {
     is 200
 }
 
-@test "a hull of too many vertices is refused with their number" {
+@test "a hull of too many vertices is refused, with the number of vertices" {
     awk 'BEGIN { for (i = 0; i < 1100; i++) print "v", i, i * i, 0; for (i = 3; i <= 1100; i++) print "f 1 2", i }' > m.obj
     link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
     refused "line 3: link 'a': m.obj: the hull of 1100 vertices has more than 1024 of them: simplify the mesh" robot.urdf
@@ -181,16 +181,16 @@ triangle() {
     is '[0,0,4000,-959,1755,4000,969,0,0,247,true]'
 }
 
-@test "a value beyond a limit, or of no joint, is an error, never clamped" {
-    refused "--joints: joint 'turn': 2.0000000000000004 is beyond its limits, -1 to 2" robot.urdf --joints turn=2.0000000000000004
-    refused "--joints: joint 'slide': -1.5 is beyond its limits, -1 to 2" robot.urdf --joints turn=2,slide=-1.5
-    refused "--joints: 'elbow' is no joint of robot.urdf" robot.urdf --joints elbow=1
+@test "a value beyond a limit, or for an unknown joint, is an error, and is not clamped" {
+    refused "--joints: joint 'turn': 2.0000000000000004 is outside its limits, -1 to 2" robot.urdf --joints turn=2.0000000000000004
+    refused "--joints: joint 'slide': -1.5 is outside its limits, -1 to 2" robot.urdf --joints turn=2,slide=-1.5
+    refused "--joints: 'elbow' is not a joint of robot.urdf" robot.urdf --joints elbow=1
     refused "--joints: joint 'turn' is given twice" robot.urdf --joints turn=1,turn=1
     refused "--joints: expected name=value,..., found 'turn'" robot.urdf --joints turn
     refused "expected name=value,..., found ''" robot.urdf --joints turn=1,
     refused "--joints: joint 'turn': expected a finite number, found '1e999'" robot.urdf --joints turn=1e999
     sed -i 's/lower="-1"/lower="0.5"/' robot.urdf
-    refused "without a value by --joints: joint 'turn': 0 is beyond its limits, 0.5 to 2" robot.urdf
+    refused "by default (--joints sets other values): joint 'turn': 0 is outside its limits, 0.5 to 2" robot.urdf
     scene robot.urdf --joints turn=2,slide=0.5
     ended 0
     sed -i "s/'revolute'/'continuous'/" robot.urdf
@@ -216,41 +216,41 @@ triangle() {
     is '[false,0]'
 }
 
-# The output is empty, so that a query of it fails too.
+# The output is empty, so that fmb query after the pipe fails too.
 @test "an error anywhere in a table prints no scene" {
     # bad TEXT LINE...: lines of the table.
     bad() {
         printf '%s\n' "${@:2}" > t.csv
         refused "$1" robot.urdf --joints-csv t.csv
     }
-    bad "t.csv: line 3: joint 'turn': 3 is beyond its limits, -1 to 2" turn,slide 1,1 3,1
+    bad "t.csv: line 3: joint 'turn': 3 is outside its limits, -1 to 2" turn,slide 1,1 3,1
     bad "t.csv: line 2: joint 'turn': expected a finite number, found 'x'" turn,slide x,1
-    bad "t.csv: line 3: 1 columns, where the first line has 2" turn,slide 1,1 1
+    bad "t.csv: line 3: 1 columns, but the first line has 2" turn,slide 1,1 1
     bad "t.csv: line 2: 3 columns" turn,slide 1,1,1
-    bad "t.csv: line 1: there is no column for joint 'slide': add it, or give the joint by --joints" turn
-    bad "t.csv: line 1: 'elbow' is no joint of robot.urdf" turn,slide,elbow
+    bad "t.csv: line 1: no column for joint 'slide': add one, or give its value by --joints" turn
+    bad "t.csv: line 1: 'elbow' is not a joint of robot.urdf" turn,slide,elbow
     bad "t.csv: line 1: joint 'turn' is given twice" turn,slide,turn
-    bad "t.csv: line 1: column 'time' is there twice" turn,time,slide,time
-    bad "t.csv: line 3: column 'time': earlier than in the row before" turn,slide,time 1,1,2 1,1,1
+    bad "t.csv: line 1: column 'time' appears twice" turn,time,slide,time
+    bad "t.csv: line 3: column 'time': earlier than in the previous row" turn,slide,time 1,1,2 1,1,1
     bad "t.csv: line 2: column 'time': expected a finite number" turn,slide,time 1,1,
-    bad "t.csv: line 2: a quote stands where it should not" turn,slide '"1,1'
-    bad "t.csv: line 2: the label, with the time, has more than 64 bytes" turn,slide,label "1,1,$(printf '%065d' 0)"
+    bad "t.csv: line 2: a quote is misplaced or missing" turn,slide '"1,1'
+    bad "t.csv: line 2: the label, time included, has more than 64 bytes" turn,slide,label "1,1,$(printf '%065d' 0)"
     : > t.csv
-    refused 't.csv: there is no line of joint names' robot.urdf --joints-csv t.csv
+    refused 't.csv: expected a line of joint names, found none' robot.urdf --joints-csv t.csv
     refused 'none.csv: No such file' robot.urdf --joints-csv none.csv
-    refused '/dev/null: no regular file' robot.urdf --joints-csv /dev/null
+    refused '/dev/null: not a regular file' robot.urdf --joints-csv /dev/null
     head -c 2000000 /dev/zero > t.csv
-    refused 't.csv: line 1: a zero byte, or more than 1048575 bytes' robot.urdf --joints-csv t.csv
+    refused 't.csv: line 1: has a zero byte, or more than 1048575 bytes' robot.urdf --joints-csv t.csv
 }
 
 # ---- The world -------------------------------------------------------------------------------
 
-@test "a world adds its bodies, ignored pairs, duration and margin; clashing ids change, and that is said" {
+@test "a world adds its bodies, ignored pairs, duration and margin; clashing ids change, which is reported" {
     cube='"shape": "box", "size": [1,1,1]'
     echo "{\"dim\": 3, \"duration\": 2, \"margin\": 0.5, \"bodies\": [{\"id\": 3, \"name\": \"x\", $cube},
         {\"id\": 7, $cube, \"group\": 4}, {\"id\": 1, $cube, \"velocity\": [1,0,0]}], \"ignore\": [[1,7]]}" > world.json
     scene robot.urdf --with world.json
-    said 'fmb: world.json: ids 1 to 3 are those of links: 2 of its bodies get, in their order, the ids from 8 on'
+    said 'fmb: world.json: ids 1 to 3 are those of links: 2 of its bodies get new ids, in order, from 8 on'
     shows '[.duration, .margin, [.bodies[].id], .bodies[3].name, .bodies[4].group, .ignore]'
     is '[2,0.5,[1,2,3,8,7,9],"x",4,[[1,2],[2,3],[7,9]]]'
     # With times, its bodies move on from row to row.
@@ -276,7 +276,7 @@ triangle() {
 
 # ---- Bad robots ------------------------------------------------------------------------------
 
-@test "links and joints that are no tree are refused" {
+@test "links and joints that are not a tree are refused" {
     # joined PARENT CHILD...: three links, and joints.
     joined() {
         local text="<link name='a'/>
@@ -290,7 +290,7 @@ triangle() {
         robot "$text"
     }
     joined a b b c c b
-    refused "robot.urdf: line 8: joint 'cb': its child 'b' is the child of joint 'ab' already" robot.urdf
+    refused "robot.urdf: line 8: joint 'cb': its child 'b' is already the child of joint 'ab'" robot.urdf
     joined b c c b
     refused "robot.urdf: line 6: joint 'bc': the joints from 'c' lead back to it: expected a tree" robot.urdf
     joined a b b c c a
@@ -298,13 +298,13 @@ triangle() {
     joined a a b c
     refused "line 6: joint 'aa': the joints from 'a' lead back to it" robot.urdf
     joined b a
-    refused "robot.urdf: line 5: link 'c' has no parent, and nor has link 'b': expected one root" robot.urdf
+    refused "robot.urdf: line 5: link 'c' has no parent, and neither has link 'b': expected one root" robot.urdf
     joined a b
-    refused "robot.urdf: line 5: link 'c' has no parent, and nor has link 'a': expected one root" robot.urdf
+    refused "robot.urdf: line 5: link 'c' has no parent, and neither has link 'a': expected one root" robot.urdf
     joined a b a d
-    refused "robot.urdf: line 7: joint 'ad': its child 'd' is no link of the file" robot.urdf
+    refused "robot.urdf: line 7: joint 'ad': its child 'd' is not a link of the file" robot.urdf
     joined a b d c
-    refused "joint 'dc': its parent 'd' is no link of the file" robot.urdf
+    refused "joint 'dc': its parent 'd' is not a link of the file" robot.urdf
 }
 
 @test "elements that are missing, repeated or wrong are refused with line and element" {
@@ -320,9 +320,9 @@ triangle() {
     shape '<geometry><box size="1 2 3 4"/></geometry>' "<box>: size is '1 2 3 4', expected 3 finite numbers"
     shape '<geometry><box size="1 2 nan"/></geometry>' "<box>: size is '1 2 nan', expected 3 finite numbers"
     shape '<geometry><box size="1 -2 3"/></geometry>' '<box>: size is negative'
-    shape '<geometry><box size="1 ${w} 3"/></geometry>' "<box>: size is '1 \${w} 3', expected 3 finite numbers (expand the file by xacro first)"
+    shape '<geometry><box size="1 ${w} 3"/></geometry>' "<box>: size is '1 \${w} 3', expected 3 finite numbers (expand the file with xacro first)"
     shape '<geometry><capsule radius="1"/></geometry>' '<capsule>: expected a box, cylinder, sphere or mesh'
-    shape '<geometry><sphere radius="1"/><sphere radius="1"/></geometry>' '<sphere>: there is a shape already'
+    shape '<geometry><sphere radius="1"/><sphere radius="1"/></geometry>' '<sphere>: there is already a shape'
     shape '<geometry><cylinder radius="1"/></geometry>' '<cylinder> has no length'
     shape '<geometry><sphere radius="1.79e308"/></geometry>' 'not a finite number'
     shape '<origin rpy="1e9 0 0"/><geometry><sphere radius="1"/></geometry>' '<origin>: rpy is beyond 1048576 radians'
@@ -338,19 +338,19 @@ triangle() {
     joint fixed '<parent link="a"/>' "joint 'j': there is no <child>"
     joint fixed '<child link="a"/>' "joint 'j': there is no <parent>"
     joint fixed "$ends<parent link='a'/>" "joint 'j': there is a second <parent>"
-    joint revolute "$ends" "joint 'j': there is no <limit>, which a joint of this type has"
+    joint revolute "$ends" "joint 'j': there is no <limit>, which a joint of this type needs"
     joint revolute "$ends<limit lower='2' upper='1'/>" "joint 'j': <limit>: lower is above upper"
     joint prismatic "$ends<axis xyz='0 0 0'/>$limit" "joint 'j': <axis>: xyz is 0"
     joint revolute "$ends<mimic joint='k'/>$limit" "joint 'j': <mimic>: mimic joints are not supported"
     robot "<link name='a'/>
 <link name='a'/>"
-    refused "robot.urdf: line 4: there is a link 'a' already, in line 3" robot.urdf
+    refused "robot.urdf: line 4: there is already a link 'a', in line 3" robot.urdf
     robot "<link name='$(printf '%065d' 0)'/>"
     refused 'has more than 64 bytes' robot.urdf
     robot '<link/>'
     refused 'robot.urdf: line 3: <link> has no name' robot.urdf
     robot ''
-    refused 'robot.urdf: line 2: there is no <link> in <robot>' robot.urdf
+    refused 'robot.urdf: line 2: <robot> has no <link>' robot.urdf
     robot '<link name="a"/>'
     scene robot.urdf
     ended 2
@@ -368,23 +368,23 @@ triangle() {
     printf 'v 0 0 0\nv 1 0 x\n' > m.obj
     mesh m.obj "m.obj: line 2: 'x' is no number"
     printf 'v 0 0 0\nv 1 0 0\n' > m.obj
-    mesh m.obj 'm.obj: it has no faces'
+    mesh m.obj 'm.obj: the mesh has no faces'
     triangle m.stl
     link "<collision><geometry><mesh filename='m.stl' scale='1e308 1e308 1'/></geometry></collision>"
     scene robot.urdf
     ended 0
-    # More than a message holds.
+    # More than a message can hold.
     { for i in 1 2 3; do echo "o $i"; awk 'BEGIN { for (i = 0; i < 1000; i++) print "v", i, i * i, 0; for (i = 3; i <= 1000; i++) print "f -1000 -999 -" i - 2 }'; done; } > m.obj
     link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
     refused '3 frames take 72015 bytes in a message, which has space for 63500' robot.urdf --objects
 }
 
 @test "other formats and wrong XML are refused" {
-    for text in '<sdf version="1.6"/>|line 1: <sdf> is no <robot>: SDF and others are not supported: give the robot as URDF' \
+    for text in '<sdf version="1.6"/>|line 1: expected <robot>, found <sdf>: SDF and others are not supported: give the robot as URDF' \
         '<robot><link name="a"/><group name="g"/></robot>|line 1: <group>: SRDF is not supported' \
         '<robot><disable_collisions/></robot>|line 1: <disable_collisions>: SRDF is not supported' \
-        '<robot xmlns:xacro="x"><xacro:macro name="m"/></robot>|line 1: <xacro:macro>: expand the file by xacro first' \
-        '<html/>|line 1: <html> is no <robot>' \
+        '<robot xmlns:xacro="x"><xacro:macro name="m"/></robot>|line 1: <xacro:macro>: expand the file with xacro first' \
+        '<html/>|line 1: expected <robot>, found <html>' \
         '<robot>|line 2: XML: no element found' \
         '<robot></link></robot>|line 1: XML: mismatched tag' \
         '<robot name="a" name="b"/>|line 1: XML: duplicate attribute' \
@@ -403,7 +403,7 @@ triangle() {
         run --separate-stderr timeout 5 bash -c 'ulimit -v 262144; exec "$0" scene robot.urdf' "$FMB"
         ended 2
         is ''
-        said 'fmb: robot.urdf: line 1: <!DOCTYPE>: document types and entities are not supported: remove it'
+        said 'fmb: robot.urdf: line 1: <!DOCTYPE>: document types and entities are not supported: remove the declaration'
     }
     {
         echo '<!DOCTYPE robot [<!ENTITY a "aaaaaaaaaaaaaaaaaaaa">'
