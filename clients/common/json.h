@@ -57,7 +57,7 @@ enum json_outcome {
 /* Reads the next scene. Returns as soon as its object is complete, without waiting for more input.
  * After any outcome but JSON_SCENE there is no next call.
  *
- * The text has neither method nor want: the caller sets them. A body that exceeds
+ * The text gives neither method nor want: the caller sets both. A body that exceeds
  * FMB_CLIENT_BODY_BYTES_MAX is refused whether or not the bus is used. */
 enum json_outcome json_next(struct json_reader *reader, struct owned_scene *out);
 

@@ -47,14 +47,14 @@ enum fmb_status scene_make_body(struct owned_scene *scene, const struct given_fr
 void scene_clear(struct owned_scene *scene);
 
 /* Sets ignored from the placements and the ignored pairs of the scene. json_next() and
- * scene_of_query() call it; the functions below need it. They mark pairs in ignored: a scene is for
- * one thread at a time. */
+ * scene_of_query() call it; the functions below need it. They write to ignored, so a scene may be
+ * used by one thread at a time. */
 void scene_begin_ignored(struct owned_scene *scene);
 
 /* Whether a pair is ignored, in either order, or within a group. */
 bool scene_leaves_out(struct owned_scene *scene, unsigned a, unsigned b);
 
-/* pair_next() of the scene. */
+/* As pair_next(), of this scene. */
 bool scene_next_pair(struct owned_scene *scene, struct pair_cursor *cursor, unsigned out[2]);
 
 /* Returns the number of these pairs. Cost: O(placements^2) with ALL. */

@@ -1,5 +1,5 @@
-/* Method. The angle is reduced to x, |x| <= pi / 4 but for rounding, by a whole number of quarters,
- * and the power series of x is summed.
+/* Method. The angle is reduced to x, |x| <= pi / 4 but for rounding, by a whole number of quarter
+ * turns, and the power series of x is summed.
  *
  * Accuracy, u = 2^-53. With |x| < 0.7854 the sums lose less than 4 u to the rounding of their
  * terms, each less than half of the one before, and 2^-60 to truncation. An error of x shifts both
@@ -7,9 +7,9 @@
  * - Degrees: full - 90 quarters is exact (fmod() is, and both are multiples of the last place of
  *   full; the difference is the smaller). The factor and the product each cost x u: 2 u.
  * - Radians: pi / 2 = P1 + P2 + P3, P1 and P2 of 33 and 32 bits. For |quarters| <= 2^20 the
- * products with both are exact. radians - quarters P1 is a multiple of 2^-53 or of the last place
- * of radians, if that is larger, and below 1: exact. The remaining two differences cost u each, the
- *   third product and P3 less than 2^-64.
+ *   products with both are exact. radians - quarters P1 is a multiple of 2^-53 or of the last
+ *   place of radians, if that is larger, and below 1: exact. The remaining two differences cost u
+ *   each, the third product and P3 less than 2^-64.
  * The total is below 8 u = TURN_ERROR. */
 #include "turn.h"
 

@@ -24,7 +24,7 @@ explain() {
     echo "$build/fmbd &"
     echo "$build/fmb query --box $out/mine.json"
     robot=$(dirname "$0")/robot
-    say "a robot of URDF, with meshes, on a path; where it overlaps what is around it"
+    say "a URDF robot with meshes, on a path: where it overlaps its surroundings"
     echo "$build/fmb scene $robot/robot.urdf --joints-csv $robot/path.csv --with $robot/world.json |"
     echo "    $build/fmb query --local --contacts"
     "$build/fmb" scene "$robot/robot.urdf" --joints-csv "$robot/path.csv" --with "$robot/world.json" |

@@ -35,7 +35,7 @@ struct mesh {
     size_t vertex_count, face_count; /* both below 2^32 - 1 */
     double (*vertex)[3];             /* owned; [vertex][x, y, z]; NULL if there are none */
     unsigned (*face)[3]; /* owned; [face][corner], indices of vertices; NULL if there are none */
-    /* Owned; [object_count]: the number of faces before each object (o) of OBJ. NULL: no objects */
+    /* Owned; [object_count]: the number of faces before each object (o) of an OBJ; NULL: none */
     size_t *object, object_count;
 };
 

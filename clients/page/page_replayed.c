@@ -130,7 +130,7 @@ static struct page_result result_of_scene(const struct scene_query *query,
 
 /* ---- Pairs ----------------------------------------------------------------------------------- */
 
-/* Whether both results answer the pair, differently. A result may end before it. */
+/* Whether both results answer the pair and the answers differ. A result may end before the pair. */
 static bool differs(const struct replayed_pair *pair)
 {
     return pair->then.answered && pair->now.answered &&

@@ -1,9 +1,9 @@
 /* Answers all pairs of a scene, in their order: decides them in this process, or by the service on
  * the bus. With a margin, contacts and near pairs have a gap even if it is not wanted.
  *
- * In this process each pair is decided by fmb_decide(), separated ones too. The service is queried
- * for all pairs as a list if gaps are wanted or the method is not certain; otherwise the pairs that
- * its results leave out are separated. */
+ * In process, fmb_decide() decides each pair, separated ones too. The service is queried for all
+ * pairs as a list if gaps are wanted or the method is not certain; otherwise the pairs that its
+ * results leave out are separated. */
 #ifndef ANSWERS_H
 #define ANSWERS_H
 

@@ -34,8 +34,8 @@ function momentText(i) {
     return [time, steps.length > 1 ? `step ${i + 1} of ${steps.length}` : "", steps[i].label ?? ""].filter(Boolean).join(" · ");
 }
 
-/* Browsers refuse more than some 20 changes a second, and then other navigation too: ten at most,
- * the last one included. */
+/* Browsers refuse more than about 20 changes a second, and then other navigation too. So at most ten
+ * a second are made; the last one always is. */
 let hashTime = -Infinity, hashTimer = 0;
 
 function setHash() {

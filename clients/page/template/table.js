@@ -87,7 +87,7 @@ function fillRows() {
     });
 }
 
-/* Takes all sizes before it draws, or the browser would lay the table out again for each lane. */
+/* Reads all sizes before it draws; otherwise the browser would lay out the table anew for each lane. */
 function drawLanes() {
     const canvases = table.cells.map((cells) => cells[columns.length - 1].querySelector("canvas"));
     canvases.map((canvas) => canvas && sizeOf(canvas)).forEach((size, n) => size && drawLane(canvases[n], [table.shown[n]], size));
