@@ -1,5 +1,5 @@
 """Exact collision queries of rigid bodies: which overlap, touch or are separated, when, in which
-box, and how far apart they are. In process, or by the service fmbd on an LCM bus.
+box, and how far apart they are. Decided in process, or by the service fmbd on an LCM bus.
 
     import fmb
 
@@ -10,19 +10,19 @@ box, and how far apart they are. In process, or by the service fmbd on an LCM bu
     for answer in scene.decide(duration=0):
         print(answer.names, answer.verdict.name)    # ('table', 'cube') TOUCHING
 
-fmb.h of libfmb defines shapes, verdicts, and how tight the numbers are. Lengths have any unit,
+fmb.h of libfmb defines shapes, verdicts, and the accuracy of numbers. Lengths may have any unit;
 times are in seconds, velocities per second; orientations are quaternions (w, x, y, z), in 2D (w, z),
-of any length but 0. Every window is [0, duration].
+of any length except 0. Every window is [0, duration].
 
-Arrays that are passed in are nested sequences, or objects with a buffer (of numpy, for example) of
-float64 or int64 in C order, which are not copied. Arrays that come out are numpy's where it is
-installed, and else memoryviews of the same shape and type.
+Arguments that are arrays may be nested sequences, or objects with a buffer of float64 or int64 in C
+order, such as numpy arrays, which are not copied. Arrays that are returned are numpy arrays if numpy
+is installed, and otherwise memoryviews of the same shape and type.
 
-Input that is refused raises an exception whose text begins with the argument: TypeError, ValueError,
-or Error, a ValueError with the status of fmb.h. A bus that fails raises BusError. A pair that has no
-answer, of a scene that was accepted, has a status other than 0, and no verdict.
+Refused input raises an exception whose text begins with the name of the argument: TypeError,
+ValueError, or Error, a ValueError with a status of fmb.h. If the bus fails, BusError is raised. A
+pair of an accepted scene that has no answer has a status other than 0, and no verdict.
 
-A scene and a client may be used by several threads; calls on one of them wait for each other.
+Several threads may share a scene or a client; calls on the same one wait for each other.
 """
 
 from __future__ import annotations
@@ -60,14 +60,14 @@ def _load() -> ctypes.CDLL:
     try:
         library = ctypes.CDLL(_SONAME)
     except OSError as error:
-        raise ImportError(f"fmb: {error}: install it, or put its folder into LD_LIBRARY_PATH") from None
+        raise ImportError(f"fmb: {error}: install it, or add its folder to LD_LIBRARY_PATH") from None
     try:
         found = library.fmb_flat_abi()
     except AttributeError:
         found = 0
     if found != _ABI:
-        raise ImportError(f"fmb: {_SONAME} has interface {found}, this file needs {_ABI}: install both "
-                          "of one version")
+        raise ImportError(f"fmb: {_SONAME} has interface {found}, fmb.py needs {_ABI}: install both "
+                          "from one version")
     integer, size, long, real, text, pointer = (
         ctypes.c_int, ctypes.c_size_t, ctypes.c_int64, ctypes.c_double, ctypes.c_char_p,
         ctypes.c_void_p)
@@ -98,7 +98,7 @@ _NO_MEMORY = -4
 
 
 class Error(ValueError):
-    """Input was refused. status: the number of fmb.h."""
+    """Input was refused. status: of enum fmb_status in fmb.h."""
 
     def __init__(self, message: str, status: int = 0) -> None:
         super().__init__(message)
@@ -106,8 +106,8 @@ class Error(ValueError):
 
 
 class BusError(ConnectionError):
-    """The bus failed, or a pair had no answer. status: the number of fmb_client.h, 0 for a client
-    that cannot be opened or is closed."""
+    """The bus failed, or a pair had no answer. status: of enum fmb_client_status in fmb_client.h; 0 for
+    a client that cannot be opened or is closed."""
 
     def __init__(self, message: str, status: int = 0) -> None:
         super().__init__(message)
@@ -120,7 +120,7 @@ def version() -> str:
 
 
 def status_text(status: int) -> str:
-    """The text of a status, for people."""
+    """A human-readable text for a status."""
     return _lib.fmb_client_status_text(status).decode()
 
 
@@ -173,12 +173,12 @@ def _text(name: str, value: Optional[str]) -> Optional[bytes]:
         raise TypeError(f"{name}: expected a str, found {value!r:.40}")
     if "\0" in value:
         raise ValueError(f"{name}: contains a NUL")
-    return value.encode("utf-8", "surrogatepass")  # which the library refuses
+    return value.encode("utf-8", "surrogatepass")  # surrogates are refused by the library
 
 
 def _flat(name: str, value: Any, code: str, shape: tuple) -> tuple[memoryview, tuple]:
-    """An array as a buffer, and its shape. shape: the one expected, a str where any length will
-    do."""
+    """Returns an array as a buffer, and its shape. shape: the expected one; a str stands for any
+    length."""
     type_name, formats = _TYPES[code]
     try:
         view = memoryview(value)
@@ -191,7 +191,7 @@ def _flat(name: str, value: Any, code: str, shape: tuple) -> tuple[memoryview, t
     if len(found) != len(shape) or any(s != f for s, f in zip(shape, found) if s.__class__ is int):
         raise ValueError(f"{name}: expected shape {_shape_text(shape)}, found {_shape_text(found)}")
     if not view.c_contiguous:
-        raise ValueError(f"{name}: not in C order; numpy.ascontiguousarray() makes it so")
+        raise ValueError(f"{name}: not in C order: use numpy.ascontiguousarray()")
     return view, found
 
 
@@ -218,11 +218,11 @@ def _shape_text(shape: tuple) -> str:
 
 
 def _pointer(buffer: Any) -> Any:
-    """A pointer to a buffer, which lives as long; NULL for None."""
+    """A pointer to a buffer, which it keeps alive; NULL for None."""
     if buffer is None:
         return None
     view = memoryview(buffer)
-    if not view.nbytes:  # not NULL
+    if not view.nbytes:  # an empty array is not NULL
         return ctypes.byref(ctypes.c_int64())
     if view.readonly:
         return ctypes.byref((ctypes.c_char * view.nbytes).from_buffer_copy(view))
@@ -233,8 +233,8 @@ def _pointer(buffer: Any) -> Any:
 
 
 class Body(_Handle):
-    """A rigid body of one or more frames, in body coordinates; it may be placed any number of times,
-    in any scene. Made by box(), cuboid(), tetrahedron(), face(), hull() and compound().
+    """A rigid body of one or more frames, in body coordinates. It may be placed any number of times, in
+    any scene. Made by box(), cuboid(), tetrahedron(), face(), hull() and compound().
 
     dim: 2 or 3
     """
@@ -262,7 +262,7 @@ _CUBOID, _TETRAHEDRON, _FACE, _BOX, _HULL, _TETRAHEDRON_VERTICES, _FACE_VERTICES
 
 
 def _numbers(name: str, value: Any, shape: tuple) -> tuple[array, int]:
-    """The numbers of an argument of a body, and their dimension, the length of its last axis."""
+    """The numbers of an argument, and their dimension, which is the length of its last axis."""
     buffer, found = _flat(name, value, "d", shape)
     if found[-1] not in (2, 3):
         raise ValueError(f"{name}: expected 2 or 3 axes, found {found[-1]}")
@@ -280,9 +280,9 @@ def _frame(code: int, name: str, value: Any, shape: tuple, origin_name: str, ori
 
 
 def box(size: Array, centre: Optional[Array] = None) -> Body:
-    """A box along the axes of the body.
+    """A box aligned with the axes of the body.
 
-    size: (dim,), full lengths of the edges, 0 or more
+    size: (dim,), lengths of the edges, 0 or more
     centre: (dim,); None: 0
     """
     return _frame(_BOX, "size", size, ("dim",), "centre", centre)
@@ -300,7 +300,7 @@ def cuboid(components: Array, origin: Optional[Array] = None) -> Body:
 def tetrahedron(components: Optional[Array] = None, origin: Optional[Array] = None, *,
                 vertices: Optional[Array] = None) -> Body:
     """A tetrahedron, in 2D a triangle: the set origin + sum x_i components[i] with x_i >= 0 and
-    sum x_i <= 1; or that of its vertices, which are taken exactly.
+    sum x_i <= 1; or given by its vertices, which are exact.
 
     components: (dim, dim), [component][axis]
     origin: (dim,); None: 0
@@ -311,7 +311,7 @@ def tetrahedron(components: Optional[Array] = None, origin: Optional[Array] = No
 
 def face(components: Optional[Array] = None, origin: Optional[Array] = None, *,
          vertices: Optional[Array] = None) -> Body:
-    """A triangle in 3D, by origin and two components, or by its vertices.
+    """A triangle in 3D, given by its origin and two components, or by its vertices.
 
     components: (2, 3), [component][axis]
     origin: (3,); None: 0
@@ -322,11 +322,11 @@ def face(components: Optional[Array] = None, origin: Optional[Array] = None, *,
 
 def _simplex(code: int, code_vertices: int, components: Any, origin: Any, vertices: Any) -> Body:
     if (components is None) == (vertices is None):
-        raise TypeError("components: expected these, or vertices")
+        raise TypeError("components: expected either components or vertices")
     if vertices is None:
         return _frame(code, "components", components, ("n", "dim"), "origin", origin)
     if origin is not None:
-        raise TypeError("origin: goes with components")
+        raise TypeError("origin: not with vertices")
     return _frame(code_vertices, "vertices", vertices, ("n", "dim"), "", None)
 
 
@@ -339,7 +339,7 @@ def hull(vertices: Array) -> Body:
 
 
 def compound(bodies: Iterable[Body]) -> Body:
-    """One rigid body of the frames of others, which are never tested against each other."""
+    """One rigid body with the frames of others, which are not tested against each other."""
     parts = _bodies(bodies)
     return Body("bodies", parts[0].dim, [frame for part in parts for frame in part._frames])
 
@@ -350,7 +350,7 @@ def _bodies(bodies: Iterable[Body]) -> tuple[Body, ...]:
     except TypeError:
         raise TypeError(f"bodies: expected a sequence, found {bodies!r:.40}") from None
     if not out:
-        raise ValueError("bodies: there is none")
+        raise ValueError("bodies: expected at least one")
     for i, body in enumerate(out):
         if not isinstance(body, Body):
             raise TypeError(f"bodies[{i}]: expected a Body, found {body!r:.40}")
@@ -375,8 +375,7 @@ Vector = tuple[float, ...]
 
 
 class Answer(NamedTuple):
-    """The answer to one pair. A field that was not wanted, or that the pair does not have, is
-    None."""
+    """The answer to one pair. A field is None if it was not wanted, or if the pair does not have it."""
 
     a: int  #: indices of the bodies in the scene
     b: int
@@ -387,14 +386,14 @@ class Answer(NamedTuple):
     box: Optional[tuple[Vector, Vector]]  #: lower and upper corner of the intersection, (dim,) each
     gap: Optional[tuple[float, float]]  #: lower and upper bound of the signed distance
     direction: Optional[Vector]  #: of the gap, from a to b, (dim,)
-    time: Optional[float]  #: of the least distance, seconds; separated pairs have it
+    time: Optional[float]  #: of the least distance, seconds; of separated pairs only
     witness: Optional[tuple[Vector, Vector]]  #: the nearest points of a and b at that time
-    frames: Optional[tuple[int, int]]  #: of a and b, which have this gap
+    frames: Optional[tuple[int, int]]  #: indices of the frames of a and b that have this gap
 
 
 def _answer(names: Any, a: int, b: int, status: int, verdict: int, contact: Any, box: Any, gap: Any,
             direction: Any, time: Any, witness: Any, frames: Any) -> Answer:
-    """Of lists of numbers; None, or NaN for the first, where there are none."""
+    """Makes an Answer of lists of numbers. A list is None, or begins with NaN, if it has no value."""
 
     def known(values: Any) -> Any:
         return None if values is None or values[0] != values[0] else tuple(values)
@@ -413,17 +412,17 @@ class Answers(Sequence):
     """The answers to n pairs, in their order. A sequence of Answer, and an array for each field;
     None where it was not wanted.
 
-    pairs: (n, 2) int64, [pair][a, b], indices of bodies; of a list of pairs the array that was given
+    pairs: (n, 2) int64, [pair][a, b], indices of bodies; of a list of pairs, the array that was passed in
     verdicts: (n,) uint8, of Verdict; 0: none, the status says why
-    statuses: (n,) int32, 0, or why there is no verdict
+    statuses: (n,) int32, 0; or why there is no verdict
     contacts: (n, 2), first and last time of contact, seconds; NaN for pairs that never meet
     boxes: (n, 2, dim), [pair][lower, upper][axis] of the intersection; NaN for pairs that never meet
-    gaps: (n, 2), lower and upper bound of the signed distance; NaN where there is none: the arrays
-        below then have no meaning
+    gaps: (n, 2), lower and upper bound of the signed distance; NaN if there is none. The arrays below
+        are then undefined
     directions: (n, dim), of the gap, from a to b
     times: (n,), of the least distance, seconds; NaN unless the pair is separated
     witnesses: (n, 2, dim), [pair][of a, of b], the nearest points at that time; NaN likewise
-    frames: (n, 2) int64, of a and b, which have this gap
+    frames: (n, 2) int64, indices of the frames of a and b that have this gap
     """
 
     def __init__(self, handle: int, dim: int, names: Any, pairs: Any, wanted: int, on_bus: bool) -> None:
@@ -480,12 +479,12 @@ class Answers(Sequence):
 
 
 class Client(_Handle):
-    """A client of fmbd on an LCM bus. One client sends each body once, so keep it.
+    """A client of fmbd on an LCM bus. A client sends each body once: use it for all queries.
 
-    url: of the bus, udpm://[GROUP:PORT][?ttl=N]; None: LCM_DEFAULT_URL, or else this host alone
+    url: of the bus, udpm://[GROUP:PORT][?ttl=N]; None: LCM_DEFAULT_URL, or else only this host
     prefix: of the service's channels
     timeout: the longest time before a query is sent again, seconds
-    tries: a query is given up after this many timeouts
+    tries: number of timeouts after which a query fails
     within: time limit for each scene, seconds; 0: none
 
     Raises BusError if the bus cannot be opened or an option is wrong.
@@ -507,7 +506,7 @@ class Client(_Handle):
             raise BusError(why.value.decode(errors="replace"))
 
     def close(self) -> None:
-        """Closes the client, which may not be used any more."""
+        """Closes the client. It must not be used afterwards."""
         with self._lock:
             self.__del__()
             self._handle = None
@@ -540,17 +539,17 @@ def _handle_of(client: Optional[Client]) -> Optional[int]:
 
 
 class Scene(_Handle):
-    """Placed bodies. Their number, and what is given here but poses and velocities, stays; place()
-    and move() set the others for each query.
+    """Placed bodies. place() and move() change their poses and velocities between queries; all else is
+    fixed.
 
-    bodies: n bodies of one dimension; one body may stand at several places
+    bodies: n bodies of one dimension; a body may be placed several times
     positions: (n, dim), world coordinates of the origins of the bodies at time 0; None: 0
     orientations: (n, 4), (w, x, y, z), in 2D (n, 2), (w, z); None: not rotated
     velocities: (n, dim), per second; None: at rest
-    names: n texts of at most 64 bytes of UTF-8, or None each
+    names: n texts of at most 64 bytes of UTF-8; any of them may be None
     groups: (n,) int64; bodies of one group other than 0 are not tested against each other
-    ids: (n,) int64, 1 to 2^53 - 1, under which the service keeps the bodies, 0: it does not; None:
-        1 to n
+    ids: (n,) int64, 1 to 2^53 - 1, under which the service caches the bodies; 0: it does not;
+        None: 1 to n
     """
 
     _free = _lib.fmb_flat_scene_free
@@ -593,7 +592,7 @@ class Scene(_Handle):
     def place(self, positions: Optional[Array] = None, orientations: Optional[Array] = None,
               velocities: Optional[Array] = None) -> None:
         """Sets positions (n, dim), orientations (n, 4), in 2D (n, 2), and velocities (n, dim) of all
-        bodies; None: as they are."""
+        bodies; None: unchanged."""
         n = len(self.bodies)
         self._place(0, n, (n,), positions=positions, orientations=orientations,
                     velocities=velocities)
@@ -601,7 +600,7 @@ class Scene(_Handle):
     def move(self, index: int, position: Optional[Array] = None,
              orientation: Optional[Array] = None, velocity: Optional[Array] = None) -> None:
         """Sets position (dim,), orientation (4,), in 2D (2,), and velocity (dim,) of one body; None:
-        as they are."""
+        unchanged."""
         index = _int("index", index)
         if not 0 <= index < len(self.bodies):
             raise IndexError(f"index: there is no body {index}")
@@ -620,12 +619,12 @@ class Scene(_Handle):
 
     def pair(self, a: int, b: int, duration: float, *, box: bool = False, gap: bool = False,
              client: Optional[Client] = None) -> Answer:
-        """Decides one pair over the window [0, duration], seconds. Groups are not considered. Raises
+        """Decides one pair over the window [0, duration], in seconds. Groups are not considered. Raises
         Error or BusError if it has no answer.
 
         a, b: indices of bodies
-        box, gap: wanted besides verdict and contact
-        client: None: in process
+        box, gap: also wanted, besides verdict and contact
+        client: decides the pair; None: in process
         """
         a, b, duration = _int("a", a), _int("b", b), _float("duration", duration)
         with self._lock, _lock_of(client):
@@ -642,21 +641,20 @@ class Scene(_Handle):
                instant: bool = False, contacts: bool = False, boxes: bool = False,
                gaps: bool = False, label: Optional[str] = None,
                client: Optional[Client] = None) -> Answers:
-        """Decides pairs over the window [0, duration], seconds.
+        """Decides pairs over the window [0, duration], in seconds.
 
-        pairs: (m, 2) int64, indices of bodies: the answers are of each of these pairs. None: all
-            pairs; the answers are of those that touch, overlap, are near or have no verdict, and
-            all others are separated
-        split: the first split bodies against all others, in place of all pairs
-        ignored: (m, 2) int64, pairs that are left out; not with pairs
-        margin: separated pairs at most this far apart are near, and have gaps, as those that meet
+        pairs: (m, 2) int64, indices of bodies: each of these pairs gets an answer. None: all pairs;
+            those that touch, overlap, are near or have no verdict get an answer, and all others
+            are separated
+        split: only pairs of one of the first split bodies with one of the others
+        ignored: (m, 2) int64, pairs that are not tested; not with pairs
+        margin: separated pairs at most this far apart are near; they have gaps, as do pairs that meet
         instant: the window is [0, 0] even if bodies move; duration is 0
-        contacts, boxes, gaps: wanted besides verdicts
-        label: for people who watch the bus, at most 64 bytes
-        client: None: in process
+        contacts, boxes, gaps: also wanted, besides verdicts
+        label: for monitoring the bus, at most 64 bytes
+        client: decides the pairs; None: in process
 
-        The pairs of a list take least time, and those of bodies of one frame without a margin least
-        of all.
+        A list of pairs is fastest per pair, above all without a margin and with bodies of one frame.
         """
         if pairs is not None and split is not None:
             raise ValueError("split: not with pairs")
@@ -664,7 +662,7 @@ class Scene(_Handle):
         left_out = None if ignored is None else _flat("ignored", ignored, "q", ("m", 2))[0]
         first = -1 if split is None else _int("split", split)
         if split is not None and first < 0:
-            raise ValueError("split: it is negative")
+            raise ValueError(f"split: {first} is negative")
         margin = _float("margin", margin)
         want = (_WANT_TIMES if contacts else 0) + (_WANT_BOX if boxes else 0) + (
             _WANT_GAP if gaps else 0)
@@ -680,9 +678,9 @@ class Scene(_Handle):
     def stream(self, duration: float, positions: Optional[Iterable[Array]] = None,
                orientations: Optional[Iterable[Array]] = None,
                velocities: Optional[Iterable[Array]] = None, **options: Any) -> Iterator[Answers]:
-        """Yields the answers of one scene after the other. positions, orientations and velocities
-        have one more axis than those of place(), the scenes, or are iterables of its arrays; options
-        are those of decide()."""
+        """Yields the answers of one scene after the other. positions, orientations and velocities are as
+        for place(), with one more axis in front, that of the scenes; or they are iterables of such
+        arrays. options are those of decide()."""
         given = {name: values for name, values in (
             ("positions", positions), ("orientations", orientations), ("velocities", velocities))
             if values is not None}

@@ -106,7 +106,7 @@ struct fmb_flat_scene {
     struct column column[COLUMN_COUNT];
     bool has[COLUMN_COUNT]; /* the last answers have this column */
     size_t count;           /* of the last answers */
-    bool failed;            /* to keep them: out of memory */
+    bool failed;            /* answers are missing: out of memory */
     char why[FMB_CLIENT_WHY_MAX];
 };
 
@@ -124,7 +124,7 @@ static bool reserve(struct column *column, size_t count, size_t width)
     return true;
 }
 
-/* Sets the reason of a status. argument: NULL: none. */
+/* Sets the text for a status, and returns the status. argument: NULL: none. */
 static int refuse(struct fmb_flat_scene *scene, int status, const char *argument, size_t index)
 {
     const char *text = fmb_client_status_text(status);
@@ -203,7 +203,7 @@ const char *fmb_flat_why(const struct fmb_flat_scene *scene)
     return scene->why;
 }
 
-/* A placement with row i of the arrays. */
+/* Returns a placement with the pose and velocity of row i of the arrays. */
 static struct fmb_placement with_row(const struct fmb_flat_scene *scene, size_t placement, size_t i,
                                      const double *positions, const double *orientations,
                                      const double *velocities)
@@ -250,7 +250,7 @@ int fmb_flat_place(struct fmb_flat_scene *scene, size_t first, size_t count,
 
 /* ---- Deciding ---- */
 
-/* Converts indices of placements. One that is no unsigned becomes UINT_MAX, which is none. */
+/* Converts indices of placements. One out of range becomes UINT_MAX, which no placement has. */
 static bool convert(struct column *column, const int64_t *pairs, size_t count)
 {
     if (!reserve(column, count, sizeof(unsigned[2])))
@@ -274,7 +274,7 @@ static void *column_if(struct fmb_flat_scene *scene, int column)
     return scene->has[column] ? scene->column[column].data : NULL;
 }
 
-/* Listed pairs of bodies of one frame, without a margin. scene: checked. */
+/* Decides listed pairs of bodies of one frame, without a margin. scene: checked. */
 static int decide_batch(struct fmb_flat_scene *flat, const struct fmb_scene *scene)
 {
     if (!reserve_answers(flat, scene->pair_count))
@@ -319,7 +319,7 @@ static int decide_steps(struct fmb_flat_scene *flat, const struct fmb_scene *sce
     return (int) status;
 }
 
-/* Takes an answer of a client. Out of memory, this and all later ones are left out. */
+/* An fmb_client_sink. If memory runs out, this answer and all later ones are dropped. */
 static void append(void *user, const struct fmb_client_answer *of)
 {
     struct fmb_flat_scene *scene = user;
@@ -346,7 +346,7 @@ static void append(void *user, const struct fmb_client_answer *of)
             answer->has_gap ? answer->gap : (struct fmb_gap){.bounds = {NAN, NAN}};
 }
 
-/* Begins answers with these columns. */
+/* Drops the last answers; the next ones have these columns. */
 static void begin_answers(struct fmb_flat_scene *scene, bool pairs, bool statuses, unsigned want)
 {
     scene->count = 0;
@@ -430,8 +430,8 @@ size_t fmb_flat_count(const struct fmb_flat_scene *scene)
     return scene->count;
 }
 
-/* Copies vectors of dim axes, where both are there; from: the first, in rows of stride bytes with
- * `vectors` vectors each. */
+/* Copies vectors of dim axes, unless from or out is NULL. from: the first vector; rows are stride
+ * bytes apart and have `vectors` vectors each. */
 static void spread(const struct fmb_flat_scene *scene, const void *from, size_t stride, int vectors,
                    int dim, double *out)
 {

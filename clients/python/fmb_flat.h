@@ -1,14 +1,15 @@
-/* libfmb and libfmb-client for languages that call C without a compiler: functions of numbers, flat
- * arrays and opaque handles. No struct, no bool, no callback crosses this interface. fmb.py uses
- * it; fmb.h and fmb_client.h define what the numbers mean.
+/* libfmb and libfmb-client for languages that call C without a compiler. Arguments are numbers,
+ * flat arrays and opaque handles; no struct, no bool and no callback crosses this interface. fmb.py
+ * uses it. fmb.h and fmb_client.h define what the numbers mean.
  *
- * Arrays are row-major and belong to the caller, who may change them after the call. dim is that of
+ * Arrays are row-major and owned by the caller, who may change them after the call. dim is that of
  * the bodies, 2 or 3.
  *
  * Status: a function that returns int returns FMB_OK (0) or a value of enum fmb_status (positive)
  * or enum fmb_client_status (negative).
  *
- * Threads: a scene, and a client, may be used by one thread at a time. Bodies are only read. */
+ * Threads: a scene or a client may be used by one thread at a time. Bodies are only read, so
+ * threads may share them. */
 #ifndef FMB_FLAT_H
 #define FMB_FLAT_H
 
@@ -19,7 +20,7 @@
 extern "C" {
 #endif
 
-/* The number of this interface: it is raised where a function changes or goes. fmb_flat_abi()
+/* The number of this interface. It is raised when a function changes or is removed. fmb_flat_abi()
  * returns that of the library. */
 enum { FMB_FLAT_ABI = 1 };
 int fmb_flat_abi(void);
@@ -29,11 +30,11 @@ int fmb_flat_abi(void);
 struct fmb_flat_body;
 
 /* Makes a body.
- * In:  count    of frames
+ * In:  count    number of frames
  *      shapes   [count], values of placement_t.shapes
  *      counts   [count]: how many of the numbers each frame has
  *      numbers  frame after frame, in the order of placement_t.numbers
- * Out: *out     unless the status is FMB_OK, unchanged; to be freed after the scenes that use it
+ * Out: *out     set only if the status is FMB_OK; to be freed after the scenes that use it
  * Returns a status of fmb_frame_make(), fmb_frame_make_vertices(), fmb_frame_make_hull() or
  * fmb_body_make_frames(); or NO_MEMORY. */
 int fmb_flat_body_make(int dim, size_t count, const int32_t *shapes, const int64_t *counts,
@@ -48,8 +49,8 @@ struct fmb_flat_scene;
  * In:  bodies  [count], of one dimension; they must outlive the scene
  *      ids     [count], 0 to 2^53 - 1
  *      groups  [count]
- *      names   [count], a name NULL: none
- * Out: *out    also with a status other than NO_MEMORY, for fmb_flat_why(); to be freed
+ *      names   [count]; NULL for a body without a name
+ * Out: *out    set unless the status is NO_MEMORY, for fmb_flat_why(); to be freed
  * Returns FMB_OK, FMB_NO_FRAMES (count is 0), FMB_DIMENSIONS_DIFFER, FMB_BAD_ID, FMB_BAD_NAME,
  * FMB_OVER_LIMIT (2^31 bodies), or NO_MEMORY. */
 int fmb_flat_scene_make(size_t count, struct fmb_flat_body *const *bodies, const int64_t *ids,
@@ -57,23 +58,23 @@ int fmb_flat_scene_make(size_t count, struct fmb_flat_body *const *bodies, const
                         struct fmb_flat_scene **out);
 void fmb_flat_scene_free(struct fmb_flat_scene *scene); /* may be NULL */
 
-/* What was wrong in the last call that returned a status: "positions[3]: not a finite number". */
+/* Returns what was wrong in the last call that failed: "positions[3]: not a finite number". */
 const char *fmb_flat_why(const struct fmb_flat_scene *scene);
 
-/* Sets poses and velocities of placements first to first + count - 1; with a status, of none.
- * In:  positions     [count][dim], or NULL: as they are
- *      orientations  [count][4], in 2D [count][2], or NULL: as they are
- *      velocities    [count][dim], per second, or NULL: as they are
+/* Sets poses and velocities of placements first to first + count - 1; after an error, of none.
+ * In:  positions     [count][dim], or NULL: unchanged
+ *      orientations  [count][4], in 2D [count][2], or NULL: unchanged
+ *      velocities    [count][dim], per second, or NULL: unchanged
  * Returns FMB_OK, FMB_NOT_FINITE, FMB_BAD_ORIENTATION, or FMB_BAD_PAIR (no such placements). */
 int fmb_flat_place(struct fmb_flat_scene *scene, size_t first, size_t count,
                    const double *positions, const double *orientations, const double *velocities);
 
 struct fmb_client;
 
-/* Decides one pair, and keeps the answer in the scene, as the only one; groups are not considered.
+/* Decides one pair, and keeps the answer in the scene, as the only one. Groups are not considered.
  * In:  client  NULL: in process, as fmb_decide(); or as fmb_client_query_pair()
  *      want    a sum of FMB_WANT_BOX and FMB_WANT_GAP; contacts are always given
- * Returns a status of these functions; FMB_BAD_PAIR if a or b is no placement, or both are one. */
+ * Returns a status of these functions; FMB_BAD_PAIR if a or b is not a placement, or a == b. */
 int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64_t a, int64_t b,
                   double duration, unsigned want);
 
@@ -83,31 +84,32 @@ int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64
  *      instant  not 0: the window is [0, 0] even if bodies move
  *      want     a sum of FMB_WANT_TIMES, FMB_WANT_BOX and FMB_WANT_GAP
  *      split    pairs of the first split placements with the others; negative: all pairs
- *      pairs    [pair_count][2], the list; NULL: no list. split is then not read
+ *      pairs    [pair_count][2], a list, with which split is not read; NULL: no list
  *      ignored  [ignored_count][2]; none with a list
- *      label    for clients, or NULL
+ *      label    of the scene, or NULL
  * Returns a status of fmb_scene_check() or fmb_client_query(); or NO_MEMORY. */
 int fmb_flat_decide(struct fmb_flat_scene *scene, struct fmb_client *client, double duration,
                     int instant, unsigned want, double margin, int64_t split, const int64_t *pairs,
                     size_t pair_count, const int64_t *ignored, size_t ignored_count,
                     const char *label);
 
-/* The number of the answers that the scene keeps. */
+/* Returns the number of answers that the scene keeps. */
 size_t fmb_flat_count(const struct fmb_flat_scene *scene);
 
-/* Copies the answers. Each array may be NULL. Those that were not wanted are left as they are; with
- * a margin other than 0 there are gaps.
+/* Copies the answers. Each array may be NULL. Those that were not wanted are unchanged. There are
+ * gaps, too, if the margin is not 0.
  * Out: pairs       [n][a, b]; of a list they are not set
  *      verdicts    [n], enum fmb_verdict; 0: none
  *      statuses    [n], FMB_OK, or why there is no verdict; of answers in process, which all have
  *                  one, they are not set
  *      contacts    [n][first, last], NAN unless they meet
  *      boxes       [n][lower, upper][dim], NAN unless they meet
- *      gaps        [n][lower, upper bound], NAN: none, as are the arrays below
+ *      gaps        [n][lower, upper bound], NAN if there is none; the arrays below are then
+ *                  undefined
  *      directions  [n][dim]
  *      times       [n], NAN unless separated
  *      witnesses   [n][of a, of b][dim], NAN unless separated
- *      frames      [n][of a, of b] */
+ *      frames      [n][of a, of b], indices of the frames that have this gap */
 void fmb_flat_answers(const struct fmb_flat_scene *scene, int64_t *pairs, uint8_t *verdicts,
                       int32_t *statuses, double *contacts, double *boxes, double *gaps,
                       double *directions, double *times, double *witnesses, int64_t *frames);
