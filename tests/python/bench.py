@@ -1,5 +1,5 @@
-"""bench.py BENCH_BATCH FILE: fmb.py beside the same work in C, which the program BENCH_BATCH does;
-FILE is for the scene. Nanoseconds of CPU time; medians of five turns of both."""
+"""bench.py BENCH_BATCH FILE: compares fmb.py with the same work in C, which the program BENCH_BATCH
+does; the scene is written to FILE. Nanoseconds of CPU time; medians of five rounds of both."""
 
 import statistics
 import subprocess
@@ -52,10 +52,10 @@ def in_python(path):
 
 
 def main(program, path):
-    turns = [(in_c(program, path), in_python(path)) for _ in range(5)]
+    rounds = [(in_c(program, path), in_python(path)) for _ in range(5)]
 
     def median(value):
-        return statistics.median(value(c, python) for c, python in turns)
+        return statistics.median(value(c, python) for c, python in rounds)
 
     print("listed pairs of boxes, ns a pair     C  Python  rate of C's")
     for name in ("verdicts", "contacts", "gaps"):

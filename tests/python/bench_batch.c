@@ -34,7 +34,7 @@ static double draw(void)
     return (double) (state >> 11) * 0x1p-53;
 }
 
-/* Boxes of about 1 in a cube of 5: a pair of five is in contact. */
+/* Boxes of size about 1 in a cube of size 5: one pair in five is in contact. */
 static void make_scene(void)
 {
     for (int i = 0; i < BOXES; i++) {

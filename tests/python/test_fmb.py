@@ -1,4 +1,4 @@
-"""fmb.py. FMB is the program to compare with; the tests of the bus need a running fmbd, and BUS=1."""
+"""Tests of fmb.py. FMB is the program to compare with. The tests on the bus need fmbd, and BUS=1."""
 
 import copy
 import glob
@@ -73,7 +73,7 @@ def random_scene(dim, count, seed):
 
 
 def as_json(answer):
-    """An answer as fmb query prints it, but for ids."""
+    """An answer as fmb query prints it, without ids."""
     out = {"verdict": answer.verdict.name.lower()}
     if answer.contact:
         out["contact"] = list(answer.contact)
@@ -130,7 +130,7 @@ class Answers(unittest.TestCase):
             self.assertEqual([as_json(a) for a in answers], [of_json(pair) for pair in expected])
             self.assertEqual([list(a.names) for a in answers], [pair["names"] for pair in expected])
             seen.update(a.verdict for a in answers)
-            # The batch, of bodies of one frame alone.
+            # The batch, which takes bodies of one frame only.
             single = [i for i, body in enumerate(json_scene["bodies"]) if len(body["frames"]) == 1]
             part, _ = scene_of(dict(json_scene, bodies=[json_scene["bodies"][i] for i in single]))
             listed = list(itertools.combinations(range(len(single)), 2))
@@ -169,7 +169,7 @@ class Answers(unittest.TestCase):
         with self.assertRaisesRegex(fmb.Error, r"^pairs\[1\]: "):
             scene.decide(0, pairs=[(0, 1), (2, 0)], client=self.client)
 
-    def test_a_stream_is_a_scene_after_the_other(self):
+    def test_a_stream_yields_one_scene_after_the_other(self):
         cube = fmb.box([1, 1, 1])
         scene = fmb.Scene([cube, cube])
         steps = [[[0, 0, 0], [x, 0, 0]] for x in (0.5, 1.0, 1.5)]
@@ -273,7 +273,7 @@ class Arrays(unittest.TestCase):
                 self.scene.place(**pose)
             self.assertEqual(self.scene.pair(0, 1, 0, box=True), before)
 
-    def test_buffers_are_taken_without_numpy(self):
+    def test_buffers_are_accepted_without_numpy(self):
         positions = memoryview(array("d", [0, 0, 0, 9, 0, 0, 1, 0, 0])).cast("B").cast("d", (3, 3))
         pairs = memoryview(bytes(array("q", [0, 1, 0, 2]))).cast("q", (2, 2))  # read-only
         self.scene.place(positions)
@@ -286,7 +286,7 @@ class Arrays(unittest.TestCase):
             self.assertTrue(str(caught.exception).startswith(start + ": "), str(caught.exception))
             self.assertNotIn("\n", str(caught.exception))
 
-    def test_what_is_wrong_is_refused_by_the_name_of_the_argument(self):
+    def test_refusals_name_the_argument(self):
         scene, box, nan = self.scene, fmb.box([1, 1, 1]), math.nan
         for error, start, call in (
                 (ValueError, "positions", lambda: scene.place([[0, 0, 0]])),
@@ -359,7 +359,7 @@ class Arrays(unittest.TestCase):
         self.assertEqual(scene.pair(0, 1, 0).verdict, fmb.OVERLAPPING)
 
     @unittest.skipUnless(fmb.numpy, "needs numpy")
-    def test_arrays_of_numpy_have_to_be_of_the_type_and_in_order(self):
+    def test_numpy_arrays_need_the_right_type_and_order(self):
         numpy, scene = fmb.numpy, self.scene
         good = numpy.array([[0.0, 0, 0], [1, 0, 0], [9, 0, 0]])
         scene.place(good)

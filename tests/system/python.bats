@@ -33,7 +33,7 @@ setup() {
     [[ ${lines[-1]} == 'ImportError: fmb: '*LD_LIBRARY_PATH ]]
 }
 
-@test "the numbers that fmb.py has of C are those of the headers" {
+@test "the constants of fmb.py are those of the C headers" {
     for number in 'FMB_FLAT_ABI _ABI' 'FMB_CLIENT_WHY_MAX _WHY_MAX' 'FMB_CLIENT_NO_MEMORY _NO_MEMORY' \
         'FMB_WANT_BOX _WANT_BOX' 'FMB_WANT_TIMES _WANT_TIMES' 'FMB_WANT_GAP _WANT_GAP'; do
         echo "_Static_assert(${number% *} == $($python -c "import fmb; print(fmb.${number#* })"), \"$number\");"
@@ -43,7 +43,7 @@ setup() {
         -include clients/lib/fmb_client.h "$BATS_TEST_TMPDIR/numbers"
 }
 
-@test "the lines of Python in the README print what it says" {
+@test "the Python example in the README prints what it says" {
     sed -n '/^import fmb$/,/^```$/p' README.md | grep -v '^```' > "$BATS_TEST_TMPDIR/readme.py"
     start_fmbd
     expected=$(sed -n 's/.*print(.*# //p' "$BATS_TEST_TMPDIR/readme.py")

@@ -1,5 +1,6 @@
-/* Robots of URDF files: what encloses encloses, exactly; hulls have the right vertices; links stand
- * where an independent computation puts them. What is typed and printed: cli/scene.bats. */
+/* Robots of URDF files: enclosing hulls contain their shapes, exactly; hulls have the right
+ * vertices; poses of links agree with an independent computation. Arguments and output:
+ * cli/scene.bats. */
 #include "unit.h"
 
 #include "draw.h"
@@ -113,8 +114,8 @@ static bool is_inside(mpq_t *a, mpq_t *b, mpq_t *c, double radius, double length
     return good;
 }
 
-/* The faces between rings, as triangles, and the fans of both ends are a closed surface, within the
- * hull, around the centre. The solid is inside if it is on the inner side of each. */
+/* The faces between rings, as triangles, and the fans of both ends form a closed surface within the
+ * hull, around the centre. The solid is inside if it is on the inner side of each triangle. */
 static bool contains(struct rings *rings, double radius, double length)
 {
     const int up = mpq_cmp(at(rings, 0, 0)[2], at(rings, rings->count - 1, 0)[2]) < 0;
@@ -214,7 +215,7 @@ static void hulls_enclose_cylinders_and_spheres(void **state)
     }
 }
 
-/* Here nothing is relative: the numbers are subnormal. */
+/* The numbers are subnormal: their rounding errors are absolute, not relative. */
 static void the_smallest_shapes_are_enclosed(void **state)
 {
     static const double tiny[] = {DBL_TRUE_MIN, 3 * DBL_TRUE_MIN, DBL_MIN, 0x1p-1000};
@@ -253,7 +254,7 @@ static void add_point(double x, double y, double z)
     points[point_count++][2] = z;
 }
 
-/* By the exact method. */
+/* Decides by the exact method. */
 static bool is_in_hull(const double (*vertex)[3], size_t count, const double point[3])
 {
     static double memory[8192], point_memory[64];
@@ -266,7 +267,8 @@ static bool is_in_hull(const double (*vertex)[3], size_t count, const double poi
     return answer.verdict != FMB_SEPARATED;
 }
 
-/* Returns the number of vertices, which are minimal and contain all points. */
+/* Checks that the vertices are minimal and that their hull contains all points. Returns their
+ * number. */
 static size_t check_hull(void)
 {
     static double vertex[FMB_HULL_VERTICES_MAX][3], others[FMB_HULL_VERTICES_MAX][3];
@@ -283,7 +285,7 @@ static size_t check_hull(void)
     return found;
 }
 
-static void hulls_keep_the_vertices_of_grids_alone(void **state)
+static void hulls_of_grids_keep_only_their_corners(void **state)
 {
     static const int sizes[][3] = {{5, 5, 5}, {12, 12, 1}, {1, 9, 1}, {1, 1, 1}, {3, 1, 7}};
     static const size_t corners[] = {8, 4, 2, 1, 4};
@@ -292,7 +294,7 @@ static void hulls_keep_the_vertices_of_grids_alone(void **state)
             for (int i = 0; i < sizes[s][0] * sizes[s][1] * sizes[s][2]; i++) {
                 const double u = i % sizes[s][0], v = i / sizes[s][0] % sizes[s][1];
                 const double w = i / sizes[s][0] / sizes[s][1];
-                /* In inclined planes and lines; exactly. */
+                /* in inclined planes and lines, exactly */
                 add_point(3 * u - v, u + 2 * v + w, 5 * w - 2 * u + v);
             }
         assert_int_equal(check_hull(), corners[s]);
@@ -318,7 +320,7 @@ static void hulls_of_random_points_contain_them_all(void **state)
 }
 
 /* On a paraboloid every point of a grid is a vertex. */
-static void hulls_of_more_vertices_than_the_engine_takes_are_none(void **state)
+static void hulls_of_too_many_vertices_are_refused(void **state)
 {
     static double vertex[FMB_HULL_VERTICES_MAX][3];
     for (int extra = 0; extra < 2; extra++) {
@@ -338,7 +340,7 @@ static void hulls_of_more_vertices_than_the_engine_takes_are_none(void **state)
 
 /* ---- Poses ----------------------------------------------------------------------------------- */
 
-static void turns_are_those_of_the_math_library(void **state)
+static void turns_agree_with_the_math_library(void **state)
 {
     struct draw draw;
     draw_begin(&draw, "turns");
@@ -387,8 +389,8 @@ static void shift(double at[3], double matrix[3][3], const double by[3], double 
         at[i / 3] += factor * matrix[i / 3][i % 3] * by[i % 3];
 }
 
-/* A chain of joints of all types; their links in the order of the file, or against it. */
-static void links_stand_where_matrices_put_them(void **state)
+/* A chain of joints of all types. The file has the links in the order of the chain, or reversed. */
+static void poses_of_links_agree_with_matrices(void **state)
 {
     static const char *const types[] = {"fixed", "revolute", "prismatic", "continuous"};
     static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -451,11 +453,11 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hulls_enclose_cylinders_and_spheres),
         cmocka_unit_test(the_smallest_shapes_are_enclosed),
-        cmocka_unit_test(hulls_keep_the_vertices_of_grids_alone),
+        cmocka_unit_test(hulls_of_grids_keep_only_their_corners),
         cmocka_unit_test(hulls_of_random_points_contain_them_all),
-        cmocka_unit_test(hulls_of_more_vertices_than_the_engine_takes_are_none),
-        cmocka_unit_test(turns_are_those_of_the_math_library),
-        cmocka_unit_test(links_stand_where_matrices_put_them),
+        cmocka_unit_test(hulls_of_too_many_vertices_are_refused),
+        cmocka_unit_test(turns_agree_with_the_math_library),
+        cmocka_unit_test(poses_of_links_agree_with_matrices),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
