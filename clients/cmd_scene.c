@@ -42,7 +42,7 @@ static const char usage[] =
     "                       0.02 r and 0.04 r\n"
     "  --objects            a hull for each object (o) of an OBJ file, for convex\n"
     "                       decompositions\n"
-    "  --package-path DIRS  where packages are searched for, separated by colons: a\n"
+    "  --package-path DIRS  folders to search for packages, separated by colons: a\n"
     "                       mesh file package://NAME/FILE is NAME/FILE in the first\n"
     "                       folder that has it\n"
     "\n"
