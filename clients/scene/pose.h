@@ -10,7 +10,7 @@ struct pose {
     double p[3], q[4]; /* q: w, x, y, z */
 };
 
-#define POSE_NONE ((struct pose){{0, 0, 0}, {1, 0, 0, 0}})
+#define POSE_IDENTITY ((struct pose){{0, 0, 0}, {1, 0, 0, 0}})
 
 /* Whether the pose is a translation: its rotation is the identity. */
 bool pose_is_translation(const struct pose *pose);

@@ -127,11 +127,11 @@ void robot_place(const struct robot *robot, const double *value, struct pose *po
     for (size_t i = 0; i < robot->link_count; i++) {
         const unsigned link = robot->order[i], j = robot->links[link].joint;
         if (j == ROBOT_ROOT) {
-            pose[link] = POSE_NONE;
+            pose[link] = POSE_IDENTITY;
             continue;
         }
         const struct robot_joint *joint = &robot->joints[j];
-        struct pose motion = POSE_NONE;
+        struct pose motion = POSE_IDENTITY;
         if (joint->type == ROBOT_PRISMATIC)
             for (int axis = 0; axis < 3; axis++)
                 motion.p[axis] = joint->axis[axis] * value[j];

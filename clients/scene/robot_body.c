@@ -315,7 +315,7 @@ const struct fmb_body *robot_body(const struct robot *robot, const struct robot_
     const struct robot_element *element = &robot->elements[link->element];
     const struct fmb_body *body = NULL;
     bool good = true;
-    *origin = link->element_count == 1 ? element->origin : POSE_NONE;
+    *origin = link->element_count == 1 ? element->origin : POSE_IDENTITY;
     for (size_t i = 0; good && i < link->element_count; i++) {
         const struct pose *at = &element[i].origin;
         const bool none =

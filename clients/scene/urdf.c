@@ -173,7 +173,7 @@ static void read_origin(struct reader *reader, const struct node *parent, struct
 {
     const struct node *node = find_child(reader, parent, "origin");
     double rpy[3] = {0};
-    *out = POSE_NONE;
+    *out = POSE_IDENTITY;
     if (!node)
         return;
     read_numbers(reader, node, "xyz", false, 3, out->p);

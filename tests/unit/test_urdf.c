@@ -160,7 +160,7 @@ static void check_enclosure(int sides, double radius, double length, const doubl
 {
     char text[1024];
     struct robot robot;
-    struct pose pose, placed = POSE_NONE;
+    struct pose pose, placed = POSE_IDENTITY;
     struct owned_scene scene = {.dim = 3};
     double outside = 0;
     const struct robot_body_options options = {.sides = sides};
