@@ -154,11 +154,18 @@ static enum joint_row read_line(struct joint_table *table, size_t *found)
     char *text = table->text;
     do {
         snprintf(table->place, PLACE_MAX, "%s: line %lu", table->path, ++table->line);
+        const off_t begin = ftello(table->file);
         if (!fgets(text, TEXT_MAX, table->file))
             return ferror(table->file) ? refuse(table, "%s", strerror(errno)) : JOINT_ROW_END;
-        if (!strchr(text, '\n') && !feof(table->file))
+        char *end = strchr(text, '\n');
+        const bool last = !end && feof(table->file);
+        if (!end && (!last || ftello(table->file) - begin != (off_t) strlen(text)))
             return refuse(table, "has a zero byte, or more than %d bytes", TEXT_MAX - 1);
-        text[strcspn(text, "\r\n")] = '\0';
+        end = end ? end : text + strlen(text);
+        end -= end > text && end[-1] == '\r';
+        *end = '\0';
+        if (strchr(text, '\r'))
+            return refuse(table, "a carriage return within the line: end lines by line feeds");
     } while (text[0] == '\0');
     text += table->line == 1 && strncmp(text, mark, strlen(mark)) == 0 ? strlen(mark) : 0;
     if (!table->field) {

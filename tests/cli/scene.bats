@@ -235,6 +235,15 @@ triangle() {
     bad "t.csv: line 2: column 'time': expected a finite number" turn,slide,time 1,1,
     bad "t.csv: line 2: a quote is misplaced or missing" turn,slide '"1,1'
     bad "t.csv: line 2: the label, time included, has more than 64 bytes" turn,slide,label "1,1,$(printf '%065d' 0)"
+    # No row is lost to line ends of another kind, nor behind a zero byte.
+    printf 'turn,slide\r1,1\r' > t.csv
+    refused 't.csv: line 1: a carriage return within the line' robot.urdf --joints-csv t.csv
+    printf 'turn,slide\n1,1\r,9\n' > t.csv
+    refused 't.csv: line 2: a carriage return within the line' robot.urdf --joints-csv t.csv
+    printf 'turn,slide\n1,1\0002' > t.csv
+    refused 't.csv: line 2: has a zero byte' robot.urdf --joints-csv t.csv
+    printf 'turn,slide\n\0001,1' > t.csv
+    refused 't.csv: line 2: has a zero byte' robot.urdf --joints-csv t.csv
     : > t.csv
     refused 't.csv: expected a line of joint names, found none' robot.urdf --joints-csv t.csv
     refused 'none.csv: No such file' robot.urdf --joints-csv none.csv
