@@ -40,6 +40,8 @@ __attribute__((format(printf, 3, 4))) static bool refuse(const struct frames *fr
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
+    for (char *at = text; (at = strchr(at, '\n'));) /* of a file's name: one line remains */
+        *at = ' ';
     complain("%s: line %lu: link '%s': %s", frames->robot->path, element->line,
              frames->link->name->name, text);
     return false;

@@ -45,6 +45,8 @@ __attribute__((format(printf, 3, 4))) static void refuse(struct reader *reader, 
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
+    for (char *at = text; (at = strchr(at, '\n'));) /* of a value: one line remains */
+        *at = ' ';
     if (reader->kind)
         snprintf(within, sizeof within, "%s '%s': ", reader->kind, reader->within->name);
     if (!reader->failed)

@@ -285,6 +285,11 @@ triangle() {
 
 # ---- Bad robots ------------------------------------------------------------------------------
 
+@test "a line end in a name leaves an error one line" {
+    echo '<robot name="r"><link name="a&#10;b"/></robot>' > robot.urdf
+    refused "robot.urdf: line 1: <link>: the name 'a b'" robot.urdf
+}
+
 @test "links and joints that are not a tree are refused" {
     # joined PARENT CHILD...: three links, and joints.
     joined() {
