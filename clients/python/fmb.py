@@ -154,6 +154,8 @@ def _float(name: str, value: Any) -> float:
         return float(value)
     except (TypeError, ValueError):
         raise TypeError(f"{name}: expected a number, found {value!r:.40}") from None
+    except OverflowError:
+        raise ValueError(f"{name}: out of range") from None
 
 
 def _int(name: str, value: Any) -> int:

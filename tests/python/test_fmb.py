@@ -321,6 +321,7 @@ class Arrays(unittest.TestCase):
                 (fmb.Error, "duration", lambda: scene.decide(nan)),
                 (fmb.Error, "duration", lambda: scene.decide(1, instant=True)),
                 (TypeError, "duration", lambda: scene.decide(None)),
+                (ValueError, "duration", lambda: scene.decide(10**400)),
                 (TypeError, "client", lambda: scene.decide(0, client="udpm://")),
                 (TypeError, "label", lambda: scene.decide(0, label=b"x")),
                 (fmb.Error, "pair", lambda: scene.pair(0, 0, 1)),
