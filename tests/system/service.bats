@@ -406,5 +406,6 @@ send_crash_packets() {
     jq -e '.pairs > 5000' "$BATS_TEST_TMPDIR/families"
     kill -INT $record
     wait $record
-    "$FMB" replay --json "$log" | jq -e --slurpfile sent "$BATS_TEST_TMPDIR/families" '.same == $sent[0].pairs and .different == 0'
+    # More where queries were repeated.
+    "$FMB" replay --json "$log" | jq -e --slurpfile sent "$BATS_TEST_TMPDIR/families" '.same >= $sent[0].pairs and .different == 0'
 }
