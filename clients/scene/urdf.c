@@ -329,10 +329,13 @@ static void read_joint(struct reader *reader, const struct node *node)
                "give the joint its value");
     for (int end = 0; end < 2; end++) {
         const struct node *link = find_child(reader, node, ends[end]);
-        if (link)
-            joint.link_names[end] = find_attribute(reader, link, "link", true);
-        else
+        const char *name = link ? find_attribute(reader, link, "link", true) : NULL;
+        if (!link)
             refuse(reader, node->line, "there is no <%s>", ends[end]);
+        else if (name && !utf8_is_text(name))
+            refuse(reader, link->line, "<%s>: the link '%.80s' has control characters", ends[end],
+                   name);
+        joint.link_names[end] = name;
     }
     if (axis)
         read_axis(reader, axis, &joint);

@@ -288,6 +288,8 @@ triangle() {
 @test "a line end in a name leaves an error one line" {
     echo '<robot name="r"><link name="a&#10;b"/></robot>' > robot.urdf
     refused "robot.urdf: line 1: <link>: the name 'a b'" robot.urdf
+    echo '<robot name="r"><link name="a"/><joint name="j" type="fixed"><parent link="x&#10;y"/><child link="a"/></joint></robot>' > robot.urdf
+    refused "robot.urdf: line 1: joint 'j': <parent>: the link 'x y' has control characters" robot.urdf
 }
 
 @test "links and joints that are not a tree are refused" {
