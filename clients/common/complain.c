@@ -38,6 +38,17 @@ void complain_as(const char *command, const char *format, va_list list)
     print_line(command, text);
 }
 
+void complain_at(const char *place, const char *format, va_list list)
+{
+    char text[COMPLAIN_MAX];
+    const int length = snprintf(text, sizeof text, "%s: ", place);
+    if (length >= 0 && (size_t) length < sizeof text)
+        vsnprintf(text + length, sizeof text - (size_t) length, format, list);
+    for (char *at = text; (at = strchr(at, '\n'));)
+        *at = ' ';
+    print_line("fmb", text);
+}
+
 bool output_flush(void)
 {
     if (fflush(stdout) == 0 && !ferror(stdout))

@@ -13,6 +13,12 @@ __attribute__((format(printf, 1, 2))) void complain(const char *format, ...);
 /* Prints a text as one line, after "fmb ", the name of a command and ": ". */
 void complain_as(const char *command, const char *format, va_list list);
 
+/* Capacity for a place: the longest path, a line and a name. */
+enum { COMPLAIN_PLACE_MAX = 4300 };
+
+/* Prints a text as one line, after "fmb: ", a place and ": ": line ends within it become spaces. */
+void complain_at(const char *place, const char *format, va_list list);
+
 /* Prints a text within a line. */
 void complain_text(const char *text);
 

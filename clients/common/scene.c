@@ -1,6 +1,7 @@
 #include "scene.h"
 
 #include "allocate.h"
+#include "frame_numbers.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -32,12 +33,13 @@ void scene_clear(struct owned_scene *scene)
 static enum fmb_status make_frame(struct owned_scene *scene, const struct given_frame *given,
                                   struct fmb_frame *out)
 {
-    if (given->shape != FMB_HULL)
-        return (given->by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
-            scene->dim, given->shape, given->numbers, given->count, out);
-    const size_t doubles = fmb_hull_doubles(scene->dim, given->count / (size_t) scene->dim);
-    return fmb_frame_make_hull(scene->dim, given->numbers, given->count,
-                               scene_alloc(scene, doubles, sizeof(double)), out);
+    double *memory = NULL;
+    if (given->shape == FMB_HULL)
+        memory =
+            scene_alloc(scene, fmb_hull_doubles(scene->dim, given->count / (size_t) scene->dim),
+                        sizeof *memory);
+    return frame_of_numbers(scene->dim, given->shape, given->by_vertices, given->numbers,
+                            given->count, &memory, out);
 }
 
 size_t scene_body_bytes(const struct given_frame *given, size_t count)

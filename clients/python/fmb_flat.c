@@ -1,6 +1,7 @@
 #include "fmb_flat.h"
 
 #include "fmb_client.h"
+#include "frame_numbers.h"
 #include "geometry.h"
 #include "query.h"
 #include "utf8.h"
@@ -31,16 +32,10 @@ static int make_body(int dim, size_t count, const int32_t *shapes, const int64_t
     for (size_t i = 0; i < count; i++) {
         const struct geometry_shape shape = geometry_shape(shapes[i]);
         const size_t n = (size_t) counts[i];
-        const enum fmb_status status =
-            shape.shape == FMB_HULL
-                ? fmb_frame_make_hull(dim, numbers, n, vertices, &out->frames[i])
-            : shape.by_vertices
-                ? fmb_frame_make_vertices(dim, shape.shape, numbers, n, &out->frames[i])
-                : fmb_frame_make(dim, shape.shape, numbers, n, &out->frames[i]);
+        const enum fmb_status status = frame_of_numbers(dim, (int) shape.shape, shape.by_vertices,
+                                                        numbers, n, &vertices, &out->frames[i]);
         if (status != FMB_OK)
             return (int) status;
-        if (shape.shape == FMB_HULL)
-            vertices += fmb_hull_doubles(dim, n / (size_t) dim);
         numbers += n;
     }
     return (int) fmb_body_make_frames(out->frames, count, &out->body);

@@ -103,7 +103,7 @@ bool joints_check(const struct joints *joints)
 
 /* ---- Lines of CSV ---- */
 
-enum { TEXT_MAX = 1 << 20, PLACE_MAX = 4200 };
+enum { TEXT_MAX = 1 << 20 };
 
 /* Columns that are not of joints. */
 #define COLUMN_TIME (UINT32_MAX - 2)
@@ -113,17 +113,15 @@ enum { TEXT_MAX = 1 << 20, PLACE_MAX = 4200 };
 __attribute__((format(printf, 2, 3))) static enum joint_row refuse(const struct joint_table *table,
                                                                    const char *format, ...)
 {
-    char text[1024];
     va_list list;
     va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
+    complain_at(table->place, format, list);
     va_end(list);
-    complain("%s: %s", table->place, text);
     return JOINT_ROW_BAD;
 }
 
-/* Divides the line into fields, in place. Returns their number, of which the first `capacity` are
- * set; SIZE_MAX if quotes are wrong. */
+/* Splits the line into fields, in place, and stores pointers to at most `capacity` of them. Returns
+ * the number of fields; SIZE_MAX if quotes are wrong. */
 static size_t split(char *at, char **field, size_t capacity)
 {
     for (size_t count = 0;; at++) {
@@ -153,7 +151,7 @@ static enum joint_row read_line(struct joint_table *table, size_t *found)
     static const char mark[] = "\xef\xbb\xbf"; /* UTF-8 byte order mark */
     char *text = table->text;
     do {
-        snprintf(table->place, PLACE_MAX, "%s: line %lu", table->path, ++table->line);
+        snprintf(table->place, COMPLAIN_PLACE_MAX, "%s: line %lu", table->path, ++table->line);
         const off_t begin = ftello(table->file);
         if (!fgets(text, TEXT_MAX, table->file))
             return ferror(table->file) ? refuse(table, "%s", strerror(errno)) : JOINT_ROW_END;
@@ -228,7 +226,7 @@ bool joint_table_open(const char *path, struct joints *joints, struct joint_tabl
                                 .file = fopen(path, "r"),
                                 .time = NAN,
                                 .text = allocate(TEXT_MAX, 1),
-                                .place = allocate(PLACE_MAX, 1)};
+                                .place = allocate(COMPLAIN_PLACE_MAX, 1)};
     if (!out->file || fstat(fileno(out->file), &about) != 0)
         complain("%s: %s", path, strerror(errno));
     else if (!S_ISREG(about.st_mode))

@@ -35,15 +35,13 @@ __attribute__((format(printf, 3, 4))) static bool refuse(const struct frames *fr
                                                          const struct robot_element *element,
                                                          const char *format, ...)
 {
-    char text[8192];
+    char place[COMPLAIN_PLACE_MAX];
     va_list list;
+    snprintf(place, sizeof place, "%s: line %lu: link '%s'", frames->robot->path, element->line,
+             frames->link->name->name);
     va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
+    complain_at(place, format, list);
     va_end(list);
-    for (char *at = text; (at = strchr(at, '\n'));) /* of a file's name: one line remains */
-        *at = ' ';
-    complain("%s: line %lu: link '%s': %s", frames->robot->path, element->line,
-             frames->link->name->name, text);
     return false;
 }
 

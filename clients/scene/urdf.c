@@ -40,17 +40,17 @@ struct reader {
 __attribute__((format(printf, 3, 4))) static void refuse(struct reader *reader, unsigned long line,
                                                          const char *format, ...)
 {
-    char text[1024], within[QUERY_NAME_MAX + 16] = "";
+    char place[COMPLAIN_PLACE_MAX];
     va_list list;
+    if (reader->failed)
+        return;
+    const int length = snprintf(place, sizeof place, "%s: line %lu", reader->robot->path, line);
+    if (reader->kind && length < COMPLAIN_PLACE_MAX)
+        snprintf(place + length, sizeof place - (size_t) length, ": %s '%s'", reader->kind,
+                 reader->within->name);
     va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
+    complain_at(place, format, list);
     va_end(list);
-    for (char *at = text; (at = strchr(at, '\n'));) /* of a value: one line remains */
-        *at = ' ';
-    if (reader->kind)
-        snprintf(within, sizeof within, "%s '%s': ", reader->kind, reader->within->name);
-    if (!reader->failed)
-        complain("%s: line %lu: %s%s", reader->robot->path, line, within, text);
     reader->failed = true;
 }
 

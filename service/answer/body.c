@@ -1,5 +1,6 @@
 #include "body.h"
 
+#include "frame_numbers.h"
 #include "geometry.h"
 
 #include <assert.h>
@@ -11,15 +12,9 @@ static void make_frame(int dim, const struct geometry_frame *frame, double **ver
                        struct fmb_frame *out)
 {
     double number[FMB_DIM_MAX * FMB_HULL_VERTICES_MAX];
-    enum fmb_status status;
     geometry_numbers(frame, number);
-    if (frame->shape == FMB_HULL) {
-        status = fmb_frame_make_hull(dim, number, frame->count, *vertices, out);
-        *vertices += fmb_hull_doubles(dim, frame->count / (size_t) dim);
-    } else {
-        status = (frame->by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
-            dim, frame->shape, number, frame->count, out);
-    }
+    const enum fmb_status status = frame_of_numbers(dim, frame->shape, frame->by_vertices, number,
+                                                    frame->count, vertices, out);
     assert(status == FMB_OK);
     (void) status;
 }
