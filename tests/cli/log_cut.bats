@@ -2,6 +2,8 @@
 
 bats_require_minimum_version 1.5.0
 
+load split
+
 setup() {
     : "${FMB_BUILD:=build}"
     FMB=$FMB_BUILD/fmb
@@ -38,19 +40,6 @@ has() {
 outcomes() {
     "$FMB" replay --json "$@" 2> "$T/replay.err" |
         jq -c '[.channels[] | [.queries, .same, .different, .busy, .unknown_body, .no_result]]'
-}
-
-# offset_of LOG N: of the event with index N.
-offset_of() {
-    "$FMB_BUILD/edit-log" --offset "$2" "$1"
-}
-
-# split LOG N: into $T/first.log, with N events, and $T/second.log.
-split_at() {
-    local at
-    at=$(offset_of "$1" "$2")
-    head -c "$at" "$1" > "$T/first.log"
-    tail -c +$((at + 1)) "$1" > "$T/second.log"
 }
 
 # ---- What is copied --------------------------------------------------------------------------

@@ -2,6 +2,8 @@
 
 bats_require_minimum_version 1.5.0
 
+load split
+
 setup() {
     : "${FMB_BUILD:=build}"
     FMB=$FMB_BUILD/fmb
@@ -43,19 +45,6 @@ answers() {
 # u32 FILE OFFSET
 u32() {
     od -An -tu1 -j "$2" -N 4 "$1" | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4 }'
-}
-
-# offset_of LOG N: of the event with index N.
-offset_of() {
-    "$FMB_BUILD/edit-log" --offset "$2" "$1"
-}
-
-# split LOG N: into $T/first.log, with N events, and $T/second.log.
-split_at() {
-    local at
-    at=$(offset_of "$1" "$2")
-    head -c "$at" "$1" > "$T/first.log"
-    tail -c +$((at + 1)) "$1" > "$T/second.log"
 }
 
 @test "each query of a log is a scene that can be decided, with its command" {

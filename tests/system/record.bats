@@ -11,21 +11,6 @@ setup() {
     report=$BATS_TEST_TMPDIR/report
 }
 
-# start_record [OPTIONS] FILE: records until finish_record. The pid is in $record.
-start_record() {
-    : > "$messages" # those of an earlier one
-    "$FMB" record --json "$@" > "$report" 2> "$messages" 3>&- 9>&- &
-    record=$!
-    started="${started-} $record"
-    wait_until grep -qs 'recording to' "$messages"
-}
-
-# finish_record [SIGNAL]: its summary is in $report.
-finish_record() {
-    kill -"${1:-INT}" "$record"
-    wait "$record"
-}
-
 # The events of logs, without numbers and times: channel, size, checksum.
 events() {
     for file in "$@"; do "$FMB_BUILD/events" "$file" || return; done | cut -d ' ' -f 3-

@@ -34,6 +34,22 @@ teardown() {
     for pid in ${started-}; do kill -KILL "$pid" 2> /dev/null || true; done
 }
 
+# start_record [OPTIONS] FILE: records until finish_record. The pid is in $record, what it says in
+# $messages.
+start_record() {
+    : > "$messages" # those of an earlier one
+    "$FMB" record --json "$@" > "$report" 2> "$messages" 3>&- 9>&- &
+    record=$!
+    started="${started-} $record"
+    wait_until grep -qs 'recording to' "$messages"
+}
+
+# finish_record [SIGNAL]: its summary is in $report.
+finish_record() {
+    kill -"${1:-INT}" "$record"
+    wait "$record"
+}
+
 # status_of FIELD[,.FIELD]...: numbers of the next heartbeat, one a line.
 status_of() {
     "$FMB" status --json | jq -r ".$1"

@@ -397,15 +397,13 @@ send_crash_packets() {
 
 @test "the pairs of the campaigns get the answers of libfmb, and their recording replays the same" {
     log=$BATS_TEST_TMPDIR/families.log
+    report=$BATS_TEST_TMPDIR/report
+    messages=$BATS_TEST_TMPDIR/messages
     start_fmbd
-    "$FMB" record --json "$log" > "$BATS_TEST_TMPDIR/report" 2> "$BATS_TEST_TMPDIR/recorder" 3>&- &
-    record=$!
-    started="$started $record"
-    wait_until grep -qs 'recording to' "$BATS_TEST_TMPDIR/recorder"
+    start_record "$log"
     "$FMB_BUILD/soak-families" > "$BATS_TEST_TMPDIR/families"
     jq -e '.pairs > 5000' "$BATS_TEST_TMPDIR/families"
-    kill -INT $record
-    wait $record
+    finish_record
     # More where queries were repeated.
     "$FMB" replay --json "$log" | jq -e --slurpfile sent "$BATS_TEST_TMPDIR/families" '.same >= $sent[0].pairs and .different == 0'
 }
