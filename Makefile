@@ -4,8 +4,8 @@
 #   make deps-test test     installs what the tests need, then runs them
 #
 # Build:    all (default), examples, install, install-strip, uninstall, clean
-# Test:     test (12 minutes), test-fast (one), unit-tests; headers, layers, format,
-#           format-check
+# Test:     test (half an hour on two shared cores), test-fast (less), unit-tests; headers, layers,
+#           format, format-check
 # Packages: deb: of Debian, into build/deb; deb-test: tries them in a chroot (deps-deb first; root)
 # Longer:   validate, accuracy, soak, fuzz, fuzz-afl, fuzz-merge (deps-fuzz first)
 # Measure:  bench (deps-bench first, for other libraries), bench-bus, bench-replay, bench-mesh,
