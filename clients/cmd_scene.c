@@ -68,6 +68,16 @@ struct scene_options {
     double margin; /* negative: not given */
 };
 
+/* Takes a text that may be given once: the last of several would hide the others. */
+static bool take_once(const struct args *args, void *out)
+{
+    const char **text = out;
+    if (*text)
+        return args_error(args, "--%s is given twice", args->option);
+    *text = optarg;
+    return true;
+}
+
 /* Places and prints the scenes of all rows; if print is false, only checks them. */
 static bool print_rows(struct robot_scene *scene, struct joint_table *table, bool print)
 {
@@ -75,7 +85,9 @@ static bool print_rows(struct robot_scene *scene, struct joint_table *table, boo
     const double duration = out->duration;
     enum joint_row row = joint_table_next(table);
     const double begin = table->time;
-    bool good = true;
+    bool good = row != JOINT_ROW_END;
+    if (!good)
+        complain("%s: expected a row of joint values, found none", table->place);
     while (good && row == JOINT_ROW) {
         const double time = table->time;
         char label[sizeof table->label];
@@ -142,12 +154,12 @@ int cmd_scene(int argc, char **argv)
 {
     struct scene_options options = {.sides = ROBOT_SIDES, .margin = -1};
     const struct args_option own[] = {
-        {"joints", ARGS_TEXT, .out = &options.joints},
+        {"joints", ARGS_OTHER, &options.joints, .take = take_once},
         {"joints-csv", ARGS_TEXT, .out = &options.table},
         {"sides", ARGS_INTEGER, &options.sides, .low = 4, .high = ROBOT_SIDES_MAX},
         {"objects", ARGS_FLAG, .out = &options.body.objects},
         {"package-path", ARGS_TEXT, .out = &options.body.package_path},
-        {"with", ARGS_TEXT, .out = &options.world},
+        {"with", ARGS_OTHER, &options.world, .take = take_once},
         {"margin", ARGS_NUMBER, &options.margin, .high = DBL_MAX},
         {.name = NULL},
     };

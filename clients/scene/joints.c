@@ -120,16 +120,16 @@ __attribute__((format(printf, 2, 3))) static enum joint_row refuse(const struct 
     return JOINT_ROW_BAD;
 }
 
-/* Splits the line into fields, in place, and stores pointers to at most `capacity` of them. Returns
- * the number of fields; SIZE_MAX if quotes are wrong. */
+/* Splits the line into fields without the spaces around them, in place, and stores pointers to at
+ * most `capacity` of them. Returns the number of fields; SIZE_MAX if quotes are wrong. */
 static size_t split(char *at, char **field, size_t capacity)
 {
     for (size_t count = 0;; at++) {
         at += strspn(at, " \t");
         const bool quoted = *at == '"';
-        char *out = at += quoted;
+        char *const begin = at += quoted, *out = begin;
         if (count < capacity)
-            field[count] = out;
+            field[count] = begin;
         count++;
         while (quoted ? *at && (*at != '"' || at[1] == '"') : *at && *at != ',') {
             at += quoted && *at == '"';
@@ -137,6 +137,9 @@ static size_t split(char *at, char **field, size_t capacity)
         }
         if (quoted && *at++ != '"')
             return SIZE_MAX;
+        at += strspn(at, " \t");
+        while (!quoted && out > begin && strchr(" \t", out[-1]))
+            out--;
         const char end = *at;
         *out = '\0';
         if (end != ',')
@@ -144,13 +147,14 @@ static size_t split(char *at, char **field, size_t capacity)
     }
 }
 
-/* Reads the next line that is not empty, and divides it into fields: those of the columns, once
+/* Reads the next line that is not blank, and divides it into fields: those of the columns, once
  * these are known. */
 static enum joint_row read_line(struct joint_table *table, size_t *found)
 {
     static const char mark[] = "\xef\xbb\xbf"; /* UTF-8 byte order mark */
-    char *text = table->text;
+    char *text;
     do {
+        text = table->text;
         snprintf(table->place, COMPLAIN_PLACE_MAX, "%s: line %lu", table->path, ++table->line);
         const off_t begin = ftello(table->file);
         if (!fgets(text, TEXT_MAX, table->file))
@@ -158,14 +162,15 @@ static enum joint_row read_line(struct joint_table *table, size_t *found)
         char *end = strchr(text, '\n');
         const bool last = !end && feof(table->file);
         if (!end && (!last || ftello(table->file) - begin != (off_t) strlen(text)))
-            return refuse(table, "has a zero byte, or more than %d bytes", TEXT_MAX - 1);
+            return refuse(table, "has a zero byte (save the table as UTF-8), or more than %d bytes",
+                          TEXT_MAX - 1);
         end = end ? end : text + strlen(text);
         end -= end > text && end[-1] == '\r';
         *end = '\0';
         if (strchr(text, '\r'))
             return refuse(table, "a carriage return within the line: end lines by line feeds");
-    } while (text[0] == '\0');
-    text += table->line == 1 && strncmp(text, mark, strlen(mark)) == 0 ? strlen(mark) : 0;
+        text += table->line == 1 && strncmp(text, mark, strlen(mark)) == 0 ? strlen(mark) : 0;
+    } while (text[strspn(text, " \t")] == '\0');
     if (!table->field) {
         size_t most = 1;
         for (const char *at = text; (at = strchr(at, ',')); at++)

@@ -8,7 +8,7 @@
  * the selected ones, and no selected one is in the hull of the others.
  *
  * In:  point   [count][axis], count at least 1
- * Out: vertex  [FMB_HULL_VERTICES_MAX][axis], the selected points, in their order
+ * Out: vertex  the selected points, in their order: at most FMB_HULL_VERTICES_MAX, or count
  *      *found  their number; 0: more than FMB_HULL_VERTICES_MAX
  * Returns FMB_OK, or a status of fmb_frame_make_hull() or fmb_decide().
  * Cost: O(count) decisions of a point and a hull, and O(count * *found). */

@@ -211,35 +211,39 @@ static bool is_collada(const char *file)
     return dot && strcasecmp(dot, ".dae") == 0;
 }
 
-/* Adds the hull of faces first to end - 1, if there are any. */
-static bool add_faces(struct frames *frames, const struct robot_element *element, const char *path,
-                      const struct mesh *mesh, size_t first, size_t end)
+static size_t least(size_t a, size_t b)
 {
-    bool *used = allocate(mesh->vertex_count, sizeof *used);
-    double(*point)[3] = allocate(mesh->vertex_count, sizeof *point);
-    double(*vertex)[3] = scene_alloc(frames->scene, FMB_HULL_VERTICES_MAX, sizeof *vertex);
-    size_t count = 0, found = 0;
+    return a < b ? a : b;
+}
+
+/* Adds the hull of faces first to end - 1, if there are any. In/out: used: [vertex_count], end of
+ * the last call that used a vertex, or 0. */
+static bool add_faces(struct frames *frames, const struct robot_element *element, const char *path,
+                      const struct mesh *mesh, size_t first, size_t end, size_t *used)
+{
+    if (first == end)
+        return true;
+    double(*point)[3] = allocate(least(3 * (end - first), mesh->vertex_count), sizeof *point);
+    size_t count = 0, found;
     for (size_t corner = 3 * first; corner < 3 * end; corner++) {
         const unsigned v = mesh->face[corner / 3][corner % 3];
-        for (int axis = 0; axis < 3 && !used[v]; axis++)
+        for (int axis = 0; axis < 3 && used[v] != end; axis++)
             point[count][axis] = mesh->vertex[v][axis] * element->size[axis] + 0.0; /* no -0 */
-        count += !used[v];
-        used[v] = true;
+        count += used[v] != end;
+        used[v] = end;
     }
-    enum fmb_status status = FMB_OK;
-    if (count > 0)
-        status = mesh_hull((const double(*)[3]) point, count, vertex, &found);
-    free(used);
+    double(*vertex)[3] =
+        scene_alloc(frames->scene, least(count, FMB_HULL_VERTICES_MAX), sizeof *vertex);
+    const enum fmb_status status = mesh_hull((const double(*)[3]) point, count, vertex, &found);
     free(point);
     if (status != FMB_OK)
         return refuse(frames, element, "%s: %s", path, fmb_status_text((int) status));
-    if (count > 0 && found == 0)
+    if (found == 0)
         return refuse(frames, element,
                       "%s: the hull of %zu vertices has more than %d of them: simplify the mesh, "
                       "or divide it into objects (--objects)",
                       path, count, (int) FMB_HULL_VERTICES_MAX);
-    if (count > 0)
-        add_hull(frames, vertex, found);
+    add_hull(frames, vertex, found);
     return true;
 }
 
@@ -248,10 +252,12 @@ static bool add_objects(struct frames *frames, const struct robot_element *eleme
 {
     const size_t before = frames->count;
     const size_t objects = frames->options->objects ? mesh->object_count : 0;
+    size_t *used = allocate(mesh->vertex_count, sizeof *used);
     bool good = true;
     for (size_t i = 0; good && i <= objects; i++)
         good = add_faces(frames, element, path, mesh, i > 0 ? mesh->object[i - 1] : 0,
-                         i < objects ? mesh->object[i] : mesh->face_count);
+                         i < objects ? mesh->object[i] : mesh->face_count, used);
+    free(used);
     return good &&
            (frames->count > before || refuse(frames, element, "%s: the mesh has no faces", path));
 }
@@ -292,10 +298,11 @@ static const struct fmb_body *make_body(struct frames *frames, const struct robo
     const size_t bytes = scene_body_bytes(frames->frame, frames->count);
     size_t bad;
     if (bytes > FMB_CLIENT_BODY_BYTES_MAX) {
-        refuse(
-            frames, first,
-            "%zu frames take %zu bytes in a message, which has space for %d: simplify its meshes",
-            frames->count, bytes, (int) FMB_CLIENT_BODY_BYTES_MAX);
+        refuse(frames, first,
+               "%zu frames take %zu bytes in a message, which has space for %d: simplify its "
+               "meshes, or "
+               "give fewer --sides",
+               frames->count, bytes, (int) FMB_CLIENT_BODY_BYTES_MAX);
         return NULL;
     }
     const enum fmb_status status =

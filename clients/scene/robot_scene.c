@@ -222,8 +222,8 @@ bool robot_scene_place(struct robot_scene *scene, const double *value, double ti
         const struct fmb_placement *body = &scene->placements[i];
         const enum fmb_status status = fmb_placement_check(body);
         if (status != FMB_OK) {
-            complain("%s: body %" PRId64 " (%s): %s", place, body->id, body->name ? body->name : "",
-                     fmb_status_text((int) status));
+            complain("%s: body %" PRId64 "%s%s: %s", place, body->id, body->name ? ", " : "",
+                     body->name ? body->name : "", fmb_status_text((int) status));
             return false;
         }
     }

@@ -145,6 +145,16 @@ triangle() {
     done
 }
 
+# 256 MB suffice.
+@test "objects without faces take no memory" {
+    { for i in 1 2 3; do echo "v $i $((i * i)) 0"; done; yes 'o x' | head -n 50000; echo 'f 1 2 3'; } > m.obj
+    link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
+    (ulimit -v 262144 && "$FMB" scene robot.urdf --objects) > output.txt
+    output=$(< output.txt) status=0
+    shows '.bodies[0].vertices | length'
+    is 3
+}
+
 # 20,000 triangles around a cylinder, in rings, and in its ends; 100 sides.
 @test "an STL of 20,000 triangles loads" {
     awk 'BEGIN {
@@ -202,8 +212,7 @@ triangle() {
 }
 
 @test "a table gives a scene for each row, with label and time" {
-    printf '\xef\xbb\xbftime, slide ,label\r\n0,1,\r\n\r\n0.25,2,"a ""b"", c"\r\n1,-0.5,end' > t.csv
-    sed -i 's/ slide /slide/' t.csv
+    printf '\xef\xbb\xbf \r\ntime, slide ,"label" \r\n0 ,1,\r\n\t\r\n0.25, "2" ,"a ""b"", c"\r\n1,-0.5, end ' > t.csv
     scene robot.urdf --joints turn=0 --joints-csv t.csv
     said ''
     shows '[.label, .duration, .bodies[2].position[1]]'
@@ -246,10 +255,11 @@ triangle() {
     refused 't.csv: line 2: has a zero byte' robot.urdf --joints-csv t.csv
     : > t.csv
     refused 't.csv: expected a line of joint names, found none' robot.urdf --joints-csv t.csv
+    bad 't.csv: line 3: expected a row of joint values, found none' turn,slide ''
     refused 'none.csv: No such file' robot.urdf --joints-csv none.csv
     refused '/dev/null: not a regular file' robot.urdf --joints-csv /dev/null
     head -c 2000000 /dev/zero > t.csv
-    refused 't.csv: line 1: has a zero byte, or more than 1048575 bytes' robot.urdf --joints-csv t.csv
+    refused 't.csv: line 1: has a zero byte (save the table as UTF-8), or more than 1048575 bytes' robot.urdf --joints-csv t.csv
 }
 
 # ---- The world -------------------------------------------------------------------------------
@@ -268,6 +278,9 @@ triangle() {
     shows '[.duration, has("margin"), .bodies[5].position]'
     is '[0.5,false,null]
 [0,false,[0.5,0,0]]'
+    echo "{\"dim\": 3, \"bodies\": [{\"id\": 9, $cube, \"velocity\": [1e308,0,0]}]}" > world.json
+    printf 'turn,slide,time\n0,0,0\n0,0,2\n' > t.csv
+    refused 't.csv: line 3: body 9: not a finite number' robot.urdf --with world.json --joints-csv t.csv
 }
 
 @test "a world that is not one scene in 3D of all pairs is refused" {
@@ -392,7 +405,7 @@ triangle() {
     # More than a message can hold.
     { for i in 1 2 3; do echo "o $i"; awk 'BEGIN { for (i = 0; i < 1000; i++) print "v", i, i * i, 0; for (i = 3; i <= 1000; i++) print "f -1000 -999 -" i - 2 }'; done; } > m.obj
     link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
-    refused '3 frames take 72015 bytes in a message, which has space for 63500' robot.urdf --objects
+    refused '3 frames take 72015 bytes in a message, which has space for 63500: simplify its meshes, or give fewer --sides' robot.urdf --objects
 }
 
 @test "other formats and wrong XML are refused" {
@@ -444,6 +457,8 @@ triangle() {
     wrong scene a --sides 18
     wrong scene a --sides 48
     wrong scene a --margin -1
+    wrong scene a --with a.json --with b.json # not only the bodies of one of them
+    wrong scene a --joints a=1 --joints b=1
 }
 
 @test "a planned path is checked" {
