@@ -33,6 +33,7 @@ import enum
 import itertools
 import math
 import operator
+import os
 import threading
 from array import array
 from collections.abc import Iterable, Iterator, Sequence
@@ -192,6 +193,8 @@ def _flat(name: str, value: Any, code: str, shape: tuple) -> tuple[memoryview, t
             raise TypeError(f"{name}: expected {type_name}, found {getattr(value, 'dtype', view.format)}")
     if len(found) != len(shape) or any(s != f for s, f in zip(shape, found) if s.__class__ is int):
         raise ValueError(f"{name}: expected shape {_shape_text(shape)}, found {_shape_text(found)}")
+    if hasattr(value, "mask"):
+        raise TypeError(f"{name}: a masked array: pass what its filled() returns")
     if not view.c_contiguous:
         raise ValueError(f"{name}: not in C order: use numpy.ascontiguousarray()")
     return view, found
@@ -203,7 +206,7 @@ def _from_sequence(name: str, value: Any, code: str, shape: tuple) -> tuple[memo
         if len(shape) == 1:
             out.extend(value)
             return memoryview(out), (len(out),)
-        width = shape[1] if shape[1].__class__ is int else len(value[0])
+        width = shape[1] if shape[1].__class__ is int else len(value[0]) if len(value) else 0
         for i, row in enumerate(value):
             if len(row) != width:
                 raise ValueError(f"{name}[{i}]: expected {width} numbers, found {len(row)}")
@@ -213,6 +216,13 @@ def _from_sequence(name: str, value: Any, code: str, shape: tuple) -> tuple[memo
     except (TypeError, OverflowError, LookupError) as error:
         raise TypeError(f"{name}: expected {_TYPES[code][0]} of shape {_shape_text(shape)}: "
                         f"{error}") from None
+
+
+def _iterate(name: str, value: Any) -> Iterator[Any]:
+    try:
+        return iter(value)
+    except TypeError:
+        raise TypeError(f"{name}: expected a sequence, found {value!r:.40}") from None
 
 
 def _shape_text(shape: tuple) -> str:
@@ -266,6 +276,8 @@ _CUBOID, _TETRAHEDRON, _FACE, _BOX, _HULL, _TETRAHEDRON_VERTICES, _FACE_VERTICES
 def _numbers(name: str, value: Any, shape: tuple) -> tuple[array, int]:
     """The numbers of an argument, and their dimension, which is the length of its last axis."""
     buffer, found = _flat(name, value, "d", shape)
+    if not found[0]:
+        raise ValueError(f"{name}: it is empty")
     if found[-1] not in (2, 3):
         raise ValueError(f"{name}: expected 2 or 3 axes, found {found[-1]}")
     numbers = array("d", memoryview(buffer).tobytes())
@@ -347,10 +359,7 @@ def compound(bodies: Iterable[Body]) -> Body:
 
 
 def _bodies(bodies: Iterable[Body]) -> tuple[Body, ...]:
-    try:
-        out = tuple(bodies)
-    except TypeError:
-        raise TypeError(f"bodies: expected a sequence, found {bodies!r:.40}") from None
+    out = tuple(_iterate("bodies", bodies))
     if not out:
         raise ValueError("bodies: expected at least one")
     for i, body in enumerate(out):
@@ -481,7 +490,9 @@ class Answers(Sequence):
 
 
 class Client(_Handle):
-    """A client of fmbd on an LCM bus. A client sends each body once: use it for all queries.
+    """A client of fmbd on an LCM bus. A client sends each body once: use it for all queries. After a
+    fork, the child needs a client of its own. A signal, such as that of Ctrl-C, takes effect when the
+    call that waits for answers returns.
 
     url: of the bus, udpm://[GROUP:PORT][?ttl=N]; None: LCM_DEFAULT_URL, or else only this host
     prefix: of the service's channels
@@ -497,6 +508,7 @@ class Client(_Handle):
     def __init__(self, url: Optional[str] = None, prefix: Optional[str] = None, *,
                  timeout: float = 0.5, tries: int = 6, within: float = 0) -> None:
         self._lock = threading.Lock()
+        self._process = os.getpid()
         why = ctypes.create_string_buffer(_WHY_MAX)
         tries = _int("tries", tries)
         if not 0 < tries < 2**31:
@@ -534,6 +546,8 @@ def _lock_of(client: Optional[Client]) -> Any:
 def _handle_of(client: Optional[Client]) -> Optional[int]:
     if client is not None and not client._handle:
         raise BusError("client: it is closed")
+    if client is not None and client._process != os.getpid():
+        raise BusError("client: it is of another process: open one in each")
     return client and client._handle
 
 
@@ -569,7 +583,7 @@ class Scene(_Handle):
         self._one = (ctypes.c_uint8 * 1, ctypes.c_int32 * 1, real * 2, real * (2 * dim), real * 2,
                      real * dim, real * 1, real * (2 * dim), ctypes.c_int64 * 2)
         self._one = tuple(column() for column in self._one)
-        self.names = (None,) * n if names is None else tuple(names)
+        self.names = (None,) * n if names is None else tuple(_iterate("names", names))
         if len(self.names) != n:
             raise ValueError(f"names: expected {n}, found {len(self.names)}")
         texts = [_text(f"names[{i}]", name) for i, name in enumerate(self.names)]
@@ -653,25 +667,26 @@ class Scene(_Handle):
         margin: separated pairs at most this far apart are near; they have gaps, as do pairs that meet
         instant: the window is [0, 0] even if bodies move; duration is 0
         contacts, boxes, gaps: also wanted, besides verdicts
-        label: for monitoring the bus, at most 64 bytes
+        label: for monitoring the bus, at most 64 bytes of UTF-8 without control characters
         client: decides the pairs; None: in process
 
         A list of pairs is fastest per pair, above all without a margin and with bodies of one frame.
         """
-        if pairs is not None and split is not None:
-            raise ValueError("split: not with pairs")
+        for name, value in (("split", split), ("ignored", ignored)):
+            if pairs is not None and value is not None:
+                raise ValueError(f"{name}: not with pairs")
         listed = None if pairs is None else _flat("pairs", pairs, "q", ("m", 2))[0]
         left_out = None if ignored is None else _flat("ignored", ignored, "q", ("m", 2))[0]
         first = -1 if split is None else _int("split", split)
         if split is not None and first < 0:
             raise ValueError(f"split: {first} is negative")
-        margin = _float("margin", margin)
+        duration, margin = _float("duration", duration), _float("margin", margin)
         want = (_WANT_TIMES if contacts else 0) + (_WANT_BOX if boxes else 0) + (
             _WANT_GAP if gaps else 0)
         with self._lock, _lock_of(client):
             self._check(_lib.fmb_flat_decide(
-                self._handle, _handle_of(client), _float("duration", duration), bool(instant), want,
-                margin, first, _pointer(listed), 0 if listed is None else len(listed),
+                self._handle, _handle_of(client), duration, bool(instant), want, margin, first,
+                _pointer(listed), 0 if listed is None else len(listed),
                 _pointer(left_out), 0 if left_out is None else len(left_out),
                 _text("label", label)))
             return Answers(self._handle, self.dim, self.names, listed,
@@ -683,7 +698,7 @@ class Scene(_Handle):
         """Yields the answers of one scene after the other. positions, orientations and velocities are as
         for place(), with one more axis in front, that of the scenes; or they are iterables of such
         arrays. options are those of decide()."""
-        given = {name: values for name, values in (
+        given = {name: _iterate(name, values) for name, values in (
             ("positions", positions), ("orientations", orientations), ("velocities", velocities))
             if values is not None}
         for poses in itertools.zip_longest(*given.values()):

@@ -130,6 +130,11 @@ static int refuse(struct fmb_flat_scene *scene, int status, const char *argument
     return status;
 }
 
+static bool is_text(const char *text)
+{
+    return strlen(text) <= QUERY_NAME_MAX && utf8_is_text(text);
+}
+
 static int fill_scene(struct fmb_flat_scene *scene, struct fmb_flat_body *const *bodies,
                       const int64_t *ids, const int64_t *groups, const char *const *names)
 {
@@ -146,7 +151,7 @@ static int fill_scene(struct fmb_flat_scene *scene, struct fmb_flat_body *const 
         scene->single = scene->single && placement->body->frame_count == 1;
         if (!names[i])
             continue;
-        if (strlen(names[i]) > QUERY_NAME_MAX || !utf8_is_text(names[i]))
+        if (!is_text(names[i]))
             return refuse(scene, FMB_BAD_NAME, "names", i);
         placement->name = strcpy(end, names[i]);
         end += strlen(names[i]) + 1;
@@ -390,6 +395,10 @@ int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, doub
                     const char *label)
 {
     begin_answers(flat, !pairs, client, margin > 0 ? want | FMB_WANT_GAP : want);
+    if (label && !is_text(label)) {
+        snprintf(flat->why, sizeof flat->why, "label: %s", fmb_status_text(FMB_BAD_NAME));
+        return FMB_BAD_NAME;
+    }
     if (!convert(&flat->listed, pairs, pairs ? pair_count : 0) ||
         !convert(&flat->ignored, ignored, ignored ? ignored_count : 0))
         return refuse(flat, FMB_CLIENT_NO_MEMORY, NULL, 0);

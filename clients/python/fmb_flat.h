@@ -87,7 +87,8 @@ int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64
  *      pairs    [pair_count][2], a list, with which split is not read; NULL: no list
  *      ignored  [ignored_count][2]; none with a list
  *      label    of the scene, or NULL
- * Returns a status of fmb_scene_check() or fmb_client_query(); or NO_MEMORY. */
+ * Returns a status of fmb_scene_check() or fmb_client_query(); FMB_BAD_NAME (of the label); or
+ * NO_MEMORY. */
 int fmb_flat_decide(struct fmb_flat_scene *scene, struct fmb_client *client, double duration,
                     int instant, unsigned want, double margin, int64_t split, const int64_t *pairs,
                     size_t pair_count, const int64_t *ignored, size_t ignored_count,

@@ -209,6 +209,20 @@ class Bus(Answers):
             with self.assertRaisesRegex(fmb.BusError, "^client: "):
                 call()
 
+    def test_a_client_is_not_used_by_another_process(self):
+        # Both would take the answers to each other's queries for their own.
+        scene = fmb.Scene([fmb.box([1, 1])] * 2)
+        child = os.fork()
+        if child == 0:
+            try:
+                scene.pair(0, 1, 0, client=self.client)
+            except fmb.BusError as error:
+                self.client.close()
+                os._exit(0 if str(error).startswith("client: ") else 1)
+            os._exit(1)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+        self.assertEqual(scene.pair(0, 1, 0, client=self.client).verdict, fmb.OVERLAPPING)
+
     def test_without_a_service_pairs_have_a_status(self):
         scene = fmb.Scene([fmb.box([1, 1])] * 3)
         with fmb.Client(prefix="none", timeout=0.01, tries=2) as client:
@@ -226,7 +240,7 @@ class Bus(Answers):
         answers = scene.decide(0, label="a label", client=self.client)
         self.assertEqual(answers[0].names, ("tafel \u00e4", None))
         with self.assertRaisesRegex(fmb.Error, "^label: "):
-            scene.decide(0, label="x" * 65, client=self.client)
+            scene.decide(0, label="\n", client=self.client)
 
 
 class Arrays(unittest.TestCase):
@@ -283,7 +297,7 @@ class Arrays(unittest.TestCase):
         with self.subTest(start):
             with self.assertRaises(error) as caught:
                 call()
-            self.assertTrue(str(caught.exception).startswith(start + ": "), str(caught.exception))
+            self.assertTrue(f"{caught.exception}: ".startswith(start + ": "), str(caught.exception))
             self.assertNotIn("\n", str(caught.exception))
 
     def test_refusals_name_the_argument(self):
@@ -313,7 +327,7 @@ class Arrays(unittest.TestCase):
                 (fmb.Error, "pairs[0]", lambda: scene.decide(0, pairs=[[2**32, 1]])),
                 (fmb.Error, "pairs[0]", lambda: scene.decide(0, pairs=[[1, 1]])),
                 (fmb.Error, "ignored[0]", lambda: scene.decide(0, ignored=[[0, 3]])),
-                (fmb.Error, "ignored_count", lambda: scene.decide(0, ignored=[[0, 1]], pairs=[[0, 1]])),
+                (ValueError, "ignored", lambda: scene.decide(0, ignored=[[0, 1]], pairs=[[0, 1]])),
                 (ValueError, "split", lambda: scene.decide(0, split=1, pairs=[[0, 1]])),
                 (ValueError, "split", lambda: scene.decide(0, split=-1)),
                 (fmb.Error, "split", lambda: scene.decide(0, split=4)),
@@ -324,6 +338,9 @@ class Arrays(unittest.TestCase):
                 (ValueError, "duration", lambda: scene.decide(10**400)),
                 (TypeError, "client", lambda: scene.decide(0, client="udpm://")),
                 (TypeError, "label", lambda: scene.decide(0, label=b"x")),
+                (fmb.Error, "label", lambda: scene.decide(0, label="x" * 65)),
+                (fmb.Error, "label", lambda: scene.decide(0, label="\n", pairs=[[0, 1]])),
+                (TypeError, "positions", lambda: list(scene.stream(0, 5))),
                 (fmb.Error, "pair", lambda: scene.pair(0, 0, 1)),
                 (fmb.Error, "pair", lambda: scene.pair(0, 3, 1)),
                 (fmb.Error, "pair", lambda: scene.pair(0, 1, -1)),
@@ -339,12 +356,14 @@ class Arrays(unittest.TestCase):
                 (fmb.Error, "vertices", lambda: fmb.face(vertices=[[0, 0]] * 3)),
                 (fmb.Error, "vertices", lambda: fmb.hull([[0, 0, i] for i in range(1025)])),
                 (ValueError, "vertices[1]", lambda: fmb.hull([[0, 0, 0], [0, 0]])),
-                (TypeError, "vertices", lambda: fmb.hull([])),
+                (ValueError, "vertices: it is empty", lambda: fmb.hull([])),
+                (ValueError, "size: it is empty", lambda: fmb.box([])),
                 (ValueError, "bodies", lambda: fmb.compound([])),
                 (TypeError, "bodies[1]", lambda: fmb.Scene([box, None])),
                 (TypeError, "bodies", lambda: fmb.Scene(box)),
                 (fmb.Error, "bodies[1]", lambda: fmb.Scene([box, fmb.box([1, 1])])),
                 (ValueError, "names", lambda: fmb.Scene([box], names=["a", "b"])),
+                (TypeError, "names", lambda: fmb.Scene([box], names=1)),
                 (TypeError, "names[0]", lambda: fmb.Scene([box], names=[1])),
                 (ValueError, "names[0]", lambda: fmb.Scene([box], names=["a\0b"])),
                 (fmb.Error, "names[0]", lambda: fmb.Scene([box], names=["x" * 65])),
@@ -375,6 +394,7 @@ class Arrays(unittest.TestCase):
                 (TypeError, "positions", lambda: scene.place(good.astype(int))),
                 (TypeError, "positions", lambda: scene.place(good.astype(">f8"))),
                 (TypeError, "positions", lambda: scene.place(good.astype(object))),
+                (TypeError, "positions", lambda: scene.place(numpy.ma.masked_equal(good, 9))),
                 (ValueError, "positions", lambda: scene.place(numpy.asfortranarray(good))),
                 (ValueError, "positions", lambda: scene.place(numpy.zeros((3, 6))[:, ::2])),
                 (ValueError, "positions", lambda: scene.place(good[:2])),
