@@ -6,6 +6,7 @@
 # The oracle shares no code with the engine, but the pair of frames that both are given.
 see_tests/oracle := service/fmb service/fmb/frame
 see_tests/campaign := tests/oracle $(call fmb,number frame filter exact gap hull decide)
+see_tests/checked := tests/campaign $(see_tests/campaign)
 see_tests/bench := tests/campaign tests/oracle $(call fmb,number frame filter article tree exact decide) \
 	clients/common
 see_tests/bench/peers := tests/bench
@@ -24,14 +25,14 @@ see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/unit 
 see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
 see_tests/unit/kernels := $(call fmb,number frame filter)
 see_tests/unit := $(call fmb,number frame filter article tree exact gap hull decide) service clients \
-	$(see_clients) tests/encode tests/oracle tests/campaign tests/hostile tests/mesh $(GEN)
+	$(see_clients) tests/encode tests/oracle tests/campaign tests/checked tests/hostile tests/mesh $(GEN)
 
 # ---- Programs of tests and measurements: the name, and the main file in tests/ ----
 
 test_programs := plain:system/plain fake-peer:system/fake_peer events:system/events crash-liblcm:system/crash_liblcm \
 	edit-log:replay/edit_log logs/generate:logs/generate logs/describe-log:logs/describe_log \
 	mesh/make-mesh:mesh/make_mesh $(foreach s,load memory rate blast fair relay families,soak-$s:soak/$s)
-measures := validate:campaign/validate accuracy:campaign/accuracy bench/bench:bench/bench \
+measures := validate:campaign/validate accuracy:campaign/accuracy checked:checked/checked bench/bench:bench/bench \
 	bus/bench-bus:bus/bench_bus bus/robot-bus:robot/bus bus/echo:bus/echo robot/robot:robot/robot \
 	replay/bench-replay:replay/bench_replay mesh/bench-mesh:mesh/bench_mesh \
 	python/bench-batch:python/bench_batch
@@ -44,19 +45,26 @@ measures := $(call program_names,$(measures)) $(B)/accuracy-planted
 
 # What the programs of tests share. Those that look into the engine link its objects, the others
 # the library.
-test_folders := $(addprefix tests/,encode oracle hostile campaign mesh bench bus robot soak logs)
+test_folders := $(addprefix tests/,encode oracle hostile campaign checked mesh bench bus robot soak logs)
 shared := $(O)/shared.a
 $(shared): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in,$(test_folders))) \
 		$(patsubst tests/unit/%.c,$(O)/tests/unit/%.o,$(filter-out %/slab_truth.c %/slab_kernel.c \
 			tests/unit/test_%,$(wildcard tests/unit/*.c)))
 	@rm -f $@
 	$(call say,AR,$@) $(AR) qcs $@ $^
-looks_inside := validate accuracy bench/bench bus/bench-bus logs/generate soak-families
+looks_inside := validate accuracy checked bench/bench bus/bench-bus logs/generate soak-families
 $(looks_inside:%=$(B)/%) $(B)/accuracy-planted: $(shared) $(client) $(product) $(engine)
 $(filter-out $(looks_inside:%=$(B)/%),$(test_programs) $(measures)): \
 	$(shared) $(client) $(product) $(B)/libfmb.a
 $(test_programs) $(measures):
 	$(link)
+
+# The engine's headers, compiled as C++ with numbers that know their errors.
+$(O)/tests/checked/checked_bounds.o: tests/checked/checked_bounds.cc $(O)/settings
+	@mkdir -p $(@D)
+	$(call say,CXX,$<) $(CXX) -std=c++20 -fpermissive -fno-exceptions -O2 -ffp-contract=off -fPIC \
+		-Wall -Wextra -Wno-missing-field-initializers -MMD -MP -Itests/checked/number $(sees) -c $< -o $@
+$(B)/checked $(B)/tests/test_checked: $(O)/tests/checked/checked_bounds.o
 
 # ---- Unit tests ----
 
@@ -65,7 +73,7 @@ unit_tests := $(unit_names:%=$(B)/tests/%)
 internal_tests := $(addprefix $(B)/tests/,test_bounds test_box_bounds test_engine_batch \
 	test_engine_pose test_engine_tree test_engine_triangle test_limbs test_outward test_kernels \
 	test_placing test_engine_work test_hull_frame test_hull_verdict test_hull_bounds \
-	test_hull_gap test_hull_certificate)
+	test_hull_gap test_hull_certificate test_checked)
 comma := ,
 wraps = $(addprefix -Wl$(comma)--wrap=,$1)
 wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_addmul z_submul z_add z_sub \
@@ -219,7 +227,10 @@ $(campaign_plants): $(O)/planted/%.o: service/fmb/%.c $(O)/settings
 $(B)/accuracy-planted: $(O)/tests/campaign/accuracy.o $(campaign_plants)
 
 # validate: some twenty minutes; accuracy: some hours, on two cores.
-.PHONY: validate accuracy soak
+.PHONY: validate accuracy checked soak
+# Minutes.
+checked: $(B)/checked
+	$<
 validate: $(B)/validate
 	$<
 accuracy: $(B)/accuracy

@@ -1,5 +1,6 @@
 /* What many.h is made of, once more, so that what is attacked is what runs. */
 #define INLINED_NOT
+#define SLABS_LIST
 #include "kernel_lanes.h"
 
 #include "slab_kernel.h"

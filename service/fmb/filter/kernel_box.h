@@ -14,7 +14,7 @@ INLINE struct kernel_traits traits_of(enum kernel_kind kind)
     return (struct kernel_traits){.dim = kind & KERNEL_3D ? 3 : 2,
                                   .simplex = {same || (face && tetrahedron), tetrahedron || face},
                                   .face = {face && same, face},
-                                  .drifts = kind & KERNEL_DRIFTS,
+                                  .drifts = (kind & KERNEL_DRIFTS) != 0,
                                   .box = true};
 }
 

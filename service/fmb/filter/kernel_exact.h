@@ -46,10 +46,7 @@ INLINE struct exact_extent extent_along(const struct kernel_traits traits, int w
         at[0][lane] = prepared->placement->position[axis];
         at[1][lane] = prepared->frame->centre[axis];
     }
-    lanes position, centre;
-    memcpy(&position, at[0], sizeof position);
-    memcpy(&centre, at[1], sizeof centre);
-    set_centred(is_centred(frame), position, centre, &out);
+    set_centred(is_centred(frame), lanes_load(at[0]), lanes_load(at[1]), &out);
     return out;
 }
 

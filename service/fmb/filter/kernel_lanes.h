@@ -66,18 +66,11 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
 
 enum { GATHERED = 2 };
 
-INLINE lanes two_at(const double *from)
-{
-    lanes out;
-    memcpy(&out, from, sizeof out);
-    return out;
-}
-
 INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
 {
     UNROLL(2)
     for (int w = 0; w < 4; w += 2) {
-        const lanes x = two_at(frame[0] + first + w), y = two_at(frame[1] + first + w);
+        const lanes x = lanes_load(frame[0] + first + w), y = lanes_load(frame[1] + first + w);
         words[w] = __builtin_shufflevector(x, y, 0, 2);
         words[w + 1] = __builtin_shufflevector(x, y, 1, 3);
     }
@@ -87,19 +80,12 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
 
 enum { GATHERED = 4 };
 
-INLINE lanes four_at(const double *from)
-{
-    lanes out;
-    memcpy(&out, from, sizeof out);
-    return out;
-}
-
 INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
 {
     UNROLL(2)
     for (int odd = 0; odd < 2; odd++) {
-        const lanes x = four_at(frame[0] + first), y = four_at(frame[1] + first);
-        const lanes z = four_at(frame[2] + first), w = four_at(frame[3] + first);
+        const lanes x = lanes_load(frame[0] + first), y = lanes_load(frame[1] + first);
+        const lanes z = lanes_load(frame[2] + first), w = lanes_load(frame[3] + first);
         const lanes xy = odd ? __builtin_shufflevector(x, y, 1, 5, 3, 7)
                              : __builtin_shufflevector(x, y, 0, 4, 2, 6);
         const lanes zw = odd ? __builtin_shufflevector(z, w, 1, 5, 3, 7)
@@ -265,14 +251,11 @@ INLINE void set_pair(const struct kernel_traits traits, const struct frame_lanes
     pair_lanes_set(traits, component, size, offset, drift, a->error + b->error, out);
 }
 
-/* Evaluates the slabs of the pairs, without a list. */
+/* Evaluates the slabs of the pairs. */
 INLINE void evaluate_pair(const struct kernel_traits traits, const struct pair_lanes *pair,
                           struct slabs_result *result)
 {
     slabs_result_begin(result);
-#if LANES == 1
-    result->next = NULL;
-#endif
     evaluate_slabs(pair, traits, result);
 }
 
@@ -329,9 +312,11 @@ INLINE void put_outcomes(struct outcomes outcomes, unsigned char out[LANES])
  * limit, 1e-12 of the window, to the roundings that follow. */
 #define TIMES_LIMIT 1.8e-12
 
+/* A time in seconds is rounded three times, each time by less than 2^-53 of itself. */
+#define TIMES_ROUNDING 0x1p-51
+
 /* Outer and inner ends, in [-1, 1], to seconds; NAN where they are too far apart. SLABS_TIMES_SLACK
- * covers the rounding of the ends (slabs_lanes.h). The product with the duration rounds three times
- * more, each time by less than 2^-53 of it. */
+ * covers the rounding of the ends (slabs_lanes.h). */
 INLINE void times_of(const struct pair_lanes *pair, const struct slabs_result *result,
                      double window, lanes times[2])
 {
@@ -340,12 +325,14 @@ INLINE void times_of(const struct pair_lanes *pair, const struct slabs_result *r
     const lanes leave = lanes_min(result->leave[0] + slack, one);
     const lanes enter_inner = lanes_max(result->enter[1] + slack, -one);
     const lanes leave_inner = lanes_min(result->leave[1] - slack, one);
-    const lanes first = (0.5 + 0.5 * enter) * duration * (1 - 0x1p-51);
-    const lanes last = lanes_min((0.5 + 0.5 * leave) * duration * (1 + 0x1p-51), duration);
+    const lanes first = (0.5 + 0.5 * CHECK_GIVEN(enter)) * duration * (1 - TIMES_ROUNDING);
+    const lanes last = (0.5 + 0.5 * CHECK_GIVEN(leave)) * duration * (1 + TIMES_ROUNDING);
+    CHECK_BOUND(TIMES_ROUNDING, duration < DURATION_MIN, first, TIMES_ROUNDING * first);
+    CHECK_BOUND(TIMES_ROUNDING, duration < DURATION_MIN, last, TIMES_ROUNDING * last);
     const lanes_mask good = pair->in_range & (enter_inner - enter <= TIMES_LIMIT) &
                             (leave - leave_inner <= TIMES_LIMIT) & (duration >= DURATION_MIN);
     times[0] = lanes_select(good, first, lanes_of(NAN));
-    times[1] = lanes_select(good, last, lanes_of(NAN));
+    times[1] = lanes_select(good, lanes_min(last, duration), lanes_of(NAN));
 }
 
 /* ---- The table ----

@@ -95,6 +95,7 @@
  * one. Along axes with known signs (slabs_exact.h) the velocities are equal, and nothing
  * underflows. */
 #define INLINED_NOT
+#define SLABS_LIST
 #include "slabs.h"
 
 #include "prepared.h"

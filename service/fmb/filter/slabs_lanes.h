@@ -4,16 +4,16 @@
 
 #include "pair_lanes.h"
 
-/* What all slabs so far yield. The gap of a slab is how far the offset stays beyond its bounds
- * (slabs.h). */
+/* What all slabs so far yield. With SLABS_LIST, which requires one lane, all slabs are listed too.
+ * The gap of a slab is how far the offset stays beyond its bounds (slabs.h). */
 struct slabs_result {
     lanes gap_low;  /* lower bound on the largest gap: > 0 if some slab separates */
     lanes gap_high; /* upper bound on the largest gap: < 0 if all slabs overlap */
     /* [outer, inner]: bounds on the time of contact, from -1 (the start of the window) to 1 (its
      * end), as far as the slabs give them. */
     lanes enter[2], leave[2];
-#if LANES == 1
-    struct slab_value *next; /* the slab list: where the next slab is stored; NULL: none */
+#ifdef SLABS_LIST
+    struct slab_value *next; /* where the next slab is stored */
 #endif
 };
 
@@ -167,6 +167,8 @@ INLINE void bound_times(const struct kernel_traits traits, struct slab_extent d,
     const lanes inverse = 1 / (swing + lanes_copysign(0x1p-10 * error, swing));
     const lanes one = low * inverse, other = high * inverse;
     const lanes slack = error * lanes_abs(inverse);
+    CHECK_QUOTIENT(SLABS_TIMES_SLACK, ignored, low, swing, inverse, one, error);
+    CHECK_QUOTIENT(SLABS_TIMES_SLACK, ignored, high, swing, inverse, other, error);
     const lanes enter = lanes_min(one, other), leave = lanes_max(one, other);
     result->enter[0] = lanes_max(enter - slack, result->enter[0]);
     result->enter[1] = lanes_max(enter + slack, result->enter[1]);
@@ -193,6 +195,7 @@ INLINE void add_slab(const struct kernel_traits traits, struct slab_normal norma
                      bool timeless, lanes_mask ignored, struct slabs_result *result)
 {
     const lanes gap = gap_of(traits, d, middle, swing);
+    CHECK_BOUND(SLABS_ROUNDING, ignored, gap, scale * unit);
     const lanes above = gap + scale * unit;
     result->gap_low = lanes_max(gap - scale * unit, result->gap_low);
     result->gap_high = lanes_max(traits.axis_aligned || traits.exact
@@ -201,7 +204,7 @@ INLINE void add_slab(const struct kernel_traits traits, struct slab_normal norma
                                  result->gap_high);
     if (traits.times && !timeless)
         bound_times(traits, d, scale * unit, middle, swing, ignored, result);
-#if LANES == 1
+#ifdef SLABS_LIST
     struct slab_value slab = {.normal = normal};
     if (!ignored) {
         slab.low = d.low - d.radius;
@@ -210,8 +213,7 @@ INLINE void add_slab(const struct kernel_traits traits, struct slab_normal norma
         slab.swing = swing;
         slab.error = scale * unit;
     }
-    if (result->next)
-        *result->next++ = slab;
+    *result->next++ = slab;
 #else
     (void) normal;
 #endif
@@ -220,11 +222,10 @@ INLINE void add_slab(const struct kernel_traits traits, struct slab_normal norma
 /* Whether all pairs are separated and no more is computed about them. */
 INLINE bool is_enough(const struct kernel_traits traits, const struct slabs_result *result)
 {
-    const unsigned separated = lanes_greater_bits(result->gap_low, lanes_of(0));
-#if LANES == 1
-    if (result->next)
-        return false;
+#ifdef SLABS_LIST
+    return false;
 #endif
+    const unsigned separated = lanes_greater_bits(result->gap_low, lanes_of(0));
     return traits.mirrored ? separated != 0 : separated == (1u << LANES) - 1;
 }
 
@@ -237,6 +238,8 @@ INLINE bool is_enough(const struct kernel_traits traits, const struct slabs_resu
 INLINE void evaluate_axes(const struct pair_lanes *pair, const struct kernel_traits traits,
                           struct slabs_result *result)
 {
+    const lanes bound =
+        (traits.rough ? SLABS_ROUGH : 1) * SLABS_ROUNDING_AXES * pair->reach + pair->error;
     lanes gap = lanes_of(-1);
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
@@ -248,10 +251,11 @@ INLINE void evaluate_axes(const struct pair_lanes *pair, const struct kernel_tra
             at[f][i] = pair->component[f][i][axis];
         const struct slab_extent d = extent_difference(traits, extent_of_frame(traits, 0, at[0]),
                                                        extent_of_frame(traits, 1, at[1]));
-        gap = lanes_max(gap_of(traits, d, pair->offset[axis], pair->half_drift[axis]), gap);
+        const lanes own = gap_of(traits, d, pair->offset[axis], pair->half_drift[axis]);
+        CHECK_BOUND(SLABS_ROUNDING_AXES, (lanes_mask){0}, own, bound);
+        gap = lanes_max(own, gap);
     }
-    result->gap_low =
-        gap - ((traits.rough ? SLABS_ROUGH : 1) * SLABS_ROUNDING_AXES * pair->reach + pair->error);
+    result->gap_low = gap - bound;
 }
 
 #endif

@@ -31,6 +31,16 @@ typedef int64_t lanes_mask __attribute__((vector_size(8 * LANES))); /* 0 or -1 *
 #endif
 #endif
 
+/* Where a bound on an error is used: value is off by at most bound, some lengths times the
+ * constant, but in lanes that are ignored. The program of tests/checked checks this; elsewhere it
+ * is nothing. */
+#define CHECK_BOUND(constant, ignored, value, bound) ((void) 0)
+/* The same of a quotient in [-1, 1], (dividend -+ bound) inverse. The true dividend is within bound
+ * of dividend - quotient divisor, but for the constant times the divisor. */
+#define CHECK_QUOTIENT(constant, ignored, dividend, divisor, inverse, quotient, bound) ((void) 0)
+/* From here on x counts as given: its error was checked. */
+#define CHECK_GIVEN(x) (x)
+
 /* x > y ? x : y and x < y ? x : y, lane by lane. If x or y is a NaN, the result is y. */
 #if LANES == 1
 INLINE lanes lanes_max(lanes x, lanes y)
@@ -86,6 +96,14 @@ INLINE lanes lanes_of(double x)
 {
     lanes out = {0};
     return out + x;
+}
+
+/* Reads [LANES]. */
+INLINE lanes lanes_load(const double *from)
+{
+    lanes out;
+    memcpy(&out, from, sizeof out);
+    return out;
 }
 
 /* The representation of each lane. */

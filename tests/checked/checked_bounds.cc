@@ -1,0 +1,266 @@
+/* The kernels of the filter, compiled with numbers that know their errors, and what is checked
+ * where they use a bound.
+ *
+ * A bound is a constant times some lengths. At each use this asserts, with the derivation of the
+ * value (number.hpp):
+ *
+ *     error    |value - exact value| is at most each of its derived bounds; 0 where the bound is 0
+ *     derived  the worst error that its own monomials allow is at most the bound
+ *     sizes    the sum of the magnitudes of its monomials is at most what the proof argues: `sizes`
+ *              times the lengths
+ *     counted  the roundings that it has passed, times `sizes`, are at most the constant. This does
+ *              not depend on the numbers of the pair: any pair of the kind finds a constant that is
+ *              too small
+ *
+ * `later` roundings of the result, in units of u times the lengths, are added to both. */
+#define INLINED_NOT
+#include "checked_bounds.h"
+
+#include "kernel_box.h"
+
+#include <stdlib.h>
+
+/* ---- The constants ---- */
+
+struct constant {
+    const char *name;
+    long double value;
+    long double sizes, later; /* as above */
+    long double lowered = 1;  /* less where a test lowers the constant */
+    /* The most of each. */
+    long double error = 0, derived = 0, argued = 0, counted = 0;
+    long uses = 0, failed = 0;
+    /* The first that failed. */
+    const char *what = NULL;
+    long double is = 0, most = 0;
+};
+
+/* Of a slab in 3D: Hadamard's inequality for the permanent (slabs.c), and the sum of the gap, which
+ * is at most the lengths, with its bound. */
+static struct constant constants[] = {
+    {"SLABS_ROUNDING", SLABS_ROUNDING, 1.154700539L, 1.01L},
+    {"SLABS_ROUNDING_2D", SLABS_ROUNDING_2D, 1, 1.01L},
+    {"SLABS_ROUNDING_AXES", SLABS_ROUNDING_AXES, 1, 1.01L},
+    /* A dividend of at most twice the divisor, and a bound of at most three times of it. */
+    {"SLABS_TIMES_SLACK", SLABS_TIMES_SLACK, 5, 2.01L},
+    {"TIMES_ROUNDING", TIMES_ROUNDING, 1, 0},
+};
+
+/* ---- Checking ---- */
+
+mpf_t scratch[2];
+
+enum { BITS = 2560, BLOCK = 1024, BLOCKS_MAX = 1024 };
+
+static derivation *block[BLOCKS_MAX];
+static size_t taken;
+
+derivation *arena_take()
+{
+    derivation *&own = block[taken / BLOCK];
+    if (!own) {
+        own = (derivation *) malloc(BLOCK * sizeof *own);
+        for (int i = 0; i < BLOCK; i++)
+            mpf_init2(own[i].exact, BITS);
+    }
+    derivation *out = &own[taken++ % BLOCK];
+    out->size = out->worst = out->running = 0;
+    out->roundings = 0;
+    return out;
+}
+
+void arena_clear()
+{
+    taken = 0;
+}
+
+/* The kernel that runs. */
+static struct {
+    struct kernel_traits traits;
+    struct slab_normal normal;
+} at;
+
+static struct constant *constant_of(const char *name)
+{
+    for (struct constant &each : constants)
+        if (strcmp(each.name, name) == 0)
+            return &each;
+    return NULL;
+}
+
+/* |value - exact value|. */
+static long double error_of(number x)
+{
+    if (!x.from)
+        return 0;
+    mpf_set_d(scratch[0], x.value);
+    mpf_sub(scratch[0], scratch[0], x.from->exact);
+    mpf_abs(scratch[0], scratch[0]);
+    long exponent;
+    const double error = mpf_get_d_2exp(&exponent, scratch[0]);
+    return ldexpl(error, (int) exponent) * (1 + 0x1p-50L); /* truncated */
+}
+
+static void fail(struct constant *constant, const char *what, long double is, long double most)
+{
+    if (constant->failed++ > 0)
+        return;
+    constant->what = what;
+    constant->is = is;
+    constant->most = most;
+}
+
+static void expect(struct constant *constant, const char *what, long double is, long double most,
+                   long double *largest)
+{
+    if (!(is <= most))
+        fail(constant, what, is, most);
+    if (most > 0)
+        *largest = fmaxl(is / most, *largest);
+}
+
+void check_bound(const char *name, number value, number bound)
+{
+    struct constant *constant = constant_of(name);
+    if (at.traits.dim == 2 && strcmp(name, "SLABS_ROUNDING") == 0)
+        constant = constant_of("SLABS_ROUNDING_2D");
+    const long double most = bound.value * constant->lowered / (at.traits.rough ? SLABS_ROUGH : 1);
+    const long double lengths = most / constant->value, error = error_of(value);
+    long double unused = 0;
+    constant->uses++;
+    if (bound.value == 0) {
+        expect(constant, "error", error, 0, &unused);
+        return;
+    }
+    const long double u = unit_roundoff, k = roundings_of(value);
+    const long double later = constant->later * u, counted = k * u / (1 - k * u) * constant->sizes;
+    expect(constant, "error", error, running_of(value), &constant->error);
+    expect(constant, "error", error, worst_of(value), &unused);
+    expect(constant, "derived", worst_of(value) + later * lengths, most, &constant->derived);
+    expect(constant, "sizes", size_of(value),
+           constant->sizes * lengths / constant->lowered * (1 + 0x1p-40L), &constant->argued);
+    expect(constant, "counted", counted + later, constant->value * constant->lowered,
+           &constant->counted);
+}
+
+void check_quotient(const char *name, number dividend, number divisor, number inverse,
+                    number quotient, number bound)
+{
+    struct constant *constant = constant_of(name);
+    const long double u = unit_roundoff, width = 1 / fabsl(inverse.value);
+    const long double q = fabsl(quotient.value), t = bound.value / width;
+    const long double most = constant->value * constant->lowered;
+    /* Of its own: one in the inverse, one in each product with it. */
+    const int k = roundings_of(quotient) - roundings_of(dividend) - roundings_of(inverse) + 1;
+    if (fabsl(q - t) > 1)
+        return; /* both ends are beyond those of the window */
+    constant->uses++;
+    const long double own = k * u / (1 - k * u) * (q + t) + constant->later * u;
+    const long double of_both = worst_of(dividend) + worst_of(divisor);
+    const long double longer = fabsl(width - fabsl(divisor.value)) * (1 + 0x1p-40L);
+    /* What of_both leaves of the bound counts only where the divisor is small. */
+    const long double unused = (of_both + longer - bound.value) / width;
+    expect(constant, "derived", own + (q > 2 || unused > 0 ? unused : 0), most, &constant->derived);
+    expect(constant, "counted", k * u / (1 - k * u) * constant->sizes + constant->later * u, most,
+           &constant->counted);
+    if (q <= 2)
+        expect(constant, "sizes", q + t, constant->sizes * (1 + 0x1p-40L), &constant->argued);
+}
+
+/* ---- Pairs ---- */
+
+static void gather_without_errors(const struct kernel_traits traits,
+                                  const struct fmb_prepared *const pair[2],
+                                  struct frame_lanes out[2])
+{
+    for (int which = 0; which < 2; which++) {
+        struct fmb_prepared frame = *pair[which];
+        const double *words = (const double *) &frame;
+        frame.number[(traits.dim == 2 ? PREPARED_ERROR_2D : PREPARED_ERROR_3D) - 1] = 0;
+        gather(traits, &words, &out[which]);
+        out[which].prepared[0] = pair[which];
+    }
+}
+
+static void check_job(struct kernel_traits traits, const struct fmb_prepared *const both[2],
+                      double duration)
+{
+    struct frame_lanes frame[2];
+    struct pair_lanes pair;
+    struct slabs_result result;
+    number times[2];
+    if (!scratch[0]->_mp_d)
+        for (auto &each : scratch)
+            mpf_init2(each, BITS);
+    at.traits = traits;
+    gather_without_errors(traits, both, frame);
+    set_pair(traits, &frame[0], &frame[1], duration, &pair);
+    if (pair.in_range && traits.exact)
+        exact_outcomes(traits, &frame[0], &frame[1], duration, &pair);
+    else if (pair.in_range)
+        evaluate_pair(traits, &pair, &result);
+    if (pair.in_range && traits.times && result.gap_low <= 0)
+        times_of(&pair, &result, duration, times);
+    arena_clear();
+}
+
+void check_pair(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration)
+{
+    bool swapped;
+    const enum kernel_kind kind = kernel_kind_of_bounds(a, b, duration, &swapped);
+    if (kind >= KERNEL_KINDS)
+        return;
+    const struct fmb_prepared *const pair[2] = {swapped ? b : a, swapped ? a : b};
+    struct kernel_traits traits = traits_of(kind);
+    traits.box = false;
+    traits.axis_aligned = traits.dim == 3;
+    traits.rough = true;
+    check_job(traits, pair, duration);
+    traits.rough = false;
+    traits.swap_invariant = true;
+    traits.times = traits.drifts;
+    check_job(traits, pair, duration);
+    traits.times = false;
+    traits.exact = true;
+    check_job(traits, pair, duration);
+}
+
+/* ---- Report ---- */
+
+void check_begin(void)
+{
+    for (struct constant &each : constants)
+        each = {.name = each.name, .value = each.value, .sizes = each.sizes, .later = each.later};
+}
+
+const char *check_constant(int index)
+{
+    return index < (int) (sizeof constants / sizeof *constants) ? constants[index].name : NULL;
+}
+
+void check_lower(int index, double factor)
+{
+    constants[index].lowered = factor;
+}
+
+bool check_failed(int index)
+{
+    return constants[index].failed > 0;
+}
+
+bool check_report(FILE *out)
+{
+    bool good = true;
+    fprintf(out, "%-24s %9s %9s %9s %9s %9s\n", "constant", "derived", "counted", "sizes", "error",
+            "uses");
+    for (const struct constant &each : constants) {
+        fprintf(out, "%-24s %9.4Lf %9.4Lf %9.4Lf %9.4Lf %9ld", each.name, each.derived,
+                each.counted, each.argued, each.error, each.uses);
+        if (each.failed)
+            fprintf(out, "  FAILED: %s %.6Lg, more than %.6Lg\n", each.what, each.is, each.most);
+        else
+            fprintf(out, "%s\n", each.uses ? "" : "  not used");
+        good = good && !each.failed;
+    }
+    return good;
+}
