@@ -20,13 +20,20 @@
 
 #include <stdlib.h>
 
+#include <initializer_list>
+
 /* ---- The constants ---- */
+
+/* What the derived error of a value follows from: sizes; the values at hand, where nearly nothing
+ * rounds; nothing, where the value holds the errors of others. */
+enum kind { OF_SIZES, AT_HAND, UNDERIVED };
 
 struct constant {
     const char *name;
     long double value;
-    long double sizes, later; /* as above */
-    long double lowered = 1;  /* less where a test lowers the constant */
+    long double sizes, later; /* as above; sizes is 0: nothing is counted */
+    enum kind kind;
+    long double lowered = 1; /* less where a test lowers the constant */
     /* The most of each. */
     long double error = 0, derived = 0, argued = 0, counted = 0;
     long uses = 0, failed = 0;
@@ -43,7 +50,11 @@ static struct constant constants[] = {
     {"SLABS_ROUNDING_AXES", SLABS_ROUNDING_AXES, 1, 1.01L},
     /* A dividend of at most twice the divisor, and a bound of at most three times of it. */
     {"SLABS_TIMES_SLACK", SLABS_TIMES_SLACK, 5, 2.01L},
+    {"EXACT_SUM_ROUNDING", EXACT_SUM_ROUNDING, 0, 0, UNDERIVED},
     {"TIMES_ROUNDING", TIMES_ROUNDING, 1, 0},
+    {"BOX_ROUNDING", BOX_ROUNDING},
+    {"BOX_PLACE_ROUNDING", BOX_PLACE_ROUNDING, 1, 1},
+    {"BOX_PLACE_ROUNDING_EXACT", BOX_PLACE_ROUNDING_EXACT, 0, 0, AT_HAND},
 };
 
 /* ---- Checking ---- */
@@ -98,7 +109,7 @@ static long double error_of(number x)
     mpf_abs(scratch[0], scratch[0]);
     long exponent;
     const double error = mpf_get_d_2exp(&exponent, scratch[0]);
-    return ldexpl(error, (int) exponent) * (1 + 0x1p-50L); /* truncated */
+    return ldexpl(error, (int) exponent);
 }
 
 static void fail(struct constant *constant, const char *what, long double is, long double most)
@@ -124,21 +135,29 @@ void check_bound(const char *name, number value, number bound)
     struct constant *constant = constant_of(name);
     if (at.traits.dim == 2 && strcmp(name, "SLABS_ROUNDING") == 0)
         constant = constant_of("SLABS_ROUNDING_2D");
-    const long double most = bound.value * constant->lowered / (at.traits.rough ? SLABS_ROUGH : 1);
-    const long double lengths = most / constant->value, error = error_of(value);
+    const long double whole = bound.value / (at.traits.rough ? SLABS_ROUGH : 1);
+    const long double most = whole * constant->lowered, lengths = whole / constant->value;
     long double unused = 0;
+    if (!value.from || !isfinite(value.value))
+        return; /* given; no span, or no crossing */
+    const long double error = error_of(value);
     constant->uses++;
-    if (bound.value == 0) {
-        expect(constant, "error", error, 0, &unused);
+    expect(constant, "error", error, most, &constant->error);
+    if (constant->kind == UNDERIVED)
+        return;
+    if (bound.value == 0 || constant->kind == AT_HAND) {
+        expect(constant, "derived at hand", running_of(value), most, &constant->derived);
         return;
     }
     const long double u = unit_roundoff, k = roundings_of(value);
     const long double later = constant->later * u, counted = k * u / (1 - k * u) * constant->sizes;
-    expect(constant, "error", error, running_of(value), &constant->error);
-    expect(constant, "error", error, worst_of(value), &unused);
+    expect(constant, "error, by the values at hand,", error, running_of(value), &unused);
+    expect(constant, "error, by sizes,", error, worst_of(value), &unused);
     expect(constant, "derived", worst_of(value) + later * lengths, most, &constant->derived);
-    expect(constant, "sizes", size_of(value),
-           constant->sizes * lengths / constant->lowered * (1 + 0x1p-40L), &constant->argued);
+    if (constant->sizes == 0)
+        return;
+    expect(constant, "sizes", size_of(value), constant->sizes * lengths * (1 + 0x1p-40L),
+           &constant->argued);
     expect(constant, "counted", counted + later, constant->value * constant->lowered,
            &constant->counted);
 }
@@ -167,6 +186,29 @@ void check_quotient(const char *name, number dividend, number divisor, number in
         expect(constant, "sizes", q + t, constant->sizes * (1 + 0x1p-40L), &constant->argued);
 }
 
+/* The segment from a vertex along a direction is at a bound of the slab where dividend + t divisor
+ * is 0, t in [0, 1]: both errors count, and the roundings of the quotient. */
+void check_segment(const char *name, const struct clip_values *values, int slab, int vertex,
+                   int direction)
+{
+    struct constant *constant = constant_of(name);
+    const number along = values->along[slab][direction], inverse = values->inverse[slab][direction];
+    const int k = roundings_of(inverse) - roundings_of(along) + 1;
+    const long double own = k * unit_roundoff * fabsl(along.value) * (1 + 0x1p-40L);
+    for (auto both : {&values->low, &values->high}) {
+        const number outer = (*both)[CLIP_OUTER][slab][vertex];
+        const number inner = (*both)[CLIP_INNER][slab][vertex];
+        const long double bound = fabsl(inner.value - outer.value) / 2;
+        constant->uses++;
+        if (bound == 0)
+            expect(constant, "error", running_of(outer) + running_of(along), 0, &constant->derived);
+        else
+            for (number end : {outer, inner})
+                expect(constant, "derived", worst_of(end) + worst_of(along) + own,
+                       bound * constant->lowered, &constant->derived);
+    }
+}
+
 /* ---- Pairs ---- */
 
 static void gather_without_errors(const struct kernel_traits traits,
@@ -189,9 +231,6 @@ static void check_job(struct kernel_traits traits, const struct fmb_prepared *co
     struct pair_lanes pair;
     struct slabs_result result;
     number times[2];
-    if (!scratch[0]->_mp_d)
-        for (auto &each : scratch)
-            mpf_init2(each, BITS);
     at.traits = traits;
     gather_without_errors(traits, both, frame);
     set_pair(traits, &frame[0], &frame[1], duration, &pair);
@@ -204,14 +243,40 @@ static void check_job(struct kernel_traits traits, const struct fmb_prepared *co
     arena_clear();
 }
 
+static void check_box(const struct kernel_traits traits, const struct fmb_prepared *const both[2],
+                      double duration)
+{
+    struct frame_lanes frame[2];
+    struct pair_lanes pair;
+    struct box_places places = {};
+    struct box_pair box;
+    struct box_ends ends;
+    struct clip_wire wire[2];
+    at.traits = traits;
+    gather_without_errors(traits, both, frame);
+    set_places(traits, frame, duration, &pair, &places);
+    for (int which = 0; which < 2; which++)
+        set_wire(traits, which, &wire[which]);
+    if (pair.in_range) {
+        places.exact = nothing_rounds(traits, &frame[0], &frame[1], duration, &pair);
+        begin_box(&pair, traits, &places, &box);
+        clip_box(&pair, traits, wire, &places, &box, &ends);
+    }
+    arena_clear();
+}
+
 void check_pair(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration)
 {
     bool swapped;
     const enum kernel_kind kind = kernel_kind_of_bounds(a, b, duration, &swapped);
     if (kind >= KERNEL_KINDS)
         return;
+    if (!scratch[0]->_mp_d)
+        for (auto &each : scratch)
+            mpf_init2(each, BITS);
     const struct fmb_prepared *const pair[2] = {swapped ? b : a, swapped ? a : b};
     struct kernel_traits traits = traits_of(kind);
+    check_box(traits, pair, duration);
     traits.box = false;
     traits.axis_aligned = traits.dim == 3;
     traits.rough = true;
@@ -230,7 +295,11 @@ void check_pair(const struct fmb_prepared *a, const struct fmb_prepared *b, doub
 void check_begin(void)
 {
     for (struct constant &each : constants)
-        each = {.name = each.name, .value = each.value, .sizes = each.sizes, .later = each.later};
+        each = {.name = each.name,
+                .value = each.value,
+                .sizes = each.sizes,
+                .later = each.later,
+                .kind = each.kind};
 }
 
 const char *check_constant(int index)
@@ -248,14 +317,25 @@ bool check_failed(int index)
     return constants[index].failed > 0;
 }
 
+/* A fraction of a constant. */
+static void print_share(FILE *out, long double share)
+{
+    if (share > 0)
+        fprintf(out, " %9.4Lf", share);
+    else
+        fprintf(out, " %9s", "-");
+}
+
 bool check_report(FILE *out)
 {
     bool good = true;
-    fprintf(out, "%-24s %9s %9s %9s %9s %9s\n", "constant", "derived", "counted", "sizes", "error",
-            "uses");
+    fprintf(out, "%-24s %9s %9s %9s %9s\n", "constant", "counted", "derived", "error", "uses");
     for (const struct constant &each : constants) {
-        fprintf(out, "%-24s %9.4Lf %9.4Lf %9.4Lf %9.4Lf %9ld", each.name, each.derived,
-                each.counted, each.argued, each.error, each.uses);
+        fprintf(out, "%-24s", each.name);
+        print_share(out, each.counted);
+        print_share(out, each.derived);
+        print_share(out, each.error);
+        fprintf(out, " %9ld", each.uses);
         if (each.failed)
             fprintf(out, "  FAILED: %s %.6Lg, more than %.6Lg\n", each.what, each.is, each.most);
         else

@@ -503,11 +503,13 @@ INLINE void clip_segment(const struct clip_values *values, int slabs, bool plane
     const struct clip_span whole = {lanes_of(0), lanes_of(1)};
     struct clip_span outer = whole, inner = whole;
     for (int k = 0; k < (plane ? slabs - 1 : slabs); k++) {
+        CHECK_SEGMENT(BOX_ROUNDING, values, k, v, d);
         outer = clipped(values, CLIP_OUTER, k, v, d, outer);
         inner = clipped(values, CLIP_INNER, k, v, d, inner);
     }
     if (plane) {
         const struct clip_span all = {lanes_of(-INFINITY), lanes_of(INFINITY)};
+        CHECK_SEGMENT(BOX_ROUNDING, values, slabs - 1, v, d);
         const struct clip_span at = clipped(values, CLIP_OUTER, slabs - 1, v, d, all);
         const lanes_mask crosses =
             (at.from - inner.from >= CLIP_SHORTEST) & (inner.to - at.to >= CLIP_SHORTEST);
@@ -583,8 +585,9 @@ INLINE void add_reach(const struct kernel_traits traits, const struct clip_wire 
         for (int n = 0; n < wire->segments; n++) {
             const lanes at = points->vertex[axis][wire->from[n]];
             const lanes half = 0.5 * points->along[axis][wire->direction[n]];
-            const lanes middle = at + (part[n].to + part[n].from) * half;
-            const lanes length = (part[n].to - part[n].from) * lanes_abs(half);
+            const lanes from = CHECK_GIVEN(part[n].from), to = CHECK_GIVEN(part[n].to);
+            const lanes middle = at + (to + from) * half;
+            const lanes length = (to - from) * lanes_abs(half);
             below = lanes_max(length - middle, below);
             above = lanes_max(length + middle, above);
         }
@@ -734,7 +737,7 @@ INLINE void set_crossing(const struct pair_lanes *pair, const struct kernel_trai
                                 BOX_ROUNDING * dot(weight, box->reach) +
                                     all->scale_error * (pair->size[0][i] * pair->size[1][j]));
     const lanes_mask some = out->det > 0x1p-1000;
-    const lanes inverse = lanes_select(some, 1 / out->det, lanes_of(0));
+    const lanes inverse = lanes_select(some, 1 / CHECK_GIVEN(out->det), lanes_of(0));
     for (int axis = 0; axis < 3; axis++) {
         out->along[axis] = inverse * a->edge[i][axis];
         out->travel[axis] = inverse * a->travel[axis];
@@ -768,6 +771,9 @@ INLINE lanes_mask is_possible(const struct kernel_traits traits, const struct cl
     out->in_s = inside_range(traits.simplex[0], out->s, from->det);
     out->in_r = inside_range(traits.simplex[1], r, from->det);
     out->in_t = inside_range(false, out->t, from->det);
+    CHECK_BOUND(BOX_ROUNDING, is_not(from->crosses), out->in_s, from->error_s);
+    CHECK_BOUND(BOX_ROUNDING, is_not(from->crosses), out->in_r, from->error_r);
+    CHECK_BOUND(BOX_ROUNDING, is_not(from->crosses), out->in_t, from->error_t);
     return from->crosses & (out->in_s >= -from->error_s) & (out->in_r >= -from->error_r) &
            (out->in_t >= -from->error_t);
 }
@@ -784,12 +790,14 @@ INLINE lanes_mask add_crossing(const struct kernel_traits traits, const struct c
     const lanes_mask certain = possible & from->known & (at.in_s >= from->error_s) &
                                (at.in_r >= from->error_r) & (at.in_t >= from->error_t);
     for (int axis = 0; axis < 3; axis++) {
-        const lanes middle =
-            from->a.base[axis][m] + (at.s * from->along[axis] + at.t * from->travel[axis]);
+        const lanes part =
+            CHECK_GIVEN(at.s) * from->along[axis] + CHECK_GIVEN(at.t) * from->travel[axis];
+        const lanes middle = from->a.base[axis][m] + part;
+        const lanes radius = CHECK_GIVEN(from->radius[axis]);
         for (int bound = 0; bound < CLIP_BOUNDS; bound++) {
             lanes *below = &reach[bound][0][axis], *above = &reach[bound][1][axis];
             const lanes_mask counts = bound == CLIP_OUTER ? possible : certain;
-            const lanes half = bound == CLIP_OUTER ? from->radius[axis] : -from->radius[axis];
+            const lanes half = bound == CLIP_OUTER ? radius : -radius;
             *below = lanes_max(lanes_select(counts, half - middle, none), *below);
             *above = lanes_max(lanes_select(counts, half + middle, none), *above);
         }
@@ -897,6 +905,8 @@ INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_tr
                 lanes_select(uncertain, reach[CLIP_INNER][end][axis], reach[CLIP_OUTER][end][axis]);
             ends->outer[end][axis] = reach[CLIP_OUTER][end][axis] + box->slack[axis];
             ends->inner[end][axis] = inner - box->slack[axis];
+            CHECK_BOUND(BOX_PLACE_ROUNDING, box->exact, inner, box->slack[axis]);
+            CHECK_BOUND(BOX_PLACE_ROUNDING_EXACT, is_not(box->exact), inner, box->slack[axis]);
         }
     return are_near(traits, box, ends) & good;
 }

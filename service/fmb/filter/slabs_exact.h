@@ -90,6 +90,9 @@ INLINE lanes error_of_sum(lanes x, lanes y, lanes sum)
     return (x - (sum - part)) + (y - part);
 }
 
+/* Relative to a sum as one double. */
+#define EXACT_SUM_ROUNDING 0x1p-52
+
 INLINE void add_exactly(struct exact_sum *sum, lanes x)
 {
     const lanes value = sum->value + x, error = error_of_sum(sum->value, x, value);
@@ -141,8 +144,8 @@ INLINE void set_centred(lanes_mask centred, lanes position, lanes centre, struct
 }
 
 /* From end_a of a to end_b of b along an axis: low or high of each. Its value is off by less than
- * 2^-52 of itself, and has the exact sign, but for the lanes in rounds. any: some remainder is not
- * 0. */
+ * EXACT_SUM_ROUNDING of itself, and has the exact sign, but for the lanes in rounds. any: some
+ * remainder is not 0. */
 INLINE struct exact_sum exact_difference(const struct exact_extent *a, const struct exact_extent *b,
                                          lanes end_a, lanes end_b, bool any)
 {
@@ -156,6 +159,8 @@ INLINE struct exact_sum exact_difference(const struct exact_extent *a, const str
     add_exactly(&out, end_b);
     add_exactly(&out, -end_a);
     out.value += out.remainder;
+    CHECK_BOUND(EXACT_SUM_ROUNDING, out.rounds, out.value,
+                EXACT_SUM_ROUNDING * lanes_abs(out.value));
     return out;
 }
 

@@ -38,7 +38,11 @@ typedef int64_t lanes_mask __attribute__((vector_size(8 * LANES))); /* 0 or -1 *
 /* The same of a quotient in [-1, 1], (dividend -+ bound) inverse. The true dividend is within bound
  * of dividend - quotient divisor, but for the constant times the divisor. */
 #define CHECK_QUOTIENT(constant, ignored, dividend, divisor, inverse, quotient, bound) ((void) 0)
-/* From here on x counts as given: its error was checked. */
+/* The same of a segment of a box: what is left to the bounds of a slab (box_clip.h, errors). */
+#define CHECK_SEGMENT(constant, values, slab, vertex, direction) ((void) 0)
+/* From here on x counts as given: its error is accounted for elsewhere. In some lanes, or in all.
+ */
+#define CHECK_GIVEN_IN(some, x) (x)
 #define CHECK_GIVEN(x) (x)
 
 /* x > y ? x : y and x < y ? x : y, lane by lane. If x or y is a NaN, the result is y. */

@@ -18,12 +18,18 @@
         if (!(ignored))                                                                \
             check_quotient(#constant, dividend, divisor, inverse, quotient, bound);    \
     } while (0)
+#define CHECK_SEGMENT(constant, values, slab, vertex, direction) \
+    check_segment(#constant, values, slab, vertex, direction)
 #define CHECK_GIVEN(x) number((x).value)
+
+struct clip_values;
 
 /* Where the macros of the engine lead (checked_bounds.cc). */
 void check_bound(const char *constant, number value, number bound);
 void check_quotient(const char *constant, number dividend, number divisor, number inverse,
                     number quotient, number bound);
+void check_segment(const char *constant, const struct clip_values *values, int slab, int vertex,
+                   int direction);
 
 typedef number lanes;
 typedef uint64_t lanes_bits;

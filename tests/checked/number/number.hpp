@@ -8,13 +8,13 @@
  *     roundings  the most that any monomial of it has passed
  *     worst      bounds the error by size and roundings alone: what numbers of these sizes, but of
  *                any signs and digits, may be off by
- *     running    bounds the error by the magnitudes of the values at hand
+ *     running    bounds the error by the values at hand, and by whether operations round
  *
  * So |double - exact| <= running and <= worst <= ((1 + u)^roundings - 1) size, u = 2^-53, each of
- * which checked_bounds.cc asserts. Only a number of doubles as they were given has no derivation: it is
- * exact. Numbers are compared by their doubles, so that control flow is that of the engine. They
- * are trivial, so that C code may copy and clear them. Derivations live until arena_clear(). Not
- * thread safe. */
+ * which checked_bounds.cc asserts. Only a number of doubles as they were given has no derivation:
+ * it is exact. Numbers are compared by their doubles, so that control flow is that of the engine.
+ * They are trivial, so that C code may copy and clear them. Derivations live until arena_clear().
+ * Not thread safe. */
 #ifndef NUMBER_HPP
 #define NUMBER_HPP
 
@@ -99,13 +99,13 @@ inline number derived(double value, derivation *from)
 
 /* Adds the rounding of an operation whose result would be off by worst and by running without it.
  */
-inline number rounded(double value, derivation *from)
+inline number rounded(double value, derivation *from, bool exact)
 {
     from->worst += unit_roundoff * (from->size + from->worst);
-    from->running += unit_roundoff * std::fabs((long double) value);
+    from->running += exact ? 0 : unit_roundoff * std::fabs((long double) value);
     if (std::fabs(value) < 0x1p-1000) {
         from->worst += underflow;
-        from->running += underflow;
+        from->running += exact ? 0 : underflow;
     }
     from->roundings++;
     return derived(value, from);
@@ -155,9 +155,12 @@ inline number sum(number x, number y, double value, bool minus)
     from->worst = worst_of(x) + worst_of(y);
     from->running = running_of(x) + running_of(y);
     from->roundings = roundings_of(x) > roundings_of(y) ? roundings_of(x) : roundings_of(y);
-    /* A number is doubled, or a sum of subnormal numbers: exact. */
-    return !minus && x.value == y.value && x.from == y.from ? derived(value, from)
-                                                            : rounded(value, from);
+    /* A number that is doubled is not rounded. */
+    if (!minus && x.value == y.value && x.from == y.from)
+        return derived(value, from);
+    const double other = minus ? -y.value : y.value, part = value - x.value;
+    const bool exact = (x.value - (value - part)) + (other - part) == 0;
+    return rounded(value, from, exact);
 }
 
 inline number operator+(number x, number y)
@@ -174,6 +177,12 @@ inline number operator-(number x, number y)
     return sum(x, y, x.value - y.value, true);
 }
 
+inline bool is_exact_product(double x, double y, double product)
+{
+    return product == 0 ? x == 0 || y == 0
+                        : std::fabs(product) >= 0x1p-900 && std::fma(x, y, -product) == 0;
+}
+
 inline number operator*(number x, number y)
 {
     const double value = x.value * y.value;
@@ -188,7 +197,8 @@ inline number operator*(number x, number y)
     from->running =
         rx * std::fabs((long double) y.value) + ry * std::fabs((long double) x.value) + rx * ry;
     from->roundings = roundings_of(x) + roundings_of(y);
-    return exact ? derived(value, from) : rounded(value, from);
+    return exact ? derived(value, from)
+                 : rounded(value, from, is_exact_product(x.value, y.value, value));
 }
 
 /* A quotient has the monomials of the dividend. The divisor has to be farther from 0 than its
@@ -205,7 +215,7 @@ inline number operator/(number x, number y)
     from->running = (running_of(x) + running_of(y) * std::fabs((long double) value)) / least;
     from->worst = (worst_of(x) + worst_of(y) * from->size) / least;
     from->roundings = roundings_of(x) + roundings_of(y);
-    return rounded(value, from);
+    return rounded(value, from, is_exact_product(value, y.value, x.value));
 }
 
 inline number &operator+=(number &x, number y)
