@@ -431,6 +431,27 @@ static void large_hulls(void **state)
     }
 }
 
+/* A regular polygon on itself: the vertex of the first difference is the origin, no vertex of the
+ * swept difference. The depth is the distance of two opposite sides. */
+static void polygon_on_itself(void **state)
+{
+    enum { SIDES = 12 };
+    const double pi = 3.14159265358979, depth = 2 * cos(pi / SIDES);
+    double numbers[SIDES * 2], memory[5 * SIDES + 16];
+    struct fmb_body body;
+    struct fmb_answer answer;
+    for (int k = 0; k < SIDES; k++) {
+        numbers[2 * k] = cos(2 * pi * k / SIDES);
+        numbers[2 * k + 1] = sin(2 * pi * k / SIDES);
+    }
+    assert_int_equal(fmb_body_make_hull(2, numbers, COUNT(numbers), memory, &body), FMB_OK);
+    const struct fmb_placement at = {.body = &body, .position = {0.5, 0.25}};
+    assert_int_equal(fmb_decide(fmb_method_default(), &at, &at, 0, FMB_WANT_GAP, &answer), FMB_OK);
+    assert_int_equal(answer.verdict, FMB_OVERLAPPING);
+    assert_true(fabs(answer.gap.bounds[0] + depth) < 1e-10);
+    assert_true(fabs(answer.gap.bounds[1] + depth) < 1e-10);
+}
+
 /* ---- Steps ---- */
 
 static long live; /* blocks that GMP has allocated */
@@ -520,6 +541,7 @@ int main(void)
         cmocka_unit_test(common_velocities),
         cmocka_unit_test(small_hulls),
         cmocka_unit_test(large_hulls),
+        cmocka_unit_test(polygon_on_itself),
         cmocka_unit_test(steps_leave_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

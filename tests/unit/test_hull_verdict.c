@@ -76,11 +76,11 @@ static void check_within_limits(const struct frame_pair *frames, const struct fm
 static void check_search(const struct frame_pair *frames, enum fmb_verdict verdict)
 {
     struct hull_pair pair;
-    struct hull_simplex simplex;
+    struct hull_nearest nearest;
     hull_pair_set(frames, &pair);
     if (!pair.usable)
         return;
-    const enum fmb_verdict found = hull_search(&pair, &simplex);
+    const enum fmb_verdict found = hull_search(&pair, hull_near(&pair), &nearest);
     assert_true(found == 0 || found == verdict);
 }
 

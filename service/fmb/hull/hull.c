@@ -2,6 +2,7 @@
 #include "hull.h"
 
 #include "hull_exact.h"
+#include "hull_gap.h"
 #include "hull_search.h"
 
 #include <math.h>
@@ -17,28 +18,40 @@ static bool answer_in_doubles(const struct hull_pair *pair, unsigned want,
            (!answer->has_box || hull_box(pair, simplex, answer->box));
 }
 
+/* hull_decision_begin(). *nearest := the end of the search in doubles; *searched: whether there was
+ * one. */
+static bool begin(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
+                  struct hull_decision *out, struct hull_nearest *nearest, bool *searched,
+                  struct fmb_answer *answer)
+{
+    struct hull_column first[FMB_DIM_MAX + 1];
+    const struct hull_pair *pair = &out->pair;
+    out->swapped = hull_order(frames, &out->frames);
+    hull_pair_set(&out->frames, &out->pair);
+    out->exact = NULL;
+    *searched = effort != HULL_EXACT && pair->usable;
+    nearest->simplex.count = 0;
+    answer->verdict =
+        *searched ? hull_search(pair, want & FMB_WANT_GAP ? INFINITY : hull_near(pair), nearest)
+                  : 0;
+    if (answer->verdict == FMB_SEPARATED ||
+        (answer->verdict == FMB_OVERLAPPING &&
+         answer_in_doubles(pair, want, &nearest->simplex, answer)))
+        return true;
+    if (effort != HULL_QUICK) {
+        for (unsigned i = 0; i < nearest->simplex.count; i++)
+            first[i] = nearest->simplex.vertex[i].column;
+        out->exact = hull_exact_begin(pair, want, first, nearest->simplex.count);
+    }
+    return false;
+}
+
 bool hull_decision_begin(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
                          struct hull_decision *out, struct fmb_answer *answer)
 {
-    struct hull_simplex simplex = {.count = 0};
-    struct hull_column first[FMB_DIM_MAX + 1];
-    hull_order(frames, &out->frames);
-    hull_pair_set(&out->frames, &out->pair);
-    out->exact = NULL;
-    answer->verdict =
-        effort != HULL_EXACT && out->pair.usable ? hull_search(&out->pair, &simplex) : 0;
-    if (answer->verdict == FMB_SEPARATED)
-        return true;
-    if (answer->verdict == FMB_OVERLAPPING) {
-        if (answer_in_doubles(&out->pair, want, &simplex, answer))
-            return true;
-        simplex.count = 0; /* the centre is no column */
-    }
-    for (unsigned i = 0; i < simplex.count; i++)
-        first[i] = simplex.vertex[i].column;
-    if (effort != HULL_QUICK)
-        out->exact = hull_exact_begin(&out->pair, want, first, simplex.count);
-    return false;
+    struct hull_nearest nearest;
+    bool searched;
+    return begin(frames, want & ~(unsigned) FMB_WANT_GAP, effort, out, &nearest, &searched, answer);
 }
 
 bool hull_decision_step(struct hull_decision *decision, struct fmb_answer *answer)
@@ -61,15 +74,22 @@ enum fmb_status hull_decide(const struct frame_pair *frames, unsigned want, enum
                             struct fmb_answer *answer)
 {
     struct hull_decision decision;
-    if (!hull_decision_begin(frames, want, effort, &decision, answer)) {
+    struct hull_nearest nearest;
+    struct hull_gap_work *work;
+    bool searched;
+    if (!begin(frames, want, effort, &decision, &nearest, &searched, answer)) {
         if (effort == HULL_QUICK)
             return FMB_CANNOT_DECIDE;
         while (!hull_decision_step(&decision, answer))
             ;
     }
     answer->has_gap = want & FMB_WANT_GAP;
-    return !answer->has_gap ||
-                   hull_gap(frames, answer->verdict, INFINITY, &answer->gap) == GAP_KNOWN
-               ? FMB_OK
-               : FMB_CANNOT_DECIDE;
+    if (!answer->has_gap)
+        return FMB_OK;
+    enum gap_outcome outcome =
+        hull_gap_of_pair(&decision.pair, decision.swapped, searched ? &nearest : NULL,
+                         answer->verdict, INFINITY, &answer->gap, &work);
+    while (outcome == GAP_UNSURE)
+        outcome = hull_gap_step(work, &answer->gap);
+    return FMB_OK;
 }

@@ -118,6 +118,7 @@ struct hull_exact;
  */
 struct hull_decision {
     struct frame_pair frames; /* in the order of hull_order() */
+    bool swapped;
     struct hull_pair pair;
     struct hull_exact *exact; /* NULL: complete */
 };

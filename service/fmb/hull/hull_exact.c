@@ -111,6 +111,7 @@ struct hull_exact {
     struct point centre, basis[ROWS], entering;
     mpz_t row[ROWS][ROWS], cofactor[ROWS][ROWS], det, dual[ROWS], coordinate[ROWS], enters[ROWS];
     mpz_t height[ROWS];
+    bool basis_set; /* its rows and cofactors are */
     int target; /* the height: an end of the contact, 0 and 1, or of the box, 2 + 2 axis + end */
 
     enum { GUESS_UNKNOWN, GUESS_GIVEN, GUESS_NONE } guesses;
@@ -698,13 +699,47 @@ static bool passes(const struct hull_exact *e)
     return true;
 }
 
-/* The ray leaves the simplex of the span through exactly one facet, the first basis. */
+static void begin_heights(struct hull_exact *e);
+
+/* Sets the signs of the coordinates of the origin in the simplex of a span of rank 3, which are
+ * ratios of determinants of three of its points. Returns whether all are positive. */
+static bool set_signs(struct hull_exact *e, int sign[ROWS])
+{
+    static const int other[ROWS] = {1, 0, 3, 2}; /* and the pair that has neither */
+    int sum = 0, all = 0;
+    integer_cross(e->normal[0], e->span[0].x, e->span[1].x, e->scratch[0]);
+    integer_cross(e->normal[1], e->span[2].x, e->span[3].x, e->scratch[0]);
+    mpz_set_ui(e->best, 0);
+    for (int i = 0; i < ROWS; i++) {
+        dot(e->normal[i < 2], e->span[other[i]].x, e->sum);
+        if (i % 2)
+            mpz_neg(e->sum, e->sum);
+        mpz_add(e->best, e->best, e->sum);
+        sign[i] = mpz_sgn(e->sum);
+    }
+    all = mpz_sgn(e->best);
+    for (int i = 0; i < ROWS; i++) {
+        sign[i] *= all;
+        sum += sign[i];
+    }
+    return sum == ROWS;
+}
+
+/* The ray leaves the simplex of the span through exactly one facet, the first basis; the coordinate
+ * of the origin that is 0 there is not positive. If all are, nothing is left to be shot at. */
 static void begin_shoot(struct hull_exact *e)
 {
-    e->stage = SHOOTING;
+    int sign[ROWS] = {0};
     e->rows = e->rank;
+    if (e->rank == 3 && set_signs(e, sign)) {
+        begin_heights(e);
+        return;
+    }
+    e->stage = SHOOTING;
     set_centre(e);
     for (int omitted = 0; omitted <= e->rank; omitted++) {
+        if (sign[omitted] > 0)
+            continue;
         for (int i = 0; i < e->rank; i++) {
             struct point *of = &e->span[i < omitted ? i : i + 1];
             e->basis[i].column = of->column;
@@ -720,7 +755,6 @@ static void begin_shoot(struct hull_exact *e)
     }
 }
 
-static void begin_heights(struct hull_exact *e);
 static void finish(struct hull_exact *e, enum fmb_verdict verdict)
 {
     e->verdict = verdict;
@@ -810,8 +844,9 @@ static void set_height(const struct hull_exact *e, const struct point *point, mp
 }
 
 /* Replaces the basis by a guess in doubles of the optimal one, if its simplex contains the origin.
- * Saves steps, and changes no answer. The points of the span are not needed any more. */
-static void guess_basis(struct hull_exact *e)
+ * Saves steps, and changes no answer. The points of the span are not needed any more. Returns
+ * whether it is replaced. */
+static bool guess_basis(struct hull_exact *e)
 {
     struct hull_column column[ROWS];
     if (e->guesses == GUESS_UNKNOWN)
@@ -822,22 +857,25 @@ static void guess_basis(struct hull_exact *e)
     if (e->guesses == GUESS_NONE ||
         !hull_guess_basis(&e->guess, e->target < TARGET_BOX ? -1 : target_axis(e), target_sign(e),
                           column))
-        return;
+        return false;
     for (int i = 0; i < e->rows; i++) {
         set_point(e, column[i], &e->span[i]);
         swap_points(&e->span[i], &e->basis[i]);
     }
     set_basis(e);
     if (mpz_sgn(e->det) > 0 && passes(e))
-        return;
+        return true;
     for (int i = 0; i < e->rows; i++)
         swap_points(&e->span[i], &e->basis[i]);
-    set_basis(e);
+    e->basis_set = false;
+    return false;
 }
 
 static void begin_target(struct hull_exact *e)
 {
-    guess_basis(e);
+    if (!guess_basis(e) && !e->basis_set)
+        set_basis(e);
+    e->basis_set = true;
     for (int i = 0; i < e->rows; i++)
         set_height(e, &e->basis[i], e->height[i]);
 }
@@ -856,15 +894,17 @@ static void next_target(struct hull_exact *e)
         begin_target(e);
 }
 
-/* Columns: the basis of the last program, and the centre. */
+/* Columns: the basis of the last program, and the centre; the span, if there was none. */
 static void begin_heights(struct hull_exact *e)
 {
+    if (e->stage == SHOOTING)
+        swap_points(&e->basis[e->rank], &e->centre);
+    for (int i = 0; i <= e->rank && e->stage == SPANNING; i++)
+        swap_points(&e->basis[i], &e->span[i]);
     e->stage = RAISING;
     e->target = 0;
     e->rows = e->rank + 1;
-    swap_points(&e->basis[e->rank], e->rank == 0 ? &e->span[0] : &e->centre);
-    if (e->want)
-        set_basis(e);
+    e->basis_set = false;
     next_target(e);
 }
 

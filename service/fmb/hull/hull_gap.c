@@ -2,10 +2,7 @@
  *
  * Accuracy, with u = 2^-53.
  *
- * Lower bound of a distance. The direction n that is returned is of unit length up to 6 u. The
- * least n . x over D is minus the greatest of hull_support() for -n, which is off by error |n|; the
- * length moves it by 6 u reach, less than another error. If it is taken from the point found, n . p
- * in place of that value, the point and the value of its vertices are each off by one more error.
+ * Lower bound of a distance: hull_search.c. On the grid it is taken from hull_support().
  *
  * Upper bound. A witness point is a sum of weights times vertices R v, of the position and of the
  * displacement times a fraction of the window. Each R v is off by at most 18.3 u r, and by the
@@ -17,43 +14,14 @@
 #include "hull_gap.h"
 
 #include "gap_exact_simplex.h"
-#include "gap_simplex.h"
 
 #include <math.h>
 #include <string.h>
-
-enum { VERTEX_BITS = 10 };
-_Static_assert(FMB_HULL_VERTICES_MAX <= 1 << VERTEX_BITS, "bits of a corner");
-
-/* ---- Points ---- */
-
-static unsigned bits_of(struct hull_column column)
-{
-    return column.vertex[0] | column.vertex[1] << VERTEX_BITS | column.end << 2 * VERTEX_BITS;
-}
-
-static struct hull_column column_of(unsigned bits)
-{
-    const unsigned mask = (1U << VERTEX_BITS) - 1;
-    return (struct hull_column){{bits & mask, bits >> VERTEX_BITS & mask}, bits >> 2 * VERTEX_BITS};
-}
 
 INLINE double largest_of(const double v[FMB_DIM_MAX])
 {
     const double x = fabs(v[0]), y = fabs(v[1]), z = fabs(v[2]), most = x > y ? x : y;
     return most > z ? most : z;
-}
-
-/* The vertex of D with the least n . p, n of any length. */
-static void support(const void *context, const double n[FMB_DIM_MAX], struct gap_corner *out)
-{
-    const struct hull_gap *gap = context;
-    const double inverse = -1 / (largest_of(n) + 0x1p-1000);
-    const double outward[FMB_DIM_MAX] = {inverse * n[0], inverse * n[1], inverse * n[2]};
-    struct hull_column column;
-    hull_support(gap->pair, outward, &column);
-    hull_point(gap->pair, column, out->at);
-    out->bits = bits_of(column);
 }
 
 /* ---- Scale ---- */
@@ -111,29 +79,31 @@ static bool is_tight(const struct hull_gap *gap, const struct fmb_gap *out)
 /* ---- Distance ---- */
 
 /* Sets the time, the witness points and the upper bound. */
-static void set_witness(const struct hull_gap *gap, int count, const unsigned bits[],
-                        const double weight[], struct fmb_gap *out)
+static void set_witness(const struct hull_gap *gap, const struct hull_nearest *nearest,
+                        struct fmb_gap *out)
 {
     double apart[FMB_DIM_MAX], late = 0;
     for (int f = 0; f < 2; f++) {
         double at[FMB_DIM_MAX] = {0};
         late = 0;
-        for (int c = 0; c < count; c++) {
-            const struct hull_column column = column_of(bits[c]);
+        for (unsigned c = 0; c < nearest->simplex.count; c++) {
+            const struct hull_column column = nearest->simplex.vertex[c].column;
+            const double weight = nearest->weight[c];
             double vertex[FMB_DIM_MAX];
             hull_place(&gap->pair->view[f], column.vertex[f], vertex);
-            late += column.end ? weight[c] : 0;
+            late += column.end ? weight : 0;
             for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-                at[axis] += weight[c] * vertex[axis];
+                at[axis] += weight * vertex[axis];
         }
         late = late < 0 ? 0 : late > 1 ? 1 : late;
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             out->witness[f][axis] =
                 gap->position[f][axis] + (late * gap->displacement[f][axis] + at[axis]);
     }
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        apart[axis] = out->witness[1][axis] - out->witness[0][axis];
     const double slack = gap->pair->view[0].slack + gap->pair->view[1].slack;
     const double error = 0x1p-47 * gap->far + gap->late + slack + 0x1p-1000;
-    gap_subtract(out->witness[1], out->witness[0], apart);
     out->has_witness = true;
     out->time = late * gap->duration;
     out->bounds[1] = (sqrt(gap_dot(apart, apart)) + error) * (1 + 0x1p-49);
@@ -148,25 +118,14 @@ static void set_lower(const struct hull_gap *gap, struct fmb_gap *out)
     out->bounds[0] = -(hull_support(gap->pair, outward, &column) + 2 * gap->pair->error);
 }
 
-static enum gap_outcome distance(const struct hull_gap *gap, double farthest, struct fmb_gap *out)
+static enum gap_outcome distance(const struct hull_gap *gap, const struct hull_nearest *nearest,
+                                 struct fmb_gap *out)
 {
-    const struct hull_pair *pair = gap->pair;
-    const double far = farthest + 4 * pair->error + gap->tight;
-    double toward[FMB_DIM_MAX], f, at[2][FMB_DIM_MAX];
-    unsigned bits[GAP_CORNERS];
-    struct gap_simplex simplex;
-    for (int i = 0; i < 2; i++)
-        rotation_apply(&pair->view[i].rotation, pair->view[i].centre, at[i]);
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        toward[axis] = (at[1][axis] - at[0][axis]) + (pair->offset[axis] + 0.5 * pair->drift[axis]);
-    const enum gap_outcome outcome = gap_nearest(gap, support, pair->dim, toward, pair->error, far,
-                                                 &simplex, out->direction, &f);
-    if (outcome != GAP_KNOWN)
-        return outcome;
-    for (int c = 0; c < simplex.count; c++)
-        bits[c] = simplex.corner[c].bits;
-    out->bounds[0] = f - 4 * pair->error;
-    set_witness(gap, simplex.count, bits, simplex.weight, out);
+    if (nearest->outcome != GAP_KNOWN)
+        return nearest->outcome;
+    memcpy(out->direction, nearest->direction, sizeof out->direction);
+    out->bounds[0] = nearest->least - 4 * gap->pair->error;
+    set_witness(gap, nearest, out);
     return is_tight(gap, out) ? GAP_KNOWN : GAP_UNSURE;
 }
 
@@ -176,19 +135,20 @@ static void grid_support(void *context, mpz_t n[3], struct exact_corner *out)
 {
     const struct hull_gap *gap = context;
     double direction[FMB_DIM_MAX];
-    struct gap_corner corner;
+    struct hull_vertex vertex;
     exact_direction(n, direction);
-    support(gap, direction, &corner);
-    out->bits[0] = corner.bits;
+    hull_lowest(gap->pair, direction, &vertex);
+    memcpy(out->bits, vertex.column.vertex, sizeof out->bits);
+    out->late = vertex.column.end;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        mpz_set_d(out->at[axis], corner.at[axis] * gap->scale);
+        mpz_set_d(out->at[axis], vertex.at[axis] * gap->scale);
 }
 
 /* Finds a direction in which the distance is 0, up to the width of an enclosure. */
 static void set_direction(const struct hull_gap *gap, struct fmb_gap *out)
 {
     struct hull_depth depth;
-    if (hull_depth_begin(&depth, gap))
+    if (hull_depth_begin(&depth, gap, NULL))
         while (!hull_depth_step(&depth, 1))
             ;
     hull_depth_end(&depth, out);
@@ -199,21 +159,23 @@ static void set_direction(const struct hull_gap *gap, struct fmb_gap *out)
 static enum gap_outcome distance_on_grid(const struct hull_gap *gap, struct fmb_gap *out)
 {
     struct exact_simplex simplex;
-    unsigned bits[EXACT_CORNERS];
-    double weight[EXACT_CORNERS];
+    struct hull_nearest nearest;
     exact_simplex_each(&simplex, mpz_init);
     mpz_set_ui(simplex.other[0], 1);
     exact_simplex_solve(&simplex, simplex.other, grid_support, (void *) gap);
+    nearest.simplex.count = (unsigned) simplex.count;
     for (int c = 0; c < simplex.count; c++) {
-        bits[c] = simplex.corner[c]->bits[0];
-        weight[c] = mpz_get_d(simplex.weight[c]) / mpz_get_d(simplex.total);
+        const struct exact_corner *corner = simplex.corner[c];
+        nearest.simplex.vertex[c].column =
+            (struct hull_column){{corner->bits[0], corner->bits[1]}, corner->late};
+        nearest.weight[c] = mpz_get_d(simplex.weight[c]) / mpz_get_d(simplex.total);
     }
     if (simplex.zero)
         set_direction(gap, out);
     else
         exact_direction(simplex.normal, out->direction);
     set_lower(gap, out);
-    set_witness(gap, simplex.count, bits, weight, out);
+    set_witness(gap, &nearest, out);
     exact_simplex_each(&simplex, mpz_clear);
     return is_tight(gap, out) ? GAP_KNOWN : GAP_UNSURE;
 }
@@ -231,6 +193,7 @@ struct hull_gap_work {
     bool flat;                                               /* the depth needs no step */
     struct hull_gap gap;
     struct hull_gap_placed placed;
+    struct hull_nearest nearest;
     struct hull_depth depth;
 };
 
@@ -250,11 +213,19 @@ static bool set_gap(const struct hull_pair *pair, struct hull_gap *out)
     return out->far <= 0x1p900;
 }
 
-static enum gap_outcome solve_distance(const struct hull_gap *gap, double farthest,
-                                       struct fmb_gap *out)
+/* Searches the point of D next to the origin, of a separated pair up to farthest. */
+static void search(const struct hull_gap *gap, enum fmb_verdict verdict, double farthest,
+                   struct hull_nearest *out)
+{
+    const double near = hull_near(gap->pair), far = farthest + near + gap->tight;
+    hull_search(gap->pair, verdict != FMB_SEPARATED ? INFINITY : fmax(far, near), out);
+}
+
+static enum gap_outcome solve_distance(const struct hull_gap *gap,
+                                       const struct hull_nearest *nearest, struct fmb_gap *out)
 {
     memset(out, 0, sizeof *out);
-    const enum gap_outcome outcome = distance(gap, farthest, out);
+    const enum gap_outcome outcome = distance(gap, nearest, out);
     return outcome == GAP_UNSURE ? distance_on_grid(gap, out) : outcome;
 }
 
@@ -306,13 +277,14 @@ static void scale_lengths(struct fmb_gap *gap, int exponent)
 enum { RAISED_AT_ONCE = 128, PLACED_AT_ONCE = 40 };
 
 /* In doubles, a depth in one step. *late: it takes more. */
-static enum gap_outcome solve_at_once(const struct hull_gap *gap, enum fmb_verdict verdict,
-                                      double farthest, bool *late, struct fmb_gap *out)
+static enum gap_outcome solve_at_once(const struct hull_gap *gap,
+                                      const struct hull_nearest *nearest, enum fmb_verdict verdict,
+                                      bool *late, struct fmb_gap *out)
 {
     struct hull_depth depth;
     if (verdict == FMB_SEPARATED)
-        return solve_distance(gap, farthest, out);
-    *late = hull_depth_begin(&depth, gap) && !hull_depth_step(&depth, RAISED_AT_ONCE);
+        return solve_distance(gap, nearest, out);
+    *late = hull_depth_begin(&depth, gap, nearest) && !hull_depth_step(&depth, RAISED_AT_ONCE);
     return end_depth(&depth, verdict, out);
 }
 
@@ -322,24 +294,26 @@ static void begin_placing(struct hull_gap_work *work)
     hull_gap_place_begin(&work->pair, &work->placed);
 }
 
-enum gap_outcome hull_gap_begin(const struct frame_pair *frames, enum fmb_verdict verdict,
-                                double farthest, struct fmb_gap *out, struct hull_gap_work **work)
+enum gap_outcome hull_gap_of_pair(const struct hull_pair *pair, bool swapped,
+                                  const struct hull_nearest *nearest, enum fmb_verdict verdict,
+                                  double farthest, struct fmb_gap *out, struct hull_gap_work **work)
 {
-    struct frame_pair ordered;
-    struct hull_pair pair;
+    struct hull_nearest searched;
     struct hull_gap gap;
     bool late = false;
-    const bool swapped = hull_order(frames, &ordered);
-    hull_pair_set(&ordered, &pair);
-    const bool good = set_gap(&pair, &gap);
-    const enum gap_outcome outcome =
-        good ? solve_at_once(&gap, verdict, farthest, &late, out) : GAP_UNSURE;
+    enum gap_outcome outcome = GAP_UNSURE;
+    if (set_gap(pair, &gap)) {
+        if (!nearest)
+            search(&gap, verdict, farthest, &searched);
+        nearest = nearest ? nearest : &searched;
+        outcome = solve_at_once(&gap, nearest, verdict, &late, out);
+    }
     if (outcome != GAP_UNSURE)
         return complete(outcome, swapped, out);
     void *(*allocate)(size_t);
     mp_get_memory_functions(&allocate, NULL, NULL);
     struct hull_gap_work *begun = allocate(sizeof *begun);
-    begun->frames = ordered;
+    begun->frames = *pair->frames;
     begun->swapped = swapped;
     begun->verdict = verdict;
     begun->farthest = farthest;
@@ -348,12 +322,22 @@ enum gap_outcome hull_gap_begin(const struct frame_pair *frames, enum fmb_verdic
     if (late) {
         begun->stage = GAP_DEPTH;
         set_gap(&begun->pair, &begun->gap);
-        hull_depth_begin(&begun->depth, &begun->gap);
+        hull_depth_begin(&begun->depth, &begun->gap, nearest);
     } else {
         begin_placing(begun);
     }
     *work = begun;
     return GAP_UNSURE;
+}
+
+enum gap_outcome hull_gap_begin(const struct frame_pair *frames, enum fmb_verdict verdict,
+                                double farthest, struct fmb_gap *out, struct hull_gap_work **work)
+{
+    struct frame_pair ordered;
+    struct hull_pair pair;
+    const bool swapped = hull_order(frames, &ordered);
+    hull_pair_set(&ordered, &pair);
+    return hull_gap_of_pair(&pair, swapped, NULL, verdict, farthest, out, work);
 }
 
 /* With vertices that are placed exactly the enclosure is tight. With L the largest coordinate of a
@@ -366,13 +350,17 @@ enum gap_outcome hull_gap_begin(const struct frame_pair *frames, enum fmb_verdic
  */
 static void begin_placed(struct hull_gap_work *work)
 {
+    const double farthest = ldexp(work->farthest, (int) -work->placed.exponent);
     work->gap = (struct hull_gap){.pair = &work->placed.pair, .duration = work->frames.duration};
     memcpy(work->gap.displacement, work->placed.displacement, sizeof work->gap.displacement);
     set_bounds(&work->gap, work->placed.least);
-    if (work->verdict == FMB_SEPARATED || work->placed.least == 0)
+    if (work->placed.least == 0)
+        return;
+    search(&work->gap, work->verdict, farthest, &work->nearest);
+    if (work->verdict == FMB_SEPARATED)
         return;
     work->stage = GAP_PLACED_DEPTH;
-    work->flat = !hull_depth_begin(&work->depth, &work->gap);
+    work->flat = !hull_depth_begin(&work->depth, &work->gap, &work->nearest);
 }
 
 static enum gap_outcome solve_placed(struct hull_gap_work *work, struct fmb_gap *out)
@@ -382,8 +370,7 @@ static enum gap_outcome solve_placed(struct hull_gap_work *work, struct fmb_gap 
         out->direction[0] = 1;
         return GAP_KNOWN;
     }
-    const double farthest = ldexp(work->farthest, (int) -work->placed.exponent);
-    const enum gap_outcome outcome = solve_distance(&work->gap, farthest, out);
+    const enum gap_outcome outcome = solve_distance(&work->gap, &work->nearest, out);
     return outcome == GAP_FAR ? GAP_FAR : GAP_KNOWN;
 }
 

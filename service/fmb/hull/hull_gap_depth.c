@@ -24,6 +24,13 @@
  * ROUNDING: of heights, and of points. */
 static const double TOLERANCE = 2 * MESH_ERROR, ROUNDING = MESH_ERROR + 2;
 
+static void set_on_grid(const struct hull_depth *depth, const double point[FMB_DIM_MAX],
+                        int64_t out[FMB_DIM_MAX])
+{
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        out[axis] = (int64_t) (point[axis] * depth->gap->scale);
+}
+
 /* Finds the point of D that is farthest in a direction of unit length. Returns whether the depth is
  * now known to be 0. */
 static bool scan(struct hull_depth *depth, const double n[FMB_DIM_MAX], int64_t at[FMB_DIM_MAX])
@@ -33,8 +40,7 @@ static bool scan(struct hull_depth *depth, const double n[FMB_DIM_MAX], int64_t 
     double point[FMB_DIM_MAX];
     const double value = hull_support(gap->pair, n, &column);
     hull_point(gap->pair, column, point);
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        at[axis] = (int64_t) (point[axis] * gap->scale);
+    set_on_grid(depth, point, at);
     if (value < depth->least) {
         depth->least = value;
         memcpy(depth->direction, n, sizeof depth->direction);
@@ -86,11 +92,8 @@ static bool add_off(struct hull_depth *depth, double n[FMB_DIM_MAX], bool *known
 /* The direction from the middle of D to the origin. */
 static void set_first(const struct hull_pair *pair, double n[FMB_DIM_MAX])
 {
-    double at[2][FMB_DIM_MAX];
-    for (int f = 0; f < 2; f++)
-        rotation_apply(&pair->view[f].rotation, pair->view[f].centre, at[f]);
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        n[axis] = (at[0][axis] - at[1][axis]) - (pair->offset[axis] + 0.5 * pair->drift[axis]);
+    hull_centre(pair, n);
+    negate(n);
     if (normalise(n, 0x1p-40 * pair->reach))
         return;
     n[0] = 1;
@@ -167,14 +170,30 @@ static bool raise_lowest(struct hull_depth *depth)
     return true;
 }
 
-bool hull_depth_begin(struct hull_depth *depth, const struct hull_gap *gap)
+/* Begins the mesh with a simplex in 3D; false if its points lie in one plane of the grid. */
+static bool take_simplex(struct hull_depth *depth, const struct hull_simplex *simplex)
+{
+    for (unsigned i = 0; i < simplex->count; i++) {
+        int64_t at[FMB_DIM_MAX];
+        set_on_grid(depth, simplex->vertex[i].at, at);
+        hull_mesh_add_point(&depth->mesh, at);
+    }
+    return hull_mesh_close(&depth->mesh);
+}
+
+bool hull_depth_begin(struct hull_depth *depth, const struct hull_gap *gap,
+                      const struct hull_nearest *nearest)
 {
     depth->gap = gap;
     depth->least = INFINITY;
+    depth->zero = false;
     hull_mesh_begin(&depth->mesh, gap->pair->dim);
-    depth->closed = find_first(depth, &depth->zero);
+    depth->closed =
+        nearest && nearest->simplex.count == 4 && take_simplex(depth, &nearest->simplex);
     if (depth->closed)
-        hull_mesh_close(&depth->mesh);
+        return true;
+    hull_mesh_begin(&depth->mesh, gap->pair->dim);
+    depth->closed = find_first(depth, &depth->zero) && hull_mesh_close(&depth->mesh);
     return depth->closed;
 }
 

@@ -12,18 +12,20 @@
  * Accuracy. The plane bounds the optimum from both sides, however it was found.
  *
  *   Outer: h <= n0 over the origin if no vertex of D is above the plane. For any n, the greatest
- *   h - n . x over the vertices of D is an upper bound. It is one support of A in the direction n +
- * e, one of B in -n, and sums: off by at most error (|n| + 1), where error (hull.h) is 32 u reach
- * for 28 u reach that hull.h derives; a quarter more covers the five sums. The height adds a
- * position and a path, each off by at most 4 u of itself. Inner: let the exact points be p_i + d_i,
- * |d_i| <= e (hull_search.c), their exact heights h_i + g_i, and b_i the coordinates of the origin
- * in their simplex, all >= 0. The exact height over the origin is
+ *   h - n . x over the vertices of D is an upper bound. It is one support of A in the direction
+ *   n + e, one of B in -n, and sums: off by at most error (|n| + 1), where error (hull.h) is
+ *   32 u reach for 28 u reach that hull.h derives; a quarter more covers the five sums. The height
+ *   adds a position and a path, each off by at most 4 u of itself.
+ *
+ *   Inner: let the exact points be p_i + d_i, |d_i| <= error, their exact heights h_i + g_i, and
+ *   b_i the coordinates of the origin in their simplex, all >= 0. The exact height over the origin
+ *   is
  *
  *       sum b_i (h_i + g_i) = n0 + sum b_i (r_i + g_i) - n . sum b_i d_i,
  *
- *   with r_i = h_i - n . p_i - n0 as computed or nearly: at least n0 - max |r_i| - max |g_i| - |n|
- * e. That the origin is inside is certain (hull_simplex_contains_origin()); if not, the end stays
- * open.
+ *   with r_i = h_i - n . p_i - n0 as computed or nearly: at least
+ *   n0 - max |r_i| - max |g_i| - |n| error. That the origin is inside is certain
+ *   (hull_simplex_contains_origin()); if not, the end stays open.
  *
  * So the outer bound is given if it is within the limit of the inner one. */
 #include "hull_search.h"
@@ -66,11 +68,8 @@ static void set_high_point(const struct program *program, const struct hull_vert
 {
     const struct hull_view *a = &program->pair->view[0];
     out->vertex = *vertex;
-    out->tau = vertex->is_centre ? 0.5 : vertex->column.end;
-    if (vertex->is_centre)
-        rotation_apply(&a->rotation, a->centre, out->a);
-    else
-        hull_place(a, vertex->column.vertex[0], out->a);
+    out->tau = vertex->column.end;
+    hull_place(a, vertex->column.vertex[0], out->a);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         out->a[axis] += program->position[axis] + out->tau * program->path[axis];
 }
@@ -87,7 +86,7 @@ static double largest_coordinate(const struct program *program)
     double largest = 0, sum = 0;
     for (int i = 0; i <= pair->dim; i++) {
         const struct high_point *point = &program->basis[i];
-        for (int axis = 0; axis < pair->dim && !point->vertex.is_centre; axis++) {
+        for (int axis = 0; axis < pair->dim; axis++) {
             const double a = fabs(point->a[axis]);
             const double b = fabs(point->a[axis] + point->vertex.at[axis]);
             largest = fmax(largest, fmax(a, b));
@@ -144,7 +143,6 @@ static double find_highest(const struct program *program, struct hull_vertex *ou
     }
     const struct support a = hull_view_support(&pair->view[0], of_a);
     const struct support b = hull_view_support(&pair->view[1], of_b);
-    out->is_centre = false;
     out->column = (struct hull_column){{a.index, b.index}, later > 0};
     return (a.value + b.value) + (still + (later > 0 ? later : 0));
 }
@@ -200,7 +198,7 @@ static bool maximise(struct program *program, bool prove, double *outer)
         const double length = sqrt(gap_dot(program->normal, program->normal)) * (1 + 0x1p-40);
         const double found = find_highest(program, &highest);
         const double out = 1.25 * (length + box) * pair->error + program->extra;
-        const double in = out + (length * hull_point_error(pair) + program->residual);
+        const double in = out + (length * pair->error + program->residual);
         const double scale = box ? largest_coordinate(program) : 1;
         *outer = found + out;
         if (prove && *outer - (program->level - in) <= limit * scale)
@@ -275,12 +273,16 @@ bool hull_box(const struct hull_pair *pair, const struct hull_simplex *simplex,
 
 bool hull_guess_begin(const struct hull_pair *pair, struct hull_guess *out)
 {
-    struct hull_vertex centre;
+    struct hull_nearest nearest;
+    double centre[FMB_DIM_MAX];
     hull_pair_set(pair->frames, &out->pair);
-    hull_centre(pair, &centre);
+    hull_centre(pair, centre);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        out->pair.offset[axis] -= 0x1p-30 * centre.at[axis];
-    return hull_search(&out->pair, &out->simplex) == FMB_OVERLAPPING;
+        out->pair.offset[axis] -= 0x1p-30 * centre[axis];
+    if (hull_search(&out->pair, hull_near(pair), &nearest) != FMB_OVERLAPPING)
+        return false;
+    out->simplex = nearest.simplex;
+    return true;
 }
 
 bool hull_guess_basis(const struct hull_guess *guess, int axis, double sign,
@@ -291,10 +293,7 @@ bool hull_guess_basis(const struct hull_guess *guess, int axis, double sign,
     begin(&guess->pair, &guess->simplex, &program);
     if (!maximise(&program, false, &outer))
         return false;
-    for (int i = 0; i <= guess->pair.dim; i++) {
-        if (program.basis[i].vertex.is_centre)
-            return false;
+    for (int i = 0; i <= guess->pair.dim; i++)
         out[i] = program.basis[i].vertex.column;
-    }
     return true;
 }

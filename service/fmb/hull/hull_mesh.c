@@ -223,11 +223,14 @@ static int add_facet(struct hull_mesh *mesh, int x, int y, int z)
 /* ---- The mesh ---- */
 
 /* The triangle 0 1 2, or the tetrahedron 0 1 2 3 with point 3 below the triangle 0 1 2. */
-void hull_mesh_close(struct hull_mesh *mesh)
+bool hull_mesh_close(struct hull_mesh *mesh)
 {
     static const int corner[4][3] = {{0, 1, 2}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}};
     static const int next[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-    if (side_of(mesh, first_corners, mesh->point[mesh->dim].at) > 0) {
+    const int side = side_of(mesh, first_corners, mesh->point[mesh->dim].at);
+    if (side == 0)
+        return false;
+    if (side > 0) {
         const struct mesh_point first = mesh->point[0];
         mesh->point[0] = mesh->point[1];
         mesh->point[1] = first;
@@ -239,6 +242,7 @@ void hull_mesh_close(struct hull_mesh *mesh)
         add_facet(mesh, corner[f][0], corner[f][1], corner[f][2]);
         memcpy(mesh->facet[f].next, next[f], sizeof mesh->facet[f].next);
     }
+    return true;
 }
 
 /* Adds the triangle of point and the edge from corner i of a facet that it sees, whose neighbour

@@ -60,8 +60,9 @@ void hull_mesh_end(struct hull_mesh *mesh);
 /* Returns the number of the point. */
 int hull_mesh_add_point(struct hull_mesh *mesh, const int64_t at[FMB_DIM_MAX]);
 
-/* Makes the first facets, of points 0 to dim. In: they do not lie in one plane (2D: line). */
-void hull_mesh_close(struct hull_mesh *mesh);
+/* Makes the first facets, of points 0 to dim; returns false if these lie in one plane (2D: line).
+ */
+bool hull_mesh_close(struct hull_mesh *mesh);
 
 /* Removes the facet of least height from the heap, and returns its number; -1 if there is none. */
 int hull_mesh_lowest(struct hull_mesh *mesh);

@@ -4,36 +4,48 @@
 
 #include "hull.h"
 
-/* A point of D, or near the centre of D, in doubles. */
+/* A point of D in doubles. */
 struct hull_vertex {
     struct hull_column column;
-    bool is_centre; /* the mean of the centres of A and B and of the window; no column */
     double at[FMB_DIM_MAX];
 };
 
-/* The end of a search. */
 struct hull_simplex {
     unsigned count; /* of vertices, at most dim + 1 */
     struct hull_vertex vertex[FMB_DIM_MAX + 1];
 };
 
-/* Sets the centre of D: a point of it, rounded. */
-void hull_centre(const struct hull_pair *pair, struct hull_vertex *out);
+/* The end of a search for the point of D next to the origin. */
+struct hull_nearest {
+    enum gap_outcome outcome; /* GAP_KNOWN: the weights and the direction are of that point */
+    /* Of dim + 1 vertices: it contains the origin, up to rounding. GAP_FAR: empty. */
+    struct hull_simplex simplex;
+    double weight[FMB_DIM_MAX + 1];
+    double direction[FMB_DIM_MAX]; /* of unit length up to rounding */
+    double least;                  /* n . x over D for the direction n: off by 4 error at most */
+};
 
-/* Returns SEPARATED if a direction proves it, OVERLAPPING if a simplex of points of D proves it,
- * which is then *out, and 0 if doubles do not decide. *out then holds points of D near which the
- * origin is expected, none of them a centre. In: a usable pair. */
-enum fmb_verdict hull_search(const struct hull_pair *pair, struct hull_simplex *out);
+/* out := the vertex of D with the least n . x. In: n of any length. */
+void hull_lowest(const struct hull_pair *pair, const double n[FMB_DIM_MAX],
+                 struct hull_vertex *out);
 
-/* Returns whether the origin is certainly in the interior of the convex hull of dim + 1 points of D
- * or its centre. */
-bool hull_simplex_contains_origin(const struct hull_pair *pair, const struct hull_simplex *simplex);
+/* out := a point of D near its middle, rounded. */
+void hull_centre(const struct hull_pair *pair, double out[FMB_DIM_MAX]);
 
-/* Bounds the distance of each point of a simplex from an exact point of D. */
-static inline double hull_point_error(const struct hull_pair *pair)
+/* Searches the point of D next to the origin; ends with GAP_FAR if it is surely farther away than
+ * far - 4 error. Returns SEPARATED if a direction proves it, OVERLAPPING if a simplex proves it,
+ * and 0 if doubles do not decide. In: a usable pair; far at least hull_near(). */
+enum fmb_verdict hull_search(const struct hull_pair *pair, double far, struct hull_nearest *out);
+
+/* A distance in doubles that is certainly not 0. The factor covers the rounding of a comparison. */
+static inline double hull_near(const struct hull_pair *pair)
 {
-    return 3 * pair->error;
+    return 4 * (1 + 0x1p-40) * pair->error;
 }
+
+/* Returns whether the origin is certainly in the interior of the convex hull of dim + 1 points of
+ * D. */
+bool hull_simplex_contains_origin(const struct hull_pair *pair, const struct hull_simplex *simplex);
 
 /* Sets the contact, or the box, of a pair that a simplex proves to overlap. Returns false if
  * doubles do not give it within the limits of fmb.h. In: a pair in the order of hull_order(). */
