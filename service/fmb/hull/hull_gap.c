@@ -344,7 +344,7 @@ enum gap_outcome hull_gap_begin(const struct frame_pair *frames, enum fmb_verdic
  * vertex, or half a displacement, reach is below 10.4 L and far below 17 L, and
  *
  *     a distance is enclosed within   5 error + 2^-47 far + rounding   < 3000 u L,
- *     a depth within                  3 error + 50 units               < 4000 u L,
+ *     a depth within                  3 error + 56 units               < 4000 u L,
  *
  * where error is below 36 u reach, and a unit of the grid below 4 u reach. The limit is 8100 u L.
  */

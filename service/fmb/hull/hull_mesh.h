@@ -25,7 +25,7 @@ enum {
 };
 
 /* The heights and normals of facets in doubles: bounds, in units of the grid (hull_mesh.c). */
-#define MESH_ERROR 16.0
+#define MESH_ERROR 18.0
 
 struct mesh_facet {
     double normal[FMB_DIM_MAX]; /* of unit length, up to rounding */
