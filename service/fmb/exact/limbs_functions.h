@@ -1,6 +1,6 @@
 /* The functions of limbs.h for numbers of LIMBS_MAX limbs. A file that includes this header sets
  * LIMBS_MAX, the name of the functions, LIMBS_FUNCTIONS, and whether their memory is allocated,
- * LIMBS_ALLOCATES: wide numbers take half a megabyte. */
+ * LIMBS_ALLOCATES: those of wide numbers take a quarter of a megabyte, and 0.6 more for a box. */
 #ifndef FMB_LIMBS_FUNCTIONS_H
 #define FMB_LIMBS_FUNCTIONS_H
 
@@ -9,115 +9,110 @@
 #include "limbs_box.h"
 #include "limbs_decide.h"
 
-struct limbs_work {
-    struct limbs_pair pair;
-    struct box_work box;
-};
-
 #if LIMBS_ALLOCATES
 /* Memory as GMP allocates it: this ends the process if there is none. */
-static struct limbs_work *allocate(void)
+static void *allocate(size_t bytes)
 {
     void *(*function)(size_t);
     mp_get_memory_functions(&function, NULL, NULL);
-    return function(sizeof(struct limbs_work));
+    return function(bytes);
 }
 
-static void release(struct limbs_work *work)
+static void release(void *memory, size_t bytes)
 {
     void (*function)(void *, size_t);
     mp_get_memory_functions(NULL, NULL, &function);
-    function(work, sizeof *work);
+    function(memory, bytes);
 }
-#define LIMBS_WORK(name) struct limbs_work *name = allocate()
+#define LIMBS_WORK(type, name) type *name = allocate(sizeof *name)
+#define LIMBS_RELEASE(name) release(name, sizeof *name)
 #else
-static void release(struct limbs_work *work)
-{
-    (void) work;
-}
-#define LIMBS_WORK(name) struct limbs_work name##_memory, *name = &name##_memory
+#define LIMBS_WORK(type, name) type name##_memory, *name = &name##_memory
+#define LIMBS_RELEASE(name) (void) name
 #endif
 
 static enum fmb_verdict verdict(const struct limbs_question *question, double contact[2])
 {
-    LIMBS_WORK(work);
+    LIMBS_WORK(struct limbs_pair, pair);
     struct slab_set set;
     const double duration = question->pair->duration;
-    limbs_prepare(question, &work->pair);
+    limbs_prepare(question, pair);
     if (contact) {
         contact[0] = 0;
         contact[1] = duration + 0.0; /* never -0 */
     }
-    set_slabs_of(&work->pair, 0, 1, &set);
-    const enum fmb_verdict found = set.rank < 3
-                                       ? verdict_of_flat(&work->pair, &set, duration, contact)
-                                       : verdict_of_solid(&work->pair, question->pair, contact);
-    release(work);
+    set_slabs_of(pair, 0, 1, &set);
+    const enum fmb_verdict found = set.rank < 3 ? verdict_of_flat(pair, &set, duration, contact)
+                                                : verdict_of_solid(pair, question->pair, contact);
+    LIMBS_RELEASE(pair);
     return found;
 }
 
 static int gap_sign(const struct limbs_question *question, const struct slab_normal normal[],
                     int count)
 {
-    LIMBS_WORK(work);
+    LIMBS_WORK(struct limbs_pair, pair);
     int sign = -1;
-    limbs_prepare(question, &work->pair);
+    limbs_prepare(question, pair);
     for (int i = 0; i < count && sign <= 0; i++) {
-        const int one = limbs_gap_sign(&work->pair, normal[i]);
+        const int one = limbs_gap_sign(pair, normal[i]);
         sign = one > sign ? one : sign;
     }
-    release(work);
+    LIMBS_RELEASE(pair);
     return sign;
 }
 
 static struct limbs_planes planes(const struct limbs_question *question)
 {
-    LIMBS_WORK(work);
-    limbs_prepare(question, &work->pair);
-    const struct limbs_planes found = limbs_planes_of(&work->pair);
-    release(work);
+    LIMBS_WORK(struct limbs_pair, pair);
+    limbs_prepare(question, pair);
+    const struct limbs_planes found = limbs_planes_of(pair);
+    LIMBS_RELEASE(pair);
     return found;
 }
 
 static void clip_contact(const struct limbs_question *question, const struct slab_normal normal[],
                          const bool open[][2], int count, double contact[2])
 {
-    LIMBS_WORK(work);
+    LIMBS_WORK(struct limbs_pair, pair);
     struct limbs_products of;
     struct limbs_slab slab;
-    limbs_prepare(question, &work->pair);
+    limbs_prepare(question, pair);
     for (int i = 0; i < count; i++) {
-        if (!limbs_products_of(&work->pair, normal[i], &of))
+        if (!limbs_products_of(pair, normal[i], &of))
             continue;
-        limbs_set_slab(&work->pair, &of, &slab);
+        limbs_set_slab(pair, &of, &slab);
         for (int end = 0; end < 2; end++)
             if (open[i][end])
                 clip_end(question->limbs, &slab, question->pair->duration, end, contact);
     }
-    release(work);
+    LIMBS_RELEASE(pair);
 }
 
 static bool box(const struct limbs_question *question, const struct fmb_prepared *const frame[2],
                 double out[2][FMB_DIM_MAX])
 {
-    LIMBS_WORK(work);
-    const bool good = limbs_box(question, frame, &work->pair, &work->box, out);
-    release(work);
+    LIMBS_WORK(struct limbs_pair, pair);
+    LIMBS_WORK(struct box_work, work);
+    const bool good = limbs_box(question, frame, pair, work, out);
+    LIMBS_RELEASE(work);
+    LIMBS_RELEASE(pair);
     return good;
 }
 
 static void points(const struct limbs_question *question, const struct limbs_visitor *visitor)
 {
-    LIMBS_WORK(work);
-    limbs_points(question, visitor, &work->pair, &work->box);
-    release(work);
+    LIMBS_WORK(struct limbs_pair, pair);
+    LIMBS_WORK(struct box_work, work);
+    limbs_points(question, visitor, pair, work);
+    LIMBS_RELEASE(work);
+    LIMBS_RELEASE(pair);
 }
 
 static void normals(const struct limbs_question *question, int f, limbs_normal_visit visit,
                     void *context)
 {
-    LIMBS_WORK(work);
-    struct limbs_pair *pair = &work->pair;
+    LIMBS_WORK(struct limbs_pair, pair);
     const int n = question->limbs;
     struct slab_set set;
     struct normal normal;
@@ -136,7 +131,7 @@ static void normals(const struct limbs_question *question, int f, limbs_normal_v
         visit(context, world);
     }
     mpz_clears(world[0], world[1], world[2], NULL);
-    release(work);
+    LIMBS_RELEASE(pair);
 }
 
 const struct limbs_functions LIMBS_FUNCTIONS = {.verdict = verdict,
