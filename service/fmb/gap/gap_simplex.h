@@ -167,6 +167,12 @@ INLINE bool gap_move(struct gap_simplex *simplex)
 /* A P, and its vertex with the least n . p. */
 typedef void gap_support(const void *context, const double n[3], struct gap_corner *out);
 
+/* Returns whether f(n) is greater than far |n|. square: of |n|. */
+INLINE bool gap_is_beyond(double far, double f, double square)
+{
+    return f > 0 && far < INFINITY && f > far * sqrt(square);
+}
+
 /* Finds the point of P next to the origin.
  *
  * In:  n          any direction: the vertex in it is the first one
@@ -185,13 +191,15 @@ INLINE enum gap_outcome gap_nearest(const void *context, gap_support *const supp
     simplex->weight[0] = 1;
     simplex->count = 1;
     *f = -INFINITY;
+    if (gap_is_beyond(far, gap_dot(toward, simplex->corner[0].at), gap_dot(toward, toward)))
+        return GAP_FAR;
     for (int step = 0; step < GAP_STEPS_MAX; step++) {
         if (!gap_direction_of(simplex, dim == 2, n, &square))
             break;
         struct gap_corner *next = &simplex->corner[simplex->count];
         support(context, n, next);
         *f = gap_dot(n, next->at);
-        if (far<INFINITY && * f> far * sqrt(square))
+        if (gap_is_beyond(far, *f, square))
             return GAP_FAR;
         for (int axis = 0; axis < 3; axis++)
             direction[axis] = n[axis];
