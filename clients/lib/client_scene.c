@@ -1,6 +1,5 @@
 #include "client_scene.h"
 
-#include "utf8.h"
 #include "writer.h"
 
 #include <limits.h>
@@ -14,11 +13,6 @@ static int refuse(char why[FMB_CLIENT_WHY_MAX], int status, size_t placement, co
     snprintf(why, FMB_CLIENT_WHY_MAX, "placements[%zu].%s: %s", placement, field,
              fmb_status_text(status));
     return status;
-}
-
-static bool is_text(const char *text)
-{
-    return strlen(text) <= QUERY_NAME_MAX && utf8_is_text(text);
 }
 
 int client_scene_check(const struct fmb_scene *scene, char why[FMB_CLIENT_WHY_MAX])
@@ -38,7 +32,7 @@ int client_scene_check(const struct fmb_scene *scene, char why[FMB_CLIENT_WHY_MA
         const struct fmb_placement *placement = &scene->placements[i];
         if (!query_id_ok(placement->id))
             return refuse(why, FMB_BAD_ID, i, "id");
-        if (placement->name && !is_text(placement->name))
+        if (placement->name && !query_name_ok(placement->name))
             return refuse(why, FMB_BAD_NAME, i, "name");
         if (client_scene_geometry_bytes(placement->body) >
             GEOMETRY_NONE_BYTES + FMB_CLIENT_BODY_BYTES_MAX)

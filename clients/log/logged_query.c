@@ -3,7 +3,6 @@
 #include "allocate.h"
 #include "pair_number.h"
 #include "scene.h"
-#include "utf8.h"
 #include "wire.h"
 
 #include <assert.h>
@@ -126,8 +125,7 @@ bool scene_takes(const struct body_view *view)
 /* Returns a copy of a name or a label; NULL if a scene cannot have it. */
 static const char *copy_text(const char *text, struct owned_scene *out)
 {
-    return text && strlen(text) <= QUERY_NAME_MAX && utf8_is_text(text) ? scene_text(out, text)
-                                                                        : NULL;
+    return text && query_name_ok(text) ? scene_text(out, text) : NULL;
 }
 
 static int compare(const void *left, const void *right)

@@ -4,7 +4,6 @@
 #include "frame_numbers.h"
 #include "geometry.h"
 #include "query.h"
-#include "utf8.h"
 
 #include <limits.h>
 #include <math.h>
@@ -130,11 +129,6 @@ static int refuse(struct fmb_flat_scene *scene, int status, const char *argument
     return status;
 }
 
-static bool is_text(const char *text)
-{
-    return strlen(text) <= QUERY_NAME_MAX && utf8_is_text(text);
-}
-
 static int fill_scene(struct fmb_flat_scene *scene, struct fmb_flat_body *const *bodies,
                       const int64_t *ids, const int64_t *groups, const char *const *names)
 {
@@ -151,7 +145,7 @@ static int fill_scene(struct fmb_flat_scene *scene, struct fmb_flat_body *const 
         scene->single = scene->single && placement->body->frame_count == 1;
         if (!names[i])
             continue;
-        if (!is_text(names[i]))
+        if (!query_name_ok(names[i]))
             return refuse(scene, FMB_BAD_NAME, "names", i);
         placement->name = strcpy(end, names[i]);
         end += strlen(names[i]) + 1;
@@ -395,7 +389,7 @@ int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, doub
                     const char *label)
 {
     begin_answers(flat, !pairs, client, margin > 0 ? want | FMB_WANT_GAP : want);
-    if (label && !is_text(label)) {
+    if (label && !query_name_ok(label)) {
         snprintf(flat->why, sizeof flat->why, "label: %s", fmb_status_text(FMB_BAD_NAME));
         return FMB_BAD_NAME;
     }

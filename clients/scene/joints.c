@@ -230,7 +230,7 @@ bool joint_table_open(const char *path, struct joints *joints, struct joint_tabl
                                 .joints = joints,
                                 .file = fopen(path, "r"),
                                 .time = NAN,
-                                .text = allocate(TEXT_MAX, 1),
+                                .text = allocate_unset(TEXT_MAX),
                                 .place = allocate(COMPLAIN_PLACE_MAX, 1)};
     if (!out->file || fstat(fileno(out->file), &about) != 0)
         complain("%s: %s", path, strerror(errno));

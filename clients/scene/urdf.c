@@ -99,7 +99,7 @@ static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char 
 
 static bool parse(struct reader *reader, FILE *file)
 {
-    enum { PIECE = 1 << 20 };
+    enum { PIECE = 1 << 16 };
     size_t bytes = 0, size;
     do {
         void *piece = XML_GetBuffer(reader->xml, PIECE);
@@ -198,7 +198,7 @@ static const struct robot_name *begin(struct reader *reader, const struct node *
         return NULL;
     if (HASH_COUNT(*table) == ROBOT_COUNT_MAX)
         refuse(reader, node->line, "more than %d <%s> elements", (int) ROBOT_COUNT_MAX, node->name);
-    else if (strlen(name) > QUERY_NAME_MAX || !utf8_is_text(name))
+    else if (!query_name_ok(name))
         refuse(reader, node->line,
                "<%s>: the name '%.80s' has more than %d bytes, or control "
                "characters",

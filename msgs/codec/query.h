@@ -7,6 +7,7 @@
 #include "fmb.h"
 #include "handle.h"
 #include "ignored.h"
+#include "utf8.h"
 
 #include <assert.h>
 #include <stdbool.h>
@@ -29,6 +30,12 @@ enum { QUERY_BYTES_MAX = 63900 };
 enum { QUERY_TEXT_MAX = 160 };
 
 enum { QUERY_ORIENTATION_MAX = 4, QUERY_NAME_MAX = 64 /* bytes */ };
+
+/* Whether a body or a scene may have this name or label. */
+static inline bool query_name_ok(const char *name)
+{
+    return strlen(name) <= QUERY_NAME_MAX && utf8_is_text(name);
+}
 
 /* Fields that every query begins with. */
 struct query_header {

@@ -2,7 +2,6 @@
 
 #include "cursor.h"
 #include "geometry.h"
-#include "utf8.h"
 
 #include <assert.h>
 #include <math.h>
@@ -137,8 +136,7 @@ static bool check_definition(struct check_context *context, const struct body_vi
 
 static bool check_name(struct check_context *context, const char *name)
 {
-    return !name || name[0] == '\0' || (strlen(name) <= QUERY_NAME_MAX && utf8_is_text(name)) ||
-           check_refuse(context, FMB_BAD_NAME, "name", NULL);
+    return !name || query_name_ok(name) || check_refuse(context, FMB_BAD_NAME, "name", NULL);
 }
 
 /* Applies the engine's rule for orientations, which depends on the dimension of the body only: any
