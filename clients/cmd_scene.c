@@ -155,10 +155,10 @@ int cmd_scene(int argc, char **argv)
     struct scene_options options = {.sides = ROBOT_SIDES, .margin = -1};
     const struct args_option own[] = {
         {"joints", ARGS_OTHER, &options.joints, .take = take_once},
-        {"joints-csv", ARGS_TEXT, .out = &options.table},
+        {"joints-csv", ARGS_OTHER, &options.table, .take = take_once},
         {"sides", ARGS_INTEGER, &options.sides, .low = 4, .high = ROBOT_SIDES_MAX},
         {"objects", ARGS_FLAG, .out = &options.body.objects},
-        {"package-path", ARGS_TEXT, .out = &options.body.package_path},
+        {"package-path", ARGS_OTHER, &options.body.package_path, .take = take_once},
         {"with", ARGS_OTHER, &options.world, .take = take_once},
         {"margin", ARGS_NUMBER, &options.margin, .high = DBL_MAX},
         {.name = NULL},

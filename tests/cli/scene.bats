@@ -459,6 +459,7 @@ triangle() {
     wrong scene a --margin -1
     wrong scene a --with a.json --with b.json # not only the bodies of one of them
     wrong scene a --joints a=1 --joints b=1
+    wrong scene a --joints-csv a.csv --joints-csv b.csv
 }
 
 @test "a planned path is checked" {
