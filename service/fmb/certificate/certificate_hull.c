@@ -42,13 +42,11 @@ enum { SPANNING_MAX = FMB_DIM_MAX + 1, WEIGHTS_MAX = EXACT_CORNERS + SPANNING_MA
 struct hull_search {
     const struct frame_pair *frames;
     int dim;
-    long unit; /* lengths are integers times 2^unit / scale */
-    mpz_t scale;
+    struct hull_integers integers;
     unsigned count[2];
-    mpz_t (*vertex[2])[3];              /* [frame][vertex][axis] */
-    double (*rounded[2])[FMB_DIM_MAX];  /* the same in doubles */
-    double error;                       /* of n . v in doubles, n of unit length */
-    mpz_t drift[3], displacement[2][3]; /* over the window */
+    mpz_t (*vertex[2])[3];             /* [frame][vertex][axis] */
+    double (*rounded[2])[FMB_DIM_MAX]; /* the same in doubles */
+    double error;                      /* of n . v in doubles, n of unit length */
     unsigned spanning[2][SPANNING_MAX], spans[2];
     mpz_t factor, shift[3]; /* of the polytope that is searched: factor D + shift */
     mpz_t normal[3], t[4];
@@ -59,52 +57,16 @@ static void search_each(struct hull_search *search, void (*call)(mpz_ptr))
 {
     exact_simplex_each(&search->simplex, call);
     for (int axis = 0; axis < 3; axis++) {
-        call(search->drift[axis]);
-        call(search->displacement[0][axis]);
-        call(search->displacement[1][axis]);
         call(search->shift[axis]);
         call(search->normal[axis]);
     }
     for (int i = 0; i < 4; i++)
         call(search->t[i]);
-    call(search->scale);
+    hull_integers_each(&search->integers, call);
     call(search->factor);
 }
 
 /* ---- Vertices ---- */
-
-static void lower_unit(struct hull_search *search, long unit)
-{
-    const mp_bitcnt_t shift = (mp_bitcnt_t) (search->unit - unit);
-    search->unit = unit;
-    for (int f = 0; f < 2; f++)
-        for (unsigned k = 0; k < search->count[f]; k++)
-            for (int axis = 0; axis < 3; axis++)
-                mpz_mul_2exp(search->vertex[f][k][axis], search->vertex[f][k][axis], shift);
-}
-
-/* Stores vertices in a unit that all of them so far are multiples of. */
-static void store_batch(void *context, struct hull_batch *batch)
-{
-    struct hull_search *search = context;
-    if (batch->exact.unit < search->unit)
-        lower_unit(search, batch->exact.unit);
-    const mp_bitcnt_t shift = (mp_bitcnt_t) (batch->exact.unit - search->unit);
-    mpz_set(search->scale, batch->exact.scale);
-    for (int f = 0; f < 2; f++) {
-        for (unsigned k = 0; k < batch->count[f]; k++) {
-            mpz_t *at = search->vertex[f][batch->first[f] + k];
-            hull_batch_vertex(batch, f, k, at);
-            for (int axis = 0; axis < 3; axis++)
-                mpz_mul_2exp(at[axis], at[axis], shift);
-        }
-        for (int axis = 0; axis < 3; axis++)
-            mpz_mul_2exp(search->displacement[f][axis], batch->exact.frame[f].displacement[axis],
-                         shift);
-    }
-    for (int axis = 0; axis < 3; axis++)
-        mpz_mul_2exp(search->drift[axis], batch->exact.drift[axis], shift);
-}
 
 static bool is_wide(mpz_t v[3])
 {
@@ -116,7 +78,7 @@ static bool is_wide(mpz_t v[3])
 static bool search_is_wide(struct hull_search *search)
 {
     for (int f = 0; f < 2; f++) {
-        if (is_wide(search->displacement[f]))
+        if (is_wide(search->integers.side[f].displacement))
             return true;
         for (unsigned k = 0; k < search->count[f]; k++)
             if (is_wide(search->vertex[f][k]))
@@ -170,13 +132,13 @@ static void set_support(void *context, mpz_t n[3], struct exact_corner *out)
     struct hull_search *search = context;
     out->bits[0] = least_vertex(search, 0, -1, n, search->t[2]);
     out->bits[1] = least_vertex(search, 1, 1, n, search->t[2]);
-    integer_dot(search->t[1], n, search->drift, search->t[0]);
+    integer_dot(search->t[1], n, search->integers.drift, search->t[0]);
     out->late = mpz_sgn(search->t[1]) < 0;
     for (int axis = 0; axis < 3; axis++) {
         mpz_sub(search->t[0], search->vertex[1][out->bits[1]][axis],
                 search->vertex[0][out->bits[0]][axis]);
         if (out->late)
-            mpz_add(search->t[0], search->t[0], search->drift[axis]);
+            mpz_add(search->t[0], search->t[0], search->integers.drift[axis]);
         mpz_mul(out->at[axis], search->t[0], search->factor);
         mpz_add(out->at[axis], out->at[axis], search->shift[axis]);
     }
@@ -207,7 +169,7 @@ static int least_sign(struct hull_search *search, mpz_t n[3])
     least_vertex(search, 1, 1, n, search->t[2]);
     least_vertex(search, 0, -1, n, search->t[3]);
     mpz_sub(search->t[2], search->t[2], search->t[3]);
-    integer_dot(search->t[3], n, search->drift, search->t[0]);
+    integer_dot(search->t[3], n, search->integers.drift, search->t[0]);
     if (mpz_sgn(search->t[3]) < 0)
         mpz_add(search->t[2], search->t[2], search->t[3]);
     return mpz_sgn(search->t[2]);
@@ -259,7 +221,7 @@ static void set_shift(struct hull_search *search, const mpz_t num, const mpz_t d
             }
         mpz_mul(search->shift[axis], search->shift[axis], den);
         mpz_mul_ui(search->t[0], num, product);
-        mpz_addmul(search->shift[axis], search->t[0], search->drift[axis]);
+        mpz_addmul(search->shift[axis], search->t[0], search->integers.drift[axis]);
     }
     mpz_mul_ui(search->factor, den, product);
     mpz_mul_2exp(search->factor, search->factor, e);
@@ -371,12 +333,12 @@ static void add_spanning(const struct hull_search *search, const mpz_t num, cons
 /* x := x 2^unit / scale */
 static void to_length(const struct hull_search *search, mpq_t x)
 {
-    mpz_mul(mpq_denref(x), mpq_denref(x), search->scale);
+    mpz_mul(mpq_denref(x), mpq_denref(x), search->integers.scale);
     mpq_canonicalize(x);
-    if (search->unit < 0)
-        mpq_div_2exp(x, x, (mp_bitcnt_t) -search->unit);
+    if (search->integers.unit < 0)
+        mpq_div_2exp(x, x, (mp_bitcnt_t) -search->integers.unit);
     else
-        mpq_mul_2exp(x, x, (mp_bitcnt_t) search->unit);
+        mpq_mul_2exp(x, x, (mp_bitcnt_t) search->integers.unit);
 }
 
 /* The coordinate of the point: that of the first frame. */
@@ -385,7 +347,7 @@ static void set_coordinate(const struct hull_search *search, struct combination 
 {
     mpq_t x;
     mpq_init(x);
-    mpq_set_z(out, search->displacement[0][axis]);
+    mpq_set_z(out, search->integers.side[0].displacement[axis]);
     mpq_mul(out, out, all->late);
     for (unsigned i = 0; i < all->count[0]; i++) {
         mpq_set_z(x, search->vertex[0][all->vertex[0][i]][axis]);
@@ -490,7 +452,7 @@ static void find(struct certificate_writer *writer, struct hull_search *search)
     add_simplex(search, 0, &touch);
     choose_spanning(search, 0);
     choose_spanning(search, 1);
-    const bool drifts = !integer_is_zero(search->drift);
+    const bool drifts = !integer_is_zero(search->integers.drift);
     mpz_set_ui(num, drifts);
     mpz_set_ui(den, 2);
     bool found = try_time(writer, search, &touch, num, den, drifts ? HALF_LAST : LAST);
@@ -540,14 +502,15 @@ static void vertices_end(struct hull_search *search)
 
 void certificate_hull_write(struct certificate_writer *writer, const struct frame_pair *pair)
 {
-    struct hull_search search = {
-        .frames = pair, .dim = pair->a.frame->dim, .unit = INTEGER_NO_EXPONENT};
+    struct hull_search search = {.frames = pair, .dim = pair->a.frame->dim};
     search_each(&search, mpz_init);
     search.count[0] = hull_vertex_count(pair->a.frame);
     search.count[1] = hull_vertex_count(pair->b.frame);
     vertices_begin(&search);
-    for (unsigned i = 0; hull_vertices_visit(pair, i, store_batch, &search); i++)
-        ;
+    hull_integers_set(pair, &search.integers);
+    for (int f = 0; f < 2; f++)
+        for (unsigned k = 0; k < search.count[f]; k++)
+            hull_integers_place(&search.integers, f, k, search.vertex[f][k]);
     if (!search_is_wide(&search)) {
         round_vertices(&search);
         find(writer, &search);

@@ -54,15 +54,15 @@
  * exactly. */
 #include "hull_exact.h"
 
-#include "exact.h"
 #include "hull_search.h"
+#include "hull_vertices.h"
 #include "integer.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
-enum { ROWS = 4, QUARTERS = 4 };
+enum { ROWS = 4, QUARTERS = 4, KEPT = 8 };
 
 /* A point of D, or a mean of points, times QUARTERS. */
 struct point {
@@ -75,13 +75,15 @@ struct point {
 /* One placed frame. */
 struct side {
     const struct hull_view *view;
-    struct exact_turn turn;
-    mpz_t factor;               /* of rotated vectors */
-    mpz_t position[3];          /* times scale */
-    mpz_t displacement[3];      /* v T, times scale */
-    mpz_t small[HULL_SMALL][3]; /* vertices in body coordinates, unless it is a hull */
-    unsigned count;             /* of vertices of the face, [0, count) of face */
+    const struct hull_side *exact;
+    unsigned count; /* of vertices of the face, [0, count) of face */
     uint16_t face[FMB_HULL_VERTICES_MAX];
+};
+
+/* A vertex in the world at time 0, the last one of its remainder by KEPT. */
+struct kept {
+    unsigned number; /* of the vertex, from 1; 0: none */
+    mpz_t at[3];
 };
 
 enum stage { SPANNING, SHOOTING, RAISING, MEASURING_FACE, MEASURING_ALL, COMPLETE };
@@ -90,12 +92,11 @@ struct hull_exact {
     const struct hull_pair *pair;
     unsigned want;
     enum stage stage;
-    long unit;
-    mpz_t scale;
+    struct hull_integers integers;
     struct side side[2];
-    mpz_t drift[3]; /* w T */
-    bool ends[2];   /* of the window, that the face has */
-    bool reduced;   /* the face is not all of D */
+    struct kept kept[2][KEPT];
+    bool ends[2]; /* of the window, that the face has */
+    bool reduced; /* the face is not all of D */
     struct hull_column first[ROWS];
     unsigned first_count, next_first;
 
@@ -137,22 +138,12 @@ static void point_each(struct point *point, void (*call)(mpz_ptr))
     vector_each(point->a, call);
 }
 
-static void side_each(struct side *side, void (*call)(mpz_ptr))
-{
-    exact_turn_each(&side->turn, call);
-    call(side->factor);
-    vector_each(side->position, call);
-    vector_each(side->displacement, call);
-    for (int i = 0; i < HULL_SMALL; i++)
-        vector_each(side->small[i], call);
-}
-
 static void each(struct hull_exact *e, void (*call)(mpz_ptr))
 {
-    call(e->scale);
-    vector_each(e->drift, call);
+    hull_integers_each(&e->integers, call);
     for (int f = 0; f < 2; f++) {
-        side_each(&e->side[f], call);
+        for (int i = 0; i < KEPT; i++)
+            vector_each(e->kept[f][i].at, call);
         vector_each(e->edge[f], call);
         vector_each(e->normal[f], call);
         call(e->scratch[f]);
@@ -183,74 +174,49 @@ static void each(struct hull_exact *e, void (*call)(mpz_ptr))
 
 /* ---- Points ---- */
 
-static const double *coordinates_of(const struct side *side, unsigned i)
-{
-    return side->view->vertices.at + i;
-}
-
-static bool is_hull(const struct side *side)
-{
-    return side->view->placed.frame->shape == FMB_HULL;
-}
-
-/* out := vertex i in body coordinates. */
-static void get_vertex(const struct hull_exact *e, const struct side *side, unsigned i,
-                       mpz_t out[3])
-{
-    const struct support_vertices *vertices = &side->view->vertices;
-    for (int axis = 0; axis < 3; axis++) {
-        if (!is_hull(side))
-            mpz_set(out[axis], side->small[i][axis]);
-        else if (axis >= vertices->dim)
-            mpz_set_ui(out[axis], 0);
-        else
-            integer_set(out[axis],
-                        dyadic_of(coordinates_of(side, i)[(size_t) axis * vertices->stride]),
-                        e->unit);
-    }
-}
-
 /* sum := n . vertex i, in body coordinates. */
 static void set_value(struct hull_exact *e, const struct side *side, unsigned i, mpz_t n[3])
 {
     const struct support_vertices *vertices = &side->view->vertices;
     mpz_set_ui(e->sum, 0);
     for (int axis = 0; axis < vertices->dim; axis++) {
-        if (!is_hull(side)) {
-            mpz_addmul(e->sum, n[axis], side->small[i][axis]);
+        if (side->exact->frame->shape != FMB_HULL) {
+            mpz_addmul(e->sum, n[axis], side->exact->small[i][axis]);
             continue;
         }
-        const struct dyadic x =
-            dyadic_of(coordinates_of(side, i)[(size_t) axis * vertices->stride]);
+        const struct dyadic x = dyadic_of(vertices->at[(size_t) axis * vertices->stride + i]);
         if (x.mantissa == 0)
             continue;
         mpz_mul_si(e->scratch[0], n[axis], x.mantissa);
-        mpz_mul_2exp(e->scratch[0], e->scratch[0], (mp_bitcnt_t) (x.exponent - e->unit));
+        mpz_mul_2exp(e->scratch[0], e->scratch[0], (mp_bitcnt_t) (x.exponent - e->integers.unit));
         mpz_add(e->sum, e->sum, e->scratch[0]);
     }
 }
 
-/* out := the world coordinates of vertex i at the end of the window, or at its start. */
-static void place(struct hull_exact *e, const struct side *side, unsigned i, unsigned end,
-                  mpz_t out[3])
+/* Returns vertex i of frame f in the world at time 0. The ends of a box, other than a verdict, come
+ * back to the same vertices: they are kept. */
+static mpz_t *place(struct hull_exact *e, int f, unsigned i)
 {
-    get_vertex(e, side, i, out);
-    exact_turn_vector(&side->turn, side->factor, out);
-    for (int axis = 0; axis < 3; axis++) {
-        mpz_add(out[axis], out[axis], side->position[axis]);
-        if (end)
-            mpz_add(out[axis], out[axis], side->displacement[axis]);
-    }
+    struct kept *kept = &e->kept[f][e->stage == RAISING ? i % KEPT : 0];
+    if (kept->number != i + 1)
+        hull_integers_place(&e->integers, f, i, kept->at);
+    kept->number = i + 1;
+    return kept->at;
 }
 
 static void set_point(struct hull_exact *e, struct hull_column column, struct point *out)
 {
+    mpz_t *a = place(e, 0, column.vertex[0]), *b = place(e, 1, column.vertex[1]);
     out->column = column;
     out->end = column.end ? QUARTERS : 0;
-    place(e, &e->side[0], column.vertex[0], column.end, out->a);
-    place(e, &e->side[1], column.vertex[1], column.end, out->x);
     for (int axis = 0; axis < 3; axis++) {
-        mpz_sub(out->x[axis], out->x[axis], out->a[axis]);
+        mpz_sub(out->x[axis], b[axis], a[axis]);
+        if (column.end) {
+            mpz_add(out->x[axis], out->x[axis], e->integers.drift[axis]);
+            mpz_add(out->a[axis], a[axis], e->integers.side[0].displacement[axis]);
+        } else {
+            mpz_set(out->a[axis], a[axis]);
+        }
         mpz_mul_2exp(out->x[axis], out->x[axis], 2);
         mpz_mul_2exp(out->a[axis], out->a[axis], 2);
     }
@@ -304,13 +270,13 @@ static void round_direction(struct hull_exact *e, const struct side *side, struc
 static void turn_back(struct hull_exact *e, const struct side *side, mpz_t n[3])
 {
     for (int j = 0; j < 3; j++) {
-        if (!side->turn.turned) {
+        if (!side->exact->turn.turned) {
             mpz_set(e->body[j], n[j]);
             continue;
         }
         mpz_set_ui(e->body[j], 0);
         for (int i = 0; i < 3; i++)
-            mpz_addmul(e->body[j], side->turn.row[i][j], n[i]);
+            mpz_addmul(e->body[j], side->exact->turn.row[i][j], n[i]);
     }
 }
 
@@ -383,7 +349,7 @@ static struct hull_column price_difference(struct hull_exact *e, bool reduce)
 {
     for (int axis = 0; axis < 3; axis++)
         mpz_neg(e->normal[0][axis], e->normal[1][axis]);
-    dot(e->normal[1], e->drift, e->sum);
+    dot(e->normal[1], e->integers.drift, e->sum);
     return price(e, mpz_sgn(e->sum), reduce);
 }
 
@@ -922,9 +888,9 @@ static void end_target(struct hull_exact *e)
         e->contact[end] =
             integer_ratio_round(e->sum, e->denominator, window.exponent, direction, e->minor);
     } else {
-        mpz_mul(e->denominator, e->denominator, e->scale);
-        e->box[end][target_axis(e)] =
-            integer_ratio_round(e->dual[e->rank], e->denominator, e->unit, direction, e->minor);
+        mpz_mul(e->denominator, e->denominator, e->integers.scale);
+        e->box[end][target_axis(e)] = integer_ratio_round(e->dual[e->rank], e->denominator,
+                                                          e->integers.unit, direction, e->minor);
     }
     e->target++;
     next_target(e);
@@ -946,7 +912,7 @@ static void height_step(struct hull_exact *e)
         mpz_set(e->normal[0][e->axis[j]], e->dual[j]);
     }
     /* What the end of the window adds, in units of 1 / det. */
-    dot(e->normal[1], e->drift, e->sum);
+    dot(e->normal[1], e->integers.drift, e->sum);
     mpz_set(e->scratch[0], e->det);
     if (target_sign(e) < 0)
         mpz_neg(e->scratch[0], e->scratch[0]);
@@ -954,7 +920,7 @@ static void height_step(struct hull_exact *e)
         mpz_add(e->sum, e->sum, e->scratch[0]);
     } else {
         const int axis = target_axis(e);
-        mpz_addmul(e->sum, e->scratch[0], e->side[0].displacement[axis]);
+        mpz_addmul(e->sum, e->scratch[0], e->integers.side[0].displacement[axis]);
         mpz_add(e->normal[0][axis], e->normal[0][axis], e->scratch[0]);
     }
     set_point(e, price(e, mpz_sgn(e->sum), false), &e->entering);
@@ -1006,42 +972,6 @@ static void measured(struct hull_exact *e)
 
 /* ---- Begin and end ---- */
 
-/* Sets the vertices of a frame that is not a hull. */
-static void set_small(struct hull_exact *e, struct side *side)
-{
-    struct exact_frame frame;
-    const unsigned count = side->view->vertices.count;
-    exact_frame_each(&frame, mpz_init);
-    exact_frame_set(&frame, side->view->placed.frame, e->unit);
-    for (unsigned k = 0; k < count; k++)
-        for (int axis = 0; axis < 3; axis++) {
-            mpz_set(side->small[k][axis], frame.origin[axis]);
-            for (unsigned i = 0; i < (unsigned) frame.count; i++)
-                if (frame.simplex ? k == i + 1 : k >> i & 1)
-                    mpz_add(side->small[k][axis], side->small[k][axis], frame.component[i][axis]);
-        }
-    exact_frame_each(&frame, mpz_clear);
-}
-
-static void set_side(struct hull_exact *e, struct side *side, const mpz_t other_norm, bool same)
-{
-    const struct placed_frame *placed = &side->view->placed;
-    const struct dyadic window = dyadic_of(e->pair->frames->duration);
-    if (same)
-        mpz_set_ui(side->factor, 1);
-    else
-        mpz_set(side->factor, other_norm);
-    for (int axis = 0; axis < placed->frame->dim; axis++) {
-        integer_set(side->position[axis], dyadic_of(placed->placement->position[axis]), e->unit);
-        mpz_mul(side->position[axis], side->position[axis], e->scale);
-        integer_set_product(side->displacement[axis], dyadic_of(placed->placement->velocity[axis]),
-                            window, e->unit);
-        mpz_mul(side->displacement[axis], side->displacement[axis], e->scale);
-    }
-    if (!is_hull(side))
-        set_small(e, side);
-}
-
 struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
                                     const struct hull_column *first, unsigned count)
 {
@@ -1052,19 +982,11 @@ struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
     each(e, mpz_init);
     e->pair = pair;
     e->want = want & (FMB_WANT_BOX | FMB_WANT_TIMES);
-    e->unit = limbs_span_of(pair->frames).unit;
+    hull_integers_set(pair->frames, &e->integers);
     for (int f = 0; f < 2; f++) {
         e->side[f].view = &pair->view[f];
-        exact_turn_set(pair->view[f].placed.placement, &e->side[f].turn);
+        e->side[f].exact = &e->integers.side[f];
     }
-    const bool same = mpz_cmp(e->side[0].turn.norm, e->side[1].turn.norm) == 0;
-    mpz_set(e->scale, e->side[0].turn.norm);
-    if (!same)
-        mpz_mul(e->scale, e->scale, e->side[1].turn.norm);
-    for (int f = 0; f < 2; f++)
-        set_side(e, &e->side[f], e->side[!f].turn.norm, same);
-    for (int axis = 0; axis < 3; axis++)
-        mpz_sub(e->drift[axis], e->side[1].displacement[axis], e->side[0].displacement[axis]);
     set_all_vertices(e);
     e->ends[0] = true;
     e->ends[1] = pair_moves(pair->frames) && pair->frames->duration > 0;

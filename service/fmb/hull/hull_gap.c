@@ -272,9 +272,8 @@ static void scale_lengths(struct fmb_gap *gap, int exponent)
 
 /* ---- Steps ---- */
 
-/* Facets raised, and batches of vertices placed, in one step: of 2,048 vertices, less than a
- * millisecond. */
-enum { RAISED_AT_ONCE = 128, PLACED_AT_ONCE = 40 };
+/* Facets raised, and vertices placed, in one step: of 2,048 vertices, less than a millisecond. */
+enum { RAISED_AT_ONCE = 128, PLACED_AT_ONCE = 128 };
 
 /* In doubles, a depth in one step. *late: it takes more. */
 static enum gap_outcome solve_at_once(const struct hull_gap *gap,

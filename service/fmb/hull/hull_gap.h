@@ -11,8 +11,7 @@
 #include "hull.h"
 #include "hull_mesh.h"
 #include "hull_search.h"
-
-#include <gmp.h>
+#include "hull_vertices.h"
 
 /* A pair in doubles, and what its bounds need. */
 struct hull_gap {
@@ -58,8 +57,9 @@ struct hull_gap_placed {
     double least; /* the largest coordinate, or half a displacement if that is larger */
     double *memory[2];
     bool measures; /* the first pass */
-    unsigned next; /* batch of vertices */
-    mpz_t at[FMB_DIM_MAX];
+    unsigned next; /* vertex, of both frames */
+    struct hull_integers integers;
+    mpz_t at[FMB_DIM_MAX], scratch[2];
 };
 
 /* Place a pair exactly, some vertices in each step, until that returns true. hull_gap_place_end()

@@ -9,7 +9,6 @@
  * and a vertex by 2 u of its length. */
 #include "hull_gap.h"
 
-#include "hull_vertices.h"
 #include "integer.h"
 
 #include <limits.h>
@@ -19,38 +18,34 @@
 static const long no_exponent = LONG_MIN / 2;
 
 /* Returns x / scale in units of 2^exponent, or 0 while that is measured. */
-static double rounded(struct hull_gap_placed *placed, struct exact_pair *exact, const mpz_t x)
+static double rounded(struct hull_gap_placed *placed, const mpz_t x)
 {
+    const struct hull_integers *integers = &placed->integers;
     if (!placed->measures)
-        return integer_ratio_round(x, exact->scale, exact->unit - placed->exponent, ROUND_DOWN,
-                                   exact->scratch + 1);
+        return integer_ratio_round(x, integers->scale, integers->unit - placed->exponent,
+                                   ROUND_DOWN, placed->scratch);
     const long exponent =
-        exact->unit + (long) mpz_sizeinbase(x, 2) - (long) mpz_sizeinbase(exact->scale, 2);
+        integers->unit + (long) mpz_sizeinbase(x, 2) - (long) mpz_sizeinbase(integers->scale, 2);
     if (mpz_sgn(x) != 0 && exponent > placed->exponent)
         placed->exponent = exponent;
     return 0;
 }
 
-static void place_batch(void *context, struct hull_batch *batch)
+static void place_vertex(struct hull_gap_placed *placed, int f, unsigned i)
 {
-    struct hull_gap_placed *placed = context;
-    struct exact_pair *exact = &batch->exact;
-    for (int f = 0; f < 2; f++) {
-        const size_t stride = placed->pair.view[f].vertices.stride;
-        for (unsigned k = 0; k < batch->count[f]; k++) {
-            hull_batch_vertex(batch, f, k, placed->at);
-            for (int axis = 0; axis < placed->pair.dim; axis++)
-                placed->memory[f][(size_t) axis * stride + batch->first[f] + k] =
-                    rounded(placed, exact, placed->at[axis]);
-        }
-    }
-    if (batch->first[0] + batch->first[1] > 0)
-        return;
+    const size_t stride = placed->pair.view[f].vertices.stride;
+    hull_integers_place(&placed->integers, f, i, placed->at);
+    for (int axis = 0; axis < placed->pair.dim; axis++)
+        placed->memory[f][(size_t) axis * stride + i] = rounded(placed, placed->at[axis]);
+}
+
+static void place_path(struct hull_gap_placed *placed)
+{
     for (int axis = 0; axis < placed->pair.dim; axis++) {
         for (int f = 0; f < 2; f++)
             placed->displacement[f][axis] =
-                rounded(placed, exact, exact->frame[f].displacement[axis]);
-        placed->pair.drift[axis] = rounded(placed, exact, exact->drift[axis]);
+                rounded(placed, placed->integers.side[f].displacement[axis]);
+        placed->pair.drift[axis] = rounded(placed, placed->integers.drift[axis]);
     }
 }
 
@@ -81,6 +76,15 @@ static size_t bytes_of(const struct support_vertices *vertices)
     return (size_t) vertices->stride * FMB_DIM_MAX * sizeof(double);
 }
 
+static void numbers_each(struct hull_gap_placed *placed, void (*call)(mpz_ptr))
+{
+    hull_integers_each(&placed->integers, call);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        call(placed->at[axis]);
+    call(placed->scratch[0]);
+    call(placed->scratch[1]);
+}
+
 void hull_gap_place_begin(const struct hull_pair *pair, struct hull_gap_placed *out)
 {
     void *(*allocate)(size_t);
@@ -100,7 +104,8 @@ void hull_gap_place_begin(const struct hull_pair *pair, struct hull_gap_placed *
         view->rotation.dim = pair->dim;
         rotation_set_planar(1, 0, true, &view->rotation);
     }
-    mpz_inits(out->at[0], out->at[1], out->at[2], NULL);
+    numbers_each(out, mpz_init);
+    hull_integers_set(pair->frames, &out->integers);
 }
 
 static void set_pair(struct hull_gap_placed *placed)
@@ -122,18 +127,22 @@ static void set_pair(struct hull_gap_placed *placed)
 
 bool hull_gap_place_step(struct hull_gap_placed *placed, int count)
 {
-    for (; count > 0; count--) {
-        if (hull_vertices_visit(placed->pair.frames, placed->next++, place_batch, placed))
-            continue;
-        if (!placed->measures) {
-            set_pair(placed);
-            return true;
-        }
-        placed->measures = false;
-        placed->next = 0;
-        if (placed->exponent == no_exponent) /* all is 0 */
-            placed->exponent = 0;
+    const unsigned of_a = placed->pair.view[0].vertices.count;
+    const unsigned all = of_a + placed->pair.view[1].vertices.count;
+    for (; count > 0 && placed->next < all; count--, placed->next++)
+        place_vertex(placed, placed->next >= of_a,
+                     placed->next < of_a ? placed->next : placed->next - of_a);
+    if (placed->next < all)
+        return false;
+    place_path(placed);
+    if (!placed->measures) {
+        set_pair(placed);
+        return true;
     }
+    placed->measures = false;
+    placed->next = 0;
+    if (placed->exponent == no_exponent) /* all is 0 */
+        placed->exponent = 0;
     return false;
 }
 
@@ -143,5 +152,5 @@ void hull_gap_place_end(struct hull_gap_placed *placed)
     mp_get_memory_functions(NULL, NULL, &release);
     for (int f = 0; f < 2; f++)
         release(placed->memory[f], bytes_of(&placed->pair.view[f].vertices));
-    mpz_clears(placed->at[0], placed->at[1], placed->at[2], NULL);
+    numbers_each(placed, mpz_clear);
 }

@@ -1,18 +1,23 @@
-/* Method. The conversion of the method exact (exact.h) places frames. A hull is given to it as
- * cuboids that have three vertices (2D: two) each as components, and their origin at the position
- * of the body: a component is then a vertex without the position. */
 #include "hull_vertices.h"
 
-/* Sets a part of a hull: a cuboid; components beyond count are 0. */
-static void set_part(const struct fmb_frame *frame, unsigned first, unsigned count,
-                     struct fmb_frame *out)
+#include "integer.h"
+
+void hull_integers_each(struct hull_integers *integers, void (*call)(mpz_ptr))
 {
-    double numbers[FMB_COMPONENTS_MAX] = {0};
-    const size_t dim = (size_t) frame->dim;
-    for (unsigned k = 0; k < count; k++)
-        for (size_t axis = 0; axis < dim; axis++)
-            numbers[k * dim + axis] = frame->vertices[axis * frame->vertex_stride + first + k];
-    fmb_frame_make(frame->dim, FMB_CUBOID, numbers, dim * dim, out);
+    call(integers->scale);
+    for (int f = 0; f < 2; f++) {
+        struct hull_side *side = &integers->side[f];
+        exact_turn_each(&side->turn, call);
+        call(side->factor);
+        for (int axis = 0; axis < 3; axis++) {
+            call(side->position[axis]);
+            call(side->displacement[axis]);
+            for (int i = 0; i < HULL_SMALL; i++)
+                call(side->small[i][axis]);
+        }
+    }
+    for (int axis = 0; axis < 3; axis++)
+        call(integers->drift[axis]);
 }
 
 unsigned hull_vertex_count(const struct fmb_frame *frame)
@@ -22,43 +27,76 @@ unsigned hull_vertex_count(const struct fmb_frame *frame)
     return frame_is_simplex(frame) ? (unsigned) frame->count + 1 : 1U << frame->count;
 }
 
-bool hull_vertices_visit(const struct frame_pair *frames, unsigned number, hull_batch_visit *visit,
-                         void *context)
+/* Sets the vertices of a frame that is not a hull. */
+static void set_small(struct hull_side *side, long unit)
 {
-    struct frame_pair pair = *frames;
-    struct placed_frame *placed[2] = {&pair.a, &pair.b};
-    struct fmb_frame part[2];
-    struct hull_batch batch;
-    bool more = false;
-    for (int f = 0; f < 2; f++) {
-        const struct fmb_frame *frame = placed[f]->frame;
-        const unsigned all = hull_vertex_count(frame);
-        batch.small[f] = frame->shape != FMB_HULL;
-        const unsigned at_once = batch.small[f] ? all : (unsigned) frame->dim;
-        batch.first[f] = number * at_once < all ? number * at_once : all;
-        batch.count[f] = all - batch.first[f] < at_once ? all - batch.first[f] : at_once;
-        more = more || batch.first[f] + batch.count[f] < all;
-        if (batch.small[f])
-            continue;
-        set_part(frame, batch.first[f], batch.count[f], &part[f]);
-        placed[f]->frame = &part[f];
-    }
-    exact_pair_init(&batch.exact, &pair);
-    visit(context, &batch);
-    exact_pair_clear(&batch.exact);
-    return more;
+    struct exact_frame frame;
+    const unsigned count = hull_vertex_count(side->frame);
+    exact_frame_each(&frame, mpz_init);
+    exact_frame_set(&frame, side->frame, unit);
+    for (unsigned k = 0; k < count; k++)
+        for (int axis = 0; axis < 3; axis++) {
+            mpz_set(side->small[k][axis], frame.origin[axis]);
+            for (unsigned i = 0; i < (unsigned) frame.count; i++)
+                if (frame.simplex ? k == i + 1 : k >> i & 1)
+                    mpz_add(side->small[k][axis], side->small[k][axis], frame.component[i][axis]);
+        }
+    exact_frame_each(&frame, mpz_clear);
 }
 
-void hull_batch_vertex(struct hull_batch *batch, int f, unsigned k, mpz_t out[3])
+static void set_side(const struct fmb_placement *placement, const struct dyadic window,
+                     const struct hull_integers *integers, struct hull_side *side)
 {
-    struct exact_frame *frame = &batch->exact.frame[f];
-    const unsigned bits = batch->small[f] && !frame->simplex ? k
-                          : batch->small[f] && k == 0        ? 0
-                                                             : 1U << (k - batch->small[f]);
-    for (int axis = 0; axis < 3; axis++) {
-        mpz_set(out[axis], frame->origin[axis]);
-        for (int i = 0; i < frame->count; i++)
-            if (bits >> i & 1)
-                mpz_add(out[axis], out[axis], frame->component[i][axis]);
+    for (int axis = 0; axis < side->frame->dim; axis++) {
+        integer_set(side->position[axis], dyadic_of(placement->position[axis]), integers->unit);
+        mpz_mul(side->position[axis], side->position[axis], integers->scale);
+        integer_set_product(side->displacement[axis], dyadic_of(placement->velocity[axis]), window,
+                            integers->unit);
+        mpz_mul(side->displacement[axis], side->displacement[axis], integers->scale);
     }
+    if (side->frame->shape != FMB_HULL)
+        set_small(side, integers->unit);
+}
+
+void hull_integers_set(const struct frame_pair *frames, struct hull_integers *out)
+{
+    const struct placed_frame *placed[2] = {&frames->a, &frames->b};
+    struct hull_side *side = out->side;
+    out->unit = limbs_span_of(frames).unit;
+    for (int f = 0; f < 2; f++) {
+        side[f].frame = placed[f]->frame;
+        exact_turn_set(placed[f]->placement, &side[f].turn);
+    }
+    const bool same = mpz_cmp(side[0].turn.norm, side[1].turn.norm) == 0;
+    mpz_set(out->scale, side[0].turn.norm);
+    if (!same)
+        mpz_mul(out->scale, out->scale, side[1].turn.norm);
+    for (int f = 0; f < 2; f++) {
+        if (same)
+            mpz_set_ui(side[f].factor, 1);
+        else
+            mpz_set(side[f].factor, side[!f].turn.norm);
+        set_side(placed[f]->placement, dyadic_of(frames->duration), out, &side[f]);
+    }
+    for (int axis = 0; axis < 3; axis++)
+        mpz_sub(out->drift[axis], side[1].displacement[axis], side[0].displacement[axis]);
+}
+
+void hull_integers_place(const struct hull_integers *integers, int f, unsigned i, mpz_t out[3])
+{
+    const struct hull_side *side = &integers->side[f];
+    const struct fmb_frame *frame = side->frame;
+    for (int axis = 0; axis < 3; axis++) {
+        if (frame->shape != FMB_HULL)
+            mpz_set(out[axis], side->small[i][axis]);
+        else if (axis >= frame->dim)
+            mpz_set_ui(out[axis], 0);
+        else
+            integer_set(out[axis],
+                        dyadic_of(frame->vertices[(size_t) axis * frame->vertex_stride + i]),
+                        integers->unit);
+    }
+    exact_turn_vector(&side->turn, side->factor, out);
+    for (int axis = 0; axis < 3; axis++)
+        mpz_add(out[axis], out[axis], side->position[axis]);
 }

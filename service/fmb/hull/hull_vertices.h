@@ -1,28 +1,36 @@
-/* The vertices of a pair in integers, a few at a time. */
+/* The vertices of a pair in integers: every length is an integer times 2^unit / scale. */
 #ifndef FMB_HULL_VERTICES_H
 #define FMB_HULL_VERTICES_H
 
 #include "exact.h"
 #include "hull.h"
 
-/* Vertices first to first + count[f] - 1 of frame f. */
-struct hull_batch {
-    struct exact_pair exact; /* its scale is that of all batches; its unit need not be */
-    unsigned first[2], count[2];
-    bool small[2]; /* not a hull */
+/* A placed frame. */
+struct hull_side {
+    const struct fmb_frame *frame;
+    struct exact_turn turn;
+    mpz_t factor; /* of vectors that are turned */
+    mpz_t position[3];
+    mpz_t displacement[3];      /* v T */
+    mpz_t small[HULL_SMALL][3]; /* vertices in body coordinates, over 2^unit, unless it is a hull */
 };
 
-typedef void hull_batch_visit(void *context, struct hull_batch *batch);
+struct hull_integers {
+    long unit;
+    mpz_t scale;
+    struct hull_side side[2];
+    mpz_t drift[3]; /* over the window */
+};
+
+/* Calls one of mpz_init and mpz_clear for every number. */
+void hull_integers_each(struct hull_integers *integers, void (*call)(mpz_ptr));
+
+/* Sets the integers of a checked pair, whose frames must outlive them. In: all numbers are 0. */
+void hull_integers_set(const struct frame_pair *frames, struct hull_integers *out);
 
 unsigned hull_vertex_count(const struct fmb_frame *frame);
 
-/* Calls visit for a batch, by its number from 0: together they have every vertex of both frames
- * once. Its exact pair also holds the displacements and the drift. Returns whether there is another
- * one. */
-bool hull_vertices_visit(const struct frame_pair *frames, unsigned number, hull_batch_visit *visit,
-                         void *context);
-
-/* out := vertex first + k of frame f in the world at time 0, times scale, in units. */
-void hull_batch_vertex(struct hull_batch *batch, int f, unsigned k, mpz_t out[3]);
+/* out := vertex i of frame f in the world at time 0. */
+void hull_integers_place(const struct hull_integers *integers, int f, unsigned i, mpz_t out[3]);
 
 #endif
