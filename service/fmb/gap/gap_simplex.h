@@ -167,10 +167,11 @@ INLINE bool gap_move(struct gap_simplex *simplex)
 /* A P, and its vertex with the least n . p. */
 typedef void gap_support(const void *context, const double n[3], struct gap_corner *out);
 
-/* Returns whether f(n) is greater than far |n|. square: of |n|. */
+/* Returns whether f(n) is certainly greater than far |n|. square: of |n|. */
 INLINE bool gap_is_beyond(double far, double f, double square)
 {
-    return f > 0 && far < INFINITY && f > far * sqrt(square);
+    const bool known = square >= 0x1p-950; /* else it may have underflowed */
+    return f > 0 && known && far < INFINITY && f > far * sqrt(square);
 }
 
 /* Finds the point of P next to the origin.
