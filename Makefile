@@ -16,7 +16,7 @@
 #           abi: the names and sizes that programs linked with the libraries depend on
 #
 # Variables:
-#   MODE=release|debug|asan|fuzz   optimised, for a debugger, with sanitizers, with fuzzers (clang)
+#   MODE=release|debug|asan        optimised, for a debugger, with sanitizers and fuzzers (clang)
 #   INSTRUCTIONS=two               leaves out the AVX2 and AVX-512 kernels, which compile slowly
 #   PEERS=none                     leaves out other libraries from the benchmarks
 #   WERROR=1                       warnings are errors
@@ -29,7 +29,7 @@ VERSION := 0.1.0
 MODE ?= release
 INSTRUCTIONS ?=
 ifeq ($(origin CC),default)
-CC := $(if $(filter fuzz,$(MODE)),clang,gcc)
+CC := $(if $(filter asan,$(MODE)),clang,gcc)
 endif
 PREFIX ?= /usr/local
 override PREFIX := $(if $(filter /%,$(firstword $(PREFIX))),$(PREFIX),$(shell realpath -m '$(PREFIX)'))
@@ -66,20 +66,16 @@ quiet := $(if $(V),,@)
 
 mode_flags_release := -O2 -g1 -DNDEBUG
 mode_flags_debug := -O0 -g3
-mode_flags_sanitized := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all \
-	-fno-omit-frame-pointer
-# Undefined behaviour traps: the places that messages name are 9 MB of addresses in each program, which
-# every process would relocate. MODE=fuzz names them.
-mode_flags_asan := $(mode_flags_sanitized) -fsanitize-undefined-trap-on-error
-mode_flags_fuzz := $(mode_flags_sanitized) -fsanitize=fuzzer-no-link
+mode_flags_asan := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all \
+	-fno-omit-frame-pointer -fsanitize=fuzzer-no-link
 ifeq ($(mode_flags_$(MODE)),)
-$(error MODE is release, debug, asan or fuzz)
+$(error MODE is release, debug or asan)
 endif
 ifneq ($(filter-out two,$(INSTRUCTIONS)),)
 $(error INSTRUCTIONS is two or empty)
 endif
+# Messages of sanitizers name places by 4 MB of addresses, which each process would relocate.
 mode_link_asan := -fsanitize=address,undefined -no-pie
-mode_link_fuzz := -fsanitize=address,undefined
 
 # -ffp-contract=off: the same bits on every machine. -fPIC: archives fit into shared objects too;
 # without interposition it costs the programs nothing.
@@ -233,7 +229,7 @@ $(foreach l,$(engine_layers),$(eval $(O)/$l/layer.so: \
 $(foreach l,$(wire_layers),$(eval $(O)/$l/layer.so: $(message_objects) $(engine) \
 	$(call objects_in,$l $(filter $(wire_layers),$(see_$l)))))
 %/layer.so: $(O)/service/fmb/names.o
-	$(call say,LD,$@) $(CC) $(filter-out -pie,$(link_flags)) -shared -Wl,--no-undefined -o $@ $(filter %.o,$^) \
+	$(call say,LD,$@) $(CC) $(filter-out -pie -no-pie,$(link_flags)) -shared -Wl,--no-undefined -o $@ $(filter %.o,$^) \
 		$(filter %.a,$^) -Wl,--as-needed $(libraries)
 
 # Libraries: one object that shows the names of the header alone, so that no program's names meet
@@ -258,7 +254,7 @@ $(B)/libfmb-client.so.0: shared_needs := $(B)/libfmb.so.0 -llcm -lglib-2.0 -lm
 $(B)/libfmb-client.so.0: $(B)/libfmb.so.0
 $(shared_libraries): $(B)/%.so.0: $(B)/%.a
 	@echo '{ local: fmb_client_raw_*; };' > $@.map
-	$(call say,LD,$@) $(CC) $(filter-out -pie,$(link_flags)) -shared -Wl,-soname,$(@F) -Wl,--version-script,$@.map -o $@ \
+	$(call say,LD,$@) $(CC) $(filter-out -pie -no-pie,$(link_flags)) -shared -Wl,-soname,$(@F) -Wl,--version-script,$@.map -o $@ \
 		-Wl,--whole-archive $< -Wl,--no-whole-archive $(shared_needs)
 
 # ---- Programs ----

@@ -13,13 +13,10 @@ self=tests/run.sh
 log=build/tests.log
 limit=600 # seconds a suite may take before it has failed
 
-# Three builds, each for what only it proves. Release: every suite. Sanitizers of gcc: the programs, as
-# their users start them, where these suites take them furthest; kernels of one instruction set are
-# enough. Sanitizers of clang, instrumented for fuzzing: unit tests, with all kernels, fuzzers, and the
-# goldens, which another compiler must reproduce.
+# Two builds. Release: every suite. Sanitizers, of clang: unit tests, fuzzers, the goldens, which another
+# compiler must reproduce, and the suites that take the programs furthest.
 release=build
-programs=build/asan-two
-units=build/fuzz-clang
+asan=build/asan-clang
 sanitized='system/service.bats system/daemon.bats system/record.bats system/replay_bus.bats'
 sanitized="$sanitized system/soak.bats cli/query.bats cli/record.bats cli/replay.bats cli/mesh.bats"
 
@@ -42,16 +39,15 @@ run_suite() {
     # at paths, not at answers: fewer samples take them all.
     case $build in
     "$release") sample=${FMB_FAST:+1} sample=${sample:-0.7} ;;
-    "$programs")
-        sample=1
+    "$asan")
         export FMB_FAST=1
-        # Unit tests look for leaks; in a command they cost half its time.
-        export ASAN_OPTIONS=detect_leaks=0
-        ;;
-    "$units")
-        sample=0.5
-        export FMB_FAST=1
-        case $what in test_kernels) sample=1 ;; test_limbs) sample=0.2 ;; esac
+        case $what in
+        test_limbs) sample=0.2 ;;
+        test_kernels) sample=1 ;;
+        test_*) sample=0.5 ;;
+        # Unit tests look for leaks; in a command that costs as much as its work.
+        *) sample=1; export ASAN_OPTIONS=detect_leaks=0 ;;
+        esac
         ;;
     esac
     export FMB_SAMPLE="${FMB_SAMPLE-$sample}"
@@ -181,18 +177,16 @@ list_all() {
     list_release
     [ -z "${FMB_FAST-}" ] || return 0
     # shellcheck disable=SC2086
-    list_bats $programs $sanitized
-    list_units $units
-    list_bats $units fuzz/fuzz.bats cli/replay_set.bats
+    list_bats $asan $sanitized fuzz/fuzz.bats cli/replay_set.bats
+    list_units $asan
 }
 
 rm -rf "$log"
 mkdir -p "$log"
-rm -rf $release/tests $programs/tests $units/tests
+rm -rf $release/tests $asan/tests
 build PEERS=none format-check headers layers ${FMB_FAST:+fast-}tests
 if [ -z "${FMB_FAST-}" ]; then
-    build MODE=asan INSTRUCTIONS=two tested-programs
-    build MODE=fuzz unit-tests fuzzers replay-set
+    build MODE=asan tested-programs unit-tests fuzzers replay-set
     [ ! -d build/aarch64/usr ] || build aarch64
 fi
 list_all | awk -v first="$first" 'BEGIN { count = split(first, name) }

@@ -119,11 +119,11 @@ $(unit_tests): libraries += -lcmocka
 $(unit_tests): $(B)/tests/%: $(O)/tests/unit/%.o | $(B)/netns
 	$(link)
 
-# ---- Fuzz targets: each a program that replays its corpus and, with MODE=fuzz, a fuzzer ----
+# ---- Fuzz targets: each a program that replays its corpus and, with MODE=asan, a fuzzer ----
 
 fuzz_targets := pair_query pair_result scene_query scene_result definition_query definition status \
 	answer scene_json event_log replay_log mesh
-replayers := $(if $(filter fuzz,$(MODE)),,$(fuzz_targets:%=$(B)/tests/test_fuzz_%))
+replayers := $(if $(filter asan,$(MODE)),,$(fuzz_targets:%=$(B)/tests/test_fuzz_%))
 fuzzers := $(fuzz_targets:%=$(B)/fuzz_%)
 # Each file of planted/ is a copy of one file with one fault, and has the name of the target that
 # must find it, followed by a dash and a word where a target has several.
@@ -137,7 +137,7 @@ $(O)/fuzz.a: $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o model.o same.o results
 	@rm -f $@
 	$(call say,AR,$@) $(AR) rcs $@ $^
 # Comparisons of numbers deep in the engine are not what inputs should be made for.
-ifeq ($(MODE),fuzz)
+ifeq ($(MODE),asan)
 $(engine_objects): flags += -O2 -fno-sanitize-coverage=trace-cmp
 endif
 # The parts of a fuzz target are named in its rule by the stem.

@@ -2,7 +2,7 @@
 # of what is not planted.
 
 setup() {
-    BUILD=${FMB_BUILD:-build/fuzz-clang}
+    BUILD=${FMB_BUILD:-build/asan-clang}
     cd "$BATS_TEST_DIRNAME/../.." || return
 }
 

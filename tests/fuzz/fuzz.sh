@@ -53,7 +53,7 @@ libfuzzer() {
     target=$1
     shift
     # shellcheck disable=SC2046
-    ASAN_OPTIONS=malloc_context_size=3 nice "build/fuzz-clang/fuzz_$target" -timeout=1200 -report_slow_units=1200 \
+    ASAN_OPTIONS=malloc_context_size=3 nice "build/asan-clang/fuzz_$target" -timeout=1200 -report_slow_units=1200 \
         -rss_limit_mb=4096 -print_final_stats=1 \
         $(options_of "$target") "$@"
 }
@@ -147,12 +147,12 @@ each() {
 
 build_with() {
     # shellcheck disable=SC2086
-    make -s -j"$(nproc)" MODE=fuzz CC="$1" $2 || exit
+    make -s -j"$(nproc)" MODE=asan CC="$1" $2 || exit
 }
 
 # ---- AFL++ ----
 
-afl=build/fuzz-afl-clang-fast
+afl=build/asan-afl-clang-fast
 
 afl_stat() {
     sed -n "s/^$2 *: *\([0-9]*\).*/\1/p" "$out/afl/$1/default/fuzzer_stats" 2> /dev/null
@@ -184,7 +184,7 @@ afl_one() {
 write_seeds() {
     rm -rf "$out/seeds"
     mkdir -p "$out/seeds/scene_json"
-    build/fuzz-clang/fuzz_seeds "$out/seeds"
+    build/asan-clang/fuzz_seeds "$out/seeds"
     cp clients/demo/cube.json tests/cases/*.json "$out/seeds/scene_json"
 }
 
