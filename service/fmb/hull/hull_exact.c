@@ -5,11 +5,13 @@
  * no step rounds. Points enter as 4 x, because the interior point c below is a mean in quarters.
  *
  * 1. Span (span_step()). Finds k + 1 points of D that are affinely independent, k the dimension of
- * D: starting with the points given, it looks for a point off the flat that is spanned so far, in a
- *    direction orthogonal to it. If all of D is in that flat, that is its affine hull. If this does
- *    not contain the origin, the frames are separated. Else k coordinates are chosen in which the
- *    projection of the flat is one to one; D has an interior there. The point c, a mean of the k +
- * 1 points with weights of 1/4 and 1/2, lies in it.
+ *    D: starting with the points given, it looks for a point off the flat that is spanned so far,
+ *    in a direction orthogonal to it. If all of D is in that flat, that is its affine hull. If this
+ *    does not contain the origin, the frames are separated. Else k coordinates are chosen in which
+ *    the projection of the flat is one to one; D has an interior there. The point c, a mean of the
+ *    k + 1 points with weights of 1/4 and 1/2, lies in it. If the origin is strictly inside of the
+ *    k + 1 points, k = 3, they are the basis of step 3.
+ *
  * 2. Shoot (shoot_step()). The linear program
  *
  *        minimise sum_i a_i   subject to   sum_i a_i (x_i - c) = -c,  a_i >= 0
@@ -17,24 +19,26 @@
  *    over vertices x_i of D finds where the ray from c through the origin leaves D: at the origin
  *    itself if the sum is 1; the sum is less than 1 if and only if the origin is in the relative
  *    interior of D, 1 if it is on the boundary, and greater if it is outside. Its basis is k
- * vertices whose cone with apex c contains the ray: geometrically, a portal through which the ray
- * passes, as in the Minkowski portal refinement of G. Snethen (Game Programming Gems 7, 2008). The
- * dual solution is the normal N of the portal, N . (x_i - c) = 1. The vertex with the greatest N .
- * x enters the basis. If N . x < 0 for it, N separates; if 0, the origin is on the face of D in
- *    direction N, unless it is separated otherwise: the vertices of both frames that attain the
- *    maximum span that face, the sweep contributes what N . w permits, and step 1 is repeated with
- *    them. Their dimension is less, so this ends.
+ *    vertices whose cone with apex c contains the ray: geometrically, a portal through which the
+ *    ray passes, as in the Minkowski portal refinement of G. Snethen (Game Programming Gems 7,
+ *    2008). The dual solution is the normal N of the portal, N . (x_i - c) = 1. The vertex with the
+ *    greatest N . x enters the basis. If N . x < 0 for it, N separates; if 0, the origin is on the
+ *    face of D in direction N, unless it is separated otherwise: the vertices of both frames that
+ *    attain the maximum span that face, the sweep contributes what N . w permits, and step 1 is
+ *    repeated with them. Their dimension is less, so this ends.
  *    At the end the origin is in the relative interior of a face F of D, of the convex hull of c
- * and the basis, or it is outside of D.
+ *    and the basis, or it is outside of D.
+ *
  * 3. Heights (height_step()). Each end of contact and box is the optimum of
  *
  *        maximise sum_i b_i h(x_i)   subject to   sum_i b_i x_i = 0,  sum_i b_i = 1,  b_i >= 0
  *
  *    over the vertices of F, where h is linear in the vertex of A, that of B, and the time: +-t for
  *    the contact, +-(a + t v_a) along an axis for the box. c and the basis of step 2 are feasible.
- * A convex combination such as c may stay in the basis, it does not change the optimum.
+ *    A convex combination such as c may stay in the basis, it does not change the optimum.
+ *
  * 4. Verdict. OVERLAPPING if at some t the origin is in the relative interior of M + t w. That is
- * so if and only if the part of F that is M's has the dimension of M: relint D is the union of
+ *    so if and only if the part of F that is M's has the dimension of M: relint D is the union of
  *    relint M + t w for 0 < t < T, and every face of D is a face G of M, swept or at one end of the
  *    window. (If w is in the span of M, only F = D has that dimension. If it is not, D is a prism
  *    over M, and the faces with G = M are D and both ends.)
