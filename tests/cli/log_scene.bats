@@ -150,15 +150,20 @@ u32() {
     [[ "$forms" == *true* && "$forms" == *false* ]]
 }
 
-@test "bodies without a distinct id get one" {
+@test "a refused query has no scene, and the reason is reported; bodies without a distinct id get one" {
     generate --blast pairs 30 --whole "$log"
     scene 0 "$log" --event 0
     [[ "$stderr" == *'fmb: event 0 (offset 0), client '* ]]
     generate refused "$log"
+    scene 1 "$log" --event 22
+    [ -z "$output" ]
+    [ "$stderr" = 'fmb: event 22: the service refuses it: a.num_numbers: expected 12 numbers, found 11' ]
     found=0
     for ((event = 0; event < 230; event += step)); do
         status=0
         "$FMB" log scene "$log" --event "$event" > "$T/scene" 2> "$T/said" || status=$?
+        # None of them makes it fail in another way.
+        [ "$status" = 0 ] || { [ "$status" = 1 ] && [ ! -s "$T/scene" ]; }
         stderr=$(< "$T/said")
         [[ "$stderr" == *'which has no id, is body '* || "$stderr" == *', one more of body '* ]] || continue
         [ "$status" = 0 ]
@@ -166,20 +171,6 @@ u32() {
         found=$((found + 1))
     done
     [ "$found" -gt 0 ]
-}
-
-@test "a refused query has no scene, and the reason is reported" {
-    generate refused "$log"
-    scene 1 "$log" --event 22
-    [ -z "$output" ]
-    [ "$stderr" = 'fmb: event 22: the service refuses it: a.num_numbers: expected 12 numbers, found 11' ]
-    # None of them makes it fail in another way.
-    for ((event = 0; event < 230; event += step)); do
-        "$FMB" log scene "$log" --event "$event" > "$T/scene" 2> "$T/said" || {
-            [ "$?" = 1 ]
-            [ ! -s "$T/scene" ]
-        }
-    done
 }
 
 @test "repeated sequence numbers are listed with their offsets" {

@@ -421,13 +421,12 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 }
 
 @test "a recording by another client is compared in order" {
-    local logs='arm clients blast moving'
-    [ -z "${FMB_FAST-}" ] || logs='arm moving'
-    for log in $logs; do
+    local all=('--client 5' '--sequence 100000' '--client 5 --delay 3' '--client 5 --utime 0'
+        '--client 5 --repeat 3 --repeat-query 4')
+    for log in arm moving clients blast; do
         replay --golden $log.log $log.log
         own=$(jq -c '[.queries, .same, .busy, .unknown_body, .not_defined, .no_result]' <<< "$output")
-        for other in '--client 5' '--sequence 100000' '--client 5 --sequence 100000' \
-            '--client 5 --delay 3' '--client 5 --utime 0' '--client 5 --repeat 3 --repeat-query 4'; do
+        for other in "${all[@]}" '--client 5 --sequence 100000'; do
             edit $other $log.log
             replay --golden spoiled.log $log.log
             ended 0
@@ -436,6 +435,8 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
             ended 0
             counts ".left_over == 0"
         done
+        all=() # each edit once; their sum in every log
+        [ -z "${FMB_FAST-}" ] || [ $log = arm ] || break
     done
     edit --client 5 --sequence 7 --flip 3 --flip 60 arm.log
     replay --golden spoiled.log arm.log
