@@ -121,7 +121,7 @@ $(unit_tests): $(B)/tests/%: $(O)/tests/unit/%.o | $(B)/netns
 
 # ---- Fuzz targets: each a program that replays its corpus and, with MODE=asan, a fuzzer ----
 
-fuzz_targets := pair_query pair_result scene_query scene_result definition_query definition status \
+fuzz_targets := robot_files pair_query pair_result scene_query scene_result definition_query definition status \
 	answer scene_json event_log replay_log mesh
 replayers := $(if $(filter asan,$(MODE)),,$(fuzz_targets:%=$(B)/tests/test_fuzz_%))
 fuzzers := $(fuzz_targets:%=$(B)/fuzz_%)
@@ -133,7 +133,8 @@ fuzz_pieces_scene_json := $(O)/tests/fuzz/pieces.o
 fuzz_pieces_event_log := $(O)/tests/fuzz/log_pieces.o
 fuzz_target = $(firstword $(subst -, ,$1))
 fuzz_archives := $(O)/fuzz.a $(shared) $(client) $(product) $(engine)
-$(O)/fuzz.a: $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o model.o same.o results_pair.o results_scene.o)
+$(O)/fuzz.a: $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o model.o same.o same_scene.o \
+	results_pair.o results_scene.o)
 	@rm -f $@
 	$(call say,AR,$@) $(AR) rcs $@ $^
 # Comparisons of numbers deep in the engine are not what inputs should be made for.

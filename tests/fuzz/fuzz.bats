@@ -11,7 +11,7 @@ fuzz() {
     local options=(-use_value_profile=1) length=1024
     [ "$2" != answer ] || length=1280 # as in fuzz.sh
     case $2 in
-    answer | scene_json | replay_log) options=(-entropic=0 -use_counters=0) ;;
+    answer | scene_json | replay_log | robot_files) options=(-entropic=0 -use_counters=0) ;;
     mesh) options=(-use_counters=0) ;; # as value profiles, counters make too many inputs new
     esac
     [ ! -f "tests/fuzz/$2.dict" ] || options+=("-dict=tests/fuzz/$2.dict")
@@ -87,6 +87,11 @@ finds() {
 
 @test "mesh finds bytes that are read beyond the end" {
     finds mesh-bytes "AddressSanitizer: heap-buffer-overflow"
+}
+
+@test "robot_files finds a number that is not finite" {
+    # Of an element, of a joint, of its limits, or in poses.
+    finds robot_files "this does not hold: "
 }
 
 @test "replay_log finds queries that are never answered" {

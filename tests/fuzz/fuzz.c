@@ -3,10 +3,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 _Noreturn void fuzz_failed(const char *file, int line, const char *what)
 {
-    fprintf(stderr, "%s:%d: this does not hold: %s\n", file, line, what);
+    dprintf(STDERR_FILENO, "%s:%d: this does not hold: %s\n", file, line, what);
     abort();
 }
 

@@ -18,7 +18,7 @@ cd "$(dirname "$0")/../.." || exit
 self=tests/fuzz/fuzz.sh
 out=build/fuzz
 # Those that take longest first.
-targets='replay_log answer scene_json event_log mesh scene_query scene_result definition pair_result
+targets='replay_log answer scene_json robot_files event_log mesh scene_query scene_result definition pair_result
     pair_query definition_query status'
 runs=${FUZZ_RUNS:-10000000}
 seconds=${FUZZ_SECONDS:-60}
@@ -43,7 +43,7 @@ runs_of() {
 
 # Where the whole engine is in the program, how often a branch was taken makes too many inputs new.
 options_of() {
-    case $1 in answer | scene_json | replay_log) echo -entropic=0 -use_counters=0 ;; esac
+    case $1 in answer | scene_json | replay_log | robot_files) echo -entropic=0 -use_counters=0 ;; esac
     [ ! -f "tests/fuzz/$1.dict" ] || echo "-dict=tests/fuzz/$1.dict"
 }
 

@@ -7,7 +7,7 @@
 #include "json.h"
 #include "pieces.h"
 #include "query.h"
-#include "same.h"
+#include "same_scene.h"
 #include "scene_json.h"
 #include "utf8.h"
 
@@ -33,10 +33,24 @@ static bool finite_numbers(const double *number, int count)
     return good;
 }
 
+static bool is_hull(const struct fmb_frame *frame)
+{
+    bool by_vertices;
+    const size_t count = fmb_frame_numbers(frame, &by_vertices, NULL);
+    double *number = fuzz_room(count * sizeof *number);
+    fmb_frame_numbers(frame, &by_vertices, number);
+    const bool good = count > 0 && count <= (size_t) frame->dim * FMB_HULL_VERTICES_MAX &&
+                      by_vertices && finite_numbers(number, (int) count);
+    free(number);
+    return good;
+}
+
 /* The origin of a box is computed, and may be infinite. */
 static bool is_frame(const struct fmb_frame *frame, int dim)
 {
     const int shape = (int) frame->shape;
+    if (shape == FMB_HULL)
+        return frame->dim == dim && is_hull(frame);
     bool good = frame->dim == dim && shape >= FMB_CUBOID && shape <= FMB_BOX &&
                 (dim == 3 || shape != FMB_FACE) && frame->count == (shape == FMB_FACE ? 2 : dim) &&
                 finite_numbers(shape == FMB_BOX ? frame->centre : frame->origin, dim);
@@ -123,63 +137,6 @@ static void check_scene(struct owned_scene *owner)
         FUZZ_CHECK(is_placement(&scene->placements[i], owner->dim));
     FUZZ_CHECK(unique_ids(scene));
     check_pairs(owner);
-}
-
-/* ---- The same scene ---- */
-
-static bool same_frame(const struct fmb_frame *a, const struct fmb_frame *b)
-{
-    double numbers[2][FMB_FRAME_NUMBERS_MAX];
-    bool by_vertices[2];
-    const size_t count = fmb_frame_numbers(a, &by_vertices[0], numbers[0]);
-    bool same = fmb_frame_numbers(b, &by_vertices[1], numbers[1]) == count &&
-                by_vertices[0] == by_vertices[1] && same_doubles(numbers[0], numbers[1], count) &&
-                a->dim == b->dim && a->shape == b->shape && a->count == b->count &&
-                same_doubles(a->origin, b->origin, FMB_DIM_MAX) &&
-                same_doubles(a->centre, b->centre, FMB_DIM_MAX);
-    for (int i = 0; i < FMB_DIM_MAX; i++)
-        same = same && same_doubles(a->component[i], b->component[i], FMB_DIM_MAX);
-    return same;
-}
-
-static bool same_name(const char *a, const char *b)
-{
-    return a && b ? strcmp(a, b) == 0 : a == b;
-}
-
-static bool same_placed(const struct fmb_placement *a, const struct fmb_placement *b)
-{
-    bool same = a->id == b->id && same_name(a->name, b->name) && a->group == b->group &&
-                a->body->dim == b->body->dim && a->body->frame_count == b->body->frame_count &&
-                a->orientation_count == b->orientation_count &&
-                same_doubles(a->position, b->position, FMB_DIM_MAX) &&
-                same_doubles(a->velocity, b->velocity, FMB_DIM_MAX) &&
-                same_doubles(a->orientation, b->orientation, 4);
-    for (unsigned i = 0; same && i < a->body->frame_count; i++)
-        same = same_frame(fmb_body_frame(a->body, i), fmb_body_frame(b->body, i));
-    return same;
-}
-
-/* Whether both have the same pairs that are to be decided. */
-static bool same_decided(struct owned_scene *a, struct owned_scene *b)
-{
-    struct pair_cursor of_a = {0}, of_b = {0};
-    unsigned p[2], q[2];
-    while (scene_next_pair(a, &of_a, p))
-        if (!scene_next_pair(b, &of_b, q) || p[0] != q[0] || p[1] != q[1])
-            return false;
-    return !scene_next_pair(b, &of_b, q);
-}
-
-static bool same_scene(struct owned_scene *left, struct owned_scene *right)
-{
-    const struct fmb_scene *a = &left->scene, *b = &right->scene;
-    bool same = same_name(a->label, b->label) && left->dim == right->dim &&
-                same_doubles(&a->duration, &b->duration, 1) && a->margin == b->margin &&
-                a->placement_count == b->placement_count && a->which == b->which;
-    for (size_t i = 0; same && i < a->placement_count; i++)
-        same = same_placed(&a->placements[i], &b->placements[i]);
-    return same && same_decided(left, right);
 }
 
 /* ---- Written and read again ---- */

@@ -1,6 +1,6 @@
 /* Writes what fuzzing begins with into FOLDER/TARGET/: good messages of every type, each with
- * something that the others lack; talks with the service; logs; meshes. Scenes in JSON are copied
- * from the tree. */
+ * something that the others lack; talks with the service; logs; meshes; robots. Scenes in JSON are
+ * copied from the tree. */
 #include "seeds.h"
 
 #include "fuzz.h"
@@ -203,5 +203,6 @@ int main(int argc, char **argv)
     seeds_replays();
     seeds_logs();
     seeds_meshes();
+    seeds_robots();
     return 0;
 }

@@ -16,6 +16,7 @@ void seeds_talks(void);
 void seeds_replays(void);
 void seeds_logs(void);
 void seeds_meshes(void);
+void seeds_robots(void);
 
 /* ---- Queries, for messages, talks and replays ---- */
 

@@ -218,3 +218,46 @@ void seeds_meshes(void)
     write_stls();
     write_objs();
 }
+
+/* ---- Robots: URDF, a table, and a mesh that its file calls "102" ---- */
+
+static void end_robot(const char *name)
+{
+    seeds_write("robot_files", name, file.bytes, file.size);
+    file.size = 0;
+}
+
+void seeds_robots(void)
+{
+    mesh_bytes(
+        "<robot><link name='a'><collision><geometry><box size='1 2 3'/></geometry></collision>"
+        "<collision><origin xyz='1 0 0' rpy='0 0 1'/><geometry><box size='1 1 1'/></geometry>"
+        "</collision></link><link name='b'><collision><geometry><sphere radius='.5'/></geometry>"
+        "</collision></link><joint name='j' type='revolute'><origin xyz='0 0 1'/><parent link='a'/>"
+        "<child link='b'/><axis xyz='0 1 1'/><limit lower='-1' upper='1e308'/></joint></robot>");
+    log_bytes("", 1);
+    mesh_bytes("j,time,label\n0.5,0,start\n2,1.5,\"a \"\"b\"\"\"\n");
+    end_robot("arm");
+    mesh_bytes(
+        "<robot><joint name='s' type='prismatic'><parent link='b'/><child link='a'/>"
+        "<limit upper='1'/></joint><link name='a'><collision><geometry>"
+        "<mesh filename='102' scale='1 -1 2'/></geometry></collision></link><link name='b'/>"
+        "<link name='c'><collision><geometry><cylinder radius='1' length='2'/></geometry>"
+        "</collision></link><joint name='f' type='continuous'><parent link='a'/><child link='c'/>"
+        "</joint></robot>");
+    log_bytes("", 1);
+    mesh_bytes("\xef\xbb\xbf f , s\r\n1,1\r\n");
+    log_bytes("", 1);
+    mesh_bytes("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no a\nf 1 2 3\no b\nf -1 -2 -3\nf 1 2 4\n");
+    end_robot("mesh");
+    mesh_bytes(
+        "<robot><link name='a'><collision><geometry><mesh filename='102'/></geometry>"
+        "</collision></link></robot>");
+    log_bytes("", 1);
+    mesh_bytes("time\n1e308\n");
+    log_bytes("", 1);
+    mesh_bytes(
+        "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+        "vertex 0 1 0\nendloop\nendfacet\nendsolid\n");
+    end_robot("stl");
+}

@@ -1,0 +1,240 @@
+/* A robot, a table of joint values, and a mesh, separated by zero bytes, as files: what is refused
+ * is reported in one line; what is read is a tree, whose poses are rotations; a scene of it is
+ * valid, and reads back as the same; a table read again has the same rows. */
+#define _GNU_SOURCE /* memfd_create */
+#include "fuzz.h"
+
+#include "joints.h"
+#include "json.h"
+#include "robot_scene.h"
+#include "same_scene.h"
+#include "scene_json.h"
+#include "turn.h"
+#include "utf8.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+/* ---- Files, which have no names: a robot may name the third as "102" ---- */
+
+enum { ROBOT = 100, TABLE, MESH, WRITTEN, FILES_END };
+
+static const char *const paths[] = {"/proc/self/fd/100", "/proc/self/fd/101"};
+
+static void write_file(int fd, const uint8_t *bytes, size_t size)
+{
+    FUZZ_CHECK(ftruncate(fd, 0) == 0 && pwrite(fd, bytes, size, 0) == (ssize_t) size);
+}
+
+static void write_files(const uint8_t *data, size_t size)
+{
+    static bool open;
+    for (int fd = ROBOT; fd < FILES_END && !open; fd++) {
+        const int file = memfd_create("", 0);
+        FUZZ_CHECK(file >= 0 && dup2(file, fd) == fd);
+        close(file);
+    }
+    open = true;
+    for (int fd = ROBOT; fd <= MESH; fd++) {
+        const uint8_t *end = fd < MESH && size > 0 ? memchr(data, 0, size) : NULL;
+        const size_t count = end ? (size_t) (end - data) : size;
+        write_file(fd, data, count);
+        data += end ? count + 1 : count;
+        size -= end ? count + 1 : count;
+    }
+}
+
+/* ---- Messages ---- */
+
+static FILE *messages, *usual;
+static char *text;
+static size_t length;
+
+static void begin_messages(void)
+{
+    messages = open_memstream(&text, &length);
+    FUZZ_CHECK(messages);
+    usual = stderr;
+    stderr = messages;
+}
+
+/* Returns the number of lines, and checks that they are text. */
+static int end_messages(void)
+{
+    int lines = 0;
+    stderr = usual;
+    FUZZ_CHECK(fclose(messages) == 0);
+    for (const char *at = text; *at; lines++) {
+        FUZZ_CHECK(strncmp(at, "fmb: ", 5) == 0);
+        for (; *at != '\n'; at++)
+            FUZZ_CHECK((unsigned char) *at >= ' ' && *at != 0x7f);
+        at++;
+    }
+    free(text);
+    return lines;
+}
+
+/* ---- Robots ---- */
+
+static bool is_finite(const double *number, int count)
+{
+    bool good = true;
+    for (int i = 0; i < count; i++)
+        good = good && isfinite(number[i]);
+    return good;
+}
+
+/* Except for rounding, which grows with the depth of the tree. */
+static bool is_rotation(const double q[4])
+{
+    return fabs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-12;
+}
+
+static void check_robot(const struct robot *robot)
+{
+    bool *seen = fuzz_room(robot->link_count);
+    memset(seen, 0, robot->link_count);
+    FUZZ_CHECK(robot->link_count >= 1 && robot->joint_count == robot->link_count - 1);
+    for (size_t i = 0; i < robot->link_count; i++) {
+        const unsigned link = robot->order[i], joint = robot->links[link].joint;
+        FUZZ_CHECK(!seen[link] && (joint == ROBOT_ROOT) == (i == 0));
+        FUZZ_CHECK(i == 0 || seen[robot->joints[joint].link[0]]);
+        FUZZ_CHECK(utf8_is_text(robot->links[link].name->name));
+        seen[link] = true;
+    }
+    for (size_t i = 0; i < robot->joint_count; i++) {
+        const struct robot_joint *joint = &robot->joints[i];
+        const double *a = joint->axis, n = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+        FUZZ_CHECK(joint->limit[0] <= joint->limit[1] && is_rotation(joint->origin.q));
+        FUZZ_CHECK(is_finite(joint->origin.p, 3));
+        FUZZ_CHECK(joint->type == ROBOT_FIXED || fabs(n - 1) < 1e-15 * 8);
+        FUZZ_CHECK(robot_find_joint(robot, joint->name->name) == joint);
+    }
+    for (size_t i = 0; i < robot->element_count; i++) {
+        const struct robot_element *element = &robot->elements[i];
+        FUZZ_CHECK(is_finite(element->size, 3) && is_finite(element->origin.p, 3));
+        FUZZ_CHECK(is_rotation(element->origin.q));
+        for (int k = 0; k < 3; k++)
+            FUZZ_CHECK(element->shape == ROBOT_MESH || element->size[k] >= 0);
+    }
+    free(seen);
+}
+
+static void check_poses(const struct robot *robot, const double *value)
+{
+    struct pose *pose = fuzz_room(robot->link_count * sizeof *pose);
+    robot_place(robot, value, pose);
+    for (size_t i = 0; i < robot->link_count; i++)
+        FUZZ_CHECK(is_rotation(pose[i].q));
+    free(pose);
+}
+
+/* ---- Scenes ---- */
+
+static void check_scene(struct robot_scene *scene)
+{
+    struct owned_scene again;
+    FILE *out = fdopen(dup(WRITTEN), "w");
+    FUZZ_CHECK(out && fmb_scene_check(&scene->owner.scene, NULL, 0) == FMB_OK);
+    write_file(WRITTEN, NULL, 0);
+    rewind(out);
+    scene_json_write(out, &scene->owner);
+    FUZZ_CHECK(fclose(out) == 0 && lseek(WRITTEN, 0, SEEK_SET) == 0);
+    struct json_reader *reader = json_open(WRITTEN);
+    FUZZ_CHECK(json_next(reader, &again) == JSON_SCENE);
+    FUZZ_CHECK(same_scene(&scene->owner, &again));
+    scene_clear(&again);
+    FUZZ_CHECK(json_next(reader, &again) == JSON_END);
+    json_close(reader);
+}
+
+/* With joint values that the caller has checked. */
+static void check_scenes(const struct robot *robot, const double *value, bool objects)
+{
+    const struct robot_body_options options = {.sides = 4, .objects = objects};
+    struct robot_scene scene;
+    begin_messages();
+    const bool made = robot_scene_make(robot, &options, &scene);
+    const bool placed = made && robot_scene_place(&scene, value, 0, "here");
+    const int lines = end_messages();
+    FUZZ_CHECK(made && placed ? lines <= 1 : lines == 1 || lines == 2);
+    if (placed)
+        check_scene(&scene);
+    robot_scene_clear(&scene);
+}
+
+/* ---- Tables ---- */
+
+static void check_row(const struct robot *robot, const struct joint_table *table,
+                      const double *value, double *time)
+{
+    for (size_t i = 0; i < robot->joint_count; i++) {
+        const struct robot_joint *joint = &robot->joints[i];
+        FUZZ_CHECK(
+            joint->type == ROBOT_FIXED ||
+            (isfinite(value[i]) && value[i] >= joint->limit[0] && value[i] <= joint->limit[1]));
+        FUZZ_CHECK(joint->type == ROBOT_FIXED || joint->type == ROBOT_PRISMATIC ||
+                   fabs(value[i]) <= TURN_RADIANS_MAX);
+    }
+    FUZZ_CHECK(!table->has_time || (isfinite(table->time) && !(table->time < *time)));
+    FUZZ_CHECK(strlen(table->label) <= QUERY_NAME_MAX && utf8_is_text(table->label));
+    *time = table->time;
+}
+
+/* Adds the bytes of the rows to a hash (FNV-1a). Returns the outcome that ended them. */
+static enum joint_row read_rows(const struct robot *robot, struct joint_table *table,
+                                const struct joints *joints, uint64_t *hash)
+{
+    enum joint_row outcome;
+    double time = -INFINITY;
+    while ((outcome = joint_table_next(table)) == JOINT_ROW) {
+        const unsigned char *bytes = (const void *) joints->value;
+        check_row(robot, table, joints->value, &time);
+        for (size_t i = 0; i < robot->joint_count * sizeof *joints->value; i++)
+            *hash = (*hash ^ bytes[i]) * UINT64_C(0x100000001b3);
+        for (const char *at = table->label; *at; at++)
+            *hash = (*hash ^ (unsigned char) *at) * UINT64_C(0x100000001b3);
+    }
+    return outcome;
+}
+
+static void check_table(const struct robot *robot, bool objects)
+{
+    struct joints joints;
+    struct joint_table table;
+    uint64_t first = 0, second = 0;
+    enum joint_row outcome = JOINT_ROW_BAD;
+    begin_messages();
+    FUZZ_CHECK(joints_open(robot, NULL, &joints));
+    if (joint_table_open(paths[1], &joints, &table))
+        outcome = read_rows(robot, &table, &joints, &first);
+    FUZZ_CHECK(end_messages() == (outcome == JOINT_ROW_BAD));
+    if (outcome == JOINT_ROW_END) {
+        FUZZ_CHECK(joint_table_rewind(&table));
+        FUZZ_CHECK(read_rows(robot, &table, &joints, &second) == JOINT_ROW_END);
+        FUZZ_CHECK(first == second);
+        check_poses(robot, joints.value);
+        check_scenes(robot, joints.value, objects);
+    }
+    joint_table_close(&table);
+    joints_clear(&joints);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct robot robot;
+    write_files(data, size);
+    begin_messages();
+    const bool read = robot_read(paths[0], &robot);
+    FUZZ_CHECK(end_messages() == !read);
+    if (read) {
+        check_robot(&robot);
+        check_table(&robot, size % 2);
+    }
+    robot_clear(&robot);
+    return 0;
+}
