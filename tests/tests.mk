@@ -32,8 +32,9 @@ see_tests/unit := $(call fmb,number frame filter article tree exact gap hull dec
 test_programs := plain:system/plain fake-peer:system/fake_peer events:system/events crash-liblcm:system/crash_liblcm \
 	edit-log:replay/edit_log logs/generate:logs/generate logs/describe-log:logs/describe_log \
 	mesh/make-mesh:mesh/make_mesh $(foreach s,load memory rate blast fair relay families,soak-$s:soak/$s)
-measures := validate:campaign/validate accuracy:campaign/accuracy checked:checked/checked bench/bench:bench/bench \
-	bus/bench-bus:bus/bench_bus bus/robot-bus:robot/bus bus/echo:bus/echo robot/robot:robot/robot \
+measures := validate:campaign/validate accuracy:campaign/accuracy checked:checked/checked \
+	hull-poses:bench/hull_poses bench/bench:bench/bench bus/bench-bus:bus/bench_bus \
+	bus/robot-bus:robot/bus bus/echo:bus/echo robot/robot:robot/robot \
 	replay/bench-replay:replay/bench_replay mesh/bench-mesh:mesh/bench_mesh \
 	python/bench-batch:python/bench_batch
 mains := $(foreach p,$(test_programs) $(measures),$(lastword $(subst :, ,$p)))
@@ -73,12 +74,13 @@ unit_tests := $(unit_names:%=$(B)/tests/%)
 internal_tests := $(addprefix $(B)/tests/,test_bounds test_box_bounds test_engine_batch \
 	test_engine_pose test_engine_tree test_engine_triangle test_limbs test_outward test_kernels \
 	test_placing test_engine_work test_hull_frame test_hull_verdict test_hull_bounds \
-	test_hull_gap test_hull_certificate test_checked)
+	test_hull_gap test_hull_work test_hull_certificate test_checked)
 comma := ,
 wraps = $(addprefix -Wl$(comma)--wrap=,$1)
-wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_addmul z_submul z_add z_sub \
-	z_fdiv_q z_tdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize n_addmul_1 n_submul_1 \
-	n_add_n n_sub_n n_mul_n) integer_ratio_round)
+wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_mul_si z_mul_2exp z_addmul z_submul \
+	z_add z_sub z_fdiv_q z_tdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize n_addmul_1 \
+	n_submul_1 n_add_n n_sub_n n_mul_n) integer_ratio_round)
+wraps_test_hull_work := $(wraps_test_engine_work) $(call wraps,support_max hull_integers_place)
 wraps_test_log_read := $(call wraps,pread64)
 wraps_test_log_write := $(call wraps,fsync)
 wraps_test_log_cut := $(call wraps,page_take)
@@ -228,10 +230,12 @@ $(campaign_plants): $(O)/planted/%.o: service/fmb/%.c $(O)/settings
 $(B)/accuracy-planted: $(O)/tests/campaign/accuracy.o $(campaign_plants)
 
 # validate: some twenty minutes; accuracy: some hours, on two cores.
-.PHONY: validate accuracy checked soak
+.PHONY: validate accuracy checked hull-poses soak
 # Minutes.
 checked: $(B)/checked
 	$<
+hull-poses: $(B)/hull-poses
+	$< 10000000
 validate: $(B)/validate
 	$<
 accuracy: $(B)/accuracy

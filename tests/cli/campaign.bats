@@ -87,3 +87,9 @@ setup() {
     run "$BUILD/accuracy" --pairs 1 --family random --json /nowhere/report.json
     ended 2
 }
+
+@test "hull-poses: doubles decide random poses of hulls" {
+    run "$BUILD/hull-poses" 100000
+    ended 0
+    [[ ${lines[-1]} == *", 0 need integers" ]]
+}

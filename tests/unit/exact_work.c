@@ -60,6 +60,22 @@ WRAP(__gmpq_div, mpq, count_fractions)
 WRAP(__gmpq_add, mpq, count_fractions)
 WRAP(__gmpq_sub, mpq, count_fractions)
 
+void __real___gmpz_mul_si(mpz_ptr out, mpz_srcptr x, long y);
+void __wrap___gmpz_mul_si(mpz_ptr out, mpz_srcptr x, long y);
+void __wrap___gmpz_mul_si(mpz_ptr out, mpz_srcptr x, long y)
+{
+    exact_work += (double) mpz_size(x);
+    __real___gmpz_mul_si(out, x, y);
+}
+
+void __real___gmpz_mul_2exp(mpz_ptr out, mpz_srcptr x, mp_bitcnt_t bits);
+void __wrap___gmpz_mul_2exp(mpz_ptr out, mpz_srcptr x, mp_bitcnt_t bits);
+void __wrap___gmpz_mul_2exp(mpz_ptr out, mpz_srcptr x, mp_bitcnt_t bits)
+{
+    __real___gmpz_mul_2exp(out, x, bits);
+    exact_work += (double) mpz_size(out);
+}
+
 void __real___gmpq_canonicalize(mpq_ptr x);
 void __wrap___gmpq_canonicalize(mpq_ptr x);
 void __wrap___gmpq_canonicalize(mpq_ptr x)

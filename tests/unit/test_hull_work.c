@@ -1,0 +1,163 @@
+/* How much a step of a pair of the largest hulls takes, counted and not timed: the service looks at
+ * the bus between two steps, at least once a millisecond.
+ *
+ * Derivation. The work of a step is the sum of
+ *
+ *     scanned    vertices in doubles, in support_max(): 0.5 ns each, which is 4.5 instructions
+ *                with two lanes;
+ *     products   of limbs in integers: 0.5 ns each (exact_work.h);
+ *     placed     vertices in integers: 1,000 ns each, beside their products, measured with numbers
+ *                of the whole range.
+ *
+ * What else a step does is at most half of that: the scan of two hulls of 1,024 vertices takes a
+ * thousand nanoseconds, where a point that it finds costs some ten, and the six facets that the
+ * point adds to a mesh some five hundred. So the time of a step is at most 1.5 times its work. */
+
+#include "unit.h"
+
+#include <math.h>
+
+#include "draw.h"
+#include "exact_work.h"
+#include "hull_vertices.h"
+#include "support.h"
+
+enum { VERTICES = FMB_HULL_VERTICES_MAX, NUMBERS = FMB_DIM_MAX * VERTICES };
+
+static const double ns_of_vertex = 0.5, ns_of_product = 0.5, ns_of_placed = 1e3;
+static const double ns_most = 1e6 / 1.5;
+
+static double scanned, placed;
+
+struct support __real_support_max(const struct support_vertices *vertices,
+                                  const double n[FMB_DIM_MAX]);
+struct support __wrap_support_max(const struct support_vertices *vertices,
+                                  const double n[FMB_DIM_MAX]);
+struct support __wrap_support_max(const struct support_vertices *vertices,
+                                  const double n[FMB_DIM_MAX])
+{
+    scanned += vertices->count;
+    return __real_support_max(vertices, n);
+}
+
+void __real_hull_integers_place(const struct hull_integers *integers, int f, unsigned i,
+                                mpz_t out[3]);
+void __wrap_hull_integers_place(const struct hull_integers *integers, int f, unsigned i,
+                                mpz_t out[3]);
+void __wrap_hull_integers_place(const struct hull_integers *integers, int f, unsigned i,
+                                mpz_t out[3])
+{
+    placed++;
+    __real_hull_integers_place(integers, f, i, out);
+}
+
+static double work(void)
+{
+    return ns_of_vertex * scanned + ns_of_product * exact_work + ns_of_placed * placed;
+}
+
+/* ---- Hulls ---- */
+
+struct large {
+    double numbers[NUMBERS], memory[5 * VERTICES + 16];
+    struct fmb_body body;
+    struct fmb_placement at;
+};
+
+/* Points spread over a unit ball; a prism, 30 high, whose faces have half of all vertices each; the
+ * same with exponents of the whole range, in a prism across its axis. */
+enum shape { BALL, PRISM, WIDE_BALL, WIDE_PRISM, SHAPES };
+
+static void make_large(struct draw *draw, enum shape shape, struct large *out)
+{
+    for (int k = 0; k < VERTICES; k++) {
+        double *to = out->numbers + (ptrdiff_t) FMB_DIM_MAX * k;
+        const bool prism = shape == PRISM || shape == WIDE_PRISM;
+        const double z = prism ? k % 2 * 30 - 15 : 1 - 2 * (k + 0.5) / VERTICES;
+        const double r = prism ? 1 : sqrt(1 - z * z), angle = k * 2.4;
+        to[0] = r * cos(angle);
+        to[1] = r * sin(angle);
+        to[2] = z;
+        for (int axis = 0; axis < (shape < WIDE_BALL ? 0 : prism ? 2 : 3); axis++)
+            to[axis] = ldexp(to[axis], draw_int(draw, -1000, 900));
+    }
+    out->at = (struct fmb_placement){.body = &out->body, .orientation_count = 4};
+    for (int k = 0; k < 4; k++)
+        out->at.orientation[k] = draw_uniform(draw, -1, 1);
+    assert_int_equal(
+        fmb_body_make_hull(FMB_DIM_MAX, out->numbers, NUMBERS, out->memory, &out->body), FMB_OK);
+}
+
+/* Where the second hull is: about the middle of the first; with its lowest vertex, or its lower
+ * face, on the highest or upper one of the first in a common orientation; anywhere. */
+enum place { CONCENTRIC, RESTING, ANYWHERE, PLACES };
+
+static void put(struct draw *draw, enum place place, struct large large[2])
+{
+    struct fmb_placement *a = &large[0].at, *b = &large[1].at;
+    if (place == RESTING) {
+        const double q[4] = {1, 2, 3, 4}, z[FMB_DIM_MAX] = {22, 20, 4}; /* 30 of the turned axis */
+        memcpy(a->orientation, q, sizeof q);
+        memcpy(b->orientation, q, sizeof q);
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            b->position[axis] = z[axis];
+        return;
+    }
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        b->position[axis] = place == ANYWHERE ? draw_uniform(draw, -1, 1) : 0;
+        a->velocity[axis] = draw_uniform(draw, -1, 1);
+        b->velocity[axis] = draw_uniform(draw, -1, 1);
+    }
+}
+
+/* ---- Steps ---- */
+
+/* The greatest work of a step, in nanoseconds. *steps: how many. */
+static double work_of_steps(const struct large large[2], unsigned want, int *steps)
+{
+    const struct fmb_placement placements[2] = {large[0].at, large[1].at};
+    const struct fmb_scene scene = {
+        .placements = placements, .placement_count = 2, .duration = 1, .want = want};
+    const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
+    struct fmb_scene_state *state;
+    struct fmb_scene_answers answers;
+    void *memory = malloc(fmb_scene_bytes(&limits));
+    double most = 0;
+    assert_int_equal(fmb_scene_begin(&scene, &limits, memory, &state), FMB_OK);
+    for (bool done = false; !done; ++*steps) {
+        const double before = work();
+        done = fmb_scene_step(state, &answers);
+        most = fmax(most, work() - before);
+    }
+    free(memory);
+    return most;
+}
+
+static void steps_are_short(void **state)
+{
+    static struct large large[2];
+    struct draw draw;
+    double most = 0;
+    int steps = 0;
+    draw_begin(&draw, "steps_are_short");
+    for (long turn = SHAPES * PLACES * draw_sample(3) - 1; turn >= 0; turn--) {
+        const int shape = (int) (turn % SHAPES), place = (int) (turn / SHAPES % PLACES);
+        make_large(&draw, shape, &large[0]);
+        make_large(&draw, shape, &large[1]);
+        put(&draw, place, large);
+        const double of_turn =
+            work_of_steps(large, FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP, &steps);
+        if (turn < SHAPES * PLACES)
+            printf("# shape %d, place %d: at most %.0f ns in a step\n", shape, place, of_turn);
+        most = fmax(most, of_turn);
+    }
+    printf("# %d steps, at most %.0f ns\n", steps, most);
+    assert_true(most <= ns_most);
+    assert_true(scanned > 0 && exact_work > 0 && placed > 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(steps_are_short)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
