@@ -300,8 +300,7 @@ static const struct fmb_body *make_body(struct frames *frames, const struct robo
     if (bytes > FMB_CLIENT_BODY_BYTES_MAX) {
         refuse(frames, first,
                "%zu frames take %zu bytes in a message, which has space for %d: simplify its "
-               "meshes, or "
-               "give fewer --sides",
+               "meshes, or give fewer --sides",
                frames->count, bytes, (int) FMB_CLIENT_BODY_BYTES_MAX);
         return NULL;
     }
