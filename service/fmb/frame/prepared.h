@@ -98,8 +98,8 @@ static inline double prepared_size(unsigned long long summary, int i)
 {
     const unsigned long long bits = summary << (64 - PREPARED_SIZE_BITS * (1 + i));
     const unsigned long long upper = bits >> 48 << 48;
-    double size;
-    memcpy(&size, &upper, sizeof size);
+    double size = 0;
+    memcpy(&size, &upper, sizeof upper);
     return size;
 }
 

@@ -11,8 +11,8 @@
  * the normals of the rounded frames do; but they are rounded too. A normal u x v is off by less
  * than 2.4 u |u| |v| (slabs.c: 2 / sqrt(3) times two roundings), and by 2 u |u| |v| where edges are
  * rounded differences. Directions of vectors that differ by x, one of length n, differ by at most
- * 2 x / n; so that of the normal is off by less than 8.8 u / s, s the sine of the angle between the
- * edges, and f by R times that ("slip").
+ * 2 x / n, and by less than 1.01 x / n where x < 0.1 n; so that of the normal is off by less than
+ * 8.8 u / s, s the sine of the angle between the edges, and f by R times that ("slip").
  *
  * Where s is small, and edges are no rounded differences, v is replaced by w = v - k u with
  * k = u . v / u . u: the cross product is the same. k is off by 7.01 u |v| / |u|, so that |w| is at
@@ -49,10 +49,11 @@ static struct gap_edge edge_of(const double v[3], bool simplex)
     return out;
 }
 
-/* Vector k. */
+/* Vector k. Normals are those of the vectors as they are rounded, the drift too. */
 static struct gap_edge edge_at(const struct gap_pair *pair, int k)
 {
-    const double v[3] = {gap_vector(pair, k, 0), gap_vector(pair, k, 1), gap_vector(pair, k, 2)};
+    const double v[3] = {CHECK_GIVEN(gap_vector(pair, k, 0)), CHECK_GIVEN(gap_vector(pair, k, 1)),
+                         CHECK_GIVEN(gap_vector(pair, k, 2))};
     return edge_of(v, k < GAP_DRIFT && pair->simplex[k / GAP_OF_B]);
 }
 
@@ -121,6 +122,7 @@ static void set_ends(const struct gap_pair *pair, const double n[3], double ends
 static void add_normal(struct depth *depth, const double n[3], double square, double slip)
 {
     double ends[2];
+    CHECK_NORMAL(GAP_SLIP, n, square, slip);
     if (!(square >= 0x1p-950)) { /* it may have underflowed */
         depth->upper = INFINITY;
         return;
@@ -134,6 +136,7 @@ static void add_normal(struct depth *depth, const double n[3], double square, do
         return; /* f + off is below the greatest f */
     const double inverse = 1 / sqrt(square);
     const double f = best * inverse;
+    CHECK_BOUND(GAP_ROUNDING, false, f, GAP_ROUNDING * depth->edges.pair->reach);
     const double above = f + off;
     depth->upper = above > depth->upper ? above : depth->upper;
     if (f <= depth->greatest)
@@ -159,7 +162,7 @@ static bool are_parallel(const double u[3], const double v[3])
 /* The normal of edges that are nearly parallel, and not rounded. */
 static void add_close(struct depth *depth, const struct gap_edge *u, const struct gap_edge *v)
 {
-    const double share = gap_dot(u->at, v->at) / u->square;
+    const double share = CHECK_GIVEN(gap_dot(u->at, v->at) / u->square); /* any k will do */
     double w[3], n[3];
     if (are_parallel(u->at, v->at))
         return;

@@ -20,6 +20,9 @@
 
 #include "interval.h"
 
+/* Of a witness point, relative to what bounds the coordinates of its frame. */
+#define GAP_WITNESS_ROUNDING 0x1p-49
+
 #include <math.h>
 #include <string.h>
 
@@ -31,7 +34,7 @@ static const lanes_mask mask_of[4] = {{0, 0}, {-1, 0}, {0, -1}, {-1, -1}};
 /* x in the lanes of the vectors in bits, i the position of the lanes; else 0. */
 INLINE lanes masked(unsigned bits, int i, lanes x)
 {
-    return (lanes) (mask_of[bits >> 2 * i & 3] & (lanes_mask) x);
+    return lanes_select(mask_of[bits >> 2 * i & 3], x, lanes_of(0));
 }
 
 INLINE double sum_of(const lanes x[GAP_LANES])
@@ -55,7 +58,7 @@ INLINE unsigned least_of(int first, const lanes at[GAP_LANES])
 /* The vertex with the least n . p. */
 static void support(const void *context, const double n[3], struct gap_corner *out)
 {
-    const struct gap_pair *pair = context;
+    const struct gap_pair *pair = (const struct gap_pair *) context;
     const unsigned of_a = 7, of_b = 7 << GAP_OF_B;
     lanes at[GAP_LANES], part[GAP_LANES];
     unsigned bits = 0;
@@ -90,8 +93,8 @@ static void set_witness(const struct gap_pair *pair, const struct gap_simplex *s
         share[i] += masked(simplex->corner[c].bits, i, lanes_of(simplex->weight[c]));
     UNROLL(4)
     for (int i = 0; i < GAP_LANES; i++)
-        share[i] = lanes_min(share[i], lanes_of(1));
-    out->time = share[GAP_DRIFT / 2][GAP_DRIFT % 2] * pair->duration + 0.0;
+        share[i] = CHECK_GIVEN(lanes_min(share[i], lanes_of(1)));
+    out->time = CHECK_GIVEN(share[GAP_DRIFT / 2][GAP_DRIFT % 2] * pair->duration + 0.0);
     const double *a = pair->frame[0]->number, *b = pair->frame[1]->number;
     const double *of_a = prepared_velocity(pair->frame[0]);
     const double *of_b = prepared_velocity(pair->frame[1]);
@@ -104,7 +107,11 @@ static void set_witness(const struct gap_pair *pair, const struct gap_simplex *s
         out->witness[0][axis] = a[axis] + (out->time * of_a[axis] - at_a) + 0.0;
         out->witness[1][axis] = b[axis] + (out->time * of_b[axis] + at_b) + 0.0;
     }
-    const double error = pair->error + 0x1p-49 * (pair->far[0] + pair->far[1]);
+    for (int f = 0; f < 2; f++)
+        CHECK_BOUND(GAP_WITNESS_ROUNDING, false,
+                    (out->witness[f][0] + out->witness[f][1]) + out->witness[f][2],
+                    GAP_WITNESS_ROUNDING * pair->far[f]);
+    const double error = pair->error + GAP_WITNESS_ROUNDING * (pair->far[0] + pair->far[1]);
     gap_subtract(out->witness[1], out->witness[0], apart);
     out->has_witness = true;
     out->bounds[1] = (sqrt(gap_dot(apart, apart)) + error) * (1 + 0x1p-49);
@@ -123,6 +130,7 @@ enum gap_outcome gap_distance(const struct gap_pair *pair, double farthest, stru
         gap_nearest(pair, support, pair->dim, toward, close, far, &simplex, out->direction, &f);
     if (outcome != GAP_KNOWN)
         return outcome;
+    CHECK_BOUND(GAP_ROUNDING, false, f, GAP_ROUNDING * pair->reach);
     out->bounds[0] = f - error;
     set_witness(pair, &simplex, out);
     return gap_is_tight(pair, out->bounds) ? GAP_KNOWN : GAP_UNSURE;

@@ -197,6 +197,7 @@ INLINE enum gap_outcome gap_nearest(const void *context, gap_support *const supp
     for (int step = 0; step < GAP_STEPS_MAX; step++) {
         if (!gap_direction_of(simplex, dim == 2, n, &square))
             break;
+        CHECK_GIVEN_NORMAL(n, square);
         struct gap_corner *next = &simplex->corner[simplex->count];
         support(context, n, next);
         *f = gap_dot(n, next->at);

@@ -44,6 +44,10 @@ typedef int64_t lanes_mask __attribute__((vector_size(8 * LANES))); /* 0 or -1 *
  */
 #define CHECK_GIVEN_IN(some, x) (x)
 #define CHECK_GIVEN(x) (x)
+/* The direction of a normal is off by at most slip. From here on the normal counts as given, and
+ * square, of its length, is computed from it. */
+#define CHECK_NORMAL(constant, normal, square, slip) ((void) 0)
+#define CHECK_GIVEN_NORMAL(normal, square) ((void) 0)
 
 /* x > y ? x : y and x < y ? x : y, lane by lane. If x or y is a NaN, the result is y. */
 #if LANES == 1

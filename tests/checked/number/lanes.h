@@ -1,4 +1,4 @@
-/* In place of service/fmb/number/lanes.h: one lane, which holds a number of number.hpp. */
+/* In place of service/fmb/number/lanes.h: one lane, or two, which hold numbers of number.hpp. */
 #ifndef FMB_LANES_H
 #define FMB_LANES_H
 
@@ -6,12 +6,14 @@
 
 #include "number.hpp"
 
+#ifndef LANES
 #define LANES 1
+#endif
 
-#define CHECK_BOUND(constant, ignored, value, bound) \
-    do {                                             \
-        if (!(ignored))                              \
-            check_bound(#constant, value, bound);    \
+#define CHECK_BOUND(constant, ignored, value, bound)        \
+    do {                                                    \
+        if (!(ignored))                                     \
+            check_bound(#constant, constant, value, bound); \
     } while (0)
 #define CHECK_QUOTIENT(constant, ignored, dividend, divisor, inverse, quotient, bound) \
     do {                                                                               \
@@ -20,16 +22,27 @@
     } while (0)
 #define CHECK_SEGMENT(constant, values, slab, vertex, direction) \
     check_segment(#constant, values, slab, vertex, direction)
-#define CHECK_GIVEN(x) number((x).value)
+#define CHECK_GIVEN(x) given(x)
+#define CHECK_NORMAL(constant, normal, square, slip) check_normal(#constant, normal, square, slip)
+#define CHECK_GIVEN_NORMAL(normal, square) give_normal(normal, square)
 
 struct clip_values;
 
+inline number given(number x)
+{
+    return x.value;
+}
+
 /* Where the macros of the engine lead (checked_bounds.cc). */
-void check_bound(const char *constant, number value, number bound);
+void check_bound(const char *name, plain_double constant, number value, number bound);
+void check_normal(const char *constant, const number normal[3], number &square, number slip);
+void give_normal(const number normal[3], number &square);
 void check_quotient(const char *constant, number dividend, number divisor, number inverse,
                     number quotient, number bound);
 void check_segment(const char *constant, const struct clip_values *values, int slab, int vertex,
                    int direction);
+
+#if LANES == 1
 
 typedef number lanes;
 typedef uint64_t lanes_bits;
@@ -103,5 +116,118 @@ INLINE unsigned lanes_greater_bits(lanes x, lanes y)
 {
     return x > y;
 }
+
+#else
+
+struct lanes {
+    number at[2];
+
+    number &operator[](int i)
+    {
+        return at[i];
+    }
+    const number &operator[](int i) const
+    {
+        return at[i];
+    }
+};
+
+struct lanes_mask {
+    int64_t at[2]; /* 0 or -1 */
+};
+
+#define LANES_OPERATION(op)                         \
+    inline lanes operator op(lanes x, lanes y)      \
+    {                                               \
+        return {x[0] op y[0], x[1] op y[1]};        \
+    }                                               \
+    inline lanes operator op(number x, lanes y)     \
+    {                                               \
+        return {x op y[0], x op y[1]};              \
+    }                                               \
+    inline lanes operator op(lanes x, number y)     \
+    {                                               \
+        return {x[0] op y, x[1] op y};              \
+    }                                               \
+    inline lanes &operator op##=(lanes &x, lanes y) \
+    {                                               \
+        return x = x op y;                          \
+    }
+LANES_OPERATION(+)
+LANES_OPERATION(-)
+LANES_OPERATION(*)
+LANES_OPERATION(/)
+#undef LANES_OPERATION
+
+#define LANES_COMPARISON(op)                         \
+    inline lanes_mask operator op(lanes x, lanes y)  \
+    {                                                \
+        return {-(x[0] op y[0]), -(x[1] op y[1])};   \
+    }                                                \
+    inline lanes_mask operator op(lanes x, number y) \
+    {                                                \
+        return {-(x[0] op y), -(x[1] op y)};         \
+    }
+LANES_COMPARISON(<)
+LANES_COMPARISON(<=)
+LANES_COMPARISON(==)
+#undef LANES_COMPARISON
+
+INLINE lanes operator-(lanes x)
+{
+    return {-x[0], -x[1]};
+}
+
+INLINE lanes_mask operator&(lanes_mask x, lanes_mask y)
+{
+    return {x.at[0] & y.at[0], x.at[1] & y.at[1]};
+}
+
+INLINE lanes_mask &operator&=(lanes_mask &x, lanes_mask y)
+{
+    return x = x & y;
+}
+
+INLINE lanes lanes_max(lanes x, lanes y)
+{
+    return {extreme(x[0], y[0], false), extreme(x[1], y[1], false)};
+}
+
+INLINE lanes lanes_min(lanes x, lanes y)
+{
+    return {extreme(x[0], y[0], true), extreme(x[1], y[1], true)};
+}
+
+INLINE lanes lanes_of(number x)
+{
+    return {x, x};
+}
+
+INLINE lanes lanes_abs(lanes x)
+{
+    return {fabs(x[0]), fabs(x[1])};
+}
+
+INLINE lanes lanes_select(lanes_mask mask, lanes x, lanes y)
+{
+    return {mask.at[0] ? x[0] : y[0], mask.at[1] ? x[1] : y[1]};
+}
+
+INLINE unsigned lanes_mask_bits(lanes_mask mask)
+{
+    return (unsigned) (mask.at[0] & 1) | (unsigned) (mask.at[1] & 1) << 1;
+}
+
+INLINE bool lanes_all(lanes_mask mask)
+{
+    return lanes_mask_bits(mask) == 3;
+}
+
+INLINE lanes given(lanes x)
+{
+    return {given(x[0]), given(x[1])};
+}
+
+#endif
 
 #endif

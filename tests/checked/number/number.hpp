@@ -26,6 +26,8 @@
 
 #include <math.h>
 
+typedef double plain_double; /* where `double` is a number (checked_gaps.cc) */
+
 struct derivation {
     mpf_t exact;
     long double size, worst, running;
@@ -207,7 +209,7 @@ inline number operator/(number x, number y)
 {
     const double value = x.value / y.value;
     const long double least = std::fabs((long double) y.value) - running_of(y);
-    if (is_zero(x) || !(least > 0) || !std::isfinite(value))
+    if (is_zero(x) || !(least > 0) || !std::isfinite(value) || !std::isfinite(y.value))
         return value;
     derivation *from = arena_take();
     mpf_div(from->exact, exact_of(x, scratch[0]), exact_of(y, scratch[1]));
@@ -276,6 +278,54 @@ inline number fabs(number x)
     if (mpf_sgn(out.from->exact) < 0) /* a rounding changed the sign */
         mpf_abs(const_cast<mpf_ptr>(&out.from->exact[0]), out.from->exact);
     return out;
+}
+
+inline number copysign(number magnitude, number sign)
+{
+    const number size = fabs(magnitude);
+    return signbit(sign) ? -size : size;
+}
+
+inline number fma(number x, number y, number z)
+{
+    const double value = std::fma(x.value, y.value, z.value);
+    derivation *from = arena_take();
+    mpf_mul(from->exact, exact_of(x, scratch[0]), exact_of(y, scratch[1]));
+    mpf_add(from->exact, from->exact, exact_of(z, scratch[0]));
+    const long double wx = worst_of(x), wy = worst_of(y), rx = running_of(x), ry = running_of(y);
+    from->size = size_of(x) * size_of(y) + size_of(z);
+    from->worst = wx * size_of(y) + wy * size_of(x) + wx * wy + worst_of(z);
+    from->running = rx * std::fabs((long double) y.value) + ry * std::fabs((long double) x.value) +
+                    rx * ry + running_of(z);
+    const int product = roundings_of(x) + roundings_of(y);
+    from->roundings = product > roundings_of(z) ? product : roundings_of(z);
+    return rounded(value, from, false);
+}
+
+/* |sqrt(x) - sqrt(y)| = |x - y| / (sqrt(x) + sqrt(y)). x has to be farther from 0 than its error.
+ */
+inline number sqrt(number x)
+{
+    const double value = std::sqrt(x.value);
+    if (!(x.value - running_of(x) > 0) || !std::isfinite(value))
+        return value;
+    derivation *from = arena_take();
+    mpf_sqrt(from->exact, exact_of(x, scratch[0]));
+    from->size = std::sqrt(size_of(x));
+    from->worst = worst_of(x) / value;
+    from->running = running_of(x) / value;
+    from->roundings = roundings_of(x);
+    return rounded(value, from, false);
+}
+
+inline bool isfinite(number x)
+{
+    return std::isfinite(x.value);
+}
+
+inline bool isnan(number x)
+{
+    return std::isnan(x.value);
 }
 
 #endif
