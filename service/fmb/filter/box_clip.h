@@ -151,6 +151,21 @@
 /* Spans shorter than this may be points, and are not certain (5). */
 #define CLIP_SHORTEST 0x1p-48
 
+/* What errors of frames add to that of a value, more than they are for rounding (3, 8). */
+#define BOX_FRAME_ERROR 1.01
+
+/* The least errors beside which underflow is nothing (6), and what makes those of crossings as
+ * large: a share of T, and the least size of an edge (11). */
+#define CLIP_LEAST_ERROR 0x1p-640
+#define CLIP_UNDERFLOW 0x1p-93
+#define CLIP_LEAST_SIZE 0x1p-180
+
+/* A factor X below this may be 0. */
+#define CLIP_LEAST_FACTOR 0x1p-1000
+
+/* T, or its inverse, up to which products of two numbers do not overflow or underflow (5). */
+#define CLIP_EXACT_RANGE 0x1p100
+
 enum { CLIP_OUTER, CLIP_INNER, CLIP_BOUNDS };
 enum { CLIP_SLABS = 4, CLIP_VERTICES = 16, CLIP_SEGMENTS = 32, CLIP_DIRECTIONS = 7 };
 
@@ -391,10 +406,10 @@ INLINE void set_values(const struct kernel_traits traits, const struct pair_lane
     const lanes rounded = BOX_ROUNDING * weight;
     const lanes_mask exact = slab->exact ? box->exact : (lanes_mask){0};
     const lanes error =
-        lanes_select(exact, lanes_of(0), rounded + 1.01 * slab->scale * pair->error);
+        lanes_select(exact, lanes_of(0), rounded + BOX_FRAME_ERROR * slab->scale * pair->error);
     const lanes_mask solid = traits.face[!which] && k == 3 ? is_not((lanes_mask){0})
                                                            : (lanes_mask) (slab->high > slab->low);
-    *good &= (exact & solid) | (is_not(exact) & (rounded >= 0x1p-640));
+    *good &= (exact & solid) | (is_not(exact) & (rounded >= CLIP_LEAST_ERROR));
     set_at_vertices(traits, which, slab->middle, slab->at, slab->swing, at);
     set_along_directions(traits, which, slab->at, slab->swing, along);
     for (int v = 0; v < vertices; v++) {
@@ -613,7 +628,7 @@ INLINE lanes_mask set_crossings(const struct pair_lanes *pair, const struct kern
                                 const struct box_pair *box, struct clip_crossings *out)
 {
     lanes least = lanes_select(pair->half_drift_size != 0, pair->half_drift_size, lanes_of(1));
-    out->scale_error = 1.01 * pair->error + 0x1p-93 * pair->reach;
+    out->scale_error = BOX_FRAME_ERROR * pair->error + CLIP_UNDERFLOW * pair->reach;
     set_products(pair, traits, pair->offset, out->edges.middle);
     set_products(pair, traits, pair->half_drift, out->edges.swing);
     for (int which = 0; which < 2; which++) {
@@ -634,7 +649,7 @@ INLINE lanes_mask set_crossings(const struct pair_lanes *pair, const struct kern
             least = lanes_min(size, least);
         }
     }
-    return box->exact | (least >= 0x1p-180);
+    return box->exact | (least >= CLIP_LEAST_SIZE);
 }
 
 /* How many edges of a frame have the same direction. */
@@ -736,7 +751,7 @@ INLINE void set_crossing(const struct pair_lanes *pair, const struct kernel_trai
     out->error_t = lanes_select(box->exact, lanes_of(0),
                                 BOX_ROUNDING * dot(weight, box->reach) +
                                     all->scale_error * (pair->size[0][i] * pair->size[1][j]));
-    const lanes_mask some = out->det > 0x1p-1000;
+    const lanes_mask some = out->det > CLIP_LEAST_FACTOR;
     const lanes inverse = lanes_select(some, 1 / CHECK_GIVEN(out->det), lanes_of(0));
     for (int axis = 0; axis < 3; axis++) {
         out->along[axis] = inverse * a->edge[i][axis];
@@ -846,7 +861,8 @@ INLINE lanes_mask clip_frame(const struct pair_lanes *pair, const struct kernel_
     const int slabs = traits.dim == 2
                           ? set_plane_slabs(pair, traits, !which, &box->frame[!which], slab)
                           : set_space_slabs(pair, traits, !which, other, slab);
-    values.exact = box->exact & (pair->reach >= 0x1p-100) & (pair->reach <= 0x1p100);
+    values.exact =
+        box->exact & (pair->reach >= 1 / CLIP_EXACT_RANGE) & (pair->reach <= CLIP_EXACT_RANGE);
     values.any_exact = lanes_mask_bits(values.exact);
     for (int k = 0; k < slabs; k++) {
         set_values(traits, pair, which, box, &slab[k], k, good, &values);

@@ -31,8 +31,17 @@
 #define BOX_PLACE_ROUNDING (20.1 * BOX_UNIT)
 #define BOX_PLACE_ROUNDING_EXACT (6.1 * BOX_UNIT)
 
+/* What errors of frames add to the slack, more than they are for its own rounding. */
+#define BOX_PLACE_ERROR 1.1
+
 /* Of the largest coordinate; the limit that fmb.h states is 1e-12. */
 #define BOX_LIMIT 0.9e-12
+
+/* What ends may be apart, the slack on both sides included (2.1 of it, for rounding). */
+#define BOX_TOLERANCE (0.95 * BOX_LIMIT)
+
+/* The largest coordinate as computed, times this, is no more than it is. */
+#define BOX_LARGEST_SHARE (1 - 0x1p-40)
 
 /* Farther away nothing is said, for fear of overflow. */
 #define BOX_FARTHEST 0x1p500
@@ -162,7 +171,7 @@ INLINE lanes largest_place(const struct pair_lanes *pair, const struct kernel_tr
             farthest = lanes_max(lanes_abs(centre + pair->component[which][i][axis]), farthest);
         largest = lanes_max(farthest + lanes_abs(frame->travel[axis]), largest);
     }
-    return (1 - 0x1p-40) * largest;
+    return BOX_LARGEST_SHARE * largest;
 }
 
 /* ---- Ends that are exact ----
@@ -287,7 +296,7 @@ INLINE void set_sizes(const struct pair_lanes *pair, const struct kernel_traits 
     }
     const lanes rounding = lanes_select(places->exact, lanes_of(BOX_PLACE_ROUNDING_EXACT),
                                         lanes_of(BOX_PLACE_ROUNDING));
-    out->slack[axis] = rounding * slack + 1.1 * pair->error;
+    out->slack[axis] = rounding * slack + BOX_PLACE_ERROR * pair->error;
 }
 
 /* Of lanes in which nothing rounds: whether all numbers of the pair are multiples of g, with at =
@@ -344,7 +353,7 @@ INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits 
         out->unit = lanes_select(are_multiples(pair, traits, places, out, 0x1p45 * power),
                                  0x1p-7 * power, lanes_of(0));
     }
-    const lanes tolerance = (0.95 * BOX_LIMIT) * largest - 2.1 * slack;
+    const lanes tolerance = BOX_TOLERANCE * largest - 2.1 * slack;
     out->whole = lanes_select((out->unit != 0) | (tolerance < 0), lanes_of(0), tolerance);
     out->usable = is_not(lost) & (largest <= BOX_FARTHEST);
 }

@@ -174,19 +174,19 @@ INLINE void pair_lanes_set(const struct kernel_traits traits, const lanes compon
         out->offset[axis] = offset_of(traits, component, at, half, axis);
         offset_size += lanes_abs(at);
         half_size += lanes_abs(half);
-        out->tiny |= (half != 0) & (lanes_abs(half) < 0x1p-400);
+        out->tiny |= (half != 0) & (lanes_abs(half) < PREPARED_LEAST_NUMBER);
     }
     out->half_drift_size = half_size;
     out->reach = (reach_a + reach_b) + (offset_size + (half_size + half_size));
     out->error = is_doubled(traits) ? error + error : error;
     out->unit = slab_rounding(traits) * out->reach + out->error;
-    out->in_range = offset_size <= 0x1p200;
+    out->in_range = offset_size <= PREPARED_LARGEST;
     if (!traits.drifts)
         return;
-    lanes_mask usable = half_size >= 0x1p-200;
+    lanes_mask usable = half_size >= PREPARED_LEAST;
     if (traits.box)
         usable |= half_size == 0;
-    out->in_range &= usable & (half_size <= 0x1p200);
+    out->in_range &= usable & (half_size <= PREPARED_LARGEST);
 }
 
 /* Computes an edge by number (slabs.h). A difference that is 0 is exact, and no difference is tiny.

@@ -113,7 +113,7 @@ static double max_magnitude(double largest, const double v[3])
 static bool are_not_tiny(const double v[3])
 {
     for (int axis = 0; axis < 3; axis++)
-        if (v[axis] != 0 && fabs(v[axis]) < 0x1p-399)
+        if (v[axis] != 0 && fabs(v[axis]) < 2 * PREPARED_LEAST_NUMBER)
             return false;
     return true;
 }
@@ -153,8 +153,8 @@ bool slabs_prepare(const struct fmb_prepared *a, const struct fmb_prepared *b, d
     out->reach = (offset + drift) + ((out->a.size[0] + out->a.size[1] + out->a.size[2]) +
                                      (out->b.size[0] + out->b.size[1] + out->b.size[2]));
     if (!out->motion.drifts)
-        return offset <= 0x1p200;
-    return offset <= 0x1p200 && drift <= 0x1p200 && drift >= 0x1p-200 &&
+        return offset <= PREPARED_LARGEST;
+    return offset <= PREPARED_LARGEST && drift <= PREPARED_LARGEST && drift >= PREPARED_LEAST &&
            are_not_tiny(out->motion.drift);
 }
 

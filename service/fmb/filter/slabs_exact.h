@@ -67,11 +67,15 @@ INLINE lanes_mask has_few_bits(lanes x)
     return (lanes_as_bits(x) & 0x7ffffff) == 0;
 }
 
+/* The most that T may be in units of g. */
+#define GRID_2D 0x1p26
+#define GRID_3D 0x1p18
+
 /* Returns 2^52 g, where 2^18 g (2^26 g in 2D) is the least power of two greater than T. */
 INLINE lanes grid_of(const struct kernel_traits traits, lanes reach)
 {
     const lanes power = lanes_from_bits(lanes_as_bits(reach) & 0x7ff0000000000000);
-    return power * (traits.dim == 2 ? 0x1p27 : 0x1p35);
+    return power * (traits.dim == 2 ? 0x1p53 / GRID_2D : 0x1p53 / GRID_3D);
 }
 
 /* ---- Axes ---- */

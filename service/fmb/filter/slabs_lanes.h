@@ -113,6 +113,9 @@ INLINE lanes gap_of(const struct kernel_traits traits, struct slab_extent d, lan
 
 /* ---- A slab ---- */
 
+/* A swing is made longer by this much of the error, so that no quotient overflows. */
+#define SWING_LONGER 0x1p-10
+
 /* Bounds the time of contact by a slab: the times s in [-1, 1] at which middle + s swing lies
  * within the bounds of D.
  *
@@ -164,7 +167,7 @@ INLINE void bound_times(const struct kernel_traits traits, struct slab_extent d,
     const lanes nearest = lanes_min(-low, high);
     low = lanes_select(swing == 0, -nearest, low);
     high = lanes_select(swing == 0, nearest, high);
-    const lanes inverse = 1 / (swing + lanes_copysign(0x1p-10 * error, swing));
+    const lanes inverse = 1 / (swing + lanes_copysign(SWING_LONGER * error, swing));
     const lanes one = low * inverse, other = high * inverse;
     const lanes slack = error * lanes_abs(inverse);
     CHECK_QUOTIENT(SLABS_TIMES_SLACK, ignored, low, swing, inverse, one, error);

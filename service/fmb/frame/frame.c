@@ -105,11 +105,6 @@ static void invert(struct fmb_frame *frame)
         memset(frame->inverse, 0, sizeof frame->inverse);
 }
 
-/* The range of the filter. For sizes within these bounds, products of four, sums of a few dozen
- * such products, and 2^-53 times these sums neither overflow nor lose bits to underflow.
- * least_number: no product of two coordinates underflows. */
-static const double least_size = 0x1p-200, largest_size = 0x1p200, least_number = 0x1p-400;
-
 /* The least volume relative to the product of the lengths of the components. The rounding of a
  * rotation or of vertices might invert a thinner frame: each of three components is off by at most
  * ROTATION_ERROR and 2^-52 of itself, together less than 2^-48, and the volume by three times
@@ -160,12 +155,12 @@ static void measure_component(struct fmb_frame *frame, int i, struct dyadic_span
     for (int axis = 0; axis < frame->dim; axis++) {
         const double c = frame->component[i][axis], magnitude = fabs(c);
         frame->size[i] = magnitude > frame->size[i] ? magnitude : frame->size[i];
-        frame->in_range = frame->in_range && (c == 0 || magnitude >= least_number);
+        frame->in_range = frame->in_range && (c == 0 || magnitude >= PREPARED_LEAST_NUMBER);
         dyadic_span_add(span, dyadic_of(c));
         dyadic_span_add(span, dyadic_of(frame->remainder[i][axis]));
     }
     frame->in_range =
-        frame->in_range && frame->size[i] >= least_size && frame->size[i] <= largest_size;
+        frame->in_range && frame->size[i] >= PREPARED_LEAST && frame->size[i] <= PREPARED_LARGEST;
 }
 
 /* Sets size, in_range, sturdy and bits. in_range: the filter may use the doubles of the frame if it
@@ -224,7 +219,7 @@ static double radius_of(const struct fmb_frame *frame)
         square += farthest * farthest;
     }
     const double radius = sum > 0x1p-400 && sum < 0x1p500 ? sqrt(square) + 0x1p-49 * sum : sum;
-    return radius * (1 + 0x1p-40) + 0x1p-1000;
+    return radius * PREPARED_MARGIN + 0x1p-1000;
 }
 
 /* Returns the slack of a frame. The origin of a box, centre - size / 2, is off by at most half a
@@ -244,6 +239,9 @@ static double slack_of(const struct fmb_frame *frame)
     return slack * (1 + 0x1p-50);
 }
 
+/* Of a product of an entry of the matrix and one coordinate. */
+#define SINGLE_PRODUCT_ERROR (1.1 * 0x1p-53)
+
 /* Returns the turn_error of a frame: how far an inexact rotation moves a vertex v. The error of the
  * matrix moves it by MATRIX_ERROR |v|, |v| being at most the radius; the products of the matrix
  * with the origin and with the components are off by PRODUCT_ERROR of their lengths. The origin is
@@ -255,8 +253,9 @@ static double turn_error_of(const struct fmb_frame *frame)
     for (int i = 0; i < frame->count; i++)
         lengths += frame->in_range ? prepared_size(frame->summary, i) : sum_of(frame->component[i]);
     const double of_origin = (MATRIX_ERROR + PRODUCT_ERROR) * frame->radius;
-    const double of_components = (frame_has_axes(frame) ? 1.1 * 0x1p-53 : PRODUCT_ERROR) * lengths;
-    return (1 + 0x1p-40) * (of_origin + of_components) + 0x1p-1060; /* where products underflow */
+    const double of_components =
+        (frame_has_axes(frame) ? SINGLE_PRODUCT_ERROR : PRODUCT_ERROR) * lengths;
+    return PREPARED_MARGIN * (of_origin + of_components) + 0x1p-1060; /* where products underflow */
 }
 
 /* Derives all other fields from shape, origin, centre, component and remainder. */
@@ -467,7 +466,7 @@ INLINE struct aabb box_at_origin(const struct fmb_frame *frame, const int dim,
         for (int i = 0; i < dim; i++)
             number[(1 + i) * dim + axis] = frame->component[i][axis];
     }
-    number[(1 + dim) * dim] = frame->slack * (1 + 0x1p-40);
+    number[(1 + dim) * dim] = frame->slack * PREPARED_MARGIN;
     return aabb_of(&prepared, 0);
 }
 

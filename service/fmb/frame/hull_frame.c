@@ -141,7 +141,7 @@ static double radius_of(const struct fmb_frame *frame)
         sum = fmax(sum, (fabs(v[0]) + fabs(v[1])) + fabs(v[2]));
     }
     const double radius = sum > 0x1p-400 && sum < 0x1p500 ? sqrt(square) : sum;
-    return radius * (1 + 0x1p-40) + 0x1p-1000;
+    return radius * PREPARED_MARGIN + 0x1p-1000;
 }
 
 /* Sets the box of the vertices, and the fields that are derived from it as from a cuboid. */

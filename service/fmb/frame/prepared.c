@@ -113,11 +113,11 @@ static bool is_zero(const double v[FMB_DIM_MAX])
     return v[0] == 0 && v[1] == 0 && v[2] == 0;
 }
 
-/* Returns whether no coordinate of a rotated component is too small for the filter (frame.c,
- * least_number). The entries of the rotation are 0, or at least 2^-60 and therefore multiples of
- * 2^-112. Components are multiples of 2^bits[0]. Then all products, rounded or not, are multiples
- * of 2^(bits[0] - 112), and so are their sums. With bits[0] >= -288, a sum that is not 0 is at
- * least 2^-400. */
+/* Returns whether no coordinate of a rotated component is too small for the filter. The
+ * entries of the rotation are 0, or at least 2^-60 and therefore multiples of 2^-112. Components
+ * are multiples of 2^bits[0]. Then all products, rounded or not, are multiples of
+ * 2^(bits[0] - 112), and so are their sums. With bits[0] >= -288, a sum that is not 0 is at least
+ * 2^-400, PREPARED_LEAST_NUMBER. */
 INLINE bool rotates_in_range(const struct fmb_frame *frame, const struct rotation_matrix *rotation)
 {
     return !rotation->small && frame->sturdy && frame->bits[0] >= -288;
@@ -194,7 +194,7 @@ INLINE unsigned set_numbers(const struct fmb_frame *frame, const struct rotation
     out->origin[2] = frame->dim == 2 ? 0 : position[2];
     if (!is_zero(frame->origin))
         set_origin(frame, rotation, position, out, &exact);
-    out->error *= 1 + 0x1p-40; /* for its own rounding */
+    out->error *= PREPARED_MARGIN; /* for its own rounding */
     return frame->shape == FMB_BOX ? exact | centred_of(frame, rotation, exact) : exact;
 }
 
@@ -245,7 +245,7 @@ INLINE void set_in_general_orientation(const struct fmb_frame *frame,
     rotate_components(frame, rotation, numbers->component);
     numbers->error = frame->slack + frame->turn_error;
     numbers->error += sum_rounding * ((fabs(o[0]) + fabs(o[1])) + fabs(o[2]));
-    numbers->error *= 1 + 0x1p-40; /* for its own rounding */
+    numbers->error *= PREPARED_MARGIN; /* for its own rounding */
     out->summary = (frame->summary &
                     ~in_summary(PREPARED_AXIS_ALIGNED | PREPARED_PLAIN | all_components_exact)) |
                    (placement_moves(placement, FMB_DIM_MAX) ? in_summary(PREPARED_MOVING) : 0);
@@ -274,7 +274,7 @@ static void set_unrotated(const struct fmb_frame *frame, const struct fmb_placem
                           struct fmb_prepared *out)
 {
     const unsigned axes = (frame->dim == 3 ? 7u : 3u) * PREPARED_EXACT_X;
-    const double error = frame->slack * (1 + 0x1p-40);
+    const double error = frame->slack * PREPARED_MARGIN;
     out->summary = frame->summary | (frame->slack == 0 ? in_summary(axes) : 0) |
                    (placement_moves(placement, frame->dim) ? in_summary(PREPARED_MOVING) : 0);
     if (error != 0)

@@ -57,6 +57,16 @@ enum {
     PREPARED_HULL = 1 << 15 /* a hull: its numbers describe a cuboid that contains it */
 };
 
+/* The range of the filter. For sizes within these bounds, products of four, sums of a few dozen
+ * such products, and 2^-53 times these sums neither overflow nor lose bits to underflow. No product
+ * of two coordinates of PREPARED_LEAST_NUMBER, or of their halves, underflows. */
+#define PREPARED_LEAST 0x1p-200
+#define PREPARED_LARGEST 0x1p200
+#define PREPARED_LEAST_NUMBER 0x1p-400
+
+/* Of a bound, for the few roundings that it is computed with. */
+#define PREPARED_MARGIN (1 + 0x1p-40)
+
 /* Indices of the 8-byte words of struct fmb_prepared; the summary is word 0. In 2D the velocity
  * follows the first eight words, which are all that a pair at rest reads. */
 enum {

@@ -162,11 +162,11 @@ INLINE bool set_drift(const int dim, struct gap_pair *pair, double drift[FMB_DIM
         const double speed = w[axis] - v[axis];
         drift[axis] = speed * pair->duration;
         pair->drifts = pair->drifts || speed != 0;
-        good = good && (speed == 0 || fabs(drift[axis]) >= 0x1p-399);
+        good = good && (speed == 0 || fabs(drift[axis]) >= 2 * PREPARED_LEAST_NUMBER);
     }
     const double largest = largest_of(drift);
     pair->reach += sum_of(drift);
-    return !pair->drifts || (good && largest >= 0x1p-200 && largest <= 0x1p200);
+    return !pair->drifts || (good && largest >= PREPARED_LEAST && largest <= PREPARED_LARGEST);
 }
 
 /* Components that a face lacks are 0. */
@@ -188,7 +188,7 @@ INLINE bool set_numbers(const int dim, struct gap_pair *pair)
     pair->reach += sum_of(pair->offset);
     pair->least = pair->least * (1 - 0x1p-40) - pair->error;
     /* Bodies may move together, so that only their displacements are large or infinite. */
-    return good && largest_of(pair->offset) <= 0x1p200 && pair->least <= 0x1p1000;
+    return good && largest_of(pair->offset) <= PREPARED_LARGEST && pair->least <= 0x1p1000;
 }
 
 bool gap_pair_set(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
@@ -214,7 +214,7 @@ double gap_far_threshold(const struct fmb_prepared *a, const struct fmb_prepared
                          double duration, double farthest)
 {
     const int dim = prepared_kind(a) & PREPARED_3D ? 3 : 2;
-    return farthest + 0x1p-38 * (far_of(dim, a, duration) + far_of(dim, b, duration));
+    return farthest + GAP_FAR_MARGIN * (far_of(dim, a, duration) + far_of(dim, b, duration));
 }
 
 /* ---- Pairs of frames ---- */
@@ -336,5 +336,5 @@ void gap_end(enum fmb_verdict verdict, struct fmb_gap *gap)
 double gap_reach(double upper, const struct aabb *a, const struct aabb *b)
 {
     const double least = isnan(upper) ? INFINITY : upper > 0 ? upper : 0;
-    return least + 0x1p-38 * (aabb_max_coordinate(a) + aabb_max_coordinate(b)) + 0x1p-1070;
+    return least + GAP_FAR_MARGIN * (aabb_max_coordinate(a) + aabb_max_coordinate(b)) + 0x1p-1070;
 }

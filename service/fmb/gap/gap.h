@@ -83,6 +83,13 @@ INLINE void gap_cross(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX],
 #define GAP_ROUNDING 0x1p-48
 #endif
 
+/* Distances in doubles are off by less than this, relative to coordinates: what is surely farther.
+ */
+#define GAP_FAR_MARGIN 0x1p-38
+
+/* A square of a length below this may have underflowed. */
+#define GAP_LEAST_SQUARE 0x1p-950
+
 /* Bounds the error of f(n), for a direction of unit length up to rounding, including the errors of
  * the frames (gap_distance.c). */
 INLINE double gap_error(const struct gap_pair *pair)

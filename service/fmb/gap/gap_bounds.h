@@ -26,6 +26,9 @@ struct gap_edges {
     struct gap_edge of[2][GAP_EDGES], drift; /* of a negated */
 };
 
+/* A bound and an f may differ by this much, relative to the reach, and be equal in truth. */
+#define GAP_BOUNDS_MARGIN 0x1p-38
+
 /* Bounds of f, each negative and squared: f is not above minus the root by more than 2^-39 of the
  * reach. 0: none; infinite or NaN: the normal is 0. */
 struct gap_bounds {

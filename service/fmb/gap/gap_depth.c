@@ -33,6 +33,17 @@
 #include <math.h>
 #include <string.h>
 
+/* How far the direction of a normal is off: times 1 / s; where s is so large that 8.8 u / s is
+ * below SLIP_WIDE; and of edges that are no rounded differences, in 2D of any. */
+#define SLIP 0x1p-49
+#define SLIP_WIDE 0x1p-48
+#define WIDE_SINE_SQUARE 0.08
+#define SLIP_CLOSE 0x1p-50
+
+/* Edges with a smaller sine have no normal, which changes f by less than BUNDLED R. */
+#define LEAST_SINE 0x1p-50
+#define BUNDLED (13 * LEAST_SINE)
+
 struct depth {
     struct gap_edges edges;
     double greatest;  /* f */
@@ -123,7 +134,7 @@ static void add_normal(struct depth *depth, const double n[3], double square, do
 {
     double ends[2];
     CHECK_NORMAL(GAP_SLIP, n, square, slip);
-    if (!(square >= 0x1p-950)) { /* it may have underflowed */
+    if (!(square >= GAP_LEAST_SQUARE)) {
         depth->upper = INFINITY;
         return;
     }
@@ -131,7 +142,7 @@ static void add_normal(struct depth *depth, const double n[3], double square, do
     const double offset = gap_dot(n, depth->edges.pair->offset);
     const double low = offset + ends[0], high = offset + ends[1];
     const double best = low > -high ? low : -high, off = slip * depth->edges.pair->reach;
-    const double most = (off - depth->greatest) * (1 + 0x1p-40);
+    const double most = (off - depth->greatest) * PREPARED_MARGIN;
     if (best < 0 && most > 0 && best * best > most * most * square)
         return; /* f + off is below the greatest f */
     const double inverse = 1 / sqrt(square);
@@ -170,8 +181,8 @@ static void add_close(struct depth *depth, const struct gap_edge *u, const struc
         w[axis] = fma(-share, u->at[axis], v->at[axis]);
     gap_cross(u->at, w, n);
     const double square = gap_dot(n, n);
-    if (square >= 0x1p-100 * (u->square * v->square)) {
-        add_normal(depth, n, square, 0x1p-50);
+    if (square >= LEAST_SINE * LEAST_SINE * (u->square * v->square)) {
+        add_normal(depth, n, square, SLIP_CLOSE);
     } else if (u->simplex || v->simplex) {
         depth->upper = INFINITY;
     } else {
@@ -179,19 +190,18 @@ static void add_close(struct depth *depth, const struct gap_edge *u, const struc
     }
 }
 
-/* Where the sine is above 0.28, 8.8 u / s is below 2^-48. */
 static void add_edges(struct depth *depth, const struct gap_edge *u, const struct gap_edge *v)
 {
     const double most = u->square * v->square;
     double n[3];
     gap_cross(u->at, v->at, n);
     const double square = gap_dot(n, n);
-    if (square > 0.08 * most)
-        add_normal(depth, n, square, 0x1p-48);
+    if (square > WIDE_SINE_SQUARE * most)
+        add_normal(depth, n, square, SLIP_WIDE);
     else if (u->exact && v->exact)
         add_close(depth, u, v);
     else if (square > 0)
-        add_normal(depth, n, square, 0x1p-49 * sqrt(most / square));
+        add_normal(depth, n, square, SLIP * sqrt(most / square));
     else
         depth->upper = INFINITY;
 }
@@ -234,7 +244,7 @@ static void add_space(struct depth *depth)
     const int first = first_of(&bounds);
     if (first >= 0)
         add_number(depth, first);
-    const double most = (0x1p-38 * reach - depth->greatest) * (1 + 0x1p-40);
+    const double most = (GAP_BOUNDS_MARGIN * reach - depth->greatest) * PREPARED_MARGIN;
     const lanes limit = lanes_of(most > 0 ? most * most : 0);
     for (int i = 0; i < bounds.count; i++) {
         const unsigned bits = lanes_mask_bits(bounds.square[i] <= limit);
@@ -251,7 +261,7 @@ static void add_space(struct depth *depth)
 static void add_turned(struct depth *depth, const struct gap_edge *edge)
 {
     const double n[3] = {-edge->at[1], edge->at[0], 0};
-    add_normal(depth, n, edge->square, 0x1p-50);
+    add_normal(depth, n, edge->square, SLIP_CLOSE);
 }
 
 static void add_plane(struct depth *depth)
@@ -280,7 +290,7 @@ enum gap_outcome gap_depth(const struct gap_pair *pair, enum fmb_verdict verdict
         add_plane(&depth);
     if (depth.greatest == -INFINITY)
         return GAP_UNSURE;
-    const double bundled = depth.bundled ? 13 * 0x1p-50 * pair->reach : 0;
+    const double bundled = depth.bundled ? BUNDLED * pair->reach : 0;
     const double upper = depth.upper + bundled + error;
     out->bounds[0] = depth.greatest - error;
     out->bounds[1] = verdict == FMB_OVERLAPPING && upper < 0 ? upper : 0;

@@ -120,7 +120,7 @@ static void set_witness(const struct gap_pair *pair, const struct gap_simplex *s
 enum gap_outcome gap_distance(const struct gap_pair *pair, double farthest, struct fmb_gap *out)
 {
     const double error = gap_error(pair), close = 0x1p-47 * pair->reach;
-    const double far = farthest + 0x1p-38 * (pair->far[0] + pair->far[1]) + error;
+    const double far = farthest + GAP_FAR_MARGIN * (pair->far[0] + pair->far[1]) + error;
     struct gap_simplex simplex;
     double toward[3], f;
     /* The origin from the middle of the vectors. */

@@ -83,7 +83,7 @@ INLINE bool gap_direction_of(const struct gap_simplex *simplex, bool plane, doub
     for (int axis = 0; axis < 3; axis++)
         n[axis] *= sign;
     *square = gap_dot(n, n);
-    return *square >= 0x1p-950; /* else it may have underflowed */
+    return *square >= GAP_LEAST_SQUARE;
 }
 
 /* Weights of the point of the affine hull next to the origin; false if the corners are not affinely
