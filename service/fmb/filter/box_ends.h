@@ -12,12 +12,10 @@
  *
  * A point of a frame is the sum of its origin, of components (the shift to the centre; from there
  * to a vertex; a part of an edge, at most twice its half), and of travel (to the middle of the
- * window; to one of its ends; a part of the way). Each of these is rounded at most 20 times on its
- * way into a coordinate: 2 times in a component that is a difference, 1 in travel; 3 in the sum of
- * the centre, 4 in that of a vertex; 4 in the part of the segment and its product, 2 in the sum of
- * both; the remainder covers the sums below. So with BOX_PLACE_ROUNDING = 20.1 u times the sum of
- * their magnitudes, and 1.1 e for the errors e of both frames, a coordinate is within the slack of
- * that of the true point. */
+ * window; to one of its ends; a part of the way). Each of these is rounded at most 10 times on its
+ * way into a coordinate ('make checked' counts), and a few more times in the sums below. So with
+ * BOX_PLACE_ROUNDING = 20.1 u times the sum of their magnitudes, and 1.1 e for the errors e of both
+ * frames, a coordinate is within the slack of that of the true point. */
 #ifndef FMB_BOX_ENDS_H
 #define FMB_BOX_ENDS_H
 

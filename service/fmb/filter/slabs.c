@@ -41,20 +41,8 @@
  *     |p|^2 = |u|^2 |v|^2 + (sum |u_i| |v_i|)^2 - 2 sum (u_i v_i)^2
  *          <= |u|^2 |v|^2 + (sum |u_i| |v_i|)^2 / 3  <=  4/3 |u|^2 |v|^2
  *
- * (Cauchy's inequality three times). A monomial is rounded at most
- *
- *     2 times in H;  in the offset 3 times for d, 4 for H and for components
- *     5 times in a triple product: 2 in the cross product, 3 in the dot product
- *     2 times where two edges are differences, or three normals are summed
- *     3 times on from an offset (gap, or the inequalities of the time)
- *     6 times on from a product with a component: -(at[p] + at[q]) 1, extent 2, D 1, gap 2
- *
- * That is at most
- *
- *     4 + 5 + 2 + 3 = 14 times      in the middle of a slab of edges or faces
- *     4 + 2 + 5 + 1 + 2 = 14 times  in that of an edge and the drift, whose normal has H in it
- *     5 + 1 + 6 = 12 times          in an extent
- *     2 + 5 + 1 + 6 = 14 times      in an extent along a normal with H in it.
+ * (Cauchy's inequality three times). A monomial is rounded at most 14 times: 'make checked' counts
+ * that, and that the magnitudes of the monomials sum to no more than this, at each slab.
  *
  * So the share of a monomial in the result has a factor within (1 +- u)^14, and the sum an error of
  * at most 14.01 (2 / sqrt(3)) u |u| |v| T < 16.2 u |u| |v| T. Maxima and minima do not round, and
@@ -62,17 +50,14 @@
  * |u| |v| T (Hadamard), and its bound rounds by 1.01 u |u| |v| T more. That uses 17.3 of the 18 u
  * of SLABS_ROUNDING; what remains covers the bound itself, computed with 15 roundings. Times make
  * no such sum, and need less than that for their own operations (bound_times()). In 2D a product is
- * two monomials, of magnitudes at most |u| |w|; they are rounded at most 4 + 2 + 2 + 2 = 10 times,
- * and 10.01 + 1.01 leaves enough of 12 u.
+ * two monomials, of magnitudes at most |u| |w|; they are rounded at most 10 times, and 10.01 + 1.01
+ * leaves enough of 12 u.
  *
  * The face across from the origin has |u| |v| = sum over i < j of |a_i| |a_j|: its normal is the
  * sum of these three cross products.
  *
  * A face is a simplex of two components; of the products above it needs those without a_2, and its
  * own normal n_2, along which it has no extent.
- *
- * Along an axis a coordinate of a component is rounded at most 6 times, and the difference with the
- * bound once: 7.01 u T against 16 u T.
  *
  * Two passes. Let R be the bound on rounding, and F that on the errors of the frames. The gaps that
  * two kernels compute of the same rounded frames differ by at most 2 R. A first pass decides a slab
