@@ -17,6 +17,7 @@
 #include "checked_bounds.h"
 
 #include "checked_gaps.h"
+#include "checked_rotations.h"
 #include "kernel_box.h"
 
 #include <stdlib.h>
@@ -53,6 +54,9 @@ static struct constant constants[] = {
     {"SLABS_TIMES_SLACK", SLABS_TIMES_SLACK, 5, 2.01L},
     {"EXACT_SUM_ROUNDING", EXACT_SUM_ROUNDING, 0, 0, UNDERIVED},
     {"TIMES_ROUNDING", TIMES_ROUNDING, 1, 0},
+    {"NORM_ERROR", 0, 1, 0},
+    {"MATRIX_ERROR"},
+    {"PRODUCT_ERROR"},
     {"BOX_ROUNDING", BOX_ROUNDING},
     {"BOX_PLACE_ROUNDING", BOX_PLACE_ROUNDING, 1, 1},
     /* f, and the direction of unit length. */
@@ -194,6 +198,22 @@ void check_quotient(const char *name, number dividend, number divisor, number in
         expect(constant, "sizes", q + t, constant->sizes * (1 + 0x1p-40L), &constant->argued);
 }
 
+void check_vector(const char *name, const number *vector, int count, number bound)
+{
+    struct constant *constant = constant_of(name);
+    long double derived = 0, error = 0, sum = 0;
+    for (int i = 0; i < count; i++) {
+        derived = hypotl(running_of(vector[i]), derived);
+        error = hypotl(error_of(vector[i]), error);
+        sum += fabsl(vector[i].value);
+    }
+    constant->uses++;
+    if (sum > 0) {
+        expect(constant, "error", error, bound.value * constant->lowered, &constant->error);
+        expect(constant, "derived", derived, bound.value * constant->lowered, &constant->derived);
+    }
+}
+
 /* From here on the normal is what it is. */
 void give_normal(const number normal[3], number &square)
 {
@@ -312,6 +332,14 @@ static void check_gaps(const struct fmb_prepared *const both[2], double duration
     check_gap(frame, duration);
 }
 
+static void check_rotations(const struct fmb_prepared *frame)
+{
+    const struct fmb_placement *placement = frame->placement;
+    for (int i = 0; i < frame->frame->count && placement->orientation_count; i++)
+        check_rotation(placement->orientation, placement->orientation_count, frame->frame->dim,
+                       frame->frame->component[i]);
+}
+
 void check_pair(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration)
 {
     bool swapped;
@@ -323,6 +351,8 @@ void check_pair(const struct fmb_prepared *a, const struct fmb_prepared *b, doub
             mpf_init2(each, BITS);
     const struct fmb_prepared *const pair[2] = {swapped ? b : a, swapped ? a : b};
     struct kernel_traits traits = traits_of(kind);
+    check_rotations(a);
+    check_rotations(b);
     check_gaps(pair, duration);
     check_box(traits, pair, duration);
     traits.box = false;
@@ -367,7 +397,7 @@ bool check_failed(int index)
 
 static const char not_checked[] =
     "\n"
-    "Not checked here: errors of frames (rotation.h, prepared.c, frame.c), sums rounded outward\n"
+    "Not checked here: errors of origins and vertices (prepared.c, frame.c), sums rounded outward\n"
     "(aabb.h, box_ends.h), boxes of level cuboids (box_clip.h, 7), bounds of normals "
     "(gap_bounds.c), hulls, and what is done in integers.\n"
     "Frames count as given, without errors.\n";

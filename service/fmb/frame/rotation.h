@@ -37,18 +37,22 @@
 #ifndef FMB_ROTATION_H
 #define FMB_ROTATION_H
 
+#include "checked.h"
 #include "fmb.h"
 #include "inlined.h"
 
 #include <math.h>
 #include <string.h>
 
+#define NORM_ERROR (4.03 * 0x1p-53) /* relative to 1 / n */
 #define MATRIX_ERROR (13 * 0x1p-53)
 #define PRODUCT_ERROR (5.3 * 0x1p-53)
 #define ROTATION_ERROR (21 * 0x1p-53)
 
-/* A SIMD vector of two coordinates, or two rows. */
+/* A SIMD vector of two coordinates, or two rows. tests/checked defines its own. */
+#ifndef ROTATION_TWO
 typedef double rotation_two __attribute__((vector_size(16)));
+#endif
 
 struct rotation_matrix {
     int dim;
@@ -176,7 +180,9 @@ INLINE void rotation_set_planar(double cosine, double sine, bool exact, struct r
 /* Sets the rotation of a quaternion with x = y = 0. In: the norm is scaled. */
 INLINE void rotation_set_about_z(double w, double z, struct rotation_matrix *out)
 {
-    const double ww = w * w, zz = z * z, inverse = 1 / (ww + zz);
+    const double ww = w * w, zz = z * z, of_norm = 1 / (ww + zz);
+    CHECK_BOUND(NORM_ERROR, false, of_norm, NORM_ERROR * of_norm);
+    const double inverse = CHECK_GIVEN(of_norm);
     if (w * z == 0)
         rotation_set_planar(z == 0 ? 1 : -1, 0, true, out);
     else if (fabs(w) == fabs(z))
@@ -190,7 +196,9 @@ INLINE void rotation_set_in_space(struct quaternion q, struct rotation_matrix *o
 {
     const double w = q.w, x = q.x, y = q.y, z = q.z;
     const double ww = w * w, xx = x * x, yy = y * y, zz = z * z;
-    const double inverse = 1 / ((ww + xx) + (yy + zz)), twice = 2 * inverse;
+    const double of_norm = 1 / ((ww + xx) + (yy + zz));
+    CHECK_BOUND(NORM_ERROR, false, of_norm, NORM_ERROR * of_norm);
+    const double inverse = CHECK_GIVEN(of_norm), twice = 2 * inverse;
     const double wx = w * x, wy = w * y, wz = w * z, xy = x * y, xz = x * z, yz = y * z;
     out->xy[0] = (rotation_two){((ww + xx) - (yy + zz)) * inverse, (xy + wz) * twice};
     out->xy[1] = (rotation_two){(xy - wz) * twice, ((ww + yy) - (xx + zz)) * inverse};

@@ -7,6 +7,7 @@
 #ifndef FMB_LANES_H
 #define FMB_LANES_H
 
+#include "checked.h"
 #include "inlined.h"
 
 #ifndef LANES /* the header is compiled by itself */
@@ -30,24 +31,6 @@ typedef int64_t lanes_mask __attribute__((vector_size(8 * LANES))); /* 0 or -1 *
 #include <immintrin.h>
 #endif
 #endif
-
-/* Where a bound on an error is used: value is off by at most bound, some lengths times the
- * constant, but in lanes that are ignored. The program of tests/checked checks this; elsewhere it
- * is nothing. */
-#define CHECK_BOUND(constant, ignored, value, bound) ((void) 0)
-/* The same of a quotient in [-1, 1], (dividend -+ bound) inverse. The true dividend is within bound
- * of dividend - quotient divisor, but for the constant times the divisor. */
-#define CHECK_QUOTIENT(constant, ignored, dividend, divisor, inverse, quotient, bound) ((void) 0)
-/* The same of a segment of a box: what is left to the bounds of a slab (box_clip.h, errors). */
-#define CHECK_SEGMENT(constant, values, slab, vertex, direction) ((void) 0)
-/* From here on x counts as given: its error is accounted for elsewhere. In some lanes, or in all.
- */
-#define CHECK_GIVEN_IN(some, x) (x)
-#define CHECK_GIVEN(x) (x)
-/* The direction of a normal is off by at most slip. From here on the normal counts as given, and
- * square, of its length, is computed from it. */
-#define CHECK_NORMAL(constant, normal, square, slip) ((void) 0)
-#define CHECK_GIVEN_NORMAL(normal, square) ((void) 0)
 
 /* x > y ? x : y and x < y ? x : y, lane by lane. If x or y is a NaN, the result is y. */
 #if LANES == 1

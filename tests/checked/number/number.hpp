@@ -323,6 +323,16 @@ inline bool isfinite(number x)
     return std::isfinite(x.value);
 }
 
+inline int ilogb(number x)
+{
+    return std::ilogb(x.value);
+}
+
+inline number ldexp(number x, int exponent)
+{
+    return x * std::ldexp(1.0, exponent);
+}
+
 inline bool isnan(number x)
 {
     return std::isnan(x.value);
