@@ -337,9 +337,17 @@ static bool set_options(struct fmb_client *client, const struct fmb_client_optio
                  BUS_PREFIX_MAX);
         return false;
     }
-    if (!(timeout > 0 && timeout <= timeout_max_s) || options->tries < 0) {
-        snprintf(why, BUS_WHY_MAX, "timeout: expected seconds up to %g, and tries from 0",
-                 timeout_max_s);
+    if (!(timeout > 0 && timeout <= timeout_max_s)) {
+        snprintf(why, BUS_WHY_MAX, "timeout: expected seconds up to %g, found %g", timeout_max_s,
+                 timeout);
+        return false;
+    }
+    if (options->tries < 0) {
+        snprintf(why, BUS_WHY_MAX, "tries: %d is negative", options->tries);
+        return false;
+    }
+    if (!(options->within >= 0)) {
+        snprintf(why, BUS_WHY_MAX, "within: expected seconds from 0, found %g", options->within);
         return false;
     }
     snprintf(client->prefix, sizeof client->prefix, "%s", prefix);

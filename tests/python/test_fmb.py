@@ -373,6 +373,7 @@ class Arrays(unittest.TestCase):
                 (TypeError, "groups", lambda: fmb.Scene([box], groups=["a"])),
                 (fmb.BusError, "prefix", lambda: fmb.Client(prefix="no prefix")),
                 (ValueError, "tries", lambda: fmb.Client(tries=0)),
+                (fmb.BusError, "within", lambda: fmb.Client(within=-1)),
                 (TypeError, "timeout", lambda: fmb.Client(timeout="x")),
                 (TypeError, "fmb", lambda: copy.copy(scene))):
             self.refused(error, start, call)

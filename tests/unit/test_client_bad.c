@@ -1503,11 +1503,15 @@ static void wrong_options_are_refused(void **state)
                                                {.timeout = -1},
                                                {.timeout = NAN},
                                                {.tries = -1},
+                                               {.within = -1},
+                                               {.within = NAN},
                                                {.url = "tcpq://127.0.0.1:1"}};
+    static const char *const named[] = {"prefix", "timeout", "timeout", "tries",
+                                        "within", "within",  "tcpq"};
     for (size_t i = 0; i < COUNT(wrong); i++) {
         why[0] = '\0';
         assert_null(fmb_client_open(&wrong[i], why, sizeof why));
-        assert_true(strlen(why) > 10);
+        assert_non_null(strstr(why, named[i]));
         assert_null(fmb_client_open(&wrong[i], little, sizeof little));
         assert_int_equal(strlen(little), sizeof little - 1);
         assert_null(fmb_client_open(&wrong[i], NULL, 0));
