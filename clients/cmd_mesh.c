@@ -223,7 +223,7 @@ static bool read_mesh(const char *path, const struct placed *placed, struct mesh
     char error[MESH_ERROR_MAX];
     struct progress progress = progress_begin("bytes", 0);
     const struct mesh_progress watch = {on_progress, &progress};
-    const bool good = mesh_read(path, &watch, out, error);
+    const bool good = mesh_read(path, MESH_TRIANGLES, &watch, out, error);
     progress_end(&progress);
     if (!good) {
         complain("%s: %s", path, error);

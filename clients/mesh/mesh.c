@@ -77,10 +77,10 @@ static bool read_any(struct mesh_source *source, const char *name, struct mesh *
                                                           : read_unknown(source);
 }
 
-bool mesh_parse(const void *bytes, size_t size, const char *name, const struct mesh_progress *watch,
-                struct mesh *out, char error[MESH_ERROR_MAX])
+bool mesh_parse(const void *bytes, size_t size, const char *name, enum mesh_faces faces,
+                const struct mesh_progress *watch, struct mesh *out, char error[MESH_ERROR_MAX])
 {
-    struct mesh_source source = {.begin = bytes, .watch = watch, .error = error};
+    struct mesh_source source = {.begin = bytes, .faces = faces, .watch = watch, .error = error};
     source.at = source.reported = source.begin;
     source.end = source.begin + size;
     error[0] = '\0';
@@ -182,8 +182,8 @@ static unsigned char *read_file(const char *path, size_t *size, struct half *hal
     return bytes;
 }
 
-bool mesh_read(const char *path, const struct mesh_progress *watch, struct mesh *out,
-               char error[MESH_ERROR_MAX])
+bool mesh_read(const char *path, enum mesh_faces faces, const struct mesh_progress *watch,
+               struct mesh *out, char error[MESH_ERROR_MAX])
 {
     size_t size = 0;
     struct half half = {.watch = watch};
@@ -193,7 +193,7 @@ bool mesh_read(const char *path, const struct mesh_progress *watch, struct mesh 
     if (!bytes)
         return false;
     half.done = size / 2;
-    const bool good = mesh_parse(bytes, size, path, &parser, out, error);
+    const bool good = mesh_parse(bytes, size, path, faces, &parser, out, error);
     if (good)
         report_progress(&half, size, size);
     free(bytes);

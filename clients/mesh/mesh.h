@@ -51,16 +51,22 @@ struct mesh_progress {
     void *context;
 };
 
-/* Reads a mesh from a regular file. The whole file is in memory during the call. progress: may be
+/* What is read of an OBJ besides triangles. */
+enum mesh_faces {
+    MESH_TRIANGLES, /* nothing: the mesh is refused */
+    MESH_POLYGONS   /* faces of more vertices, as a fan of triangles, which has the same hull */
+};
+
+/* Reads a mesh from a regular file. The whole file is in memory during the call. watch: may be
  * NULL. Returns true and a mesh, which the caller passes to mesh_free(); or false, an empty mesh
  * and the error. A path that is not a regular file is an error, and never blocks. */
-bool mesh_read(const char *path, const struct mesh_progress *watch, struct mesh *out,
-               char error[MESH_ERROR_MAX]);
+bool mesh_read(const char *path, enum mesh_faces faces, const struct mesh_progress *watch,
+               struct mesh *out, char error[MESH_ERROR_MAX]);
 
 /* As mesh_read(), from a file in memory. In: bytes[size] must be readable and 0; name: of the file,
  * may be ""; only its extension is used. */
-bool mesh_parse(const void *bytes, size_t size, const char *name, const struct mesh_progress *watch,
-                struct mesh *out, char error[MESH_ERROR_MAX]);
+bool mesh_parse(const void *bytes, size_t size, const char *name, enum mesh_faces faces,
+                const struct mesh_progress *watch, struct mesh *out, char error[MESH_ERROR_MAX]);
 
 /* Frees the arrays. On output: an empty mesh. */
 void mesh_free(struct mesh *mesh);

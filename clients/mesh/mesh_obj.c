@@ -193,16 +193,22 @@ static bool read_face(struct obj *obj)
     size_t count = 0;
     for (; has_word(source); count++) {
         int64_t index;
-        unsigned unused;
+        unsigned next = 0;
         const unsigned char *end = read_corner(source->at, &index);
         if (!end || !ends_word(source, end))
             return mesh_refuse_line(source, source->at, "'%s' is no corner of a face",
                                     mesh_word(source, source->at, text));
-        if (!take_index(obj, index, count < 3 ? &corner[count] : &unused))
+        if (!take_index(obj, index, &next))
             return false;
+        if (count >= 3 && source->faces == MESH_POLYGONS) {
+            if (!mesh_add_face(&obj->build, corner))
+                return false;
+            corner[1] = corner[2];
+        }
+        corner[count < 3 ? count : 2] = next;
         source->at = end;
     }
-    if (count != 3)
+    if (count < 3 || (count > 3 && source->faces == MESH_TRIANGLES))
         return mesh_refuse_line(source, begin, "a face of %zu vertices: %s", count,
                                 count > 3 ? "triangulate it first" : "remove it first");
     return mesh_add_face(&obj->build, corner);

@@ -8,9 +8,10 @@
 #include <string.h>
 
 struct mesh_source {
-    const unsigned char *begin, *end;  /* *end is readable, and 0 */
-    const unsigned char *at;           /* position of the parser */
-    const unsigned char *reported;     /* position at the last progress report */
+    const unsigned char *begin, *end; /* *end is readable, and 0 */
+    const unsigned char *at;          /* position of the parser */
+    const unsigned char *reported;    /* position at the last progress report */
+    enum mesh_faces faces;
     const struct mesh_progress *watch; /* may be NULL */
     char *error;                       /* capacity: MESH_ERROR_MAX */
 };

@@ -145,6 +145,18 @@ triangle() {
     done
 }
 
+@test "faces of an OBJ may be polygons" {
+    # A prism of five sides, whose last corner only its polygons have; (1,1,1) is in no face.
+    printf 'v %s\n' '0 0 0' '4 0 0' '5 3 0' '2 5 0' '-1 3 0' '1 1 1' '0 0 2' '4 0 2' '5 3 2' '2 5 2' '-1 3 2' > m.obj
+    printf 'f %s\n' '1 2 3 4 5' '7 8 9 10 11' >> m.obj
+    link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
+    scene robot.urdf
+    shows '.bodies[0].vertices'
+    is '[[0,0,0],[4,0,0],[5,3,0],[2,5,0],[-1,3,0],[0,0,2],[4,0,2],[5,3,2],[2,5,2],[-1,3,2]]'
+    echo 'f 1 2' >> m.obj
+    refused 'line 14: a face of 2 vertices: remove it first' robot.urdf
+}
+
 # 256 MB suffice.
 @test "objects without faces take no memory" {
     { for i in 1 2 3; do echo "v $i $((i * i)) 0"; done; yes 'o x' | head -n 50000; echo 'f 1 2 3'; } > m.obj

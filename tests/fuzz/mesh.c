@@ -105,7 +105,7 @@ static void check_written(const struct mesh *mesh)
     FUZZ_CHECK(file);
     mesh_write_ply(file, mesh, NULL);
     FUZZ_CHECK(!ferror(file) && fclose(file) == 0);
-    FUZZ_CHECK(mesh_parse(bytes, size, "", NULL, &again, error));
+    FUZZ_CHECK(mesh_parse(bytes, size, "", MESH_TRIANGLES, NULL, &again, error));
     check_same(mesh, &again);
     mesh_free(&again);
     free(bytes);
@@ -145,7 +145,7 @@ static void check_file(const uint8_t *bytes, size_t size, const char *name)
 {
     struct mesh mesh;
     char error[MESH_ERROR_MAX];
-    if (mesh_parse(bytes, size, name, NULL, &mesh, error)) {
+    if (mesh_parse(bytes, size, name, MESH_TRIANGLES, NULL, &mesh, error)) {
         check_mesh(&mesh, size);
         check_written(&mesh);
         if (is_stl(bytes, size))

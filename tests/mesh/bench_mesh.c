@@ -51,7 +51,7 @@ static void read_scene(struct scene *scene)
         const double begin = stopwatch_now();
         for (int which = 0; which < 2; which++) {
             mesh_free(&scene->mesh[which]);
-            if (!mesh_read(scene->path, NULL, &scene->mesh[which], error))
+            if (!mesh_read(scene->path, MESH_TRIANGLES, NULL, &scene->mesh[which], error))
                 fail(error);
             place(scene->scale, which, &scene->mesh[which]);
         }

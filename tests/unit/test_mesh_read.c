@@ -60,7 +60,7 @@ static bool parse(const void *bytes, size_t size, const char *name, struct mesh 
     if (size > 0)
         memcpy(copy, bytes, size);
     copy[size] = '\0';
-    const bool good = mesh_parse(copy, size, name, NULL, out, error);
+    const bool good = mesh_parse(copy, size, name, MESH_TRIANGLES, NULL, out, error);
     free(copy);
     return good;
 }
@@ -624,7 +624,7 @@ static void expect_unread(const char *path, const char *expected)
 {
     struct mesh mesh;
     char error[MESH_ERROR_MAX];
-    assert_false(mesh_read(path, NULL, &mesh, error));
+    assert_false(mesh_read(path, MESH_TRIANGLES, NULL, &mesh, error));
     assert_string_equal(error, expected);
     assert_true(!mesh.vertex && !mesh.face);
 }
@@ -652,7 +652,7 @@ static void only_regular_files_are_read(void **state)
     write_file(path, "", 0);
     expect_unread(path, "byte 0: the file is empty");
     write_file(path, obj, sizeof obj - 1);
-    assert_true(mesh_read(path, &watch, &mesh, error));
+    assert_true(mesh_read(path, MESH_TRIANGLES, &watch, &mesh, error));
     expect_mesh(mesh, 4, square, 2, halves);
     assert_true(seen.times > 0 && seen.total == sizeof obj - 1 && seen.done == seen.total);
     unlink(path);
@@ -671,7 +671,7 @@ static struct mesh read_back(const struct mesh *mesh,
     assert_non_null(file);
     write(file, mesh);
     assert_int_equal(fclose(file), 0);
-    if (!mesh_parse(bytes, size, "", NULL, &again, error))
+    if (!mesh_parse(bytes, size, "", MESH_TRIANGLES, NULL, &again, error))
         fail_msg("%s", error);
     free(bytes);
     return again;
