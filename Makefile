@@ -66,6 +66,9 @@ quiet := $(if $(V),,@)
 
 mode_flags_release := -O2 -g1 -DNDEBUG
 mode_flags_debug := -O0 -g3
+ifeq ($(MODE)$(findstring clang,$(compiler)),asan)
+$(error MODE=asan needs clang, not $(CC): leave out CC)
+endif
 mode_flags_asan := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all \
 	-fno-omit-frame-pointer -fsanitize=fuzzer-no-link
 ifeq ($(mode_flags_$(MODE)),)
@@ -74,7 +77,7 @@ endif
 ifneq ($(filter-out two,$(INSTRUCTIONS)),)
 $(error INSTRUCTIONS is two or empty)
 endif
-# Messages of sanitizers name places by 4 MB of addresses, which each process would relocate.
+# The places that messages of sanitizers name are 4 MB of pointers: PIE would relocate them in each process.
 mode_link_asan := -fsanitize=address,undefined -no-pie
 
 # -ffp-contract=off: the same bits on every machine. -fPIC: archives fit into shared objects too;
@@ -367,10 +370,11 @@ $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(call say,CC,$<) $(CC) $(flags) $(sees) -fsyntax-only -x c $<
 	@touch $@
+formatted := $(sources) $(shell find tests -name '*.cc' -o -name '*.hpp')
 format:
-	@clang-format -i $(sources)
+	@clang-format -i $(formatted)
 format-check:
-	@clang-format --dry-run -Werror $(sources)
+	@clang-format --dry-run -Werror $(formatted)
 
 # ---- Demo, installation ----
 

@@ -45,7 +45,7 @@ run_suite() {
         test_limbs) sample=0.2 ;;
         test_kernels) sample=1 ;;
         test_*) sample=0.5 ;;
-        # Unit tests look for leaks; in a command that costs as much as its work.
+        # Unit tests look for leaks; that would double the time of a command.
         *) sample=1; export ASAN_OPTIONS=detect_leaks=0 ;;
         esac
         ;;

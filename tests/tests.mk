@@ -60,7 +60,7 @@ $(filter-out $(looks_inside:%=$(B)/%),$(test_programs) $(measures)): \
 $(test_programs) $(measures):
 	$(link)
 
-# The engine, compiled as C++ with numbers that know their errors. It copies numbers that it does not
+# The engine, compiled as C++ with numbers that carry bounds on their errors. It copies numbers that it does not
 # use and has not set: they are 0 here, without a derivation.
 checked_kernels := $(patsubst %.cc,$(O)/%.o,$(wildcard tests/checked/*.cc))
 $(checked_kernels): $(O)/%.o: %.cc $(O)/settings
@@ -232,9 +232,8 @@ $(campaign_plants): $(O)/planted/%.o: service/fmb/%.c $(O)/settings
 	$(compile_bare) -DSLABS_ROUNDING=0x1p-70 -DGAP_ROUNDING=0x1p-70
 $(B)/accuracy-planted: $(O)/tests/campaign/accuracy.o $(campaign_plants)
 
-# validate: some twenty minutes; accuracy: some hours, on two cores.
+# On two cores: accuracy takes hours, validate minutes, the others less than a minute.
 .PHONY: validate accuracy checked hull-poses soak
-# Minutes.
 checked: $(B)/checked
 	$<
 hull-poses: $(B)/hull-poses

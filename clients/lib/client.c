@@ -338,8 +338,8 @@ static bool set_options(struct fmb_client *client, const struct fmb_client_optio
         return false;
     }
     if (!(timeout > 0 && timeout <= timeout_max_s)) {
-        snprintf(why, BUS_WHY_MAX, "timeout: expected seconds up to %g, found %g", timeout_max_s,
-                 timeout);
+        snprintf(why, BUS_WHY_MAX, "timeout: expected more than 0 and at most %g seconds, found %g",
+                 timeout_max_s, timeout);
         return false;
     }
     if (options->tries < 0) {
@@ -347,7 +347,7 @@ static bool set_options(struct fmb_client *client, const struct fmb_client_optio
         return false;
     }
     if (!(options->within >= 0)) {
-        snprintf(why, BUS_WHY_MAX, "within: expected seconds from 0, found %g", options->within);
+        snprintf(why, BUS_WHY_MAX, "within: expected 0 or more seconds, found %g", options->within);
         return false;
     }
     snprintf(client->prefix, sizeof client->prefix, "%s", prefix);

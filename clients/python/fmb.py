@@ -194,7 +194,7 @@ def _flat(name: str, value: Any, code: str, shape: tuple) -> tuple[memoryview, t
     if len(found) != len(shape) or any(s != f for s, f in zip(shape, found) if s.__class__ is int):
         raise ValueError(f"{name}: expected shape {_shape_text(shape)}, found {_shape_text(found)}")
     if hasattr(value, "mask"):
-        raise TypeError(f"{name}: a masked array: pass what its filled() returns")
+        raise TypeError(f"{name}: masked arrays are refused: pass the result of filled()")
     if not view.c_contiguous:
         raise ValueError(f"{name}: not in C order: use numpy.ascontiguousarray()")
     return view, found
@@ -277,7 +277,7 @@ def _numbers(name: str, value: Any, shape: tuple) -> tuple[array, int]:
     """The numbers of an argument, and their dimension, which is the length of its last axis."""
     buffer, found = _flat(name, value, "d", shape)
     if not found[0]:
-        raise ValueError(f"{name}: it is empty")
+        raise ValueError(f"{name}: expected at least one row, found none")
     if found[-1] not in (2, 3):
         raise ValueError(f"{name}: expected 2 or 3 axes, found {found[-1]}")
     numbers = array("d", memoryview(buffer).tobytes())
@@ -491,8 +491,8 @@ class Answers(Sequence):
 
 class Client(_Handle):
     """A client of fmbd on an LCM bus. A client sends each body once: use it for all queries. After a
-    fork, the child needs a client of its own. A signal, such as that of Ctrl-C, takes effect when the
-    call that waits for answers returns.
+    fork, the child needs a client of its own. Signals (Ctrl-C) are handled when the current
+    call returns.
 
     url: of the bus, udpm://[GROUP:PORT][?ttl=N]; None: LCM_DEFAULT_URL, or else only this host
     prefix: of the service's channels
@@ -547,7 +547,7 @@ def _handle_of(client: Optional[Client]) -> Optional[int]:
     if client is not None and not client._handle:
         raise BusError("client: it is closed")
     if client is not None and client._process != os.getpid():
-        raise BusError("client: it is of another process: open one in each")
+        raise BusError("client: it was opened by another process: open one after the fork")
     return client and client._handle
 
 

@@ -162,7 +162,9 @@ static enum joint_row read_line(struct joint_table *table, size_t *found)
         char *end = strchr(text, '\n');
         const bool last = !end && feof(table->file);
         if (!end && (!last || ftello(table->file) - begin != (off_t) strlen(text)))
-            return refuse(table, "has a zero byte (save the table as UTF-8), or more than %d bytes",
+            return refuse(table,
+                          "has a zero byte (save the table as UTF-8), or more than %d bytes (give "
+                          "fewer columns)",
                           TEXT_MAX - 1);
         end = end ? end : text + strlen(text);
         end -= end > text && end[-1] == '\r';

@@ -200,8 +200,8 @@ static const struct robot_name *begin(struct reader *reader, const struct node *
         refuse(reader, node->line, "more than %d <%s> elements", (int) ROBOT_COUNT_MAX, node->name);
     else if (!query_name_ok(name))
         refuse(reader, node->line,
-               "<%s>: the name '%.80s' has more than %d bytes, or control "
-               "characters",
+               "<%s>: the name '%.80s' has more than %d bytes, or is not UTF-8 without "
+               "control characters",
                node->name, name, (int) QUERY_NAME_MAX);
     else if (!(added = robot_add_name(reader->robot, table, name, &first)))
         refuse(reader, node->line, "there is already a %s '%s', in line %lu", node->name, name,

@@ -31,7 +31,8 @@ enum { QUERY_TEXT_MAX = 160 };
 
 enum { QUERY_ORIENTATION_MAX = 4, QUERY_NAME_MAX = 64 /* bytes */ };
 
-/* Whether a body or a scene may have this name or label. */
+/* Whether a name or label is legal: at most QUERY_NAME_MAX bytes of UTF-8 without control
+ * characters; may be empty. */
 static inline bool query_name_ok(const char *name)
 {
     return strlen(name) <= QUERY_NAME_MAX && utf8_is_text(name);

@@ -92,8 +92,8 @@ int main(int argc, char **argv)
     const long count = argc == 2 ? strtol(argv[1], &end, 10) : 0;
     if (argc != 2 || *end || errno || count < 1) {
         fputs(
-            "usage: hull-poses COUNT\n\nDecides so many random poses of two hulls in doubles. "
-            "Exit codes: 0 at most one\npose in a million needed integers, 1 more did, 2 wrong "
+            "usage: hull-poses COUNT\n\nDecides COUNT random poses of pairs of hulls in doubles. "
+            "Exit codes: 0 at most one\npose in a million needs integers, 1 more do, 2 wrong "
             "usage.\n",
             stderr);
         return 2;

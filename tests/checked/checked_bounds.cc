@@ -1,5 +1,5 @@
-/* The kernels of the filter, compiled with numbers that know their errors, and what is checked
- * where they use a bound.
+/* The kernels of the filter, compiled with numbers that carry bounds on their errors, and what is
+ * checked where they use a bound.
  *
  * A bound is a constant times some lengths. At each use this asserts, with the derivation of the
  * value (number.hpp):
@@ -98,7 +98,6 @@ void arena_clear()
 /* The kernel that runs. */
 static struct {
     struct kernel_traits traits;
-    struct slab_normal normal;
 } at;
 
 static struct constant *constant_of(const char *name)

@@ -1,6 +1,6 @@
-/* Computes pairs by the kernels of the filter in numbers that know their errors (number.hpp), and
- * compares these with the bounds that the kernels use. Not thread safe: the results are kept until
- * check_begin(). */
+/* Computes pairs by the kernels of the filter in numbers that carry bounds on their errors
+ * (number.hpp), and compares these with the bounds that the kernels use. Not thread safe: the
+ * results are kept until check_begin(). */
 #ifndef CHECKED_BOUNDS_H
 #define CHECKED_BOUNDS_H
 

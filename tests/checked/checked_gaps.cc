@@ -1,4 +1,5 @@
-/* The gaps of pairs of frames, compiled with numbers that know their errors: `double` is one. */
+/* The gaps of pairs of frames, compiled with `double` as a number that carries a bound on its
+ * error. */
 #define INLINED_NOT
 #undef __SSE2__ /* vectors are structs here */
 

@@ -1,6 +1,6 @@
-/* Computes gaps in numbers that know their errors, and compares these with the bounds of the
- * engine: what check_pair() does for the filter. Frames are plain: the engine's types hold other
- * numbers there. */
+/* Computes gaps in numbers that carry bounds on their errors, and compares these with the bounds of
+ * the engine: what check_pair() does for the filter. Frames are plain: the engine's types hold
+ * other numbers there. */
 #ifndef CHECKED_GAPS_H
 #define CHECKED_GAPS_H
 

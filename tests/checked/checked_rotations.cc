@@ -1,4 +1,4 @@
-/* Rotations, compiled with numbers that know their errors: `double` is one. */
+/* Rotations, compiled with `double` as a number that carries a bound on its error. */
 #define INLINED_NOT
 #define LANES 2
 

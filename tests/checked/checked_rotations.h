@@ -1,5 +1,5 @@
-/* Computes rotations in numbers that know their errors, and compares these with the bounds of
- * rotation.h: what check_gap() does for gaps. */
+/* Computes rotations in numbers that carry bounds on their errors, and compares these with the
+ * bounds of rotation.h: what check_gap() does for gaps. */
 #ifndef CHECKED_ROTATIONS_H
 #define CHECKED_ROTATIONS_H
 

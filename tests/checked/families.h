@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-/* Checks so many questions of each cell of a family: all pairs of their frames. */
+/* Checks `questions` of each cell of a family, every pair of their frames. */
 void check_family(const struct family *family, long questions, uint64_t seed);
 
 #endif

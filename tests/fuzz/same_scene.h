@@ -4,7 +4,7 @@
 
 #include "scene.h"
 
-/* Frames, poses, names, and which pairs are decided, in their order. */
+/* Frames, poses, names, window, margin, label, and which pairs are decided, in their order. */
 bool same_scene(struct owned_scene *left, struct owned_scene *right);
 
 #endif

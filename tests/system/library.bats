@@ -5,6 +5,7 @@ load service
 setup() {
     root=$BATS_TEST_TMPDIR/root
     options=()
+    case $FMB_BUILD in *asan*) skip "libraries with sanitizers are not installed" ;; esac
     case $FMB_BUILD in *-clang) options+=(CC=clang) ;; *-two) options+=(INSTRUCTIONS=two) ;; esac
     compiler=$(case $FMB_BUILD in *-clang) echo clang ;; *) echo gcc ;; esac)
     # What was built is installed as it is.

@@ -431,8 +431,8 @@ static void large_hulls(void **state)
     }
 }
 
-/* A regular polygon on itself: the vertex of the first difference is the origin, no vertex of the
- * swept difference. The depth is the distance of two opposite sides. */
+/* A regular polygon on itself: the first point found is v - v, the origin, which is not a vertex of
+ * D. The depth is the distance of two opposite sides. */
 static void polygon_on_itself(void **state)
 {
     enum { SIDES = 12 };

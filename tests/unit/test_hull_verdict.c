@@ -80,7 +80,7 @@ static void check_search(const struct frame_pair *frames, enum fmb_verdict verdi
     hull_pair_set(frames, &pair);
     if (!pair.usable)
         return;
-    const enum fmb_verdict found = hull_search(&pair, hull_near(&pair), &nearest);
+    const enum fmb_verdict found = hull_search(&pair, hull_separating_distance(&pair), &nearest);
     assert_true(found == 0 || found == verdict);
 }
 

@@ -1,6 +1,6 @@
 /* The functions of limbs.h for numbers of LIMBS_MAX limbs. A file that includes this header sets
  * LIMBS_MAX, the name of the functions, LIMBS_FUNCTIONS, and whether their memory is allocated,
- * LIMBS_ALLOCATES: those of wide numbers take a quarter of a megabyte, and 0.6 more for a box. */
+ * LIMBS_ALLOCATES: those of wide numbers take 0.27 MB, and 0.6 MB more for a box. */
 #ifndef FMB_LIMBS_FUNCTIONS_H
 #define FMB_LIMBS_FUNCTIONS_H
 

@@ -151,11 +151,11 @@
 /* Spans shorter than this may be points, and are not certain (5). */
 #define CLIP_SHORTEST 0x1p-48
 
-/* What errors of frames add to that of a value, more than they are for rounding (3, 8). */
+/* Factor on the errors of frames; what exceeds 1 covers rounding (3, 8). */
 #define BOX_FRAME_ERROR 1.01
 
-/* The least errors beside which underflow is nothing (6), and what makes those of crossings as
- * large: a share of T, and the least size of an edge (11). */
+/* Underflow is negligible beside an error of CLIP_LEAST_ERROR (6). The errors of crossings are that
+ * large by adding CLIP_UNDERFLOW T, if no edge is shorter than CLIP_LEAST_SIZE (11). */
 #define CLIP_LEAST_ERROR 0x1p-640
 #define CLIP_UNDERFLOW 0x1p-93
 #define CLIP_LEAST_SIZE 0x1p-180

@@ -29,16 +29,17 @@
 #define BOX_PLACE_ROUNDING (20.1 * BOX_UNIT)
 #define BOX_PLACE_ROUNDING_EXACT (6.1 * BOX_UNIT)
 
-/* What errors of frames add to the slack, more than they are for its own rounding. */
+/* Factor on the errors of frames; what exceeds 1 covers the rounding of the slack. */
 #define BOX_PLACE_ERROR 1.1
 
 /* Of the largest coordinate; the limit that fmb.h states is 1e-12. */
 #define BOX_LIMIT 0.9e-12
 
-/* What ends may be apart, the slack on both sides included (2.1 of it, for rounding). */
+/* The largest distance of an outer and an inner end, the slack on both sides included (2.1 of it,
+ * for rounding). */
 #define BOX_TOLERANCE (0.95 * BOX_LIMIT)
 
-/* The largest coordinate as computed, times this, is no more than it is. */
+/* Rounds the largest coordinate, as computed, down. */
 #define BOX_LARGEST_SHARE (1 - 0x1p-40)
 
 /* Farther away nothing is said, for fear of overflow. */

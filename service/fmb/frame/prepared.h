@@ -64,7 +64,7 @@ enum {
 #define PREPARED_LARGEST 0x1p200
 #define PREPARED_LEAST_NUMBER 0x1p-400
 
-/* Of a bound, for the few roundings that it is computed with. */
+/* Factor on a bound, for the roundings of computing it. */
 #define PREPARED_MARGIN (1 + 0x1p-40)
 
 /* Indices of the 8-byte words of struct fmb_prepared; the summary is word 0. In 2D the velocity

@@ -83,8 +83,8 @@ INLINE void gap_cross(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX],
 #define GAP_ROUNDING 0x1p-48
 #endif
 
-/* Distances in doubles are off by less than this, relative to coordinates: what is surely farther.
- */
+/* Relative to coordinates, more than the error of a distance in doubles: one that exceeds a limit
+ * by more than this is certainly beyond it. */
 #define GAP_FAR_MARGIN 0x1p-38
 
 /* A square of a length below this may have underflowed. */

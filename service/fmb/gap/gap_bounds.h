@@ -26,7 +26,7 @@ struct gap_edges {
     struct gap_edge of[2][GAP_EDGES], drift; /* of a negated */
 };
 
-/* A bound and an f may differ by this much, relative to the reach, and be equal in truth. */
+/* Relative to the reach: a bound and an f that differ by less may be equal. */
 #define GAP_BOUNDS_MARGIN 0x1p-38
 
 /* Bounds of f, each negative and squared: f is not above minus the root by more than 2^-39 of the

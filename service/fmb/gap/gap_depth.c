@@ -14,7 +14,7 @@
  * 2 x / n, and by less than 1.01 x / n where x < 0.1 n; so that of the normal is off by less than
  * 8.8 u / s, s the sine of the angle between the edges, and f by R times that ("slip").
  *
- * Where s is small, and edges are no rounded differences, v is replaced by w = v - k u with
+ * Where s is small, and edges are not rounded differences, v is replaced by w = v - k u with
  * k = u . v / u . u: the cross product is the same. k is off by 7.01 u |v| / |u|, so that |w| is at
  * most |v| (s + 7.01 u); each number of w is rounded once if it is found by a fused operation. So
  * u x w is off by 3.5 u |u| |w|, which is less than 6.6 u |u| |v| s for s of 2^-50 and more, and
@@ -33,8 +33,9 @@
 #include <math.h>
 #include <string.h>
 
-/* How far the direction of a normal is off: times 1 / s; where s is so large that 8.8 u / s is
- * below SLIP_WIDE; and of edges that are no rounded differences, in 2D of any. */
+/* Bounds on the error of the direction of a normal, s the sine of the angle between its edges: SLIP
+ * / s of any edges; SLIP_WIDE where s^2 > WIDE_SINE_SQUARE; SLIP_CLOSE of edges that are not
+ * rounded differences, and of any edge in 2D. */
 #define SLIP 0x1p-49
 #define SLIP_WIDE 0x1p-48
 #define WIDE_SINE_SQUARE 0.08

@@ -1,6 +1,6 @@
 /* The gap of a separated pair, in doubles.
  *
- * Method. The point of P next to the origin (gap_simplex.h). Both bounds are derived from its
+ * Method. The point of P nearest to the origin (gap_simplex.h). Both bounds are derived from its
  * direction and weights: the lower one is f(n) less its error, the upper one the distance of the
  * witness points.
  *
@@ -20,11 +20,11 @@
 
 #include "interval.h"
 
-/* Of a witness point, relative to what bounds the coordinates of its frame. */
-#define GAP_WITNESS_ROUNDING 0x1p-49
-
 #include <math.h>
 #include <string.h>
+
+/* The error of a witness point, relative to a bound on the coordinates of its frame. */
+#define GAP_WITNESS_ROUNDING 0x1p-49
 
 /* ---- Vertices ---- */
 

@@ -170,19 +170,20 @@ typedef void gap_support(const void *context, const double n[3], struct gap_corn
 /* Returns whether f(n) is certainly greater than far |n|. square: of |n|. */
 INLINE bool gap_is_beyond(double far, double f, double square)
 {
-    const bool known = square >= 0x1p-950; /* else it may have underflowed */
+    const bool known = square >= GAP_LEAST_SQUARE; /* else it may have underflowed */
     return f > 0 && known && far < INFINITY && f > far * sqrt(square);
 }
 
-/* Finds the point of P next to the origin.
+/* Finds the point of P nearest to the origin.
  *
- * In:  n          any direction: the vertex in it is the first one
+ * In:  toward     any direction: the vertex in it is the first one
  *      close      vertices that are nearer by no more than this are not added
  *      far        a distance; INFINITY
  * Out: *simplex   its weights give the point
  *      direction  of unit length up to rounding
  *      *f         f(direction)
- * Returns GAP_FAR if f is greater than far, GAP_UNSURE if rounding keeps the point from moving. */
+ * Returns GAP_FAR if f is greater than far, GAP_UNSURE if the simplex has four corners, and
+ * contains the origin up to rounding, or if rounding keeps the point from moving. */
 INLINE enum gap_outcome gap_nearest(const void *context, gap_support *const support, int dim,
                                     const double toward[3], double close, double far,
                                     struct gap_simplex *simplex, double direction[3], double *f)

@@ -18,8 +18,8 @@ static bool answer_in_doubles(const struct hull_pair *pair, unsigned want,
            (!answer->has_box || hull_box(pair, simplex, answer->box));
 }
 
-/* hull_decision_begin(). *nearest := the end of the search in doubles; *searched: whether there was
- * one. */
+/* hull_decision_begin(). *nearest := the result of the search in doubles; *searched: whether there
+ * was one. */
 static bool begin(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
                   struct hull_decision *out, struct hull_nearest *nearest, bool *searched,
                   struct fmb_answer *answer)
@@ -32,8 +32,10 @@ static bool begin(const struct frame_pair *frames, unsigned want, enum hull_effo
     *searched = effort != HULL_EXACT && pair->usable;
     nearest->simplex.count = 0;
     answer->verdict =
-        *searched ? hull_search(pair, want & FMB_WANT_GAP ? INFINITY : hull_near(pair), nearest)
-                  : 0;
+        *searched
+            ? hull_search(pair, want & FMB_WANT_GAP ? INFINITY : hull_separating_distance(pair),
+                          nearest)
+            : 0;
     if (answer->verdict == FMB_SEPARATED ||
         (answer->verdict == FMB_OVERLAPPING &&
          answer_in_doubles(pair, want, &nearest->simplex, answer)))

@@ -9,8 +9,8 @@
  *    in a direction orthogonal to it. If all of D is in that flat, that is its affine hull. If this
  *    does not contain the origin, the frames are separated. Else k coordinates are chosen in which
  *    the projection of the flat is one to one; D has an interior there. The point c, a mean of the
- *    k + 1 points with weights of 1/4 and 1/2, lies in it. If the origin is strictly inside of the
- *    k + 1 points, k = 3, they are the basis of step 3.
+ *    k + 1 points with weights of 1/4 and 1/2, lies in it. If k = 3 and the origin is strictly
+ *    inside their tetrahedron, they are the basis of step 3, and no ray is shot.
  *
  * 2. Shoot (shoot_step()). The linear program
  *
@@ -84,7 +84,7 @@ struct side {
     uint16_t face[FMB_HULL_VERTICES_MAX];
 };
 
-/* A vertex in the world at time 0, the last one of its remainder by KEPT. */
+/* A vertex in the world at time 0: the last one used of those with the same index modulo KEPT. */
 struct kept {
     unsigned number; /* of the vertex, from 1; 0: none */
     mpz_t at[3];
@@ -675,7 +675,8 @@ static void begin_heights(struct hull_exact *e);
  * ratios of determinants of three of its points. Returns whether all are positive. */
 static bool set_signs(struct hull_exact *e, int sign[ROWS])
 {
-    static const int other[ROWS] = {1, 0, 3, 2}; /* and the pair that has neither */
+    /* Coordinate i is the determinant of point other[i] and the pair without i and other[i]. */
+    static const int other[ROWS] = {1, 0, 3, 2};
     int sum = 0, all = 0;
     integer_cross(e->normal[0], e->span[0].x, e->span[1].x, e->scratch[0]);
     integer_cross(e->normal[1], e->span[2].x, e->span[3].x, e->scratch[0]);
@@ -696,7 +697,8 @@ static bool set_signs(struct hull_exact *e, int sign[ROWS])
 }
 
 /* The ray leaves the simplex of the span through exactly one facet, the first basis; the coordinate
- * of the origin that is 0 there is not positive. If all are, nothing is left to be shot at. */
+ * of the origin that is 0 there is not positive. If all are, the origin is inside,
+ * and no ray is shot. */
 static void begin_shoot(struct hull_exact *e)
 {
     int sign[ROWS] = {0};

@@ -213,11 +213,11 @@ static bool set_gap(const struct hull_pair *pair, struct hull_gap *out)
     return out->far <= 0x1p900;
 }
 
-/* Searches the point of D next to the origin, of a separated pair up to farthest. */
+/* Searches for the point of D nearest to the origin, of a separated pair up to farthest. */
 static void search(const struct hull_gap *gap, enum fmb_verdict verdict, double farthest,
                    struct hull_nearest *out)
 {
-    const double near = hull_near(gap->pair), far = farthest + near + gap->tight;
+    const double near = hull_separating_distance(gap->pair), far = farthest + near + gap->tight;
     hull_search(gap->pair, verdict != FMB_SEPARATED ? INFINITY : fmax(far, near), out);
 }
 

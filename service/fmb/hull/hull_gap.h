@@ -36,8 +36,8 @@ struct hull_depth {
     struct hull_mesh mesh;
 };
 
-/* nearest: the end of a search, or NULL. A tetrahedron that contains the origin begins the mesh;
- * not so a triangle in 2D, where all points of a mesh have to be vertices of D. Returns false if
+/* nearest: the result of a search, or NULL. A tetrahedron of it begins the mesh; not so a triangle
+ * in 2D, where all points of a mesh have to be vertices of D. Returns false if
  * there are no steps to be done. hull_depth_end() frees what the others allocate. */
 bool hull_depth_begin(struct hull_depth *depth, const struct hull_gap *gap,
                       const struct hull_nearest *nearest);
@@ -68,8 +68,8 @@ void hull_gap_place_begin(const struct hull_pair *pair, struct hull_gap_placed *
 bool hull_gap_place_step(struct hull_gap_placed *placed, int count);
 void hull_gap_place_end(struct hull_gap_placed *placed);
 
-/* The gap of a pair in the order of hull_order(), as hull_gap_begin() gives it. nearest: the end of
- * a search up to INFINITY, or NULL. */
+/* The gap of a pair in the order of hull_order(), as hull_gap_begin() gives it. nearest: the result
+ * of a search up to INFINITY, or NULL. */
 enum gap_outcome hull_gap_of_pair(const struct hull_pair *pair, bool swapped,
                                   const struct hull_nearest *nearest, enum fmb_verdict verdict,
                                   double farthest, struct fmb_gap *out,

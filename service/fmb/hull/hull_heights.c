@@ -279,7 +279,7 @@ bool hull_guess_begin(const struct hull_pair *pair, struct hull_guess *out)
     hull_centre(pair, centre);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         out->pair.offset[axis] -= 0x1p-30 * centre[axis];
-    if (hull_search(&out->pair, hull_near(pair), &nearest) != FMB_OVERLAPPING)
+    if (hull_search(&out->pair, hull_separating_distance(pair), &nearest) != FMB_OVERLAPPING)
         return false;
     out->simplex = nearest.simplex;
     return true;

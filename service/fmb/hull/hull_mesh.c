@@ -1,10 +1,11 @@
 /* Accuracy, in units of the grid and u = 2^-53. Coordinates are below 2^52, so that differences of
  * points are exact as doubles, and below 2^53. An exact normal is a cross product of two of them,
- * below 2^107. In doubles each of its coordinates is off by 2.01 u of itself, its length by 4.1 u,
- * each quotient by one more: the unit normal is off by less than 7.2 u. A product with a vector d
- * is off by 3.01 u |d| more. So the height of a facet, |d| < sqrt(3) 2^52, is off by less than 10.3
- * sqrt(3) / 2 < 9, and that of a point over a facet, |d| < sqrt(3) 2^53, by less than MESH_ERROR
- * = 18. */
+ * below 2^107. In doubles each of its coordinates is off by 2.01 u of itself, which turns it by at
+ * most 2.01 u. The length of what results is off by 2.51 u (three roundings under a root, and its
+ * own), each quotient by u more: the unit normal is off by less than 5.6 u. A product with a vector
+ * d is off by 3.01 u |d| more. So the height of a facet, |d| < sqrt(3) 2^52, is off by less
+ * than 8.7 sqrt(3) / 2 < 9, and that of a point over a facet, |d| < sqrt(3) 2^53, by less than
+ * MESH_ERROR = 18. */
 #include "hull_mesh.h"
 
 #include <gmp.h>
@@ -189,8 +190,9 @@ int hull_mesh_side(const struct hull_mesh *mesh, int facet, const int64_t at[FMB
  */
 static double to_double(wide x)
 {
-    const unsigned_wide most = x < 0 ? -(unsigned_wide) x : (unsigned_wide) x;
-    const double out = 0x1p64 * (double) (int64_t) (most >> 64) + (double) (uint64_t) most;
+    const unsigned_wide magnitude = x < 0 ? -(unsigned_wide) x : (unsigned_wide) x;
+    const double out =
+        0x1p64 * (double) (int64_t) (magnitude >> 64) + (double) (uint64_t) magnitude;
     return x < 0 ? -out : out;
 }
 

@@ -125,7 +125,7 @@ enum fmb_verdict hull_search(const struct hull_pair *pair, double far, struct hu
         memcpy(vertex->at, simplex.corner[c].at, sizeof vertex->at);
         out->weight[c] = simplex.weight[c];
     }
-    if (out->outcome == GAP_KNOWN && out->least > hull_near(pair))
+    if (out->outcome == GAP_KNOWN && out->least > hull_separating_distance(pair))
         return FMB_SEPARATED;
     return simplex.count == pair->dim + 1 && is_swept_open(pair) &&
                    hull_simplex_contains_origin(pair, &out->simplex)

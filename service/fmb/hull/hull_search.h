@@ -15,14 +15,14 @@ struct hull_simplex {
     struct hull_vertex vertex[FMB_DIM_MAX + 1];
 };
 
-/* The end of a search for the point of D next to the origin. */
+/* The result of a search for the point of D nearest to the origin. */
 struct hull_nearest {
     enum gap_outcome outcome; /* GAP_KNOWN: the weights and the direction are of that point */
-    /* Of dim + 1 vertices: it contains the origin, up to rounding. GAP_FAR: empty. */
+    /* With dim + 1 vertices it contains the origin up to rounding, or is flat. GAP_FAR: empty. */
     struct hull_simplex simplex;
     double weight[FMB_DIM_MAX + 1];
     double direction[FMB_DIM_MAX]; /* of unit length up to rounding */
-    double least;                  /* n . x over D for the direction n: off by 4 error at most */
+    double least; /* the least n . x over D for the direction n: off by 4 error at most */
 };
 
 /* out := the vertex of D with the least n . x. In: n of any length. */
@@ -32,13 +32,15 @@ void hull_lowest(const struct hull_pair *pair, const double n[FMB_DIM_MAX],
 /* out := a point of D near its middle, rounded. */
 void hull_centre(const struct hull_pair *pair, double out[FMB_DIM_MAX]);
 
-/* Searches the point of D next to the origin; ends with GAP_FAR if it is surely farther away than
- * far - 4 error. Returns SEPARATED if a direction proves it, OVERLAPPING if a simplex proves it,
- * and 0 if doubles do not decide. In: a usable pair; far at least hull_near(). */
+/* Searches for the point of D nearest to the origin; ends with GAP_FAR if it is surely farther away
+ * than far - 4 error. Returns SEPARATED if a direction proves it, OVERLAPPING if a simplex proves
+ * it, and 0 if doubles do not decide. In: a usable pair; far at least hull_separating_distance().
+ */
 enum fmb_verdict hull_search(const struct hull_pair *pair, double far, struct hull_nearest *out);
 
-/* A distance in doubles that is certainly not 0. The factor covers the rounding of a comparison. */
-static inline double hull_near(const struct hull_pair *pair)
+/* A computed distance above this proves that D does not contain the origin. The factor covers the
+ * rounding of a comparison. */
+static inline double hull_separating_distance(const struct hull_pair *pair)
 {
     return 4 * (1 + 0x1p-40) * pair->error;
 }

@@ -2,18 +2,16 @@
 #ifndef FMB_CHECKED_H
 #define FMB_CHECKED_H
 
-/* Where a bound on an error is used: value is off by at most bound, some lengths times the
- * constant, but in lanes that are ignored. The program of tests/checked checks this; elsewhere it
- * is nothing. */
+/* A use of a bound: in the lanes that are not ignored, value is within bound of the exact value.
+ * bound is the constant times some lengths. Checked in the program of tests/checked; nothing
+ * elsewhere. */
 #define CHECK_BOUND(constant, ignored, value, bound) ((void) 0)
 /* The same of a quotient in [-1, 1], (dividend -+ bound) inverse. The true dividend is within bound
- * of dividend - quotient divisor, but for the constant times the divisor. */
+ * of dividend - quotient divisor, up to the constant times the divisor. */
 #define CHECK_QUOTIENT(constant, ignored, dividend, divisor, inverse, quotient, bound) ((void) 0)
 /* The same of a segment of a box: what is left to the bounds of a slab (box_clip.h, errors). */
 #define CHECK_SEGMENT(constant, values, slab, vertex, direction) ((void) 0)
-/* From here on x counts as given: its error is accounted for elsewhere. In some lanes, or in all.
- */
-#define CHECK_GIVEN_IN(some, x) (x)
+/* From here on x counts as given: its error is accounted for elsewhere. */
 #define CHECK_GIVEN(x) (x)
 /* The direction of a normal is off by at most slip. From here on the normal counts as given, and
  * square, of its length, is computed from it. */

@@ -248,8 +248,8 @@ NUMBER_COMPARISON(==)
 NUMBER_COMPARISON(!=)
 #undef NUMBER_COMPARISON
 
-/* The larger, or with less the smaller one: of the doubles one, of the exact values perhaps the
- * other. It is off by no more than the operand that is off by more. */
+/* The larger, or with less the smaller one: the larger double and the larger exact value
+ * need not be of the same operand. It is off by no more than the operand that is off by more. */
 inline number extreme(number x, number y, bool less)
 {
     const bool first = less ? x.value < y.value : x.value > y.value;
@@ -274,9 +274,9 @@ inline number fabs(number x)
 {
     if (!x.from)
         return std::fabs(x.value);
-    number out = std::signbit(x.value) ? -x : x;
-    if (mpf_sgn(out.from->exact) < 0) /* a rounding changed the sign */
-        mpf_abs(const_cast<mpf_ptr>(&out.from->exact[0]), out.from->exact);
+    /* A rounding may have changed the sign. A derivation that others share is not changed. */
+    number out = mpf_sgn(x.from->exact) < 0 ? -x : x;
+    out.value = std::fabs(x.value);
     return out;
 }
 
