@@ -277,7 +277,7 @@ def _numbers(name: str, value: Any, shape: tuple) -> tuple[array, int]:
     """The numbers of an argument, and their dimension, which is the length of its last axis."""
     buffer, found = _flat(name, value, "d", shape)
     if not found[0]:
-        raise ValueError(f"{name}: expected at least one row, found none")
+        raise ValueError(f"{name}: it is empty")
     if found[-1] not in (2, 3):
         raise ValueError(f"{name}: expected 2 or 3 axes, found {found[-1]}")
     numbers = array("d", memoryview(buffer).tobytes())
