@@ -264,8 +264,8 @@ field() {
     done > "$log"
     run "$FMB" log info "$log"
     [ "$status" = 0 ]
-    [ "${lines[-2]}" = '    client 5, body 1: \x1b[31mr'$'\ufffd' ]
-    [ "$("$FMB" log info --json "$log" | jq -c .names)" = '[{"client_id":5,"body_id":1,"name":"\u001b[31mr'$'\ufffd''"}]' ]
+    [ "${lines[-2]}" = '    client 5, body 1: \x1b[31mr'$'\xef\xbf\xbd' ]
+    [ "$("$FMB" log info --json "$log" | jq -c .names)" = '[{"client_id":5,"body_id":1,"name":"\u001b[31mr'$'\xef\xbf\xbd''"}]' ]
 }
 
 @test "names of files are printed without control characters" {
