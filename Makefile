@@ -441,7 +441,7 @@ packages_deps := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libexpat1-dev 
 	libglib2.0-dev libseccomp-dev pkg-config uthash-dev libjs-three
 packages_deps-test := $(packages_deps) libcmocka-dev bats jq clang clang-format libclang-rt-14-dev \
 	liblcm-java default-jdk-headless liblcm-lua lua5.2 chromium libxml2-utils g++ cmake man-db \
-	gnuplot-nox python3 python3-numpy
+	gnuplot-nox python3 python3-numpy python3-pandas python3-matplotlib
 packages_deps-fuzz := $(packages_deps) clang libclang-rt-14-dev llvm afl++
 packages_deps-bench := libccd-dev libfcl-dev libbullet-dev libode-dev libbox2d-dev libcgal-dev \
 	libmpfr-dev pkg-config

@@ -37,8 +37,8 @@ struct hull_depth {
 };
 
 /* nearest: the result of a search, or NULL. A tetrahedron of it begins the mesh; not so a triangle
- * in 2D, where all points of a mesh have to be vertices of D. Returns false if
- * there are no steps to be done. hull_depth_end() frees what the others allocate. */
+ * in 2D, where all points of a mesh have to be vertices of D. Returns false if there are no steps
+ * to be done. hull_depth_end() frees what the others allocate. */
 bool hull_depth_begin(struct hull_depth *depth, const struct hull_gap *gap,
                       const struct hull_nearest *nearest);
 
