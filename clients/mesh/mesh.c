@@ -48,15 +48,15 @@ static const unsigned char *first_statement(const struct mesh_source *source)
 
 static bool read_unknown(struct mesh_source *source)
 {
-    return mesh_refuse_byte(source, source->begin, NULL, 0,
-                            "no PLY, STL or OBJ file, by its name nor by its contents");
+    return mesh_refuse(source, source->begin,
+                       "no PLY, STL or OBJ file, by its name nor by its contents");
 }
 
 static bool read_any(struct mesh_source *source, const char *name, struct mesh *out)
 {
     static const char mark[] = "\xef\xbb\xbf"; /* UTF-8 byte order mark */
     if (source->at == source->end)
-        return mesh_refuse_byte(source, source->begin, NULL, 0, "the file is empty");
+        return mesh_refuse(source, source->begin, "the file is empty");
     if (begins_with(source, "ply") && mesh_is_space(source->at[3]))
         return mesh_ply(source, out);
     if (mesh_is_stl_binary(source))

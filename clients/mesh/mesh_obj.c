@@ -110,9 +110,9 @@ static bool read_number(struct mesh_source *source, size_t axis, double *out)
     char text[MESH_WORD_MAX];
     const unsigned char *begin = source->at, *end = mesh_number(begin, out);
     if (!end || !ends_word(source, end))
-        return mesh_refuse_line(source, begin, "'%s' is no number", mesh_word(source, begin, text));
+        return mesh_refuse(source, begin, "'%s' is no number", mesh_word(source, begin, text));
     if (axis < 3 && !isfinite(*out))
-        return mesh_refuse_line(source, begin, "%c is not finite", "xyz"[axis]);
+        return mesh_refuse(source, begin, "%c is not finite", "xyz"[axis]);
     source->at = end;
     return true;
 }
@@ -129,10 +129,10 @@ static bool read_vertex(struct obj *obj)
         if (!read_number(source, count, count < 3 ? &position[count] : &ignored))
             return false;
     if (count != 3 && count != 4 && count != 6 && count != 7)
-        return mesh_refuse_line(source, begin,
-                                "a vertex of %zu numbers: it has 3, and 1 more for a weight, 3 "
-                                "more for a colour",
-                                count);
+        return mesh_refuse(source, begin,
+                           "a vertex of %zu numbers: it has 3, and 1 more for a weight, 3 "
+                           "more for a colour",
+                           count);
     return mesh_add_vertex(&obj->build, position);
 }
 
@@ -171,11 +171,10 @@ static bool take_index(struct obj *obj, int64_t index, unsigned *out)
     const size_t count = obj->build.mesh->vertex_count;
     char text[MESH_WORD_MAX];
     if (index == 0)
-        return mesh_refuse_line(source, source->at, "index 0 is no vertex: they count from 1");
+        return mesh_refuse(source, source->at, "index 0 is no vertex: they count from 1");
     if (index < 0 && (uint64_t) -index > count)
-        return mesh_refuse_line(source, source->at,
-                                "index %s is no vertex: there are %zu before it",
-                                mesh_word(source, source->at, text), count);
+        return mesh_refuse(source, source->at, "index %s is no vertex: there are %zu before it",
+                           mesh_word(source, source->at, text), count);
     if (index > 0 && (uint64_t) index > obj->largest) {
         obj->largest = (uint64_t) index;
         obj->largest_at = source->at;
@@ -196,8 +195,8 @@ static bool read_face(struct obj *obj)
         unsigned next = 0;
         const unsigned char *end = read_corner(source->at, &index);
         if (!end || !ends_word(source, end))
-            return mesh_refuse_line(source, source->at, "'%s' is no corner of a face",
-                                    mesh_word(source, source->at, text));
+            return mesh_refuse(source, source->at, "'%s' is no corner of a face",
+                               mesh_word(source, source->at, text));
         if (!take_index(obj, index, &next))
             return false;
         if (count >= 3 && source->faces == MESH_POLYGONS) {
@@ -209,8 +208,8 @@ static bool read_face(struct obj *obj)
         source->at = end;
     }
     if (count < 3 || (count > 3 && source->faces == MESH_TRIANGLES))
-        return mesh_refuse_line(source, begin, "a face of %zu vertices: %s", count,
-                                count > 3 ? "triangulate it first" : "remove it first");
+        return mesh_refuse(source, begin, "a face of %zu vertices: %s", count,
+                           count > 3 ? "triangulate it first" : "remove it first");
     return mesh_add_face(&obj->build, corner);
 }
 
@@ -232,12 +231,12 @@ static bool read_statement(struct obj *obj)
     size_t length;
     const enum what what = what_is(source, begin, &length);
     if (what == UNKNOWN)
-        return mesh_refuse_line(source, begin, "'%s' is no statement of OBJ",
-                                mesh_word(source, begin, text));
+        return mesh_refuse(source, begin, "'%s' is no statement of OBJ",
+                           mesh_word(source, begin, text));
     if (what == SURFACE)
-        return mesh_refuse_line(source, begin,
-                                "%s defines what is no triangle: make triangles of it first",
-                                mesh_word(source, begin, text));
+        return mesh_refuse(source, begin,
+                           "%s defines what is no triangle: make triangles of it first",
+                           mesh_word(source, begin, text));
     source->at += length;
     if (what == VERTEX || what == FACE)
         return what == VERTEX ? read_vertex(obj) : read_face(obj);
@@ -263,12 +262,13 @@ bool mesh_obj(struct mesh_source *source, struct mesh *out)
 {
     struct obj obj = {.build = {.source = source, .mesh = out}};
     char text[MESH_WORD_MAX];
+    source->text = true;
     if (!read_statements(&obj))
         return false;
     if (obj.largest > out->vertex_count)
-        return mesh_refuse_line(source, obj.largest_at,
-                                "index %s is no vertex: there are %zu, counted from 1",
-                                mesh_word(source, obj.largest_at, text), out->vertex_count);
+        return mesh_refuse(source, obj.largest_at,
+                           "index %s is no vertex: there are %zu, counted from 1",
+                           mesh_word(source, obj.largest_at, text), out->vertex_count);
     mesh_fit(&obj.build);
     return true;
 }

@@ -3,6 +3,7 @@
 #include "allocate.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,27 +21,18 @@ static uint64_t line_of(const struct mesh_source *source, const unsigned char *w
     return line;
 }
 
-bool mesh_refuse_line(struct mesh_source *source, const unsigned char *where, const char *format,
-                      ...)
+bool mesh_refuse(struct mesh_source *source, const unsigned char *where, const char *format, ...)
 {
     va_list arguments;
-    const int length =
-        snprintf(source->error, MESH_ERROR_MAX, "line %" PRIu64 ": ", line_of(source, where));
-    va_start(arguments, format);
-    vsnprintf(source->error + length, (size_t) (MESH_ERROR_MAX - length), format, arguments);
-    va_end(arguments);
-    return false;
-}
-
-bool mesh_refuse_byte(struct mesh_source *source, const unsigned char *where, const char *within,
-                      uint64_t index, const char *format, ...)
-{
-    va_list arguments;
-    int length = snprintf(source->error, MESH_ERROR_MAX, "byte %td", where - source->begin);
-    if (within)
-        length += snprintf(source->error + length, (size_t) (MESH_ERROR_MAX - length),
-                           " (%s %" PRIu64 ")", within, index);
-    length += snprintf(source->error + length, (size_t) (MESH_ERROR_MAX - length), ": ");
+    char place[80] = "";
+    if (source->text)
+        snprintf(place, sizeof place, "line %" PRIu64, line_of(source, where));
+    else if (source->within)
+        snprintf(place, sizeof place, "byte %td (%s %zu)", where - source->begin, source->within,
+                 source->index);
+    else
+        snprintf(place, sizeof place, "byte %td", where - source->begin);
+    const int length = snprintf(source->error, MESH_ERROR_MAX, "%s: ", place);
     va_start(arguments, format);
     vsnprintf(source->error + length, (size_t) (MESH_ERROR_MAX - length), format, arguments);
     va_end(arguments);
@@ -76,12 +68,29 @@ void mesh_report_progress_now(struct mesh_source *source)
                       (uint64_t) (source->end - source->begin));
 }
 
+/* strtod() also reads hexadecimal numbers and the characters in nan(...), which end a number here.
+ */
+const unsigned char *mesh_number(const unsigned char *at, double *value)
+{
+    const unsigned char *first = at + (*at == '-' || *at == '+');
+    char *end;
+    *value = strtod((const char *) at, &end);
+    if (end == (const char *) at || mesh_is_space(*at))
+        return NULL;
+    if (isnan(*value))
+        return first + strlen("nan");
+    if (first[0] != '0' || (first[1] != 'x' && first[1] != 'X'))
+        return (const unsigned char *) end;
+    *value = *at == '-' ? -0.0 : 0;
+    return first + 1;
+}
+
 /* ---- A mesh under construction --------------------------------------------------------------- */
 
 static bool has_count(struct mesh_source *source, size_t count, const char *what)
 {
     return count < MESH_COUNT_MAX ||
-           mesh_refuse_byte(source, source->at, NULL, 0, "more than %u %s", MESH_COUNT_MAX, what);
+           mesh_refuse(source, source->at, "more than %u %s", MESH_COUNT_MAX, what);
 }
 
 bool mesh_add_vertex(struct mesh_build *build, const double position[3])

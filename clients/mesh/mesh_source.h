@@ -14,6 +14,11 @@ struct mesh_source {
     enum mesh_faces faces;
     const struct mesh_progress *watch; /* may be NULL */
     char *error;                       /* capacity: MESH_ERROR_MAX */
+    /* How errors name a place: by its line in text, else by its byte and the element that contains
+     * it, for example "face", with its index; within: NULL: none. */
+    bool text;
+    const char *within;
+    size_t index;
 };
 
 /* Largest number of vertices or faces; not an index. */
@@ -34,14 +39,9 @@ bool mesh_add_face(struct mesh_build *build, const unsigned corner[3]);
 /* Releases unused capacity. Call it at the end. */
 void mesh_fit(struct mesh_build *build);
 
-/* Set the error: for the line that contains `where`, or for the byte at `where`; format: as of
- * printf(). within: kind of element that contains the byte, for example "face", and its index;
- * NULL: none. Both return false. */
-bool mesh_refuse_line(struct mesh_source *source, const unsigned char *where, const char *format,
-                      ...) __attribute__((format(printf, 3, 4)));
-bool mesh_refuse_byte(struct mesh_source *source, const unsigned char *where, const char *within,
-                      uint64_t index, const char *format, ...)
-    __attribute__((format(printf, 5, 6)));
+/* Sets the error, with the place of `where`. format: as of printf(). Returns false. */
+bool mesh_refuse(struct mesh_source *source, const unsigned char *where, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 /* Copies the word at this position for an error text, shortened and with other bytes than printable
  * ASCII replaced. Returns text. */
@@ -117,9 +117,9 @@ bool mesh_is_obj_statement(const unsigned char *at);
 
 /* ---- Numbers ---- */
 
-/* Parses a decimal number to the nearest double. In: text terminated by a 0, without white space
- * before the number. Returns the position after the number, and *value; or NULL if there is no
- * number.
+/* Parses a decimal number to the nearest double, by strtod(). In: text terminated by a 0, without
+ * white space before the number. Returns the position after the number, and *value; or NULL if
+ * there is no number.
  *
  * A number consists of digits, with an optional sign, decimal point and exponent: "-1.5e-3", ".5",
  * "5."; or it is nan, inf or infinity in any case. Its value is the nearest double (ties to even),

@@ -73,10 +73,9 @@ static bool refuse_next(struct mesh_source *source, const char *expected)
     char text[MESH_WORD_MAX];
     source->at = mesh_skip_spaces(source->at);
     if (source->at == source->end)
-        return mesh_refuse_line(source, source->at, "the file ends where %s should stand",
-                                expected);
-    return mesh_refuse_line(source, source->at, "'%s' stands where %s should",
-                            mesh_word(source, source->at, text), expected);
+        return mesh_refuse(source, source->at, "the file ends where %s should stand", expected);
+    return mesh_refuse(source, source->at, "'%s' stands where %s should",
+                       mesh_word(source, source->at, text), expected);
 }
 
 static bool take(struct mesh_source *source, const char *word)
@@ -96,7 +95,7 @@ static bool read_numbers(struct mesh_source *source, bool finite, double out[3])
         if (!end || !mesh_ends_word(source, end))
             return refuse_next(source, "a number");
         if (finite && !isfinite(out[axis]))
-            return mesh_refuse_line(source, source->at, "%c is not finite", "xyz"[axis]);
+            return mesh_refuse(source, source->at, "%c is not finite", "xyz"[axis]);
         source->at = end;
     }
     return true;
@@ -109,15 +108,14 @@ static bool read_loop(struct weld *weld)
     for (int i = 0; i < 3; i++) {
         double position[3];
         if (i > 0 && is_next(source, "endloop"))
-            return mesh_refuse_line(source, source->at, "a facet of %d vertices: remove it first",
-                                    i);
+            return mesh_refuse(source, source->at, "a facet of %d vertices: remove it first", i);
         if (!take(source, "vertex") || !read_numbers(source, true, position) ||
             !weld_vertex(weld, position, &corner[i]))
             return false;
     }
     if (is_next(source, "vertex"))
-        return mesh_refuse_line(source, source->at,
-                                "a facet of more than 3 vertices: triangulate it first");
+        return mesh_refuse(source, source->at,
+                           "a facet of more than 3 vertices: triangulate it first");
     return mesh_add_face(weld->build, corner);
 }
 
@@ -153,6 +151,7 @@ bool mesh_stl_ascii(struct mesh_source *source, struct mesh *out)
     struct mesh_build build = {.source = source, .mesh = out};
     struct weld weld = {.build = &build};
     bool good;
+    source->text = true;
     do {
         good = read_solid(&weld);
         source->at = mesh_skip_spaces(source->at);
@@ -189,26 +188,25 @@ static bool refuse_size(struct mesh_source *source)
 {
     const size_t size = (size_t) (source->end - source->begin);
     if (size < HEADER_BYTES)
-        return mesh_refuse_byte(source, source->end, NULL, 0,
-                                "the file ends within the %d bytes that begin a binary STL file",
-                                HEADER_BYTES);
+        return mesh_refuse(source, source->end,
+                           "the file ends within the %d bytes that begin a binary STL file",
+                           HEADER_BYTES);
     const uint32_t facets = word_at(source->begin + COUNT_AT);
-    return mesh_refuse_byte(source, source->begin + COUNT_AT, NULL, 0,
-                            "%" PRIu32 " facets of binary STL are %" PRIu64
-                            " bytes with their header, the file has %zu: it is cut off, or the "
-                            "count is wrong",
-                            facets, size_of(facets), size);
+    return mesh_refuse(source, source->begin + COUNT_AT,
+                       "%" PRIu32 " facets of binary STL are %" PRIu64
+                       " bytes with their header, the file has %zu: it is cut off, or the "
+                       "count is wrong",
+                       facets, size_of(facets), size);
 }
 
-static bool read_vertex(struct weld *weld, size_t facet, unsigned *index)
+static bool read_vertex(struct weld *weld, unsigned *index)
 {
     struct mesh_source *source = weld->build->source;
     double position[3];
     for (int axis = 0; axis < 3; axis++) {
         position[axis] = mesh_float(word_at(source->at));
         if (!isfinite(position[axis]))
-            return mesh_refuse_byte(source, source->at, "face", facet, "%c is not finite",
-                                    "xyz"[axis]);
+            return mesh_refuse(source, source->at, "%c is not finite", "xyz"[axis]);
         source->at += FLOAT_BYTES;
     }
     return weld_vertex(weld, position, index);
@@ -218,12 +216,13 @@ static bool read_facets(struct weld *weld)
 {
     struct mesh_source *source = weld->build->source;
     source->at = source->begin + HEADER_BYTES;
-    for (size_t facet = 0; source->at < source->end; facet++) {
+    source->within = "face";
+    for (; source->at < source->end; source->index++) {
         const unsigned char *begin = source->at;
         unsigned corner[3];
         source->at += NORMAL_BYTES;
         for (int i = 0; i < 3; i++)
-            if (!read_vertex(weld, facet, &corner[i]))
+            if (!read_vertex(weld, &corner[i]))
                 return false;
         if (!mesh_add_face(weld->build, corner))
             return false;
