@@ -390,9 +390,10 @@ struct clip_span {
     lanes from, to;
 };
 
-/* The spans of the segments of a frame. */
+/* The spans of the segments of a frame; and, by bit, those that are not empty in all lanes. */
 struct clip_spans {
     struct clip_span part[CLIP_BOUNDS][CLIP_SEGMENTS];
+    unsigned used;
 };
 
 INLINE void set_values(const struct kernel_traits traits, const struct pair_lanes *pair, int which,
@@ -467,10 +468,9 @@ INLINE struct clip_span clipped(const struct clip_values *values, int bound, int
                                 struct clip_span span)
 {
     const lanes inverse = values->inverse[k][d];
-    const lanes_mask up = inverse > 0;
     const lanes low = values->low[bound][k][v], high = values->high[bound][k][v];
-    const lanes first = lanes_select(up, low, high) * inverse;
-    const lanes last = lanes_select(up, high, low) * inverse;
+    const lanes first = choose_by_sign(inverse, high, low) * inverse;
+    const lanes last = choose_by_sign(inverse, low, high) * inverse;
     return (struct clip_span){lanes_max(first, span.from), lanes_min(last, span.to)};
 }
 
@@ -510,54 +510,57 @@ INLINE struct clip_span at_least(struct clip_span span, double length)
     return span;
 }
 
-/* Clips a segment. plane: the last slab is the plane of a face. The inner span then is the range in
- * which the segment surely crosses the face, from its end to its start. */
-INLINE void clip_segment(const struct clip_values *values, int slabs, bool plane, int v, int d,
-                         struct clip_span *out_outer, struct clip_span *out_inner)
+/* The part of a segment within the first so many slabs. */
+INLINE struct clip_span clip_segment(const struct clip_values *values, int bound, int slabs, int v,
+                                     int d)
 {
-    const struct clip_span whole = {lanes_of(0), lanes_of(1)};
-    struct clip_span outer = whole, inner = whole;
-    for (int k = 0; k < (plane ? slabs - 1 : slabs); k++) {
+    struct clip_span span = {lanes_of(0), lanes_of(1)};
+    for (int k = 0; k < slabs; k++) {
         CHECK_SEGMENT(BOX_ROUNDING, values, k, v, d);
-        outer = clipped(values, CLIP_OUTER, k, v, d, outer);
-        inner = clipped(values, CLIP_INNER, k, v, d, inner);
+        span = clipped(values, bound, k, v, d, span);
     }
-    if (plane) {
-        const struct clip_span all = {lanes_of(-INFINITY), lanes_of(INFINITY)};
-        CHECK_SEGMENT(BOX_ROUNDING, values, slabs - 1, v, d);
-        const struct clip_span at = clipped(values, CLIP_OUTER, slabs - 1, v, d, all);
-        const lanes_mask crosses =
-            (at.from - inner.from >= CLIP_SHORTEST) & (inner.to - at.to >= CLIP_SHORTEST);
-        outer.from = lanes_max(at.from, outer.from);
-        outer.to = lanes_min(at.to, outer.to);
-        inner.from = lanes_select(crosses, at.to, lanes_of(NAN));
-        inner.to = at.from;
-    } else {
-        inner = at_least(inner, CLIP_SHORTEST);
-    }
-    outer = at_least(outer, -CLIP_SHORTEST);
-    const lanes_mask ties = values->exact & (outer.to - outer.from < CLIP_SHORTEST);
-    if (!plane && values->any_exact && lanes_mask_bits(ties)) {
-        const lanes_mask in_time = enters_in_time(values, slabs, v, d);
-        outer.from = lanes_select(ties & is_not(in_time), lanes_of(NAN), outer.from);
-        inner.from = lanes_select(ties, outer.from, inner.from);
-    }
-    *out_outer = outer;
-    *out_inner = inner;
+    return span;
 }
 
-/* Clips the segments of a frame. Returns the lanes in which, for some segment with an outer span,
- * there is no inner span, or one that is shorter by more than box->whole along some axis. */
+/* The range in which a segment surely crosses a face, from its end to its start: the last slab is
+ * the plane of the face. */
+INLINE struct clip_span crossing_span(const struct clip_values *values, int slabs, int v, int d)
+{
+    const struct clip_span all = {lanes_of(-INFINITY), lanes_of(INFINITY)};
+    const struct clip_span at = clipped(values, CLIP_OUTER, slabs - 1, v, d, all);
+    const struct clip_span face = clip_segment(values, CLIP_INNER, slabs - 1, v, d);
+    const lanes_mask crosses =
+        (at.from - face.from >= CLIP_SHORTEST) & (face.to - at.to >= CLIP_SHORTEST);
+    return (struct clip_span){lanes_select(crosses, at.to, lanes_of(NAN)), at.from};
+}
+
+/* Clips the segments of a frame. plane: the last slab is the plane of a face. Returns the lanes in
+ * which, for some segment with an outer span, there is no inner span, or one that is shorter by
+ * more than box->whole along some axis. */
 INLINE lanes_mask clip_segments(const struct clip_wire *wire, const struct clip_values *values,
                                 int slabs, bool plane, const lanes longest[CLIP_DIRECTIONS],
                                 const struct box_pair *box, struct clip_spans *out)
 {
     lanes_mask uncertain = {0};
+    out->used = 0;
     for (int n = 0; n < wire->segments; n++) {
         const int v = wire->from[n], d = wire->direction[n];
         struct clip_span *outer = &out->part[CLIP_OUTER][n], *inner = &out->part[CLIP_INNER][n];
-        clip_segment(values, slabs, plane, v, d, outer, inner);
-        const lanes lost = (outer->to - outer->from) - (inner->to - inner->from);
+        const struct clip_span span = clip_segment(values, CLIP_OUTER, slabs, v, d);
+        const lanes length = span.to - span.from;
+        *outer = at_least(span, -CLIP_SHORTEST);
+        if (!lanes_mask_bits(outer->from == outer->from))
+            continue;
+        out->used |= 1u << n;
+        *inner = plane ? crossing_span(values, slabs, v, d)
+                       : at_least(clip_segment(values, CLIP_INNER, slabs, v, d), CLIP_SHORTEST);
+        const lanes_mask ties = values->exact & (length < CLIP_SHORTEST);
+        if (!plane && values->any_exact && lanes_mask_bits(ties)) {
+            const lanes_mask in_time = enters_in_time(values, slabs, v, d);
+            outer->from = lanes_select(ties & is_not(in_time), lanes_of(NAN), outer->from);
+            inner->from = lanes_select(ties, outer->from, inner->from);
+        }
+        const lanes lost = length - (inner->to - inner->from);
         const lanes_mask near = lost * longest[d] <= box->whole;
         uncertain |= (outer->from == outer->from) & is_not(near);
     }
@@ -589,68 +592,26 @@ INLINE void set_points(const struct kernel_traits traits, int which, const struc
     }
 }
 
-/* Adds how far the spans of a frame reach from 0, [below, above][axis]. Where to < from, some point
- * of the range surely is in the intersection: the least reach of these. */
+/* Adds how far spans of a frame reach from 0, [below, above][axis]; used: which, by bit. Where to <
+ * from, some point of the range surely is in the intersection: the least reach of these. */
 INLINE void add_reach(const struct kernel_traits traits, const struct clip_wire *wire,
-                      const struct clip_points *points, const struct clip_span *part,
+                      const struct clip_points *points, const struct clip_span *part, unsigned used,
                       lanes reach[2][3])
 {
-    for (int axis = 0; axis < traits.dim; axis++) {
-        lanes below = reach[0][axis], above = reach[1][axis];
-        for (int n = 0; n < wire->segments; n++) {
-            const lanes at = points->vertex[axis][wire->from[n]];
-            const lanes half = 0.5 * points->along[axis][wire->direction[n]];
-            const lanes from = CHECK_GIVEN(part[n].from), to = CHECK_GIVEN(part[n].to);
-            const lanes middle = at + (to + from) * half;
+    for (; used != 0; used &= used - 1) {
+        const int n = __builtin_ctz(used), v = wire->from[n], d = wire->direction[n];
+        const lanes from = CHECK_GIVEN(part[n].from), to = CHECK_GIVEN(part[n].to);
+        for (int axis = 0; axis < traits.dim; axis++) {
+            const lanes half = 0.5 * points->along[axis][d];
+            const lanes middle = points->vertex[axis][v] + (to + from) * half;
             const lanes length = (to - from) * lanes_abs(half);
-            below = lanes_max(length - middle, below);
-            above = lanes_max(length + middle, above);
+            reach[0][axis] = lanes_max(length - middle, reach[0][axis]);
+            reach[1][axis] = lanes_max(length + middle, reach[1][axis]);
         }
-        reach[0][axis] = below;
-        reach[1][axis] = above;
     }
 }
 
 /* ---- Crossings ---- */
-
-/* What all crossings of a pair have in common. */
-struct clip_crossings {
-    struct edge_products edges;
-    lanes drift_middle[2][6]; /* [frame][edge]: (half_drift x offset) . edge */
-    lanes length[2][6][3];    /* [frame][edge][axis]: of what an edge is made of */
-    lanes error[2][6];        /* [frame][edge]: E_r for an edge of A, E_s for an edge of B */
-    lanes scale_error;        /* what errors of frames and underflow add for a scale of 1 */
-};
-
-/* Returns the lanes in which nothing rounds, or every edge and a drift that is not 0 has a size of
- * at least 2^-180. */
-INLINE lanes_mask set_crossings(const struct pair_lanes *pair, const struct kernel_traits traits,
-                                const struct box_pair *box, struct clip_crossings *out)
-{
-    lanes least = lanes_select(pair->half_drift_size != 0, pair->half_drift_size, lanes_of(1));
-    out->scale_error = BOX_FRAME_ERROR * pair->error + CLIP_UNDERFLOW * pair->reach;
-    set_products(pair, traits, pair->offset, out->edges.middle);
-    set_products(pair, traits, pair->half_drift, out->edges.swing);
-    for (int which = 0; which < 2; which++) {
-        const lanes(*c)[3] = pair->component[which];
-        set_drift_middles(pair, traits, which, out->drift_middle[which]);
-        for (int index = 0; index < edge_count(traits, which); index++) {
-            const int e = edge_at(traits, which, index);
-            lanes weight[3], *length = out->length[which][e];
-            for (int axis = 0; axis < 3; axis++)
-                length[axis] = e < 3 ? lanes_abs(c[e][axis])
-                                     : lanes_abs(c[edge_from(traits, e)][axis]) +
-                                           lanes_abs(c[edge_to(traits, e)][axis]);
-            cross_weight(length, pair->half_drift, weight);
-            const lanes size = pair->size[which][e];
-            const lanes error = BOX_ROUNDING * dot(weight, box->reach) +
-                                out->scale_error * (size * pair->half_drift_size);
-            out->error[which][e] = lanes_select(box->exact, lanes_of(0), error);
-            least = lanes_min(size, least);
-        }
-    }
-    return box->exact | (least >= CLIP_LEAST_SIZE);
-}
 
 /* How many edges of a frame have the same direction. */
 INLINE int parallel_count(const struct kernel_traits traits, int which)
@@ -670,14 +631,78 @@ INLINE lanes base_of_edge(const struct kernel_traits traits, int which, int e, i
 }
 
 /* (base x edge) . w, for the base of edge n along e. at[k]: normal[k] . w. */
-INLINE lanes moment_of_edge(const struct kernel_traits traits, int which, int e, int n, lanes at0,
-                            lanes at1, lanes at2)
+INLINE lanes moment_of_edge(const struct kernel_traits traits, int which, int e, int n,
+                            const lanes at[3])
 {
-    const lanes at[3] = {at0, at1, at2};
     if (traits.simplex[which])
         return e < 3 ? lanes_of(0) : at[e - 3];
     const lanes u = -at[next(next(e))], v = at[next(e)];
     return n == 0 ? -(u + v) : n == 1 ? -(u - v) : n == 2 ? u - v : u + v;
+}
+
+/* What all crossings of a pair have in common. [i][m]: of edge m along edge i. */
+struct clip_crossings {
+    struct edge_products edges;
+    lanes drift_middle[2][6]; /* [frame][edge]: (half_drift x offset) . edge */
+    lanes length[2][6][3];    /* [frame][edge][axis]: of what an edge is made of */
+    lanes error[2][6];        /* [frame][edge]: E_r for an edge of A, E_s for an edge of B */
+    lanes scale_error;        /* what errors of frames and underflow add for a scale of 1 */
+    lanes base[6][4][3];      /* where an edge of A begins */
+    lanes r[6][4], s[6][4];   /* parts of r X by edges of A, of s X by edges of B */
+};
+
+/* Sets base, r and s. side[which]: the face products of a frame. */
+INLINE void set_bases(const struct pair_lanes *pair, const struct kernel_traits traits,
+                      const struct box_frame *a, const struct face_products side[2],
+                      struct clip_crossings *out)
+{
+    for (int which = 0; which < 2; which++) {
+        set_drift_middles(pair, traits, which, out->drift_middle[which]);
+        for (int index = 0; index < edge_count(traits, which); index++) {
+            const int e = edge_at(traits, which, index);
+            for (int m = 0; m < parallel_count(traits, which); m++) {
+                const lanes moment = moment_of_edge(traits, which, e, m, side[which].swing);
+                if (which)
+                    out->s[e][m] = out->drift_middle[1][e] + moment;
+                else
+                    out->r[e][m] = out->drift_middle[0][e] - moment;
+                for (int axis = 0; axis < 3 && !which; axis++) {
+                    const lanes at[3] = {a->edge[0][axis], a->edge[1][axis],
+                                         traits.face[0] ? lanes_of(0) : a->edge[2][axis]};
+                    out->base[e][m][axis] = a->centre[axis] + base_of_edge(traits, 0, e, m, at);
+                }
+            }
+        }
+    }
+}
+
+/* Returns the lanes in which nothing rounds, or every edge and a drift that is not 0 has a size of
+ * at least 2^-180. */
+INLINE lanes_mask set_crossings(const struct pair_lanes *pair, const struct kernel_traits traits,
+                                const struct box_pair *box, struct clip_crossings *out)
+{
+    lanes least = lanes_select(pair->half_drift_size != 0, pair->half_drift_size, lanes_of(1));
+    out->scale_error = BOX_FRAME_ERROR * pair->error + CLIP_UNDERFLOW * pair->reach;
+    set_products(pair, traits, pair->offset, out->edges.middle);
+    set_products(pair, traits, pair->half_drift, out->edges.swing);
+    for (int which = 0; which < 2; which++) {
+        const lanes(*c)[3] = pair->component[which];
+        for (int index = 0; index < edge_count(traits, which); index++) {
+            const int e = edge_at(traits, which, index);
+            lanes weight[3], *length = out->length[which][e];
+            for (int axis = 0; axis < 3; axis++)
+                length[axis] = e < 3 ? lanes_abs(c[e][axis])
+                                     : lanes_abs(c[edge_from(traits, e)][axis]) +
+                                           lanes_abs(c[edge_to(traits, e)][axis]);
+            cross_weight(length, pair->half_drift, weight);
+            const lanes size = pair->size[which][e];
+            const lanes error = BOX_ROUNDING * dot(weight, box->reach) +
+                                out->scale_error * (size * pair->half_drift_size);
+            out->error[which][e] = lanes_select(box->exact, lanes_of(0), error);
+            least = lanes_min(size, least);
+        }
+    }
+    return box->exact | (least >= CLIP_LEAST_SIZE);
 }
 
 /* x where it is inside its range from 0 to all, or from -all to all for an edge of a cuboid: by how
@@ -687,52 +712,34 @@ INLINE lanes inside_range(bool simplex, lanes x, lanes all)
     return simplex ? lanes_min(x, all - x) : all - lanes_abs(x);
 }
 
-/* Parts of s X, r X and t X of edges in one direction, [edge]; and where edges of A begin. */
-struct clip_edges {
-    lanes s[4], r[4], t[4], base[3][4];
-};
-
-/* Of the edges along i of A, with those along j of B. */
-INLINE void set_edges_of_a(const struct kernel_traits traits, const struct clip_crossings *all,
-                           const struct face_products *side, const struct box_frame *a, int i,
-                           int j, struct clip_edges *out)
-{
-    const lanes along_b[3] = {all->edges.swing[0][j], all->edges.swing[1][j],
-                              traits.face[0] ? lanes_of(0) : all->edges.swing[2][j]};
-    for (int m = 0; m < parallel_count(traits, 0); m++) {
-        for (int axis = 0; axis < 3; axis++) {
-            const lanes at[3] = {a->edge[0][axis], a->edge[1][axis],
-                                 traits.face[0] ? lanes_of(0) : a->edge[2][axis]};
-            out->base[axis][m] = a->centre[axis] + base_of_edge(traits, 0, i, m, at);
-        }
-        out->r[m] = all->drift_middle[0][i] -
-                    moment_of_edge(traits, 0, i, m, side->swing[0], side->swing[1], side->swing[2]);
-        out->s[m] = base_of_edge(traits, 0, i, m, along_b);
-        out->t[m] = moment_of_edge(traits, 0, i, m, side->other[0][j], side->other[1][j],
-                                   side->other[2][j]);
-    }
-}
-
-INLINE void set_edges_of_b(const struct kernel_traits traits, const struct clip_crossings *all,
-                           const struct face_products *side, int i, int j, struct clip_edges *out)
-{
-    for (int n = 0; n < parallel_count(traits, 1); n++) {
-        out->r[n] = base_of_edge(traits, 1, j, n, all->edges.swing[i]);
-        out->s[n] = all->drift_middle[1][j] +
-                    moment_of_edge(traits, 1, j, n, side->swing[0], side->swing[1], side->swing[2]);
-        out->t[n] = moment_of_edge(traits, 1, j, n, side->other[0][i], side->other[1][i],
-                                   side->other[2][i]) -
-                    all->edges.middle[i][j];
-    }
-}
-
 /* The crossings of edges along i of A and j of B. Where X may be 0, the radius is infinite. */
 struct clip_crossing {
-    struct clip_edges a, b;
+    const lanes (*base)[3], *a_r, *b_s;           /* [edge]: from struct clip_crossings */
+    lanes a_s[4], a_t[4], b_r[4], b_t[4];         /* [edge]: parts of s X, r X and t X */
     lanes det, turned, error_s, error_r, error_t; /* |X|, X, bounds */
     lanes along[3], travel[3], radius[3];         /* of s X, t X; of the error of a position */
     lanes_mask known, crosses;
 };
+
+INLINE void set_parts(const struct kernel_traits traits, const struct clip_crossings *all,
+                      const struct face_products side[2], int i, int j, struct clip_crossing *out)
+{
+    const lanes along_b[3] = {all->edges.swing[0][j], all->edges.swing[1][j],
+                              traits.face[0] ? lanes_of(0) : all->edges.swing[2][j]};
+    const lanes of_a[3] = {side[0].other[0][j], side[0].other[1][j], side[0].other[2][j]};
+    const lanes of_b[3] = {side[1].other[0][i], side[1].other[1][i], side[1].other[2][i]};
+    out->base = all->base[i];
+    out->a_r = all->r[i];
+    out->b_s = all->s[j];
+    for (int m = 0; m < parallel_count(traits, 0); m++) {
+        out->a_s[m] = base_of_edge(traits, 0, i, m, along_b);
+        out->a_t[m] = moment_of_edge(traits, 0, i, m, of_a);
+    }
+    for (int n = 0; n < parallel_count(traits, 1); n++) {
+        out->b_r[n] = base_of_edge(traits, 1, j, n, all->edges.swing[i]);
+        out->b_t[n] = moment_of_edge(traits, 1, j, n, of_b) - all->edges.middle[i][j];
+    }
+}
 
 INLINE void set_crossing(const struct pair_lanes *pair, const struct kernel_traits traits,
                          const struct box_places *places, const struct box_pair *box,
@@ -741,8 +748,7 @@ INLINE void set_crossing(const struct pair_lanes *pair, const struct kernel_trai
 {
     const struct box_frame *a = &box->frame[0];
     lanes weight[3], wide = lanes_of(0);
-    set_edges_of_a(traits, all, &side[0], a, i, j, &out->a);
-    set_edges_of_b(traits, all, &side[1], i, j, &out->b);
+    set_parts(traits, all, side, i, j, out);
     out->turned = all->edges.swing[i][j];
     out->det = lanes_abs(out->turned);
     out->error_s = all->error[1][j];
@@ -780,9 +786,9 @@ INLINE lanes_mask is_possible(const struct kernel_traits traits, const struct cl
                               int m, int n, struct clip_parameters *out)
 {
     const lanes turned = from->turned;
-    const lanes r = with_sign_of(from->a.r[m] - from->b.r[n], turned);
-    out->s = with_sign_of(from->b.s[n] - from->a.s[m], turned);
-    out->t = with_sign_of(from->b.t[n] + from->a.t[m], turned);
+    const lanes r = with_sign_of(from->a_r[m] - from->b_r[n], turned);
+    out->s = with_sign_of(from->b_s[n] - from->a_s[m], turned);
+    out->t = with_sign_of(from->b_t[n] + from->a_t[m], turned);
     out->in_s = inside_range(traits.simplex[0], out->s, from->det);
     out->in_r = inside_range(traits.simplex[1], r, from->det);
     out->in_t = inside_range(false, out->t, from->det);
@@ -807,7 +813,7 @@ INLINE lanes_mask add_crossing(const struct kernel_traits traits, const struct c
     for (int axis = 0; axis < 3; axis++) {
         const lanes part =
             CHECK_GIVEN(at.s) * from->along[axis] + CHECK_GIVEN(at.t) * from->travel[axis];
-        const lanes middle = from->a.base[axis][m] + part;
+        const lanes middle = from->base[m][axis] + part;
         const lanes radius = CHECK_GIVEN(from->radius[axis]);
         for (int bound = 0; bound < CLIP_BOUNDS; bound++) {
             lanes *below = &reach[bound][0][axis], *above = &reach[bound][1][axis];
@@ -884,6 +890,7 @@ INLINE lanes_mask add_crossings(const struct pair_lanes *pair, const struct kern
     struct clip_crossings all;
     lanes_mask uncertain = {0};
     *good &= set_crossings(pair, traits, box, &all);
+    set_bases(pair, traits, &box->frame[0], side, &all);
     for (int i = 0; i < edge_count(traits, 0); i++)
         for (int j = 0; j < edge_count(traits, 1); j++) {
             struct clip_crossing crossing;
@@ -913,7 +920,7 @@ INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_tr
     for (int bound = 0; bound < (lanes_mask_bits(uncertain & good) ? 2 : 1); bound++)
         for (int which = 0; which < 2; which++)
             add_reach(traits, &wire[which], &side[which].points, side[which].spans.part[bound],
-                      reach[bound]);
+                      side[which].spans.used, reach[bound]);
     for (int axis = 0; axis < traits.dim; axis++)
         for (int end = 0; end < 2; end++) {
             /* Where not uncertain, the outer reach is within box->whole of the true one. */
