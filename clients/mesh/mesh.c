@@ -101,82 +101,50 @@ void mesh_free(struct mesh *mesh)
 
 /* ---- Files ----------------------------------------------------------------------------------- */
 
-/* Bytes read at a time, between progress reports. */
-enum { PIECE = 1 << 24 };
-
-/* Progress of reading and parsing, which count as one half of the file's bytes each. */
-struct half {
-    const struct mesh_progress *watch; /* may be NULL */
-    uint64_t done;
-};
-
-static void report_progress(void *context, uint64_t done, uint64_t total)
-{
-    const struct half *half = context;
-    if (half->watch)
-        half->watch->report(half->watch->context, half->done + (done + 1) / 2, total);
-}
-
-static bool refuse(char error[MESH_ERROR_MAX], const char *why)
-{
-    snprintf(error, MESH_ERROR_MAX, "%s", why);
-    return false;
-}
-
-static bool read_bytes(int fd, unsigned char *bytes, size_t size, struct half *half,
-                       char error[MESH_ERROR_MAX])
+/* Returns the bytes of an open file, which the caller frees; or NULL, and the error. */
+static unsigned char *read_open(int fd, size_t size, char error[MESH_ERROR_MAX])
 {
     size_t done = 0;
-    while (done < size) {
-        const size_t left = size - done;
-        const ssize_t got = read(fd, bytes + done, left < PIECE ? left : PIECE);
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got < 0)
-            return refuse(error, strerror(errno));
-        if (got == 0) {
-            snprintf(error, MESH_ERROR_MAX, "byte %zu: the file became shorter while it was read",
-                     done);
-            return false;
-        }
-        done += (size_t) got;
-        report_progress(half, done, size);
-    }
-    return true;
-}
-
-/* Returns the bytes, which the caller frees; or NULL, and the error. */
-static unsigned char *read_open(int fd, size_t size, struct half *half, char error[MESH_ERROR_MAX])
-{
+    ssize_t got = 1;
     unsigned char *bytes = malloc(size + 1);
-    if (!bytes) {
-        snprintf(error, MESH_ERROR_MAX, "there is no memory for its %zu bytes", size);
-        return NULL;
+    while (bytes && done < size && (got > 0 || (got < 0 && errno == EINTR))) {
+        got = read(fd, bytes + done, size - done);
+        done += got > 0 ? (size_t) got : 0;
     }
-    bytes[size] = '\0';
-    if (read_bytes(fd, bytes, size, half, error))
+    if (!bytes)
+        snprintf(error, MESH_ERROR_MAX, "there is no memory for its %zu bytes", size);
+    else if (got < 0)
+        snprintf(error, MESH_ERROR_MAX, "%s", strerror(errno));
+    else if (done < size)
+        snprintf(error, MESH_ERROR_MAX, "byte %zu: the file became shorter while it was read",
+                 done);
+    else
+        bytes[size] = '\0';
+    if (bytes && done == size)
         return bytes;
     free(bytes);
     return NULL;
 }
 
 /* O_NONBLOCK: a pipe is an error, and does not block. */
-static unsigned char *read_file(const char *path, size_t *size, struct half *half,
-                                char error[MESH_ERROR_MAX])
+static unsigned char *read_file(const char *path, size_t *size, char error[MESH_ERROR_MAX])
 {
     struct stat about;
     unsigned char *bytes = NULL;
+    const char *why = NULL;
     const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
     if (fd < 0 || fstat(fd, &about) != 0)
-        refuse(error, strerror(errno));
+        why = strerror(errno);
     else if (S_ISDIR(about.st_mode))
-        refuse(error, "a folder, not a file");
+        why = "a folder, not a file";
     else if (!S_ISREG(about.st_mode))
-        refuse(error, "no regular file: write what it gives into one first");
+        why = "no regular file: write what it gives into one first";
     else if ((uintmax_t) about.st_size >= PTRDIFF_MAX)
-        refuse(error, "larger than memory can be");
+        why = "larger than memory can be";
     else
-        bytes = read_open(fd, *size = (size_t) about.st_size, half, error);
+        bytes = read_open(fd, *size = (size_t) about.st_size, error);
+    if (why)
+        snprintf(error, MESH_ERROR_MAX, "%s", why);
     if (fd >= 0)
         close(fd);
     return bytes;
@@ -186,16 +154,11 @@ bool mesh_read(const char *path, enum mesh_faces faces, const struct mesh_progre
                struct mesh *out, char error[MESH_ERROR_MAX])
 {
     size_t size = 0;
-    struct half half = {.watch = watch};
-    const struct mesh_progress parser = {.report = report_progress, .context = &half};
     *out = (struct mesh){0};
-    unsigned char *bytes = read_file(path, &size, &half, error);
-    if (!bytes)
-        return false;
-    half.done = size / 2;
-    const bool good = mesh_parse(bytes, size, path, faces, &parser, out, error);
-    if (good)
-        report_progress(&half, size, size);
+    unsigned char *bytes = read_file(path, &size, error);
+    const bool good = bytes && mesh_parse(bytes, size, path, faces, watch, out, error);
+    if (good && watch)
+        watch->report(watch->context, size, size);
     free(bytes);
     return good;
 }

@@ -1,10 +1,7 @@
 /* Method, one shared vertex. Let F = conv(a, b, c) and G = conv(a, d, e) share the vertex a and no
  * other. Let p be any other common point. The ray from a through p leaves F on bc and G on de.
  * Where it leaves the first of the two, it is still in the other. So F and G have a common point
- * besides a if and only if bc intersects G or de intersects F. A segment misses a triangle if both
- * of its ends lie strictly on one side of the triangle's plane. The segment de also misses a
- * triangle pqr if two of the tetrahedra (d e p q), (d e q r), (d e r p) have strictly opposite
- * orientations: the line de then passes outside an edge.
+ * besides a if and only if bc intersects G or de intersects F.
  *
  * A degenerate face may have a between b and c. It is then the segment bc, which a ray from a
  * leaves in b or in c. In this case the points b and c are tested instead of the segment bc.
@@ -16,8 +13,7 @@
  * degenerate faces overlap; they have more than pq in common if and only if both extend beyond p,
  * or both beyond q.
  *
- * Most pairs are decided by their projections (below). Orientations in space are computed in
- * doubles with an error bound. The engine decides the cases that the bound leaves open, with
+ * Most pairs are decided by their projections (below). The engine decides the others, with
  * triangles, and with segments as degenerate triangles. */
 #include "mesh_adjacency.h"
 
@@ -184,45 +180,6 @@ static bool flat_share_edge(const double *p, const double *q, const double *r, c
     return false;
 }
 
-/* ---- Orientations ---- */
-
-/* The sign of (q - p) x (r - p) . (s - p); 0 if doubles cannot decide it.
- *
- * Error bound. Each of the six products is rounded 3 times in its differences, 2 times in its
- * multiplications, and at most 3 times in sums: 8.01 u of the sum of the magnitudes, which is
- * itself computed with as few roundings. The bound 2^-49 is 16 u. Each product that underflows is
- * off by less than 2^-1074; for a product of two factors, times the third factor. If a product
- * overflows, or is NaN, the determinant does not exceed the bound, and the result is 0. */
-static int side_of(const double *p, const double *q, const double *r, const double *s)
-{
-    double u[3], v[3], w[3], determinant = 0, permanent = 0, far = 1;
-    for (int axis = 0; axis < 3; axis++) {
-        u[axis] = q[axis] - p[axis];
-        v[axis] = r[axis] - p[axis];
-        w[axis] = s[axis] - p[axis];
-    }
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        const double x = u[j] * v[k], y = u[k] * v[j];
-        determinant += w[i] * (x - y);
-        permanent += fabs(w[i]) * (fabs(x) + fabs(y));
-        far += fabs(w[i]);
-    }
-    return fabs(determinant) > 0x1p-49 * permanent + 0x1p-1070 * far ? sign(determinant) : 0;
-}
-
-/* Whether the segment de certainly misses the triangle. False: not known. */
-static bool misses(const double *d, const double *e, const double *const corner[3])
-{
-    int side[3];
-    const int of_d = side_of(corner[0], corner[1], corner[2], d);
-    if (of_d != 0 && of_d == side_of(corner[0], corner[1], corner[2], e))
-        return true;
-    for (int i = 0; i < 3; i++)
-        side[i] = side_of(d, e, corner[i], corner[(i + 1) % 3]);
-    return side[0] * side[1] < 0 || side[1] * side[2] < 0 || side[2] * side[0] < 0;
-}
-
 /* ---- Cases that the engine decides ---- */
 
 static enum fmb_verdict verdict_of(const double x[3][3], const double y[3][3])
@@ -326,7 +283,7 @@ static enum mesh_relation relation_by_edge(const struct mesh_adjacency *adjacenc
     if (common->own_count[0] && common->own_count[1]) {
         const double *p = at(adjacency, common->shared[0]), *q = at(adjacency, common->shared[1]);
         const double *r = at(adjacency, common->own[0][0]), *s = at(adjacency, common->own[1][0]);
-        if (flat_share_edge(p, q, r, s) || side_of(p, q, r, s) != 0)
+        if (flat_share_edge(p, q, r, s))
             return MESH_SHARE_EDGE;
     }
     for (int f = 0; f < 2; f++)
@@ -344,7 +301,7 @@ static enum mesh_relation relation_by_vertex(const struct mesh_adjacency *adjace
 {
     double corner[2][3][3];
     const double *end[2][2];
-    bool open[2], intersect = false;
+    bool intersect = false;
     if (common->own_count[0] == 2 && common->own_count[1] == 2 &&
         flat_share_vertex(at(adjacency, common->shared[0]), at(adjacency, common->own[0][0]),
                           at(adjacency, common->own[0][1]), at(adjacency, common->own[1][0]),
@@ -355,14 +312,12 @@ static enum mesh_relation relation_by_vertex(const struct mesh_adjacency *adjace
     for (int f = 0; f < 2; f++) {
         if (common->own_count[f] == 0) /* the face is a point, the shared vertex */
             return MESH_SHARE_VERTEX;
-        const double *const other[3] = {corner[!f][0], corner[!f][1], corner[!f][2]};
         end[f][0] = at(adjacency, common->own[f][0]);
         end[f][1] = at(adjacency, common->own[f][common->own_count[f] - 1]);
-        open[f] = !misses(end[f][0], end[f][1], other);
     }
     for (int f = 0; f < 2 && !intersect; f++)
-        intersect = open[f] && edge_intersects(at(adjacency, common->shared[0]), end[f][0],
-                                               end[f][1], (const double(*)[3]) corner[!f]);
+        intersect = edge_intersects(at(adjacency, common->shared[0]), end[f][0], end[f][1],
+                                    (const double(*)[3]) corner[!f]);
     if (!intersect)
         return MESH_SHARE_VERTEX;
     *verdict = verdict_of((const double(*)[3]) corner[0], (const double(*)[3]) corner[1]);
