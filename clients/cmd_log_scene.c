@@ -9,7 +9,6 @@
 #include "progress.h"
 #include "scene_json.h"
 #include "logged_query.h"
-#include "wire.h"
 
 #include <inttypes.h>
 #include <limits.h>
@@ -77,18 +76,10 @@ static bool take_numbers(const struct args *args, const struct number *number,
 /* Reports the detail of the result of a query that the service refuses. */
 static void report_refusal(const struct log_query *query, const struct new_result *refused)
 {
-    const bool is_pair = query->query.kind == LOG_PAIR_QUERY;
-    const uint32_t size = (uint32_t) refused->size;
-    union {
-        struct pair_result pair;
-        struct scene_result scene;
-    } *result = allocate(1, sizeof *result);
-    if (is_pair)
-        wire_read_pair_result(refused->bytes, size, &result->pair);
-    else
-        wire_read_scene_result(refused->bytes, size, &result->scene);
+    struct logged_result *result = allocate(1, sizeof *result);
+    logged_result_read(result, query->query.kind, refused->bytes, (uint32_t) refused->size);
     complain("event %" PRId64 ": the service refuses it: %s", query->number,
-             is_pair ? result->pair.detail : result->scene.detail);
+             query->query.kind == LOG_PAIR_QUERY ? result->pair.detail : result->scene.detail);
     free(result);
 }
 

@@ -213,16 +213,11 @@ static bool check(const struct args *args, const struct mesh_options *options)
 
 /* ---- Reading --------------------------------------------------------------------------------- */
 
-static void on_progress(void *progress, uint64_t done, uint64_t total)
-{
-    progress_to(progress, (int64_t) done, (int64_t) total);
-}
-
 static bool read_mesh(const char *path, const struct placed *placed, struct mesh *out)
 {
     char error[MESH_ERROR_MAX];
     struct progress progress = progress_begin("bytes", 0);
-    const struct mesh_progress watch = {on_progress, &progress};
+    const struct mesh_progress watch = {progress_to, &progress};
     const bool good = mesh_read(path, MESH_TRIANGLES, &watch, out, error);
     progress_end(&progress);
     if (!good) {
@@ -277,7 +272,7 @@ static int intersect(const struct mesh_options *options, const struct mesh *a, c
                      options->placed[1].moving ? options->placed[1].velocity : NULL},
         .duration = options->duration,
         .method = options->method,
-        .report = on_progress,
+        .report = progress_to,
         .context = &progress};
     struct mesh_intersection intersection;
     const enum fmb_status status = mesh_intersect(&query, &intersection);

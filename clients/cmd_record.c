@@ -112,16 +112,10 @@ static bool write_event(struct recording *recording, const char *channel, const 
     return false;
 }
 
-static bool write_definition(void *user, const void *bytes, size_t size)
+static bool write_own(void *user, enum log_kind kind, const void *bytes, size_t size)
 {
     struct recording *recording = user;
-    return write_event(recording, recording->channels.name[LOG_DEFINITION], bytes, size);
-}
-
-static bool write_names(void *user, const void *bytes, size_t size)
-{
-    struct recording *recording = user;
-    return write_event(recording, recording->channels.name[LOG_NAMES], bytes, size);
+    return write_event(recording, recording->channels.name[kind], bytes, size);
 }
 
 /* Begins a new file if there is no space for the message and the definitions that must precede it
@@ -136,9 +130,8 @@ static bool prepare(struct recording *recording, size_t channel_length, size_t s
         return false;
     }
     return (recording->parts.number == number ||
-            record_bodies_begin_file(recording->bodies, recording->utime, write_names,
-                                     recording)) &&
-           record_bodies_define(recording->bodies, write_definition, recording);
+            record_bodies_begin_file(recording->bodies, recording->utime, write_own, recording)) &&
+           record_bodies_define(recording->bodies, write_own, recording);
 }
 
 static void on_message(void *user, const struct bus_message *message)

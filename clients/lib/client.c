@@ -119,44 +119,42 @@ static bool is_for(const struct fmb_client *client, const struct query_header *h
     return client->watcher.result || header->client_id == client->requests.client_id;
 }
 
-static const char *on_pair(struct fmb_client *client, const struct bus_message *message)
+static const char *on_result(struct fmb_client *client, const struct bus_message *message,
+                             bool is_pair)
 {
-    struct pair_result *result = &client->received.pair;
+    struct pair_result *pair = &client->received.pair;
+    struct scene_result *scene = &client->received.scene;
+    struct query_header header;
     const uint32_t size = (uint32_t) message->size;
-    const char *error = wire_read_pair_result_header(message->bytes, size, &result->header);
-    if (error || !is_for(client, &result->header))
+    const char *error = (is_pair ? wire_read_pair_result_header : wire_read_scene_result_header)(
+        message->bytes, size, &header);
+    if (error || !is_for(client, &header))
         return error;
-    error = wire_read_pair_result(message->bytes, size, result);
+    error = is_pair ? wire_read_pair_result(message->bytes, size, pair)
+                    : wire_read_scene_result(message->bytes, size, scene);
     if (error)
         return error;
     if (client->watcher.result)
-        show(client, true);
-    take(client, message, &result->header,
-         (struct request_result){.kind = FMB_CLIENT_PAIR,
-                                 .status = result->status,
-                                 .detail = result->detail,
-                                 .pair = result});
+        show(client, is_pair);
+    struct request_result result = {
+        .kind = FMB_CLIENT_PAIR, .status = pair->status, .detail = pair->detail, .pair = pair};
+    if (!is_pair)
+        result = (struct request_result){.kind = FMB_CLIENT_SCENE,
+                                         .status = scene->status,
+                                         .detail = scene->detail,
+                                         .scene = scene};
+    take(client, message, &header, result);
     return NULL;
+}
+
+static const char *on_pair(struct fmb_client *client, const struct bus_message *message)
+{
+    return on_result(client, message, true);
 }
 
 static const char *on_scene(struct fmb_client *client, const struct bus_message *message)
 {
-    struct scene_result *result = &client->received.scene;
-    const uint32_t size = (uint32_t) message->size;
-    const char *error = wire_read_scene_result_header(message->bytes, size, &result->header);
-    if (error || !is_for(client, &result->header))
-        return error;
-    error = wire_read_scene_result(message->bytes, size, result);
-    if (error)
-        return error;
-    if (client->watcher.result)
-        show(client, false);
-    take(client, message, &result->header,
-         (struct request_result){.kind = FMB_CLIENT_SCENE,
-                                 .status = result->status,
-                                 .detail = result->detail,
-                                 .scene = result});
-    return NULL;
+    return on_result(client, message, false);
 }
 
 static const char *on_definition(struct fmb_client *client, const struct bus_message *message)

@@ -66,34 +66,29 @@ static void set(struct body_names *names, int64_t client_id, int64_t body_id, co
     strcpy(entry->name, name);
 }
 
-void body_names_take(struct body_names *names, int64_t client_id,
-                     const struct query_placement *placement, int32_t count)
+void body_names_take(struct body_names *names, struct logged_query *query)
 {
-    for (int32_t i = 0; i < count; i++)
-        set(names, client_id, placement[i].placed.id, placement[i].placed.name);
-}
-
-static const char *take_query(struct body_names *names, enum log_kind kind, const void *bytes,
-                              uint32_t size)
-{
-    struct logged_query *query = &names->query;
     int32_t count;
-    const char *error = logged_query_read(query, kind, bytes, size);
     const struct query_placement *placement = logged_query_placements(query, &count);
-    if (!error)
-        body_names_take(names, logged_query_header(query)->client_id, placement, count);
-    return error;
+    for (int32_t i = 0; i < count; i++)
+        set(names, logged_query_header(query)->client_id, placement[i].placed.id,
+            placement[i].placed.name);
 }
 
 const char *body_names_take_message(struct body_names *names, enum log_kind kind, const void *bytes,
                                     uint32_t size)
 {
-    struct names *read = &names->read;
-    if (kind != LOG_NAMES)
-        return take_query(names, kind, bytes, size);
-    const char *error = wire_read_names(bytes, size, read);
-    for (int32_t i = 0; !error && i < read->count; i++)
-        set(names, read->client_id[i], read->body_id[i], read->name[i]);
+    const char *error = NULL;
+    if (names && log_kind_is_query(kind)) {
+        error = logged_query_read(&names->query, kind, bytes, size);
+        if (!error)
+            body_names_take(names, &names->query);
+    } else if (names && kind == LOG_NAMES) {
+        const struct names *read = &names->read;
+        error = wire_read_names(bytes, size, &names->read);
+        for (int32_t i = 0; !error && i < read->count; i++)
+            set(names, read->client_id[i], read->body_id[i], read->name[i]);
+    }
     return error;
 }
 
@@ -134,8 +129,7 @@ void body_names_each(struct body_names *names, body_names_sink *sink, void *user
         sink(user, name->key.client_id, name->key.body_id, name->name);
 }
 
-bool body_names_write(const struct body_names *names, int64_t utime,
-                      bool (*sink)(void *user, const void *bytes, size_t size), void *user)
+bool body_names_write(const struct body_names *names, int64_t utime, log_sink *sink, void *user)
 {
     /* As many as fit, each as long as a name may be. */
     enum { MOST = (QUERY_BYTES_MAX - WIRE_NAMES_BYTES) / (21 + QUERY_NAME_MAX) };
@@ -150,7 +144,7 @@ bool body_names_write(const struct body_names *names, int64_t utime,
         message->name[i] = name->name;
         if (message->count < MOST && name->hh.next)
             continue;
-        good = sink(user, bytes, wire_write_names(message, bytes));
+        good = sink(user, LOG_NAMES, bytes, wire_write_names(message, bytes));
         message->count = 0;
     }
     free(message);

@@ -15,12 +15,11 @@ struct body_names;
 struct body_names *body_names_open(void);
 void body_names_close(struct body_names *names); /* may be NULL */
 
-/* Sets the names that placements of a client's query give to its bodies. */
-void body_names_take(struct body_names *names, int64_t client_id,
-                     const struct query_placement *placement, int32_t count);
+/* Sets the names that a client's query gives to its bodies. */
+void body_names_take(struct body_names *names, struct logged_query *query);
 
-/* Sets the names of a message: of a query of a pair or a scene, or of a names_t. Returns NULL; or a
- * static text: why it cannot be decoded. */
+/* Sets the names of a message: of a query of a pair or a scene, or of a names_t; others have none.
+ * names may be NULL. Returns NULL; or a static text: why it cannot be decoded. */
 const char *body_names_take_message(struct body_names *names, enum log_kind kind, const void *bytes,
                                     uint32_t size);
 
@@ -40,7 +39,6 @@ void body_names_each(struct body_names *names, body_names_sink *sink, void *user
 
 /* Writes all names as names_t messages; none if there are none. Returns false as soon as sink does.
  */
-bool body_names_write(const struct body_names *names, int64_t utime,
-                      bool (*sink)(void *user, const void *bytes, size_t size), void *user);
+bool body_names_write(const struct body_names *names, int64_t utime, log_sink *sink, void *user);
 
 #endif

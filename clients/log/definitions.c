@@ -126,30 +126,29 @@ bool definitions_add(struct definitions *definitions, const struct body_view *vi
     return is_new;
 }
 
-bool definitions_add_placement(struct definitions *definitions,
-                               const struct query_placement *placement)
+void definitions_add_query(struct definitions *definitions, struct logged_query *query)
 {
-    return placement->placed.id != 0 && definitions_add(definitions, &placement->body);
+    int32_t count;
+    const struct query_placement *placement = logged_query_placements(query, &count);
+    for (int32_t i = 0; i < count; i++)
+        if (placement[i].placed.id != 0)
+            definitions_add(definitions, &placement[i].body);
 }
 
 const char *definitions_add_message(struct definitions *definitions, enum log_kind kind,
                                     const void *bytes, uint32_t size)
 {
-    struct logged_query *query = &definitions->query;
     struct definition *read = &definitions->read;
-    int32_t count;
-    if (size > QUERY_BYTES_MAX)
-        return "longer than any message of this type";
-    if (kind == LOG_DEFINITION) {
-        const char *error = wire_read_definition(bytes, size, definitions->hasher, read);
+    const char *error = NULL;
+    if (log_kind_is_query(kind)) {
+        error = logged_query_read(&definitions->query, kind, bytes, size);
+        if (!error)
+            definitions_add_query(definitions, &definitions->query);
+    } else if (kind == LOG_DEFINITION) {
+        error = wire_read_definition(bytes, size, definitions->hasher, read);
         for (int32_t i = 0; !error && i < read->body_count; i++)
             definitions_add(definitions, &read->body[i]);
-        return error;
     }
-    const char *error = logged_query_read(query, kind, bytes, size);
-    const struct query_placement *placement = logged_query_placements(query, &count);
-    for (int32_t i = 0; !error && i < count; i++)
-        definitions_add_placement(definitions, &placement[i]);
     return error;
 }
 
@@ -246,19 +245,19 @@ size_t definitions_needed(struct definitions *definitions, const struct query_pl
     return bytes;
 }
 
-static bool flush(struct definitions *definitions, definition_sink *sink, void *user)
+static bool flush(struct definitions *definitions, log_sink *sink, void *user)
 {
     if (definitions->written.body_count == 0)
         return true;
     const size_t size = wire_write_definition(&definitions->written, definitions->message);
     definitions->written.body_count = 0;
     definitions->size = 0;
-    return sink(user, definitions->message, size);
+    return sink(user, LOG_DEFINITION, definitions->message, size);
 }
 
 /* One body always fits: it comes from a message of at most QUERY_BYTES_MAX whose header is no
  * shorter. */
-static bool pack(struct definitions *definitions, struct defined_body *body, definition_sink *sink,
+static bool pack(struct definitions *definitions, struct defined_body *body, log_sink *sink,
                  void *user)
 {
     struct definition *written = &definitions->written;
@@ -274,7 +273,7 @@ static bool pack(struct definitions *definitions, struct defined_body *body, def
 }
 
 int32_t definitions_write(struct definitions *definitions, const struct query_placement *placement,
-                          int32_t count, definition_sink *sink, void *user)
+                          int32_t count, log_sink *sink, void *user)
 {
     int32_t bodies = 0;
     for (int32_t i = 0; i < count; i++) {

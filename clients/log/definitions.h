@@ -13,7 +13,7 @@
 #ifndef DEFINITIONS_H
 #define DEFINITIONS_H
 
-#include "log_kind.h"
+#include "logged_query.h"
 #include "wire.h"
 
 struct definitions;
@@ -26,13 +26,12 @@ void definitions_close(struct definitions *definitions); /* may be NULL */
  * handle is not read. Returns whether the body is new. */
 bool definitions_add(struct definitions *definitions, const struct body_view *view);
 
-/* Adds the body of a placement if it has frames and an id: services cache no others. */
-bool definitions_add_placement(struct definitions *definitions,
-                               const struct query_placement *placement);
+/* Adds the bodies of a query that have frames and an id: services cache no others. */
+void definitions_add_query(struct definitions *definitions, struct logged_query *query);
 
-/* Adds the bodies with frames of a message: of a query of a pair or a scene, or of a definition.
- * Returns NULL; or a static text: why the message cannot be decoded. Then nothing of it was added.
- */
+/* Adds the bodies with frames of a message: of a query of a pair or a scene, or of a definition;
+ * others have none. Returns NULL; or a static text: why the message cannot be decoded. Then nothing
+ * of it was added. */
 const char *definitions_add_message(struct definitions *definitions, enum log_kind kind,
                                     const void *bytes, uint32_t size);
 
@@ -61,9 +60,6 @@ size_t definitions_wanted(struct definitions *definitions);
 
 /* ---- Files that define what they name ---- */
 
-/* Writes a definition_t. Returns false if it failed. */
-typedef bool definition_sink(void *user, const void *bytes, size_t size);
-
 /* Begins a file, which defines nothing yet. Bodies that are added later are in the file, and so are
  * those that were known and are added again. */
 void definitions_begin_file(struct definitions *definitions);
@@ -72,9 +68,9 @@ void definitions_begin_file(struct definitions *definitions);
 size_t definitions_needed(struct definitions *definitions, const struct query_placement *placement,
                           int32_t count);
 
-/* Writes definitions of the known bodies that the placements name by handle and the file does not
- * define. Returns the number of bodies; -1 as soon as sink returns false. */
+/* Writes definitions (definition_t) of the known bodies that the placements name by handle and the
+ * file does not define. Returns the number of bodies; -1 as soon as sink returns false. */
 int32_t definitions_write(struct definitions *definitions, const struct query_placement *placement,
-                          int32_t count, definition_sink *sink, void *user);
+                          int32_t count, log_sink *sink, void *user);
 
 #endif

@@ -122,20 +122,9 @@ static void choose_result(struct cutter *cut, enum log_kind kind, const struct m
 
 /* ---- The first pass ---- */
 
-/* Adds the bodies that the query carries whole, and its names. */
-static void add_bodies(struct cutter *cut)
-{
-    int32_t count;
-    const struct query_placement *placement = logged_query_placements(&cut->query, &count);
-    body_names_take(cut->names, logged_query_header(&cut->query)->client_id, placement, count);
-    for (int32_t i = 0; i < count; i++)
-        definitions_add_placement(cut->definitions, &placement[i]);
-}
-
 /* Chooses a query. Out: place->in_range. */
 static void take_query(struct cutter *cut, enum log_kind kind, struct match_place *place)
 {
-    add_bodies(cut);
     place->in_range = is_chosen_query(cut, place->utime);
     if (place->in_range && cut->has[kind])
         choose(cut, place->number);
@@ -159,7 +148,7 @@ static bool take_message(struct cutter *cut, const struct log_event *event, enum
     if (other)
         choose_result(cut, log_kind_result_of(log_kind_query_of(kind)),
                       is_result ? &other->place : &place, is_result ? &place : &other->place);
-    match_free(other);
+    free(other);
     return true;
 }
 
@@ -174,10 +163,8 @@ static void survey_event(struct cutter *cut, const struct log_event *event)
     if (!take_message(cut, event, kind) && log_choice_has_channel(choice, event) &&
         is_chosen_by_time(cut, event->utime) && (kind != LOG_NAMES || log_choice_is_all(choice)))
         choose(cut, cut->event);
-    if (kind == LOG_DEFINITION)
-        definitions_add_message(cut->definitions, kind, event->data, size);
-    else if (kind == LOG_NAMES)
-        body_names_take_message(cut->names, kind, event->data, size);
+    definitions_add_message(cut->definitions, kind, event->data, size);
+    body_names_take_message(cut->names, kind, event->data, size);
     cut->event++;
 }
 
@@ -186,9 +173,8 @@ static void on_unmatched(void *user, struct match_item *query, struct match_item
     struct cutter *cut = user;
     choose_result(cut, log_kind_result_of((enum log_kind) result->key.kind),
                   query ? &query->place : NULL, &result->place);
-    if (query)
-        match_free(query);
-    match_free(result);
+    free(query);
+    free(result);
 }
 
 static void choose_channels(struct cutter *cut)
@@ -235,25 +221,15 @@ static void copy(struct cutter *cut, const struct log_event *event)
     free(data);
 }
 
-static bool append_own(struct cutter *cut, enum log_kind kind, const void *bytes, size_t size)
+static bool append_own(void *user, enum log_kind kind, const void *bytes, size_t size)
 {
+    struct cutter *cut = user;
     const struct log_event event = {.utime = cut->utime,
                                     .channel = cut->channels.name[kind],
                                     .channel_length = cut->channels.length[kind]};
+    cut->counts->definitions += kind == LOG_DEFINITION;
     append(cut, &event, bytes, size);
     return !cut->failed;
-}
-
-static bool write_definition(void *user, const void *bytes, size_t size)
-{
-    struct cutter *cut = user;
-    cut->counts->definitions++;
-    return append_own(cut, LOG_DEFINITION, bytes, size);
-}
-
-static bool write_names(void *user, const void *bytes, size_t size)
-{
-    return append_own(user, LOG_NAMES, bytes, size);
 }
 
 /* ---- The second pass ---- */
@@ -264,7 +240,7 @@ static void begin_output(struct cutter *cut)
     if (log_choice_is_all(&cut->options->choice))
         return;
     cut->counts->names = body_names_count(cut->names);
-    body_names_write(cut->names, cut->utime, write_names, cut);
+    body_names_write(cut->names, cut->utime, append_own, cut);
 }
 
 /* Writes the definitions that a query needs before it. A query does not define the handles that it
@@ -272,19 +248,16 @@ static void begin_output(struct cutter *cut)
 static void define(struct cutter *cut, enum log_kind kind, const struct log_event *event)
 {
     const uint32_t size = (uint32_t) event->kept;
-    int32_t count;
-    if (kind == LOG_DEFINITION)
-        definitions_add_message(cut->definitions, kind, event->data, size);
-    if (!log_kind_is_query(kind) || logged_query_read(&cut->query, kind, event->data, size))
-        return;
-    const struct query_placement *placement = logged_query_placements(&cut->query, &count);
-    const int32_t bodies =
-        definitions_write(cut->definitions, placement, count, write_definition, cut);
-    cut->counts->defined += bodies > 0 ? bodies : 0;
-    for (int32_t i = 0; i < count; i++)
-        if (query_by_handle(&placement[i]))
-            definitions_want(cut->definitions, &placement[i].body.handle);
-    add_bodies(cut);
+    int32_t count, bodies;
+    if (log_kind_is_query(kind) && !logged_query_read(&cut->query, kind, event->data, size)) {
+        const struct query_placement *placement = logged_query_placements(&cut->query, &count);
+        bodies = definitions_write(cut->definitions, placement, count, append_own, cut);
+        cut->counts->defined += bodies > 0 ? bodies : 0;
+        for (int32_t i = 0; i < count; i++)
+            if (query_by_handle(&placement[i]))
+                definitions_want(cut->definitions, &placement[i].body.handle);
+    }
+    definitions_add_message(cut->definitions, kind, event->data, size);
 }
 
 static void copy_event(struct cutter *cut, const struct log_event *event)

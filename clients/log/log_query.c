@@ -173,13 +173,10 @@ static void find_event(struct query_search *search)
 
 static bool take_definitions(struct query_search *search, const struct log_event *event)
 {
-    struct log_query *out = search->out;
     const enum log_kind kind = log_kind_of(&search->channels, event);
     const uint32_t size = (uint32_t) event->kept;
-    if (log_kind_is_query(kind) || kind == LOG_DEFINITION)
-        definitions_add_message(out->definitions, kind, event->data, size);
-    if (log_kind_is_query(kind) || kind == LOG_NAMES)
-        body_names_take_message(out->names, kind, event->data, size);
+    definitions_add_message(search->out->definitions, kind, event->data, size);
+    body_names_take_message(search->out->names, kind, event->data, size);
     return true;
 }
 

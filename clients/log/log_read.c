@@ -282,24 +282,13 @@ static enum log_outcome failed(const struct log_reader *reader)
     return LOG_FAILED;
 }
 
-/* Copies the name. Nearly all names are short, and a copy of constant size is faster. In: the name
- * is in the buffer. */
-static void take_channel(struct log_reader *reader, const unsigned char *name, size_t length)
-{
-    enum { SHORT = LOG_CHANNEL_MAX < 64 ? LOG_CHANNEL_MAX : 64 };
-    if (length < SHORT && reader->bytes + reader->used - name >= SHORT)
-        memcpy(reader->channel, name, SHORT);
-    else
-        memcpy(reader->channel, name, length);
-    reader->channel[length] = '\0';
-}
-
 /* In: all kept bytes of the event are in the buffer. */
 static enum log_outcome take_event(struct log_reader *reader, struct lengths lengths,
                                    struct log_event *event)
 {
     const unsigned char *header = buffered(reader, reader->at);
-    take_channel(reader, header + LOG_HEADER_BYTES, lengths.channel);
+    memcpy(reader->channel, header + LOG_HEADER_BYTES, lengths.channel);
+    reader->channel[lengths.channel] = '\0';
     event->offset = reader->at;
     event->length = whole_length(lengths);
     event->number = (int64_t) big_endian_64(header + 4);
@@ -341,19 +330,6 @@ static bool is_event(struct log_reader *reader, struct lengths *out)
            buffer(reader, at, LOG_HEADER_BYTES + out->channel + kept_data(*out));
 }
 
-/* Fast path of is_event(): the whole event and a sync word after it are in the buffer. Gives the
- * same result where it returns true. */
-static bool is_buffered_event(const struct log_reader *reader, struct lengths *out)
-{
-    const int64_t left = reader->begin + (int64_t) reader->used - reader->at;
-    if (reader->at < reader->begin || left < LOG_HEADER_BYTES)
-        return false;
-    const unsigned char *header = buffered(reader, reader->at);
-    *out = lengths_at(header);
-    return is_sync(header) && lengths_are_valid(*out) && whole_length(*out) <= left - SYNC_BYTES &&
-           is_sync(header + whole_length(*out));
-}
-
 enum log_outcome log_next(struct log_reader *reader, struct log_event *event,
                           struct log_damage *damage)
 {
@@ -364,7 +340,7 @@ enum log_outcome log_next(struct log_reader *reader, struct log_event *event,
     reader->sought = false;
     if (reader->at == reader->size)
         return LOG_END;
-    if (is_buffered_event(reader, &lengths) || is_event(reader, &lengths))
+    if (is_event(reader, &lengths))
         return take_event(reader, lengths, event);
     if (reader->error)
         return failed(reader);

@@ -29,6 +29,24 @@ const char *logged_query_read(struct logged_query *out, enum log_kind kind,
                                   : wire_read_scene_query(bytes, size, &out->scene);
 }
 
+const char *logged_result_read(struct logged_result *out, enum log_kind kind, const void *bytes,
+                               uint32_t size)
+{
+    out->kind = kind;
+    return kind == LOG_PAIR_QUERY ? wire_read_pair_result(bytes, size, &out->pair)
+                                  : wire_read_scene_result(bytes, size, &out->scene);
+}
+
+int32_t logged_result_status(const struct logged_result *result)
+{
+    return result->kind == LOG_PAIR_QUERY ? result->pair.status : result->scene.status;
+}
+
+int64_t logged_result_compute_ns(const struct logged_result *result)
+{
+    return result->kind == LOG_PAIR_QUERY ? result->pair.compute_ns : result->scene.compute_ns;
+}
+
 const struct query_header *logged_query_header(const struct logged_query *query)
 {
     return query->kind == LOG_PAIR_QUERY ? &query->pair.header : &query->scene.header;
@@ -82,6 +100,38 @@ size_t logged_query_write(const struct logged_query *query, unsigned char out[QU
         return 0;
     return query->kind == LOG_PAIR_QUERY ? wire_write_pair_query(&query->pair, out)
                                          : wire_write_scene_query(&query->scene, out);
+}
+
+static bool are_below(const unsigned (*pair)[2], int32_t count, unsigned limit)
+{
+    for (int32_t k = 0; k < count; k++)
+        if (pair[k][0] >= limit || pair[k][1] >= limit)
+            return false;
+    return true;
+}
+
+bool logged_result_fits(const struct scene_query *query, const struct scene_result *result)
+{
+    const int32_t n = query_stored_placements(query), first = query->first_pair;
+    const int32_t listed = query->index_count / 2, ignored = query->ignored_count / 2;
+    if (query->placement_count != n || query->split < 0 || query->split > n || first < 0 ||
+        listed > QUERY_PAIRS_MAX || ignored > QUERY_PAIRS_MAX ||
+        !are_below(query->pair, listed, (unsigned) n) ||
+        !are_below(query->ignored, ignored, (unsigned) n) || result->end_pair < first ||
+        result->end_pair > query_pair_count(query))
+        return false;
+    if (query->which == FMB_PAIRS_LISTED)
+        return (!result->names_pairs || result->verdict_count == 0) &&
+               result->verdict_count == result->end_pair - first;
+    int64_t before = first - 1;
+    for (int32_t k = 0; k < result->verdict_count; k++) {
+        const unsigned *pair = result->pair[k];
+        if (!result->names_pairs || !query_has_pair(query, pair[0], pair[1]) ||
+            query_pair_number(query, pair[0], pair[1]) <= before)
+            return false;
+        before = query_pair_number(query, pair[0], pair[1]);
+    }
+    return before < result->end_pair;
 }
 
 int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair)

@@ -21,11 +21,31 @@ const char *logged_query_read(struct logged_query *out, enum log_kind kind,
 
 const struct query_header *logged_query_header(const struct logged_query *query);
 
+/* A result of a log. */
+struct logged_result {
+    enum log_kind kind; /* of its query */
+    union {
+        struct pair_result pair;
+        struct scene_result scene;
+    };
+};
+
+/* Decodes a result. kind: of its query. Returns NULL; or a static text: why it cannot be decoded.
+ */
+const char *logged_result_read(struct logged_result *out, enum log_kind kind, const void *bytes,
+                               uint32_t size);
+int32_t logged_result_status(const struct logged_result *result);
+int64_t logged_result_compute_ns(const struct logged_result *result);
+
 /* The placements in the struct; *count of them. */
 struct query_placement *logged_query_placements(struct logged_query *query, int32_t *count);
 
 /* query_pairs_decided() with memory of its own. */
 int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair);
+
+/* Whether the indices of a query are in range, and an OK result has answers to its pairs only, in
+ * their order. */
+bool logged_result_fits(const struct scene_query *query, const struct scene_result *result);
 
 /* Encodes a query that was decoded. Returns its size; 0 if it exceeds a datagram, or the struct
  * does not hold all of it. */

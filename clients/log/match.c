@@ -4,6 +4,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <utlist.h>
 
 /* Number of notes: a hash table without chains, which consecutive sequence numbers of a client fill
  * in order. */
@@ -50,7 +51,7 @@ void match_close(struct match *match)
         return;
     for (struct match_item *item; (item = match_any(match));) {
         match_remove(match, item);
-        match_free(item);
+        free(item);
     }
     HASH_CLEAR(hh, match->items);
     free(match);
@@ -67,14 +68,10 @@ struct match_item *match_find(const struct match *match, const struct match_key 
 static void put(struct match *match, struct match_item *item)
 {
     struct match_item *first = match_find(match, &item->key);
-    item->next = NULL;
-    item->last = item;
-    if (first) {
-        first->last->next = item;
-        first->last = item;
-    } else {
+    const bool is_first = !first;
+    match_append(&first, item);
+    if (is_first)
         HASH_ADD(hh, match->items, key, sizeof item->key, item);
-    }
 }
 
 struct match_item *match_new(const struct match_key *key, const struct match_place *place)
@@ -115,11 +112,6 @@ struct match_item *match_take(struct match *match, const struct match_key *key,
     return NULL;
 }
 
-void match_free(struct match_item *item)
-{
-    free(item);
-}
-
 struct match_item *match_any(const struct match *match)
 {
     return match->always.hh.next;
@@ -131,62 +123,48 @@ struct match_item *match_any(const struct match *match)
  */
 static struct match_item *take_all(struct match *match, bool results)
 {
-    struct match_item *first = NULL, **end = &first, *item, *next;
+    struct match_item *list = NULL, *item, *next;
     for (item = match_any(match); item; item = next) {
         next = item->hh.next;
         while (item && item->is_result == results) {
             struct match_item *same_key = item->next;
             match_remove(match, item);
-            *end = item;
-            end = &item->next;
-            *end = NULL;
+            match_append(&list, item);
             item = same_key;
         }
     }
-    return first;
+    return list;
 }
 
 void match_finish(struct match *match, match_sink *sink, void *user)
 {
-    struct match_item *results = take_all(match, true), *queries = take_all(match, false), *next;
-    for (struct match_item *item = queries; item; item = next) {
-        next = item->next;
+    struct match_item *results = take_all(match, true), *queries = take_all(match, false), *item;
+    while ((item = match_pop(&queries))) {
         item->key.utime = 0;
         put(match, item);
     }
-    for (struct match_item *result = results; result; result = next) {
-        next = result->next;
-        result->key.utime = 0;
-        struct match_item *query = match_find(match, &result->key);
+    while ((item = match_pop(&results))) {
+        item->key.utime = 0;
+        struct match_item *query = match_find(match, &item->key);
         if (query)
             match_remove(match, query);
-        sink(user, query, result);
+        sink(user, query, item);
     }
 }
 
 /* ---- Lists ---- */
 
-void match_list_add(struct match_list *list, struct match_item *item)
+void match_append(struct match_item **list, struct match_item *item)
 {
-    if (!list->first)
-        list->end = &list->first;
-    item->listed = NULL;
-    *list->end = item;
-    list->end = &item->listed;
+    DL_APPEND2(*list, item, last, next);
 }
 
-struct match_item *match_list_take(struct match_list *list)
+struct match_item *match_pop(struct match_item **list)
 {
-    struct match_item *item = list->first;
-    if (item)
-        list->first = item->listed;
-    return item;
-}
-
-void match_list_drop(struct match_list *list)
-{
-    while (list->first)
-        free(match_list_take(list));
+    struct match_item *first = *list;
+    if (first)
+        DL_DELETE2(*list, first, last, next);
+    return first;
 }
 
 /* ---- Notes ---- */

@@ -42,11 +42,10 @@ struct match_item {
     bool sent_whole;   /* sent with frames, after UNKNOWN_BODY */
     bool left_over;    /* a recording by another client lacks this query */
     struct match_place then;
-    size_t index;              /* of the query */
-    struct match_item *listed; /* the next item of a struct match_list */
-    struct match_item *next;   /* the next item with the same key; NULL: none */
+    size_t index;            /* of the query */
+    struct match_item *next; /* the next item with the same key, or of a list; NULL: none */
     /* Private: */
-    struct match_item *last; /* with the same key; only of the first item */
+    struct match_item *last; /* of a list the item before; of the first one the last item */
     UT_hash_handle hh;
 };
 
@@ -69,12 +68,11 @@ struct match_item *match_take(struct match *match, const struct match_key *key,
 struct match_item *match_add(struct match *match, const struct match_key *key,
                              const struct match_place *place, bool is_result);
 
-/* Makes an item outside the table. Free it with match_free(). */
+/* Makes an item outside the table. The caller frees it. */
 struct match_item *match_new(const struct match_key *key, const struct match_place *place);
 
-/* Removes the first item with its key from the table. Free it with match_free(). */
+/* Removes the first item with its key from the table. The caller frees it. */
 void match_remove(struct match *match, struct match_item *item);
-void match_free(struct match_item *item); /* may be NULL */
 
 /* Some item in the table that is the first with its key; NULL: the table is empty. */
 struct match_item *match_any(const struct match *match);
@@ -85,17 +83,10 @@ struct match_item *match_any(const struct match *match);
 typedef void match_sink(void *user, struct match_item *query, struct match_item *result);
 void match_finish(struct match *match, match_sink *sink, void *user);
 
-/* ---- Lists of items ---- */
+/* ---- Lists of items that are not in the table; NULL: empty ---- */
 
-/* All 0: empty. An item is in one list at most. */
-struct match_list {
-    struct match_item *first, **end;
-};
-
-void match_list_add(struct match_list *list, struct match_item *item);
-struct match_item *match_list_take(
-    struct match_list *list);                  /* the first item; NULL: none is left */
-void match_list_drop(struct match_list *list); /* frees all items */
+void match_append(struct match_item **list, struct match_item *item);
+struct match_item *match_pop(struct match_item **list); /* the first item; NULL: none is left */
 
 /* ---- Notes of matches ---- */
 

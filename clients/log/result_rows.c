@@ -6,7 +6,6 @@
 #include "ignored.h"
 #include "match.h"
 #include "scene.h"
-#include "wire.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -35,10 +34,7 @@ struct result_rows {
     size_t kept_bytes;
     struct kept_query *decoded; /* whose query is in `query`, with texts in its bytes */
     struct logged_query query;
-    union { /* the result */
-        struct pair_result pair;
-        struct scene_result scene;
-    };
+    struct logged_result result;
     /* The pairs of its query, if it does not list them: which, placements and ignored ones. */
     struct owned_scene all;
     struct fmb_placement placement[QUERY_PLACEMENTS_MAX];
@@ -126,9 +122,7 @@ static const char *take_query(struct result_rows *results, enum log_kind kind, i
     HASH_ADD(hh, results->kept, key, sizeof query->key, query);
     while (results->kept_bytes > RESULT_ROWS_BYTES_MAX)
         drop(results, results->kept);
-    int32_t count;
-    const struct query_placement *placement = logged_query_placements(&results->query, &count);
-    body_names_take(results->names, key.client_id, placement, count);
+    body_names_take(results->names, &results->query);
     return NULL;
 }
 
@@ -168,33 +162,6 @@ static void print_row(struct result_rows *results, const struct fmb_client_resul
 }
 
 /* ---- The pairs of a scene ---- */
-
-static bool are_below(const unsigned (*pair)[2], int64_t count, unsigned limit)
-{
-    for (int64_t k = 0; k < count; k++)
-        if (pair[k][0] >= limit || pair[k][1] >= limit)
-            return false;
-    return true;
-}
-
-/* Whether the indices of a result, and those of its query, are in range. */
-static bool result_matches(const struct scene_query *query, const struct scene_result *result)
-{
-    const int32_t n = query_stored_placements(query), count = result->verdict_count;
-    const int32_t listed = query->index_count / 2, ignored = query->ignored_count / 2;
-    if (query->placement_count != n || query->split < 0 || query->split > n ||
-        query->first_pair < 0 || listed > QUERY_PAIRS_MAX || ignored > QUERY_PAIRS_MAX ||
-        !are_below(query->ignored, ignored, (unsigned) n))
-        return false;
-    if (query->which == FMB_PAIRS_LISTED)
-        return !result->names_pairs && query->first_pair == result->end_pair - count &&
-               result->end_pair <= listed &&
-               are_below(query->pair + query->first_pair, count, (unsigned) n);
-    for (int32_t k = 0; k < count; k++)
-        if (!result->names_pairs || !query_has_pair(query, result->pair[k][0], result->pair[k][1]))
-            return false;
-    return true;
-}
 
 static void begin_all(struct result_rows *results)
 {
@@ -277,8 +244,8 @@ static void print_counts(const struct result_rows *results, const struct fmb_cli
 {
     int64_t count[FMB_OVERLAPPING + 1] = {0};
     FILE *out = results->printer.out;
-    for (int32_t k = 0; k < results->scene.verdict_count; k++)
-        count[results->scene.verdict[k]]++;
+    for (int32_t k = 0; k < results->result.scene.verdict_count; k++)
+        count[results->result.scene.verdict[k]]++;
     fprintf(out, "  up to pair %" PRId64, of->end_pair);
     if (label && *label) {
         fputs(" of ", out);
@@ -332,7 +299,7 @@ static void print(struct result_rows *results, const struct fmb_client_result *o
 /* Of several results of a query the first is printed, and those that depend on the moment. */
 static const char *print_result(struct result_rows *results, bool is_pair)
 {
-    const struct fmb_client_result of = fmb_client_raw_result_of(is_pair, &results->pair);
+    const struct fmb_client_result of = fmb_client_raw_result_of(is_pair, &results->result.pair);
     const struct match_key key = {is_pair ? LOG_PAIR_QUERY : LOG_SCENE_QUERY, of.client_id,
                                   of.sequence_number, of.utime};
     struct kept_query *kept = find(results, &key);
@@ -341,7 +308,7 @@ static const char *print_result(struct result_rows *results, bool is_pair)
     if (!kept || decode(results, kept))
         results->decoded = NULL;
     const struct scene_query *scene = results->decoded && !is_pair ? &results->query.scene : NULL;
-    if (scene && of.status == FMB_OK && !result_matches(scene, &results->scene))
+    if (scene && of.status == FMB_OK && !logged_result_fits(scene, &results->result.scene))
         return "does not match its query";
     if (kept)
         kept->answered = of.status != FMB_BUSY && of.status != FMB_UNKNOWN_BODY;
@@ -361,14 +328,10 @@ static const char *print_result(struct result_rows *results, bool is_pair)
 const char *result_rows_take(struct result_rows *results, enum log_kind kind, int64_t number,
                              const void *bytes, uint32_t size)
 {
-    const char *error;
-    switch (kind) {
-    case LOG_PAIR_QUERY:
-    case LOG_SCENE_QUERY: return take_query(results, kind, number, bytes, size);
-    case LOG_NAMES: return body_names_take_message(results->names, kind, bytes, size);
-    case LOG_PAIR_RESULT: error = wire_read_pair_result(bytes, size, &results->pair); break;
-    case LOG_SCENE_RESULT: error = wire_read_scene_result(bytes, size, &results->scene); break;
-    default: return NULL;
-    }
+    if (log_kind_is_query(kind))
+        return take_query(results, kind, number, bytes, size);
+    if (!log_kind_is_result(kind))
+        return body_names_take_message(results->names, kind, bytes, size);
+    const char *error = logged_result_read(&results->result, log_kind_query_of(kind), bytes, size);
     return error ? error : print_result(results, kind == LOG_PAIR_RESULT);
 }

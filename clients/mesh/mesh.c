@@ -158,7 +158,7 @@ bool mesh_read(const char *path, enum mesh_faces faces, const struct mesh_progre
     unsigned char *bytes = read_file(path, &size, error);
     const bool good = bytes && mesh_parse(bytes, size, path, faces, watch, out, error);
     if (good && watch)
-        watch->report(watch->context, size, size);
+        watch->report(watch->context, (int64_t) size, (int64_t) size);
     free(bytes);
     return good;
 }

@@ -47,7 +47,7 @@ enum { MESH_ERROR_MAX = 256 };
 /* A progress callback. It is called from time to time with the number of bytes processed and the
  * size of the file. */
 struct mesh_progress {
-    void (*report)(void *context, uint64_t done, uint64_t total);
+    void (*report)(void *context, int64_t done, int64_t total);
     void *context;
 };
 

@@ -196,7 +196,8 @@ static void report_progress(const struct mesh_search *search, uint64_t nodes)
 {
     const struct mesh_query *query = search->query;
     const uint64_t faces = query->a->face_count;
-    query->report(query->context, faces * nodes / search->tree[0].node_count, faces);
+    query->report(query->context, (int64_t) (faces * nodes / search->tree[0].node_count),
+                  (int64_t) faces);
 }
 
 static void decide_all(struct mesh_search *search)

@@ -12,7 +12,7 @@ struct mesh_query {
     double duration;                 /* of the window, seconds; finite, from 0 */
     const struct fmb_method *method; /* NULL: certified, in batches */
     /* Progress, as an approximate number of faces of a. May be NULL. */
-    void (*report)(void *context, uint64_t done, uint64_t total);
+    void (*report)(void *context, int64_t done, int64_t total);
     void *context;
 };
 

@@ -1,12 +1,10 @@
 #include "mesh_report.h"
 
-#include "allocate.h"
 #include "escape.h"
 #include "json_write.h"
 #include "number.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- For people ------------------------------------------------------------------------------ */
@@ -161,7 +159,7 @@ static unsigned char *put_bytes(unsigned char *at, uint64_t bits, size_t size)
     return at;
 }
 
-static void put_header(FILE *out, const struct mesh *mesh, bool coloured)
+static void put_header(FILE *out, size_t vertices, size_t faces, bool coloured)
 {
     fprintf(out,
             "ply\n"
@@ -174,7 +172,7 @@ static void put_header(FILE *out, const struct mesh *mesh, bool coloured)
             "property list uchar uint vertex_indices\n"
             "%s"
             "end_header\n",
-            mesh->vertex_count, mesh->face_count,
+            vertices, faces,
             coloured ? "property uchar red\nproperty uchar green\nproperty uchar blue\n" : "");
 }
 
@@ -189,13 +187,13 @@ static void put_vertex(FILE *out, const double position[3])
     fwrite(bytes, 1, (size_t) (at - bytes), out);
 }
 
-/* colour: red, green, blue; may be NULL. */
-static void put_face(FILE *out, const unsigned corner[3], const unsigned char *colour)
+/* first: added to the indices. colour: red, green, blue; may be NULL. */
+static void put_face(FILE *out, const unsigned corner[3], size_t first, const unsigned char *colour)
 {
     enum { INDEX_BYTES = 4 };
     unsigned char bytes[1 + 3 * INDEX_BYTES + 3], *at = put_bytes(bytes, 3, 1);
     for (int i = 0; i < 3; i++)
-        at = put_bytes(at, corner[i], INDEX_BYTES);
+        at = put_bytes(at, first + corner[i], INDEX_BYTES);
     for (int i = 0; colour && i < 3; i++)
         at = put_bytes(at, colour[i], 1);
     fwrite(bytes, 1, (size_t) (at - bytes), out);
@@ -203,21 +201,19 @@ static void put_face(FILE *out, const unsigned corner[3], const unsigned char *c
 
 void mesh_write_ply(FILE *out, const struct mesh *mesh, const unsigned char (*face_colour)[3])
 {
-    put_header(out, mesh, face_colour != NULL);
+    put_header(out, mesh->vertex_count, mesh->face_count, face_colour != NULL);
     for (size_t i = 0; i < mesh->vertex_count; i++)
         put_vertex(out, mesh->vertex[i]);
     for (size_t i = 0; i < mesh->face_count; i++)
-        put_face(out, mesh->face[i], face_colour ? face_colour[i] : NULL);
+        put_face(out, mesh->face[i], 0, face_colour ? face_colour[i] : NULL);
 }
 
 /* ---- Colours --------------------------------------------------------------------------------- */
 
-typedef unsigned char colour[3];
-
 static const unsigned char *colour_of(const struct mesh_report *report, int which, size_t face)
 {
-    static const colour of_mesh[2] = {{190, 190, 190}, {120, 160, 220}};
-    static const colour of_touching = {240, 200, 40}, of_overlapping = {220, 40, 40};
+    static const unsigned char of_mesh[2][3] = {{190, 190, 190}, {120, 160, 220}};
+    static const unsigned char of_touching[3] = {240, 200, 40}, of_overlapping[3] = {220, 40, 40};
     switch (report->intersection->worst[which][face]) {
     case FMB_OVERLAPPING: return of_overlapping;
     case FMB_TOUCHING: return of_touching;
@@ -225,38 +221,17 @@ static const unsigned char *colour_of(const struct mesh_report *report, int whic
     }
 }
 
-/* Concatenates both meshes. The caller frees the mesh and *face_colour. */
-static struct mesh concatenate(const struct mesh_report *report, colour **face_colour)
-{
-    const int meshes = mesh_is_self(report->query) ? 1 : 2;
-    struct mesh out = {0};
-    for (int m = 0; m < meshes; m++) {
-        out.vertex_count += report->mesh[m]->vertex_count;
-        out.face_count += report->mesh[m]->face_count;
-    }
-    out.vertex = allocate(out.vertex_count, sizeof *out.vertex);
-    out.face = allocate(out.face_count, sizeof *out.face);
-    *face_colour = allocate(out.face_count, sizeof **face_colour);
-    size_t vertex = 0, face = 0;
-    for (int m = 0; m < meshes; m++) {
-        const struct mesh *mesh = report->mesh[m];
-        for (size_t f = 0; f < mesh->face_count; f++, face++) {
-            for (int corner = 0; corner < 3; corner++)
-                out.face[face][corner] = (unsigned) vertex + mesh->face[f][corner];
-            memcpy((*face_colour)[face], colour_of(report, m, f), sizeof **face_colour);
-        }
-        if (mesh->vertex_count > 0)
-            memcpy(out.vertex + vertex, mesh->vertex, mesh->vertex_count * sizeof *out.vertex);
-        vertex += mesh->vertex_count;
-    }
-    return out;
-}
-
 void mesh_report_ply(FILE *out, const struct mesh_report *report)
 {
-    colour *face_colour;
-    struct mesh both = concatenate(report, &face_colour);
-    mesh_write_ply(out, &both, (const unsigned char(*)[3]) face_colour);
-    free(face_colour);
-    mesh_free(&both);
+    const int meshes = mesh_is_self(report->query) ? 1 : 2;
+    const struct mesh *const *mesh = report->mesh;
+    size_t first = 0;
+    put_header(out, mesh[0]->vertex_count + (meshes > 1 ? mesh[1]->vertex_count : 0),
+               mesh[0]->face_count + (meshes > 1 ? mesh[1]->face_count : 0), true);
+    for (int m = 0; m < meshes; m++)
+        for (size_t i = 0; i < mesh[m]->vertex_count; i++)
+            put_vertex(out, mesh[m]->vertex[i]);
+    for (int m = 0; m < meshes; first += mesh[m++]->vertex_count)
+        for (size_t i = 0; i < mesh[m]->face_count; i++)
+            put_face(out, mesh[m]->face[i], first, colour_of(report, m, i));
 }

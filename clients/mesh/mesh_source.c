@@ -64,8 +64,7 @@ void mesh_report_progress_now(struct mesh_source *source)
     const struct mesh_progress *watch = source->watch;
     source->reported = source->at;
     if (watch)
-        watch->report(watch->context, (uint64_t) (source->at - source->begin),
-                      (uint64_t) (source->end - source->begin));
+        watch->report(watch->context, source->at - source->begin, source->end - source->begin);
 }
 
 /* strtod() also reads hexadecimal numbers and the characters in nan(...), which end a number here.

@@ -29,8 +29,7 @@ struct record_bodies {
     enum log_kind kind; /* of the message read; LOG_OTHER: it cannot be decoded */
     union {
         struct logged_query query;
-        struct pair_result pair_result;
-        struct scene_result scene_result;
+        struct logged_result result;
         struct definition_query definition_query;
         struct definition definition;
         struct wire_status status;
@@ -70,9 +69,9 @@ static const char *read_message(struct record_bodies *bodies, enum log_kind kind
     switch (kind) {
     case LOG_PAIR_QUERY:
     case LOG_SCENE_QUERY: return logged_query_read(&bodies->message.query, kind, bytes, size);
-    case LOG_PAIR_RESULT: return wire_read_pair_result(bytes, size, &bodies->message.pair_result);
+    case LOG_PAIR_RESULT:
     case LOG_SCENE_RESULT:
-        return wire_read_scene_result(bytes, size, &bodies->message.scene_result);
+        return logged_result_read(&bodies->message.result, log_kind_query_of(kind), bytes, size);
     case LOG_DEFINITION_QUERY:
         return wire_read_definition_query(bytes, size, &bodies->message.definition_query);
     case LOG_DEFINITION:
@@ -113,7 +112,7 @@ static struct query_placement *placements(const struct record_bodies *bodies, in
 
 /* ---- Files ---- */
 
-bool record_bodies_begin_file(struct record_bodies *bodies, int64_t utime, definition_sink *sink,
+bool record_bodies_begin_file(struct record_bodies *bodies, int64_t utime, log_sink *sink,
                               void *user)
 {
     definitions_begin_file(bodies->definitions);
@@ -127,7 +126,7 @@ size_t record_bodies_needed(const struct record_bodies *bodies)
     return definitions_needed(bodies->definitions, placement, count);
 }
 
-bool record_bodies_define(struct record_bodies *bodies, definition_sink *sink, void *user)
+bool record_bodies_define(struct record_bodies *bodies, log_sink *sink, void *user)
 {
     int32_t count;
     const struct query_placement *placement = placements(bodies, &count);
@@ -168,16 +167,15 @@ static void want(struct record_bodies *bodies, const struct handle *handle)
 
 static void keep_query(struct record_bodies *bodies)
 {
-    const struct query_header *header = logged_query_header(&bodies->message.query);
+    struct logged_query *query = &bodies->message.query;
     int32_t count;
     const struct query_placement *placement = placements(bodies, &count);
-    count_skipped(bodies, header);
-    body_names_take(bodies->names, header->client_id, placement, count);
+    count_skipped(bodies, logged_query_header(query));
+    body_names_take(bodies->names, query);
+    definitions_add_query(bodies->definitions, query);
     for (int32_t i = 0; i < count; i++)
         if (query_by_handle(&placement[i]))
             want(bodies, &placement[i].body.handle);
-        else
-            definitions_add_placement(bodies->definitions, &placement[i]);
 }
 
 /* Drops all bodies if they take too much memory. */

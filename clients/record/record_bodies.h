@@ -38,14 +38,14 @@ enum record_bodies_owner {
 enum record_bodies_owner record_bodies_owner(const struct record_bodies *bodies);
 
 /* Begins a file that defines nothing yet, and writes the names to it. */
-bool record_bodies_begin_file(struct record_bodies *bodies, int64_t utime, definition_sink *sink,
+bool record_bodies_begin_file(struct record_bodies *bodies, int64_t utime, log_sink *sink,
                               void *user);
 
 /* Most bytes of the events with the definitions that must precede the message read; 0: none. */
 size_t record_bodies_needed(const struct record_bodies *bodies);
 
 /* Writes these definitions, one message after the other. Returns false as soon as sink does. */
-bool record_bodies_define(struct record_bodies *bodies, definition_sink *sink, void *user);
+bool record_bodies_define(struct record_bodies *bodies, log_sink *sink, void *user);
 
 /* Keeps the bodies and names of the message read, which is in the file. */
 void record_bodies_keep(struct record_bodies *bodies);

@@ -68,10 +68,7 @@ struct answer_bus {
     struct tally_bus counts;
     struct logged_query query;    /* the one to be sent */
     struct logged_query answered; /* the one that a result answers */
-    union {
-        struct pair_result pair;
-        struct scene_result scene;
-    } result;
+    struct logged_result result;
     unsigned char bytes[QUERY_BYTES_MAX];
 };
 
@@ -120,18 +117,14 @@ static void count_service(struct answer_bus *bus)
 static void decode_result(struct answer_bus *bus, enum log_kind kind,
                           const struct fmb_client_raw_result *result, struct new_result *out)
 {
-    const uint32_t size = (uint32_t) out->size;
-    if (kind == LOG_PAIR_QUERY) {
-        wire_read_pair_result(bus->bytes, size,
-                              &bus->result.pair); /* cannot fail: the library has decoded it */
-        out->compute_ns = bus->result.pair.compute_ns;
-        out->pairs = out->status == FMB_OK;
-    } else {
-        wire_read_scene_result(bus->bytes, size, &bus->result.scene);
-        out->compute_ns = bus->result.scene.compute_ns;
-        logged_query_read(&bus->answered, kind, result->query, (uint32_t) result->query_size);
-        out->pairs = replayed_decided(&bus->answered.scene, &bus->result.scene);
-    }
+    /* Cannot fail: the library has decoded it. */
+    logged_result_read(&bus->result, kind, bus->bytes, (uint32_t) out->size);
+    out->compute_ns = logged_result_compute_ns(&bus->result);
+    out->pairs = out->status == FMB_OK;
+    if (kind == LOG_PAIR_QUERY)
+        return;
+    logged_query_read(&bus->answered, kind, result->query, (uint32_t) result->query_size);
+    out->pairs = replayed_decided(&bus->answered.scene, &bus->result.scene);
 }
 
 static void on_result(void *user, const struct fmb_client_raw_result *result)
@@ -151,7 +144,7 @@ static void on_result(void *user, const struct fmb_client_raw_result *result)
     }
     slot->bus = NULL;
     if (!is_running(bus))
-        match_free(item);
+        free(item);
     else if (item)
         deliver(bus, item, &answered);
 }
@@ -238,7 +231,7 @@ static void send(struct answer_bus *bus, struct match_item *item, const unsigned
     }
     slot->bus = NULL;
     stop(bus, ANSWER_BUS_FAILED, item ? &item->place : NULL);
-    match_free(item);
+    free(item);
 }
 
 /* Answers a query that the engine does not send, with the status of a service: it is too long, or
@@ -278,7 +271,7 @@ void answer_bus_query(struct answer_bus *bus, struct match_item *item, const uns
     const size_t largest = bytes_of(bus, size);
     wait_for_turn(bus, &item->place, largest);
     if (!is_running(bus)) {
-        match_free(item);
+        free(item);
         return;
     }
     bus->counts.whole += item->sent_whole;
@@ -328,7 +321,7 @@ void answer_bus_close(struct answer_bus *bus)
         return;
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++)
         if (bus->slot[i].bus)
-            match_free(bus->slot[i].item);
+            free(bus->slot[i].item);
     fmb_client_close(bus->client);
     if (bus->signals >= 0)
         close(bus->signals);

@@ -189,37 +189,14 @@ static enum replay_outcome compare_answers(const struct compare_options *options
     return outcome;
 }
 
-/* Whether the result is consistent with the query, so that its answers can be iterated. Always true
- * for results of this process. */
-static bool is_consistent(const struct scene_query *query, const struct scene_result *result)
-{
-    const bool names = query->which != FMB_PAIRS_LISTED;
-    if (result->end_pair < query->first_pair || result->end_pair > query_pair_count(query))
-        return false;
-    if (!names)
-        return (!result->names_pairs || result->verdict_count == 0) &&
-               result->verdict_count == result->end_pair - query->first_pair;
-    int32_t before = query->first_pair - 1;
-    for (int32_t i = 0; i < result->verdict_count; i++) {
-        const unsigned *pair = result->names_pairs ? result->pair[i] : NULL;
-        if (!pair || !query_has_pair(query, pair[0], pair[1]))
-            return false;
-        const int32_t number = (int32_t) query_pair_number(query, pair[0], pair[1]);
-        if (number <= before || number >= result->end_pair)
-            return false;
-        before = number;
-    }
-    return true;
-}
-
 /* Whether the answers of two results of a scene can be compared; otherwise *outcome. */
 static bool are_comparable(const struct replayed *replayed, int32_t then, int32_t now,
                            enum replay_outcome *outcome)
 {
     *outcome = then == now && now != FMB_OK ? REPLAY_SAME : REPLAY_DIFFERENT;
     return then == FMB_OK && now == FMB_OK &&
-           is_consistent(replayed->scene, replayed->scene_then) &&
-           is_consistent(replayed->scene, replayed->scene_now);
+           logged_result_fits(replayed->scene, replayed->scene_then) &&
+           logged_result_fits(replayed->scene, replayed->scene_now);
 }
 
 enum replay_outcome compare_results(const struct compare_options *options,

@@ -44,47 +44,33 @@ static struct match_place place_of(const struct replay *replay, const struct log
                                 .utime = event->utime};
 }
 
-/* Collects the bodies and names of a query. Returns as logged_query_read(). */
-static const char *read_query(struct replay *replay, const struct message *query)
-{
-    int32_t count;
-    const char *error = logged_query_read(&replay->query, (enum log_kind) query->key.kind,
-                                          query->bytes, query->size);
-    const struct query_placement *placement = logged_query_placements(&replay->query, &count);
-    if (error)
-        return error;
-    if (replay->options->names)
-        body_names_take(replay->options->names, query->key.client_id, placement, count);
-    for (int32_t i = 0; i < count; i++)
-        definitions_add_placement(replay->definitions, &placement[i]);
-    return NULL;
-}
-
-static void take_message(struct replay *replay, enum log_kind kind, const struct log_event *event)
+/* Registers a query or a result, after the bodies and names of a query were collected. error: why
+ * a query cannot be decoded; NULL: it can. */
+static void take_message(struct replay *replay, enum log_kind kind, const struct log_event *event,
+                         const char *error)
 {
     struct message message = {.place = place_of(replay, event)};
-    const char *error = read_key(kind, event, &message);
-    const bool has_ids = !error, is_query = log_kind_is_query(kind);
-    if (has_ids && is_query)
-        error = read_query(replay, &message);
+    const char *no_ids = read_key(kind, event, &message);
+    const bool is_query = log_kind_is_query(kind);
+    error = no_ids ? no_ids : error;
     if (error && message.place.in_range)
         replay_refuse(replay, kind, &message, error);
-    if (has_ids && is_query) {
+    if (no_ids)
+        return;
+    if (is_query) {
         replay_take_query(replay, &message, error);
-    } else if (has_ids && !replay->options->golden) {
+    } else if (!replay->options->golden) {
         replay_channel(replay, &message.key, &message.place)->results += message.place.in_range;
         replay_take_result(replay, &message);
     }
 }
 
-static void take_definition(struct replay *replay, const struct log_event *event)
+static void count_definition(struct replay *replay, const struct log_event *event,
+                             const char *error)
 {
     const struct match_place place = place_of(replay, event);
-    struct tally *tally = &replay->tally[place.log];
-    const char *error = definitions_add_message(replay->definitions, LOG_DEFINITION, event->data,
-                                                (uint32_t) event->kept);
-    tally->definitions += !error;
-    tally->unreadable_definitions += error != NULL;
+    replay->tally[place.log].definitions += !error;
+    replay->tally[place.log].unreadable_definitions += error != NULL;
     if (error)
         replay->sink->unreadable(replay->sink->user, &place, replay->channels.name[LOG_DEFINITION],
                                  error);
@@ -122,14 +108,15 @@ static void survey_event(struct replay *replay, const struct log_event *event)
     tally->bytes += event->length;
     tally->statuses += kind == LOG_STATUS;
     tally->other_events += kind == LOG_OTHER;
-    if (log_kind_old_version(kind, event))
-        replay->old_version = log_kind_old_version(kind, event);
-    else if (log_kind_is_query(kind) || log_kind_is_result(kind))
-        take_message(replay, kind, event);
+    if ((replay->old_version = log_kind_old_version(kind, event)) != 0)
+        return;
+    const uint32_t size = (uint32_t) event->kept;
+    const char *error = definitions_add_message(replay->definitions, kind, event->data, size);
+    body_names_take_message(replay->options->names, kind, event->data, size);
+    if (log_kind_is_query(kind) || log_kind_is_result(kind))
+        take_message(replay, kind, event, error);
     else if (kind == LOG_DEFINITION)
-        take_definition(replay, event);
-    else if (kind == LOG_NAMES && replay->options->names)
-        body_names_take_message(replay->options->names, kind, event->data, (uint32_t) event->kept);
+        count_definition(replay, event, error);
 }
 
 /* ---- The second reading ---- */
@@ -204,7 +191,8 @@ static void close_replay(struct replay *replay)
         replay->tally[0].bus = answer_bus_counts(replay->bus);
     answer_bus_close(replay->bus);
     local_answerer_close(replay->local);
-    match_list_drop(&replay->again);
+    for (struct match_item *query; (query = match_pop(&replay->again));)
+        free(query);
     free(replay->recorded);
     match_close(replay->match);
     replay_close_pairs(replay);

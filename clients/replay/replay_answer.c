@@ -3,6 +3,7 @@
 
 #include "wire.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- Answers ---- */
@@ -40,7 +41,7 @@ static void take_answer(struct replay *replay, struct match_item *query,
     if (replay->new_golden)
         write_golden(replay, query, answered);
     replay_compare(replay, query, answered);
-    match_free(query);
+    free(query);
 }
 
 /* ---- By a service ---- */
@@ -53,7 +54,7 @@ bool replay_on_answered(void *user, struct match_item *query, const struct new_r
     if (is_last)
         take_answer(replay, query, answered);
     else
-        match_list_add(&replay->again, query);
+        match_append(&replay->again, query);
     return is_last;
 }
 
@@ -110,7 +111,7 @@ static const char *read_query(struct replay *replay, const struct message *query
 
 static void send_again(struct replay *replay)
 {
-    for (struct match_item *query; (query = match_list_take(&replay->again));) {
+    for (struct match_item *query; (query = match_pop(&replay->again));) {
         struct message message;
         const bool read =
             replay_read_again(replay, &query->key, &query->place, replay->query_bytes, &message);
@@ -120,7 +121,7 @@ static void send_again(struct replay *replay)
         }
         if (read)
             replay_fail_changed(replay, query->place.log);
-        match_free(query);
+        free(query);
     }
 }
 
@@ -136,7 +137,7 @@ static void answer_here(struct replay *replay, struct match_item *query,
         return;
     }
     replay_fail_changed(replay, query->place.log);
-    match_free(query);
+    free(query);
 }
 
 void replay_answer_query(struct replay *replay, const struct message *message)
@@ -172,7 +173,7 @@ void replay_finish_answers(struct replay *replay)
         send_again(replay);
         if (replay->bus)
             answer_bus_finish(replay->bus);
-    } while (replay->again.first && !replay_has_ended(replay));
+    } while (replay->again && !replay_has_ended(replay));
     if (!replay_has_ended(replay) && replay->next < replay->recorded_count)
         replay_fail_changed(replay, replay->input.log);
 }

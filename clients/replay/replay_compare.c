@@ -4,7 +4,6 @@
 
 #include "big_endian.h"
 #include "complain.h"
-#include "wire.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -62,22 +61,10 @@ bool replay_read_again(struct replay *replay, const struct match_key *key,
     return false;
 }
 
-static const char *read_result(int64_t kind, const unsigned char *bytes, uint32_t size,
-                               union decoded_result *out)
-{
-    return kind == LOG_PAIR_QUERY ? wire_read_pair_result(bytes, size, &out->pair)
-                                  : wire_read_scene_result(bytes, size, &out->scene);
-}
-
 const char *replay_read_result(struct replay *replay, const struct message *result)
 {
-    return read_result(result->key.kind, result->bytes, result->size, &replay->then);
-}
-
-bool replay_is_transient(const struct replay *replay, enum log_kind kind)
-{
-    return compare_status_is_transient(kind == LOG_PAIR_QUERY ? replay->then.pair.status
-                                                              : replay->then.scene.status);
+    return logged_result_read(&replay->then, (enum log_kind) result->key.kind, result->bytes,
+                              result->size);
 }
 
 /* Reads the query of a comparison again, which could be decoded before. */
@@ -96,8 +83,8 @@ static bool read_query(struct replay *replay, const struct match_key *key,
 static bool read_both(struct replay *replay, const struct match_item *item,
                       const struct new_result *answered)
 {
-    const char *error =
-        read_result(item->key.kind, answered->bytes, (uint32_t) answered->size, &replay->now);
+    const char *error = logged_result_read(&replay->now, (enum log_kind) item->key.kind,
+                                           answered->bytes, (uint32_t) answered->size);
     assert(!error); /* encoded by this process, or decoded before */
     (void) error;
     return read_query(replay, &item->key, &item->place);
@@ -195,8 +182,7 @@ void replay_compare(struct replay *replay, const struct match_item *query,
     replay->item = query;
     struct replayed replayed = replayed_of(replay, true);
     replayed.outcome = compare_results(&replay->options->compare, &replayed, on_difference, replay);
-    count(replay, query, replayed.outcome,
-          replayed.pair ? replay->then.pair.compute_ns : replay->then.scene.compute_ns);
+    count(replay, query, replayed.outcome, logged_result_compute_ns(&replay->then));
     if (replay->options->page)
         add_to_page(replay, query, replayed);
 }
@@ -217,7 +203,8 @@ void replay_compare_second(struct replay *replay, const struct match_note *note,
     const enum log_kind kind = log_kind_result_of((enum log_kind) second->key.kind);
     if (!read_query(replay, &note->key, &query))
         return;
-    if (read_result(first->key.kind, first->bytes, first->size, &replay->now)) {
+    if (logged_result_read(&replay->now, (enum log_kind) first->key.kind, first->bytes,
+                           first->size)) {
         replay_fail_changed(replay, first->place.log);
         return;
     }

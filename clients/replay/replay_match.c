@@ -3,6 +3,8 @@
 
 #include "allocate.h"
 
+#include <stdlib.h>
+
 static void refuse_result(struct replay *replay, const struct message *result, const char *error)
 {
     if (result->place.in_range)
@@ -17,7 +19,7 @@ static void close_query(struct replay *replay, struct match_item *query,
     recorded->log = result->log;
     recorded->result = result->offset;
     replay_note_match(replay, query, result);
-    match_free(query);
+    free(query);
 }
 
 /* ---- Queries ---- */
@@ -46,7 +48,7 @@ void replay_take_query(struct replay *replay, const struct message *query, bool 
         return;
     match_remove(replay->match, first);
     close_query(replay, item, &first->place);
-    match_free(first);
+    free(first);
 }
 
 /* ---- Results ---- */
@@ -66,7 +68,7 @@ static void compare_second(struct replay *replay, const struct message *result,
 static void take_result_of(struct replay *replay, struct match_item *query,
                            const struct message *result)
 {
-    const bool transient = replay_is_transient(replay, (enum log_kind) query->key.kind);
+    const bool transient = compare_status_is_transient(logged_result_status(&replay->then));
     replay_channel(replay, &result->key, &result->place)->results_again +=
         query->has_recorded && result->place.in_range;
     if (!query->has_recorded || !transient)
@@ -99,14 +101,14 @@ static void on_matched(void *user, struct match_item *query, struct match_item *
 {
     struct replay *replay = user;
     if (!query && replay->options->golden) {
-        match_list_add(&replay->unmatched, result);
+        match_append(&replay->unmatched, result);
         return;
     }
     if (query)
         close_query(replay, query, &result->place);
     else
         replay_channel(replay, &result->key, &result->place)->unmatched += result->place.in_range;
-    match_free(result);
+    free(result);
 }
 
 /* Closes queries that have only a transient result. */
@@ -135,6 +137,6 @@ void replay_finish_matches(struct replay *replay)
             replay_channel(replay, &item->key, &item->place)->unmatched++;
         else if (item->left_over && item->place.in_range)
             replay_count_left_over(replay, &item->key, &item->place);
-        match_free(item);
+        free(item);
     }
 }

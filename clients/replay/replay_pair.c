@@ -15,56 +15,53 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An entry of a table: of clients (by id), of counts (by client and group), of queries of the
- * replayed logs (by client, group and number), or of the golden log (by type and ids). */
+/* What an entry of the table is about, and its key. */
+enum pair_kind {
+    PAIR_MATCHED, /* a client with matches: its id */
+    PAIR_CLIENT,  /* a client: its id */
+    PAIR_GROUP,   /* the queries of a client and group: number of the client, group */
+    PAIR_QUERY,   /* a query of the replayed logs: numbers of client and query, group */
+    PAIR_IDS      /* a query of the golden log: kind, client id, sequence number */
+};
+
 struct pair_key {
+    int64_t kind, golden; /* enum pair_kind; 1: of the golden log */
     int64_t number[3];
     struct handle group;
 };
 
 struct replay_pair {
     struct pair_key key;
-    int64_t number;
-    struct match_item *query;   /* while queries are paired; NULL: none */
+    int64_t count;              /* CLIENT: its number, from 1; GROUP: queries; IDS: how often */
+    struct match_item *query;   /* QUERY, IDS: while queries are paired; NULL: none */
     struct match_key query_key; /* of that query */
     UT_hash_handle hh;
 };
 
-/* The tables of one recording. */
-struct recording {
-    struct replay_pair *clients, *counts;
-};
-
-/* ---- Tables ---- */
-
-static struct replay_pair *find(struct replay_pair *table, const struct pair_key *key)
+static struct replay_pair *find(const struct replay *replay, const struct pair_key *key)
 {
     struct replay_pair *entry = NULL;
-    if (table)
-        HASH_FIND(hh, table, key, sizeof *key, entry);
+    if (replay->pairs)
+        HASH_FIND(hh, replay->pairs, key, sizeof *key, entry);
     return entry;
 }
 
-/* The entry of a key, which is added if there is none: *is_new. Its number is that of earlier
- * entries. */
-static struct replay_pair *take(struct replay_pair **table, const struct pair_key *key,
-                                bool *is_new)
+/* The entry of a key, which is added if there is none. */
+static struct replay_pair *take(struct replay *replay, const struct pair_key *key)
 {
-    struct replay_pair *entry = find(*table, key);
-    *is_new = !entry;
+    struct replay_pair *entry = find(replay, key);
     if (entry)
         return entry;
     entry = allocate(1, sizeof *entry);
     entry->key = *key;
-    entry->number = HASH_COUNT(*table);
-    HASH_ADD(hh, *table, key, sizeof entry->key, entry);
+    HASH_ADD(hh, replay->pairs, key, sizeof entry->key, entry);
     return entry;
 }
 
-static void clear(struct replay_pair **table)
+void replay_close_pairs(struct replay *replay)
 {
-    struct replay_pair *first = *table;
-    HASH_CLEAR(hh, *table);
+    struct replay_pair *first = replay->pairs;
+    HASH_CLEAR(hh, replay->pairs);
     while (first) {
         struct replay_pair *next = first->hh.next;
         free(first);
@@ -72,37 +69,26 @@ static void clear(struct replay_pair **table)
     }
 }
 
-static struct pair_key key_of_client(int64_t client_id)
-{
-    return (struct pair_key){.number = {client_id}};
-}
-
-static struct pair_key key_of_ids(const struct match_key *key)
-{
-    return (struct pair_key){.number = {key->kind, key->client_id, key->sequence_number}};
-}
-
 /* ---- Clients with matches ---- */
+
+static struct pair_key key_of_matched(int64_t client_id)
+{
+    return (struct pair_key){.kind = PAIR_MATCHED, .number = {client_id}};
+}
 
 void replay_note_match(struct replay *replay, const struct match_item *query,
                        const struct match_place *result)
 {
-    const struct pair_key client = key_of_client(query->key.client_id);
-    bool is_new;
+    const struct pair_key key = key_of_matched(query->key.client_id);
     match_note(replay->match, query, result);
     if (replay->options->golden)
-        take(&replay->matched_clients, &client, &is_new);
+        take(replay, &key);
 }
 
 static bool is_matched(struct replay *replay, int64_t client_id)
 {
-    const struct pair_key client = key_of_client(client_id);
-    return find(replay->matched_clients, &client);
-}
-
-void replay_close_pairs(struct replay *replay)
-{
-    clear(&replay->matched_clients);
+    const struct pair_key key = key_of_matched(client_id);
+    return find(replay, &key);
 }
 
 /* ---- Numbers ---- */
@@ -112,56 +98,55 @@ void replay_close_pairs(struct replay *replay)
 static struct handle group_of(struct replay *replay, int64_t kind, const struct logged_query *query)
 {
     unsigned char *out = replay->whole;
-    size_t label = 0;
+    const char *label = "";
     int64_t number[3] = {kind};
     if (query && kind == LOG_PAIR_QUERY) {
         number[1] = query->pair.placement[0].placed.id;
         number[2] = query->pair.placement[1].placed.id;
     } else if (query) {
         number[1] = query->scene.first_pair;
-        label = query->scene.label ? strlen(query->scene.label) : 0;
-        memcpy(out + sizeof number, query->scene.label ? query->scene.label : "", label);
+        label = query->scene.label ? query->scene.label : "";
     }
     memcpy(out, number, sizeof number);
-    return hasher_handle(replay->hasher, out, sizeof number + label);
+    strcpy((char *) out + sizeof number, label);
+    return hasher_handle(replay->hasher, out, sizeof number + strlen(label));
 }
 
-/* The client, group and number of the next query of a client and group. */
-static struct pair_key next_key(struct recording *recording, int64_t client_id,
-                                const struct handle *group)
+/* The key of the next query of a client and group. by_type: without queries. */
+static struct pair_key next_key(struct replay *replay, bool golden, const struct match_key *ids,
+                                bool by_type)
 {
-    const struct pair_key client = key_of_client(client_id);
-    bool is_new;
-    struct pair_key key = {.group = *group};
-    key.number[0] = take(&recording->clients, &client, &is_new)->number;
-    struct replay_pair *count = take(&recording->counts, &key, &is_new);
-    count->number = is_new ? 0 : count->number + 1;
-    key.number[1] = count->number;
+    const struct pair_key client = {PAIR_CLIENT, golden, {ids->client_id}, {{0}}};
+    struct pair_key key = {.kind = PAIR_GROUP,
+                           .golden = golden,
+                           .group = group_of(replay, ids->kind, by_type ? NULL : &replay->query)};
+    struct replay_pair *entry = take(replay, &client);
+    if (entry->count == 0)
+        entry->count = ++replay->paired_clients[golden];
+    key.number[0] = entry->count;
+    key.number[1] = take(replay, &key)->count++;
+    key.kind = PAIR_QUERY;
+    key.golden = false;
     return key;
 }
 
 /* Numbers the remaining queries of the replayed logs. */
-static void number_queries(struct replay *replay, bool by_type, struct replay_pair **numbered)
+static void number_queries(struct replay *replay)
 {
-    struct recording recording = {NULL, NULL};
     for (struct match_item *query = match_any(replay->match); query; query = query->hh.next) {
         const struct match_key *ids = &query->key;
         struct message message;
-        bool is_new;
         if (query->unreadable || is_matched(replay, ids->client_id) ||
             !replay_read_again(replay, ids, &query->place, replay->query_bytes, &message) ||
             logged_query_read(&replay->query, (enum log_kind) ids->kind, message.bytes,
                               message.size))
             continue;
-        const struct handle group = group_of(replay, ids->kind, by_type ? NULL : &replay->query);
-        const struct pair_key key = next_key(&recording, ids->client_id, &group);
-        struct replay_pair *entry = take(numbered, &key, &is_new);
+        const struct pair_key key = next_key(replay, false, ids, !replay->golden_has_queries);
+        struct replay_pair *entry = take(replay, &key);
         entry->query = query;
-        query->left_over = true;
         entry->query_key = *ids;
+        query->left_over = true;
     }
-    clear(&recording.clients);
-    clear(&recording.counts);
 }
 
 /* ---- The golden log ---- */
@@ -174,42 +159,42 @@ void replay_count_left_over(struct replay *replay, const struct match_key *key,
                              "has no counterpart in the other recording");
 }
 
-/* Pairs a query, or a result of a log without queries, with the numbered queries. */
-static void pair_event(struct replay *replay, struct recording *golden,
-                       const struct log_event *event, enum log_kind kind,
-                       struct replay_pair *numbered, struct replay_pair **pairs)
+static struct pair_key key_of_ids(const struct match_key *key)
 {
-    struct match_key key;
-    bool is_new;
+    return (struct pair_key){.kind = PAIR_IDS,
+                             .number = {key->kind, key->client_id, key->sequence_number}};
+}
+
+/* Pairs a query, or a result of a log without queries, with the numbered queries. */
+static void pair_event(struct replay *replay, const struct log_event *event, enum log_kind kind)
+{
+    struct match_key ids;
     const bool by_type = log_kind_is_result(kind);
-    if (match_key_of(kind, event, &key) || is_matched(replay, key.client_id) ||
+    if (match_key_of(kind, event, &ids) || is_matched(replay, ids.client_id) ||
         (!by_type && logged_query_read(&replay->query, kind, event->data, (uint32_t) event->kept)))
         return;
-    const struct pair_key unique = key_of_ids(&key);
-    struct replay_pair *pair = take(pairs, &unique, &is_new);
-    if (!is_new)
+    const struct pair_key unique = key_of_ids(&ids);
+    struct replay_pair *pair = take(replay, &unique);
+    if (pair->count++ > 0)
         return;
-    const struct handle group = group_of(replay, key.kind, by_type ? NULL : &replay->query);
-    const struct pair_key number = next_key(golden, key.client_id, &group);
-    const struct replay_pair *query = find(numbered, &number);
-    if (query) {
-        pair->query = query->query;
-        pair->query_key = query->query_key;
-        query->query->left_over = false;
+    const struct pair_key key = next_key(replay, true, &ids, by_type);
+    const struct replay_pair *numbered = find(replay, &key);
+    if (numbered) {
+        pair->query = numbered->query;
+        pair->query_key = numbered->query_key;
+        numbered->query->left_over = false;
         return;
     }
     const struct match_place place = {.log = replay->options->log_count,
                                       .number = event->number,
                                       .offset = event->offset,
                                       .utime = event->utime};
-    replay_count_left_over(replay, &key, &place);
+    replay_count_left_over(replay, &ids, &place);
 }
 
 /* Reads the golden log once more; its damage was reported before. */
-static void pair_golden(struct replay *replay, struct replay_pair *numbered,
-                        struct replay_pair **pairs)
+static void pair_golden(struct replay *replay)
 {
-    struct recording golden = {NULL, NULL};
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
@@ -218,32 +203,27 @@ static void pair_golden(struct replay *replay, struct replay_pair *numbered,
         const enum log_kind kind =
             outcome == LOG_EVENT ? log_kind_of(&replay->channels, &event) : LOG_OTHER;
         if (replay->golden_has_queries ? log_kind_is_query(kind) : log_kind_is_result(kind))
-            pair_event(replay, &golden, &event, kind, numbered, pairs);
+            pair_event(replay, &event, kind);
     }
     if (outcome == LOG_FAILED)
         replay_fail_log(replay, replay->options->log_count);
-    clear(&golden.clients);
-    clear(&golden.counts);
 }
 
 /* ---- Results ---- */
 
 void replay_pair_results(struct replay *replay)
 {
-    struct replay_pair *numbered = NULL, *pairs = NULL;
-    number_queries(replay, !replay->golden_has_queries, &numbered);
-    pair_golden(replay, numbered, &pairs);
-    clear(&numbered);
-    for (struct match_item *result; (result = match_list_take(&replay->unmatched));) {
+    number_queries(replay);
+    pair_golden(replay);
+    for (struct match_item *result; (result = match_pop(&replay->unmatched));) {
         const struct pair_key unique = key_of_ids(&result->key);
-        const struct replay_pair *pair = find(pairs, &unique);
+        const struct replay_pair *pair = find(replay, &unique);
         struct message message;
         if (!pair || !pair->query)
             replay_channel(replay, &result->key, &result->place)->unmatched++;
         else if (replay_read_again(replay, &pair->query_key, &result->place, replay->query_bytes,
                                    &message))
             replay_take_result(replay, &message);
-        match_free(result);
+        free(result);
     }
-    clear(&pairs);
 }

@@ -13,11 +13,6 @@
 #include "match.h"
 #include "replay.h"
 
-union decoded_result {
-    struct pair_result pair;
-    struct scene_result scene;
-};
-
 /* What the first reading finds of a query whose ids can be read. */
 struct recorded_query {
     int64_t offset; /* of the query */
@@ -45,17 +40,18 @@ struct replay {
     struct match *match;
     struct recorded_query *recorded; /* owned, [recorded_count] */
     size_t recorded_count, recorded_capacity;
-    /* With a golden log: the clients that have a result in it by their ids; its results without a
-     * query, at the end; whether it contains queries. */
-    struct replay_pair *matched_clients;
-    struct match_list unmatched;
+    /* With a golden log: clients, queries and their counterparts; its results without a query, at
+     * the end; whether it contains queries. */
+    struct replay_pair *pairs; /* table of replay_pair.c */
+    int64_t paired_clients[2]; /* their number; of the golden log */
+    struct match_item *unmatched;
     bool golden_has_queries;
 
     /* The second reading. */
     size_t next;                  /* of recorded */
     struct local_answerer *local; /* NULL: the service on the bus answers */
     struct answer_bus *bus;       /* NULL: this process answers */
-    struct match_list again;      /* queries to be sent with the frames of their bodies */
+    struct match_item *again;     /* queries to be sent with the frames of their bodies */
 
     struct logged_query query;
     struct scene_query supply; /* without pairs */
@@ -66,7 +62,7 @@ struct replay {
     /* The comparison in progress: its query, as in the log and decoded, and both results. */
     const struct match_item *item;
     struct logged_query compared;
-    union decoded_result then, now;
+    struct logged_result then, now;
     unsigned char compared_bytes[LOG_DATA_MAX]; /* contain the geometries of compared */
 };
 
@@ -141,9 +137,6 @@ bool replay_read_again(struct replay *replay, const struct match_key *key,
 /* Decodes a result, for the functions below. Returns NULL; or a static text: why it cannot be
  * decoded. */
 const char *replay_read_result(struct replay *replay, const struct message *result);
-
-/* compare_status_is_transient() of the status of the decoded result. kind: of its query. */
-bool replay_is_transient(const struct replay *replay, enum log_kind kind);
 
 /* Compares the new result of a query with the recorded one, if there is one, and counts the
  * outcome. */

@@ -6,11 +6,11 @@
 
 struct progress_seen {
     int times;
-    uint64_t done, total; /* of the last call */
+    int64_t done, total; /* of the last call */
 };
 
 /* Progress never decreases, and the total never changes. context: struct progress_seen. */
-static inline void progress_seen(void *context, uint64_t done, uint64_t total)
+static inline void progress_seen(void *context, int64_t done, int64_t total)
 {
     struct progress_seen *seen = context;
     assert_true(done >= seen->done && done <= total);

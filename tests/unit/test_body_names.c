@@ -23,8 +23,10 @@ static int tear_down(void **state)
 
 static void give(int64_t client_id, int64_t body_id, const char *name)
 {
-    const struct query_placement placement = {.placed.id = body_id, .placed.name = name};
-    body_names_take(names, client_id, &placement, 1);
+    static struct logged_query query = {.kind = LOG_PAIR_QUERY};
+    query.pair.client_id = client_id;
+    query.pair.placement[0].placed = (struct fmb_placement){.id = body_id, .name = name};
+    body_names_take(names, &query);
 }
 
 static void the_last_name_counts(void **state)
@@ -63,7 +65,7 @@ static void what_is_no_name_is_ignored(void **state)
 static struct body_names *again;
 static int messages;
 
-static bool take_again(void *user, const void *bytes, size_t size)
+static bool take_again(void *user, enum log_kind kind, const void *bytes, size_t size)
 {
     (void) user;
     messages++;

@@ -98,9 +98,10 @@ static void bodies_of_a_pair_are_defined(void **state)
     assert_null(definitions_add_message(world->definitions, LOG_PAIR_QUERY, world->bytes, size));
     assert_found(world, &whole);
     assert_null(definitions_find(world->definitions, &named.view.handle));
-    struct query_placement anonymous = place(&named);
-    anonymous.placed.id = 0;
-    assert_false(definitions_add_placement(world->definitions, &anonymous));
+    static struct logged_query anonymous = {.kind = LOG_PAIR_QUERY};
+    anonymous.pair.placement[0] = anonymous.pair.placement[1] = place(&named);
+    anonymous.pair.placement[0].placed.id = anonymous.pair.placement[1].placed.id = 0;
+    definitions_add_query(world->definitions, &anonymous);
     assert_null(definitions_find(world->definitions, &named.view.handle));
     assert_non_null(
         definitions_add_message(world->definitions, LOG_PAIR_QUERY, world->bytes, size - 1));

@@ -31,7 +31,7 @@ struct world {
     unsigned char bytes[QUERY_BYTES_MAX];
 };
 
-static bool on_write(void *user, const void *bytes, size_t size)
+static bool on_write(void *user, enum log_kind kind, const void *bytes, size_t size)
 {
     static struct definition definition;
     struct world *world = user;
@@ -45,7 +45,7 @@ static bool on_write(void *user, const void *bytes, size_t size)
     return true;
 }
 
-static bool on_names(void *user, const void *bytes, size_t size)
+static bool on_names(void *user, enum log_kind kind, const void *bytes, size_t size)
 {
     struct world *world = user;
     memcpy(world->name_bytes, bytes, size);

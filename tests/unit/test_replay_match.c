@@ -35,7 +35,7 @@ static void take(struct match_key of, int64_t offset)
     assert_non_null(item);
     assert_int_equal(item->place.offset, offset);
     match_remove(match, item);
-    match_free(item);
+    free(item);
 }
 
 static void the_first_query_is_matched_first(void **state)
@@ -92,9 +92,8 @@ static void on_found(void *user, struct match_item *query, struct match_item *re
     assert_true(result->is_result);
     found[found_count++] = query ? query->place.offset : -1;
     found[found_count++] = result->place.offset;
-    if (query)
-        match_free(query);
-    match_free(result);
+    free(query);
+    free(result);
 }
 
 static void results_without_the_time_match(void **state)
@@ -128,7 +127,7 @@ static void notes_are_kept(void **state)
     const struct match_place result_place = {.log = 2, .offset = 99};
     struct match_item *query = match_new(&one, &query_place);
     match_note(match, query, &result_place);
-    match_free(query);
+    free(query);
     const struct match_note *note = match_noted(match, &one);
     assert_non_null(note);
     assert_int_equal(note->query_log, 1);
@@ -146,7 +145,7 @@ static void notes_are_of_the_last_ones(void **state)
         const struct match_key of = key(7, i);
         struct match_item *query = match_new(&of, &place);
         match_note(match, query, &place);
-        match_free(query);
+        free(query);
     }
     for (int64_t i = 999000; i < 1000000; i++) {
         const struct match_key of = key(7, i);
