@@ -466,20 +466,8 @@ static enum answer_stage decide_frames(struct answer_job *job)
 /* Takes the answer of a pair that was decided in steps. */
 static enum answer_stage take_pair(struct answer_job *job, const struct fmb_scene_answers *answers)
 {
-    struct fmb_answer *answer = &job->pair_result.answer;
-    if (answers->verdicts[0] == 0)
-        return certify(job, FMB_CANNOT_DECIDE);
-    answer->verdict = (enum fmb_verdict) answers->verdicts[0];
-    answer->has_contact = answer->verdict >= FMB_TOUCHING;
-    answer->has_box = answer->has_contact && answers->boxes;
-    answer->has_gap = answers->gaps;
-    if (answer->has_contact)
-        memcpy(answer->contact, answers->contacts[0], sizeof answer->contact);
-    if (answer->has_box)
-        memcpy(answer->box, answers->boxes[0], sizeof answer->box);
-    if (answer->has_gap)
-        answer->gap = answers->gaps[0];
-    return certify(job, FMB_OK);
+    fmb_scene_answer(answers, 0, &job->pair_result.answer);
+    return certify(job, answers->verdicts[0] ? FMB_OK : FMB_CANNOT_DECIDE);
 }
 
 /* ---- Pairs of a scene ---- */

@@ -45,13 +45,16 @@
  * Thread safety: all functions are reentrant and keep no state between calls. Any number of threads
  * may read the same input. Inputs are never modified.
  *
- * Memory: only exact arithmetic allocates: in the method exact, in certified for the few pairs that
- * need it, in certificates, and in fmb_frame_make() for a frame that is nearly flat; and for
- * the gap of a pair with a hull that is rounded by more than the limit, or whose depth takes more
- * than a hundred vertices of the Minkowski difference, as of concentric balls: 50 kB, 24 bytes for
- * each vertex, and 200 bytes for each facet that is found. All is allocated through GMP, which ends
- * the process if memory is exhausted, and freed before the function, or the scene, returns its last
- * answer. Functions use up to 100 kB of stack.
+ * Memory is allocated only by
+ *   - exact arithmetic: in the method exact, in certified for the few pairs that need it, in
+ *     certificates, and in fmb_frame_make() for a frame that is nearly flat;
+ *   - fmb_decide() of bodies of several frames: that of a scene of two placements, 60 kB for up to
+ *     32 frames;
+ *   - the gap of a pair with a hull that is rounded by more than the limit, or whose depth takes
+ *     more than a hundred vertices of the Minkowski difference, as of concentric balls: 50 kB, 24
+ *     bytes for each vertex, and 200 bytes for each facet that is found.
+ * All is allocated through GMP, which ends the process if memory is exhausted, and freed before the
+ * function, or the scene, returns its last answer. Functions use up to 100 kB of stack.
  *
  * Determinism: the answers are the same bits on every machine with 64-bit longs whose doubles are
  * IEEE 754 binary64, rounded to nearest. The library is compiled without contraction. The caller
@@ -751,6 +754,11 @@ bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *ans
 /* Ends a scene. Required only of one that is abandoned: a decision in exact arithmetic that a step
  * has left unfinished holds memory. The state must not be used any more. */
 void fmb_scene_end(struct fmb_scene_state *state);
+
+/* Sets *out to answer k of a step, as fmb_decide() gives it; all 0 if there is no verdict. The
+ * contact, the box and the gap are there if they were wanted and the pair has them.
+ * In: k < answers->count. */
+void fmb_scene_answer(const struct fmb_scene_answers *answers, size_t k, struct fmb_answer *out);
 
 /* Returns the number of the first pair that has not been answered. It equals the number of pairs if
  * the scene is complete. */
