@@ -1,9 +1,9 @@
 /* How fast logs are gone through, beside what they cannot be faster than:
  *
  *   scenes  fmb replay of a log of scenes, in pairs a second, beside fmb_decide_batch() by itself
- * on the same pairs, whose frames have been prepared before; pairs   fmb replay of a log of pair
- * queries, in queries a second; info    fmb log info, in bytes a second, beside cat of the same
- * file to /dev/null.
+ *           on the same pairs, whose frames have been prepared before
+ *   pairs   fmb replay of a log of pair queries, in queries a second
+ *   info    fmb log info, in bytes a second, beside cat of the same file to /dev/null
  *
  * In turns, on one core; CPU time of the thread or, of programs, of the child, reading included
  * (from memory: the logs have been read once before). Medians. */

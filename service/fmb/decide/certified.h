@@ -1,13 +1,14 @@
 /* The method certified: doubles with bounds on their errors, and exact arithmetic for what these
  * leave open.
  *
- *     verdict   the filter: axes and slabs in doubles (kernel.h, slabs.c). If it is unsure: its
- *               second pass (slabs_exact.h), the open slabs in integers (limbs.h), or all slabs.
- * For two faces in one plane: the verdict of two triangles in 2D (faces.c) contact   the filter
- * bounds the times in the same pass (slabs_lanes.h). If a bound is not tight enough, or nothing
- * rounds: the slabs one by one (contact.c) box       from what is left of the edges and where they
- * cross, in doubles (box_clip.h) or in integers (limbs_box.h) gap       given the verdict, in steps
- * of its own (gap.h)
+ * verdict: the filter, axes and slabs in doubles (kernel.h, slabs.c); if it is unsure, its second
+ *   pass (slabs_exact.h), the open slabs in integers (limbs.h), or all slabs; of two faces in one
+ *   plane, the verdict of two triangles in 2D (faces.c).
+ * contact: the filter bounds the times in the same pass (slabs_lanes.h); if a bound is not tight
+ *   enough, or nothing rounds, the slabs one by one (contact.c).
+ * box: from what is left of the edges and where they cross, in doubles (box_clip.h) or in integers
+ *   (limbs_box.h).
+ * gap: given the verdict, in steps of its own (gap.h).
  *
  * Contact and box are computed as two enclosures: the outer one surely contains the exact value,
  * the inner one is surely contained in it. The answer is the outer one. It is given only if the two

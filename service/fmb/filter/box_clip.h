@@ -13,7 +13,7 @@
  *   3. add_reach(),           how far the outer spans reach along each axis; moving in 3D, also the
  *      add_crossings()        crossings of edges that are possible
  *   4. the same for the inner spans and crossings that are certain, in the lanes in which some
- * outer one is not nearly as certain
+ *      outer one is not nearly as certain
  *
  * Not here: what follows from the ends (box_ends.h); the same in integers (exact/limbs_box.c).
  *

@@ -6,12 +6,11 @@
  *
  * Steps (evaluate_slabs_3d()):
  *
- *   1. set_face_products()  the face normals of a frame, and their products with the edges of the
- * other frame, the offset and the drift
+ *   1. set_face_products()  the face normals of a frame, and their products with the offset, the
+ *                           drift and the edges of the other frame
  *   2. add_faces()          slabs of the faces of each frame; stops if that is enough for all lanes
  *   3. set_products()       triple products of an edge of A, one of B, and the offset or the drift
- *   4. add_edges()          slabs of an edge of A and one of B; products with components come from
- * 1
+ *   4. add_edges()          slabs of an edge of A and one of B; 1 gives products with components
  *   5. add_drift()          if the pair drifts: slabs of an edge and the drift
  *
  * Proof: the top of slabs.c derives these formulas and the error bound of each kind of slab. */

@@ -77,7 +77,8 @@ static inline void frame_pair_cursor_begin(struct frame_pair_cursor *cursor, uns
  *      max        capacity of out
  * Out: out        [count][a, b], the next pairs, as slots
  *      *done      true if these bodies have no more pairs; otherwise out is full, the work is at
- * its limit, or the slots ran out Returns count, at most max. */
+ *                 its limit, or the slots ran out
+ * Returns count, at most max. */
 size_t scene_frames_pairs(struct scene_frames *frames, struct frame_pair_cursor *cursor,
                           bool may_reuse, unsigned (*out)[2], size_t max, bool *done);
 
