@@ -22,10 +22,10 @@
  *    vertices whose cone with apex c contains the ray: geometrically, a portal through which the
  *    ray passes, as in the Minkowski portal refinement of G. Snethen (Game Programming Gems 7,
  *    2008). The dual solution is the normal N of the portal, N . (x_i - c) = 1. The vertex with the
- *    greatest N . x enters the basis. If N . x < 0 for it, N separates; if 0, the origin is on the
- *    face of D in direction N, unless it is separated otherwise: the vertices of both frames that
- *    attain the maximum span that face, the sweep contributes what N . w permits, and step 1 is
- *    repeated with them. Their dimension is less, so this ends.
+ *    greatest N . x enters the basis. If N . x < 0 for it, N separates. If N . x = 0, and the sum
+ *    is 1, the origin is on the face of D in direction N: the vertices of both frames that attain
+ *    the maximum span that face, the sweep contributes what N . w permits, and step 1 is repeated
+ *    with them. Their dimension is less, so this ends.
  *    At the end the origin is in the relative interior of a face F of D, of the convex hull of c
  *    and the basis, or it is outside of D.
  *
@@ -38,10 +38,12 @@
  *    A convex combination such as c may stay in the basis, it does not change the optimum.
  *
  * 4. Verdict. OVERLAPPING if at some t the origin is in the relative interior of M + t w. That is
- *    so if and only if the part of F that is M's has the dimension of M: relint D is the union of
- *    relint M + t w for 0 < t < T, and every face of D is a face G of M, swept or at one end of the
- *    window. (If w is in the span of M, only F = D has that dimension. If it is not, D is a prism
- *    over M, and the faces with G = M are D and both ends.)
+ *    so if and only if no vertex of a frame has been left out by the faces of step 2: relint D is
+ *    the union of relint M + t w for 0 < t < T, and a face of D on which N is constant on M is M at
+ *    one end of the window. If N is not constant on M, no point of M + t w with N . x = 0, the
+ *    greatest value, is in its relative interior: TOUCHING.
+ *
+ * 5. Certificate, on request (hull_exact.h).
  *
  * Both programs have one form: minimise or maximise sum a_i h_i subject to sum a_i H_i = q, a >= 0,
  * with columns H_i of m numbers, m <= 4. With the cofactors C_i of the basis, C_i . H_j = det if
@@ -90,7 +92,7 @@ struct kept {
     mpz_t at[3];
 };
 
-enum stage { SPANNING, SHOOTING, RAISING, MEASURING_FACE, MEASURING_ALL, COMPLETE };
+enum stage { SPANNING, SHOOTING, RAISING, COMPLETE };
 
 struct hull_exact {
     const struct hull_pair *pair;
@@ -99,8 +101,8 @@ struct hull_exact {
     struct hull_integers integers;
     struct side side[2];
     struct kept kept[2][KEPT];
-    bool ends[2]; /* of the window, that the face has */
-    bool reduced; /* the face is not all of D */
+    bool ends[2];           /* of the window, that the face has */
+    bool reduced, touching; /* the face is not all of D; it leaves out vertices */
     struct hull_column first[ROWS];
     unsigned first_count, next_first;
 
@@ -122,7 +124,6 @@ struct hull_exact {
     enum { GUESS_UNKNOWN, GUESS_GIVEN, GUESS_NONE } guesses;
     struct hull_guess guess;
 
-    int face_rank;
     enum fmb_verdict verdict;
     double contact[2], box[2][FMB_DIM_MAX];
     mpz_t normal[2][3], body[3], sum, best, scratch[2], denominator, minor[6], vector[3];
@@ -359,9 +360,9 @@ static struct hull_column price_difference(struct hull_exact *e, bool reduce)
 
 /* ---- Span ---- */
 
-static void begin_span(struct hull_exact *e, enum stage stage)
+static void begin_span(struct hull_exact *e)
 {
-    e->stage = stage;
+    e->stage = SPANNING;
     e->rank = -1;
     e->attempt = 0;
 }
@@ -733,24 +734,19 @@ static void finish(struct hull_exact *e, enum fmb_verdict verdict)
     e->stage = COMPLETE;
 }
 
-/* Whether a proper face of D cannot have a part of M of the dimension of M: D has that dimension.
- */
-static bool is_like_static(const struct hull_exact *e)
+/* The face of D with N . x = 0, the greatest, becomes D. */
+static void reduce(struct hull_exact *e)
 {
-    return !e->pair->drifts || e->pair->view[0].solid || e->pair->view[1].solid;
-}
-
-/* The face of D with N . x = 0, the greatest, becomes D. met: D contains the origin. */
-static void reduce(struct hull_exact *e, bool met)
-{
+    const unsigned all = e->side[0].count + e->side[1].count;
     price_difference(e, true);
     e->reduced = true;
-    if (met && !e->want && is_like_static(e)) {
+    e->touching = e->touching || e->side[0].count + e->side[1].count < all;
+    if (e->touching && !e->want) {
         finish(e, FMB_TOUCHING);
         return;
     }
     e->next_first = 0;
-    begin_span(e, SPANNING);
+    begin_span(e);
 }
 
 static void shoot_step(struct hull_exact *e)
@@ -773,8 +769,8 @@ static void shoot_step(struct hull_exact *e)
     dot(e->normal[1], e->entering.x, e->sum);
     if (mpz_sgn(e->sum) < 0)
         finish(e, FMB_SEPARATED);
-    else if (mpz_sgn(e->sum) == 0)
-        reduce(e, beyond == 0);
+    else if (mpz_sgn(e->sum) == 0 && beyond == 0)
+        reduce(e);
     else
         pivot(e);
 }
@@ -852,8 +848,6 @@ static void begin_target(struct hull_exact *e)
         set_height(e, &e->basis[i], e->height[i]);
 }
 
-static void end_heights(struct hull_exact *e);
-
 /* Begins the next target from target on that is wanted. */
 static void next_target(struct hull_exact *e)
 {
@@ -861,7 +855,7 @@ static void next_target(struct hull_exact *e)
         e->target = TARGET_BOX;
     const bool box = e->want & FMB_WANT_BOX;
     if (e->want == 0 || e->target >= TARGET_BOX + (box ? 2 * e->pair->dim : 0))
-        end_heights(e);
+        finish(e, e->touching ? FMB_TOUCHING : FMB_OVERLAPPING);
     else
         begin_target(e);
 }
@@ -940,21 +934,7 @@ static void height_step(struct hull_exact *e)
         end_target(e);
 }
 
-/* ---- Verdict ---- */
-
-static void end_heights(struct hull_exact *e)
-{
-    if (!e->reduced) {
-        finish(e, FMB_OVERLAPPING);
-    } else if (is_like_static(e)) {
-        finish(e, FMB_TOUCHING);
-    } else {
-        e->ends[0] = true;
-        e->ends[1] = false;
-        e->next_first = e->first_count;
-        begin_span(e, MEASURING_FACE);
-    }
-}
+/* ---- Begin and end ---- */
 
 static void set_all_vertices(struct hull_exact *e)
 {
@@ -964,19 +944,6 @@ static void set_all_vertices(struct hull_exact *e)
             e->side[f].face[i] = (uint16_t) i;
     }
 }
-
-static void measured(struct hull_exact *e)
-{
-    if (e->stage == MEASURING_FACE) {
-        e->face_rank = e->rank;
-        set_all_vertices(e);
-        begin_span(e, MEASURING_ALL);
-        return;
-    }
-    finish(e, e->rank == e->face_rank ? FMB_OVERLAPPING : FMB_TOUCHING);
-}
-
-/* ---- Begin and end ---- */
 
 struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
                                     const struct hull_column *first, unsigned count)
@@ -1000,7 +967,7 @@ struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
         e->first[i] = first[i];
     e->first_count = count;
     e->contact[1] = pair->frames->duration + 0.0; /* never -0 */
-    begin_span(e, SPANNING);
+    begin_span(e);
     return e;
 }
 
@@ -1013,11 +980,6 @@ bool hull_exact_step(struct hull_exact *e)
         break;
     case SHOOTING: shoot_step(e); break;
     case RAISING: height_step(e); break;
-    case MEASURING_FACE:
-    case MEASURING_ALL:
-        if (span_step(e))
-            measured(e);
-        break;
     case COMPLETE: break;
     }
     return e->stage == COMPLETE;
