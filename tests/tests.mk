@@ -24,7 +24,7 @@ see_tests/replay := clients/replay $(see_clients/replay) tests/unit tests/bench 
 see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/unit tests/hostile $(GEN)
 see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
 see_tests/unit/kernels := $(call fmb,number frame filter)
-see_tests/unit := $(call fmb,number frame filter article tree exact gap hull decide) service clients \
+see_tests/unit := $(call fmb,number frame filter article tree exact gap hull certificate decide) service clients \
 	$(see_clients) tests/encode tests/oracle tests/campaign tests/checked tests/hostile tests/mesh $(GEN)
 
 # ---- Programs of tests and measurements: the name, and the main file in tests/ ----
@@ -83,7 +83,8 @@ wraps = $(addprefix -Wl$(comma)--wrap=,$1)
 wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_mul_si z_mul_2exp z_addmul z_submul \
 	z_add z_sub z_fdiv_q z_tdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize n_addmul_1 \
 	n_submul_1 n_add_n n_sub_n n_mul_n) integer_ratio_round)
-wraps_test_hull_work := $(wraps_test_engine_work) $(call wraps,support_max hull_integers_place)
+wraps_test_hull_work := $(wraps_test_engine_work) $(call wraps,support_max hull_integers_place \
+	certificate_write_number)
 wraps_test_log_read := $(call wraps,pread64)
 wraps_test_log_write := $(call wraps,fsync)
 wraps_test_log_cut := $(call wraps,page_take)

@@ -1,6 +1,6 @@
 /* Answers pair and scene queries in stages: CHECKING the fields, FINDING bodies by handle, ADDING
- * bodies that have frames, DECIDING, COMPLETE. answer_job_step() does a
- * part of one stage; a refused query is COMPLETE at once. A pair of bodies of several frames, or
+ * bodies that have frames, DECIDING, CERTIFYING, COMPLETE. answer_job_step() does a part of one
+ * stage; a refused query is COMPLETE at once. A pair of bodies of several frames, or
  * with a hull, is a scene of one listed pair; any other pair of frames is decided at once. */
 #include "answerer.h"
 
@@ -19,7 +19,7 @@
  * BODY_PORTION frames. */
 enum { STEP_PLACEMENTS = 32 };
 
-enum answer_stage { IDLE, CHECKING, FINDING, ADDING, DECIDING, COMPLETE };
+enum answer_stage { IDLE, CHECKING, FINDING, ADDING, DECIDING, CERTIFYING, COMPLETE };
 
 /* The body of a placement. */
 struct used_body {
@@ -46,7 +46,7 @@ struct answer_job {
     struct fmb_placement placed[QUERY_PLACEMENTS_MAX];
     struct pair_query pair;
     struct pair_result pair_result;
-    char certificate[FMB_CERTIFICATE_MAX]; /* of the pair result, if it has one */
+    struct fmb_certificate_state *certificate; /* of the pair result, or NULL */
     struct scene_result result;
     struct scene_query query;
     struct query_bodies bodies;
@@ -66,6 +66,7 @@ struct answer_job *answer_job_create(void)
         return NULL;
     job->stage = IDLE;
     job->is_pair = false;
+    job->certificate = NULL;
     job->answerer = NULL;
     job->memory = malloc(fmb_scene_bytes(&limits));
     if (!job->memory) {
@@ -79,6 +80,7 @@ void answer_job_destroy(struct answer_job *job)
 {
     if (!job)
         return;
+    fmb_certificate_end(job->certificate);
     free(job->memory);
     free(job);
 }
@@ -441,16 +443,23 @@ static enum answer_stage complete_pair(struct answer_job *job, enum fmb_status s
     return complete(job);
 }
 
-/* Adds the certificate to the result, if it is wanted and there is one. Then completes the result.
- */
-static enum answer_stage certify(struct answer_job *job, enum fmb_status status)
+/* Adds the certificate to the result, once it is written. Then completes the result. */
+static enum answer_stage certify(struct answer_job *job)
 {
-    size_t length = 0;
+    const char *text = fmb_certificate_step(job->certificate);
+    if (!text)
+        return CERTIFYING;
+    job->pair_result.certificate = text[0] ? text : NULL;
+    return complete_pair(job, FMB_OK);
+}
+
+/* Begins the certificate, if it is wanted and there is a verdict; else completes the result. */
+static enum answer_stage begin_certificate(struct answer_job *job, enum fmb_status status)
+{
     if (status == FMB_OK && job->pair.want & FMB_WANT_CERTIFICATE)
-        status = fmb_certificate(&job->placed[0], &job->placed[1], job->pair.duration,
-                                 job->certificate, sizeof job->certificate, &length);
-    job->pair_result.certificate = length > 0 ? job->certificate : NULL;
-    return complete_pair(job, status);
+        status = fmb_certificate_begin(&job->placed[0], &job->placed[1], job->pair.duration,
+                                       &job->certificate);
+    return job->certificate ? certify(job) : complete_pair(job, status);
 }
 
 /* Decides a pair of frames. */
@@ -460,14 +469,14 @@ static enum answer_stage decide_frames(struct answer_job *job)
     const enum fmb_status status = fmb_decide(
         fmb_method_by_number(query->method), &job->placed[0], &job->placed[1], query->duration,
         (unsigned) query->want & (FMB_WANT_BOX | FMB_WANT_GAP), &job->pair_result.answer);
-    return certify(job, status);
+    return begin_certificate(job, status);
 }
 
 /* Takes the answer of a pair that was decided in steps. */
 static enum answer_stage take_pair(struct answer_job *job, const struct fmb_scene_answers *answers)
 {
     fmb_scene_answer(answers, 0, &job->pair_result.answer);
-    return certify(job, answers->verdicts[0] ? FMB_OK : FMB_CANNOT_DECIDE);
+    return begin_certificate(job, answers->verdicts[0] ? FMB_OK : FMB_CANNOT_DECIDE);
 }
 
 /* ---- Pairs of a scene ---- */
@@ -678,6 +687,8 @@ const char *answer_job_begin(struct answer_job *job, enum answer_kind kind,
                              const unsigned char *bytes, size_t size)
 {
     release(job);
+    fmb_certificate_end(job->certificate);
+    job->certificate = NULL;
     job->stage = IDLE;
     if (size > QUERY_BYTES_MAX)
         return "longer than a query may be";
@@ -705,6 +716,7 @@ bool answer_job_step(struct answer_job *job, struct answerer *answerer)
     case FINDING: job->stage = find(job); break;
     case ADDING: job->stage = add(job); break;
     case DECIDING: job->stage = decide(job); break;
+    case CERTIFYING: job->stage = certify(job); break;
     case IDLE: assert(!"a job that was begun"); break;
     case COMPLETE: break;
     }

@@ -833,19 +833,34 @@ enum { FMB_CERTIFICATE_MAX = 16384 };
  *
  * A pair whose numbers span more than 512 bits has no certificate: the status is FMB_OK and the
  * text is empty. The span is measured as follows. Let 2^e be the largest power of two that divides
- * every coordinate of every component, origin, position and v T of the pair, and half of every size
- * of a box. Let n be |q|^2 for the smallest integers q that are proportional to the
- * orientation; 1 without one. Multiply the components and origins in the world, of a pair with a
- * hull the vertices, and v T, by the product of both n, or by one if they are equal. The pair spans
- * at most 512 bits if the magnitude of each coordinate is then less than 2^(e + 512).
+ * every coordinate of every component, origin, vertex of a hull, position and v T of the pair, and
+ * half of every size of a box. Let n be |q|^2 for the smallest integers q that are proportional to
+ * the orientation; 1 without one, and m the product of both n, or one of them if they are equal.
+ * The pair spans at most 512 bits if the magnitude of each coordinate of m times the components and
+ * origins in the world, and m v T, is less than 2^(e + 512). Of a pair with a hull, let 2^f be the
+ * least power of two above the magnitudes of all numbers that 2^e divides, for v T the product of
+ * those of v and T. It spans f - e bits and the bits of m, together.
  *
  * Most certificates are shorter than 200 bytes; of frames that are flat or touch, some thousand are
  * possible. The text is also empty if it would exceed the capacity above; no such pair is known.
  * The coordinates are chosen one after the other, each the simplest number on a line segment.
- * Cost: 50 microseconds for numbers of similar size, 6 ms at most; of a pair with a hull 3
- * microseconds for each vertex, 50 ms at most. Memory is allocated as by the exact method. */
+ * Cost: 50 microseconds for numbers of similar size, 6 ms at most; of a pair with a hull about that
+ * of its verdict by the exact method. Memory is allocated as by the exact method. */
 enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
                                 double duration, char *text, size_t size, size_t *length);
+
+/* The same in steps: of a pair with a hull each takes less than a millisecond; any other pair is
+ * one step. fmb_certificate_begin() returns the status of fmb_certificate(); if that is FMB_OK,
+ * *state is set, to memory allocated as by the exact method, which fmb_certificate_end() frees. The
+ * placements must outlive it. fmb_certificate_step() performs a step. It returns NULL, or the
+ * certificate if it is complete, which is valid until the end; empty where there is none.
+ *
+ * Thread safety: a state is used by one thread at a time. */
+struct fmb_certificate_state;
+enum fmb_status fmb_certificate_begin(const struct fmb_placement *a, const struct fmb_placement *b,
+                                      double duration, struct fmb_certificate_state **state);
+const char *fmb_certificate_step(struct fmb_certificate_state *state);
+void fmb_certificate_end(struct fmb_certificate_state *state);
 
 /* Checks a certificate, in rational numbers, by code that shares nothing with fmb_certificate() or
  * with any method. The certificate need not be the one that fmb_certificate() writes.

@@ -480,6 +480,8 @@ static void pairs_of_hulls_are_answered_as_by_libfmb(void **state)
         assert_int_equal(result.answer.verdict, status == FMB_OK ? expected.verdict : 0);
         assert_int_equal(result.certificate != NULL,
                          status == FMB_OK && want & FMB_WANT_CERTIFICATE && length > 0);
+        if (result.certificate)
+            assert_string_equal(result.certificate, certificate);
     }
 }
 

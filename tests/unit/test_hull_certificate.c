@@ -172,6 +172,22 @@ static void flaws_are_named(void **state)
     }
 }
 
+/* Cubes far apart: 510 bits to the position, one for its top bit, and one of the orientation. */
+static void numbers_that_span_too_many_bits_have_none(void **state)
+{
+    static const double cube[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 1, 1, 0, 1, 0, 1, 1};
+    double memory[64];
+    struct fmb_body body;
+    char text[TEXT_SIZE];
+    assert_int_equal(fmb_body_make_hull(3, cube, COUNT(cube), memory, &body), FMB_OK);
+    for (int exponent = 510; exponent <= 511; exponent++) {
+        const struct pair pair = {
+            {.body = &body}, {.body = &body, .position = {0, ldexp(-1, exponent)}}, .duration = 1};
+        assert_int_equal(prove(&pair, text), exponent == 510 ? FMB_SEPARATED : 0);
+        assert_int_equal(text[0] == '\0', exponent > 510);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -179,6 +195,7 @@ int main(void)
         cmocka_unit_test(small_hulls),
         cmocka_unit_test(tampered_texts_prove_no_wrong_verdict),
         cmocka_unit_test(flaws_are_named),
+        cmocka_unit_test(numbers_that_span_too_many_bits_have_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,7 +7,9 @@
  *                with two lanes;
  *     products   of limbs in integers: 0.5 ns each (exact_work.h);
  *     placed     vertices in integers: 1,000 ns each, beside their products, measured with numbers
- *                of the whole range.
+ *                of the whole range;
+ *     written    limbs of fractions that a certificate states: 600 ns each, to reduce the fraction
+ *                and to print it, measured with 8 to 64 limbs.
  *
  * What else a step does is at most half of that: the scan of two hulls of 1,024 vertices takes a
  * thousand nanoseconds, where a point that it finds costs some ten, and the six facets that the
@@ -17,6 +19,7 @@
 
 #include <math.h>
 
+#include "certificate_hull.h"
 #include "draw.h"
 #include "exact_work.h"
 #include "hull_vertices.h"
@@ -24,10 +27,11 @@
 
 enum { VERTICES = FMB_HULL_VERTICES_MAX, NUMBERS = FMB_DIM_MAX * VERTICES };
 
-static const double ns_of_vertex = 0.5, ns_of_product = 0.5, ns_of_placed = 1e3;
+static const double ns_of_vertex = 0.5, ns_of_product = 0.5, ns_of_placed = 1e3,
+                    ns_of_written = 600;
 static const double ns_most = 1e6 / 1.5;
 
-static double scanned, placed;
+static double scanned, placed, written;
 
 struct support __real_support_max(const struct support_vertices *vertices,
                                   const double n[FMB_DIM_MAX]);
@@ -51,9 +55,18 @@ void __wrap_hull_integers_place(const struct hull_integers *integers, int f, uns
     __real_hull_integers_place(integers, f, i, out);
 }
 
+void __real_certificate_write_number(struct certificate_writer *writer, const mpq_t number);
+void __wrap_certificate_write_number(struct certificate_writer *writer, const mpq_t number);
+void __wrap_certificate_write_number(struct certificate_writer *writer, const mpq_t number)
+{
+    written += (double) (mpz_size(mpq_numref(number)) + mpz_size(mpq_denref(number)));
+    __real_certificate_write_number(writer, number);
+}
+
 static double work(void)
 {
-    return ns_of_vertex * scanned + ns_of_product * exact_work + ns_of_placed * placed;
+    return ns_of_vertex * scanned + ns_of_product * exact_work + ns_of_placed * placed +
+           ns_of_written * written;
 }
 
 /* ---- Hulls ---- */
@@ -65,10 +78,10 @@ struct large {
 };
 
 /* Points spread over a unit ball; a prism, 30 high, whose faces have half of all vertices each; the
- * same with exponents of the whole range, in a prism across its axis. */
+ * same with exponents of a range, in a prism across its axis. */
 enum shape { BALL, PRISM, WIDE_BALL, WIDE_PRISM, SHAPES };
 
-static void make_large(struct draw *draw, enum shape shape, struct large *out)
+static void make_large(struct draw *draw, enum shape shape, const int range[2], struct large *out)
 {
     for (int k = 0; k < VERTICES; k++) {
         double *to = out->numbers + (ptrdiff_t) FMB_DIM_MAX * k;
@@ -79,7 +92,7 @@ static void make_large(struct draw *draw, enum shape shape, struct large *out)
         to[1] = r * sin(angle);
         to[2] = z;
         for (int axis = 0; axis < (shape < WIDE_BALL ? 0 : prism ? 2 : 3); axis++)
-            to[axis] = ldexp(to[axis], draw_int(draw, -1000, 900));
+            to[axis] = ldexp(to[axis], draw_int(draw, range[0], range[1]));
     }
     out->at = (struct fmb_placement){.body = &out->body, .orientation_count = 4};
     for (int k = 0; k < 4; k++)
@@ -112,12 +125,17 @@ static void put(struct draw *draw, enum place place, struct large large[2])
 
 /* ---- Steps ---- */
 
-/* The greatest work of a step, in nanoseconds. *steps: how many. */
-static double work_of_steps(const struct large large[2], unsigned want, int *steps)
+/* A work in steps. Out: *steps: how many more. Returns the greatest work of a step, in nanoseconds.
+ */
+typedef double steps_of(const struct large large[2], int *steps);
+
+static double steps_of_scene(const struct large large[2], int *steps)
 {
     const struct fmb_placement placements[2] = {large[0].at, large[1].at};
-    const struct fmb_scene scene = {
-        .placements = placements, .placement_count = 2, .duration = 1, .want = want};
+    const struct fmb_scene scene = {.placements = placements,
+                                    .placement_count = 2,
+                                    .duration = 1,
+                                    .want = FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP};
     const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
     struct fmb_scene_state *state;
     struct fmb_scene_answers answers;
@@ -133,20 +151,36 @@ static double work_of_steps(const struct large large[2], unsigned want, int *ste
     return most;
 }
 
-static void steps_are_short(void **state)
+static double steps_of_certificate(const struct large large[2], int *steps)
+{
+    struct fmb_certificate_state *state;
+    const char *text = NULL;
+    double most = 0, before = work();
+    assert_int_equal(fmb_certificate_begin(&large[0].at, &large[1].at, 1, &state), FMB_OK);
+    most = work() - before;
+    for (; !text; ++*steps) {
+        before = work();
+        text = fmb_certificate_step(state);
+        most = fmax(most, work() - before);
+    }
+    assert_true(text[0]);
+    fmb_certificate_end(state);
+    return most;
+}
+
+static void assert_short(const char *name, const int range[2], steps_of *run)
 {
     static struct large large[2];
     struct draw draw;
     double most = 0;
     int steps = 0;
-    draw_begin(&draw, "steps_are_short");
+    draw_begin(&draw, name);
     for (long turn = SHAPES * PLACES * draw_sample(3) - 1; turn >= 0; turn--) {
         const int shape = (int) (turn % SHAPES), place = (int) (turn / SHAPES % PLACES);
-        make_large(&draw, shape, &large[0]);
-        make_large(&draw, shape, &large[1]);
+        make_large(&draw, shape, range, &large[0]);
+        make_large(&draw, shape, range, &large[1]);
         put(&draw, place, large);
-        const double of_turn =
-            work_of_steps(large, FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP, &steps);
+        const double of_turn = run(large, &steps);
         if (turn < SHAPES * PLACES)
             printf("# shape %d, place %d: at most %.0f ns in a step\n", shape, place, of_turn);
         most = fmax(most, of_turn);
@@ -156,8 +190,23 @@ static void steps_are_short(void **state)
     assert_true(scanned > 0 && exact_work > 0 && placed > 0);
 }
 
+static void steps_are_short(void **state)
+{
+    static const int whole[2] = {-1000, 900};
+    assert_short("steps_are_short", whole, steps_of_scene);
+}
+
+/* Exponents that together with the orientations span nearly the bits that a certificate may. */
+static void steps_of_certificates_are_short(void **state)
+{
+    static const int range[2] = {-110, 100};
+    assert_short("steps_of_certificates_are_short", range, steps_of_certificate);
+    assert_true(written > 0);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(steps_are_short)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(steps_are_short),
+                                       cmocka_unit_test(steps_of_certificates_are_short)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

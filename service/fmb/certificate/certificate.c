@@ -34,6 +34,7 @@
 #include "exact.h"
 #include "hull.h"
 #include "integer.h"
+#include "memory.h"
 
 #include <assert.h>
 #include <stdarg.h>
@@ -294,26 +295,70 @@ static enum fmb_status check(const struct fmb_placement *a, const struct fmb_pla
     return status;
 }
 
+struct fmb_certificate_state {
+    struct frame_pair frames;
+    struct certificate_hull hull; /* of a pair with a hull that is not complete */
+    struct certificate_writer writer;
+    bool complete;
+};
+
+enum fmb_status fmb_certificate_begin(const struct fmb_placement *a, const struct fmb_placement *b,
+                                      double duration, struct fmb_certificate_state **state)
+{
+    const enum fmb_status status = check(a, b, duration);
+    *state = NULL;
+    if (status != FMB_OK)
+        return status;
+    struct fmb_certificate_state *begun = memory_allocate(sizeof *begun);
+    begun->frames = (struct frame_pair){
+        {fmb_body_frame(a->body, 0), a}, {fmb_body_frame(b->body, 0), b}, duration};
+    begun->hull.exact = NULL;
+    begun->writer.length = 0;
+    begun->complete = hull_takes(begun->frames.a.frame, begun->frames.b.frame) &&
+                      certificate_hull_begin(&begun->frames, &begun->writer, &begun->hull);
+    *state = begun;
+    return FMB_OK;
+}
+
+const char *fmb_certificate_step(struct fmb_certificate_state *state)
+{
+    struct certificate_writer *writer = &state->writer;
+    if (!state->complete && state->hull.exact)
+        state->complete = certificate_hull_step(&state->hull, writer);
+    else if (!state->complete) {
+        write_certificate(writer, &state->frames);
+        state->complete = true;
+    }
+    if (!state->complete)
+        return NULL;
+    if (writer->length == 0 || writer->length >= FMB_CERTIFICATE_MAX)
+        writer->text[0] = '\0';
+    return writer->text;
+}
+
+void fmb_certificate_end(struct fmb_certificate_state *state)
+{
+    if (!state)
+        return;
+    certificate_hull_end(&state->hull);
+    memory_release(state, sizeof *state);
+}
+
 enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
                                 double duration, char *text, size_t size, size_t *length)
 {
-    struct certificate_writer writer;
-    enum fmb_status status = check(a, b, duration);
-    writer.length = 0;
-    if (status == FMB_OK) {
-        const struct frame_pair pair = {
-            {fmb_body_frame(a->body, 0), a}, {fmb_body_frame(b->body, 0), b}, duration};
-        if (hull_takes(pair.a.frame, pair.b.frame))
-            certificate_hull_write(&writer, &pair);
-        else
-            write_certificate(&writer, &pair);
-    }
-    *length = writer.length < FMB_CERTIFICATE_MAX ? writer.length : 0;
+    struct fmb_certificate_state *state;
+    enum fmb_status status = fmb_certificate_begin(a, b, duration, &state);
+    const char *written = status == FMB_OK ? NULL : "";
+    while (!written)
+        written = fmb_certificate_step(state);
+    *length = strlen(written);
     if (*length >= size)
         status = status == FMB_OK ? FMB_OVER_LIMIT : status;
     else
-        memcpy(text, writer.text, *length);
+        memcpy(text, written, *length);
     if (size > 0)
         text[*length < size ? *length : 0] = '\0';
+    fmb_certificate_end(state);
     return status;
 }

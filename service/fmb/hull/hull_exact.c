@@ -43,7 +43,19 @@
  *    one end of the window. If N is not constant on M, no point of M + t w with N . x = 0, the
  *    greatest value, is in its relative interior: TOUCHING.
  *
- * 5. Certificate, on request (hull_exact.h).
+ * 5. Proof, on request, instead of heights (hull_exact.h). A normal that separates is known from
+ * step 1 or 2. If the frames touch, the basis of step 2 is a combination of vertices that is the
+ *    origin, and N the normal, unless a face N' had been taken before, at one end of the window. N
+ *    then proves it at that end, where N' . x = 0. If N . x increases towards the other end,
+ *    |N' . w| N + |N . w| N' is taken, which is constant along w: on M it is a positive multiple of
+ *    N, and so proves it at all times.
+ *    If they overlap, the origin is sum a_i x_i + (1 - sum a_i) c, all numbers at least 0 and the
+ *    last one positive: c is a mean of the points y_j of the span, all with positive weights. Or
+ *    the y_j alone contain it. Let z be a sum of points of D whose vertices span both frames. For
+ *    e = 2^-k, the numbers a_i are rounded down to multiples of e, z gets the weight e, and the
+ *    weights of the y_j follow, since these are affinely independent. They are positive if e is
+ *    small enough. Only the weights of the y_j are long fractions.
+ *
  *
  * Both programs have one form: minimise or maximise sum a_i h_i subject to sum a_i H_i = q, a >= 0,
  * with columns H_i of m numbers, m <= 4. With the cofactors C_i of the basis, C_i . H_j = det if
@@ -63,6 +75,7 @@
 #include "hull_search.h"
 #include "hull_vertices.h"
 #include "integer.h"
+#include "memory.h"
 
 #include <float.h>
 #include <math.h>
@@ -92,7 +105,7 @@ struct kept {
     mpz_t at[3];
 };
 
-enum stage { SPANNING, SHOOTING, RAISING, COMPLETE };
+enum stage { SPANNING_A, SPANNING_B, SPANNING, SHOOTING, RAISING, COMPLETE };
 
 struct hull_exact {
     const struct hull_pair *pair;
@@ -103,6 +116,9 @@ struct hull_exact {
     struct kept kept[2][KEPT];
     bool ends[2];           /* of the window, that the face has */
     bool reduced, touching; /* the face is not all of D; it leaves out vertices */
+    bool proves;
+    unsigned spanning[2][ROWS], spans[2]; /* vertices that span a frame */
+    struct hull_proof proof;
     struct hull_column first[ROWS];
     unsigned first_count, next_first;
 
@@ -124,7 +140,6 @@ struct hull_exact {
     enum { GUESS_UNKNOWN, GUESS_GIVEN, GUESS_NONE } guesses;
     struct hull_guess guess;
 
-    enum fmb_verdict verdict;
     double contact[2], box[2][FMB_DIM_MAX];
     mpz_t normal[2][3], body[3], sum, best, scratch[2], denominator, minor[6], vector[3];
 };
@@ -169,6 +184,10 @@ static void each(struct hull_exact *e, void (*call)(mpz_ptr))
     point_each(&e->entering, call);
     vector_each(e->body, call);
     vector_each(e->vector, call);
+    vector_each(e->proof.normal, call);
+    for (int i = 0; i < HULL_PROOF_MAX; i++)
+        call(e->proof.weight[i]);
+    call(e->proof.total);
     for (int i = 0; i < 6; i++)
         call(e->minor[i]);
     call(e->det);
@@ -360,9 +379,9 @@ static struct hull_column price_difference(struct hull_exact *e, bool reduce)
 
 /* ---- Span ---- */
 
-static void begin_span(struct hull_exact *e)
+static void begin_span(struct hull_exact *e, enum stage stage)
 {
-    e->stage = SPANNING;
+    e->stage = stage;
     e->rank = -1;
     e->attempt = 0;
 }
@@ -467,19 +486,24 @@ static bool span_step(struct hull_exact *e)
     return false;
 }
 
-/* Chooses the coordinates of the projection. Returns whether the flat contains the origin. */
+/* Chooses the coordinates of the projection. Returns whether the flat contains the origin; if not,
+ * normal[1] separates. */
 static bool project(struct hull_exact *e)
 {
-    mpz_t *x = e->span[0].x, *u = e->edge[0], *n = e->normal[0];
+    mpz_t *x = e->span[0].x, *u = e->edge[0], *n = e->normal[1], *across = e->normal[0];
     int axes = 0, dropped = -1;
-    if (e->rank == 0)
-        return integer_is_zero(x);
+    if (e->rank == 0) {
+        for (int axis = 0; axis < 3; axis++)
+            mpz_neg(n[axis], x[axis]);
+        return integer_is_zero(n);
+    }
     if (e->rank == 1) {
         for (axes = 0; mpz_sgn(u[axes]) == 0;)
             axes++;
         e->axis[0] = axes;
-        integer_cross(n, x, u, e->scratch[0]);
-        return integer_is_zero(n);
+        integer_cross(across, x, u, e->scratch[0]);
+        integer_cross(n, across, u, e->scratch[0]); /* (x . u) u - (u . u) x */
+        return integer_is_zero(across);
     }
     mpz_set_ui(e->sum, 0);
     if (e->rank == 2) {
@@ -488,9 +512,12 @@ static bool project(struct hull_exact *e)
             dropped--;
         dot(n, x, e->sum);
     }
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; axis++) {
         if (axis != dropped)
             e->axis[axes++] = axis;
+        if (mpz_sgn(e->sum) > 0)
+            mpz_neg(n[axis], n[axis]);
+    }
     return mpz_sgn(e->sum) == 0;
 }
 
@@ -730,8 +757,42 @@ static void begin_shoot(struct hull_exact *e)
 
 static void finish(struct hull_exact *e, enum fmb_verdict verdict)
 {
-    e->verdict = verdict;
+    e->proof.verdict = verdict;
     e->stage = COMPLETE;
+}
+
+/* ---- Proof ---- */
+
+/* normal[1] separates. */
+static void finish_separated(struct hull_exact *e)
+{
+    for (int axis = 0; axis < 3; axis++)
+        mpz_neg(e->proof.normal[axis], e->normal[1][axis]);
+    finish(e, FMB_SEPARATED);
+}
+
+/* The basis contains the origin, and the normal leaves out vertices. If a face was taken before, it
+ * is that of the normal in proof. */
+static void prove_touching(struct hull_exact *e)
+{
+    struct hull_proof *proof = &e->proof;
+    mpz_t *n = e->normal[1];
+    dot(n, e->integers.drift, e->sum);
+    dot(proof->normal, e->integers.drift, e->best);
+    for (int axis = 0; axis < 3 && mpz_sgn(e->sum) * mpz_sgn(e->best) < 0; axis++) {
+        mpz_abs(e->scratch[0], e->best);
+        mpz_mul(n[axis], n[axis], e->scratch[0]);
+        mpz_abs(e->scratch[0], e->sum);
+        mpz_addmul(n[axis], proof->normal[axis], e->scratch[0]);
+    }
+    for (int axis = 0; axis < 3; axis++)
+        mpz_neg(proof->normal[axis], n[axis]);
+    proof->count = (unsigned) e->rank;
+    for (int i = 0; i < e->rank; i++) {
+        proof->column[i] = e->basis[i].column;
+        mpz_set(proof->weight[i], e->coordinate[i]);
+    }
+    mpz_set(proof->total, e->det);
 }
 
 /* The face of D with N . x = 0, the greatest, becomes D. */
@@ -739,14 +800,18 @@ static void reduce(struct hull_exact *e)
 {
     const unsigned all = e->side[0].count + e->side[1].count;
     price_difference(e, true);
-    e->reduced = true;
     e->touching = e->touching || e->side[0].count + e->side[1].count < all;
     if (e->touching && !e->want) {
+        if (e->proves)
+            prove_touching(e);
         finish(e, FMB_TOUCHING);
         return;
     }
+    for (int axis = 0; axis < 3 && e->proves; axis++)
+        mpz_set(e->proof.normal[axis], e->normal[1][axis]);
+    e->reduced = true;
     e->next_first = 0;
-    begin_span(e);
+    begin_span(e, SPANNING);
 }
 
 static void shoot_step(struct hull_exact *e)
@@ -768,7 +833,7 @@ static void shoot_step(struct hull_exact *e)
     set_point(e, price_difference(e, false), &e->entering);
     dot(e->normal[1], e->entering.x, e->sum);
     if (mpz_sgn(e->sum) < 0)
-        finish(e, FMB_SEPARATED);
+        finish_separated(e);
     else if (mpz_sgn(e->sum) == 0 && beyond == 0)
         reduce(e);
     else
@@ -778,11 +843,71 @@ static void shoot_step(struct hull_exact *e)
 static void span_done(struct hull_exact *e)
 {
     if (!project(e))
-        finish(e, FMB_SEPARATED);
+        finish_separated(e);
     else if (e->rank == 0)
         begin_heights(e);
     else
         begin_shoot(e);
+}
+
+/* The origin is in the cone of the basis and before its plane; or, without a basis, inside the
+ * simplex of the span. */
+static void prove_overlapping(struct hull_exact *e)
+{
+    struct hull_proof *proof = &e->proof;
+    const int rank = e->rank, shot = e->stage == SHOOTING ? rank : 0;
+    const unsigned spans = e->spans[0] > e->spans[1] ? e->spans[0] : e->spans[1];
+    mpz_t *others = e->vector, *goal = e->enters; /* others: the sum of the points that span */
+    struct hull_column *column = proof->column;
+    for (int i = 0; i < rank + 1; i++)
+        *column++ = e->span[i].column;
+    for (int i = 0; i < shot; i++)
+        *column++ = e->basis[i].column;
+    for (int axis = 0; axis < 3; axis++)
+        mpz_set_ui(others[axis], 0);
+    for (unsigned i = 0; i < spans; i++) {
+        for (int f = 0; f < 2; f++)
+            column->vertex[f] = e->spanning[f][i < e->spans[f] ? i : 0];
+        column->end = !e->ends[0];
+        set_point(e, *column++, &e->entering);
+        for (int axis = 0; axis < 3; axis++)
+            mpz_add(others[axis], others[axis], e->entering.x[axis]);
+    }
+    proof->count = (unsigned) (column - proof->column);
+
+    for (int i = 0; i < shot; i++)
+        mpz_swap(e->height[i], e->coordinate[i]);
+    mpz_swap(e->denominator, e->det);
+    e->stage = RAISING;
+    e->rows = rank + 1;
+    for (int i = 0; i < e->rows; i++)
+        set_row(e, &e->span[i], e->row[i]);
+    set_cofactors(e);
+    int positive = 0;
+    for (mp_bitcnt_t bits = 4; positive < e->rows; bits *= 2) {
+        mpz_set_ui(proof->total, 1);
+        mpz_mul_2exp(proof->total, proof->total, bits);
+        mpz_sub_ui(goal[rank], proof->total, spans);
+        for (int j = 0; j < rank; j++)
+            mpz_neg(goal[j], others[e->axis[j]]);
+        for (int i = 0; i < shot; i++) {
+            mpz_t *weight = &proof->weight[rank + 1 + i];
+            mpz_mul_2exp(e->sum, e->height[i], bits);
+            mpz_fdiv_q(*weight, e->sum, e->denominator);
+            mpz_sub(goal[rank], goal[rank], *weight);
+            for (int j = 0; j < rank; j++)
+                mpz_submul(goal[j], *weight, e->basis[i].x[e->axis[j]]);
+            mpz_mul(*weight, *weight, e->det);
+        }
+        positive = 0;
+        for (int i = 0; i < e->rows; i++) {
+            dot_rows(e, e->cofactor[i], goal, proof->weight[i]);
+            positive += mpz_sgn(proof->weight[i]) > 0;
+        }
+    }
+    for (unsigned i = proof->count - spans; i < proof->count; i++)
+        mpz_set(proof->weight[i], e->det);
+    mpz_mul(proof->total, proof->total, e->det);
 }
 
 /* ---- Heights ---- */
@@ -863,6 +988,11 @@ static void next_target(struct hull_exact *e)
 /* Columns: the basis of the last program, and the centre; the span, if there was none. */
 static void begin_heights(struct hull_exact *e)
 {
+    if (e->proves) {
+        prove_overlapping(e);
+        finish(e, FMB_OVERLAPPING);
+        return;
+    }
     if (e->stage == SHOOTING)
         swap_points(&e->basis[e->rank], &e->centre);
     for (int i = 0; i <= e->rank && e->stage == SPANNING; i++)
@@ -945,35 +1075,70 @@ static void set_all_vertices(struct hull_exact *e)
     }
 }
 
+/* Begins the span of a frame: of D with the other frame as one of its points, without drift. */
+static void begin_span_of(struct hull_exact *e, int f)
+{
+    e->side[!f].count = 1;
+    e->next_first = 0;
+    begin_span(e, f ? SPANNING_B : SPANNING_A);
+}
+
+static void begin_difference(struct hull_exact *e)
+{
+    e->ends[1] = pair_moves(e->pair->frames) && e->pair->frames->duration > 0;
+    e->next_first = 0;
+    begin_span(e, SPANNING);
+}
+
 struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
                                     const struct hull_column *first, unsigned count)
 {
-    void *(*allocate)(size_t);
-    mp_get_memory_functions(&allocate, NULL, NULL);
-    struct hull_exact *e = allocate(sizeof *e);
+    struct hull_exact *e = memory_allocate(sizeof *e);
     memset(e, 0, sizeof *e);
     each(e, mpz_init);
     e->pair = pair;
     e->want = want & (FMB_WANT_BOX | FMB_WANT_TIMES);
+    e->proves = want & FMB_WANT_CERTIFICATE;
+    e->proof.integers = &e->integers;
     hull_integers_set(pair->frames, &e->integers);
     for (int f = 0; f < 2; f++) {
         e->side[f].view = &pair->view[f];
         e->side[f].exact = &e->integers.side[f];
     }
-    set_all_vertices(e);
-    e->ends[0] = true;
-    e->ends[1] = pair_moves(pair->frames) && pair->frames->duration > 0;
     for (unsigned i = 0; i < count; i++)
         e->first[i] = first[i];
     e->first_count = count;
     e->contact[1] = pair->frames->duration + 0.0; /* never -0 */
-    begin_span(e);
+    set_all_vertices(e);
+    e->ends[0] = true;
+    if (e->proves)
+        begin_span_of(e, 0);
+    else
+        begin_difference(e);
     return e;
+}
+
+/* Takes the vertices that span a frame. */
+static void span_of_frame_done(struct hull_exact *e, int f)
+{
+    e->spans[f] = (unsigned) e->rank + 1;
+    for (int i = 0; i <= e->rank; i++)
+        e->spanning[f][i] = e->span[i].column.vertex[f];
+    set_all_vertices(e);
+    if (f == 0)
+        begin_span_of(e, 1);
+    else
+        begin_difference(e);
 }
 
 bool hull_exact_step(struct hull_exact *e)
 {
     switch (e->stage) {
+    case SPANNING_A:
+    case SPANNING_B:
+        if (span_step(e))
+            span_of_frame_done(e, e->stage == SPANNING_B);
+        break;
     case SPANNING:
         if (span_step(e))
             span_done(e);
@@ -985,19 +1150,22 @@ bool hull_exact_step(struct hull_exact *e)
     return e->stage == COMPLETE;
 }
 
+struct hull_proof *hull_exact_proof(struct hull_exact *e)
+{
+    return &e->proof;
+}
+
 void hull_exact_end(struct hull_exact *e, struct fmb_answer *answer)
 {
-    void (*release)(void *, size_t);
     if (answer) {
-        answer->verdict = e->verdict;
-        answer->has_contact = e->verdict != FMB_SEPARATED && e->want;
-        answer->has_box = e->verdict != FMB_SEPARATED && e->want & FMB_WANT_BOX;
+        answer->verdict = e->proof.verdict;
+        answer->has_contact = e->proof.verdict != FMB_SEPARATED && e->want;
+        answer->has_box = e->proof.verdict != FMB_SEPARATED && e->want & FMB_WANT_BOX;
         if (answer->has_contact)
             memcpy(answer->contact, e->contact, sizeof e->contact);
         if (answer->has_box)
             memcpy(answer->box, e->box, sizeof e->box);
     }
     each(e, mpz_clear);
-    mp_get_memory_functions(NULL, NULL, &release);
-    release(e, sizeof *e);
+    memory_release(e, sizeof *e);
 }

@@ -13,13 +13,32 @@
 #define FMB_HULL_EXACT_H
 
 #include "hull.h"
+#include "hull_vertices.h"
 
 struct hull_exact;
+
+/* What proves a verdict. D: hull.h. */
+enum { HULL_PROOF_MAX = 2 * (FMB_DIM_MAX + 1) + FMB_DIM_MAX };
+
+struct hull_proof {
+    enum fmb_verdict verdict;
+    /* SEPARATED: normal . x > 0 for all x of D. TOUCHING: normal . x >= 0, and normal . x is not
+     * constant on both frames. */
+    mpz_t normal[3];
+    /* Not SEPARATED: the sum of weight / total times points of D is the origin. Weights are at
+     * least 0, and their sum is total. OVERLAPPING: the vertices of positive weights span both
+     * frames. */
+    unsigned count;
+    struct hull_column column[HULL_PROOF_MAX];
+    mpz_t weight[HULL_PROOF_MAX], total;
+    struct hull_integers *integers; /* of the pair */
+};
 
 /* Begins a decision. It allocates through GMP; hull_exact_end() frees all of it.
  *
  * In:  pair    set; must outlive the decision
- *      want    FMB_WANT_BOX, FMB_WANT_TIMES, or 0 for the verdict alone
+ *      want    FMB_WANT_BOX, FMB_WANT_TIMES, or 0 for the verdict alone; or FMB_WANT_CERTIFICATE
+ *              alone for the verdict and its proof
  *      first   [count], count at most 4: points of D near which the origin is expected, such as the
  *              last simplex of a search in doubles. They save steps, and change no answer */
 struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
@@ -27,6 +46,10 @@ struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
 
 /* Performs one step. Returns whether the decision is complete. */
 bool hull_exact_step(struct hull_exact *exact);
+
+/* Returns the proof, which is set once the decision is complete, except for integers, which are set
+ * at once. It is valid until the end. */
+struct hull_proof *hull_exact_proof(struct hull_exact *exact);
 
 /* Sets the answer of a complete decision: verdict, contact and box, with ends rounded outward; the
  * gap is not touched. Ends the decision, complete or not; answer may be NULL. */
