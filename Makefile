@@ -363,9 +363,12 @@ include tests/tests.mk
 # ---- Headers and format ----
 
 sources := $(shell find service msgs clients tests -name '*.[ch]')
-# Every header compiles alone.
+# Every header compiles alone: here, or in a file of its folder that begins with it.
 .PHONY: headers format format-check
-headers: $(patsubst %,$(O)/%.ok,$(filter-out tests/unit/% tests/robot/% tests/checked/number/%,$(filter %.h,$(sources))))
+begun_with := $(shell awk '/^\#define/ { nextfile } /^\#include "/ { folder = FILENAME; sub("[^/]*$$", "", folder); \
+	gsub("\"", "", $$2); print folder $$2; nextfile }' $(filter %.c,$(sources)))
+headers: $(patsubst %,$(O)/%.ok,$(filter-out tests/unit/% tests/robot/% tests/checked/number/% $(begun_with), \
+	$(filter %.h,$(sources))))
 $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(call say,CC,$<) $(CC) $(flags) $(sees) -fsyntax-only -x c $<
