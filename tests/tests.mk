@@ -44,19 +44,23 @@ program_names = $(foreach p,$1,$(B)/$(firstword $(subst :, ,$p)))
 test_programs := $(call program_names,$(test_programs))
 measures := $(call program_names,$(measures)) $(B)/accuracy-planted
 
-# What the programs of tests share. Those that look into the engine link its objects, the others
-# the library.
-test_folders := $(addprefix tests/,encode oracle hostile campaign checked mesh bench bus robot soak logs)
+# What the programs of tests share, and what those share that measure. Those that look into the engine
+# link its objects, the others the library.
+test_folders := $(addprefix tests/,encode oracle hostile campaign checked mesh soak logs)
 shared := $(O)/shared.a
-$(shared): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in,$(test_folders))) \
+$(shared): $(filter-out $(mains:%=$(O)/tests/%.o),$(call objects_in,$(test_folders))) \
 		$(patsubst tests/unit/%.c,$(O)/tests/unit/%.o,$(filter-out %/slab_truth.c %/slab_kernel.c \
 			tests/unit/test_%,$(wildcard tests/unit/*.c)))
+measuring := $(O)/measuring.a
+$(measuring): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in,$(addprefix tests/,bench bus robot)))
+$(shared) $(measuring):
 	@rm -f $@
 	$(call say,AR,$@) $(AR) qcs $@ $^
 looks_inside := validate accuracy checked bench/bench bus/bench-bus logs/generate soak-families
 $(looks_inside:%=$(B)/%) $(B)/accuracy-planted: $(shared) $(client) $(product) $(engine)
 $(filter-out $(looks_inside:%=$(B)/%),$(test_programs) $(measures)): \
 	$(shared) $(client) $(product) $(B)/libfmb.a
+$(measures): $(measuring)
 $(test_programs) $(measures):
 	$(link)
 
@@ -72,7 +76,10 @@ $(B)/checked $(B)/tests/test_checked: $(checked_kernels)
 
 # ---- Unit tests ----
 
-unit_names := $(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c))
+# Of these the code that they test is compiled without sanitizers in all modes: the release build has them.
+bare_tests := test_bounds test_box_bounds test_checked test_kernels
+unit_names := $(filter-out $(if $(filter asan,$(MODE)),$(bare_tests)), \
+	$(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c)))
 unit_tests := $(unit_names:%=$(B)/tests/%)
 internal_tests := $(addprefix $(B)/tests/,test_bounds test_box_bounds test_engine_batch \
 	test_engine_pose test_engine_tree test_engine_triangle test_limbs test_outward test_kernels \
@@ -92,8 +99,8 @@ wraps_test_answer_scene := $(call wraps,malloc calloc realloc aligned_alloc)
 wraps_test_bus := $(call wraps,bus_socket_drops sched_yield)
 
 # slabs.c and the kernels of test_bounds are there three times: as they are, with fused operations
-# (which a compiler makes only where it optimises), and with a wrong bound. They are optimised and
-# without sanitizers in all modes, which have seen the same code elsewhere.
+# (which a compiler makes only where it optimises), and with a wrong bound. They are optimised in all
+# modes.
 compile_bare = $(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) $(sees)
 renamed = $(foreach name,$2,-D$(name)=$1_$(name))
 slabs_fused := -ffp-contract=fast $(if $(x86),-mfma)
@@ -118,8 +125,9 @@ $(B)/tests/test_box_bounds: $(filter $(O)/tests/unit/kernels/boxes_%,$(tested_ke
 
 # cmocka hands each test a state, which few read.
 $(O)/tests/unit/%.o: flags += -Wno-unused-parameter
-$(internal_tests): $(O)/tests/unit/slab_truth.o $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
-	kernel_fused.o kernel_planted.o) $(shared) $(client) $(product) $(engine)
+$(addprefix $(B)/tests/,test_bounds test_kernels): $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
+	kernel_fused.o kernel_planted.o)
+$(internal_tests): $(O)/tests/unit/slab_truth.o $(shared) $(client) $(product) $(engine)
 $(filter-out $(internal_tests),$(unit_tests)): $(shared) $(client) $(product) $(B)/libfmb.a
 $(unit_tests): libraries += -lcmocka
 $(unit_tests): $(B)/tests/%: $(O)/tests/unit/%.o | $(B)/netns
@@ -143,9 +151,12 @@ $(O)/fuzz.a: $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o model.o same.o same_sc
 	results_pair.o results_scene.o)
 	@rm -f $@
 	$(call say,AR,$@) $(AR) rcs $@ $^
-# Comparisons of numbers deep in the engine are not what inputs should be made for.
+# Comparisons of numbers deep in the engine are not what inputs should be made for; nor branches of
+# integers, whose counters take ten seconds to compile.
 ifeq ($(MODE),asan)
 $(engine_objects): flags += -O2 -fno-sanitize-coverage=trace-cmp
+$(O)/service/fmb/exact/limbs_narrow.o $(O)/service/fmb/exact/limbs_wide.o: \
+	flags += -fno-sanitize-coverage=inline-8bit-counters,pc-table,indirect-calls,stack-depth
 endif
 # The parts of a fuzz target are named in its rule by the stem.
 .SECONDEXPANSION:
@@ -209,7 +220,7 @@ aarch64:
 .PHONY: tests fast-tests tested-programs unit-tests replay-set test test-fast check
 tests: fast-tests examples $(measures)
 fast-tests: tested-programs unit-tests $(capped_programs)
-tested-programs: programs manual $(test_programs)
+tested-programs: programs $(if $(filter asan,$(MODE)),,manual) $(test_programs)
 unit-tests: $(unit_tests) $(replayers) $(B)/netns
 replay-set: $(B)/fmb $(B)/logs/generate $(filter $(B)/capped/fmb-%,$(capped_programs))
 
