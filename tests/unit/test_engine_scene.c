@@ -292,6 +292,11 @@ static size_t check_scene(const struct fmb_scene *scene, size_t slots)
 
 static struct world world;
 
+static int rounds(int usual)
+{
+    return getenv("FMB_FAST") ? usual / 3 : usual;
+}
+
 static void random_scenes(void **state)
 {
     struct draw draw = {0x5ce9e5};
@@ -315,7 +320,7 @@ static void heaps_and_rows(void **state)
 {
     struct draw draw = {41};
     size_t meeting = 0;
-    for (int n = 0; n < 12; n++) {
+    for (int n = 0; n < rounds(12); n++) {
         const bool heap = n % 2;
         draw_world(&draw, n % 4 < 2 ? SOME : PLACEMENTS_MAX, 1, &world);
         for (size_t i = 0; i < world.count; i++)
@@ -336,7 +341,7 @@ static void heaps_and_rows(void **state)
 static void any_first_pair(void **state)
 {
     struct draw draw = {77};
-    for (int n = 0; n < 12; n++) {
+    for (int n = 0; n < rounds(12); n++) {
         draw_world(&draw, 9, n % 2 ? 1 : 20, &world);
         const unsigned long long total = fmb_scene_pair_count(&world.scene);
         for (world.scene.first_pair = 0; world.scene.first_pair <= total; world.scene.first_pair++)
@@ -375,7 +380,7 @@ static void extremes(void **state)
     static const double scale[] = {1e308, 1e300, 1e150, 1e16, 1e-160, 1e-310};
     struct draw draw = {9};
     size_t meeting = 0;
-    for (int n = 0; n < 60; n++) {
+    for (int n = 0; n < rounds(60); n++) {
         draw_world(&draw, 6, 3, &world);
         for (size_t i = 0; i < world.count; i++) {
             for (size_t k = 0; k < 3 && k < world.body[i].frame_count; k++) {
