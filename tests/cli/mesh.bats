@@ -53,6 +53,7 @@ nothing='{"overlapping": 0, "touching": 0, "faces_a": 0, "faces_b": 0, "pairs": 
 
 # ---- Answers ---------------------------------------------------------------------------------
 
+# bats test_tags=release
 @test "a mesh inside the bounds of another one that it does not intersect gets a hint in text only" {
     obj out.obj '-1 -1 -1' '3 -1 -1' '-1 3 -1' '-1 -1 3' -- '1 3 2' '1 2 4' '1 4 3' '2 3 4'
     obj in.obj '0 0 0' '0.1 0 0' '0 0.1 0' '0 0 0.1' -- '1 3 2' '1 2 4' '1 4 3' '2 3 4'
@@ -70,6 +71,7 @@ nothing='{"overlapping": 0, "touching": 0, "faces_a": 0, "faces_b": 0, "pairs": 
     [[ $output != *inside* ]]
 }
 
+# bats test_tags=release
 @test "JSON is one line with the counts and the pairs in order" {
     answers '{"overlapping": 1, "touching": 1, "faces_a": 1, "faces_b": 2, "pairs": [[0, 0, "overlapping"], [0, 1, "touching"]]}' a.obj b.obj
     answers '{"overlapping": 1, "touching": 1, "faces_a": 2, "faces_b": 1, "pairs": [[0, 0, "overlapping"], [1, 0, "touching"]]}' b.obj a.obj
@@ -77,6 +79,7 @@ nothing='{"overlapping": 0, "touching": 0, "faces_a": 0, "faces_b": 0, "pairs": 
     [ "$(wc -l <<< "$output")" = 1 ]
 }
 
+# bats test_tags=release
 @test "text is a summary, and with --list every pair before it" {
     mesh a.obj b.obj
     ended 0
@@ -94,6 +97,7 @@ in them are
 $counts"
 }
 
+# bats test_tags=release
 @test "moving meshes have the contact interval of each pair, and the first and the last time" {
     answers '{"overlapping": 1, "touching": 1, "faces_a": 1, "faces_b": 2, "pairs": [[0, 0, "overlapping", [0.5, 2]], [0, 1, "touching", [1.5, 2]]]}' \
         a.obj --translate 0,0,1.5 --velocity 0,0,-1 b.obj --duration 2
@@ -121,6 +125,7 @@ $counts"
         high.obj --scale 1,1,1 high.obj
 }
 
+# bats test_tags=release
 @test "faces that share a vertex touch, and an ulp away from it they do not" {
     # 1e16 + 2 is the next double.
     obj far.obj '10000000000000000 0.1 0.3' '-0.1 0.7 0.2' '0.3 1e-17 -5' -- '1 2 3'
@@ -131,6 +136,7 @@ $counts"
     answers "$nothing" far.obj beside.obj
 }
 
+# bats test_tags=release
 @test "--method exact gives the same answer" {
     "$MAKE_MESH" --faces 200 one.ply
     for options in '' '--translate 0.1,0.2,0.3' '--as tetrahedra' '--velocity 0.1,0,0.05'; do
@@ -156,6 +162,7 @@ $counts"
     answers "$nothing" --as tetrahedra a.obj below.obj --translate 0,0,-0x1p-52
 }
 
+# bats test_tags=release
 @test "an empty mesh intersects nothing" {
     printf 'ply\nformat ascii 1.0\nend_header\n' > empty.ply
     printf 'solid nothing\nendsolid nothing\n' > empty.stl
@@ -203,6 +210,7 @@ apart() {
     meets -- a.obj b.obj
 }
 
+# bats test_tags=release
 @test "steps are applied in the order of the command line" {
     obj point.obj '8 1 0' '8 1 0' '8 1 0' -- '1 1 1'
     obj from.obj '1 2 0' '1 2 0' '1 2 0' -- '1 2 3'
@@ -215,6 +223,7 @@ apart() {
     meets --rotate x,90 from.obj --rotate x,-90 point.obj --rotate x,270 --translate -7,1,0
 }
 
+# bats test_tags=release
 @test "more than 32 steps for a mesh are refused" {
     steps=$(printf -- '--mirror x %.0s' $(seq 32))
     # shellcheck disable=SC2086
@@ -258,6 +267,7 @@ and beside each other, with nothing else in common, are
              5  pairs that share a vertex'
 }
 
+# bats test_tags=release
 @test "--self refuses options that exclude it" {
     wrong mesh --self a.obj b.obj
     wrong mesh --self
@@ -268,6 +278,7 @@ and beside each other, with nothing else in common, are
 Try 'fmb mesh --help'."
 }
 
+# bats test_tags=release
 @test "a closed mesh shares three edges for every two faces" {
     "$MAKE_MESH" --faces 1000 one.ply
     mesh --self --json one.ply
@@ -346,6 +357,7 @@ Try 'fmb mesh --help'."
     [ "$(wc -l <<< "$stderr")" = 1 ]
 }
 
+# bats test_tags=release
 @test "output that cannot be written is reported" {
     mesh a.obj b.obj --json --ply "$BATS_TEST_TMPDIR/no/out.ply"
     ended 1
@@ -380,6 +392,7 @@ Try 'fmb mesh --help'."
 Try 'fmb mesh --help'."
 }
 
+# bats test_tags=release
 @test "--help and fmb help mesh print the usage" {
     mesh --help
     ended 0
@@ -402,6 +415,7 @@ Try 'fmb mesh --help'."
 
 # ---- The terminal ------------------------------------------------------------------------------
 
+# bats test_tags=release
 @test "progress is shown on a terminal only" {
     script -qfc true /dev/null < /dev/null > /dev/null 2>&1 3>&- || skip 'there is no pseudo-terminal'
     "$MAKE_MESH" --faces 100000 large.ply

@@ -50,6 +50,7 @@ query() {
     is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1], "gap": [-0, -0], "direction": [0,-1]}]}'
 }
 
+# bats test_tags=release
 @test "without --box there is no box" {
     query "$scene"
     ended 0
@@ -73,6 +74,7 @@ query() {
     ended 2
 }
 
+# bats test_tags=release
 @test "separated pairs have neither contact nor box" {
     query "{\"dim\": 2, \"bodies\": [{\"id\": 1, $square, \"origin\": [0,0]},
            {\"id\": 2, $square, \"origin\": [3,0], \"velocity\": [-1,0]}]}" --box
@@ -80,18 +82,21 @@ query() {
     is '{"pairs": [{"a": 1, "b": 2, "verdict": "separated"}]}'
 }
 
+# bats test_tags=release
 @test "pairs are answered as listed: both orientations, repeats" {
     query "$two, \"pairs\": [[2,1],[1,2],[2,1]]}"
     ended 0
     is '{"pairs": [{"a": 2, "b": 1, "verdict": "touching", "contact": [0, 1]}, {"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1]}, {"a": 2, "b": 1, "verdict": "touching", "contact": [0, 1]}]}'
 }
 
+# bats test_tags=release
 @test "an empty list of pairs has no answers" {
     query "$two, \"pairs\": []}"
     ended 0
     is '{"pairs": []}'
 }
 
+# bats test_tags=release
 @test "without a list all pairs are answered, in body order" {
     query "{\"dim\": 3, \"bodies\": [{\"id\": 9, $cube, \"origin\": [0,0,0]},
            {\"id\": 5, $cube, \"origin\": [1,0,0]}, {\"id\": 7, $cube, \"origin\": [5,0,0]}]}"
@@ -99,6 +104,7 @@ query() {
     is '{"pairs": [{"a": 9, "b": 5, "verdict": "touching", "contact": [0, 1]}, {"a": 9, "b": 7, "verdict": "separated"}, {"a": 5, "b": 7, "verdict": "separated"}]}'
 }
 
+# bats test_tags=release
 @test "each scene of an input has one line of answers" {
     query "$scene $scene
 $two, \"pairs\": []}"
@@ -107,6 +113,7 @@ $two, \"pairs\": []}"
     [ "${lines[2]}" = '{"pairs": []}' ]
 }
 
+# bats test_tags=release
 @test "a scene is answered before the next one arrives" {
     mkfifo "$BATS_TEST_TMPDIR/in"
     "$FMB" query --local --json < "$BATS_TEST_TMPDIR/in" > "$BATS_TEST_TMPDIR/out" 3>&- &
@@ -129,6 +136,7 @@ $two, \"pairs\": []}"
     is '{"pairs": [{"a": 1, "b": 9007199254740991, "verdict": "overlapping", "contact": [0, 1], "box": {"min": [0.30000000000000004,4.94065645841247e-324], "max": [1.1,0.29999999999999993]}}]}'
 }
 
+# bats test_tags=release
 @test "a file, a dash and standard input give the same answers" {
     echo "$scene" > "$BATS_TEST_TMPDIR/scene.json"
     expected='{"pairs": [{"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1]}]}'
@@ -154,6 +162,7 @@ $two, \"pairs\": []}"
 1 overlapping, 2 touching, 0 separated"
 }
 
+# bats test_tags=release
 @test "a table in large coordinates shows distinct ends of a box, in columns" {
     run "$FMB" query --local --box <<< "{\"dim\": 2, \"bodies\": [
         {\"id\": 1, $square, \"origin\": [500000,5400000]},
@@ -194,6 +203,7 @@ $two, \"pairs\": []}"
 }
 
 # 3-4-5: the quarter turn of a rotation by (3, 4), squared.
+# bats test_tags=release
 @test "a box that is turned within its body is a cuboid, rounded once" {
     query '{"dim": 2, "bodies": [
         {"id": 1, "frames": [{"shape": "box", "size": [2,2], "position": [5,0], "orientation": [1,1]}]},
@@ -203,6 +213,7 @@ $two, \"pairs\": []}"
     is '{"pairs": [{"a": 1, "b": 2, "verdict": "touching", "contact": [0, 1], "box": {"min": [4,-1], "max": [4,1]}}, {"a": 1, "b": 3, "verdict": "touching", "contact": [0, 1], "box": {"min": [6,1], "max": [6,1]}}, {"a": 2, "b": 3, "verdict": "separated"}]}'
 }
 
+# bats test_tags=release
 @test "names stand in tables" {
     scene="{\"dim\": 2, \"bodies\": [{\"id\": 1, \"name\": \"Tür <1>\", $square, \"origin\": [0,0]},
         {\"id\": 20, $square, \"origin\": [2,0]}]}"
@@ -213,6 +224,7 @@ $two, \"pairs\": []}"
     is '{"pairs": [{"a": 1, "b": 20, "names": ["T\u00fcr \u003c1\u003e", null], "verdict": "separated"}]}'
 }
 
+# bats test_tags=release
 @test "ignored pairs are left out, in either order, once or more" {
     row='"shape": "box", "size": [1,1]'
     bodies="{\"dim\": 2, \"bodies\": [{\"id\": 1, $row}, {\"id\": 2, $row, \"position\": [1,0]},
@@ -237,6 +249,7 @@ row() {
     }'
 }
 
+# bats test_tags=release
 @test "a table leaves out separated pairs after the first 20, and says how many" {
     run "$FMB" query --local <<< "$(row 10)"
     ended 0
@@ -261,6 +274,7 @@ row() {
     [ "${#lines[@]}" = 46 ]
 }
 
+# bats test_tags=release
 @test "--contacts prints pairs that touch, overlap or are near" {
     query "$(row 10 '"margin": 2, ')" --contacts
     ended 0
@@ -297,6 +311,7 @@ row() {
     [[ ${lines[1]} == ',1,,1,2,,,,,,,,,,,,,,"'?*'"' ]]
 }
 
+# bats test_tags=release
 @test "an infinite end of a box is inf in CSV" {
     far='{"dim": 2, "bodies": [
         {"id": 1, "shape": "box", "size": [1e308,1], "position": [1.7e308,0]},
@@ -310,6 +325,7 @@ row() {
         '[$json, $csv] | map(split(",") | map(tonumber? // "inf")) | .[0] == .[1]'
 }
 
+# bats test_tags=release
 @test "a label stands in the table and before the pairs" {
     query "$(row 2 '"label": "shelf <1>", ')"
     [[ $output == '{"label": "shelf \u003c1\u003e", "pairs": [{"a": 1, '* ]]
@@ -324,6 +340,7 @@ fails() {
     [ "$(wc -l <<< "$output")" = "$(grep -o '"dim"' <<< "$2" | wc -l)" ]
 }
 
+# bats test_tags=release
 @test "--fail-if exits with 3 after all scenes" {
     apart='{"dim": 2, "margin": 1, "bodies": [{"id": 1, "shape": "box", "size": [1,1]}, {"id": 2, "shape": "box", "size": [1,1], "position": [9,0]}]}'
     near=${apart/9/1.5}
@@ -343,6 +360,7 @@ fails() {
     fails 0 "${near/\"margin\": 1, /}" --fail-if near
 }
 
+# bats test_tags=release
 @test "with --fail-if, 1 and 2 keep their meaning" {
     flat='{"dim": 2, "bodies": [{"id": 1, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[1,0]]},
         {"id": 2, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[0,1]]}]}'
@@ -387,6 +405,7 @@ gap() {
     [[ $output != *gap* ]]
 }
 
+# bats test_tags=release
 @test "the gap stands in a table, before the box" {
     run "$FMB" query --local --gap --box <<< "$(spaced)"
     ended 0
@@ -419,6 +438,7 @@ gap() {
     [ "${lines[-1]}" = '1 overlapping, 1 touching, 2 separated (0 near)' ]
 }
 
+# bats test_tags=release
 @test "cubes at rest as programs compute it are near at a margin of 1e-9, whatever their verdict" {
     clients/demo/cubes.sh > "$BATS_TEST_TMPDIR/cubes.json"
     query "$(cat "$BATS_TEST_TMPDIR/cubes.json")"
@@ -428,6 +448,7 @@ gap() {
     jq -e '[.pairs[] | select(.gap) | select(.verdict != "separated")] | length < 96' <<< "$output"
 }
 
+# bats test_tags=release
 @test "a gap beyond the largest double is null" {
     query "{\"dim\": 2, \"bodies\": [{\"id\": 1, $square, \"origin\": [1e308,0]},
         {\"id\": 2, $square, \"origin\": [-1e308,0]}]}" --gap
@@ -435,6 +456,7 @@ gap() {
     jq -e '.pairs[0] | .verdict == "separated" and .gap[1] == null and .direction == [-1,0]' <<< "$output"
 }
 
+# bats test_tags=release
 @test "methods without gaps give errors and exit code 1" {
     for method in fmb sat; do
         query "$(spaced)" --gap --method $method
@@ -473,6 +495,7 @@ squares() {
     done
 }
 
+# bats test_tags=release
 @test "a certificate stands below its row in a table" {
     certificates=$(query "$(squares)" --certificate && jq -r '.pairs[].certificate' <<< "$output")
     run "$FMB" query --local --certificate <<< "$(squares)"
@@ -484,6 +507,7 @@ squares() {
     [ "$(sed -n '4p;6p;8p' <<< "$output" | sed 's/^        //')" = "$certificates" ]
 }
 
+# bats test_tags=release
 @test "every case of tests/cases has certificates, and the same answers" {
     for file in "$CASES"/*.json; do
         scene=$(jq -c .scene "$file")
@@ -512,6 +536,7 @@ squares() {
     [[ ${lines[3]//,/} == *"... ($length characters)" ]]
 }
 
+# bats test_tags=release
 @test "a pair whose numbers span too much for a certificate is not decided with one" {
     scene='{"dim": 2, "bodies": [
         {"id": 1, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[0,1]]},
@@ -523,6 +548,7 @@ squares() {
     ended 0
 }
 
+# bats test_tags=release
 @test "where an inexact method is wrong, the certificate does not hold" {
     scene='{"dim": 2, "bodies": [
         {"id": 1, "shape": "tetrahedron", "origin": [-0.5,-0.6], "components": [[-0.2,0.9], [0.5,-0.2]]},
@@ -538,6 +564,7 @@ squares() {
     ended 0
 }
 
+# bats test_tags=release
 @test "a pair that is not decided has no certificate" {
     query '{"dim": 2, "bodies": [
         {"id": 1, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[1,0]]},
@@ -548,6 +575,7 @@ squares() {
 
 # ---- Methods ---------------------------------------------------------------------------------
 
+# bats test_tags=release
 @test "the inexact methods answer" {
     for method in exact fmb sat; do
         query "$two, \"pairs\": [[1,2]]}" --method $method
@@ -556,6 +584,7 @@ squares() {
     done
 }
 
+# bats test_tags=release
 @test "a pair that a method cannot decide has an error, and the exit code is 1" {
     flat='{"dim": 3, "bodies": [
         {"id": 1, "shape": "face", "origin": [0,0,0], "components": [[1,0,0],[0,1,0]]},
@@ -652,6 +681,7 @@ refused() {
     is 'fmb: standard input: the input is empty: expected a scene'
 }
 
+# bats test_tags=release
 @test "a missing file and a directory are reported" {
     run "$FMB" query --local /no/such/file
     ended 2
@@ -670,6 +700,7 @@ refused() {
     is 'fmb: standard input: line 1, column 39: nested more than 32 deep'
 }
 
+# bats test_tags=release
 @test "a full standard output is a failure" {
     [ -w /dev/full ] || skip "no /dev/full"
     run bash -c "'$FMB' query --local --json > /dev/full" <<< "$scene"
@@ -717,12 +748,14 @@ all_pairs() {
 
 # ---- Pages: what they show is tested by page.bats --------------------------------------------
 
+# bats test_tags=release
 @test "--html implies --box" {
     query "$scene $scene" --html "$BATS_TEST_TMPDIR/scene.html"
     ended 0
     [ "$(jq -s 'map(.pairs[0] | has("box")) | all' <<< "$output")" = true ]
 }
 
+# bats test_tags=release
 @test "a page that cannot be written leaves the answers, with exit code 1" {
     query "$scene" --html /no/such/folder/scene.html
     ended 1
@@ -730,6 +763,7 @@ all_pairs() {
     said 'fmb: /no/such/folder/scene.html: No such file or directory'
 }
 
+# bats test_tags=release
 @test "--svg names the option that replaces it" {
     query "$scene" --svg scene.svg
     ended 2
@@ -761,6 +795,7 @@ Try 'fmb query --help'."
     done
 }
 
+# bats test_tags=release
 @test "help fits 80 columns" {
     for words in '' query watch record status replay log 'log info' 'log cut' 'log scene' 'log results' mesh; do
         run "$FMB" $words --help
@@ -772,6 +807,7 @@ Try 'fmb query --help'."
     [ "$(wc -L <<< "$output")" -le 80 ]
 }
 
+# bats test_tags=release
 @test "the example of the help is a scene" {
     "$FMB" query --help | sed -n '/^  {"dim"/,/^Exit/p' | sed '$d' > "$BATS_TEST_TMPDIR/scene.json"
     run "$FMB" query --local --json "$BATS_TEST_TMPDIR/scene.json"
@@ -779,12 +815,14 @@ Try 'fmb query --help'."
     [ "$(jq '.pairs | length' <<< "$output")" = 2 ]
 }
 
+# bats test_tags=release
 @test "--version prints the version" {
     run "$FMB" --version
     ended 0
     [[ $output =~ ^fmb\ [0-9]+\.[0-9]+\.[0-9]+$ ]]
 }
 
+# bats test_tags=release
 @test "arguments after --help and --version are refused" {
     for arguments in '--help x' '-h x' '--version x' '-V x' 'help query x'; do
         run --separate-stderr "$FMB" $arguments
@@ -795,6 +833,7 @@ Try 'fmb --help'."
     done
 }
 
+# bats test_tags=release
 @test "all commands have the common options" {
     for command in query watch status; do
         wrong $command -p 'a.*'
@@ -805,6 +844,7 @@ Try 'fmb --help'."
     done
 }
 
+# bats test_tags=release
 @test "a missing or unknown command is refused with exit code 2" {
     run --separate-stderr "$FMB"
     ended 2

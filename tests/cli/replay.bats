@@ -60,6 +60,7 @@ xpath() {
 
 # ---- All the same -----------------------------------------------------------------------------
 
+# bats test_tags=release
 @test "a log with right answers has no differences" {
     run --separate-stderr "$FMB" replay arm.log
     ended 0
@@ -81,6 +82,7 @@ xpath() {
     done
 }
 
+# bats test_tags=release
 @test "what a service could not answer then is counted apart" {
     replay clients.log
     ended 0
@@ -96,6 +98,7 @@ xpath() {
 
 # ---- Differences ------------------------------------------------------------------------------
 
+# bats test_tags=release
 @test "an altered verdict is a difference" {
     edit --flip 3 --flip 4 arm.log
     run --separate-stderr "$FMB" replay spoiled.log
@@ -113,6 +116,7 @@ xpath() {
     counts '.differences[0].now.verdict == "touching" and .differences[0].log == "spoiled.log"'
 }
 
+# bats test_tags=release
 @test "an altered number is a difference beyond --tolerance" {
     edit --nudge 0 1e-9 moving.log
     replay spoiled.log
@@ -144,6 +148,7 @@ xpath() {
     [[ ${lines[0]} == *" box: x "*"..inf  y "*", now x "* ]]
 }
 
+# bats test_tags=release
 @test "an altered gap of a pair and of a scene is a difference" {
     for n in $(seq 0 19); do
         edit --nudge "$n" 1e-9 apart.log
@@ -184,6 +189,7 @@ xpath() {
     [[ $output == *' status: unknown status, now '* ]]
 }
 
+# bats test_tags=release
 @test "differences are listed in the order of their queries, however late their results" {
     local flips=()
     for n in 3 9 12 18 21 30 36 60; do flips+=(--flip $n); done
@@ -212,6 +218,7 @@ xpath() {
 
 # ---- What stands where -------------------------------------------------------------------------
 
+# bats test_tags=release
 @test "results match wherever they are: later, after all queries, before all queries" {
     for how in '--delay 1' '--delay 37' --last --first '--utime 5'; do
         # shellcheck disable=SC2086
@@ -221,6 +228,7 @@ xpath() {
     done
 }
 
+# bats test_tags=release
 @test "repeated, missing and unmatched results are counted" {
     edit --repeat 4 --repeat 50 arm.log
     replay spoiled.log
@@ -249,6 +257,7 @@ xpath() {
     [ "$(xpath '//testsuite/@errors')" = 1 ]
 }
 
+# bats test_tags=release
 @test "a second golden result that contradicts the first is a difference" {
     edit --repeat 4 --flip 5 arm.log
     replay --golden spoiled.log arm.log
@@ -257,6 +266,7 @@ xpath() {
     [[ $stderr == *'spoiled.log: event '*': contradicts an earlier result of the same query' ]]
 }
 
+# bats test_tags=release
 @test "several logs are read as one" {
     for at in 1 30 31 77 145; do
         "$EDIT" --events 0 $at clients.log a.log
@@ -290,6 +300,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [ "$(xpath 'count(//testsuite[3]//error)')" = 0 ]
 }
 
+# bats test_tags=release
 @test "many logs are read as one" {
     for i in $(seq 0 3 145); do
         "$EDIT" --events "$i" $((i + 3)) arm.log "part.$i.log"
@@ -302,6 +313,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     counts '.same == 72'
 }
 
+# bats test_tags=release
 @test "the counts of adjacent time ranges add up to those of the log" {
     for log in clients arm foreign; do
         sums() { jq -cs '[.[] | [.queries, .same, .busy, .unknown_body, .no_result, .results,
@@ -317,6 +329,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     done
 }
 
+# bats test_tags=release
 @test "a range begins and ends on the microsecond" {
     replay --from 0.2 --to 0.200001 arm.log
     ended 0
@@ -328,6 +341,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [ "$(jq .queries <<< "$output")" = $(($(jq .queries <<< "$at") + $(jq .queries <<< "$after"))) ]
 }
 
+# bats test_tags=release
 @test "a time range without queries is unusable: there is nothing to compare" {
     for range in '--from 1000' '--from 0.2000001 --to 0.2000009'; do
         # shellcheck disable=SC2086
@@ -347,6 +361,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [ "$(jq '.exit = 1' parts | jq -s "$recipe | .exit")" = 1 ]
 }
 
+# bats test_tags=release
 @test "a clock that was set back hides nothing" {
     edit --clock 20 5000000 --flip 30 arm.log
     replay spoiled.log
@@ -356,6 +371,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     counts '.queries < 72 and .queries > 0'
 }
 
+# bats test_tags=release
 @test "--prefix selects the channels of a prefix" {
     edit --prefix LAB_ arm.log
     replay spoiled.log
@@ -391,6 +407,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     ended 0
 }
 
+# bats test_tags=release
 @test "golden results with other verdicts are differences" {
     "$FMB" replay --write-golden arm.golden arm.log
     "$EDIT" --flip 3 --flip 60 arm.golden flipped.golden
@@ -403,6 +420,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     ended 0
 }
 
+# bats test_tags=release
 @test "golden results match in any order, and extra and missing ones are counted" {
     "$FMB" replay --write-golden arm.golden arm.log
     "$EDIT" --events 20 72 arm.golden a.log
@@ -475,6 +493,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     counts '.same == 71 and .no_result == 1 and .left_over == 0'
 }
 
+# bats test_tags=release
 @test "queries of another client are counted within type, label and first pair" {
     # Two pair queries of different bodies, in the other order.
     "$EDIT" --client 5 arm.log other.log
@@ -495,6 +514,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     counts '.same == .queries and .queries > 5 and .queries < 40 and .left_over == 0'
 }
 
+# bats test_tags=release
 @test "exact matches keep priority over the order" {
     "$EDIT" --events 0 60 moving.log begin.log
     "$EDIT" --events 40 1000 moving.log end.log
@@ -543,6 +563,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [[ $stderr == *"offset $(($("$EDIT" --offset 3 arm.log) + 25)): "* ]]
 }
 
+# bats test_tags=release
 @test "differences determine the exit code before damage" {
     edit --garbage 50 --flip 3 arm.log
     replay spoiled.log
@@ -635,6 +656,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 
 # ---- JUnit -------------------------------------------------------------------------------------
 
+# bats test_tags=release
 @test "JUnit: a log without differences passes" {
     junit arm.log
     ended 0
@@ -644,6 +666,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [ "$(xpath '//testsuite/@name')" = arm.log ]
 }
 
+# bats test_tags=release
 @test "JUnit: a difference is a failure of its log" {
     "$EDIT" --flip 3 --flip 60 arm.log flipped.log
     junit arm.log flipped.log arm.log
@@ -672,6 +695,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [[ $(xpath '//testcase/@classname') == *'"'"'"'<&>é€𝄞.log' ]]
 }
 
+# bats test_tags=release
 @test "JUnit: omitted differences are counted" {
     local flips=()
     for n in $(seq 0 300); do flips+=(--flip "$n"); done

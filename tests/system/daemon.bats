@@ -12,6 +12,7 @@ bats_require_minimum_version 1.5.0
     done
 }
 
+# bats test_tags=release
 @test "SIGTERM under load ends the daemon at once with 0" {
     start_fmbd
     random_scene 3 900 > "$BATS_TEST_TMPDIR/scene.json"
@@ -55,6 +56,7 @@ bats_require_minimum_version 1.5.0
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "without a service a query fails with exit code 1 and a hint" {
     random_scene 2 3 > "$BATS_TEST_TMPDIR/scene.json"
     run "$FMB" query --timeout 0.1 --retries 1 "$BATS_TEST_TMPDIR/scene.json"
@@ -70,6 +72,7 @@ many_scenes() {
     for seed in $(seq "$1"); do random_scene 2 3 "$seed" | tr -d '\n'; echo; done
 }
 
+# bats test_tags=release
 @test "without a service, only the first of many scenes takes a timeout" {
     many_scenes 200 > "$BATS_TEST_TMPDIR/scenes.json"
     run --separate-stderr timeout 60 "$FMB" query --json --timeout 0.5 --retries 1 "$BATS_TEST_TMPDIR/scenes.json"
@@ -79,6 +82,7 @@ many_scenes() {
     grep -q 'no fmbd answered .* within 1 s, and none sends a heartbeat: later scenes are not answered$' <<< "$stderr"
 }
 
+# bats test_tags=release
 @test "a query continues when the service starts late, and when it is restarted" {
     many_scenes 40 > "$BATS_TEST_TMPDIR/scenes.json"
     "$FMB" query --json --local "$BATS_TEST_TMPDIR/scenes.json" > "$BATS_TEST_TMPDIR/local"
@@ -143,6 +147,7 @@ many_scenes() {
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "started as root, the daemon runs as the user 'nobody', or as the user given" {
     [ "$(id -u)" = 0 ] && [ "$(wc -l < /proc/self/uid_map)" = 1 ] &&
         [ "$(awk '{ print $3 }' /proc/self/uid_map)" -gt 65534 ] || skip "needs root and its ids"
@@ -160,6 +165,7 @@ many_scenes() {
     [[ "$output" == *"--user"* ]]
 }
 
+# bats test_tags=release
 @test "where an id does not exist, the daemon warns once and continues" {
     [ "$FMB_NETNS" = own ] || skip "needs namespaces"
     unshare -rn true || skip "needs user namespaces"
@@ -177,6 +183,7 @@ many_scenes() {
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "a service manager is notified when the daemon is ready, alive and stopping" {
     "$FMB_BUILD/fake-peer" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/received" 3>&- &
     started="${started-} $!"
@@ -190,6 +197,7 @@ many_scenes() {
     wait_until stopping
 }
 
+# bats test_tags=release
 @test "heartbeats and watchdog notifications are sent under constant load" {
     "$FMB_BUILD/fake-peer" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/received" 3>&- &
     started="${started-} $!" clients=
@@ -214,6 +222,7 @@ many_scenes() {
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "heartbeats are sent while queries arrive faster than they are answered" {
     start_fmbd
     "$FMB_BUILD/fake-peer" flood scene_query 101 60 > /dev/null 3>&- &
@@ -228,6 +237,7 @@ many_scenes() {
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "without a route for multicast the daemon prints the command that adds one" {
     unshare -rn true || skip "needs a network without routes"
     run unshare -rn "$FMBD" --lcm-url udpm://239.8.7.6:7667
@@ -237,6 +247,7 @@ many_scenes() {
     [[ "${lines[1]}" == *"ip route add 224.0.0.0/4 dev lo"* ]]
 }
 
+# bats test_tags=release
 @test "an invalid bus is refused with exit code 1 and one line" {
     for url in nonsense foo://bar tcpq://127.0.0.1:1; do
         run timeout 10 "$FMBD" --lcm-url $url
@@ -245,6 +256,7 @@ many_scenes() {
     done
 }
 
+# bats test_tags=release
 @test "a closed or stalled reader of stderr does not stop the daemon" {
     mkfifo "$BATS_TEST_TMPDIR/pipe"
     for reader in gone asleep; do
@@ -267,6 +279,7 @@ many_scenes() {
     done
 }
 
+# bats test_tags=release
 @test "a second service on the same channels is reported" {
     start_fmbd
     one=$fmbd one_log=$fmbd_log

@@ -89,6 +89,7 @@ is() {
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "lcm-logplayer plays a log, and another recording of that holds the same" {
     start_fmbd
     start_record "$log"
@@ -104,6 +105,7 @@ is() {
     events "$log.2" | cmp - "$BATS_TEST_TMPDIR/played"
 }
 
+# bats test_tags=release
 @test "SIGINT and SIGTERM end a recording with all earlier messages" {
     for signal in INT TERM; do
         start_record "$log.$signal"
@@ -140,6 +142,7 @@ is() {
     [ "$(wc -l < "$messages")" = 2 ]
 }
 
+# bats test_tags=release
 @test "a recording ends after a number of messages, or a time" {
     "$FMB" record --json --count 7 "$log" > "$report" 2> "$messages" 3>&- &
     record=$!
@@ -156,6 +159,7 @@ is() {
 
 # ---- Files -----------------------------------------------------------------------------------
 
+# bats test_tags=release
 @test "a file is overwritten with --force only" {
     echo precious > "$log"
     run --separate-stderr "$FMB" record --duration 0.1 "$log"
@@ -200,6 +204,7 @@ is() {
     [ "$(cd "$BATS_TEST_TMPDIR" && echo log.*)" = log.000 ]
 }
 
+# bats test_tags=release
 @test "of the files of a rotation the newest are kept" {
     start_record --split-mb 0.05 --max-files 2 "$log"
     "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
@@ -281,12 +286,14 @@ END
     is '.events > 100'
 }
 
+# bats test_tags=release
 @test "a failure of standard output is a failure of the recording" {
     run --separate-stderr bash -c '"$0" record --duration 0.1 "$1" > /dev/full' "$FMB" "$log"
     [ "$status" = 1 ]
     [[ $stderr == *"fmb: standard output: No space left on device" ]]
 }
 
+# bats test_tags=release
 @test "a recording that is killed leaves what it has flushed" {
     start_record "$log"
     "$FMB_BUILD/fake-peer" numbers 5 $(seq 300)
@@ -386,6 +393,7 @@ hulls() {
            | if $i == 4 then {frames: [., {shape: "box", size: [0.2, 0.3, 0.4]}]} else . end)]}'
 }
 
+# bats test_tags=release
 @test "hulls are answered, recorded, cut and replayed with the bits of --local" {
     hulls > "$BATS_TEST_TMPDIR/hulls.json"
     "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/hulls.json" > "$BATS_TEST_TMPDIR/local"
@@ -403,6 +411,7 @@ hulls() {
         "$FMB" query --json --box --local | cmp - "$BATS_TEST_TMPDIR/local"
 }
 
+# bats test_tags=release
 @test "of a rotation that keeps two files each query can be resolved" {
     start_fmbd
     random_scene 3 12 > "$BATS_TEST_TMPDIR/scene.json"
@@ -422,6 +431,7 @@ hulls() {
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "files of bounded size have space for definitions in their middle" {
     start_fmbd
     random_scene 3 12 1 > "$BATS_TEST_TMPDIR/one.json"
@@ -541,6 +551,7 @@ END
 
 # ---- Channels --------------------------------------------------------------------------------
 
+# bats test_tags=release
 @test "the channels of another prefix are not recorded" {
     start_fmbd --prefix P
     start_record "$log"
@@ -555,6 +566,7 @@ END
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "other channels are recorded on request, and those of the service once" {
     others=0
     for options in '--channel ONE|T.*O' '--all' ''; do
@@ -605,6 +617,7 @@ END
 
 # ---- The terminal ----------------------------------------------------------------------------
 
+# bats test_tags=release
 @test "progress is shown on a terminal only" {
     script -qfc true /dev/null < /dev/null > /dev/null 2>&1 3>&- || skip 'there is no pseudo-terminal'
     mkfifo "$BATS_TEST_TMPDIR/keys"
@@ -632,6 +645,7 @@ END
 
 # ---- Buses -----------------------------------------------------------------------------------
 
+# bats test_tags=release
 @test "a bus that does not open is reported" {
     run --separate-stderr "$FMB" record -l tcpq://127.0.0.1:1 "$log"
     [ "$status" = 1 ]

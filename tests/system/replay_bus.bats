@@ -104,6 +104,7 @@ event() {
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "parts of a log, several logs, and goldens of both replay through a service" {
     start_fmbd
     generate arm arm.log
@@ -127,6 +128,7 @@ event() {
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "an altered verdict is a difference" {
     start_fmbd
     generate --blast pairs 500 pairs.log
@@ -149,6 +151,7 @@ event() {
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "bodies that the service does not hold are sent whole" {
     generate --blast pairs 3000 --by-handle handles.log
     generate clients clients.log
@@ -206,6 +209,7 @@ event() {
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "--speed keeps the times of the log" {
     generate arm arm.log
     first=$(utime_at arm.log FMB_PAIR_QUERY 1)
@@ -240,6 +244,7 @@ event() {
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "a service that stops repeatedly is given up only when it does not come back" {
     generate --blast pairs 2000 pairs.log
     start_fmbd
@@ -299,6 +304,7 @@ event() {
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "SIGINT ends a replay with a report so far" {
     generate --blast pairs 5000 pairs.log
     start_fmbd
@@ -319,6 +325,7 @@ event() {
     stop_fmbd
 }
 
+# bats test_tags=release
 @test "a missing service, and one that is gone, are reported" {
     generate arm arm.log
     code=0
@@ -348,6 +355,7 @@ event() {
     grep -q '<error message="it answered [0-9]* queries"/>' junit.xml
 }
 
+# bats test_tags=release
 @test "a log of another prefix and a missing bus are reported" {
     generate arm arm.log
     start_fmbd

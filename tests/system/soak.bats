@@ -22,11 +22,13 @@ status_was() {
     status_was scenes '.scenes > 10'
 }
 
+# bats test_tags=release
 @test "no answer is lost or wrong with sixteen clients at once" {
     trial crowd
     jq -e '.clients == 16 and .queries >= 16' <<< "$report"
 }
 
+# bats test_tags=release
 @test "no answer is lost or wrong while the service is killed and started again" {
     trial killed
     jq -e '.outages >= 1 or .repeated >= 1' <<< "$report"
@@ -48,6 +50,7 @@ status_was() {
     jq -e '.repeated > 0' <<< "$report"
 }
 
+# bats test_tags=release
 @test "no answer is lost or wrong where half of the queries or their results are lost" {
     [ "$FMB_NETNS" = own ] || skip "needs a network namespace"
     trial halved
