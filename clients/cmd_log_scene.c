@@ -43,33 +43,24 @@ static const char usage[] =
     "Exit codes: 0 printed; 1 there is no such query, the service refuses it, or a\n"
     "handle is not defined; 2 wrong usage, or a log cannot be read.\n";
 
-/* The options that have a number. */
+/* The options that have a number, and the value of those that are not given. */
 enum { EVENT, OFFSET, CLIENT, SEQUENCE, NUMBERS };
-struct number {
-    long low, value;
-    bool given;
-};
+static const long not_given = LONG_MIN;
 
-static bool take_number(const struct args *args, void *out)
-{
-    struct number *number = out;
-    number->given = args_integer(args, number->low, LONG_MAX, &number->value);
-    return number->given;
-}
-
-static bool take_numbers(const struct args *args, const struct number *number,
+static bool take_numbers(const struct args *args, const long number[NUMBERS],
                          struct log_query_options *out)
 {
-    const bool ids = number[CLIENT].given || number[SEQUENCE].given;
-    if (number[CLIENT].given != number[SEQUENCE].given)
+    const bool event = number[EVENT] != not_given, offset = number[OFFSET] != not_given;
+    const bool client = number[CLIENT] != not_given, ids = client || number[SEQUENCE] != not_given;
+    if (client != (number[SEQUENCE] != not_given))
         return args_error(args, "--client goes with --sequence");
-    if (number[EVENT].given + number[OFFSET].given + ids != 1)
+    if (event + offset + ids != 1)
         return args_error(args, "expected --event, --offset, or --client with --sequence");
-    out->by = ids ? LOG_QUERY_IDS : number[EVENT].given ? LOG_QUERY_NUMBER : LOG_QUERY_OFFSET;
-    out->number = number[EVENT].value;
-    out->offset = number[OFFSET].value;
-    out->client_id = number[CLIENT].value;
-    out->sequence_number = number[SEQUENCE].value;
+    out->by = ids ? LOG_QUERY_IDS : event ? LOG_QUERY_NUMBER : LOG_QUERY_OFFSET;
+    out->number = number[EVENT];
+    out->offset = number[OFFSET];
+    out->client_id = number[CLIENT];
+    out->sequence_number = number[SEQUENCE];
     return true;
 }
 
@@ -170,13 +161,12 @@ static int run_scene(struct log_query_options *options)
 
 int cmd_log_scene(int argc, char **argv)
 {
-    struct number number[NUMBERS] = {
-        [EVENT] = {.low = LONG_MIN}, [CLIENT] = {.low = LONG_MIN}, [SEQUENCE] = {.low = LONG_MIN}};
+    long number[NUMBERS] = {not_given, not_given, not_given, not_given};
     const struct args_option own[] = {
-        {"event", ARGS_OTHER, &number[EVENT], .take = take_number},
-        {"offset", ARGS_OTHER, &number[OFFSET], .take = take_number},
-        {"client", ARGS_OTHER, &number[CLIENT], .take = take_number},
-        {"sequence", ARGS_OTHER, &number[SEQUENCE], .take = take_number},
+        {"event", ARGS_INTEGER, &number[EVENT], .low = LONG_MIN, .high = 0x1p63 - 1024},
+        {"offset", ARGS_INTEGER, &number[OFFSET], .high = 0x1p63 - 1024},
+        {"client", ARGS_INTEGER, &number[CLIENT], .low = LONG_MIN, .high = 0x1p63 - 1024},
+        {"sequence", ARGS_INTEGER, &number[SEQUENCE], .low = LONG_MIN, .high = 0x1p63 - 1024},
         {.name = NULL},
     };
     struct args args = {"log scene",         usage, own, .operand = "LOG", .operands_min = 1,

@@ -21,7 +21,6 @@ struct menu {
     const struct command *commands; /* ends with one without a name */
 };
 
-static int cmd_help(int argc, char **argv);
 static int cmd_log(int argc, char **argv);
 
 static const struct command commands[] = {
@@ -33,7 +32,7 @@ static const struct command commands[] = {
     {"log", "inspect and cut event logs, print results and scenes", cmd_log},
     {"scene", "print a URDF robot as a scene, or one for each row of joint values", cmd_scene},
     {"mesh", "decide which faces of two triangle meshes meet", cmd_mesh},
-    {"help", "help on a command: fmb help query", cmd_help},
+    {"help", "help on a command: fmb help query", NULL}, /* run_menu() */
     {.name = NULL},
 };
 
@@ -94,54 +93,46 @@ static bool is_one_of(const char *word, const char *first, const char *second)
     return strcmp(word, first) == 0 || strcmp(word, second) == 0;
 }
 
-static int cmd_help(int argc, char **argv)
+static bool is_help(const char *word)
 {
-    const bool of_log = argc > 2 && strcmp(argv[1], "log") == 0;
-    if (argc > 2 + of_log)
-        return refuse(&fmb, "argument", argv[2 + of_log]);
-    if (argc < 2 || is_one_of(argv[1], "help", "--help")) {
-        print_help(&fmb, stdout);
+    return strcmp(word, "help") == 0 || is_one_of(word, "--help", "-h");
+}
+
+/* argv[0]: the name of the menu. "help log cut" becomes "log help cut". */
+static int run_menu(const struct menu *menu, int argc, char **argv)
+{
+    char option[] = "--help";
+    if (argc < 2) {
+        print_help(menu, stderr);
+        return ARGS_USAGE;
+    }
+    if (!is_help(argv[1]))
+        return run_command(menu, argc - 1, argv + 1);
+    const bool print = argc == 2 || is_help(argv[2]);
+    const bool nested = argc > 3 && menu == &fmb && strcmp(argv[2], "log") == 0;
+    if (strcmp(argv[1], "help") != 0 && argc > 2)
+        return refuse(menu, "argument", argv[2]);
+    if (argc > 3 + nested)
+        return refuse(menu, "argument", argv[3 + nested]);
+    if (print) {
+        print_help(menu, stdout);
         return ARGS_ANSWERED;
     }
-    char help[] = "--help";
-    char *arguments[] = {argv[1], of_log ? argv[2] : help, help, NULL};
-    return run_command(&fmb, 2 + of_log, arguments);
+    char *arguments[] = {argv[2], nested ? argv[1] : option, nested ? argv[3] : NULL, NULL};
+    return run_command(menu, nested ? 3 : 2, arguments);
 }
 
 static int cmd_log(int argc, char **argv)
 {
-    const bool help = argc > 1 && strcmp(argv[1], "help") == 0;
-    if (argc < 2) {
-        print_help(&fmb_log, stderr);
-        return ARGS_USAGE;
-    }
-    if (argc == 3 && help) {
-        char option[] = "--help";
-        char *arguments[] = {argv[2], option, NULL};
-        return run_command(&fmb_log, 2, arguments);
-    }
-    if (argc == 2 && (help || is_one_of(argv[1], "--help", "-h"))) {
-        print_help(&fmb_log, stdout);
-        return ARGS_ANSWERED;
-    }
-    return run_command(&fmb_log, argc - 1, argv + 1);
+    return run_menu(&fmb_log, argc, argv);
 }
 
 int main(int argc, char **argv)
 {
-    if (argc < 2) {
-        print_help(&fmb, stderr);
-        return ARGS_USAGE;
-    }
-    bool help = is_one_of(argv[1], "--help", "-h");
-    bool version = is_one_of(argv[1], "--version", "-V");
-    if ((help || version) && argc > 2)
+    if (argc < 2 || !is_one_of(argv[1], "--version", "-V"))
+        return run_menu(&fmb, argc, argv);
+    if (argc > 2)
         return refuse(&fmb, "argument", argv[2]);
-    if (help)
-        return cmd_help(1, argv);
-    if (version) {
-        printf("fmb %s\n", fmb_version());
-        return ARGS_ANSWERED;
-    }
-    return run_command(&fmb, argc - 1, argv + 1);
+    printf("fmb %s\n", fmb_version());
+    return ARGS_ANSWERED;
 }

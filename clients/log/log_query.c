@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -116,37 +117,34 @@ static bool take_match(struct query_search *search, const struct log_event *even
     return search->options->by != LOG_QUERY_OFFSET && !search->of_result;
 }
 
-/* Begins a line on stderr with the query that was requested. */
-static void begin_line(const struct query_search *search)
+/* Reports why there is no answer to what was requested. */
+__attribute__((format(printf, 2, 3))) static void refuse(struct query_search *search,
+                                                         const char *format, ...)
 {
     const struct log_query_options *options = search->options;
-    fputs("fmb: ", stderr);
-    complain_text(options->log[options->log_count - 1]);
-    fputs(": ", stderr);
-    if (options->by == LOG_QUERY_NUMBER)
-        fprintf(stderr, "event %" PRId64, options->number);
-    else if (options->by == LOG_QUERY_OFFSET)
-        fprintf(stderr, "offset %" PRId64, options->offset);
+    char what[100], why[LOG_WHY_MAX];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(why, sizeof why, format, list);
+    va_end(list);
+    if (options->by == LOG_QUERY_IDS)
+        snprintf(what, sizeof what, "client %" PRId64 ", sequence number %" PRId64,
+                 options->client_id, options->sequence_number);
+    else if (options->by == LOG_QUERY_NUMBER)
+        snprintf(what, sizeof what, "event %" PRId64, options->number);
     else
-        fprintf(stderr, "client %" PRId64 ", sequence number %" PRId64, options->client_id,
-                options->sequence_number);
-}
-
-static void refuse(struct query_search *search, const char *why)
-{
-    begin_line(search);
-    fprintf(stderr, ": %s\n", why);
+        snprintf(what, sizeof what, "offset %" PRId64, options->offset);
+    complain("%s: %s%s", options->log[options->log_count - 1], what, why);
     search->outcome = LOG_QUERY_NONE;
 }
 
 static void refuse_several(struct query_search *search)
 {
-    begin_line(search);
-    fprintf(stderr, " is there %" PRId64 " times:", search->count);
-    for (int64_t i = 0; i < search->count && i < LISTED_MAX; i++)
-        fprintf(stderr, " --offset %" PRId64, search->listed[i]);
-    fprintf(stderr, "%s\n", search->count > LISTED_MAX ? " ..." : "");
-    search->outcome = LOG_QUERY_NONE;
+    char offsets[LISTED_MAX * 32] = "";
+    for (int64_t i = 0, used = 0; i < search->count && i < LISTED_MAX; i++)
+        used += sprintf(offsets + used, " --offset %" PRId64, search->listed[i]);
+    refuse(search, " is there %" PRId64 " times:%s%s", search->count, offsets,
+           search->count > LISTED_MAX ? " ..." : "");
 }
 
 static void find_event(struct query_search *search)
@@ -162,11 +160,12 @@ static void find_event(struct query_search *search)
     if (search->count > 1)
         refuse_several(search);
     else if (search->count == 0)
-        refuse(search, search->of_result ? "a result, whose query is not here" : "there is none");
+        refuse(search,
+               search->of_result ? ": a result, whose query is not here" : ": there is none");
     else if (search->kind >= LOG_STATUS)
-        refuse(search, "neither a query nor a result of this service (--prefix chooses it)");
+        refuse(search, ": neither a query nor a result of this service (--prefix chooses it)");
     else if (search->error)
-        refuse(search, search->error);
+        refuse(search, ": %s", search->error);
 }
 
 /* ---- Its bodies ---- */
@@ -196,7 +195,7 @@ static void find_bodies(struct query_search *search)
     const uint32_t size = (uint32_t) (out->size < LOG_DATA_MAX ? out->size : LOG_DATA_MAX);
     const char *error = logged_query_read(&out->query, search->kind, out->bytes, size);
     if (error) {
-        refuse(search, error);
+        refuse(search, ": %s", error);
         return;
     }
     struct query_placement *placement = logged_query_placements(&out->query, &count);
@@ -208,10 +207,8 @@ static void find_bodies(struct query_search *search)
     const int32_t missing = definitions_fill(out->definitions, placement, count);
     if (search->outcome != LOG_QUERY_FOUND || missing < 0)
         return;
-    begin_line(search);
-    fprintf(stderr, ": placement %d, body %" PRId64 ", came by a handle that no log here defines\n",
-            (int) missing, placement[missing].placed.id);
-    search->outcome = LOG_QUERY_NONE;
+    refuse(search, ": placement %d, body %" PRId64 ", came by a handle that no log here defines",
+           (int) missing, placement[missing].placed.id);
 }
 
 /* ---- The search ---- */

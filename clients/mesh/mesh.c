@@ -73,8 +73,8 @@ static bool read_any(struct mesh_source *source, const char *name, struct mesh *
         return mesh_stl_binary(source, out);
     if (ends_with(name, ".ply"))
         return mesh_ply(source, out);
-    return mesh_is_obj_statement(first_statement(source)) ? mesh_obj(source, out)
-                                                          : read_unknown(source);
+    return mesh_is_obj_statement(source, first_statement(source)) ? mesh_obj(source, out)
+                                                                  : read_unknown(source);
 }
 
 bool mesh_parse(const void *bytes, size_t size, const char *name, enum mesh_faces faces,

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Candidates decided at a time. Chosen so that their frames stay in the second-level cache. */
-enum { BLOCK = 512, FRAMES = 2 * BLOCK, SLOTS = 4 * BLOCK };
+enum { BLOCK = 512, FRAMES = 2 * BLOCK };
 
 struct mesh_search {
     const struct mesh_query *query;
@@ -22,12 +22,6 @@ struct mesh_search {
     size_t count, frame_count;
     struct mesh_placed_face *placed; /* [FRAMES] */
     struct fmb_prepared *frame;      /* [FRAMES], prepared from placed */
-    struct slot { /* hash table: the frame of a face; valid if the slot's block is the current one
-                   */
-        unsigned face, frame, block;
-        int mesh;
-    } slot[SLOTS];
-    unsigned block;
     unsigned char verdict[BLOCK];
     double contact[BLOCK][2];
 };
@@ -72,37 +66,15 @@ static void *build_tree(const struct mesh_query *query, int which, struct fmb_tr
 
 /* ---- The block ---- */
 
-static void clear_block(struct mesh_search *search)
-{
-    search->count = search->frame_count = 0;
-    search->block++;
-}
-
-static struct slot *slot_of(struct mesh_search *search, int which, unsigned face)
-{
-    size_t at = (face * 2654435761u + (unsigned) which) % SLOTS;
-    struct slot *slot = &search->slot[at];
-    while (slot->block == search->block && (slot->face != face || slot->mesh != which)) {
-        at = (at + 1) % SLOTS;
-        slot = &search->slot[at];
-    }
-    return slot;
-}
-
-/* The index of the frame of a face in the block; adds the frame if it is missing. */
-static unsigned frame_of(struct mesh_search *search, int which, unsigned face)
+/* Adds the frame of a face. Returns its index. */
+static unsigned add_frame(struct mesh_search *search, int which, unsigned face)
 {
     const struct mesh_query *query = search->query;
-    struct slot *slot = slot_of(search, mesh_is_self(query) ? 0 : which, face);
-    if (slot->block == search->block)
-        return slot->frame;
     struct mesh_placed_face *placed = &search->placed[search->frame_count];
     struct fmb_prepared *out = &search->frame[search->frame_count];
     memset(out, 0, sizeof *out); /* fmb_decide_batch() refuses a frame of zeros */
     if (mesh_face_place(mesh_of(query, which), query->as, face, query->velocity[which], placed))
         fmb_prepare(&placed->placement, 0, 1, out);
-    *slot = (struct slot){face, (unsigned) search->frame_count, search->block,
-                          mesh_is_self(query) ? 0 : which};
     return (unsigned) search->frame_count++;
 }
 
@@ -141,7 +113,7 @@ static void decide_block(struct mesh_search *search)
     const bool moving = search->intersection->moving;
     for (size_t i = 0; i < search->count; i++)
         for (int which = 0; which < 2; which++)
-            search->pair[i][which] = frame_of(search, which, search->face[i][which]);
+            search->pair[i][which] = add_frame(search, which, search->face[i][which]);
     const struct fmb_batch batch = {.frames = search->frame,
                                     .frame_count = search->frame_count,
                                     .pairs = (const unsigned(*)[2]) search->pair,
@@ -204,12 +176,11 @@ static void decide_all(struct mesh_search *search)
 {
     const struct mesh_query *query = search->query;
     struct fmb_tree_cursor cursor = {0};
-    for (clear_block(search);
-         search->status == FMB_OK &&
-         fmb_tree_pairs(&search->tree[0], &search->tree[!mesh_is_self(query)], &cursor,
-                        search->face, BLOCK, &search->count) == FMB_OK &&
-         search->count > 0;
-         clear_block(search)) {
+    while (search->status == FMB_OK &&
+           fmb_tree_pairs(&search->tree[0], &search->tree[!mesh_is_self(query)], &cursor,
+                          search->face, BLOCK, &search->count) == FMB_OK &&
+           search->count > 0) {
+        search->frame_count = 0;
         decide_candidates(search);
         if (query->report)
             report_progress(search, cursor.leaf);

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-enum what { VERTEX, FACE, OBJECT, SKIPPED, SURFACE, UNKNOWN };
+enum what { VERTEX, FACE, OBJECT, SKIPPED, SURFACE };
 
 /* The most frequent statements come first. The first DETECTED identify a file without an extension.
  */
@@ -30,6 +30,7 @@ static const struct {
     {"cdc", SURFACE},       {"cdp", SURFACE},      {"res", SURFACE},      {"call", SURFACE},
     {"csh", SURFACE},
 };
+enum { STATEMENTS = sizeof statements / sizeof *statements };
 
 /* Exceeds any valid index. */
 #define INDEX_MAX INT64_C(10000000000)
@@ -81,26 +82,23 @@ static void skip_statement(struct mesh_source *source)
             source->at++;
 }
 
-static enum what what_is(const struct mesh_source *source, const unsigned char *at, size_t *length)
+/* Returns the index of the statement, and the length of its word; -1: there is none. */
+static int find_statement(const struct mesh_source *source, const unsigned char *at, size_t *length)
 {
-    for (size_t i = 0; i < sizeof statements / sizeof *statements; i++) {
+    for (int i = 0; i < STATEMENTS; i++) {
         *length = strlen(statements[i].word);
         if (strncmp((const char *) at, statements[i].word, *length) == 0 &&
             ends_word(source, at + *length))
-            return statements[i].what;
+            return i;
     }
-    return UNKNOWN;
+    return -1;
 }
 
-bool mesh_is_obj_statement(const unsigned char *at)
+bool mesh_is_obj_statement(const struct mesh_source *source, const unsigned char *at)
 {
-    for (size_t i = 0; i < DETECTED; i++) {
-        const size_t length = strlen(statements[i].word);
-        if (strncmp((const char *) at, statements[i].word, length) == 0 &&
-            mesh_is_space(at[length]))
-            return true;
-    }
-    return false;
+    size_t length;
+    const int statement = find_statement(source, at, &length);
+    return statement >= 0 && statement < DETECTED;
 }
 
 /* ---- Vertices -------------------------------------------------------------------------------- */
@@ -229,10 +227,11 @@ static bool read_statement(struct obj *obj)
     const unsigned char *begin = source->at;
     char text[MESH_WORD_MAX];
     size_t length;
-    const enum what what = what_is(source, begin, &length);
-    if (what == UNKNOWN)
+    const int statement = find_statement(source, begin, &length);
+    if (statement < 0)
         return mesh_refuse(source, begin, "'%s' is no statement of OBJ",
                            mesh_word(source, begin, text));
+    const enum what what = statements[statement].what;
     if (what == SURFACE)
         return mesh_refuse(source, begin,
                            "%s defines what is no triangle: make triangles of it first",

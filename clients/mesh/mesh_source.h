@@ -113,7 +113,7 @@ bool mesh_obj(struct mesh_source *source, struct mesh *out);
 bool mesh_is_stl_binary(const struct mesh_source *source);
 
 /* Whether the word at this position is one of the common keywords of OBJ. */
-bool mesh_is_obj_statement(const unsigned char *at);
+bool mesh_is_obj_statement(const struct mesh_source *source, const unsigned char *at);
 
 /* ---- Numbers ---- */
 
