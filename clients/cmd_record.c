@@ -163,25 +163,10 @@ static void on_message(void *user, const struct bus_message *message)
 
 static const int64_t line_ns = 250000000;
 
-static void show_line(struct recording *recording)
-{
-    recording->line =
-        record_line_show(recording->events, log_parts_written(&recording->parts),
-                         (int64_t) fmb_client_raw_bus_counts(recording->client).dropped) ||
-        recording->line;
-}
-
-static void end_line(struct recording *recording)
-{
-    if (recording->line)
-        record_line_end();
-    recording->line = false;
-}
-
 static bool bus_failed(struct recording *recording)
 {
     const int error = errno;
-    end_line(recording);
+    record_line_end(&recording->line);
     complain("the bus has failed: %s", strerror(error));
     return false;
 }
@@ -229,7 +214,9 @@ static bool run(struct recording *recording, int signals)
             return true;
         now_ns = clock_ns();
         if (now_ns >= line_at_ns) {
-            show_line(recording);
+            record_line_show(&recording->line, recording->events,
+                             log_parts_written(&recording->parts),
+                             (int64_t) fmb_client_raw_bus_counts(recording->client).dropped);
             line_at_ns = now_ns + line_ns;
         }
     }
@@ -269,7 +256,7 @@ static int end_of_recording(struct recording *recording, bool good)
     recorded->seconds = 1e-9 * (double) (end_ns - recording->begin_ns);
     recorded->bodies = record_bodies_counts(recording->bodies);
     recorded->bus = fmb_client_raw_bus_counts(recording->client);
-    end_line(recording);
+    record_line_end(&recording->line);
     if (recording->error)
         output_complain(recording->parts.name, recording->error);
     record_report_losses(recorded);

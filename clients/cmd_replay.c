@@ -211,14 +211,12 @@ static void report_one(void *user, const struct difference *found)
     struct replay_run *run = user;
     const bool several = run->options->replay.log_count > 1;
     const char *log = log_name(run, found->place.log);
-    char line[REPLAY_LINE_MAX];
     if (run->options->json) {
         replay_json_found(&run->json, found, run->options->replay.names, log, run->first_utime);
         return;
     }
-    replay_line(found, run->options->replay.names, several ? log : NULL, run->first_utime, line);
-    escape(stdout, ESCAPE_TERMINAL, line, strlen(line));
-    putchar('\n');
+    replay_line(stdout, ESCAPE_TERMINAL, found, run->options->replay.names, several ? log : NULL,
+                run->first_utime);
 }
 
 /* Whether counts have a meaning: not without a bus, nor without a service on it. */

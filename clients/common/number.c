@@ -20,6 +20,13 @@ const char *number_exact(double value, char text[NUMBER_TEXT_MAX])
     return text;
 }
 
+const char *number_or_inf(double value, char text[NUMBER_TEXT_MAX])
+{
+    if (!isinf(value))
+        return number_exact(value, text);
+    return strcpy(text, value < 0 ? "-inf" : "inf");
+}
+
 const char *number_short(double value, char text[NUMBER_TEXT_MAX])
 {
     snprintf(text, NUMBER_TEXT_MAX, "%.*g", NUMBER_SHORT_DIGITS, value);

@@ -11,6 +11,9 @@ enum { NUMBER_TEXT_MAX = 40 };
  * not have, become "null". Returns text. */
 const char *number_exact(double value, char text[NUMBER_TEXT_MAX]);
 
+/* As number_exact(), but infinite numbers become "inf" and "-inf". */
+const char *number_or_inf(double value, char text[NUMBER_TEXT_MAX]);
+
 /* Six digits, for people: "0.333333". Returns text. */
 const char *number_short(double value, char text[NUMBER_TEXT_MAX]);
 

@@ -128,8 +128,7 @@ static void csv_numbers(FILE *out, const double *number, int count, int columns)
     char text[NUMBER_TEXT_MAX];
     for (int i = 0; i < columns; i++) {
         if (number && i < count)
-            fputs(isinf(number[i]) ? number[i] < 0 ? "-inf" : "inf" : number_exact(number[i], text),
-                  out);
+            fputs(number_or_inf(number[i], text), out);
         putc_unlocked(',', out);
     }
 }

@@ -9,6 +9,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -79,47 +80,36 @@ static void write_tally(const struct log_tally *tally, int64_t begin, struct tab
     write_seconds(begin, tally->end, out->cell[LAST]);
 }
 
-enum { HEADING = -1 };
-
-/* In: HEADING, the index of a row, or the number of rows for all others. Returns false after the
- * last line. */
-static bool make_line(const struct log_info *info, int number, struct table_line *out)
+static void print_channels(FILE *out, const struct log_info *info)
 {
     static const struct table_line heading = {
         {"channel", "type", "events", "bytes", "least", "most", "first", "last"}};
-    char text[TYPE_TEXT_MAX];
-    if (number == HEADING) {
-        *out = heading;
-    } else if (number < (int) info->row_count) {
-        const struct log_row *row = &info->row[number];
-        const char *type = type_text(row->type, text);
-        write_channel(row, out->cell[CHANNEL]);
-        strcpy(out->cell[TYPE], type ? type : "(too short)");
-        write_tally(&row->tally, info->all.begin, out);
-    } else {
-        strcpy(out->cell[CHANNEL], "(all others)");
-        strcpy(out->cell[TYPE], "");
-        write_tally(&info->others, info->all.begin, out);
-        return number == (int) info->row_count && info->others.events > 0;
-    }
-    return true;
-}
-
-static void print_channels(FILE *out, const struct log_info *info)
-{
-    struct table_line line;
+    const int others = 1 + (int) info->row_count, count = others + (info->others.events > 0);
+    struct table_line *line = allocate((size_t) others + 1, sizeof *line);
     int width[COLUMNS] = {0};
-    for (int i = HEADING; make_line(info, i, &line); i++)
-        for (int column = 0; column < COLUMNS; column++)
-            if ((int) strlen(line.cell[column]) > width[column])
-                width[column] = (int) strlen(line.cell[column]);
-    for (int i = HEADING; make_line(info, i, &line); i++) {
+    line[0] = heading;
+    for (int i = 1; i < others; i++) {
+        const struct log_row *row = &info->row[i - 1];
+        char text[TYPE_TEXT_MAX];
+        const char *type = type_text(row->type, text);
+        write_channel(row, line[i].cell[CHANNEL]);
+        strcpy(line[i].cell[TYPE], type ? type : "(too short)");
+        write_tally(&row->tally, info->all.begin, &line[i]);
+    }
+    strcpy(line[others].cell[CHANNEL], "(all others)");
+    write_tally(&info->others, info->all.begin, &line[others]);
+    for (int i = 0; i < count * COLUMNS; i++) {
+        const int length = (int) strlen(line[i / COLUMNS].cell[i % COLUMNS]);
+        width[i % COLUMNS] = length > width[i % COLUMNS] ? length : width[i % COLUMNS];
+    }
+    for (int i = 0; i < count; i++) {
         for (int column = 0; column < COLUMNS; column++)
             fprintf(out, "  %*s", column <= TYPE ? -width[column] : width[column],
-                    line.cell[column]);
+                    line[i].cell[column]);
         putc('\n', out);
     }
-    if (info->others.events > 0)
+    free(line);
+    if (count > others)
         fprintf(out, "  (only the first %d are counted each for itself)\n", LOG_INFO_ROWS_MAX);
 }
 

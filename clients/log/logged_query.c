@@ -178,27 +178,11 @@ static const char *copy_text(const char *text, struct owned_scene *out)
     return text && query_name_ok(text) ? scene_text(out, text) : NULL;
 }
 
-static int compare(const void *left, const void *right)
+/* Quadratic, as set_ids(), but scenes are small. */
+static bool has_id(const struct query_placement *placement, size_t count, int64_t id)
 {
-    const int64_t a = *(const int64_t *) left, b = *(const int64_t *) right;
-    return (a > b) - (a < b);
-}
-
-/* Returns the lowest id from *id on that is not in sorted[count]. *next: index of the first element
- * that is *id or more. Advances both for the next call. */
-static int64_t free_id(const int64_t *sorted, size_t count, size_t *next, int64_t *id)
-{
-    for (; *next < count && sorted[*next] <= *id; ++*next)
-        if (sorted[*next] == *id)
-            ++*id;
-    return (*id)++;
-}
-
-/* Whether an earlier placement has the same id. Quadratic, but scenes are small. */
-static bool is_repeated(const struct query_placement *placement, size_t i)
-{
-    for (size_t before = 0; before < i; before++)
-        if (placement[before].placed.id == placement[i].placed.id)
+    for (size_t i = 0; i < count; i++)
+        if (placement[i].placed.id == id)
             return true;
     return false;
 }
@@ -206,16 +190,15 @@ static bool is_repeated(const struct query_placement *placement, size_t i)
 static void set_ids(const struct query_placement *placement, size_t count,
                     struct fmb_placement *out)
 {
-    int64_t *sorted = allocate(count, sizeof *sorted), id = 1;
-    size_t next = 0;
-    for (size_t i = 0; i < count; i++)
-        sorted[i] = placement[i].placed.id;
-    qsort(sorted, count, sizeof *sorted, compare);
-    for (size_t i = 0; i < count; i++)
-        out[i].id = placement[i].placed.id == 0 || is_repeated(placement, i)
-                        ? free_id(sorted, count, &next, &id)
-                        : placement[i].placed.id;
-    free(sorted);
+    int64_t free_id = 1;
+    for (size_t i = 0; i < count; i++) {
+        out[i].id = placement[i].placed.id;
+        if (out[i].id != 0 && !has_id(placement, i, out[i].id))
+            continue;
+        while (has_id(placement, count, free_id))
+            free_id++;
+        out[i].id = free_id++;
+    }
 }
 
 /* grouped: whether the placements keep their groups. */

@@ -111,18 +111,20 @@ void record_report_losses(const struct recorded *recorded)
 /* ---- The progress line ----------------------------------------------------------------------- */
 
 /* Shorter than any terminal is wide: a line that wraps could not be replaced. */
-bool record_line_show(int64_t events, int64_t bytes, int64_t lost)
+void record_line_show(bool *shown, int64_t events, int64_t bytes, int64_t lost)
 {
     char text[3][NUMBER_TEXT_MAX];
     if (!isatty(STDERR_FILENO) || !stderr_ready())
-        return false;
+        return;
+    *shown = true;
     fprintf(stderr, "\rfmb: %s messages, %s MB, %s lost\033[K", number_grouped(events, text[0]),
             number_grouped(bytes / 1000000, text[1]), number_grouped(lost, text[2]));
     fflush(stderr);
-    return true;
 }
 
-void record_line_end(void)
+void record_line_end(bool *shown)
 {
-    fputs("\r\033[K", stderr);
+    if (*shown)
+        fputs("\r\033[K", stderr);
+    *shown = false;
 }

@@ -7,12 +7,12 @@
 #include "log_parts.h"
 #include "record_bodies.h"
 
-/* Shows the line, unless standard error is no terminal, or blocks. In: messages and bytes so far,
- * and datagrams lost. Returns whether it is shown. */
-bool record_line_show(int64_t events, int64_t bytes, int64_t lost);
+/* Shows the line, unless standard error is no terminal, or blocks: then *shown is not set. In:
+ * messages and bytes so far, and datagrams lost. */
+void record_line_show(bool *shown, int64_t events, int64_t bytes, int64_t lost);
 
-/* Clears the line. */
-void record_line_end(void);
+/* Clears the line, if it is shown. */
+void record_line_end(bool *shown);
 
 struct recorded {
     int64_t received[LOG_KINDS]; /* [kind] messages, written or not */

@@ -90,23 +90,20 @@ static bool same_certificates(const struct compare_options *options, const char 
 static bool find_difference(const struct compare_options *options, double duration,
                             struct difference *out)
 {
-    const struct fmb_answer *then = &out->then.answer, *now = &out->now.answer;
-    const unsigned parts = parts_apart(options, duration, out->dim, then, now);
-    if (out->then.status != out->now.status)
-        out->kind = DIFFERENT_STATUS;
-    else if (then->verdict != now->verdict)
-        out->kind = DIFFERENT_VERDICT;
-    else if (parts & FMB_WANT_TIMES)
-        out->kind = DIFFERENT_INTERVAL;
-    else if (parts & FMB_WANT_BOX)
-        out->kind = DIFFERENT_BOX;
-    else if (parts & FMB_WANT_GAP)
-        out->kind = DIFFERENT_GAP;
-    else if (!same_certificates(options, out->then.certificate, out->now.certificate))
-        out->kind = DIFFERENT_CERTIFICATE;
-    else
-        return false;
-    return true;
+    const struct difference_side *then = &out->then, *now = &out->now;
+    const unsigned parts = parts_apart(options, duration, out->dim, &then->answer, &now->answer);
+    const bool differs[DIFFERENT_KINDS] = {
+        [DIFFERENT_STATUS] = then->status != now->status,
+        [DIFFERENT_VERDICT] = then->answer.verdict != now->answer.verdict,
+        [DIFFERENT_INTERVAL] = parts & FMB_WANT_TIMES,
+        [DIFFERENT_BOX] = parts & FMB_WANT_BOX,
+        [DIFFERENT_GAP] = parts & FMB_WANT_GAP,
+        [DIFFERENT_CERTIFICATE] = !same_certificates(options, then->certificate, now->certificate)};
+    int kind = 0;
+    while (kind < DIFFERENT_KINDS && !differs[kind])
+        kind++;
+    out->kind = (enum difference_kind)(kind < DIFFERENT_KINDS ? kind : 0);
+    return kind < DIFFERENT_KINDS;
 }
 
 bool compare_status_is_transient(int32_t status)

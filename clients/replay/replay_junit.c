@@ -1,7 +1,5 @@
 #include "replay_output.h"
 
-#include "escape.h"
-
 #include <inttypes.h>
 #include <string.h>
 
@@ -31,13 +29,11 @@ static void begin_case(struct junit *junit, const char *name)
 static void write_line(void *user, const struct difference *difference)
 {
     struct junit *junit = user;
-    char line[REPLAY_LINE_MAX];
     if (difference->place.log != junit->log ||
         tally_channel_of(difference->query_kind) != junit->channel || junit->lines++ >= LINES_MAX)
         return;
-    replay_line(difference, junit->options->names, NULL, junit->first_utime, line);
-    write_xml(junit->out, line);
-    putc('\n', junit->out);
+    replay_line(junit->out, ESCAPE_XML, difference, junit->options->names, NULL,
+                junit->first_utime);
 }
 
 static void write_channel(struct junit *junit, struct listing *list,

@@ -2,22 +2,22 @@
 #ifndef REPLAY_OUTPUT_H
 #define REPLAY_OUTPUT_H
 
+#include "escape.h"
 #include "json_write.h"
 #include "listing.h"
 #include "replay.h"
 
 /* ---- For people ---- */
 
-/* One line without its end:
+/* Writes one line:
  *
  *     event 17  1.25 s  bodies table 7  verdict: touching, now separated
  *
  * The time is log time, in seconds since first_utime. Bodies without a name have their id. Numbers
  * read back as the same bits; certificates are truncated. log: name of the log; NULL if there is
  * only one. */
-enum { REPLAY_LINE_MAX = 1152 };
-void replay_line(const struct difference *difference, const struct body_names *names,
-                 const char *log, int64_t first_utime, char line[REPLAY_LINE_MAX]);
+void replay_line(FILE *out, enum escape form, const struct difference *difference,
+                 const struct body_names *names, const char *log, int64_t first_utime);
 
 /* Prints the counts as text. */
 void replay_text_summary(FILE *out, const struct tally *tally);

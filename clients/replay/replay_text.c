@@ -3,98 +3,83 @@
 #include "number.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 /* ---- One difference ---- */
 
-/* Bytes of one side of a difference, for example "touching". */
-enum { SIDE_MAX = 320 };
-
-static const char *end_text(double value, char text[NUMBER_TEXT_MAX])
+/* Texts may be any bytes, and are truncated. */
+static void put_text(FILE *out, enum escape form, const char *text)
 {
-    if (!isinf(value))
-        return number_exact(value, text);
-    return strcpy(text, value < 0 ? "-inf" : "inf");
+    enum { TEXT_MAX = 200 };
+    escape(out, form, text, strnlen(text, TEXT_MAX));
 }
 
-static void interval_text(const struct fmb_answer *answer, char text[SIDE_MAX])
+static void put_box(FILE *out, int dim, const struct fmb_answer *answer)
 {
-    char ends[2][NUMBER_TEXT_MAX];
-    if (answer->has_contact)
-        snprintf(text, SIDE_MAX, "%s to %s s", end_text(answer->contact[0], ends[0]),
-                 end_text(answer->contact[1], ends[1]));
-    else
-        strcpy(text, "none");
-}
-
-static void box_text(const struct fmb_answer *answer, int dim, char text[SIDE_MAX])
-{
-    static const char axis_name[] = "xyz";
-    char ends[2][NUMBER_TEXT_MAX];
-    size_t used = 0;
-    strcpy(text, "none");
-    for (int axis = 0; axis < dim && answer->has_box; axis++)
-        used += (size_t) snprintf(text + used, SIDE_MAX - used, "%s%c %s..%s", axis ? "  " : "",
-                                  axis_name[axis], end_text(answer->box[0][axis], ends[0]),
-                                  end_text(answer->box[1][axis], ends[1]));
-}
-
-static void gap_text(const struct fmb_answer *answer, int dim, char text[SIDE_MAX])
-{
-    char number[2][NUMBER_TEXT_MAX];
-    const struct fmb_gap *gap = &answer->gap;
-    strcpy(text, "none");
-    if (!answer->has_gap)
-        return;
-    size_t used =
-        (size_t) snprintf(text, SIDE_MAX, "%s..%s along", end_text(gap->bounds[0], number[0]),
-                          end_text(gap->bounds[1], number[1]));
+    char text[2][NUMBER_TEXT_MAX];
     for (int axis = 0; axis < dim; axis++)
-        used += (size_t) snprintf(text + used, SIDE_MAX - used, " %s",
-                                  number_exact(gap->direction[axis], number[0]));
+        fprintf(out, "%s%c %s..%s", axis ? "  " : "", "xyz"[axis],
+                number_or_inf(answer->box[0][axis], text[0]),
+                number_or_inf(answer->box[1][axis], text[1]));
 }
 
-static void status_text(const struct difference_side *side, char text[SIDE_MAX])
+static void put_gap(FILE *out, int dim, const struct fmb_gap *gap)
 {
-    const char *verdict = fmb_verdict_name((int) side->answer.verdict);
-    const char *said = side->status == FMB_OK ? "decided" : fmb_status_text(side->status);
-    snprintf(text, SIDE_MAX, "%s", side->status == FMB_OK && verdict ? verdict : said);
+    char text[2][NUMBER_TEXT_MAX];
+    fprintf(out, "%s..%s along", number_or_inf(gap->bounds[0], text[0]),
+            number_or_inf(gap->bounds[1], text[1]));
+    for (int axis = 0; axis < dim; axis++)
+        fprintf(out, " %s", number_exact(gap->direction[axis], text[0]));
 }
 
-static void side_text(const struct difference *difference, const struct difference_side *side,
-                      char text[SIDE_MAX])
+static void put_side(FILE *out, enum escape form, const struct difference *difference,
+                     const struct difference_side *side)
 {
-    const char *verdict = fmb_verdict_name((int) side->answer.verdict);
-    switch (difference->kind) {
-    case DIFFERENT_INTERVAL: interval_text(&side->answer, text); break;
-    case DIFFERENT_BOX: box_text(&side->answer, difference->dim, text); break;
-    case DIFFERENT_GAP: gap_text(&side->answer, difference->dim, text); break;
-    case DIFFERENT_CERTIFICATE:
-        snprintf(text, SIDE_MAX, "%.200s", side->certificate ? side->certificate : "none");
-        break;
-    case DIFFERENT_VERDICT:
-        snprintf(text, SIDE_MAX, "%s", verdict ? verdict : "not decided");
-        break;
-    default: status_text(side, text); break;
+    const struct fmb_answer *answer = &side->answer;
+    const char *verdict = fmb_verdict_name((int) answer->verdict);
+    char text[2][NUMBER_TEXT_MAX];
+    if (difference->kind == DIFFERENT_INTERVAL && answer->has_contact)
+        fprintf(out, "%s to %s s", number_or_inf(answer->contact[0], text[0]),
+                number_or_inf(answer->contact[1], text[1]));
+    else if (difference->kind == DIFFERENT_BOX && answer->has_box)
+        put_box(out, difference->dim, answer);
+    else if (difference->kind == DIFFERENT_GAP && answer->has_gap)
+        put_gap(out, difference->dim, &answer->gap);
+    else if (difference->kind == DIFFERENT_CERTIFICATE && side->certificate)
+        put_text(out, form, side->certificate);
+    else if (difference->kind == DIFFERENT_VERDICT)
+        fputs(verdict ? verdict : "not decided", out);
+    else if (difference->kind == DIFFERENT_STATUS)
+        fputs(side->status != FMB_OK ? fmb_status_text(side->status)
+              : verdict              ? verdict
+                                     : "decided",
+              out);
+    else
+        fputs("none", out);
+}
+
+void replay_line(FILE *out, enum escape form, const struct difference *difference,
+                 const struct body_names *names, const char *log, int64_t first_utime)
+{
+    char body[BODY_NAMES_TEXT_MAX];
+    if (log) {
+        put_text(out, form, log);
+        fputs(": ", out);
     }
-}
-
-void replay_line(const struct difference *difference, const struct body_names *names,
-                 const char *log, int64_t first_utime, char line[REPLAY_LINE_MAX])
-{
-    char then[SIDE_MAX], now[SIDE_MAX], bodies[160] = "the scene", body[2][BODY_NAMES_TEXT_MAX];
-    side_text(difference, &difference->then, then);
-    side_text(difference, &difference->now, now);
-    if (!difference->whole)
-        snprintf(bodies, sizeof bodies, "bodies %s %s",
-                 body_names_text(names, difference->client_id, difference->body_id[0], body[0]),
-                 body_names_text(names, difference->client_id, difference->body_id[1], body[1]));
-    snprintf(line, REPLAY_LINE_MAX, "%.200s%sevent %" PRId64 "  %.6f s  %s  %s: %s, now %s",
-             log ? log : "", log ? ": " : "", difference->place.number,
-             ((double) difference->place.utime - (double) first_utime) / 1e6, bodies,
-             difference_name[difference->kind], then, now);
+    fprintf(out, "event %" PRId64 "  %.6f s  ", difference->place.number,
+            ((double) difference->place.utime - (double) first_utime) / 1e6);
+    fputs(difference->whole ? "the scene" : "bodies", out);
+    for (int i = 0; i < 2 && !difference->whole; i++) {
+        putc(' ', out);
+        put_text(out, form,
+                 body_names_text(names, difference->client_id, difference->body_id[i], body));
+    }
+    fprintf(out, "  %s: ", difference_name[difference->kind]);
+    put_side(out, form, difference, &difference->then);
+    fputs(", now ", out);
+    put_side(out, form, difference, &difference->now);
+    putc('\n', out);
 }
 
 /* ---- Counts ---- */

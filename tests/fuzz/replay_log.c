@@ -167,9 +167,10 @@ static void on_progress(void *user, int64_t bytes)
 static void report_one(void *user, const struct difference *found)
 {
     struct reporting *reporting = user;
-    char line[REPLAY_LINE_MAX];
-    replay_line(found, reporting->options->names, NULL, 0, line);
-    FUZZ_CHECK(line[0] && !strchr(line, '\n'));
+    char line[4096] = "";
+    FILE *out = fmemopen(line, sizeof line - 1, "w");
+    replay_line(out, ESCAPE_TERMINAL, found, reporting->options->names, NULL, 0);
+    FUZZ_CHECK(fclose(out) == 0 && strchr(line, '\n') == line + strlen(line) - 1);
     replay_json_found(&reporting->json, found, reporting->options->names,
                       reporting->options->log[0], 0);
     reporting->reported++;
