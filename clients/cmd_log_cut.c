@@ -195,15 +195,12 @@ int cmd_log_cut(int argc, char **argv)
     struct args args = {"log cut",           usage, own, .operand = "LOG", .operands_min = 1,
                         .operands_max = 4096};
     int code = args_parse(&args, argc, argv);
-    if (code == ARGS_RUN && !options.cut.output.path && !args_error(&args, "expected -o FILE"))
-        code = ARGS_USAGE;
-    if (code == ARGS_RUN && !args_check_span(&args, choice->from, choice->to))
+    if (code == ARGS_RUN && ((!options.cut.output.path && !args_error(&args, "expected -o FILE")) ||
+                             !args_check_span(&args, choice->from, choice->to)))
         code = ARGS_USAGE;
     if (code == ARGS_RUN) {
-        options.cut.log = args.operands;
-        options.cut.log_count = args.operand_count;
-        rules.input = args.operands;
-        rules.input_count = args.operand_count;
+        options.cut.log = rules.input = args.operands;
+        options.cut.log_count = rules.input_count = args.operand_count;
         options.cut.prefix = args.bus.prefix;
         code = run_cut(&options);
     }

@@ -135,20 +135,24 @@ void definitions_add_query(struct definitions *definitions, struct logged_query 
             definitions_add(definitions, &placement[i].body);
 }
 
-const char *definitions_add_message(struct definitions *definitions, enum log_kind kind,
-                                    const void *bytes, uint32_t size)
+const char *definitions_add_message(struct definitions *definitions, struct body_names *names,
+                                    enum log_kind kind, const void *bytes, uint32_t size)
 {
     struct definition *read = &definitions->read;
-    const char *error = NULL;
+    struct logged_query *query = &definitions->query;
     if (log_kind_is_query(kind)) {
-        error = logged_query_read(&definitions->query, kind, bytes, size);
+        const char *error = logged_query_read(query, kind, bytes, size);
         if (!error)
-            definitions_add_query(definitions, &definitions->query);
-    } else if (kind == LOG_DEFINITION) {
-        error = wire_read_definition(bytes, size, definitions->hasher, read);
-        for (int32_t i = 0; !error && i < read->body_count; i++)
-            definitions_add(definitions, &read->body[i]);
+            definitions_add_query(definitions, query);
+        if (!error && names)
+            body_names_take(names, query);
+        return error;
     }
+    if (kind != LOG_DEFINITION)
+        return body_names_take_message(names, kind, bytes, size);
+    const char *error = wire_read_definition(bytes, size, definitions->hasher, read);
+    for (int32_t i = 0; !error && i < read->body_count; i++)
+        definitions_add(definitions, &read->body[i]);
     return error;
 }
 

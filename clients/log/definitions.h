@@ -13,7 +13,7 @@
 #ifndef DEFINITIONS_H
 #define DEFINITIONS_H
 
-#include "logged_query.h"
+#include "body_names.h"
 #include "wire.h"
 
 struct definitions;
@@ -30,10 +30,10 @@ bool definitions_add(struct definitions *definitions, const struct body_view *vi
 void definitions_add_query(struct definitions *definitions, struct logged_query *query);
 
 /* Adds the bodies with frames of a message: of a query of a pair or a scene, or of a definition;
- * others have none. Returns NULL; or a static text: why the message cannot be decoded. Then nothing
- * of it was added. */
-const char *definitions_add_message(struct definitions *definitions, enum log_kind kind,
-                                    const void *bytes, uint32_t size);
+ * others have none. Takes its names too, unless names is NULL. Returns NULL; or a static text: why
+ * the message cannot be decoded. Then nothing of it was added. */
+const char *definitions_add_message(struct definitions *definitions, struct body_names *names,
+                                    enum log_kind kind, const void *bytes, uint32_t size);
 
 /* The body of a handle, valid until definitions_close(); NULL: no such body was added. */
 const struct body_view *definitions_find(struct definitions *definitions,

@@ -10,8 +10,7 @@
 struct log_channel_choice {
     char *text; /* owned */
     size_t length;
-    bool plain;    /* without metacharacters */
-    regex_t regex; /* unless plain */
+    regex_t regex;
 };
 
 struct log_choice log_choice_all(void)
@@ -22,8 +21,7 @@ struct log_choice log_choice_all(void)
 void log_choice_clear(struct log_choice *choice)
 {
     for (size_t i = 0; i < choice->channel_count; i++) {
-        if (!choice->channel[i].plain)
-            regfree(&choice->channel[i].regex);
+        regfree(&choice->channel[i].regex);
         free(choice->channel[i].text);
     }
     free(choice->channel);
@@ -34,9 +32,8 @@ void log_choice_clear(struct log_choice *choice)
 bool log_choice_add_channel(struct log_choice *choice, const char *text,
                             char why[LOG_CHOICE_WHY_MAX])
 {
-    struct log_channel_choice channel = {.length = strlen(text),
-                                         .plain = text[strcspn(text, "^.[$()|*+?{\\")] == '\0'};
-    const int error = channel.plain ? 0 : regcomp(&channel.regex, text, REG_EXTENDED);
+    struct log_channel_choice channel = {.length = strlen(text)};
+    const int error = regcomp(&channel.regex, text, REG_EXTENDED);
     if (error) {
         regerror(error, &channel.regex, why, LOG_CHOICE_WHY_MAX);
         return false;
@@ -76,7 +73,7 @@ static bool matches(const struct log_channel_choice *channel, const struct log_e
     if (channel->length == event->channel_length &&
         memcmp(channel->text, event->channel, channel->length) == 0)
         return true;
-    return !channel->plain && strlen(event->channel) == event->channel_length &&
+    return strlen(event->channel) == event->channel_length &&
            regexec(&channel->regex, event->channel, 1, &match, 0) == 0 && match.rm_so == 0 &&
            (size_t) match.rm_eo == event->channel_length;
 }

@@ -163,8 +163,7 @@ static void survey_event(struct cutter *cut, const struct log_event *event)
     if (!take_message(cut, event, kind) && log_choice_has_channel(choice, event) &&
         is_chosen_by_time(cut, event->utime) && (kind != LOG_NAMES || log_choice_is_all(choice)))
         choose(cut, cut->event);
-    definitions_add_message(cut->definitions, kind, event->data, size);
-    body_names_take_message(cut->names, kind, event->data, size);
+    definitions_add_message(cut->definitions, cut->names, kind, event->data, size);
     cut->event++;
 }
 
@@ -257,7 +256,7 @@ static void define(struct cutter *cut, enum log_kind kind, const struct log_even
             if (query_by_handle(&placement[i]))
                 definitions_want(cut->definitions, &placement[i].body.handle);
     }
-    definitions_add_message(cut->definitions, kind, event->data, size);
+    definitions_add_message(cut->definitions, NULL, kind, event->data, size);
 }
 
 static void copy_event(struct cutter *cut, const struct log_event *event)

@@ -174,8 +174,7 @@ static bool take_definitions(struct query_search *search, const struct log_event
 {
     const enum log_kind kind = log_kind_of(&search->channels, event);
     const uint32_t size = (uint32_t) event->kept;
-    definitions_add_message(search->out->definitions, kind, event->data, size);
-    body_names_take_message(search->out->names, kind, event->data, size);
+    definitions_add_message(search->out->definitions, search->out->names, kind, event->data, size);
     return true;
 }
 

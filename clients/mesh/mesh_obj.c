@@ -268,6 +268,5 @@ bool mesh_obj(struct mesh_source *source, struct mesh *out)
         return mesh_refuse(source, obj.largest_at,
                            "index %s is no vertex: there are %zu, counted from 1",
                            mesh_word(source, obj.largest_at, text), out->vertex_count);
-    mesh_fit(&obj.build);
     return true;
 }

@@ -113,19 +113,3 @@ bool mesh_add_face(struct mesh_build *build, const unsigned corner[3])
     memcpy(mesh->face[mesh->face_count++], corner, sizeof *mesh->face);
     return true;
 }
-
-/* Shrinks the memory to its contents. If realloc() fails, it stays as it is. */
-static void *fit(void *memory, size_t count, size_t size)
-{
-    void *fitting = count > 0 ? realloc(memory, count * size) : NULL;
-    return fitting ? fitting : memory;
-}
-
-void mesh_fit(struct mesh_build *build)
-{
-    struct mesh *mesh = build->mesh;
-    mesh->vertex = fit(mesh->vertex, mesh->vertex_count, sizeof *mesh->vertex);
-    mesh->face = fit(mesh->face, mesh->face_count, sizeof *mesh->face);
-    build->vertex_capacity = mesh->vertex_count;
-    build->face_capacity = mesh->face_count;
-}

@@ -36,9 +36,6 @@ struct mesh_build {
 bool mesh_add_vertex(struct mesh_build *build, const double position[3]);
 bool mesh_add_face(struct mesh_build *build, const unsigned corner[3]);
 
-/* Releases unused capacity. Call it at the end. */
-void mesh_fit(struct mesh_build *build);
-
 /* Sets the error, with the place of `where`. format: as of printf(). Returns false. */
 bool mesh_refuse(struct mesh_source *source, const unsigned char *where, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

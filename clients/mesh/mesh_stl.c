@@ -157,7 +157,6 @@ bool mesh_stl_ascii(struct mesh_source *source, struct mesh *out)
         source->at = mesh_skip_spaces(source->at);
     } while (good && source->at < source->end);
     weld_close(&weld);
-    mesh_fit(&build);
     return good;
 }
 
@@ -240,6 +239,5 @@ bool mesh_stl_binary(struct mesh_source *source, struct mesh *out)
         return refuse_size(source);
     const bool good = read_facets(&weld);
     weld_close(&weld);
-    mesh_fit(&build);
     return good;
 }

@@ -27,6 +27,8 @@ struct record_bodies {
     struct query_header last[CLIENTS]; /* [client id modulo CLIENTS] */
     struct hasher *hasher;
     enum log_kind kind; /* of the message read; LOG_OTHER: it cannot be decoded */
+    const struct query_placement *placement; /* [placement_count], of a query */
+    int32_t placement_count;
     union {
         struct logged_query query;
         struct logged_result result;
@@ -87,6 +89,10 @@ const char *record_bodies_read(struct record_bodies *bodies, enum log_kind kind,
 {
     const char *error = read_message(bodies, kind, bytes, (uint32_t) size);
     bodies->kind = error || size > QUERY_BYTES_MAX ? LOG_OTHER : kind;
+    bodies->placement_count = 0;
+    if (log_kind_is_query(bodies->kind))
+        bodies->placement =
+            logged_query_placements(&bodies->message.query, &bodies->placement_count);
     return error;
 }
 
@@ -101,15 +107,6 @@ enum record_bodies_owner record_bodies_owner(const struct record_bodies *bodies)
     return definition->body_count > 0 ? RECORD_BODIES : RECORD_OWN;
 }
 
-/* The placements of the message read; *count: 0: it is no query. */
-static struct query_placement *placements(const struct record_bodies *bodies, int32_t *count)
-{
-    *count = 0;
-    return log_kind_is_query(bodies->kind)
-               ? logged_query_placements((struct logged_query *) &bodies->message.query, count)
-               : NULL;
-}
-
 /* ---- Files ---- */
 
 bool record_bodies_begin_file(struct record_bodies *bodies, int64_t utime, log_sink *sink,
@@ -121,16 +118,13 @@ bool record_bodies_begin_file(struct record_bodies *bodies, int64_t utime, log_s
 
 size_t record_bodies_needed(const struct record_bodies *bodies)
 {
-    int32_t count;
-    const struct query_placement *placement = placements(bodies, &count);
-    return definitions_needed(bodies->definitions, placement, count);
+    return definitions_needed(bodies->definitions, bodies->placement, bodies->placement_count);
 }
 
 bool record_bodies_define(struct record_bodies *bodies, log_sink *sink, void *user)
 {
-    int32_t count;
-    const struct query_placement *placement = placements(bodies, &count);
-    const int32_t defined = definitions_write(bodies->definitions, placement, count, sink, user);
+    const int32_t defined = definitions_write(bodies->definitions, bodies->placement,
+                                              bodies->placement_count, sink, user);
     bodies->counts.defined += defined > 0 ? defined : 0;
     return defined >= 0;
 }
@@ -168,14 +162,12 @@ static void want(struct record_bodies *bodies, const struct handle *handle)
 static void keep_query(struct record_bodies *bodies)
 {
     struct logged_query *query = &bodies->message.query;
-    int32_t count;
-    const struct query_placement *placement = placements(bodies, &count);
     count_skipped(bodies, logged_query_header(query));
     body_names_take(bodies->names, query);
     definitions_add_query(bodies->definitions, query);
-    for (int32_t i = 0; i < count; i++)
-        if (query_by_handle(&placement[i]))
-            want(bodies, &placement[i].body.handle);
+    for (int32_t i = 0; i < bodies->placement_count; i++)
+        if (query_by_handle(&bodies->placement[i]))
+            want(bodies, &bodies->placement[i].body.handle);
 }
 
 /* Drops all bodies if they take too much memory. */

@@ -111,8 +111,8 @@ static void survey_event(struct replay *replay, const struct log_event *event)
     if ((replay->old_version = log_kind_old_version(kind, event)) != 0)
         return;
     const uint32_t size = (uint32_t) event->kept;
-    const char *error = definitions_add_message(replay->definitions, kind, event->data, size);
-    body_names_take_message(replay->options->names, kind, event->data, size);
+    const char *error = definitions_add_message(replay->definitions, replay->options->names, kind,
+                                                event->data, size);
     if (log_kind_is_query(kind) || log_kind_is_result(kind))
         take_message(replay, kind, event, error);
     else if (kind == LOG_DEFINITION)

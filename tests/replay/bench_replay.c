@@ -109,7 +109,8 @@ static void read_scenes(char *path, struct scenes *scenes)
         if (log_kind_of(&channels, &event) != LOG_SCENE_QUERY ||
             wire_read_scene_query(event.data, (uint32_t) event.kept, &query))
             continue;
-        definitions_add_message(definitions, LOG_SCENE_QUERY, event.data, (uint32_t) event.kept);
+        definitions_add_message(definitions, NULL, LOG_SCENE_QUERY, event.data,
+                                (uint32_t) event.kept);
         if (query.index_count > 0)
             keep_scene(scenes, definitions, &query);
     }

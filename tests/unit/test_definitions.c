@@ -95,7 +95,8 @@ static void bodies_of_a_pair_are_defined(void **state)
         .duration = 1,
         .placement = {place(&whole), {.body = geometry_named(3, &named.view.handle)}}};
     const uint32_t size = (uint32_t) wire_write_pair_query(&query, world->bytes);
-    assert_null(definitions_add_message(world->definitions, LOG_PAIR_QUERY, world->bytes, size));
+    assert_null(
+        definitions_add_message(world->definitions, NULL, LOG_PAIR_QUERY, world->bytes, size));
     assert_found(world, &whole);
     assert_null(definitions_find(world->definitions, &named.view.handle));
     static struct logged_query anonymous = {.kind = LOG_PAIR_QUERY};
@@ -104,9 +105,9 @@ static void bodies_of_a_pair_are_defined(void **state)
     definitions_add_query(world->definitions, &anonymous);
     assert_null(definitions_find(world->definitions, &named.view.handle));
     assert_non_null(
-        definitions_add_message(world->definitions, LOG_PAIR_QUERY, world->bytes, size - 1));
+        definitions_add_message(world->definitions, NULL, LOG_PAIR_QUERY, world->bytes, size - 1));
     assert_non_null(
-        definitions_add_message(world->definitions, LOG_DEFINITION, world->bytes, size));
+        definitions_add_message(world->definitions, NULL, LOG_DEFINITION, world->bytes, size));
 }
 
 static void bodies_of_a_scene_are_defined(void **state)
@@ -121,7 +122,8 @@ static void bodies_of_a_scene_are_defined(void **state)
     query->placement_count = 2;
     query->which = FMB_PAIRS_ALL;
     const uint32_t size = (uint32_t) wire_write_scene_query(query, world->bytes);
-    assert_null(definitions_add_message(world->definitions, LOG_SCENE_QUERY, world->bytes, size));
+    assert_null(
+        definitions_add_message(world->definitions, NULL, LOG_SCENE_QUERY, world->bytes, size));
     assert_found(world, &body[0]);
     assert_found(world, &body[1]);
     free(query);
@@ -138,10 +140,11 @@ static void bodies_of_a_definition_are_defined(void **state)
     const uint32_t size = (uint32_t) wire_write_definition(definition, world->bytes);
     world->bytes[size - 1] ^= 1;
     assert_non_null(
-        definitions_add_message(world->definitions, LOG_DEFINITION, world->bytes, size));
+        definitions_add_message(world->definitions, NULL, LOG_DEFINITION, world->bytes, size));
     assert_null(definitions_find(world->definitions, &body.view.handle));
     world->bytes[size - 1] ^= 1;
-    assert_null(definitions_add_message(world->definitions, LOG_DEFINITION, world->bytes, size));
+    assert_null(
+        definitions_add_message(world->definitions, NULL, LOG_DEFINITION, world->bytes, size));
     assert_found(world, &body);
     free(definition);
 }

@@ -38,7 +38,7 @@ static bool on_write(void *user, enum log_kind kind, const void *bytes, size_t s
     assert_null(wire_read_definition(bytes, (uint32_t) size, world->hasher, &definition));
     assert_int_equal(definition.client_id, 0);
     assert_int_equal(definition.server_id, 0);
-    assert_null(definitions_add_message(world->file, LOG_DEFINITION, bytes, (uint32_t) size));
+    assert_null(definitions_add_message(world->file, NULL, LOG_DEFINITION, bytes, (uint32_t) size));
     world->definitions++;
     world->written += (size_t) log_event_bytes(BUS_CHANNEL_MAX - 1, size);
     world->defined += definition.body_count;
@@ -123,7 +123,7 @@ static void receive(struct world *world, enum log_kind kind, size_t size)
     if (owner == RECORD_OWN)
         return;
     if (kind == LOG_DEFINITION)
-        definitions_add_message(world->file, kind, world->bytes, (uint32_t) size);
+        definitions_add_message(world->file, NULL, kind, world->bytes, (uint32_t) size);
     record_bodies_keep(world->bodies);
 }
 
