@@ -1,22 +1,11 @@
 #include "body_names.h"
 
-#include "keyed_hash.h"
 #include "wire.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-struct body_key {
-    int64_t client_id, body_id;
-};
-
-struct body_name {
-    struct body_key key;
-    char name[QUERY_NAME_MAX + 1];
-    UT_hash_handle hh;
-};
 
 struct body_names {
     struct body_name *table;
@@ -122,11 +111,10 @@ static int compare(const struct body_name *left, const struct body_name *right)
     return (a->body_id > b->body_id) - (a->body_id < b->body_id);
 }
 
-void body_names_each(struct body_names *names, body_names_sink *sink, void *user)
+const struct body_name *body_names_sorted(struct body_names *names)
 {
     HASH_SORT(names->table, compare);
-    for (const struct body_name *name = names->table; name; name = name->hh.next)
-        sink(user, name->key.client_id, name->key.body_id, name->name);
+    return names->table;
 }
 
 bool body_names_write(const struct body_names *names, int64_t utime, log_sink *sink, void *user)

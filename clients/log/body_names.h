@@ -5,9 +5,20 @@
 #ifndef BODY_NAMES_H
 #define BODY_NAMES_H
 
+#include "keyed_hash.h"
 #include "logged_query.h"
 
 enum { BODY_NAMES_MAX = 1 << 14 };
+
+struct body_key {
+    int64_t client_id, body_id;
+};
+
+struct body_name {
+    struct body_key key;
+    char name[QUERY_NAME_MAX + 1];
+    UT_hash_handle hh;
+};
 
 struct body_names;
 
@@ -33,9 +44,8 @@ const char *body_names_text(const struct body_names *names, int64_t client_id, i
 
 int32_t body_names_count(const struct body_names *names);
 
-/* Calls the sink for each name, in the order of client and body ids. */
-typedef void body_names_sink(void *user, int64_t client_id, int64_t body_id, const char *name);
-void body_names_each(struct body_names *names, body_names_sink *sink, void *user);
+/* The first name in the order of client and body ids; NULL: none. hh.next is the next one. */
+const struct body_name *body_names_sorted(struct body_names *names);
 
 /* Writes all names as names_t messages; none if there are none. Returns false as soon as sink does.
  */

@@ -115,31 +115,21 @@ static void print_channels(FILE *out, const struct log_info *info)
 
 enum { NAME_LINES = 100 };
 
-struct name_printer {
-    FILE *out;
-    int lines;
-};
-
-static void print_name(void *user, int64_t client_id, int64_t body_id, const char *name)
-{
-    struct name_printer *printer = user;
-    if (printer->lines++ >= NAME_LINES)
-        return;
-    fprintf(printer->out, "    client %" PRId64 ", body %" PRId64 ": ", client_id, body_id);
-    escape(printer->out, ESCAPE_TERMINAL, name, strlen(name));
-    putc('\n', printer->out);
-}
-
 static void print_names(FILE *out, struct body_names *names)
 {
     char text[NUMBER_TEXT_MAX];
-    struct name_printer printer = {.out = out};
-    if (body_names_count(names) == 0)
-        return;
-    fputs("  names:\n", out);
-    body_names_each(names, print_name, &printer);
-    if (printer.lines > NAME_LINES)
-        fprintf(out, "    and %s more\n", number_grouped(printer.lines - NAME_LINES, text));
+    const int32_t count = body_names_count(names);
+    const struct body_name *name = body_names_sorted(names);
+    if (count > 0)
+        fputs("  names:\n", out);
+    for (int i = 0; name && i < NAME_LINES; i++, name = name->hh.next) {
+        fprintf(out, "    client %" PRId64 ", body %" PRId64 ": ", name->key.client_id,
+                name->key.body_id);
+        escape(out, ESCAPE_TERMINAL, name->name, strlen(name->name));
+        putc('\n', out);
+    }
+    if (count > NAME_LINES)
+        fprintf(out, "    and %s more\n", number_grouped(count - NAME_LINES, text));
 }
 
 static void print_time(FILE *out, const char *name, int64_t utime)
@@ -297,22 +287,19 @@ static void write_channels(struct json_writer *json, const struct log_info *info
     json_end(json, '}');
 }
 
-static void write_name(void *user, int64_t client_id, int64_t body_id, const char *name)
-{
-    struct json_writer *json = user;
-    json_begin(json, NULL, '{');
-    json_integer(json, "client_id", client_id);
-    json_integer(json, "body_id", body_id);
-    json_string(json, "name", name);
-    json_end(json, '}');
-}
-
 static void write_names(struct json_writer *json, struct body_names *names)
 {
-    if (body_names_count(names) == 0)
+    const struct body_name *name = body_names_sorted(names);
+    if (!name)
         return;
     json_begin(json, "names", '[');
-    body_names_each(names, write_name, json);
+    for (; name; name = name->hh.next) {
+        json_begin(json, NULL, '{');
+        json_integer(json, "client_id", name->key.client_id);
+        json_integer(json, "body_id", name->key.body_id);
+        json_string(json, "name", name->name);
+        json_end(json, '}');
+    }
     json_end(json, ']');
 }
 
