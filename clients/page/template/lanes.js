@@ -1,6 +1,6 @@
 /* Verdicts and gaps over time. */
 
-const view = { from: 0, to: wholeSpan }; /* the shown part, in s */
+const view = { from: 0, to: wholeSpan, width: 0 }; /* the shown part, in s, and its width in pixels */
 
 /* When the verdict of a row's mark is shown: [from, to] in s. It is the contact interval where windows
  * do not overlap, and else until the next step of the same bodies, if that comes soon. */
@@ -91,7 +91,7 @@ function drawLane(canvas, some, size = sizeOf(canvas)) {
 /* The axis below: ticks at round times, and pauses that are left out. */
 function drawOverview() {
     drawLane(one("overview"), rows);
-    const canvas = one("overview"), to = canvas.getContext("2d"), width = canvas.clientWidth;
+    const canvas = one("overview"), to = canvas.getContext("2d"), width = view.width = canvas.clientWidth;
     if (width === 0)
         return;
     const span = view.to - view.from, rough = span / (width / 90);

@@ -2,6 +2,7 @@
 
 const player = { s: 0, playing: false, last: 0 };
 const speeds = [0.1, 0.25, 0.5, 1, 2, 5, 10];
+const heads = document.querySelectorAll(".track .head");
 const canPlay = steps.length > 1 || steps.some((step) => step.v);
 
 /* Shows the moment player.s. While it plays, the table follows five times a second: to paint it takes
@@ -12,6 +13,8 @@ function show() {
     if (isDue) {
         table.time = performance.now();
         document.documentElement.style.setProperty("--lane-head", head);
+        one("moment").textContent = momentText(i);
+        one("play").textContent = player.playing ? "❚❚" : "▶";
     }
     if (isDue && i !== table.step) {
         table.step = i;
@@ -21,10 +24,9 @@ function show() {
         drawDetail();
     }
     drawMoment(i, player.s);
-    one("scrub").value = player.s;
-    one("time").style.setProperty("--head", head);
-    one("moment").textContent = momentText(i);
-    one("play").textContent = player.playing ? "❚❚" : "▶";
+    if (!player.playing || Math.abs(one("scrub").value - player.s) > wholeSpan / 1400)
+        one("scrub").value = player.s;
+    heads.forEach((each) => { each.style.transform = `translateX(${Math.round(head * view.width)}px)`; });
 }
 
 function momentText(i) {

@@ -19,7 +19,7 @@ world.add(camera, new THREE.AmbientLight(0xffffff, 0.6));
 
 const stage = {
     exponent: 0, dim: 3, step: -1, streams: [], dirty: true, items: [], row: null,
-    centre: [0, 0, 0], radius: 1, half: [1, 1], corners: [], solids: new Map(), colours: {},
+    centre: [0, 0, 0], radius: 1, half: [1, 1], size: { width: 0, height: 0 }, corners: [], solids: new Map(), colours: {},
 };
 const bodyColours = ["#4e79a7", "#f28e2b", "#59a14f", "#b07aa1", "#76b7b2", "#edc948", "#9c755f", "#ff9da7", "#86bcb6", "#8cd17d"];
 
@@ -244,7 +244,7 @@ function fit(row = null, direction = null) {
 }
 
 function resize() {
-    const { clientWidth: width, clientHeight: height } = one("stage");
+    const { width, height } = stage.size = sizeOf(one("stage"));
     if (!renderer || width === 0 || height === 0)
         return;
     const up = 1.08 * Math.max(stage.half[1], stage.half[0] * height / width), across = up * width / height;
@@ -391,7 +391,7 @@ function beginLabels() {
 /* Places the names beside the middles of their bodies, those in contact first; one that would
  * overprint another is not shown. */
 function drawLabels() {
-    const { clientWidth: width, clientHeight: height } = one("stage"), placed = [];
+    const { width, height } = stage.size, placed = [];
     const order = [...stage.labels ?? []].sort((a, b) => b.item.state.verdict - a.item.state.verdict);
     for (const { label, item, width: w, height: h } of order) {
         const at = item.faces.position.clone().project(camera);
