@@ -268,7 +268,7 @@ define link
 		-Wl,--start-group $(filter %.a,$^) -Wl,--end-group -Wl,--as-needed $(libraries)
 endef
 linking = $(link_flags)
-libraries := -lcjson -lexpat -llcm -lglib-2.0 -lseccomp -lgmp -lm
+libraries := -lcjson -lexpat -llcm -lglib-2.0 -lseccomp -lz -lgmp -lm
 
 # fmb queries the bus through the library alone.
 programs := $(B)/fmbd $(B)/fmb
@@ -441,7 +441,7 @@ clean:
 # ---- Packages ----
 
 packages_deps := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libexpat1-dev libgmp-dev \
-	libglib2.0-dev libseccomp-dev pkg-config uthash-dev libjs-three
+	libglib2.0-dev libseccomp-dev zlib1g-dev pkg-config uthash-dev libjs-three
 packages_deps-test := $(packages_deps) libcmocka-dev bats jq clang clang-format libclang-rt-14-dev \
 	liblcm-java default-jdk-headless liblcm-lua lua5.2 chromium libxml2-utils g++ cmake man-db \
 	gnuplot-nox python3 python3-numpy python3-pandas python3-matplotlib

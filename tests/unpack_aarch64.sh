@@ -6,8 +6,8 @@ set -eu
 
 root=$1 apt=$1/apt
 [ ! -d "$root/usr" ] || exit 0
-libraries='liblcm1|libcjson1|libexpat1|libgmp10|libglib2.0-0|libpcre2-8-0|libseccomp2'
-headers='liblcm-dev|libcjson-dev|libexpat1-dev|libgmp-dev|libglib2.0-dev|libseccomp-dev'
+libraries='liblcm1|libcjson1|libexpat1|libgmp10|libglib2.0-0|libpcre2-8-0|libseccomp2|zlib1g'
+headers='liblcm-dev|libcjson-dev|libexpat1-dev|libgmp-dev|libglib2.0-dev|libseccomp-dev|zlib1g-dev'
 
 mkdir -p "$apt/lists/partial" "$apt/archives/partial"
 : > "$apt/status"

@@ -4,9 +4,11 @@
 #include "page_template.h"
 
 #include <assert.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
 /* ---- JSON in memory -------------------------------------------------------------------------- */
 
@@ -68,41 +70,90 @@ static void put_elements(struct json_writer *json, const char *key, struct text 
     json_end(json, ']');
 }
 
-/* ---- Base64 ---------------------------------------------------------------------------------- */
+/* ---- Packed elements ------------------------------------------------------------------------- */
 
-/* Writes bytes as the text of a member. */
-static void put_base64(struct json_writer *json, const char *key, const void *bytes, size_t size)
+/* Writes an element whose text are the bytes: gzip in base64. */
+static void put_packed(FILE *out, const char *id, const void *bytes, size_t size)
 {
     static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const unsigned char *byte = bytes;
-    json_begin(json, key, '"');
-    for (size_t i = 0; i < size; i += 3) {
-        const size_t left = size - i;
-        const unsigned bits = (unsigned) byte[i] << 16 | (left > 1 ? byte[i + 1] : 0u) << 8 |
-                              (left > 2 ? byte[i + 2] : 0u);
-        for (size_t k = 0; k < 4; k++)
-            putc(k <= left ? digit[bits >> (18 - 6 * k) & 63] : '=', json->out);
+    enum { WINDOW_BITS = 15, GZIP = 16, MEMORY_LEVEL = 8 };
+    z_stream stream = {.next_in = (Bytef *) (uintptr_t) bytes};
+    unsigned char part[3 << 14];
+    bool ends = false;
+    if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, WINDOW_BITS + GZIP, MEMORY_LEVEL,
+                     Z_DEFAULT_STRATEGY) != Z_OK)
+        allocate_failed();
+    fprintf(out, "<script type=\"text/plain\" id=\"%s\">\n", id);
+    while (!ends) {
+        stream.next_out = part;
+        stream.avail_out = sizeof part;
+        while (!ends && stream.avail_out > 0) {
+            const size_t left = size - stream.total_in;
+            stream.avail_in = left < UINT_MAX ? (uInt) left : UINT_MAX;
+            ends =
+                deflate(&stream, stream.avail_in == left ? Z_FINISH : Z_NO_FLUSH) == Z_STREAM_END;
+        }
+        const size_t count = sizeof part - stream.avail_out;
+        memset(part + count, 0, stream.avail_out); /* the last digits are of these */
+        for (size_t i = 0; i < count; i += 3) {
+            const unsigned bits = (unsigned) part[i] << 16 | part[i + 1] << 8 | part[i + 2];
+            for (size_t k = 0; k < 4; k++)
+                putc(i + k <= count ? digit[bits >> (18 - 6 * k) & 63] : '=', out);
+        }
     }
-    json_end(json, '"');
+    deflateEnd(&stream);
+    fputs("\n</script>\n", out);
 }
 
-/* Four bytes each, the lowest first. */
-static void put_words(struct json_writer *json, const char *key, const uint32_t *words,
-                      size_t count)
+/* ---- Numbers of meshes and steps ------------------------------------------------------------- */
+
+struct numbers {
+    uint32_t *word; /* [count], owned */
+    size_t count, capacity;
+    /* Of the last step, and what has changed in it: owned */
+    uint32_t *last, *change;
+    size_t last_count;
+};
+
+static void numbers_add(struct numbers *numbers, uint32_t word)
 {
+    numbers->word =
+        allocate_grow(numbers->word, &numbers->capacity, numbers->count + 1, sizeof *numbers->word);
+    numbers->word[numbers->count++] = word;
+}
+
+/* Adds the numbers of a step. Bodies move steadily: the change of a number is about that in the
+ * step before. What is written is the difference of the two, modulo 2^32, as an even number where
+ * it is not negative, and else as an odd one; where the count of numbers changes, last and change
+ * are 0. */
+static void numbers_add_step(struct numbers *numbers, const int32_t *number, size_t count)
+{
+    if (count != numbers->last_count) {
+        free(numbers->last);
+        free(numbers->change);
+        numbers->last = allocate(count + 1, sizeof *numbers->last);
+        numbers->change = allocate(count + 1, sizeof *numbers->change);
+        numbers->last_count = count;
+    }
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t now = (uint32_t) number[i], change = now - numbers->last[i];
+        const uint32_t differs = change - numbers->change[i];
+        numbers_add(numbers, differs << 1 ^ (differs >> 31 ? UINT32_MAX : 0));
+        numbers->last[i] = now;
+        numbers->change[i] = change;
+    }
+}
+
+/* First the lowest bytes of all words, in the end the highest ones, which are mostly 0. */
+static void put_numbers(FILE *out, const struct numbers *numbers)
+{
+    const size_t count = numbers->count;
     unsigned char *bytes = allocate_unset(4 * count + 1);
-    for (size_t i = 0; i < 4 * count; i++)
-        bytes[i] = (unsigned char) (words[i / 4] >> 8 * (i % 4));
-    put_base64(json, key, bytes, 4 * count);
+    for (size_t k = 0; k < 4; k++)
+        for (size_t i = 0; i < count; i++)
+            bytes[k * count + i] = (unsigned char) (numbers->word[i] >> 8 * k);
+    put_packed(out, "numbers", bytes, 4 * count);
     free(bytes);
-}
-
-static void put_floats(struct json_writer *json, const char *key, const float *floats, size_t count)
-{
-    uint32_t *words = allocate_unset(sizeof *words * count + 1);
-    memcpy(words, floats, sizeof *words * count);
-    put_words(json, key, words, count);
-    free(words);
 }
 
 /* ---- Sets of elements that many steps have, each written once -------------------------------- */
@@ -162,6 +213,7 @@ struct page {
     char *title, *sides[2];         /* owned */
     struct text notes, steps, far;  /* far: [step, pair...], ... */
     struct set shapes, casts, logs; /* casts: [[id, shape, name], ...] of the bodies */
+    struct numbers numbers;         /* of meshes, then of steps */
     bool has_origin;                /* there was a body */
     double origin[FMB_DIM_MAX];     /* its position */
     int64_t step_count, kept, left_out, left_out_different;
@@ -230,6 +282,9 @@ void page_close(struct page *page)
     for (int side = 0; side < 2; side++)
         free(page->sides[side]);
     free(page->title);
+    free(page->numbers.word);
+    free(page->numbers.last);
+    free(page->numbers.change);
     free(page->pose);
     free(page);
 }
@@ -430,7 +485,8 @@ void page_pair(struct page *page, int64_t a, int64_t b, int dim, const struct pa
 
 static size_t bytes_of(struct page *page)
 {
-    return text_size(&page->steps) + text_size(&page->casts.text) + text_size(&page->shapes.text);
+    return text_size(&page->steps) + text_size(&page->casts.text) + text_size(&page->shapes.text) +
+           page->numbers.count * sizeof *page->numbers.word;
 }
 
 static bool may_keep(struct page *page, bool differs)
@@ -470,14 +526,22 @@ void page_step_begin(struct page *page, const struct page_step *step)
     }
 }
 
-/* The poses: exponent, and as base64 floats positions p, unit quaternions q (w, x, y, z), and
- * shifts over the window v. A coordinate is origin + 2^exponent times the float. */
+/* A part of the largest number of a step, or of a unit, in 2^-24. */
+static int32_t fixed(double part)
+{
+    return (int32_t) floor(part * 0x1p24 + 0.5);
+}
+
+/* The poses: at, and among the numbers the positions of all bodies, [body][x, y, z]; if they turn
+ * their unit quaternions, [body][w, x, y, z]; if they move their shifts over the window. A
+ * coordinate is origin + 2^(at - 24) times the number, a quaternion 2^-24 times the number. */
 static void put_poses(struct page *page, struct json_writer *json)
 {
     const size_t count = page->pose_count;
     double largest = 0;
     int exponent = -1075; /* of nothing but zeros */
-    float *number = allocate(4 * count + 1, sizeof *number);
+    size_t used = 0;
+    int32_t *number = allocate(10 * count + 1, sizeof *number);
     for (size_t i = 0; i < count; i++)
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             largest = fmax(
@@ -486,16 +550,16 @@ static void put_poses(struct page *page, struct json_writer *json)
         (void) frexp(largest, &exponent);
     json_integer(json, "at", exponent + 1);
     for (size_t i = 0; i < 3 * count; i++)
-        number[i] = (float) ldexp(page->pose[i / 3].position[i % 3], -exponent);
-    put_floats(json, "p", number, 3 * count);
+        number[used++] = fixed(ldexp(page->pose[i / 3].position[i % 3], -exponent));
     for (size_t i = 0; i < 4 * count && page->rotates; i++)
-        number[i] = (float) page->pose[i / 4].orientation[i % 4];
-    if (page->rotates)
-        put_floats(json, "q", number, 4 * count);
+        number[used++] = fixed(page->pose[i / 4].orientation[i % 4]);
     for (size_t i = 0; i < 3 * count && page->moves; i++)
-        number[i] = (float) ldexp(page->pose[i / 3].shift[i % 3], -exponent);
+        number[used++] = fixed(ldexp(page->pose[i / 3].shift[i % 3], -exponent));
+    if (page->rotates)
+        json_bool(json, "turns", true);
     if (page->moves)
-        put_floats(json, "v", number, 3 * count);
+        json_bool(json, "moves", true);
+    numbers_add_step(&page->numbers, number, used);
     free(number);
 }
 
@@ -638,24 +702,24 @@ void page_mesh(struct page *page, const struct page_mesh *mesh)
     static const double zero[FMB_DIM_MAX];
     double centre[3];
     int exponent;
-    float *corner = allocate(3 * mesh->vertex_count + 1, sizeof *corner);
-    uint32_t *face = allocate(3 * mesh->face_count + 1, sizeof *face);
     find_extent(mesh, centre, &exponent);
-    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
-        corner[i] = (float) ldexp(mesh->vertex[i / 3][i % 3] / 2 - centre[i % 3] / 2, 1 - exponent);
-    for (size_t i = 0; i < 3 * mesh->face_count; i++)
-        face[i] = mesh->face[i / 3][i % 3];
     json_break(json, "\n");
     json_begin(json, NULL, '{');
     json_integer(json, "dim", 3);
     json_numbers(json, "centre", centre, 3);
     json_integer(json, "at", exponent);
-    put_floats(json, "corner", corner, 3 * mesh->vertex_count);
-    put_words(json, "face", face, 3 * mesh->face_count);
-    put_base64(json, "verdict", mesh->verdict, mesh->face_count);
+    json_integer(json, "first", (int64_t) page->numbers.count);
+    json_integer(json, "corners", (int64_t) mesh->vertex_count);
+    json_integer(json, "faces", (int64_t) mesh->face_count);
     json_end(json, '}');
-    free(corner);
-    free(face);
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+        numbers_add(&page->numbers,
+                    (uint32_t) fixed(
+                        ldexp(mesh->vertex[i / 3][i % 3] / 2 - centre[i % 3] / 2, 1 - exponent)));
+    for (size_t i = 0; i < 3 * mesh->face_count; i++)
+        numbers_add(&page->numbers, mesh->face[i / 3][i % 3]);
+    for (size_t i = 0; i < mesh->face_count; i++)
+        numbers_add(&page->numbers, mesh->verdict[i]);
     add_pose(page, &(struct page_body){.dim = 3, .position = zero, .velocity = mesh->velocity});
     put_cast(page, 0, (int64_t) page->shapes.count++, NULL, mesh->name);
 }
@@ -690,23 +754,29 @@ void page_write(struct page *page, FILE *out)
 {
     static const char *const kind[] = {
         [PAGE_SCENES] = "scenes", [PAGE_REPLAY] = "replay", [PAGE_MESH] = "mesh"};
-    struct json_writer json = {.out = out, .page = true};
+    struct text text;
+    struct json_writer *json = &text.json;
     note_left_out(page);
-    page_template_begin(out);
-    json_begin(&json, NULL, '{');
-    json_string(&json, "kind", kind[page->kind]);
-    json_string(&json, "title", page->title);
-    json_begin(&json, "sides", '[');
+    text_open(&text);
+    json_begin(json, NULL, '{');
+    json_string(json, "kind", kind[page->kind]);
+    json_string(json, "title", page->title);
+    json_begin(json, "sides", '[');
     for (int side = 0; side < 2 && page->sides[0]; side++)
-        json_string(&json, NULL, page->sides[side]);
-    json_end(&json, ']');
-    json_numbers(&json, "origin", page->origin, FMB_DIM_MAX);
-    put_elements(&json, "notes", &page->notes);
-    put_elements(&json, "logs", &page->logs.text);
-    put_elements(&json, "shapes", &page->shapes.text);
-    put_elements(&json, "casts", &page->casts.text);
-    put_elements(&json, "steps", &page->steps);
-    put_elements(&json, "far", &page->far);
-    json_end(&json, '}');
+        json_string(json, NULL, page->sides[side]);
+    json_end(json, ']');
+    json_numbers(json, "origin", page->origin, FMB_DIM_MAX);
+    put_elements(json, "notes", &page->notes);
+    put_elements(json, "logs", &page->logs.text);
+    put_elements(json, "shapes", &page->shapes.text);
+    put_elements(json, "casts", &page->casts.text);
+    put_elements(json, "steps", &page->steps);
+    put_elements(json, "far", &page->far);
+    json_end(json, '}');
+    const size_t size = text_size(&text);
+    page_template_begin(out);
+    put_packed(out, "data", text.bytes, size);
+    put_numbers(out, &page->numbers);
     page_template_end(out);
+    text_close(&text);
 }

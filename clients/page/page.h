@@ -8,9 +8,9 @@
  *     page_step_end(page);
  *     page_write(page, out);
  *
- * Poses are for pictures: single precision, relative to the first body of the page and to the
- * extent of the step. Numbers of answers have nine digits, and all digits where two answers
- * differ. All texts may be any bytes.
+ * Poses are for pictures: multiples of 2^-24 of the extent of the step, relative to the first body
+ * of the page. Numbers of answers have nine digits, and all digits where two answers differ. All
+ * texts may be any bytes. All of it is compressed.
  *
  * All functions exit with status 1 if memory is exhausted. For one thread at a time. */
 #ifndef PAGE_H
@@ -21,11 +21,11 @@
 
 #include <stdio.h>
 
-/* A page stays below PAGE_BYTES_MAX, its own text of about a megabyte included. Steps are kept as a
- * whole up to PAGE_STEPS_BYTES, steps that differ up to PAGE_DIFFERENT_BYTES more. Separated pairs
- * without a gap within the margin are kept up to PAGE_FAR_BYTES, or else left out of all steps. Of
- * a step PAGE_PAIRS_MAX pairs that differ are kept, and as many in contact or near. The page says
- * what was left out. */
+/* A page stays below PAGE_BYTES_MAX, its own text of about a megabyte included. All other limits
+ * are of bytes before they are compressed. Steps are kept as a whole up to PAGE_STEPS_BYTES, steps
+ * that differ up to PAGE_DIFFERENT_BYTES more. Separated pairs without a gap within the margin are
+ * kept up to PAGE_FAR_BYTES, or else left out of all steps. Of a step PAGE_PAIRS_MAX pairs that
+ * differ are kept, and as many in contact or near. The page says what was left out. */
 enum {
     PAGE_BYTES_MAX = 40 << 20,
     PAGE_STEPS_BYTES = 30 << 20,

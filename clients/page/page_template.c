@@ -26,5 +26,5 @@ void page_template_begin(FILE *out)
 
 void page_template_end(FILE *out)
 {
-    fputs(find_mark() + strlen("@DATA@"), out);
+    fputs(find_mark() + strlen("@DATA@\n"), out);
 }

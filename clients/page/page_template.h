@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-/* The parts before and after the data, which are JSON by json_write.h. */
+/* The parts before and after the elements with the data. */
 void page_template_begin(FILE *out);
 void page_template_end(FILE *out);
 

@@ -34,20 +34,21 @@ found() {
     }
 }
 
+# data PAGE: the data, as JSON.
 data() {
-    sed -n '/^<script type="application\/json"/,/^<\/script>/p' "$1" | sed '1d;$d'
+    sed -n '/id="data">$/,/^<\/script>/p' "$1" | sed '1d;$d' | base64 -d | gzip -dc
 }
 
-# hash_of FILE ELEMENT: the hash of all between the tags, as a policy writes it.
+# hash_of FILE ELEMENT TYPE: the hash of all between the tags, as a policy writes it.
 hash_of() {
-    { echo; sed -n "/^<$2>\$/,/^<\/$2>\$/p" "$1" | sed '1d;$d'; } | sha256sum | cut -c 1-64 |
+    { echo; sed -n "/^<$2$3>\$/,/^<\/$2>\$/p" "$1" | sed '1d;$d'; } | sha256sum | cut -c 1-64 |
         tr a-f A-F | basenc --base16 -d | base64
 }
 
 # is_self_contained FILE: the file refers to nothing else.
 is_self_contained() {
-    sed '/^<script type="application\/json"/,/^<\/script>/d' "$1" > rest
-    [ "$(grep -c '<script>' rest)" = 1 ] || return
+    sed '/^<script type="text\/plain"/,/^<\/script>/d' "$1" > rest
+    [ "$(grep -c '<script' rest)" = 1 ] || return
     [ "$(tail -n 1 rest)" = '</html>' ] || return
     run grep -noE '(src|href|action)="[^#"]*[^#",:a-z]|@import|url\(| on[a-z]+="|style="' rest
     [ "$status" = 1 ] || return
@@ -56,5 +57,5 @@ is_self_contained() {
 # has_policy FILE: the policy allows the file's own script and style, and nothing else.
 has_policy() {
     policy=$(grep -o 'Content-Security-Policy" content="[^"]*"' "$1")
-    [[ $policy == *"default-src 'none'; script-src 'sha256-$(hash_of "$1" script)'; style-src 'sha256-$(hash_of "$1" style)'; img-src data:;"* ]]
+    [[ $policy == *"default-src 'none'; script-src 'sha256-$(hash_of "$1" script ' type="module"')'; style-src 'sha256-$(hash_of "$1" style)'; img-src data:;"* ]]
 }

@@ -258,8 +258,8 @@ async function network() {
 async function dark() {
     await open("table.html");
     found.dark = { ...picture(), ground: view.getComputedStyle(page.body).backgroundColor };
-    await open("changed.html");
-    await open("cut.html");
+    await load("changed.html");
+    await load("cut.html");
 }
 
 async function noScene() {

@@ -11,13 +11,21 @@ function drawn() {
     return new Promise((done) => view.requestAnimationFrame(() => setTimeout(done)));
 }
 
-async function open(name) {
+async function load(name) {
     await new Promise((done) => {
         frame.onload = done;
         frame.src = name;
     });
     page = frame.contentDocument;
     view = frame.contentWindow;
+    await drawn();
+}
+
+/* Loads a page, and waits until it has unpacked its data and shows them. */
+async function open(name) {
+    await load(name);
+    for (const from = performance.now(); !view.fmb && performance.now() - from < 60000;)
+        await drawn();
     await drawn();
 }
 

@@ -112,7 +112,7 @@ prints_what_it_shows() {
     for library in lcm glib-2.0 gmp seccomp; do
         readelf -d "$FMB_BUILD/fmbd" | grep -q "NEEDED.*\[lib$library\.so"
     done
-    for library in lcm glib-2.0 gmp cjson expat; do
+    for library in lcm glib-2.0 gmp cjson expat z; do
         readelf -d "$FMB_BUILD/fmb" | grep -q "NEEDED.*\[lib$library\.so"
     done
 }

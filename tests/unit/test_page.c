@@ -7,6 +7,7 @@
 #include <cjson/cJSON.h>
 #include <float.h>
 #include <math.h>
+#include <zlib.h>
 
 /* ---- Tools ----------------------------------------------------------------------------------- */
 
@@ -14,6 +15,42 @@ static struct page *open_page(enum page_kind kind)
 {
     return page_open(
         &(struct page_options){.kind = kind, .title = "title", .sides = {"then", "now"}});
+}
+
+/* Returns the bytes that an element holds, and a 0; to be freed. */
+static char *unpack(const char *page, const char *id, size_t *size)
+{
+    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    enum { GZIP = 15 + 16, BYTES_MAX = 1 << 26 };
+    char tag[60];
+    snprintf(tag, sizeof tag, "<script type=\"text/plain\" id=\"%s\">\n", id);
+    const char *at = strstr(page, tag);
+    assert_non_null(at);
+    at += strlen(tag);
+    const char *end = strstr(at, "\n</script>\n");
+    assert_non_null(end);
+    assert_int_equal((end - at) % 4, 0);
+    unsigned char *packed = malloc((size_t) (end - at));
+    char *bytes = malloc(BYTES_MAX);
+    z_stream stream = {.next_in = packed, .next_out = (Bytef *) bytes, .avail_out = BYTES_MAX - 1};
+    assert_true(packed && bytes);
+    for (; at < end; at += 4) {
+        unsigned bits = 0, count = 0;
+        for (int k = 0; k < 4; k++) {
+            bits = bits << 6 | (at[k] == '=' ? 0 : (unsigned) (strchr(digit, at[k]) - digit));
+            count += at[k] != '=';
+        }
+        for (unsigned k = 0; k + 1 < count; k++)
+            packed[stream.avail_in++] = (unsigned char) (bits >> (16 - 8 * k));
+    }
+    assert_int_equal(inflateInit2(&stream, GZIP), Z_OK);
+    assert_int_equal(inflate(&stream, Z_FINISH), Z_STREAM_END);
+    assert_int_equal(stream.avail_in, 0);
+    *size = stream.total_out;
+    bytes[*size] = '\0';
+    inflateEnd(&stream);
+    free(packed);
+    return bytes;
 }
 
 /* Writes and closes the page. Returns its text, to be freed. */
@@ -29,21 +66,49 @@ static char *text_of(struct page *page, size_t *size)
     return text;
 }
 
-/* Returns the data, up to where a browser ends the element; to be deleted. */
+/* Writes and closes the page. Returns the text of its data, to be freed; *size: of the page. */
+static char *data_text_of(struct page *page, size_t *size)
+{
+    size_t data_size;
+    char *text = text_of(page, size), *data = unpack(text, "data", &data_size);
+    free(text);
+    return data;
+}
+
+/* Writes and closes the page. Returns its data, to be deleted. */
 static cJSON *data_of(struct page *page)
 {
-    static const char begin[] = "<script type=\"application/json\" id=\"data\">";
     size_t size;
-    char *text = text_of(page, &size), *from = strstr(text, begin);
-    assert_non_null(from);
-    char *end = strstr(from, "</script>");
-    assert_non_null(end);
-    assert_non_null(strstr(end, "<script>\n"));
-    *end = '\0';
-    cJSON *data = cJSON_Parse(from + strlen(begin));
+    char *text = data_text_of(page, &size);
+    cJSON *data = cJSON_Parse(text);
     assert_non_null(data);
     free(text);
     return data;
+}
+
+/* Writes and closes the page. Returns its numbers, to be freed, those of its steps still as
+ * differences. */
+static uint32_t *numbers_of(struct page *page, size_t *count, cJSON **data)
+{
+    size_t size, data_size;
+    char *text = text_of(page, &size), *json = unpack(text, "data", &data_size);
+    unsigned char *bytes = (unsigned char *) unpack(text, "numbers", &size);
+    *count = size / 4;
+    uint32_t *number = calloc(*count + 1, sizeof *number);
+    assert_non_null(number);
+    for (size_t i = 0; i < size; i++)
+        number[i % *count] |= (uint32_t) bytes[i] << 8 * (i / *count);
+    *data = cJSON_Parse(json);
+    free(text);
+    free(json);
+    free(bytes);
+    return number;
+}
+
+/* A difference that is 0 or more is twice itself, another one twice its complement and 1. */
+static int32_t difference(uint32_t word)
+{
+    return word & 1 ? -(int32_t) (word >> 1) - 1 : (int32_t) (word >> 1);
 }
 
 static const cJSON *member(const cJSON *object, const char *name)
@@ -119,7 +184,7 @@ static void answers_that_differ_have_all_digits(void **state)
     page_pair(page, 0, 3, 3, NULL, &(struct page_answer){.error = "busy"});
     page_step_end(page);
     size_t size;
-    char *text = text_of(page, &size);
+    char *text = data_text_of(page, &size);
     assert_non_null(strstr(text, "[0,1,[3,0,0.333333333]]"));
     assert_non_null(strstr(text, "[0,2,[3,0,0.3333333333333333],[3,0,0.33333333333333337]]"));
     assert_non_null(strstr(text, "[0,3,\"busy\"]"));
@@ -145,41 +210,29 @@ static void boxes_and_gaps_have_their_numbers(void **state)
     cJSON_Delete(data);
 }
 
-/* The numbers of a member in base64. */
-static void decode(const cJSON *text, float *out, size_t count)
-{
-    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const char *at = text->valuestring;
-    unsigned char *bytes = (unsigned char *) out;
-    for (size_t i = 0; i < 4 * count; i += 3, at += 4) {
-        unsigned bits = 0;
-        for (int k = 0; k < 4; k++)
-            bits = bits << 6 | (at[k] == '=' ? 0 : (unsigned) (strchr(digit, at[k]) - digit));
-        for (size_t k = 0; k < 3 && i + k < 4 * count; k++)
-            bytes[i + k] = (unsigned char) (bits >> (16 - 8 * k));
-    }
-}
-
-static void coordinates_of_all_sizes_become_floats(void **state)
+static void coordinates_of_all_sizes_become_parts_of_the_largest(void **state)
 {
     static const double places[][2] = {{0, 1},         {-1.7e308, 1.7e308}, {5e-324, 1e-323},
                                        {1e300, -1e-9}, {4e6, 4e6 + 1e-3},   {DBL_MAX, DBL_MAX}};
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         struct page *page = open_page(PAGE_SCENES);
         const double a[3] = {places[i][0]}, b[3] = {places[i][1]};
-        float number[6];
+        size_t count;
+        cJSON *data;
         begin_step(page, 0, false);
         add_box(page, 1, NULL, a);
         add_box(page, 2, NULL, b);
         page_step_end(page);
-        cJSON *data = data_of(page);
-        const cJSON *step = cJSON_GetArrayItem(member(data, "steps"), 0);
-        decode(member(step, "p"), number, 6);
-        assert_true(number[0] == 0); /* relative to the first body */
-        const double half = ldexp((double) number[3], (int) member(step, "at")->valuedouble - 1);
+        uint32_t *number = numbers_of(page, &count, &data);
+        assert_int_equal(count, 6);
+        assert_int_equal(number[0], 0); /* relative to the first body */
+        const int at =
+            (int) member(cJSON_GetArrayItem(member(data, "steps"), 0), "at")->valuedouble;
+        const double half = ldexp(difference(number[3]), at - 25);
         const double expected = b[0] / 2 - a[0] / 2;
         assert_true(fabs(half - expected) <= fabs(expected) * 0x1p-23);
         cJSON_Delete(data);
+        free(number);
     }
 }
 
@@ -190,17 +243,79 @@ static void orientations_of_any_length_become_unit_quaternions(void **state)
         static const double numbers[3] = {1, 1, 1};
         struct page *page = open_page(PAGE_SCENES);
         struct page_frames frames = {NULL, 0, 0};
-        float q[4];
+        size_t count;
+        cJSON *data;
         page_frames_add(&frames, FMB_BOX, false, numbers, 3);
         begin_step(page, 0, false);
         page_body(page, &(struct page_body){.dim = 3, .frames = &frames, .orientation = turns[i]});
         page_step_end(page);
         free(frames.number);
-        cJSON *data = data_of(page);
-        decode(member(cJSON_GetArrayItem(member(data, "steps"), 0), "q"), q, 4);
-        assert_true(fabsf(q[0] - 0.6f) < 1e-4f && fabsf(q[1] - 0.8f) < 1e-4f);
+        uint32_t *number = numbers_of(page, &count, &data);
+        assert_int_equal(count, 7);
+        assert_true(fabs(difference(number[3]) * 0x1p-24 - 0.6) < 1e-4 &&
+                    fabs(difference(number[4]) * 0x1p-24 - 0.8) < 1e-4);
+        assert_true(cJSON_IsTrue(member(cJSON_GetArrayItem(member(data, "steps"), 0), "turns")));
         cJSON_Delete(data);
+        free(number);
     }
+}
+
+/* Of steady motion only the begin and the first change are not 0, until a body is added. */
+static void numbers_of_steps_are_differences_of_changes(void **state)
+{
+    static const double x[] = {0, 0.5, 0.75, 1, 0.125, 0.25}; /* of the body 2, in units of 1 */
+    static const double expected[] = {0, 0.5, -0.25, 0, -1.125};
+    struct page *page = open_page(PAGE_SCENES);
+    size_t count, at = 0;
+    cJSON *data;
+    for (size_t step = 0; step < 6; step++) {
+        begin_step(page, (double) step, false);
+        add_box(page, 1, NULL, zero);
+        add_box(page, 2, NULL, (const double[]){x[step], 1, 0}); /* the largest is always 1 */
+        for (size_t more = 5; more < step + 1; more++)
+            add_box(page, 3, NULL, zero);
+        page_step_end(page);
+    }
+    uint32_t *number = numbers_of(page, &count, &data);
+    assert_int_equal(count, 5 * 6 + 9);
+    for (size_t step = 0; step < 5; step++, at += 6) {
+        const double scale = ldexp(
+            1, 25 - (int) member(cJSON_GetArrayItem(member(data, "steps"), 0), "at")->valuedouble);
+        assert_true(difference(number[at + 3]) == expected[step] * scale / 2);
+        assert_true(difference(number[at + 4]) == (step == 0   ? scale / 2
+                                                   : step == 1 ? -scale / 2
+                                                               : 0));
+    }
+    assert_true(difference(number[at + 3]) == difference(number[at + 4]) / 4);
+    cJSON_Delete(data);
+    free(number);
+}
+
+static void meshes_have_corners_faces_and_verdicts(void **state)
+{
+    static double vertex[3][3] = {{1, 0, 0}, {3, 0, 0}, {1, 1, 0}};
+    static unsigned face[1][3] = {{0, 1, 2}};
+    static const unsigned char verdict[1] = {FMB_TOUCHING};
+    struct page *page = open_page(PAGE_MESH);
+    size_t count;
+    cJSON *data;
+    begin_step(page, 0, false);
+    page_mesh(page, &(struct page_mesh){.name = "m",
+                                        .vertex_count = 3,
+                                        .face_count = 1,
+                                        .vertex = vertex,
+                                        .face = face,
+                                        .verdict = verdict});
+    page_step_end(page);
+    uint32_t *number = numbers_of(page, &count, &data);
+    const cJSON *shape = cJSON_GetArrayItem(member(data, "shapes"), 0);
+    expect_json(shape,
+                "{\"dim\":3,\"centre\":[2,0.5,0],\"at\":1,\"first\":0,\"corners\":3,\"faces\":1}");
+    assert_int_equal(count, 9 + 3 + 1 + 3);
+    assert_true((int32_t) number[0] == -0x800000 && number[3] == 0x800000 && number[7] == 0x400000);
+    assert_true(number[9] == 0 && number[10] == 1 && number[11] == 2 && number[12] == FMB_TOUCHING);
+    cJSON_Delete(data);
+    free(number);
 }
 
 /* ---- Hostile texts --------------------------------------------------------------------------- */
@@ -224,7 +339,7 @@ static void hostile_texts_end_neither_script_nor_page(void **state)
     int ends = 0;
     for (const char *at = strstr(text, "</script"); at; at = strstr(at + 1, "</script"))
         ends++;
-    assert_int_equal(ends, 2); /* of the data and of the scripts */
+    assert_int_equal(ends, 3); /* of the data, the numbers and the scripts */
     assert_null(strstr(text, "<!--"));
     free(text);
 }
@@ -283,8 +398,8 @@ static void pages_are_bounded_and_keep_differences_longest(void **state)
         page_step_end(page);
     }
     size_t size;
-    char *text = text_of(page, &size);
-    assert_true(size > PAGE_STEPS_BYTES && size < PAGE_BYTES_MAX);
+    char *text = data_text_of(page, &size);
+    assert_true(strlen(text) > PAGE_STEPS_BYTES && size < PAGE_BYTES_MAX);
     int different = 0, kept = 0;
     for (const char *at = strstr(text, "\"outcome\""); at; at = strstr(at + 1, "\"outcome\""))
         kept++;
@@ -306,8 +421,10 @@ int main(void)
         cmocka_unit_test(bodies_and_shapes_are_stored_once),
         cmocka_unit_test(answers_that_differ_have_all_digits),
         cmocka_unit_test(boxes_and_gaps_have_their_numbers),
-        cmocka_unit_test(coordinates_of_all_sizes_become_floats),
+        cmocka_unit_test(coordinates_of_all_sizes_become_parts_of_the_largest),
         cmocka_unit_test(orientations_of_any_length_become_unit_quaternions),
+        cmocka_unit_test(numbers_of_steps_are_differences_of_changes),
+        cmocka_unit_test(meshes_have_corners_faces_and_verdicts),
         cmocka_unit_test(hostile_texts_end_neither_script_nor_page),
         cmocka_unit_test(large_steps_keep_pairs_in_contact),
         cmocka_unit_test(far_pairs_are_in_all_steps_or_in_none),

@@ -1,12 +1,53 @@
-"use strict";
 /* The data of the page, as page.c writes them, and what follows from them. */
 
-const data = JSON.parse(document.getElementById("data").textContent);
+const one = (id) => document.getElementById(id);
+
+/* What an element holds, gzip in base64, as the body of a response. */
+function unpack(id) {
+    const text = one(id).textContent, { readable, writable } = new DecompressionStream("gzip"), writer = writable.getWriter();
+    one(id).remove();
+    writer.write(Uint8Array.fromBase64?.(text) ?? Uint8Array.from(atob(text), (c) => c.charCodeAt(0)));
+    writer.close();
+    return new Response(readable);
+}
+
+if (!globalThis.DecompressionStream)
+    one("counts").textContent = "This browser is too old for the page: it has no DecompressionStream.";
+const [data, planes] = await Promise.all([unpack("data").json(), unpack("numbers").arrayBuffer()]);
 const SEPARATED = 1, TOUCHING = 2, OVERLAPPING = 3;
 const verdictNames = ["not decided", "separated", "touching", "overlapping"];
 const isMesh = data.kind === "mesh", isReplay = data.kind === "replay";
-const steps = data.steps, one = (id) => document.getElementById(id);
+const { steps } = data;
 
+/* ---- Numbers of meshes and steps: whole, of 32 bits ---- */
+
+const numbers = new Int32Array(planes.byteLength / 4);
+{
+    const bytes = new Uint8Array(planes), count = numbers.length;
+    for (let i = 0; i < count; i++)
+        numbers[i] = bytes[i] | bytes[i + count] << 8 | bytes[i + 2 * count] << 16 | bytes[i + 3 * count] << 24;
+}
+
+/* Sets in each step the indices of its positions, quaternions and shifts: first, turn, shift (NaN: it
+ * has none), and replaces differences to what the steps before let expect by the numbers. */
+function readPoses(at) {
+    let last = [], change = [];
+    for (const step of steps) {
+        const count = data.casts[step.cast].length;
+        step.first = at;
+        step.turn = step.turns ? at + 3 * count : NaN;
+        step.shift = step.moves ? at + (step.turns ? 7 : 3) * count : NaN;
+        const length = (3 + (step.turns ? 4 : 0) + (step.moves ? 3 : 0)) * count;
+        if (length !== last.length)
+            [last, change] = [new Int32Array(length), new Int32Array(length)];
+        for (let i = 0; i < length; i++, at++) {
+            change[i] += numbers[at] >>> 1 ^ -(numbers[at] & 1);
+            numbers[at] = last[i] += change[i];
+        }
+    }
+}
+
+readPoses(data.shapes.reduce((sum, shape) => sum + (shape.corners === undefined ? 0 : 3 * shape.corners + 4 * shape.faces), 0));
 for (const [step, ...pairs] of data.far)
     steps[step].pairs.push(...pairs);
 steps.sort((a, b) => a.t - b.t);

@@ -3,10 +3,10 @@
 const player = { s: 0, playing: false, last: 0 };
 const speeds = [0.1, 0.25, 0.5, 1, 2, 5, 10];
 const heads = document.querySelectorAll(".track .head");
-const canPlay = steps.length > 1 || steps.some((step) => step.v);
+const canPlay = steps.length > 1 || steps.some((step) => step.moves);
 
-/* Shows the moment player.s. While it plays, the table follows five times a second: to paint it takes
- * longer than the scene. */
+/* Shows the moment player.s. While it plays, table and time follow five times a second: to paint them
+ * takes longer than the scene. */
 function show() {
     const i = stepAt(player.s), head = (player.s - view.from) / (view.to - view.from);
     const isDue = !player.playing || performance.now() - table.time > 200;
@@ -67,6 +67,7 @@ function play(on = !player.playing) {
     player.last = performance.now();
     if (player.playing && player.s >= wholeSpan)
         player.s = 0;
+    table.time = -Infinity; /* at once */
     show();
     if (!player.playing) {
         if (table.sort !== null)

@@ -25,21 +25,15 @@ const bodyColours = ["#4e79a7", "#f28e2b", "#59a14f", "#b07aa1", "#76b7b2", "#ed
 
 /* ---- Poses ---- */
 
-/* {p, q, v} of a step: floats, v may be missing; coordinates are 2^at times p. */
-function posesOf(step) {
-    const floats = (text) => text && new Float32Array(bytesOf(text).buffer);
-    return { at: step.at, p: floats(step.p), q: floats(step.q), v: floats(step.v) };
-}
-
-function orientationOf(poses, k) {
-    const [w, x, y, z] = poses.q ? poses.q.subarray(4 * k, 4 * k + 4) : [1, 0, 0, 0];
-    return new THREE.Quaternion(x, y, z, w);
+function orientationOf(step, k) {
+    const [w, x, y, z] = step.turns ? numbers.subarray(step.turn + 4 * k, step.turn + 4 * k + 4) : [1, 0, 0, 0];
+    return new THREE.Quaternion(x, y, z, w).normalize();
 }
 
 /* The position of body k after a part of the window, in units of 2^exponent. */
-function positionOf(poses, k, part, exponent) {
-    const factor = scaled(1, poses.at - exponent);
-    return [0, 1, 2].map((axis) => factor * (poses.p[3 * k + axis] + (poses.v ? part * poses.v[3 * k + axis] : 0)));
+function positionOf(step, k, part, exponent) {
+    const factor = scaled(1, step.at - 24 - exponent);
+    return [0, 1, 2].map((axis) => factor * (numbers[step.first + 3 * k + axis] + (step.moves ? part * numbers[step.shift + 3 * k + axis] : 0)));
 }
 
 /* A world point in these units. */
@@ -144,14 +138,14 @@ function makeItem(key, shape, source) {
 
 function placeObject(object, item, part) {
     const { stream, k } = item.source;
-    object.quaternion.copy(orientationOf(stream.poses, k));
+    object.quaternion.copy(orientationOf(stream.step, k));
     const offset = new THREE.Vector3(...item.surface.centre).applyQuaternion(object.quaternion);
-    object.position.set(...positionOf(stream.poses, k, part, stage.exponent)).add(offset);
+    object.position.set(...positionOf(stream.step, k, part, stage.exponent)).add(offset);
 }
 
 function addGhost(item) {
-    const { stream: { poses: { v } }, k } = item.source;
-    if (!v || ![0, 1, 2].some((axis) => v[3 * k + axis] !== 0))
+    const { stream: { step }, k } = item.source;
+    if (!step.moves || ![0, 1, 2].some((axis) => numbers[step.shift + 3 * k + axis] !== 0))
         return;
     const ghost = new THREE.LineSegments(item.surface.edges, new THREE.LineDashedMaterial({
         color: stage.colours.dim, dashSize: stage.radius / 30, gapSize: stage.radius / 45,
@@ -164,14 +158,14 @@ function addGhost(item) {
 /* ---- Extent ---- */
 
 /* The corners of all bodies of a step, at the begin and the end of its window. */
-function cornersOf(step, poses, only = null) {
+function cornersOf(step, only = null) {
     const out = [];
     step.bodies.forEach((body, k) => {
         if (!isDrawn(body) || (only && !only.includes(k)))
             return;
-        const turn = orientationOf(poses, k), { corners } = surfaceOf(body[1]);
-        for (const part of poses.v ? [0, 1] : [0]) {
-            const at = positionOf(poses, k, part, stage.exponent);
+        const turn = orientationOf(step, k), { corners } = surfaceOf(body[1]);
+        for (const part of step.moves ? [0, 1] : [0]) {
+            const at = positionOf(step, k, part, stage.exponent);
             corners.forEach((p) => out.push(plus(new THREE.Vector3(...p).applyQuaternion(turn).toArray(), at)));
         }
     });
@@ -187,7 +181,7 @@ function setExtent(corners) {
 }
 
 function exponentOfStep(step) {
-    return step.bodies.reduce((most, body) => isDrawn(body) ? Math.max(most, exponentOf(data.shapes[body[1]])) : most, step.p ? step.at : -1074);
+    return step.bodies.reduce((most, body) => isDrawn(body) ? Math.max(most, exponentOf(data.shapes[body[1]])) : most, step.at);
 }
 
 /* Steps at most 4 times as large as step i, or as small, spread over the page. */
@@ -217,9 +211,10 @@ function look(direction) {
     }
     controls.update();
     camera.updateMatrixWorld();
-    const middle = new THREE.Vector3(...stage.centre);
-    stage.half = [0, 1].map((axis) => stage.corners.reduce((most, p) => Math.max(most,
-        Math.abs(new THREE.Vector3(...p).sub(middle).dot(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, axis)))), 1e-3 * stage.radius));
+    stage.half = [0, 1].map((axis) => {
+        const across = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, axis).toArray(), middle = dot(stage.centre, across);
+        return stage.corners.reduce((most, p) => Math.max(most, Math.abs(dot(p, across) - middle)), 1e-3 * stage.radius);
+    });
     camera.near = stage.radius / 100;
     camera.far = 50 * stage.radius;
     camera.zoom = 1;
@@ -237,9 +232,9 @@ function fit(row = null, direction = null) {
     if (isMesh && pair)
         setExtent(pairTriangles(pair, 0).flat());
     else if (pair && pair[0] >= 0)
-        setExtent(cornersOf(steps[stage.step], stage.streams[0].poses, pair.slice(0, 2)));
+        setExtent(cornersOf(steps[stage.step], pair.slice(0, 2)));
     else
-        setExtent(likeSteps(stage.step).flatMap((step) => cornersOf(step, posesOf(step))));
+        setExtent(likeSteps(stage.step).flatMap((step) => cornersOf(step)));
     look(to);
 }
 
@@ -300,7 +295,7 @@ function boxPoints(box) {
 function pairTriangles(pair, part) {
     return pair.slice(0, 2).map((face, side) => {
         const { surface, source: { stream, k } } = stage.items[Math.min(side, stage.items.length - 1)];
-        const at = positionOf(stream.poses, k, part, stage.exponent);
+        const at = positionOf(stream.step, k, part, stage.exponent);
         return (surface.triangles[face] ?? []).map((corner) => plus(surface.all[corner], at));
     });
 }
@@ -351,7 +346,7 @@ function beginStep(i) {
         old.clear();
     }
     /* what is of another size by far is not drawn beside it */
-    stage.streams = streamsOf(i).filter((j) => Math.abs(exponentOfStep(steps[j]) - exponent) <= 16).map((j) => ({ i: j, step: steps[j], poses: posesOf(steps[j]) }));
+    stage.streams = streamsOf(i).filter((j) => Math.abs(exponentOfStep(steps[j]) - exponent) <= 16).map((j) => ({ i: j, step: steps[j] }));
     const sources = new Map();
     for (const stream of stage.streams)
         stream.step.bodies.forEach((body, k) => {

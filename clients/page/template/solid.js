@@ -131,25 +131,20 @@ function frameOf(numbers, at, dim, unitExponent) {
     return simplexOf(byVertices ? points : [origin, ...rest.map((component) => plus(origin, component))]);
 }
 
-function bytesOf(text) {
-    const binary = atob(text), bytes = new Uint8Array(binary.length);
-    for (let i = 0; i < binary.length; i++)
-        bytes[i] = binary.charCodeAt(i);
-    return bytes;
-}
-
 /* A mesh: its corners, triangles, the verdict of each triangle, no edges. */
 function meshOf(shape, unitExponent) {
-    const corner = new Float32Array(bytesOf(shape.corner).buffer), face = new Uint32Array(bytesOf(shape.face).buffer);
-    const centre = shape.centre.map((x) => scaled(x, -unitExponent)), factor = scaled(1, shape.at - unitExponent);
-    const corners = Array.from({ length: corner.length / 3 }, (_, i) => [0, 1, 2].map((axis) => centre[axis] + factor * corner[3 * i + axis]));
-    const triangles = Array.from({ length: face.length / 3 }, (_, i) => [...face.subarray(3 * i, 3 * i + 3)]);
-    return { corners, triangles, edges: [], verdicts: bytesOf(shape.verdict) };
+    const centre = shape.centre.map((x) => scaled(x, -unitExponent)), factor = scaled(1, shape.at - 24 - unitExponent);
+    const triples = (first, count, value) => Array.from({ length: count }, (_, i) => [0, 1, 2].map((k) => value(numbers[first + 3 * i + k], k)));
+    const first = shape.first + 3 * shape.corners, last = first + 3 * shape.faces;
+    return {
+        corners: triples(shape.first, shape.corners, (x, axis) => centre[axis] + factor * x), triangles: triples(first, shape.faces, (k) => k),
+        edges: [], verdicts: numbers.subarray(last, last + shape.faces),
+    };
 }
 
 /* The surface of a shape, in units of 2^unitExponent. */
 function solidOf(shape, unitExponent) {
-    if (shape.corner !== undefined)
+    if (shape.corners !== undefined)
         return meshOf(shape, unitExponent);
     const solid = { corners: [], triangles: [], edges: [] };
     for (let at = 0; at < shape.frames.length; at += 3 + shape.frames[at + 2]) {
