@@ -3,7 +3,6 @@
 "use strict";
 
 async function play() {
-    frame.style.height = "900px";
     await new Promise((done) => setTimeout(done, 3000)); /* the browser starts */
     const from = performance.now();
     await open("many.html");
@@ -22,7 +21,7 @@ async function play() {
     });
     const times = frames.slice(1).map((now, i) => now - frames[i]).sort((a, b) => a - b);
     Object.assign(found, {
-        open_ms: Math.round(opened), steps: view.fmb.steps.length, pairs: view.fmb.rows.length,
+        window: [innerWidth, innerHeight], open_ms: Math.round(opened), steps: view.fmb.steps.length, pairs: view.fmb.rows.length,
         frames_per_s: Math.round(times.length / (frames[frames.length - 1] - frames[0]) * 10000) / 10,
         frame_ms_p50: times[times.length >> 1], frame_ms_p99: times[Math.floor(times.length * 0.99)], moment: text("#moment"),
     });

@@ -5,11 +5,12 @@
 as_chromium() {
     local log=$BATS_FILE_TMPDIR/$1.log pid
     : > "$log"
-    timeout 300 chromium --headless --no-sandbox ${3:---enable-unsafe-swiftshader --use-angle=swiftshader} --no-first-run --disable-sync \
+    timeout 300 chromium --headless --no-sandbox --no-first-run --disable-sync \
         --disable-background-networking --disable-component-update --disable-extensions \
         --host-resolver-rules='MAP * ~NOTFOUND' --user-data-dir="$BATS_FILE_TMPDIR/$1" \
         --allow-file-access-from-files --enable-logging=stderr --v=0 --remote-debugging-port=0 \
         --window-size=1500,1200 --blink-settings="preferredColorScheme=$2" \
+        ${3:---enable-unsafe-swiftshader --use-angle=swiftshader} \
         "file://$BATS_FILE_TMPDIR/drive.html#$1" > "$log" 2>&1 < /dev/null 3>&- &
     pid=$!
     for _ in $(seq 3000); do
