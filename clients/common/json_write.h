@@ -23,8 +23,7 @@ struct json_writer {
     const char *space; /* private: of json_break(), or NULL */
 };
 
-/* bracket: '{' or '[', ended by '}' or ']'. Or '"', ended by '"': the caller writes text that needs
- * no escape to out in between. */
+/* bracket: '{' or '[', ended by '}' or ']'. */
 void json_begin(struct json_writer *json, const char *key, char bracket);
 void json_end(struct json_writer *json, char bracket);
 

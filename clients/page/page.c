@@ -4,7 +4,7 @@
 #include "page_template.h"
 
 #include <assert.h>
-#include <limits.h>
+#include <glib.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,37 +72,18 @@ static void put_elements(struct json_writer *json, const char *key, struct text 
 
 /* ---- Packed elements ------------------------------------------------------------------------- */
 
-/* Writes an element whose text are the bytes: gzip in base64. */
+/* Writes an element whose text are the bytes: zlib's format in base64. Little is gained by more
+ * effort than the least, and a browser unpacks it sooner. */
 static void put_packed(FILE *out, const char *id, const void *bytes, size_t size)
 {
-    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    enum { WINDOW_BITS = 15, GZIP = 16, MEMORY_LEVEL = 8 };
-    z_stream stream = {.next_in = (Bytef *) (uintptr_t) bytes};
-    unsigned char part[3 << 14];
-    bool ends = false;
-    if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, WINDOW_BITS + GZIP, MEMORY_LEVEL,
-                     Z_DEFAULT_STRATEGY) != Z_OK)
+    uLongf count = compressBound(size);
+    unsigned char *packed = allocate_unset(count);
+    if (compress2(packed, &count, bytes, size, Z_BEST_SPEED) != Z_OK)
         allocate_failed();
-    fprintf(out, "<script type=\"text/plain\" id=\"%s\">\n", id);
-    while (!ends) {
-        stream.next_out = part;
-        stream.avail_out = sizeof part;
-        while (!ends && stream.avail_out > 0) {
-            const size_t left = size - stream.total_in;
-            stream.avail_in = left < UINT_MAX ? (uInt) left : UINT_MAX;
-            ends =
-                deflate(&stream, stream.avail_in == left ? Z_FINISH : Z_NO_FLUSH) == Z_STREAM_END;
-        }
-        const size_t count = sizeof part - stream.avail_out;
-        memset(part + count, 0, stream.avail_out); /* the last digits are of these */
-        for (size_t i = 0; i < count; i += 3) {
-            const unsigned bits = (unsigned) part[i] << 16 | part[i + 1] << 8 | part[i + 2];
-            for (size_t k = 0; k < 4; k++)
-                putc(i + k <= count ? digit[bits >> (18 - 6 * k) & 63] : '=', out);
-        }
-    }
-    deflateEnd(&stream);
-    fputs("\n</script>\n", out);
+    char *text = g_base64_encode(packed, count);
+    fprintf(out, "<script type=\"text/plain\" id=\"%s\">\n%s\n</script>\n", id, text);
+    g_free(text);
+    free(packed);
 }
 
 /* ---- Numbers of meshes and steps ------------------------------------------------------------- */
@@ -110,8 +91,7 @@ static void put_packed(FILE *out, const char *id, const void *bytes, size_t size
 struct numbers {
     uint32_t *word; /* [count], owned */
     size_t count, capacity;
-    /* Of the last step, and what has changed in it: owned */
-    uint32_t *last, *change;
+    uint32_t (*last)[2]; /* [last_count]: a number of the last step, and its change; owned */
     size_t last_count;
 };
 
@@ -130,17 +110,15 @@ static void numbers_add_step(struct numbers *numbers, const int32_t *number, siz
 {
     if (count != numbers->last_count) {
         free(numbers->last);
-        free(numbers->change);
         numbers->last = allocate(count + 1, sizeof *numbers->last);
-        numbers->change = allocate(count + 1, sizeof *numbers->change);
         numbers->last_count = count;
     }
     for (size_t i = 0; i < count; i++) {
-        const uint32_t now = (uint32_t) number[i], change = now - numbers->last[i];
-        const uint32_t differs = change - numbers->change[i];
+        const uint32_t change = (uint32_t) number[i] - numbers->last[i][0];
+        const uint32_t differs = change - numbers->last[i][1];
         numbers_add(numbers, differs << 1 ^ (differs >> 31 ? UINT32_MAX : 0));
-        numbers->last[i] = now;
-        numbers->change[i] = change;
+        numbers->last[i][0] += change;
+        numbers->last[i][1] = change;
     }
 }
 
@@ -225,6 +203,7 @@ struct page {
     /* The step that is being added. */
     struct page_step step;
     bool keeps, rotates, moves;
+    double largest; /* half of the largest coordinate or shift */
     struct text cast, pairs[RANK_COUNT];
     int64_t pair_count[RANK_COUNT];
     struct pose *pose; /* [pose_count], owned */
@@ -284,7 +263,6 @@ void page_close(struct page *page)
     free(page->title);
     free(page->numbers.word);
     free(page->numbers.last);
-    free(page->numbers.change);
     free(page->pose);
     free(page);
 }
@@ -331,12 +309,8 @@ static void set_orientation(const struct page_body *body, double out[4])
         out[0] = 1;
         return;
     }
-    if (body->dim == 2) {
-        out[0] = body->orientation[0];
-        out[3] = body->orientation[1];
-    } else {
-        memcpy(out, body->orientation, 4 * sizeof *out);
-    }
+    for (int i = 0, step = body->dim == 2 ? 3 : 1; i < 4; i += step)
+        out[i] = body->orientation[i / step]; /* in 2D w and z */
     for (int i = 0; i < 4; i++)
         largest = fmax(largest, fabs(out[i]));
     for (int i = 0; i < 4; i++) {
@@ -345,12 +319,6 @@ static void set_orientation(const struct page_body *body, double out[4])
     }
     for (int i = 0; i < 4; i++)
         out[i] /= sqrt(length);
-}
-
-/* Half the distance of a coordinate from the origin of the page: a double, whatever they are. */
-static double half_from_origin(const struct page *page, double coordinate, int axis)
-{
-    return coordinate / 2 - page->origin[axis] / 2;
 }
 
 static void add_pose(struct page *page, const struct page_body *body)
@@ -365,14 +333,17 @@ static void add_pose(struct page *page, const struct page_body *body)
         memcpy(page->origin, body->position, (size_t) body->dim * sizeof *page->origin);
     page->has_origin = true;
     for (int axis = 0; axis < body->dim; axis++) {
+        /* half the distance from the origin of the page: a double, whatever they are */
         pose->position[axis] =
-            half_from_origin(page, body->position ? body->position[axis] : 0, axis);
+            (body->position ? body->position[axis] : 0) / 2 - page->origin[axis] / 2;
         /* of a body that leaves the range of the doubles: at its end */
         pose->shift[axis] =
             !body->velocity
                 ? 0
                 : fmax(-0x1p1022, fmin(page->step.duration / 2 * body->velocity[axis], 0x1p1022));
         page->moves = page->moves || pose->shift[axis] != 0;
+        page->largest =
+            fmax(page->largest, fmax(fabs(pose->position[axis]), fabs(pose->shift[axis])));
     }
     set_orientation(body, pose->orientation);
     page->rotates = page->rotates || body->orientation;
@@ -518,6 +489,7 @@ void page_step_begin(struct page *page, const struct page_step *step)
     }
     page->step = *step;
     page->rotates = page->moves = false;
+    page->largest = 0;
     page->pose_count = 0;
     text_rewind(&page->cast);
     for (int rank = 0; rank < RANK_COUNT; rank++) {
@@ -526,39 +498,33 @@ void page_step_begin(struct page *page, const struct page_step *step)
     }
 }
 
-/* A part of the largest number of a step, or of a unit, in 2^-24. */
-static int32_t fixed(double part)
+/* number / 2^(exponent - 24), rounded. In: |number| <= 2^exponent. */
+static int32_t fixed(double number, int exponent)
 {
-    return (int32_t) floor(part * 0x1p24 + 0.5);
+    return (int32_t) floor(ldexp(number, 24 - exponent) + 0.5);
 }
 
-/* The poses: at, and among the numbers the positions of all bodies, [body][x, y, z]; if they turn
- * their unit quaternions, [body][w, x, y, z]; if they move their shifts over the window. A
- * coordinate is origin + 2^(at - 24) times the number, a quaternion 2^-24 times the number. */
+/* The poses: at, and among the numbers, `numbers` of them: the positions of all bodies, [body][x,
+ * y, z]; if they turn their unit quaternions, [body][w, x, y, z]; if they move their shifts over
+ * the window. A coordinate is origin + 2^(at - 24) times the number, a quaternion 2^-24 times the
+ * number. */
 static void put_poses(struct page *page, struct json_writer *json)
 {
     const size_t count = page->pose_count;
-    double largest = 0;
+    const struct pose *pose = page->pose;
     int exponent = -1075; /* of nothing but zeros */
     size_t used = 0;
     int32_t *number = allocate(10 * count + 1, sizeof *number);
-    for (size_t i = 0; i < count; i++)
-        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-            largest = fmax(
-                largest, fmax(fabs(page->pose[i].position[axis]), fabs(page->pose[i].shift[axis])));
-    if (largest > 0)
-        (void) frexp(largest, &exponent);
-    json_integer(json, "at", exponent + 1);
+    if (page->largest > 0)
+        (void) frexp(page->largest, &exponent);
     for (size_t i = 0; i < 3 * count; i++)
-        number[used++] = fixed(ldexp(page->pose[i / 3].position[i % 3], -exponent));
+        number[used++] = fixed(pose[i / 3].position[i % 3], exponent);
     for (size_t i = 0; i < 4 * count && page->rotates; i++)
-        number[used++] = fixed(page->pose[i / 4].orientation[i % 4]);
+        number[used++] = fixed(pose[i / 4].orientation[i % 4], 0);
     for (size_t i = 0; i < 3 * count && page->moves; i++)
-        number[used++] = fixed(ldexp(page->pose[i / 3].shift[i % 3], -exponent));
-    if (page->rotates)
-        json_bool(json, "turns", true);
-    if (page->moves)
-        json_bool(json, "moves", true);
+        number[used++] = fixed(pose[i / 3].shift[i % 3], exponent);
+    json_integer(json, "at", exponent + 1);
+    json_integer(json, "numbers", (int64_t) used);
     numbers_add_step(&page->numbers, number, used);
     free(number);
 }
@@ -713,9 +679,9 @@ void page_mesh(struct page *page, const struct page_mesh *mesh)
     json_integer(json, "faces", (int64_t) mesh->face_count);
     json_end(json, '}');
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
-        numbers_add(&page->numbers,
-                    (uint32_t) fixed(
-                        ldexp(mesh->vertex[i / 3][i % 3] / 2 - centre[i % 3] / 2, 1 - exponent)));
+        numbers_add(
+            &page->numbers,
+            (uint32_t) fixed(mesh->vertex[i / 3][i % 3] / 2 - centre[i % 3] / 2, exponent - 1));
     for (size_t i = 0; i < 3 * mesh->face_count; i++)
         numbers_add(&page->numbers, mesh->face[i / 3][i % 3]);
     for (size_t i = 0; i < mesh->face_count; i++)

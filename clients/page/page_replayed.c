@@ -108,10 +108,9 @@ static struct page_result result_of(int32_t status, int32_t method, int64_t comp
 
 static struct page_result result_of_pair(const struct pair_result *result)
 {
-    struct page_result out = {.given = false};
     if (!result)
-        return out;
-    out = result_of(result->status, result->method, result->compute_ns);
+        return (struct page_result){.given = false};
+    struct page_result out = result_of(result->status, result->method, result->compute_ns);
     if (result->status == FMB_OK && result->answer.verdict <= FMB_OVERLAPPING)
         out.count[result->answer.verdict] = 1;
     return out;
@@ -120,10 +119,9 @@ static struct page_result result_of_pair(const struct pair_result *result)
 static struct page_result result_of_scene(const struct scene_query *query,
                                           const struct scene_result *result)
 {
-    struct page_result out = {.given = false};
     if (!result)
-        return out;
-    out = result_of(result->status, result->method, result->compute_ns);
+        return (struct page_result){.given = false};
+    struct page_result out = result_of(result->status, result->method, result->compute_ns);
     replayed_count(query, result, out.count);
     return out;
 }
@@ -160,11 +158,9 @@ static void add_pairs(struct page *page, const struct replayed *replayed)
 
 static bool certificates_differ(const struct pair_result *a, const struct pair_result *b)
 {
-    if (!a || !b || a->status != FMB_OK || b->status != FMB_OK)
-        return false;
-    if (!a->certificate || !b->certificate)
-        return a->certificate != b->certificate;
-    return strcmp(a->certificate, b->certificate) != 0;
+    return a && b && a->status == FMB_OK && b->status == FMB_OK &&
+           (a->certificate && b->certificate ? strcmp(a->certificate, b->certificate) != 0
+                                             : a->certificate != b->certificate);
 }
 
 void page_take(struct page *page, const struct body_names *names, int64_t begin,

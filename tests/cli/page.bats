@@ -11,7 +11,9 @@ hostile='<b>x</b></script><script>alert(1)</script><!--'
 # edited PAGE COMMAND...: the page with the data that the command makes of its own.
 edited() {
     sed '/id="data">$/q' "$1"
-    data "$1" | "${@:2}" | gzip | base64
+    data "$1" | "${@:2}" |
+        python3 -c 'import base64, sys, zlib; sys.stdout.buffer.write(base64.b64encode(zlib.compress(sys.stdin.buffer.read())))'
+    echo
     sed '1,/id="data">$/d' "$1" | sed -n '/^<\/script>/,$p'
 }
 

@@ -37,7 +37,8 @@ found() {
 
 # data PAGE: the data, as JSON.
 data() {
-    sed -n '/id="data">$/,/^<\/script>/p' "$1" | sed '1d;$d' | base64 -d | gzip -dc
+    sed -n '/id="data">$/{n;p;}' "$1" |
+        python3 -c 'import base64, sys, zlib; sys.stdout.buffer.write(zlib.decompress(base64.b64decode(sys.stdin.buffer.read())))'
 }
 
 # hash_of FILE ELEMENT TYPE: the hash of all between the tags, as a policy writes it.

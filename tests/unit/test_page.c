@@ -21,7 +21,7 @@ static struct page *open_page(enum page_kind kind)
 static char *unpack(const char *page, const char *id, size_t *size)
 {
     static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    enum { GZIP = 15 + 16, BYTES_MAX = 1 << 26 };
+    enum { BYTES_MAX = 1 << 26 };
     char tag[60];
     snprintf(tag, sizeof tag, "<script type=\"text/plain\" id=\"%s\">\n", id);
     const char *at = strstr(page, tag);
@@ -32,7 +32,8 @@ static char *unpack(const char *page, const char *id, size_t *size)
     assert_int_equal((end - at) % 4, 0);
     unsigned char *packed = malloc((size_t) (end - at));
     char *bytes = malloc(BYTES_MAX);
-    z_stream stream = {.next_in = packed, .next_out = (Bytef *) bytes, .avail_out = BYTES_MAX - 1};
+    uLong packed_size = 0;
+    uLongf unpacked_size = BYTES_MAX - 1;
     assert_true(packed && bytes);
     for (; at < end; at += 4) {
         unsigned bits = 0, count = 0;
@@ -41,14 +42,11 @@ static char *unpack(const char *page, const char *id, size_t *size)
             count += at[k] != '=';
         }
         for (unsigned k = 0; k + 1 < count; k++)
-            packed[stream.avail_in++] = (unsigned char) (bits >> (16 - 8 * k));
+            packed[packed_size++] = (unsigned char) (bits >> (16 - 8 * k));
     }
-    assert_int_equal(inflateInit2(&stream, GZIP), Z_OK);
-    assert_int_equal(inflate(&stream, Z_FINISH), Z_STREAM_END);
-    assert_int_equal(stream.avail_in, 0);
-    *size = stream.total_out;
+    assert_int_equal(uncompress((Bytef *) bytes, &unpacked_size, packed, packed_size), Z_OK);
+    *size = unpacked_size;
     bytes[*size] = '\0';
-    inflateEnd(&stream);
     free(packed);
     return bytes;
 }
@@ -254,7 +252,6 @@ static void orientations_of_any_length_become_unit_quaternions(void **state)
         assert_int_equal(count, 7);
         assert_true(fabs(difference(number[3]) * 0x1p-24 - 0.6) < 1e-4 &&
                     fabs(difference(number[4]) * 0x1p-24 - 0.8) < 1e-4);
-        assert_true(cJSON_IsTrue(member(cJSON_GetArrayItem(member(data, "steps"), 0), "turns")));
         cJSON_Delete(data);
         free(number);
     }

@@ -2,9 +2,9 @@
 
 const one = (id) => document.getElementById(id);
 
-/* What an element holds, gzip in base64, as the body of a response. */
+/* What an element holds, compressed, in base64, as the body of a response. */
 function unpack(id) {
-    const text = one(id).textContent, { readable, writable } = new DecompressionStream("gzip"), writer = writable.getWriter();
+    const text = one(id).textContent, { readable, writable } = new DecompressionStream("deflate"), writer = writable.getWriter();
     one(id).remove();
     writer.write(Uint8Array.fromBase64?.(text) ?? Uint8Array.from(atob(text), (c) => c.charCodeAt(0)));
     writer.close();
@@ -16,31 +16,24 @@ if (!globalThis.DecompressionStream)
 const [data, planes] = await Promise.all([unpack("data").json(), unpack("numbers").arrayBuffer()]);
 const SEPARATED = 1, TOUCHING = 2, OVERLAPPING = 3;
 const verdictNames = ["not decided", "separated", "touching", "overlapping"];
-const isMesh = data.kind === "mesh", isReplay = data.kind === "replay";
-const { steps } = data;
+const { steps } = data, isMesh = data.kind === "mesh", isReplay = data.kind === "replay";
 
 /* ---- Numbers of meshes and steps: whole, of 32 bits ---- */
 
-const numbers = new Int32Array(planes.byteLength / 4);
-{
-    const bytes = new Uint8Array(planes), count = numbers.length;
-    for (let i = 0; i < count; i++)
-        numbers[i] = bytes[i] | bytes[i + count] << 8 | bytes[i + 2 * count] << 16 | bytes[i + 3 * count] << 24;
-}
+const bytes = new Uint8Array(planes), numbers = new Int32Array(bytes.length / 4);
+for (let i = 0, n = numbers.length; i < n; i++)
+    numbers[i] = bytes[i] | bytes[i + n] << 8 | bytes[i + 2 * n] << 16 | bytes[i + 3 * n] << 24;
 
-/* Sets in each step the indices of its positions, quaternions and shifts: first, turn, shift (NaN: it
- * has none), and replaces differences to what the steps before let expect by the numbers. */
+/* Sets in each step whether bodies turn and move, and the indices of their positions, quaternions and
+ * shifts. Replaces differences to what the steps before let expect by the numbers. */
 function readPoses(at) {
     let last = [], change = [];
     for (const step of steps) {
-        const count = data.casts[step.cast].length;
-        step.first = at;
-        step.turn = step.turns ? at + 3 * count : NaN;
-        step.shift = step.moves ? at + (step.turns ? 7 : 3) * count : NaN;
-        const length = (3 + (step.turns ? 4 : 0) + (step.moves ? 3 : 0)) * count;
-        if (length !== last.length)
-            [last, change] = [new Int32Array(length), new Int32Array(length)];
-        for (let i = 0; i < length; i++, at++) {
+        const count = data.casts[step.cast].length, each = step.numbers / count, turns = each >= 7;
+        Object.assign(step, { turns, moves: each === 6 || each === 10, first: at, turn: at + 3 * count, shift: at + (turns ? 7 : 3) * count });
+        if (step.numbers !== last.length)
+            [last, change] = [new Int32Array(step.numbers), new Int32Array(step.numbers)];
+        for (let i = 0; i < step.numbers; i++, at++) {
             change[i] += numbers[at] >>> 1 ^ -(numbers[at] & 1);
             numbers[at] = last[i] += change[i];
         }
