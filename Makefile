@@ -7,7 +7,8 @@
 # Test:     test (twenty minutes on two shared cores), test-fast (less), unit-tests; headers, layers,
 #           format, format-check
 # Packages: deb: of Debian, into build/deb; deb-test: tries them in a chroot (deps-deb first; root)
-# Longer:   validate, accuracy, checked, hull-poses, soak, fuzz, fuzz-afl, fuzz-merge (deps-fuzz first)
+# Longer:   validate, accuracy, depth (deps-bench first), checked, hull-poses, soak, fuzz, fuzz-afl,
+#           fuzz-merge (deps-fuzz first)
 # Measure:  bench (deps-bench first, for other libraries), bench-bus, bench-replay, bench-mesh,
 #           bench-page, bench-python, report (deps-report first)
 # Port:     aarch64: fmb for AArch64, which 'make test' then emulates (deps-aarch64 first)

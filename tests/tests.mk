@@ -244,8 +244,19 @@ $(campaign_plants): $(O)/planted/%.o: service/fmb/%.c $(O)/settings
 	$(compile_bare) -DSLABS_ROUNDING=0x1p-70 -DGAP_ROUNDING=0x1p-70
 $(B)/accuracy-planted: $(O)/tests/campaign/accuracy.o $(campaign_plants)
 
-# On two cores: accuracy takes hours, validate minutes, the others less than a minute.
-.PHONY: validate accuracy checked hull-poses soak
+# CGAL rounds in both directions, and needs to know that GMP and MPFR are there.
+$(O)/tests/campaign/depth.o: tests/campaign/depth.cc $(O)/settings
+	@mkdir -p $(@D)
+	$(call say,CXX,$<) $(CXX) $(CPPFLAGS) -std=c++17 -O2 -DNDEBUG -frounding-math -DCGAL_USE_GMP -DCGAL_USE_MPFR -MMD -MP \
+		$(sees) -c $< -o $@
+$(B)/depth: $(O)/tests/campaign/depth.o $(shared) $(client) $(product) $(engine)
+	$(link)
+$(B)/depth: libraries += -lmpfr -lstdc++
+
+# On two cores: accuracy takes hours, validate and depth minutes, the others less than a minute.
+.PHONY: validate accuracy depth checked hull-poses soak
+depth: $(B)/depth
+	$<
 checked: $(B)/checked
 	$<
 hull-poses: $(B)/hull-poses

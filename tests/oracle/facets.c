@@ -10,7 +10,7 @@
  * Large hulls have too many pairs of edges, and thin ones of many vertices too many that are not
  * far. Of these, facets are sampled: the planes through the farthest points along three directions
  * close to each other, of any directions and of those about the one that has come nearest to the
- * limit. This may miss a facet that is above it. */
+ * limit. This may miss a facet that is above it; tests/campaign/depth.cc has all of them. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
