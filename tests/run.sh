@@ -42,7 +42,7 @@ run_suite() {
     "$asan")
         export FMB_FAST=1
         case $what in
-        test_engine_gap) sample=0.5 ;; # draws few
+        test_engine_gap | test_hull_*) sample=0.5 ;; # draw few
         test_*) sample=0.2 ;;
         # Unit tests look for leaks; that would double the time of a command.
         *) sample=1; export ASAN_OPTIONS=detect_leaks=0 ;;
