@@ -151,12 +151,9 @@ $(O)/fuzz.a: $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o model.o same.o same_sc
 	results_pair.o results_scene.o)
 	@rm -f $@
 	$(call say,AR,$@) $(AR) rcs $@ $^
-# Comparisons of numbers deep in the engine are not what inputs should be made for; nor branches of
-# integers, whose counters take ten seconds to compile.
+# Comparisons of numbers deep in the engine are not what inputs should be made for.
 ifeq ($(MODE),asan)
 $(engine_objects): flags += -O2 -fno-sanitize-coverage=trace-cmp
-$(O)/service/fmb/exact/limbs_narrow.o $(O)/service/fmb/exact/limbs_wide.o: \
-	flags += -fno-sanitize-coverage=inline-8bit-counters,pc-table,indirect-calls,stack-depth
 endif
 # The parts of a fuzz target are named in its rule by the stem.
 .SECONDEXPANSION:
