@@ -14,6 +14,7 @@
 #include "hull_gap.h"
 
 #include "gap_exact_simplex.h"
+#include "memory.h"
 
 #include <math.h>
 #include <string.h>
@@ -309,9 +310,7 @@ enum gap_outcome hull_gap_of_pair(const struct hull_pair *pair, bool swapped,
     }
     if (outcome != GAP_UNSURE)
         return complete(outcome, swapped, out);
-    void *(*allocate)(size_t);
-    mp_get_memory_functions(&allocate, NULL, NULL);
-    struct hull_gap_work *begun = allocate(sizeof *begun);
+    struct hull_gap_work *begun = memory_allocate(sizeof *begun);
     begun->frames = *pair->frames;
     begun->swapped = swapped;
     begun->verdict = verdict;
@@ -375,13 +374,11 @@ static enum gap_outcome solve_placed(struct hull_gap_work *work, struct fmb_gap 
 
 void hull_gap_end(struct hull_gap_work *work)
 {
-    void (*release)(void *, size_t);
-    mp_get_memory_functions(NULL, NULL, &release);
     if (work->stage != GAP_PLACING)
         hull_mesh_end(&work->depth.mesh);
     if (work->stage != GAP_DEPTH)
         hull_gap_place_end(&work->placed);
-    release(work, sizeof *work);
+    memory_release(work, sizeof *work);
 }
 
 enum gap_outcome hull_gap_step(struct hull_gap_work *work, struct fmb_gap *out)

@@ -10,6 +10,7 @@
 #include "hull_gap.h"
 
 #include "integer.h"
+#include "memory.h"
 
 #include <limits.h>
 #include <math.h>
@@ -87,9 +88,7 @@ static void numbers_each(struct hull_gap_placed *placed, void (*call)(mpz_ptr))
 
 void hull_gap_place_begin(const struct hull_pair *pair, struct hull_gap_placed *out)
 {
-    void *(*allocate)(size_t);
     memset(out, 0, sizeof *out);
-    mp_get_memory_functions(&allocate, NULL, NULL);
     out->measures = true;
     out->exponent = no_exponent;
     out->pair.frames = pair->frames;
@@ -99,7 +98,7 @@ void hull_gap_place_begin(const struct hull_pair *pair, struct hull_gap_placed *
         struct hull_view *view = &out->pair.view[f];
         view->placed = pair->view[f].placed;
         view->vertices = pair->view[f].vertices;
-        out->memory[f] = allocate(bytes_of(&view->vertices));
+        out->memory[f] = memory_allocate(bytes_of(&view->vertices));
         view->vertices.at = out->memory[f];
         view->rotation.dim = pair->dim;
         rotation_set_planar(1, 0, true, &view->rotation);
@@ -148,9 +147,7 @@ bool hull_gap_place_step(struct hull_gap_placed *placed, int count)
 
 void hull_gap_place_end(struct hull_gap_placed *placed)
 {
-    void (*release)(void *, size_t);
-    mp_get_memory_functions(NULL, NULL, &release);
     for (int f = 0; f < 2; f++)
-        release(placed->memory[f], bytes_of(&placed->pair.view[f].vertices));
+        memory_release(placed->memory[f], bytes_of(&placed->pair.view[f].vertices));
     numbers_each(placed, mpz_clear);
 }

@@ -8,7 +8,8 @@
  * MESH_ERROR = 18. */
 #include "hull_mesh.h"
 
-#include <gmp.h>
+#include "memory.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -31,11 +32,11 @@ void hull_mesh_begin(struct hull_mesh *mesh, int dim)
 /* Returns an array of twice the capacity. */
 static void *doubled(void *array, const void *own, int capacity, size_t size)
 {
-    void *(*allocate)(size_t), *(*reallocate)(void *, size_t, size_t);
     const size_t bytes = (size_t) capacity * size;
-    mp_get_memory_functions(&allocate, &reallocate, NULL);
-    return array == own ? memcpy(allocate(2 * bytes), array, bytes)
-                        : reallocate(array, bytes, 2 * bytes);
+    void *out = memcpy(memory_allocate(2 * bytes), array, bytes);
+    if (array != own)
+        memory_release(array, bytes);
+    return out;
 }
 
 static void reserve_facet(struct hull_mesh *mesh)
@@ -58,15 +59,13 @@ static void reserve_point(struct hull_mesh *mesh)
 
 void hull_mesh_end(struct hull_mesh *mesh)
 {
-    void (*release)(void *, size_t);
     const size_t facets = (size_t) mesh->facet_capacity;
-    mp_get_memory_functions(NULL, NULL, &release);
     if (mesh->facet != mesh->own_facet) {
-        release(mesh->facet, facets * sizeof *mesh->facet);
-        release(mesh->heap, facets * sizeof *mesh->heap);
+        memory_release(mesh->facet, facets * sizeof *mesh->facet);
+        memory_release(mesh->heap, facets * sizeof *mesh->heap);
     }
     if (mesh->point != mesh->own_point)
-        release(mesh->point, (size_t) mesh->point_capacity * sizeof *mesh->point);
+        memory_release(mesh->point, (size_t) mesh->point_capacity * sizeof *mesh->point);
     hull_mesh_begin(mesh, mesh->dim);
 }
 
