@@ -38,7 +38,7 @@ run_suite() {
     # Samples that fit into the time of a run; a suite by itself draws all of its own. Sanitizers look
     # at paths, not at answers: fewer samples take them all.
     case $build in
-    "$release") sample=${FMB_FAST:+1} sample=${sample:-0.7} ;;
+    "$release") sample=${FMB_FAST:+1} sample=${sample:-0.5} ;;
     "$asan")
         export FMB_FAST=1
         case $what in
