@@ -68,12 +68,12 @@ const char *answer_job_begin(struct answer_job *job, enum answer_kind kind,
                              const unsigned char *bytes, size_t size);
 
 /* Checks the query; or finds a few bodies; or makes a few frames; or decides one block of pairs in
- * doubles, or one pair of frames in exact arithmetic, of a pair with a hull a part of that. Usually
- * takes microseconds, a millisecond for the worst block, and milliseconds for the worst pair
- * (fmb.h). A query that is refused gets a status and a detail that names the field, such as
- * "b.numbers[4]: not a finite number"; it adds no body to the cache. On input: a job that was
- * begun; the same answerer in each step of a query, which must exist until the query is complete or
- * abandoned. Returns whether the result is complete. */
+ * doubles, or one pair of frames in exact arithmetic, or performs one step of a pair with a hull or
+ * of a certificate. Usually takes microseconds, a millisecond for the worst block, and milliseconds
+ * for the worst pair (fmb.h). A query that is refused gets a status and a detail that names the
+ * field, such as "b.numbers[4]: not a finite number"; it adds no body to the cache. On input: a job
+ * that was begun; the same answerer in each step of a query, which must exist until the query is
+ * complete or abandoned. Returns whether the result is complete. */
 bool answer_job_step(struct answer_job *job, struct answerer *answerer);
 
 /* Whether a pair query decides at most one pair of frames that are no hulls, as all queries of

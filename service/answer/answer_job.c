@@ -443,7 +443,8 @@ static enum answer_stage complete_pair(struct answer_job *job, enum fmb_status s
     return complete(job);
 }
 
-/* Adds the certificate to the result, once it is written. Then completes the result. */
+/* Performs a step of the certificate. Once it is complete, adds it to the result, and completes the
+ * result. */
 static enum answer_stage certify(struct answer_job *job)
 {
     const char *text = fmb_certificate_step(job->certificate);

@@ -47,14 +47,15 @@
  *
  * Memory is allocated only by
  *   - exact arithmetic: in the method exact, in certified for the few pairs that need it, in
- *     certificates, and in fmb_frame_make() for a frame that is nearly flat;
+ *     certificates and their check, and in fmb_frame_make() for a frame that is nearly flat;
  *   - fmb_decide() of bodies of several frames: that of a scene of two placements, 60 kB for up to
  *     32 frames;
  *   - the gap of a pair with a hull that is rounded by more than the limit, or whose depth takes
  *     more than a hundred vertices of the Minkowski difference, as of concentric balls: 50 kB, 24
  *     bytes for each vertex, and 200 bytes for each facet that is found.
- * All is allocated through GMP, which ends the process if memory is exhausted, and freed before the
- * function, or the scene, returns its last answer. Functions use up to 100 kB of stack.
+ * All is allocated through GMP, which ends the process if memory is exhausted. It is freed before
+ * the function, or the scene, returns its last answer; that of a certificate in steps by
+ * fmb_certificate_end(). Functions use up to 100 kB of stack.
  *
  * Determinism: the answers are the same bits on every machine with 64-bit longs whose doubles are
  * IEEE 754 binary64, rounded to nearest. The library is compiled without contraction. The caller
@@ -626,9 +627,9 @@ enum fmb_status fmb_tree_pairs(const struct fmb_tree *a, const struct fmb_tree *
  *     }
  *
  * The answers are those of fmb_decide() for each pair, bit for bit. Frames of one body are never
- * tested against each other, nor are placements of one group. Only exact arithmetic allocates
- * memory; after the last step none is left, and a scene that is abandoned before frees it by
- * fmb_scene_end().
+ * tested against each other, nor are placements of one group. Memory is allocated only by
+ * exact arithmetic and for gaps of hulls, as stated at the top. After the last step none is left;
+ * fmb_scene_end() frees that of a scene that is abandoned before.
  *
  * Thread safety: one state must not be used by two threads at the same time. Different states share
  * nothing. */
@@ -755,9 +756,9 @@ bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *ans
  * has left unfinished holds memory. The state must not be used any more. */
 void fmb_scene_end(struct fmb_scene_state *state);
 
-/* Sets *out to answer k of a step, as fmb_decide() gives it; all 0 if there is no verdict. The
- * contact, the box and the gap are there if they were wanted and the pair has them.
- * In: k < answers->count. */
+/* Sets *out to answer k of a step, as fmb_decide() sets it; all 0 if there is no verdict. It has
+ * the contact, the box and the gap that were wanted and that the pair has. In: k < answers->count.
+ */
 void fmb_scene_answer(const struct fmb_scene_answers *answers, size_t k, struct fmb_answer *out);
 
 /* Returns the number of the first pair that has not been answered. It equals the number of pairs if
@@ -807,13 +808,13 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  *     overlapping at TIME (X Y Z) a WEIGHTS b WEIGHTS
  *
  * with a normal N of rational numbers, and WEIGHTS one or more of INDEX:WEIGHT, in ascending order
- * of the indices, separated by spaces: vertices of the frame, and positive rational numbers whose
- * sum is
- * 1. The vertices of a hull are those of struct fmb_frame, from 0. Vertex 0 of a tetrahedron or a
- * face is its origin, vertex i + 1 the end of c_i; vertex k of a cuboid or a box is the origin plus
- * the c_i for which bit i of k is set. These certificates state, besides the above, that the point
- * is the sum of the weights times the vertices of each frame at TIME; and, if overlapping, that
- * these vertices have the same affine hull as the frame: so the point is in its relative interior.
+ * of the indices, separated by spaces: vertices of the frame, and positive rational numbers that
+ * add up to one. The vertices of a hull are those of struct fmb_frame, from 0. Vertex 0 of a
+ * tetrahedron or a face is its origin, vertex i + 1 the end of c_i; vertex k of a cuboid or a box
+ * is the origin plus the c_i for which bit i of k is set. These certificates state, besides the
+ * above, that the point is the sum of the weights times the vertices of each frame at TIME; and, if
+ * overlapping, that these vertices have the same affine hull as the frame: so the point is in its
+ * relative interior.
  */
 
 /* The capacity that every certificate fits into, its terminating 0 included. */
@@ -837,9 +838,10 @@ enum { FMB_CERTIFICATE_MAX = 16384 };
  * half of every size of a box. Let n be |q|^2 for the smallest integers q that are proportional to
  * the orientation; 1 without one, and m the product of both n, or one of them if they are equal.
  * The pair spans at most 512 bits if the magnitude of each coordinate of m times the components and
- * origins in the world, and m v T, is less than 2^(e + 512). Of a pair with a hull, let 2^f be the
- * least power of two above the magnitudes of all numbers that 2^e divides, for v T the product of
- * those of v and T. It spans f - e bits and the bits of m, together.
+ * origins in the world, and m v T, is less than 2^(e + 512). For a pair with a hull, let 2^f be the
+ * least power of two above the magnitudes of all these coordinates and halves, where the product of
+ * such a power for the coordinates of v and one for T stands for v T. The pair spans f - e bits
+ * plus the number of bits of m.
  *
  * Most certificates are shorter than 200 bytes; of frames that are flat or touch, some thousand are
  * possible. The text is also empty if it would exceed the capacity above; no such pair is known.
@@ -849,11 +851,16 @@ enum { FMB_CERTIFICATE_MAX = 16384 };
 enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
                                 double duration, char *text, size_t size, size_t *length);
 
-/* The same in steps: of a pair with a hull each takes less than a millisecond; any other pair is
- * one step. fmb_certificate_begin() returns the status of fmb_certificate(); if that is FMB_OK,
- * *state is set, to memory allocated as by the exact method, which fmb_certificate_end() frees. The
- * placements must outlive it. fmb_certificate_step() performs a step. It returns NULL, or the
- * certificate if it is complete, which is valid until the end; empty where there is none.
+/* The same in steps. A step takes less than a millisecond for a pair with a hull; any other pair
+ * takes one step.
+ *
+ * fmb_certificate_begin() allocates *state. The placements must outlive it. Returns the status of
+ * fmb_certificate(), but never FMB_OVER_LIMIT; *state is NULL if the status is not FMB_OK.
+ *
+ * fmb_certificate_step() performs a step. Returns NULL until the certificate is complete, then its
+ * text, valid until fmb_certificate_end(); an empty text if the pair has no certificate.
+ *
+ * fmb_certificate_end() frees the state, complete or not; it may be NULL.
  *
  * Thread safety: a state is used by one thread at a time. */
 struct fmb_certificate_state;

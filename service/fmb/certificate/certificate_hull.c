@@ -1,5 +1,5 @@
-/* Writes certificates of pairs with a hull. Doubles prove most that are separated; hull_exact.h has
- * the proof of the others, and its steps. */
+/* Writes certificates of pairs with a hull. A direction in doubles proves most separated pairs;
+ * hull_exact.c proves the others, in steps. */
 #include "certificate_hull.h"
 
 #include "hull_search.h"
@@ -30,8 +30,8 @@ static void write_normal(struct certificate_writer *writer, int dim, mpz_t n[3])
     mpz_clear(divisor);
 }
 
-/* Sets *vertex to the first vertex of frame f, from itself on, that has a positive weight, and out
- * to that weight / total. Returns false if there is none. */
+/* Sets *vertex to the first vertex of frame f, from *vertex on, that has a positive weight, and out
+ * to its weight / total, not reduced. Returns false if there is none. */
 static bool next_vertex(const struct hull_proof *proof, int f, unsigned *vertex, mpq_t out)
 {
     unsigned next = UINT_MAX;
@@ -49,7 +49,7 @@ static bool next_vertex(const struct hull_proof *proof, int f, unsigned *vertex,
     return next != UINT_MAX;
 }
 
-/* out := weight / total, in windows. */
+/* out := the time of the proof as a fraction of the window, not reduced. */
 static void set_late(const struct hull_proof *proof, mpq_t out)
 {
     mpq_set_ui(out, 0, 1);
@@ -122,8 +122,8 @@ static void write_weights(struct certificate_writer *writer, const struct hull_p
 
 /* ---- Separated by doubles ---- */
 
-/* Writes a normal of few bits, near the direction of the point of D next to the origin, if its
- * values, as computed, prove that the frames are separated. */
+/* Writes a normal of few bits, near the direction of the point of D nearest to the origin, if its
+ * values in doubles prove that the frames are separated. Returns whether they do. */
 static bool write_separated(struct certificate_writer *writer, const struct hull_pair *pair,
                             const double direction[FMB_DIM_MAX])
 {

@@ -31,7 +31,7 @@ struct certificate_hull {
 bool certificate_hull_begin(const struct frame_pair *frames, struct certificate_writer *writer,
                             struct certificate_hull *out);
 
-/* Performs a step of one that is not complete. Returns whether it is. */
+/* Performs a step of a certificate that is not complete. Returns whether it is complete then. */
 bool certificate_hull_step(struct certificate_hull *hull, struct certificate_writer *writer);
 
 /* Frees the memory of a certificate, complete or not. */

@@ -522,7 +522,7 @@ INLINE struct clip_span clip_segment(const struct clip_values *values, int bound
     return span;
 }
 
-/* The range in which a segment surely crosses a face, from its end to its start: the last slab is
+/* The range in which a segment surely crosses a face, its end before its start. The last slab is
  * the plane of the face. */
 INLINE struct clip_span crossing_span(const struct clip_values *values, int slabs, int v, int d)
 {
@@ -592,8 +592,9 @@ INLINE void set_points(const struct kernel_traits traits, int which, const struc
     }
 }
 
-/* Adds how far spans of a frame reach from 0, [below, above][axis]; used: which, by bit. Where to <
- * from, some point of the range surely is in the intersection: the least reach of these. */
+/* Adds how far the spans of a frame reach from 0: [below, above][axis]. used: one bit for each span
+ * that is added. Where to < from, some point of the range surely is in the intersection: the least
+ * reach of these. */
 INLINE void add_reach(const struct kernel_traits traits, const struct clip_wire *wire,
                       const struct clip_points *points, const struct clip_span *part, unsigned used,
                       lanes reach[2][3])

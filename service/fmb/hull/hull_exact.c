@@ -22,7 +22,7 @@
  *    vertices whose cone with apex c contains the ray: geometrically, a portal through which the
  *    ray passes, as in the Minkowski portal refinement of G. Snethen (Game Programming Gems 7,
  *    2008). The dual solution is the normal N of the portal, N . (x_i - c) = 1. The vertex with the
- *    greatest N . x enters the basis. If N . x < 0 for it, N separates. If N . x = 0, and the sum
+ *    greatest N . x enters the basis. If N . x < 0 for it, N separates. If N . x = 0 and the sum
  *    is 1, the origin is on the face of D in direction N: the vertices of both frames that attain
  *    the maximum span that face, the sweep contributes what N . w permits, and step 1 is repeated
  *    with them. Their dimension is less, so this ends.
@@ -43,19 +43,19 @@
  *    one end of the window. If N is not constant on M, no point of M + t w with N . x = 0, the
  *    greatest value, is in its relative interior: TOUCHING.
  *
- * 5. Proof, on request, instead of heights (hull_exact.h). A normal that separates is known from
- * step 1 or 2. If the frames touch, the basis of step 2 is a combination of vertices that is the
- *    origin, and N the normal, unless a face N' had been taken before, at one end of the window. N
- *    then proves it at that end, where N' . x = 0. If N . x increases towards the other end,
- *    |N' . w| N + |N . w| N' is taken, which is constant along w: on M it is a positive multiple of
- *    N, and so proves it at all times.
+ * 5. Proof (hull_exact.h), on request, instead of heights. A normal that separates is known from
+ *    step 1 or 2.
+ *    If the frames touch, the solution of step 2 is the origin as a combination of vertices, and N
+ *    is the normal, unless a face N' was taken before, at one end of the window. N then proves the
+ *    verdict at that end, where N' . x = 0. If N . x increases towards the other end, the normal is
+ *    |N' . w| N + |N . w| N', which is constant along w: on M it is a positive multiple of N, and
+ *    so proves the verdict at all times.
  *    If they overlap, the origin is sum a_i x_i + (1 - sum a_i) c, all numbers at least 0 and the
  *    last one positive: c is a mean of the points y_j of the span, all with positive weights. Or
  *    the y_j alone contain it. Let z be a sum of points of D whose vertices span both frames. For
  *    e = 2^-k, the numbers a_i are rounded down to multiples of e, z gets the weight e, and the
  *    weights of the y_j follow, since these are affinely independent. They are positive if e is
  *    small enough. Only the weights of the y_j are long fractions.
- *
  *
  * Both programs have one form: minimise or maximise sum a_i h_i subject to sum a_i H_i = q, a >= 0,
  * with columns H_i of m numbers, m <= 4. With the cofactors C_i of the basis, C_i . H_j = det if
@@ -1075,7 +1075,7 @@ static void set_all_vertices(struct hull_exact *e)
     }
 }
 
-/* Begins the span of a frame: of D with the other frame as one of its points, without drift. */
+/* Begins the span of a frame: that of D if the other frame is one of its points, without drift. */
 static void begin_span_of(struct hull_exact *e, int f)
 {
     e->side[!f].count = 1;

@@ -47,8 +47,8 @@ struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
 /* Performs one step. Returns whether the decision is complete. */
 bool hull_exact_step(struct hull_exact *exact);
 
-/* Returns the proof, which is set once the decision is complete, except for integers, which are set
- * at once. It is valid until the end. */
+/* Returns the proof, valid until hull_exact_end(). It is set once the decision is complete; its
+ * member integers is set from the beginning. */
 struct hull_proof *hull_exact_proof(struct hull_exact *exact);
 
 /* Sets the answer of a complete decision: verdict, contact and box, with ends rounded outward; the
