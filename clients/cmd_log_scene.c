@@ -43,7 +43,7 @@ static const char usage[] =
     "Exit codes: 0 printed; 1 there is no such query, the service refuses it, or a\n"
     "handle is not defined; 2 wrong usage, or a log cannot be read.\n";
 
-/* The options that have a number, and the value of those that are not given. */
+/* The options that take a number, and the value of one that is not given. */
 enum { EVENT, OFFSET, CLIENT, SEQUENCE, NUMBERS };
 static const long not_given = LONG_MIN;
 

@@ -29,8 +29,8 @@ void body_names_close(struct body_names *names); /* may be NULL */
 /* Sets the names that a client's query gives to its bodies. */
 void body_names_take(struct body_names *names, struct logged_query *query);
 
-/* Sets the names of a message: of a query of a pair or a scene, or of a names_t; others have none.
- * names may be NULL. Returns NULL; or a static text: why it cannot be decoded. */
+/* Sets the names in a message: a pair query, a scene query, or a names_t; others have none. names
+ * may be NULL. Returns NULL; or a static text: why it cannot be decoded. */
 const char *body_names_take_message(struct body_names *names, enum log_kind kind, const void *bytes,
                                     uint32_t size);
 

@@ -29,9 +29,9 @@ bool definitions_add(struct definitions *definitions, const struct body_view *vi
 /* Adds the bodies of a query that have frames and an id: services cache no others. */
 void definitions_add_query(struct definitions *definitions, struct logged_query *query);
 
-/* Adds the bodies with frames of a message: of a query of a pair or a scene, or of a definition;
- * others have none. Takes its names too, unless names is NULL. Returns NULL; or a static text: why
- * the message cannot be decoded. Then nothing of it was added. */
+/* Adds the bodies that have frames in a message: a pair query, a scene query, or a definition;
+ * others have none. Sets its names too (body_names_take_message()), unless names is NULL. Returns
+ * NULL; or a static text: why the message cannot be decoded. Then nothing of it was added. */
 const char *definitions_add_message(struct definitions *definitions, struct body_names *names,
                                     enum log_kind kind, const void *bytes, uint32_t size);
 

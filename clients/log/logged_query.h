@@ -43,8 +43,8 @@ struct query_placement *logged_query_placements(struct logged_query *query, int3
 /* query_pairs_decided() with memory of its own. */
 int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair);
 
-/* Whether the indices of a query are in range, and an OK result has answers to its pairs only, in
- * their order. */
+/* Whether the indices of the query are in range, and the result, of status OK, has answers to pairs
+ * of the query only, in their order. */
 bool logged_result_fits(const struct scene_query *query, const struct scene_result *result);
 
 /* Encodes a query that was decoded. Returns its size; 0 if it exceeds a datagram, or the struct

@@ -45,7 +45,7 @@ struct match_item {
     size_t index;            /* of the query */
     struct match_item *next; /* the next item with the same key, or of a list; NULL: none */
     /* Private: */
-    struct match_item *last; /* of a list the item before; of the first one the last item */
+    struct match_item *last; /* in a list: the item before; of the first item, the last one */
     UT_hash_handle hh;
 };
 

@@ -376,7 +376,7 @@ static bool read_property(struct ply *ply, const struct property *property, stru
 
 /* ---- Elements ------------------------------------------------------------------------------- */
 
-/* Reads a vertex, a face or another element: in ASCII files a line. */
+/* Reads a vertex, a face or another element; in ASCII files it is a line. */
 static bool read_record(struct ply *ply, const struct element *element, struct mesh *out)
 {
     struct mesh_source *source = ply->source;
@@ -392,7 +392,7 @@ static bool read_record(struct ply *ply, const struct element *element, struct m
         return true;
     source->at = mesh_skip_blanks(source->at);
     return *source->at == '\n' || source->at == source->end ||
-           mesh_refuse(source, source->at, "'%s' behind the last number of %s %zu",
+           mesh_refuse(source, source->at, "'%s' after the last number of %s %zu",
                        mesh_word(source, source->at, text), source->within, source->index);
 }
 
@@ -428,7 +428,7 @@ static bool allocate_element(struct ply *ply, const struct element *element, str
 
 static bool read_end(struct mesh_source *source)
 {
-    static const char wrong[] = "behind the last element: a count is wrong, or something was added";
+    static const char wrong[] = "after the last element: a count is wrong, or something was added";
     const unsigned char *at = mesh_skip_spaces(source->at);
     char text[MESH_WORD_MAX];
     if (at == source->end)

@@ -67,8 +67,8 @@ void mesh_report_progress_now(struct mesh_source *source)
         watch->report(watch->context, source->at - source->begin, source->end - source->begin);
 }
 
-/* strtod() also reads hexadecimal numbers and the characters in nan(...), which end a number here.
- */
+/* strtod() also accepts hexadecimal numbers and nan(...). Here a number ends before the x and
+ * before the parenthesis. */
 const unsigned char *mesh_number(const unsigned char *at, double *value)
 {
     const unsigned char *first = at + (*at == '-' || *at == '+');

@@ -14,8 +14,8 @@ struct mesh_source {
     enum mesh_faces faces;
     const struct mesh_progress *watch; /* may be NULL */
     char *error;                       /* capacity: MESH_ERROR_MAX */
-    /* How errors name a place: by its line in text, else by its byte and the element that contains
-     * it, for example "face", with its index; within: NULL: none. */
+    /* How errors name a place: in text by its line, else by its byte and the element that contains
+     * it. within: kind of that element, such as "face"; NULL: none. index: of that element. */
     bool text;
     const char *within;
     size_t index;

@@ -72,8 +72,8 @@ static void put_elements(struct json_writer *json, const char *key, struct text 
 
 /* ---- Packed elements ------------------------------------------------------------------------- */
 
-/* Writes an element whose text are the bytes: zlib's format in base64. Little is gained by more
- * effort than the least, and a browser unpacks it sooner. */
+/* Writes an element that holds the bytes in zlib's format, in base64. The fastest level:
+ * higher ones make the page little smaller. */
 static void put_packed(FILE *out, const char *id, const void *bytes, size_t size)
 {
     uLongf count = compressBound(size);
@@ -102,10 +102,10 @@ static void numbers_add(struct numbers *numbers, uint32_t word)
     numbers->word[numbers->count++] = word;
 }
 
-/* Adds the numbers of a step. Bodies move steadily: the change of a number is about that in the
- * step before. What is written is the difference of the two, modulo 2^32, as an even number where
- * it is not negative, and else as an odd one; where the count of numbers changes, last and change
- * are 0. */
+/* Adds the numbers of a step. Bodies move steadily, so a number changes by about as much as in the
+ * step before. The difference d of these two changes is added, modulo 2^32, in zigzag code: 2 d if
+ * d >= 0, -2 d - 1 if d < 0. Where the count of numbers differs from that of the step before, the
+ * last numbers and changes are taken as 0. */
 static void numbers_add_step(struct numbers *numbers, const int32_t *number, size_t count)
 {
     if (count != numbers->last_count) {
@@ -122,7 +122,8 @@ static void numbers_add_step(struct numbers *numbers, const int32_t *number, siz
     }
 }
 
-/* First the lowest bytes of all words, in the end the highest ones, which are mostly 0. */
+/* Writes the words by planes of bytes: the lowest bytes of all words first, the highest ones, which
+ * are mostly 0, last. */
 static void put_numbers(FILE *out, const struct numbers *numbers)
 {
     const size_t count = numbers->count;
@@ -333,7 +334,7 @@ static void add_pose(struct page *page, const struct page_body *body)
         memcpy(page->origin, body->position, (size_t) body->dim * sizeof *page->origin);
     page->has_origin = true;
     for (int axis = 0; axis < body->dim; axis++) {
-        /* half the distance from the origin of the page: a double, whatever they are */
+        /* half the distance from the origin of the page, which is always finite */
         pose->position[axis] =
             (body->position ? body->position[axis] : 0) / 2 - page->origin[axis] / 2;
         /* of a body that leaves the range of the doubles: at its end */
@@ -504,10 +505,11 @@ static int32_t fixed(double number, int exponent)
     return (int32_t) floor(ldexp(number, 24 - exponent) + 0.5);
 }
 
-/* The poses: at, and among the numbers, `numbers` of them: the positions of all bodies, [body][x,
- * y, z]; if they turn their unit quaternions, [body][w, x, y, z]; if they move their shifts over
- * the window. A coordinate is origin + 2^(at - 24) times the number, a quaternion 2^-24 times the
- * number. */
+/* Writes the exponent `at` and the count `numbers`, and adds as many numbers: the positions of all
+ * bodies, [body][x, y, z]; if a body has an orientation, the unit quaternions of all, [body][w, x,
+ * y, z]; if a body moves, the shifts of all over the window, [body][x, y, z]. A coordinate of a
+ * position is origin + 2^(at - 24) times its number, one of a shift 2^(at - 24) times, one of a
+ * quaternion 2^-24 times its number. */
 static void put_poses(struct page *page, struct json_writer *json)
 {
     const size_t count = page->pose_count;

@@ -10,7 +10,7 @@
  *
  * Poses are for pictures: multiples of 2^-24 of the extent of the step, relative to the first body
  * of the page. Numbers of answers have nine digits, and all digits where two answers differ. All
- * texts may be any bytes. All of it is compressed.
+ * texts may be any bytes. The data are compressed.
  *
  * All functions exit with status 1 if memory is exhausted. For one thread at a time. */
 #ifndef PAGE_H

@@ -7,8 +7,8 @@
 #include "log_parts.h"
 #include "record_bodies.h"
 
-/* Shows the line, unless standard error is no terminal, or blocks: then *shown is not set. In:
- * messages and bytes so far, and datagrams lost. */
+/* Shows the line, unless standard error is not a terminal, or would block. In: messages and bytes
+ * so far, and datagrams lost. Out: *shown: true if the line was shown; else unchanged. */
 void record_line_show(bool *shown, int64_t events, int64_t bytes, int64_t lost);
 
 /* Clears the line, if it is shown. */

@@ -4,12 +4,16 @@
  * all matches by client id and sequence number. Clients with such a match are not paired: what is
  * left of them has no counterpart.
  *
- * Steps: 1. Number the queries of the replayed logs: their clients by first appearance, and the
- * queries of a client within their group (type, label, first pair; for pairs, the ids of both
- * bodies). Repeated queries, with the same ids, are one. 2. Number the queries of the golden log in
- * the same way. A golden log without queries has only the types of its results: then the group is
- * the type, on both sides. 3. Give each result the ids of the query with the number of its own
- * query, and match it as if it were recorded with that query. */
+ * Steps:
+ *   1. number_queries()       the queries of the replayed logs: their clients by first appearance,
+ *                             and the queries of a client within their group (type, label, first
+ *                             pair; for pairs, the ids of both bodies). Repeated queries, with the
+ *                             same ids, are one
+ *   2. pair_golden()          the queries of the golden log, in the same way. A golden log without
+ *                             queries has only the types of its results: then the group is the
+ *                             type, on both sides
+ *   3. replay_pair_results()  gives each result the ids of the query with the number of its own
+ *                             query, and matches it as if it were recorded with that query */
 #include "replay_parts.h"
 
 #include <stdlib.h>

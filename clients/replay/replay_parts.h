@@ -40,11 +40,10 @@ struct replay {
     struct match *match;
     struct recorded_query *recorded; /* owned, [recorded_count] */
     size_t recorded_count, recorded_capacity;
-    /* With a golden log: clients, queries and their counterparts; its results without a query, at
-     * the end; whether it contains queries. */
-    struct replay_pair *pairs; /* table of replay_pair.c */
-    int64_t paired_clients[2]; /* their number; of the golden log */
-    struct match_item *unmatched;
+    /* With a golden log: */
+    struct replay_pair *pairs;    /* table of clients, queries and their counterparts */
+    int64_t paired_clients[2];    /* how many: of the replayed logs, of the golden log */
+    struct match_item *unmatched; /* golden results without a query */
     bool golden_has_queries;
 
     /* The second reading. */

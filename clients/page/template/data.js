@@ -2,7 +2,7 @@
 
 const one = (id) => document.getElementById(id);
 
-/* What an element holds, compressed, in base64, as the body of a response. */
+/* Unpacks what an element holds, compressed and in base64. Returns it as the body of a response. */
 function unpack(id) {
     const text = one(id).textContent, { readable, writable } = new DecompressionStream("deflate"), writer = writable.getWriter();
     one(id).remove();
@@ -25,7 +25,7 @@ for (let i = 0, n = numbers.length; i < n; i++)
     numbers[i] = bytes[i] | bytes[i + n] << 8 | bytes[i + 2 * n] << 16 | bytes[i + 3 * n] << 24;
 
 /* Sets in each step whether bodies turn and move, and the indices of their positions, quaternions and
- * shifts. Replaces differences to what the steps before let expect by the numbers. */
+ * shifts. Decodes the numbers in place (numbers_add_step() of page.c encodes them). */
 function readPoses(at) {
     let last = [], change = [];
     for (const step of steps) {

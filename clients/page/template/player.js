@@ -5,8 +5,8 @@ const speeds = [0.1, 0.25, 0.5, 1, 2, 5, 10];
 const heads = document.querySelectorAll(".track .head");
 const canPlay = steps.length > 1 || steps.some((step) => step.moves);
 
-/* Shows the moment player.s. While it plays, table and time follow five times a second: to paint them
- * takes longer than the scene. */
+/* Shows the moment player.s. While it plays, table and time follow five times a second: painting them
+ * takes longer than drawing the scene. */
 function show() {
     const i = stepAt(player.s), head = (player.s - view.from) / (view.to - view.from);
     const isDue = !player.playing || performance.now() - table.time > 200;
