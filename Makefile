@@ -4,8 +4,8 @@
 #   make deps-test test     installs what the tests need, then runs them
 #
 # Build:    all (default), examples, install, install-strip, uninstall, clean
-# Test:     test (twenty minutes on two shared cores), test-fast (less), unit-tests; headers, layers,
-#           format, format-check
+# Test:     test (all, in two builds), test-fast (one build, small samples), unit-tests; headers,
+#           layers, format, format-check
 # Packages: deb: of Debian, into build/deb; deb-test: tries them in a chroot (deps-deb first; root)
 # Longer:   validate, accuracy, depth (deps-bench first), checked, hull-poses, soak, fuzz, fuzz-afl,
 #           fuzz-merge (deps-fuzz first)

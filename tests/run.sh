@@ -50,7 +50,7 @@ run_suite() {
         ;;
     esac
     export FMB_SAMPLE="${FMB_SAMPLE-$sample}"
-    # Tests with the tag 'release' take no path of the programs that others do not take.
+    # The tag 'release': other tests with sanitizers execute the same code.
     paths=
     [ "$build" = "$release" ] || paths="--filter-tags !release"
     # shellcheck disable=SC2086

@@ -44,8 +44,8 @@ program_names = $(foreach p,$1,$(B)/$(firstword $(subst :, ,$p)))
 test_programs := $(call program_names,$(test_programs))
 measures := $(call program_names,$(measures)) $(B)/accuracy-planted
 
-# What the programs of tests share, and what those share that measure. Those that look into the engine
-# link its objects, the others the library.
+# What the programs of tests share, and what benchmarks share besides. Programs that look into the
+# engine link its objects, the others the library.
 test_folders := $(addprefix tests/,encode oracle hostile campaign checked mesh soak logs)
 shared := $(O)/shared.a
 $(shared): $(filter-out $(mains:%=$(O)/tests/%.o),$(call objects_in,$(test_folders))) \
@@ -76,7 +76,7 @@ $(B)/checked $(B)/tests/test_checked: $(checked_kernels)
 
 # ---- Unit tests ----
 
-# Of these the code that they test is compiled without sanitizers in all modes: the release build has them.
+# The code that these test is compiled without sanitizers in all modes, so only the release build has them.
 bare_tests := test_bounds test_box_bounds test_checked test_kernels
 unit_names := $(filter-out $(if $(filter asan,$(MODE)),$(bare_tests)), \
 	$(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c)))
@@ -241,7 +241,7 @@ $(campaign_plants): $(O)/planted/%.o: service/fmb/%.c $(O)/settings
 	$(compile_bare) -DSLABS_ROUNDING=0x1p-70 -DGAP_ROUNDING=0x1p-70
 $(B)/accuracy-planted: $(O)/tests/campaign/accuracy.o $(campaign_plants)
 
-# CGAL rounds in both directions, and needs to know that GMP and MPFR are there.
+# CGAL changes the rounding mode (-frounding-math), and is told to use GMP and MPFR.
 $(O)/tests/campaign/depth.o: tests/campaign/depth.cc $(O)/settings
 	@mkdir -p $(@D)
 	$(call say,CXX,$<) $(CXX) $(CPPFLAGS) -std=c++17 -O2 -DNDEBUG -frounding-math -DCGAL_USE_GMP -DCGAL_USE_MPFR -MMD -MP \

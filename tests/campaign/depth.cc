@@ -180,7 +180,7 @@ void help()
         "their difference.\n"
         "  --pairs N    of each family and combination of shapes (100)\n"
         "  --seed S     seed of the pairs\n"
-        "  --family F   this family alone; or, as hull-, all whose names begin so");
+        "  --family F   this family, or those whose names begin so up to a dash");
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ load ../page/chromium
 
 hostile='<b>x</b></script><script>alert(1)</script><!--'
 
-# edited PAGE COMMAND...: the page with the data that the command makes of its own.
+# edited PAGE COMMAND...: the page, with its data passed through the command.
 edited() {
     sed '/id="data">$/q' "$1"
     data "$1" | "${@:2}" |

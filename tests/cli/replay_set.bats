@@ -1,6 +1,6 @@
-# The regression set: fmb answers the queries of each log again, and says that all is as it was: as
-# recorded in the log, and as in the results that are kept beside it, to the byte. These with every
-# instruction set; and this suite runs on what each compiler makes, with sanitizers and without.
+# The regression set: fmb answers the queries of each log again. The results are those recorded in the
+# log and, to the byte, the goldens kept beside it. Each instruction set is compared with the goldens.
+# This suite runs in each build, with sanitizers and without.
 
 load ../logs/set
 
@@ -8,7 +8,7 @@ setup() {
     cd "$BATS_TEST_DIRNAME/../.." || return
 }
 
-# The other programs need no comparison with what was recorded: their results are the same bytes.
+# The other instruction sets need no comparison with the log: their results are the same bytes.
 @test "the set replays without differences" {
     for log in tests/logs/*.log; do as_it_was "$FMB_BUILD/fmb" "$log"; done
     "$FMB_BUILD/fmb" replay --prefix LAB_ tests/logs/foreign.log

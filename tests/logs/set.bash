@@ -33,7 +33,7 @@ as_it_was() {
         { echo "$fmb replay $* $log: $code"; cat "$BATS_TEST_TMPDIR/said" "$BATS_TEST_TMPDIR/log"; return 1; }
 }
 
-# replays_the_set FMB: to the bytes of the results that are kept.
+# replays_the_set FMB: its results are the goldens, byte for byte.
 replays_the_set() {
     for log in tests/logs/*.log; do
         as_it_was "$1" "$log" --golden "${log%.log}.golden" \

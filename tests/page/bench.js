@@ -1,5 +1,5 @@
-/* Measures a large page, many.html: how long it takes to open in a browser that runs already, until
- * scene and table are shown, and how fast it plays (tools.js). */
+/* Measures a large page, many.html: the time in which a browser that already runs opens it and shows
+ * scene and table, and how fast the page plays (tools.js). */
 "use strict";
 
 async function play() {

@@ -41,7 +41,7 @@ data() {
         python3 -c 'import base64, sys, zlib; sys.stdout.buffer.write(zlib.decompress(base64.b64decode(sys.stdin.buffer.read())))'
 }
 
-# hash_of FILE ELEMENT TYPE: the hash of all between the tags, as a policy writes it.
+# hash_of FILE ELEMENT [ATTRIBUTES]: the hash of the text of an element, as a policy states it.
 hash_of() {
     { echo; sed -n "/^<$2$3>\$/,/^<\/$2>\$/p" "$1" | sed '1d;$d'; } | sha256sum | cut -c 1-64 |
         tr a-f A-F | basenc --base16 -d | base64

@@ -172,7 +172,7 @@ static void flaws_are_named(void **state)
     }
 }
 
-/* Cubes far apart: 510 bits to the position, one for its top bit, and one of the orientation. */
+/* Cubes at a distance of 2^510: f - e = 511, and one bit of m (fmb.h). */
 static void numbers_that_span_too_many_bits_have_none(void **state)
 {
     static const double cube[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 1, 1, 0, 1, 0, 1, 1};

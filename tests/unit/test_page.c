@@ -103,7 +103,7 @@ static uint32_t *numbers_of(struct page *page, size_t *count, cJSON **data)
     return number;
 }
 
-/* A difference that is 0 or more is twice itself, another one twice its complement and 1. */
+/* Decodes zigzag code: numbers_add_step() in page.c. */
 static int32_t difference(uint32_t word)
 {
     return word & 1 ? -(int32_t) (word >> 1) - 1 : (int32_t) (word >> 1);
