@@ -449,14 +449,11 @@ LIMBS_FUNCTION void find_reach(struct box_search *search, const struct box_pair 
         const struct clip_wire *wire = &search->wire[f];
         struct box_slabs *slabs = &search->work->slabs;
         struct clip_span spans[CLIP_SEGMENTS];
-        unsigned used = 0;
         set_limbs_slabs(search->pair, traits, !f, search->work->at, slabs);
         set_points(traits, f, wire, &box->frame[f], &search->points[f]);
-        for (int s = 0; s < wire->segments; s++) {
+        for (int s = 0; s < wire->segments; s++)
             spans[s] = clip_in_limbs(search->pair->limbs, slabs, wire->from[s], wire->to[s]);
-            used |= (unsigned) !isnan(spans[s].from) << s;
-        }
-        add_reach(traits, wire, &search->points[f], spans, used, search->reach);
+        add_reach(traits, wire, &search->points[f], spans, search->reach);
     }
     if (traits.dim == 3 && traits.drifts)
         add_all_crossings(search);

@@ -390,10 +390,9 @@ struct clip_span {
     lanes from, to;
 };
 
-/* The spans of the segments of a frame; and, by bit, those that are not empty in all lanes. */
+/* The spans of the segments of a frame. */
 struct clip_spans {
     struct clip_span part[CLIP_BOUNDS][CLIP_SEGMENTS];
-    unsigned used;
 };
 
 INLINE void set_values(const struct kernel_traits traits, const struct pair_lanes *pair, int which,
@@ -468,9 +467,10 @@ INLINE struct clip_span clipped(const struct clip_values *values, int bound, int
                                 struct clip_span span)
 {
     const lanes inverse = values->inverse[k][d];
+    const lanes_mask up = inverse > 0;
     const lanes low = values->low[bound][k][v], high = values->high[bound][k][v];
-    const lanes first = choose_by_sign(inverse, high, low) * inverse;
-    const lanes last = choose_by_sign(inverse, low, high) * inverse;
+    const lanes first = lanes_select(up, low, high) * inverse;
+    const lanes last = lanes_select(up, high, low) * inverse;
     return (struct clip_span){lanes_max(first, span.from), lanes_min(last, span.to)};
 }
 
@@ -510,57 +510,54 @@ INLINE struct clip_span at_least(struct clip_span span, double length)
     return span;
 }
 
-/* The part of a segment within the first so many slabs. */
-INLINE struct clip_span clip_segment(const struct clip_values *values, int bound, int slabs, int v,
-                                     int d)
+/* Clips a segment. plane: the last slab is the plane of a face. The inner span then is the range in
+ * which the segment surely crosses the face, from its end to its start. */
+INLINE void clip_segment(const struct clip_values *values, int slabs, bool plane, int v, int d,
+                         struct clip_span *out_outer, struct clip_span *out_inner)
 {
-    struct clip_span span = {lanes_of(0), lanes_of(1)};
-    for (int k = 0; k < slabs; k++) {
+    const struct clip_span whole = {lanes_of(0), lanes_of(1)};
+    struct clip_span outer = whole, inner = whole;
+    for (int k = 0; k < (plane ? slabs - 1 : slabs); k++) {
         CHECK_SEGMENT(BOX_ROUNDING, values, k, v, d);
-        span = clipped(values, bound, k, v, d, span);
+        outer = clipped(values, CLIP_OUTER, k, v, d, outer);
+        inner = clipped(values, CLIP_INNER, k, v, d, inner);
     }
-    return span;
+    if (plane) {
+        const struct clip_span all = {lanes_of(-INFINITY), lanes_of(INFINITY)};
+        CHECK_SEGMENT(BOX_ROUNDING, values, slabs - 1, v, d);
+        const struct clip_span at = clipped(values, CLIP_OUTER, slabs - 1, v, d, all);
+        const lanes_mask crosses =
+            (at.from - inner.from >= CLIP_SHORTEST) & (inner.to - at.to >= CLIP_SHORTEST);
+        outer.from = lanes_max(at.from, outer.from);
+        outer.to = lanes_min(at.to, outer.to);
+        inner.from = lanes_select(crosses, at.to, lanes_of(NAN));
+        inner.to = at.from;
+    } else {
+        inner = at_least(inner, CLIP_SHORTEST);
+    }
+    outer = at_least(outer, -CLIP_SHORTEST);
+    const lanes_mask ties = values->exact & (outer.to - outer.from < CLIP_SHORTEST);
+    if (!plane && values->any_exact && lanes_mask_bits(ties)) {
+        const lanes_mask in_time = enters_in_time(values, slabs, v, d);
+        outer.from = lanes_select(ties & is_not(in_time), lanes_of(NAN), outer.from);
+        inner.from = lanes_select(ties, outer.from, inner.from);
+    }
+    *out_outer = outer;
+    *out_inner = inner;
 }
 
-/* The range in which a segment surely crosses a face, its end before its start. The last slab is
- * the plane of the face. */
-INLINE struct clip_span crossing_span(const struct clip_values *values, int slabs, int v, int d)
-{
-    const struct clip_span all = {lanes_of(-INFINITY), lanes_of(INFINITY)};
-    const struct clip_span at = clipped(values, CLIP_OUTER, slabs - 1, v, d, all);
-    const struct clip_span face = clip_segment(values, CLIP_INNER, slabs - 1, v, d);
-    const lanes_mask crosses =
-        (at.from - face.from >= CLIP_SHORTEST) & (face.to - at.to >= CLIP_SHORTEST);
-    return (struct clip_span){lanes_select(crosses, at.to, lanes_of(NAN)), at.from};
-}
-
-/* Clips the segments of a frame. plane: the last slab is the plane of a face. Returns the lanes in
- * which, for some segment with an outer span, there is no inner span, or one that is shorter by
- * more than box->whole along some axis. */
+/* Clips the segments of a frame. Returns the lanes in which, for some segment with an outer span,
+ * there is no inner span, or one that is shorter by more than box->whole along some axis. */
 INLINE lanes_mask clip_segments(const struct clip_wire *wire, const struct clip_values *values,
                                 int slabs, bool plane, const lanes longest[CLIP_DIRECTIONS],
                                 const struct box_pair *box, struct clip_spans *out)
 {
     lanes_mask uncertain = {0};
-    out->used = 0;
     for (int n = 0; n < wire->segments; n++) {
         const int v = wire->from[n], d = wire->direction[n];
         struct clip_span *outer = &out->part[CLIP_OUTER][n], *inner = &out->part[CLIP_INNER][n];
-        const struct clip_span span = clip_segment(values, CLIP_OUTER, slabs, v, d);
-        const lanes length = span.to - span.from;
-        *outer = at_least(span, -CLIP_SHORTEST);
-        if (!lanes_mask_bits(outer->from == outer->from))
-            continue;
-        out->used |= 1u << n;
-        *inner = plane ? crossing_span(values, slabs, v, d)
-                       : at_least(clip_segment(values, CLIP_INNER, slabs, v, d), CLIP_SHORTEST);
-        const lanes_mask ties = values->exact & (length < CLIP_SHORTEST);
-        if (!plane && values->any_exact && lanes_mask_bits(ties)) {
-            const lanes_mask in_time = enters_in_time(values, slabs, v, d);
-            outer->from = lanes_select(ties & is_not(in_time), lanes_of(NAN), outer->from);
-            inner->from = lanes_select(ties, outer->from, inner->from);
-        }
-        const lanes lost = length - (inner->to - inner->from);
+        clip_segment(values, slabs, plane, v, d, outer, inner);
+        const lanes lost = (outer->to - outer->from) - (inner->to - inner->from);
         const lanes_mask near = lost * longest[d] <= box->whole;
         uncertain |= (outer->from == outer->from) & is_not(near);
     }
@@ -592,23 +589,25 @@ INLINE void set_points(const struct kernel_traits traits, int which, const struc
     }
 }
 
-/* Adds how far the spans of a frame reach from 0: [below, above][axis]. used: one bit for each span
- * that is added. Where to < from, some point of the range surely is in the intersection: the least
- * reach of these. */
+/* Adds how far the spans of a frame reach from 0, [below, above][axis]. Where to < from, some point
+ * of the range surely is in the intersection: the least reach of these. */
 INLINE void add_reach(const struct kernel_traits traits, const struct clip_wire *wire,
-                      const struct clip_points *points, const struct clip_span *part, unsigned used,
+                      const struct clip_points *points, const struct clip_span *part,
                       lanes reach[2][3])
 {
-    for (; used != 0; used &= used - 1) {
-        const int n = __builtin_ctz(used), v = wire->from[n], d = wire->direction[n];
-        const lanes from = CHECK_GIVEN(part[n].from), to = CHECK_GIVEN(part[n].to);
-        for (int axis = 0; axis < traits.dim; axis++) {
-            const lanes half = 0.5 * points->along[axis][d];
-            const lanes middle = points->vertex[axis][v] + (to + from) * half;
+    for (int axis = 0; axis < traits.dim; axis++) {
+        lanes below = reach[0][axis], above = reach[1][axis];
+        for (int n = 0; n < wire->segments; n++) {
+            const lanes at = points->vertex[axis][wire->from[n]];
+            const lanes half = 0.5 * points->along[axis][wire->direction[n]];
+            const lanes from = CHECK_GIVEN(part[n].from), to = CHECK_GIVEN(part[n].to);
+            const lanes middle = at + (to + from) * half;
             const lanes length = (to - from) * lanes_abs(half);
-            reach[0][axis] = lanes_max(length - middle, reach[0][axis]);
-            reach[1][axis] = lanes_max(length + middle, reach[1][axis]);
+            below = lanes_max(length - middle, below);
+            above = lanes_max(length + middle, above);
         }
+        reach[0][axis] = below;
+        reach[1][axis] = above;
     }
 }
 
@@ -921,7 +920,7 @@ INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_tr
     for (int bound = 0; bound < (lanes_mask_bits(uncertain & good) ? 2 : 1); bound++)
         for (int which = 0; which < 2; which++)
             add_reach(traits, &wire[which], &side[which].points, side[which].spans.part[bound],
-                      side[which].spans.used, reach[bound]);
+                      reach[bound]);
     for (int axis = 0; axis < traits.dim; axis++)
         for (int end = 0; end < 2; end++) {
             /* Where not uncertain, the outer reach is within box->whole of the true one. */
