@@ -656,23 +656,23 @@ INLINE void set_bases(const struct pair_lanes *pair, const struct kernel_traits 
                       const struct box_frame *a, const struct face_products side[2],
                       struct clip_crossings *out)
 {
-    for (int which = 0; which < 2; which++) {
+    for (int which = 0; which < 2; which++)
         set_drift_middles(pair, traits, which, out->drift_middle[which]);
-        for (int index = 0; index < edge_count(traits, which); index++) {
-            const int e = edge_at(traits, which, index);
-            for (int m = 0; m < parallel_count(traits, which); m++) {
-                const lanes moment = moment_of_edge(traits, which, e, m, side[which].swing);
-                if (which)
-                    out->s[e][m] = out->drift_middle[1][e] + moment;
-                else
-                    out->r[e][m] = out->drift_middle[0][e] - moment;
-                for (int axis = 0; axis < 3 && !which; axis++) {
-                    const lanes at[3] = {a->edge[0][axis], a->edge[1][axis],
-                                         traits.face[0] ? lanes_of(0) : a->edge[2][axis]};
-                    out->base[e][m][axis] = a->centre[axis] + base_of_edge(traits, 0, e, m, at);
-                }
+    for (int index = 0; index < edge_count(traits, 0); index++) {
+        const int e = edge_at(traits, 0, index);
+        for (int m = 0; m < parallel_count(traits, 0); m++) {
+            out->r[e][m] = out->drift_middle[0][e] - moment_of_edge(traits, 0, e, m, side[0].swing);
+            for (int axis = 0; axis < 3; axis++) {
+                const lanes at[3] = {a->edge[0][axis], a->edge[1][axis],
+                                     traits.face[0] ? lanes_of(0) : a->edge[2][axis]};
+                out->base[e][m][axis] = a->centre[axis] + base_of_edge(traits, 0, e, m, at);
             }
         }
+    }
+    for (int index = 0; index < edge_count(traits, 1); index++) {
+        const int e = edge_at(traits, 1, index);
+        for (int n = 0; n < parallel_count(traits, 1); n++)
+            out->s[e][n] = out->drift_middle[1][e] + moment_of_edge(traits, 1, e, n, side[1].swing);
     }
 }
 
