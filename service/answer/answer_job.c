@@ -6,6 +6,7 @@
 
 #include "body.h"
 #include "check.h"
+#include "pair_number.h"
 #include "wire.h"
 
 #include <assert.h>
@@ -482,19 +483,10 @@ static enum answer_stage take_pair(struct answer_job *job, const struct fmb_scen
 
 /* ---- Pairs of a scene ---- */
 
-/* The engine's scene of a pair, without its placements. */
 static struct fmb_scene scene_of_pair(const struct pair_query *query)
 {
-    static const unsigned pair[1][2] = {{0, 1}};
-    return (struct fmb_scene){
-        .placement_count = 2,
-        .duration = query->duration,
-        .instant = query->duration == 0,
-        .method = fmb_method_by_number(query->method),
-        .want = FMB_WANT_TIMES | ((unsigned) query->want & ~(unsigned) FMB_WANT_CERTIFICATE),
-        .which = FMB_PAIRS_LISTED,
-        .pairs = pair,
-        .pair_count = 1};
+    return pair_scene(fmb_method_by_number(query->method), query->duration,
+                      (unsigned) query->want & ~(unsigned) FMB_WANT_CERTIFICATE);
 }
 
 /* Sets the fields of the result of a scene that do not depend on the pairs. */

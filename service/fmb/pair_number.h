@@ -1,4 +1,5 @@
-/* The pairs of FMB_PAIRS_ALL and FMB_PAIRS_ACROSS, and the numbers of all pairs (fmb.h).
+/* The pairs of FMB_PAIRS_ALL and FMB_PAIRS_ACROSS, the numbers of all pairs (fmb.h), and the scene
+ * of one pair.
  *
  *   ALL     a = 0 to n - 1, each with b = a + 1 to n - 1
  *   ACROSS  a = 0 to split - 1, each with b = split to n - 1
@@ -71,6 +72,21 @@ static inline bool pair_find(struct pair_numbers of, size_t *a, size_t *b)
             return true;
     }
     return false;
+}
+
+/* Returns the scene of one pair, of placements 0 and 1, without its placements. */
+static inline struct fmb_scene pair_scene(const struct fmb_method *method, double duration,
+                                          unsigned want)
+{
+    static const unsigned pair[1][2] = {{0, 1}};
+    return (struct fmb_scene){.placement_count = 2,
+                              .duration = duration,
+                              .instant = duration == 0,
+                              .method = method,
+                              .want = want | FMB_WANT_TIMES,
+                              .which = FMB_PAIRS_LISTED,
+                              .pairs = pair,
+                              .pair_count = 1};
 }
 
 #endif

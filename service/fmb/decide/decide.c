@@ -6,6 +6,7 @@
 #include "hull.h"
 #include "inexact.h"
 #include "memory.h"
+#include "pair_number.h"
 
 #include <string.h>
 
@@ -85,18 +86,10 @@ static enum fmb_status decide_scene(const struct fmb_method *method, const struc
                                     const struct fmb_placement *b, double duration, unsigned want,
                                     struct fmb_answer *answer)
 {
-    static const unsigned pair[1][2] = {{0, 1}};
     struct fmb_placement placement[2] = {*a, *b};
+    struct fmb_scene scene = pair_scene(method, duration, want);
     placement[0].group = placement[1].group = 0;
-    const struct fmb_scene scene = {.placements = placement,
-                                    .placement_count = 2,
-                                    .duration = duration,
-                                    .instant = duration == 0,
-                                    .method = method,
-                                    .want = want | FMB_WANT_TIMES,
-                                    .which = FMB_PAIRS_LISTED,
-                                    .pairs = pair,
-                                    .pair_count = 1};
+    scene.placements = placement;
     const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
     const size_t bytes = fmb_scene_bytes(&limits);
     void *memory = memory_allocate(bytes);
