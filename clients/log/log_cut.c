@@ -247,16 +247,20 @@ static void begin_output(struct cutter *cut)
 static void define(struct cutter *cut, enum log_kind kind, const struct log_event *event)
 {
     const uint32_t size = (uint32_t) event->kept;
-    int32_t count, bodies;
-    if (log_kind_is_query(kind) && !logged_query_read(&cut->query, kind, event->data, size)) {
-        const struct query_placement *placement = logged_query_placements(&cut->query, &count);
-        bodies = definitions_write(cut->definitions, placement, count, append_own, cut);
-        cut->counts->defined += bodies > 0 ? bodies : 0;
-        for (int32_t i = 0; i < count; i++)
-            if (query_by_handle(&placement[i]))
-                definitions_want(cut->definitions, &placement[i].body.handle);
+    if (!log_kind_is_query(kind)) {
+        definitions_add_message(cut->definitions, NULL, kind, event->data, size);
+        return;
     }
-    definitions_add_message(cut->definitions, NULL, kind, event->data, size);
+    if (logged_query_read(&cut->query, kind, event->data, size))
+        return;
+    int32_t count;
+    const struct query_placement *placement = logged_query_placements(&cut->query, &count);
+    const int32_t bodies = definitions_write(cut->definitions, placement, count, append_own, cut);
+    cut->counts->defined += bodies > 0 ? bodies : 0;
+    for (int32_t i = 0; i < count; i++)
+        if (query_by_handle(&placement[i]))
+            definitions_want(cut->definitions, &placement[i].body.handle);
+    definitions_add_query(cut->definitions, &cut->query);
 }
 
 static void copy_event(struct cutter *cut, const struct log_event *event)
