@@ -19,9 +19,11 @@ struct log_info *log_info_open(void)
 
 void log_info_close(struct log_info *info)
 {
-    HASH_CLEAR(hh, info->table);
-    for (unsigned i = 0; i < info->row_count; i++)
-        free(info->row[i].key);
+    for (struct log_row *row = info->rows, *next; row; row = next) {
+        next = row->hh.next;
+        HASH_DELETE(hh, info->rows, row);
+        free(row);
+    }
     body_names_close(info->names);
     free(info);
 }
@@ -77,22 +79,22 @@ static enum log_kind kind_of(struct log_type type)
     return LOG_OTHER;
 }
 
-/* Returns NULL if there is no row, and no space for a new one. */
-static struct log_row *find_row(struct log_info *info, const unsigned char *key, size_t size,
-                                struct log_type type)
+static struct log_row *row_of(struct log_info *info, const struct log_event *event)
 {
-    struct log_row *row;
-    HASH_FIND(hh, info->table, key, size, row);
-    if (row || info->row_count == LOG_INFO_ROWS_MAX)
+    unsigned char key[TYPE_BYTES + LOG_CHANNEL_MAX];
+    const struct log_type type = type_of(event);
+    const size_t size = key_of(event, type, key);
+    struct log_row *row = NULL;
+    HASH_FIND(hh, info->rows, key, size, row);
+    if (row)
         return row;
-    row = &info->row[info->row_count++];
-    row->key = allocate(size, 1);
+    row = allocate(1, sizeof *row + size);
     memcpy(row->key, key, size);
     row->channel = (const char *) row->key + TYPE_BYTES;
-    row->channel_length = size - TYPE_BYTES;
+    row->channel_length = event->channel_length;
     row->type = type;
     row->kind = kind_of(type);
-    HASH_ADD_KEYPTR(hh, info->table, row->key, size, row);
+    HASH_ADD_KEYPTR(hh, info->rows, row->key, size, row);
     return row;
 }
 
@@ -100,19 +102,16 @@ static struct log_row *find_row(struct log_info *info, const unsigned char *key,
 
 void log_info_event(struct log_info *info, const struct log_event *event)
 {
-    unsigned char key[TYPE_BYTES + LOG_CHANNEL_MAX];
-    const struct log_type type = type_of(event);
-    const size_t size = key_of(event, type, key);
-    struct log_row *row = find_row(info, key, size, type);
+    struct log_row *row = row_of(info, event);
     info->backward += event->utime < info->utime;
     info->utime = event->utime;
-    add(row ? &row->tally : &info->others, &(struct log_tally){.events = 1,
-                                                               .bytes = (int64_t) event->size,
-                                                               .least = event->size,
-                                                               .most = event->size,
-                                                               .begin = event->utime,
-                                                               .end = event->utime});
-    if (row && row->kind != LOG_OTHER)
+    add(&row->tally, &(struct log_tally){.events = 1,
+                                         .bytes = (int64_t) event->size,
+                                         .least = event->size,
+                                         .most = event->size,
+                                         .begin = event->utime,
+                                         .end = event->utime});
+    if (row->kind != LOG_OTHER)
         body_names_take_message(info->names, row->kind, event->data, (uint32_t) event->kept);
 }
 
@@ -124,9 +123,8 @@ void log_info_damage(struct log_info *info, const struct log_damage *damage)
     info->damaged += damage->length;
 }
 
-static int compare_rows(const void *a, const void *b)
+static int compare_rows(const struct log_row *left, const struct log_row *right)
 {
-    const struct log_row *left = a, *right = b;
     const bool shorter = left->channel_length < right->channel_length;
     const size_t both = shorter ? left->channel_length : right->channel_length;
     const int order = memcmp(left->channel, right->channel, both);
@@ -142,9 +140,7 @@ static int compare_rows(const void *a, const void *b)
 
 void log_info_end(struct log_info *info)
 {
-    HASH_CLEAR(hh, info->table); /* sorting moves the rows */
-    qsort(info->row, info->row_count, sizeof *info->row, compare_rows);
-    info->all = info->others;
-    for (unsigned i = 0; i < info->row_count; i++)
-        add(&info->all, &info->row[i].tally);
+    HASH_SORT(info->rows, compare_rows);
+    for (const struct log_row *row = info->rows; row; row = row->hh.next)
+        add(&info->all, &row->tally);
 }

@@ -1,5 +1,5 @@
-/* A summary of an event log, built event by event in bounded memory, and its reports. For one
- * thread at a time. */
+/* A summary of an event log, built event by event, and its reports. Memory grows with the number of
+ * channels. For one thread at a time. */
 #ifndef LOG_INFO_H
 #define LOG_INFO_H
 
@@ -8,9 +8,8 @@
 
 #include <stdio.h>
 
-/* Limits: the first so many combinations of channel and type are counted separately, and the first
- * so many damaged places are kept. */
-enum { LOG_INFO_ROWS_MAX = 4096, LOG_INFO_DAMAGES_MAX = 1000 };
+/* The first so many damaged places are kept. */
+enum { LOG_INFO_DAMAGES_MAX = 1000 };
 
 struct log_tally {
     int64_t events;
@@ -25,29 +24,27 @@ struct log_type {
     int64_t fingerprint; /* 0 if not known */
 };
 
+/* The events of one channel and type. */
 struct log_row {
     const char *channel; /* not zero-terminated */
     size_t channel_length;
     struct log_type type;
     struct log_tally tally;
+    UT_hash_handle hh; /* hh.next: the next row; NULL: none */
     /* Private. */
-    enum log_kind kind; /* of messages that give bodies names, by their type; else LOG_OTHER */
-    unsigned char *key; /* owned; type and channel */
-    UT_hash_handle hh;
+    enum log_kind kind;  /* of messages that give bodies names, by their type; else LOG_OTHER */
+    unsigned char key[]; /* type and channel */
 };
 
 struct log_info {
     struct log_tally all;     /* valid after log_info_end() */
-    struct log_tally others;  /* events without a row */
     int64_t backward;         /* events with an earlier time than the event before them */
     int64_t damages, damaged; /* number of damaged places, and their bytes */
     struct log_damage damage[LOG_INFO_DAMAGES_MAX];
     struct body_names *names; /* of all channels; owned */
-    unsigned row_count;
-    struct log_row row[LOG_INFO_ROWS_MAX]; /* sorted by channel and type after log_info_end() */
+    struct log_row *rows;     /* owned; the first one, by channel and type after log_info_end() */
     /* Private. */
-    int64_t utime;         /* of the last event */
-    struct log_row *table; /* of the rows, by key */
+    int64_t utime; /* of the last event */
 };
 
 /* Opens an empty summary, which the caller closes. Exits with status 1 if memory is exhausted. */
@@ -85,10 +82,10 @@ void log_report_text(FILE *out, const struct log_report *report);
  *
  * bytes, least and most are of data; times are microseconds since 1970, null where there is no
  * event; rate is events a second, null where no time passes. A type that is not one of fmb_msgs is
- * its fingerprint, "0x0123456789abcdef", or null where the data has none. "others" follows channels
- * if there are more than LOG_INFO_ROWS_MAX; then "names": [{"client_id": 7, "body_id": 1, "name":
- * "table"}, ...], if bodies have names, the last name of each; at most LOG_INFO_DAMAGES_MAX places
- * are listed; "error" comes last, if the log could not be read to its end. */
+ * its fingerprint, "0x0123456789abcdef", or null where the data has none. "names" follows channels,
+ * if bodies have names, the last name of each: [{"client_id": 7, "body_id": 1, "name": "table"},
+ * ...]; at most LOG_INFO_DAMAGES_MAX places are listed; "error" comes last, if the log could not be
+ * read to its end. */
 void log_report_json(FILE *out, const struct log_report *report);
 
 #endif

@@ -84,20 +84,17 @@ static void print_channels(FILE *out, const struct log_info *info)
 {
     static const struct table_line heading = {
         {"channel", "type", "events", "bytes", "least", "most", "first", "last"}};
-    const int others = 1 + (int) info->row_count, count = others + (info->others.events > 0);
-    struct table_line *line = allocate((size_t) others + 1, sizeof *line);
+    const int count = 1 + (int) HASH_COUNT(info->rows);
+    struct table_line *line = allocate((size_t) count, sizeof *line), *next = line;
     int width[COLUMNS] = {0};
-    line[0] = heading;
-    for (int i = 1; i < others; i++) {
-        const struct log_row *row = &info->row[i - 1];
+    *next++ = heading;
+    for (const struct log_row *row = info->rows; row; row = row->hh.next, next++) {
         char text[TYPE_TEXT_MAX];
         const char *type = type_text(row->type, text);
-        write_channel(row, line[i].cell[CHANNEL]);
-        strcpy(line[i].cell[TYPE], type ? type : "(too short)");
-        write_tally(&row->tally, info->all.begin, &line[i]);
+        write_channel(row, next->cell[CHANNEL]);
+        strcpy(next->cell[TYPE], type ? type : "(too short)");
+        write_tally(&row->tally, info->all.begin, next);
     }
-    strcpy(line[others].cell[CHANNEL], "(all others)");
-    write_tally(&info->others, info->all.begin, &line[others]);
     for (int i = 0; i < count * COLUMNS; i++) {
         const int length = (int) strlen(line[i / COLUMNS].cell[i % COLUMNS]);
         width[i % COLUMNS] = length > width[i % COLUMNS] ? length : width[i % COLUMNS];
@@ -109,8 +106,6 @@ static void print_channels(FILE *out, const struct log_info *info)
         putc('\n', out);
     }
     free(line);
-    if (count > others)
-        fprintf(out, "  (only the first %d are counted each for itself)\n", LOG_INFO_ROWS_MAX);
 }
 
 enum { NAME_LINES = 100 };
@@ -196,9 +191,9 @@ static void print_damage(FILE *out, const struct log_info *info)
 static int old_version(const struct log_info *info)
 {
     int version = 0;
-    for (unsigned i = 0; i < info->row_count; i++)
-        if (wire_type_old_version(info->row[i].type.fingerprint) > version)
-            version = wire_type_old_version(info->row[i].type.fingerprint);
+    for (const struct log_row *row = info->rows; row; row = row->hh.next)
+        if (wire_type_old_version(row->type.fingerprint) > version)
+            version = wire_type_old_version(row->type.fingerprint);
     return version;
 }
 
@@ -255,36 +250,26 @@ static void write_times(struct json_writer *json, const struct log_tally *tally)
     }
 }
 
-static void write_counts(struct json_writer *json, const struct log_tally *tally)
-{
-    json_integer(json, "events", tally->events);
-    json_integer(json, "bytes", tally->bytes);
-    json_integer(json, "least", (int64_t) tally->least);
-    json_integer(json, "most", (int64_t) tally->most);
-    write_times(json, tally);
-}
-
 static void write_row(struct json_writer *json, const struct log_row *row)
 {
     char text[TYPE_TEXT_MAX];
     json_begin(json, NULL, '{');
     json_bytes(json, "channel", row->channel, row->channel_length);
     json_string(json, "type", type_text(row->type, text));
-    write_counts(json, &row->tally);
+    json_integer(json, "events", row->tally.events);
+    json_integer(json, "bytes", row->tally.bytes);
+    json_integer(json, "least", (int64_t) row->tally.least);
+    json_integer(json, "most", (int64_t) row->tally.most);
+    write_times(json, &row->tally);
     json_end(json, '}');
 }
 
 static void write_channels(struct json_writer *json, const struct log_info *info)
 {
     json_begin(json, "channels", '[');
-    for (unsigned i = 0; i < info->row_count; i++)
-        write_row(json, &info->row[i]);
+    for (const struct log_row *row = info->rows; row; row = row->hh.next)
+        write_row(json, row);
     json_end(json, ']');
-    if (info->others.events == 0)
-        return;
-    json_begin(json, "others", '{');
-    write_counts(json, &info->others);
-    json_end(json, '}');
 }
 
 static void write_names(struct json_writer *json, struct body_names *names)

@@ -235,21 +235,6 @@ field() {
     said "fmb: $BATS_TEST_TMPDIR/pipe: no regular file"
 }
 
-@test "more channels than are counted are summed" {
-    local zeros=
-    for i in $(seq 19); do zeros+='\0'; done
-    for i in $(seq 4100); do
-        printf "\xed\xa1\xda\x01$zeros\4\0\0\0\0%04d" "$i"
-    done > "$log"
-    info --json "$log"
-    ended 0
-    [ "$(field '[.events, (.channels | length), .others.events]')" = '[4100,4096,4]' ]
-    info "$log"
-    [[ $output == *"  (all others) "*"
-  (only the first 4096 are counted each for itself)
-"* ]]
-}
-
 # ---- The command -----------------------------------------------------------------------------
 
 @test "the last name of a body counts, and is printed without control characters" {
