@@ -159,7 +159,7 @@ message_headers := $(message_names:%=$(GEN)/fmb_msgs_%.h)
 # Evaluated when it is needed: 'make deps' may just have installed GLib.
 glib_flags = $(shell pkg-config --cflags glib-2.0)
 sees = $(addprefix -I,$(see_$(<D))) \
-	$(if $(filter msgs/codec clients/page tests/hostile tests/fuzz%,$(<D)),$(glib_flags))
+	$(if $(filter msgs/codec clients/page clients/replay tests/hostile tests/fuzz%,$(<D)),$(glib_flags))
 $(O)/%.o: %.c $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
 	$(compile) $(sees)

@@ -71,9 +71,8 @@ static const char usage[] =
     "a query that contradict the first are reported and counted as different. Times\n"
     "to decide are shown, not compared.\n"
     "\n"
-    "The logs are read twice. Memory: some 300 bytes for each distinct body, 32 bytes\n"
-    "for each query, and some 250 more for each query or result whose counterpart is\n"
-    "not near; with --golden, for each query; with a golden of other clients, 1 kB.\n"
+    "The logs are read twice. Memory: some 300 bytes for each distinct body, and 100\n"
+    "bytes for each query and for each result.\n"
     "\n"
     "On several machines, by GNU parallel ($SLURM_ARRAY_TASK_ID for {} with Slurm):\n"
     "  parallel --sshloginfile machines fmb replay --json --from {} \\\n"
@@ -106,6 +105,7 @@ enum { COMPLAINTS_MAX = 20 };
 struct replay_run {
     const struct replay_arguments *options;
     struct progress progress;
+    bool begun; /* the logs were opened */
     int64_t first_utime;
     struct listing *differences;
     int64_t complaints;
@@ -149,10 +149,10 @@ static void on_damage(void *user, int log, const struct log_damage *damage)
                  damage->offset, damage->length, damage->what);
 }
 
-static void on_progress(void *user, int64_t bytes)
+static void on_progress(void *user, int64_t bytes, int64_t of)
 {
     struct replay_run *run = user;
-    progress_to(&run->progress, bytes, run->progress.total);
+    progress_to(&run->progress, bytes, of);
 }
 
 /* ---- Files and outcome ---- */
@@ -219,11 +219,11 @@ static void report_one(void *user, const struct difference *found)
                 run->first_utime);
 }
 
-/* Whether counts have a meaning: not without a bus, nor without a service on it. */
+/* Whether counts have a meaning: not without a log or a bus, nor without a service on it. */
 static bool has_counts(const struct replay_run *run, const struct tally *all)
 {
-    return !run->options->live || all->bus.answered > 0 ||
-           (all->bus.used && all->bus.end == ANSWER_BUS_NO_END);
+    return run->begun && (!run->options->live || all->bus.answered > 0 ||
+                          (all->bus.used && all->bus.end == ANSWER_BUS_NO_END));
 }
 
 static void report_all(struct replay_run *run, const struct tally *all, int code)
@@ -286,19 +286,21 @@ static void report_end(const struct tally_bus *bus, const struct answer_bus_opti
 
 /* ---- The run ---- */
 
-static int replay(struct replay_run *run, int64_t size, struct tally *tally)
+static int replay(struct replay_run *run, struct tally *tally)
 {
     const struct replay_arguments *options = run->options;
     const struct replay_sink sink = {on_found, on_unreadable, on_damage, on_progress, run};
     struct tally all = {.events = 0};
-    run->progress = progress_begin("bytes", size);
+    run->progress = progress_begin("bytes", 0);
     bool good = replay_run(&options->replay, &sink, tally);
     progress_end(&run->progress);
     for (int log = 0; log < options->replay.log_count; log++)
         tally_add(&all, &tally[log]);
+    run->begun = good || all.events + all.damages > 0;
+    run->first_utime = tally->first_utime;
     report_end(&all.bus, &options->bus, options->replay.log);
     int code = good ? code_of(options, &all) : ARGS_USAGE;
-    if (!write_junit(run, tally) || !write_page(options))
+    if (run->begun && (!write_junit(run, tally) || !write_page(options)))
         code = ARGS_USAGE;
     report_all(run, &all, code);
     return output_flush() ? code : ARGS_USAGE;
@@ -307,9 +309,8 @@ static int replay(struct replay_run *run, int64_t size, struct tally *tally)
 static int run_replay(struct replay_arguments *options)
 {
     struct replay_run run = {.options = options};
-    int64_t size;
     if (!output_check(&options->replay.write_golden) || !output_check(&options->junit) ||
-        !output_check(&options->html) || !replay_extent(&options->replay, &size, &run.first_utime))
+        !output_check(&options->html))
         return ARGS_USAGE;
     if (options->html.path)
         options->replay.page = page_open(&(struct page_options){
@@ -317,11 +318,10 @@ static int run_replay(struct replay_arguments *options)
             .title = options->replay.log[0],
             .sides = {options->replay.golden ? options->replay.golden : "recorded",
                       options->live ? "answered again by the service" : "answered again"}});
-    options->replay.page_begin = run.first_utime;
     options->replay.names = body_names_open();
     run.differences = listing_open(options->limit);
     struct tally *tally = allocate((size_t) options->replay.log_count, sizeof *tally);
-    const int code = replay(&run, size, tally);
+    const int code = replay(&run, tally);
     free(tally);
     page_close(options->replay.page);
     listing_close(run.differences);

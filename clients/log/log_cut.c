@@ -22,20 +22,19 @@ struct cutter {
     struct output *file;       /* NULL: not opened */
     struct log_writer *output; /* of the file */
     bool failed;
-    int64_t event; /* number of the current event, over all logs */
 
     struct definitions *definitions; /* of all bodies of the logs */
     struct body_names *names;        /* of all bodies of the logs */
     struct logged_query query;
 
-    /* The first pass chooses events. */
-    struct match *match;
-    bool has[LOG_STATUS];  /* [kind]: whether the channel is chosen */
-    int64_t first_utime;   /* of the first event */
-    unsigned char *chosen; /* owned; one bit for each event */
-    size_t chosen_size;    /* bytes */
+    struct match match;
+    struct logged_result result;
+    bool has[LOG_STATUS]; /* [kind]: whether the channel is chosen */
+    bool started;
+    int64_t first_utime; /* of the first event */
 
     /* The second pass copies. */
+    size_t next;   /* item of match */
     int64_t utime; /* of the event that is copied */
 };
 
@@ -74,106 +73,42 @@ static void read_logs(struct cutter *cut,
         fail_input(cut, errno);
 }
 
-/* ---- Which events are chosen ---- */
-
-static void choose(struct cutter *cut, int64_t event)
-{
-    const size_t byte = (size_t) (event / 8), old = cut->chosen_size;
-    if (byte >= old) {
-        cut->chosen = allocate_grow(cut->chosen, &cut->chosen_size, byte + 1, 1);
-        memset(cut->chosen + old, 0, cut->chosen_size - old);
-    }
-    cut->chosen[byte] |= (unsigned char) (1 << event % 8);
-}
-
-static bool is_chosen(const struct cutter *cut, int64_t event)
-{
-    const size_t byte = (size_t) (event / 8);
-    return byte < cut->chosen_size && (cut->chosen[byte] >> event % 8 & 1);
-}
-
-/* Whether an event is chosen by its own time: any event except queries, and results with a query.
- */
-static bool is_chosen_by_time(const struct cutter *cut, int64_t utime)
-{
-    const struct log_choice *choice = &cut->options->choice;
-    return choice->body_count == 0 && log_choice_has_time(choice, cut->first_utime, utime);
-}
-
-/* Whether a query is chosen by time and bodies. Each result of a chosen query is chosen too, if its
- * channel is. */
-static bool is_chosen_query(struct cutter *cut, int64_t utime)
-{
-    const struct log_choice *choice = &cut->options->choice;
-    int32_t count;
-    const struct query_placement *placement = logged_query_placements(&cut->query, &count);
-    return log_choice_has_time(choice, cut->first_utime, utime) &&
-           log_choice_has_body(choice, placement, count);
-}
-
-/* Chooses a result. In: query->in_range: whether the query is chosen; query: NULL without one. */
-static void choose_result(struct cutter *cut, enum log_kind kind, const struct match_place *query,
-                          const struct match_place *result)
-{
-    const bool chosen = query ? query->in_range : is_chosen_by_time(cut, result->utime);
-    if (chosen && cut->has[kind])
-        choose(cut, result->number);
-}
-
 /* ---- The first pass ---- */
 
-/* Chooses a query. Out: place->in_range. */
-static void take_query(struct cutter *cut, enum log_kind kind, struct match_place *place)
+/* Reads a query or result, and of a query whether it is chosen by time and bodies. Returns false if
+ * it cannot be decoded. */
+static bool read_item(struct cutter *cut, enum log_kind kind, const struct log_event *event,
+                      struct match_item *out)
 {
-    place->in_range = is_chosen_query(cut, place->utime);
-    if (place->in_range && cut->has[kind])
-        choose(cut, place->number);
-}
-
-/* Returns false if the event is not a query or result, or cannot be decoded. */
-static bool take_message(struct cutter *cut, const struct log_event *event, enum log_kind kind)
-{
-    const bool is_result = log_kind_is_result(kind);
-    struct match_key key;
-    struct match_place place = {.log = cut->input.log,
-                                .number = cut->event,
-                                .offset = event->offset,
-                                .utime = event->utime};
-    if (kind >= LOG_STATUS || match_key_of(kind, event, &key) ||
-        (!is_result && logged_query_read(&cut->query, kind, event->data, (uint32_t) event->kept)))
+    const struct log_choice *choice = &cut->options->choice;
+    const uint32_t size = (uint32_t) event->kept;
+    int32_t count;
+    *out = (struct match_item){.place = {.log = cut->input.log, .offset = event->offset},
+                               .is_result = log_kind_is_result(kind)};
+    if (match_key_of(kind, event, &out->key))
         return false;
-    if (!is_result)
-        take_query(cut, kind, &place);
-    struct match_item *other = match_take(cut->match, &key, &place, is_result);
-    if (other)
-        choose_result(cut, log_kind_result_of(log_kind_query_of(kind)),
-                      is_result ? &other->place : &place, is_result ? &place : &other->place);
-    free(other);
+    if (out->is_result)
+        return !match_read_status(out, event, &cut->result);
+    if (logged_query_read(&cut->query, kind, event->data, size))
+        return false;
+    const struct query_placement *placement = logged_query_placements(&cut->query, &count);
+    out->place.in_range = log_choice_has_time(choice, cut->first_utime, event->utime) &&
+                          log_choice_has_body(choice, placement, count);
     return true;
 }
 
 /* A part of a log has the names of all of it at its beginning. */
 static void survey_event(struct cutter *cut, const struct log_event *event)
 {
-    const struct log_choice *choice = &cut->options->choice;
     const enum log_kind kind = log_kind_of(&cut->channels, event);
-    const uint32_t size = (uint32_t) event->kept;
-    if (cut->event == 0)
+    struct match_item item;
+    if (!cut->started)
         cut->first_utime = event->utime;
-    if (!take_message(cut, event, kind) && log_choice_has_channel(choice, event) &&
-        is_chosen_by_time(cut, event->utime) && (kind != LOG_NAMES || log_choice_is_all(choice)))
-        choose(cut, cut->event);
-    definitions_add_message(cut->definitions, cut->names, kind, event->data, size);
-    cut->event++;
-}
-
-static void on_unmatched(void *user, struct match_item *query, struct match_item *result)
-{
-    struct cutter *cut = user;
-    choose_result(cut, log_kind_result_of((enum log_kind) result->key.kind),
-                  query ? &query->place : NULL, &result->place);
-    free(query);
-    free(result);
+    cut->started = true;
+    if (kind < LOG_STATUS && read_item(cut, kind, event, &item))
+        match_add(&cut->match, &item);
+    definitions_add_message(cut->definitions, cut->names, kind, event->data,
+                            (uint32_t) event->kept);
 }
 
 static void choose_channels(struct cutter *cut)
@@ -184,17 +119,6 @@ static void choose_channels(struct cutter *cut)
                                         .channel_length = channels->length[kind]};
         cut->has[kind] = log_choice_has_channel(&cut->options->choice, &event);
     }
-}
-
-/* Allocates the chosen events, which the caller frees. */
-static void survey(struct cutter *cut)
-{
-    cut->match = match_open();
-    choose_channels(cut);
-    read_logs(cut, survey_event, NULL);
-    if (!cut->failed)
-        match_finish(cut->match, on_unmatched, cut);
-    match_close(cut->match);
 }
 
 /* ---- Writing ---- */
@@ -263,14 +187,39 @@ static void define(struct cutter *cut, enum log_kind kind, const struct log_even
     definitions_add_query(cut->definitions, &cut->query);
 }
 
+/* The query or result that an event was in the first pass; NULL: neither. */
+static const struct match_item *next_item(struct cutter *cut, const struct log_event *event)
+{
+    const struct match_item *item = &cut->match.item[cut->next];
+    const bool found = cut->next < cut->match.count && item->place.log == cut->input.log &&
+                       item->place.offset == event->offset;
+    cut->next += found;
+    return found ? item : NULL;
+}
+
+/* A result is chosen with its query. Anything but queries, and results that have one, is chosen by
+ * its own time. */
+static bool is_chosen(struct cutter *cut, enum log_kind kind, const struct log_event *event)
+{
+    const struct log_choice *choice = &cut->options->choice;
+    const struct match_item *item = next_item(cut, event);
+    const struct match_item *query = item && item->is_result ? item->other : item;
+    if (kind < LOG_STATUS ? !cut->has[kind] : !log_choice_has_channel(choice, event))
+        return false;
+    if (query)
+        return query->place.in_range;
+    return choice->body_count == 0 && log_choice_has_time(choice, cut->first_utime, event->utime) &&
+           (kind != LOG_NAMES || log_choice_is_all(choice));
+}
+
 static void copy_event(struct cutter *cut, const struct log_event *event)
 {
     struct log_cut_counts *counts = cut->counts;
     counts->events++;
     counts->bytes += event->length;
-    if (!is_chosen(cut, cut->event++))
-        return;
     const enum log_kind kind = log_kind_of(&cut->channels, event);
+    if (!is_chosen(cut, kind, event))
+        return;
     const int old_version = log_kind_old_version(kind, event);
     cut->utime = event->utime;
     if (counts->kept_events++ == 0)
@@ -307,14 +256,15 @@ static void run(struct cutter *cut)
 {
     cut->definitions = definitions_open();
     cut->names = body_names_open();
-    survey(cut);
+    choose_channels(cut);
+    read_logs(cut, survey_event, NULL);
+    match_all(&cut->match);
     input_begin(&cut->input, 0);
-    cut->event = 0;
     definitions_begin_file(cut->definitions);
     read_logs(cut, copy_event, take_damage);
     cut->counts->kept_bytes = log_written(cut->output);
     cut->counts->unknown = (int64_t) definitions_wanted(cut->definitions);
-    free(cut->chosen);
+    match_clear(&cut->match);
     definitions_close(cut->definitions);
     body_names_close(cut->names);
 }

@@ -2,17 +2,16 @@
  * queries what a replay of the whole logs reports.
  *
  * Events are copied unchanged, with their log times, and renumbered from 0. A result is copied with
- * its query (match.h), wherever it is in the logs. A result without a query, or whose query has
- * another result, is chosen by its own time. Events that are neither queries nor results have no
- * bodies. Damage is left out.
+ * its query (match.h), wherever it is in the logs. A result without a query is chosen by its own
+ * time. Events that are neither queries nor results have no bodies. Damage is left out.
  *
  * A query that names a body by handle is preceded by a definition of it (definition_t, of client 0
  * and server 0), from anywhere in the logs, unless a copied event defines it earlier. Handles that
  * the logs do not define are counted. Unless everything is chosen, names_t messages are not copied:
  * the new log begins with the names of all bodies of the logs.
  *
- * The logs are read twice: once to choose, once to copy. Memory: a bit for each event, the
- * unmatched queries and results, each distinct body, and the largest event. */
+ * The logs are read twice: once to choose, once to copy. Memory: as match.h, each distinct body,
+ * and the largest event. */
 #ifndef LOG_CUT_H
 #define LOG_CUT_H
 

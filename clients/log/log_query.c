@@ -1,5 +1,6 @@
 #include "log_query.h"
 
+#include "allocate.h"
 #include "complain.h"
 #include "input.h"
 #include "log_kind.h"
@@ -19,103 +20,105 @@ struct query_search {
     struct log_query *out;
     struct log_channels channels;
     struct input input;
-    enum log_query_outcome outcome; /* the search ends if this is not FOUND */
-    bool of_result;                 /* a result was found: the search is for its query */
-    /* Matching events: their number, and the offsets of the first ones. `kind`, `error` and the
-     * event in `out` are those of the first match. */
+    struct match match; /* of the last log */
+    struct logged_result result;
+    enum log_query_outcome outcome;
+    /* Events that match the options: their number, and the offsets of the first ones. The others
+     * are of the first match, which is in out->bytes. */
     int64_t count;
     int64_t listed[LISTED_MAX]; /* offsets */
     enum log_kind kind;
-    const char *error; /* why the key of the first match cannot be read; NULL: it can */
+    size_t item;       /* its index */
+    const char *error; /* why it is none; NULL: it is one */
 };
-
-static void fail(struct query_search *search, const char *what, int error)
-{
-    if (search->outcome == LOG_QUERY_FOUND)
-        complain("%s: %s", what, strerror(error));
-    search->outcome = LOG_QUERY_FAILED;
-}
 
 /* ---- Reading the logs ---- */
 
-/* The last log is read at most three times, the others once. */
-static void report_progress(struct query_search *search)
+/* Reads a query or result. */
+static const char *read_item(struct query_search *search, enum log_kind kind,
+                             const struct log_event *event, struct match_item *out)
 {
-    const int64_t of = input_size(&search->input), half = search->input.passed / 2;
-    search->options->progress(search->options->user, half < of ? half : of, of);
+    *out = (struct match_item){
+        .place = {.number = event->number, .offset = event->offset},
+        .is_result = log_kind_is_result(kind),
+    };
+    const char *error = match_key_of(kind, event, &out->key);
+    if (!error && out->is_result)
+        error = match_read_status(out, event, &search->result);
+    return error;
 }
 
-/* Calls take() for each event from the current position of the input on, until it returns false. */
-static void for_each_event(struct query_search *search,
-                           bool (*take)(struct query_search *search, const struct log_event *event))
-{
-    struct log_event event;
-    struct log_damage damage;
-    enum log_outcome outcome;
-    while ((outcome = input_next(&search->input, &event, &damage)) < LOG_END) {
-        if (outcome == LOG_EVENT && !take(search, &event))
-            return;
-        report_progress(search);
-    }
-    if (outcome == LOG_FAILED)
-        fail(search, search->options->log[search->input.log], errno);
-}
-
-/* ---- The event ---- */
-
-/* Whether the event is the query with the requested ids, or that of the result that was found. */
-static bool is_query(const struct query_search *search, const struct log_event *event)
+static bool matches(const struct query_search *search, const struct match_item *item,
+                    const char *error)
 {
     const struct log_query_options *options = search->options;
-    const enum log_kind kind = log_kind_of(&search->channels, event);
-    struct match_key key;
-    if (!log_kind_is_query(kind) || match_key_of(kind, event, &key))
-        return false;
-    return search->of_result ? match_key_equal(&key, &search->out->key)
-                             : key.client_id == options->client_id &&
-                                   key.sequence_number == options->sequence_number;
-}
-
-static bool matches(const struct query_search *search, const struct log_event *event)
-{
-    if (search->of_result || search->options->by == LOG_QUERY_IDS)
-        return is_query(search, event);
-    return search->options->by == LOG_QUERY_NUMBER ? event->number == search->options->number
-                                                   : event->offset == search->options->offset;
-}
-
-static void keep_event(struct query_search *search, const struct log_event *event)
-{
-    struct log_query *out = search->out;
-    search->kind = log_kind_of(&search->channels, event);
-    search->error = match_key_of(search->kind, event, &out->key);
-    out->number = event->number;
-    out->offset = event->offset;
-    out->size = event->size;
-    memcpy(out->bytes, event->data, event->kept);
+    switch (options->by) {
+    case LOG_QUERY_NUMBER: return item->place.number == options->number;
+    case LOG_QUERY_OFFSET: return item->place.offset == options->offset;
+    default:
+        return !error && !item->is_result && item->key.client_id == options->client_id &&
+               item->key.sequence_number == options->sequence_number;
+    }
 }
 
 /* A client without a result repeats its query. The first of identical queries represents all of
  * them. */
-static bool is_repeated(const struct query_search *search, const struct log_event *event)
+static bool is_repeated(const struct query_search *search, enum log_kind kind,
+                        const struct log_event *event)
 {
     const struct log_query *out = search->out;
-    return search->count > 0 && search->options->by == LOG_QUERY_IDS &&
-           log_kind_of(&search->channels, event) == search->kind && event->size == out->size &&
-           event->kept == event->size && memcmp(event->data, out->bytes, event->size) == 0;
+    return search->count > 0 && search->options->by == LOG_QUERY_IDS && kind == search->kind &&
+           event->kept == out->size && memcmp(event->data, out->bytes, event->kept) == 0;
 }
 
-static bool take_match(struct query_search *search, const struct log_event *event)
+static void take_match(struct query_search *search, enum log_kind kind,
+                       const struct log_event *event, const char *error)
 {
-    if (!matches(search, event) || is_repeated(search, event))
-        return true;
     if (search->count < LISTED_MAX)
         search->listed[search->count] = event->offset;
     if (search->count++ > 0)
-        return true;
-    keep_event(search, event);
-    return search->options->by != LOG_QUERY_OFFSET && !search->of_result;
+        return;
+    search->kind = kind;
+    search->item = search->match.count;
+    search->error = error;
+    search->out->size = event->kept;
+    memcpy(search->out->bytes, event->data, event->kept);
 }
+
+static void take_event(struct query_search *search, const struct log_event *event)
+{
+    const enum log_kind kind = log_kind_of(&search->channels, event);
+    struct match_item item;
+    definitions_add_message(search->out->definitions, search->out->names, kind, event->data,
+                            (uint32_t) event->kept);
+    if (search->input.log + 1 < search->options->log_count)
+        return;
+    const char *error = read_item(search, kind, event, &item);
+    if (matches(search, &item, error) && !is_repeated(search, kind, event))
+        take_match(search, kind, event, error);
+    if (!error)
+        match_add(&search->match, &item);
+}
+
+static void read_logs(struct query_search *search)
+{
+    const struct log_query_options *options = search->options;
+    struct input *input = &search->input;
+    struct log_event event;
+    struct log_damage damage;
+    enum log_outcome outcome;
+    while ((outcome = input_next(input, &event, &damage)) < LOG_END) {
+        if (outcome == LOG_EVENT)
+            take_event(search, &event);
+        options->progress(options->user, input->passed, input_size(input));
+    }
+    if (outcome == LOG_FAILED) {
+        complain("%s: %s", options->log[input->log], strerror(errno));
+        search->outcome = LOG_QUERY_FAILED;
+    }
+}
+
+/* ---- The query ---- */
 
 /* Reports why there is no answer to what was requested. */
 __attribute__((format(printf, 2, 3))) static void refuse(struct query_search *search,
@@ -147,35 +150,26 @@ static void refuse_several(struct query_search *search)
            search->count > LISTED_MAX ? " ..." : "");
 }
 
-static void find_event(struct query_search *search)
+/* Finds the query of the event. Returns NULL if there is none, or not one, which was reported. */
+static const struct match_item *find_query(struct query_search *search)
 {
-    const bool seeks = search->options->by == LOG_QUERY_OFFSET && !search->of_result;
-    input_begin(&search->input, search->options->log_count - 1);
-    if (seeks && search->input.reader && search->options->offset <= log_size(search->input.reader))
-        log_seek(search->input.reader, search->options->offset);
-    search->count = 0;
-    for_each_event(search, take_match);
-    if (search->outcome != LOG_QUERY_FOUND)
-        return;
     if (search->count > 1)
         refuse_several(search);
     else if (search->count == 0)
-        refuse(search,
-               search->of_result ? ": a result, whose query is not here" : ": there is none");
+        refuse(search, ": there is none");
     else if (search->kind >= LOG_STATUS)
         refuse(search, ": neither a query nor a result of this service (--prefix chooses it)");
     else if (search->error)
         refuse(search, ": %s", search->error);
-}
-
-/* ---- Its bodies ---- */
-
-static bool take_definitions(struct query_search *search, const struct log_event *event)
-{
-    const enum log_kind kind = log_kind_of(&search->channels, event);
-    const uint32_t size = (uint32_t) event->kept;
-    definitions_add_message(search->out->definitions, search->out->names, kind, event->data, size);
-    return true;
+    if (search->outcome != LOG_QUERY_FOUND)
+        return NULL;
+    match_all(&search->match);
+    const struct match_item *item = &search->match.item[search->item];
+    if (!item->is_result)
+        return item;
+    if (!item->other)
+        refuse(search, ": a result, whose query is not here");
+    return item->other;
 }
 
 /* Sets the names of placements without one. */
@@ -187,55 +181,64 @@ static void fill_names(struct log_query *out, struct query_placement *placement,
                 body_names_find(out->names, out->key.client_id, placement[i].placed.id);
 }
 
-static void find_bodies(struct query_search *search)
+/* Reads the query again, with the bodies and names of its placements. */
+static void read_query(struct query_search *search, const struct match_item *query)
 {
     struct log_query *out = search->out;
+    const int last = search->options->log_count - 1;
+    uint32_t size;
     int32_t count;
-    const uint32_t size = (uint32_t) (out->size < LOG_DATA_MAX ? out->size : LOG_DATA_MAX);
-    const char *error = logged_query_read(&out->query, search->kind, out->bytes, size);
+    if (!input_read_again(&search->input, last, query->place.offset, out->bytes, &size)) {
+        complain("%s: %s", search->options->log[last], strerror(errno));
+        search->outcome = LOG_QUERY_FAILED;
+        return;
+    }
+    out->number = query->place.number;
+    out->offset = query->place.offset;
+    out->key = query->key;
+    out->size = size;
+    const char *error =
+        logged_query_read(&out->query, (enum log_kind) query->key.kind, out->bytes, size);
     if (error) {
         refuse(search, ": %s", error);
         return;
     }
     struct query_placement *placement = logged_query_placements(&out->query, &count);
-    if (definitions_fill(out->definitions, placement, count) < 0)
-        return; /* no placement is by handle */
-    input_begin(&search->input, 0);
-    for_each_event(search, take_definitions);
     fill_names(out, placement, count);
     const int32_t missing = definitions_fill(out->definitions, placement, count);
-    if (search->outcome != LOG_QUERY_FOUND || missing < 0)
-        return;
-    refuse(search, ": placement %d, body %" PRId64 ", came by a handle that no log here defines",
-           (int) missing, placement[missing].placed.id);
+    if (missing >= 0)
+        refuse(search,
+               ": placement %d, body %" PRId64 ", came by a handle that no log here defines",
+               (int) missing, placement[missing].placed.id);
 }
 
 /* ---- The search ---- */
 
 static void run(struct query_search *search)
 {
-    find_event(search);
-    if (search->outcome != LOG_QUERY_FOUND)
-        return;
-    search->of_result = log_kind_is_result(search->kind);
-    if (search->of_result)
-        find_event(search);
-    if (search->outcome == LOG_QUERY_FOUND)
-        find_bodies(search);
+    read_logs(search);
+    const struct match_item *query = search->outcome == LOG_QUERY_FOUND ? find_query(search) : NULL;
+    if (query)
+        read_query(search, query);
 }
 
 enum log_query_outcome log_query(const struct log_query_options *options, struct log_query *out)
 {
-    struct query_search search = {
-        .options = options, .out = out, .channels = log_channels(options->prefix)};
+    struct query_search *search = allocate(1, sizeof *search);
+    search->options = options;
+    search->out = out;
+    search->channels = log_channels(options->prefix);
     out->definitions = definitions_open();
     out->names = body_names_open();
-    if (input_open(&search.input, options->log, options->log_count))
-        run(&search);
+    if (input_open(&search->input, options->log, options->log_count))
+        run(search);
     else
-        search.outcome = LOG_QUERY_FAILED;
-    input_close(&search.input);
-    return search.outcome;
+        search->outcome = LOG_QUERY_FAILED;
+    const enum log_query_outcome outcome = search->outcome;
+    input_close(&search->input);
+    match_clear(&search->match);
+    free(search);
+    return outcome;
 }
 
 void log_query_clear(struct log_query *query)

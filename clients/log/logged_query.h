@@ -37,6 +37,10 @@ const char *logged_result_read(struct logged_result *out, enum log_kind kind, co
 int32_t logged_result_status(const struct logged_result *result);
 int64_t logged_result_compute_ns(const struct logged_result *result);
 
+/* Whether the status depends on the moment, not on the query: the service was busy, or did not hold
+ * a body. */
+bool logged_status_is_transient(int32_t status);
+
 /* The placements in the struct; *count of them. */
 struct query_placement *logged_query_placements(struct logged_query *query, int32_t *count);
 

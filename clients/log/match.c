@@ -1,21 +1,12 @@
+#define _GNU_SOURCE /* qsort_r */
 #include "match.h"
 
+#include "allocate.h"
 #include "wire.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include <utlist.h>
-
-/* Number of notes: a hash table without chains, which consecutive sequence numbers of a client fill
- * in order. */
-enum { NOTES = 4096 };
-
-struct match {
-    /* Hash table of the first item of each key. `always` is never removed: uthash frees its table
-     * with the last item, and most logs have one query without a result at a time. */
-    struct match_item *items, always;
-    struct match_note note[NOTES];
-};
 
 const char *match_key_of(enum log_kind kind, const struct log_event *event, struct match_key *out)
 {
@@ -35,161 +26,111 @@ const char *match_key_of(enum log_kind kind, const struct log_event *event, stru
     return error;
 }
 
-struct match *match_open(void)
+const char *match_read_status(struct match_item *result, const struct log_event *event,
+                              struct logged_result *memory)
 {
-    struct match *match = allocate(1, sizeof *match);
-    match->always.key.kind = -1;
-    HASH_ADD(hh, match->items, key, sizeof match->always.key, &match->always);
-    for (int i = 0; i < NOTES; i++)
-        match->note[i].key.kind = -1;
-    return match;
+    const char *error = logged_result_read(memory, (enum log_kind) result->key.kind, event->data,
+                                           (uint32_t) event->kept);
+    result->transient = !error && logged_status_is_transient(logged_result_status(memory));
+    return error;
 }
 
-void match_close(struct match *match)
+void match_add(struct match *match, const struct match_item *item)
 {
-    if (!match)
+    match->item =
+        allocate_grow(match->item, &match->capacity, match->count + 1, sizeof *match->item);
+    match->item[match->count++] = *item;
+}
+
+void match_clear(struct match *match)
+{
+    free(match->item);
+    *match = (struct match){.count = 0};
+}
+
+/* ---- Items with the same key ---- */
+
+static void set_result(struct match_item *query, struct match_item *result)
+{
+    result->other = query;
+    if (query->other && result->transient) {
+        result->second = true;
         return;
-    for (struct match_item *item; (item = match_any(match));) {
-        match_remove(match, item);
-        free(item);
     }
-    HASH_CLEAR(hh, match->items);
-    free(match);
+    if (query->other)
+        query->other->second = true;
+    query->other = result;
 }
 
-struct match_item *match_find(const struct match *match, const struct match_key *key)
+/* In: the items of one key, in their order. exact: the key includes the time of sending; otherwise
+ * a query has one result. waiting: memory for `count` items; those that wait for their counterpart
+ * are all queries or all results. */
+static void match_group(struct match_item **item, size_t count, bool exact,
+                        struct match_item **waiting)
 {
-    struct match_item *item = NULL;
-    if (match_any(match))
-        HASH_FIND(hh, match->items, key, sizeof *key, item);
-    return item;
-}
-
-static void put(struct match *match, struct match_item *item)
-{
-    struct match_item *first = match_find(match, &item->key);
-    const bool is_first = !first;
-    match_append(&first, item);
-    if (is_first)
-        HASH_ADD(hh, match->items, key, sizeof item->key, item);
-}
-
-struct match_item *match_new(const struct match_key *key, const struct match_place *place)
-{
-    struct match_item *item = allocate_unset(sizeof *item);
-    *item = (struct match_item){.key = *key, .place = *place};
-    return item;
-}
-
-struct match_item *match_add(struct match *match, const struct match_key *key,
-                             const struct match_place *place, bool is_result)
-{
-    struct match_item *item = match_new(key, place);
-    item->is_result = is_result;
-    put(match, item);
-    return item;
-}
-
-void match_remove(struct match *match, struct match_item *item)
-{
-    struct match_item *next = item->next;
-    HASH_DELETE(hh, match->items, item);
-    if (!next)
-        return;
-    next->last = item->last;
-    HASH_ADD(hh, match->items, key, sizeof next->key, next);
-}
-
-struct match_item *match_take(struct match *match, const struct match_key *key,
-                              const struct match_place *place, bool is_result)
-{
-    struct match_item *first = match_find(match, key);
-    if (first && first->is_result != is_result) {
-        match_remove(match, first);
-        return first;
-    }
-    match_add(match, key, place, is_result);
-    return NULL;
-}
-
-struct match_item *match_any(const struct match *match)
-{
-    return match->always.hh.next;
-}
-
-/* ---- The end ---- */
-
-/* Removes all queries or all results from the table, in the order in which their keys were added.
- */
-static struct match_item *take_all(struct match *match, bool results)
-{
-    struct match_item *list = NULL, *item, *next;
-    for (item = match_any(match); item; item = next) {
-        next = item->hh.next;
-        while (item && item->is_result == results) {
-            struct match_item *same_key = item->next;
-            match_remove(match, item);
-            match_append(&list, item);
-            item = same_key;
+    struct match_item *closed = NULL; /* the last query that no longer waits */
+    size_t first = 0, end = 0;
+    for (size_t i = 0; i < count; i++) {
+        struct match_item *next = item[i];
+        if (!next->is_result && first < end && waiting[first]->other)
+            closed = waiting[first++]; /* it had a transient result, and is repeated */
+        struct match_item *other = first < end ? waiting[first] : NULL;
+        if (other && other->is_result != next->is_result) {
+            struct match_item *query = next->is_result ? other : next;
+            set_result(query, next->is_result ? next : other);
+            if (exact && next->is_result && next->transient && end - first == 1)
+                continue;
+            first++;
+            closed = query;
+        } else if (!other && next->is_result && closed && exact) {
+            next->other = closed;
+            next->second = true;
+        } else {
+            waiting[end++] = next;
         }
     }
-    return list;
 }
 
-void match_finish(struct match *match, match_sink *sink, void *user)
+/* ---- All items ---- */
+
+enum { IDS_BYTES = offsetof(struct match_key, utime) };
+
+/* In the order of their keys, of which *bytes count, and then in their own order. */
+static int compare(const void *a, const void *b, void *bytes)
 {
-    struct match_item *results = take_all(match, true), *queries = take_all(match, false), *item;
-    while ((item = match_pop(&queries))) {
-        item->key.utime = 0;
-        put(match, item);
+    const struct match_item *left = *(struct match_item *const *) a;
+    const struct match_item *right = *(struct match_item *const *) b;
+    const int order = memcmp(&left->key, &right->key, *(const size_t *) bytes);
+    return order ? order : (left > right) - (left < right);
+}
+
+/* bytes: of the keys, that have to be the same. */
+static void match_by(size_t bytes, struct match_item **item, size_t count,
+                     struct match_item **waiting)
+{
+    qsort_r(item, count, sizeof *item, compare, &bytes);
+    for (size_t begin = 0, end = 0; begin < count; begin = end) {
+        while (end < count && memcmp(&item[end]->key, &item[begin]->key, bytes) == 0)
+            end++;
+        match_group(item + begin, end - begin, bytes == sizeof(struct match_key), waiting);
     }
-    while ((item = match_pop(&results))) {
-        item->key.utime = 0;
-        struct match_item *query = match_find(match, &item->key);
-        if (query)
-            match_remove(match, query);
-        sink(user, query, item);
+}
+
+void match_all(struct match *match)
+{
+    struct match_item **item = allocate(match->count, sizeof *item);
+    struct match_item **waiting = allocate(match->count, sizeof *waiting);
+    size_t left = 0;
+    for (size_t i = 0; i < match->count; i++) {
+        item[i] = &match->item[i];
+        item[i]->other = NULL;
+        item[i]->second = false;
     }
-}
-
-/* ---- Lists ---- */
-
-void match_append(struct match_item **list, struct match_item *item)
-{
-    DL_APPEND2(*list, item, last, next);
-}
-
-struct match_item *match_pop(struct match_item **list)
-{
-    struct match_item *first = *list;
-    if (first)
-        DL_DELETE2(*list, first, last, next);
-    return first;
-}
-
-/* ---- Notes ---- */
-
-static size_t note_of(const struct match_key *key)
-{
-    return ((uint64_t) key->sequence_number + (uint64_t) key->client_id +
-            (uint64_t) key->kind * (NOTES / 2)) %
-           NOTES;
-}
-
-void match_note(struct match *match, const struct match_item *query,
-                const struct match_place *result)
-{
-    if (query->unreadable)
-        return;
-    match->note[note_of(&query->key)] = (struct match_note){.key = query->key,
-                                                            .query_log = query->place.log,
-                                                            .result_log = result->log,
-                                                            .query_offset = query->place.offset,
-                                                            .result_offset = result->offset};
-}
-
-const struct match_note *match_noted(const struct match *match, const struct match_key *key)
-{
-    const struct match_note *note = &match->note[note_of(key)];
-    return match_key_equal(&note->key, key) ? note : NULL;
+    match_by(sizeof(struct match_key), item, match->count, waiting);
+    for (size_t i = 0; i < match->count; i++)
+        if (!match->item[i].other)
+            item[left++] = &match->item[i];
+    match_by(IDS_BYTES, item, left, waiting);
+    free(item);
+    free(waiting);
 }

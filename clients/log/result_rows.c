@@ -311,7 +311,7 @@ static const char *print_result(struct result_rows *results, bool is_pair)
     if (scene && of.status == FMB_OK && !logged_result_fits(scene, &results->result.scene))
         return "does not match its query";
     if (kept)
-        kept->answered = of.status != FMB_BUSY && of.status != FMB_UNKNOWN_BODY;
+        kept->answered = !logged_status_is_transient(of.status);
     results->count++;
     struct report_row row = {.utime = of.utime,
                              .scene = kept ? kept->number : REPORT_NONE,

@@ -17,7 +17,7 @@
  *      the caller.
  *
  * The end. stop() records the first reason: a signal, no service, or a failed bus. From then on no
- * query is sent and the sink is not called; items under way are freed here.
+ * query is sent and the sink is not called.
  *
  * Not here: comparison (replay_compare.c), which bodies a service lacks (replay_answer.c), timeouts
  * and repetition (client library). Tested by tests/system/replay_bus.bats and replay_set.bats. */
@@ -143,9 +143,7 @@ static void on_result(void *user, const struct fmb_client_raw_result *result)
         decode_result(bus, (enum log_kind) item->key.kind, result, &answered);
     }
     slot->bus = NULL;
-    if (!is_running(bus))
-        free(item);
-    else if (item)
+    if (is_running(bus) && item)
         deliver(bus, item, &answered);
 }
 
@@ -231,7 +229,6 @@ static void send(struct answer_bus *bus, struct match_item *item, const unsigned
     }
     slot->bus = NULL;
     stop(bus, ANSWER_BUS_FAILED, item ? &item->place : NULL);
-    free(item);
 }
 
 /* Answers a query that the engine does not send, with the status of a service: it is too long, or
@@ -270,10 +267,8 @@ void answer_bus_query(struct answer_bus *bus, struct match_item *item, const uns
     logged_query_read(&bus->query, (enum log_kind) item->key.kind, bytes, size);
     const size_t largest = bytes_of(bus, size);
     wait_for_turn(bus, &item->place, largest);
-    if (!is_running(bus)) {
-        free(item);
+    if (!is_running(bus))
         return;
-    }
     bus->counts.whole += item->sent_whole;
     bus->counts.not_sent += size > QUERY_BYTES_MAX || !ids_ok;
     if (size > QUERY_BYTES_MAX || !ids_ok)
@@ -319,9 +314,6 @@ void answer_bus_close(struct answer_bus *bus)
 {
     if (!bus)
         return;
-    for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++)
-        if (bus->slot[i].bus)
-            free(bus->slot[i].item);
     fmb_client_close(bus->client);
     if (bus->signals >= 0)
         close(bus->signals);

@@ -28,8 +28,7 @@ struct answer_bus;
  * SIGTERM are blocked and end the replay. Exits with status 1 if memory is exhausted. */
 struct answer_bus *answer_bus_open(const struct answer_bus_options *options, answer_bus_sink *sink,
                                    void *user);
-/* bus may be NULL. Frees the items under way. */
-void answer_bus_close(struct answer_bus *bus);
+void answer_bus_close(struct answer_bus *bus); /* may be NULL */
 
 /* The next three functions may call the sink for earlier queries. */
 

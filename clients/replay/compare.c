@@ -106,11 +106,6 @@ static bool find_difference(const struct compare_options *options, double durati
     return kind < DIFFERENT_KINDS;
 }
 
-bool compare_status_is_transient(int32_t status)
-{
-    return status == FMB_BUSY || status == FMB_UNKNOWN_BODY;
-}
-
 /* The outcome for two statuses if one or both are transient. */
 static enum replay_outcome transient_outcome(int32_t then, int32_t now)
 {
@@ -204,7 +199,7 @@ enum replay_outcome compare_results(const struct compare_options *options,
     const int32_t then = is_pair ? replayed->pair_then->status : replayed->scene_then->status;
     const int32_t now = is_pair ? replayed->pair_now->status : replayed->scene_now->status;
     enum replay_outcome outcome;
-    if (compare_status_is_transient(then) || compare_status_is_transient(now))
+    if (logged_status_is_transient(then) || logged_status_is_transient(now))
         return transient_outcome(then, now);
     if (is_pair || are_comparable(replayed, then, now, &outcome))
         return compare_answers(options, replayed, sink, user);
@@ -234,5 +229,5 @@ bool compare_bytes_same(enum log_kind kind, const unsigned char *then, size_t th
            memcmp(then, now, TYPE_BYTES) == 0 &&
            memcmp(then + SERVER_END, now + SERVER_END, now_size - SERVER_END - COMPUTE_BYTES) ==
                0 &&
-           !compare_status_is_transient((int32_t) big_endian_32(now + status));
+           !logged_status_is_transient((int32_t) big_endian_32(now + status));
 }

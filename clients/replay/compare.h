@@ -61,10 +61,6 @@ enum replay_outcome compare_results(const struct compare_options *options,
                                     const struct replayed *replayed, difference_sink *sink,
                                     void *user);
 
-/* Whether the status depends on the state of the service, not on the query: it was busy, or did not
- * hold a body. */
-bool compare_status_is_transient(int32_t status);
-
 /* Quick check: returns true if the compared bytes of two encoded results are the same; false if not
  * known. In: kind: of the query; now: encoded by wire_write_*(). */
 bool compare_bytes_same(enum log_kind kind, const unsigned char *then, size_t then_size,

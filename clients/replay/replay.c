@@ -8,14 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *read_key(enum log_kind kind, const struct log_event *event, struct message *out)
-{
-    out->bytes = event->data;
-    out->size = (uint32_t) event->kept;
-    return match_key_of(kind, event, &out->key);
-}
-
-/* ---- The first reading ---- */
+/* ---- Reading ---- */
 
 /* The golden log comes after the others. */
 static bool in_golden(const struct replay *replay)
@@ -31,7 +24,7 @@ static void fail_golden(struct replay *replay, int64_t offset, const char *what)
 
 static bool in_time(const struct replay *replay, int64_t utime)
 {
-    const double seconds = ((double) utime - (double) replay->first_utime) / 1e6;
+    const double seconds = ((double) utime - (double) replay->tally->first_utime) / 1e6;
     return seconds >= replay->options->from && seconds < replay->options->to;
 }
 
@@ -44,25 +37,31 @@ static struct match_place place_of(const struct replay *replay, const struct log
                                 .utime = event->utime};
 }
 
-/* Registers a query or a result, after the bodies and names of a query were collected. error: why
- * a query cannot be decoded; NULL: it can. */
+static const char *read_key(const struct replay *replay, enum log_kind kind,
+                            const struct log_event *event, struct match_item *out)
+{
+    *out = (struct match_item){.place = place_of(replay, event),
+                               .is_result = log_kind_is_result(kind)};
+    return match_key_of(kind, event, &out->key);
+}
+
+/* Registers a query or a result. error: why a query cannot be decoded; NULL: it can. */
 static void take_message(struct replay *replay, enum log_kind kind, const struct log_event *event,
                          const char *error)
 {
-    struct message message = {.place = place_of(replay, event)};
-    const char *no_ids = read_key(kind, event, &message);
-    const bool is_query = log_kind_is_query(kind);
-    error = no_ids ? no_ids : error;
-    if (error && message.place.in_range)
-        replay_refuse(replay, kind, &message, error);
-    if (no_ids)
-        return;
-    if (is_query) {
-        replay_take_query(replay, &message, error);
-    } else if (!replay->options->golden) {
-        replay_channel(replay, &message.key, &message.place)->results += message.place.in_range;
-        replay_take_result(replay, &message);
+    struct match_item item;
+    const char *no_key = read_key(replay, kind, event, &item);
+    struct tally_channel *channel = replay_channel(replay, &item);
+    const bool is_compared = item.is_result && !no_key && !replay->options->golden;
+    channel->results += is_compared && item.place.in_range;
+    error = no_key ? no_key : is_compared ? match_read_status(&item, event, &replay->then) : error;
+    item.unreadable = error;
+    if (error && item.place.in_range) {
+        channel->unreadable[item.is_result]++;
+        replay_report(replay, &item, error);
     }
+    if (item.is_result ? is_compared && !error : !no_key)
+        match_add(&replay->match, &item);
 }
 
 static void count_definition(struct replay *replay, const struct log_event *event,
@@ -78,22 +77,21 @@ static void count_definition(struct replay *replay, const struct log_event *even
 
 static void take_golden(struct replay *replay, enum log_kind kind, const struct log_event *event)
 {
-    struct message result = {.place = place_of(replay, event)};
-    replay->golden_has_queries = replay->golden_has_queries || log_kind_is_query(kind);
-    if (!log_kind_is_result(kind))
+    struct match_item item;
+    if (kind >= LOG_STATUS)
         return;
-    const char *error = read_key(kind, event, &result);
-    if (!error)
-        error = replay_read_result(replay, &result);
-    if (error) {
+    const char *error = read_key(replay, kind, event, &item);
+    if (!error && item.is_result)
+        error = match_read_status(&item, event, &replay->then);
+    if (error && item.is_result)
         fail_golden(replay, event->offset, error);
+    if (error)
         return;
-    }
-    replay_channel(replay, &result.key, &result.place)->results++;
-    replay_take_result(replay, &result);
+    replay_channel(replay, &item)->results += item.is_result;
+    match_add(item.is_result ? &replay->match : &replay->golden_queries, &item);
 }
 
-static void survey_event(struct replay *replay, const struct log_event *event)
+static void take_event(struct replay *replay, const struct log_event *event)
 {
     const enum log_kind kind = log_kind_of(&replay->channels, event);
     if (in_golden(replay)) {
@@ -102,7 +100,7 @@ static void survey_event(struct replay *replay, const struct log_event *event)
     }
     struct tally *tally = &replay->tally[replay->input.log];
     if (!replay->started)
-        replay->first_utime = event->utime;
+        replay->tally->first_utime = event->utime;
     replay->started = true;
     tally->events++;
     tally->bytes += event->length;
@@ -110,26 +108,13 @@ static void survey_event(struct replay *replay, const struct log_event *event)
     tally->other_events += kind == LOG_OTHER;
     if ((replay->old_version = log_kind_old_version(kind, event)) != 0)
         return;
-    const uint32_t size = (uint32_t) event->kept;
     const char *error = definitions_add_message(replay->definitions, replay->options->names, kind,
-                                                event->data, size);
+                                                event->data, (uint32_t) event->kept);
     if (log_kind_is_query(kind) || log_kind_is_result(kind))
         take_message(replay, kind, event, error);
     else if (kind == LOG_DEFINITION)
         count_definition(replay, event, error);
 }
-
-/* ---- The second reading ---- */
-
-static void answer_event(struct replay *replay, const struct log_event *event)
-{
-    const enum log_kind kind = log_kind_of(&replay->channels, event);
-    struct message message = {.place = place_of(replay, event)};
-    if (log_kind_is_query(kind) && !read_key(kind, event, &message))
-        replay_answer_query(replay, &message);
-}
-
-/* ---- Both ---- */
 
 static void take_damage(struct replay *replay, const struct log_damage *damage)
 {
@@ -181,7 +166,6 @@ static bool open_replay(struct replay *replay)
     if (!replay->hasher)
         allocate_failed();
     replay->channels = log_channels(options->prefix);
-    replay->match = match_open();
     return true;
 }
 
@@ -191,11 +175,9 @@ static void close_replay(struct replay *replay)
         replay->tally[0].bus = answer_bus_counts(replay->bus);
     answer_bus_close(replay->bus);
     local_answerer_close(replay->local);
-    for (struct match_item *query; (query = match_pop(&replay->again));)
-        free(query);
-    free(replay->recorded);
-    match_close(replay->match);
-    replay_close_pairs(replay);
+    g_queue_clear(&replay->again);
+    match_clear(&replay->match);
+    match_clear(&replay->golden_queries);
     input_close(&replay->rereader);
     free(replay->paths);
     hasher_destroy(replay->hasher);
@@ -219,20 +201,18 @@ static void fail_old_version(struct replay *replay)
     replay->failed = true;
 }
 
-/* damage: NULL: it was reported before. */
-static void read_logs(struct replay *replay,
-                      void (*take)(struct replay *replay, const struct log_event *event),
-                      void (*damaged)(struct replay *replay, const struct log_damage *damage))
+static void read_logs(struct replay *replay)
 {
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
     while ((outcome = input_next(&replay->input, &event, &damage)) < LOG_END) {
         if (outcome == LOG_EVENT)
-            take(replay, &event);
-        else if (damaged)
-            damaged(replay, &damage);
-        replay->sink->progress(replay->sink->user, replay->input.passed / 2);
+            take_event(replay, &event);
+        else
+            take_damage(replay, &damage);
+        replay->sink->progress(replay->sink->user, replay->input.passed / 2,
+                               input_size(&replay->input));
         if (replay->old_version)
             fail_old_version(replay);
         if (replay->old_version || replay_has_ended(replay))
@@ -244,16 +224,14 @@ static void read_logs(struct replay *replay,
 
 static void run(struct replay *replay)
 {
-    read_logs(replay, survey_event, take_damage);
+    read_logs(replay);
     if (replay->old_version)
         return;
-    if (!replay_has_ended(replay)) {
-        replay_finish_matches(replay);
-        replay->input.count = replay->options->log_count;
-        input_begin(&replay->input, 0);
-        read_logs(replay, answer_event, NULL);
-    }
-    replay_finish_answers(replay);
+    match_all(&replay->match);
+    if (replay->options->golden)
+        replay_pair_clients(replay);
+    replay_compare_results(replay);
+    replay_answer_queries(replay);
     replay->failed = replay->failed || replay_has_ended(replay);
 }
 
@@ -271,20 +249,5 @@ bool replay_run(const struct replay_options *options, const struct replay_sink *
     close_replay(replay);
     const bool good = !replay->failed;
     free(replay);
-    return good;
-}
-
-bool replay_extent(const struct replay_options *options, int64_t *size, int64_t *first_utime)
-{
-    struct input input;
-    struct log_event event;
-    struct log_damage damage;
-    enum log_outcome outcome;
-    const bool good = input_open(&input, options->log, options->log_count);
-    while ((outcome = good ? input_next(&input, &event, &damage) : LOG_END) == LOG_DAMAGE)
-        continue;
-    *size = good ? input_size(&input) : 0;
-    *first_utime = outcome == LOG_EVENT ? event.utime : 0;
-    input_close(&input);
     return good;
 }

@@ -17,8 +17,8 @@ struct replay_sink {
                        const char *what);
     /* Damage of a log. */
     void (*damage)(void *user, int log, const struct log_damage *damage);
-    /* So many bytes of the logs have been read. */
-    void (*progress)(void *user, int64_t bytes);
+    /* So many bytes out of so many have been read. */
+    void (*progress)(void *user, int64_t bytes, int64_t of);
     void *user;
 };
 
@@ -33,13 +33,8 @@ struct replay_options {
     size_t frames;   /* capacity of the cache in this process */
     struct body_names *names;             /* receives the names of bodies; NULL: none */
     struct page *page;                    /* receives what was replayed; NULL: none */
-    int64_t page_begin;                   /* log time from which it counts, microseconds */
     const struct answer_bus_options *bus; /* the service that answers; NULL: this process */
 };
-
-/* Determines the total size of the logs, bytes, and the time of their first event, 0 if there is
- * none. Returns false if a log cannot be opened, which was reported on stderr. */
-bool replay_extent(const struct replay_options *options, int64_t *size, int64_t *first_utime);
 
 /* Replays, and adds to tally[log_count]. Returns false if a file cannot be opened, read or written,
  * a log was recorded by an old version, or the bus cannot be opened; this was reported on stderr.

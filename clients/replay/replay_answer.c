@@ -3,7 +3,6 @@
 
 #include "wire.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- Answers ---- */
@@ -11,12 +10,11 @@
 static void count_answer(struct replay *replay, const struct match_item *query,
                          const struct new_result *answered)
 {
-    struct tally *tally = &replay->tally[query->place.log];
-    struct tally_channel *channel = replay_channel(replay, &query->key, &query->place);
+    struct tally_channel *channel = replay_channel(replay, query);
     channel->queries++;
     channel->pairs += answered->pairs;
     if (answered->status == FMB_OK)
-        histogram_add(&tally->now, answered->compute_ns);
+        histogram_add(&replay->tally[query->place.log].now, answered->compute_ns);
 }
 
 /* Sets compute_ns, the last field of results, to 0, so that golden logs have the same bytes on
@@ -34,14 +32,13 @@ static void write_golden(struct replay *replay, const struct match_item *query,
         replay_fail(replay, replay->options->write_golden.path);
 }
 
-static void take_answer(struct replay *replay, struct match_item *query,
+static void take_answer(struct replay *replay, const struct match_item *query,
                         const struct new_result *answered)
 {
     count_answer(replay, query, answered);
     if (replay->new_golden)
         write_golden(replay, query, answered);
     replay_compare(replay, query, answered);
-    free(query);
 }
 
 /* ---- By a service ---- */
@@ -54,7 +51,7 @@ bool replay_on_answered(void *user, struct match_item *query, const struct new_r
     if (is_last)
         take_answer(replay, query, answered);
     else
-        match_append(&replay->again, query);
+        g_queue_push_tail(&replay->again, query);
     return is_last;
 }
 
@@ -85,95 +82,69 @@ static void supply_service(struct replay *replay, const struct query_placement *
     }
 }
 
-/* Sends a query again after the service lacked one of its bodies. Handles without a definition are
- * left unchanged. */
-static void send_whole(struct replay *replay, struct match_item *query,
-                       const struct message *message)
-{
-    int32_t count;
-    struct query_placement *placement = logged_query_placements(&replay->query, &count);
-    definitions_fill(replay->definitions, placement, count);
-    const size_t size = logged_query_write(&replay->query, replay->whole);
-    query->sent_whole = true;
-    if (size > 0) {
-        answer_bus_query(replay->bus, query, replay->whole, (uint32_t) size);
-    } else {
-        supply_service(replay, placement, count);
-        answer_bus_query(replay->bus, query, message->bytes, message->size);
-    }
-}
-
-static const char *read_query(struct replay *replay, const struct message *query)
-{
-    return logged_query_read(&replay->query, (enum log_kind) query->key.kind, query->bytes,
-                             query->size);
-}
-
+/* Sends queries again after the service lacked one of their bodies. Handles without a definition
+ * are left unchanged. */
 static void send_again(struct replay *replay)
 {
-    for (struct match_item *query; (query = match_pop(&replay->again));) {
-        struct message message;
-        const bool read =
-            replay_read_again(replay, &query->key, &query->place, replay->query_bytes, &message);
-        if (read && !read_query(replay, &message)) {
-            send_whole(replay, query, &message);
+    for (struct match_item *query; (query = g_queue_pop_head(&replay->again));) {
+        uint32_t query_size;
+        int32_t count;
+        if (!replay_read_query(replay, &replay->input, query, replay->query_bytes, &query_size,
+                               &replay->query))
             continue;
+        struct query_placement *placement = logged_query_placements(&replay->query, &count);
+        definitions_fill(replay->definitions, placement, count);
+        const size_t size = logged_query_write(&replay->query, replay->whole);
+        query->sent_whole = true;
+        if (size > 0) {
+            answer_bus_query(replay->bus, query, replay->whole, (uint32_t) size);
+        } else {
+            supply_service(replay, placement, count);
+            answer_bus_query(replay->bus, query, replay->query_bytes, query_size);
         }
-        if (read)
-            replay_fail_changed(replay, query->place.log);
-        free(query);
     }
 }
 
 /* ---- Queries ---- */
 
-static void answer_here(struct replay *replay, struct match_item *query,
-                        const struct message *message)
+static void answer_query(struct replay *replay, struct match_item *query)
 {
+    unsigned char *bytes = replay->query_bytes;
     struct new_result answered;
-    if (!local_answer(replay->local, (enum log_kind) query->key.kind, message->bytes, message->size,
-                      &answered)) {
-        take_answer(replay, query, &answered);
-        return;
-    }
-    replay_fail_changed(replay, query->place.log);
-    free(query);
-}
-
-void replay_answer_query(struct replay *replay, const struct message *message)
-{
-    const struct recorded_query *recorded = &replay->recorded[replay->next];
-    if (replay->next == replay->recorded_count || recorded->offset != message->place.offset) {
-        replay_fail_changed(replay, message->place.log);
-        return;
-    }
-    replay->next++;
-    if (recorded->skipped)
-        return;
-    struct match_item *query = match_new(&message->key, &message->place);
-    query->has_recorded = recorded->log >= 0;
-    query->then = (struct match_place){.log = recorded->log, .offset = recorded->result};
-    if (replay->local)
-        answer_here(replay, query, message);
+    uint32_t size;
+    if (!input_read_again(&replay->input, query->place.log, query->place.offset, bytes, &size))
+        replay_fail_log(replay, query->place.log);
+    else if (replay->bus)
+        answer_bus_query(replay->bus, query, bytes, size);
+    else if (local_answer(replay->local, (enum log_kind) query->key.kind, bytes, size, &answered))
+        replay_fail_changed(replay, query->place.log);
     else
-        answer_bus_query(replay->bus, query, message->bytes, message->size);
-    send_again(replay);
+        take_answer(replay, query, &answered);
 }
-
-/* ---- The end ---- */
 
 bool replay_has_ended(const struct replay *replay)
 {
     return replay->bus && !answer_bus_is_running(replay->bus);
 }
 
-void replay_finish_answers(struct replay *replay)
+/* To read the logs was half of the work. */
+void replay_answer_queries(struct replay *replay)
 {
+    const size_t count = replay->match.count;
+    const int64_t size = input_size(&replay->input), half = size / 2;
+    for (size_t i = 0; i < count && !replay_has_ended(replay); i++) {
+        struct match_item *item = &replay->match.item[i];
+        if (item->is_result || item->unreadable || !item->place.in_range)
+            continue;
+        answer_query(replay, item);
+        send_again(replay);
+        replay->sink->progress(replay->sink->user,
+                               half + (int64_t) ((double) half * (double) i / (double) count),
+                               size);
+    }
     do {
         send_again(replay);
         if (replay->bus)
             answer_bus_finish(replay->bus);
-    } while (replay->again && !replay_has_ended(replay));
-    if (!replay_has_ended(replay) && replay->next < replay->recorded_count)
-        replay_fail_changed(replay, replay->input.log);
+    } while (!g_queue_is_empty(&replay->again) && !replay_has_ended(replay));
 }

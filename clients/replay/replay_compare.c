@@ -18,8 +18,7 @@ void replay_fail(struct replay *replay, const char *what)
 
 void replay_fail_log(struct replay *replay, int log)
 {
-    replay_fail(replay, log < replay->options->log_count ? replay->options->log[log]
-                                                         : replay->options->golden);
+    replay_fail(replay, replay->paths[log]);
 }
 
 void replay_fail_changed(struct replay *replay, int log)
@@ -34,60 +33,72 @@ static struct tally *tally_of(struct replay *replay, const struct match_place *p
     return &replay->tally[place->log < replay->options->log_count ? place->log : 0];
 }
 
-struct tally_channel *replay_channel(struct replay *replay, const struct match_key *key,
-                                     const struct match_place *place)
+struct tally_channel *replay_channel(struct replay *replay, const struct match_item *item)
 {
-    return &tally_of(replay, place)->channel[tally_channel_of((enum log_kind) key->kind)];
+    return &tally_of(replay, &item->place)
+                ->channel[tally_channel_of((enum log_kind) item->key.kind)];
 }
 
-void replay_refuse(struct replay *replay, enum log_kind kind, const struct message *message,
-                   const char *error)
+void replay_report(struct replay *replay, const struct match_item *item, const char *what)
 {
-    replay_channel(replay, &message->key, &message->place)->unreadable[log_kind_is_result(kind)]++;
-    replay->sink->unreadable(replay->sink->user, &message->place, replay->channels.name[kind],
-                             error);
+    const enum log_kind query = (enum log_kind) item->key.kind;
+    replay->sink->unreadable(
+        replay->sink->user, &item->place,
+        replay->channels.name[item->is_result ? log_kind_result_of(query) : query], what);
 }
 
 /* ---- Reading ---- */
 
-bool replay_read_again(struct replay *replay, const struct match_key *key,
-                       const struct match_place *place, unsigned char bytes[LOG_DATA_MAX],
-                       struct message *out)
+static bool read_again(struct replay *replay, struct input *input, const struct match_place *place,
+                       unsigned char bytes[LOG_DATA_MAX], uint32_t *size)
 {
-    *out = (struct message){*key, *place, bytes, 0};
-    if (input_read_again(&replay->rereader, place->log, place->offset, bytes, &out->size))
-        return true;
-    replay_fail_log(replay, place->log);
-    return false;
+    const bool good = input_read_again(input, place->log, place->offset, bytes, size);
+    if (!good)
+        replay_fail_log(replay, place->log);
+    return good;
 }
 
-const char *replay_read_result(struct replay *replay, const struct message *result)
+/* What could be decoded before has changed. */
+static bool is_unchanged(struct replay *replay, const struct match_item *item, const char *error)
 {
-    return logged_result_read(&replay->then, (enum log_kind) result->key.kind, result->bytes,
-                              result->size);
+    if (error)
+        replay_fail_changed(replay, item->place.log);
+    return !error;
 }
 
-/* Reads the query of a comparison again, which could be decoded before. */
-static bool read_query(struct replay *replay, const struct match_key *key,
-                       const struct match_place *place)
+bool replay_read_query(struct replay *replay, struct input *input, const struct match_item *query,
+                       unsigned char bytes[LOG_DATA_MAX], uint32_t *size, struct logged_query *out)
 {
-    struct message query;
-    if (!replay_read_again(replay, key, place, replay->compared_bytes, &query))
-        return false;
-    if (!logged_query_read(&replay->compared, (enum log_kind) key->kind, query.bytes, query.size))
-        return true;
-    replay_fail_changed(replay, place->log);
-    return false;
+    return read_again(replay, input, &query->place, bytes, size) &&
+           is_unchanged(replay, query,
+                        logged_query_read(out, (enum log_kind) query->key.kind, bytes, *size));
 }
 
-static bool read_both(struct replay *replay, const struct match_item *item,
+/* Reads a result again and decodes it. */
+static bool read_result(struct replay *replay, const struct match_item *result,
+                        unsigned char bytes[LOG_DATA_MAX], struct logged_result *out)
+{
+    uint32_t size;
+    return read_again(replay, &replay->rereader, &result->place, bytes, &size) &&
+           is_unchanged(replay, result,
+                        logged_result_read(out, (enum log_kind) result->key.kind, bytes, size));
+}
+
+static bool read_compared(struct replay *replay, const struct match_item *query)
+{
+    uint32_t size;
+    return replay_read_query(replay, &replay->rereader, query, replay->compared_bytes, &size,
+                             &replay->compared);
+}
+
+static bool read_both(struct replay *replay, const struct match_item *query,
                       const struct new_result *answered)
 {
-    const char *error = logged_result_read(&replay->now, (enum log_kind) item->key.kind,
+    const char *error = logged_result_read(&replay->now, (enum log_kind) query->key.kind,
                                            answered->bytes, (uint32_t) answered->size);
     assert(!error); /* encoded by this process, or decoded before */
     (void) error;
-    return read_query(replay, &item->key, &item->place);
+    return read_compared(replay, query);
 }
 
 /* The query, as it was read, with its results. */
@@ -106,18 +117,17 @@ static struct replayed replayed_of(struct replay *replay, bool has_recorded)
     return out;
 }
 
-static void add_to_page(struct replay *replay, const struct match_item *item,
+static void add_to_page(struct replay *replay, const struct match_item *query,
                         struct replayed replayed)
 {
     int32_t count;
     struct query_placement *placement = logged_query_placements(&replay->compared, &count);
-    replayed.log = replay->options->log[item->place.log];
-    replayed.event_number = item->place.number;
-    replayed.offset = item->place.offset;
-    replayed.utime = item->place.utime;
+    replayed.log = replay->paths[query->place.log];
+    replayed.event_number = query->place.number;
+    replayed.offset = query->place.offset;
+    replayed.utime = query->place.utime;
     definitions_fill(replay->definitions, placement, count);
-    page_take(replay->options->page, replay->options->names, replay->options->page_begin,
-              &replayed);
+    page_take(replay->options->page, replay->options->names, replay->tally->first_utime, &replayed);
 }
 
 /* ---- Comparing ---- */
@@ -131,14 +141,14 @@ static void on_difference(void *user, const struct difference *difference)
     located.query_kind = (enum log_kind) query->key.kind;
     located.client_id = query->key.client_id;
     located.sequence_number = query->key.sequence_number;
-    replay_channel(replay, &query->key, &query->place)->differences[difference->kind]++;
+    replay_channel(replay, query)->differences[difference->kind]++;
     replay->sink->difference(replay->sink->user, &located);
 }
 
 static void count(struct replay *replay, const struct match_item *query,
                   enum replay_outcome outcome, int64_t then_ns)
 {
-    replay_channel(replay, &query->key, &query->place)->outcome[outcome]++;
+    replay_channel(replay, query)->outcome[outcome]++;
     if (then_ns > 0 && (outcome == REPLAY_SAME || outcome == REPLAY_DIFFERENT))
         histogram_add(&tally_of(replay, &query->place)->then, then_ns);
 }
@@ -151,33 +161,26 @@ static void compare_unrecorded(struct replay *replay, const struct match_item *q
         add_to_page(replay, query, replayed_of(replay, false));
 }
 
-/* Results of both types end with compute_ns. */
-static bool is_same(struct replay *replay, const struct message *then, const struct new_result *now)
-{
-    return !replay->options->page && compare_bytes_same((enum log_kind) then->key.kind, then->bytes,
-                                                        then->size, now->bytes, now->size);
-}
-
 void replay_compare(struct replay *replay, const struct match_item *query,
                     const struct new_result *answered)
 {
-    struct message then;
-    if (!query->has_recorded) {
+    const enum log_kind kind = (enum log_kind) query->key.kind;
+    const unsigned char *then = replay->result_bytes;
+    uint32_t size;
+    if (!query->other) {
         compare_unrecorded(replay, query, answered);
         return;
     }
-    if (!replay_read_again(replay, &query->key, &query->then, replay->result_bytes, &then))
+    if (!read_again(replay, &replay->rereader, &query->other->place, replay->result_bytes, &size))
         return;
-    if (is_same(replay, &then, answered)) {
-        count(replay, query, REPLAY_SAME,
-              (int64_t) big_endian_64(then.bytes + then.size - sizeof(int64_t)));
-        return;
-    }
-    if (replay_read_result(replay, &then)) {
-        replay_fail_changed(replay, query->then.log);
+    if (!replay->options->page &&
+        compare_bytes_same(kind, then, size, answered->bytes, answered->size)) {
+        /* Results of both types end with compute_ns. */
+        count(replay, query, REPLAY_SAME, (int64_t) big_endian_64(then + size - sizeof(int64_t)));
         return;
     }
-    if (!read_both(replay, query, answered))
+    if (!is_unchanged(replay, query->other, logged_result_read(&replay->then, kind, then, size)) ||
+        !read_both(replay, query, answered))
         return;
     replay->item = query;
     struct replayed replayed = replayed_of(replay, true);
@@ -187,7 +190,7 @@ void replay_compare(struct replay *replay, const struct match_item *query,
         add_to_page(replay, query, replayed);
 }
 
-/* ---- Second results ---- */
+/* ---- Results among themselves ---- */
 
 static void no_difference(void *user, const struct difference *difference)
 {
@@ -195,26 +198,35 @@ static void no_difference(void *user, const struct difference *difference)
     (void) difference;
 }
 
-void replay_compare_second(struct replay *replay, const struct match_note *note,
-                           const struct message *second, const struct message *first)
+static void compare_second(struct replay *replay, const struct match_item *second)
 {
-    const struct match_place query = {.log = note->query_log, .offset = note->query_offset};
-    struct tally_channel *tally = replay_channel(replay, &second->key, &second->place);
-    const enum log_kind kind = log_kind_result_of((enum log_kind) second->key.kind);
-    if (!read_query(replay, &note->key, &query))
-        return;
-    if (logged_result_read(&replay->now, (enum log_kind) first->key.kind, first->bytes,
-                           first->size)) {
-        replay_fail_changed(replay, first->place.log);
-        return;
+    const struct match_item *query = second->other;
+    struct tally_channel *channel = replay_channel(replay, second);
+    bool differs = false;
+    if (!query->unreadable) {
+        if (!read_compared(replay, query) ||
+            !read_result(replay, query->other, replay->query_bytes, &replay->now) ||
+            !read_result(replay, second, replay->result_bytes, &replay->then))
+            return;
+        const struct replayed replayed = replayed_of(replay, true);
+        differs = compare_results(&replay->options->compare, &replayed, no_difference, NULL) ==
+                  REPLAY_DIFFERENT;
     }
-    const struct replayed replayed = replayed_of(replay, true);
-    if (compare_results(&replay->options->compare, &replayed, no_difference, NULL) !=
-        REPLAY_DIFFERENT) {
-        tally->results_again++;
-    } else {
-        tally->contradictions++;
-        replay->sink->unreadable(replay->sink->user, &second->place, replay->channels.name[kind],
-                                 "contradicts an earlier result of the same query");
+    channel->results_again += !differs;
+    channel->contradictions += differs;
+    if (differs)
+        replay_report(replay, second, "contradicts an earlier result of the same query");
+}
+
+void replay_compare_results(struct replay *replay)
+{
+    for (size_t i = 0; i < replay->match.count; i++) {
+        const struct match_item *item = &replay->match.item[i];
+        if (!item->is_result || !item->place.in_range)
+            continue;
+        if (!item->other)
+            replay_channel(replay, item)->unmatched++;
+        else if (item->second)
+            compare_second(replay, item);
     }
 }

@@ -59,7 +59,9 @@ struct tally {
     int64_t other_events; /* on other channels */
     int64_t damages, damaged_bytes;
     struct histogram then, now; /* nanoseconds to decide */
-    struct tally_bus bus;       /* only in the tally of the first log, for all logs */
+    /* Only in the tally of the first log, for all logs: */
+    struct tally_bus bus;
+    int64_t first_utime; /* time of the first event, microseconds; 0: there is none */
 };
 
 /* The channel that a query or result is counted in. In: a kind of query or result. */

@@ -158,10 +158,10 @@ static void on_damage(void *user, int log, const struct log_damage *damage)
     FUZZ_CHECK(log == 0 && damage->length > 0 && damage->what[0]);
 }
 
-static void on_progress(void *user, int64_t bytes)
+static void on_progress(void *user, int64_t bytes, int64_t of)
 {
     (void) user;
-    FUZZ_CHECK(bytes >= 0);
+    FUZZ_CHECK(bytes >= 0 && bytes <= of);
 }
 
 static void report_one(void *user, const struct difference *found)

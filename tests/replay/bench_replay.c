@@ -160,8 +160,9 @@ static void no_damage(void *user, int log, const struct log_damage *damage)
     fail(damage->what);
 }
 
-static void no_progress(void *user, int64_t bytes)
+static void no_progress(void *user, int64_t bytes, int64_t of)
 {
+    (void) of;
     (void) user;
     (void) bytes;
 }

@@ -38,7 +38,7 @@ static void on_damage(void *user, int log, const struct log_damage *damage)
     report->damaged_bytes += damage->length;
 }
 
-static void on_progress(void *user, int64_t bytes)
+static void on_progress(void *user, int64_t bytes, int64_t of)
 {
     struct replay_report *report = user;
     if (report->progress++ % 64 != 0) /* mallinfo2() visits every free block */
@@ -47,6 +47,7 @@ static void on_progress(void *user, int64_t bytes)
     const size_t given = memory.uordblks + memory.hblkhd;
     report->most_memory = given > report->most_memory ? given : report->most_memory;
     (void) bytes;
+    (void) of;
 }
 
 /* ---- Runs ---- */

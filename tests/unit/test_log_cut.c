@@ -94,10 +94,10 @@ static void on_damage(void *user, int log, const struct log_damage *damage)
     fail_msg("a damaged log");
 }
 
-static void on_progress(void *user, int64_t bytes)
+static void on_progress(void *user, int64_t bytes, int64_t of)
 {
     (void) user;
-    (void) bytes;
+    assert_in_range(bytes, 0, of);
 }
 
 static const struct replay_sink replay_sink = {on_found, on_unreadable, on_damage, on_progress,
