@@ -76,7 +76,6 @@ struct fmb_scene_state {
     bool slow;    /* blocks of BLOCK_SLOW */
     void *tree;
     struct scene_frames frames;
-    struct scene_pairs pairs;
     bool halfway; /* the last pair of bodies has more pairs of frames than fit the block */
     struct frame_pair_cursor cursor;
     size_t answered; /* in the last step, starting with the pair of bodies first_answer */
@@ -84,7 +83,9 @@ struct fmb_scene_state {
     struct hull_decision hull; /* of the first open pair of frames, if it has a hull */
     struct fmb_answer hull_answer;
     struct hull_gap_work *hull_gap; /* its gap, which comes after the decision; NULL: not begun */
+    /* Not set before they are begun. */
     struct scene_block block;
+    struct scene_pairs pairs;
 };
 
 /* ---- Memory ---- */
@@ -302,7 +303,8 @@ static void begin_frames(struct fmb_scene_state *state, const struct fmb_scene_l
         chunks += scene_chunks(count);
         total += count;
     }
-    memset(frames->chunk, 0, chunks * sizeof *frames->chunk);
+    for (size_t c = 0; c < chunks; c++)
+        frames->chunk[c].generation = 0;
     frames->direct = state->batched && total == scene->placement_count && total <= limits->slots;
     frames->boxed = !frames->direct || scene->which != FMB_PAIRS_LISTED;
 }
