@@ -5,21 +5,13 @@
 #include "lanes.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { VECTORS = SUPPORT_BLOCK / LANES };
 
-INLINE lanes load(const double *at)
-{
-    lanes out;
-    memcpy(&out, at, sizeof out);
-    return out;
-}
-
 INLINE lanes values_at(const double *v, size_t stride, const lanes n[FMB_DIM_MAX], const int dim)
 {
-    const lanes plane = n[0] * load(v) + n[1] * load(v + stride);
-    return dim == 2 ? plane : plane + n[2] * load(v + 2 * stride);
+    const lanes plane = n[0] * lanes_load(v) + n[1] * lanes_load(v + stride);
+    return dim == 2 ? plane : plane + n[2] * lanes_load(v + 2 * stride);
 }
 
 /* The greatest value of a block, in each lane. */
@@ -32,40 +24,38 @@ INLINE lanes block_max(const double *v, size_t stride, const lanes n[FMB_DIM_MAX
     return most;
 }
 
-/* The first block with the greatest value of all lanes. */
-INLINE double first_block(lanes value, lanes block, double *most)
+/* Returns the first vertex of a block with this value, the greatest of the block; its first vertex
+ * if there is none, because sums overflow. The vertices that fill the block up come last. */
+INLINE unsigned first_with(const double *v, size_t stride, const lanes n[FMB_DIM_MAX],
+                           const int dim, lanes value)
 {
-    double first = INFINITY;
-    *most = -INFINITY;
-    for (int lane = 0; lane < LANES; lane++)
-        *most = value[lane] > *most ? value[lane] : *most;
-    for (int lane = 0; lane < LANES; lane++)
-        if (value[lane] == *most && block[lane] < first)
-            first = block[lane];
-    return first;
+    unsigned bits = 0;
+    UNROLL(4)
+    for (int k = 0; k < VECTORS; k++)
+        bits |= lanes_mask_bits(values_at(v + k * LANES, stride, n, dim) == value) << k * LANES;
+    return bits ? (unsigned) __builtin_ctz(bits) : 0;
 }
 
+/* No branch but that of the loop: which lane, and which vertex of a block, is the greatest cannot
+ * be predicted. */
 INLINE struct support scan(const struct support_vertices *vertices, const double n[FMB_DIM_MAX],
                            const int dim)
 {
     const lanes direction[FMB_DIM_MAX] = {lanes_of(n[0]), lanes_of(n[1]),
                                           lanes_of(dim == 2 ? 0 : n[2])};
     const size_t stride = vertices->stride;
-    lanes best = lanes_of(-INFINITY), where = lanes_of(0);
+    lanes best = lanes_of(-INFINITY), where = lanes_of(0), here = lanes_of(0);
     for (unsigned i = 0; i < vertices->count; i += SUPPORT_BLOCK) {
         const lanes most = block_max(vertices->at + i, stride, direction, dim);
-        const lanes_mask above = most > best;
-        best = lanes_select(above, most, best);
-        where = lanes_select(above, lanes_of(i), where);
+        where = lanes_select(most > best, here, where);
+        best = lanes_max(most, best);
+        here += SUPPORT_BLOCK;
     }
-    struct support out;
-    const unsigned first = (unsigned) first_block(best, where, &out.value);
-    unsigned i = first;
-    while (i + 1 < vertices->count && i + 1 < first + SUPPORT_BLOCK &&
-           support_value(vertices, n, i) != out.value)
-        i++;
-    out.index = i;
-    return out;
+    const lanes all = lanes_max(best, lanes_swap(best));
+    where = lanes_select(best == all, where, lanes_of(INFINITY));
+    const unsigned first = (unsigned) lanes_min(where, lanes_swap(where))[0];
+    const unsigned i = first_with(vertices->at + first, stride, direction, dim, all);
+    return (struct support){.index = first + i, .value = all[0]};
 }
 
 struct support support_max(const struct support_vertices *vertices, const double n[FMB_DIM_MAX])
