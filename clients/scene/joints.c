@@ -94,10 +94,14 @@ void joints_clear(struct joints *joints)
 
 bool joints_check(const struct joints *joints)
 {
-    for (size_t j = 0; j < joints->robot->joint_count; j++)
-        if (joints->robot->joints[j].type != ROBOT_FIXED && !joints->given[j] &&
-            !check_value(&joints->robot->joints[j], 0, "by default (--joints sets other values)"))
+    char place[COMPLAIN_PLACE_MAX];
+    for (size_t j = 0; j < joints->robot->joint_count; j++) {
+        const struct robot_joint *joint = &joints->robot->joints[j];
+        snprintf(place, sizeof place, "%s: line %lu: by default (--joints sets other values)",
+                 joints->robot->path, joint->name->line);
+        if (joint->type != ROBOT_FIXED && !joints->given[j] && !check_value(joint, 0, place))
             return false;
+    }
     return true;
 }
 

@@ -106,7 +106,7 @@ bool robot_connect(struct robot *robot)
         if (i > 0 && up != root) {
             complain(
                 "%s: line %lu: link '%s' has no parent, and neither has link '%s': expected one "
-                "root",
+                "root: connect them by a fixed joint",
                 robot->path, top->name->line, top->name->name, robot->links[root].name->name);
             return false;
         }

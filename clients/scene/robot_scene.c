@@ -81,9 +81,10 @@ bool robot_scene_make(const struct robot *robot, const struct robot_body_options
             return false;
         out->robot_bodies++;
     }
-    report_empty(robot);
     if (out->robot_bodies == 0)
-        complain("%s: no link has a <collision>", robot->path);
+        complain("%s: no link has a <collision> (<visual> is not read)", robot->path);
+    else
+        report_empty(robot);
     ignore_neighbours(out);
     owner->scene.placements = out->placements;
     owner->scene.placement_count = out->robot_bodies;

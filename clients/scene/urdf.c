@@ -97,6 +97,19 @@ static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char 
     stop(user, "!DOCTYPE", "document types and entities are not supported: remove the declaration");
 }
 
+/* What to do about errors whose text in Expat does not say it. */
+static const char *xml_remedy(enum XML_Error error)
+{
+    switch (error) {
+    case XML_ERROR_MISPLACED_XML_PI: return ": move <?xml ...?> to the start of the file";
+    case XML_ERROR_XML_DECL: return ": write <?xml version=\"1.0\"?>";
+    case XML_ERROR_UNKNOWN_ENCODING: return ": save the file as UTF-8, and say so in <?xml ...?>";
+    case XML_ERROR_INVALID_TOKEN: return ": a stray < or &, or text that is not UTF-8";
+    case XML_ERROR_NO_ELEMENTS: return ": the file ends too early";
+    default: return "";
+    }
+}
+
 static bool parse(struct reader *reader, FILE *file)
 {
     enum { PIECE = 1 << 16 };
@@ -112,9 +125,11 @@ static bool parse(struct reader *reader, FILE *file)
                      ferror(file) ? strerror(errno) : "more than 8 MB");
             return false;
         }
-        if (XML_ParseBuffer(reader->xml, (int) size, size == 0) != XML_STATUS_OK)
-            refuse(reader, XML_GetCurrentLineNumber(reader->xml), "XML: %s",
-                   XML_ErrorString(XML_GetErrorCode(reader->xml)));
+        if (XML_ParseBuffer(reader->xml, (int) size, size == 0) != XML_STATUS_OK) {
+            const enum XML_Error error = XML_GetErrorCode(reader->xml);
+            refuse(reader, XML_GetCurrentLineNumber(reader->xml), "XML: %s%s",
+                   XML_ErrorString(error), xml_remedy(error));
+        }
     } while (size > 0 && !reader->failed);
     return !reader->failed;
 }
@@ -139,13 +154,20 @@ static const struct node *find_child(struct reader *reader, const struct node *p
     return found;
 }
 
-/* Returns the value of an attribute; NULL if it is missing, which is an error if it is required. */
+/* Returns the value of an attribute; NULL if it is missing, which is an error if it is required. An
+ * empty value and an expression of xacro are errors. */
 static const char *find_attribute(struct reader *reader, const struct node *node, const char *name,
                                   bool required)
 {
     for (const char **at = node->attributes; *at; at += 2)
-        if (strcmp(at[0], name) == 0 && at[1])
+        if (strcmp(at[0], name) == 0) {
+            if (!at[1])
+                refuse(reader, node->line, "<%s>: %s is empty", node->name, name);
+            else if (strstr(at[1], "${") || strstr(at[1], "$("))
+                refuse(reader, node->line, "<%s>: %s is '%.64s': expand the file with xacro first",
+                       node->name, name, at[1]);
             return at[1];
+        }
     if (required)
         refuse(reader, node->line, "<%s> has no %s", node->name, name);
     return NULL;
@@ -157,9 +179,8 @@ static void read_numbers(struct reader *reader, const struct node *node, const c
 {
     const char *value = find_attribute(reader, node, name, required);
     if (value && !robot_numbers(value, count, out))
-        refuse(reader, node->line, "<%s>: %s is '%.64s', expected %d finite number%s%s", node->name,
-               name, value, count, count > 1 ? "s" : "",
-               strstr(value, "${") ? " (expand the file with xacro first)" : "");
+        refuse(reader, node->line, "<%s>: %s is '%.64s', expected %d finite number%s", node->name,
+               name, value, count, count > 1 ? "s, separated by spaces" : "");
 }
 
 static void read_sizes(struct reader *reader, const struct node *node, const char *name, int count,
@@ -290,7 +311,8 @@ static void read_type(struct reader *reader, const struct node *node, struct rob
             return;
         }
     refuse(reader, node->line,
-           "its type is '%.64s', expected revolute, continuous, prismatic or fixed",
+           "its type is '%.64s', expected revolute, continuous, prismatic or fixed (in place of "
+           "planar or floating: a chain of these)",
            type ? type : "");
 }
 

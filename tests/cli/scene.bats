@@ -212,7 +212,7 @@ triangle() {
     refused "expected name=value,..., found ''" robot.urdf --joints turn=1,
     refused "--joints: joint 'turn': expected a finite number, found '1e999'" robot.urdf --joints turn=1e999
     sed -i 's/lower="-1"/lower="0.5"/' robot.urdf
-    refused "by default (--joints sets other values): joint 'turn': 0 is outside its limits, 0.5 to 2" robot.urdf
+    refused "robot.urdf: line 4: by default (--joints sets other values): joint 'turn': 0 is outside its limits, 0.5 to 2" robot.urdf
     scene robot.urdf --joints turn=2,slide=0.5
     ended 0
     sed -i "s/'revolute'/'continuous'/" robot.urdf
@@ -341,7 +341,7 @@ triangle() {
     joined b a
     refused "robot.urdf: line 5: link 'c' has no parent, and neither has link 'b': expected one root" robot.urdf
     joined a b
-    refused "robot.urdf: line 5: link 'c' has no parent, and neither has link 'a': expected one root" robot.urdf
+    refused "robot.urdf: line 5: link 'c' has no parent, and neither has link 'a': expected one root: connect them by a fixed joint" robot.urdf
     joined a b a d
     refused "robot.urdf: line 7: joint 'ad': its child 'd' is not a link of the file" robot.urdf
     joined a b d c
@@ -357,17 +357,21 @@ triangle() {
     shape '' '<collision> has no <geometry> with a shape'
     shape '<geometry/>' '<collision> has no <geometry> with a shape'
     shape '<geometry><box/></geometry>' '<box> has no size'
-    shape '<geometry><box size="1 2"/></geometry>' "<box>: size is '1 2', expected 3 finite numbers"
+    shape '<geometry><box size="1 2"/></geometry>' "<box>: size is '1 2', expected 3 finite numbers, separated by spaces"
+    shape '<geometry><box size="1,5 2 3"/></geometry>' "<box>: size is '1,5 2 3', expected 3 finite numbers, separated by spaces"
     shape '<geometry><box size="1 2 3 4"/></geometry>' "<box>: size is '1 2 3 4', expected 3 finite numbers"
     shape '<geometry><box size="1 2 nan"/></geometry>' "<box>: size is '1 2 nan', expected 3 finite numbers"
     shape '<geometry><box size="1 -2 3"/></geometry>' '<box>: size is negative'
-    shape '<geometry><box size="1 ${w} 3"/></geometry>' "<box>: size is '1 \${w} 3', expected 3 finite numbers (expand the file with xacro first)"
+    shape '<geometry><box size="1 ${w} 3"/></geometry>' "<box>: size is '1 \${w} 3': expand the file with xacro first"
+    shape '<geometry><mesh filename="$(find pkg)/a.stl"/></geometry>' "<mesh>: filename is '\$(find pkg)/a.stl': expand the file with xacro first"
     shape '<geometry><capsule radius="1"/></geometry>' '<capsule>: expected a box, cylinder, sphere or mesh'
     shape '<geometry><sphere radius="1"/><sphere radius="1"/></geometry>' '<sphere>: there is already a shape'
     shape '<geometry><cylinder radius="1"/></geometry>' '<cylinder> has no length'
     shape '<geometry><sphere radius="1.79e308"/></geometry>' 'not a finite number'
     shape '<origin rpy="1e9 0 0"/><geometry><sphere radius="1"/></geometry>' '<origin>: rpy is beyond 1048576 radians'
     shape '<geometry><mesh/></geometry>' '<mesh> has no filename'
+    shape '<geometry><mesh filename=""/></geometry>' '<mesh>: filename is empty'
+    shape '<origin xyz=""/><geometry><sphere radius="1"/></geometry>' '<origin>: xyz is empty'
     joint() {
         robot "<link name='a'>$box</link><link name='b'/>
 <joint name='j' type='$1'>$2</joint>"
@@ -375,12 +379,13 @@ triangle() {
     }
     ends='<parent link="a"/><child link="b"/>'
     joint floating "$ends" "joint 'j': its type is 'floating', expected revolute, continuous, prismatic or fixed"
-    joint planar "$ends" "joint 'j': its type is 'planar'"
+    joint planar "$ends" "joint 'j': its type is 'planar', expected revolute, continuous, prismatic or fixed (in place of planar or floating: a chain of these)"
     joint fixed '<parent link="a"/>' "joint 'j': there is no <child>"
     joint fixed '<child link="a"/>' "joint 'j': there is no <parent>"
     joint fixed "$ends<parent link='a'/>" "joint 'j': there is a second <parent>"
     joint revolute "$ends" "joint 'j': there is no <limit>, which a joint of this type needs"
     joint revolute "$ends<limit lower='2' upper='1'/>" "joint 'j': <limit>: lower is above upper"
+    joint revolute "$ends<limit lower='' upper='1'/>" "joint 'j': <limit>: lower is empty"
     joint prismatic "$ends<axis xyz='0 0 0'/>$limit" "joint 'j': <axis>: xyz is 0"
     joint revolute "$ends<mimic joint='k'/>$limit" "joint 'j': <mimic>: mimic joints are not supported"
     robot "<link name='a'/>
@@ -392,10 +397,8 @@ triangle() {
     refused 'robot.urdf: line 3: <link> has no name' robot.urdf
     robot ''
     refused 'robot.urdf: line 2: <robot> has no <link>' robot.urdf
-    robot '<link name="a"/>'
-    scene robot.urdf
-    ended 2
-    [[ $stderr == *'robot.urdf: no link has a <collision>' ]]
+    robot '<link name="a"><visual/></link>'
+    refused 'robot.urdf: no link has a <collision> (<visual> is not read)' robot.urdf
     refused 'none.urdf: No such file' none.urdf
 }
 
@@ -405,6 +408,8 @@ triangle() {
         refused "robot.urdf: line 3: link 'a': $2" robot.urdf
     }
     mesh none.stl 'none.stl: No such file'
+    mesh 'package:\\pkg\m.stl' "package:\\\\pkg\\m.stl: expected a path with '/', file://PATH or package://NAME/PATH"
+    mesh model://m.stl "model://m.stl: expected a path with '/', file://PATH or package://NAME/PATH"
     mesh m.DAE 'm.DAE: COLLADA is not supported: convert it to STL or OBJ'
     printf 'v 0 0 0\nv 1 0 x\n' > m.obj
     mesh m.obj "m.obj: line 2: 'x' is no number"
@@ -426,7 +431,11 @@ triangle() {
         '<robot><disable_collisions/></robot>|line 1: <disable_collisions>: SRDF is not supported' \
         '<robot xmlns:xacro="x"><xacro:macro name="m"/></robot>|line 1: <xacro:macro>: expand the file with xacro first' \
         '<html/>|line 1: expected <robot>, found <html>' \
-        '<robot>|line 2: XML: no element found' \
+        '<robot>|line 2: XML: no element found: the file ends too early' \
+        '<!-- --><?xml version="1.0"?>|line 1: XML: XML or text declaration not at start of entity: move <?xml ...?> to the start of the file' \
+        '<?xml verison="1.0"?>|line 1: XML: XML declaration not well-formed: write <?xml version="1.0"?>' \
+        '<?xml version="1.0" encoding="gb2312"?>|line 1: XML: unknown encoding: save the file as UTF-8' \
+        '<robot name="a & b"/>|line 1: XML: not well-formed (invalid token): a stray < or &, or text that is not UTF-8' \
         '<robot></link></robot>|line 1: XML: mismatched tag' \
         '<robot name="a" name="b"/>|line 1: XML: duplicate attribute' \
         '|line 2: XML: no element found'; do
