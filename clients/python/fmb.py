@@ -152,8 +152,8 @@ _TYPES = {"d": ("float64", "d"), "q": ("int64", "ql")}
 
 def _float(name: str, value: Any) -> float:
     try:
-        return float(value)
-    except (TypeError, ValueError):
+        return ctypes.c_double(value).value  # float() also takes text
+    except TypeError:
         raise TypeError(f"{name}: expected a number, found {value!r:.40}") from None
     except OverflowError:
         raise ValueError(f"{name}: out of range") from None

@@ -203,8 +203,8 @@ static char *find_mesh(const struct frames *frames, const struct robot_element *
     if (strncmp(file, scheme, sizeof scheme - 1) == 0)
         file += sizeof scheme - 1;
     if (strstr(file, "://") || strchr(file, '\\')) {
-        refuse(frames, element,
-               "%s: expected a path with '/', file://PATH or package://NAME/PATH", file);
+        refuse(frames, element, "%s: expected a path with '/', file://PATH or package://NAME/PATH",
+               file);
         return NULL;
     }
     return output_beside(frames->robot->path, file);

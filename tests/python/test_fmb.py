@@ -374,7 +374,9 @@ class Arrays(unittest.TestCase):
                 (fmb.BusError, "prefix", lambda: fmb.Client(prefix="no prefix")),
                 (ValueError, "tries", lambda: fmb.Client(tries=0)),
                 (fmb.BusError, "within", lambda: fmb.Client(within=-1)),
-                (TypeError, "timeout", lambda: fmb.Client(timeout="x")),
+                (TypeError, "timeout", lambda: fmb.Client(timeout="1")),
+                (TypeError, "duration", lambda: scene.decide("1")),
+                (TypeError, "margin", lambda: scene.decide(0, margin=b"1")),
                 (TypeError, "fmb", lambda: copy.copy(scene))):
             self.refused(error, start, call)
         self.assertEqual(scene.pair(0, 1, 0).verdict, fmb.OVERLAPPING)
