@@ -3,20 +3,10 @@
 #ifndef FMB_KERNEL_BOX_H
 #define FMB_KERNEL_BOX_H
 
+#define KERNEL_BOX
+
 #include "box_clip.h"
 #include "kernel_exact.h"
-
-/* The kind as traits of a pair. KERNEL_DRIFTS: a frame moves. */
-INLINE struct kernel_traits traits_of(enum kernel_kind kind)
-{
-    const bool face = kind & KERNEL_FACE, same = kind & KERNEL_SAME_SHAPE,
-               tetrahedron = kind & KERNEL_TETRAHEDRON;
-    return (struct kernel_traits){.dim = kind & KERNEL_3D ? 3 : 2,
-                                  .simplex = {same || (face && tetrahedron), tetrahedron || face},
-                                  .face = {face && same, face},
-                                  .drifts = (kind & KERNEL_DRIFTS) != 0,
-                                  .box = true};
-}
 
 /* Sets what is exact: exact, level and apart. */
 INLINE void set_exact(const struct kernel_traits traits, const struct frame_lanes frame[2],

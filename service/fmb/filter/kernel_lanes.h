@@ -13,11 +13,11 @@
  *
  * Macros that the includer of many.h defines select the job. None: the first pass, verdicts.
  * KERNEL_EXACT: the second pass (kernel_exact.h). KERNEL_TIMES: verdicts and times. The bits of the
- * last two are promised, and so are those of boxes, which boxes.h computes from steps 1 to 3. At
- * the end of this file KERNEL_FUNCTIONS defines one function for each kind of pair (dimension,
- * shapes, motion: kernel.h), with the traits as a constant. KERNEL_TABLE lists these functions in
- * the order of the kinds, in a table whose name ends in KERNEL_NAME. A file that defines
- * INLINED_NOT is neither inlined nor unrolled (inlined.h).
+ * last two are promised, and so are those of boxes (KERNEL_BOX), which boxes.h computes from steps
+ * 1 to 3. The includer defines one function for each kind of pair (dimension, shapes, motion:
+ * kernel.h), with the traits as a constant, by KERNEL_ALL at the end of this file. KERNEL_TABLE
+ * lists these functions in the order of the kinds, in a table whose name ends in KERNEL_NAME. A
+ * file that defines INLINED_NOT is neither inlined nor unrolled (inlined.h).
  *
  * Order of the headers; each includes only headers before it: slabs.h, pair_lanes.h (a pair in
  * lanes), slabs_lanes.h (one slab), slabs_2d.h and slabs_3d.h (all slabs), slabs_evaluate.h, this
@@ -40,9 +40,29 @@ enum { EXACT = 1 };
 #else
 enum { EXACT = 0 };
 #endif
-enum { ROUGH = !TIMES && !EXACT };
-/* The bits of these do not depend on the order of the pair. */
-enum { SWAP_INVARIANT = TIMES || EXACT };
+#ifdef KERNEL_BOX
+enum { BOX = 1 };
+#else
+enum { BOX = 0 };
+#endif
+
+/* The traits of a kind of pairs for the job of this file. Of a box, KERNEL_DRIFTS: a frame moves.
+ */
+INLINE struct kernel_traits traits_of(enum kernel_kind kind)
+{
+    const bool face = kind & KERNEL_FACE, same = kind & KERNEL_SAME_SHAPE,
+               tetrahedron = kind & KERNEL_TETRAHEDRON;
+    return (struct kernel_traits){.dim = kind & KERNEL_3D ? 3 : 2,
+                                  .simplex = {same || (face && tetrahedron), tetrahedron || face},
+                                  .face = {face && same, face},
+                                  .drifts = (kind & KERNEL_DRIFTS) != 0,
+                                  .axis_aligned = !BOX && kind & KERNEL_AXIS_ALIGNED,
+                                  .swap_invariant = TIMES || EXACT,
+                                  .times = TIMES,
+                                  .box = BOX,
+                                  .rough = !TIMES && !EXACT && !BOX,
+                                  .exact = EXACT};
+}
 
 /* ---- The gather ----
  *
@@ -337,93 +357,49 @@ INLINE void times_of(const struct pair_lanes *pair, const struct slabs_result *r
 
 /* ---- The table ----
  *
- * FUNCTION(name, traits) defines a function for a struct kernel_traits. */
+ * KERNEL_ALL(X, Y) expands to X(name, kind) for each kind of pairs of the job, and to Y(name, kind)
+ * for a kind with KERNEL_AXIS_ALIGNED whose function also serves the kind without it: kinds with
+ * faces, which are often parallel to something; and all kinds in the second pass, which always
+ * looks for zero normals. */
 
-enum kernel_shape { SHAPE_C, SHAPE_T, SHAPE_F }; /* cuboid, tetrahedron, face */
+#define KERNEL_SOLIDS(X, name, kind)            \
+    X(name##_cc, kind)                          \
+    X(name##_ct, ((kind) + KERNEL_TETRAHEDRON)) \
+    X(name##_tt, ((kind) + KERNEL_TETRAHEDRON + KERNEL_SAME_SHAPE))
+#define KERNEL_FACES(X, name, kind)                           \
+    X(name##_cf, ((kind) + KERNEL_FACE))                      \
+    X(name##_tf, ((kind) + KERNEL_FACE + KERNEL_TETRAHEDRON)) \
+    X(name##_ff, ((kind) + KERNEL_FACE + KERNEL_SAME_SHAPE))
 
-#define KERNEL_KIND(FUNCTION, name, dimension, a, b, drift, parallel)               \
-    FUNCTION(name, ((struct kernel_traits){.dim = dimension,                        \
-                                           .simplex = {a != SHAPE_C, b != SHAPE_C}, \
-                                           .face = {a == SHAPE_F, b == SHAPE_F},    \
-                                           .drifts = drift,                         \
-                                           .axis_aligned = parallel,                \
-                                           .swap_invariant = SWAP_INVARIANT,        \
-                                           .times = TIMES,                          \
-                                           .rough = ROUGH,                          \
-                                           .exact = EXACT}))
-#define KERNEL_SOLIDS(FUNCTION, name, dimension, drift, parallel)                  \
-    KERNEL_KIND(FUNCTION, name##_cc, dimension, SHAPE_C, SHAPE_C, drift, parallel) \
-    KERNEL_KIND(FUNCTION, name##_ct, dimension, SHAPE_C, SHAPE_T, drift, parallel) \
-    KERNEL_KIND(FUNCTION, name##_tt, dimension, SHAPE_T, SHAPE_T, drift, parallel)
-/* Kinds with faces, which are often parallel to something: one function with and without
- * KERNEL_AXIS_ALIGNED. */
-#define KERNEL_FACES(FUNCTION, name, drift, parallel)                      \
-    KERNEL_KIND(FUNCTION, name##_cf, 3, SHAPE_C, SHAPE_F, drift, parallel) \
-    KERNEL_KIND(FUNCTION, name##_tf, 3, SHAPE_T, SHAPE_F, drift, parallel) \
-    KERNEL_KIND(FUNCTION, name##_ff, 3, SHAPE_F, SHAPE_F, drift, parallel)
-#define KERNEL_DRIFTING(FUNCTION)                          \
-    KERNEL_SOLIDS(FUNCTION, plane_drifts, 2, 1, 0)         \
-    KERNEL_SOLIDS(FUNCTION, space_drifts, 3, 1, 0)         \
-    KERNEL_SOLIDS(FUNCTION, space_drifts_aligned, 3, 1, 1) \
-    KERNEL_FACES(FUNCTION, space_drifts, 1, 1)
-#define KERNEL_AT_REST(FUNCTION)                    \
-    KERNEL_SOLIDS(FUNCTION, plane, 2, 0, 0)         \
-    KERNEL_SOLIDS(FUNCTION, space, 3, 0, 0)         \
-    KERNEL_SOLIDS(FUNCTION, space_aligned, 3, 0, 1) \
-    KERNEL_FACES(FUNCTION, space, 0, 1)
-
-#define KERNEL_SOLID_ENTRIES(name, kind)                           \
-    [kind] = name##_cc, [(kind) + KERNEL_TETRAHEDRON] = name##_ct, \
-    [(kind) + KERNEL_TETRAHEDRON + KERNEL_SAME_SHAPE] = name##_tt
-#define KERNEL_FACE_ENTRIES(name, kind)                                                          \
-    [(kind) + KERNEL_FACE] = name##_cf, [(kind) + KERNEL_FACE + KERNEL_TETRAHEDRON] = name##_tf, \
-              [(kind) + KERNEL_FACE + KERNEL_SAME_SHAPE] = name##_ff
-#define KERNEL_DRIFTING_ENTRIES                                                \
-    KERNEL_SOLID_ENTRIES(plane_drifts, KERNEL_DRIFTS),                         \
-        KERNEL_SOLID_ENTRIES(space_drifts, KERNEL_3D + KERNEL_DRIFTS),         \
-        KERNEL_SOLID_ENTRIES(space_drifts_aligned,                             \
-                             KERNEL_3D + KERNEL_DRIFTS + KERNEL_AXIS_ALIGNED), \
-        KERNEL_FACE_ENTRIES(space_drifts, KERNEL_3D + KERNEL_DRIFTS),          \
-        KERNEL_FACE_ENTRIES(space_drifts, KERNEL_3D + KERNEL_DRIFTS + KERNEL_AXIS_ALIGNED)
-#define KERNEL_AT_REST_ENTRIES                                                \
-    KERNEL_SOLID_ENTRIES(plane, 0), KERNEL_SOLID_ENTRIES(space, KERNEL_3D),   \
-        KERNEL_SOLID_ENTRIES(space_aligned, KERNEL_3D + KERNEL_AXIS_ALIGNED), \
-        KERNEL_FACE_ENTRIES(space, KERNEL_3D),                                \
-        KERNEL_FACE_ENTRIES(space, KERNEL_3D + KERNEL_AXIS_ALIGNED)
+/* drifts: 0 or KERNEL_DRIFTS. */
+#define KERNEL_MOTION(X, Y, name, drifts)                                             \
+    KERNEL_SOLIDS(X, plane##name, drifts)                                             \
+    KERNEL_SOLIDS(X, space##name, KERNEL_3D + (drifts))                               \
+    KERNEL_SOLIDS(X, space_aligned##name, KERNEL_3D + KERNEL_AXIS_ALIGNED + (drifts)) \
+    KERNEL_FACES(Y, space##name, KERNEL_3D + KERNEL_AXIS_ALIGNED + (drifts))
+#define KERNEL_EXACT_MOTION(X, Y, name, drifts)                               \
+    KERNEL_SOLIDS(X, plane##name, drifts)                                     \
+    KERNEL_SOLIDS(Y, space##name, KERNEL_3D + KERNEL_AXIS_ALIGNED + (drifts)) \
+    KERNEL_FACES(Y, space##name, KERNEL_3D + KERNEL_AXIS_ALIGNED + (drifts))
 
 #if defined(KERNEL_TIMES)
-#define KERNEL_FUNCTIONS(FUNCTION) KERNEL_DRIFTING(FUNCTION)
-#define KERNEL_TABLE            \
-    {                           \
-        KERNEL_DRIFTING_ENTRIES \
-    }
+#define KERNEL_ALL(X, Y) KERNEL_MOTION(X, Y, _drifts, KERNEL_DRIFTS)
 #elif defined(KERNEL_EXACT)
-/* One function with and without KERNEL_AXIS_ALIGNED: the second pass always looks for zero normals.
- */
-#define KERNEL_FUNCTIONS(FUNCTION)                 \
-    KERNEL_SOLIDS(FUNCTION, plane, 2, 0, 0)        \
-    KERNEL_SOLIDS(FUNCTION, plane_drifts, 2, 1, 0) \
-    KERNEL_SOLIDS(FUNCTION, space, 3, 0, 1)        \
-    KERNEL_SOLIDS(FUNCTION, space_drifts, 3, 1, 1) \
-    KERNEL_FACES(FUNCTION, space, 0, 1)            \
-    KERNEL_FACES(FUNCTION, space_drifts, 1, 1)
-#define KERNEL_3D_ENTRIES(name, kind)                                         \
-    KERNEL_SOLID_ENTRIES(name, KERNEL_3D + (kind)),                           \
-        KERNEL_SOLID_ENTRIES(name, KERNEL_3D + KERNEL_AXIS_ALIGNED + (kind)), \
-        KERNEL_FACE_ENTRIES(name, KERNEL_3D + (kind)),                        \
-        KERNEL_FACE_ENTRIES(name, KERNEL_3D + KERNEL_AXIS_ALIGNED + (kind))
-#define KERNEL_TABLE                                                                       \
-    {                                                                                      \
-        KERNEL_SOLID_ENTRIES(plane, 0), KERNEL_SOLID_ENTRIES(plane_drifts, KERNEL_DRIFTS), \
-            KERNEL_3D_ENTRIES(space, 0), KERNEL_3D_ENTRIES(space_drifts, KERNEL_DRIFTS)    \
-    }
+#define KERNEL_ALL(X, Y)           \
+    KERNEL_EXACT_MOTION(X, Y, , 0) \
+    KERNEL_EXACT_MOTION(X, Y, _drifts, KERNEL_DRIFTS)
 #else
-#define KERNEL_FUNCTIONS(FUNCTION) KERNEL_AT_REST(FUNCTION) KERNEL_DRIFTING(FUNCTION)
-#define KERNEL_TABLE                                    \
-    {                                                   \
-        KERNEL_AT_REST_ENTRIES, KERNEL_DRIFTING_ENTRIES \
-    }
+#define KERNEL_ALL(X, Y)     \
+    KERNEL_MOTION(X, Y, , 0) \
+    KERNEL_MOTION(X, Y, _drifts, KERNEL_DRIFTS)
 #endif
+
+#define KERNEL_ENTRY(name, kind) [kind] = name,
+#define KERNEL_ENTRIES(name, kind) [kind] = name, [(kind) ^ KERNEL_AXIS_ALIGNED] = name,
+#define KERNEL_TABLE                             \
+    {                                            \
+        KERNEL_ALL(KERNEL_ENTRY, KERNEL_ENTRIES) \
+    }
 
 #define KERNEL_PASTE_(x, y) x##_##y
 #define KERNEL_PASTE(x, y) KERNEL_PASTE_(x, y)

@@ -51,13 +51,13 @@ INLINE void evaluate_lanes(const struct kernel_traits traits, const struct kerne
 
 #endif
 
-#define KERNEL_FUNCTION(name, traits)                               \
+#define KERNEL_FUNCTION(name, kind)                                 \
     static void name(const struct kernel_call *call)                \
     {                                                               \
         for (size_t first = 0; first < call->count; first += LANES) \
-            evaluate_lanes(traits, call, first);                    \
+            evaluate_lanes(traits_of(kind), call, first);           \
     }
 
-KERNEL_FUNCTIONS(KERNEL_FUNCTION)
+KERNEL_ALL(KERNEL_FUNCTION, KERNEL_FUNCTION)
 
 kernel_function *const KERNEL_PASTE(kernel, KERNEL_NAME)[KERNEL_KINDS] = KERNEL_TABLE;

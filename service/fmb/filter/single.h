@@ -110,13 +110,13 @@ INLINE enum slabs_outcome evaluate_single(struct kernel_traits traits, const str
     return outcome_of(traits, outcomes_of(&pair, &result));
 }
 
-#define KERNEL_FUNCTION(name, traits)                                                          \
+#define KERNEL_FUNCTION(name, kind)                                                            \
     static enum slabs_outcome name(const struct fmb_prepared *a, const struct fmb_prepared *b, \
                                    double duration)                                            \
     {                                                                                          \
-        return evaluate_single(traits, a, b, duration);                                        \
+        return evaluate_single(traits_of(kind), a, b, duration);                               \
     }
 
-KERNEL_FUNCTIONS(KERNEL_FUNCTION)
+KERNEL_ALL(KERNEL_FUNCTION, KERNEL_FUNCTION)
 
 kernel_single_function *const KERNEL_PASTE(kernel, KERNEL_NAME)[KERNEL_KINDS] = KERNEL_TABLE;
