@@ -199,6 +199,9 @@ static void read_origin(struct reader *reader, const struct node *parent, struct
     *out = POSE_IDENTITY;
     if (!node)
         return;
+    for (const char **at = node->attributes; *at; at += 2) /* quat_xyzw of URDF 1.1, and others */
+        if (strcmp(at[0], "xyz") != 0 && strcmp(at[0], "rpy") != 0)
+            refuse(reader, node->line, "<origin>: %.64s is not supported: give xyz and rpy", at[0]);
     read_numbers(reader, node, "xyz", false, 3, out->p);
     read_numbers(reader, node, "rpy", false, 3, rpy);
     for (int i = 0; i < 3; i++)

@@ -371,6 +371,7 @@ triangle() {
     shape '<origin rpy="1e9 0 0"/><geometry><sphere radius="1"/></geometry>' '<origin>: rpy is beyond 1048576 radians'
     shape '<geometry><mesh/></geometry>' '<mesh> has no filename'
     shape '<geometry><mesh filename=""/></geometry>' '<mesh>: filename is empty'
+    shape '<origin xyz="0 0 0" quat_xyzw="0 0 1 1"/><geometry><sphere radius="1"/></geometry>' '<origin>: quat_xyzw is not supported: give xyz and rpy'
     shape '<origin xyz=""/><geometry><sphere radius="1"/></geometry>' '<origin>: xyz is empty'
     joint() {
         robot "<link name='a'>$box</link><link name='b'/>
