@@ -4,7 +4,6 @@
 #include "args.h"
 #include "complain.h"
 #include "joints.h"
-#include "number.h"
 #include "robot_scene.h"
 #include "scene_json.h"
 
@@ -107,44 +106,37 @@ static bool print_rows(struct robot_scene *scene, struct joint_table *table, boo
     return good && row != JOINT_ROW_BAD;
 }
 
-static bool print_table(struct robot_scene *scene, struct joints *joints, const char *path)
+static bool print_table(const struct scene_options *options, struct joints *joints,
+                        struct robot_scene *scene)
 {
     struct joint_table table;
-    const bool good = joint_table_open(path, joints, &table) && joints_check(joints) &&
-                      print_rows(scene, &table, false) && joint_table_rewind(&table) &&
-                      print_rows(scene, &table, true);
+    bool good = joint_table_open(options->table, joints, &table) && joints_check(joints) &&
+                print_rows(scene, &table, false) && joint_table_rewind(&table);
+    if (good) {
+        robot_scene_report(scene, options->body.sides);
+        good = print_rows(scene, &table, true);
+    }
     joint_table_close(&table);
     return good;
-}
-
-static void report_outside(const struct robot *robot, const struct robot_scene *scene, int sides)
-{
-    char text[NUMBER_TEXT_MAX];
-    if (scene->outside > 0) /* rounded up */
-        complain(
-            "%s: hulls of %d sides enclose its cylinders and spheres, and extend beyond them by at "
-            "most %s",
-            robot->path, sides, number_short(scene->outside * (1 + 1e-5), text));
 }
 
 static bool print_robot(const struct scene_options *options, const struct robot *robot,
                         struct robot_scene *scene)
 {
     struct joints joints;
-    bool good = robot_scene_make(robot, &options->body, scene) &&
+    bool good = joints_open(robot, options->joints, &joints) &&
+                robot_scene_make(robot, &options->body, scene) &&
                 (!options->world || robot_scene_add_world(scene, options->world));
-    if (!good)
-        return false;
     if (options->margin >= 0)
         scene->owner.scene.margin = options->margin;
-    report_outside(robot, scene, options->body.sides);
-    good = joints_open(robot, options->joints, &joints);
     if (good && options->table) {
-        good = print_table(scene, &joints, options->table);
+        good = print_table(options, &joints, scene);
     } else if (good) {
         good = joints_check(&joints) && robot_scene_place(scene, joints.value, 0, robot->path);
-        if (good)
+        if (good) {
+            robot_scene_report(scene, options->body.sides);
             scene_json_write(stdout, &scene->owner);
+        }
     }
     joints_clear(&joints);
     return good;

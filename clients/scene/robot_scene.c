@@ -3,6 +3,7 @@
 #include "allocate.h"
 #include "complain.h"
 #include "json.h"
+#include "number.h"
 #include "query.h"
 
 #include <errno.h>
@@ -31,6 +32,17 @@ static void report_empty(const struct robot *robot)
         snprintf(more, sizeof more, ", and %zu more", count - NAMED);
     if (count > 0)
         complain("%s: links without <collision> have no body: %s%s", robot->path, names, more);
+}
+
+void robot_scene_report(const struct robot_scene *scene, int sides)
+{
+    char text[NUMBER_TEXT_MAX];
+    report_empty(scene->robot);
+    if (scene->outside > 0) /* rounded up */
+        complain(
+            "%s: hulls of %d sides enclose its cylinders and spheres, and extend beyond them by at "
+            "most %s",
+            scene->robot->path, sides, number_short(scene->outside * (1 + 1e-5), text));
 }
 
 /* Ignores each pair of a link's body and the body of the nearest link above it that has one. */
@@ -83,8 +95,6 @@ bool robot_scene_make(const struct robot *robot, const struct robot_body_options
     }
     if (out->robot_bodies == 0)
         complain("%s: no link has a <collision> (<visual> is not read)", robot->path);
-    else
-        report_empty(robot);
     ignore_neighbours(out);
     owner->scene.placements = out->placements;
     owner->scene.placement_count = out->robot_bodies;

@@ -8,8 +8,8 @@ struct robot_scene {
     /* The bodies of links come first, in the order of the file; then those of the world. Neighbours
      * are ignored: a link with a body, and the nearest one above it that has a body. */
     struct owned_scene owner;
-    double outside; /* as of robot_body() */
     /* Private. */
+    double outside; /* as of robot_body() */
     const struct robot *robot;
     struct fmb_placement *placements; /* of the scene */
     unsigned *link;                   /* [robot_bodies] */
@@ -20,11 +20,15 @@ struct robot_scene {
 };
 
 /* Makes a scene at rest of a robot; its bodies have the ids from 1 on. Links without collision
- * elements have no body; these are reported, in one line. Returns false after an error, which was
- * reported. The caller passes the scene to robot_scene_clear() in either case. */
+ * elements have no body. Returns false after an error, which was reported. The caller passes the
+ * scene to robot_scene_clear() in either case. */
 bool robot_scene_make(const struct robot *robot, const struct robot_body_options *options,
                       struct robot_scene *out);
 void robot_scene_clear(struct robot_scene *scene);
+
+/* Reports the links without a body, and how far the hulls of cylinders and spheres extend beyond
+ * them, each in one line. In: sides: of these hulls. */
+void robot_scene_report(const struct robot_scene *scene, int sides);
 
 /* Adds the bodies, ignored pairs, duration and margin of a file of one scene in 3D. A body whose
  * id is that of a link gets another one, which is reported. To be called once at most. */

@@ -88,6 +88,9 @@ triangle() {
     said 'fmb: robot.urdf: links without <collision> have no body: l1, l2, l3, l4, l5, l6, l7, l8, and 1 more'
     shows '[.bodies[].name, .ignore]'
     is '["a","b",[[1,2]]]'
+    refused '--joints: ' robot.urdf --joints none=1 # that line alone
+    echo none > t.csv
+    refused 't.csv: line 1: ' robot.urdf --joints-csv t.csv
 }
 
 @test "a box keeps its numbers; beside others, if rotated, it is a cuboid" {
