@@ -1,52 +1,42 @@
 # The benchmark, in small: it runs, and the report can be made of what it writes. Nothing here is
 # about time.
 
+load ../ran
+
 setup() {
     cd "$BATS_TEST_DIRNAME/../.." || return
     BENCH=${FMB_BUILD:-build}/bench/bench
     JSON=$BATS_TEST_TMPDIR/report.json
 }
 
-# Certified verdicts are right; the other methods are right about random pairs, not about all; what
-# other libraries have here is nearly right about random pairs.
-contacts() {
-    jq -e '[.contacts[] | [.dim, .moving, .shapes, .pairs_are]] | unique | length == 140' "$JSON"
-    jq -e 'all(.contacts[]; [.methods[].name] | contains(["batch", "batch+box", "single", "query",
-                                                          "sat", "seidel"]))' "$JSON"
-    jq -e '[.contacts[] | select([.methods[].name] | index("gpr")) | [.dim, .moving, .shapes]]
-           | length == 11 and unique == [[3, false, "TT"]]' "$JSON"
-    jq -e 'all(.contacts[].methods[]; .ns > 0 and .wrong >= 0 and .wrong <= 1)' "$JSON"
-    jq -e 'all(.contacts[].methods[] | select(.name | test("batch|single|query")); .wrong == 0)' "$JSON"
-    jq -e '[.contacts[] | select(.pairs_are | startswith("random")) | .methods[]]
-           | all(.[] | select(.name == ("sat", "seidel", "gpr")); .wrong == 0) and
-             all(.[]; .wrong < 0.05)' "$JSON"
-    jq -e 'any(.contacts[].methods[] | select(.name == "sat"); .wrong > 0)' "$JSON"
-}
-
-@test "bench --quick measures every section, in every cell, by every method" {
+@test "bench --quick measures every section, in every cell, by every method; the report is made of that" {
     run "$BENCH" --quick --json "$JSON"
     [ "$status" = 0 ]
-    jq -e 'all(.cells, .inverse, .order, .hybrid, .box, .article, .instructions, .grids, .contacts,
+    holds "$JSON" 'all(.cells, .inverse, .order, .hybrid, .box, .article, .instructions, .grids, .contacts,
                    .poses, .rest, .gaps, .margins, .hulls, .broad, .worst;
-               length > 0)' "$JSON"
-    jq -e '[.cells[] | [.dim, .moving, .shapes, .contact]] | unique | length == 32' "$JSON"
-    jq -e 'all(.cells[]; [.methods[].name] | contains(["batch", "single", "query", "fmb", "sat",
-                                                       "exact"]))' "$JSON"
-    jq -e 'all(.cells[].methods[]; .ns > 0 and .low <= .ns and .ns <= .high)' "$JSON"
-    jq -e '[.poses[] | [.dim, .moving, .shapes, .contact]] | unique | length == 72' "$JSON"
-    jq -e '.unsure.unsure < 5' "$JSON"
-    contacts
-    jq -e '[.gaps[] | [.kind, .gap]] | unique | length == 32' "$JSON"
-    jq -e 'all(.gaps[]; [.runs[].name] | contains(["batch", "single", "query"]))' "$JSON"
-    jq -e 'any(.margins[]; .near > 0)' "$JSON"
-    jq -e '[.hulls[].pairs_are] | unique | length == 48' "$JSON"
-    jq -e 'all(.hulls[]; [.methods[].name] | contains(["batch", "query", "query+box",
-                                                       "query+gap"]))' "$JSON"
-    jq -e '(.growth.bodies | length > 2) and (.growth.pairs | length > 2)' "$JSON"
-}
-
-@test "the report is made of what the benchmark writes" {
-    "$BENCH" --quick --json "$JSON" > "$BATS_TEST_TMPDIR/table"
+               length > 0)' \
+        '[.cells[] | [.dim, .moving, .shapes, .contact]] | unique | length == 32' \
+        'all(.cells[]; [.methods[].name] | contains(["batch", "single", "query", "fmb", "sat", "exact"]))' \
+        'all(.cells[].methods[]; .ns > 0 and .low <= .ns and .ns <= .high)' \
+        '[.poses[] | [.dim, .moving, .shapes, .contact]] | unique | length == 72' \
+        '.unsure.unsure < 5' \
+        '[.gaps[] | [.kind, .gap]] | unique | length == 32' \
+        'all(.gaps[]; [.runs[].name] | contains(["batch", "single", "query"]))' \
+        'any(.margins[]; .near > 0)' \
+        '[.hulls[].pairs_are] | unique | length == 48' \
+        'all(.hulls[]; [.methods[].name] | contains(["batch", "query", "query+box", "query+gap"]))' \
+        '(.growth.bodies | length > 2) and (.growth.pairs | length > 2)'
+    # Certified verdicts are right; the other methods are right about random pairs, not about all; what
+    # other libraries have here is nearly right about random pairs.
+    holds "$JSON" '[.contacts[] | [.dim, .moving, .shapes, .pairs_are]] | unique | length == 140' \
+        'all(.contacts[]; [.methods[].name] | contains(["batch", "batch+box", "single", "query", "sat", "seidel"]))' \
+        '[.contacts[] | select([.methods[].name] | index("gpr")) | [.dim, .moving, .shapes]]
+            | length == 11 and unique == [[3, false, "TT"]]' \
+        'all(.contacts[].methods[]; .ns > 0 and .wrong >= 0 and .wrong <= 1)' \
+        'all(.contacts[].methods[] | select(.name | test("batch|single|query")); .wrong == 0)' \
+        '[.contacts[] | select(.pairs_are | startswith("random")) | .methods[]]
+            | all(.[] | select(.name == ("sat", "seidel", "gpr")); .wrong == 0) and all(.[]; .wrong < 0.05)' \
+        'any(.contacts[].methods[] | select(.name == "sat"); .wrong > 0)'
     tests/report/report.sh "$JSON" tests/report/fixture/accuracy.json "$BATS_TEST_TMPDIR/report"
     grep -q '3D static CC' "$BATS_TEST_TMPDIR/report/index.html"
 }

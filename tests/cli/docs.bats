@@ -1,24 +1,40 @@
 # The pages of documentation (*.md): what they link to and name is there.
 
+# Of all pages, without blocks of code, a line each of page and text: what stands between backticks, what
+# is linked to, and the anchors of headings, as GitHub makes them.
+setup_file() {
+    cd "$BATS_TEST_DIRNAME/../.." || return
+    find . -name '*.md' -not -path './build/*' -not -path './.git/*' > "$BATS_FILE_TMPDIR/pages"
+    : > "$BATS_FILE_TMPDIR/anchors"
+    # shellcheck disable=SC2046
+    awk -v to="$BATS_FILE_TMPDIR/" '
+        function each(pattern, before, after, file,   line, text) {
+            for (line = $0; match(line, pattern); line = substr(line, RSTART + RLENGTH)) {
+                text = substr(line, RSTART + before, RLENGTH - before - after)
+                print FILENAME "\t" text > (to file)
+            }
+        }
+        FNR == 1 { code = 0 }
+        /^```/ { code = !code; next }
+        code { next }
+        { each("`[^`]*`", 1, 1, "quoted"); each("\\]\\([^)]*\\)", 2, 1, "links") }
+        sub(/^##* /, "") {
+            $0 = tolower($0)
+            gsub(/ /, "-")
+            gsub(/[^a-z0-9_-]/, "")
+            print FILENAME "\t" $0 > (to "anchors")
+        }' $(cat "$BATS_FILE_TMPDIR/pages")
+}
+
 setup() {
     cd "$BATS_TEST_DIRNAME/../.." || return
-    mapfile -t pages < <(find . -name '*.md' -not -path './build/*' -not -path './.git/*')
+    mapfile -t pages < "$BATS_FILE_TMPDIR/pages"
     [ ${#pages[@]} -gt 5 ]
 }
 
-# prose PAGE: without blocks of code.
-prose() {
-    sed '/^```/,/^```/d' "$1"
-}
-
-# quoted PAGE: what stands between backticks, a line each.
+# quoted PATTERN: what stands between backticks, and matches: page and text.
 quoted() {
-    prose "$1" | grep -o '`[^`]*`' | tr -d '`'
-}
-
-# anchors PAGE: of its headings, as GitHub makes them.
-anchors() {
-    prose "$1" | sed -n 's/^##* //p' | tr -d '`' | tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9\n_-'
+    grep -P "\t$1\$" "$BATS_FILE_TMPDIR/quoted"
 }
 
 # exists PATH, where * stands for anything
@@ -28,62 +44,48 @@ exists() {
 
 # Complains of each line of standard input, which has to be empty.
 none() {
-    local count=0
-    while read -r line; do
-        echo "$line"
-        count=$((count + 1))
-    done
-    [ "$count" = 0 ]
+    ! grep .
 }
 
 @test "every link within the tree leads to a file, and to a heading of it" {
-    for page in "${pages[@]}"; do
-        prose "$page" | grep -o '](\([^)]*\))' | sed 's/^](//; s/)$//' | grep -v '^https\?:' |
-            while IFS='#' read -r path anchor; do
-                target=${path:+$(dirname "$page")/$path}
-                target=${target:-$page}
-                if ! exists "$target"; then
-                    echo "$page: no $path"
-                elif [ "$anchor" ] && ! anchors "$target" | grep -qxF "$anchor"; then
-                    echo "$page: no heading #$anchor in $target"
-                fi
-            done
-    done | none
+    [ "$(wc -l < "$BATS_FILE_TMPDIR/links")" -gt 20 ]
+    while IFS=$'\t' read -r page path; do
+        case $path in http:* | https:*) continue ;; esac
+        anchor=${path#"${path%%#*}"}
+        path=${path%%#*} anchor=${anchor#\#}
+        target=${path:+${page%/*}/$path}
+        target=${target:-$page}
+        if ! exists "$target"; then
+            echo "$page: no $path"
+        elif [ "$anchor" ] && ! grep -qxF "./$(realpath --relative-to=. "$target")"$'\t'"$anchor" "$BATS_FILE_TMPDIR/anchors"; then
+            echo "$page: no heading #$anchor in $target"
+        fi
+    done < "$BATS_FILE_TMPDIR/links" | none
 }
 
 # Seen from the page, or from the top. Not those that are built, or installed.
 @test "every path in backticks exists" {
-    for page in "${pages[@]}"; do
-        quoted "$page" | grep -x '\.\?[A-Za-z0-9_*.-]*/[A-Za-z0-9_*./-]*' |
-            grep -v '^\(build\|lib/systemd\|share\)/' |
-            while read -r path; do
-                exists "$path" || exists "$(dirname "$page")/$path" || echo "$page: no $path"
-            done
-    done | none
+    quoted '\.?[A-Za-z0-9_*.-]*/[A-Za-z0-9_*./-]*' | grep -vP '\t(build|lib/systemd|share)/' |
+        while IFS=$'\t' read -r page path; do
+            exists "$path" || exists "${page%/*}/$path" || echo "$page: no $path"
+        done | none
 }
 
 @test "every source file in backticks exists in some folder" {
-    for page in "${pages[@]}"; do
-        quoted "$page" | grep -x '[A-Za-z0-9_]*\.\(c\|h\|js\|sh\|bats\|lcm\|in\)' |
-            while read -r name; do
-                [ "$(find service msgs clients tests -name "$name" | head -n 1)" ] ||
-                    echo "$page: no $name"
-            done
-    done | none
+    find service msgs clients tests -type f -printf '%f\n' > "$BATS_TEST_TMPDIR/files"
+    quoted '[A-Za-z0-9_]*\.(c|h|js|sh|bats|lcm|in)' |
+        awk -F '\t' 'NR == FNR { there[$0] = 1; next } !($2 in there)' "$BATS_TEST_TMPDIR/files" - | none
 }
 
 @test "every function in backticks exists" {
-    for page in "${pages[@]}"; do
-        quoted "$page" | grep -x '[A-Za-z0-9_]*()' | tr -d '()' |
-            while read -r name; do
-                grep -rqw --include='*.[ch]' --include='*.js' "$name" service msgs clients ||
-                    echo "$page: no $name()"
-            done
-    done | none
+    quoted '[A-Za-z0-9_]*\(\)' | tr -d '()' > "$BATS_TEST_TMPDIR/quoted"
+    cut -f 2 "$BATS_TEST_TMPDIR/quoted" | sort -u > "$BATS_TEST_TMPDIR/names"
+    grep -rhowFf "$BATS_TEST_TMPDIR/names" --include='*.[ch]' --include='*.js' service msgs clients |
+        awk -F '\t' 'NR == FNR { there[$0] = 1; next } !($2 in there)' - "$BATS_TEST_TMPDIR/quoted" | none
 }
 
 @test "every suite is in the table of tests/README.md" {
-    quoted tests/README.md | sort -u > "$BATS_TEST_TMPDIR/quoted"
+    quoted '.*' | sed -n 's|^./tests/README.md\t||p' | sort -u > "$BATS_TEST_TMPDIR/quoted"
     (cd tests && printf '%s\n' unit/test_*.c cli/*.bats system/*.bats fuzz/*.bats deb/*.bats) |
         grep -vxFf "$BATS_TEST_TMPDIR/quoted" | none
 }
@@ -96,11 +98,10 @@ none() {
 @test "every target of make in backticks exists" {
     # What make knows; it makes nothing, as there is no such target.
     MAKEFLAGS='' make -npq MODE=debug no-such-target > "$BATS_TEST_TMPDIR/known" 2> /dev/null || true
-    for page in "${pages[@]}"; do
-        { quoted "$page"; sed -n '/^```sh/,/^```$/s/ *#.*//p' "$page"; } |
-            sed -n 's/^make //p' | tr ' ' '\n' | grep -x '[a-z][a-z-]*' | sort -u |
-            while read -r target; do
-                grep -q "^$target:" "$BATS_TEST_TMPDIR/known" || echo "$page: no target $target"
-            done
-    done | none
+    {
+        quoted 'make .*' | cut -f 2
+        sed -n '/^```sh/,/^```$/s/ *#.*//p' "${pages[@]}"
+    } | sed -n 's/^make //p' | tr ' ' '\n' | grep -x '[a-z][a-z-]*' | sort -u > "$BATS_TEST_TMPDIR/targets"
+    [ "$(wc -l < "$BATS_TEST_TMPDIR/targets")" -gt 5 ]
+    sed -n 's/^\([a-z][a-z-]*\):.*/\1/p' "$BATS_TEST_TMPDIR/known" | grep -vxFf - "$BATS_TEST_TMPDIR/targets" | none
 }

@@ -1,6 +1,6 @@
 # fmb log: what event logs are said to hold, good ones and broken ones; exit codes.
 
-load ran
+load ../ran
 
 setup() {
     FMB=${FMB_BUILD:-build}/fmb

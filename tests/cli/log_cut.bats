@@ -1,7 +1,6 @@
 # fmb log cut: what is typed, what is printed, exit codes; and what fmb replay says of the cuts.
 
-bats_require_minimum_version 1.5.0
-
+load ../ran
 load split
 
 setup() {

@@ -1,6 +1,6 @@
 # fmb log results: the rows of a log are the answers that are in it, whatever else is.
 
-load ran
+load ../ran
 
 setup() {
     build=${FMB_BUILD:-build}

@@ -1,7 +1,6 @@
 # fmb log scene: a query of a log, as a scene to decide again.
 
-bats_require_minimum_version 1.5.0
-
+load ../ran
 load split
 
 setup() {

@@ -1,6 +1,7 @@
 # The logs of the regression set: made here again to the byte, whatever compiler and instruction set,
 # they are good event logs of LCM, and hold what they are there for.
 
+load ../ran
 load ../logs/set
 
 setup() {
@@ -49,72 +50,68 @@ capped_at() {
 @test "LCM's own reader reads each to its end, and each event that lcm-gen should decode" {
     for log in tests/logs/*.log; do
         "$DESCRIBE" "$log" > "$BATS_TEST_TMPDIR/events"
-        jq -es '[.[].event] == [range(length)] and ([.[].utime] | . == sort)' "$BATS_TEST_TMPDIR/events"
-        jq -es '[.[] | select(.channel | endswith("_RESULT"))] | length > 0 and all(has("status"))' \
-            "$BATS_TEST_TMPDIR/events"
+        holds -s "$BATS_TEST_TMPDIR/events" '[.[].event] == [range(length)] and ([.[].utime] | . == sort)' \
+            '[.[] | select(.channel | endswith("_RESULT"))] | length > 0 and all(has("status"))'
     done
 }
 
 @test "the set holds all verdicts, methods and statuses, of pairs and of scenes" {
     describe_all > "$BATS_TEST_TMPDIR/events"
-    pairs='select(.channel == "FMB_PAIR_RESULT")'
-    scenes='select(.channel == "FMB_SCENE_RESULT")'
-    unique() { jq -cs "[.[] | $1] | unique" "$BATS_TEST_TMPDIR/events"; }
-    [ "$(unique "$pairs.verdicts[]")" = '[0,1,2,3]' ]
-    [ "$(unique "$scenes.verdicts[]")" = '[0,1,2,3]' ]
-    [ "$(unique "$pairs.method")" = '[0,1,2,3,4]' ]
-    [ "$(unique "$scenes.method")" = '[0,1,2,3,4]' ]
-    # All but NOT_SUPPORTED, which this version does not give, BAD_ORIENTATION and BAD_SIZE.
-    [ "$(unique 'select(.status).status')" = '[0,1,2,3,4,5,6,7,8,9,10,11,12,13,15,18,19]' ]
-    [ "$(unique "$pairs | select(.certificate > 0) | .verdicts[]")" = '[1,2,3]' ]
-    [ "$(unique "$pairs | select(.boxes > 0) | .boxes")" = '[4,6]' ]
-    [ "$(unique "$scenes | select(.times > 0 and .boxes > 0) | .status")" = '[0]' ]
-    # Gaps of all verdicts; and pairs that are named since they are near.
-    [ "$(unique "$pairs | select(.gaps == 2) | [.verdicts[0], .witnesses]")" = '[[1,5],[1,7],[2,0],[3,0]]' ]
-    [ "$(unique "$scenes | select(.pairs > 0 and .gaps > 0) | .verdicts[]")" = '[1,2,3]' ]
-    [ "$(unique "$scenes | select(.pairs == 0 and .gaps > 0) | .verdicts[]")" = '[1,2,3]' ]
+    pairs='.[] | select(.channel == "FMB_PAIR_RESULT")'
+    scenes='.[] | select(.channel == "FMB_SCENE_RESULT")'
+    # All but NOT_SUPPORTED, which this version does not give, BAD_ORIENTATION and BAD_SIZE; gaps of all
+    # verdicts, and pairs that are named since they are near.
+    holds -s "$BATS_TEST_TMPDIR/events" "[$pairs.verdicts[]] | unique == [0,1,2,3]" \
+        "[$scenes.verdicts[]] | unique == [0,1,2,3]" \
+        "[$pairs.method] | unique == [0,1,2,3,4]" \
+        "[$scenes.method] | unique == [0,1,2,3,4]" \
+        '[.[] | select(.status).status] | unique == [0,1,2,3,4,5,6,7,8,9,10,11,12,13,15,18,19]' \
+        "[$pairs | select(.certificate > 0) | .verdicts[]] | unique == [1,2,3]" \
+        "[$pairs | select(.boxes > 0) | .boxes] | unique == [4,6]" \
+        "[$scenes | select(.times > 0 and .boxes > 0) | .status] | unique == [0]" \
+        "[$pairs | select(.gaps == 2) | [.verdicts[0], .witnesses]] | unique == [[1,5],[1,7],[2,0],[3,0]]" \
+        "[$scenes | select(.pairs > 0 and .gaps > 0) | .verdicts[]] | unique == [1,2,3]" \
+        "[$scenes | select(.pairs == 0 and .gaps > 0) | .verdicts[]] | unique == [1,2,3]"
 }
 
 @test "the set has late, early and missing results, restarts and parallel services" {
     "$DESCRIBE" tests/logs/foreign.log > "$BATS_TEST_TMPDIR/events"
-    jq -es 'any(.[]; .channel == "LAB_FMB_PAIR_RESULT")' "$BATS_TEST_TMPDIR/events"
-    [ "$(jq -s '[.[].channel] | unique | length' "$BATS_TEST_TMPDIR/events")" -gt 12 ]
     # The first of all is the result of a query from before.
-    [ "$(head -n 1 "$BATS_TEST_TMPDIR/events" | jq -r .channel)" = FMB_PAIR_RESULT ]
+    holds -s "$BATS_TEST_TMPDIR/events" 'any(.[]; .channel == "LAB_FMB_PAIR_RESULT")' \
+        '[.[].channel] | unique | length > 12' '.[0].channel == "FMB_PAIR_RESULT"'
 
     "$DESCRIBE" tests/logs/clients.log > "$BATS_TEST_TMPDIR/events"
-    jq -es '[.[] | .server // empty] | unique == [500, 501, 502, 503, 600]' "$BATS_TEST_TMPDIR/events"
-    jq -es 'any(.[]; .channel == "FMB_DEFINITION")' "$BATS_TEST_TMPDIR/events"
-    # Of two services one holds a body, and the other one does not; then both.
-    jq -es '[.[] | select(.server == 503 or .server == 600)] | group_by([.client, .number])
-        | map(map(.status)) | unique | contains([[0,1]]) and contains([[0,0]])' "$BATS_TEST_TMPDIR/events"
-    # One answered thrice, one turned away twice and then answered.
-    jq -es '[.[] | select(.channel == "FMB_PAIR_RESULT" and .server == 500)]
-        | group_by([.client, .number]) | map(map(.status)) | unique
-        | contains([[0,0,0]]) and contains([[2,2,0]])' "$BATS_TEST_TMPDIR/events"
+    # Of two services one holds a body, and the other one does not; then both. One answered thrice, one
+    # turned away twice and then answered.
+    holds -s "$BATS_TEST_TMPDIR/events" '[.[] | .server // empty] | unique == [500, 501, 502, 503, 600]' \
+        'any(.[]; .channel == "FMB_DEFINITION")' \
+        '[.[] | select(.server == 503 or .server == 600)] | group_by([.client, .number])
+            | map(map(.status)) | unique | contains([[0,1]]) and contains([[0,0]])' \
+        '[.[] | select(.channel == "FMB_PAIR_RESULT" and .server == 500)]
+            | group_by([.client, .number]) | map(map(.status)) | unique
+            | contains([[0,0,0]]) and contains([[2,2,0]])'
 }
 
 @test "an answer that exceeds a message continues in the next one" {
     "$DESCRIBE" tests/logs/crowd.log > "$BATS_TEST_TMPDIR/events"
     # Full to the last contact, which takes 53 bytes.
-    jq -es 'any(.[]; .size > 63600 and .size <= 63900)' "$BATS_TEST_TMPDIR/events"
-    jq -es '[.[] | .end // empty] | (map(select(. == 9730)) | length == 1) and (max == 9730)
-        and any(. > 0 and . < 9730 and . > 4000)' "$BATS_TEST_TMPDIR/events"
+    holds -s "$BATS_TEST_TMPDIR/events" 'any(.[]; .size > 63600 and .size <= 63900)' \
+        '[.[] | .end // empty] | (map(select(. == 9730)) | length == 1) and (max == 9730)
+            and any(. > 0 and . < 9730 and . > 4000)'
 }
 
 @test "a blast has the number of queries requested, and all have results" {
     "$GENERATE" --blast pairs 300 --box "$BATS_TEST_TMPDIR/blast.log"
     "$DESCRIBE" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
-    jq -es '[.[] | select(.status == 0)] | length == 300
+    holds -s "$BATS_TEST_TMPDIR/events" '[.[] | select(.status == 0)] | length == 300
         and ([.[].verdicts[0]] | unique == [1, 3])
-        and ([.[].boxes] | unique == [0, 4, 6])' "$BATS_TEST_TMPDIR/events"
-    jq -es 'length == 600' "$BATS_TEST_TMPDIR/events"
+        and ([.[].boxes] | unique == [0, 4, 6])' 'length == 600'
 
     "$GENERATE" --blast scenes 2 "$BATS_TEST_TMPDIR/blast.log"
     "$DESCRIBE" "$BATS_TEST_TMPDIR/blast.log" > "$BATS_TEST_TMPDIR/events"
-    jq -es '[.[] | select(.status == 0) | .verdicts] | length == 2 and (.[1] | length == 13828)
-        and ([.[1][] | select(. == 3)] | length > 3000 and length < 12000)' "$BATS_TEST_TMPDIR/events"
-    jq -es 'all(.[]; .channel != "FMB_SCENE_QUERY" or .size > 63800)' "$BATS_TEST_TMPDIR/events"
+    holds -s "$BATS_TEST_TMPDIR/events" '[.[] | select(.status == 0) | .verdicts] | length == 2
+        and (.[1] | length == 13828) and ([.[1][] | select(. == 3)] | length > 3000 and length < 12000)' \
+        'all(.[]; .channel != "FMB_SCENE_QUERY" or .size > 63800)'
 }
 
 @test "a blast has the dimension, the motion and the form requested" {

@@ -1,5 +1,7 @@
 # The pages of the manual and the completion for bash: both come from --help.
 
+load ../ran
+
 # commands WORD...: those that its help lists, a line each, with those that they have; and itself.
 commands() {
     echo "$*"

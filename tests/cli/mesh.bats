@@ -1,7 +1,7 @@
 # fmb mesh: what is typed, what is printed, exit codes. What is true of meshes is tested in
 # tests/unit/test_mesh_intersect.c.
 
-load ran
+load ../ran
 
 setup() {
     local build=${FMB_BUILD:-build}

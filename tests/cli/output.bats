@@ -1,7 +1,7 @@
 # The files that commands write: no input is overwritten; a log, or a file of another kind, only with
 # --force; a command that fails leaves no file. The rules themselves: tests/unit/test_output.c.
 
-load ran
+load ../ran
 
 setup() {
     local build

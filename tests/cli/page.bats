@@ -2,8 +2,7 @@
 # opens the pages, clicks and presses keys in them (tests/page/drive.js); without Chromium those tests
 # are skipped.
 
-bats_require_minimum_version 1.5.0
-
+load ../ran
 load ../page/chromium
 
 hostile='<b>x</b></script><script>alert(1)</script><!--'

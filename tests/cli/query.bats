@@ -1,6 +1,6 @@
 # fmb query --local, and the command around it: what is typed, what is printed, exit codes.
 
-load ran
+load ../ran
 
 setup() {
     FMB=${FMB_BUILD:-build}/fmb

@@ -1,6 +1,6 @@
 # The options of fmb record.
 
-bats_require_minimum_version 1.5.0
+load ../ran
 
 setup() {
     FMB=${FMB_BUILD:-build}/fmb

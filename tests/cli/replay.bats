@@ -1,7 +1,7 @@
 # fmb replay: what is typed, what is printed, exit codes; on logs that are made here, and spoiled by
 # edit-log in one way each.
 
-load ran
+load ../ran
 
 setup_file() {
     cd "$BATS_FILE_TMPDIR" || return
@@ -33,13 +33,9 @@ replay() {
     [ "${#lines[@]}" = 1 ]
 }
 
-# counts EXPRESSION: jq says true of the report.
+# counts EXPRESSION...: true of the report.
 counts() {
-    jq -e "$1" <<< "$output" > /dev/null || {
-        echo "not so: $1"
-        jq -c . <<< "$output"
-        return 1
-    }
+    holds "$BATS_TEST_TMPDIR.out" "$@"
 }
 
 # What a report says but for the times taken.
@@ -69,10 +65,10 @@ xpath() {
     [[ $output == *"146 events, 0.1 MB; 0 on other channels; 0 results of queries that are not here"* ]]
     replay arm.log
     ended 0
-    counts '.queries == 72 and .same == 72 and .differences == [] and .exit == 0'
-    counts '.events == 146 and .bytes == 75363 and .statuses == 2 and .results == 72'
-    counts '.channels.FMB_PAIR_QUERY.queries == 48 and .channels.FMB_SCENE_QUERY.pairs == 408'
-    counts '.compute | .then.count == 72 and .now.count == 72 and .unit == "ns"'
+    counts '.queries == 72 and .same == 72 and .differences == [] and .exit == 0' \
+        '.events == 146 and .bytes == 75363 and .statuses == 2 and .results == 72' \
+        '.channels.FMB_PAIR_QUERY.queries == 48 and .channels.FMB_SCENE_QUERY.pairs == 408' \
+        '.compute | .then.count == 72 and .now.count == 72 and .unit == "ns"'
 }
 
 @test "every kind of log has no differences" {
@@ -109,11 +105,11 @@ xpath() {
     [[ $output == *'different in: 2 verdict'* ]]
     replay spoiled.log
     ended 1
-    counts '.different == 2 and .different_in.verdict == 2 and .exit == 1 and .same == 70'
-    counts ".differences[0].offset == $("$EDIT" --offset 7 spoiled.log)"
-    counts '.differences[0] | .event == 7 and .time == 0.01 and .a == 3 and .b == 1'
-    counts '.differences[0] | .kind == "verdict" and .then.verdict == "overlapping"'
-    counts '.differences[0].now.verdict == "touching" and .differences[0].log == "spoiled.log"'
+    counts '.different == 2 and .different_in.verdict == 2 and .exit == 1 and .same == 70' \
+        ".differences[0].offset == $("$EDIT" --offset 7 spoiled.log)" \
+        '.differences[0] | .event == 7 and .time == 0.01 and .a == 3 and .b == 1' \
+        '.differences[0] | .kind == "verdict" and .then.verdict == "overlapping"' \
+        '.differences[0].now.verdict == "touching" and .differences[0].log == "spoiled.log"'
 }
 
 # bats test_tags=release
@@ -121,8 +117,8 @@ xpath() {
     edit --nudge 0 1e-9 moving.log
     replay spoiled.log
     ended 1
-    counts '.different_in.box == 1 and .different == 1'
-    counts '.differences[0] | (.then.box.max[0] != .now.box.max[0]) and (.then.contact == .now.contact)'
+    counts '.different_in.box == 1 and .different == 1' \
+        '.differences[0] | (.then.box.max[0] != .now.box.max[0]) and (.then.contact == .now.contact)'
     run "$FMB" replay spoiled.log
     ended 1
     [[ $output == *'  box: x '*', now x '* ]]
@@ -156,9 +152,9 @@ xpath() {
         ended 1
         [ "$(jq .different_in.gap <<< "$output")" = 0 ] || break
     done
-    counts '.different == 1 and .different_in.gap == 1'
-    counts '.differences[0] | .kind == "gap" and .then.gap[0] == .now.gap[0] and .then.gap[1] > .now.gap[1]'
-    counts '.differences[0] | .then.direction == .now.direction and .then.witness == .now.witness'
+    counts '.different == 1 and .different_in.gap == 1' \
+        '.differences[0] | .kind == "gap" and .then.gap[0] == .now.gap[0] and .then.gap[1] > .now.gap[1]' \
+        '.differences[0] | .then.direction == .now.direction and .then.witness == .now.witness'
     run "$FMB" replay spoiled.log
     ended 1
     [[ ${lines[0]} =~ \ gap:\ [-0-9.e]+\.\.[-0-9.e]+\ along\ [-0-9.e]+\ [-0-9.e]+\ [-0-9.e]+,\ now\  ]]
@@ -183,8 +179,8 @@ xpath() {
     edit --refuse 2 9 --refuse 3 12345 moving.log
     replay spoiled.log
     ended 1
-    counts '.different_in.status == 2 and .differences[1].then.error == "unknown status"'
-    counts '.differences[0] | .then == {"error": "the duration is negative, not finite, or missing"} and .now.verdict'
+    counts '.different_in.status == 2 and .differences[1].then.error == "unknown status"' \
+        '.differences[0] | .then == {"error": "the duration is negative, not finite, or missing"} and .now.verdict'
     run "$FMB" replay spoiled.log
     [[ $output == *' status: unknown status, now '* ]]
 }
@@ -233,8 +229,8 @@ xpath() {
     edit --repeat 4 --repeat 50 arm.log
     replay spoiled.log
     ended 0
-    counts '.queries == 72 and .same == 72 and .results == 74 and .unmatched_results == 0'
-    counts '.second_results == 2 and .contradictions == 0'
+    counts '.queries == 72 and .same == 72 and .results == 74 and .unmatched_results == 0' \
+        '.second_results == 2 and .contradictions == 0'
     edit --drop 4 --drop 30 moving.log
     replay spoiled.log
     ended 0

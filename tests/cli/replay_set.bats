@@ -2,6 +2,7 @@
 # log and, to the byte, the goldens kept beside it. Each instruction set is compared with the goldens.
 # This suite runs in each build, with sanitizers and without.
 
+load ../ran
 load ../logs/set
 
 setup() {

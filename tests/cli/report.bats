@@ -1,6 +1,6 @@
 # The report: a page and a picture from small reports that tests/report/fixture/ holds.
 
-load ran
+load ../ran
 
 setup() {
     cd "$BATS_TEST_DIRNAME/../report" || return

@@ -1,6 +1,6 @@
 # tests/run.sh: the summary of skipped tests.
 
-load ran
+load ../ran
 
 @test "the reasons of skipped tests are one line, the most frequent first" {
     cat > "$BATS_TEST_TMPDIR/a.tap" <<'TAP'

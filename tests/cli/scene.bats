@@ -1,6 +1,6 @@
 # fmb scene: arguments, output, exit codes. Geometry: tests/unit/test_urdf.c.
 
-load ran
+load ../ran
 
 setup() {
     cd "$BATS_TEST_DIRNAME/../.." || return
@@ -27,13 +27,8 @@ link() {
     robot "<link name='a'>$1</link>"
 }
 
-# Starts few processes: run of bats starts several.
 scene() {
-    status=0
-    "$FMB" scene "$@" > output.txt 2> stderr.txt || status=$?
-    IFS= read -r -d '' output < output.txt || true
-    IFS= read -r -d '' stderr < stderr.txt || true
-    output=${output%$'\n'} stderr=${stderr%$'\n'}
+    run --separate-stderr "$FMB" scene "$@"
 }
 
 # shows FILTER: applies a jq filter to the scenes, a line each.

@@ -1,6 +1,8 @@
 # The small form of the benchmark of the bus: it runs, its report is complete, and no process of it
 # remains. No test depends on times.
 
+load ../ran
+
 setup() {
     cd "$BATS_TEST_DIRNAME/../.." || return
     FMB_BUILD=${FMB_BUILD:-build}

@@ -2,8 +2,6 @@
 
 load service
 
-bats_require_minimum_version 1.5.0
-
 @test "the daemon reports when it is ready, and exits with 0 on SIGTERM and SIGINT" {
     for signal in TERM INT; do
         start_fmbd
@@ -67,14 +65,9 @@ bats_require_minimum_version 1.5.0
     [[ "$output" == *fmbd* ]]
 }
 
-# many_scenes COUNT: scenes of three bodies, one a line.
-many_scenes() {
-    for seed in $(seq "$1"); do random_scene 2 3 "$seed" | tr -d '\n'; echo; done
-}
-
 # bats test_tags=release
 @test "without a service, only the first of many scenes takes a timeout" {
-    many_scenes 200 > "$BATS_TEST_TMPDIR/scenes.json"
+    random_scene 2 3 1 200 > "$BATS_TEST_TMPDIR/scenes.json"
     run --separate-stderr timeout 60 "$FMB" query --json --timeout 0.5 --retries 1 "$BATS_TEST_TMPDIR/scenes.json"
     [ "$status" = 1 ]
     [ "${#lines[@]}" = 1 ]
@@ -84,7 +77,7 @@ many_scenes() {
 
 # bats test_tags=release
 @test "a query continues when the service starts late, and when it is restarted" {
-    many_scenes 40 > "$BATS_TEST_TMPDIR/scenes.json"
+    random_scene 2 3 1 40 > "$BATS_TEST_TMPDIR/scenes.json"
     "$FMB" query --json --local "$BATS_TEST_TMPDIR/scenes.json" > "$BATS_TEST_TMPDIR/local"
     "$FMBD" 2> "$BATS_TEST_TMPDIR/log" 3>&- &
     fmbd=$!
@@ -98,7 +91,7 @@ many_scenes() {
     wait_until test -s "$BATS_TEST_TMPDIR/bus"
     stop_fmbd
     sed -n 11,14p "$BATS_TEST_TMPDIR/scenes.json" >&5
-    wait_until grep -q 'no fmbd answered' "$BATS_TEST_TMPDIR/bus"
+    wait_until has "$BATS_TEST_TMPDIR/bus" 'no fmbd answered'
     start_fmbd 5>&-
     tail -n +15 "$BATS_TEST_TMPDIR/scenes.json" >&5
     exec 5>&-
@@ -284,8 +277,8 @@ many_scenes() {
     start_fmbd
     one=$fmbd one_log=$fmbd_log
     start_fmbd
-    wait_until grep -q 'another service' "$one_log"
-    wait_until grep -q 'another service' "$fmbd_log"
+    wait_until has "$one_log" 'another service'
+    wait_until has "$fmbd_log" 'another service'
     stop_fmbd
     fmbd=$one
     stop_fmbd

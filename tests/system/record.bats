@@ -3,8 +3,6 @@
 
 load service
 
-bats_require_minimum_version 1.5.0
-
 setup() {
     log=$BATS_TEST_TMPDIR/log
     messages=$BATS_TEST_TMPDIR/messages
@@ -32,10 +30,10 @@ query() {
     "$FMB" query "$@" "$BATS_TEST_TMPDIR/scene.json" > /dev/null
 }
 
-# is FILTER: of the summary.
+# is FILTER...: of the summary.
 is() {
-    jq -e "$1" "$report" || {
-        cat "$report" "$messages"
+    holds "$report" "$@" || {
+        cat "$messages"
         return 1
     }
 }
@@ -57,10 +55,10 @@ is() {
     wait "$witness"
     is '.lost == 0 and .malformed == 0 and .received.others == 0'
     # Where the machine is slow, clients repeat queries.
-    is '.received.pair_queries >= .received.pair_results and .received.pair_results >= 66'
-    is '.received.scene_queries >= .received.scene_results and .received.scene_results >= 2'
-    is '.received.heartbeats >= 2'
-    is ".files == [\"$log\"] and .bytes == $(stat -c %s "$log") and .receive_buffer > 0"
+    is '.received.pair_queries >= .received.pair_results and .received.pair_results >= 66' \
+        '.received.scene_queries >= .received.scene_results and .received.scene_results >= 2' \
+        '.received.heartbeats >= 2' \
+        ".files == [\"$log\"] and .bytes == $(stat -c %s "$log") and .receive_buffer > 0"
     [ "$(events "$log" | wc -l)" = "$(jq .events "$report")" ]
     # Definitions come besides, of bodies that queries named by handle.
     is ".events == (.received | add) + $(count_events FMB_DEFINITION "$log")"
@@ -130,7 +128,7 @@ is() {
     "$FMB" record "$log" > "$report" 2> "$messages" 3>&- &
     record=$!
     started=$record
-    wait_until grep -qs 'recording to' "$messages"
+    wait_until has "$messages" 'recording to'
     "$FMB_BUILD/fake-peer" numbers 5 $(seq 1 1500) 1503
     finish_record
     grep -Eqx "$log: 1,501 messages in [0-9.]+ s, [0-9,]+ bytes" "$report"
@@ -147,7 +145,7 @@ is() {
     "$FMB" record --json --count 7 "$log" > "$report" 2> "$messages" 3>&- &
     record=$!
     started=$record
-    wait_until grep -qs 'recording to' "$messages"
+    wait_until has "$messages" 'recording to'
     "$FMB_BUILD/fake-peer" numbers 5 $(seq 100)
     wait "$record"
     is '.events == 7'
@@ -183,8 +181,8 @@ is() {
     "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
     finish_record
     # The files after the first one begin with the names.
-    is '.received.pair_queries == 1000 and (.files | length) > 5 and .events == 999 + (.files | length)'
-    is ".files[0] == \"$log.000\" and .files[1] == \"$log.001\""
+    is '.received.pair_queries == 1000 and (.files | length) > 5 and .events == 999 + (.files | length)' \
+        ".files[0] == \"$log.000\" and .files[1] == \"$log.001\""
     [ "$(ls "$log".* | wc -l)" = "$(jq '.files | length' "$report")" ]
     for file in "$log".*; do
         [ "$(stat -c %s "$file")" -le 52428 ]
@@ -254,7 +252,7 @@ publish_until_it_ends() {
     ) &
     record=$!
     started=$record
-    wait_until grep -qs 'recording to' "$messages"
+    wait_until has "$messages" 'recording to'
     publish_until_it_ends
     failed 'File too large; no larger file is allowed there: write several'
     [ "$(stat -c %s "$log")" -le 102400 ]
@@ -418,8 +416,8 @@ hulls() {
     start_record --split-mb 1 --max-files 2 "$log"
     feed 4000 | "$FMB" query - > /dev/null
     finish_record
-    is '.lost == 0 and .unresolved_handles == 0 and (.files | length) == 2'
-    is '.received.scene_queries >= 4000 and .bytes > 4000000'
+    is '.lost == 0 and .unresolved_handles == 0 and (.files | length) == 2' \
+        '.received.scene_queries >= 4000 and .bytes > 4000000'
     resolves "$log".*
     for file in "$log".*; do
         [ "$(stat -c %s "$file")" -le 1048576 ]
@@ -508,8 +506,8 @@ END
     "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
     kill -CONT "$record"
     finish_record
-    is '.lost > 100 and .lost + .events == 1000 and .receive_buffer == 40000'
-    is '.skipped <= .lost'
+    is '.lost > 100 and .lost + .events == 1000 and .receive_buffer == 40000' \
+        '.skipped <= .lost'
     lost=$(jq .lost "$report") skipped=$(jq .skipped "$report")
     grep -qx "fmb: lost: $lost datagrams that the kernel dropped (receive buffer of 40,000 bytes), $skipped queries by their sequence numbers, bodies of 0 handles" "$messages"
     # The report for people has the number too.
@@ -517,7 +515,7 @@ END
     "$FMB" record --force --lcm-url "$url&recv_buf_size=20000" "$log" > "$report" 2> "$messages" 3>&- &
     record=$!
     started="$started $record"
-    wait_until grep -qs 'recording to' "$messages"
+    wait_until has "$messages" 'recording to'
     kill -STOP "$record"
     "$FMB_BUILD/fake-peer" numbers 5 $(seq 900)
     kill -CONT "$record"
@@ -543,7 +541,7 @@ END
     "$FMB" record --force "$log" > "$report" 2> "$messages" 3>&- &
     record=$!
     started="$started $record"
-    wait_until grep -qs 'recording to' "$messages"
+    wait_until has "$messages" 'recording to'
     sent=$("$FMB_BUILD/fake-peer" FMB_PAIR_QUERY status)
     finish_record
     grep -Eqx "  malformed +$sent" "$report"
@@ -580,8 +578,8 @@ END
         --channel*) others=$((one + two)) ;;
         '') others=0 ;;
         esac
-        is ".received.others == $others and .received.pair_queries == 3 and .malformed == 0"
-        is ".events == $((others + 3)) and .lost == 0"
+        is ".received.others == $others and .received.pair_queries == 3 and .malformed == 0" \
+            ".events == $((others + 3)) and .lost == 0"
         [ "$(events "$log" | grep -c '^ONE ')" = "$([ "$options" ] && echo "$one" || echo 0)" ]
         [ "$(events "$log" | grep -c '^FMB_')" = 3 ]
     done
@@ -626,9 +624,9 @@ END
     script=$!
     started=$script
     exec 9> "$BATS_TEST_TMPDIR/keys"
-    wait_until grep -q 'recording to' "$BATS_TEST_TMPDIR/screen"
+    wait_until has "$BATS_TEST_TMPDIR/screen" 'recording to'
     "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000) 1003
-    wait_until grep -q "fmb: 1,001 messages, 0 MB, 0 lost" "$BATS_TEST_TMPDIR/screen"
+    wait_until has "$BATS_TEST_TMPDIR/screen" "fmb: 1,001 messages, 0 MB, 0 lost"
     printf '\003' >&9
     wait "$script"
     exec 9>&-

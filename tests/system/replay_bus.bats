@@ -16,29 +16,36 @@ generate() {
     "$FMB_BUILD/logs/generate" "$@"
 }
 
-# replay OPTIONS LOG...: as JSON in $replayed; the exit code in $code.
+# replay OPTIONS LOG...: as JSON in the file replayed; the exit code in $code.
 replay() {
     code=0
-    replayed=$("$FMB" replay --json --bus --retries 40 "$@" 2> stderr) || code=$?
+    "$FMB" replay --json --bus --retries 40 "$@" > replayed 2> stderr || code=$?
 }
 
-holds() {
-    jq -e "$1" <<< "$replayed"
+# is_same FILE [EXPRESSION...]: it is the replay of the file in_process, but for what is of the moment,
+# or of the bus, or in $left_out; and the expressions are true of it.
+is_same() {
+    local essence="del(.compute, .bus${left_out-})" expression all=true
+    for expression in "${@:2}"; do all+=" and ($expression)"; done
+    jq -es "length == 2 and (map($essence) | .[0] == .[1]) and (.[1] | $all)" in_process "$1" > /dev/null || {
+        diff <(jq "$essence" in_process) <(jq "$essence" "$1")
+        holds "$@"
+        return 1
+    }
 }
 
-# Without what is of the moment, or of the bus, or in $left_out.
-essence() {
-    jq -c "del(.compute, .bus${left_out-})" <<< "$1"
-}
-
-# as_in_process OPTIONS LOG...: exit code, counts and differences, each of them.
+# as_in_process OPTIONS LOG... [-- EXPRESSION...]: exit code, counts and differences, each of them; and
+# the expressions are true.
 as_in_process() {
-    local expected=0 in_process
-    in_process=$("$FMB" replay --json "$@" 2> /dev/null) || expected=$?
-    replay "$@"
+    local expected=0 arguments=()
+    while [ $# != 0 ] && [ "$1" != -- ]; do
+        arguments+=("$1")
+        shift
+    done
+    "$FMB" replay --json "${arguments[@]}" > in_process 2> /dev/null || expected=$?
+    replay "${arguments[@]}"
     [ "$code" = "$expected" ]
-    [ "$(essence "$in_process")" = "$(essence "$replayed")" ]
-    holds '.bus.end == null'
+    is_same replayed '.bus.end == null' "${@:2}"
 }
 
 # byte_at FILE OFFSET BYTE: replaces it; BYTE as three octal digits.
@@ -76,13 +83,13 @@ event() {
     start_fmbd
     for kind in arm stack crowd hard-2d hard-3d hard-3d-moving refused clients foreign; do
         generate $kind $kind.log
-        as_in_process $kind.log
-        holds '.queries > 0 and .different == 0 and .bus.answered == .queries'
-        holds '.bus.services == 1 and .bus.unreadable == 0'
+        as_in_process $kind.log -- \
+            '.queries > 0 and .different == 0 and .bus.answered == .queries' \
+            '.bus.services == 1 and .bus.unreadable == 0'
     done
     # Those that are refused for their ids, too.
     replay refused.log
-    holds '.same > 80'
+    holds replayed '.same > 80'
     stop_fmbd
 }
 
@@ -91,7 +98,7 @@ event() {
     "$FMB" record scene.log > recorded 2> messages 3>&- &
     record=$!
     started="${started-} $record"
-    wait_until grep -qs 'recording to' messages
+    wait_until has messages 'recording to'
     for ignored in '[1,2],[2,1],[3,1]' '[1,2],[1,3],[2,3],[4,1],[4,2]'; do
         jq -n --argjson ignore "[$ignored]" '{dim: 2, $ignore, bodies: [range(1; 5) | {id: ., shape: "box", size: [1, 1]}]}'
     done > scenes.json
@@ -99,8 +106,7 @@ event() {
     kill -INT "$record"
     wait "$record"
     [ "$(jq '.pairs | length' answers | paste -sd ' ')" = '4 1' ]
-    as_in_process scene.log
-    holds '.channels | map(.pairs) == [0, 5]'
+    as_in_process scene.log -- '.channels | map(.pairs) == [0, 5]'
     stop_fmbd
 }
 
@@ -110,16 +116,13 @@ event() {
     generate arm arm.log
     generate clients clients.log
     generate hard-2d hard.log
-    as_in_process --from 0.05 --to 0.15 arm.log
-    holds '.queries > 10 and .queries < 60'
+    as_in_process --from 0.05 --to 0.15 arm.log -- '.queries > 10 and .queries < 60'
     as_in_process arm.log clients.log hard.log
     # The same ids again and again: each query has its own result.
     generate --blast pairs 10 few.log
-    as_in_process few.log few.log few.log
-    holds '.same == 30'
+    as_in_process few.log few.log few.log -- '.same == 30'
     "$FMB" replay --write-golden golden clients.log
-    as_in_process --golden golden clients.log
-    holds '.same == .queries'
+    as_in_process --golden golden clients.log -- '.same == .queries'
     "$FMB" replay --bus --write-golden live clients.log
     "$FMB" replay --golden live clients.log
     as_in_process --golden live clients.log
@@ -139,10 +142,10 @@ event() {
     as_in_process pairs.log
     [ "$code" = 0 ]
     byte_at pairs.log $verdict 00$((before == 3 ? 2 : 3))
-    as_in_process pairs.log
+    as_in_process pairs.log -- \
+        '.different == 1 and .same == 499' \
+        '.differences | length == 1 and (.[0] | .kind == "verdict" and .then != .now)'
     [ "$code" = 1 ]
-    holds '.different == 1 and .same == 499'
-    holds '.differences | length == 1 and (.[0] | .kind == "verdict" and .then != .now)'
     "$FMB" replay --bus --junit junit.xml pairs.log > text && false
     grep -q 'verdict: ' text
     grep -q '^fmbd answered 500 queries in ' text
@@ -166,8 +169,7 @@ event() {
     [ $(($(status_of hits) - before)) -ge 3000 ]
     stop_fmbd
     start_fmbd --frames 2
-    as_in_process handles.log
-    holds '.bus.sent_whole > 0 and .same == 3000'
+    as_in_process handles.log -- '.bus.sent_whole > 0 and .same == 3000'
     stop_fmbd
 }
 
@@ -177,15 +179,14 @@ event() {
     start_fmbd
     # On a slow machine the service ends its part of a scene earlier.
     left_out=', .pairs, .channels[].pairs'
-    as_in_process cut.log
+    as_in_process cut.log -- '.pairs > 500000 and .bus.supplied > 0 and .not_defined == 0'
     [ "$code" = 0 ]
-    holds '.pairs > 500000 and .bus.supplied > 0 and .not_defined == 0'
     stop_fmbd
     # A service that cannot hold as many bodies.
     start_fmbd --frames 10
     replay scenes.log
     [ "$code" = 0 ]
-    holds '.not_defined > 0 and .same + .not_defined == .queries'
+    holds replayed '.not_defined > 0 and .same + .not_defined == .queries'
     stop_fmbd
 }
 
@@ -202,9 +203,8 @@ event() {
     done
     "$FMB" replay --write-golden golden long.log
     start_fmbd
-    as_in_process --golden golden long.log
+    as_in_process --golden golden long.log -- '.same == 2 and .bus.not_sent == 2 and .bus.answered == 2'
     [ "$code" = 0 ]
-    holds '.same == 2 and .bus.not_sent == 2 and .bus.answered == 2'
     "$FMB" replay --bus --golden golden long.log | grep -q '2 that cannot be sent'
     stop_fmbd
 }
@@ -220,10 +220,10 @@ event() {
     for speed in 4 1 0.5; do
         replay --speed $speed arm.log
         [ "$code" = 0 ]
-        holds ".bus.ns >= 1000 * ($last - $first) / $speed and .bus.late_ns > 0"
+        holds replayed ".bus.ns >= 1000 * ($last - $first) / $speed and .bus.late_ns > 0"
     done
     replay --speed 0 arm.log
-    holds '.exit == 0 and .bus.late_ns == 0'
+    holds replayed '.exit == 0 and .bus.late_ns == 0'
     stop_fmbd
 }
 
@@ -239,8 +239,7 @@ event() {
         start_fmbd
     done
     wait $replay
-    replayed=$(cat replayed)
-    holds '.same == 20000 and .exit == 0'
+    holds replayed '.same == 20000 and .exit == 0'
     stop_fmbd
 }
 
@@ -258,8 +257,7 @@ event() {
         sleep 0.1
     done
     wait $replay
-    replayed=$(cat replayed)
-    holds '.same == 2000 and .exit == 0 and .bus.services == 1 and .bus.sent_again > 0'
+    holds replayed '.same == 2000 and .exit == 0 and .bus.services == 1 and .bus.sent_again > 0'
     stop_fmbd
 }
 
@@ -273,11 +271,10 @@ event() {
     started="$started $!"
     through=(--lcm-url 'udpm://239.255.76.67:7668?ttl=0' --timeout 0.05)
     for log in clients refused handles; do
-        in_process=$("$FMB" replay --json $log.log)
+        "$FMB" replay --json $log.log > in_process
         replay "${through[@]}" --retries 400 $log.log
         [ "$code" = 0 ]
-        [ "$(essence "$in_process")" = "$(essence "$replayed")" ]
-        holds '.bus.sent_again > 0'
+        is_same replayed '.bus.sent_again > 0'
     done
     stop_fmbd
 }
@@ -297,10 +294,8 @@ event() {
     done
     for pid in $replays; do wait "$pid"; done
     kill $flood
-    in_process=$("$FMB" replay --json handles.log clients.log)
-    for i in 1 2 3; do
-        [ "$(essence "$in_process")" = "$(essence "$(cat replayed.$i)")" ]
-    done
+    "$FMB" replay --json handles.log clients.log > in_process
+    for i in 1 2 3; do is_same replayed.$i; done
     stop_fmbd
 }
 
@@ -319,9 +314,8 @@ event() {
     wait $replay || code=$?
     [ "$code" = 2 ]
     grep -q '^fmb: ended by a signal; counts are of [0-9,]* queries, answered so far$' stderr
-    replayed=$(cat replayed)
-    holds '.exit == 2 and .bus.end == "signal" and .queries > 5 and .queries < 5000'
-    holds '.different == 0 and .no_result == 0 and .same >= .queries - 1 and .same <= .queries'
+    holds replayed '.exit == 2 and .bus.end == "signal" and .queries > 5 and .queries < 5000' \
+        '.different == 0 and .no_result == 0 and .same >= .queries - 1 and .same <= .queries'
     stop_fmbd
 }
 
@@ -350,8 +344,7 @@ event() {
     wait $replay || code=$?
     [ "$code" = 2 ]
     grep -q '^fmb: fmbd answered [0-9,]* queries, and then nothing for 0.2 s; the next one is event [0-9]* (offset [0-9]*) of arm.log$' stderr
-    replayed=$(cat replayed)
-    holds '.exit == 2 and .bus.end == "no service answers" and .queries == .bus.answered'
+    holds replayed '.exit == 2 and .bus.end == "no service answers" and .queries == .bus.answered'
     grep -q '<error message="it answered [0-9]* queries"/>' junit.xml
 }
 
@@ -361,7 +354,7 @@ event() {
     start_fmbd
     replay --prefix P arm.log
     [ "$code" = 2 ]
-    holds '.queries == 0 and .other_events > 0 and .bus.answered == 0'
+    holds replayed '.queries == 0 and .other_events > 0 and .bus.answered == 0'
     stop_fmbd
     code=0
     "$FMB" replay --bus --lcm-url udpm://239.255.76.67 --write-golden golden arm.log > stdout 2> stderr || code=$?

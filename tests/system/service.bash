@@ -1,18 +1,30 @@
 # For the tests of the daemon: start and stop it, and wait with bounds. Each file of tests runs
 # in a network namespace of its own (tests/run.sh).
 
+load ../ran
+
 : "${FMB_BUILD:=build}"
 FMBD=$FMB_BUILD/fmbd
 FMB=$FMB_BUILD/fmb
 
-# Waits up to 10 s until a command succeeds.
+# Waits up to 10 s until a command succeeds. Nothing comes through the pipe, so that its time passes
+# without a process.
+exec {nothing}<> <(:)
 wait_until() {
-    for _ in $(seq 200); do
+    local i
+    for ((i = 0; i < 200; i++)); do
         if "$@"; then return 0; fi
-        sleep 0.05
+        read -rt 0.05 -u "$nothing" || true
     done
     echo "waited in vain for: $*" >&2
     return 1
+}
+
+# has FILE TEXT
+has() {
+    local text
+    IFS= read -rd '' text 2> /dev/null < "$1" || true
+    [[ $text == *"$2"* ]]
 }
 
 # start_fmbd [OPTIONS]: the pid is in $fmbd, what it says in $fmbd_log.
@@ -21,7 +33,7 @@ start_fmbd() {
     "$FMBD" "$@" 2> "$fmbd_log" 3>&- &
     fmbd=$!
     started="${started-} $fmbd"
-    wait_until grep -q ready "$fmbd_log"
+    wait_until has "$fmbd_log" ready
 }
 
 # stop_fmbd [SIGNAL]: the daemon must end well.
@@ -41,7 +53,7 @@ start_record() {
     "$FMB" record --json "$@" > "$report" 2> "$messages" 3>&- 9>&- &
     record=$!
     started="${started-} $record"
-    wait_until grep -qs 'recording to' "$messages"
+    wait_until has "$messages" 'recording to'
 }
 
 # finish_record [SIGNAL]: its summary is in $report.
@@ -50,14 +62,16 @@ finish_record() {
     wait "$record"
 }
 
-# status_of FIELD[,.FIELD]...: numbers of the next heartbeat, one a line.
+# status_of FIELD: a number of the next heartbeat.
 status_of() {
-    "$FMB" status --json | jq -r ".$1"
+    [[ $("$FMB" status --json) =~ \"$1\":\ *([0-9]+) ]]
+    echo "${BASH_REMATCH[1]}"
 }
 
-# random_scene DIM BODIES: a moving scene of all shapes, with all pairs.
+# random_scene DIM BODIES [SEED [COUNT]]: a moving scene of all shapes, with all pairs; or so many, one a
+# line.
 random_scene() {
-    awk -v dim="$1" -v bodies="$2" -v seed="${3:-1}" '
+    awk -v dim="$1" -v bodies="$2" -v seed="${3:-1}" -v count="${4:-1}" '
         function vector(n, size,   i, text) {
             text = "["
             for (i = 0; i < n; i++) text = text (i ? "," : "") (rand() - 0.5) * size
@@ -65,15 +79,18 @@ random_scene() {
         }
         BEGIN {
             srand(seed)
+            while (count--) scene()
+        }
+        function scene(   b, c, shape, name, components, velocity) {
             printf "{\"dim\":%d,\"duration\":0.7,\"bodies\":[", dim
             for (b = 1; b <= bodies; b++) {
                 shape = int(rand() * dim)
-                count = shape == 2 ? 2 : dim
+                components = shape == 2 ? 2 : dim
                 name = shape == 0 ? "cuboid" : shape == 1 ? "tetrahedron" : "face"
                 printf "%s{\"id\":%d,\"shape\":\"%s\",\"origin\":%s,", (b == 1 ? "" : ","), b,
                     name, vector(dim, 4)
                 printf "\"components\":["
-                for (c = 0; c < count; c++) printf "%s%s", (c ? "," : ""), vector(dim, 4)
+                for (c = 0; c < components; c++) printf "%s%s", (c ? "," : ""), vector(dim, 4)
                 velocity = rand() < 0.5 ? ",\"velocity\":" vector(dim, 4) : ""
                 printf "]%s}", velocity
             }

@@ -1,0 +1,79 @@
+# Runs a command, and checks what it printed, said on stderr, and ended with.
+
+# run [!] [--separate-stderr] COMMAND...: as bats' own, which starts five processes for one.
+run() {
+    local flags=$- negated='' out=$BATS_TEST_TMPDIR.out said=$BATS_TEST_TMPDIR.said
+    set +eET
+    if [ "$1" = ! ]; then negated=1; shift; fi
+    : > "$said"
+    if [ "$1" = --separate-stderr ]; then
+        shift
+        "$@" > "$out" 2> "$said" && status=0 || status=$?
+    else
+        "$@" > "$out" 2>&1 && status=0 || status=$?
+    fi
+    read_text output lines "$out"
+    read_text stderr stderr_lines "$said"
+    set "-$flags"
+    [ -z "$negated" ] || [ "$status" != 0 ]
+}
+
+# read_text TEXT LINES FILE: without the line feeds at its end; and its lines that are not empty.
+read_text() {
+    IFS= read -rd '' "$1" < "$3"
+    while [[ ${!1} == *$'\n' ]]; do printf -v "$1" %s "${!1%$'\n'}"; done
+    IFS=$'\n' read -rd '' -a "$2" < "$3"
+}
+
+# is TEXT
+is() {
+    [ "$output" = "$1" ] || {
+        echo "expected: $1"
+        echo "found:    $output${stderr:+ ($stderr)}"
+        return 1
+    }
+}
+
+# said TEXT
+said() {
+    [ "$stderr" = "$1" ] || {
+        echo "expected: $1"
+        echo "found:    $stderr"
+        return 1
+    }
+}
+
+# ended CODE
+ended() {
+    [ "$status" = "$1" ] || {
+        echo "expected exit code $1, found $status"
+        echo "$output${stderr:+ ($stderr)}" | tail -n 20
+        return 1
+    }
+}
+
+# wrong COMMAND ARGUMENTS...: wrong usage of fmb is refused with one line and a hint.
+wrong() {
+    # shellcheck disable=SC2086
+    run --separate-stderr "$FMB" $1 "${@:2}" < /dev/null
+    ended 2
+    is ''
+    [[ $stderr == "fmb $1: "*$'\n'"Try 'fmb $1 --help'." ]]
+    [ "$(wc -l <<< "$stderr")" = 2 ]
+}
+
+# holds [-s] FILE EXPRESSION...: each is true of the JSON in the file, with -s of the array of all that it
+# holds. One jq for all: it takes long to start.
+holds() {
+    local slurp='' file expression all=true
+    if [ "$1" = -s ]; then slurp=-s; shift; fi
+    file=$1
+    shift
+    for expression; do all+=" and ($expression)"; done
+    # shellcheck disable=SC2086
+    jq -e $slurp "$all" "$file" > /dev/null || {
+        for expression; do jq -e $slurp "$expression" "$file" > /dev/null || echo "not so: $expression"; done
+        head -c 3000 "$file"
+        return 1
+    }
+}
