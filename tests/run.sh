@@ -40,12 +40,12 @@ run_suite() {
     case $build in
     "$release") sample=${FMB_FAST:+1} sample=${sample:-0.5} ;;
     "$asan")
-        export FMB_FAST=1
+        export FMB_FAST=1 ASAN_OPTIONS=malloc_context_size=3 # more takes a tenth of the time
         case $what in
         test_engine_gap | test_hull_*) sample=0.5 ;; # draw few
         test_*) sample=0.2 ;;
         # Unit tests look for leaks; that would double the time of a command.
-        *) sample=1; export ASAN_OPTIONS=detect_leaks=0 ;;
+        *) sample=1; ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 ;;
         esac
         ;;
     esac
@@ -61,10 +61,13 @@ run_suite() {
     esac
 }
 
-# Counts of one suite's TAP: "passed failed skipped". A test that the plan promises and that does not
-# report has failed; so has a suite that ends badly though all its tests passed.
-count_suite() {
-    awk -v code="$2" '
+# summarise OUT CODE BEGIN END: of one suite's TAP, in OUT.count "passed failed skipped", and a line with
+# the times. A test that the plan promises and that does not report has failed; so has a suite that ends
+# badly though all its tests passed. In OUT.times the last line is about processes that have ended.
+summarise() {
+    awk -v out="$1" -v code="$2" -v begin="$3" -v end="$4" -v build="${build##*/}" -v what="$what" '
+        FNR == 1 { file++ }
+        file == 2 { split($1, user, "m"); split($2, kernel, "m"); next }
         /^1\.\.[0-9]+/ { planned += substr($1, 4); plans++ }
         /^ok .*# *(skip|SKIP)/ || /^not ok .*# *SKIP/ { skipped++; next }
         /^ok [0-9]/ { passed++ }
@@ -73,8 +76,13 @@ count_suite() {
             seen = passed + failed + skipped
             if (planned > seen) failed += planned - seen
             if (!failed && (code != 0 || !plans)) failed++
-            print passed + 0, failed + 0, skipped + 0
-        }' "$1"
+            print passed + 0, failed + 0, skipped + 0 > (out ".count")
+            printf "%-14s %-32s %4d s, %4d of CPU %4d passed", build, what, end - begin + 0.5,
+                60 * (user[1] + kernel[1]) + user[2] + kernel[2] + 0.5, passed
+            if (failed) printf ", %d failed", failed
+            print skipped ? ", " skipped " skipped" : ""
+            exit failed > 0
+        }' "$1.tap" "$1.times"
 }
 
 # reasons FILE...: reads TAP; prints the reasons of skipped tests in one line. A test that was skipped
@@ -90,38 +98,28 @@ reasons() {
         END { if (NR) print "" }'
 }
 
-name_of() {
-    echo "$1 $2 $3" | tr ' /' '._'
+# out_of KIND BUILD WHAT: where its output goes, in $out.
+out_of() {
+    out=$1.$2.$3
+    while [ "$out" != "${out#*/}" ]; do out=${out%%/*}_${out#*/}; done
+    out=$log/$out
 }
 
-# cpu_seconds FILE: in which times wrote, whose last line is about processes that have ended.
-cpu_seconds() {
-    awk 'END { split($1, user, "m"); split($2, kernel, "m")
-        print int(60 * (user[1] + kernel[1]) + user[2] + kernel[2] + 0.5) }' "$1"
-}
-
+# one KIND BUILD WHAT: starts few processes besides those of the suite, as many suites are short.
 one() {
     kind=$1 build=$2 what=$3
-    out=$log/$(name_of "$kind" "$build" "$what")
-    begin=$(date +%s)
+    out_of "$@"
+    read -r begin _ < /proc/uptime
     run_suite "$kind" "$build" "$what" > "$out.tap" 2> "$out.err" < /dev/null
     code=$?
     times > "$out.times"
+    read -r end _ < /proc/uptime
     if [ "$kind" = netns ] && [ $code = 77 ]; then
         sed -n 's/^@test.*/ok # skip needs a network namespace, or a route for multicast/p' "tests/$what" > "$out.tap"
-        counts="0 0 $(wc -l < "$out.tap")"
-    else
-        counts=$(count_suite "$out.tap" $code)
+        echo "1..$(wc -l < "$out.tap")" >> "$out.tap"
+        code=0
     fi
-    echo "$counts" > "$out.count"
-    # shellcheck disable=SC2086
-    set -- $counts
-    printf '%-14s %-32s %4d s, %4d of CPU %4d passed' "$(basename "$build")" "$what" \
-        $(($(date +%s) - begin)) "$(cpu_seconds "$out.times")" "$1"
-    [ "$2" = 0 ] || printf ', %d failed' "$2"
-    [ "$3" = 0 ] || printf ', %d skipped' "$3"
-    echo
-    [ "$2" = 0 ] || {
+    summarise "$out" $code "$begin" "$end" || {
         grep -A12 '^not ok' "$out.tap" | head -n 60
         tail -n 20 "$out.err"
     }
@@ -204,7 +202,8 @@ list_all | awk -v first="$first" 'BEGIN { count = split(first, name) }
 
 # Until it has ended, a suite has failed.
 while read -r kind build what; do
-    echo "0 1 0" > "$log/$(name_of "$kind" "$build" "$what").count"
+    out_of "$kind" "$build" "$what"
+    echo "0 1 0" > "$out.count"
 done < "$log/list"
 # One more than there are cores: suites that wait for a bus leave theirs to others.
 xargs -d '\n' -n 1 -P $(($(nproc) + 1)) "$self" --suite < "$log/list"

@@ -125,6 +125,10 @@ $(B)/tests/test_box_bounds: $(filter $(O)/tests/unit/kernels/boxes_%,$(tested_ke
 
 # cmocka hands each test a state, which few read.
 $(O)/tests/unit/%.o: flags += -Wno-unused-parameter
+# Compiled fast: what they call takes the time, and sanitizers look for undefined behaviour there.
+fast_asan := -O0 -fno-sanitize=undefined -fno-sanitize=fuzzer-no-link
+fast_release := -O1
+$(unit_names:%=$(O)/tests/unit/%.o): flags += $(fast_$(MODE))
 $(addprefix $(B)/tests/,test_bounds test_kernels): $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
 	kernel_fused.o kernel_planted.o)
 $(internal_tests): $(O)/tests/unit/slab_truth.o $(shared) $(client) $(product) $(engine)
@@ -215,7 +219,8 @@ aarch64:
 # ---- Running the tests ----
 
 .PHONY: tests fast-tests tested-programs unit-tests replay-set test test-fast check
-tests: fast-tests examples $(measures)
+# Of bench-replay the object suffices: its link optimises the whole program.
+tests: fast-tests examples $(filter-out %/bench-replay,$(measures)) $(O)/tests/replay/bench_replay.o
 fast-tests: tested-programs unit-tests $(capped_programs)
 tested-programs: programs $(if $(filter asan,$(MODE)),,manual) $(test_programs)
 unit-tests: $(unit_tests) $(replayers) $(B)/netns

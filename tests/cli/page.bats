@@ -128,9 +128,9 @@ setup() {
     found light '.opened | .counts == "3 pairs: 1 overlapping, 1 touching, 1 separated" and .text == "0.000 s"
         and .table == ["cube – gripper | overlapping | 1.9 to 2 s | -0.025", "table – cube | touching | 0 to 2 s | 0",
             "table – gripper | separated | 0.025"]'
-    found light '.opened | .drawn > 40000 and .yellow > 10000 and .red == 0 and .violet > 100'
-    found light '.opened | .lanes == [["none", "overlapping"], ["touching"], ["separated"]]'
-    found light '.opened.labels | sort == ["cube", "gripper", "table"]'
+    found light '.opened | .drawn > 40000 and .yellow > 10000 and .red == 0 and .violet > 100' \
+        '.opened | .lanes == [["none", "overlapping"], ["touching"], ["separated"]]' \
+        '.opened.labels | sort == ["cube", "gripper", "table"]'
 }
 
 @test "the next contact is red, and has the numbers of the answer" {
@@ -144,21 +144,21 @@ setup() {
 }
 
 @test "a scene plays over its window, stops, loops, and is scrubbed and linked to" {
-    found light '.playing == "❚❚" and .played.button == "▶" and .played.text == "2.000 s" and .played.red > 1000'
-    found light '(.played.places[2][2] - .opened.places[2][2] + 0.5 | fabs) < 0.001 and .played.places[0] == .opened.places[0]'
-    found light '.looped > 0 and .looped < 2'
-    found light '.scrubbed.text == "1.000 s" and (.scrubbed.places[2][2] - .opened.places[2][2] + 0.25 | fabs) < 0.001'
-    found light '.linked == "0.500 s"'
+    found light '.playing == "❚❚" and .played.button == "▶" and .played.text == "2.000 s" and .played.red > 1000' \
+        '(.played.places[2][2] - .opened.places[2][2] + 0.5 | fabs) < 0.001 and .played.places[0] == .opened.places[0]' \
+        '.looped > 0 and .looped < 2' \
+        '.scrubbed.text == "1.000 s" and (.scrubbed.places[2][2] - .opened.places[2][2] + 0.25 | fabs) < 0.001' \
+        '.linked == "0.500 s"'
 }
 
 @test "views and colours change, the mouse turns the scene, the pointer names a body" {
-    found light '[.opened, .byBody, .top, .pair, .turned] | map(.sum) | unique | length == 5'
-    found light '.pair.drawn != .top.drawn and (.pointed | test("^(cube|gripper|table)(: (touching|overlapping))?$"))'
+    found light '[.opened, .byBody, .top, .pair, .turned] | map(.sum) | unique | length == 5' \
+        '.pair.drawn != .top.drawn and (.pointed | test("^(cube|gripper|table)(: (touching|overlapping))?$"))'
 }
 
 @test "every shape is drawn, hulls too" {
-    found light '.shapes | .kinds == [12, 12, 4, 1, 4] and .drawn > 2000 and .bad == 0 and (.table | length) == 10'
-    found light '.hulls | .kinds == [[12, 12], [2, 4], [4, 6], [0, 2], [0, 1]] and .drawn > 2000'
+    found light '.shapes | .kinds == [12, 12, 4, 1, 4] and .drawn > 2000 and .bad == 0 and (.table | length) == 10' \
+        '.hulls | .kinds == [[12, 12], [2, 4], [4, 6], [0, 2], [0, 1]] and .drawn > 2000'
 }
 
 @test "two dimensions are seen from above" {
@@ -168,10 +168,10 @@ setup() {
 @test "scenes follow each other, filtered, sorted, in contact only" {
     found light '.arm.counts == "6 scenes · 42 pairs: 3 overlapping, 5 touching, 34 separated" and .arm.last.text == "1.250 s · step 6 of 6"'
     count=$(jq -s '[.[].pairs[] | [.a, .b]] | unique | length' arm.json)
-    found light "(.arm.rows | length) == $count and .contacts == {rows: 8, said: \"8 of $count pairs\"}"
-    found light '.filtered | .rows == 1 and .said == "1 of 42 pairs" and (.first | contains("lid"))'
-    found light '.sorted | .first < .last and .down == .last'
-    found light '.arm.lane[:2] == ["separated", "none"] and (.arm.lane | index("overlapping")) > 1'
+    found light "(.arm.rows | length) == $count and .contacts == {rows: 8, said: \"8 of $count pairs\"}" \
+        '.filtered | .rows == 1 and .said == "1 of 42 pairs" and (.first | contains("lid"))' \
+        '.sorted | .first < .last and .down == .last' \
+        '.arm.lane[:2] == ["separated", "none"] and (.arm.lane | index("overlapping")) > 1'
 }
 
 @test "labels never overprint each other" {
@@ -183,9 +183,9 @@ setup() {
 }
 
 @test "a recording plays queries that alternate together, with the gap over time" {
-    found light '.stack.bodies == [16, 16, 16, 16, 16, 16, 16, 16] and .stack.lane == ["overlapping"]'
-    found light '.stack.gap and .stack.gapSaid == "gap of 1 – 12: -0.208034 to -0.146024"'
-    found light '(.stack.facts.query | startswith("event 0 at byte 0 of ")) and (.stack.facts["answered again"] | startswith("119 separated, 1 overlapping, by certified"))'
+    found light '.stack.bodies == [16, 16, 16, 16, 16, 16, 16, 16] and .stack.lane == ["overlapping"]' \
+        '.stack.gap and .stack.gapSaid == "gap of 1 – 12: -0.208034 to -0.146024"' \
+        '(.stack.facts.query | startswith("event 0 at byte 0 of ")) and (.stack.facts["answered again"] | startswith("119 separated, 1 overlapping, by certified"))'
 }
 
 @test "a long pause is shortened, and times stay those of the log" {
@@ -193,9 +193,9 @@ setup() {
 }
 
 @test "differences are marked, and name both recordings" {
-    found light '.crowd | .different == 1 and (.counts | endswith("1 different")) and .rows == 100 and .more == 200 and (.notes | contains("left out"))'
-    found light '.difference | (.text | contains("step ")) and (.facts.query | endswith(": different")) and (.lane | index("difference")) != null'
-    found light '.golden | (.title | contains("crowd.golden and answered again")) and (.facts | keys | any(endswith("crowd.golden")))'
+    found light '.crowd | .different == 1 and (.counts | endswith("1 different")) and .rows == 100 and .more == 200 and (.notes | contains("left out"))' \
+        '.difference | (.text | contains("step ")) and (.facts.query | endswith(": different")) and (.lane | index("difference")) != null' \
+        '.golden | (.title | contains("crowd.golden and answered again")) and (.facts | keys | any(endswith("crowd.golden")))'
 }
 
 @test "bodies that cannot be drawn, and refusals, are reported" {
@@ -209,9 +209,9 @@ setup() {
 
 @test "faces of meshes that meet are red, and a pair is shown from near" {
     pairs=$(jq '.pairs | length' mesh.json)
-    found light ".mesh | (.rows | length) == $pairs and (.notes | contains(\"$pairs pairs of faces meet\")) and .red > 1000"
-    found light '(.face.facts.pair | test("^A [0-3] – B [0-3]$")) and .face.violet > 50 and .moved.sum != .mesh.sum and .moved.text == "1.000 s"'
-    found light '.self | .drawn > 10000 and .red == 0 and .rows == 0 and .hidden and (.notes | contains("share no more than an edge"))'
+    found light ".mesh | (.rows | length) == $pairs and (.notes | contains(\"$pairs pairs of faces meet\")) and .red > 1000" \
+        '(.face.facts.pair | test("^A [0-3] – B [0-3]$")) and .face.violet > 50 and .moved.sum != .mesh.sum and .moved.text == "1.000 s"' \
+        '.self | .drawn > 10000 and .red == 0 and .rows == 0 and .hidden and (.notes | contains("share no more than an edge"))'
 }
 
 @test "without WebGL table and timeline remain, and one line says so" {

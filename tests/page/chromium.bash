@@ -13,10 +13,7 @@ as_chromium() {
         ${3:---enable-unsafe-swiftshader --use-angle=swiftshader} \
         "file://$BATS_FILE_TMPDIR/drive.html#$1" > "$log" 2>&1 < /dev/null 3>&- &
     pid=$!
-    for _ in $(seq 3000); do
-        if grep -aq ' END"' "$log" || ! kill -0 $pid 2> /dev/null; then break; fi
-        sleep 0.1
-    done
+    grep -aq ' END"' <(tail -n +1 -f --pid=$pid "$log") || true
     kill $pid 2> /dev/null || true
     wait $pid || true
     sed -n 's/.*"FOUND \(.*\) END", source: .*/\1/p' "$log" > "$BATS_FILE_TMPDIR/$1.json"
@@ -24,15 +21,14 @@ as_chromium() {
     grep -a 'CONSOLE:.*source: file:' "$log" | grep -av 'source: [^ ]*\(drive\|tools\)\.js' > "$BATS_FILE_TMPDIR/$1.console" || true
 }
 
-# found PART FILTER: the jq filter must be true of PART.json.
+# found PART FILTER...: the jq filters must be true of PART.json.
 found() {
     command -v chromium > /dev/null || skip 'there is no chromium'
-    [ -s "$1.json" ] && jq -e "$2" "$1.json" > /dev/null || {
-        echo "not so: $2"
-        jq -c "${2%%[^.a-zA-Z]*}" "$1.json" | head -c 3000
-        [ -s "$1.json" ] || tail -n 20 "$1.log"
+    [ -s "$1.json" ] || {
+        tail -n 20 "$1.log"
         return 1
     }
+    holds "$1.json" "${@:2}"
 }
 
 # data PAGE: the data, as JSON.
