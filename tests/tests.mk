@@ -117,6 +117,7 @@ $(O)/slabs/kernel.o $(O)/slabs/kernel_fused.o $(O)/slabs/kernel_planted.o: $(O)/
 
 # Kernels of eight lanes in vectors that every machine has; and with bounds that are wrong.
 tested_kernels := $(patsubst %.c,$(O)/%.o,$(wildcard tests/unit/kernels/*.c))
+$(tested_kernels): flags += -O1
 $(tested_kernels): $(O)/%.o: %.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile_bare) $(if $(findstring verdicts,$@),-ffp-contract=fast)

@@ -2,15 +2,23 @@
 
 load ../ran
 
+# The report of all that fixture/ holds, which most tests look at.
+setup_file() {
+    cd "$BATS_TEST_DIRNAME/../report" || return
+    ./report.sh fixture/bench.json fixture/accuracy.json "$BATS_FILE_TMPDIR/out" fixture/bus.json > "$BATS_FILE_TMPDIR/said"
+}
+
 setup() {
     cd "$BATS_TEST_DIRNAME/../report" || return
-    OUT=$BATS_TEST_TMPDIR/out
+    OUT=$BATS_FILE_TMPDIR/out
     BENCH=fixture/bench.json
     ACCURACY=fixture/accuracy.json
     BUS=fixture/bus.json
 }
 
+# report: another one.
 report() {
+    OUT=$BATS_TEST_TMPDIR/out
     run --separate-stderr ./report.sh "$BENCH" "$ACCURACY" "$OUT" "$BUS"
 }
 
@@ -54,9 +62,7 @@ well_formed() {
 }
 
 @test "the report is one page and one picture that load nothing" {
-    report
-    ended 0
-    [ "$output" = "$OUT/index.html" ]
+    [ "$(< "$BATS_FILE_TMPDIR/said")" = "$OUT/index.html" ]
     [ "$(cd "$OUT" && echo *)" = "index.html speed-error.svg" ]
     for file in "$OUT"/*; do
         has_none "$file" '(src|href|action|data) *= *"?[^#" >]'
@@ -67,8 +73,6 @@ well_formed() {
 }
 
 @test "the pictures are well-formed" {
-    report
-    ended 0
     well_formed "$OUT/speed-error.svg"
     sed -n '/^<div class=wide><svg/,/<\/svg>/p' "$OUT/index.html" |
         sed 's/^<div class=wide>//; s/^<\/div>//' |
@@ -86,8 +90,6 @@ well_formed() {
 }
 
 @test "the page has every method, family and section" {
-    report
-    ended 0
     jq -r '.cells[].methods[].name, (.grids, .instructions, .broad, .worst)[].name,
         .contacts[].methods[].name' "$BENCH" |
         sort -u > "$BATS_TEST_TMPDIR/names"
@@ -110,8 +112,6 @@ well_formed() {
 }
 
 @test "the numbers are those of the reports" {
-    report
-    ended 0
     # Seven cells of 500 pairs, both ways round; fmb refuses two of them.
     jq -e '[.cells[].methods[] | select(.name == "certified") | .queries] | add == 7000' "$ACCURACY"
     has "$OUT/index.html" '7,000 decisions of pairs'
@@ -123,8 +123,6 @@ well_formed() {
 }
 
 @test "contacts have large markers near contact, small ones of random pairs, and all numbers" {
-    report
-    ended 0
     sed -n '/^<section id=contacts>/,/^<.section>/p' "$OUT/index.html" > "$BATS_TEST_TMPDIR/contacts.html"
     # Of three rows near contact, none of the random ones.
     jq -e '[.contacts[] | select(.dim == 3 and (.pairs_are | startswith("random") | not)) | .methods[]
@@ -138,8 +136,6 @@ well_formed() {
 }
 
 @test "hulls are drawn as contacts are" {
-    report
-    ended 0
     sed -n '/^<section id=hulls>/,/^<.section>/p' "$OUT/index.html" > "$BATS_TEST_TMPDIR/hulls.html"
     has "$BATS_TEST_TMPDIR/hulls.html" 'ccd gjk: 50.0 % wrong, 1,730 ns'
     has "$BATS_TEST_TMPDIR/hulls.html" 'fcl distance, 3D static, random, apart, 152 + 102: 4,200 ns, 25.0 % wrong'
@@ -177,8 +173,6 @@ well_formed() {
 }
 
 @test "the bus has every row that was measured, and its numbers" {
-    report
-    ended 0
     sed -n '/^<section id=bus>/,/^<.section>/p' "$OUT/index.html" > "$BATS_TEST_TMPDIR/bus.html"
     [ "$(grep -c '^<tr>' "$BATS_TEST_TMPDIR/bus.html")" = \
         "$(jq '[.pairs, .scenes, .flow, .oneway | length] | add' "$BUS")" ]

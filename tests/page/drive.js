@@ -109,8 +109,9 @@ async function scene() {
     found.nextContact = { ...picture(), ...moment(), places: places() };
     await press("Home");
     await press("+");
-    await press(" ");
-    found.playing = text("#play");
+    const pressed = press(" ");
+    found.playing = text("#play"); /* at once: a slow machine draws when it has ended */
+    await pressed;
     await until(() => !view.fmb.player.playing);
     found.played = { ...picture(), ...moment(), places: places(), button: text("#play") };
     one("#loop").checked = true;

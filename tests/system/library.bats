@@ -2,14 +2,23 @@
 
 load service
 
-setup() {
-    root=$BATS_TEST_TMPDIR/root
+# What was built is installed as it is.
+setup_file() {
+    case $FMB_BUILD in *asan*) return ;; esac
+    options_of_build
+    make -s -o all "${options[@]}" install PREFIX="$BATS_FILE_TMPDIR/root"
+}
+
+options_of_build() {
     options=()
-    case $FMB_BUILD in *asan*) skip "libraries with sanitizers are not installed" ;; esac
     case $FMB_BUILD in *-clang) options+=(CC=clang) ;; *-two) options+=(INSTRUCTIONS=two) ;; esac
     compiler=$(case $FMB_BUILD in *-clang) echo clang ;; *) echo gcc ;; esac)
-    # What was built is installed as it is.
-    make -s -o all "${options[@]}" install PREFIX="$root"
+}
+
+setup() {
+    case $FMB_BUILD in *asan*) skip "libraries with sanitizers are not installed" ;; esac
+    options_of_build
+    root=$BATS_FILE_TMPDIR/root
     export PKG_CONFIG_PATH=$root/lib/pkgconfig LD_LIBRARY_PATH=$root/lib
 }
 
@@ -85,8 +94,10 @@ END
     done
     cmake --build out
     out/both
-    rm "$root"/lib/libfmb*.so*
-    out/both-static
+    mv "$root/lib" "$root/elsewhere"
+    run out/both-static
+    mv "$root/elsewhere" "$root/lib"
+    [ "$status" = 0 ]
     for wanted in 0.99 1.0; do
         run $configure -Dwanted=$wanted
         [ "$status" != 0 ]
@@ -140,8 +151,10 @@ int main(void)
 }
 END
     $compiler main.c -o main -ldl
-    rm "$root"/lib/libfmb*
-    ./main
+    mv "$root/lib" "$root/elsewhere"
+    run ./main
+    mv "$root/elsewhere" "$root/lib"
+    [ "$status" = 0 ]
 }
 
 @test "Python finds the module in the folder of its version, and runs with the shared libraries" {
@@ -151,7 +164,7 @@ END
         "$("$root/bin/fmb" --version | cut -d ' ' -f 2) $folder/fmb.py" ]
 }
 
-# Options of make are those of setup().
+# Options of make are those of options_of_build().
 @test "a prefix may contain a space, % and &, or be relative, and uninstall removes all files" {
     printf '#include <fmb_client.h>\nint main(void) { return !fmb_client_prefix_ok("a"); }\n' \
         > "$BATS_TEST_TMPDIR/small.c"
