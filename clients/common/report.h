@@ -65,6 +65,9 @@ struct report_columns {
     int box[FMB_DIM_MAX][2]; /* [axis][low, high] */
 };
 
+/* Returns the name, or else the id, which is written into text. */
+const char *report_body(const char *name, int64_t id, char text[NUMBER_TEXT_MAX]);
+
 /* Returns the number of characters of a name, or else of an id. */
 int report_body_width(const char *name, int64_t id);
 

@@ -262,7 +262,7 @@ static void text_certificate(FILE *out, int indent, const char *certificate)
     putc('\n', out);
 }
 
-static const char *body_text(const char *name, int64_t id, char text[NUMBER_TEXT_MAX])
+const char *report_body(const char *name, int64_t id, char text[NUMBER_TEXT_MAX])
 {
     snprintf(text, NUMBER_TEXT_MAX, "%" PRId64, id);
     return has_text(name) ? name : text;
@@ -271,7 +271,7 @@ static const char *body_text(const char *name, int64_t id, char text[NUMBER_TEXT
 int report_body_width(const char *name, int64_t id)
 {
     char text[NUMBER_TEXT_MAX];
-    return (int) escape_characters(body_text(name, id, text));
+    return (int) escape_characters(report_body(name, id, text));
 }
 
 void report_row_text(FILE *out, int indent, const struct report_row *row,
@@ -279,7 +279,7 @@ void report_row_text(FILE *out, int indent, const struct report_row *row,
 {
     for (int i = 0; i < 2; i++) {
         char text[NUMBER_TEXT_MAX];
-        const char *name = body_text(row->name[i], row->id[i], text);
+        const char *name = report_body(row->name[i], row->id[i], text);
         const int width = report_body_width(row->name[i], row->id[i]);
         columns->body = width > columns->body ? width : columns->body;
         fprintf(out, "  %*s", columns->body - width, "");

@@ -2,8 +2,6 @@
 
 #include "wire.h"
 
-#include <inttypes.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -85,17 +83,6 @@ const char *body_names_find(const struct body_names *names, int64_t client_id, i
 {
     const struct body_name *found = find(names, client_id, body_id);
     return found ? found->name : NULL;
-}
-
-const char *body_names_text(const struct body_names *names, int64_t client_id, int64_t body_id,
-                            char text[BODY_NAMES_TEXT_MAX])
-{
-    const char *name = body_names_find(names, client_id, body_id);
-    if (name)
-        strcpy(text, name);
-    else
-        snprintf(text, BODY_NAMES_TEXT_MAX, "%" PRId64, body_id);
-    return text;
 }
 
 int32_t body_names_count(const struct body_names *names)

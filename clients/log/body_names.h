@@ -37,11 +37,6 @@ const char *body_names_take_message(struct body_names *names, enum log_kind kind
 /* The name; NULL: none. names may be NULL: there are none. */
 const char *body_names_find(const struct body_names *names, int64_t client_id, int64_t body_id);
 
-/* Writes the name, or else the id, into text, which may then not be UTF-8. Returns text. */
-enum { BODY_NAMES_TEXT_MAX = QUERY_NAME_MAX + 1 };
-const char *body_names_text(const struct body_names *names, int64_t client_id, int64_t body_id,
-                            char text[BODY_NAMES_TEXT_MAX]);
-
 int32_t body_names_count(const struct body_names *names);
 
 /* The first name in the order of client and body ids; NULL: none. hh.next is the next one. */

@@ -4,7 +4,6 @@
 #include "escape.h"
 #include "json_write.h"
 #include "number.h"
-#include "utf8.h"
 #include "wire_type.h"
 
 #include <inttypes.h>
@@ -197,22 +196,11 @@ static int old_version(const struct log_info *info)
     return version;
 }
 
-/* Writes a name with control characters, or not in UTF-8, as channels are written. */
-static void print_path(FILE *out, const char *path)
-{
-    const bool plain = utf8_is_text(path);
-    for (; *path; path++)
-        fprintf(out,
-                plain || (cursor_is_printable((unsigned char) *path) && *path != '\\') ? "%c"
-                                                                                       : "\\x%02x",
-                (unsigned char) *path);
-    fputs(": ", out);
-}
-
 void log_report_text(FILE *out, const struct log_report *report)
 {
     const struct log_info *info = report->info;
-    print_path(out, report->path);
+    escape(out, ESCAPE_TERMINAL, report->path, strlen(report->path));
+    fputs(": ", out);
     if (report->size == 0) {
         fputs("empty, a log of no events\n", out);
         return;

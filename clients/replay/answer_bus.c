@@ -8,13 +8,11 @@
  *   1. wait_for_turn() handles results until the query is due at the pace of the log (due_at()),
  *      and the request engine has capacity for it and its expected result (bytes_of()).
  *   2. send() takes a slot and passes the query to the engine (fmb_client_raw.h), which assigns
- *      its own ids, repeats lost queries and pauses while the service is busy. A query that the
- *      engine would not accept is answered here, with the status of a service (refuse()).
+ *      its own ids, repeats lost queries and pauses while the service is busy.
  *   3. step() runs the engine, which calls on_result() for each result, or with a negative status
  *      after the last timeout.
- *   4. on_result() decodes the result, frees the slot and calls deliver(), which restores the ids
- *      and calls the sink. The sink must not send: a query to be repeated is passed again later by
- *      the caller.
+ *   4. on_result() decodes the result, frees the slot, restores the ids and calls the sink. The
+ *      sink must not send: a query to be repeated is passed again later by the caller.
  *
  * The end. stop() records the first reason: a signal, no service, or a failed bus. From then on no
  * query is sent and the sink is not called.
@@ -30,7 +28,6 @@
 #include "fmb_client_raw.h"
 #include "process.h"
 #include "replayed.h"
-#include "wire.h"
 
 #include <math.h>
 #include <poll.h>
@@ -42,9 +39,8 @@
 /* Signals are checked once in so many calls of answer_bus_is_running(). */
 enum { POLL_EVERY = 256 };
 
-/* Offsets of the client id in queries and results, with the sequence number after it, and of the
- * service's id in results. */
-enum { CLIENT_AT = 16, SERVER_AT = 32 };
+/* Offsets in results of the ids of the query, and of the service's id. */
+enum { CLIENT_AT = 16, SEQUENCE_AT = 24, SERVER_AT = 32 };
 
 /* The longest delay, some 30 years. */
 static const double delay_max_ns = 1e18;
@@ -95,18 +91,6 @@ static void stop(struct answer_bus *bus, enum answer_bus_end end, const struct m
 
 /* ---- Results ---- */
 
-/* Passes a result to the sink. In: the result in bus->bytes. Restores the ids that the query has in
- * the log. */
-static void deliver(struct answer_bus *bus, struct match_item *item, struct new_result *answered)
-{
-    const int64_t id[] = {item->key.client_id, item->key.sequence_number};
-    for (int i = 0; i < 2; i++)
-        big_endian_put_64(bus->bytes + CLIENT_AT + 8 * i, (uint64_t) id[i]);
-    answered->bytes = bus->bytes;
-    bus->counts.ns = clock_ns() - bus->begun_at;
-    bus->counts.answered += bus->sink(bus->user, item, answered);
-}
-
 static void count_service(struct answer_bus *bus)
 {
     const int64_t server_id = (int64_t) big_endian_64(bus->bytes + SERVER_AT);
@@ -132,19 +116,22 @@ static void on_result(void *user, const struct fmb_client_raw_result *result)
     struct slot *slot = user;
     struct answer_bus *bus = slot->bus;
     struct match_item *item = slot->item;
-    struct new_result answered = {.size = result->size, .status = result->status};
+    struct new_result answered = {
+        .bytes = bus->bytes, .size = result->size, .status = result->status};
     bus->under_way--;
-    if (result->status < 0) {
+    slot->bus = NULL;
+    if (result->status < 0)
         stop(bus, result->status == FMB_CLIENT_NO_BUS ? ANSWER_BUS_FAILED : ANSWER_BUS_NO_SERVICE,
              item ? &item->place : NULL);
-    } else if (item) {
-        memcpy(bus->bytes, result->bytes, result->size);
-        count_service(bus);
-        decode_result(bus, (enum log_kind) item->key.kind, result, &answered);
-    }
-    slot->bus = NULL;
-    if (is_running(bus) && item)
-        deliver(bus, item, &answered);
+    if (!is_running(bus) || !item)
+        return;
+    memcpy(bus->bytes, result->bytes, result->size);
+    count_service(bus);
+    decode_result(bus, (enum log_kind) item->key.kind, result, &answered);
+    big_endian_put_64(bus->bytes + CLIENT_AT, (uint64_t) item->key.client_id);
+    big_endian_put_64(bus->bytes + SEQUENCE_AT, (uint64_t) item->key.sequence_number);
+    bus->counts.ns = clock_ns() - bus->begun_at;
+    bus->counts.answered += bus->sink(bus->user, item, &answered);
 }
 
 /* ---- Waiting ---- */
@@ -231,23 +218,6 @@ static void send(struct answer_bus *bus, struct match_item *item, const unsigned
     stop(bus, ANSWER_BUS_FAILED, item ? &item->place : NULL);
 }
 
-/* Answers a query that the engine does not send, with the status of a service: it is too long, or
- * its ids in the log, which the engine replaces, are out of range. */
-static void refuse(struct answer_bus *bus, struct match_item *item, enum fmb_status status)
-{
-    struct new_result answered = {.status = status};
-    if (item->key.kind == LOG_PAIR_QUERY) {
-        bus->result.pair = (struct pair_result){.utime = item->key.utime, .status = status};
-        answered.size = wire_write_pair_result(&bus->result.pair, bus->bytes);
-    } else {
-        memset(&bus->result.scene, 0, sizeof bus->result.scene);
-        bus->result.scene.utime = item->key.utime;
-        bus->result.scene.status = status;
-        answered.size = wire_write_scene_result(&bus->result.scene, bus->bytes);
-    }
-    deliver(bus, item, &answered);
-}
-
 void answer_bus_supply(struct answer_bus *bus, const unsigned char *bytes, uint32_t size)
 {
     logged_query_read(&bus->query, LOG_SCENE_QUERY, bytes, size);
@@ -263,18 +233,13 @@ void answer_bus_supply(struct answer_bus *bus, const unsigned char *bytes, uint3
 void answer_bus_query(struct answer_bus *bus, struct match_item *item, const unsigned char *bytes,
                       uint32_t size)
 {
-    const bool ids_ok = query_id_ok(item->key.client_id) && query_id_ok(item->key.sequence_number);
     logged_query_read(&bus->query, (enum log_kind) item->key.kind, bytes, size);
     const size_t largest = bytes_of(bus, size);
     wait_for_turn(bus, &item->place, largest);
     if (!is_running(bus))
         return;
     bus->counts.whole += item->sent_whole;
-    bus->counts.not_sent += size > QUERY_BYTES_MAX || !ids_ok;
-    if (size > QUERY_BYTES_MAX || !ids_ok)
-        refuse(bus, item, size > QUERY_BYTES_MAX ? FMB_OVER_LIMIT : FMB_BAD_ID);
-    else
-        send(bus, item, bytes, size, largest);
+    send(bus, item, bytes, size, largest);
 }
 
 struct tally_bus answer_bus_counts(const struct answer_bus *bus)

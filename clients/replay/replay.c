@@ -138,17 +138,6 @@ static bool open_output(struct replay *replay)
             (replay->new_golden = log_begin_output(replay->golden_file)) != NULL);
 }
 
-/* Opens the service or the local answerer. */
-static bool open_answers(struct replay *replay)
-{
-    const struct replay_options *options = replay->options;
-    if (options->bus)
-        replay->bus = answer_bus_open(options->bus, replay_on_answered, replay);
-    else
-        replay->local = local_answerer_open(options->frames, replay->definitions);
-    return replay->bus || replay->local;
-}
-
 static bool open_replay(struct replay *replay)
 {
     const struct replay_options *options = replay->options;
@@ -160,7 +149,10 @@ static bool open_replay(struct replay *replay)
         !input_open(&replay->rereader, replay->paths, count))
         return false;
     replay->definitions = definitions_open();
-    if (!open_answers(replay) || !open_output(replay))
+    replay->local = local_answerer_open(options->frames, replay->definitions);
+    if (options->bus)
+        replay->bus = answer_bus_open(options->bus, replay_on_answered, replay);
+    if ((options->bus && !replay->bus) || !open_output(replay))
         return false;
     replay->hasher = hasher_create();
     if (!replay->hasher)
@@ -171,8 +163,12 @@ static bool open_replay(struct replay *replay)
 
 static void close_replay(struct replay *replay)
 {
-    if (replay->bus)
-        replay->tally[0].bus = answer_bus_counts(replay->bus);
+    if (replay->bus) {
+        struct tally_bus *counts = &replay->tally[0].bus;
+        *counts = answer_bus_counts(replay->bus);
+        counts->not_sent = replay->not_sent;
+        counts->answered += replay->not_sent;
+    }
     answer_bus_close(replay->bus);
     local_answerer_close(replay->local);
     g_queue_clear(&replay->again);

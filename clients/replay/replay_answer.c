@@ -107,19 +107,30 @@ static void send_again(struct replay *replay)
 
 /* ---- Queries ---- */
 
+/* Whether a client can send the query: it is not too long for a datagram, and its ids are valid. */
+static bool can_be_sent(const struct match_item *query, uint32_t size)
+{
+    return size <= QUERY_BYTES_MAX && query_id_ok(query->key.client_id) &&
+           query_id_ok(query->key.sequence_number);
+}
+
+/* What cannot be sent is answered here, as a service would refuse it. */
 static void answer_query(struct replay *replay, struct match_item *query)
 {
     unsigned char *bytes = replay->query_bytes;
     struct new_result answered;
     uint32_t size;
-    if (!input_read_again(&replay->input, query->place.log, query->place.offset, bytes, &size))
+    if (!input_read_again(&replay->input, query->place.log, query->place.offset, bytes, &size)) {
         replay_fail_log(replay, query->place.log);
-    else if (replay->bus)
+    } else if (replay->bus && can_be_sent(query, size)) {
         answer_bus_query(replay->bus, query, bytes, size);
-    else if (local_answer(replay->local, (enum log_kind) query->key.kind, bytes, size, &answered))
+    } else if (local_answer(replay->local, (enum log_kind) query->key.kind, bytes, size,
+                            &answered)) {
         replay_fail_changed(replay, query->place.log);
-    else
+    } else {
+        replay->not_sent++;
         take_answer(replay, query, &answered);
+    }
 }
 
 bool replay_has_ended(const struct replay *replay)

@@ -33,9 +33,10 @@ struct replay {
     struct match match;          /* of the results to compare with */
     struct match golden_queries; /* of a golden log */
 
-    struct local_answerer *local; /* NULL: the service on the bus answers */
-    struct answer_bus *bus;       /* NULL: this process answers */
-    GQueue again;                 /* items of queries to be sent with the frames of their bodies */
+    struct local_answerer *local;
+    struct answer_bus *bus; /* NULL: this process answers */
+    int64_t not_sent;       /* queries that this process answered */
+    GQueue again;           /* items of queries to be sent with the frames of their bodies */
 
     struct logged_query query;
     struct scene_query supply; /* without pairs */

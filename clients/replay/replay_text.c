@@ -1,6 +1,7 @@
 #include "replay_output.h"
 
 #include "number.h"
+#include "report.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -62,7 +63,7 @@ static void put_side(FILE *out, enum escape form, const struct difference *diffe
 void replay_line(FILE *out, enum escape form, const struct difference *difference,
                  const struct body_names *names, const char *log, int64_t first_utime)
 {
-    char body[BODY_NAMES_TEXT_MAX];
+    char text[NUMBER_TEXT_MAX];
     if (log) {
         put_text(out, form, log);
         fputs(": ", out);
@@ -71,9 +72,10 @@ void replay_line(FILE *out, enum escape form, const struct difference *differenc
             ((double) difference->place.utime - (double) first_utime) / 1e6);
     fputs(difference->whole ? "the scene" : "bodies", out);
     for (int i = 0; i < 2 && !difference->whole; i++) {
+        const int64_t id = difference->body_id[i];
         putc(' ', out);
         put_text(out, form,
-                 body_names_text(names, difference->client_id, difference->body_id[i], body));
+                 report_body(body_names_find(names, difference->client_id, id), id, text));
     }
     fprintf(out, "  %s: ", difference_name[difference->kind]);
     put_side(out, form, difference, &difference->then);

@@ -31,7 +31,6 @@ static void give(int64_t client_id, int64_t body_id, const char *name)
 
 static void the_last_name_counts(void **state)
 {
-    char text[BODY_NAMES_TEXT_MAX];
     give(7, 1, "table");
     give(7, 2, "gripper");
     give(8, 1, "shelf");
@@ -43,8 +42,6 @@ static void the_last_name_counts(void **state)
     assert_string_equal(body_names_find(names, 8, 1), "shelf");
     assert_null(body_names_find(names, 8, 2));
     assert_null(body_names_find(NULL, 8, 1));
-    assert_string_equal(body_names_text(names, 7, 2, text), "gripper");
-    assert_string_equal(body_names_text(names, 8, INT64_MIN, text), "-9223372036854775808");
 }
 
 static void what_is_no_name_is_ignored(void **state)
