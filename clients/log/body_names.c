@@ -53,7 +53,7 @@ static void set(struct body_names *names, int64_t client_id, int64_t body_id, co
     strcpy(entry->name, name);
 }
 
-void body_names_take(struct body_names *names, struct logged_query *query)
+void body_names_take(struct body_names *names, const struct logged_query *query)
 {
     int32_t count;
     const struct query_placement *placement = logged_query_placements(query, &count);

@@ -27,7 +27,7 @@ struct body_names *body_names_open(void);
 void body_names_close(struct body_names *names); /* may be NULL */
 
 /* Sets the names that a client's query gives to its bodies. */
-void body_names_take(struct body_names *names, struct logged_query *query);
+void body_names_take(struct body_names *names, const struct logged_query *query);
 
 /* Sets the names in a message: a pair query, a scene query, or a names_t; others have none. names
  * may be NULL. Returns NULL; or a static text: why it cannot be decoded. */

@@ -126,7 +126,7 @@ bool definitions_add(struct definitions *definitions, const struct body_view *vi
     return is_new;
 }
 
-void definitions_add_query(struct definitions *definitions, struct logged_query *query)
+void definitions_add_query(struct definitions *definitions, const struct logged_query *query)
 {
     int32_t count;
     const struct query_placement *placement = logged_query_placements(query, &count);
@@ -163,10 +163,12 @@ const struct body_view *definitions_find(struct definitions *definitions,
     return body && body->view.size > 0 ? &body->view : NULL;
 }
 
-int32_t definitions_fill(struct definitions *definitions, struct query_placement *placement,
-                         int32_t count)
+int32_t definitions_fill(struct definitions *definitions, struct logged_query *query)
 {
-    int32_t missing = -1;
+    struct query_placement *placement =
+        query->kind == LOG_PAIR_QUERY ? query->pair.placement : query->scene.placement;
+    int32_t missing = -1, count;
+    logged_query_placements(query, &count);
     for (int32_t i = 0; i < count; i++) {
         if (!query_by_handle(&placement[i]))
             continue;

@@ -27,7 +27,7 @@ void definitions_close(struct definitions *definitions); /* may be NULL */
 bool definitions_add(struct definitions *definitions, const struct body_view *view);
 
 /* Adds the bodies of a query that have frames and an id: services cache no others. */
-void definitions_add_query(struct definitions *definitions, struct logged_query *query);
+void definitions_add_query(struct definitions *definitions, const struct logged_query *query);
 
 /* Adds the bodies that have frames in a message: a pair query, a scene query, or a definition;
  * others have none. Sets its names too (body_names_take_message()), unless names is NULL. Returns
@@ -39,10 +39,9 @@ const char *definitions_add_message(struct definitions *definitions, struct body
 const struct body_view *definitions_find(struct definitions *definitions,
                                          const struct handle *handle);
 
-/* Replaces the handle of each placement whose body was added by that body. Returns the first one
- * whose body was not; -1: none. */
-int32_t definitions_fill(struct definitions *definitions, struct query_placement *placement,
-                         int32_t count);
+/* Replaces the handle of each placement of a query whose body was added by that body. Returns the
+ * first one whose body was not; -1: none. */
+int32_t definitions_fill(struct definitions *definitions, struct logged_query *query);
 
 /* The number of bodies, and the memory they take, tables included, bytes. */
 size_t definitions_count(struct definitions *definitions);

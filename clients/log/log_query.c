@@ -173,8 +173,12 @@ static const struct match_item *find_query(struct query_search *search)
 }
 
 /* Sets the names of placements without one. */
-static void fill_names(struct log_query *out, struct query_placement *placement, int32_t count)
+static void fill_names(struct log_query *out)
 {
+    struct query_placement *placement =
+        out->query.kind == LOG_PAIR_QUERY ? out->query.pair.placement : out->query.scene.placement;
+    int32_t count;
+    logged_query_placements(&out->query, &count);
     for (int32_t i = 0; i < count; i++)
         if (!placement[i].placed.name || !*placement[i].placed.name)
             placement[i].placed.name =
@@ -203,9 +207,9 @@ static void read_query(struct query_search *search, const struct match_item *que
         refuse(search, ": %s", error);
         return;
     }
-    struct query_placement *placement = logged_query_placements(&out->query, &count);
-    fill_names(out, placement, count);
-    const int32_t missing = definitions_fill(out->definitions, placement, count);
+    const struct query_placement *placement = logged_query_placements(&out->query, &count);
+    fill_names(out);
+    const int32_t missing = definitions_fill(out->definitions, &out->query);
     if (missing >= 0)
         refuse(search,
                ": placement %d, body %" PRId64 ", came by a handle that no log here defines",

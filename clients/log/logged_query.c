@@ -57,7 +57,8 @@ const struct query_header *logged_query_header(const struct logged_query *query)
     return query->kind == LOG_PAIR_QUERY ? &query->pair.header : &query->scene.header;
 }
 
-struct query_placement *logged_query_placements(struct logged_query *query, int32_t *count)
+const struct query_placement *logged_query_placements(const struct logged_query *query,
+                                                      int32_t *count)
 {
     *count = query->kind == LOG_PAIR_QUERY ? 2 : query_stored_placements(&query->scene);
     return query->kind == LOG_PAIR_QUERY ? query->pair.placement : query->scene.placement;

@@ -42,7 +42,8 @@ int64_t logged_result_compute_ns(const struct logged_result *result);
 bool logged_status_is_transient(int32_t status);
 
 /* The placements in the struct; *count of them. */
-struct query_placement *logged_query_placements(struct logged_query *query, int32_t *count);
+const struct query_placement *logged_query_placements(const struct logged_query *query,
+                                                      int32_t *count);
 
 /* query_pairs_decided() with memory of its own. */
 int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair);

@@ -2,7 +2,6 @@
 
 #include "allocate.h"
 #include "geometry.h"
-#include "logged_query.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -84,10 +83,9 @@ static void add_body(struct page *page, const struct query_placement *placement,
 static void add_bodies(struct page *page, const struct body_names *names,
                        const struct replayed *replayed)
 {
-    const struct scene_query *scene = replayed->scene;
-    const struct query_placement *placement = scene ? scene->placement : replayed->pair->placement;
-    const int32_t count = scene ? query_stored_placements(scene) : 2;
-    const int64_t client = scene ? scene->client_id : replayed->pair->client_id;
+    int32_t count;
+    const struct query_placement *placement = logged_query_placements(replayed->query, &count);
+    const int64_t client = logged_query_header(replayed->query)->client_id;
     struct page_frames frames = {NULL, 0, 0};
     for (int32_t i = 0; i < count; i++)
         add_body(page, &placement[i], body_names_find(names, client, placement[i].placed.id),
@@ -97,32 +95,23 @@ static void add_bodies(struct page *page, const struct body_names *names,
 
 /* ---- Results --------------------------------------------------------------------------------- */
 
-static struct page_result result_of(int32_t status, int32_t method, int64_t compute_ns)
+static struct page_result result_of(const struct logged_query *query,
+                                    const struct logged_result *result)
 {
+    if (!result)
+        return (struct page_result){.given = false};
+    const bool is_pair = query->kind == LOG_PAIR_QUERY;
+    const int32_t status = logged_result_status(result);
+    const int32_t method = is_pair ? result->pair.method : result->scene.method;
     const struct fmb_method *by = method ? fmb_method_by_number(method) : NULL;
-    return (struct page_result){.given = true,
-                                .error = status == FMB_OK ? NULL : fmb_status_text(status),
-                                .method = by ? by->name : NULL,
-                                .compute_ns = compute_ns};
-}
-
-static struct page_result result_of_pair(const struct pair_result *result)
-{
-    if (!result)
-        return (struct page_result){.given = false};
-    struct page_result out = result_of(result->status, result->method, result->compute_ns);
-    if (result->status == FMB_OK && result->answer.verdict <= FMB_OVERLAPPING)
-        out.count[result->answer.verdict] = 1;
-    return out;
-}
-
-static struct page_result result_of_scene(const struct scene_query *query,
-                                          const struct scene_result *result)
-{
-    if (!result)
-        return (struct page_result){.given = false};
-    struct page_result out = result_of(result->status, result->method, result->compute_ns);
-    replayed_count(query, result, out.count);
+    struct page_result out = {.given = true,
+                              .error = status == FMB_OK ? NULL : fmb_status_text(status),
+                              .method = by ? by->name : NULL,
+                              .compute_ns = logged_result_compute_ns(result)};
+    if (!is_pair)
+        replayed_count(&query->scene, &result->scene, out.count);
+    else if (status == FMB_OK && result->pair.answer.verdict <= FMB_OVERLAPPING)
+        out.count[result->pair.answer.verdict] = 1;
     return out;
 }
 
@@ -158,7 +147,7 @@ static void add_pairs(struct page *page, const struct replayed *replayed)
 
 static bool certificates_differ(const struct pair_result *a, const struct pair_result *b)
 {
-    return a && b && a->status == FMB_OK && b->status == FMB_OK &&
+    return a->status == FMB_OK && b->status == FMB_OK &&
            (a->certificate && b->certificate ? strcmp(a->certificate, b->certificate) != 0
                                              : a->certificate != b->certificate);
 }
@@ -168,28 +157,27 @@ void page_take(struct page *page, const struct body_names *names, int64_t begin,
 {
     static const char *const outcome[REPLAY_OUTCOMES] = {
         "same", "different", "busy", "unknown body", "not defined", "no result recorded"};
-    const struct scene_query *scene = replayed->scene;
+    const struct logged_query *query = replayed->query;
+    const struct logged_result *then = replayed->then, *now = replayed->now;
+    const struct scene_query *scene = query->kind == LOG_SCENE_QUERY ? &query->scene : NULL;
     struct page_step step = {
         .time = ((double) replayed->utime - (double) begin) / 1e6,
-        .duration = scene ? scene->duration : replayed->pair->duration,
+        .duration = scene ? scene->duration : query->pair.duration,
         .margin = scene ? scene->margin : 0,
         .label = scene ? scene->label : NULL,
         .all = scene && scene->which != FMB_PAIRS_LISTED,
         .log = replayed->log,
         .event = replayed->event_number,
         .offset = replayed->offset,
-        .outcome = {outcome[replayed->outcome], replayed->outcome == REPLAY_DIFFERENT}};
+        .outcome = {outcome[replayed->outcome], replayed->outcome == REPLAY_DIFFERENT},
+        .result = {result_of(query, then), result_of(query, now)}};
     char note[100];
     if (!scene) {
-        step.result[0] = result_of_pair(replayed->pair_then);
-        step.result[1] = result_of_pair(replayed->pair_now);
-        if (certificates_differ(replayed->pair_then, replayed->pair_now))
+        if (then && now && certificates_differ(&then->pair, &now->pair))
             step.note = "The certificates differ.";
     } else {
-        step.result[0] = result_of_scene(scene, replayed->scene_then);
-        step.result[1] = result_of_scene(scene, replayed->scene_now);
         const int64_t total = query_pair_count(scene);
-        const int64_t end = replayed->scene_now ? replayed->scene_now->end_pair : total;
+        const int64_t end = now ? now->scene.end_pair : total;
         if (scene->first_pair > 0 || end < total) {
             snprintf(note, sizeof note, "Pairs %" PRId32 " to %" PRId64 " of %" PRId64 ".",
                      scene->first_pair, end, total);

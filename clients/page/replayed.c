@@ -1,6 +1,5 @@
 #include "replayed.h"
 
-#include "logged_query.h"
 #include "wire.h"
 
 #include <string.h>
@@ -9,11 +8,11 @@ static const struct replayed_side no_answer;
 
 /* ---- A pair query ---------------------------------------------------------------------------- */
 
-static struct replayed_side side_of_pair(const struct pair_result *result)
+static struct replayed_side side_of_pair(const struct logged_result *result)
 {
-    if (!result || result->status != FMB_OK)
+    if (!result || result->pair.status != FMB_OK)
         return no_answer;
-    return (struct replayed_side){true, result->dim, result->answer};
+    return (struct replayed_side){true, result->pair.dim, result->pair.answer};
 }
 
 static bool next_of_pair(struct replayed_pairs *pairs, struct replayed_pair *out)
@@ -23,8 +22,8 @@ static bool next_of_pair(struct replayed_pairs *pairs, struct replayed_pair *out
     pairs->pair_given = true;
     out->a = 0;
     out->b = 1;
-    out->then = side_of_pair(pairs->replayed->pair_then);
-    out->now = side_of_pair(pairs->replayed->pair_now);
+    out->then = side_of_pair(pairs->replayed->then);
+    out->now = side_of_pair(pairs->replayed->now);
     return true;
 }
 
@@ -54,7 +53,7 @@ static struct replayed_side take(struct replayed_place *place)
 
 static bool next_listed(struct replayed_pairs *pairs, struct replayed_pair *out)
 {
-    const struct scene_query *query = pairs->replayed->scene;
+    const struct scene_query *query = &pairs->replayed->query->scene;
     const int32_t done =
         pairs->then.verdict > pairs->now.verdict ? pairs->then.verdict : pairs->now.verdict;
     if (query->first_pair < 0 || query->first_pair >= listed_count(query) - done ||
@@ -105,31 +104,32 @@ static bool next_named(struct replayed_pairs *pairs, struct replayed_pair *out)
     if (!found)
         return false;
     const unsigned a = out->a, b = out->b;
-    out->then = side_of_named(pairs->replayed->scene, &pairs->then, a, b);
-    out->now = side_of_named(pairs->replayed->scene, &pairs->now, a, b);
+    out->then = side_of_named(&pairs->replayed->query->scene, &pairs->then, a, b);
+    out->now = side_of_named(&pairs->replayed->query->scene, &pairs->now, a, b);
     return true;
 }
 
 /* ---- Either ---------------------------------------------------------------------------------- */
 
-static struct replayed_place begin(const struct scene_result *result)
+static struct replayed_place begin(const struct logged_result *result)
 {
-    return (struct replayed_place){.result = result && result->status == FMB_OK ? result : NULL};
+    const bool scene = result && result->kind == LOG_SCENE_QUERY && result->scene.status == FMB_OK;
+    return (struct replayed_place){.result = scene ? &result->scene : NULL};
 }
 
 void replayed_pairs_begin(const struct replayed *replayed, struct replayed_pairs *out)
 {
-    *out = (struct replayed_pairs){.replayed = replayed,
-                                   .then = begin(replayed->scene_then),
-                                   .now = begin(replayed->scene_now)};
+    *out = (struct replayed_pairs){
+        .replayed = replayed, .then = begin(replayed->then), .now = begin(replayed->now)};
 }
 
 bool replayed_pairs_next(struct replayed_pairs *pairs, struct replayed_pair *out)
 {
-    const struct scene_query *scene = pairs->replayed->scene;
-    if (!scene)
+    const struct logged_query *query = pairs->replayed->query;
+    if (query->kind == LOG_PAIR_QUERY)
         return next_of_pair(pairs, out);
-    return scene->which == FMB_PAIRS_LISTED ? next_listed(pairs, out) : next_named(pairs, out);
+    return query->scene.which == FMB_PAIRS_LISTED ? next_listed(pairs, out)
+                                                  : next_named(pairs, out);
 }
 
 void replayed_count(const struct scene_query *query, const struct scene_result *result,

@@ -3,7 +3,7 @@
 #ifndef REPLAYED_H
 #define REPLAYED_H
 
-#include "query.h"
+#include "logged_query.h"
 
 /* How the two results compare. */
 enum replay_outcome {
@@ -23,12 +23,10 @@ struct replayed {
     int64_t offset;       /* of its header in the log, bytes */
     int64_t utime;        /* of the log, microseconds since 1970 */
     enum replay_outcome outcome;
-    /* Either a pair or a scene; the other group is NULL. Placements by handle have their geometry,
-     * and a frame_count, if the log defines them. *_then is NULL if no result was recorded. */
-    const struct pair_query *pair;
-    const struct pair_result *pair_now, *pair_then;
-    const struct scene_query *scene;
-    const struct scene_result *scene_now, *scene_then;
+    /* Placements by handle have their geometry, and a frame_count, if the log defines them. then is
+     * NULL if no result was recorded. */
+    const struct logged_query *query;
+    const struct logged_result *now, *then;
 };
 
 /* ---- Pairs ---- */

@@ -131,31 +131,28 @@ static struct fmb_answer answer_of(const struct fmb_answer *answer, int dim, int
 /* ---- Results ---- */
 
 static struct difference_side side_of(const struct replayed_side *side,
-                                      const struct pair_result *pair,
-                                      const struct scene_result *scene, int dim)
+                                      const struct logged_result *result, int dim)
 {
+    const bool is_pair = result->kind == LOG_PAIR_QUERY;
     return (struct difference_side){
-        .status = pair ? pair->status : FMB_OK,
+        .status = is_pair ? result->pair.status : FMB_OK,
         .answer = answer_of(&side->answer, side->dim, dim),
-        .certificate = pair ? pair->certificate : NULL,
-        .names_frames = pair ? pair->names_frames : scene->names_frames};
+        .certificate = is_pair ? result->pair.certificate : NULL,
+        .names_frames = is_pair ? result->pair.names_frames : result->scene.names_frames};
 }
 
 static struct difference difference_of(const struct replayed *replayed,
                                        const struct replayed_pair *pair)
 {
-    const bool is_pair = replayed->pair;
-    const struct query_placement *placement =
-        is_pair ? replayed->pair->placement : replayed->scene->placement;
-    const unsigned count = is_pair ? 2 : (unsigned) query_stored_placements(replayed->scene);
+    int32_t count;
+    const struct query_placement *placement = logged_query_placements(replayed->query, &count);
     const int dim = dim_of(&placement[0]);
-    struct difference difference = {
-        .dim = dim,
-        .placement = {pair->a, pair->b},
-        .then = side_of(&pair->then, replayed->pair_then, replayed->scene_then, dim),
-        .now = side_of(&pair->now, replayed->pair_now, replayed->scene_now, dim)};
+    struct difference difference = {.dim = dim,
+                                    .placement = {pair->a, pair->b},
+                                    .then = side_of(&pair->then, replayed->then, dim),
+                                    .now = side_of(&pair->now, replayed->now, dim)};
     for (int f = 0; f < 2; f++)
-        if (difference.placement[f] < count)
+        if (difference.placement[f] < (unsigned) count)
             difference.body_id[f] = placement[difference.placement[f]].placed.id;
     return difference;
 }
@@ -165,14 +162,16 @@ static enum replay_outcome compare_answers(const struct compare_options *options
                                            const struct replayed *replayed, difference_sink *sink,
                                            void *user)
 {
-    const double duration = replayed->pair ? replayed->pair->duration : replayed->scene->duration;
+    const struct logged_query *query = replayed->query;
+    const bool is_pair = query->kind == LOG_PAIR_QUERY;
+    const double duration = is_pair ? query->pair.duration : query->scene.duration;
     enum replay_outcome outcome = REPLAY_SAME;
     struct replayed_pairs pairs;
     struct replayed_pair pair;
     replayed_pairs_begin(replayed, &pairs);
     while (replayed_pairs_next(&pairs, &pair)) {
         struct difference difference = difference_of(replayed, &pair);
-        if ((replayed->pair || (pair.then.answered && pair.now.answered)) &&
+        if ((is_pair || (pair.then.answered && pair.now.answered)) &&
             find_difference(options, duration, &difference)) {
             sink(user, &difference);
             outcome = REPLAY_DIFFERENT;
@@ -181,35 +180,28 @@ static enum replay_outcome compare_answers(const struct compare_options *options
     return outcome;
 }
 
-/* Whether the answers of two results of a scene can be compared; otherwise *outcome. */
-static bool are_comparable(const struct replayed *replayed, int32_t then, int32_t now,
-                           enum replay_outcome *outcome)
-{
-    *outcome = then == now && now != FMB_OK ? REPLAY_SAME : REPLAY_DIFFERENT;
-    return then == FMB_OK && now == FMB_OK &&
-           logged_result_fits(replayed->scene, replayed->scene_then) &&
-           logged_result_fits(replayed->scene, replayed->scene_now);
-}
-
 enum replay_outcome compare_results(const struct compare_options *options,
                                     const struct replayed *replayed, difference_sink *sink,
                                     void *user)
 {
-    const bool is_pair = replayed->pair;
-    const int32_t then = is_pair ? replayed->pair_then->status : replayed->scene_then->status;
-    const int32_t now = is_pair ? replayed->pair_now->status : replayed->scene_now->status;
-    enum replay_outcome outcome;
+    const struct logged_query *query = replayed->query;
+    const int32_t then = logged_result_status(replayed->then);
+    const int32_t now = logged_result_status(replayed->now);
     if (logged_status_is_transient(then) || logged_status_is_transient(now))
         return transient_outcome(then, now);
-    if (is_pair || are_comparable(replayed, then, now, &outcome))
+    if (query->kind == LOG_PAIR_QUERY ||
+        (then == FMB_OK && now == FMB_OK &&
+         logged_result_fits(&query->scene, &replayed->then->scene) &&
+         logged_result_fits(&query->scene, &replayed->now->scene)))
         return compare_answers(options, replayed, sink, user);
-    if (outcome == REPLAY_DIFFERENT)
-        sink(user, &(struct difference){.kind = DIFFERENT_STATUS,
-                                        .whole = true,
-                                        .dim = 3,
-                                        .then = {.status = then},
-                                        .now = {.status = now}});
-    return outcome;
+    if (then == now && now != FMB_OK)
+        return REPLAY_SAME;
+    sink(user, &(struct difference){.kind = DIFFERENT_STATUS,
+                                    .whole = true,
+                                    .dim = 3,
+                                    .then = {.status = then},
+                                    .now = {.status = now}});
+    return REPLAY_DIFFERENT;
 }
 
 /* ---- Encoded results ----

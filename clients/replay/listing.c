@@ -2,6 +2,7 @@
 
 #include "allocate.h"
 
+#include <glib.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,14 +12,15 @@ struct listing_entry {
 };
 
 struct listing {
-    struct listing_entry **entry; /* owned, [count], sorted */
-    size_t count, capacity, limit;
+    GPtrArray *entries; /* of struct listing_entry, sorted */
+    size_t limit;
     int64_t put;
 };
 
 struct listing *listing_open(int64_t limit)
 {
     struct listing *list = allocate(1, sizeof *list);
+    list->entries = g_ptr_array_new_with_free_func(free);
     list->limit = (size_t) limit;
     return list;
 }
@@ -27,10 +29,14 @@ void listing_close(struct listing *list)
 {
     if (!list)
         return;
-    while (list->count > 0)
-        free(list->entry[--list->count]);
-    free(list->entry);
+    g_ptr_array_free(list->entries, TRUE);
     free(list);
+}
+
+static const struct difference *entry_at(const struct listing *list, size_t at)
+{
+    const struct listing_entry *entry = list->entries->pdata[at];
+    return &entry->difference;
 }
 
 static bool precedes(const struct difference *a, const struct difference *b)
@@ -56,29 +62,27 @@ static struct listing_entry *copy_of(const struct difference *difference)
     return entry;
 }
 
-/* Differences arrive nearly in order, so few are moved. */
+/* Differences arrive nearly in order, so the search is short. */
 void listing_put(struct listing *list, const struct difference *difference)
 {
+    size_t at = list->entries->len;
     list->put++;
-    if (list->count == list->limit) {
-        if (list->limit == 0 || !precedes(difference, &list->entry[list->count - 1]->difference))
-            return;
-        free(list->entry[--list->count]);
-    }
-    list->entry = allocate_grow(list->entry, &list->capacity, list->count + 1, sizeof *list->entry);
-    size_t at = list->count++;
-    for (; at > 0 && precedes(difference, &list->entry[at - 1]->difference); at--)
-        list->entry[at] = list->entry[at - 1];
-    list->entry[at] = copy_of(difference);
+    while (at > 0 && precedes(difference, entry_at(list, at - 1)))
+        at--;
+    if (at == list->limit)
+        return;
+    g_ptr_array_insert(list->entries, (int) at, copy_of(difference));
+    if (list->entries->len > list->limit)
+        g_ptr_array_set_size(list->entries, (int) list->limit);
 }
 
 int64_t listing_beyond(const struct listing *list)
 {
-    return list->put > (int64_t) list->limit ? list->put - (int64_t) list->limit : 0;
+    return list->put - (int64_t) list->entries->len;
 }
 
 void listing_each(const struct listing *list, difference_sink *sink, void *user)
 {
-    for (size_t i = 0; i < list->count; i++)
-        sink(user, &list->entry[i]->difference);
+    for (size_t i = 0; i < list->entries->len; i++)
+        sink(user, entry_at(list, i));
 }

@@ -58,9 +58,10 @@ bool replay_on_answered(void *user, struct match_item *query, const struct new_r
 /* Sends the bodies of a query that has no space for their frames ahead of it, as many in one scene
  * query as fit. The query itself then names them by handle. A service caches bodies with an id
  * only. */
-static void supply_service(struct replay *replay, const struct query_placement *placement,
-                           int32_t count)
+static void supply_service(struct replay *replay)
 {
+    int32_t count;
+    const struct query_placement *placement = logged_query_placements(&replay->query, &count);
     struct scene_query *supply = &replay->supply;
     for (int32_t next = 0; next < count;) {
         size_t size = WIRE_SCENE_QUERY_BYTES;
@@ -88,18 +89,16 @@ static void send_again(struct replay *replay)
 {
     for (struct match_item *query; (query = g_queue_pop_head(&replay->again));) {
         uint32_t query_size;
-        int32_t count;
         if (!replay_read_query(replay, &replay->input, query, replay->query_bytes, &query_size,
                                &replay->query))
             continue;
-        struct query_placement *placement = logged_query_placements(&replay->query, &count);
-        definitions_fill(replay->definitions, placement, count);
+        definitions_fill(replay->definitions, &replay->query);
         const size_t size = logged_query_write(&replay->query, replay->whole);
         query->sent_whole = true;
         if (size > 0) {
             answer_bus_query(replay->bus, query, replay->whole, (uint32_t) size);
         } else {
-            supply_service(replay, placement, count);
+            supply_service(replay);
             answer_bus_query(replay->bus, query, replay->query_bytes, query_size);
         }
     }

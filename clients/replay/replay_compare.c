@@ -101,36 +101,29 @@ static bool read_both(struct replay *replay, const struct match_item *query,
     return read_compared(replay, query);
 }
 
-/* The query, as it was read, with its results. */
-static struct replayed replayed_of(struct replay *replay, bool has_recorded)
-{
-    struct replayed out = {.outcome = REPLAY_UNRECORDED};
-    if (replay->compared.kind == LOG_PAIR_QUERY) {
-        out.pair = &replay->compared.pair;
-        out.pair_now = &replay->now.pair;
-        out.pair_then = has_recorded ? &replay->then.pair : NULL;
-    } else {
-        out.scene = &replay->compared.scene;
-        out.scene_now = &replay->now.scene;
-        out.scene_then = has_recorded ? &replay->then.scene : NULL;
-    }
-    return out;
-}
-
 static void add_to_page(struct replay *replay, const struct match_item *query,
-                        struct replayed replayed)
+                        const struct logged_result *then, enum replay_outcome outcome)
 {
-    int32_t count;
-    struct query_placement *placement = logged_query_placements(&replay->compared, &count);
-    replayed.log = replay->paths[query->place.log];
-    replayed.event_number = query->place.number;
-    replayed.offset = query->place.offset;
-    replayed.utime = query->place.utime;
-    definitions_fill(replay->definitions, placement, count);
+    const struct replayed replayed = {.log = replay->paths[query->place.log],
+                                      .event_number = query->place.number,
+                                      .offset = query->place.offset,
+                                      .utime = query->place.utime,
+                                      .outcome = outcome,
+                                      .query = &replay->compared,
+                                      .then = then,
+                                      .now = &replay->now};
+    definitions_fill(replay->definitions, &replay->compared);
     page_take(replay->options->page, replay->options->names, replay->tally->first_utime, &replayed);
 }
 
 /* ---- Comparing ---- */
+
+static enum replay_outcome compare_both(struct replay *replay, difference_sink *sink)
+{
+    const struct replayed replayed = {
+        .query = &replay->compared, .then = &replay->then, .now = &replay->now};
+    return compare_results(&replay->options->compare, &replayed, sink, replay);
+}
 
 static void on_difference(void *user, const struct difference *difference)
 {
@@ -158,7 +151,7 @@ static void compare_unrecorded(struct replay *replay, const struct match_item *q
 {
     count(replay, query, REPLAY_UNRECORDED, 0);
     if (replay->options->page && read_both(replay, query, answered))
-        add_to_page(replay, query, replayed_of(replay, false));
+        add_to_page(replay, query, NULL, REPLAY_UNRECORDED);
 }
 
 void replay_compare(struct replay *replay, const struct match_item *query,
@@ -183,11 +176,10 @@ void replay_compare(struct replay *replay, const struct match_item *query,
         !read_both(replay, query, answered))
         return;
     replay->item = query;
-    struct replayed replayed = replayed_of(replay, true);
-    replayed.outcome = compare_results(&replay->options->compare, &replayed, on_difference, replay);
-    count(replay, query, replayed.outcome, logged_result_compute_ns(&replay->then));
+    const enum replay_outcome outcome = compare_both(replay, on_difference);
+    count(replay, query, outcome, logged_result_compute_ns(&replay->then));
     if (replay->options->page)
-        add_to_page(replay, query, replayed);
+        add_to_page(replay, query, &replay->then, outcome);
 }
 
 /* ---- Results among themselves ---- */
@@ -208,9 +200,7 @@ static void compare_second(struct replay *replay, const struct match_item *secon
             !read_result(replay, query->other, replay->query_bytes, &replay->now) ||
             !read_result(replay, second, replay->result_bytes, &replay->then))
             return;
-        const struct replayed replayed = replayed_of(replay, true);
-        differs = compare_results(&replay->options->compare, &replayed, no_difference, NULL) ==
-                  REPLAY_DIFFERENT;
+        differs = compare_both(replay, no_difference) == REPLAY_DIFFERENT;
     }
     channel->results_again += !differs;
     channel->contradictions += differs;

@@ -110,8 +110,14 @@ static enum replay_outcome compare_with(double tolerance, const struct pair_quer
                                         const struct pair_result *now)
 {
     const struct compare_options options = {.tolerance = tolerance};
+    static struct logged_query of;
+    static struct logged_result results[2];
+    const struct replayed replayed = {.query = &of, .then = &results[0], .now = &results[1]};
     reported_count = 0;
-    const struct replayed replayed = {.pair = query, .pair_then = then, .pair_now = now};
+    of.kind = results[0].kind = results[1].kind = LOG_PAIR_QUERY;
+    of.pair = *query;
+    results[0].pair = *then;
+    results[1].pair = *now;
     const enum replay_outcome outcome = compare_results(&options, &replayed, on_difference, NULL);
     assert_int_equal(reported_count, outcome == REPLAY_DIFFERENT);
     return outcome;
@@ -508,8 +514,14 @@ static void check_differences(int total)
 
 static enum replay_outcome compare(void)
 {
+    static struct logged_query of;
+    static struct logged_result results[2];
+    const struct replayed replayed = {.query = &of, .then = &results[0], .now = &results[1]};
     reported_count = 0;
-    const struct replayed replayed = {.scene = &scene, .scene_then = &then, .scene_now = &now};
+    of.kind = results[0].kind = results[1].kind = LOG_SCENE_QUERY;
+    of.scene = scene;
+    results[0].scene = then;
+    results[1].scene = now;
     return compare_results(&exact, &replayed, on_difference, NULL);
 }
 
