@@ -9,34 +9,39 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { READ_BYTES = 1 << 16 };
-
 void text_open(int fd, struct text *out)
 {
-    *out = (struct text){.fd = fd, .line = 1, .column = 1, .object_max = TEXT_OBJECT_MAX};
+    const int own = dup(fd);
+    *out = (struct text){.line = 1, .column = 1, .object_max = TEXT_OBJECT_MAX};
+    out->file = own >= 0 ? fdopen(own, "r") : NULL;
 }
 
 void text_close(struct text *text)
 {
+    if (text->file)
+        fclose(text->file);
     free(text->bytes);
     memset(text, 0, sizeof *text);
 }
 
 /* ---- Positions and errors -------------------------------------------------------------------- */
 
-/* Moves begin forward, and counts lines and columns. */
-static void advance(struct text *text, size_t count)
+static void count_byte(struct text *text, int byte)
 {
-    for (; count > 0; count--) {
-        const unsigned char byte = (unsigned char) text->bytes[text->begin++];
-        const bool continuation = (byte & 0xc0) == 0x80;
-        if (byte == '\n') {
-            text->line++;
-            text->column = 1;
-        } else if (!continuation) {
-            text->column++;
-        }
+    const bool continuation = (byte & 0xc0) == 0x80;
+    if (byte == '\n') {
+        text->line++;
+        text->column = 1;
+    } else if (!continuation) {
+        text->column++;
     }
+}
+
+/* Counts the first bytes of the object. */
+static void count_bytes(struct text *text, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        count_byte(text, (unsigned char) text->bytes[i]);
 }
 
 enum text_outcome text_refuse(struct text *text, size_t offset, const char *format, ...)
@@ -46,44 +51,23 @@ enum text_outcome text_refuse(struct text *text, size_t offset, const char *form
     va_start(list, format);
     vsnprintf(what, sizeof what, format, list);
     va_end(list);
-    advance(text, offset);
+    count_bytes(text, offset);
     snprintf(text->error, sizeof text->error, "line %zu, column %zu: %s", text->line, text->column,
              what);
     return TEXT_BAD;
 }
 
-static enum text_outcome refuse_byte(struct text *text, unsigned char byte)
+static enum text_outcome refuse_byte(struct text *text, int byte)
 {
     if (byte > 0x20 && byte < 0x7f)
         return text_refuse(text, 0, "expected an object, '{', found '%c'", byte);
-    return text_refuse(text, 0, "expected an object, '{', found byte 0x%02x", byte);
+    return text_refuse(text, 0, "expected an object, '{', found byte 0x%02x", (unsigned) byte);
 }
 
 static enum text_outcome failed(struct text *text)
 {
     snprintf(text->error, sizeof text->error, "%s", strerror(errno));
     return TEXT_FAILED;
-}
-
-/* ---- Reading --------------------------------------------------------------------------------- */
-
-/* Drops the bytes before begin and appends a piece of the input. Returns how many bytes were read;
- * 0: the end; -1: errno. */
-static ssize_t read_more(struct text *text)
-{
-    text->used -= text->begin;
-    text->scanned -= text->begin;
-    if (text->begin > 0)
-        memmove(text->bytes, text->bytes + text->begin, text->used);
-    text->begin = 0;
-    text->bytes = allocate_grow(text->bytes, &text->capacity, text->used + READ_BYTES, 1);
-    ssize_t count;
-    do
-        count = read(text->fd, text->bytes + text->used, READ_BYTES);
-    while (count < 0 && errno == EINTR);
-    if (count > 0)
-        text->used += (size_t) count;
-    return count;
 }
 
 /* ---- The end of an object -------------------------------------------------------------------- */
@@ -114,69 +98,57 @@ static enum scan scan_byte(struct text *text, char byte)
 
 /* ---- Objects --------------------------------------------------------------------------------- */
 
-static bool is_space(char byte)
+/* The first byte after white space, and after a byte order mark at the start of the input; EOF. */
+static int first_byte(struct text *text)
 {
-    return byte == ' ' || byte == '\t' || byte == '\r' || byte == '\n';
+    int byte = getc_unlocked(text->file);
+    if (!text->started && byte == 0xef) {
+        if (getc_unlocked(text->file) != 0xbb || getc_unlocked(text->file) != 0xbf)
+            return byte;
+        byte = getc_unlocked(text->file);
+    }
+    text->started = true;
+    for (; byte == ' ' || byte == '\t' || byte == '\r' || byte == '\n';
+         byte = getc_unlocked(text->file))
+        count_byte(text, byte);
+    return byte;
 }
 
-static enum scan scan_object(struct text *text)
+/* In: the first byte of the object. */
+static enum scan read_object(struct text *text, int byte)
 {
     enum scan result = SCAN_MORE;
-    while (result == SCAN_MORE && text->scanned < text->used)
-        result = scan_byte(text, text->bytes[text->scanned++]);
-    return result;
-}
-
-/* Skips a byte order mark at the start of the input. A read that fails is repeated by
- * find_object(). */
-static void skip_mark(struct text *text)
-{
-    static const char mark[] = {'\xef', '\xbb', '\xbf'};
-    text->started = true;
-    while (text->used < sizeof mark &&
-           (text->used == 0 || memcmp(text->bytes, mark, text->used) == 0))
-        if (read_more(text) <= 0)
-            return;
-    if (text->used >= sizeof mark && memcmp(text->bytes, mark, sizeof mark) == 0)
-        text->begin = text->scanned = sizeof mark;
-}
-
-/* Skips white space. Returns 1 if another byte follows, 0 at the end, -1: errno. */
-static ssize_t find_object(struct text *text)
-{
-    ssize_t count = 1;
-    while (count > 0) {
-        while (text->begin < text->used && is_space(text->bytes[text->begin]))
-            advance(text, 1);
-        text->scanned = text->begin;
-        if (text->begin < text->used)
-            return 1;
-        count = read_more(text);
+    for (; byte != EOF && text->used <= text->object_max; byte = getc_unlocked(text->file)) {
+        text->bytes = allocate_grow(text->bytes, &text->capacity, text->used + 1, 1);
+        text->bytes[text->used++] = (char) byte;
+        result = scan_byte(text, (char) byte);
+        if (result != SCAN_MORE)
+            break;
     }
-    return count;
+    return result;
 }
 
 enum text_outcome text_next(struct text *text, const char **object, size_t *length)
 {
-    if (!text->started)
-        skip_mark(text);
-    advance(text, text->scanned - text->begin);
-    ssize_t count = find_object(text);
-    if (count <= 0)
-        return count < 0 ? failed(text) : TEXT_END;
-    if (text->bytes[text->begin] != '{')
-        return refuse_byte(text, (unsigned char) text->bytes[text->begin]);
-    while (count > 0) {
-        const enum scan result = scan_object(text);
-        *object = text->bytes + text->begin;
-        *length = text->scanned - text->begin;
-        if (result == SCAN_DONE)
-            return TEXT_OBJECT;
-        if (result == SCAN_DEEP)
-            return text_refuse(text, *length - 1, "nested more than %d deep", TEXT_DEPTH_MAX);
-        if (*length > text->object_max)
-            return text_refuse(text, 0, "an object of more than %zu bytes", text->object_max);
-        count = read_more(text);
-    }
-    return count < 0 ? failed(text) : text_refuse(text, *length, "the input ends within an object");
+    if (!text->file)
+        return failed(text);
+    count_bytes(text, text->used);
+    text->used = 0;
+    const int first = first_byte(text);
+    if (first == EOF)
+        return ferror(text->file) ? failed(text) : TEXT_END;
+    if (first != '{')
+        return refuse_byte(text, first);
+    const enum scan result = read_object(text, first);
+    *object = text->bytes;
+    *length = text->used;
+    if (result == SCAN_DONE)
+        return TEXT_OBJECT;
+    if (result == SCAN_DEEP)
+        return text_refuse(text, *length - 1, "nested more than %d deep", TEXT_DEPTH_MAX);
+    if (text->used > text->object_max)
+        return text_refuse(text, 0, "an object of more than %zu bytes", text->object_max);
+    if (ferror(text->file))
+        return failed(text);
+    return text_refuse(text, *length, "the input ends within an object");
 }

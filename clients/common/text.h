@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 enum {
     TEXT_DEPTH_MAX = 32,       /* scenes nest 5 deep; cJSON recurses once per level */
@@ -18,14 +19,12 @@ enum {
 
 enum text_outcome { TEXT_OBJECT, TEXT_END, TEXT_BAD, TEXT_FAILED };
 
-/* Memory: the longest object and one piece of the input. Read error; the rest is private. */
+/* Memory: the longest object. Read error; the rest is private. */
 struct text {
-    int fd;
-    char *bytes; /* owned */
+    FILE *file;  /* owned; NULL: errno says why */
+    char *bytes; /* owned; of the current object */
     size_t used, capacity;
-    size_t begin;        /* of the current object, or of the white space before it */
-    size_t scanned;      /* number of bytes scanned */
-    size_t line, column; /* of bytes[begin], from 1; columns are characters of UTF-8 */
+    size_t line, column; /* of bytes[0], from 1; columns are characters of UTF-8 */
     size_t object_max;   /* TEXT_OBJECT_MAX */
     int depth;
     uint64_t braces; /* bit d: of the open brackets, the d-th from the innermost is a brace */
