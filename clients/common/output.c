@@ -112,22 +112,22 @@ bool output_check(const struct output_options *options)
 
 /* ---- Temporary files ------------------------------------------------------------------------- */
 
-/* Outputs that have a temporary name only. */
-static struct output *volatile unfinished;
+/* The temporary name of the output that is open; NULL: none. */
+static const char *volatile unfinished;
 
-static void remove_temporaries(void)
+static void remove_temporary(void)
 {
-    for (const struct output *output = unfinished; output; output = output->next)
-        unlink(output->temporary);
+    if (unfinished)
+        unlink(unfinished);
 }
 
 static void on_signal(int number)
 {
-    remove_temporaries();
+    remove_temporary();
     raise(number); /* now with its default action */
 }
 
-/* Removes the temporary files when the process ends. With SIGXFSZ ignored, a write beyond the limit
+/* Removes the temporary file when the process ends. With SIGXFSZ ignored, a write beyond the limit
  * of file sizes is an error. */
 static void install_cleanup(void)
 {
@@ -137,7 +137,7 @@ static void install_cleanup(void)
     if (installed)
         return;
     installed = true;
-    atexit(remove_temporaries);
+    atexit(remove_temporary);
     signal(SIGXFSZ, SIG_IGN);
     for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
         if (sigaction(signals[i], NULL, &action) != 0 || action.sa_handler != SIG_DFL)
@@ -173,14 +173,13 @@ static char *follow_links(const char *path)
     return at;
 }
 
-/* The output is registered before its file exists, so that on_signal() removes it at any time. */
+/* The name is registered before its file exists, so that on_signal() removes it at any time. */
 static int open_temporary(struct output *output, mode_t mode)
 {
     install_cleanup();
     output->target = follow_links(output->path);
     output->temporary = output_beside(output->target, ".fmb-XXXXXX");
-    output->next = unfinished;
-    unfinished = output;
+    unfinished = output->temporary;
     const int fd = mkstemp(output->temporary);
     if (fd >= 0)
         fchmod(fd, mode);
@@ -196,11 +195,7 @@ static mode_t mode_of_new_files(void)
 
 static void free_output(struct output *output)
 {
-    struct output *volatile *at = &unfinished;
-    while (*at && *at != output)
-        at = &(*at)->next;
-    if (*at)
-        *at = output->next;
+    unfinished = NULL;
     free(output->target);
     free(output->temporary);
     free(output);

@@ -31,16 +31,16 @@ struct output {
     /* Owned; NULL: the file is written directly. Path after symbolic links; path of the temporary
      * file in the same folder. */
     char *target, *temporary;
-    struct output *volatile next;
 };
 
 /* Checks whether the file may be written. Returns false after an error, which was reported. */
 bool output_check(const struct output_options *options);
 
-/* Checks and opens a file. A regular file is written under a temporary name in its folder; symbolic
- * links are followed. Devices, pipes and standard output are written directly. The temporary file
- * is removed if the process exits or is ended by a signal. In: options->path outlives the output.
- * Out: *out: NULL if no file is wanted. Returns false after an error, which was reported. */
+/* Checks and opens a file; one at a time. A regular file is written under a temporary name in its
+ * folder; symbolic links are followed. Devices, pipes and standard output are written directly. The
+ * temporary file is removed if the process exits or is ended by a signal. In: options->path
+ * outlives the output. Out: *out: NULL if no file is wanted. Returns false after an error, which
+ * was reported. */
 bool output_open(const struct output_options *options, struct output **out);
 
 /* Closes the file. If keep is true, it gets its name; otherwise it is removed, and an existing file

@@ -18,13 +18,13 @@ struct body_names *body_names_open(void)
 
 void body_names_close(struct body_names *names)
 {
-    struct body_name *first = names ? names->table : NULL;
-    if (names)
-        HASH_CLEAR(hh, names->table);
-    while (first) {
-        struct body_name *next = first->hh.next;
-        free(first);
-        first = next;
+    struct body_name *name, *next;
+    if (!names)
+        return;
+    HASH_ITER(hh, names->table, name, next)
+    {
+        HASH_DELETE(hh, names->table, name);
+        free(name);
     }
     free(names);
 }

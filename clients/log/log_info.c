@@ -19,8 +19,9 @@ struct log_info *log_info_open(void)
 
 void log_info_close(struct log_info *info)
 {
-    for (struct log_row *row = info->rows, *next; row; row = next) {
-        next = row->hh.next;
+    struct log_row *row, *next;
+    HASH_ITER(hh, info->rows, row, next)
+    {
         HASH_DELETE(hh, info->rows, row);
         free(row);
     }

@@ -181,8 +181,9 @@ void replay_pair_clients(struct replay *replay)
     note_matched(&pairing);
     pair_queries(&pairing);
     rename_results(&pairing);
-    for (struct pair_entry *entry = pairing.table, *next; entry; entry = next) {
-        next = entry->hh.next;
+    struct pair_entry *entry, *next;
+    HASH_ITER(hh, pairing.table, entry, next)
+    {
         HASH_DELETE(hh, pairing.table, entry);
         free(entry);
     }
