@@ -220,7 +220,7 @@ def _from_sequence(name: str, value: Any, code: str, shape: tuple) -> tuple[memo
 
 def _iterate(name: str, value: Any) -> Iterator[Any]:
     try:
-        return iter(value)
+        return iter(None if isinstance(value, str) else value)
     except TypeError:
         raise TypeError(f"{name}: expected a sequence, found {value!r:.40}") from None
 
@@ -684,11 +684,14 @@ class Scene(_Handle):
         want = (_WANT_TIMES if contacts else 0) + (_WANT_BOX if boxes else 0) + (
             _WANT_GAP if gaps else 0)
         with self._lock, _lock_of(client):
-            self._check(_lib.fmb_flat_decide(
+            status = _lib.fmb_flat_decide(
                 self._handle, _handle_of(client), duration, bool(instant), want, margin, first,
                 _pointer(listed), 0 if listed is None else len(listed),
                 _pointer(left_out), 0 if left_out is None else len(left_out),
-                _text("label", label)))
+                _text("label", label))
+            if status == 9 and duration == 0:
+                raise Error("duration: it is 0, but bodies move: pass instant=True", status)
+            self._check(status)
             return Answers(self._handle, self.dim, self.names, listed,
                            want | (_WANT_GAP if margin else 0), client is not None)
 
