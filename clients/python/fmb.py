@@ -19,8 +19,9 @@ order, such as numpy arrays, which are not copied. Arrays that are returned are 
 is installed, and otherwise memoryviews of the same shape and type.
 
 Refused input raises an exception whose text begins with the name of the argument: TypeError,
-ValueError, or Error, a ValueError with a status of fmb.h. If the bus fails, BusError is raised. A
-pair of an accepted scene that has no answer has a status other than 0, and no verdict.
+ValueError, or Error, a ValueError with a status of fmb.h. If the bus fails, or no
+service answers, BusError is raised. A pair that the service could not decide has a status other
+than 0, and no verdict.
 
 Several threads may share a scene or a client; calls on the same one wait for each other.
 """
@@ -107,7 +108,7 @@ class Error(ValueError):
 
 
 class BusError(ConnectionError):
-    """The bus failed, or a pair had no answer. status: of enum fmb_client_status in fmb_client.h; 0 for
+    """The bus failed, or a pair got no answer. status: of enum fmb_client_status in fmb_client.h; 0 for
     a client that cannot be opened or is closed."""
 
     def __init__(self, message: str, status: int = 0) -> None:
@@ -692,8 +693,12 @@ class Scene(_Handle):
             if status == 9 and duration == 0:
                 raise Error("duration: it is 0, but bodies move: pass instant=True", status)
             self._check(status)
-            return Answers(self._handle, self.dim, self.names, listed,
-                           want | (_WANT_GAP if margin else 0), client is not None)
+            answers = Answers(self._handle, self.dim, self.names, listed,
+                              want | (_WANT_GAP if margin else 0), client is not None)
+        worst = min(memoryview(answers.statuses), default=0) if client else 0
+        if worst < 0:
+            raise BusError(f"client: {status_text(worst)}", worst)
+        return answers
 
     def stream(self, duration: float, positions: Optional[Iterable[Array]] = None,
                orientations: Optional[Iterable[Array]] = None,

@@ -223,17 +223,17 @@ class Bus(Answers):
         self.assertEqual(os.waitpid(child, 0)[1], 0)
         self.assertEqual(scene.pair(0, 1, 0, client=self.client).verdict, fmb.OVERLAPPING)
 
-    def test_without_a_service_pairs_have_a_status(self):
+    def test_without_a_service_nothing_is_answered(self):
+        # An array of verdicts that are none would read as "nothing overlaps".
         scene = fmb.Scene([fmb.box([1, 1])] * 3)
         with fmb.Client(prefix="none", timeout=0.01, tries=2) as client:
-            answers = scene.decide(0, pairs=[(0, 1), (1, 2)], client=client, **WANTED)
-            self.assertEqual(list(answers.statuses), [-2, -2])
-            self.assertEqual(list(answers.verdicts), [0, 0])
-            self.assertEqual(answers[1][3:], (-2,) + 8 * (None,))
-            self.assertIn("no fmbd", fmb.status_text(-2))
-            with self.assertRaisesRegex(fmb.BusError, "^pair: .*fmbd") as caught:
-                scene.pair(0, 1, 0, client=client)
-            self.assertLess(caught.exception.status, 0)
+            for name, call in (("client", lambda: scene.decide(0, client=client)),
+                               ("client", lambda: scene.decide(0, pairs=[(1, 2)], client=client)),
+                               ("client", lambda: list(scene.stream(0, [[[0, 0]] * 3], client=client))),
+                               ("pair", lambda: scene.pair(0, 1, 0, client=client))):
+                with self.assertRaisesRegex(fmb.BusError, f"^{name}: .*no fmbd") as caught:
+                    call()
+                self.assertEqual(caught.exception.status, -2)
 
     def test_names_and_labels_are_on_the_bus(self):
         scene = fmb.Scene([fmb.box([1, 1])] * 2, names=["tafel \u00e4", None])
