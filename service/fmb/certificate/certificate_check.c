@@ -21,7 +21,8 @@
  *
  * has a solution, with <= in place of < for the closed frame. Gaussian elimination removes one
  * unknown for each independent equation, Fourier's method the others; what remains are comparisons
- * of numbers with 0. */
+ * of numbers with 0. The point of a pair with a hull comes with weights of vertices instead:
+ * certificate_check_weights.c. */
 #include "certificate_check.h"
 
 #include <assert.h>
@@ -34,35 +35,16 @@
 enum {
     UNKNOWNS = 3,
     COLUMNS = UNKNOWNS + 1,
-    EDGES_MAX = 6,
     ROWS_MAX = 20 /* has_point() */
-};
-
-struct side {
-    int count; /* of components */
-    bool simplex;
-    int edges;
-    mpq_t edge[EDGES_MAX][AXES]; /* components, then their differences, in the order of fmb.h */
-    mpq_t origin[AXES], velocity[AXES];
-};
-
-/* The pair, and the contents of the text. */
-struct proof {
-    int dim;
-    bool moving;
-    mpq_t duration;
-    struct side side[2];
-    mpq_t v[AXES], d[AXES], z[AXES];
-    mpq_t normal[AXES];
-    mpq_t time, point[AXES];
 };
 
 /* ---- Vectors ---- */
 
-void check_each_axis(mpq_t vector[AXES], void (*call)(mpq_ptr))
+void check_each(void *numbers, size_t bytes, void (*call)(mpq_ptr))
 {
-    for (int axis = 0; axis < AXES; axis++)
-        call(vector[axis]);
+    mpq_ptr number = numbers;
+    for (size_t i = 0; i < bytes / sizeof *number; i++)
+        call(&number[i]);
 }
 
 void check_copy(mpq_t out[AXES], mpq_t v[AXES])
@@ -71,10 +53,22 @@ void check_copy(mpq_t out[AXES], mpq_t v[AXES])
         mpq_set(out[axis], v[axis]);
 }
 
-void check_set(mpq_t out[AXES], int dim, const double *v)
+void check_add(mpq_t out[AXES], mpq_t v[AXES])
 {
+    for (int axis = 0; axis < AXES; axis++)
+        mpq_add(out[axis], out[axis], v[axis]);
+}
+
+void check_add_numbers(mpq_t out[AXES], int dim, const double *v)
+{
+    mpq_t number;
+    mpq_init(number);
     for (int axis = 0; axis < dim; axis++)
-        mpq_set_d(out[axis], v[axis]);
+        if (v[axis] != 0) {
+            mpq_set_d(number, v[axis]);
+            mpq_add(out[axis], out[axis], number);
+        }
+    mpq_clear(number);
 }
 
 void check_subtract(mpq_t out[AXES], mpq_t u[AXES], mpq_t v[AXES])
@@ -94,7 +88,7 @@ void check_add_multiple(mpq_t *out, const mpq_t factor, mpq_t *v, int numbers)
     mpq_clear(product);
 }
 
-void check_dot(mpq_t out, mpq_t u[AXES], mpq_t v[AXES])
+static void dot(mpq_t out, mpq_t u[AXES], mpq_t v[AXES])
 {
     mpq_t product;
     mpq_init(product);
@@ -122,38 +116,35 @@ static void cross(mpq_t out[AXES], mpq_t u[AXES], mpq_t v[AXES])
 
 /* ---- The pair ---- */
 
-/* Calls one of mpq_init and mpq_clear for every number. */
-static void proof_each(struct proof *proof, void (*call)(mpq_ptr))
+/* Calls one of mpq_init and mpq_clear for every number, those of spans only of hulls. */
+static void proof_each(struct check_proof *proof, void (*call)(mpq_ptr))
 {
     for (int f = 0; f < 2; f++) {
-        for (int e = 0; e < EDGES_MAX; e++)
-            check_each_axis(proof->side[f].edge[e], call);
-        check_each_axis(proof->side[f].origin, call);
-        check_each_axis(proof->side[f].velocity, call);
+        struct check_side *side = &proof->side[f];
+        if (proof->hulls)
+            check_each(side->span.vector, sizeof side->span.vector, call);
+        check_each(side->origin, sizeof *side - offsetof(struct check_side, origin), call);
     }
-    check_each_axis(proof->v, call);
-    check_each_axis(proof->d, call);
-    check_each_axis(proof->z, call);
-    check_each_axis(proof->normal, call);
-    check_each_axis(proof->point, call);
-    call(proof->time);
-    call(proof->duration);
+    check_each(&proof->duration, sizeof *proof - offsetof(struct check_proof, duration), call);
 }
 
-/* v := R(q) v, as fmb.h defines it, with the plane of 2D in space. */
-void check_turn(const struct fmb_placement *placement, mpq_t v[AXES])
+void check_turn(const struct fmb_placement *placement, bool back, mpq_t v[AXES])
 {
+    const int count = placement->orientation_count;
     mpq_t q[4], norm, along, product, cross_of_v[AXES], out[AXES];
+    if (count == 0)
+        return;
     mpq_inits(q[0], q[1], q[2], q[3], norm, along, product, NULL);
-    check_each_axis(cross_of_v, mpq_init);
-    check_each_axis(out, mpq_init);
+    check_each(cross_of_v, sizeof cross_of_v, mpq_init);
+    check_each(out, sizeof out, mpq_init);
     mpq_set_d(q[0], placement->orientation[0]);
-    for (int i = 1; i < placement->orientation_count; i++)
-        mpq_set_d(q[placement->orientation_count == 2 ? 3 : i], placement->orientation[i]);
+    for (int i = 1; i < count; i++)
+        mpq_set_d(q[count == 2 ? 3 : i],
+                  back ? -placement->orientation[i] : placement->orientation[i]);
 
     /* With r = (x, y, z): n R v = (ww - r.r) v + 2 (r.v) r + 2 w (r x v), n = ww + r.r. */
-    check_dot(norm, q + 1, q + 1);
-    check_dot(along, q + 1, v);
+    dot(norm, q + 1, q + 1);
+    dot(along, q + 1, v);
     cross(cross_of_v, q + 1, v);
     mpq_mul(product, q[0], q[0]);
     mpq_sub(product, product, norm);
@@ -167,56 +158,55 @@ void check_turn(const struct fmb_placement *placement, mpq_t v[AXES])
     for (int axis = 0; axis < AXES; axis++)
         mpq_div(v[axis], out[axis], norm);
 
-    check_each_axis(out, mpq_clear);
-    check_each_axis(cross_of_v, mpq_clear);
+    check_each(out, sizeof out, mpq_clear);
+    check_each(cross_of_v, sizeof cross_of_v, mpq_clear);
     mpq_clears(q[0], q[1], q[2], q[3], norm, along, product, NULL);
 }
 
-/* Components and origin, in body coordinates. */
-static void set_frame(struct side *side, const struct fmb_frame *frame)
+/* Sets origin and components of a frame that is not a hull, in body coordinates. The origin of a
+ * box is its centre less half of each component; it may be infinite as a double. */
+static void set_frame(struct check_side *side)
 {
-    mpq_t number;
-    mpq_init(number);
+    const struct fmb_frame *frame = side->frame;
+    mpq_t half;
+    mpq_init(half);
     side->count = frame->count;
     side->simplex = frame->shape == FMB_TETRAHEDRON || frame->shape == FMB_FACE;
-    for (int axis = 0; axis < frame->dim; axis++) {
-        for (int i = 0; i < frame->count; i++) {
-            mpq_set_d(side->edge[i][axis], frame->component[i][axis]);
-            mpq_set_d(number, frame->remainder[i][axis]);
-            mpq_add(side->edge[i][axis], side->edge[i][axis], number);
-        }
-        if (frame->shape != FMB_BOX) {
-            mpq_set_d(side->origin[axis], frame->origin[axis]);
-            continue;
-        }
-        mpq_div_2exp(number, side->edge[axis][axis],
-                     1); /* the origin may be infinite as a double */
-        mpq_set_d(side->origin[axis], frame->centre[axis]);
-        mpq_sub(side->origin[axis], side->origin[axis], number);
+    for (int i = 0; i < side->count; i++) {
+        check_add_numbers(side->edge[i], frame->dim, frame->component[i]);
+        check_add_numbers(side->edge[i], frame->dim, frame->remainder[i]);
     }
-    mpq_clear(number);
+    check_add_numbers(side->origin, frame->dim,
+                      frame->shape == FMB_BOX ? frame->centre : frame->origin);
+    for (int i = 0; frame->shape == FMB_BOX && i < side->count; i++) {
+        mpq_div_2exp(half, side->edge[i][i], 1);
+        mpq_sub(side->origin[i], side->origin[i], half);
+    }
+    mpq_clear(half);
 }
 
-static void set_side(struct side *side, const struct fmb_placement *placement)
+/* Moves a frame from body coordinates into the world. */
+static void place_frame(struct check_side *side)
 {
-    mpq_t position;
-    mpq_init(position);
-    set_frame(side, fmb_body_frame(placement->body, 0));
-    if (placement->orientation_count > 0) {
-        check_turn(placement, side->origin);
-        for (int i = 0; i < side->count; i++)
-            check_turn(placement, side->edge[i]);
-    }
-    for (int axis = 0; axis < placement->body->dim; axis++) {
-        mpq_set_d(position, placement->position[axis]);
-        mpq_add(side->origin[axis], side->origin[axis], position);
-        mpq_set_d(side->velocity[axis], placement->velocity[axis]);
-    }
+    check_turn(side->placement, false, side->origin);
+    check_add_numbers(side->origin, side->frame->dim, side->placement->position);
+    for (int i = 0; i < side->count; i++)
+        check_turn(side->placement, false, side->edge[i]);
+}
+
+static void set_side(struct check_side *side, const struct fmb_placement *placement, bool hulls)
+{
+    side->placement = placement;
+    side->frame = fmb_body_frame(placement->body, 0);
+    check_add_numbers(side->velocity, side->frame->dim, placement->velocity);
+    if (side->frame->shape != FMB_HULL)
+        set_frame(side);
+    if (!hulls)
+        place_frame(side);
     side->edges = side->count;
     for (int i = 0; side->simplex && i < side->count; i++)
         for (int j = i + 1; j < side->count; j++)
             check_subtract(side->edge[side->edges++], side->edge[j], side->edge[i]);
-    mpq_clear(position);
 }
 
 static bool is_zero_vector(mpq_t v[AXES])
@@ -224,18 +214,41 @@ static bool is_zero_vector(mpq_t v[AXES])
     return mpq_sgn(v[0]) == 0 && mpq_sgn(v[1]) == 0 && mpq_sgn(v[2]) == 0;
 }
 
-static void set_pair(struct proof *proof, const struct fmb_placement *a,
+static void set_pair(struct check_proof *proof, const struct fmb_placement *a,
                      const struct fmb_placement *b, double duration)
 {
     proof->dim = a->body->dim;
     mpq_set_d(proof->duration, duration);
-    set_side(&proof->side[0], a);
-    set_side(&proof->side[1], b);
+    set_side(&proof->side[0], a, proof->hulls);
+    set_side(&proof->side[1], b, proof->hulls);
     proof->moving =
         !is_zero_vector(proof->side[0].velocity) || !is_zero_vector(proof->side[1].velocity);
     check_subtract(proof->v, proof->side[1].velocity, proof->side[0].velocity);
     check_subtract(proof->d, proof->side[1].origin, proof->side[0].origin);
     mpq_set_ui(proof->z[2], 1, 1);
+}
+
+unsigned check_vertex_count(const struct check_side *side)
+{
+    return side->frame->shape == FMB_HULL ? side->frame->vertex_count
+           : side->simplex                ? (unsigned) side->count + 1
+                                          : 1U << side->count;
+}
+
+static bool has_component(const struct check_side *side, unsigned k, int i)
+{
+    return side->simplex ? k == (unsigned) i + 1 : k >> i & 1;
+}
+
+void check_vertex(struct check_side *side, unsigned k, mpq_t out[AXES])
+{
+    const struct fmb_frame *frame = side->frame;
+    check_copy(out, side->origin);
+    for (int axis = 0; frame->shape == FMB_HULL && axis < frame->dim; axis++)
+        mpq_set_d(out[axis], frame->vertices[(size_t) axis * frame->vertex_stride + k]);
+    for (int i = 0; i < side->count; i++)
+        if (has_component(side, k, i))
+            check_add(out, side->edge[i]);
 }
 
 /* ---- The text ----
@@ -305,7 +318,7 @@ bool check_take_number(const char **at, mpq_t out)
     return take_denominator(at, mpq_denref(out)) && in_lowest_terms(out);
 }
 
-bool check_take_point(const char **at, int dim, mpq_t out[AXES])
+static bool take_point(const char **at, int dim, mpq_t out[AXES])
 {
     for (int axis = 0; axis < dim; axis++)
         if (!check_take(at, axis == 0 ? " (" : " ") || !check_take_number(at, out[axis]))
@@ -314,7 +327,7 @@ bool check_take_point(const char **at, int dim, mpq_t out[AXES])
 }
 
 /* The vector that has this name in this pair; NULL: none has. */
-static mpq_t *take_vector(const char **at, struct proof *proof)
+static mpq_t *take_vector(const char **at, struct check_proof *proof)
 {
     if (check_take(at, "v"))
         return proof->v;
@@ -322,16 +335,16 @@ static mpq_t *take_vector(const char **at, struct proof *proof)
         return proof->d;
     if (proof->dim == 2 && check_take(at, "z"))
         return proof->z;
-    struct side *side = check_take(at, "a")   ? &proof->side[0]
-                        : check_take(at, "b") ? &proof->side[1]
-                                              : NULL;
+    struct check_side *side = check_take(at, "a")   ? &proof->side[0]
+                              : check_take(at, "b") ? &proof->side[1]
+                                                    : NULL;
     if (!side || !check_is_digit(**at) || **at - '0' >= side->edges)
         return NULL;
     return side->edge[*(*at)++ - '0'];
 }
 
 /* "U x V": out := their product. */
-static bool take_product(const char **at, struct proof *proof, mpq_t out[AXES])
+static bool take_product(const char **at, struct check_proof *proof, mpq_t out[AXES])
 {
     mpq_t *u = take_vector(at, proof);
     mpq_t *v = u && check_take(at, " x ") ? take_vector(at, proof) : NULL;
@@ -342,19 +355,19 @@ static bool take_product(const char **at, struct proof *proof, mpq_t out[AXES])
 }
 
 /* "(U x V) x W". */
-static bool take_double_product(const char **at, struct proof *proof, mpq_t out[AXES])
+static bool take_double_product(const char **at, struct check_proof *proof, mpq_t out[AXES])
 {
     mpq_t product[AXES], *w = NULL;
-    check_each_axis(product, mpq_init);
+    check_each(product, sizeof product, mpq_init);
     if (check_take(at, "(") && take_product(at, proof, product) && check_take(at, ") x "))
         w = take_vector(at, proof);
     if (w)
         cross(out, product, w);
-    check_each_axis(product, mpq_clear);
+    check_each(product, sizeof product, mpq_clear);
     return w;
 }
 
-static bool take_direction(const char **at, struct proof *proof, mpq_t out[AXES])
+static bool take_direction(const char **at, struct check_proof *proof, mpq_t out[AXES])
 {
     if (**at == '(')
         return take_double_product(at, proof, out);
@@ -369,8 +382,11 @@ static bool take_direction(const char **at, struct proof *proof, mpq_t out[AXES]
     return true;
 }
 
-static bool take_normal(const char **at, struct proof *proof)
+/* " + DIRECTION", " - DIRECTION"; of hulls " normal (X Y Z)". */
+static bool take_normal(const char **at, struct check_proof *proof)
 {
+    if (proof->hulls)
+        return check_take(at, " normal") && take_point(at, proof->dim, proof->normal);
     bool negative = check_take(at, " - ");
     if (!negative && !check_take(at, " + "))
         return false;
@@ -382,7 +398,8 @@ static bool take_normal(const char **at, struct proof *proof)
 }
 
 /* The functions that find flaws return what is wrong, or NULL. */
-static const char *flaw_of_text(struct proof *proof, enum fmb_verdict verdict, const char *text)
+static const char *flaw_of_text(struct check_proof *proof, enum fmb_verdict verdict,
+                                const char *text)
 {
     const char *at = text, *name = fmb_verdict_name(verdict);
     if (!name || !check_take(&at, name))
@@ -392,71 +409,92 @@ static const char *flaw_of_text(struct proof *proof, enum fmb_verdict verdict, c
     if (verdict != FMB_SEPARATED) {
         if (!check_take(&at, " at ") || !check_take_number(&at, proof->time))
             return "there is no time in lowest terms where it is due";
-        if (!check_take_point(&at, proof->dim, proof->point))
+        if (!take_point(&at, proof->dim, proof->point))
             return "the time is not followed by a point of this dimension in lowest terms";
+        if (proof->hulls && !check_take_weights(&at, proof))
+            return "the point is not followed by weights of vertices of both frames";
     }
     return *at == '\0' ? NULL : "something follows the certificate";
 }
 
 /* ---- The normal ---- */
 
-/* [low, high] := the values of the normal over the frame with its origin at 0. A vertex of a
- * cuboid is the sum of the components whose bits are set in its number; of a simplex, the origin
- * or the end of a component. */
-static void set_range(struct side *side, mpq_t normal[AXES], mpq_t low, mpq_t high)
+/* Adds N . position to the values of the normal over a frame in body coordinates. */
+static void add_position(struct check_proof *proof, struct check_side *side)
 {
-    int vertices = side->simplex ? side->count + 1 : 1 << side->count;
-    mpq_t value, part;
-    mpq_inits(value, part, NULL);
-    mpq_set_ui(low, 0, 1); /* vertex 0 */
-    mpq_set_ui(high, 0, 1);
-    for (int vertex = 1; vertex < vertices; vertex++) {
-        mpq_set_ui(value, 0, 1);
+    mpq_t position[AXES], value;
+    mpq_init(value);
+    check_each(position, sizeof position, mpq_init);
+    check_add_numbers(position, proof->dim, side->placement->position);
+    dot(value, proof->normal, position);
+    mpq_add(side->low, side->low, value);
+    mpq_add(side->high, side->high, value);
+    check_each(position, sizeof position, mpq_clear);
+    mpq_clear(value);
+}
+
+/* Sets the least and the greatest value of the normal N over a frame. N . R v is (R^-1 N) . v. That
+ * of a vertex which is a sum is the sum of the values. */
+static void set_range(struct check_proof *proof, struct check_side *side)
+{
+    mpq_t normal[AXES], vertex[AXES], of_edge[AXES], of_origin, value;
+    mpq_inits(of_origin, value, NULL);
+    check_each(normal, sizeof normal, mpq_init);
+    check_each(vertex, sizeof vertex, mpq_init);
+    check_each(of_edge, sizeof of_edge, mpq_init);
+    check_copy(normal, proof->normal);
+    if (proof->hulls)
+        check_turn(side->placement, true, normal);
+    dot(of_origin, normal, side->origin);
+    for (int i = 0; i < side->count; i++)
+        dot(of_edge[i], normal, side->edge[i]);
+    for (unsigned k = 0; k < check_vertex_count(side); k++) {
+        if (side->frame->shape == FMB_HULL) {
+            check_vertex(side, k, vertex);
+            dot(value, normal, vertex);
+        } else {
+            mpq_set(value, of_origin);
+        }
         for (int i = 0; i < side->count; i++)
-            if (side->simplex ? vertex == i + 1 : vertex >> i & 1) {
-                check_dot(part, normal, side->edge[i]);
-                mpq_add(value, value, part);
-            }
-        if (mpq_cmp(value, low) < 0)
-            mpq_set(low, value);
-        if (mpq_cmp(value, high) > 0)
-            mpq_set(high, value);
+            if (has_component(side, k, i))
+                mpq_add(value, value, of_edge[i]);
+        if (k == 0 || mpq_cmp(value, side->low) < 0)
+            mpq_set(side->low, value);
+        if (k == 0 || mpq_cmp(value, side->high) > 0)
+            mpq_set(side->high, value);
     }
-    mpq_clears(value, part, NULL);
+    if (proof->hulls)
+        add_position(proof, side);
+    check_each(of_edge, sizeof of_edge, mpq_clear);
+    check_each(vertex, sizeof vertex, mpq_clear);
+    check_each(normal, sizeof normal, mpq_clear);
+    mpq_clears(of_origin, value, NULL);
 }
 
-/* The least N . (b - a): at the beginning of the window it is low_b - high_a + N . d, and N . v T
- * is what it grows by until its end. */
-static void set_gap(struct proof *proof, const mpq_t low_b, const mpq_t high_a, mpq_t gap)
+/* The least N . (b - a): low_b - high_a at the beginning of the window; N . v T is what it grows by
+ * until its end. */
+static const char *flaw_of_normal(struct check_proof *proof, enum fmb_verdict verdict)
 {
-    mpq_t part;
-    mpq_init(part);
-    mpq_sub(gap, low_b, high_a);
-    check_dot(part, proof->normal, proof->d);
-    mpq_add(gap, gap, part);
-    check_dot(part, proof->normal, proof->v);
-    mpq_mul(part, part, proof->duration);
-    if (mpq_sgn(part) < 0)
-        mpq_add(gap, gap, part);
-    mpq_clear(part);
-}
-
-static const char *flaw_of_normal(struct proof *proof, enum fmb_verdict verdict)
-{
-    mpq_t low[2], high[2], gap;
-    mpq_inits(low[0], low[1], high[0], high[1], gap, NULL);
-    for (int f = 0; f < 2; f++)
-        set_range(&proof->side[f], proof->normal, low[f], high[f]);
-    bool constant = mpq_equal(low[0], high[0]) && mpq_equal(low[1], high[1]);
-    set_gap(proof, low[1], high[0], gap);
-    int sign = mpq_sgn(gap);
-    mpq_clears(low[0], low[1], high[0], high[1], gap, NULL);
+    struct check_side *a = &proof->side[0], *b = &proof->side[1];
+    mpq_t gap, growth;
+    mpq_inits(gap, growth, NULL);
+    set_range(proof, a);
+    set_range(proof, b);
+    mpq_sub(gap, b->low, a->high);
+    dot(growth, proof->normal, proof->v);
+    mpq_mul(growth, growth, proof->duration);
+    if (mpq_sgn(growth) < 0)
+        mpq_add(gap, gap, growth);
+    const int sign = mpq_sgn(gap);
+    mpq_clears(gap, growth, NULL);
 
     if (verdict == FMB_SEPARATED)
         return sign > 0 ? NULL : "the normal does not hold the frames apart all the time";
     if (sign < 0)
         return "the normal does not keep the frames on its two sides all the time";
-    return constant ? "the normal is constant on both frames" : NULL;
+    return mpq_equal(a->low, a->high) && mpq_equal(b->low, b->high)
+               ? "the normal is constant on both frames"
+               : NULL;
 }
 
 /* ---- The point ---- */
@@ -465,30 +503,14 @@ static const char *flaw_of_normal(struct proof *proof, enum fmb_verdict verdict)
  * strict. */
 struct rows {
     bool strict;
-    mpq_t equation[AXES][COLUMNS];
     int count;
+    mpq_t equation[AXES][COLUMNS];
     mpq_t row[ROWS_MAX][COLUMNS];
     mpq_t next[ROWS_MAX][COLUMNS]; /* the list in the making */
 };
 
-static void row_each(mpq_t row[COLUMNS], void (*call)(mpq_ptr))
-{
-    for (int i = 0; i < COLUMNS; i++)
-        call(row[i]);
-}
-
-static void rows_each(struct rows *rows, void (*call)(mpq_ptr))
-{
-    for (int axis = 0; axis < AXES; axis++)
-        row_each(rows->equation[axis], call);
-    for (int r = 0; r < ROWS_MAX; r++) {
-        row_each(rows->row[r], call);
-        row_each(rows->next[r], call);
-    }
-}
-
 /* x_i > 0; and 1 - x_i > 0, or once 1 - sum x_i > 0. */
-static void set_bounds(struct rows *rows, const struct side *side)
+static void set_bounds(struct rows *rows, const struct check_side *side)
 {
     for (int i = 0; i < side->count; i++)
         mpq_set_ui(rows->row[rows->count++][i], 1, 1);
@@ -502,7 +524,7 @@ static void set_bounds(struct rows *rows, const struct side *side)
 }
 
 /* sum x_i c_i + o + t v - p = 0 along each axis. */
-static void set_equations(struct rows *rows, struct proof *proof, struct side *side)
+static void set_equations(struct rows *rows, struct check_proof *proof, struct check_side *side)
 {
     for (int axis = 0; axis < AXES; axis++) {
         mpq_t *equation = rows->equation[axis];
@@ -600,10 +622,10 @@ static bool all_hold(const struct rows *rows)
  * There are at most 6 rows to begin with. Eliminating one unknown makes at most 3 x 3 = 9 of them,
  * a second one at most 4 x 5 = 20. A third one is left only if all components are 0; then the rows
  * are still the bounds, and get fewer each time. */
-static bool has_point(struct proof *proof, struct side *side, bool strict)
+static bool has_point(struct check_proof *proof, struct check_side *side, bool strict)
 {
     struct rows rows = {.strict = strict};
-    rows_each(&rows, mpq_init);
+    check_each(rows.equation, sizeof rows - offsetof(struct rows, equation), mpq_init);
     set_bounds(&rows, side);
     set_equations(&rows, proof, side);
     bool has = true;
@@ -612,11 +634,11 @@ static bool has_point(struct proof *proof, struct side *side, bool strict)
     for (int k = 0; has && k < UNKNOWNS; k++)
         eliminate(&rows, k);
     has = has && all_hold(&rows);
-    rows_each(&rows, mpq_clear);
+    check_each(rows.equation, sizeof rows - offsetof(struct rows, equation), mpq_clear);
     return has;
 }
 
-static const char *flaw_of_point(struct proof *proof, enum fmb_verdict verdict)
+static const char *flaw_of_point(struct check_proof *proof, enum fmb_verdict verdict)
 {
     static const char *const flaws[2][2] = {
         {"the point is not in the first frame", "the point is not in the second frame"},
@@ -627,13 +649,13 @@ static const char *flaw_of_point(struct proof *proof, enum fmb_verdict verdict)
         return "the time is not in the window";
     if (!proof->moving && mpq_sgn(proof->time) != 0)
         return "the time of a static pair is not 0";
-    for (int f = 0; f < 2; f++)
+    for (int f = 0; f < 2 && !proof->hulls; f++)
         if (!has_point(proof, &proof->side[f], strict))
             return flaws[strict][f];
-    return NULL;
+    return proof->hulls ? check_flaw_of_weights(proof, verdict) : NULL;
 }
 
-static const char *flaw_of(struct proof *proof, enum fmb_verdict verdict, const char *text)
+static const char *flaw_of(struct check_proof *proof, enum fmb_verdict verdict, const char *text)
 {
     const char *flaw = flaw_of_text(proof, verdict, text);
     if (!flaw && verdict != FMB_OVERLAPPING)
@@ -666,11 +688,11 @@ bool fmb_certificate_holds(const struct fmb_placement *a, const struct fmb_place
                            size_t size)
 {
     const char *flaw = flaw_of_placements(a, b, duration);
-    if (!flaw && (fmb_body_frame(a->body, 0)->shape == FMB_HULL ||
-                  fmb_body_frame(b->body, 0)->shape == FMB_HULL)) {
-        flaw = check_hulls(a, b, duration, verdict, text);
-    } else if (!flaw) {
-        struct proof proof;
+    if (!flaw) {
+        struct check_proof proof;
+        memset(&proof, 0, sizeof proof);
+        proof.hulls = fmb_body_frame(a->body, 0)->shape == FMB_HULL ||
+                      fmb_body_frame(b->body, 0)->shape == FMB_HULL;
         proof_each(&proof, mpq_init);
         set_pair(&proof, a, b, duration);
         flaw = flaw_of(&proof, verdict, text);

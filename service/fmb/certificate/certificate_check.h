@@ -1,4 +1,5 @@
-/* Rational vectors and the reading of text, for the checker of certificates only. */
+/* The parts of the checker of certificates: the pair in rational numbers, and the reading of text.
+ */
 #ifndef FMB_CERTIFICATE_CHECK_H
 #define FMB_CERTIFICATE_CHECK_H
 
@@ -6,22 +7,68 @@
 
 #include <gmp.h>
 
-enum { AXES = 3 }; /* in 2D all lies in the plane z = 0 */
+enum {
+    AXES = 3, /* in 2D all lies in the plane z = 0 */
+    EDGES_MAX = 6
+};
 
-void check_each_axis(mpq_t vector[AXES], void (*call)(mpq_ptr));
+/* A linearly independent set of vectors in echelon form. */
+struct check_span {
+    int rank;
+    int pivot[AXES];
+    mpq_t vector[AXES][AXES];
+};
+
+/* A placed frame, in the world at time 0; that of a pair with a hull in body coordinates, so that
+ * few vectors are turned. */
+struct check_side {
+    const struct fmb_placement *placement;
+    const struct fmb_frame *frame;
+    int count; /* of components; 0 of a hull, whose origin is 0 */
+    bool simplex;
+    int edges;
+    struct check_span span; /* of the named vertices: the directions of their affine hull */
+    mpq_t origin[AXES];
+    mpq_t edge[EDGES_MAX][AXES]; /* components, then their differences, in the order of fmb.h */
+    mpq_t velocity[AXES];
+    mpq_t low, high;        /* of the normal over the frame at time 0, in the world */
+    mpq_t sum[AXES], total; /* of the weighted vertices; of the weights */
+};
+
+/* The pair, and the contents of the text. */
+struct check_proof {
+    int dim;
+    bool hulls;  /* a frame is a hull: the text has the other form */
+    bool moving; /* a velocity is not 0 */
+    struct check_side side[2];
+    mpq_t duration;
+    mpq_t v[AXES], d[AXES], z[AXES];
+    mpq_t normal[AXES];
+    mpq_t time, point[AXES];
+};
+
+/* Calls one of mpq_init and mpq_clear for every number of an array, or of a struct of such arrays,
+ * which holds nothing else. */
+void check_each(void *numbers, size_t bytes, void (*call)(mpq_ptr));
+
 void check_copy(mpq_t out[AXES], mpq_t v[AXES]);
+void check_add(mpq_t out[AXES], mpq_t v[AXES]);
 void check_subtract(mpq_t out[AXES], mpq_t u[AXES], mpq_t v[AXES]);
 
-/* out := v, of dim numbers. In: the others of out are 0. */
-void check_set(mpq_t out[AXES], int dim, const double *v);
+/* out := out + v, of dim numbers. */
+void check_add_numbers(mpq_t out[AXES], int dim, const double *v);
 
 /* out := out + factor v. factor is none of the numbers of out. */
 void check_add_multiple(mpq_t *out, const mpq_t factor, mpq_t *v, int numbers);
 
-void check_dot(mpq_t out, mpq_t u[AXES], mpq_t v[AXES]);
+/* v := R(q) v, as fmb.h defines it, with the plane of 2D in space; back: v := R(q)^-1 v, the
+ * rotation of the conjugate quaternion. */
+void check_turn(const struct fmb_placement *placement, bool back, mpq_t v[AXES]);
 
-/* v := R(q) v, as fmb.h defines it, with the plane of 2D in space. */
-void check_turn(const struct fmb_placement *placement, mpq_t v[AXES]);
+/* The number of vertices of a frame, and vertex k, numbered as in fmb.h, in the coordinates of the
+ * side. */
+unsigned check_vertex_count(const struct check_side *side);
+void check_vertex(struct check_side *side, unsigned k, mpq_t out[AXES]);
 
 /* Each of these takes something from the beginning of *at, and returns false if that does not begin
  * so; *at is then somewhere within the text. */
@@ -29,10 +76,11 @@ bool check_take(const char **at, const char *word);
 bool check_is_digit(char c);
 bool check_take_digits(const char **at, mpz_t out); /* a natural number without leading zeros */
 bool check_take_number(const char **at, mpq_t out); /* in lowest terms */
-bool check_take_point(const char **at, int dim, mpq_t out[AXES]);
 
-/* Checks a certificate of a legal pair with a hull. Returns what is wrong, or NULL. */
-const char *check_hulls(const struct fmb_placement *a, const struct fmb_placement *b,
-                        double duration, enum fmb_verdict verdict, const char *text);
+/* Takes the weights of vertices of both frames. */
+bool check_take_weights(const char **at, struct check_proof *proof);
+
+/* Returns what is wrong with the point of a pair with a hull, or NULL. */
+const char *check_flaw_of_weights(struct check_proof *proof, enum fmb_verdict verdict);
 
 #endif
