@@ -8,7 +8,7 @@
 #include "draw.h"
 #include "exact.h"
 #define LIMBS_MAX LIMBS_WIDE
-#include "limbs_slab.h"
+#include "limbs_decide.h"
 #include "question.h"
 #include "referee.h"
 #include "slab_truth.h"
@@ -134,8 +134,9 @@ static void set_numbers(struct limbs_pair *pair, struct slab_normal normal, mpz_
  * memory of their own: once a pair. */
 static bool have_sign(const struct limbs_question *question, struct slab_normal normal, int sign)
 {
-    return limbs_wide.gap_sign(question, &normal, 1) == sign &&
-           (question->limbs > LIMBS_NARROW || limbs_narrow.gap_sign(question, &normal, 1) == sign);
+    return limbs_wide.slabs(question, &normal, NULL, 1, NULL) == sign &&
+           (question->limbs > LIMBS_NARROW ||
+            limbs_narrow.slabs(question, &normal, NULL, 1, NULL) == sign);
 }
 
 /* Compares one slab; returns the sign of its gap. */
@@ -338,7 +339,7 @@ static void set_expected(struct exact_pair *pair, struct slab_normal edges, int 
         mpz_set(normal[1], u[0]);
     } else {
         set_edge(pair, edges.v, dim, v);
-        integer_cross(normal, u, v, pair->scratch[0]);
+        integer_cross(normal, u, v, pair->scratch);
     }
     exact_set_values(pair, normal, value);
     for (int f = 0; f < 2; f++)
@@ -397,7 +398,7 @@ static int compare_posed(const struct question *question, struct limbs_pair *lim
     set_expected(exact, edges, question->a.dim, expected);
     if (!same_direction(found, expected, scratch))
         referee_fail(question, "the numbers of a slab of turned frames");
-    const int sign = limbs_gap_sign(limbs, edges);
+    const int sign = sign_of_slabs(limbs, &edges, NULL, 1, 0, NULL);
     const bool nothing = mpz_sgn(expected[0]) == 0 && mpz_sgn(expected[1]) == 0 &&
                          mpz_sgn(expected[2]) == 0; /* perhaps the normal is zero, perhaps not */
     if (!nothing && sign != expected_sign(expected, scratch[0]))

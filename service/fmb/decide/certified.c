@@ -144,7 +144,7 @@ static enum slabs_outcome open_slabs(struct certified *certified)
     for (int i = 0; i < count; i++)
         if (slab[i].error == 0 ? certified->slabs.inexact : slab_gap(&slab[i]) >= -slab[i].error)
             normal[open++] = slab[i].normal;
-    const int sign = limbs_functions_of(&question)->gap_sign(&question, normal, open);
+    const int sign = limbs_functions_of(&question)->slabs(&question, normal, NULL, open, NULL);
     return sign > 0 ? SLABS_SEPARATED : sign == 0 ? SLABS_TOUCHING : SLABS_OVERLAPPING;
 }
 

@@ -95,7 +95,7 @@ static void settle(const struct slab_value *slabs, int count, bool inexact,
         normal[opened] = slabs[i].normal;
         opened += open[opened][0] || open[opened][1];
     }
-    limbs_functions_of(question)->clip_contact(question, normal, open, opened, contact);
+    limbs_functions_of(question)->slabs(question, normal, open, opened, contact);
 }
 
 bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs_pair, bool rounds,

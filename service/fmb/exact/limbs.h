@@ -79,17 +79,15 @@ struct limbs_functions {
      * in contact, it is set to [first, last], in seconds, rounded outward; GMP then allocates. In:
      * use LIMBS_FLAT. */
     enum fmb_verdict (*verdict)(const struct limbs_question *question, double contact[2]);
-    /* Returns the largest sign of the gaps of slabs. A slab whose normal is zero has the sign -1.
-     */
-    int (*gap_sign)(const struct limbs_question *question, const struct slab_normal *normal,
-                    int count);
+    /* Returns the largest sign of the gaps of slabs, up to the first that is 1. A slab whose normal
+     * is zero has the sign -1. If contact is not NULL, the pair is in contact, and each end of it
+     * (0: first, 1: last) that is open to a slab moves to where the offset enters or leaves that,
+     * in seconds, rounded outward, if that is within the contact; GMP then allocates. open:
+     * [slab][end]; NULL: all ends are. */
+    int (*slabs)(const struct limbs_question *question, const struct slab_normal *normal,
+                 const bool open[][2], int count, double contact[2]);
     /* The planes of two faces with areas. */
     struct limbs_planes (*planes)(const struct limbs_question *question);
-    /* Moves an end of the contact (0: first, 1: last) of a pair in contact to where the offset
-     * enters or leaves a slab, in seconds, rounded outward, if that is within the contact. open:
-     * the ends. GMP allocates. */
-    void (*clip_contact)(const struct limbs_question *question, const struct slab_normal *normal,
-                         const bool open[][2], int count, double contact[2]);
     /* Computes the box of two prepared frames in contact, the same pair, in the order of
      * kernel_box_kind(), within the limit of fmb.h. Returns false if doubles do not give the
      * coordinates of points so closely. In: frames that are not flat, other than faces with an

@@ -38,16 +38,6 @@ struct bound_crossing {
     int bound, slab;
 };
 
-/* out := |x|, as a number without a sign. In: out is not x. */
-LIMBS_FUNCTION void set_magnitude(int n, const uint64_t *x, uint64_t *out)
-{
-    memset(out, 0, (size_t) n * sizeof *x);
-    if (is_negative(n, x))
-        subtract(n, out, x);
-    else
-        add(n, out, x);
-}
-
 /* x, off by less than 2.1 u of itself. The two leading limbs of those that hold x with its sign are
  * at least 2^63 in magnitude; the limbs below are less than one. */
 LIMBS_FUNCTION double to_double(int n, const uint64_t *x)

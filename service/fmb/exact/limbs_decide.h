@@ -384,11 +384,11 @@ LIMBS_FUNCTION enum fmb_verdict verdict_of_flat(struct limbs_pair *pair, const s
     return path_has_interior(n, &path) ? FMB_OVERLAPPING : FMB_TOUCHING;
 }
 
-LIMBS_FUNCTION enum fmb_verdict verdict_of_solid(struct limbs_pair *pair,
-                                                 const struct frame_pair *frames, double contact[2])
+/* struct limbs_functions, slabs. */
+LIMBS_FUNCTION int sign_of_slabs(struct limbs_pair *pair, const struct slab_normal normal[],
+                                 const bool open[][2], int count, double duration,
+                                 double contact[2])
 {
-    struct slab_normal normal[SLABS_MAX];
-    const int count = list_normals(frames, pair->drift.limbs > 0, normal);
     int sign = -1;
     for (int i = 0; i < count && sign <= 0; i++) {
         struct limbs_products of;
@@ -397,10 +397,20 @@ LIMBS_FUNCTION enum fmb_verdict verdict_of_solid(struct limbs_pair *pair,
             continue;
         limbs_set_slab(pair, &of, &slab);
         for (int end = 0; end < 2 && contact; end++)
-            clip_end(pair->limbs, &slab, frames->duration, end, contact);
+            if (!open || open[i][end])
+                clip_end(pair->limbs, &slab, duration, end, contact);
         const int one = limbs_sign_of_gap(pair->limbs, &slab);
         sign = one > sign ? one : sign;
     }
+    return sign;
+}
+
+LIMBS_FUNCTION enum fmb_verdict verdict_of_solid(struct limbs_pair *pair,
+                                                 const struct frame_pair *frames, double contact[2])
+{
+    struct slab_normal normal[SLABS_MAX];
+    const int count = list_normals(frames, pair->drift.limbs > 0, normal);
+    const int sign = sign_of_slabs(pair, normal, NULL, count, frames->duration, contact);
     return sign > 0 ? FMB_SEPARATED : sign == 0 ? FMB_TOUCHING : FMB_OVERLAPPING;
 }
 

@@ -8,24 +8,11 @@
 #define LANES 1
 #include "limbs_box.h"
 #include "limbs_decide.h"
+#include "memory.h"
 
 #if LIMBS_ALLOCATES
-/* Memory as GMP allocates it: this ends the process if there is none. */
-static void *allocate(size_t bytes)
-{
-    void *(*function)(size_t);
-    mp_get_memory_functions(&function, NULL, NULL);
-    return function(bytes);
-}
-
-static void release(void *memory, size_t bytes)
-{
-    void (*function)(void *, size_t);
-    mp_get_memory_functions(NULL, NULL, &function);
-    function(memory, bytes);
-}
-#define LIMBS_WORK(type, name) type *name = allocate(sizeof *name)
-#define LIMBS_RELEASE(name) release(name, sizeof *name)
+#define LIMBS_WORK(type, name) type *name = memory_allocate(sizeof *name)
+#define LIMBS_RELEASE(name) memory_release(name, sizeof *name)
 #else
 #define LIMBS_WORK(type, name) type name##_memory, *name = &name##_memory
 #define LIMBS_RELEASE(name) (void) name
@@ -48,16 +35,12 @@ static enum fmb_verdict verdict(const struct limbs_question *question, double co
     return found;
 }
 
-static int gap_sign(const struct limbs_question *question, const struct slab_normal normal[],
-                    int count)
+static int slabs(const struct limbs_question *question, const struct slab_normal normal[],
+                 const bool open[][2], int count, double contact[2])
 {
     LIMBS_WORK(struct limbs_pair, pair);
-    int sign = -1;
     limbs_prepare(question, pair);
-    for (int i = 0; i < count && sign <= 0; i++) {
-        const int one = limbs_gap_sign(pair, normal[i]);
-        sign = one > sign ? one : sign;
-    }
+    const int sign = sign_of_slabs(pair, normal, open, count, question->pair->duration, contact);
     LIMBS_RELEASE(pair);
     return sign;
 }
@@ -69,24 +52,6 @@ static struct limbs_planes planes(const struct limbs_question *question)
     const struct limbs_planes found = limbs_planes_of(pair);
     LIMBS_RELEASE(pair);
     return found;
-}
-
-static void clip_contact(const struct limbs_question *question, const struct slab_normal normal[],
-                         const bool open[][2], int count, double contact[2])
-{
-    LIMBS_WORK(struct limbs_pair, pair);
-    struct limbs_products of;
-    struct limbs_slab slab;
-    limbs_prepare(question, pair);
-    for (int i = 0; i < count; i++) {
-        if (!limbs_products_of(pair, normal[i], &of))
-            continue;
-        limbs_set_slab(pair, &of, &slab);
-        for (int end = 0; end < 2; end++)
-            if (open[i][end])
-                clip_end(question->limbs, &slab, question->pair->duration, end, contact);
-    }
-    LIMBS_RELEASE(pair);
 }
 
 static bool box(const struct limbs_question *question, const struct fmb_prepared *const frame[2],
@@ -135,9 +100,8 @@ static void normals(const struct limbs_question *question, int f, limbs_normal_v
 }
 
 const struct limbs_functions LIMBS_FUNCTIONS = {.verdict = verdict,
-                                                .gap_sign = gap_sign,
+                                                .slabs = slabs,
                                                 .planes = planes,
-                                                .clip_contact = clip_contact,
                                                 .box = box,
                                                 .points = points,
                                                 .normals = normals};

@@ -62,10 +62,7 @@ LIMBS_FUNCTION void limbs_set_rotation(int n, const struct limbs_quaternion *qua
         add(n, out->norm.at, product);
         for (int i = 0; i < 3; i++) {
             uint64_t *entry = out->row[0][i].at[i];
-            if (k == 0 || k == 1 + i)
-                add(n, entry, product);
-            else
-                subtract(n, entry, product);
+            (k == 0 || k == 1 + i ? add : subtract)(n, entry, product);
         }
     }
     for (int i = 0; i < 3; i++) { /* 2 (v_i v_j - w v_k) and 2 (v_i v_j + w v_k), cyclic */

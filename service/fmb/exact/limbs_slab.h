@@ -303,17 +303,6 @@ LIMBS_FUNCTION int limbs_sign_of_gap(int n, struct limbs_slab *slab)
     return above > below ? above : below;
 }
 
-/* Returns the sign of the gap of a slab; -1 if its normal is zero and the slab is void. */
-LIMBS_FUNCTION int limbs_gap_sign(struct limbs_pair *pair, struct slab_normal normal)
-{
-    struct limbs_products of;
-    struct limbs_slab slab;
-    if (!limbs_products_of(pair, normal, &of))
-        return -1;
-    limbs_set_slab(pair, &of, &slab);
-    return limbs_sign_of_gap(pair->limbs, &slab);
-}
-
 /* Along the normal of a, the extent of a is 0. So the slab of this normal has an extent of 0 if and
  * only if b has none along it, that is, if the planes are parallel. */
 LIMBS_FUNCTION struct limbs_planes limbs_planes_of(struct limbs_pair *pair)
@@ -333,13 +322,19 @@ LIMBS_FUNCTION struct limbs_planes limbs_planes_of(struct limbs_pair *pair)
 
 /* ---- To GMP ---- */
 
+/* out := |x|, as a number without a sign. In: out is not x. */
+LIMBS_FUNCTION void set_magnitude(int n, const uint64_t *x, uint64_t *out)
+{
+    memset(out, 0, (size_t) n * sizeof *x);
+    (is_negative(n, x) ? subtract : add)(n, out, x);
+}
+
 LIMBS_FUNCTION void limbs_to_mpz(int n, const uint64_t *x, mpz_t out)
 {
-    const bool negative = is_negative(n, x);
-    limbs_number magnitude = {0};
-    (negative ? subtract : add)(n, magnitude, x);
+    limbs_number magnitude;
+    set_magnitude(n, x, magnitude);
     mpz_import(out, (size_t) n, -1, sizeof *x, 0, 0, magnitude);
-    if (negative)
+    if (is_negative(n, x))
         mpz_neg(out, out);
 }
 
