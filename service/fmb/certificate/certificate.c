@@ -30,7 +30,7 @@
  *
  * The rank need not be known: the first normal that proves the verdict is taken. */
 #include "certificate_hull.h"
-#include "certificate_point.h"
+#include "certificate_writer.h"
 #include "exact.h"
 #include "hull.h"
 #include "integer.h"
@@ -62,28 +62,13 @@ struct normal_search {
     enum fmb_verdict verdict;
     int directions; /* those of edges first; the last is d, if that is not 0 */
     struct named direction[DIRECTIONS_MAX];
+    char text[NORMAL_TEXT_SIZE];
     mpz_t z[3];
     mpz_t plane[3], normal[3];
     mpz_t value[EXACT_VECTORS];       /* normal . each vector of the pair */
     struct exact_range range[2], all; /* of the normal over the frames, and over S */
     mpz_t scratch;
-    char text[NORMAL_TEXT_SIZE];
 };
-
-static void search_each(struct normal_search *search, void (*call)(mpz_ptr))
-{
-    for (int f = 0; f < 2; f++)
-        exact_range_each(&search->range[f], call);
-    exact_range_each(&search->all, call);
-    call(search->scratch);
-    for (int axis = 0; axis < 3; axis++) {
-        call(search->z[axis]);
-        call(search->plane[axis]);
-        call(search->normal[axis]);
-    }
-    for (int k = 0; k < EXACT_VECTORS; k++)
-        call(search->value[k]);
-}
 
 static void add_direction(struct normal_search *search, char letter, int number, int owner,
                           mpz_t *vector)
@@ -197,13 +182,13 @@ static void find_normal(struct exact_pair *pair, int dim, enum fmb_verdict verdi
                         char text[NORMAL_TEXT_SIZE])
 {
     struct normal_search search = {.pair = pair, .verdict = verdict};
-    search_each(&search, mpz_init);
+    INTEGER_EACH_FROM(z, &search, mpz_init);
     set_directions(&search, dim);
     bool found = try_products(&search) || try_directions(&search) || try_within_plane(&search);
     assert(found);
     (void) found;
     snprintf(text, NORMAL_TEXT_SIZE, "%s", search.text);
-    search_each(&search, mpz_clear);
+    INTEGER_EACH_FROM(z, &search, mpz_clear);
 }
 
 /* ---- The text ---- */
@@ -236,52 +221,25 @@ static void write_normal(struct certificate_writer *writer, struct exact_pair *e
     certificate_write_text(writer, normal);
 }
 
-static void write_point(struct certificate_writer *writer, struct exact_pair *exact,
-                        const struct frame_pair *pair)
+static bool is_wide(struct exact_pair *exact)
 {
-    struct certificate_point point;
-    certificate_point_init(&point);
-    certificate_point_find(&point, exact, pair);
-    certificate_write_text(writer, " at ");
-    certificate_write_number(writer, point.time);
-    for (int axis = 0; axis < pair->a.frame->dim; axis++) {
-        certificate_write_text(writer, axis == 0 ? " (" : " ");
-        certificate_write_number(writer, point.place[axis]);
-    }
-    certificate_write_text(writer, ")");
-    certificate_point_clear(&point);
-}
-
-static bool is_wide(const mpz_t v[3])
-{
-    return mpz_sizeinbase(v[0], 2) > CERTIFICATE_SPAN_MAX ||
-           mpz_sizeinbase(v[1], 2) > CERTIFICATE_SPAN_MAX ||
-           mpz_sizeinbase(v[2], 2) > CERTIFICATE_SPAN_MAX;
-}
-
-static bool pair_is_wide(const struct exact_pair *exact)
-{
-    bool wide = false;
-    for (int f = 0; f < 2; f++) {
-        const struct exact_frame *frame = &exact->frame[f];
-        wide = wide || is_wide(frame->origin) || is_wide(frame->displacement);
-        for (int i = 0; i < frame->count; i++)
-            wide = wide || is_wide(frame->component[i]);
-    }
-    return wide;
+    for (int k = 0; k < EXACT_LENGTHS; k++)
+        if (mpz_sizeinbase(exact_length(exact, k), 2) > CERTIFICATE_SPAN_MAX)
+            return true;
+    return false;
 }
 
 static void write_certificate(struct certificate_writer *writer, const struct frame_pair *pair)
 {
     struct exact_pair exact;
     exact_pair_init(&exact, pair);
-    if (!pair_is_wide(&exact)) {
+    if (!is_wide(&exact)) {
         const enum fmb_verdict verdict = exact_verdict(pair, NULL);
         certificate_write_text(writer, fmb_verdict_name(verdict));
         if (verdict != FMB_OVERLAPPING)
             write_normal(writer, &exact, pair->a.frame->dim, verdict);
         if (verdict != FMB_SEPARATED)
-            write_point(writer, &exact, pair);
+            certificate_write_meeting(writer, &exact, pair);
     }
     exact_pair_clear(&exact);
 }

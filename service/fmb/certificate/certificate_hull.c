@@ -11,22 +11,28 @@
 
 /* ---- Text ---- */
 
+void certificate_write_vector(struct certificate_writer *writer, int dim, mpq_t v[3])
+{
+    for (int axis = 0; axis < dim; axis++) {
+        certificate_write_text(writer, axis == 0 ? " (" : " ");
+        certificate_write_number(writer, v[axis]);
+    }
+    certificate_write_text(writer, ")");
+}
+
 static void write_normal(struct certificate_writer *writer, int dim, mpz_t n[3])
 {
-    mpq_t number;
+    mpq_t normal[3];
     mpz_t divisor;
-    mpq_init(number);
+    mpq_inits(normal[0], normal[1], normal[2], NULL);
     mpz_init(divisor);
     mpz_gcd(divisor, n[0], n[1]);
     mpz_gcd(divisor, divisor, n[2]);
+    for (int axis = 0; axis < dim; axis++)
+        mpz_divexact(mpq_numref(normal[axis]), n[axis], divisor);
     certificate_write_text(writer, " normal");
-    for (int axis = 0; axis < dim; axis++) {
-        mpz_divexact(mpq_numref(number), n[axis], divisor);
-        certificate_write_text(writer, axis == 0 ? " (" : " ");
-        certificate_write_number(writer, number);
-    }
-    certificate_write_text(writer, ")");
-    mpq_clear(number);
+    certificate_write_vector(writer, dim, normal);
+    mpq_clears(normal[0], normal[1], normal[2], NULL);
     mpz_clear(divisor);
 }
 
@@ -77,10 +83,10 @@ static void write_time(struct certificate_writer *writer, const struct hull_proo
 static void write_point(struct certificate_writer *writer, const struct hull_proof *proof, int dim)
 {
     const struct hull_integers *integers = proof->integers;
-    mpq_t weight, number;
-    mpz_t at[3], sum[3];
-    mpq_inits(weight, number, NULL);
-    mpz_inits(at[0], at[1], at[2], sum[0], sum[1], sum[2], NULL);
+    mpq_t weight, point[3];
+    mpz_t at[3], sum[3], total;
+    mpq_inits(weight, point[0], point[1], point[2], NULL);
+    mpz_inits(at[0], at[1], at[2], sum[0], sum[1], sum[2], total, NULL);
     set_late(proof, weight);
     for (int axis = 0; axis < dim; axis++)
         mpz_mul(sum[axis], mpq_numref(weight), integers->side[0].displacement[axis]);
@@ -89,20 +95,12 @@ static void write_point(struct certificate_writer *writer, const struct hull_pro
         for (int axis = 0; axis < dim; axis++)
             mpz_addmul(sum[axis], mpq_numref(weight), at[axis]);
     }
-    for (int axis = 0; axis < dim; axis++) {
-        mpz_set(mpq_numref(number), sum[axis]);
-        mpz_mul(mpq_denref(number), proof->total, integers->scale);
-        mpq_canonicalize(number);
-        if (integers->unit < 0)
-            mpq_div_2exp(number, number, (mp_bitcnt_t) -integers->unit);
-        else
-            mpq_mul_2exp(number, number, (mp_bitcnt_t) integers->unit);
-        certificate_write_text(writer, axis == 0 ? " (" : " ");
-        certificate_write_number(writer, number);
-    }
-    certificate_write_text(writer, ")");
-    mpq_clears(weight, number, NULL);
-    mpz_clears(at[0], at[1], at[2], sum[0], sum[1], sum[2], NULL);
+    mpz_mul(total, proof->total, integers->scale);
+    for (int axis = 0; axis < dim; axis++)
+        certificate_set_scaled(point[axis], sum[axis], total, integers->unit);
+    certificate_write_vector(writer, dim, point);
+    mpq_clears(weight, point[0], point[1], point[2], NULL);
+    mpz_clears(at[0], at[1], at[2], sum[0], sum[1], sum[2], total, NULL);
 }
 
 static void write_weights(struct certificate_writer *writer, const struct hull_proof *proof, int f)

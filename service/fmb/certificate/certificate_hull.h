@@ -2,16 +2,8 @@
 #ifndef FMB_CERTIFICATE_HULL_H
 #define FMB_CERTIFICATE_HULL_H
 
+#include "certificate_writer.h"
 #include "hull_exact.h"
-
-struct certificate_writer {
-    char text[FMB_CERTIFICATE_MAX];
-    size_t length; /* of all that was written, beyond the end of text too */
-};
-
-/* Append to the text what fits. */
-void certificate_write_text(struct certificate_writer *writer, const char *text);
-void certificate_write_number(struct certificate_writer *writer, const mpq_t number);
 
 /* A certificate in progress. It points into itself: not to be copied. */
 struct certificate_hull {
@@ -36,9 +28,5 @@ bool certificate_hull_step(struct certificate_hull *hull, struct certificate_wri
 
 /* Frees the memory of a certificate, complete or not. */
 void certificate_hull_end(struct certificate_hull *hull);
-
-/* The span that fmb.h defines, in bits. Fractions of more would take milliseconds each to reduce.
- */
-enum { CERTIFICATE_SPAN_MAX = 512 };
 
 #endif

@@ -16,12 +16,26 @@
  * line after the other, each time to where one coordinate is the simplest number: one coordinate
  * for each dimension of Q, the time first. If Q is flat, the other coordinates follow from these.
  */
-#include "certificate_point.h"
+#include "certificate_writer.h"
+
+#include "integer.h"
 
 #include <assert.h>
 
 /* [0] the time in seconds, [1] to [3] the place in the world. */
 enum { COORDINATES = EXACT_COORDINATES };
+
+/* Calls one of mpq_init and mpq_clear for every number of a struct whose members are nothing but
+ * rational numbers, and arrays of them, from the member first to the last. */
+#define RATIONAL_EACH_FROM(first, object, call) \
+    rational_each(&(object)->first, sizeof *(object) -offsetof(__typeof__(*(object)), first), call)
+
+static void rational_each(void *numbers, size_t bytes, void (*call)(mpq_ptr))
+{
+    mpq_ptr number = numbers;
+    for (size_t i = 0; i < bytes / sizeof *number; i++)
+        call(&number[i]);
+}
 
 /* ---- The simplest number ---- */
 
@@ -74,39 +88,9 @@ static void simplest_between(mpq_t out, mpq_t low, mpq_t high)
         mpq_neg(out, out);
 }
 
-/* ---- A point inside of Q, and the directions of Q ---- */
+/* ---- Scaling ---- */
 
-/* The affine hull of Q, as far as the points seen span it. */
-struct hull {
-    long unit; /* of the exact pair */
-    mpq_t duration;
-    int points; /* seen, and affinely independent */
-    mpq_t first[COORDINATES], sum[COORDINATES];
-    /* A basis of the directions in reduced echelon form: direction[k], where there is one, is 1 in
-     * coordinate k and 0 in those before it; all others are 0 in coordinate k. */
-    bool has[COORDINATES];
-    mpq_t direction[COORDINATES][COORDINATES]; /* [k][coordinate] */
-    mpq_t seen[COORDINATES], rest[COORDINATES];
-    mpq_t factor, product;
-};
-
-static void hull_each(struct hull *hull, void (*call)(mpq_ptr))
-{
-    for (int k = 0; k < COORDINATES; k++) {
-        for (int i = 0; i < COORDINATES; i++)
-            call(hull->direction[k][i]);
-        call(hull->first[k]);
-        call(hull->sum[k]);
-        call(hull->seen[k]);
-        call(hull->rest[k]);
-    }
-    call(hull->duration);
-    call(hull->factor);
-    call(hull->product);
-}
-
-/* x := x 2^exponent. */
-static void scale(mpq_t x, long exponent)
+void certificate_scale(mpq_t x, long exponent)
 {
     if (exponent < 0)
         mpq_div_2exp(x, x, (mp_bitcnt_t) -exponent);
@@ -114,19 +98,34 @@ static void scale(mpq_t x, long exponent)
         mpq_mul_2exp(x, x, (mp_bitcnt_t) exponent);
 }
 
-/* x := num / den 2^exponent, in lowest terms. */
-static void set_scaled(mpq_t x, const mpz_t num, const mpz_t den, long exponent)
+void certificate_set_scaled(mpq_t x, const mpz_t num, const mpz_t den, long exponent)
 {
     mpq_set_num(x, num);
     mpq_set_den(x, den);
     mpq_canonicalize(x);
-    scale(x, exponent);
+    certificate_scale(x, exponent);
 }
+
+/* ---- A point inside of Q, and the directions of Q ---- */
+
+/* The affine hull of Q, as far as the points seen span it. */
+struct hull {
+    long unit;  /* of the exact pair */
+    int points; /* seen, and affinely independent */
+    /* A basis of the directions in reduced echelon form: direction[k], where there is one, is 1 in
+     * coordinate k and 0 in those before it; all others are 0 in coordinate k. */
+    bool has[COORDINATES];
+    mpq_t direction[COORDINATES][COORDINATES]; /* [k][coordinate] */
+    mpq_t duration;
+    mpq_t first[COORDINATES], sum[COORDINATES];
+    mpq_t seen[COORDINATES], rest[COORDINATES];
+    mpq_t factor, product;
+};
 
 static void set_seen(struct hull *hull, const struct exact_point *point)
 {
     for (int k = 0; k < COORDINATES; k++)
-        set_scaled(hull->seen[k], point->at[k], point->den, k == 0 ? 0 : hull->unit);
+        certificate_set_scaled(hull->seen[k], point->at[k], point->den, k == 0 ? 0 : hull->unit);
     mpq_mul(hull->seen[0], hull->seen[0], hull->duration);
 }
 
@@ -191,29 +190,14 @@ struct chord {
     int frame;
     mpq_t *at, *direction; /* [coordinate] */
     bool bounded;
-    mpq_t low, high; /* where the line leaves Q: s from low to high */
+    mpz_t values[EXACT_VECTORS]; /* a normal . each vector of the pair */
+    mpq_t low, high;             /* where the line leaves Q: s from low to high */
     /* [axis]: the point of the line from the origin of one frame, in integers of the exact pair, is
      * place + s way. */
     mpq_t place[3], way[3];
     mpq_t value, slope; /* of what is bounded: value + s slope */
     mpq_t bound[2], number;
-    mpz_t values[EXACT_VECTORS]; /* a normal . each vector of the pair */
 };
-
-static void chord_each(struct chord *chord, void (*call)(mpq_ptr))
-{
-    for (int axis = 0; axis < 3; axis++) {
-        call(chord->place[axis]);
-        call(chord->way[axis]);
-    }
-    call(chord->low);
-    call(chord->high);
-    call(chord->value);
-    call(chord->slope);
-    call(chord->bound[0]);
-    call(chord->bound[1]);
-    call(chord->number);
-}
 
 /* Shortens the chord to bound[0] <= value + s slope <= bound[1], which are overwritten. Where the
  * slope is 0 this holds along the whole line, as it does at its point of ri Q. */
@@ -278,8 +262,8 @@ static void shorten_to_frame(struct chord *chord, const struct placed_frame *pla
         mpq_sub(chord->place[axis], chord->at[1 + axis], chord->place[axis]);
         mpq_mul(chord->way[axis], chord->number, chord->direction[0]);
         mpq_sub(chord->way[axis], chord->direction[1 + axis], chord->way[axis]);
-        scale(chord->place[axis], -exact->unit);
-        scale(chord->way[axis], -exact->unit);
+        certificate_scale(chord->place[axis], -exact->unit);
+        certificate_scale(chord->way[axis], -exact->unit);
         mpq_set_z(chord->number, exact->scale);
         mpq_mul(chord->place[axis], chord->place[axis], chord->number);
         mpq_mul(chord->way[axis], chord->way[axis], chord->number);
@@ -308,9 +292,8 @@ static void move_point(struct hull *hull, mpq_t at[COORDINATES], struct exact_pa
                        const struct frame_pair *pair)
 {
     struct chord chord = {.exact = exact, .at = at};
-    chord_each(&chord, mpq_init);
-    for (int k = 0; k < EXACT_VECTORS; k++)
-        mpz_init(chord.values[k]);
+    RATIONAL_EACH_FROM(low, &chord, mpq_init);
+    integer_each(chord.values, sizeof chord.values, mpz_init);
     for (int k = 0; k < COORDINATES; k++) {
         if (!hull->has[k])
             continue;
@@ -322,32 +305,17 @@ static void move_point(struct hull *hull, mpq_t at[COORDINATES], struct exact_pa
         assert(chord.bounded && mpq_cmp(chord.low, chord.high) < 0);
         simplify(&chord, k);
     }
-    chord_each(&chord, mpq_clear);
-    for (int k = 0; k < EXACT_VECTORS; k++)
-        mpz_clear(chord.values[k]);
+    integer_each(chord.values, sizeof chord.values, mpz_clear);
+    RATIONAL_EACH_FROM(low, &chord, mpq_clear);
 }
 
 /* ---- The point ---- */
 
-void certificate_point_init(struct certificate_point *point)
-{
-    mpq_init(point->time);
-    for (int axis = 0; axis < 3; axis++)
-        mpq_init(point->place[axis]);
-}
-
-void certificate_point_clear(struct certificate_point *point)
-{
-    mpq_clear(point->time);
-    for (int axis = 0; axis < 3; axis++)
-        mpq_clear(point->place[axis]);
-}
-
-void certificate_point_find(struct certificate_point *point, struct exact_pair *exact,
-                            const struct frame_pair *pair)
+void certificate_write_meeting(struct certificate_writer *writer, struct exact_pair *exact,
+                               const struct frame_pair *pair)
 {
     struct hull hull = {.unit = exact->unit};
-    hull_each(&hull, mpq_init);
+    RATIONAL_EACH_FROM(direction, &hull, mpq_init);
     mpq_set_d(hull.duration, pair->duration);
     points_walk(exact, add_point, &hull);
     assert(hull.points > 0);
@@ -358,8 +326,8 @@ void certificate_point_find(struct certificate_point *point, struct exact_pair *
         mpq_mul(mean[k], mean[k], hull.factor);
     move_point(&hull, mean, exact, pair);
 
-    mpq_swap(point->time, mean[0]);
-    for (int axis = 0; axis < 3; axis++)
-        mpq_swap(point->place[axis], mean[1 + axis]);
-    hull_each(&hull, mpq_clear);
+    certificate_write_text(writer, " at ");
+    certificate_write_number(writer, mean[0]);
+    certificate_write_vector(writer, pair->a.frame->dim, mean + 1);
+    RATIONAL_EACH_FROM(direction, &hull, mpq_clear);
 }

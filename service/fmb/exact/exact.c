@@ -35,14 +35,6 @@ void exact_pair_complete(struct exact_pair *pair)
  * are multiplied by scale: n_a n_b, or n_a if n_a = n_b. This changes no sign, no time and no
  * direction. Points are divided by scale at the end. */
 
-void exact_turn_each(struct exact_turn *turn, void (*call)(mpz_ptr))
-{
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            call(turn->row[i][j]);
-    call(turn->norm);
-}
-
 void exact_turn_set(const struct fmb_placement *placement, struct exact_turn *turn)
 {
     struct limbs_quaternion quaternion;
@@ -61,10 +53,7 @@ void exact_turn_set(const struct fmb_placement *placement, struct exact_turn *tu
         mpz_mul(product, q[k], q[k]);
         mpz_add(turn->norm, turn->norm, product);
         for (int i = 0; i < 3; i++) { /* ww is added; v_k v_k in row k too, else subtracted */
-            if (k == 0 || k == 1 + i)
-                mpz_add(turn->row[i][i], turn->row[i][i], product);
-            else
-                mpz_sub(turn->row[i][i], turn->row[i][i], product);
+            (k == 0 || k == 1 + i ? mpz_add : mpz_sub)(turn->row[i][i], turn->row[i][i], product);
         }
     }
     for (int i = 0; i < 3; i++) { /* 2 (v_i v_j - w v_k) and 2 (v_i v_j + w v_k), i, j, k cyclic */
@@ -98,26 +87,14 @@ void exact_turn_vector(const struct exact_turn *turn, const mpz_t factor, mpz_t 
 
 /* ---- Frames ---- */
 
-/* Adds the remainders to the components. */
-static void add_remainders(struct exact_frame *out, const struct fmb_frame *frame, long unit)
-{
-    mpz_t remainder;
-    mpz_init(remainder);
-    for (int i = 0; i < frame->count; i++)
-        for (int axis = 0; axis < frame->dim; axis++) {
-            integer_set(remainder, dyadic_of(frame->remainder[i][axis]), unit);
-            mpz_add(out->component[i][axis], out->component[i][axis], remainder);
-        }
-    mpz_clear(remainder);
-}
-
 void exact_frame_set(struct exact_frame *out, const struct fmb_frame *frame, long unit)
 {
     out->count = frame->count;
     out->simplex = frame_is_simplex(frame);
     for (int axis = 0; axis < frame->dim; axis++) {
         for (int i = 0; i < frame->count; i++)
-            integer_set(out->component[i][axis], dyadic_of(frame->component[i][axis]), unit);
+            integer_set_sum(out->component[i][axis], frame->component[i][axis],
+                            frame->remainder[i][axis], unit);
         if (frame->shape != FMB_BOX) {
             integer_set(out->origin[axis], dyadic_of(frame->origin[axis]), unit);
             continue;
@@ -126,8 +103,6 @@ void exact_frame_set(struct exact_frame *out, const struct fmb_frame *frame, lon
         mpz_fdiv_q_2exp(out->origin[axis], out->component[axis][axis], 1); /* exact: it is even */
         mpz_sub(out->origin[axis], out->displacement[axis], out->origin[axis]);
     }
-    if (frame->rounded)
-        add_remainders(out, frame, unit);
 }
 
 /* Transforms a frame from body to world coordinates. Rotated vectors, which contain the norm of
@@ -161,7 +136,7 @@ static void set_frames(struct exact_pair *out)
     mpz_t one;
     mpz_init_set_ui(one, 1);
     for (int f = 0; f < 2; f++) {
-        exact_turn_each(&turn[f], mpz_init);
+        INTEGER_EACH_FROM(row, &turn[f], mpz_init);
         exact_turn_set(placed[f]->placement, &turn[f]);
         exact_frame_set(&out->frame[f], placed[f]->frame, out->unit);
     }
@@ -173,34 +148,25 @@ static void set_frames(struct exact_pair *out)
         place_frame(&out->frame[f], placed[f], pair->duration, out->unit, &turn[f],
                     same ? one : turn[!f].norm, out->scale);
     for (int f = 0; f < 2; f++)
-        exact_turn_each(&turn[f], mpz_clear);
+        INTEGER_EACH_FROM(row, &turn[f], mpz_clear);
     mpz_clear(one);
-}
-
-void exact_frame_each(struct exact_frame *frame, void (*call)(mpz_ptr))
-{
-    for (int axis = 0; axis < 3; axis++) {
-        call(frame->origin[axis]);
-        call(frame->displacement[axis]);
-        for (int i = 0; i < 3; i++) {
-            call(frame->component[i][axis]);
-            call(frame->difference[i][axis]);
-        }
-    }
 }
 
 /* Calls one of mpz_init and mpz_clear for every number of a pair. */
 static void pair_each(struct exact_pair *pair, void (*call)(mpz_ptr))
 {
-    for (int f = 0; f < 2; f++)
-        exact_frame_each(&pair->frame[f], call);
-    for (int axis = 0; axis < 3; axis++) {
-        call(pair->offset[axis]);
-        call(pair->drift[axis]);
-    }
-    call(pair->scale);
-    for (int i = 0; i < EXACT_SCRATCH; i++)
-        call(pair->scratch[i]);
+    INTEGER_EACH_FROM(component, &pair->frame[0], call);
+    INTEGER_EACH_FROM(component, &pair->frame[1], call);
+    INTEGER_EACH_FROM(scale, pair, call);
+}
+
+mpz_ptr exact_length(struct exact_pair *pair, int number)
+{
+    struct exact_frame *frame = &pair->frame[number % 2];
+    const int vector = number / 2 % 5, axis = number / 10;
+    return vector < 3    ? frame->component[vector][axis]
+           : vector == 3 ? frame->origin[axis]
+                         : frame->displacement[axis];
 }
 
 static void set_question(const struct frame_pair *pair, struct limbs_question *out)
@@ -236,7 +202,7 @@ mpz_t *exact_vector(struct exact_pair *pair, int number)
 void exact_set_values(struct exact_pair *pair, mpz_t normal[3], mpz_t value[EXACT_VECTORS])
 {
     for (int k = 0; k < EXACT_VECTORS; k++)
-        integer_dot(value[k], normal, exact_vector(pair, k), pair->scratch[0]);
+        integer_dot(value[k], normal, exact_vector(pair, k), pair->scratch);
 }
 
 /* Widens [low, high], which bounds normal . x over a part of the frame, by one component. */
@@ -260,12 +226,6 @@ void exact_extent(const struct exact_pair *pair, int f, mpz_t value[EXACT_VECTOR
     mpz_set_ui(high, 0);
     for (int i = 0; i < frame->count; i++)
         add_component(frame, low, high, value[f * EXACT_OF_B + i]);
-}
-
-void exact_range_each(struct exact_range *range, void (*call)(mpz_ptr))
-{
-    call(range->low);
-    call(range->high);
 }
 
 void exact_ranges(const struct exact_pair *pair, mpz_t value[EXACT_VECTORS],

@@ -13,7 +13,7 @@
 
 enum {
     EXACT_EDGES_MAX = 6, /* directions of edges: 3 of a cuboid, 6 of a tetrahedron */
-    EXACT_SCRATCH = 4
+    EXACT_LENGTHS = 30   /* of exact_length() */
 };
 
 /* The vectors of a pair, by number: the components of frame 0 and of frame 1, the offset, the
@@ -22,26 +22,26 @@ enum { EXACT_OF_B = 3, EXACT_OFFSET = 6, EXACT_DRIFT = 7, EXACT_VECTORS = 8 };
 
 /* A frame at tau = 0. All numbers are integers, in units of 2^unit / scale of the pair. */
 struct exact_frame {
-    int count;             /* components: 2 or 3 */
-    bool simplex;          /* tetrahedron or face; else cuboid */
-    mpz_t component[3][3]; /* [component][axis]; 0 beyond count */
-    mpz_t origin[3];
-    mpz_t displacement[3]; /* v T */
+    int count;    /* components: 2 or 3 */
+    bool simplex; /* tetrahedron or face; else cuboid */
     /* The distinct directions of edges: the components; for a simplex also the differences c_j -
      * c_i, i < j, stored in difference. [edge]: [axis]. */
     int edges;
     mpz_t *edge[EXACT_EDGES_MAX];
+    mpz_t component[3][3]; /* [component][axis]; 0 beyond count */
     mpz_t difference[3][3];
+    mpz_t origin[3];
+    mpz_t displacement[3]; /* v T */
 };
 
 struct exact_pair {
     struct limbs_question question; /* the same pair */
     long unit;                      /* every length is an integer times 2^unit / scale */
-    mpz_t scale;                    /* > 0; 1 if nothing is rotated */
     struct exact_frame frame[2];
+    mpz_t scale;     /* > 0; 1 if nothing is rotated */
     mpz_t offset[3]; /* origin of frame[1] - origin of frame[0] */
     mpz_t drift[3];  /* displacement of frame[1] - displacement of frame[0] */
-    mpz_t scratch[EXACT_SCRATCH];
+    mpz_t scratch;
 };
 
 /* The orientation of a placement. For the smallest integers q proportional to it, n = |q|^2 and n
@@ -51,17 +51,11 @@ struct exact_turn {
     mpz_t row[3][3], norm; /* n R(q) and n; if not turned, norm is 1 and row is not used */
 };
 
-/* Calls one of mpz_init and mpz_clear for every number. */
-void exact_turn_each(struct exact_turn *turn, void (*call)(mpz_ptr));
-
 /* Sets the matrix of a placement. In: all numbers of turn are 0. */
 void exact_turn_set(const struct fmb_placement *placement, struct exact_turn *turn);
 
 /* v := n R(q) v times factor. */
 void exact_turn_vector(const struct exact_turn *turn, const mpz_t factor, mpz_t v[3]);
-
-/* Calls one of mpz_init and mpz_clear for every number of a frame. */
-void exact_frame_each(struct exact_frame *frame, void (*call)(mpz_ptr));
 
 /* Sets components and origin in body coordinates, in units of 2^unit. Changes displacement. In: not
  * a hull; all numbers are 0. */
@@ -74,6 +68,10 @@ void exact_pair_clear(struct exact_pair *pair);
 
 /* Sets edges, offset and drift of a pair from its components, origins and displacements. */
 void exact_pair_complete(struct exact_pair *pair);
+
+/* Returns a coordinate, by number from 0 to EXACT_LENGTHS - 1, of a component, an origin or a
+ * displacement. */
+mpz_ptr exact_length(struct exact_pair *pair, int number);
 
 /* Returns the vector of this number: [axis]. */
 mpz_t *exact_vector(struct exact_pair *pair, int number);
@@ -90,9 +88,6 @@ void exact_extent(const struct exact_pair *pair, int f, mpz_t value[EXACT_VECTOR
 struct exact_range {
     mpz_t low, high;
 };
-
-/* Calls one of mpz_init and mpz_clear for both numbers. */
-void exact_range_each(struct exact_range *range, void (*call)(mpz_ptr));
 
 /* frame[f] := the interval over frame f with its origin at 0; all := that of all b - a over the
  * window, for points a of frame 0 and b of frame 1. value: of the normal. */

@@ -38,16 +38,6 @@ struct point_search {
     struct exact_point found;
 };
 
-/* Calls one of mpz_init and mpz_clear for every number. */
-static void point_search_each(struct point_search *search, void (*call)(mpz_ptr))
-{
-    for (int i = 0; i < 3; i++)
-        call(search->weight[i]);
-    for (int k = 0; k < EXACT_COORDINATES; k++)
-        call(search->found.at[k]);
-    call(search->found.den);
-}
-
 /* Vertex v of a cuboid is the sum of the components whose bits are set in v; of a simplex, the
  * origin, then the end of each component. */
 static bool has_component(const struct exact_frame *frame, int v, int i)
@@ -77,10 +67,10 @@ static void visit_point(void *context, int f, int v, int w, const mpz_t s, const
     for (int axis = 0; axis < 3; axis++) {
         mpz_t *at = &found->at[1 + axis];
         integer_multiply(*at, den, frame->origin[axis]);
-        integer_add_product(*at, 1, tau, frame->displacement[axis], search->pair->scratch[0]);
+        integer_add_product(*at, 1, tau, frame->displacement[axis], search->pair->scratch);
         for (int i = 0; i < frame->count; i++)
             integer_add_product(*at, 1, search->weight[i], frame->component[i][axis],
-                                search->pair->scratch[0]);
+                                search->pair->scratch);
     }
     mpz_mul(found->at[0], tau, search->pair->scale);
     mpz_mul(found->den, den, search->pair->scale);
@@ -91,9 +81,9 @@ void points_walk(struct exact_pair *pair, point_visit visit, void *context)
 {
     struct point_search search = {.pair = pair, .visit = visit, .context = context};
     const struct limbs_visitor visitor = {visit_point, &search};
-    point_search_each(&search, mpz_init);
+    INTEGER_EACH_FROM(weight, &search, mpz_init);
     limbs_functions_of(&pair->question)->points(&pair->question, &visitor);
-    point_search_each(&search, mpz_clear);
+    INTEGER_EACH_FROM(weight, &search, mpz_clear);
 }
 
 /* ---- The box ---- */

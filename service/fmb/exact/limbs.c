@@ -71,18 +71,15 @@ struct dyadic_span limbs_span_of(const struct frame_pair *pair)
     for (int f = 0; f < 2; f++) {
         const struct fmb_frame *frame = placed[f]->frame;
         const struct fmb_placement *placement = placed[f]->placement;
-        span.unit = integer_lower_unit(span.unit, frame->bits[0]);
-        span.top = -integer_lower_unit(-span.top, -frame->bits[1]);
+        dyadic_span_extend(&span, frame->bits[0], frame->bits[1]);
         for (int axis = 0; axis < frame->dim; axis++) {
             add_origin(&span, frame, axis);
             dyadic_span_add(&span, dyadic_of(placement->position[axis]));
             dyadic_span_add(&speed, dyadic_of(placement->velocity[axis]));
         }
     }
-    if (speed.unit < INTEGER_NO_EXPONENT && window.mantissa) {
-        span.unit = integer_lower_unit(span.unit, speed.unit + length.unit);
-        span.top = -integer_lower_unit(-span.top, -(speed.top + length.top));
-    }
+    if (speed.unit < INTEGER_NO_EXPONENT && window.mantissa)
+        dyadic_span_extend(&span, speed.unit + length.unit, speed.top + length.top);
     return span;
 }
 

@@ -6,23 +6,21 @@
 
 /* The components in integers; a frame in 2D gets the unit vector along z as third. Returns the
  * unit. */
-static long set_components(const struct fmb_frame *frame, mpz_t out[3][3], mpz_t scratch)
+static long set_components(const struct fmb_frame *frame, mpz_t out[3][3])
 {
     const int dim = frame->dim;
-    long unit = INTEGER_NO_EXPONENT;
-    for (int i = 0; i < dim; i++) {
-        unit = integer_vector_unit(unit, frame->component[i], dim);
-        unit = integer_vector_unit(unit, frame->remainder[i], dim);
+    struct dyadic_span span = dyadic_span_begin();
+    for (int k = 0; k < dim * dim; k++) {
+        dyadic_span_add(&span, dyadic_of(frame->component[k / dim][k % dim]));
+        dyadic_span_add(&span, dyadic_of(frame->remainder[k / dim][k % dim]));
     }
     for (int i = 0; i < dim; i++)
-        for (int axis = 0; axis < dim; axis++) {
-            integer_set(out[i][axis], dyadic_of(frame->component[i][axis]), unit);
-            integer_set(scratch, dyadic_of(frame->remainder[i][axis]), unit);
-            mpz_add(out[i][axis], out[i][axis], scratch);
-        }
+        for (int axis = 0; axis < dim; axis++)
+            integer_set_sum(out[i][axis], frame->component[i][axis], frame->remainder[i][axis],
+                            span.unit);
     if (dim == 2)
         mpz_set_ui(out[2][2], 1);
-    return unit;
+    return span.unit;
 }
 
 /* With k_0 = c_1 x c_2 and so on around: x_i = k_i . p / (c_2 . k_2). In integers, k is of one
@@ -32,12 +30,10 @@ bool inverse_set(struct fmb_frame *frame)
     const int dim = frame->dim;
     mpz_t c[3][3], k[3][3], determinant, scratch[2];
     mpz_inits(determinant, scratch[0], scratch[1], NULL);
-    for (int i = 0; i < 3; i++) {
-        mpz_inits(c[i][0], c[i][1], c[i][2], NULL);
-        mpz_inits(k[i][0], k[i][1], k[i][2], NULL);
-    }
+    integer_each(c, sizeof c, mpz_init);
+    integer_each(k, sizeof k, mpz_init);
 
-    const long unit = set_components(frame, c, scratch[0]);
+    const long unit = set_components(frame, c);
     for (int i = 0; i < 3; i++)
         integer_cross(k[i], c[(i + 1) % 3], c[(i + 2) % 3], scratch[0]);
     integer_dot(determinant, c[2], k[2], scratch[0]);
@@ -52,9 +48,7 @@ bool inverse_set(struct fmb_frame *frame)
         }
 
     mpz_clears(determinant, scratch[0], scratch[1], NULL);
-    for (int i = 0; i < 3; i++) {
-        mpz_clears(c[i][0], c[i][1], c[i][2], NULL);
-        mpz_clears(k[i][0], k[i][1], k[i][2], NULL);
-    }
+    integer_each(c, sizeof c, mpz_clear);
+    integer_each(k, sizeof k, mpz_clear);
     return sign != 0;
 }

@@ -47,64 +47,25 @@ struct solver {
     mpz_t t[SCRATCH];
 };
 
-static void solver_each(struct solver *solver, void (*call)(mpz_ptr))
-{
-    exact_simplex_each(&solver->simplex, call);
-    for (int axis = 0; axis < 3; axis++) {
-        call(solver->normal[axis]);
-        call(solver->best[axis]);
-    }
-    for (int i = 0; i < SCRATCH; i++)
-        call(solver->t[i]);
-    for (int k = 0; k < EXACT_VECTORS; k++)
-        call(solver->value[k]);
-    for (int f = 0; f < 2; f++)
-        exact_range_each(&solver->range[f], call);
-    exact_range_each(&solver->all, call);
-}
-
 /* ---- Rounding ---- */
-
-typedef void length_function(mpz_ptr x, mpz_t largest, mpz_t scale, long shift);
-
-static void keep_largest(mpz_ptr x, mpz_t largest, mpz_t scale, long shift)
-{
-    (void) scale;
-    (void) shift;
-    if (mpz_cmpabs(x, largest) > 0)
-        mpz_abs(largest, x);
-}
-
-static void round_length(mpz_ptr x, mpz_t largest, mpz_t scale, long shift)
-{
-    (void) largest;
-    if (shift >= 0)
-        mpz_mul_2exp(x, x, (mp_bitcnt_t) shift);
-    else
-        mpz_tdiv_q_2exp(x, x, (mp_bitcnt_t) -shift);
-    mpz_tdiv_q(x, x, scale);
-}
-
-static void each_length(struct exact_pair *pair, length_function *call, mpz_t largest, long shift)
-{
-    for (int f = 0; f < 2; f++)
-        for (int axis = 0; axis < 3; axis++) {
-            struct exact_frame *frame = &pair->frame[f];
-            call(frame->origin[axis], largest, pair->scale, shift);
-            call(frame->displacement[axis], largest, pair->scale, shift);
-            for (int i = 0; i < frame->count; i++)
-                call(frame->component[i][axis], largest, pair->scale, shift);
-        }
-}
 
 /* All that follows from origins, components and displacements is set again. */
 static void round_pair(struct exact_pair *pair, mpz_t largest)
 {
     mpz_set_ui(largest, 0);
-    each_length(pair, keep_largest, largest, 0);
+    for (int k = 0; k < EXACT_LENGTHS; k++)
+        if (mpz_cmpabs(exact_length(pair, k), largest) > 0)
+            mpz_abs(largest, exact_length(pair, k));
     const long shift =
         LENGTH_BITS - (long) mpz_sizeinbase(largest, 2) + (long) mpz_sizeinbase(pair->scale, 2);
-    each_length(pair, round_length, largest, shift);
+    for (int k = 0; k < EXACT_LENGTHS; k++) {
+        mpz_ptr x = exact_length(pair, k);
+        if (shift >= 0)
+            mpz_mul_2exp(x, x, (mp_bitcnt_t) shift);
+        else
+            mpz_tdiv_q_2exp(x, x, (mp_bitcnt_t) -shift);
+        mpz_tdiv_q(x, x, pair->scale);
+    }
     pair->unit -= shift;
     if (mpz_sgn(largest) == 0)
         pair->unit =
@@ -348,9 +309,11 @@ void gap_exact(const struct frame_pair *pair, enum fmb_verdict verdict, struct f
     struct solver solver = {.dim = pair->a.frame->dim};
     memset(out, 0, sizeof *out);
     exact_pair_init(&solver.pair, pair);
-    solver_each(&solver, mpz_init);
+    exact_simplex_each(&solver.simplex, mpz_init);
+    INTEGER_EACH_FROM(normal, &solver, mpz_init);
     round_pair(&solver.pair, solver.t[0]);
     answer(&solver, verdict, pair->duration, out);
-    solver_each(&solver, mpz_clear);
+    INTEGER_EACH_FROM(normal, &solver, mpz_clear);
+    exact_simplex_each(&solver.simplex, mpz_clear);
     exact_pair_clear(&solver.pair);
 }

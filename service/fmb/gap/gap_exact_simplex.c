@@ -9,19 +9,9 @@
 
 void exact_simplex_each(struct exact_simplex *simplex, void (*call)(mpz_ptr))
 {
-    for (int i = 0; i < EXACT_CORNERS; i++)
-        call(simplex->weight[i]);
-    for (int axis = 0; axis < 3; axis++) {
-        for (int i = 0; i <= EXACT_CORNERS; i++)
-            call(simplex->pool[i].at[axis]);
-        for (int i = 0; i < 3; i++)
-            call(simplex->edge[i][axis]);
-        call(simplex->other[axis]);
-        call(simplex->normal[axis]);
-    }
-    call(simplex->total);
-    call(simplex->t[0]);
-    call(simplex->t[1]);
+    for (int i = 0; i <= EXACT_CORNERS; i++)
+        integer_each(simplex->pool[i].at, sizeof simplex->pool[i].at, call);
+    INTEGER_EACH_FROM(normal, simplex, call);
 }
 
 static void subtract(mpz_t out[3], mpz_t x[3], mpz_t y[3])

@@ -7,7 +7,7 @@ void hull_integers_each(struct hull_integers *integers, void (*call)(mpz_ptr))
     call(integers->scale);
     for (int f = 0; f < 2; f++) {
         struct hull_side *side = &integers->side[f];
-        exact_turn_each(&side->turn, call);
+        INTEGER_EACH_FROM(row, &side->turn, call);
         call(side->factor);
         for (int axis = 0; axis < 3; axis++) {
             call(side->position[axis]);
@@ -32,7 +32,7 @@ static void set_small(struct hull_side *side, long unit)
 {
     struct exact_frame frame;
     const unsigned count = hull_vertex_count(side->frame);
-    exact_frame_each(&frame, mpz_init);
+    INTEGER_EACH_FROM(component, &frame, mpz_init);
     exact_frame_set(&frame, side->frame, unit);
     for (unsigned k = 0; k < count; k++)
         for (int axis = 0; axis < 3; axis++) {
@@ -41,7 +41,7 @@ static void set_small(struct hull_side *side, long unit)
                 if (frame.simplex ? k == i + 1 : k >> i & 1)
                     mpz_add(side->small[k][axis], side->small[k][axis], frame.component[i][axis]);
         }
-    exact_frame_each(&frame, mpz_clear);
+    INTEGER_EACH_FROM(component, &frame, mpz_clear);
 }
 
 static void set_side(const struct fmb_placement *placement, const struct dyadic window,

@@ -16,16 +16,11 @@ struct dyadic_span dyadic_span_begin(void)
     return (struct dyadic_span){INTEGER_NO_EXPONENT, -INTEGER_NO_EXPONENT};
 }
 
-long integer_lower_unit(long unit, long exponent)
+void integer_each(void *numbers, size_t bytes, void (*call)(mpz_ptr))
 {
-    return exponent < unit ? exponent : unit;
-}
-
-long integer_vector_unit(long unit, const double *v, int dim)
-{
-    for (int axis = 0; axis < dim; axis++)
-        unit = integer_lower_unit(unit, dyadic_of(v[axis]).exponent);
-    return unit;
+    mpz_ptr number = numbers;
+    for (size_t i = 0; i < bytes / sizeof *number; i++)
+        call(&number[i]);
 }
 
 void integer_set(mpz_t out, struct dyadic x, long unit)
@@ -33,6 +28,18 @@ void integer_set(mpz_t out, struct dyadic x, long unit)
     mpz_set_si(out, x.mantissa);
     if (x.mantissa)
         mpz_mul_2exp(out, out, (mp_bitcnt_t) (x.exponent - unit));
+}
+
+void integer_set_sum(mpz_t out, double x, double y, long unit)
+{
+    mpz_t other;
+    integer_set(out, dyadic_of(x), unit);
+    if (y == 0)
+        return;
+    mpz_init(other);
+    integer_set(other, dyadic_of(y), unit);
+    mpz_add(out, out, other);
+    mpz_clear(other);
 }
 
 void integer_set_product(mpz_t out, struct dyadic x, struct dyadic y, long unit)

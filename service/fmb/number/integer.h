@@ -8,6 +8,7 @@
 
 #include <gmp.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -48,26 +49,36 @@ struct dyadic_span {
 /* Returns the span of the empty set: unit INTEGER_NO_EXPONENT, top -INTEGER_NO_EXPONENT. */
 struct dyadic_span dyadic_span_begin(void);
 
+/* Adds multiples of 2^unit below 2^top in magnitude to the set. */
+static inline void dyadic_span_extend(struct dyadic_span *span, long unit, long top)
+{
+    span->unit = unit < span->unit ? unit : span->unit;
+    span->top = top > span->top ? top : span->top;
+}
+
 /* Adds x to the set. */
 static inline void dyadic_span_add(struct dyadic_span *span, struct dyadic x)
 {
     if (x.mantissa == 0)
         return;
     const uint64_t magnitude = x.mantissa < 0 ? -(uint64_t) x.mantissa : (uint64_t) x.mantissa;
-    const long top = x.exponent + 64 - __builtin_clzll(magnitude);
-    span->unit = x.exponent < span->unit ? x.exponent : span->unit;
-    span->top = top > span->top ? top : span->top;
+    dyadic_span_extend(span, x.exponent, x.exponent + 64 - __builtin_clzll(magnitude));
 }
 
-/* Returns the smaller of two units or exponents. */
-long integer_lower_unit(long unit, long exponent);
+/* Calls one of mpz_init and mpz_clear for every number of an array, or of a struct of such arrays,
+ * which holds nothing else. */
+void integer_each(void *numbers, size_t bytes, void (*call)(mpz_ptr));
 
-/* Returns the largest exponent u <= unit such that all numbers v[0] to v[dim - 1] are multiples of
- * 2^u. In: v is finite. */
-long integer_vector_unit(long unit, const double *v, int dim);
+/* Calls one of mpz_init and mpz_clear for every number of a struct whose members are nothing but
+ * numbers, and arrays of them, from the member first to the last. */
+#define INTEGER_EACH_FROM(first, object, call) \
+    integer_each(&(object)->first, sizeof *(object) -offsetof(__typeof__(*(object)), first), call)
 
 /* out := x / 2^unit. In: unit <= x.exponent. */
 void integer_set(mpz_t out, struct dyadic x, long unit);
+
+/* out := (x + y) / 2^unit. In: both are multiples of 2^unit. */
+void integer_set_sum(mpz_t out, double x, double y, long unit);
 
 /* out := x y / 2^unit. In: unit <= x.exponent + y.exponent. */
 void integer_set_product(mpz_t out, struct dyadic x, struct dyadic y, long unit);
