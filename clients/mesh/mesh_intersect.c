@@ -60,7 +60,7 @@ static void *build_tree(const struct mesh_query *query, int which, struct fmb_tr
     const struct fmb_boxes boxes = {3, query->as == MESH_FACES ? face_box : tetrahedron_box, mesh,
                                     query->velocity[which]};
     void *memory = allocate(1, fmb_tree_bytes(mesh->face_count));
-    fmb_tree_build_boxes(&boxes, mesh->face_count, query->duration, memory, out);
+    fmb_tree_build(&boxes, mesh->face_count, query->duration, memory, out);
     return memory;
 }
 

@@ -520,7 +520,7 @@ enum fmb_status fmb_decide_batch(const struct fmb_batch *batch);
  *
  *     struct fmb_tree tree;
  *     void *memory = malloc(fmb_tree_bytes(count));
- *     fmb_tree_build(frames, count, 1, memory, &tree);
+ *     fmb_tree_build(&boxes, count, 1, memory, &tree);
  *     struct fmb_tree_cursor cursor = {0};
  *     while (fmb_tree_pairs(&tree, &tree, &cursor, pairs, capacity, &n) == FMB_OK && n > 0)
  *         ... decide pairs[0] to pairs[n - 1] ...
@@ -534,8 +534,7 @@ enum fmb_status fmb_decide_batch(const struct fmb_batch *batch);
  *
  * Thread safety: functions that take a const tree may run at the same time on one tree. */
 
-/* A tree over frames or boxes, in the caller's memory. Filled by fmb_tree_build() or
- * fmb_tree_build_boxes() only. */
+/* A tree over the boxes of frames, in the caller's memory. Filled by fmb_tree_build() only. */
 struct fmb_tree {
     size_t frame_count;
     size_t node_count;
@@ -550,25 +549,11 @@ struct fmb_tree {
  * SIZE_MAX if that number is not representable, or if fmb_tree_build() refuses so many frames. */
 size_t fmb_tree_bytes(size_t count);
 
-/* Builds a tree of prepared frames.
- *
- * In:  frames    [count], of one dimension; they need not outlive the call; may be NULL if count is
- *                0
- *      duration  T of all queries, seconds
- *      memory    fmb_tree_bytes(count) bytes at any address; the tree uses them until the caller
- *                frees them; may be NULL if count is 0
- * Out: *out      the tree; a tree of no frames if the status is not FMB_OK
- * Returns FMB_OK; FMB_BAD_DURATION; FMB_NOT_FINITE for a frame that is not prepared;
- * FMB_DIMENSIONS_DIFFER; FMB_OVER_LIMIT for UINT_MAX frames or more.
- * Cost: O(n log n) for any frames. */
-enum fmb_status fmb_tree_build(const struct fmb_prepared *frames, size_t count, double duration,
-                               void *memory, struct fmb_tree *out);
-
-/* A source of boxes for fmb_tree_build_boxes(). */
+/* A source of boxes for fmb_tree_build(). */
 struct fmb_boxes {
     int dim; /* 2 or 3 */
     /* Writes box number index, at the start of the window, to box: [lower, upper][axis]. No end is
-     * NaN; lower <= upper. */
+     * NaN; lower <= upper. fmb_box_of() gives the box of a prepared frame. */
     void (*at)(const void *context, unsigned index, double box[2][FMB_DIM_MAX]);
     const void *context;    /* passed to at() */
     const double *velocity; /* [dim], finite, per second, of all boxes; NULL: at rest */
@@ -577,12 +562,16 @@ struct fmb_boxes {
 /* Builds a tree of boxes. at() is called once for each index, in ascending order; the boxes need
  * not be stored by the caller.
  *
- * In, Out: as fmb_tree_build().
- * Returns FMB_OK; FMB_BAD_DURATION; FMB_OVER_LIMIT; FMB_WRONG_DIMENSION. */
-enum fmb_status fmb_tree_build_boxes(const struct fmb_boxes *boxes, size_t count, double duration,
-                                     void *memory, struct fmb_tree *out);
+ * In:  duration  T of all queries, seconds
+ *      memory    fmb_tree_bytes(count) bytes at any address; the tree uses them until the caller
+ *                frees them; may be NULL if count is 0
+ * Out: *out      the tree; a tree of no frames if the status is not FMB_OK
+ * Returns FMB_OK; FMB_BAD_DURATION; FMB_WRONG_DIMENSION; FMB_OVER_LIMIT for UINT_MAX boxes or more.
+ * Cost: O(n log n) for any boxes. */
+enum fmb_status fmb_tree_build(const struct fmb_boxes *boxes, size_t count, double duration,
+                               void *memory, struct fmb_tree *out);
 
-/* Computes the box of a prepared frame over the window [0, duration], as trees use it.
+/* Computes the box of a prepared frame over the window [0, duration].
  * Out: box  [lower, upper][axis] */
 void fmb_box_of(const struct fmb_prepared *frame, double duration, double box[2][FMB_DIM_MAX]);
 

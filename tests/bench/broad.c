@@ -59,9 +59,17 @@ static void run_sweep(struct broad *broad)
 
 /* ---- The tree ---- */
 
+static void put_box(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
+{
+    const struct scene *scene = context;
+    fmb_box_of(&scene->prepared[index], 1, box);
+}
+
 static void run_build(struct broad *broad)
 {
-    fmb_tree_build(broad->scene->prepared, broad->scene->count, 1, broad->memory, &broad->tree);
+    const struct fmb_boxes boxes = {prepared_kind(broad->scene->prepared) & PREPARED_3D ? 3 : 2,
+                                    put_box, broad->scene, NULL};
+    fmb_tree_build(&boxes, broad->scene->count, 1, broad->memory, &broad->tree);
 }
 
 static void run_pairs(struct broad *broad)

@@ -337,6 +337,12 @@ struct planted {
     unsigned *found, *expected; /* [count] */
 };
 
+static void put_box(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
+{
+    const struct scene *scene = context;
+    fmb_box_of(&scene->frame[index], scene->duration, box);
+}
+
 /* At any address, with guards after it. */
 static void plant(struct draw *draw, const struct scene *scene, struct planted *out)
 {
@@ -350,8 +356,10 @@ static void plant(struct draw *draw, const struct scene *scene, struct planted *
     out->at = out->memory + offset;
     memset(out->memory, GUARD, offset + out->bytes + GUARDS);
     out->found[scene->count] = out->expected[scene->count] = UINT_MAX;
-    assert_int_equal(
-        fmb_tree_build(scene->frame, scene->count, scene->duration, out->at, &out->tree), FMB_OK);
+    const struct fmb_boxes boxes = {
+        scene->count && !(prepared_kind(scene->frame) & PREPARED_3D) ? 2 : 3, put_box, scene, NULL};
+    assert_int_equal(fmb_tree_build(&boxes, scene->count, scene->duration, out->at, &out->tree),
+                     FMB_OK);
 }
 
 static void uproot(struct planted *planted)
@@ -718,26 +726,14 @@ static void boxes_with_one_centre_cost_what_is_found(void **state)
 static void queries_that_are_not_supported_are_refused(void **state)
 {
     struct draw draw;
-    struct scene flat, deep;
+    struct scene deep;
     struct planted planted;
     size_t count = 7;
     draw_begin(&draw, "queries_that_are_not_supported_are_refused");
-    scene_open(4, 1, &flat);
     scene_open(4, 1, &deep);
-    scene_draw(&draw, whole_numbers, 2, false, &flat);
     scene_draw(&draw, whole_numbers, 3, false, &deep);
     plant(&draw, &deep, &planted);
     struct fmb_tree *tree = &planted.tree, other;
-    static const double bad[] = {-1, -0x1p-1074, INFINITY, NAN};
-    for (size_t i = 0; i < COUNT(bad); i++) {
-        assert_int_equal(fmb_tree_build(deep.frame, 4, bad[i], NULL, &other), FMB_BAD_DURATION);
-    }
-    const struct fmb_prepared no_frame = {0}, mixed[2] = {flat.frame[0], deep.frame[0]};
-    const struct fmb_prepared one_missing[2] = {flat.frame[0], no_frame};
-    assert_int_equal(fmb_tree_build(mixed, 2, 1, NULL, &other), FMB_DIMENSIONS_DIFFER);
-    assert_int_equal(fmb_tree_build(one_missing, 2, 1, NULL, &other), FMB_NOT_FINITE);
-    assert_int_equal(fmb_tree_build(&no_frame, UINT_MAX, 1, NULL, &other), FMB_OVER_LIMIT);
-    assert_int_equal(other.frame_count, 0);
     struct fmb_tree_cursor cursor = {0};
     unsigned pairs[FMB_TREE_CAPACITY_MIN][2];
     assert_int_equal(fmb_tree_pairs(tree, tree, &cursor, pairs, FMB_TREE_CAPACITY_MIN - 1, &count),
@@ -751,12 +747,10 @@ static void queries_that_are_not_supported_are_refused(void **state)
     assert_int_equal(fmb_tree_pairs(tree, &other, &cursor, pairs, FMB_TREE_CAPACITY_MIN, &count),
                      FMB_BAD_DURATION);
     assert_int_equal(count, 0);
-    assert_int_equal(fmb_tree_build(NULL, 0, 1, NULL, &other), FMB_OK);
     assert_true(fmb_tree_bytes(SIZE_MAX) == SIZE_MAX);
     assert_true(fmb_tree_bytes(SIZE_MAX / 64) == SIZE_MAX);
     assert_true(fmb_tree_bytes(UINT_MAX) == SIZE_MAX);
     uproot(&planted);
-    scene_close(&flat);
     scene_close(&deep);
 }
 

@@ -609,6 +609,12 @@ static void put_box(const void *context, unsigned index, double box[2][FMB_DIM_M
     memcpy(box, world->box[index], sizeof world->box[index]);
 }
 
+static void put_box_of_frame(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
+{
+    const struct world *world = context;
+    fmb_box_of(&world->prepared[index], world->duration, box);
+}
+
 /* The triangles have one velocity, and so do their boxes. */
 static void open_world(struct draw *draw, point *pool, size_t count, double duration,
                        struct world *out)
@@ -643,9 +649,9 @@ static void open_world(struct draw *draw, point *pool, size_t count, double dura
     const struct fmb_boxes boxes = {3, put_box, out, motion.moving ? out->velocity : NULL};
     for (int t = 0; t < 2; t++)
         out->memory[t] = allocate(1, fmb_tree_bytes(count));
-    assert_int_equal(fmb_tree_build_boxes(&boxes, count, duration, out->memory[0], &out->boxes),
-                     FMB_OK);
-    assert_int_equal(fmb_tree_build(out->prepared, count, duration, out->memory[1], &out->frames),
+    assert_int_equal(fmb_tree_build(&boxes, count, duration, out->memory[0], &out->boxes), FMB_OK);
+    const struct fmb_boxes frames = {3, put_box_of_frame, out, NULL};
+    assert_int_equal(fmb_tree_build(&frames, count, duration, out->memory[1], &out->frames),
                      FMB_OK);
 }
 
@@ -793,7 +799,7 @@ static void boxes_in_the_plane(void **state)
     unsigned pairs[FMB_TREE_CAPACITY_MIN][2];
     size_t count;
     void *memory = allocate(1, fmb_tree_bytes(4));
-    assert_int_equal(fmb_tree_build_boxes(&boxes, 4, 1, memory, &tree), FMB_OK);
+    assert_int_equal(fmb_tree_build(&boxes, 4, 1, memory, &tree), FMB_OK);
     assert_int_equal(fmb_tree_pairs(&tree, &tree, &cursor, pairs, FMB_TREE_CAPACITY_MIN, &count),
                      FMB_OK);
     assert_int_equal(count, 2);
@@ -808,16 +814,16 @@ static void boxes_that_cannot_be_are_refused(void **state)
     struct fmb_tree tree;
     for (size_t i = 0; i < COUNT(bad); i++) {
         tree.frame_count = 7;
-        assert_int_equal(fmb_tree_build_boxes(&boxes, 3, bad[i], NULL, &tree), FMB_BAD_DURATION);
+        assert_int_equal(fmb_tree_build(&boxes, 3, bad[i], NULL, &tree), FMB_BAD_DURATION);
         assert_int_equal(tree.frame_count, 0);
     }
-    assert_int_equal(fmb_tree_build_boxes(&boxes, UINT_MAX, 1, NULL, &tree), FMB_OVER_LIMIT);
-    assert_int_equal(fmb_tree_build_boxes(&boxes, 0, 1, NULL, &tree), FMB_OK);
+    assert_int_equal(fmb_tree_build(&boxes, UINT_MAX, 1, NULL, &tree), FMB_OVER_LIMIT);
+    assert_int_equal(fmb_tree_build(&boxes, 0, 1, NULL, &tree), FMB_OK);
     assert_int_equal(tree.frame_count, 0);
     boxes.dim = 4;
-    assert_int_equal(fmb_tree_build_boxes(&boxes, 3, 1, NULL, &tree), FMB_WRONG_DIMENSION);
+    assert_int_equal(fmb_tree_build(&boxes, 3, 1, NULL, &tree), FMB_WRONG_DIMENSION);
     boxes.dim = 1;
-    assert_int_equal(fmb_tree_build_boxes(&boxes, 3, 1, NULL, &tree), FMB_WRONG_DIMENSION);
+    assert_int_equal(fmb_tree_build(&boxes, 3, 1, NULL, &tree), FMB_WRONG_DIMENSION);
 }
 
 /* ---- Bodies ---- */

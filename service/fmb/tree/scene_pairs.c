@@ -180,7 +180,7 @@ static void build_tree(struct scene_pairs *pairs, void *memory)
     const struct fmb_scene *scene = pairs->scene;
     const struct fmb_boxes boxes = {
         .dim = scene->placements->body->dim, .at = box_at, .context = pairs};
-    fmb_tree_build_boxes(&boxes, scene->placement_count - pairs->first, 0, memory, &pairs->tree);
+    fmb_tree_build(&boxes, scene->placement_count - pairs->first, 0, memory, &pairs->tree);
     pairs->listed = scene->which == FMB_PAIRS_ALL && list_pairs(pairs);
 }
 

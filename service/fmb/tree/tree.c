@@ -1,6 +1,6 @@
 /* Broad phase: a binary tree of axis-aligned boxes that finds the pairs that may meet.
  *
- *   In     prepared frames, or boxes, over a window
+ *   In     boxes of frames, over a window
  *   Out    the indices of frames, or pairs of them, whose boxes overlap
  *   Build  set_nodes() divides the boxes from the root on, by split(); set_boxes() computes the
  *          boxes of the nodes from the leaves up
@@ -415,25 +415,6 @@ static void set_boxes(const struct fmb_tree *tree)
 
 /* ---- Building ---- */
 
-static int dimension_of(const struct fmb_prepared *frame)
-{
-    return prepared_kind(frame) & PREPARED_3D ? 3 : 2;
-}
-
-static enum fmb_status check(const struct fmb_prepared *frames, size_t count, double duration)
-{
-    unsigned all = PREPARED_VALID, different = 0;
-    if (!prepared_is_duration(duration))
-        return FMB_BAD_DURATION;
-    for (size_t i = 0; i < count; i++) {
-        all &= prepared_kind(&frames[i]);
-        different |= prepared_kind(&frames[i]) ^ prepared_kind(&frames[0]);
-    }
-    return !(all & PREPARED_VALID)   ? FMB_NOT_FINITE
-           : different & PREPARED_3D ? FMB_DIMENSIONS_DIFFER
-                                     : FMB_OK;
-}
-
 /* Lays out the nodes, the boxes and the order in memory, each aligned as its type requires. The
  * boxes are still to be set. */
 static void lay_out(void *memory, size_t count, int dim, double duration, struct fmb_tree *out)
@@ -452,28 +433,6 @@ static void lay_out(void *memory, size_t count, int dim, double duration, struct
         out->order[i] = (unsigned) i;
 }
 
-/* In: all boxes, in the order of the frames. */
-static void set_tree(struct fmb_tree *tree)
-{
-    set_nodes(tree);
-    set_boxes(tree);
-}
-
-enum fmb_status fmb_tree_build(const struct fmb_prepared *frames, size_t count, double duration,
-                               void *memory, struct fmb_tree *out)
-{
-    memset(out, 0, sizeof *out);
-    const enum fmb_status status =
-        count < UINT_MAX ? check(frames, count, duration) : FMB_OVER_LIMIT;
-    if (status != FMB_OK || count == 0)
-        return status;
-    lay_out(memory, count, dimension_of(frames), duration, out);
-    for (size_t i = 0; i < count; i++)
-        out->boxes[i].box = aabb_of(&frames[i], duration);
-    set_tree(out);
-    return FMB_OK;
-}
-
 static struct aabb aabb_of_box(const struct fmb_boxes *boxes, unsigned index, double duration)
 {
     struct aabb out = {{{0}}};
@@ -487,8 +446,8 @@ static struct aabb aabb_of_box(const struct fmb_boxes *boxes, unsigned index, do
     return out;
 }
 
-enum fmb_status fmb_tree_build_boxes(const struct fmb_boxes *boxes, size_t count, double duration,
-                                     void *memory, struct fmb_tree *out)
+enum fmb_status fmb_tree_build(const struct fmb_boxes *boxes, size_t count, double duration,
+                               void *memory, struct fmb_tree *out)
 {
     memset(out, 0, sizeof *out);
     if (count >= UINT_MAX || !prepared_is_duration(duration))
@@ -500,7 +459,8 @@ enum fmb_status fmb_tree_build_boxes(const struct fmb_boxes *boxes, size_t count
     lay_out(memory, count, boxes->dim, duration, out);
     for (size_t i = 0; i < count; i++)
         out->boxes[i].box = aabb_of_box(boxes, (unsigned) i, duration);
-    set_tree(out);
+    set_nodes(out);
+    set_boxes(out);
     return FMB_OK;
 }
 
