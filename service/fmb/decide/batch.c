@@ -296,6 +296,15 @@ static bool may_decide_single(struct batch_block *block)
     return !batch->open || block->singles++ < SINGLE_MAX;
 }
 
+static void put_answer(const struct fmb_batch *batch, size_t i, const struct fmb_answer *answer)
+{
+    batch->verdicts[i] = (unsigned char) answer->verdict;
+    if (batch->contacts && answer->has_contact)
+        memcpy(batch->contacts[i], answer->contact, sizeof answer->contact);
+    if (answer->has_box)
+        memcpy(batch->boxes[i], answer->box, sizeof answer->box);
+}
+
 /* Decides pair k by itself, or leaves it open. want: 0 or FMB_WANT_BOX. In: its contact is NAN or
  * final, and its box NAN. */
 static void decide_single(struct batch_block *block, size_t k, unsigned want)
@@ -311,11 +320,7 @@ static void decide_single(struct batch_block *block, size_t k, unsigned want)
         batch->verdicts[i] = LEFT_OPEN;
         return;
     }
-    batch->verdicts[i] = (unsigned char) answer.verdict;
-    if (batch->contacts && answer.has_contact)
-        memcpy(batch->contacts[i], answer.contact, sizeof answer.contact);
-    if (want && answer.has_box)
-        memcpy(batch->boxes[i], answer.box, sizeof answer.box);
+    put_answer(batch, i, &answer);
 }
 
 /* The largest cost of the pairs with a hull of a block, if the time of a call is bounded: of some
@@ -364,11 +369,7 @@ static void put_hull(struct batch_block *block, const struct batch_job *job, siz
         batch->verdicts[i] = LEFT_OPEN;
         return;
     }
-    batch->verdicts[i] = (unsigned char) answer.verdict;
-    if (answer.has_contact)
-        memcpy(batch->contacts[i], answer.contact, sizeof answer.contact);
-    if (answer.has_box)
-        memcpy(batch->boxes[i], answer.box, sizeof answer.box);
+    put_answer(batch, i, &answer);
 }
 
 static void put_verdict_single(struct batch_block *block, size_t k)

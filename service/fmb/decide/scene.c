@@ -62,8 +62,7 @@ struct scene_block {
     size_t open[BLOCK], open_count, next_open;
     /* Pairs of bodies: those before given have been returned. */
     size_t body_count, given;
-    const unsigned (*bodies)[2];
-    unsigned out[BLOCK][2];
+    unsigned bodies[BLOCK][2];
     unsigned long long first; /* FMB_PAIRS_LISTED: the number of the first */
     struct scene_outcomes answers;
 };
@@ -251,7 +250,7 @@ static enum fmb_status check_pairs(const struct fmb_scene *scene, struct why why
         status = check_indices(scene->ignored, scene->ignored_count, placements, why, "ignored");
     if (status == FMB_OK)
         status = check_groups(scene, why);
-    if (status == FMB_OK && scene->first_pair > scene_pairs_total(scene))
+    if (status == FMB_OK && scene->first_pair > fmb_scene_pair_count(scene))
         status = refuse(why, FMB_BAD_PAIR, "first_pair", NULL);
     if (status != FMB_OK || !scene->method || scene->method->certain)
         return status;
@@ -339,11 +338,6 @@ enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
     return FMB_OK;
 }
 
-unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene)
-{
-    return scene_pairs_total(scene);
-}
-
 /* ---- Blocks ---- */
 
 static bool is_listed(const struct fmb_scene_state *state)
@@ -360,18 +354,9 @@ static size_t block_size(const struct fmb_scene_state *state)
 static void fill_direct(struct fmb_scene_state *state)
 {
     struct scene_block *block = &state->block;
-    const size_t max = block_size(state);
-    block->bodies = (const unsigned(*)[2]) block->out;
-    if (is_listed(state)) {
-        const unsigned long long left = state->scene.pair_count - state->pairs.next;
-        block->first = state->pairs.next;
-        block->bodies = state->scene.pairs + block->first;
-        block->body_count = left < max ? (size_t) left : max;
-        state->pairs.next += block->body_count;
-    } else {
-        block->body_count = scene_pairs_next(&state->pairs, block->out, max);
-    }
-    block->frames = block->bodies;
+    block->first = state->pairs.next;
+    block->body_count = scene_pairs_next(&state->pairs, block->bodies, block_size(state));
+    block->frames = (const unsigned(*)[2]) block->bodies;
     block->count = block->body_count;
 }
 
@@ -391,7 +376,7 @@ static double farthest_of_frames(const struct fmb_scene_state *state)
     double largest = 0;
     for (size_t k = 0; !state->frames.direct && k < block->body_count; k++)
         for (int f = 0; f < 2; f++)
-            largest = fmax(largest, aabb_max_coordinate(&box[block->out[k][f]]));
+            largest = fmax(largest, aabb_max_coordinate(&box[block->bodies[k][f]]));
     return farthest(state) + 0x1p-37 * largest;
 }
 
@@ -404,7 +389,8 @@ static double reach_of(const struct fmb_scene_state *state, size_t n)
     const double upper = block->answers.gap[n].bounds[1];
     if (!has_gaps(&state->scene))
         return 0;
-    return gap_reach(fmin(upper, farthest(state)), &box[block->out[n][0]], &box[block->out[n][1]]);
+    return gap_reach(fmin(upper, farthest(state)), &box[block->bodies[n][0]],
+                     &box[block->bodies[n][1]]);
 }
 
 static void begin_answer(struct fmb_scene_state *state, size_t n)
@@ -438,7 +424,7 @@ static void keep_halfway(struct fmb_scene_state *state)
     const bool verdict_alone =
         !state->scene.want && !has_gaps(&state->scene) &&
         state->scene.method->certain; /* an inexact method may still refuse a pair of frames */
-    memmove(block->out[0], block->out[last], sizeof block->out[0]);
+    memmove(block->bodies[0], block->bodies[last], sizeof block->bodies[0]);
     copy_answer(&block->answers, 0, &block->answers, last);
     block->body_count = 1;
     block->first += last;
@@ -451,10 +437,11 @@ static bool next_bodies(struct fmb_scene_state *state)
 {
     struct scene_block *block = &state->block;
     const size_t n = block->body_count;
-    if (n == BLOCK || scene_pairs_next(&state->pairs, &block->out[n], 1) == 0)
+    if (n == BLOCK || scene_pairs_next(&state->pairs, &block->bodies[n], 1) == 0)
         return false;
     begin_answer(state, n);
-    frame_pair_cursor_begin(&state->cursor, block->out[n][0], block->out[n][1], reach_of(state, n));
+    frame_pair_cursor_begin(&state->cursor, block->bodies[n][0], block->bodies[n][1],
+                            reach_of(state, n));
     block->body_count++;
     state->halfway = true;
     return true;
@@ -466,7 +453,6 @@ static void fill(struct fmb_scene_state *state)
     const size_t max = block_size(state);
     block->count = 0;
     block->frames = (const unsigned(*)[2]) block->slots;
-    block->bodies = (const unsigned(*)[2]) block->out;
     if (state->halfway) {
         keep_halfway(state);
     } else {
@@ -522,20 +508,28 @@ static struct frame_pair frames_at(const struct fmb_scene_state *state, size_t k
         {a->frame, a->placement}, {b->frame, b->placement}, state->scene.duration};
 }
 
+/* Puts the answer of pair of frames k of the block, but for its gap. */
+static void put_outcome(struct fmb_scene_state *state, size_t k, const struct fmb_answer *answer)
+{
+    struct scene_outcomes *outcomes = &state->block.outcomes;
+    outcomes->verdict[k] = (unsigned char) answer->verdict;
+    if (answer->has_contact)
+        memcpy(outcomes->contact[k], answer->contact, sizeof answer->contact);
+    if (answer->has_box)
+        memcpy(outcomes->box[k], answer->box, sizeof answer->box);
+}
+
 /* Decides the only pair of the block, by a method without a batch. */
 static void decide_single(struct fmb_scene_state *state)
 {
-    struct scene_block *block = &state->block;
     const struct frame_pair pair = frames_at(state, 0);
     struct fmb_answer answer = {0};
     const unsigned want =
         (state->scene.want & FMB_WANT_BOX) | (has_gaps(&state->scene) ? FMB_WANT_GAP : 0);
     if (state->scene.method->decide(&pair, want, &answer) != FMB_OK)
         answer = (struct fmb_answer){.gap.bounds = {NAN, NAN}};
-    block->outcomes.verdict[0] = (unsigned char) answer.verdict;
-    memcpy(block->outcomes.contact[0], answer.contact, sizeof answer.contact);
-    memcpy(block->outcomes.box[0], answer.box, sizeof answer.box);
-    block->outcomes.gap[0] = answer.gap;
+    put_outcome(state, 0, &answer);
+    state->block.outcomes.gap[0] = answer.gap;
 }
 
 static void begin_block(struct fmb_scene_state *state)
@@ -645,7 +639,7 @@ static bool is_near(const struct fmb_scene_state *state, const struct fmb_gap *g
 static size_t drop_separated(struct fmb_scene_state *state, struct scene_outcomes *answers,
                              size_t first, size_t end)
 {
-    unsigned(*pair)[2] = state->block.out;
+    unsigned(*pair)[2] = state->block.bodies;
     size_t to = first;
     for (size_t n = first; n < end; n++) {
         if (!batch_is_contact(answers->verdict[n]) && !is_near(state, &answers->gap[n]))
@@ -670,7 +664,7 @@ static void hand_out(struct fmb_scene_state *state, struct fmb_scene_answers *ou
     state->first_answer = first;
     state->answered = is_listed(state) ? end - first : drop_separated(state, answers, first, end);
     out->count = state->answered;
-    out->pairs = block->bodies + first;
+    out->pairs = (const unsigned(*)[2]) block->bodies + first;
     out->verdicts = answers->verdict + first;
     out->contacts =
         state->scene.want & FMB_WANT_TIMES ? (const double(*)[2]) answers->contact + first : NULL;
@@ -684,7 +678,7 @@ static unsigned long long number_of(const struct fmb_scene_state *state, size_t 
 {
     const unsigned *pair = state->block.bodies[n];
     return is_listed(state) ? state->block.first + n
-                            : scene_pairs_number(&state->scene, pair[0], pair[1]);
+                            : pair_number(pair_numbers_of(&state->scene), pair[0], pair[1]);
 }
 
 unsigned long long fmb_scene_number(const struct fmb_scene_state *state, size_t k)
@@ -745,11 +739,7 @@ static bool step_hull(struct fmb_scene_state *state, size_t k)
     }
     if (!done)
         return false;
-    outcomes->verdict[k] = (unsigned char) answer->verdict;
-    if (answer->has_contact)
-        memcpy(outcomes->contact[k], answer->contact, sizeof answer->contact);
-    if (answer->has_box)
-        memcpy(outcomes->box[k], answer->box, sizeof answer->box);
+    put_outcome(state, k, answer);
     if (!has_gaps(&state->scene))
         return true;
     return put_hull_gap(state, k,
@@ -793,5 +783,5 @@ bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *ans
         decide_some(state);
         hand_out(state, answers);
     }
-    return fmb_scene_next_pair(state) == scene_pairs_total(&state->scene);
+    return fmb_scene_next_pair(state) == fmb_scene_pair_count(&state->scene);
 }

@@ -111,15 +111,20 @@ static void prepare_chunk(struct scene_frames *frames, unsigned body, size_t k)
     }
 }
 
-/* Releases all slots. */
-static void release_slots(struct scene_frames *frames)
+/* Makes sure that count slots are free. Returns false if the slots do not suffice and may not be
+ * released. */
+static bool make_room(struct scene_frames *frames, size_t count, bool may_reuse)
 {
-    frames->used = 0;
-    frames->generation++;
+    if (count <= frames->slots - frames->used)
+        return true;
+    if (may_reuse) {
+        frames->used = 0;
+        frames->generation++;
+    }
+    return may_reuse;
 }
 
-/* Prepares the current chunks of a cursor. Returns false if the slots do not suffice and may not be
- * released. */
+/* Prepares the current chunks of a cursor. Returns as make_room(). */
 static bool prepare_both(struct scene_frames *frames, const struct frame_pair_cursor *cursor,
                          bool may_reuse)
 {
@@ -129,29 +134,21 @@ static bool prepare_both(struct scene_frames *frames, const struct frame_pair_cu
     for (int side = 0; side < 2; side++)
         if (!is_prepared(frames, chunk_of(frames, body[side], k[side])))
             missing += chunk_size(frames, body[side], k[side]);
-    if (missing == 0)
-        return true;
-    if (missing > frames->slots - frames->used) {
-        if (!may_reuse)
-            return false;
-        release_slots(frames);
-    }
+    if (!make_room(frames, missing, may_reuse))
+        return false;
     for (int side = 0; side < 2; side++)
         if (!is_prepared(frames, chunk_of(frames, body[side], k[side])))
             prepare_chunk(frames, body[side], k[side]);
     return true;
 }
 
-/* Sets the box of a chunk, by preparing it. Returns as prepare_both(). */
+/* Sets the box of a chunk, by preparing it. Returns as make_room(). */
 static bool set_chunk_box(struct scene_frames *frames, unsigned body, size_t k, bool may_reuse)
 {
     if (chunk_of(frames, body, k)->generation > 0)
         return true;
-    if (chunk_size(frames, body, k) > frames->slots - frames->used) {
-        if (!may_reuse)
-            return false;
-        release_slots(frames);
-    }
+    if (!make_room(frames, chunk_size(frames, body, k), may_reuse))
+        return false;
     prepare_chunk(frames, body, k);
     return true;
 }

@@ -10,12 +10,7 @@
  * microseconds. */
 enum { SEARCHES_MAX = 32 };
 
-unsigned long long scene_pairs_number(const struct fmb_scene *scene, unsigned a, unsigned b)
-{
-    return pair_number(pair_numbers_of(scene), a, b);
-}
-
-unsigned long long scene_pairs_total(const struct fmb_scene *scene)
+unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene)
 {
     return scene->which == FMB_PAIRS_LISTED ? scene->pair_count
                                             : pairs_total(pair_numbers_of(scene));
@@ -28,7 +23,7 @@ unsigned long long scene_pairs_position(const struct scene_pairs *pairs)
     if (scene->which == FMB_PAIRS_LISTED)
         return pairs->next;
     if (pairs->given < pairs->found_count)
-        return scene_pairs_number(scene, pairs->a, pairs->found[pairs->given]);
+        return pair_number(numbers, pairs->a, pairs->found[pairs->given]);
     return pairs->a < pair_rows(numbers) ? pairs_before(numbers, pairs->a + 1)
                                          : pairs_total(numbers);
 }

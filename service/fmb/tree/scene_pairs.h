@@ -44,9 +44,6 @@ static inline size_t scene_pairs_capacity(size_t placements)
     return 8 * placements + FMB_TREE_CAPACITY_MIN;
 }
 
-/* Returns the number of pairs of a scene, those that cannot meet included. */
-unsigned long long scene_pairs_total(const struct fmb_scene *scene);
-
 /* Begins an enumeration with first_pair.
  *
  * In: a checked scene; pairs with its arrays set; tree: fmb_tree_bytes() of the placements; box:
@@ -61,8 +58,5 @@ size_t scene_pairs_next(struct scene_pairs *pairs, unsigned (*out)[2], size_t ma
 /* Returns the number of the next pair: all before it have been enumerated, cannot meet or are
  * ignored. Equals the total number if there are no more pairs. */
 unsigned long long scene_pairs_position(const struct scene_pairs *pairs);
-
-/* Returns the number of an enumerated pair. In: not FMB_PAIRS_LISTED. */
-unsigned long long scene_pairs_number(const struct fmb_scene *scene, unsigned a, unsigned b);
 
 #endif
