@@ -177,20 +177,6 @@ static bool try_within_plane(struct normal_search *search)
     return false;
 }
 
-/* On output: the sign and direction of a normal that proves the verdict. */
-static void find_normal(struct exact_pair *pair, int dim, enum fmb_verdict verdict,
-                        char text[NORMAL_TEXT_SIZE])
-{
-    struct normal_search search = {.pair = pair, .verdict = verdict};
-    INTEGER_EACH_FROM(z, &search, mpz_init);
-    set_directions(&search, dim);
-    bool found = try_products(&search) || try_directions(&search) || try_within_plane(&search);
-    assert(found);
-    (void) found;
-    snprintf(text, NORMAL_TEXT_SIZE, "%s", search.text);
-    INTEGER_EACH_FROM(z, &search, mpz_clear);
-}
-
 /* ---- The text ---- */
 
 static size_t used_of(const struct certificate_writer *writer)
@@ -212,13 +198,19 @@ void certificate_write_number(struct certificate_writer *writer, const mpq_t num
         (size_t) gmp_snprintf(writer->text + used, FMB_CERTIFICATE_MAX - used, "%Qd", number);
 }
 
-static void write_normal(struct certificate_writer *writer, struct exact_pair *exact, int dim,
+/* Writes the sign and direction of a normal that proves the verdict. */
+static void write_normal(struct certificate_writer *writer, struct exact_pair *pair, int dim,
                          enum fmb_verdict verdict)
 {
-    char normal[NORMAL_TEXT_SIZE];
-    find_normal(exact, dim, verdict, normal);
+    struct normal_search search = {.pair = pair, .verdict = verdict};
+    INTEGER_EACH_FROM(z, &search, mpz_init);
+    set_directions(&search, dim);
+    bool found = try_products(&search) || try_directions(&search) || try_within_plane(&search);
+    assert(found);
+    (void) found;
     certificate_write_text(writer, " ");
-    certificate_write_text(writer, normal);
+    certificate_write_text(writer, search.text);
+    INTEGER_EACH_FROM(z, &search, mpz_clear);
 }
 
 static bool is_wide(struct exact_pair *exact)
@@ -234,7 +226,7 @@ static void write_certificate(struct certificate_writer *writer, const struct fr
     struct exact_pair exact;
     exact_pair_init(&exact, pair);
     if (!is_wide(&exact)) {
-        const enum fmb_verdict verdict = exact_verdict(pair, NULL);
+        const enum fmb_verdict verdict = exact_verdict(pair, false, NULL);
         certificate_write_text(writer, fmb_verdict_name(verdict));
         if (verdict != FMB_OVERLAPPING)
             write_normal(writer, &exact, pair->a.frame->dim, verdict);

@@ -288,41 +288,6 @@ static void put_nothing(const struct fmb_batch *batch, size_t i)
     put_no_box(batch, i);
 }
 
-/* Counts a pair to be decided by itself. Returns false if it must be left open, because enough
- * others have been. */
-static bool may_decide_single(struct batch_block *block)
-{
-    const struct fmb_batch *batch = block->batch;
-    return !batch->open || block->singles++ < SINGLE_MAX;
-}
-
-static void put_answer(const struct fmb_batch *batch, size_t i, const struct fmb_answer *answer)
-{
-    batch->verdicts[i] = (unsigned char) answer->verdict;
-    if (batch->contacts && answer->has_contact)
-        memcpy(batch->contacts[i], answer->contact, sizeof answer->contact);
-    if (answer->has_box)
-        memcpy(batch->boxes[i], answer->box, sizeof answer->box);
-}
-
-/* Decides pair k by itself, or leaves it open. want: 0 or FMB_WANT_BOX. In: its contact is NAN or
- * final, and its box NAN. */
-static void decide_single(struct batch_block *block, size_t k, unsigned want)
-{
-    const struct fmb_batch *batch = block->batch;
-    const struct fmb_prepared *const *pair = block->pair[k];
-    const size_t i = block->first + block->slot[k];
-    struct fmb_answer answer = {0};
-    if (!may_decide_single(block) ||
-        certified_decide_prepared(pair[0], pair[1], batch->duration, want, batch->open != NULL,
-                                  &answer) != FMB_OK) {
-        put_nothing(batch, i);
-        batch->verdicts[i] = LEFT_OPEN;
-        return;
-    }
-    put_answer(batch, i, &answer);
-}
-
 /* The largest cost of the pairs with a hull of a block, if the time of a call is bounded: of some
  * hundred microseconds. */
 enum { SCANNED_MAX = 1 << 15 };
@@ -335,41 +300,41 @@ static unsigned cost_of(const struct fmb_batch *batch, const struct fmb_prepared
            (1 + (batch->contacts ? 8 : 0) + (batch->boxes ? 24 : 0));
 }
 
-/* Returns whether the cuboids that contain the hulls of a pair are certainly separated. */
-static bool bounds_are_separated(const struct batch_job *job,
-                                 const struct fmb_prepared *const pair[2])
+/* Counts pair k, which is to be decided by itself. Returns false if it must be left open, because
+ * enough others have been. */
+static bool may_decide_single(struct batch_block *block, size_t k)
 {
-    bool swapped;
-    const enum kernel_kind kind =
-        kernel_kind_of_bounds(pair[0], pair[1], job->batch->duration, &swapped);
-    return kind < KERNEL_KINDS &&
-           job->kernels.single[kind](pair[swapped], pair[!swapped], job->batch->duration) ==
-               SLABS_SEPARATED;
+    const struct fmb_batch *batch = block->batch;
+    const struct fmb_prepared *const *pair = block->pair[k];
+    if (!batch->open)
+        return true;
+    if (!hull_takes(pair[0]->frame, pair[1]->frame))
+        return block->singles++ < SINGLE_MAX;
+    const bool may = block->scanned < SCANNED_MAX;
+    block->scanned += cost_of(batch, pair);
+    return may;
 }
 
-/* Decides pair k, which has a hull, or leaves it open. */
-static void put_hull(struct batch_block *block, const struct batch_job *job, size_t k)
+/* Decides pair k by itself, or leaves it open. want: FMB_WANT_BOX and FMB_WANT_TIMES. In: its
+ * contact is NAN or final, and its box NAN. */
+static void decide_single(struct batch_block *block, size_t k, unsigned want)
 {
     const struct fmb_batch *batch = block->batch;
     const struct fmb_prepared *const *pair = block->pair[k];
     const size_t i = block->first + block->slot[k];
-    const struct frame_pair frames = {{pair[0]->frame, pair[0]->placement},
-                                      {pair[1]->frame, pair[1]->placement},
-                                      batch->duration};
-    const unsigned want =
-        (batch->boxes ? FMB_WANT_BOX : 0) | (batch->contacts ? FMB_WANT_TIMES : 0);
-    const bool late = batch->open && block->scanned >= SCANNED_MAX;
     struct fmb_answer answer = {0};
-    if (bounds_are_separated(job, pair)) {
-        batch->verdicts[i] = FMB_SEPARATED;
-        return;
-    }
-    block->scanned += cost_of(batch, pair);
-    if (late || hull_decide(&frames, want, batch->open ? HULL_QUICK : HULL_CERTIFIED, &answer)) {
+    if (!may_decide_single(block, k) ||
+        certified_decide_prepared(pair[0], pair[1], batch->duration, want, batch->open != NULL,
+                                  &answer) != FMB_OK) {
+        put_nothing(batch, i);
         batch->verdicts[i] = LEFT_OPEN;
         return;
     }
-    put_answer(batch, i, &answer);
+    batch->verdicts[i] = (unsigned char) answer.verdict;
+    if (batch->contacts && answer.has_contact)
+        memcpy(batch->contacts[i], answer.contact, sizeof answer.contact);
+    if (answer.has_box)
+        memcpy(batch->boxes[i], answer.box, sizeof answer.box);
 }
 
 static void put_verdict_single(struct batch_block *block, size_t k)
@@ -377,7 +342,7 @@ static void put_verdict_single(struct batch_block *block, size_t k)
     const struct fmb_batch *batch = block->batch;
     const struct fmb_prepared *const *pair = block->pair[k];
     enum fmb_verdict verdict = 0;
-    if (may_decide_single(block))
+    if (may_decide_single(block, k))
         verdict = certified_unsure(pair[0], pair[1], batch->duration, 2, batch->open);
     batch->verdicts[block->first + block->slot[k]] = verdict ? (unsigned char) verdict : LEFT_OPEN;
 }
@@ -420,16 +385,33 @@ static void put_contacts(struct batch_block *block, enum kernel_kind kind, size_
         memcpy(batch->contacts[i], contact, sizeof whole);
         batch->verdicts[i] = block->outcome[k];
         if (block->outcome[k] != SLABS_SEPARATED && isnan(contact[0]))
-            decide_single(block, k, 0);
+            decide_single(block, k, FMB_WANT_TIMES);
     }
 }
 
-/* The pairs of a block that are in contact, and their boxes. */
-struct contacts {
-    size_t count, index[BLOCK]; /* numbers in the sorted block */
+/* Pairs that a kernel takes by themselves, and their numbers in the sorted block. */
+struct selection {
+    size_t count;
+    unsigned char index[BLOCK];
     const struct fmb_prepared *pair[BLOCK + KERNEL_LANES][2];
-    double box[BLOCK + KERNEL_LANES][2][FMB_DIM_MAX];
 };
+
+static void select_pair(struct selection *selection, size_t k, const struct fmb_prepared *a,
+                        const struct fmb_prepared *b)
+{
+    selection->pair[selection->count][0] = a;
+    selection->pair[selection->count][1] = b;
+    selection->index[selection->count++] = (unsigned char) k;
+}
+
+/* Returns the call of a kernel for selected pairs, its results still to be set. */
+static struct kernel_call call_of(struct selection *selection, double duration)
+{
+    for (size_t n = selection->count; n < selection->count + KERNEL_LANES; n++)
+        selection->pair[n][0] = selection->pair[n][1] = &missing;
+    return (struct kernel_call){
+        .pairs = selection->pair, .count = selection->count, .duration = duration};
+}
 
 /* A box that the filter does not give: computed by itself, or left open. */
 static void put_box_single(struct batch_block *block, size_t k)
@@ -437,33 +419,11 @@ static void put_box_single(struct batch_block *block, size_t k)
     const struct fmb_batch *batch = block->batch;
     const struct fmb_prepared *const *pair = block->pair[k];
     const size_t i = block->first + block->slot[k];
-    if (may_decide_single(block) && certified_box_unsure(pair[0], pair[1], batch->duration,
-                                                         batch->open != NULL, batch->boxes[i]))
+    if (may_decide_single(block, k) && certified_box_unsure(pair[0], pair[1], batch->duration,
+                                                            batch->open != NULL, batch->boxes[i]))
         return;
     put_nothing(batch, i);
     batch->verdicts[i] = LEFT_OPEN;
-}
-
-/* Computes the boxes of pairs of one kind of kernel_box_kind(). */
-static void put_boxes(struct batch_block *block, kernel_box_function *boxes, enum kernel_kind kind,
-                      struct contacts *contacts)
-{
-    const struct kernel_call call = {.pairs = contacts->pair,
-                                     .count = contacts->count,
-                                     .duration = block->batch->duration,
-                                     .boxes = contacts->box};
-    for (size_t n = contacts->count; n < contacts->count + KERNEL_LANES; n++)
-        contacts->pair[n][0] = contacts->pair[n][1] = &missing;
-    if (contacts->count > 0)
-        boxes(&call, kind);
-    for (size_t n = 0; n < contacts->count; n++) {
-        const size_t k = contacts->index[n];
-        if (isnan(contacts->box[n][0][0]))
-            put_box_single(block, k);
-        else
-            memcpy(block->batch->boxes[block->first + block->slot[k]], contacts->box[n],
-                   sizeof contacts->box[n]);
-    }
 }
 
 /* Computes the boxes of the pairs in contact in which a frame moves, or of those in which none
@@ -472,10 +432,11 @@ static size_t put_group(struct batch_block *block, const struct batch_job *job, 
                         size_t start, size_t end)
 {
     const struct fmb_batch *batch = block->batch;
-    struct contacts contacts;
+    struct selection selection;
+    double box[BLOCK + KERNEL_LANES][2][FMB_DIM_MAX];
     enum kernel_kind kind = 0;
     size_t others = 0;
-    contacts.count = 0;
+    selection.count = 0;
     for (size_t k = start; k < end; k++) {
         const struct fmb_prepared *const *pair = block->pair[k];
         bool swapped;
@@ -487,11 +448,19 @@ static size_t put_group(struct batch_block *block, const struct batch_job *job, 
             continue;
         }
         kind = own;
-        contacts.pair[contacts.count][0] = pair[swapped];
-        contacts.pair[contacts.count][1] = pair[!swapped];
-        contacts.index[contacts.count++] = k;
+        select_pair(&selection, k, pair[swapped], pair[!swapped]);
     }
-    put_boxes(block, job->kernels.boxes, kind, &contacts);
+    struct kernel_call call = call_of(&selection, batch->duration);
+    call.boxes = box;
+    if (call.count > 0)
+        job->kernels.boxes(&call, kind);
+    for (size_t n = 0; n < call.count; n++) {
+        const size_t k = selection.index[n];
+        if (isnan(box[n][0][0]))
+            put_box_single(block, k);
+        else
+            memcpy(batch->boxes[block->first + block->slot[k]], box[n], sizeof box[n]);
+    }
     return others;
 }
 
@@ -511,30 +480,22 @@ static void put_all_boxes(struct batch_block *block, const struct batch_job *job
  * time. Two faces that may have parallel planes stay unsure. */
 static void next_pass(kernel_function *kernel, bool faces, const struct kernel_call *first)
 {
-    unsigned char index[BLOCK], outcome[BLOCK + KERNEL_LANES];
-    const struct fmb_prepared *pair[BLOCK + KERNEL_LANES][2];
+    struct selection selection;
+    unsigned char outcome[BLOCK + KERNEL_LANES];
     double contact[BLOCK + KERNEL_LANES][2]; /* not used */
-    size_t count = 0;
     if (!memchr(first->outcomes, SLABS_UNSURE, first->count))
         return;
-    for (size_t k = 0; k < first->count; k++) {
-        if (first->outcomes[k] != SLABS_UNSURE)
-            continue;
-        pair[count][0] = first->pairs[k][0];
-        pair[count][1] = first->pairs[k][1];
-        index[count++] = (unsigned char) k;
-    }
-    for (size_t n = count; n < count + KERNEL_LANES; n++)
-        pair[n][0] = pair[n][1] = &missing;
-    const struct kernel_call call = {.pairs = pair,
-                                     .count = count,
-                                     .duration = first->duration,
-                                     .outcomes = outcome,
-                                     .contacts = contact};
+    selection.count = 0;
+    for (size_t k = 0; k < first->count; k++)
+        if (first->outcomes[k] == SLABS_UNSURE)
+            select_pair(&selection, k, first->pairs[k][0], first->pairs[k][1]);
+    struct kernel_call call = call_of(&selection, first->duration);
+    call.outcomes = outcome;
+    call.contacts = contact;
     kernel(&call);
-    for (size_t n = 0; n < count; n++)
+    for (size_t n = 0; n < call.count; n++)
         if (!faces || outcome[n] != SLABS_TOUCHING)
-            first->outcomes[index[n]] = outcome[n];
+            first->outcomes[selection.index[n]] = outcome[n];
 }
 
 /* Sets the outcomes of a kind. */
@@ -569,23 +530,39 @@ static enum fmb_status refusal(const struct fmb_prepared *const pair[2])
                                                                             : FMB_NOT_FINITE;
 }
 
+/* Returns whether pair k has a hull, and the cuboids that contain its hulls are certainly
+ * separated. */
+static bool bounds_are_separated(const struct batch_block *block, const struct batch_job *job,
+                                 size_t k)
+{
+    const struct fmb_prepared *const *pair = block->pair[k];
+    bool swapped;
+    if (!hull_takes(pair[0]->frame, pair[1]->frame))
+        return false;
+    const enum kernel_kind kind =
+        kernel_kind_of_bounds(pair[0], pair[1], job->batch->duration, &swapped);
+    return kind < KERNEL_KINDS &&
+           job->kernels.single[kind](pair[swapped], pair[!swapped], job->batch->duration) ==
+               SLABS_SEPARATED;
+}
+
 static void put_unfiltered(struct batch_block *block, const struct batch_job *job)
 {
+    const struct fmb_batch *batch = block->batch;
+    const unsigned want =
+        (batch->boxes ? FMB_WANT_BOX : 0) | (batch->contacts ? FMB_WANT_TIMES : 0);
     for (size_t k = block->start[KERNEL_UNUSABLE]; k < block->count; k++) {
         const size_t i = block->first + block->slot[k];
-        put_nothing(block->batch, i);
-        if (k < block->start[KERNEL_REFUSED] &&
-            hull_takes(block->pair[k][0]->frame, block->pair[k][1]->frame)) {
-            put_hull(block, job, k);
-            continue;
+        put_nothing(batch, i);
+        if (k >= block->start[KERNEL_REFUSED]) {
+            batch->verdicts[i] = 0;
+            if (block->status == FMB_OK)
+                block->status = refusal(block->pair[k]);
+        } else if (bounds_are_separated(block, job, k)) {
+            batch->verdicts[i] = FMB_SEPARATED;
+        } else {
+            decide_single(block, k, want);
         }
-        if (k < block->start[KERNEL_REFUSED]) {
-            decide_single(block, k, block->batch->boxes ? FMB_WANT_BOX : 0);
-            continue;
-        }
-        block->batch->verdicts[i] = 0;
-        if (block->status == FMB_OK)
-            block->status = refusal(block->pair[k]);
     }
 }
 
@@ -595,49 +572,37 @@ static void put_unfiltered(struct batch_block *block, const struct batch_job *jo
 
 /* Separated pairs of one kind, ENLARGED at a time, with the errors of their frames enlarged. */
 enum { ENLARGED = 32 };
-struct enlarged {
-    size_t count;
-    unsigned char slot[ENLARGED];
-    struct fmb_prepared frame[ENLARGED];
-    const struct fmb_prepared *pair[ENLARGED + KERNEL_LANES][2];
-};
 
 /* Marks the pairs that the filter separates although the error of b is enlarged by the largest gap
  * of interest: they are farther apart than that (slabs.h). */
 static void filter_enlarged(struct batch_block *block, const struct batch_job *job,
-                            enum kernel_kind kind, struct enlarged *enlarged)
+                            enum kernel_kind kind, struct selection *enlarged)
 {
     unsigned char outcome[ENLARGED + KERNEL_LANES];
-    const struct kernel_call call = {.pairs = enlarged->pair,
-                                     .count = enlarged->count,
-                                     .duration = job->batch->duration,
-                                     .outcomes = outcome};
-    if (enlarged->count == 0)
-        return;
-    for (size_t n = enlarged->count; n < enlarged->count + KERNEL_LANES; n++)
-        enlarged->pair[n][0] = enlarged->pair[n][1] = &missing;
-    job->kernels.verdicts[kind](&call);
-    for (size_t n = 0; n < enlarged->count; n++)
-        block->far[enlarged->slot[n]] = outcome[n] == SLABS_SEPARATED;
+    struct kernel_call call = call_of(enlarged, job->batch->duration);
+    call.outcomes = outcome;
+    if (call.count > 0)
+        job->kernels.verdicts[kind](&call);
+    for (size_t n = 0; n < call.count; n++)
+        block->far[block->slot[enlarged->index[n]]] = outcome[n] == SLABS_SEPARATED;
     enlarged->count = 0;
 }
 
 static void find_far(struct batch_block *block, const struct batch_job *job, enum kernel_kind kind)
 {
-    struct enlarged enlarged;
+    struct selection enlarged;
+    struct fmb_prepared frame[ENLARGED];
     enlarged.count = 0;
     for (size_t k = block->start[kind]; k < block->start[kind + 1]; k++) {
         const struct fmb_prepared *a = block->pair[k][0], *b = block->pair[k][1];
-        struct fmb_prepared *larger = &enlarged.frame[enlarged.count];
+        struct fmb_prepared *larger = &frame[enlarged.count];
         const int error = prepared_kind(b) & PREPARED_3D ? PREPARED_ERROR_3D : PREPARED_ERROR_2D;
         if (block->outcome[k] != SLABS_SEPARATED)
             continue;
         *larger = *b;
         larger->number[error - 1] +=
             gap_far_threshold(a, b, job->batch->duration, job->farthest) * (1 + 0x1p-40);
-        enlarged.slot[enlarged.count] = block->slot[k];
-        enlarged.pair[enlarged.count][0] = a;
-        enlarged.pair[enlarged.count++][1] = larger;
+        select_pair(&enlarged, k, a, larger);
         if (enlarged.count == ENLARGED)
             filter_enlarged(block, job, kind, &enlarged);
     }

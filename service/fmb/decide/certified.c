@@ -156,18 +156,14 @@ static enum hull_effort effort_of(bool quick)
 /* The exact method; of a pair with a hull, that of hull.h. */
 static enum slabs_outcome all_slabs(struct certified *certified)
 {
-    struct limbs_question question;
     struct fmb_answer answer = {0};
     const bool times = certified->times && !certified->quick && drifts(certified);
     if (hull_takes(certified->frame[0]->frame, certified->frame[1]->frame))
         return hull_decide(&certified->pair, 0, effort_of(certified->quick), &answer) == FMB_OK
                    ? (enum slabs_outcome) answer.verdict
                    : SLABS_UNSURE;
-    limbs_question_set(&certified->pair, limbs_span_of(&certified->pair), LIMBS_FLAT, &question);
-    if (certified->quick && question.limbs > LIMBS_NARROW)
-        return SLABS_UNSURE;
-    return (enum slabs_outcome) limbs_functions_of(&question)->verdict(
-        &question, times ? certified->exact_contact : NULL);
+    return (enum slabs_outcome) exact_verdict(&certified->pair, certified->quick,
+                                              times ? certified->exact_contact : NULL);
 }
 
 typedef enum slabs_outcome rung_function(struct certified *certified);
@@ -298,7 +294,7 @@ enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
     struct certified certified;
     const struct frame_pair pair = {{a->frame, a->placement}, {b->frame, b->placement}, duration};
     if (hull_takes(a->frame, b->frame))
-        return hull_decide(&pair, want | FMB_WANT_TIMES, effort_of(quick), answer);
+        return hull_decide(&pair, want, effort_of(quick), answer);
     begin(&certified, a, b, duration, true, quick);
     answer->verdict = climb(&certified, CERTIFIED_FILTER);
     if (!answer->verdict)
@@ -326,7 +322,7 @@ enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
         return hull_decide(pair, want | FMB_WANT_TIMES, HULL_CERTIFIED, answer);
     prepared_set(pair->a, &a);
     prepared_set(pair->b, &b);
-    return certified_decide_prepared(&a, &b, pair->duration, want, false, answer);
+    return certified_decide_prepared(&a, &b, pair->duration, want | FMB_WANT_TIMES, false, answer);
 }
 
 enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path)

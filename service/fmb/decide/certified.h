@@ -24,10 +24,11 @@
 enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
                                  struct fmb_answer *answer);
 
-/* The same answer from prepared frames. quick: returns FMB_CANNOT_DECIDE, with *answer unspecified,
- * if the answer needs integers wider than LIMBS_NARROW, or GMP. A quick decision takes tens of
- * microseconds at most and allocates nothing: a slab takes at most 1,000 products of limbs (most
- * take 100 to 300), and a pair has at most SLABS_MAX slabs. */
+/* The same answer from prepared frames; that of a pair with a hull has a contact only if want has
+ * FMB_WANT_TIMES. quick: returns FMB_CANNOT_DECIDE, with *answer unspecified, if the answer needs
+ * integers wider than LIMBS_NARROW, or GMP. A quick decision takes tens of microseconds at most and
+ * allocates nothing: a slab takes at most 1,000 products of limbs (most take 100 to 300), and a
+ * pair has at most SLABS_MAX slabs. */
 enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
                                           const struct fmb_prepared *b, double duration,
                                           unsigned want, bool quick, struct fmb_answer *answer);

@@ -243,10 +243,12 @@ void exact_ranges(const struct exact_pair *pair, mpz_t value[EXACT_VECTORS],
 
 /* ---- The method ---- */
 
-enum fmb_verdict exact_verdict(const struct frame_pair *pair, double contact[2])
+enum fmb_verdict exact_verdict(const struct frame_pair *pair, bool quick, double contact[2])
 {
     struct limbs_question question;
     set_question(pair, &question);
+    if (quick && question.limbs > LIMBS_NARROW)
+        return 0;
     return limbs_functions_of(&question)->verdict(&question, contact);
 }
 
@@ -254,7 +256,7 @@ enum fmb_status exact_decide(const struct frame_pair *pair, unsigned want,
                              struct fmb_answer *answer)
 {
     double contact[2];
-    answer->verdict = exact_verdict(pair, contact);
+    answer->verdict = exact_verdict(pair, false, contact);
     answer->has_contact = answer->verdict != FMB_SEPARATED;
     answer->has_box = answer->has_contact && want & FMB_WANT_BOX;
     if (answer->has_contact)
