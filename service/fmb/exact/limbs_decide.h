@@ -273,15 +273,25 @@ LIMBS_FUNCTION void set_difference(int n, int sign, const uint64_t *x, const uin
     subtract(n, out, sign < 0 ? x : y);
 }
 
+/* Sets the time at which the path enters a slab (end 0) or leaves it: (bound - start) / slope. In:
+ * slope, the sign of that of the path along the normal, is not 0. */
+LIMBS_FUNCTION void set_time_of_bound(int n, const struct limbs_slab *slab, int slope, int end,
+                                      struct limbs_ratio *out)
+{
+    static const limbs_number zero;
+    set_difference(n, slope, slab->slope, zero, out->den);
+    set_difference(n, slope, (slope > 0) == (end == 0) ? slab->low : slab->high, slab->start,
+                   out->num);
+}
+
 /* Clips the path to a slab. Returns false if nothing is left of it.
  *
  * Where the path does not lie on a bound, it enters the slab at one of its bounds and leaves it at
- * the other: in time at (bound - start) / slope. An entry before the window, and an exit after it,
+ * the other. An entry before the window, and an exit after it,
  * bound nothing. */
 LIMBS_FUNCTION bool clip_path(int n, struct limbs_path *path, const struct limbs_slab *slab,
                               bool pins)
 {
-    static const limbs_number zero;
     const int slope = sign_of(n, slab->slope);
     struct limbs_ratio at;
     if (slope == 0) {
@@ -292,10 +302,8 @@ LIMBS_FUNCTION bool clip_path(int n, struct limbs_path *path, const struct limbs
         path->interior = path->interior && (pins || (above && below));
         return true;
     }
-    set_difference(n, slope, slab->slope, zero, at.den);
     for (int end = 0; end < 2; end++) {
-        set_difference(n, slope, (slope > 0) == (end == 0) ? slab->low : slab->high, slab->start,
-                       at.num);
+        set_time_of_bound(n, slab, slope, end, &at);
         const bool early = is_negative(n, at.num), late = is_less(n, at.den, at.num);
         if (end == 0 ? late : early)
             return false;
@@ -344,14 +352,11 @@ LIMBS_FUNCTION double seconds_of(int n, const struct limbs_ratio *at, double dur
 LIMBS_FUNCTION void clip_end(int n, const struct limbs_slab *slab, double duration, int end,
                              double contact[2])
 {
-    static const limbs_number zero;
     const int slope = sign_of(n, slab->slope);
     struct limbs_ratio at;
     if (slope == 0)
         return;
-    set_difference(n, slope, slab->slope, zero, at.den);
-    set_difference(n, slope, (slope > 0) == (end == 0) ? slab->low : slab->high, slab->start,
-                   at.num);
+    set_time_of_bound(n, slab, slope, end, &at);
     if (is_negative(n, at.num) || is_less(n, at.den, at.num))
         return;
     const double time = seconds_of(n, &at, duration, end);
