@@ -2,6 +2,7 @@
 
 #include "limbs.h"
 #include "prepared.h"
+#include "vector.h"
 
 #include <math.h>
 
@@ -30,17 +31,12 @@ static bool certainly_cross(const struct world_frame *a, const struct world_fram
 /* Returns the axis along which the projection of a face is largest, up to rounding. */
 static int projection_axis_of(const struct world_frame *frame)
 {
-    const double *u = frame->component[0], *v = frame->component[1];
-    double largest = -1;
+    double normal[3];
     int axis = 0;
-    for (int i = 0; i < 3; i++) {
-        const int p = (i + 1) % 3, q = (i + 2) % 3;
-        const double size = fabs(u[p] * v[q] - u[q] * v[p]);
-        if (size > largest) {
-            largest = size;
+    vec3_cross(frame->component[0], frame->component[1], normal);
+    for (int i = 1; i < 3; i++)
+        if (fabs(normal[i]) > fabs(normal[axis]))
             axis = i;
-        }
-    }
     return axis;
 }
 

@@ -181,6 +181,15 @@ INLINE struct aabb aabb_of(const struct fmb_prepared *frame, double duration)
     return out;
 }
 
+/* box := the ends of a box, [lower, upper][axis]. */
+INLINE void aabb_get_ends(const struct aabb *aabb, double box[2][FMB_DIM_MAX])
+{
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        box[0][axis] = aabb->end[axis][0];
+        box[1][axis] = 0 - aabb->end[axis][1];
+    }
+}
+
 /* Returns the smallest box that contains both. */
 INLINE struct aabb aabb_union(struct aabb x, struct aabb y)
 {

@@ -3,9 +3,11 @@
 #include "fmb.h"
 
 #include "integer.h"
+#include "interval.h"
 #include "inverse.h"
 #include "prepared.h"
 #include "rotation.h"
+#include "vector.h"
 #include "aabb.h"
 
 #include <float.h>
@@ -18,13 +20,6 @@ static bool all_finite(const double *numbers, size_t count)
         if (!isfinite(numbers[i]))
             return false;
     return true;
-}
-
-static void cross(const double u[3], const double v[3], double out[3])
-{
-    out[0] = u[1] * v[2] - u[2] * v[1];
-    out[1] = u[2] * v[0] - u[0] * v[2];
-    out[2] = u[0] * v[1] - u[1] * v[0];
 }
 
 /* Returns x 2^-exponent, rounded once. Faster than ldexp() for usual exponents. */
@@ -87,8 +82,8 @@ static bool invert_in_doubles(struct fmb_frame *frame)
     int exponent;
     scale_components(frame, c, &exponent);
     for (int i = 0; i < 3; i++)
-        cross(c[(i + 1) % 3], c[(i + 2) % 3], k[i]);
-    double determinant = c[2][0] * k[2][0] + c[2][1] * k[2][1] + c[2][2] * k[2][2];
+        vec3_cross(c[(i + 1) % 3], c[(i + 2) % 3], k[i]);
+    double determinant = vec3_dot(c[2], k[2]);
     if (!certainly_solid((const double(*)[3]) c, determinant))
         return false;
     for (int axis = 0; axis < frame->dim; axis++)
@@ -111,30 +106,19 @@ static void invert(struct fmb_frame *frame)
  * that. */
 static const double least_thickness = 0x1p-44;
 
-static double square_of(const double v[FMB_DIM_MAX])
-{
-    return (v[0] * v[0] + v[1] * v[1]) + v[2] * v[2];
-}
-
 /* Returns whether the volume of the parallelepiped of three components, or the area of the
  * parallelogram of two, is at least least_thickness times the product of their lengths. In: numbers
  * in range. The computed quotient is off by less than 2^-48. */
 static bool is_thick(const struct fmb_frame *frame)
 {
     const double(*c)[FMB_DIM_MAX] = frame->component;
-    const double square = square_of(c[0]) * square_of(c[1]);
+    const double square = vec3_dot(c[0], c[0]) * vec3_dot(c[1], c[1]);
     double normal[3];
-    cross(c[0], c[1], normal);
+    vec3_cross(c[0], c[1], normal);
     if (frame->count < 3)
-        return square_of(normal) >= least_thickness * least_thickness * square;
-    const double volume = normal[0] * c[2][0] + normal[1] * c[2][1] + normal[2] * c[2][2];
-    return fabs(volume) >= least_thickness * sqrt(square) * sqrt(square_of(c[2]));
-}
-
-/* Returns whether x y = z w. In: the rounding errors of both products are doubles. */
-static bool are_equal(double x, double y, double z, double w)
-{
-    return x * y == z * w && fma(x, y, -(x * y)) == fma(z, w, -(z * w));
+        return vec3_dot(normal, normal) >= least_thickness * least_thickness * square;
+    return fabs(vec3_dot(normal, c[2])) >=
+           least_thickness * sqrt(square) * sqrt(vec3_dot(c[2], c[2]));
 }
 
 /* Returns whether a face has an area, with its components as rounded. */
@@ -143,7 +127,7 @@ static bool has_area(const struct fmb_frame *frame)
     const double *c = frame->component[0], *d = frame->component[1];
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3;
-        if (!are_equal(c[i], d[j], c[j], d[i]))
+        if (!interval_same_products(c[i], d[j], c[j], d[i]))
             return true;
     }
     return false;
@@ -178,13 +162,6 @@ static void measure(struct fmb_frame *frame)
     frame->in_range = frame->in_range && (frame->sturdy || !frame->rounded);
     frame->bits[0] = (int) span.unit;
     frame->bits[1] = (int) span.top;
-}
-
-/* Returns the sum of the magnitudes of the coordinates. It bounds the length of v, except for
- * rounding. */
-static double sum_of(const double v[FMB_DIM_MAX])
-{
-    return (fabs(v[0]) + fabs(v[1])) + fabs(v[2]);
 }
 
 /* Returns the largest magnitude of a coordinate of a vertex along an axis. Adds the magnitudes of
@@ -235,7 +212,7 @@ static double slack_of(const struct fmb_frame *frame)
             slack += 0x1p-52 * fabs(frame->origin[axis]) + 0x1p-1074;
     }
     for (int i = 0; i < frame->count; i++)
-        slack = fmax(slack, sum_of(frame->remainder[i]));
+        slack = fmax(slack, vec3_sum(frame->remainder[i]));
     return slack * (1 + 0x1p-50);
 }
 
@@ -251,7 +228,8 @@ static double turn_error_of(const struct fmb_frame *frame)
 {
     double lengths = 0;
     for (int i = 0; i < frame->count; i++)
-        lengths += frame->in_range ? prepared_size(frame->summary, i) : sum_of(frame->component[i]);
+        lengths +=
+            frame->in_range ? prepared_size(frame->summary, i) : vec3_sum(frame->component[i]);
     const double of_origin = (MATRIX_ERROR + PRODUCT_ERROR) * frame->radius;
     const double of_components =
         (frame_has_axes(frame) ? SINGLE_PRODUCT_ERROR : PRODUCT_ERROR) * lengths;
@@ -299,7 +277,8 @@ void frame_set_plane_triangle(const double components[2][2], struct fmb_frame *o
     out->count = 2;
     for (int i = 0; i < 2; i++)
         memcpy(out->component[i], components[i], sizeof components[i]);
-    out->flat = are_equal(components[0][0], components[1][1], components[0][1], components[1][0]);
+    out->flat = interval_same_products(components[0][0], components[1][1], components[0][1],
+                                       components[1][0]);
     measure(out);
     out->summary = prepared_summary_of(out);
 }
@@ -481,47 +460,38 @@ static void set_body_box(struct fmb_body *out)
             frame->dim == 3 ? box_at_origin(frame, 3, &origin) : box_at_origin(frame, 2, &origin);
         box = i == 0 ? one : aabb_union(box, one);
     }
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        out->box[0][axis] = box.end[axis][0];
-        out->box[1][axis] = 0 - box.end[axis][1];
-    }
+    aabb_get_ends(&box, out->box);
 }
 
-/* Completes a body whose only frame is out->one. */
-static void set_single_frame(struct fmb_body *out)
+/* Completes a body whose only frame, out->one, was made with this status, and returns it. */
+static enum fmb_status complete_body(enum fmb_status status, struct fmb_body *out)
 {
+    if (status != FMB_OK)
+        return status;
     out->dim = out->one.dim;
     out->frame_count = 1;
     out->frames = NULL;
     out->radius = out->one.radius;
     set_body_box(out);
+    return FMB_OK;
 }
 
 enum fmb_status fmb_body_make(int dim, int shape, const double *numbers, size_t count,
                               struct fmb_body *out)
 {
-    const enum fmb_status status = fmb_frame_make(dim, shape, numbers, count, &out->one);
-    if (status == FMB_OK)
-        set_single_frame(out);
-    return status;
+    return complete_body(fmb_frame_make(dim, shape, numbers, count, &out->one), out);
 }
 
 enum fmb_status fmb_body_make_vertices(int dim, int shape, const double *vertices, size_t count,
                                        struct fmb_body *out)
 {
-    const enum fmb_status status = fmb_frame_make_vertices(dim, shape, vertices, count, &out->one);
-    if (status == FMB_OK)
-        set_single_frame(out);
-    return status;
+    return complete_body(fmb_frame_make_vertices(dim, shape, vertices, count, &out->one), out);
 }
 
 enum fmb_status fmb_body_make_hull(int dim, const double *vertices, size_t count, double *memory,
                                    struct fmb_body *out)
 {
-    const enum fmb_status status = fmb_frame_make_hull(dim, vertices, count, memory, &out->one);
-    if (status == FMB_OK)
-        set_single_frame(out);
-    return status;
+    return complete_body(fmb_frame_make_hull(dim, vertices, count, memory, &out->one), out);
 }
 
 enum fmb_status fmb_body_make_frames(const struct fmb_frame *frames, size_t count,

@@ -4,6 +4,7 @@
 #include "integer.h"
 #include "prepared.h"
 #include "support.h"
+#include "vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -137,8 +138,8 @@ static double radius_of(const struct fmb_frame *frame)
     for (unsigned i = 0; i < frame->vertex_count; i++) {
         double v[FMB_DIM_MAX];
         get_vertex(frame, i, v);
-        square = fmax(square, (v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
-        sum = fmax(sum, (fabs(v[0]) + fabs(v[1])) + fabs(v[2]));
+        square = fmax(square, vec3_dot(v, v));
+        sum = fmax(sum, vec3_sum(v));
     }
     const double radius = sum > 0x1p-400 && sum < 0x1p500 ? sqrt(square) : sum;
     return radius * PREPARED_MARGIN + 0x1p-1000;
@@ -208,19 +209,13 @@ static void set_scale(const struct fmb_frame *frame, struct scaled *out)
 static double span_of(int dim, int count, const double basis[2][FMB_DIM_MAX],
                       const double v[FMB_DIM_MAX])
 {
-    const double *u = basis[0], *w = basis[1];
-    if (count == 1)
-        return (v[0] * v[0] + v[1] * v[1]) + v[2] * v[2];
     double normal[FMB_DIM_MAX];
-    const double *second = count == 2 ? v : w;
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        normal[i] = u[j] * second[k] - u[k] * second[j];
-    }
+    if (count == 1)
+        return vec3_dot(v, v);
+    vec3_cross(basis[0], count == 2 ? v : basis[1], normal);
     if (count == 2)
-        return dim == 2 ? fabs(normal[2])
-                        : (normal[0] * normal[0] + normal[1] * normal[1]) + normal[2] * normal[2];
-    return fabs((normal[0] * v[0] + normal[1] * v[1]) + normal[2] * v[2]);
+        return dim == 2 ? fabs(normal[2]) : vec3_dot(normal, normal);
+    return fabs(vec3_dot(normal, v));
 }
 
 /* The least volume of the chosen simplex, times dim!, relative to the cube of its longest

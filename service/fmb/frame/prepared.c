@@ -2,6 +2,7 @@
 
 #include "inlined.h"
 #include "rotation.h"
+#include "vector.h"
 
 #include <math.h>
 
@@ -15,7 +16,7 @@
  * differences of vertices. */
 static double length_of(const double v[FMB_DIM_MAX])
 {
-    return sqrt((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]) * (1 + 0x1p-46);
+    return sqrt(vec3_dot(v, v)) * (1 + 0x1p-46);
 }
 
 /* Returns the 16 most significant bits of the smallest double >= length whose other bits are 0. */
@@ -104,8 +105,7 @@ static void set_origin(const struct fmb_frame *frame, const struct rotation_matr
             *exact &= ~((unsigned) PREPARED_EXACT_X << axis);
         }
     if (rounds)
-        out->error +=
-            sum_rounding * ((fabs(out->origin[0]) + fabs(out->origin[1])) + fabs(out->origin[2]));
+        out->error += sum_rounding * vec3_sum(out->origin);
 }
 
 static bool is_zero(const double v[FMB_DIM_MAX])
@@ -244,7 +244,7 @@ INLINE void set_in_general_orientation(const struct fmb_frame *frame,
     }
     rotate_components(frame, rotation, numbers->component);
     numbers->error = frame->slack + frame->turn_error;
-    numbers->error += sum_rounding * ((fabs(o[0]) + fabs(o[1])) + fabs(o[2]));
+    numbers->error += sum_rounding * vec3_sum(o);
     numbers->error *= PREPARED_MARGIN; /* for its own rounding */
     out->summary = (frame->summary &
                     ~in_summary(PREPARED_AXIS_ALIGNED | PREPARED_PLAIN | all_components_exact)) |

@@ -96,16 +96,6 @@ void gap_turn_round(struct fmb_gap *gap)
 
 /* ---- Numbers ---- */
 
-static double sum_of(const double v[FMB_DIM_MAX])
-{
-    return (fabs(v[0]) + fabs(v[1])) + fabs(v[2]);
-}
-
-static double largest_of(const double v[FMB_DIM_MAX])
-{
-    return interval_max(fabs(v[0]), interval_max(fabs(v[1]), fabs(v[2])));
-}
-
 /* Bounds the coordinates of a frame over the window; at least several times their magnitude. */
 INLINE double far_of(const int dim, const struct fmb_prepared *frame, double duration)
 {
@@ -113,7 +103,7 @@ INLINE double far_of(const int dim, const struct fmb_prepared *frame, double dur
     const double origin[FMB_DIM_MAX] = {number[0], number[1], dim == 3 ? number[2] : 0};
     const double sizes = (prepared_size(frame->summary, 0) + prepared_size(frame->summary, 1)) +
                          prepared_size(frame->summary, 2);
-    const double far = sum_of(origin) + 2 * sizes;
+    const double far = vec3_sum(origin) + 2 * sizes;
     if (!(prepared_kind(frame) & PREPARED_MOVING))
         return far;
     const double *v = prepared_velocity(frame);
@@ -140,13 +130,13 @@ INLINE void set_frame(const int dim, int f, struct gap_pair *pair)
     pair->error += number[(dim == 3 ? PREPARED_ERROR_3D : PREPARED_ERROR_2D) - 1];
     pair->reach += sizes;
     pair->far[f] = far_of(dim, frame, pair->duration);
-    pair->least = interval_max(pair->least, largest_of(origin));
+    pair->least = interval_max(pair->least, vec3_largest(origin));
     pair->least = interval_max(pair->least, 0.25 * interval_max(x, interval_max(y, z)));
     if (!(kind & PREPARED_MOVING))
         return;
     const double way[FMB_DIM_MAX] = {velocity[0] * pair->duration, velocity[1] * pair->duration,
                                      dim == 3 ? velocity[2] * pair->duration : 0};
-    pair->least = interval_max(pair->least, 0.5 * largest_of(way));
+    pair->least = interval_max(pair->least, 0.5 * vec3_largest(way));
 }
 
 /* As slabs_prepare(): tiny drifts are left to integers. */
@@ -164,8 +154,8 @@ INLINE bool set_drift(const int dim, struct gap_pair *pair, double drift[FMB_DIM
         pair->drifts = pair->drifts || speed != 0;
         good = good && (speed == 0 || fabs(drift[axis]) >= 2 * PREPARED_LEAST_NUMBER);
     }
-    const double largest = largest_of(drift);
-    pair->reach += sum_of(drift);
+    const double largest = vec3_largest(drift);
+    pair->reach += vec3_sum(drift);
     return !pair->drifts || (good && largest >= PREPARED_LEAST && largest <= PREPARED_LARGEST);
 }
 
@@ -185,10 +175,10 @@ INLINE bool set_numbers(const int dim, struct gap_pair *pair)
         pair->vector[axis][2] = has ? (lanes){b[2 * dim], dim == 3 ? b[9] : 0} : lanes_of(0);
         pair->vector[axis][3] = (lanes){drift[axis], 0};
     }
-    pair->reach += sum_of(pair->offset);
+    pair->reach += vec3_sum(pair->offset);
     pair->least = pair->least * (1 - 0x1p-40) - pair->error;
     /* Bodies may move together, so that only their displacements are large or infinite. */
-    return good && largest_of(pair->offset) <= PREPARED_LARGEST && pair->least <= 0x1p1000;
+    return good && vec3_largest(pair->offset) <= PREPARED_LARGEST && pair->least <= 0x1p1000;
 }
 
 bool gap_pair_set(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,

@@ -22,6 +22,7 @@
 #define FMB_GAP_H
 
 #include "aabb.h"
+#include "vector.h"
 
 /* GAP_UNSURE: not known within the limit. GAP_FAR: surely greater than farthest; nothing else is
  * known. */
@@ -63,19 +64,6 @@ INLINE void gap_dots(const struct gap_pair *pair, const double n[FMB_DIM_MAX], l
     for (int i = 0; i < GAP_LANES; i++)
         out[i] =
             (n[0] * pair->vector[0][i] + n[1] * pair->vector[1][i]) + n[2] * pair->vector[2][i];
-}
-
-INLINE double gap_dot(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX])
-{
-    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
-}
-
-INLINE void gap_cross(const double x[FMB_DIM_MAX], const double y[FMB_DIM_MAX],
-                      double out[FMB_DIM_MAX])
-{
-    out[0] = x[1] * y[2] - x[2] * y[1];
-    out[1] = x[2] * y[0] - x[0] * y[2];
-    out[2] = x[0] * y[1] - x[1] * y[0];
 }
 
 /* Relative to the reach; tests define another value. */

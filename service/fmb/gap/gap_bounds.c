@@ -71,8 +71,8 @@ INLINE void set_products(const struct gap_edges *edges, const bool simplex[2], s
         for (int axis = 0; axis < 3 && !simplex[f]; axis++)
             out->w[axis] += 0.5 * ((edge[0].at[axis] + edge[1].at[axis]) + edge[2].at[axis]);
         for (int k = 0; k < (simplex[f] ? 4 : 3); k++)
-            gap_cross(edge[gap_face_edge[k][0]].at, edge[gap_face_edge[k][1]].at,
-                      out->normal[f][k]);
+            vec3_cross(edge[gap_face_edge[k][0]].at, edge[gap_face_edge[k][1]].at,
+                       out->normal[f][k]);
     }
     for (int g = 0; g < (simplex[1] ? 3 : 2); g++) {
         const struct gap_edge *edge = &edges->of[1][2 * g];
@@ -83,7 +83,7 @@ INLINE void set_products(const struct gap_edges *edges, const bool simplex[2], s
     }
     for (int i = 0; i < (simplex[0] ? 6 : 3); i++)
         for (int k = 0; k < 3; k++)
-            out->of_a[i][k] = gap_dot(out->normal[1][k], edges->of[0][i].at);
+            out->of_a[i][k] = vec3_dot(out->normal[1][k], edges->of[0][i].at);
 }
 
 struct extent {
@@ -133,15 +133,15 @@ INLINE void bound_faces(const struct products *products, const bool simplex[2], 
     double most[2] = {0};
     for (int lane = 0; lane < 2 && (simplex[f] || k + lane < 3); lane++) {
         const int *edge = gap_face_edge[k + lane];
-        own[lane] = gap_dot(n[lane], edges->of[f][(k + lane) % 3].at);
+        own[lane] = vec3_dot(n[lane], edges->of[f][(k + lane) % 3].at);
         for (int i = 0; i < 3; i++)
-            other[i][lane] = k + lane == 3 ? gap_dot(n[lane], edges->of[!f][i].at)
+            other[i][lane] = k + lane == 3 ? vec3_dot(n[lane], edges->of[!f][i].at)
                              : f           ? products->of_a[i][k + lane]
                                            : products->of_b[k + lane][i / 2][i % 2];
-        middle[lane] = gap_dot(n[lane], products->w);
+        middle[lane] = vec3_dot(n[lane], products->w);
         if (edges->pair->drifts)
-            swing[lane] = gap_dot(n[lane], edges->drift.at);
-        square[lane] = gap_dot(n[lane], n[lane]);
+            swing[lane] = vec3_dot(n[lane], edges->drift.at);
+        square[lane] = vec3_dot(n[lane], n[lane]);
         most[lane] = products->square[f][edge[0]] * products->square[f][edge[1]];
     }
     const lanes of_own = lanes_at(own);
@@ -165,9 +165,9 @@ INLINE void bound_edges(const struct products *products, const bool simplex[2], 
                                 {{m[1], -m[0]}, {-m[0], m[1] + m[2]}},
                                 {{-m[1], -m[2]}, {m[2] + m[0], m[0] + m[1]}}};
     double offset[3], drift[3];
-    gap_cross(products->w, e, offset);
+    vec3_cross(products->w, e, offset);
     if (edges->pair->drifts)
-        gap_cross(edges->drift.at, e, drift);
+        vec3_cross(edges->drift.at, e, drift);
     for (int g = 0; g < (simplex[1] ? 3 : 2); g++) {
         const lanes x[2] = {i < 3 ? -of_b[q][g] : of_b[r][g],
                             i < 3 ? of_b[p][g] : -(of_b[p][g] + of_b[q][g])};

@@ -30,6 +30,8 @@
  * normals and 12 2^-50 R; R is less than 42 times the largest coordinate. */
 #include "gap_bounds.h"
 
+#include "interval.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -57,7 +59,7 @@ struct depth {
 
 static struct gap_edge edge_of(const double v[3], bool simplex)
 {
-    struct gap_edge out = {{v[0], v[1], v[2]}, gap_dot(v, v), simplex, true};
+    struct gap_edge out = {{v[0], v[1], v[2]}, vec3_dot(v, v), simplex, true};
     return out;
 }
 
@@ -140,7 +142,7 @@ static void add_normal(struct depth *depth, const double n[3], double square, do
         return;
     }
     set_ends(depth->edges.pair, n, ends);
-    const double offset = gap_dot(n, depth->edges.pair->offset);
+    const double offset = vec3_dot(n, depth->edges.pair->offset);
     const double low = offset + ends[0], high = offset + ends[1];
     const double best = low > -high ? low : -high, off = slip * depth->edges.pair->reach;
     const double most = (off - depth->greatest) * PREPARED_MARGIN;
@@ -158,30 +160,24 @@ static void add_normal(struct depth *depth, const double n[3], double square, do
         depth->normal[axis] = (low > -high ? inverse : -inverse) * n[axis];
 }
 
-/* Whether x y - z w is exactly 0: products and their errors are doubles (interval.h). */
-static bool same_products(double x, double y, double z, double w)
-{
-    const double xy = x * y, zw = z * w;
-    return xy == zw && fma(x, y, -xy) == fma(z, w, -zw);
-}
-
 static bool are_parallel(const double u[3], const double v[3])
 {
-    return same_products(u[1], v[2], u[2], v[1]) && same_products(u[2], v[0], u[0], v[2]) &&
-           same_products(u[0], v[1], u[1], v[0]);
+    return interval_same_products(u[1], v[2], u[2], v[1]) &&
+           interval_same_products(u[2], v[0], u[0], v[2]) &&
+           interval_same_products(u[0], v[1], u[1], v[0]);
 }
 
 /* The normal of edges that are nearly parallel, and not rounded. */
 static void add_close(struct depth *depth, const struct gap_edge *u, const struct gap_edge *v)
 {
-    const double share = CHECK_GIVEN(gap_dot(u->at, v->at) / u->square); /* any k will do */
+    const double share = CHECK_GIVEN(vec3_dot(u->at, v->at) / u->square); /* any k will do */
     double w[3], n[3];
     if (are_parallel(u->at, v->at))
         return;
     for (int axis = 0; axis < 3; axis++)
         w[axis] = fma(-share, u->at[axis], v->at[axis]);
-    gap_cross(u->at, w, n);
-    const double square = gap_dot(n, n);
+    vec3_cross(u->at, w, n);
+    const double square = vec3_dot(n, n);
     if (square >= LEAST_SINE * LEAST_SINE * (u->square * v->square)) {
         add_normal(depth, n, square, SLIP_CLOSE);
     } else if (u->simplex || v->simplex) {
@@ -195,8 +191,8 @@ static void add_edges(struct depth *depth, const struct gap_edge *u, const struc
 {
     const double most = u->square * v->square;
     double n[3];
-    gap_cross(u->at, v->at, n);
-    const double square = gap_dot(n, n);
+    vec3_cross(u->at, v->at, n);
+    const double square = vec3_dot(n, n);
     if (square > WIDE_SINE_SQUARE * most)
         add_normal(depth, n, square, SLIP_WIDE);
     else if (u->exact && v->exact)

@@ -114,7 +114,7 @@ static void set_witness(const struct gap_pair *pair, const struct gap_simplex *s
     const double error = pair->error + GAP_WITNESS_ROUNDING * (pair->far[0] + pair->far[1]);
     gap_subtract(out->witness[1], out->witness[0], apart);
     out->has_witness = true;
-    out->bounds[1] = (sqrt(gap_dot(apart, apart)) + error) * (1 + 0x1p-49);
+    out->bounds[1] = (sqrt(vec3_dot(apart, apart)) + error) * (1 + 0x1p-49);
 }
 
 enum gap_outcome gap_distance(const struct gap_pair *pair, double farthest, struct fmb_gap *out)

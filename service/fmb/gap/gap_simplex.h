@@ -54,7 +54,7 @@ INLINE void gap_reject(const double x[3], const double e[3], double inverse, dou
 {
     memcpy(out, x, 3 * sizeof *out);
     for (int step = 0; step < 2; step++) {
-        const double share = gap_dot(out, e) * inverse;
+        const double share = vec3_dot(out, e) * inverse;
         for (int axis = 0; axis < 3; axis++)
             out[axis] -= share * e[axis];
     }
@@ -79,10 +79,10 @@ INLINE bool gap_direction_of(const struct gap_simplex *simplex, bool plane, doub
     } else {
         gap_reject(w, simplex->edge[0], simplex->inverse, n);
     }
-    const double sign = copysign(1, gap_dot(n, w));
+    const double sign = copysign(1, vec3_dot(n, w));
     for (int axis = 0; axis < 3; axis++)
         n[axis] *= sign;
-    *square = gap_dot(n, n);
+    *square = vec3_dot(n, n);
     return *square >= GAP_LEAST_SQUARE;
 }
 
@@ -95,20 +95,20 @@ INLINE bool gap_affine_weights(struct gap_simplex *simplex, double out[GAP_CORNE
     for (int i = 1; i < simplex->count; i++)
         gap_subtract(simplex->corner[i].at, w, e[i - 1]);
     if (simplex->count == 2) {
-        total = gap_dot(e[0], e[0]);
-        out[1] = -gap_dot(w, e[0]);
+        total = vec3_dot(e[0], e[0]);
+        out[1] = -vec3_dot(w, e[0]);
     } else if (simplex->count == 3) {
-        gap_cross(e[0], e[1], n);
-        total = gap_dot(n, n);
-        gap_cross(e[1], w, other);
-        out[1] = gap_dot(other, n);
-        gap_cross(w, e[0], other);
-        out[2] = gap_dot(other, n);
+        vec3_cross(e[0], e[1], n);
+        total = vec3_dot(n, n);
+        vec3_cross(e[1], w, other);
+        out[1] = vec3_dot(other, n);
+        vec3_cross(w, e[0], other);
+        out[2] = vec3_dot(other, n);
     } else {
         for (int i = 0; i < 3; i++) {
-            gap_cross(e[(i + 1) % 3], e[(i + 2) % 3], other);
-            out[1 + i] = -gap_dot(other, w);
-            total = gap_dot(other, e[i]);
+            vec3_cross(e[(i + 1) % 3], e[(i + 2) % 3], other);
+            out[1 + i] = -vec3_dot(other, w);
+            total = vec3_dot(other, e[i]);
         }
     }
     const double inverse = 1 / total;
@@ -193,7 +193,7 @@ INLINE enum gap_outcome gap_nearest(const void *context, gap_support *const supp
     simplex->weight[0] = 1;
     simplex->count = 1;
     *f = -INFINITY;
-    if (gap_is_beyond(far, gap_dot(toward, simplex->corner[0].at), gap_dot(toward, toward)))
+    if (gap_is_beyond(far, vec3_dot(toward, simplex->corner[0].at), vec3_dot(toward, toward)))
         return GAP_FAR;
     for (int step = 0; step < GAP_STEPS_MAX; step++) {
         if (!gap_direction_of(simplex, dim == 2, n, &square))
@@ -201,13 +201,13 @@ INLINE enum gap_outcome gap_nearest(const void *context, gap_support *const supp
         CHECK_GIVEN_NORMAL(n, square);
         struct gap_corner *next = &simplex->corner[simplex->count];
         support(context, n, next);
-        *f = gap_dot(n, next->at);
+        *f = vec3_dot(n, next->at);
         if (gap_is_beyond(far, *f, square))
             return GAP_FAR;
         for (int axis = 0; axis < 3; axis++)
             direction[axis] = n[axis];
         of_direction = square;
-        const double above = gap_dot(n, simplex->corner[0].at) - *f;
+        const double above = vec3_dot(n, simplex->corner[0].at) - *f;
         if (above <= 0 || above * above <= close * close * square ||
             gap_has_corner(simplex, next->bits))
             break;

@@ -19,18 +19,7 @@
 #include <math.h>
 #include <string.h>
 
-INLINE double largest_of(const double v[FMB_DIM_MAX])
-{
-    const double x = fabs(v[0]), y = fabs(v[1]), z = fabs(v[2]), most = x > y ? x : y;
-    return most > z ? most : z;
-}
-
 /* ---- Scale ---- */
-
-static double sum_of(const double v[FMB_DIM_MAX])
-{
-    return (fabs(v[0]) + fabs(v[1])) + fabs(v[2]);
-}
 
 /* Returns a lower bound of the largest coordinate of a vertex of a frame over the window, up to
  * rounding: that of its vertices, two of a hull, and, since the displacement is the difference of
@@ -39,13 +28,13 @@ static double least_of(const struct hull_gap *gap, int f)
 {
     const struct hull_view *view = &gap->pair->view[f];
     const bool hull = view->placed.frame->shape == FMB_HULL;
-    double least = 0.5 * largest_of(gap->displacement[f]);
+    double least = 0.5 * vec3_largest(gap->displacement[f]);
     for (unsigned i = 0; i < (hull ? 2 : view->vertices.count); i++) {
         double at[FMB_DIM_MAX];
         hull_place(view, hull && i == 1 ? view->placed.frame->spanning[1] : i, at);
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             at[axis] += gap->position[f][axis];
-        least = fmax(least, largest_of(at));
+        least = fmax(least, vec3_largest(at));
     }
     return least;
 }
@@ -61,8 +50,8 @@ static void set_bounds(struct hull_gap *gap, double least)
     int exponent;
     gap->far = gap->late = 0;
     for (int f = 0; f < 2; f++) {
-        const double way = sum_of(gap->displacement[f]);
-        gap->far += sum_of(gap->position[f]) + way + pair->view[f].radius;
+        const double way = vec3_sum(gap->displacement[f]);
+        gap->far += vec3_sum(gap->position[f]) + way + pair->view[f].radius;
         gap->late += way;
     }
     gap->late *=
@@ -107,7 +96,7 @@ static void set_witness(const struct hull_gap *gap, const struct hull_nearest *n
     const double error = 0x1p-47 * gap->far + gap->late + slack + 0x1p-1000;
     out->has_witness = true;
     out->time = late * gap->duration;
-    out->bounds[1] = (sqrt(gap_dot(apart, apart)) + error) * (1 + 0x1p-49);
+    out->bounds[1] = (sqrt(vec3_dot(apart, apart)) + error) * (1 + 0x1p-49);
 }
 
 /* Sets the lower bound that the direction proves. */

@@ -51,7 +51,7 @@ static bool scan(struct hull_depth *depth, const double n[FMB_DIM_MAX], int64_t 
 /* Makes n a unit vector; false if it is too short. */
 static bool normalise(double n[FMB_DIM_MAX], double shortest)
 {
-    const double length = sqrt(gap_dot(n, n));
+    const double length = sqrt(vec3_dot(n, n));
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         n[axis] /= length;
     return length > shortest;
@@ -69,7 +69,7 @@ static double height_of(const double n[FMB_DIM_MAX], const int64_t p[FMB_DIM_MAX
 {
     const double d[FMB_DIM_MAX] = {(double) (p[0] - first[0]), (double) (p[1] - first[1]),
                                    (double) (p[2] - first[2])};
-    return gap_dot(n, d);
+    return vec3_dot(n, d);
 }
 
 /* Adds the point farthest along n or, if that is not off the points so far, along -n. Returns false
@@ -114,7 +114,7 @@ static void set_second(const struct hull_mesh *mesh, double n[FMB_DIM_MAX])
         n[axis] = (double) -p[axis];
     /* Twice, the second time for what the first one rounds. */
     for (int step = 0; step < 2; step++) {
-        const double along = gap_dot(n, e);
+        const double along = vec3_dot(n, e);
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             n[axis] -= along * e[axis];
     }
@@ -123,7 +123,7 @@ static void set_second(const struct hull_mesh *mesh, double n[FMB_DIM_MAX])
     const int i = mesh->dim == 2 ? 2 : fabs(e[0]) > fabs(e[1]);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         across[axis] = axis == i;
-    gap_cross(e, across, n);
+    vec3_cross(e, across, n);
     normalise(n, 0);
 }
 

@@ -109,8 +109,8 @@ static void set_plane(struct program *program)
     if (dim == 2)
         edge[2][2] = 1;
     for (int i = 0; i < dim; i++)
-        gap_cross(edge[(i + 1) % 3], edge[(i + 2) % 3], program->part[i]);
-    determinant = gap_dot(edge[0], program->part[0]);
+        vec3_cross(edge[(i + 1) % 3], edge[(i + 2) % 3], program->part[i]);
+    determinant = vec3_dot(edge[0], program->part[0]);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
         program->normal[axis] = 0;
         for (int i = 0; i < dim; i++) {
@@ -118,12 +118,12 @@ static void set_plane(struct program *program)
             program->normal[axis] += (p[1 + i].h - p[0].h) * program->part[i][axis];
         }
     }
-    program->level = p[0].h - gap_dot(program->normal, p[0].vertex.at);
+    program->level = p[0].h - vec3_dot(program->normal, p[0].vertex.at);
     program->residual = 0;
     for (int i = 0; i <= dim; i++)
         program->residual =
             fmax(program->residual,
-                 fabs(p[i].h - (gap_dot(program->normal, p[i].vertex.at) + program->level)));
+                 fabs(p[i].h - (vec3_dot(program->normal, p[i].vertex.at) + program->level)));
 }
 
 /* Returns the greatest h - normal . x of a vertex of D, which is *out. */
@@ -133,7 +133,7 @@ static double find_highest(const struct program *program, struct hull_vertex *ou
     const double *n = program->normal;
     double of_a[FMB_DIM_MAX] = {n[0], n[1], n[2]};
     const double of_b[FMB_DIM_MAX] = {-n[0], -n[1], -n[2]};
-    double later = pair->drifts ? -gap_dot(n, pair->drift) : 0, still = -gap_dot(n, pair->offset);
+    double later = pair->drifts ? -vec3_dot(n, pair->drift) : 0, still = -vec3_dot(n, pair->offset);
     if (program->axis < 0) {
         later += program->sign;
     } else {
@@ -158,8 +158,8 @@ static bool pivot(struct program *program, const struct hull_vertex *vertex)
     int leaving = -1;
     for (int i = 1; i <= dim; i++) {
         const double *part = program->part[i - 1];
-        from_origin[i] = -gap_dot(part, first);
-        from_vertex[i] = gap_dot(part, vertex->at) - gap_dot(part, first);
+        from_origin[i] = -vec3_dot(part, first);
+        from_vertex[i] = vec3_dot(part, vertex->at) - vec3_dot(part, first);
         from_origin[0] -= from_origin[i];
         from_vertex[0] -= from_vertex[i];
     }
@@ -195,7 +195,7 @@ static bool maximise(struct program *program, bool prove, double *outer)
     for (int pivots = 0; pivots < PIVOTS_MAX; pivots++) {
         struct hull_vertex highest;
         set_plane(program);
-        const double length = sqrt(gap_dot(program->normal, program->normal)) * (1 + 0x1p-40);
+        const double length = sqrt(vec3_dot(program->normal, program->normal)) * (1 + 0x1p-40);
         const double found = find_highest(program, &highest);
         const double out = 1.25 * (length + box) * pair->error + program->extra;
         const double in = out + (length * pair->error + program->residual);

@@ -95,11 +95,6 @@ struct support hull_view_support(const struct hull_view *view, const double n[FM
 
 /* ---- Pairs ---- */
 
-static double sum_of(const double v[FMB_DIM_MAX])
-{
-    return (fabs(v[0]) + fabs(v[1])) + fabs(v[2]);
-}
-
 bool hull_order(const struct frame_pair *frames, struct frame_pair *out)
 {
     const bool swapped = gap_frames_swap(&frames->a, &frames->b);
@@ -123,8 +118,8 @@ void hull_pair_set(const struct frame_pair *frames, struct hull_pair *out)
         out->drift[axis] = speed * frames->duration;
         out->drifts = out->drifts || (speed != 0 && frames->duration > 0);
     }
-    out->reach =
-        ((out->view[0].radius + out->view[1].radius) + (sum_of(out->offset) + sum_of(out->drift)));
+    out->reach = ((out->view[0].radius + out->view[1].radius) +
+                  (vec3_sum(out->offset) + vec3_sum(out->drift)));
     out->error =
         32 * unit_roundoff * out->reach + (out->view[0].slack + out->view[1].slack) + 0x1p-1000;
     out->usable = out->reach < 0x1p200 && out->reach > 0x1p-200;
@@ -136,11 +131,11 @@ double hull_support(const struct hull_pair *pair, const double n[FMB_DIM_MAX],
     const double against[FMB_DIM_MAX] = {-n[0], -n[1], -n[2]};
     const struct support a = hull_view_support(&pair->view[0], against);
     const struct support b = hull_view_support(&pair->view[1], n);
-    const double drift = pair->drifts ? gap_dot(n, pair->drift) : 0;
+    const double drift = pair->drifts ? vec3_dot(n, pair->drift) : 0;
     column->vertex[0] = a.index;
     column->vertex[1] = b.index;
     column->end = drift > 0;
-    return (a.value + b.value) + (gap_dot(n, pair->offset) + (drift > 0 ? drift : 0));
+    return (a.value + b.value) + (vec3_dot(n, pair->offset) + (drift > 0 ? drift : 0));
 }
 
 void hull_point(const struct hull_pair *pair, struct hull_column column, double out[FMB_DIM_MAX])

@@ -69,14 +69,14 @@ static int sign_of(const struct hull_pair *pair, const struct hull_vertex *const
     const double e = pair->error;
     double length[FMB_DIM_MAX], value, bound;
     for (int i = 0; i < pair->dim; i++)
-        length[i] = sqrt(gap_dot(p[i]->at, p[i]->at)) + e;
+        length[i] = sqrt(vec3_dot(p[i]->at, p[i]->at)) + e;
     double normal[FMB_DIM_MAX];
     if (pair->dim == 2) {
         value = p[0]->at[0] * p[1]->at[1] - p[0]->at[1] * p[1]->at[0];
         bound = length[0] + length[1];
     } else {
-        gap_cross(p[1]->at, p[2]->at, normal);
-        value = gap_dot(p[0]->at, normal);
+        vec3_cross(p[1]->at, p[2]->at, normal);
+        value = vec3_dot(p[0]->at, normal);
         bound = length[1] * length[2] + length[0] * (length[1] + length[2]);
     }
     bound = 1.2 * e * bound + 0x1p-900;
@@ -111,7 +111,7 @@ enum fmb_verdict hull_search(const struct hull_pair *pair, double far, struct hu
     struct gap_simplex simplex;
     double centre[FMB_DIM_MAX];
     hull_centre(pair, centre);
-    if (!(gap_dot(centre, centre) > 0x1p-100 * pair->reach * pair->reach))
+    if (!(vec3_dot(centre, centre) > 0x1p-100 * pair->reach * pair->reach))
         centre[0] = pair->reach; /* any direction */
     memset(out, 0, sizeof *out);
     out->outcome = gap_nearest(pair, support, pair->dim, centre, pair->error, far, &simplex,

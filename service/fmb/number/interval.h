@@ -11,6 +11,7 @@
 #define FMB_INTERVAL_H
 
 #include <math.h>
+#include <stdbool.h>
 
 struct interval {
     double low, high;
@@ -36,6 +37,13 @@ static inline double interval_sum_error(double x, double y, double sum)
 {
     const double part = sum - x;
     return (x - (sum - part)) + (y - part);
+}
+
+/* Returns whether x y = z w exactly. In: the rounding errors of both products are doubles. */
+static inline bool interval_same_products(double x, double y, double z, double w)
+{
+    const double xy = x * y, zw = z * w;
+    return xy == zw && fma(x, y, -xy) == fma(z, w, -zw);
 }
 
 /* x moved down, or up, by one or two doubles: for a normal number, 2^-52 |x| is between one and two

@@ -163,11 +163,7 @@ static void find_partners(struct scene_pairs *pairs, unsigned from)
 static void box_at(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
 {
     const struct scene_pairs *pairs = context;
-    const struct aabb *aabb = &pairs->box[pairs->first + index];
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        box[0][axis] = aabb->end[axis][0];
-        box[1][axis] = -aabb->end[axis][1];
-    }
+    aabb_get_ends(&pairs->box[pairs->first + index], box);
 }
 
 static void build_tree(struct scene_pairs *pairs, void *memory)

@@ -467,10 +467,7 @@ enum fmb_status fmb_tree_build(const struct fmb_boxes *boxes, size_t count, doub
 void fmb_box_of(const struct fmb_prepared *frame, double duration, double box[2][FMB_DIM_MAX])
 {
     const struct aabb aabb = aabb_of(frame, duration);
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        box[0][axis] = aabb.end[axis][0];
-        box[1][axis] = 0 - aabb.end[axis][1];
-    }
+    aabb_get_ends(&aabb, box);
 }
 
 /* ---- Queries ---- */
