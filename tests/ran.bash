@@ -1,4 +1,10 @@
-# Runs a command, and checks what it printed, said on stderr, and ended with.
+# What suites share: the programs of the tests, and checks of what a command printed, said on stderr, and
+# ended with.
+
+# The programs of the tests themselves: run.sh takes those of the default build, which start sooner than
+# sanitized ones.
+TOOLS=${FMB_TOOLS:-${FMB_BUILD:-build}}
+[[ $TOOLS == /* ]] || TOOLS=$BATS_TEST_DIRNAME/../../$TOOLS
 
 # run [!] [--separate-stderr] COMMAND...: as bats' own, which starts five processes for one.
 run() {

@@ -21,20 +21,19 @@ sanitized='system/service.bats system/daemon.bats system/record.bats system/repl
 sanitized="$sanitized system/soak.bats cli/query.bats cli/record.bats cli/replay.bats cli/mesh.bats"
 
 # Those that take longest, which begin first; and what 'make test-fast' leaves out.
-first='system/service.bats system/daemon.bats system/bus.bats test_engine_small_world fuzz/fuzz.bats'
-first="$first test_engine_triangle system/fairness.bats system/replay_bus.bats system/soak.bats system/record.bats"
-first="$first cli/campaign.bats test_engine_pose test_client_query test_server_turns test_engine_scene"
-first="$first test_limbs test_client_bad cli/replay.bats cli/log.bats test_kernels test_engine_hard test_engine_batch"
-first="$first cli/mesh.bats cli/mesh_page.bats cli/report.bats test_replay_compare"
+first='system/service.bats system/daemon.bats system/record.bats fuzz/fuzz.bats cli/page.bats system/bus.bats'
+first="$first system/replay_bus.bats system/fairness.bats system/soak.bats cli/query.bats cli/replay.bats"
+first="$first system/examples.bats cli/campaign.bats test_engine_small_world test_client_query test_engine_triangle"
+first="$first test_engine_work test_server_turns test_engine_scene test_engine_pose test_limbs test_client_bad cli/log.bats"
 slow='system/soak.bats system/fairness.bats system/record.bats system/replay_bus.bats cli/replay.bats'
 slow="$slow cli/mesh.bats cli/log.bats cli/log_cut.bats cli/log_scene.bats system/examples.bats system/library.bats"
-slow="$slow system/python.bats system/bus.bats cli/page.bats cli/mesh_page.bats cli/campaign.bats cli/bench.bats cli/report.bats"
+slow="$slow system/python.bats system/bus.bats cli/page.bats cli/campaign.bats cli/bench.bats cli/report.bats"
 
 # A suite writes TAP; 77 means that it cannot run here.
 #   unit BUILD NAME | bats BUILD FILE | netns BUILD FILE | headers BUILD -
 run_suite() {
     kind=$1 build=$2 what=$3
-    export FMB_BUILD="$build" CMOCKA_MESSAGE_OUTPUT=TAP
+    export FMB_BUILD="$build" FMB_TOOLS="$release" CMOCKA_MESSAGE_OUTPUT=TAP
     # Samples that fit into the time of a run; a suite by itself draws all of its own. Sanitizers look
     # at paths, not at answers: fewer samples take them all.
     case $build in
@@ -187,7 +186,7 @@ mkdir -p "$log"
 rm -rf $release/tests $asan/tests
 build PEERS=none format-check headers layers ${FMB_FAST:+fast-}tests
 if [ -z "${FMB_FAST-}" ]; then
-    build MODE=asan tested-programs unit-tests fuzzers replay-set
+    build MODE=asan programs unit-tests fuzzers replay-set
     [ ! -d build/aarch64/usr ] || build aarch64
 fi
 list_all | awk -v first="$first" 'BEGIN { count = split(first, name) }
@@ -205,8 +204,8 @@ while read -r kind build what; do
     out_of "$kind" "$build" "$what"
     echo "0 1 0" > "$out.count"
 done < "$log/list"
-# One more than there are cores: suites that wait for a bus leave theirs to others.
-xargs -d '\n' -n 1 -P $(($(nproc) + 1)) "$self" --suite < "$log/list"
+# Two more than there are cores: suites that wait for a bus leave theirs to others.
+xargs -d '\n' -n 1 -P $(($(nproc) + 2)) "$self" --suite < "$log/list"
 
 cat "$log"/netns.*.count | awk '$1 + $2 { ran = 1 } END { exit !ran }' ||
     echo "no test of the bus ran: no network namespace, and no route for multicast"

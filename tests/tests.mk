@@ -225,7 +225,7 @@ tests: fast-tests examples $(filter-out %/bench-replay,$(measures)) $(O)/tests/r
 fast-tests: tested-programs unit-tests $(capped_programs)
 tested-programs: programs $(if $(filter asan,$(MODE)),,manual) $(test_programs)
 unit-tests: $(unit_tests) $(replayers) $(B)/netns
-replay-set: $(B)/fmb $(B)/logs/generate $(filter $(B)/capped/fmb-%,$(capped_programs))
+replay-set: $(B)/fmb $(filter $(B)/capped/fmb-%,$(capped_programs))
 
 # The script builds what it tests, in the modes that it says.
 ifneq ($(filter test check test-fast,$(MAKECMDGOALS)),)

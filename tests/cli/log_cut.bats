@@ -13,7 +13,7 @@ setup() {
 }
 
 generate() {
-    "$FMB_BUILD/logs/generate" "$@"
+    "$TOOLS/logs/generate" "$@"
 }
 
 # cuts CODE ARGUMENTS: of --json, in $output.

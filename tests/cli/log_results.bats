@@ -17,7 +17,7 @@ results() {
 
 # edit KIND EDITS...: a log of the set, edited.
 edit() {
-    "$build/edit-log" "${@:2}" "tests/logs/$1.log" "$log"
+    "$TOOLS/edit-log" "${@:2}" "tests/logs/$1.log" "$log"
 }
 
 # rows FILE: of the lines of JSON, as CSV has them.
@@ -120,7 +120,7 @@ rows() {
 
 @test "damage ends the rows, with its place and exit code 2" {
     edit arm --garbage 100
-    at=$("$build/edit-log" --offset 100 tests/logs/arm.log)
+    at=$("$TOOLS/edit-log" --offset 100 tests/logs/arm.log)
     results --csv "$log"
     ended 2
     [[ $stderr == "fmb: $log: offset $at: "* ]]
@@ -132,7 +132,7 @@ rows() {
 
 @test "messages that cannot be read are reported, and the others printed" {
     edit arm --shorten 6 --version 10
-    at=$("$build/edit-log" --offset 6 "$log")
+    at=$("$TOOLS/edit-log" --offset 6 "$log")
     results --csv "$log"
     ended 2
     said "fmb: $log: offset $at: shorter than its fields, the first of 2"
@@ -170,7 +170,7 @@ rows() {
 
 @test "memory does not grow with the log" {
     case $build in *asan*) skip "address sanitizer takes memory of its own" ;; esac
-    "$build/logs/generate" --blast pairs 30000 --gap "$T/part.log"
+    "$TOOLS/logs/generate" --blast pairs 30000 --gap "$T/part.log"
     for _ in 1 2 3 4; do cat "$T/part.log"; done > "$log"
     [ "$(stat -c %s "$log")" -gt 65536000 ]
     (
@@ -180,8 +180,8 @@ rows() {
 }
 
 @test "a result whose query came too long before it is counted" {
-    "$build/logs/generate" --blast scenes 300 "$T/whole.log"
-    "$build/edit-log" --last "$T/whole.log" "$log"
+    "$TOOLS/logs/generate" --blast scenes 300 "$T/whole.log"
+    "$TOOLS/edit-log" --last "$T/whole.log" "$log"
     "$FMB" log results --json "$T/whole.log" > "$T/expected"
     status=0
     "$FMB" log results --json "$log" > "$T/rows" 2> "$T/said" || status=$?

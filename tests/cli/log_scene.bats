@@ -12,7 +12,7 @@ setup() {
 }
 
 generate() {
-    "$FMB_BUILD/logs/generate" "$@"
+    "$TOOLS/logs/generate" "$@"
 }
 
 # scene CODE ARGUMENTS

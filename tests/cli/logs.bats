@@ -5,8 +5,8 @@ load ../ran
 load ../logs/set
 
 setup() {
-    GENERATE=$FMB_BUILD/logs/generate
-    DESCRIBE=$FMB_BUILD/logs/describe-log
+    GENERATE=$TOOLS/logs/generate
+    DESCRIBE=$TOOLS/logs/describe-log
     cd "$BATS_TEST_DIRNAME/../.." || return
 }
 

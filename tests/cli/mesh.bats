@@ -7,8 +7,7 @@ setup() {
     local build=${FMB_BUILD:-build}
     cd "$BATS_TEST_DIRNAME/../.." || return
     FMB=$(realpath "$build")/fmb
-    MAKE_MESH=$(realpath "$build")/mesh/make-mesh
-    [ -x "$MAKE_MESH" ] || MAKE_MESH=$(realpath build)/mesh/make-mesh
+    MAKE_MESH=$TOOLS/mesh/make-mesh
     cd "$BATS_TEST_TMPDIR" || return
     # A triangle; one through it, and one that touches it in a vertex.
     obj a.obj '0 0 0' '1 0 0' '0 1 0' -- '1 2 3'

@@ -7,17 +7,17 @@ setup_file() {
     cd "$BATS_FILE_TMPDIR" || return
     local build
     build=$(cd "$BATS_TEST_DIRNAME/../.." && cd "${FMB_BUILD:-build}" && pwd)
-    for kind in arm clients foreign refused stack; do "$build/logs/generate" $kind $kind.log; done
-    "$build/logs/generate" --blast pairs 400 --box --certificate blast.log
-    "$build/logs/generate" --blast pairs 40 --moving --box --whole moving.log
-    "$build/logs/generate" --blast pairs 20 --dim 3 --static --gap apart.log
+    for kind in arm clients foreign refused stack; do "$TOOLS/logs/generate" $kind $kind.log; done
+    "$TOOLS/logs/generate" --blast pairs 400 --box --certificate blast.log
+    "$TOOLS/logs/generate" --blast pairs 40 --moving --box --whole moving.log
+    "$TOOLS/logs/generate" --blast pairs 20 --dim 3 --static --gap apart.log
 }
 
 setup() {
     local build
     build=$(cd "$BATS_TEST_DIRNAME/../.." && cd "${FMB_BUILD:-build}" && pwd)
     FMB=$build/fmb
-    EDIT=$build/edit-log
+    EDIT=$TOOLS/edit-log
     cd "$BATS_TEST_TMPDIR" || return
     ln -s "$BATS_FILE_TMPDIR"/*.log .
 }

@@ -2,7 +2,7 @@
 
 # offset_of LOG N: of the event with index N.
 offset_of() {
-    "$FMB_BUILD/edit-log" --offset "$2" "$1"
+    "$TOOLS/edit-log" --offset "$2" "$1"
 }
 
 # split LOG N: into $T/first.log, with N events, and $T/second.log.

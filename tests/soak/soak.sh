@@ -5,6 +5,7 @@
 set -u
 
 build=${1:?usage: soak.sh BUILD_DIR [SECONDS [TRIAL]]}
+tools=${FMB_TOOLS:-$build}
 seconds=${2:-60}
 trial=${3-}
 out=$build/soak
@@ -62,14 +63,14 @@ restart() {
 }
 
 send_crash_packets() {
-    "$build/crash-liblcm" wrap FMB_PAIR_QUERY
-    "$build/crash-liblcm" short FMB_SCENE_QUERY
+    "$tools/crash-liblcm" wrap FMB_PAIR_QUERY
+    "$tools/crash-liblcm" short FMB_SCENE_QUERY
 }
 
 # share ATTACK [OPTIONS]: the share of a client beside an attack. A share that is too small because
 # other programs kept the machine busy is reported as skipped, not as a failure.
 share() {
-    "$build/soak-fair" "$@" --service "$fmbd" --seconds "$seconds"
+    "$tools/soak-fair" "$@" --service "$fmbd" --seconds "$seconds"
     case $? in
     0) ;;
     77) echo "skipped: other programs used more than a tenth of the machine" ;;
@@ -103,7 +104,7 @@ floods() {
 
 # After a flood of certificates that take minutes to compute: within 5 s nothing waits.
 ageing() {
-    "$build/soak-fair" flood --seconds "$seconds" --headroom 1000 --ids 4 >> "$log"
+    "$tools/soak-fair" flood --seconds "$seconds" --headroom 1000 --ids 4 >> "$log"
     sleep 6
     counts=$("$build/fmb" status --json |
         jq -c '{received, answered, unsent, expired, refusals_unsent, waiting} + (.results | {OK, BUSY})')
@@ -113,13 +114,13 @@ ageing() {
 
 damage() {
     for type in pair_query scene_query definition_query pair_result scene_result definition status; do
-        "$build/fake-peer" FMB_PAIR_QUERY $type
-        "$build/fake-peer" FMB_SCENE_QUERY $type
+        "$tools/fake-peer" FMB_PAIR_QUERY $type
+        "$tools/fake-peer" FMB_SCENE_QUERY $type
     done
 }
 
 load() {
-    "$build/soak-load" --seconds "$seconds" "$@"
+    "$tools/soak-load" --seconds "$seconds" "$@"
 }
 
 # One datagram in a hundred is lost, one in a hundred overtaken: by the kernel, where it can.
@@ -129,7 +130,7 @@ lose_in_kernel() {
 
 # lose_in_relay LOST OVERTAKEN: percent.
 lose_in_relay() {
-    start "$build/soak-relay" 7667 7668 "$1" "$2"
+    start "$tools/soak-relay" 7667 7668 "$1" "$2"
     LCM_DEFAULT_URL='udpm://239.255.76.67:7668?ttl=0'
     export LCM_DEFAULT_URL
 }
@@ -137,7 +138,7 @@ lose_in_relay() {
 run_trial() {
     start_fmbd
     case $trial in
-    rate) "$build/soak-rate" "$rate" "$seconds" ;;
+    rate) "$tools/soak-rate" "$rate" "$seconds" ;;
     pairs) load --clients 8 ;;
     scenes) load --clients 2 --pairs 900 ;;
     crowd) load --clients 16 --pairs 40 ;;
@@ -146,8 +147,8 @@ run_trial() {
     hostile) damage >> "$log" 2>&1; start every 0 damage; load --clients 4 --pairs 40 ;;
     lossy) lose_in_kernel || lose_in_relay 1 1; load --clients 4 --pairs 40 ;;
     halved) lose_in_relay 30 0; load --clients 3 --pairs 500 --single 1 ;;
-    ids) "$build/soak-memory" ids "$fmbd" "$ids" ;;
-    channels) "$build/soak-memory" channels "$fmbd" "$channels" ;;
+    ids) "$tools/soak-memory" ids "$fmbd" "$ids" ;;
+    channels) "$tools/soak-memory" channels "$fmbd" "$channels" ;;
     fair) fair ;;
     floods) floods ;;
     ageing) ageing ;;

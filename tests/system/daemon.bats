@@ -178,7 +178,7 @@ load service
 
 # bats test_tags=release
 @test "a service manager is notified when the daemon is ready, alive and stopping" {
-    "$FMB_BUILD/fake-peer" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/received" 3>&- &
+    "$TOOLS/fake-peer" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/received" 3>&- &
     started="${started-} $!"
     wait_until test -S "$BATS_TEST_TMPDIR/notify"
     NOTIFY_SOCKET=$BATS_TEST_TMPDIR/notify WATCHDOG_USEC=400000 start_fmbd
@@ -192,7 +192,7 @@ load service
 
 # bats test_tags=release
 @test "heartbeats and watchdog notifications are sent under constant load" {
-    "$FMB_BUILD/fake-peer" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/received" 3>&- &
+    "$TOOLS/fake-peer" listen "$BATS_TEST_TMPDIR/notify" > "$BATS_TEST_TMPDIR/received" 3>&- &
     started="${started-} $!" clients=
     wait_until test -S "$BATS_TEST_TMPDIR/notify"
     NOTIFY_SOCKET=$BATS_TEST_TMPDIR/notify WATCHDOG_USEC=400000 start_fmbd
@@ -218,7 +218,7 @@ load service
 # bats test_tags=release
 @test "heartbeats are sent while queries arrive faster than they are answered" {
     start_fmbd
-    "$FMB_BUILD/fake-peer" flood scene_query 101 60 > /dev/null 3>&- &
+    "$TOOLS/fake-peer" flood scene_query 101 60 > /dev/null 3>&- &
     flood=$!
     started="$started $flood"
     is_flooded() { [ "$(status_of received)" -gt 1000 ]; }
@@ -266,7 +266,7 @@ load service
         wait_until "$FMB" status --timeout 0.2
         # Fill the pipe to the brim without a reader.
         [ $reader = gone ] || timeout 1 dd if=/dev/zero of="$BATS_TEST_TMPDIR/pipe" bs=4096 2> /dev/null || true
-        "$FMB_BUILD/fake-peer" FMB_PAIR_QUERY status
+        "$TOOLS/fake-peer" FMB_PAIR_QUERY status
         [ "$(status_of malformed)" -gt 100 ]
         stop_fmbd
     done

@@ -81,7 +81,7 @@ answers() {
 
 @test "C over plain LCM: a pair and the largest scene have their answers" {
     start_fmbd
-    run "$FMB_BUILD/plain"
+    run "$TOOLS/plain"
     [ "$status" = 0 ]
     [ "$output" = "verdict 3, box 0.5 to 1
 status 0, 74 verdicts, 349 handles" ]
@@ -113,7 +113,7 @@ repeats() {
     client=$!
     started="$started $client"
     wait_until queries_at_least $((before + 4))
-    for type in pair_query pair_result status; do "$FMB_BUILD/fake-peer" FMB_PAIR_RESULT $type; done
+    for type in pair_query pair_result status; do "$TOOLS/fake-peer" FMB_PAIR_RESULT $type; done
     kill -CONT "$fmbd"
     wait $client
     [ "$(cat "$BATS_TEST_TMPDIR/answer")" = overlapping ]

@@ -7,7 +7,7 @@ load service
 # more than a tenth of the machine.
 share() {
     code=0
-    "$FMB_BUILD/soak-fair" "$@" --service "$fmbd" --headroom 2 --seconds 1 > "$BATS_TEST_TMPDIR/report" || code=$?
+    "$TOOLS/soak-fair" "$@" --service "$fmbd" --headroom 2 --seconds 1 > "$BATS_TEST_TMPDIR/report" || code=$?
     cat "$BATS_TEST_TMPDIR/report"
     [ $code != 77 ] || skip "other programs kept the machine busy: $(cat "$BATS_TEST_TMPDIR/report")"
     [ $code = 0 ]
@@ -48,7 +48,7 @@ share() {
 
 @test "queries of clients that are gone wait for at most five seconds" {
     start_fmbd
-    timeout -s INT 5 "$FMB_BUILD/soak-fair" flood --ids 4 --seconds 16 || [ $? = 124 ]
+    timeout -s INT 5 "$TOOLS/soak-fair" flood --ids 4 --seconds 16 || [ $? = 124 ]
     sleep 7
     "$FMB" status --json | jq -e '.waiting == 0 and .results.BUSY > 0'
     stop_fmbd
@@ -56,7 +56,7 @@ share() {
 
 # flood TYPE CLIENT: for longer than a test takes, in the background.
 flood() {
-    "$FMB_BUILD/fake-peer" flood "$1" "$2" 60 > /dev/null 3>&- &
+    "$TOOLS/fake-peer" flood "$1" "$2" 60 > /dev/null 3>&- &
     started="${started-} $!"
 }
 

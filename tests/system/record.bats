@@ -11,7 +11,7 @@ setup() {
 
 # The events of logs, without numbers and times: channel, size, checksum.
 events() {
-    for file in "$@"; do "$FMB_BUILD/events" "$file" || return; done | cut -d ' ' -f 3-
+    for file in "$@"; do "$TOOLS/events" "$file" || return; done | cut -d ' ' -f 3-
 }
 
 # count_events CHANNEL FILE...
@@ -80,7 +80,7 @@ is() {
     query
     finish_record
     after=$(date +%s%6N)
-    "$FMB_BUILD/events" "$log" | awk -v before="$before" -v after="$after" '
+    "$TOOLS/events" "$log" | awk -v before="$before" -v after="$after" '
         $1 != NR - 1 || $2 < before || $2 > after || $2 < last { print "event " $0; bad = 1 }
         { last = $2 }
         END { exit bad || !NR }'
@@ -107,7 +107,7 @@ is() {
 @test "SIGINT and SIGTERM end a recording with all earlier messages" {
     for signal in INT TERM; do
         start_record "$log.$signal"
-        "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
+        "$TOOLS/fake-peer" numbers 5 $(seq 1000)
         finish_record $signal
         is '.events == 1000 and .received.pair_queries == 1000 and .lost == 0'
         [ "$(count_events FMB_PAIR_QUERY "$log.$signal")" = 1000 ]
@@ -117,7 +117,7 @@ is() {
 @test "messages in the socket at the end are recorded" {
     start_record "$log"
     kill -STOP "$record"
-    "$FMB_BUILD/fake-peer" numbers 5 $(seq 100)
+    "$TOOLS/fake-peer" numbers 5 $(seq 100)
     kill -INT "$record"
     kill -CONT "$record"
     wait "$record"
@@ -129,7 +129,7 @@ is() {
     record=$!
     started=$record
     wait_until has "$messages" 'recording to'
-    "$FMB_BUILD/fake-peer" numbers 5 $(seq 1 1500) 1503
+    "$TOOLS/fake-peer" numbers 5 $(seq 1 1500) 1503
     finish_record
     grep -Eqx "$log: 1,501 messages in [0-9.]+ s, [0-9,]+ bytes" "$report"
     grep -Eqx '  pair queries +1,501' "$report"
@@ -146,7 +146,7 @@ is() {
     record=$!
     started=$record
     wait_until has "$messages" 'recording to'
-    "$FMB_BUILD/fake-peer" numbers 5 $(seq 100)
+    "$TOOLS/fake-peer" numbers 5 $(seq 100)
     wait "$record"
     is '.events == 7'
     [ "$(events "$log" | wc -l)" = 7 ]
@@ -178,7 +178,7 @@ is() {
 
 @test "files of bounded size divide no event, and concatenated they are the log" {
     start_record --split-mb 0.05 "$log"
-    "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
+    "$TOOLS/fake-peer" numbers 5 $(seq 1000)
     finish_record
     # The files after the first one begin with the names.
     is '.received.pair_queries == 1000 and (.files | length) > 5 and .events == 999 + (.files | length)' \
@@ -186,7 +186,7 @@ is() {
     [ "$(ls "$log".* | wc -l)" = "$(jq '.files | length' "$report")" ]
     for file in "$log".*; do
         [ "$(stat -c %s "$file")" -le 52428 ]
-        "$FMB_BUILD/events" "$file" > /dev/null
+        "$TOOLS/events" "$file" > /dev/null
     done
     [ "$(cat "$log".* | wc -c)" = "$(jq .bytes "$report")" ]
     cat "$log".* > "$BATS_TEST_TMPDIR/all"
@@ -205,14 +205,14 @@ is() {
 # bats test_tags=release
 @test "of the files of a rotation the newest are kept" {
     start_record --split-mb 0.05 --max-files 2 "$log"
-    "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
+    "$TOOLS/fake-peer" numbers 5 $(seq 1000)
     finish_record
     is '.received.pair_queries == 1000 and (.files | length) == 2'
     [ "$(echo "$log".*)" = "$(jq -r '.files | join(" ")' "$report")" ]
     # The last ones: the newest event is that of the last number.
     newest=$(events "$(jq -r '.files[1]' "$report")" | tail -n 1)
     start_record "$log"
-    "$FMB_BUILD/fake-peer" numbers 5 1000
+    "$TOOLS/fake-peer" numbers 5 1000
     finish_record
     [ "$(events "$log")" = "$newest" ]
 }
@@ -225,7 +225,7 @@ failed() {
     wait "$record" || code=$?
     [ $code = 1 ]
     grep -qx "fmb: $log: $1" "$messages"
-    "$FMB_BUILD/events" "$log" > "$BATS_TEST_TMPDIR/left"
+    "$TOOLS/events" "$log" > "$BATS_TEST_TMPDIR/left"
     is ".events >= $(wc -l < "$BATS_TEST_TMPDIR/left") and .bytes == $(stat -c %s "$log")"
     "$FMB" log info "$log" | grep -qx '  no damage'
 }
@@ -239,7 +239,7 @@ feed_until_it_ends() {
 publish_until_it_ends() {
     local first=1
     while kill -0 "$record" 2> /dev/null && [ $first -lt 100000 ]; do
-        "$FMB_BUILD/fake-peer" numbers 5 $(seq $first $((first + 499)))
+        "$TOOLS/fake-peer" numbers 5 $(seq $first $((first + 499)))
         first=$((first + 500))
         sleep 0.05
     done
@@ -294,7 +294,7 @@ END
 # bats test_tags=release
 @test "a recording that is killed leaves what it has flushed" {
     start_record "$log"
-    "$FMB_BUILD/fake-peer" numbers 5 $(seq 300)
+    "$TOOLS/fake-peer" numbers 5 $(seq 300)
     wait_until has_events FMB_PAIR_QUERY "$log" 300
     kill -KILL "$record"
     wait "$record" || true
@@ -304,7 +304,7 @@ END
 @test "a log that is deleted or truncated ends the recording" {
     for what in 'rm' 'truncate -s 100'; do
         start_record --force "$log"
-        "$FMB_BUILD/fake-peer" numbers 5 $(seq 100)
+        "$TOOLS/fake-peer" numbers 5 $(seq 100)
         wait_until has_events FMB_PAIR_QUERY "$log" 100
         $what "$log"
         code=0
@@ -314,7 +314,7 @@ END
     done
     # Also right before the end.
     start_record --force "$log"
-    "$FMB_BUILD/fake-peer" numbers 5 1
+    "$TOOLS/fake-peer" numbers 5 1
     wait_until has_events FMB_PAIR_QUERY "$log" 1
     rm "$log"
     code=0
@@ -454,7 +454,7 @@ hulls() {
     finish_record
     stop_fmbd
     # The same messages once more, from the second query on and without a service.
-    offset=$("$FMB_BUILD/events" "$log" | awk '$3 == "FMB_SCENE_QUERY" && ++queries == 2 { exit }
+    offset=$("$TOOLS/events" "$log" | awk '$3 == "FMB_SCENE_QUERY" && ++queries == 2 { exit }
         { offset += 28 + length($3) + $4 } END { print offset }')
     tail -c +$((offset + 1)) "$log" > "$log.late"
     start_record "$log.2"
@@ -483,10 +483,10 @@ END
     for file in "$second" "$cut"; do
         [ "$("$FMB" log info --json "$file" | jq -c '[.names[] | [.body_id, .name]]')" = '[[1,"table <top>"],[3,"näpf"]]' ]
         "$FMB" log info "$file" | grep -qx "    client $client, body 1: table <top>"
-        event=$("$FMB_BUILD/events" "$file" | awk '$3 == "FMB_SCENE_QUERY" { print $1; exit }')
+        event=$("$TOOLS/events" "$file" | awk '$3 == "FMB_SCENE_QUERY" { print $1; exit }')
         "$FMB" log scene --event "$event" "$file" > "$BATS_TEST_TMPDIR/again.json"
         [ "$(jq -c '[.bodies[].name]' "$BATS_TEST_TMPDIR/again.json")" = '["table <top>",null,"näpf"]' ]
-        "$FMB_BUILD/edit-log" --flip 0 "$file" "$BATS_TEST_TMPDIR/flipped"
+        "$TOOLS/edit-log" --flip 0 "$file" "$BATS_TEST_TMPDIR/flipped"
         run "$FMB" replay --junit "$BATS_TEST_TMPDIR/junit" "$BATS_TEST_TMPDIR/flipped"
         [ "$status" = 1 ]
         [[ ${lines[0]} == 'event '*'  bodies table <top> 2  verdict: '* ]]
@@ -503,7 +503,7 @@ END
     url=${LCM_DEFAULT_URL:-udpm://239.255.76.67:7667?ttl=0}
     start_record --lcm-url "$url&recv_buf_size=20000" "$log"
     kill -STOP "$record"
-    "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
+    "$TOOLS/fake-peer" numbers 5 $(seq 1000)
     kill -CONT "$record"
     finish_record
     is '.lost > 100 and .lost + .events == 1000 and .receive_buffer == 40000' \
@@ -517,7 +517,7 @@ END
     started="$started $record"
     wait_until has "$messages" 'recording to'
     kill -STOP "$record"
-    "$FMB_BUILD/fake-peer" numbers 5 $(seq 900)
+    "$TOOLS/fake-peer" numbers 5 $(seq 900)
     kill -CONT "$record"
     finish_record
     recorded=$(awk '/pair queries/ { print $NF }' "$report")
@@ -529,9 +529,9 @@ END
     start_record "$log"
     sent=0
     for type in pair_query pair_result scene_query scene_result status; do
-        sent=$((sent + $("$FMB_BUILD/fake-peer" FMB_PAIR_QUERY $type)))
-        sent=$((sent + $("$FMB_BUILD/fake-peer" FMB_SCENE_RESULT $type)))
-        sent=$((sent + $("$FMB_BUILD/fake-peer" FMB_STATUS $type)))
+        sent=$((sent + $("$TOOLS/fake-peer" FMB_PAIR_QUERY $type)))
+        sent=$((sent + $("$TOOLS/fake-peer" FMB_SCENE_RESULT $type)))
+        sent=$((sent + $("$TOOLS/fake-peer" FMB_STATUS $type)))
     done
     finish_record
     is ".malformed == $sent and .events == $sent"
@@ -542,7 +542,7 @@ END
     record=$!
     started="$started $record"
     wait_until has "$messages" 'recording to'
-    sent=$("$FMB_BUILD/fake-peer" FMB_PAIR_QUERY status)
+    sent=$("$TOOLS/fake-peer" FMB_PAIR_QUERY status)
     finish_record
     grep -Eqx "  malformed +$sent" "$report"
 }
@@ -569,9 +569,9 @@ END
     others=0
     for options in '--channel ONE|T.*O' '--all' ''; do
         start_record --force $options "$log"
-        one=$("$FMB_BUILD/fake-peer" ONE status) two=$("$FMB_BUILD/fake-peer" TWO status)
-        three=$("$FMB_BUILD/fake-peer" THREE status)
-        "$FMB_BUILD/fake-peer" numbers 5 1 2 4
+        one=$("$TOOLS/fake-peer" ONE status) two=$("$TOOLS/fake-peer" TWO status)
+        three=$("$TOOLS/fake-peer" THREE status)
+        "$TOOLS/fake-peer" numbers 5 1 2 4
         finish_record
         case $options in
         --all) others=$((one + two + three)) ;;
@@ -605,10 +605,10 @@ END
 @test "packets that crash LCM do not harm the recorder" {
     start_record "$log"
     for packets in wrap short; do
-        "$FMB_BUILD/crash-liblcm" $packets FMB_PAIR_QUERY
-        "$FMB_BUILD/crash-liblcm" $packets OTHER
+        "$TOOLS/crash-liblcm" $packets FMB_PAIR_QUERY
+        "$TOOLS/crash-liblcm" $packets OTHER
     done
-    "$FMB_BUILD/fake-peer" numbers 5 1
+    "$TOOLS/fake-peer" numbers 5 1
     finish_record
     is '.events == 1'
 }
@@ -625,7 +625,7 @@ END
     started=$script
     exec 9> "$BATS_TEST_TMPDIR/keys"
     wait_until has "$BATS_TEST_TMPDIR/screen" 'recording to'
-    "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000) 1003
+    "$TOOLS/fake-peer" numbers 5 $(seq 1000) 1003
     wait_until has "$BATS_TEST_TMPDIR/screen" "fmb: 1,001 messages, 0 MB, 0 lost"
     printf '\003' >&9
     wait "$script"
@@ -633,7 +633,7 @@ END
     is '.events == 1001'
     # Elsewhere: the test before this one could have been it.
     start_record "$log.2"
-    "$FMB_BUILD/fake-peer" numbers 5 $(seq 1000)
+    "$TOOLS/fake-peer" numbers 5 $(seq 1000)
     wait_until has_events FMB_PAIR_QUERY "$log.2" 1000
     sleep 0.5
     finish_record

@@ -13,7 +13,7 @@ setup() {
 
 # generate WHAT... LOG
 generate() {
-    "$FMB_BUILD/logs/generate" "$@"
+    "$TOOLS/logs/generate" "$@"
 }
 
 # replay OPTIONS LOG...: as JSON in the file replayed; the exit code in $code.
@@ -230,7 +230,7 @@ event() {
 @test "every query is answered when the service is killed and restarted" {
     generate --blast pairs 20000 --by-handle handles.log
     start_fmbd
-    "$FMB" replay --json --bus --timeout 0.1 --retries 100 handles.log > replayed 3>&- &
+    "$FMB" replay --json --bus --timeout 0.1 --retries 1000 handles.log > replayed 3>&- &
     replay=$!
     started="$started $replay"
     for _ in 1 2 3; do
@@ -267,7 +267,7 @@ event() {
     generate refused refused.log
     generate --blast pairs 300 --by-handle handles.log
     start_fmbd
-    "$FMB_BUILD/soak-relay" 7667 7668 10 10 3>&- &
+    "$TOOLS/soak-relay" 7667 7668 10 10 3>&- &
     started="$started $!"
     through=(--lcm-url 'udpm://239.255.76.67:7668?ttl=0' --timeout 0.05)
     for log in clients refused handles; do
@@ -283,10 +283,10 @@ event() {
     generate clients clients.log
     generate --blast pairs 300 --by-handle handles.log
     start_fmbd
-    "$FMB_BUILD/fake-peer" flood pair_query 101 60 > /dev/null 3>&- &
+    "$TOOLS/fake-peer" flood pair_query 101 60 > /dev/null 3>&- &
     flood=$!
     started="$started $flood"
-    "$FMB_BUILD/fake-peer" FMB_PAIR_RESULT pair_result > /dev/null 3>&- &
+    "$TOOLS/fake-peer" FMB_PAIR_RESULT pair_result > /dev/null 3>&- &
     started="$started $!"
     for i in 1 2 3; do
         "$FMB" replay --json --bus --retries 100 handles.log clients.log > replayed.$i 3>&- &

@@ -146,7 +146,7 @@ grid_scenes() {
     cube='"shape": "cuboid", "components": [[1,0],[0,1]]'
     echo "{\"dim\": 2, \"bodies\": [{\"id\": 1, $cube, \"origin\": [0,0]}, {\"id\": 2, $cube, \"origin\": [2,0]}]}" > "$BATS_TEST_TMPDIR/scene.json"
     for certificate in 'overlapping at 0 (1/2 1/2)' 'separated + a0' 'nonsense'; do
-        "$FMB_BUILD/fake-peer" lie "$certificate" 3>&- &
+        "$TOOLS/fake-peer" lie "$certificate" 3>&- &
         started="${started-} $!"
         run "$FMB" query --json --timeout 0.2 --retries 50 "$BATS_TEST_TMPDIR/scene.json"
         [ "$status" = 0 ]
@@ -162,7 +162,7 @@ grid_scenes() {
 
 @test "a missing certificate is an error" {
     random_scene 2 2 > "$BATS_TEST_TMPDIR/scene.json"
-    "$FMB_BUILD/fake-peer" lie '' 3>&- &
+    "$TOOLS/fake-peer" lie '' 3>&- &
     started="${started-} $!"
     run "$FMB" query --timeout 0.2 --retries 50 --certificate "$BATS_TEST_TMPDIR/scene.json"
     [ "$status" = 1 ]
@@ -300,12 +300,12 @@ grid_scenes() {
     wait_until received
     sent=0 to_watch=0 results=0 begin=$SECONDS
     for type in pair_query pair_result scene_query scene_result definition_query definition status; do
-        to_watch=$((to_watch + $("$FMB_BUILD/fake-peer" FMB_PAIR_QUERY $type)))
-        to_watch=$((to_watch + $("$FMB_BUILD/fake-peer" FMB_SCENE_QUERY $type)))
-        sent=$((sent + $("$FMB_BUILD/fake-peer" FMB_DEFINITION_QUERY $type)))
-        results=$((results + $("$FMB_BUILD/fake-peer" FMB_PAIR_RESULT $type)))
-        results=$((results + $("$FMB_BUILD/fake-peer" FMB_SCENE_RESULT $type)))
-        "$FMB_BUILD/fake-peer" FMB_STATUS $type
+        to_watch=$((to_watch + $("$TOOLS/fake-peer" FMB_PAIR_QUERY $type)))
+        to_watch=$((to_watch + $("$TOOLS/fake-peer" FMB_SCENE_QUERY $type)))
+        sent=$((sent + $("$TOOLS/fake-peer" FMB_DEFINITION_QUERY $type)))
+        results=$((results + $("$TOOLS/fake-peer" FMB_PAIR_RESULT $type)))
+        results=$((results + $("$TOOLS/fake-peer" FMB_SCENE_RESULT $type)))
+        "$TOOLS/fake-peer" FMB_STATUS $type
     done
     sent=$((sent + to_watch)) to_watch=$((to_watch + results))
     [ "$sent" -gt 4000 ]
@@ -343,10 +343,10 @@ grid_scenes() {
 send_crash_packets() {
     for channel in FMB_PAIR_QUERY FMB_SCENE_QUERY FMB_DEFINITION_QUERY FMB_STATUS FMB_PAIR_RESULT \
         FMB_SCENE_RESULT; do
-        "$FMB_BUILD/crash-liblcm" wrap $channel
-        "$FMB_BUILD/crash-liblcm" short $channel
-        "$FMB_BUILD/crash-liblcm" empty $channel
-        "$FMB_BUILD/crash-liblcm" huge $channel
+        "$TOOLS/crash-liblcm" wrap $channel
+        "$TOOLS/crash-liblcm" short $channel
+        "$TOOLS/crash-liblcm" empty $channel
+        "$TOOLS/crash-liblcm" huge $channel
     done
 }
 
@@ -395,7 +395,7 @@ send_crash_packets() {
     messages=$BATS_TEST_TMPDIR/messages
     start_fmbd
     start_record "$log"
-    "$FMB_BUILD/soak-families" > "$BATS_TEST_TMPDIR/families"
+    "$TOOLS/soak-families" > "$BATS_TEST_TMPDIR/families"
     if [ -n "${FMB_FAST-}" ]; then least=700; else least=5000; fi
     jq -e ".pairs > $least" "$BATS_TEST_TMPDIR/families"
     finish_record
