@@ -190,9 +190,10 @@ static void define(struct cutter *cut, enum log_kind kind, const struct log_even
 /* The query or result that an event was in the first pass; NULL: neither. */
 static const struct match_item *next_item(struct cutter *cut, const struct log_event *event)
 {
+    if (cut->next == cut->match.count)
+        return NULL;
     const struct match_item *item = &cut->match.item[cut->next];
-    const bool found = cut->next < cut->match.count && item->place.log == cut->input.log &&
-                       item->place.offset == event->offset;
+    const bool found = item->place.log == cut->input.log && item->place.offset == event->offset;
     cut->next += found;
     return found ? item : NULL;
 }

@@ -588,7 +588,8 @@ static void a_log_of_version_1_is_recognised(void **state)
     replay_report_free(&report);
 }
 
-/* What the help of fmb replay says: some 500 bytes for each pair query that waits. */
+/* What the help of fmb replay says for a query and its result, and lists that double as they grow.
+ */
 static void results_after_all_queries_take_bounded_memory(void **state)
 {
     const int64_t count = 100000;
