@@ -291,7 +291,7 @@ $(programs) $(demo_programs):
 template := clients/page/template/
 three := /usr/share/javascript/three/
 page_scripts := $(template)data.js $(template)licence.js $(three)three.min.js \
-	$(addprefix $(three)examples/js/,controls/OrbitControls.js math/ConvexHull.js geometries/ConvexGeometry.js) \
+	$(addprefix $(three)examples/js/,controls/OrbitControls.js math/ConvexHull.js) \
 	$(addprefix $(template),solid.js scene.js lanes.js table.js player.js main.js)
 page_hash = sha256-$$({ echo; cat $1; } | sha256sum | cut -c 1-64 | tr a-f A-F | \
 	basenc --base16 -d | base64)
@@ -306,8 +306,8 @@ build/page/page.html: $(template)page.html $(template)page.css $(filter $(templa
 		-e '/^@STYLE@$$/{r $(template)page.css' -e 'd;}' \
 		-e '/^@SCRIPT@$$/{r $(@D)/scripts' -e 'd;}' $(template)page.html > $@
 	@[ "$$(grep -c '@[A-Z_]*@' $@)" = 1 ] # @DATA@
-$(O)/clients/page/page_template.o: build/page/page.html
-$(O)/clients/page/page_template.o: flags += -DPAGE_FILE='"build/page/page.html"'
+$(O)/clients/page/page.o: build/page/page.html
+$(O)/clients/page/page.o: flags += -DPAGE_FILE='"build/page/page.html"'
 
 # The picture of README.md, by chromium.
 .PHONY: picture

@@ -150,8 +150,7 @@ int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pa
 
 /* ---- As a scene: bodies ---- */
 
-/* Returns the body; NULL if the engine refuses it. */
-static const struct fmb_body *read_body(const struct body_view *view, struct owned_scene *out)
+const struct fmb_body *body_of_view(const struct body_view *view, struct owned_scene *out)
 {
     struct geometry_reader reader = geometry_begin(view);
     struct geometry_frame frame;
@@ -173,7 +172,7 @@ static const struct fmb_body *read_body(const struct body_view *view, struct own
 bool scene_takes(const struct body_view *view)
 {
     struct owned_scene scene = {.dim = 0};
-    const bool taken = read_body(view, &scene);
+    const bool taken = body_of_view(view, &scene);
     scene_clear(&scene);
     return taken;
 }
@@ -215,7 +214,7 @@ static void set_bodies(const struct query_placement *placement, size_t count, bo
     scene->dim = FMB_DIM_MAX;
     for (size_t i = 0; i < count; i++) {
         out[i] = placement[i].placed;
-        out[i].body = read_body(&placement[i].body, scene);
+        out[i].body = body_of_view(&placement[i].body, scene);
         assert(out[i].body);
         out[i].group = grouped ? out[i].group : 0;
         out[i].name = copy_text(out[i].name, scene);

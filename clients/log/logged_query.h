@@ -67,7 +67,10 @@ struct owned_scene;
  * 1 if memory is exhausted. */
 void scene_of_query(const struct logged_query *query, struct owned_scene *out);
 
-/* Whether the engine accepts the frames of this body, so that a scene can contain it. */
+/* Returns the body of a view, in memory of the scene; NULL: the engine refuses its frames. */
+const struct fmb_body *body_of_view(const struct body_view *view, struct owned_scene *scene);
+
+/* Whether there is such a body. */
 bool scene_takes(const struct body_view *view);
 
 #endif

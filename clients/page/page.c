@@ -1,9 +1,8 @@
 #include "page.h"
 
+#include "json_write.h"
 #include "keyed_hash.h"
-#include "page_template.h"
 
-#include <assert.h>
 #include <glib.h>
 #include <math.h>
 #include <stdlib.h>
@@ -54,6 +53,14 @@ static void put_text(struct json_writer *json, struct text *text)
     fwrite(text->bytes, 1, size, json->out);
 }
 
+/* Writes a text of elements that are JSON as an array. */
+static void put_array(struct json_writer *json, const char *key, struct text *text)
+{
+    json_begin(json, key, '[');
+    put_text(json, text);
+    json_end(json, ']');
+}
+
 /* Appends a text of elements that are JSON. */
 static void put_element(struct json_writer *json, struct text *text)
 {
@@ -61,13 +68,6 @@ static void put_element(struct json_writer *json, struct text *text)
     json_begin(json, NULL, ' '); /* nothing but the comma */
     put_text(json, text);
     json->comma = true;
-}
-
-static void put_elements(struct json_writer *json, const char *key, struct text *text)
-{
-    json_begin(json, key, '[');
-    put_text(json, text);
-    json_end(json, ']');
 }
 
 /* ---- Packed elements ------------------------------------------------------------------------- */
@@ -135,44 +135,50 @@ static void put_numbers(FILE *out, const struct numbers *numbers)
     free(bytes);
 }
 
-/* ---- Sets of elements that many steps have, each written once -------------------------------- */
+/* ---- Lists of the data ------------------------------------------------------------------------
+ */
 
+enum { LIST_NOTES, LIST_LOGS, LIST_SHAPES, LIST_CASTS, LIST_STEPS, LIST_FAR, LISTS };
+
+static const char *const list_name[LISTS] = {"notes", "logs", "shapes", "casts", "steps", "far"};
+
+/* An element that many steps have, and that is written once. */
 struct element {
     size_t index;
     UT_hash_handle hh;
     unsigned char key[];
 };
 
-struct set {
-    struct text text; /* the elements, in the order of their indices */
-    size_t count;
+struct list {
+    struct text text;
+    size_t count;            /* of those with a key */
     struct element *element; /* owned: hash table; NULL: empty */
 };
 
 /* Returns the index of the element with the key. On output: *is_new: it is not written yet. */
-static size_t set_index(struct set *set, const void *key, size_t size, bool *is_new)
+static size_t list_index(struct list *list, const void *key, size_t size, bool *is_new)
 {
     struct element *found;
-    HASH_FIND(hh, set->element, key, size, found);
+    HASH_FIND(hh, list->element, key, size, found);
     *is_new = !found;
     if (found)
         return found->index;
     found = allocate(1, sizeof *found + size);
     memcpy(found->key, key, size);
-    found->index = set->count++;
-    HASH_ADD_KEYPTR(hh, set->element, found->key, size, found);
+    found->index = list->count++;
+    HASH_ADD_KEYPTR(hh, list->element, found->key, size, found);
     return found->index;
 }
 
-static void set_close(struct set *set)
+static void list_close(struct list *list)
 {
-    struct element *at = set->element, *next;
-    HASH_CLEAR(hh, set->element);
-    for (; at; at = next) {
-        next = at->hh.next;
+    struct element *at, *next;
+    HASH_ITER(hh, list->element, at, next)
+    {
+        HASH_DEL(list->element, at);
         free(at);
     }
-    text_close(&set->text);
+    text_close(&list->text);
 }
 
 /* ---- The page -------------------------------------------------------------------------------- */
@@ -187,15 +193,14 @@ struct pose {
 };
 
 struct page {
-    enum page_kind kind;
     int64_t pairs_max;
-    char *title, *sides[2];         /* owned */
-    struct text notes, steps, far;  /* far: [step, pair...], ... */
-    struct set shapes, casts, logs; /* casts: [[id, shape, name], ...] of the bodies */
-    struct numbers numbers;         /* of meshes, then of steps */
-    bool has_origin;                /* there was a body */
-    double origin[FMB_DIM_MAX];     /* its position */
-    int64_t step_count, kept, left_out, left_out_different;
+    struct text data; /* an object: kind, title and sides */
+    struct list list[LISTS];
+    struct numbers numbers;     /* of meshes, then of steps */
+    bool has_origin;            /* there was a body */
+    double origin[FMB_DIM_MAX]; /* its position */
+    int64_t step_count, left_out, left_out_different;
+    int64_t kept; /* steps in the list */
     double left_out_time[2];
     bool full;         /* PAGE_STEPS_BYTES were reached, */
     size_t full_bytes; /* and these were the bytes */
@@ -204,114 +209,99 @@ struct page {
     /* The step that is being added. */
     struct page_step step;
     bool keeps, rotates, moves;
-    double largest; /* half of the largest coordinate or shift */
-    struct text cast, pairs[RANK_COUNT];
+    double largest;   /* half of the largest coordinate or shift */
+    struct text cast; /* [id, shape, name], ...: the bodies */
+    struct text pairs[RANK_COUNT];
     int64_t pair_count[RANK_COUNT];
     struct pose *pose; /* [pose_count], owned */
     size_t pose_count, pose_capacity;
+    double *number; /* owned: of a shape */
+    size_t number_capacity;
 };
-
-static char *copy_text(const char *text)
-{
-    return text ? strcpy(allocate(strlen(text) + 1, 1), text) : NULL;
-}
-
-/* All texts of a page, to open and to close. */
-enum { TEXTS = 4 + RANK_COUNT };
-
-static void texts_of(struct page *page, struct text *out[TEXTS])
-{
-    int count = 0;
-    out[count++] = &page->notes;
-    out[count++] = &page->steps;
-    out[count++] = &page->far;
-    out[count++] = &page->cast;
-    for (int rank = 0; rank < RANK_COUNT; rank++)
-        out[count++] = &page->pairs[rank];
-}
 
 struct page *page_open(const struct page_options *options)
 {
+    static const char *const kind[] = {
+        [PAGE_SCENES] = "scenes", [PAGE_REPLAY] = "replay", [PAGE_MESH] = "mesh"};
     struct page *page = allocate(1, sizeof *page);
-    struct text *texts[TEXTS];
-    page->kind = options->kind;
+    struct json_writer *json = &page->data.json;
     page->pairs_max = options->pairs_max ? options->pairs_max : PAGE_PAIRS_MAX;
-    page->title = copy_text(options->title);
-    for (int side = 0; side < 2; side++)
-        page->sides[side] = copy_text(options->sides[side]);
-    texts_of(page, texts);
-    for (int i = 0; i < TEXTS; i++)
-        text_open(texts[i]);
-    text_open(&page->shapes.text);
-    text_open(&page->casts.text);
-    text_open(&page->logs.text);
+    text_open(&page->data);
+    text_open(&page->cast);
+    for (int list = 0; list < LISTS; list++)
+        text_open(&page->list[list].text);
+    for (int rank = 0; rank < RANK_COUNT; rank++)
+        text_open(&page->pairs[rank]);
+    json_begin(json, NULL, '{');
+    json_string(json, "kind", kind[options->kind]);
+    json_string(json, "title", options->title);
+    json_begin(json, "sides", '[');
+    for (int side = 0; side < 2 && options->sides[0]; side++)
+        json_string(json, NULL, options->sides[side]);
+    json_end(json, ']');
     return page;
 }
 
 void page_close(struct page *page)
 {
-    struct text *texts[TEXTS];
     if (!page)
         return;
-    texts_of(page, texts);
-    for (int i = 0; i < TEXTS; i++)
-        text_close(texts[i]);
-    set_close(&page->shapes);
-    set_close(&page->casts);
-    set_close(&page->logs);
-    for (int side = 0; side < 2; side++)
-        free(page->sides[side]);
-    free(page->title);
+    text_close(&page->data);
+    text_close(&page->cast);
+    for (int list = 0; list < LISTS; list++)
+        list_close(&page->list[list]);
+    for (int rank = 0; rank < RANK_COUNT; rank++)
+        text_close(&page->pairs[rank]);
     free(page->numbers.word);
     free(page->numbers.last);
     free(page->pose);
+    free(page->number);
     free(page);
 }
 
 /* ---- Bodies ---------------------------------------------------------------------------------- */
 
-void page_frames_add(struct page_frames *frames, int shape, bool by_vertices, const double *numbers,
-                     size_t count)
+/* A shape is the frames of a body, one after the other as numbers: shape (enum fmb_shape), 1 if by
+ * vertices, else 0, how many numbers follow, and these, as of fmb_frame_numbers(). */
+static size_t shape_index(struct page *page, const struct fmb_body *body)
 {
-    const size_t needed = frames->count + 3 + count;
-    frames->number =
-        allocate_grow(frames->number, &frames->capacity, needed, sizeof *frames->number);
-    double *to = frames->number + frames->count;
-    to[0] = shape;
-    to[1] = by_vertices;
-    to[2] = (double) count;
-    memcpy(to + 3, numbers, count * sizeof *numbers);
-    frames->count = needed;
-}
-
-static size_t shape_index(struct page *page, const struct page_body *body)
-{
-    const struct page_frames *frames = body->frames;
-    bool is_new;
-    assert(frames->count > 0);
-    const size_t index =
-        set_index(&page->shapes, frames->number, frames->count * sizeof *frames->number, &is_new);
+    struct list *shapes = &page->list[LIST_SHAPES];
+    size_t count = 0;
+    bool by_vertices, is_new;
+    for (unsigned i = 0; i < body->frame_count; i++) {
+        const struct fmb_frame *frame = fmb_body_frame(body, i);
+        const size_t size = fmb_frame_numbers(frame, &by_vertices, NULL), needed = count + 3 + size;
+        page->number =
+            allocate_grow(page->number, &page->number_capacity, needed, sizeof *page->number);
+        double *to = page->number + count;
+        to[0] = frame->shape;
+        to[1] = by_vertices;
+        to[2] = (double) size;
+        fmb_frame_numbers(frame, &by_vertices, to + 3);
+        count = needed;
+    }
+    const size_t index = list_index(shapes, page->number, count * sizeof *page->number, &is_new);
     if (is_new) {
-        struct json_writer *json = &page->shapes.text.json;
+        struct json_writer *json = &shapes->text.json;
         json_break(json, "\n");
         json_begin(json, NULL, '{');
         json_integer(json, "dim", body->dim);
-        json_numbers(json, "frames", frames->number, (int) frames->count);
+        json_numbers(json, "frames", page->number, (int) count);
         json_end(json, '}');
     }
     return index;
 }
 
 /* The unit quaternion; components of any finite size, not all 0. */
-static void set_orientation(const struct page_body *body, double out[4])
+static void set_orientation(int dim, const struct fmb_placement *placement, double out[4])
 {
     double largest = 0, length = 0;
-    if (!body->orientation) {
+    if (placement->orientation_count == 0) {
         out[0] = 1;
         return;
     }
-    for (int i = 0, step = body->dim == 2 ? 3 : 1; i < 4; i += step)
-        out[i] = body->orientation[i / step]; /* in 2D w and z */
+    for (int i = 0, step = dim == 2 ? 3 : 1; i < 4; i += step)
+        out[i] = placement->orientation[i / step]; /* in 2D w and z */
     for (int i = 0; i < 4; i++)
         largest = fmax(largest, fabs(out[i]));
     for (int i = 0; i < 4; i++) {
@@ -322,32 +312,30 @@ static void set_orientation(const struct page_body *body, double out[4])
         out[i] /= sqrt(length);
 }
 
-static void add_pose(struct page *page, const struct page_body *body)
+/* dim: 0: of a body that is not drawn. */
+static void add_pose(struct page *page, int dim, const struct fmb_placement *placement)
 {
     page->pose =
         allocate_grow(page->pose, &page->pose_capacity, page->pose_count + 1, sizeof *page->pose);
     struct pose *pose = &page->pose[page->pose_count++];
     memset(pose, 0, sizeof *pose);
-    if (body->missing)
+    if (dim == 0)
         return;
-    if (!page->has_origin && body->position)
-        memcpy(page->origin, body->position, (size_t) body->dim * sizeof *page->origin);
+    if (!page->has_origin)
+        memcpy(page->origin, placement->position, (size_t) dim * sizeof *page->origin);
     page->has_origin = true;
-    for (int axis = 0; axis < body->dim; axis++) {
+    for (int axis = 0; axis < dim; axis++) {
         /* half the distance from the origin of the page, which is always finite */
-        pose->position[axis] =
-            (body->position ? body->position[axis] : 0) / 2 - page->origin[axis] / 2;
+        pose->position[axis] = placement->position[axis] / 2 - page->origin[axis] / 2;
         /* of a body that leaves the range of the doubles: at its end */
         pose->shift[axis] =
-            !body->velocity
-                ? 0
-                : fmax(-0x1p1022, fmin(page->step.duration / 2 * body->velocity[axis], 0x1p1022));
+            fmax(-0x1p1022, fmin(page->step.duration / 2 * placement->velocity[axis], 0x1p1022));
         page->moves = page->moves || pose->shift[axis] != 0;
         page->largest =
             fmax(page->largest, fmax(fabs(pose->position[axis]), fabs(pose->shift[axis])));
     }
-    set_orientation(body, pose->orientation);
-    page->rotates = page->rotates || body->orientation;
+    set_orientation(dim, placement, pose->orientation);
+    page->rotates = page->rotates || placement->orientation_count > 0;
 }
 
 /* [id, shape, name]; of a body that is not drawn, the reason stands in place of the shape. */
@@ -366,13 +354,13 @@ static void put_cast(struct page *page, int64_t id, int64_t shape, const char *m
     json_end(json, ']');
 }
 
-void page_body(struct page *page, const struct page_body *body)
+void page_body(struct page *page, const struct fmb_placement *placement, const char *missing)
 {
     if (!page->keeps)
         return;
-    add_pose(page, body);
-    put_cast(page, body->id, body->missing ? -1 : (int64_t) shape_index(page, body), body->missing,
-             body->name);
+    add_pose(page, missing ? 0 : placement->body->dim, placement);
+    put_cast(page, placement->id, missing ? -1 : (int64_t) shape_index(page, placement->body),
+             missing, placement->name);
 }
 
 /* ---- Pairs ----------------------------------------------------------------------------------- */
@@ -457,7 +445,8 @@ void page_pair(struct page *page, int64_t a, int64_t b, int dim, const struct pa
 
 static size_t bytes_of(struct page *page)
 {
-    return text_size(&page->steps) + text_size(&page->casts.text) + text_size(&page->shapes.text) +
+    return text_size(&page->list[LIST_STEPS].text) + text_size(&page->list[LIST_CASTS].text) +
+           text_size(&page->list[LIST_SHAPES].text) +
            page->numbers.count * sizeof *page->numbers.word;
 }
 
@@ -551,9 +540,10 @@ static void put_recording(struct page *page, struct json_writer *json)
 {
     const struct page_step *step = &page->step;
     bool is_new;
-    const size_t log = set_index(&page->logs, step->log, strlen(step->log) + 1, &is_new);
+    struct list *logs = &page->list[LIST_LOGS];
+    const size_t log = list_index(logs, step->log, strlen(step->log) + 1, &is_new);
     if (is_new)
-        json_string(&page->logs.text.json, NULL, step->log);
+        json_string(&logs->text.json, NULL, step->log);
     json_integer(json, "log", (int64_t) log);
     json_integer(json, "event", step->event);
     json_integer(json, "offset", step->offset);
@@ -585,39 +575,36 @@ static int64_t put_pairs(struct page *page, struct json_writer *json)
 /* Far pairs of the step: [step, pair...]. */
 static void put_far(struct page *page)
 {
-    struct text *pairs = &page->pairs[RANK_FAR];
+    struct text *pairs = &page->pairs[RANK_FAR], *far = &page->list[LIST_FAR].text;
     const int64_t count = page->pair_count[RANK_FAR];
     page->far_count += count;
     if (count == 0 || page->far_left_out)
         return;
-    if (count > page->pairs_max || text_size(&page->far) + text_size(pairs) > PAGE_FAR_BYTES) {
+    if (count > page->pairs_max || text_size(far) + text_size(pairs) > PAGE_FAR_BYTES) {
         page->far_left_out = true;
-        text_rewind(&page->far);
-        text_size(&page->far);
+        text_rewind(far);
         return;
     }
-    struct json_writer *json = &page->far.json;
-    json_break(json, "\n");
-    json_begin(json, NULL, '[');
-    json_integer(json, NULL, page->kept);
-    put_element(json, pairs);
-    json_end(json, ']');
+    json_break(&far->json, "\n");
+    json_begin(&far->json, NULL, '[');
+    json_integer(&far->json, NULL, page->kept);
+    put_element(&far->json, pairs);
+    json_end(&far->json, ']');
 }
 
 void page_step_end(struct page *page)
 {
     const struct page_step *step = &page->step;
-    struct json_writer *json = &page->steps.json;
+    struct list *casts = &page->list[LIST_CASTS];
+    struct json_writer *json = &page->list[LIST_STEPS].text.json;
     bool is_new;
     if (!page->keeps)
         return;
     const size_t size = text_size(&page->cast);
-    const size_t cast = set_index(&page->casts, page->cast.bytes, size, &is_new);
+    const size_t cast = list_index(casts, page->cast.bytes, size, &is_new);
     if (is_new) {
-        json_break(&page->casts.text.json, "\n");
-        json_begin(&page->casts.text.json, NULL, '[');
-        put_text(&page->casts.text.json, &page->cast);
-        json_end(&page->casts.text.json, ']');
+        json_break(&casts->text.json, "\n");
+        put_array(&casts->text.json, NULL, &page->cast);
     }
     json_break(json, "\n");
     json_begin(json, NULL, '{');
@@ -666,8 +653,8 @@ static void find_extent(const struct page_mesh *mesh, double centre[3], int *exp
 
 void page_mesh(struct page *page, const struct page_mesh *mesh)
 {
-    struct json_writer *json = &page->shapes.text.json;
-    static const double zero[FMB_DIM_MAX];
+    struct json_writer *json = &page->list[LIST_SHAPES].text.json;
+    struct fmb_placement placement = {.orientation_count = 0};
     double centre[3];
     int exponent;
     find_extent(mesh, centre, &exponent);
@@ -688,15 +675,17 @@ void page_mesh(struct page *page, const struct page_mesh *mesh)
         numbers_add(&page->numbers, mesh->face[i / 3][i % 3]);
     for (size_t i = 0; i < mesh->face_count; i++)
         numbers_add(&page->numbers, mesh->verdict[i]);
-    add_pose(page, &(struct page_body){.dim = 3, .position = zero, .velocity = mesh->velocity});
-    put_cast(page, 0, (int64_t) page->shapes.count++, NULL, mesh->name);
+    if (mesh->velocity)
+        memcpy(placement.velocity, mesh->velocity, sizeof placement.velocity);
+    add_pose(page, 3, &placement);
+    put_cast(page, 0, (int64_t) page->list[LIST_SHAPES].count++, NULL, mesh->name);
 }
 
 /* ---- Writing --------------------------------------------------------------------------------- */
 
 void page_note(struct page *page, const char *note)
 {
-    json_string(&page->notes.json, NULL, note);
+    json_string(&page->list[LIST_NOTES].text.json, NULL, note);
 }
 
 static void note_left_out(struct page *page)
@@ -718,33 +707,29 @@ static void note_left_out(struct page *page)
     page_note(page, note);
 }
 
+/* The page without its data: text, style, scripts and three.js, which the Makefile puts together in
+ * PAGE_FILE. By the assembler: a compiler would take a minute for an array of a million numbers. */
+__asm__(
+    ".pushsection .rodata\n"
+    "page_template: .incbin \"" PAGE_FILE
+    "\"\n"
+    ".byte 0\n"
+    ".popsection\n");
+extern const char page_template[];
+
 void page_write(struct page *page, FILE *out)
 {
-    static const char *const kind[] = {
-        [PAGE_SCENES] = "scenes", [PAGE_REPLAY] = "replay", [PAGE_MESH] = "mesh"};
-    struct text text;
-    struct json_writer *json = &text.json;
+    static const char mark[] = "@DATA@\n"; /* the Makefile checks that it is there once */
+    const char *data = strstr(page_template, mark);
+    struct json_writer *json = &page->data.json;
     note_left_out(page);
-    text_open(&text);
-    json_begin(json, NULL, '{');
-    json_string(json, "kind", kind[page->kind]);
-    json_string(json, "title", page->title);
-    json_begin(json, "sides", '[');
-    for (int side = 0; side < 2 && page->sides[0]; side++)
-        json_string(json, NULL, page->sides[side]);
-    json_end(json, ']');
     json_numbers(json, "origin", page->origin, FMB_DIM_MAX);
-    put_elements(json, "notes", &page->notes);
-    put_elements(json, "logs", &page->logs.text);
-    put_elements(json, "shapes", &page->shapes.text);
-    put_elements(json, "casts", &page->casts.text);
-    put_elements(json, "steps", &page->steps);
-    put_elements(json, "far", &page->far);
+    for (int list = 0; list < LISTS; list++)
+        put_array(json, list_name[list], &page->list[list].text);
     json_end(json, '}');
-    const size_t size = text_size(&text);
-    page_template_begin(out);
-    put_packed(out, "data", text.bytes, size);
+    const size_t size = text_size(&page->data);
+    fwrite(page_template, 1, (size_t) (data - page_template), out);
+    put_packed(out, "data", page->data.bytes, size);
     put_numbers(out, &page->numbers);
-    page_template_end(out);
-    text_close(&text);
+    fputs(data + strlen(mark), out);
 }

@@ -3,7 +3,7 @@
  *
  *     struct page *page = page_open(&options);
  *     page_step_begin(page, &step);   // for each step, in any order of time:
- *     page_body(page, &body);         //   each body, in the order of the indices of the pairs
+ *     page_body(page, &placement, NULL); // each body, in the order of the indices of the pairs
  *     page_pair(page, a, b, ...);     //   each pair that has an answer
  *     page_step_end(page);
  *     page_write(page, out);
@@ -80,27 +80,8 @@ struct page_step {
 
 void page_step_begin(struct page *page, const struct page_step *step);
 
-/* The frames of a body in body coordinates, one after the other as numbers: shape (enum fmb_shape),
- * 1 if by vertices, else 0, how many numbers follow, and these: of fmb_frame_make(), or vertices.
- */
-struct page_frames {
-    double *number; /* owned */
-    size_t count, capacity;
-};
-
-void page_frames_add(struct page_frames *frames, int shape, bool by_vertices, const double *numbers,
-                     size_t count);
-
-struct page_body {
-    int64_t id;       /* 0: anonymous */
-    const char *name; /* NULL: none */
-    int dim;
-    const struct page_frames *frames; /* not empty, all numbers finite */
-    const char *missing; /* not NULL: why the body cannot be drawn; the rest is unset */
-    const double *position, *velocity, *orientation; /* NULL: all 0, and no rotation */
-};
-
-void page_body(struct page *page, const struct page_body *body);
+/* Adds a body. missing: NULL; or why the body cannot be drawn: then only id and name are read. */
+void page_body(struct page *page, const struct fmb_placement *placement, const char *missing);
 
 /* An answer to a pair of the step. */
 struct page_answer {

@@ -1,83 +1,30 @@
 #include "page_replayed.h"
 
-#include "allocate.h"
-#include "geometry.h"
+#include "scene.h"
 
 #include <inttypes.h>
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- Placements: logs also contain queries that were refused --------------------------------- */
 
-static bool are_finite(const double *numbers, int count)
+static void add_body(struct page *page, const struct query_placement *placement, const char *name)
 {
-    for (int i = 0; i < count; i++)
-        if (!isfinite(numbers[i]))
-            return false;
-    return true;
-}
-
-static bool is_orientation(const double *orientation, int count)
-{
-    double largest = 0;
-    for (int i = 0; i < count; i++)
-        largest = fmax(largest, fabs(orientation[i]));
-    return count == 0 || (largest > 0 && are_finite(orientation, count));
-}
-
-/* Appends the frames of a body. Returns whether there are some, and all are valid. */
-static bool add_frames(const struct body_view *body, struct page_frames *out)
-{
-    struct geometry_reader reader = geometry_begin(body);
-    struct geometry_frame frame;
-    bool good = body->frame_count > 0;
-    while (good && reader.frames_left > 0) {
-        good = geometry_next(&reader, &frame);
-        if (!good)
-            break;
-        double *number = allocate(frame.count, sizeof *number);
-        geometry_numbers(&frame, number);
-        good = are_finite(number, (int) frame.count);
-        page_frames_add(out, frame.shape, frame.by_vertices, number, frame.count);
-        free(number);
-    }
-    return good && reader.counts_left == 0 && reader.numbers_left == 0;
-}
-
-static bool is_placed(const struct query_placement *placement)
-{
-    const struct fmb_placement *placed = &placement->placed;
-    const int dim = placement->body.dim;
-    return are_finite(placed->position, dim) &&
-           (placed->orientation_count == 0 || placed->orientation_count == (dim == 2 ? 2 : 4)) &&
-           is_orientation(placed->orientation, placed->orientation_count) &&
-           (placement->velocity_count == 0 || placement->velocity_count == dim) &&
-           are_finite(placed->velocity, placement->velocity_count);
-}
-
-static void add_body(struct page *page, const struct query_placement *placement, const char *name,
-                     struct page_frames *frames)
-{
-    const struct fmb_placement *placed = &placement->placed;
-    struct page_body body = {.id = placed->id,
-                             .name = name,
-                             .dim = placement->body.dim,
-                             .frames = frames,
-                             .position = placed->position,
-                             .velocity = placement->velocity_count ? placed->velocity : NULL,
-                             .orientation = placed->orientation_count ? placed->orientation : NULL};
+    const struct body_view *view = &placement->body;
+    struct owned_scene memory = {.dim = 0};
+    struct fmb_placement placed = placement->placed;
     char missing[2 * HANDLE_BYTES + 50] = "the log does not define its handle, ";
-    if (query_by_handle(placement)) {
-        for (size_t i = 0, used = strlen(missing); i < HANDLE_BYTES; i++)
-            snprintf(missing + used + 2 * i, 3, "%02x", placement->body.handle.bytes[i]);
-        body.missing = missing;
-    } else if (!(body.dim == 2 || body.dim == 3) || !is_placed(placement) ||
-               !add_frames(&placement->body, frames)) {
-        body.missing = "it is no body that can be drawn";
-    }
-    page_body(page, &body);
-    frames->count = 0;
+    const bool is_named = query_by_handle(placement);
+    placed.name = name;
+    placed.body = is_named ? NULL : body_of_view(view, &memory);
+    for (size_t i = 0, used = strlen(missing); is_named && i < HANDLE_BYTES; i++)
+        snprintf(missing + used + 2 * i, 3, "%02x", view->handle.bytes[i]);
+    const bool is_good = fmb_placement_check(&placed) == FMB_OK &&
+                         (placement->velocity_count == 0 || placement->velocity_count == view->dim);
+    page_body(page, &placed,
+              is_named  ? missing
+              : is_good ? NULL
+                        : "it is no body that can be drawn");
+    scene_clear(&memory);
 }
 
 static void add_bodies(struct page *page, const struct body_names *names,
@@ -86,11 +33,8 @@ static void add_bodies(struct page *page, const struct body_names *names,
     int32_t count;
     const struct query_placement *placement = logged_query_placements(replayed->query, &count);
     const int64_t client = logged_query_header(replayed->query)->client_id;
-    struct page_frames frames = {NULL, 0, 0};
     for (int32_t i = 0; i < count; i++)
-        add_body(page, &placement[i], body_names_find(names, client, placement[i].placed.id),
-                 &frames);
-    free(frames.number);
+        add_body(page, &placement[i], body_names_find(names, client, placement[i].placed.id));
 }
 
 /* ---- Results --------------------------------------------------------------------------------- */

@@ -1,46 +1,15 @@
 #include "query_page.h"
 
-#include "allocate.h"
-
-#include <stdlib.h>
-
-static void add_body(struct page *page, const struct fmb_placement *placement,
-                     struct page_frames *frames)
-{
-    const struct fmb_body *body = placement->body;
-    for (unsigned i = 0; i < body->frame_count; i++) {
-        const struct fmb_frame *frame = fmb_body_frame(body, i);
-        bool by_vertices;
-        const size_t count = fmb_frame_numbers(frame, &by_vertices, NULL);
-        double *number = allocate(count, sizeof *number);
-        fmb_frame_numbers(frame, &by_vertices, number);
-        page_frames_add(frames, (int) frame->shape, by_vertices, number, count);
-        free(number);
-    }
-    page_body(page,
-              &(struct page_body){
-                  .id = placement->id,
-                  .name = placement->name,
-                  .dim = body->dim,
-                  .frames = frames,
-                  .position = placement->position,
-                  .velocity = placement->velocity,
-                  .orientation = placement->orientation_count ? placement->orientation : NULL});
-    frames->count = 0;
-}
-
 static void begin(struct report *report)
 {
     struct query_page *query = (struct query_page *) report;
     const struct fmb_scene *scene = &report->scene->scene;
-    struct page_frames frames = {NULL, 0, 0};
     page_step_begin(query->page, &(struct page_step){.time = query->end,
                                                      .duration = scene->duration,
                                                      .margin = scene->margin,
                                                      .label = scene->label});
     for (size_t i = 0; i < scene->placement_count; i++)
-        add_body(query->page, &scene->placements[i], &frames);
-    free(frames.number);
+        page_body(query->page, &scene->placements[i], NULL);
     query->end += scene->duration;
 }
 

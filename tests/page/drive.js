@@ -44,7 +44,18 @@ function moment() {
 /* Where bodies are, by name: rounded, in units of the page. */
 function places() {
     const { stage } = view.fmb;
-    return stage.items.map((item) => item.faces.position.toArray().map((x) => Math.round(x * 2 ** stage.exponent * 1e4) / 1e4));
+    return stage.items.map((item) => item.centre.toArray().map((x) => Math.round(x * 2 ** stage.exponent * 1e4) / 1e4));
+}
+
+/* Where the camera looks. */
+function direction() {
+    const { camera } = view.fmb;
+    return camera.getWorldDirection(camera.position.clone()).toArray();
+}
+
+/* Pixels of the drawing for each of the page, and the scale of the page's state. */
+function resolution() {
+    return { scale: view.fmb.pace.scale, drawn: one("#scene").width / one("#stage").clientWidth / view.devicePixelRatio };
 }
 
 function labels() {
@@ -138,16 +149,21 @@ async function scene() {
     found.turned = picture();
     one("#scene").dispatchEvent(new view.PointerEvent("pointermove", { clientX: box.left + box.width / 2, clientY: box.top + box.height / 2 }));
     found.pointed = text("#pointed");
+    await press("1");
+    const before = direction();
+    for (const [kind, target, x] of [["mousedown", one("#scene"), 300], ["mousemove", page, 340], ["mouseup", page, 340]])
+        target.dispatchEvent(new view.MouseEvent(kind, { bubbles: true, clientX: box.left + x, clientY: box.top + 300, button: 0 }));
+    found.orbit = { before, after: direction() };
 }
 
 async function shapes() {
     await open("shapes.html");
     found.shapes = { ...picture(), table: table(), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length), bad: badTexts() };
     await open("hulls.html");
-    found.hulls = { ...picture(), kinds: view.fmb.stage.items.map((item) => [item.surface.triangles.length, item.surface.edges.attributes.position.count / 2]) };
+    found.hulls = { ...picture(), kinds: view.fmb.stage.items.map((item) => [item.surface.triangles.length, item.surface.edges.length]) };
     await open("plane.html");
     await press("n");
-    found.plane = { ...picture(), direction: view.fmb.camera.getWorldDirection(view.fmb.camera.position.clone()).toArray().map(Math.round), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length) };
+    found.plane = { ...picture(), direction: direction().map(Math.round), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length) };
     await open("hostile.html");
     found.hostile = { title: page.title, table: table(), bold: all("#pairs b, #labels b").length, labels: texts("#labels span") };
     await open("empty.html");
@@ -158,10 +174,12 @@ async function shapes() {
 
 async function arm() {
     await open("arm.html");
-    found.arm = { ...moment(), rows: table(), overprints: [], counts: text("#counts"), lane: lane(0) };
+    const widths = () => all("#heads th").map((th) => th.offsetWidth).join();
+    found.arm = { ...moment(), rows: table(), overprints: [], counts: text("#counts"), lane: lane(0), widths: [widths()] };
     for (let i = 0; i < 5; i++) {
         await press("ArrowRight");
         found.arm.overprints.push(overprints());
+        found.arm.widths.push(widths());
     }
     found.arm.last = moment();
     await type("#filter", "GRIP lid");
@@ -181,6 +199,36 @@ async function arm() {
     await wait(100);
     found.wide = ["#stage", "#rows", "#play", "#overview", "#scrub"].map((selector) => one(selector).getBoundingClientRect().bottom);
     found.scrolls = page.scrollingElement.scrollHeight;
+}
+
+/* Frames that take long lower the resolution of what moves. */
+async function slow() {
+    await open("arm.html");
+    const { pace, followPace } = view.fmb, scales = [];
+    for (const [frames, ms] of [[1000, 16], [1, 500], [20, 16], [12, 50], [12, 50], [20, 50], [1000, 25], [100, 10], [20, 50], [100, 10], [100, 10]]) {
+        for (let i = 0; i < frames; i++)
+            followPace(true, ms);
+        scales.push(pace.scale);
+    }
+    followPace(false, 50);
+    found.pace = [...scales, pace.scale];
+    const delay = () => {
+        for (const from = performance.now(); performance.now() - from < 50;);
+        view.requestAnimationFrame(delay);
+    };
+    view.requestAnimationFrame(delay);
+    one("#loop").checked = true;
+    await press(" ");
+    await until(() => pace.scale === 0.5);
+    found.slow = resolution();
+    await press(" ");
+    found.rested = resolution();
+    one("#scene").dispatchEvent(new view.MouseEvent("mousedown", { bubbles: true, button: 0 }));
+    await until(() => pace.scale === 0.5);
+    found.turning = resolution();
+    page.dispatchEvent(new view.MouseEvent("mouseup", { button: 0 }));
+    await drawn();
+    found.turnedSlow = resolution();
 }
 
 async function recording() {
@@ -270,4 +318,4 @@ async function noScene() {
     found.none.next = moment();
 }
 
-drive({ "#dark": [network, dark], "#bare": [noScene] }[location.hash] ?? [scene, shapes, arm, recording, sizes, meshes]);
+drive({ "#dark": [network, dark], "#bare": [noScene] }[location.hash] ?? [scene, shapes, arm, slow, recording, sizes, meshes]);

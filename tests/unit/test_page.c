@@ -124,14 +124,24 @@ static void expect_json(const cJSON *value, const char *expected)
     cJSON_free(text);
 }
 
-static void add_box(struct page *page, int64_t id, const char *name, const double position[3])
+/* Adds a box; orientation may be NULL. */
+static void add_turned(struct page *page, int64_t id, const char *name, const double position[3],
+                       const double orientation[4])
 {
     static const double numbers[6] = {0, 0, 0, 1, 2, 3};
-    struct page_frames frames = {NULL, 0, 0};
-    page_frames_add(&frames, FMB_BOX, false, numbers, 6);
-    page_body(page, &(struct page_body){
-                        .id = id, .name = name, .dim = 3, .frames = &frames, .position = position});
-    free(frames.number);
+    struct fmb_body body;
+    struct fmb_placement placement = {.body = &body, .id = id, .name = name};
+    assert_int_equal(fmb_body_make(3, FMB_BOX, numbers, 6, &body), FMB_OK);
+    memcpy(placement.position, position, sizeof placement.position);
+    placement.orientation_count = orientation ? 4 : 0;
+    if (orientation)
+        memcpy(placement.orientation, orientation, sizeof placement.orientation);
+    page_body(page, &placement, NULL);
+}
+
+static void add_box(struct page *page, int64_t id, const char *name, const double position[3])
+{
+    add_turned(page, id, name, position, NULL);
 }
 
 static const double zero[3];
@@ -238,16 +248,12 @@ static void orientations_of_any_length_become_unit_quaternions(void **state)
 {
     static const double turns[][4] = {{3e-320, 4e-320, 0, 0}, {3, 4, 0, 0}, {3e307, 4e307, 0, 0}};
     for (size_t i = 0; i < sizeof turns / sizeof *turns; i++) {
-        static const double numbers[3] = {1, 1, 1};
         struct page *page = open_page(PAGE_SCENES);
-        struct page_frames frames = {NULL, 0, 0};
         size_t count;
         cJSON *data;
-        page_frames_add(&frames, FMB_BOX, false, numbers, 3);
         begin_step(page, 0, false);
-        page_body(page, &(struct page_body){.dim = 3, .frames = &frames, .orientation = turns[i]});
+        add_turned(page, 0, NULL, zero, turns[i]);
         page_step_end(page);
-        free(frames.number);
         uint32_t *number = numbers_of(page, &count, &data);
         assert_int_equal(count, 7);
         assert_true(fabs(difference(number[3]) * 0x1p-24 - 0.6) < 1e-4 &&
@@ -329,7 +335,7 @@ static void hostile_texts_end_neither_script_nor_page(void **state)
                                               .outcome = {hostile, false},
                                               .result = {{.given = true, .error = hostile}}});
     add_box(page, 1, hostile, zero);
-    page_body(page, &(struct page_body){.id = 2, .name = hostile, .missing = hostile});
+    page_body(page, &(struct fmb_placement){.id = 2, .name = hostile}, hostile);
     page_step_end(page);
     size_t size;
     char *text = text_of(page, &size);

@@ -132,20 +132,12 @@ steps.forEach((step, i) => {
     step.pairs.forEach((pair) => addPair(step, i, pair));
 });
 
-/* The set of the keys of a step's bodies, made once for each list of bodies. */
-const castKeys = new Map();
-function keysOf(step) {
-    if (!castKeys.has(step.cast))
-        castKeys.set(step.cast, new Set(step.bodies.map((_, index) => bodyKey(step, index))));
-    return castKeys.get(step.cast);
-}
-
-/* The index in row.at of the last step up to i; -1: none. */
-function markAt(row, i) {
-    let low = 0, high = row.at.length;
+/* The index of the last of ascending numbers that is no larger than x; -1: none. */
+function lastUpTo(ascending, x) {
+    let low = 0, high = ascending.length;
     while (low < high) {
         const middle = (low + high) >> 1;
-        if (row.at[middle] <= i)
+        if (ascending[middle] <= x)
             low = middle + 1;
         else
             high = middle;
@@ -153,10 +145,16 @@ function markAt(row, i) {
     return low - 1;
 }
 
+/* The keys of the bodies of a step, made once for each list of bodies. */
+function keysOf({ bodies }) {
+    bodies.keySet ??= new Set(bodies.map((_, index) => bodyKey({ bodies }, index)));
+    return bodies.keySet;
+}
+
 /* The pair of a row in step i: [a, b, answers...]; null: the step says nothing about it. */
 function pairAt(row, i) {
-    const mark = markAt(row, i);
-    if (mark >= 0 && row.at[mark] === i)
+    const mark = lastUpTo(row.at, i);
+    if (row.at[mark] === i)
         return row.pairs[mark];
     const step = steps[i];
     return step?.all && row.keys.every((key) => keysOf(step).has(key)) ? [-1, -1, SEPARATED] : null;
@@ -164,13 +162,8 @@ function pairAt(row, i) {
 
 /* ---- Time: what is shown runs over `s`, which leaves long pauses out ---- */
 
-function median(numbers) {
-    const sorted = [...numbers].sort((a, b) => a - b);
-    return sorted[sorted.length >> 1] ?? 0;
-}
-
-const pauses = steps.slice(1).map((step, i) => step.t - steps[i].t);
-const usualPause = median(pauses.filter((pause) => pause > 0)) || 0.02;
+const times = steps.map((step) => step.t), pauses = times.slice(1).map((t, i) => t - times[i]);
+const sorted = pauses.filter((pause) => pause > 0).sort((a, b) => a - b), usualPause = sorted[sorted.length >> 1] ?? 0.02;
 const longestPause = isReplay ? Math.max(20 * usualPause, 2) : Infinity;
 const begins = [0]; /* [step]: s of its begin, and of the end of all; steps of one time follow each other */
 for (const pause of pauses)
@@ -203,27 +196,14 @@ function streamsOf(i) {
     return streams;
 }
 
-/* The pair of a row that holds at step i; null: none. */
+/* The pair of a row that holds at step i; undefined: none. */
 function pairNow(row, i) {
-    for (const j of steps[i] ? streamsOf(i) : []) {
-        const pair = pairAt(row, j);
-        if (pair)
-            return pair;
-    }
-    return null;
+    return steps[i] && streamsOf(i).map((j) => pairAt(row, j)).find(Boolean);
 }
 
 /* The step that is shown at s. */
 function stepAt(s) {
-    let low = 0, high = steps.length - 1;
-    while (low < high) {
-        const middle = (low + high + 1) >> 1;
-        if (begins[middle] <= s)
-            low = middle;
-        else
-            high = middle - 1;
-    }
-    return low;
+    return Math.max(Math.min(lastUpTo(begins, s), steps.length - 1), 0);
 }
 
 /* Seconds since the begin of the window of the step. */
@@ -237,8 +217,6 @@ function timeOf(s) {
 }
 
 function sOfTime(t) {
-    let i = 0;
-    while (i + 1 < steps.length && steps[i + 1].t <= t)
-        i++;
+    const i = Math.max(lastUpTo(times, t), 0);
     return steps[i] ? Math.min(begins[i] + Math.max(t - steps[i].t, 0), begins[i + 1]) : 0;
 }

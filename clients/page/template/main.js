@@ -25,7 +25,7 @@ const keys = {
 };
 
 function setSpeed(by) {
-    one("speed").selectedIndex = Math.min(Math.max(one("speed").selectedIndex + by, 0), speeds.length - 1);
+    one("speed").selectedIndex = Math.min(Math.max(one("speed").selectedIndex + by, 0), one("speed").length - 1);
 }
 
 function chooseNext(by) {
@@ -41,30 +41,21 @@ function readHash(url) {
 }
 
 function watch() {
-    const click = (id, act) => one(id).addEventListener("click", act);
-    click("play", () => play());
-    click("back", () => move(-1));
-    click("next", () => move(1));
-    click("next-contact", () => nextContact());
-    click("next-difference", () => nextDifference());
-    click("more", () => {
+    document.addEventListener("click", ({ target }) => {
+        const tr = target.closest("#pairs tr");
+        if (target.dataset.key)
+            keys[target.dataset.key]();
+        else if (tr && !target.closest(".lane"))
+            choose(rows[tr.dataset.row]);
+    });
+    one("more").addEventListener("click", () => {
         table.limit += 100;
         chooseRows();
-    });
-    click("pairs", (event) => {
-        const tr = event.target.closest("tr");
-        if (tr && !event.target.closest(".lane"))
-            choose(rows[tr.dataset.row]);
     });
     one("pairs").addEventListener("pointerdown", (event) => {
         const lane = event.target.closest(".lane");
         if (lane)
             seek(sUnder(event, lane.firstChild));
-    });
-    click("camera", (event) => {
-        const to = event.target.dataset.view;
-        if (to)
-            fit(to === "pair" ? stage.row : null, directions[to] ?? null);
     });
     one("filter").addEventListener("input", chooseRows);
     one("contacts").addEventListener("change", chooseRows);
@@ -89,7 +80,6 @@ function watch() {
 }
 
 function start() {
-    one("speed").replaceChildren(...speeds.map((speed) => new Option(`${speed} ×`, speed, speed === 1, speed === 1)));
     one("scrub").max = wholeSpan;
     one("time").hidden = !canPlay;
     one("next-difference").hidden = differences.length === 0;
@@ -109,4 +99,4 @@ function start() {
 start();
 
 /* For the console of a browser, and for tests. */
-globalThis.fmb = { data, steps, rows, stage, player, table, view, begins, camera, drawScene, seek };
+globalThis.fmb = { data, steps, rows, stage, player, pace, table, view, begins, camera, drawScene, followPace, seek };

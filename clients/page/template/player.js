@@ -1,15 +1,14 @@
 /* The clock, the moment that is shown, and what moves it. */
 
-const player = { s: 0, playing: false, last: 0 };
-const speeds = [0.1, 0.25, 0.5, 1, 2, 5, 10];
+const player = { s: 0, playing: false, last: 0, busy: 0 };
 const heads = document.querySelectorAll(".track .head");
 const canPlay = steps.length > 1 || steps.some((step) => step.moves);
 
-/* Shows the moment player.s. While it plays, table and time follow five times a second: painting them
+/* Shows the moment player.s. While it plays, table and time follow five times a second at most: painting them
  * takes longer than drawing the scene. */
 function show() {
     const i = stepAt(player.s), head = (player.s - view.from) / (view.to - view.from);
-    const isDue = !player.playing || performance.now() - table.time > 200;
+    const isDue = !player.playing || performance.now() - table.time > (pace.scale < 1 ? 500 : 200);
     if (isDue) {
         table.time = performance.now();
         document.documentElement.style.setProperty("--lane-head", head);
@@ -64,7 +63,6 @@ function seek(s) {
 
 function play(on = !player.playing) {
     player.playing = on && canPlay;
-    player.last = performance.now();
     if (player.playing && player.s >= wholeSpan)
         player.s = 0;
     table.time = -Infinity; /* at once */
@@ -78,11 +76,13 @@ function play(on = !player.playing) {
 
 /* Advances by the time that has passed; at the end it begins again, or stops. */
 function tick(now) {
+    const begin = performance.now(), passed = now - player.last;
+    player.last = now;
+    followPace(player.playing || stage.turning, passed - player.busy);
     if (player.playing) {
         /* scenes without duration: ten a second; windows shorter than a second in one */
         const rate = Number(one("speed").value) * (unit ? steps.length > 1 ? 1 : Math.min(wholeSpan / 2, 1) : 10);
-        const s = player.s + (now - player.last) / 1000 * rate;
-        player.last = now;
+        const s = player.s + passed / 1000 * rate;
         player.s = s <= wholeSpan ? s : one("loop").checked ? s % wholeSpan : wholeSpan;
         if (player.s === wholeSpan && !one("loop").checked)
             play(false);
@@ -90,6 +90,7 @@ function tick(now) {
             show();
     }
     drawScene();
+    player.busy = performance.now() - begin;
     requestAnimationFrame(tick);
 }
 

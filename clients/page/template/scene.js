@@ -11,6 +11,7 @@ one("stage").hidden = one("camera").hidden = !renderer;
 one("no-scene").hidden = Boolean(renderer);
 
 const world = new THREE.Scene(), camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.01, 200);
+camera.up.set(0, 0, 1); /* the controls turn about it */
 const controls = renderer && new THREE.OrbitControls(camera, one("scene"));
 const light = new THREE.DirectionalLight(0xffffff, 0.5);
 light.position.set(0.4, 0.7, 1);
@@ -18,8 +19,8 @@ camera.add(light);
 world.add(camera, new THREE.AmbientLight(0xffffff, 0.6));
 
 const stage = {
-    exponent: 0, dim: 3, step: -1, streams: [], dirty: true, items: [], row: null,
-    centre: [0, 0, 0], radius: 1, half: [1, 1], size: { width: 0, height: 0 }, corners: [], solids: new Map(), colours: {},
+    exponent: 0, dim: 3, step: -1, streams: [], dirty: true, moved: true, turning: false, items: [], row: null,
+    centre: new THREE.Vector3(), radius: 1, half: [1, 1], size: { width: 0, height: 0 }, corners: [], solids: new Map(), colours: {},
 };
 const bodyColours = ["#4e79a7", "#f28e2b", "#59a14f", "#b07aa1", "#76b7b2", "#edc948", "#9c755f", "#ff9da7", "#86bcb6", "#8cd17d"];
 
@@ -31,128 +32,108 @@ function orientationOf(step, k) {
 }
 
 /* The position of body k after a part of the window, in units of 2^exponent. */
-function positionOf(step, k, part, exponent) {
-    const factor = scaled(1, step.at - 24 - exponent);
-    return [0, 1, 2].map((axis) => factor * (numbers[step.first + 3 * k + axis] + (step.moves ? part * numbers[step.shift + 3 * k + axis] : 0)));
+function positionOf(step, k, part) {
+    const factor = scaled(1, step.at - 24 - stage.exponent);
+    return new THREE.Vector3(...[0, 1, 2].map((axis) => factor * (numbers[step.first + 3 * k + axis] + (step.moves ? part * numbers[step.shift + 3 * k + axis] : 0))));
 }
 
 /* A world point in these units. */
 function pointOf(point) {
-    return [0, 1, 2].map((axis) => axis < point.length
-        ? scaled(point[axis], -stage.exponent) - scaled(data.origin[axis], -stage.exponent) : 0);
+    return new THREE.Vector3(...[0, 1, 2].map((axis) => axis < point.length
+        ? scaled(point[axis], -stage.exponent) - scaled(data.origin[axis], -stage.exponent) : 0));
 }
 
-/* ---- Surfaces ---- */
+/* ---- Bodies ---- */
+
+/* The faces of all bodies are one object of three.js, and their edges another: without a GPU an object takes
+ * longer than hundreds of triangles. Their coordinates are relative to stage.centre. */
+const faces = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshPhongMaterial({
+    side: THREE.DoubleSide, flatShading: true, specular: 0, vertexColors: THREE.VertexColors,
+    polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+}));
+const edges = new THREE.LineSegments(), ends = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineDashedMaterial());
+const bodies = new THREE.Group().add(faces, edges, ends);
+edges.userData.colour = "edge";
+ends.userData.colour = "dim";
+bodies.children.forEach((object) => { object.frustumCulled = false; });
+world.add(bodies);
 
 const isDrawn = (body) => typeof body[1] === "number";
 
-/* The solid of shape `index`, about its own centre: {centre, corners, faces, edges}, the last two for
- * three.js. */
+/* The solid of shape `index`, its centre, and corners of its extent. */
 function surfaceOf(index) {
-    let found = stage.solids.get(index);
-    if (found)
-        return found;
-    const solid = solidOf(data.shapes[index], stage.exponent), { corners } = solid;
-    const ends = [Math.min, Math.max].map((end) => [0, 1, 2].map((axis) => corners.reduce((most, p) => end(most, p[axis]), corners[0]?.[axis] ?? 0)));
-    const centre = plus(ends[0], plus(ends[1], ends[0], -1), 0.5);
-    const numbers = (lists) => {
-        const out = new Float32Array(9 * lists.length);
-        let used = 0;
-        for (const list of lists)
-            for (const k of list)
-                for (let axis = 0; axis < 3; axis++)
-                    out[used++] = corners[k][axis] - centre[axis];
-        return new THREE.BufferAttribute(out.subarray(0, used), 3);
-    };
-    const faces = new THREE.BufferGeometry(), edges = new THREE.BufferGeometry();
-    faces.setAttribute("position", numbers(solid.triangles));
-    faces.computeVertexNormals();
-    edges.setAttribute("position", numbers(solid.edges));
-    found = {
-        centre, faces, edges, triangles: solid.triangles, verdicts: solid.verdicts, all: corners,
-        corners: corners.length > 100 ? [0, 1, 2, 3, 4, 5, 6, 7].map((k) => [0, 1, 2].map((axis) => ends[k >> axis & 1][axis])) : corners,
-    };
-    stage.solids.set(index, found);
-    return found;
+    if (!stage.solids.has(index)) {
+        const solid = solidOf(data.shapes[index], stage.exponent), { corners } = solid, box = new THREE.Box3().setFromPoints(corners);
+        const extent = corners.length <= 100 ? corners : boxOf(box.min, box.getSize(new THREE.Vector3())).corners;
+        stage.solids.set(index, { ...solid, centre: box.getCenter(new THREE.Vector3()), extent });
+    }
+    return stage.solids.get(index);
 }
 
-function colourMesh(surface, first) {
-    const colours = [first ? "#5b7fb4" : stage.colours.none, stage.colours.separated, stage.colours.touching, stage.colours.overlapping].map((text) => new THREE.Color(text));
-    const values = new Float32Array(9 * surface.verdicts.length);
-    surface.verdicts.forEach((verdict, i) => {
-        for (let k = 0; k < 3; k++)
-            colours[verdict].toArray(values, 9 * i + 3 * k);
-    });
-    surface.faces.setAttribute("color", new THREE.BufferAttribute(values, 3));
+/* Points of body k of a step after a part of the window. */
+function placed(points, step, k, part) {
+    const turn = orientationOf(step, k), at = positionOf(step, k, part);
+    return points.map((point) => point.clone().applyQuaternion(turn).add(at));
 }
 
-/* ---- Objects ---- */
+/* Makes the objects for the corners of all items. */
+function buildBodies() {
+    let count = 0;
+    for (const item of stage.items) {
+        item.first = count;
+        count += item.surface.corners.length;
+    }
+    const [position, color] = [0, 1].map(() => new THREE.BufferAttribute(new Float32Array(3 * count), 3));
+    for (const [object, list] of [[faces, "triangles"], [edges, "edges"]]) {
+        object.geometry.dispose();
+        object.geometry = new THREE.BufferGeometry().setAttribute("position", position).setAttribute("color", color);
+        object.geometry.setIndex(stage.items.flatMap(({ surface, first }) => surface[list].flat().map((k) => first + k)));
+    }
+}
 
-function lines(colour, on = {}) {
-    const object = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: colour, ...on }));
-    object.frustumCulled = false;
+/* Sets corners and colours for this moment. */
+function placeBodies() {
+    const { position, color } = faces.geometry.attributes, point = new THREE.Vector3();
+    for (const item of stage.items) {
+        const { surface: { corners, centre, verdicts }, source: { stream: { step, part }, k }, first } = item;
+        const turn = orientationOf(step, k), at = positionOf(step, k, part).sub(stage.centre), colours = coloursOf(item);
+        [item.centre] = placed([centre], step, k, part);
+        corners.forEach((corner, i) => {
+            point.copy(corner).applyQuaternion(turn).add(at).toArray(position.array, 3 * (first + i));
+            colours[verdicts ? verdicts[Math.floor(i / 3)] : 0].toArray(color.array, 3 * (first + i));
+        });
+    }
+    position.needsUpdate = color.needsUpdate = true;
+    faces.geometry.boundingSphere = null;
+    bodies.position.copy(stage.centre);
+}
+
+/* In a page of one step, dashed edges where moving bodies end. */
+function drawEnds() {
+    const { step } = stage.streams[0];
+    const moving = stage.items.filter(({ source: { k } }) => step.moves && numbers.subarray(step.shift + 3 * k, step.shift + 3 * k + 3).some(Boolean));
+    setLines(ends, moving.flatMap(({ surface: { corners, edges: lines }, source: { k } }) =>
+        placed(lines.flat().map((corner) => corners[corner]), step, k, 1).map((point) => point.sub(stage.centre))));
+    Object.assign(ends.material, { dashSize: stage.radius / 30, gapSize: stage.radius / 45 });
+    ends.computeLineDistances();
+}
+
+/* ---- Answers ---- */
+
+/* An object that shows answers, on top of the bodies and in a colour of the page. */
+function onTop(colour, object) {
+    Object.assign(object.material, { depthTest: false, transparent: true });
+    world.add(Object.assign(object, { frustumCulled: false, renderOrder: 2, userData: { colour } }));
     return object;
 }
 
+const [boxes, boxesThen, gapLine, picked] = ["box", "diff", "gap", "box"].map((colour) => onTop(colour, new THREE.LineSegments()));
+const gapEnds = onTop("gap", new THREE.Points(undefined, new THREE.PointsMaterial({ size: 7, sizeAttenuation: false })));
+
 function setLines(object, points) {
     object.geometry.dispose();
-    object.geometry = new THREE.BufferGeometry();
-    object.geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(points.flat()), 3));
+    object.geometry = new THREE.BufferGeometry().setFromPoints(points);
     object.visible = points.length > 0;
-}
-
-const onTop = { depthTest: false, transparent: true };
-const boxes = lines(0, onTop), boxesThen = lines(0, onTop), gapLine = lines(0, onTop), picked = lines(0, onTop);
-const bodies = new THREE.Group();
-const gapEnds = new THREE.Points(new THREE.BufferGeometry(), new THREE.PointsMaterial({ size: 7, sizeAttenuation: false, ...onTop }));
-gapEnds.frustumCulled = false;
-world.add(bodies, boxes, boxesThen, gapLine, gapEnds, picked);
-[boxes, boxesThen, gapLine, gapEnds, picked].forEach((object) => { object.renderOrder = 2; });
-
-/* Few materials for all bodies: three.js prepares each one. */
-const faceMaterials = new Map(), edgeMaterial = new THREE.LineBasicMaterial();
-
-/* The material of faces of a colour; null: of a mesh, whose faces have colours of their own. */
-function faceMaterial(colour) {
-    if (!faceMaterials.has(colour))
-        faceMaterials.set(colour, new THREE.MeshLambertMaterial({
-            side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-            color: colour ?? 0xffffff, vertexColors: colour === null ? THREE.VertexColors : THREE.NoColors,
-        }));
-    return faceMaterials.get(colour);
-}
-
-/* An item draws a body: faces, edges, and in a page of one step dashed edges where it ends. */
-function makeItem(key, shape, source) {
-    const surface = surfaceOf(shape), mesh = Boolean(surface.verdicts);
-    if (mesh)
-        colourMesh(surface, source.k === 1);
-    const item = {
-        key, shape, surface, source, faces: new THREE.Mesh(surface.faces, faceMaterial(mesh ? null : stage.colours.none)),
-        edges: new THREE.LineSegments(surface.edges, edgeMaterial),
-    };
-    item.faces.userData.item = item;
-    item.objects = [item.faces, item.edges];
-    return item;
-}
-
-function placeObject(object, item, part) {
-    const { stream, k } = item.source;
-    object.quaternion.copy(orientationOf(stream.step, k));
-    const offset = new THREE.Vector3(...item.surface.centre).applyQuaternion(object.quaternion);
-    object.position.set(...positionOf(stream.step, k, part, stage.exponent)).add(offset);
-}
-
-function addGhost(item) {
-    const { stream: { step }, k } = item.source;
-    if (!step.moves || ![0, 1, 2].some((axis) => numbers[step.shift + 3 * k + axis] !== 0))
-        return;
-    const ghost = new THREE.LineSegments(item.surface.edges, new THREE.LineDashedMaterial({
-        color: stage.colours.dim, dashSize: stage.radius / 30, gapSize: stage.radius / 45,
-    }));
-    placeObject(ghost, item, 1);
-    ghost.computeLineDistances();
-    bodies.add(ghost);
 }
 
 /* ---- Extent ---- */
@@ -163,21 +144,19 @@ function cornersOf(step, only = null) {
     step.bodies.forEach((body, k) => {
         if (!isDrawn(body) || (only && !only.includes(k)))
             return;
-        const turn = orientationOf(step, k), { corners } = surfaceOf(body[1]);
-        for (const part of step.moves ? [0, 1] : [0]) {
-            const at = positionOf(step, k, part, stage.exponent);
-            corners.forEach((p) => out.push(plus(new THREE.Vector3(...p).applyQuaternion(turn).toArray(), at)));
-        }
+        for (const part of step.moves ? [0, 1] : [0])
+            out.push(...placed(surfaceOf(body[1]).extent, step, k, part));
     });
     return out;
 }
 
 /* Sets centre and radius. */
 function setExtent(corners) {
+    const box = new THREE.Box3().setFromPoints(corners);
     stage.corners = corners;
-    const ends = [Math.min, Math.max].map((end) => [0, 1, 2].map((axis) => corners.reduce((most, p) => end(most, p[axis]), corners[0]?.[axis] ?? 0)));
-    stage.centre = plus(ends[0], plus(ends[1], ends[0], -1), 0.5);
-    stage.radius = Math.sqrt(dot(plus(ends[1], stage.centre, -1), plus(ends[1], stage.centre, -1))) || 1;
+    box.getCenter(stage.centre);
+    stage.moved = true;
+    stage.radius = box.getSize(new THREE.Vector3()).length() / 2 || 1;
 }
 
 function exponentOfStep(step) {
@@ -201,20 +180,13 @@ function dimOf(step) {
 const directions = { iso: [0.75, -1, 0.6], top: [0, 0, 1], front: [0, -1, 0], side: [1, 0, 0] };
 
 function look(direction) {
-    const [x, y, z] = stage.dim === 2 ? directions.top : direction;
-    camera.up.set(0, stage.dim === 2 || z === 1 ? 1 : 0, stage.dim === 2 || z === 1 ? 0 : 1);
-    controls.target.set(...stage.centre);
-    camera.position.copy(controls.target).addScaledVector(new THREE.Vector3(x, y, z === 1 ? 1 : z).normalize(), 8 * stage.radius);
-    if (stage.dim === 3 && z === 1) { /* the controls turn about z */
-        camera.up.set(0, 0, 1);
-        camera.position.y -= 1e-4 * stage.radius;
-    }
+    const from = new THREE.Vector3(...stage.dim === 2 ? directions.top : direction).normalize();
+    controls.target.copy(stage.centre);
+    camera.position.copy(sum(stage.centre, from, 8 * stage.radius));
     controls.update();
     camera.updateMatrixWorld();
-    stage.half = [0, 1].map((axis) => {
-        const across = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, axis).toArray(), middle = dot(stage.centre, across);
-        return stage.corners.reduce((most, p) => Math.max(most, Math.abs(dot(p, across) - middle)), 1e-3 * stage.radius);
-    });
+    const seen = new THREE.Box3().setFromPoints(stage.corners.map((corner) => corner.clone().applyMatrix4(camera.matrixWorldInverse)));
+    stage.half = ["x", "y"].map((axis) => Math.max(-seen.min[axis], seen.max[axis], 1e-3 * stage.radius));
     camera.near = stage.radius / 100;
     camera.far = 50 * stage.radius;
     camera.zoom = 1;
@@ -245,9 +217,35 @@ function resize() {
     const up = 1.08 * Math.max(stage.half[1], stage.half[0] * height / width), across = up * width / height;
     Object.assign(camera, { left: -across, right: across, top: up, bottom: -up });
     camera.updateProjectionMatrix();
-    renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * pace.scale);
     renderer.setSize(width, height, false);
     stage.dirty = true;
+}
+
+/* ---- Resolution: a browser that paints slowly gets less to paint while something moves ---- */
+
+/* Pixels in each direction, by level. Below 1 only bodies in contact have names, and the table follows less often. */
+const scales = [1, 0.75, 0.5];
+const pace = { level: 0, scale: 1, mean: 0, frames: 0, patience: 60 };
+
+/* Sets the scale for the next frame. In: moves: whether something moves; ms: how long the last frame took, the
+ * page's scripts not counted. The mean of some frames must be above 30 ms to lower the resolution, and below 20
+ * ms for `patience` frames to raise it. Each rise doubles the patience, so that it does not alternate. */
+function followPace(moves, ms) {
+    pace.mean = moves && pace.frames > 0 ? pace.mean + (Math.min(ms, 100) - pace.mean) / 8 : 25;
+    pace.frames = moves ? pace.frames + 1 : 0;
+    const isSlow = pace.frames > 8 && pace.mean > 30 && pace.level < scales.length - 1;
+    const isFast = pace.frames > pace.patience && pace.mean < 20 && pace.level > 0;
+    if (isSlow || isFast) {
+        pace.level += isSlow ? 1 : -1;
+        pace.patience *= isFast ? 2 : 1;
+        pace.frames = 0;
+    }
+    const scale = moves ? scales[pace.level] : 1;
+    if (scale !== pace.scale) {
+        pace.scale = scale;
+        resize();
+    }
 }
 
 /* ---- Drawing a moment ---- */
@@ -271,36 +269,45 @@ function statesOf(step, offset) {
     return states;
 }
 
-function colourOf(k, step, state) {
+/* The colours of an item; of a mesh by the verdict of a face. */
+function coloursOf({ state, surface, source: { stream: { step }, k } }) {
+    const { none, separated, touching, overlapping } = stage.colours, at = new THREE.Color(none), full = state.verdict === OVERLAPPING ? overlapping : touching;
+    if (surface.verdicts)
+        return [k === 1 ? "#5b7fb4" : none, separated, touching, overlapping].map((colour) => new THREE.Color(colour));
     if (one("colour").value === "body")
-        return bodyColours[(Number(step.bodies[k][0]) || k) % bodyColours.length];
-    const { none, touching, overlapping } = stage.colours;
-    if (state.verdict < TOUCHING)
-        return none;
-    const full = state.verdict === OVERLAPPING ? overlapping : touching;
-    return state.now ? full : `#${new THREE.Color(none).lerp(new THREE.Color(full), 0.3).getHexString()}`;
+        at.set(bodyColours[(Number(step.bodies[k][0]) || k) % bodyColours.length]);
+    else if (state.verdict >= TOUCHING)
+        at.lerp(new THREE.Color(full), state.now ? 1 : 0.3);
+    return [at];
 }
 
-const boxEdges = cuboidOf([0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]).edges;
-
+/* The edges of a box of an answer, as pairs of points; infinite ends are out of view. */
 function boxPoints(box) {
     const dim = box.length / 2;
-    const end = (side) => Array.from({ length: dim }, (_, axis) => box[side * dim + axis]);
-    const ends = [0, 1].map((side) => pointOf(end(side).map((x) => x ?? 0)).map((x, axis) => axis < dim && end(side)[axis] === null
-        ? stage.centre[axis] + (side ? 9 : -9) * stage.radius : x));
-    return boxEdges.filter(([a, b]) => dim === 3 || (a < 4 && b < 4)).flat().map((k) => [0, 1, 2].map((axis) => ends[k >> axis & 1][axis]));
+    const [low, high] = [box.slice(0, dim), box.slice(dim)].map((end, side) => {
+        const point = pointOf(end.map((x) => x ?? 0));
+        end.forEach((x, axis) => x === null && point.setComponent(axis, stage.centre.getComponent(axis) + (side ? 9 : -9) * stage.radius));
+        return point;
+    });
+    const { corners, edges } = boxOf(low, sum(high, low, -1), dim);
+    return edges.flat().map((k) => corners[k]);
 }
 
 /* The two triangles of a pair of faces, at a part of the window. */
 function pairTriangles(pair, part) {
     return pair.slice(0, 2).map((face, side) => {
         const { surface, source: { stream, k } } = stage.items[Math.min(side, stage.items.length - 1)];
-        const at = positionOf(stream.step, k, part, stage.exponent);
-        return (surface.triangles[face] ?? []).map((corner) => plus(surface.all[corner], at));
+        const at = positionOf(stream.step, k, part);
+        return (surface.triangles[face] ?? []).map((corner) => sum(surface.corners[corner], at));
     });
 }
 
+/* New buffers take a browser without a GPU long: only a mesh needs them in each frame. */
 function drawAnswers() {
+    const key = `${stage.step} ${stage.row?.index}`;
+    if (!isMesh && key === stage.answers)
+        return;
+    stage.answers = key;
     const box = (raw) => answerOf(raw)?.box;
     const shown = stage.streams.flatMap(({ step }) => step.pairs).slice(0, 300);
     setLines(boxes, shown.map((pair) => box(nowOf(pair))).filter(Boolean).flatMap(boxPoints));
@@ -324,26 +331,19 @@ function drawMoment(i, s) {
         stream.part = stream.step.T > 0 ? offset / stream.step.T : 0;
         stream.states = statesOf(stream.step, offset);
     }
-    for (const item of stage.items) {
-        const { stream, k } = item.source;
-        item.state = stream.states[k];
-        item.objects.forEach((object) => placeObject(object, item, stream.part));
-        if (!item.surface.verdicts)
-            item.faces.material = faceMaterial(colourOf(k, stream.step, item.state));
-    }
+    stage.items.forEach((item) => { item.state = item.source.stream.states[item.source.k]; });
     drawAnswers();
-    stage.dirty = true;
+    stage.dirty = stage.moved = true;
 }
 
 function beginStep(i) {
-    const step = steps[i], exponent = exponentOfStep(step), old = new Map(stage.items.map((item) => [item.key, item]));
+    const step = steps[i], exponent = exponentOfStep(step);
     const fresh = stage.step < 0 || dimOf(step) !== stage.dim || Math.abs(exponent - stage.exponent) > 6;
     stage.step = i;
     if (fresh) {
         stage.exponent = exponent;
         stage.dim = dimOf(step);
         stage.solids.clear();
-        old.clear();
     }
     /* what is of another size by far is not drawn beside it */
     stage.streams = streamsOf(i).filter((j) => Math.abs(exponentOfStep(steps[j]) - exponent) <= 16).map((j) => ({ i: j, step: steps[j] }));
@@ -354,17 +354,18 @@ function beginStep(i) {
             if (isDrawn(body) && data.shapes[body[1]].dim === stage.dim && !sources.has(key))
                 sources.set(key, { stream, k });
         });
-    stage.items = [...sources].map(([key, source]) => {
-        const shape = source.stream.step.bodies[source.k][1], item = old.get(key);
-        return item?.shape === shape ? Object.assign(item, { source }) : makeItem(key, shape, source);
+    /* sorted, so that steps of the same bodies have the same order */
+    const old = stage.items;
+    stage.items = [...sources.keys()].sort().map((key, n) => {
+        const source = sources.get(key), surface = surfaceOf(source.stream.step.bodies[source.k][1]);
+        return { source, surface, first: old[n]?.first };
     });
-    const objects = new Set(stage.items.flatMap((item) => item.objects));
-    bodies.children.filter((child) => !objects.has(child)).forEach((child) => bodies.remove(child));
-    objects.forEach((object) => object.parent || bodies.add(object));
+    if (old.length !== stage.items.length || stage.items.some(({ surface }, n) => surface !== old[n].surface))
+        buildBodies();
     if (fresh)
         fit(null, directions.iso);
     if (steps.length === 1)
-        stage.items.forEach(addGhost);
+        drawEnds();
     beginLabels();
 }
 
@@ -389,9 +390,9 @@ function drawLabels() {
     const { width, height } = stage.size, placed = [];
     const order = [...stage.labels ?? []].sort((a, b) => b.item.state.verdict - a.item.state.verdict);
     for (const { label, item, width: w, height: h } of order) {
-        const at = item.faces.position.clone().project(camera);
+        const at = item.centre.clone().project(camera);
         const x = Math.round((at.x + 1) / 2 * width - w / 2), y = Math.round((1 - at.y) / 2 * height - h / 2);
-        const isFree = one("names").checked && x >= 0 && y >= 0 && x + w <= width && y + h <= height
+        const isFree = one("names").checked && (pace.scale >= 1 || item.state.now) && x >= 0 && y >= 0 && x + w <= width && y + h <= height
             && placed.every((p) => x >= p.x + p.w || p.x >= x + w || y >= p.y + p.h || p.y >= y + h);
         label.style.visibility = isFree ? "visible" : "hidden";
         if (isFree) {
@@ -407,13 +408,13 @@ function drawLabels() {
 function drawPointed(event) {
     const box = one("scene").getBoundingClientRect(), ray = new THREE.Raycaster();
     ray.setFromCamera({ x: (event.clientX - box.left) / box.width * 2 - 1, y: 1 - (event.clientY - box.top) / box.height * 2 }, camera);
-    const [hit] = ray.intersectObjects(stage.items.map((item) => item.faces));
+    const [hit] = ray.intersectObject(faces);
     one("pointed").hidden = !hit;
     if (!hit)
         return;
-    const { surface, state, source: { stream, k } } = hit.object.userData.item;
-    const verdict = isMesh ? surface.verdicts[hit.faceIndex] : state.verdict;
-    one("pointed").textContent = `${isMesh ? `${k ? "B" : "A"} ${hit.faceIndex}` : bodyName(stream.step, k)}${verdict ? `: ${verdictNames[verdict]}` : ""}`;
+    const { surface, state, first, source: { stream, k } } = stage.items[lastUpTo(stage.items.map((item) => item.first), hit.face.a)];
+    const face = Math.floor((hit.face.a - first) / 3), verdict = isMesh ? surface.verdicts[face] : state.verdict;
+    one("pointed").textContent = `${isMesh ? `${k ? "B" : "A"} ${face}` : bodyName(stream.step, k)}${verdict ? `: ${verdictNames[verdict]}` : ""}`;
 }
 
 /* ---- Colours, and the loop ---- */
@@ -422,20 +423,17 @@ function readColours() {
     const style = getComputedStyle(document.documentElement);
     for (const name of ["separated", "touching", "overlapping", "none", "edge", "dim", "box", "diff", "gap", "ink", "rule"])
         stage.colours[name] = style.getPropertyValue(`--${name}`).trim();
-    boxes.material.color.set(stage.colours.box);
-    boxesThen.material.color.set(stage.colours.diff);
-    for (const object of [gapLine, gapEnds])
-        object.material.color.set(stage.colours.gap);
-    picked.material.color.set(stage.colours.box);
-    edgeMaterial.color.set(stage.colours.edge);
-    stage.items.filter((item) => item.surface.verdicts).forEach((item) => colourMesh(item.surface, item.source.k === 1));
+    world.traverse(({ material, userData: { colour } }) => colour && material.color.set(stage.colours[colour]));
+    stage.moved = true;
 }
 
 /* Draws if something has changed. */
 function drawScene() {
     if (!renderer || !stage.dirty)
         return;
-    stage.dirty = false;
+    if (stage.moved && stage.items.length > 0)
+        placeBodies();
+    stage.dirty = stage.moved = false;
     renderer.render(world, camera);
     drawLabels();
 }
@@ -444,6 +442,8 @@ if (renderer) {
     controls.enableKeys = false;
     controls.screenSpacePanning = true;
     controls.addEventListener("change", () => { stage.dirty = true; });
+    controls.addEventListener("start", () => { stage.turning = true; });
+    controls.addEventListener("end", () => { stage.turning = false; });
     new ResizeObserver(resize).observe(one("stage"));
     one("scene").addEventListener("pointermove", drawPointed);
     one("scene").addEventListener("pointerleave", () => { one("pointed").hidden = true; });

@@ -3,25 +3,15 @@
 const table = { shown: [], limit: 100, sort: null, down: false, step: -1, time: 0, cells: [] };
 const hasContacts = steps.some((step) => step.T > 0 && step.pairs.some((pair) => answerOf(nowOf(pair))?.contact));
 const hasGaps = steps.some((step) => step.pairs.some((pair) => answerOf(nowOf(pair))?.gap));
+/* title: of an answer, its name among the facts; value: what is sorted by. */
 const columns = [
-    { title: "pair", text: (row) => row.name, value: (row) => row.name },
-    { title: "verdict", text: (row, answer) => verdictText(row, answer), value: (row, answer) => answer ? -answer.verdict : 1 },
-    { title: "contact", text: (row, answer) => contactText(answer), value: (row, answer) => answer?.contact?.[0] ?? Infinity },
-    { title: "gap", text: (row, answer) => answer?.gap ? interval(...answer.gap.slice(0, 2)) : "", value: (row, answer) => answer?.gap?.[0] ?? Infinity },
-    { title: "over time", value: (row) => segmentsOf(row).find(([, , verdict]) => verdict >= TOUCHING)?.[0] ?? Infinity },
-].filter((column) => (column.title !== "contact" || hasContacts) && (column.title !== "gap" || hasGaps)
-    && (column.title !== "over time" || steps.length > 1 || hasContacts));
+    { title: "pair", value: (row) => row.name },
+    { title: "verdict", width: "14ch", value: (row, answer) => answer ? -answer.verdict : 1 },
+    { title: "contact", width: "22ch", value: (row, answer) => answer?.contact?.[0] ?? Infinity },
+    { title: "gap", width: "22ch", value: (row, answer) => answer?.gap?.[0] ?? Infinity },
+    { title: "over time", width: "34%", lane: true, value: (row) => segmentsOf(row).find(([, , verdict]) => verdict >= TOUCHING)?.[0] ?? Infinity },
+].filter(({ title, lane }) => (title !== "contact" || hasContacts) && (title !== "gap" || hasGaps) && (!lane || steps.length > 1 || hasContacts));
 const collator = new Intl.Collator(undefined, { numeric: true });
-
-function verdictText(row, answer) {
-    if (!answer)
-        return "";
-    return answer.error ?? verdictNames[answer.verdict];
-}
-
-function contactText(answer) {
-    return answer?.contact ? `${interval(...answer.contact)} s` : "";
-}
 
 function currentAnswer(row) {
     const pair = pairNow(row, Math.max(table.step, 0));
@@ -60,11 +50,11 @@ function makeRow(row) {
     const tr = document.createElement("tr");
     tr.dataset.row = row.index;
     tr.className = row === stage.row ? "chosen" : "";
-    for (const column of columns) {
+    for (const { lane } of columns) {
         const td = tr.insertCell();
-        if (!column.text) {
+        if (lane) {
             td.className = "lane";
-            td.append(document.createElement("canvas"), Object.assign(document.createElement("i"), { className: "head" }));
+            td.append(one("lane").content.cloneNode(true));
         }
     }
     tr.cells[0].textContent = row.name;
@@ -75,15 +65,15 @@ function makeRow(row) {
 /* Writes the answers of this moment where they have changed. */
 function fillRows() {
     table.shown.forEach((row, n) => {
-        const answer = currentAnswer(row), cells = table.cells[n];
-        columns.forEach((column, k) => {
-            const text = k > 0 && column.text ? column.text(row, answer) : null;
-            if (text !== null && cells[k].textContent !== text)
-                cells[k].textContent = text;
+        const answer = currentAnswer(row), facts = answer ? factsOf(answer) : {};
+        columns.forEach(({ title, lane }, k) => {
+            const cell = table.cells[n][k], text = facts[title] ?? "";
+            if (k > 0 && !lane && cell.textContent !== text)
+                cell.textContent = cell.title = text;
         });
         const name = `verdict v${answer?.verdict ?? 0}`;
-        if (cells[1].className !== name)
-            cells[1].className = answer ? name : "";
+        if (table.cells[n][1].className !== name)
+            table.cells[n][1].className = name;
     });
 }
 
@@ -96,6 +86,7 @@ function drawLanes() {
 function drawHeads() {
     one("heads").replaceChildren(...columns.map((column, k) => {
         const th = document.createElement("th");
+        th.style.width = column.width;
         th.textContent = column.title + (table.sort === k ? table.down ? " ▾" : " ▴" : "");
         th.addEventListener("click", () => {
             table.down = table.sort === k && !table.down;
@@ -118,6 +109,8 @@ function choose(row) {
 }
 
 function addFact(list, name, text, differs = false) {
+    if (!text)
+        return;
     const dt = document.createElement("dt"), dd = document.createElement("dd");
     dt.textContent = name;
     dd.textContent = text;
@@ -159,19 +152,15 @@ function drawDetail() {
     if (!step)
         return;
     const pair = stage.row && pairNow(stage.row, table.step);
-    if (stage.row)
-        addFact(list, "pair", stage.row.name);
+    addFact(list, "pair", stage.row?.name);
     if (pair)
         addComparison(list, pair);
-    if (step.label)
-        addFact(list, "label", step.label);
+    addFact(list, "label", step.label);
     if (step.outcome)
         addFact(list, "query", `event ${step.event} at byte ${step.offset} of ${data.logs[step.log]}: ${step.outcome}`, step.differs);
     step.result?.forEach((result, side) => result && addFact(list, data.sides[side], resultText(result)));
-    if (step.note)
-        addFact(list, "note", step.note);
-    if (step.more)
-        addFact(list, "left out", `${step.more} more pairs of this step`);
+    addFact(list, "note", step.note);
+    addFact(list, "left out", step.more && `${step.more} more pairs of this step`);
     step.bodies.forEach(([id, shape, name], index) => typeof shape === "string" && addFact(list, "not drawn", `${name || `body ${id || `#${index}`}`}: ${shape}`));
     one("detail").replaceChildren(list);
 }
