@@ -2,9 +2,9 @@
  * A step is one query: its placed bodies, a window of time, and the answers to pairs of them.
  *
  *     struct page *page = page_open(&options);
- *     page_step_begin(page, &step);   // for each step, in any order of time:
+ *     page_step_begin(page, &step);      // for each step, in any order of time:
  *     page_body(page, &placement, NULL); // each body, in the order of the indices of the pairs
- *     page_pair(page, a, b, ...);     //   each pair that has an answer
+ *     page_pair(page, a, b, ...);        // each pair that has an answer
  *     page_step_end(page);
  *     page_write(page, out);
  *
@@ -113,7 +113,7 @@ void page_mesh(struct page *page, const struct page_mesh *mesh);
 /* Adds a line about the page as a whole. */
 void page_note(struct page *page, const char *note);
 
-/* On output: ferror(out) is set if writing failed. */
+/* Call it once. On output: ferror(out) is set if writing failed. */
 void page_write(struct page *page, FILE *out);
 
 #endif

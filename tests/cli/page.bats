@@ -129,6 +129,7 @@ setup() {
         and .table == ["cube – gripper | overlapping | 1.9 to 2 s | -0.025", "table – cube | touching | 0 to 2 s | 0",
             "table – gripper | separated | 0.025"]'
     found light '.opened | .drawn > 40000 and .yellow > 10000 and .red == 0 and .violet > 100' \
+        '.opened.widths | length == 5 and all(. >= 90)' \
         '.opened | .lanes == [["none", "overlapping"], ["touching"], ["separated"]]' \
         '.opened.labels | sort == ["cube", "gripper", "table"]'
 }

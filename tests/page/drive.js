@@ -110,7 +110,7 @@ async function scene() {
     found.opened = {
         ...moment(), ...picture(), title: page.title, counts: text("#counts"), table: table(), labels: labels().map((span) => span.textContent),
         scripts: page.scripts.length, resources: view.performance.getEntriesByType("resource").length, places: places(),
-        lanes: [lane(0), lane(1), lane(2)], boxes: view.fmb.stage.items.length, camera: view.fmb.camera.zoom,
+        lanes: [lane(0), lane(1), lane(2)], widths: all("#heads th").map((th) => th.offsetWidth), boxes: view.fmb.stage.items.length, camera: view.fmb.camera.zoom,
     };
     await mouse(all("#pairs tr")[2].cells[0]);
     found.gap = { ...picture(), ...moment() };

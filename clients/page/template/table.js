@@ -5,11 +5,11 @@ const hasContacts = steps.some((step) => step.T > 0 && step.pairs.some((pair) =>
 const hasGaps = steps.some((step) => step.pairs.some((pair) => answerOf(nowOf(pair))?.gap));
 /* title: of an answer, its name among the facts; value: what is sorted by. */
 const columns = [
-    { title: "pair", value: (row) => row.name },
-    { title: "verdict", width: "14ch", value: (row, answer) => answer ? -answer.verdict : 1 },
-    { title: "contact", width: "22ch", value: (row, answer) => answer?.contact?.[0] ?? Infinity },
-    { title: "gap", width: "22ch", value: (row, answer) => answer?.gap?.[0] ?? Infinity },
-    { title: "over time", width: "34%", lane: true, value: (row) => segmentsOf(row).find(([, , verdict]) => verdict >= TOUCHING)?.[0] ?? Infinity },
+    { title: "pair", width: "20%", value: (row) => row.name },
+    { title: "verdict", width: "20%", value: (row, answer) => answer ? -answer.verdict : 1 },
+    { title: "contact", width: "25%", value: (row, answer) => answer?.contact?.[0] ?? Infinity },
+    { title: "gap", width: "17%", value: (row, answer) => answer?.gap?.[0] ?? Infinity },
+    { title: "over time", width: "18%", lane: true, value: (row) => segmentsOf(row).find(([, , verdict]) => verdict >= TOUCHING)?.[0] ?? Infinity },
 ].filter(({ title, lane }) => (title !== "contact" || hasContacts) && (title !== "gap" || hasGaps) && (!lane || steps.length > 1 || hasContacts));
 const collator = new Intl.Collator(undefined, { numeric: true });
 
