@@ -30,7 +30,8 @@ static const char usage[] =
     "  --csv            one line of CSV for each pair, exact, after a line of column\n"
     "                   names\n"
     "  --contacts       print only the pairs that touch, overlap or are near, and\n"
-    "                   those that could not be decided\n"
+    "                   those that could not be decided; of tables, only those with\n"
+    "                   such pairs\n"
     "  --all            print all pairs in tables too, which otherwise leave out the\n"
     "                   separated pairs of a scene after the first 20\n"
     "  --fail-if WHAT   exit with 3, after all scenes, if a pair is overlapping;\n"
@@ -219,6 +220,7 @@ static int run_query(struct query *query, int fd)
     query->report[0] = &rows.report;
     query->report[1] = page.page ? &page.report : NULL;
     int code = answer_scenes(query, fd);
+    report_rows_end(&rows);
     if (query->answers)
         answers_bus_close(query->answers);
     bool good = code == ARGS_USAGE || write_page(&query->html, page.page);

@@ -39,8 +39,10 @@ static void begin_table(struct report_rows *rows)
     const struct fmb_scene *scene = &rows->report.scene->scene;
     const uint64_t count = scene_count_pairs(rows->report.scene);
     char duration[NUMBER_TEXT_MAX], pairs[NUMBER_TEXT_MAX];
+    rows->begun = true;
     rows->printer.columns = columns_for(rows->report.scene);
-    fprintf(rows->printer.out, "%sscene %" PRId64, rows->scenes > 1 ? "\n" : "", rows->scenes);
+    fprintf(rows->printer.out, "%sscene %" PRId64, rows->scenes > rows->apart + 1 ? "\n" : "",
+            rows->scenes);
     if (scene->label)
         fprintf(rows->printer.out, " (%s)", scene->label);
     fprintf(rows->printer.out, ": %zu bod%s in %dD, %s pair%s, 0 to %s s\n", scene->placement_count,
@@ -77,9 +79,10 @@ static void begin_scene(struct report *report)
     rows->scenes++;
     memset(rows->count, 0, sizeof rows->count);
     rows->near = rows->left_out = 0;
+    rows->begun = false;
     if (rows->printer.form == REPORT_JSON)
         begin_json(rows);
-    else if (rows->printer.form == REPORT_TABLE)
+    else if (rows->printer.form == REPORT_TABLE && !rows->contacts)
         begin_table(rows);
 }
 
@@ -89,9 +92,10 @@ static void end_scene(struct report *report)
     if (rows->printer.form == REPORT_JSON) {
         json_end(&rows->printer.json, ']');
         json_object_end(&rows->printer.json);
-    } else if (rows->printer.form == REPORT_TABLE) {
+    } else if (rows->printer.form == REPORT_TABLE && rows->begun) {
         end_table(rows);
     }
+    rows->apart += !rows->begun;
     fflush(rows->printer.out);
 }
 
@@ -121,11 +125,29 @@ static void take_pair(struct report *report, const struct fmb_client_answer *of)
     const struct report_row row = row_of(rows, of);
     rows->count[of->answer.verdict]++;
     rows->near += near;
-    if (apart && rows->printer.form == REPORT_TABLE && !rows->contacts && !rows->all &&
-        rows->count[FMB_SEPARATED] - rows->near > REPORT_SEPARATED_MAX)
+    if (apart && rows->contacts)
+        return;
+    if (apart && rows->printer.form == REPORT_TABLE && !rows->all &&
+        rows->count[FMB_SEPARATED] - rows->near > REPORT_SEPARATED_MAX) {
         rows->left_out++;
-    else if (!apart || !rows->contacts)
-        report_row_print(&rows->printer, 0, &row);
+        return;
+    }
+    if (rows->printer.form == REPORT_TABLE && !rows->begun)
+        begin_table(rows);
+    report_row_print(&rows->printer, 0, &row);
+}
+
+void report_rows_end(const struct report_rows *rows)
+{
+    char apart[NUMBER_TEXT_MAX], scenes[NUMBER_TEXT_MAX];
+    if (rows->printer.form != REPORT_TABLE || rows->apart == 0)
+        return;
+    if (rows->scenes == 1)
+        fputs("no contacts\n", rows->printer.out);
+    else
+        fprintf(rows->printer.out, "%sno contacts in %s of %s scenes\n",
+                rows->apart < rows->scenes ? "\n" : "", number_grouped(rows->apart, apart),
+                number_grouped(rows->scenes, scenes));
 }
 
 struct report_rows report_rows(const struct report_rows *options)

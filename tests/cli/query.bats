@@ -285,6 +285,17 @@ row() {
     [ "${#lines[@]}" = 5 ]
     run --separate-stderr "$FMB" query --local --contacts --csv <<< "$(row 10)"
     [ "${#lines[@]}" = 3 ]
+    # Of the steps of a path, those without contacts are only counted.
+    local apart
+    apart=$(printf '{"dim": 2, "bodies": [{"id": 1, %s, "origin": [0,0]}, {"id": 2, %s, "origin": [9,0]}]}' "$square" "$square")
+    run "$FMB" query --local --contacts <<< "$apart $(row 10) $apart $(row 10) $apart"
+    ended 0
+    [ "$(grep -c '^scene ' <<< "$output")" = 2 ]
+    [[ "${lines[0]}" = 'scene 2: '* ]]
+    [ "${lines[-1]}" = 'no contacts in 3 of 5 scenes' ]
+    run "$FMB" query --local --contacts <<< "$apart"
+    ended 0
+    [ "$output" = 'no contacts' ]
     # A pair that could not be decided is one to look at.
     query '{"dim": 2, "bodies": [
         {"id": 1, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[1,0]]},
