@@ -108,7 +108,7 @@ static bool read_number(struct mesh_source *source, size_t axis, double *out)
     char text[MESH_WORD_MAX];
     const unsigned char *begin = source->at, *end = mesh_number(begin, out);
     if (!end || !ends_word(source, end))
-        return mesh_refuse(source, begin, "'%s' is no number", mesh_word(source, begin, text));
+        return mesh_refuse(source, begin, "'%s' is not a number", mesh_word(source, begin, text));
     if (axis < 3 && !isfinite(*out))
         return mesh_refuse(source, begin, "%c is not finite", "xyz"[axis]);
     source->at = end;

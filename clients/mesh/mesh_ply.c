@@ -301,7 +301,7 @@ static bool read_text(struct mesh_source *source, double *value)
     if (*begin == '\n')
         return mesh_refuse(source, begin, "the line ends before all numbers of %s %zu",
                            source->within, source->index);
-    return mesh_refuse(source, begin, "'%s' is no number", mesh_word(source, begin, text));
+    return mesh_refuse(source, begin, "'%s' is not a number", mesh_word(source, begin, text));
 }
 
 /* Every value of each type is a double. */

@@ -411,7 +411,7 @@ triangle() {
     mesh model://m.stl "model://m.stl: expected a path with '/', file://PATH or package://NAME/PATH"
     mesh m.DAE 'm.DAE: COLLADA is not supported: convert it to STL or OBJ'
     printf 'v 0 0 0\nv 1 0 x\n' > m.obj
-    mesh m.obj "m.obj: line 2: 'x' is no number"
+    mesh m.obj "m.obj: line 2: 'x' is not a number"
     printf 'v 0 0 0\nv 1 0 0\n' > m.obj
     mesh m.obj 'm.obj: the mesh has no faces'
     triangle m.stl
