@@ -1,12 +1,13 @@
 /* The queries and results of logs, and which belong together.
  *
  * A result belongs to the query with the same kind, client id, sequence number and time of sending;
- * if there are several, to the first without a result. A result that depends on the moment leaves
- * its query open: a later one replaces it, until the query is repeated. Other results of a query
- * that has one are second results. Queries and results that are left are matched without the time
- * of sending, in their order, for results that do not echo it.
+ * if there are several, to the first without a result. A transient result, whose status depends on
+ * the moment, leaves its query open: a later one replaces it, until the query is repeated. Other
+ * results of a query that has one are second results. Queries and results that are left are matched
+ * without the time of sending, in their order, for results that do not echo it.
  *
- * Memory: some 100 bytes for each query and each result. For one thread at a time. */
+ * Memory: some 100 bytes for each query and each result: an item, and 24 bytes while match_all()
+ * sorts. The array of items reserves up to twice its size. For one thread at a time. */
 #ifndef MATCH_H
 #define MATCH_H
 
@@ -37,7 +38,7 @@ struct match_item {
     /* The result of a query; the query of a result, even of a second one. NULL: none. */
     struct match_item *other;
     bool is_result; /* otherwise a query */
-    bool transient; /* of a result: it depends on the moment */
+    bool transient; /* of a result: logged_status_is_transient() */
     bool second;    /* of a result: its query has another one */
     /* For the user: */
     bool unreadable; /* only the key can be read */
