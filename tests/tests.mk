@@ -147,7 +147,7 @@ fuzzers := $(fuzz_targets:%=$(B)/fuzz_%)
 # Each file of planted/ is a copy of one file with one fault, and has the name of the target that
 # must find it, followed by a dash and a word where a target has several.
 planted_fuzzers := $(patsubst tests/fuzz/planted/%.c,$(B)/planted/%,$(wildcard tests/fuzz/planted/*.c))
-# Some targets replace readers of files.
+# Some targets replace an object of the product.
 fuzz_pieces_scene_json := $(O)/tests/fuzz/exact_text.o
 fuzz_pieces_event_log := $(O)/tests/fuzz/log_pieces.o
 fuzz_target = $(firstword $(subst -, ,$1))

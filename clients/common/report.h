@@ -121,7 +121,7 @@ struct report_rows {
     bool contacts, all;            /* rows: no separated pairs but near ones; in tables all */
     /* Private. */
     int64_t scenes, apart; /* apart: the scenes without a row, if only contacts are wanted */
-    bool begun;            /* the table of the scene */
+    bool begun;            /* the table of the scene has begun */
     uint64_t count[FMB_OVERLAPPING + 1]; /* [verdict] of the scene; [0]: not decided */
     uint64_t near, left_out;             /* of those separated */
 };
@@ -129,8 +129,8 @@ struct report_rows {
 /* options: with the members that the caller sets. Writes the column names of CSV. */
 struct report_rows report_rows(const struct report_rows *options);
 
-/* To be called after the last scene. If only contacts are wanted, a table begins with the first of
- * them; this prints how many scenes have none. */
+/* To be called after the last scene. If only contacts are wanted, a scene without one has no table;
+ * this prints how many there are. */
 void report_rows_end(const struct report_rows *rows);
 
 #endif

@@ -98,7 +98,8 @@ static enum scan scan_byte(struct text *text, char byte)
 
 /* ---- Objects --------------------------------------------------------------------------------- */
 
-/* The first byte after white space, and after a byte order mark at the start of the input; EOF. */
+/* Returns the first byte after white space, and after a byte order mark at the start of the input;
+ * EOF: there is none. */
 static int first_byte(struct text *text)
 {
     int byte = getc_unlocked(text->file);

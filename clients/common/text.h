@@ -19,7 +19,7 @@ enum {
 
 enum text_outcome { TEXT_OBJECT, TEXT_END, TEXT_BAD, TEXT_FAILED };
 
-/* Memory: the longest object. Read error; the rest is private. */
+/* Memory: the longest object. Callers read error; the rest is private. */
 struct text {
     FILE *file;  /* owned; NULL: errno says why */
     char *bytes; /* owned; of the current object */

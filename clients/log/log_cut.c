@@ -187,7 +187,8 @@ static void define(struct cutter *cut, enum log_kind kind, const struct log_even
     definitions_add_query(cut->definitions, &cut->query);
 }
 
-/* The query or result that an event was in the first pass; NULL: neither. */
+/* Returns the item of the first pass that is this event; NULL: it is neither a query nor a result.
+ * To be called for each event, in order. */
 static const struct match_item *next_item(struct cutter *cut, const struct log_event *event)
 {
     if (cut->next == cut->match.count)
@@ -198,8 +199,8 @@ static const struct match_item *next_item(struct cutter *cut, const struct log_e
     return found ? item : NULL;
 }
 
-/* A result is chosen with its query. Anything but queries, and results that have one, is chosen by
- * its own time. */
+/* A result is chosen with its query. Results without a query and other messages are chosen by their
+ * own time, unless bodies are chosen. */
 static bool is_chosen(struct cutter *cut, enum log_kind kind, const struct log_event *event)
 {
     const struct log_choice *choice = &cut->options->choice;

@@ -10,8 +10,8 @@
  * the logs do not define are counted. Unless everything is chosen, names_t messages are not copied:
  * the new log begins with the names of all bodies of the logs.
  *
- * The logs are read twice: once to choose, once to copy. Memory: as match.h, each distinct body,
- * and the largest event. */
+ * The logs are read twice: once to choose, once to copy. Memory: that of match.h, each distinct
+ * body, and the largest event. */
 #ifndef LOG_CUT_H
 #define LOG_CUT_H
 

@@ -23,13 +23,13 @@ struct query_search {
     struct match match; /* of the last log */
     struct logged_result result;
     enum log_query_outcome outcome;
-    /* Events that match the options: their number, and the offsets of the first ones. The others
-     * are of the first match, which is in out->bytes. */
+    /* Events that match the options: their number, and the offsets of the first ones. The members
+     * below describe the first match, whose data is in out->bytes. */
     int64_t count;
     int64_t listed[LISTED_MAX]; /* offsets */
     enum log_kind kind;
-    size_t item;       /* its index */
-    const char *error; /* why it is none; NULL: it is one */
+    size_t item;       /* its index in match */
+    const char *error; /* why it cannot be decoded; NULL: it can */
 };
 
 /* ---- Reading the logs ---- */
@@ -150,7 +150,8 @@ static void refuse_several(struct query_search *search)
            search->count > LISTED_MAX ? " ..." : "");
 }
 
-/* Finds the query of the event. Returns NULL if there is none, or not one, which was reported. */
+/* Returns the query that was requested, or whose result was. Returns NULL after an error, which was
+ * reported: there is none, or there are several. */
 static const struct match_item *find_query(struct query_search *search)
 {
     if (search->count > 1)

@@ -95,7 +95,7 @@ static void match_group(struct match_item **item, size_t count, bool exact,
 
 enum { IDS_BYTES = offsetof(struct match_key, utime) };
 
-/* In the order of their keys, of which *bytes count, and then in their own order. */
+/* Orders items by the first *bytes bytes of their keys, then by their position. */
 static int compare(const void *a, const void *b, void *bytes)
 {
     const struct match_item *left = *(struct match_item *const *) a;
@@ -104,7 +104,7 @@ static int compare(const void *a, const void *b, void *bytes)
     return order ? order : (left > right) - (left < right);
 }
 
-/* bytes: of the keys, that have to be the same. */
+/* Matches items whose keys agree in their first `bytes` bytes. */
 static void match_by(size_t bytes, struct match_item **item, size_t count,
                      struct match_item **waiting)
 {

@@ -32,8 +32,9 @@ void answer_bus_close(struct answer_bus *bus); /* may be NULL */
 
 /* The next three functions may call the sink for earlier queries. */
 
-/* Sends a query with valid ids, of at most QUERY_BYTES_MAX, whose bytes are copied, when it is due
- * and another may be under way. The item must stay valid until the sink is called. */
+/* Sends a query as soon as it is due and the client library has capacity for it. In: valid ids; at
+ * most QUERY_BYTES_MAX bytes, which are copied. The item has to stay valid until the sink is
+ * called. */
 void answer_bus_query(struct answer_bus *bus, struct match_item *item, const unsigned char *bytes,
                       uint32_t size);
 

@@ -17,7 +17,7 @@ struct replay_sink {
                        const char *what);
     /* Damage of a log. */
     void (*damage)(void *user, int log, const struct log_damage *damage);
-    /* So many bytes out of so many have been read. */
+    /* Progress: this share of the work is done, in bytes of the logs. */
     void (*progress)(void *user, int64_t bytes, int64_t of);
     void *user;
 };

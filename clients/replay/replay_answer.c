@@ -137,7 +137,7 @@ bool replay_has_ended(const struct replay *replay)
     return replay->bus && !answer_bus_is_running(replay->bus);
 }
 
-/* To read the logs was half of the work. */
+/* Reading the logs counts as the first half of the progress. */
 void replay_answer_queries(struct replay *replay)
 {
     const size_t count = replay->match.count;

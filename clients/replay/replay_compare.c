@@ -182,7 +182,7 @@ void replay_compare(struct replay *replay, const struct match_item *query,
         add_to_page(replay, query, &replay->then, outcome);
 }
 
-/* ---- Results among themselves ---- */
+/* ---- Second results, and results without a query ---- */
 
 static void no_difference(void *user, const struct difference *difference)
 {

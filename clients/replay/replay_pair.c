@@ -1,15 +1,16 @@
 /* Pairs the queries of two recordings of the same scenes by different clients.
  *
- * In: the queries and results that have no counterpart by client id and sequence number. Clients
- * with a counterpart are not paired: what is left of them has none.
+ * In: the queries and results that have no counterpart by client id and sequence number. A client
+ * with any such counterpart is not paired: its other queries have none.
  *
  * Steps:
  *   1. note_matched()   the clients that are not paired
- *   2. pair_queries()   numbers the queries of the replayed logs: their clients by first
- * appearance, and the queries of a client within their group (type, label, first pair; for pairs,
- * the ids of both bodies). Repeated queries, with the same ids, are one. Then those of the golden
- * log, in the same way, which pairs them. A golden log without queries has only the types of its
- * results: then the group is the type, on both sides
+ *   2. pair_queries()   numbers the clients of the replayed logs by first appearance, and the
+ *                       queries of a client within their group (type, label, first pair; for
+ *                       pairs, the ids of both bodies). Repeated queries, with the same ids,
+ *                       are one. Then it numbers those of the golden log in the same way: equal
+ *                       numbers are a pair. A golden log without queries has only the types of
+ *                       its results: then the group is the type, on both sides
  *   3. rename_results() gives each golden result the key of the query that its own query is paired
  *                       with, so that match_all() matches it as if it were recorded with that
  *                       query */

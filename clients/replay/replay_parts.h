@@ -1,10 +1,9 @@
 /* The state of a replay, and its parts. Private.
  *
- * The logs are read once. That collects names and definitions, and finds for each query the place
- * of its result (match.h); replay_pair.c does so for results of other clients. Then replay_answer.c
- * reads and answers the queries one after the other, and replay_compare.c compares the new result
- * with the recorded one. replay.c runs all of that. Each part calls only those that follow it here.
- */
+ * replay.c reads the logs from the first event to the last, collects names and definitions, and
+ * matches queries with results (match.h); replay_pair.c matches results of other clients. Then
+ * replay_answer.c reads each query again and answers it, and replay_compare.c compares the new
+ * result with the recorded one. Each part calls only those that follow it here. */
 #ifndef REPLAY_PARTS_H
 #define REPLAY_PARTS_H
 
@@ -21,7 +20,7 @@ struct replay {
     struct tally *tally; /* [log_count] */
     struct log_channels channels;
     char **paths; /* owned: of the logs, and of the golden log if there is one */
-    /* Read the logs, and then the queries again; the results and what a callback needs. */
+    /* The first reads the logs, then the queries again; the other results, and in callbacks. */
     struct input input, rereader;
     struct output *golden_file;    /* NULL: none */
     struct log_writer *new_golden; /* of golden_file */
@@ -30,7 +29,7 @@ struct replay {
     bool started, failed;
     int old_version; /* that recorded a message; 0: none did */
 
-    struct match match;          /* of the results to compare with */
+    struct match match;          /* queries, and the results to compare with */
     struct match golden_queries; /* of a golden log */
 
     struct local_answerer *local;
@@ -80,10 +79,11 @@ void replay_fail_changed(struct replay *replay, int log);
 /* The counts of the channel of a query or result. */
 struct tally_channel *replay_channel(struct replay *replay, const struct match_item *item);
 
-/* Reports a message that cannot be decoded, or otherwise not used. */
+/* Reports a message that cannot be decoded, or is not used for another reason. */
 void replay_report(struct replay *replay, const struct match_item *item, const char *what);
 
-/* Reads a query again and decodes it: its size in *size. Returns false after replay_fail_log(). */
+/* Reads a query again and decodes it; *size: its bytes. Returns false if it cannot be read, or has
+ * changed, which was reported. */
 bool replay_read_query(struct replay *replay, struct input *input, const struct match_item *query,
                        unsigned char bytes[LOG_DATA_MAX], uint32_t *size, struct logged_query *out);
 

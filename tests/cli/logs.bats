@@ -81,8 +81,8 @@ capped_at() {
         '[.[].channel] | unique | length > 12' '.[0].channel == "FMB_PAIR_RESULT"'
 
     "$DESCRIBE" tests/logs/clients.log > "$BATS_TEST_TMPDIR/events"
-    # Of two services one holds a body, and the other one does not; then both. One answered thrice, one
-    # turned away twice and then answered.
+    # Of two services one holds a body, and the other one does not; then both. One query has three results;
+    # one is refused twice and then answered.
     holds -s "$BATS_TEST_TMPDIR/events" '[.[] | .server // empty] | unique == [500, 501, 502, 503, 600]' \
         'any(.[]; .channel == "FMB_DEFINITION")' \
         '[.[] | select(.server == 503 or .server == 600)] | group_by([.client, .number])

@@ -22,8 +22,8 @@ replay() {
     "$FMB" replay --json --bus --retries 40 "$@" > replayed 2> stderr || code=$?
 }
 
-# is_same FILE [EXPRESSION...]: it is the replay of the file in_process, but for what is of the moment,
-# or of the bus, or in $left_out; and the expressions are true of it.
+# is_same FILE [EXPRESSION...]: the replay in the file is that of in_process, except for times, the counts
+# of the bus, and what $left_out names; and the expressions are true of it.
 is_same() {
     local essence="del(.compute, .bus${left_out-})" expression all=true
     for expression in "${@:2}"; do all+=" and ($expression)"; done
@@ -34,8 +34,8 @@ is_same() {
     }
 }
 
-# as_in_process OPTIONS LOG... [-- EXPRESSION...]: exit code, counts and differences, each of them; and
-# the expressions are true.
+# as_in_process OPTIONS LOG... [-- EXPRESSION...]: the replay through the service has the exit code,
+# counts and differences of the one in process; and the expressions are true of it.
 as_in_process() {
     local expected=0 arguments=()
     while [ $# != 0 ] && [ "$1" != -- ]; do

@@ -7,8 +7,8 @@ load ../ran
 FMBD=$FMB_BUILD/fmbd
 FMB=$FMB_BUILD/fmb
 
-# Waits up to 10 s until a command succeeds. Nothing comes through the pipe, so that its time passes
-# without a process.
+# Waits up to 10 s until a command succeeds. A read from a pipe without data sleeps without a process of
+# its own.
 exec {nothing}<> <(:)
 wait_until() {
     local i

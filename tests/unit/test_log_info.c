@@ -34,7 +34,7 @@ static void expect_row(const struct log_row *row, const char *channel, bool know
     assert_int_equal(row->type.fingerprint, fingerprint);
 }
 
-/* Of the rows, the one with this number, which exists. */
+/* Returns a row, by number from 0. It must exist. */
 static const struct log_row *row_at(const struct log_info *info, int number)
 {
     const struct log_row *row = info->rows;
@@ -76,7 +76,7 @@ static void channels_and_types_are_counted(void **state)
     log_info_close(info);
 }
 
-/* Each is counted, whatever comes between. */
+/* There is no limit on the number of channels. */
 static void many_channels_are_counted(void **state)
 {
     enum { MANY = 5000, ROUNDS = 3 };

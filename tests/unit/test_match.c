@@ -1,5 +1,5 @@
-/* Which queries and results belong together: keys that are the same or nearly so, repeats, results
- * of the moment; and against a naive model. */
+/* Which queries and results belong together: keys that are the same or nearly so, repeats,
+ * transient results; and against a naive model. */
 #include "unit.h"
 
 #include "match.h"
@@ -75,8 +75,8 @@ static void keys_differ_in_any_number(void **state)
         assert_int_equal(other(i), 2 * COUNT(keys) - 1 - i);
 }
 
-/* A later result takes the place of one of the moment, until the query is repeated. */
-static void results_of_the_moment_are_replaced(void **state)
+/* A later result takes the place of a transient one, until the query is repeated. */
+static void transient_results_are_replaced(void **state)
 {
     add_query(key(1, 2));
     add_result(key(1, 2), true);
@@ -200,7 +200,7 @@ int main(void)
 #define TEST(name) cmocka_unit_test_teardown(name, tear_down)
     const struct CMUnitTest tests[] = {
         TEST(the_first_query_is_matched_first), TEST(results_may_come_first),
-        TEST(keys_differ_in_any_number),        TEST(results_of_the_moment_are_replaced),
+        TEST(keys_differ_in_any_number),        TEST(transient_results_are_replaced),
         TEST(results_without_the_time_match),   TEST(many_queries_may_have_one_key),
         TEST(matching_agrees_with_a_model),
     };

@@ -433,8 +433,8 @@ static void add_position(struct check_proof *proof, struct check_side *side)
     mpq_clear(value);
 }
 
-/* Sets the least and the greatest value of the normal N over a frame. N . R v is (R^-1 N) . v. That
- * of a vertex which is a sum is the sum of the values. */
+/* Sets the least and the greatest value of the normal N over a frame. N . R v is (R^-1 N) . v. The
+ * value at a vertex that is a sum of vectors is the sum of their values. */
 static void set_range(struct check_proof *proof, struct check_side *side)
 {
     mpq_t normal[AXES], vertex[AXES], of_edge[AXES], of_origin, value;

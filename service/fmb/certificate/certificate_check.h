@@ -19,8 +19,8 @@ struct check_span {
     mpq_t vector[AXES][AXES];
 };
 
-/* A placed frame, in the world at time 0; that of a pair with a hull in body coordinates, so that
- * few vectors are turned. */
+/* A placed frame: in the world at time 0, or in body coordinates if the pair has a hull, so that
+ * few vectors are rotated. */
 struct check_side {
     const struct fmb_placement *placement;
     const struct fmb_frame *frame;

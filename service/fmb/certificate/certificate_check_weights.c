@@ -1,10 +1,10 @@
 /* Checks the point of a certificate of a pair with a hull, by the definitions of fmb.h. A frame is
  * the convex hull of its vertices, in body coordinates: v_0, v_1, ...
  *
- * With positive weights that sum to 1 and sum_i w_i v_i = p, less position and t v, the point p is
- * in the frame. It is in the relative interior of the hull of the named vertices (Rockafellar,
- * Convex Analysis, theorem 6.9), which is part of that of the frame if both have the same affine
- * hull. */
+ * With positive weights that sum to 1, and position + R sum_i w_i v_i + t v = p, R the rotation of
+ * the placement, the point p is in the frame. It is in the relative interior of the hull of the
+ * named vertices (Rockafellar, Convex Analysis, theorem 6.9), which is part of that of the frame if
+ * both have the same affine hull. */
 #include "certificate_check.h"
 
 /* Adds a vector, or nothing if it depends on those that there are. It is overwritten. */

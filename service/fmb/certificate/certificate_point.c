@@ -25,8 +25,8 @@
 /* [0] the time in seconds, [1] to [3] the place in the world. */
 enum { COORDINATES = EXACT_COORDINATES };
 
-/* Calls one of mpq_init and mpq_clear for every number of a struct whose members are nothing but
- * rational numbers, and arrays of them, from the member first to the last. */
+/* Calls mpq_init or mpq_clear for every number of a struct from the member `first` to its end,
+ * where it holds nothing but rational numbers and arrays of them. */
 #define RATIONAL_EACH_FROM(first, object, call) \
     rational_each(&(object)->first, sizeof *(object) -offsetof(__typeof__(*(object)), first), call)
 

@@ -300,8 +300,8 @@ static unsigned cost_of(const struct fmb_batch *batch, const struct fmb_prepared
            (1 + (batch->contacts ? 8 : 0) + (batch->boxes ? 24 : 0));
 }
 
-/* Counts pair k, which is to be decided by itself. Returns false if it must be left open, because
- * enough others have been. */
+/* Counts pair k, which needs a decision of its own. Returns false if it must be left open, because
+ * the block has had enough of these. */
 static bool may_decide_single(struct batch_block *block, size_t k)
 {
     const struct fmb_batch *batch = block->batch;
@@ -389,7 +389,7 @@ static void put_contacts(struct batch_block *block, enum kernel_kind kind, size_
     }
 }
 
-/* Pairs that a kernel takes by themselves, and their numbers in the sorted block. */
+/* Some pairs of a block for one call of a kernel, and their numbers in the sorted block. */
 struct selection {
     size_t count;
     unsigned char index[BLOCK];
@@ -404,7 +404,7 @@ static void select_pair(struct selection *selection, size_t k, const struct fmb_
     selection->index[selection->count++] = (unsigned char) k;
 }
 
-/* Returns the call of a kernel for selected pairs, its results still to be set. */
+/* Returns the call of a kernel for selected pairs. The caller sets where its results go. */
 static struct kernel_call call_of(struct selection *selection, double duration)
 {
     for (size_t n = selection->count; n < selection->count + KERNEL_LANES; n++)

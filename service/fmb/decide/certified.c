@@ -1,7 +1,7 @@
 /* The method certified, for one pair of frames.
  *
  *   In     two prepared frames, the window, what is wanted; quick: no integers wider than
- *          CERTIFIED_QUICK_LIMBS
+ *          LIMBS_NARROW
  *   Out    the answer; with quick, FMB_CANNOT_DECIDE if it needs wider integers
  *
  * The verdict is found on a ladder. climb() takes its rungs in turn, each for pairs that the one
@@ -38,7 +38,7 @@ struct certified {
     const struct fmb_prepared *frame[2];
     enum kernel_kind kind;
     bool swapped;            /* kernels of this kind take b as their first frame */
-    bool quick;              /* CERTIFIED_QUICK_LIMBS is the widest integer allowed */
+    bool quick;              /* integers of LIMBS_NARROW are the widest allowed */
     bool times;              /* contact is wanted if the pair drifts */
     double contact[2];       /* as in struct kernel_call */
     double exact_contact[2]; /* set by all_slabs() */

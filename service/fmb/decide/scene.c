@@ -82,7 +82,7 @@ struct fmb_scene_state {
     struct hull_decision hull; /* of the first open pair of frames, if it has a hull */
     struct fmb_answer hull_answer;
     struct hull_gap_work *hull_gap; /* its gap, which comes after the decision; NULL: not begun */
-    /* Not set before they are begun. */
+    /* Not initialized before they are begun. */
     struct scene_block block;
     struct scene_pairs pairs;
 };
@@ -508,7 +508,7 @@ static struct frame_pair frames_at(const struct fmb_scene_state *state, size_t k
         {a->frame, a->placement}, {b->frame, b->placement}, state->scene.duration};
 }
 
-/* Puts the answer of pair of frames k of the block, but for its gap. */
+/* Stores the answer of pair of frames k of the block, without its gap. */
 static void put_outcome(struct fmb_scene_state *state, size_t k, const struct fmb_answer *answer)
 {
     struct scene_outcomes *outcomes = &state->block.outcomes;

@@ -116,8 +116,9 @@ void points_walk(struct exact_pair *pair, point_visit visit, void *context);
  * outward. */
 void exact_box(const struct frame_pair *pair, double box[2][FMB_DIM_MAX]);
 
-/* Returns the verdict; 0 if it is quick, and needs integers wider than LIMBS_NARROW. If contact is
- * not NULL and the pair is in contact, it is set to [first, last], in seconds, rounded outward. */
+/* Returns the verdict; 0 if quick is set and the pair needs integers wider than LIMBS_NARROW. If
+ * contact is not NULL and the pair is in contact, it is set to [first, last], in seconds, rounded
+ * outward. */
 enum fmb_verdict exact_verdict(const struct frame_pair *pair, bool quick, double contact[2]);
 
 /* The method exact, without the gap. */

@@ -287,8 +287,7 @@ LIMBS_FUNCTION void set_time_of_bound(int n, const struct limbs_slab *slab, int 
 /* Clips the path to a slab. Returns false if nothing is left of it.
  *
  * Where the path does not lie on a bound, it enters the slab at one of its bounds and leaves it at
- * the other. An entry before the window, and an exit after it,
- * bound nothing. */
+ * the other. An entry before the window, and an exit after it, bound nothing. */
 LIMBS_FUNCTION bool clip_path(int n, struct limbs_path *path, const struct limbs_slab *slab,
                               bool pins)
 {

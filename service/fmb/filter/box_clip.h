@@ -15,7 +15,7 @@
  *   4. the same for the inner spans and crossings that are certain, in the lanes in which some
  *      outer one is not nearly as certain
  *
- * Not here: what follows from the ends (box_ends.h); the same in integers (exact/limbs_box.c).
+ * Not here: what follows from the ends (box_ends.h); the same in integers (exact/limbs_box.h).
  *
  * THE METHOD
  *

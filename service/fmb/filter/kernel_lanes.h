@@ -46,8 +46,8 @@ enum { BOX = 1 };
 enum { BOX = 0 };
 #endif
 
-/* The traits of a kind of pairs for the job of this file. Of a box, KERNEL_DRIFTS: a frame moves.
- */
+/* The traits of a kind of pairs for the job of this file. For boxes, KERNEL_DRIFTS means that a
+ * frame moves. */
 INLINE struct kernel_traits traits_of(enum kernel_kind kind)
 {
     const bool face = kind & KERNEL_FACE, same = kind & KERNEL_SAME_SHAPE,

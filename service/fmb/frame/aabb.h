@@ -181,7 +181,7 @@ INLINE struct aabb aabb_of(const struct fmb_prepared *frame, double duration)
     return out;
 }
 
-/* box := the ends of a box, [lower, upper][axis]. */
+/* box := the ends of an AABB, [lower, upper][axis]. */
 INLINE void aabb_get_ends(const struct aabb *aabb, double box[2][FMB_DIM_MAX])
 {
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {

@@ -463,7 +463,7 @@ static void set_body_box(struct fmb_body *out)
     aabb_get_ends(&box, out->box);
 }
 
-/* Completes a body whose only frame, out->one, was made with this status, and returns it. */
+/* Completes a body whose only frame, out->one, was made with this status. Returns the status. */
 static enum fmb_status complete_body(enum fmb_status status, struct fmb_body *out)
 {
     if (status != FMB_OK)

@@ -69,8 +69,8 @@ static inline void dyadic_span_add(struct dyadic_span *span, struct dyadic x)
  * which holds nothing else. */
 void integer_each(void *numbers, size_t bytes, void (*call)(mpz_ptr));
 
-/* Calls one of mpz_init and mpz_clear for every number of a struct whose members are nothing but
- * numbers, and arrays of them, from the member first to the last. */
+/* Calls mpz_init or mpz_clear for every number of a struct from the member `first` to its end,
+ * where it holds nothing but numbers and arrays of them. */
 #define INTEGER_EACH_FROM(first, object, call) \
     integer_each(&(object)->first, sizeof *(object) -offsetof(__typeof__(*(object)), first), call)
 

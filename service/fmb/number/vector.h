@@ -1,4 +1,4 @@
-/* Vectors of doubles in space. Every operation rounds; they are added in the order of the axes. */
+/* Vectors of three doubles. Every operation rounds; terms are added in the order of the axes. */
 #ifndef FMB_VECTOR_H
 #define FMB_VECTOR_H
 

@@ -113,7 +113,7 @@ static void prepare_chunk(struct scene_frames *frames, unsigned body, size_t k)
 
 /* Makes sure that count slots are free. Returns false if the slots do not suffice and may not be
  * released. */
-static bool make_room(struct scene_frames *frames, size_t count, bool may_reuse)
+static bool reserve_slots(struct scene_frames *frames, size_t count, bool may_reuse)
 {
     if (count <= frames->slots - frames->used)
         return true;
@@ -124,7 +124,7 @@ static bool make_room(struct scene_frames *frames, size_t count, bool may_reuse)
     return may_reuse;
 }
 
-/* Prepares the current chunks of a cursor. Returns as make_room(). */
+/* Prepares the current chunks of a cursor. Returns as reserve_slots(). */
 static bool prepare_both(struct scene_frames *frames, const struct frame_pair_cursor *cursor,
                          bool may_reuse)
 {
@@ -134,7 +134,7 @@ static bool prepare_both(struct scene_frames *frames, const struct frame_pair_cu
     for (int side = 0; side < 2; side++)
         if (!is_prepared(frames, chunk_of(frames, body[side], k[side])))
             missing += chunk_size(frames, body[side], k[side]);
-    if (!make_room(frames, missing, may_reuse))
+    if (!reserve_slots(frames, missing, may_reuse))
         return false;
     for (int side = 0; side < 2; side++)
         if (!is_prepared(frames, chunk_of(frames, body[side], k[side])))
@@ -142,12 +142,12 @@ static bool prepare_both(struct scene_frames *frames, const struct frame_pair_cu
     return true;
 }
 
-/* Sets the box of a chunk, by preparing it. Returns as make_room(). */
+/* Sets the box of a chunk, by preparing it. Returns as reserve_slots(). */
 static bool set_chunk_box(struct scene_frames *frames, unsigned body, size_t k, bool may_reuse)
 {
     if (chunk_of(frames, body, k)->generation > 0)
         return true;
-    if (!make_room(frames, chunk_size(frames, body, k), may_reuse))
+    if (!reserve_slots(frames, chunk_size(frames, body, k), may_reuse))
         return false;
     prepare_chunk(frames, body, k);
     return true;
