@@ -305,14 +305,14 @@ static void a_verdict_is_compared_where_the_definition_comes_late(void **state)
     replay_report_free(&report);
 }
 
-/* Overwrites bytes of an event after it was read. */
+/* Overwrites bytes of an event after it was read, whenever progress is reported. */
 static int64_t overwritten; /* offset of these bytes */
 
 static void overwrite(void *user, int64_t bytes, int64_t of)
 {
     (void) user;
-    if (bytes == of)
-        return;
+    (void) bytes;
+    (void) of;
     assert_int_equal(pwrite(file, "\xff\xff\xff\xff", 4, overwritten), 4);
 }
 
