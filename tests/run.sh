@@ -204,8 +204,8 @@ while read -r kind build what; do
     out_of "$kind" "$build" "$what"
     echo "0 1 0" > "$out.count"
 done < "$log/list"
-# Two more than there are cores: suites that wait for a bus leave theirs to others.
-xargs -d '\n' -n 1 -P $(($(nproc) + 2)) "$self" --suite < "$log/list"
+# One more than there are cores: suites that wait for a bus leave theirs to others.
+xargs -d '\n' -n 1 -P $(($(nproc) + 1)) "$self" --suite < "$log/list"
 
 cat "$log"/netns.*.count | awk '$1 + $2 { ran = 1 } END { exit !ran }' ||
     echo "no test of the bus ran: no network namespace, and no route for multicast"

@@ -3,9 +3,16 @@
 
 load ../ran
 
+# Beside other programs a comparison may lose messages in every block: then it is measured again.
 setup_file() {
     cd "$BATS_TEST_DIRNAME/../.." || return
-    timeout 300 "${FMB_BUILD:-build}/bus/bench-bus" --quick --json "$BATS_FILE_TMPDIR/report.json" > "$BATS_FILE_TMPDIR/table" 3>&-
+    for _ in 1 2 3 4; do
+        timeout 300 "${FMB_BUILD:-build}/bus/bench-bus" --quick --json "$BATS_FILE_TMPDIR/report.json" \
+            > "$BATS_FILE_TMPDIR/table" 2> "$BATS_FILE_TMPDIR/said" 3>&- && return
+        grep -q 'lost something' "$BATS_FILE_TMPDIR/said" || break
+    done
+    cat "$BATS_FILE_TMPDIR/said"
+    return 1
 }
 
 setup() {
