@@ -186,10 +186,7 @@ setup() {
         '.arm.lane[:2] == ["separated", "none"] and (.arm.lane | index("overlapping")) > 1'
 }
 
-@test "labels are drawn where the page's state says, in the colours of the page, and never overprint each other" {
-    found light '.opened.names | .part > 0.95 and .part <= 1 and .outside == 0 and .lights[0] < 80 and .lights[1] > 230' \
-        '.unnamed == {shown: 0, lights: [null, null, null]}'
-    found dark '.dark.names | .part > 0.95 and .outside == 0 and .lights[1] < 60 and .lights[2] > 120'
+@test "labels never overprint each other" {
     found light '.arm.overprints == [0, 0, 0, 0, 0] and .crowd.overprints == 0 and .narrow.overprints == 0'
 }
 

@@ -58,35 +58,16 @@ function resolution() {
     return { scale: view.fmb.pace.scale, drawn: one("#scene").width / one("#stage").clientWidth / view.devicePixelRatio };
 }
 
-/* The names that are drawn, with their rectangles in pixels of the page. */
 function labels() {
-    return view.fmb.stage.labels.filter((label) => label.isShown);
-}
-
-/* The pixels of the names: how many for each of the rectangles' area, how many outside of these; and of their
- * lightness the 2nd, 50th and 98th percentile. */
-function printed() {
-    const canvas = one("#labels"), ratio = canvas.width / canvas.clientWidth, lights = [];
-    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-    let outside = 0;
-    for (let i = 0; i < data.length; i += 4) {
-        const x = i / 4 % canvas.width / ratio, y = Math.floor(i / 4 / canvas.width) / ratio;
-        if (data[i + 3] > 0) {
-            lights.push(data[i + 1]);
-            outside += labels().some((box) => x >= box.x && x < box.x + box.width && y >= box.y && y < box.y + box.height) ? 0 : 1;
-        }
-    }
-    const area = labels().reduce((sum, { width, height }) => sum + width * height, 0) * ratio ** 2;
-    lights.sort((a, b) => a - b);
-    return { part: lights.length / area, outside, lights: [0.02, 0.5, 0.98].map((part) => lights[Math.floor(lights.length * part)]) };
+    return all("#labels span").filter((span) => span.style.visibility === "visible");
 }
 
 /* Pairs of visible texts that overprint each other. */
 function overprints() {
     picture();
-    const boxes = labels();
-    return boxes.flatMap((a, i) => boxes.slice(i + 1).filter((b) => a.x < b.x + b.width && b.x < a.x + a.width
-        && a.y < b.y + b.height && b.y < a.y + a.height)).length;
+    const boxes = labels().map((span) => span.getBoundingClientRect());
+    return boxes.flatMap((a, i) => boxes.slice(i + 1).filter((b) => a.left < b.right && b.left < a.right
+        && a.top < b.bottom && b.top < a.bottom)).length;
 }
 
 /* The links to a moment are written ten times a second at most. */
@@ -127,16 +108,13 @@ async function until(holds) {
 async function scene() {
     await open("table.html");
     found.opened = {
-        ...moment(), ...picture(), title: page.title, counts: text("#counts"), table: table(), labels: labels().map(({ name }) => name), names: printed(),
+        ...moment(), ...picture(), title: page.title, counts: text("#counts"), table: table(), labels: labels().map((span) => span.textContent),
         scripts: page.scripts.length, resources: view.performance.getEntriesByType("resource").length, places: places(),
         lanes: [lane(0), lane(1), lane(2)], widths: all("#heads th").map((th) => th.offsetWidth), boxes: view.fmb.stage.items.length, camera: view.fmb.camera.zoom,
     };
     await mouse(all("#pairs tr")[2].cells[0]);
     found.gap = { ...picture(), ...moment() };
     await press("n");
-    one("#names").click();
-    found.unnamed = (picture(), { shown: labels().length, lights: printed().lights });
-    one("#names").click();
     found.contact = { ...picture(), ...await momentLinked() };
     await press("n");
     found.nextContact = { ...picture(), ...moment(), places: places() };
@@ -187,7 +165,7 @@ async function shapes() {
     await press("n");
     found.plane = { ...picture(), direction: direction().map(Math.round), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length) };
     await open("hostile.html");
-    found.hostile = { title: page.title, table: table(), bold: all("b").length, labels: view.fmb.stage.labels.map(({ name }) => name) };
+    found.hostile = { title: page.title, table: table(), bold: all("#pairs b, #labels b").length, labels: texts("#labels span") };
     await open("empty.html");
     found.empty = { counts: text("#counts"), rows: table().length, bad: badTexts() };
 }
@@ -328,7 +306,7 @@ async function network() {
 
 async function dark() {
     await open("table.html");
-    found.dark = { ...picture(), names: printed(), ground: view.getComputedStyle(page.body).backgroundColor };
+    found.dark = { ...picture(), ground: view.getComputedStyle(page.body).backgroundColor };
     await load("changed.html");
     await load("cut.html");
 }

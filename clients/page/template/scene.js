@@ -20,7 +20,7 @@ world.add(camera, new THREE.AmbientLight(0xffffff, 0.6));
 
 const stage = {
     exponent: 0, dim: 3, step: -1, streams: [], dirty: true, moved: true, turning: false, items: [], row: null,
-    centre: new THREE.Vector3(), radius: 1, half: [1, 1], size: { width: 0, height: 0 }, corners: [], solids: new Map(), colours: {}, labels: [],
+    centre: new THREE.Vector3(), radius: 1, half: [1, 1], size: { width: 0, height: 0 }, corners: [], solids: new Map(), colours: {},
 };
 const bodyColours = ["#4e79a7", "#f28e2b", "#59a14f", "#b07aa1", "#76b7b2", "#edc948", "#9c755f", "#ff9da7", "#86bcb6", "#8cd17d"];
 
@@ -219,7 +219,6 @@ function resize() {
     camera.updateProjectionMatrix();
     renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * pace.scale);
     renderer.setSize(width, height, false);
-    fitCanvas(one("labels"), stage.size);
     stage.dirty = true;
 }
 
@@ -372,36 +371,34 @@ function beginStep(i) {
 
 /* ---- Names ---- */
 
-const paper = one("labels").getContext("2d"), labelFont = "12px system-ui, sans-serif";
-
 function beginLabels() {
-    paper.font = labelFont;
-    stage.labels = stage.items.slice(0, 200).map((item) => {
-        const name = bodyName(item.source.stream.step, item.source.k);
-        return { name, item, isShown: false, width: Math.ceil(paper.measureText(name).width) + 8, height: 17 };
-    });
+    const names = stage.items.slice(0, 200).map((item) => bodyName(item.source.stream.step, item.source.k));
+    if (names.join("\n") !== stage.names) {
+        stage.names = names.join("\n");
+        one("labels").replaceChildren(...names.map((name) => Object.assign(document.createElement("span"), { textContent: name })));
+        stage.labels = [...one("labels").children].map((label) => {
+            const { width, height } = label.getBoundingClientRect();
+            return { label, width: Math.ceil(width), height: Math.ceil(height) };
+        });
+    }
+    stage.labels.forEach((label, n) => { label.item = stage.items[n]; });
 }
 
-/* Draws the names over the scene, beside the middles of their bodies, those in contact first; one that would
- * overprint another is not shown. One canvas: without a GPU, an element for each name takes longer than the scene. */
+/* Places the names beside the middles of their bodies, those in contact first; one that would
+ * overprint another is not shown. */
 function drawLabels() {
-    const { width, height } = stage.size, shown = [];
-    paper.clearRect(0, 0, width, height);
-    Object.assign(paper, { font: labelFont, textBaseline: "middle", globalAlpha: 0.85 });
-    for (const label of [...stage.labels].sort((a, b) => b.item.state.verdict - a.item.state.verdict)) {
-        const { name, item, width: w, height: h } = label, at = item.centre.clone().project(camera);
+    const { width, height } = stage.size, placed = [];
+    const order = [...stage.labels ?? []].sort((a, b) => b.item.state.verdict - a.item.state.verdict);
+    for (const { label, item, width: w, height: h } of order) {
+        const at = item.centre.clone().project(camera);
         const x = Math.round((at.x + 1) / 2 * width - w / 2), y = Math.round((1 - at.y) / 2 * height - h / 2);
-        label.isShown = one("names").checked && (pace.scale >= 1 || item.state.now) && x >= 0 && y >= 0 && x + w <= width && y + h <= height
-            && shown.every((p) => x >= p.x + p.width || p.x >= x + w || y >= p.y + p.height || p.y >= y + h);
-        if (!label.isShown)
-            continue;
-        shown.push(Object.assign(label, { x, y }));
-        paper.fillStyle = stage.colours.card;
-        paper.beginPath();
-        paper.roundRect(x, y, w, h, 3);
-        paper.fill();
-        paper.fillStyle = stage.colours.ink;
-        paper.fillText(name, x + 4, y + h / 2);
+        const isFree = one("names").checked && (pace.scale >= 1 || item.state.now) && x >= 0 && y >= 0 && x + w <= width && y + h <= height
+            && placed.every((p) => x >= p.x + p.w || p.x >= x + w || y >= p.y + p.h || p.y >= y + h);
+        label.style.visibility = isFree ? "visible" : "hidden";
+        if (isFree) {
+            label.style.transform = `translate(${x}px, ${y}px)`;
+            placed.push({ x, y, w, h });
+        }
     }
 }
 
@@ -424,7 +421,7 @@ function drawPointed(event) {
 
 function readColours() {
     const style = getComputedStyle(document.documentElement);
-    for (const name of ["separated", "touching", "overlapping", "none", "edge", "dim", "box", "diff", "gap", "ink", "rule", "card"])
+    for (const name of ["separated", "touching", "overlapping", "none", "edge", "dim", "box", "diff", "gap", "ink", "rule"])
         stage.colours[name] = style.getPropertyValue(`--${name}`).trim();
     world.traverse(({ material, userData: { colour } }) => colour && material.color.set(stage.colours[colour]));
     stage.moved = true;
