@@ -8,12 +8,12 @@
  *   2. pair_queries()   numbers the clients of the replayed logs by first appearance, and the
  *                       queries of a client within their group (type, label, first pair; for
  *                       pairs, the ids of both bodies). Repeated queries, with the same ids,
- *                       are one. Then it numbers those of the golden log in the same way: equal
- *                       numbers are a pair. A golden log without queries has only the types of
- *                       its results: then the group is the type, on both sides
+ *                       are one, with several times. Then it numbers those of the golden log in the
+ * same way: equal numbers are a pair. A golden log without queries has only the types of its
+ * results: then the group is the type, on both sides
  *   3. rename_results() gives each golden result the key of the query that its own query is paired
- *                       with, so that match_all() matches it as if it were recorded with that
- *                       query */
+ *                       with, of a repeated one that of the same repeat, so that match_all()
+ *                       matches it as if it were recorded with that query */
 #include "replay_parts.h"
 
 #include "keyed_hash.h"
@@ -25,20 +25,24 @@
 enum pair_kind {
     PAIR_CLIENT, /* a client: its id */
     PAIR_IDS,    /* a query, or a result without queries: kind, client id, sequence number */
+    PAIR_TIME,   /* a time at which it was sent: the same, and the time */
+    PAIR_SENT,   /* a query of the replayed logs: the same, and the number of the time */
     PAIR_GROUP,  /* the queries of a client and group: number of the client, group */
     PAIR_QUERY   /* a query of the replayed logs: numbers of client and query, group */
 };
 
 struct pair_key {
     int64_t kind, golden; /* enum pair_kind; 1: of the golden log */
-    int64_t number[3];
+    int64_t number[4];
     struct handle group;
 };
 
 struct pair_entry {
     struct pair_key key;
-    int64_t count;            /* CLIENT: its number, from 1, or MATCHED; GROUP, IDS: of queries */
-    struct match_item *query; /* QUERY: the query; IDS of the golden log: its counterpart */
+    /* CLIENT: its number, from 1, or MATCHED; TIME: its number, from 1; GROUP: of queries, IDS: of
+     * times. */
+    int64_t count;
+    struct match_item *query; /* QUERY, SENT: the query; IDS of the golden log: its counterpart */
     UT_hash_handle hh;
 };
 
@@ -73,6 +77,26 @@ static struct pair_entry *ids_of(struct pairing *pairing, bool golden, const str
     const int64_t client_id = key->client_id, number = key->sequence_number;
     return entry_of(pairing,
                     (struct pair_key){PAIR_IDS, golden, {key->kind, client_id, number}, {{0}}});
+}
+
+static struct pair_entry *time_of(struct pairing *pairing, bool golden, const struct match_key *key)
+{
+    return entry_of(pairing,
+                    (struct pair_key){PAIR_TIME,
+                                      golden,
+                                      {key->kind, key->client_id, key->sequence_number, key->utime},
+                                      {{0}}});
+}
+
+/* The query with the ids of a query of the replayed logs that was sent at the time of this number.
+ */
+static struct pair_entry *sent_of(struct pairing *pairing, const struct match_key *key,
+                                  int64_t number)
+{
+    return entry_of(
+        pairing,
+        (struct pair_key){
+            PAIR_SENT, false, {key->kind, key->client_id, key->sequence_number, number}, {{0}}});
 }
 
 static void note_matched(struct pairing *pairing)
@@ -110,7 +134,13 @@ static void pair_item(struct pairing *pairing, struct match_item *item, bool gol
     if (item->unreadable || client->count == MATCHED)
         return;
     struct pair_entry *ids = ids_of(pairing, golden, &item->key);
-    if (ids->count++ > 0 ||
+    struct pair_entry *time = time_of(pairing, golden, &item->key);
+    if (time->count > 0)
+        return;
+    time->count = ++ids->count;
+    if (!golden)
+        sent_of(pairing, &item->key, time->count)->query = item;
+    if (time->count > 1 ||
         (!by_type && !replay_read_query(replay, &replay->rereader, item, replay->query_bytes, &size,
                                         &replay->query)))
         return;
@@ -159,8 +189,11 @@ static void rename_results(struct pairing *pairing)
         if (!item->is_result || item->other)
             continue;
         const struct pair_entry *ids = ids_of(pairing, true, &item->key);
-        if (ids->query)
-            item->key = ids->query->key;
+        if (!ids->query)
+            continue;
+        const struct pair_entry *time = time_of(pairing, true, &item->key);
+        const struct pair_entry *sent = sent_of(pairing, &ids->query->key, time->count);
+        item->key = sent->query ? sent->query->key : ids->query->key;
     }
 }
 
