@@ -65,6 +65,8 @@ int log_draft_file(const unsigned char *bytes, size_t size, char path[LOG_DRAFT_
             give_up("a file in memory");
         done += (size_t) count;
     }
+    if (lseek(fd, 0, SEEK_SET) != 0)
+        give_up("a file in memory");
     snprintf(path, LOG_DRAFT_PATH_MAX, "/proc/self/fd/%d", fd);
     return fd;
 }
