@@ -320,6 +320,16 @@ static struct tally query(struct fmb_client *client, const struct fmb_scene *sce
     return tally;
 }
 
+/* Again while no result was sent: beside other programs the relay may be too late. */
+static struct tally query_liar(struct fmb_client *client, const struct fmb_scene *scene,
+                               const struct relay *relay)
+{
+    struct tally tally = query(client, scene);
+    for (int i = 0; i < 20 && relay->turn == 0; i++)
+        tally = query(client, scene);
+    return tally;
+}
+
 static double seconds_since(int64_t start)
 {
     return 1e-9 * (double) (clock_ns() - start);
@@ -786,7 +796,7 @@ static void forged_results_are_ignored(void **state)
             scene.want = lies[i].list ? ALL_WANTS : 0; /* of names alone: nothing else shows them */
             relay_open(relay, 2000);
             struct fmb_client *client = relay_client(relay, 0.1, 1);
-            const struct tally tally = query(client, &scene);
+            const struct tally tally = query_liar(client, &scene, relay);
             if (tally.good != 0 || tally.none[-FMB_CLIENT_NO_SERVICE] == 0)
                 print_error("lie: %s, %s\n", lies[i].name, of_list ? "listed" : "all");
             assert_int_equal(tally.good, 0);
@@ -851,7 +861,7 @@ static void forged_gaps_are_ignored(void **state)
         relay->lie = gap_lies[i];
         relay_open(relay, 2000);
         struct fmb_client *client = relay_client(relay, 0.1, 1);
-        const struct tally tally = query(client, &scene);
+        const struct tally tally = query_liar(client, &scene, relay);
         if (tally.good != 0)
             print_error("lie %zu\n", i);
         assert_int_equal(tally.good, 0);
