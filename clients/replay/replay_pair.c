@@ -25,8 +25,8 @@
 enum pair_kind {
     PAIR_CLIENT, /* a client: its id */
     PAIR_IDS,    /* a query, or a result without queries: kind, client id, sequence number */
-    PAIR_TIME,   /* a time at which it was sent: the same, and the time */
-    PAIR_SENT,   /* a query of the replayed logs: the same, and the number of the time */
+    PAIR_TIME,   /* another time at which it was sent: the same, and the time */
+    PAIR_SENT,   /* a query of the replayed logs: the same, and the number of another time */
     PAIR_GROUP,  /* the queries of a client and group: number of the client, group */
     PAIR_QUERY   /* a query of the replayed logs: numbers of client and query, group */
 };
@@ -39,9 +39,10 @@ struct pair_key {
 
 struct pair_entry {
     struct pair_key key;
-    /* CLIENT: its number, from 1, or MATCHED; TIME: its number, from 1; GROUP: of queries, IDS: of
+    /* CLIENT: its number, from 1, or MATCHED; TIME: its number, from 2; GROUP: of queries, IDS: of
      * times. */
     int64_t count;
+    int64_t utime;            /* IDS: the first time */
     struct match_item *query; /* QUERY, SENT: the query; IDS of the golden log: its counterpart */
     UT_hash_handle hh;
 };
@@ -72,31 +73,18 @@ static struct pair_entry *client_of(struct pairing *pairing, bool golden, int64_
     return entry_of(pairing, (struct pair_key){PAIR_CLIENT, golden, {client_id}, {{0}}});
 }
 
-static struct pair_entry *ids_of(struct pairing *pairing, bool golden, const struct match_key *key)
+/* last: 0 of IDS; of TIME the time, of SENT its number. */
+static struct pair_entry *entry_of_ids(struct pairing *pairing, enum pair_kind what, bool golden,
+                                       const struct match_key *key, int64_t last)
 {
     const int64_t client_id = key->client_id, number = key->sequence_number;
     return entry_of(pairing,
-                    (struct pair_key){PAIR_IDS, golden, {key->kind, client_id, number}, {{0}}});
+                    (struct pair_key){what, golden, {key->kind, client_id, number, last}, {{0}}});
 }
 
-static struct pair_entry *time_of(struct pairing *pairing, bool golden, const struct match_key *key)
+static struct pair_entry *ids_of(struct pairing *pairing, bool golden, const struct match_key *key)
 {
-    return entry_of(pairing,
-                    (struct pair_key){PAIR_TIME,
-                                      golden,
-                                      {key->kind, key->client_id, key->sequence_number, key->utime},
-                                      {{0}}});
-}
-
-/* The query with the ids of a query of the replayed logs that was sent at the time of this number.
- */
-static struct pair_entry *sent_of(struct pairing *pairing, const struct match_key *key,
-                                  int64_t number)
-{
-    return entry_of(
-        pairing,
-        (struct pair_key){
-            PAIR_SENT, false, {key->kind, key->client_id, key->sequence_number, number}, {{0}}});
+    return entry_of_ids(pairing, PAIR_IDS, golden, key, 0);
 }
 
 static void note_matched(struct pairing *pairing)
@@ -126,6 +114,21 @@ static struct handle group_of(struct replay *replay, int64_t kind, const struct 
     return hasher_handle(replay->hasher, out, sizeof number + strlen(label));
 }
 
+/* Numbers the times at which a query was sent again. */
+static void add_repeat(struct pairing *pairing, struct match_item *item, bool golden,
+                       struct pair_entry *ids)
+{
+    const struct match_key *key = &item->key;
+    if (key->utime == ids->utime)
+        return;
+    struct pair_entry *time = entry_of_ids(pairing, PAIR_TIME, golden, key, key->utime);
+    if (time->count > 0)
+        return;
+    time->count = ++ids->count;
+    if (!golden)
+        entry_of_ids(pairing, PAIR_SENT, false, key, time->count)->query = item;
+}
+
 static void pair_item(struct pairing *pairing, struct match_item *item, bool golden, bool by_type)
 {
     struct replay *replay = pairing->replay;
@@ -134,15 +137,14 @@ static void pair_item(struct pairing *pairing, struct match_item *item, bool gol
     if (item->unreadable || client->count == MATCHED)
         return;
     struct pair_entry *ids = ids_of(pairing, golden, &item->key);
-    struct pair_entry *time = time_of(pairing, golden, &item->key);
-    if (time->count > 0)
+    if (ids->count > 0) {
+        add_repeat(pairing, item, golden, ids);
         return;
-    time->count = ++ids->count;
-    if (!golden)
-        sent_of(pairing, &item->key, time->count)->query = item;
-    if (time->count > 1 ||
-        (!by_type && !replay_read_query(replay, &replay->rereader, item, replay->query_bytes, &size,
-                                        &replay->query)))
+    }
+    ids->count = 1;
+    ids->utime = item->key.utime;
+    if (!by_type && !replay_read_query(replay, &replay->rereader, item, replay->query_bytes, &size,
+                                       &replay->query))
         return;
     if (client->count == 0)
         client->count = ++pairing->clients[golden];
@@ -191,9 +193,15 @@ static void rename_results(struct pairing *pairing)
         const struct pair_entry *ids = ids_of(pairing, true, &item->key);
         if (!ids->query)
             continue;
-        const struct pair_entry *time = time_of(pairing, true, &item->key);
-        const struct pair_entry *sent = sent_of(pairing, &ids->query->key, time->count);
-        item->key = sent->query ? sent->query->key : ids->query->key;
+        const struct match_item *query = ids->query;
+        if (item->key.utime != ids->utime) {
+            const int64_t number =
+                entry_of_ids(pairing, PAIR_TIME, true, &item->key, item->key.utime)->count;
+            const struct pair_entry *sent =
+                entry_of_ids(pairing, PAIR_SENT, false, &query->key, number);
+            query = sent->query ? sent->query : query;
+        }
+        item->key = query->key;
     }
 }
 
