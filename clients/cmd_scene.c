@@ -26,11 +26,13 @@ static const char usage[] =
     "\n"
     "Poses:\n"
     "  --joints LIST        NAME=VALUE,...: values of joints, in radians, or lengths\n"
-    "                       of prismatic joints; joints that are not named have 0. A\n"
-    "                       value outside the limits of its joint is an error\n"
+    "                       of prismatic joints. Without a value, a mimic joint\n"
+    "                       follows the joint that it names; any other has 0. A value\n"
+    "                       outside the limits of its joint is an error\n"
     "  --joints-csv FILE    a table with a column for each joint that moves, named in\n"
-    "                       its first line, and optional columns \"label\" and \"time\".\n"
-    "                       With times, a row lasts until the time of the next row\n"
+    "                       its first line; columns for mimic joints, \"label\" and\n"
+    "                       \"time\" are optional. With times, a row lasts until the\n"
+    "                       time of the next row\n"
     "\n"
     "Shapes. Boxes stay boxes. A mesh (STL, OBJ, PLY) becomes its convex hull, of at\n"
     "most 1024 vertices; vertices of the mesh inside the hull do not count.\n"
@@ -56,9 +58,9 @@ static const char usage[] =
     "nearest link above that has one. Other pairs that are always in contact can be\n"
     "ignored by their ids, by a filter such as jq -c '.ignore += [[1,101]]'.\n"
     "\n"
-    "Joints are revolute, continuous, prismatic or fixed. Mimic joints, capsules,\n"
-    "COLLADA (.dae), xacro, SRDF and SDF are not supported. Poses are rounded to\n"
-    "doubles: give a margin where that matters.\n"
+    "Joints are revolute, continuous, prismatic or fixed. Capsules, COLLADA (.dae),\n"
+    "xacro, SRDF and SDF are not supported. Poses are rounded to doubles: give a\n"
+    "margin where that matters.\n"
     "\n"
     "Exit codes: 0 printed; 2 wrong usage, or a file that cannot be read or is not\n"
     "valid: no scene is printed.\n";
@@ -135,7 +137,8 @@ static bool print_robot(const struct scene_options *options, const struct robot 
     if (good && options->table) {
         good = print_table(options, &joints, scene);
     } else if (good) {
-        good = joints_check(&joints) && robot_scene_place(scene, joints.value, 0, robot->path);
+        good = joints_check(&joints) && joints_follow(&joints, robot->path) &&
+               robot_scene_place(scene, joints.value, 0, robot->path);
         if (good) {
             robot_scene_report(scene, options->body.sides);
             scene_json_write(stdout, &scene->owner);

@@ -14,19 +14,21 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* place: where the value is given, for messages. */
-static bool check_value(const struct robot_joint *joint, double value, const char *place)
+/* place: where the value is given, for messages; via: "", or how it follows from there. */
+static bool check_value(const struct robot_joint *joint, double value, const char *place,
+                        const char *via)
 {
     char found[NUMBER_TEXT_MAX], low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
     number_exact(value, found);
     if (!(value >= joint->limit[0] && value <= joint->limit[1])) {
-        complain("%s: joint '%s': %s is outside its limits, %s to %s", place, joint->name->name,
-                 found, number_exact(joint->limit[0], low), number_exact(joint->limit[1], high));
+        complain("%s: joint '%s'%s: %s is outside its limits, %s to %s", place, joint->name->name,
+                 via, found, number_exact(joint->limit[0], low),
+                 number_exact(joint->limit[1], high));
         return false;
     }
     if (joint->type != ROBOT_PRISMATIC && fabs(value) > TURN_RADIANS_MAX) {
-        complain("%s: joint '%s': %s is beyond %.0f radians", place, joint->name->name, found,
-                 TURN_RADIANS_MAX);
+        complain("%s: joint '%s'%s: %s is beyond %.0f radians", place, joint->name->name, via,
+                 found, TURN_RADIANS_MAX);
         return false;
     }
     return true;
@@ -40,7 +42,7 @@ static bool set_value(struct joints *joints, unsigned j, const char *text, const
                  joint->name->name, text);
         return false;
     }
-    return check_value(joint, joints->value[j], place);
+    return check_value(joint, joints->value[j], place, "");
 }
 
 /* Finds a joint that moves and is not given yet. Returns UINT32_MAX after an error. */
@@ -92,6 +94,13 @@ void joints_clear(struct joints *joints)
     free(joints->given);
 }
 
+/* Whether a joint that moves is neither given nor a mimic joint. */
+static bool needs_value(const struct joints *joints, size_t j)
+{
+    const struct robot_joint *joint = &joints->robot->joints[j];
+    return joint->type != ROBOT_FIXED && !joint->mimic_name && !joints->given[j];
+}
+
 bool joints_check(const struct joints *joints)
 {
     char place[COMPLAIN_PLACE_MAX];
@@ -99,7 +108,22 @@ bool joints_check(const struct joints *joints)
         const struct robot_joint *joint = &joints->robot->joints[j];
         snprintf(place, sizeof place, "%s: line %lu: by default (--joints sets other values)",
                  joints->robot->path, joint->name->line);
-        if (joint->type != ROBOT_FIXED && !joints->given[j] && !check_value(joint, 0, place))
+        if (needs_value(joints, j) && !check_value(joint, 0, place, ""))
+            return false;
+    }
+    return true;
+}
+
+bool joints_follow(struct joints *joints, const char *place)
+{
+    for (size_t j = 0; j < joints->robot->joint_count; j++) {
+        const struct robot_joint *joint = &joints->robot->joints[j];
+        char via[QUERY_NAME_MAX + 20];
+        if (!joint->mimic_name || joints->given[j])
+            continue;
+        joints->value[j] = joint->multiplier * joints->value[joint->mimic] + joint->offset;
+        snprintf(via, sizeof via, " (a mimic of '%s')", joint->mimic_name);
+        if (!check_value(joint, joints->value[j], place, via))
             return false;
     }
     return true;
@@ -221,7 +245,7 @@ static bool read_columns(struct joint_table *table)
             return false;
     const struct robot *robot = table->joints->robot;
     for (size_t j = 0; j < robot->joint_count; j++)
-        if (robot->joints[j].type != ROBOT_FIXED && !table->joints->given[j]) {
+        if (needs_value(table->joints, j)) {
             refuse(table, "no column for joint '%s': add one, or give its value by --joints",
                    robot->joints[j].name->name);
             return false;
@@ -313,5 +337,7 @@ enum joint_row joint_table_next(struct joint_table *table)
         else if (!set_value(table->joints, column, table->field[i], table->place))
             outcome = JOINT_ROW_BAD;
     }
+    if (outcome == JOINT_ROW && !joints_follow(table->joints, table->place))
+        return JOINT_ROW_BAD;
     return outcome == JOINT_ROW ? set_label(table, label) : outcome;
 }

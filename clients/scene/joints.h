@@ -10,7 +10,7 @@
 
 struct joints {
     const struct robot *robot;
-    double *value; /* [joint_count]; 0 unless given */
+    double *value; /* [joint_count]; 0 unless given or that of a mimic joint */
     bool *given;   /* [joint_count], private: by the text, or in a column */
 };
 
@@ -19,12 +19,17 @@ struct joints {
 bool joints_open(const struct robot *robot, const char *text, struct joints *out);
 void joints_clear(struct joints *joints);
 
-/* Checks that 0 is within the limits of all joints that are not given. */
+/* Checks that 0 is within the limits of all joints that are neither given nor mimic joints. */
 bool joints_check(const struct joints *joints);
 
+/* Sets the mimic joints that are not given, from the values of the joints that they follow. place:
+ * where these are given, for messages. Returns false after an error. joint_table_next() does it for
+ * each row. */
+bool joints_follow(struct joints *joints, const char *place);
+
 /* A CSV file (RFC 4180, without line breaks in fields). Its first line has the names of columns, in
- * any order: one for each joint that moves and has no value in joints; optional are "time", in
- * seconds, and "label". Memory holds one line. */
+ * any order: one for each joint that moves and has no value in joints; optional are those of mimic
+ * joints, "time", in seconds, and "label". Memory holds one line. */
 struct joint_table {
     /* Of the current row. */
     bool has_time;

@@ -80,13 +80,30 @@ static bool connect_joint(struct robot *robot, struct robot_joint *joint)
     return true;
 }
 
+/* A mimic joint follows one that is none, so that its value depends on one other. */
+static bool connect_mimic(const struct robot *robot, struct robot_joint *joint)
+{
+    const struct robot_joint *found = robot_find_joint(robot, joint->mimic_name);
+    if (found && found->type != ROBOT_FIXED && !found->mimic_name) {
+        joint->mimic = found->name->index;
+        return true;
+    }
+    complain("%s: line %lu: joint '%s': <mimic>: '%.64s' is %s", robot->path, joint->name->line,
+             joint->name->name, joint->mimic_name,
+             !found               ? "not a joint of the file"
+             : !found->mimic_name ? "a fixed joint"
+                                  : "itself a mimic joint: name the joint that it follows");
+    return false;
+}
+
 bool robot_connect(struct robot *robot)
 {
     const size_t count = robot->link_count;
     size_t *depth = scene_alloc(&robot->memory, count, sizeof *depth), placed = 0;
     unsigned root = 0;
     for (size_t i = 0; i < robot->joint_count; i++)
-        if (!connect_joint(robot, &robot->joints[i]))
+        if (!connect_joint(robot, &robot->joints[i]) ||
+            (robot->joints[i].mimic_name && !connect_mimic(robot, &robot->joints[i])))
             return false;
     for (unsigned i = 0; i < count; i++) {
         unsigned up = i;

@@ -40,6 +40,9 @@ struct robot_joint {
     struct pose origin;        /* in the parent */
     double axis[3];            /* unit length */
     double limit[2];           /* lower, upper; radians, or lengths; infinite: none */
+    const char *mimic_name;    /* of the joint that it follows, or NULL */
+    unsigned mimic;            /* the same as an index */
+    double multiplier, offset; /* it follows x at multiplier x + offset */
     const char *link_names[2]; /* of the parent and of the child */
     unsigned link[2];          /* the same as indices */
 };

@@ -340,18 +340,15 @@ static void read_joint(struct reader *reader, const struct node *node)
     struct robot *robot = reader->robot;
     struct robot_joint joint = {.name = begin(reader, node, &robot->joint_names),
                                 .axis = {1, 0, 0},
-                                .limit = {-INFINITY, INFINITY}};
+                                .limit = {-INFINITY, INFINITY},
+                                .multiplier = 1};
     if (!joint.name)
         return;
     read_type(reader, node, &joint);
     read_origin(reader, node, &joint.origin);
     const struct node *axis = find_child(reader, node, "axis"),
-                      *limit = find_child(reader, node, "limit");
-    const struct node *mimic = find_child(reader, node, "mimic");
-    if (mimic)
-        refuse(reader, mimic->line,
-               "<mimic>: mimic joints are not supported: remove <mimic>, and "
-               "give the joint its value");
+                      *limit = find_child(reader, node, "limit"),
+                      *mimic = find_child(reader, node, "mimic");
     for (int end = 0; end < 2; end++) {
         const struct node *link = find_child(reader, node, ends[end]);
         const char *name = link ? find_attribute(reader, link, "link", true) : NULL;
@@ -364,6 +361,11 @@ static void read_joint(struct reader *reader, const struct node *node)
     }
     if (axis)
         read_axis(reader, axis, &joint);
+    if (mimic && joint.type != ROBOT_FIXED) {
+        joint.mimic_name = find_attribute(reader, mimic, "joint", true);
+        read_numbers(reader, mimic, "multiplier", false, 1, &joint.multiplier);
+        read_numbers(reader, mimic, "offset", false, 1, &joint.offset);
+    }
     if (joint.type == ROBOT_REVOLUTE || joint.type == ROBOT_PRISMATIC) {
         joint.limit[0] = joint.limit[1] = 0;
         if (!limit) {

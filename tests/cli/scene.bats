@@ -221,6 +221,31 @@ triangle() {
     refused "--joints: 'turn' is a fixed joint of robot.urdf" robot.urdf --joints turn=0
 }
 
+@test "a mimic joint follows another unless it is given" {
+    sed -i "s|child link='tool'/>|&<mimic joint='turn' multiplier='-2' offset='0.25'/>|" robot.urdf
+    # positions ARGUMENTS...: how far the tool is from the arm, by row.
+    positions() {
+        scene robot.urdf "$@"
+        shows '(.bodies[2].position[1] | fabs) as $y | .bodies[2].position[0] as $x | $x * $x + $y * $y | sqrt * 1e9 | round / 1e9'
+    }
+    positions
+    is 0.25
+    positions --joints turn=-0.5
+    is 1.25
+    positions --joints turn=-0.5,slide=0.5
+    is 0.5
+    refused "robot.urdf: joint 'slide' (a mimic of 'turn'): -1.25 is outside its limits, -1 to 2" robot.urdf --joints turn=0.75
+    printf 'turn\n-0.5\n0.5\n' > t.csv
+    positions --joints-csv t.csv
+    is '1.25
+0.75'
+    printf 'turn,slide\n0.5,0.5\n' > t.csv
+    positions --joints-csv t.csv
+    is 0.5
+    printf 'turn\n0\n0.75\n' > t.csv
+    refused "t.csv: line 3: joint 'slide' (a mimic of 'turn'): -1.25 is outside its limits, -1 to 2" robot.urdf --joints-csv t.csv
+}
+
 @test "a table gives a scene for each row, with label and time" {
     printf '\xef\xbb\xbf \r\ntime, slide ,"label" \r\n0 ,1,\r\n\t\r\n0.25, "2" ,"a ""b"", c"\r\n1,-0.5, end ' > t.csv
     scene robot.urdf --joints turn=0 --joints-csv t.csv
@@ -386,7 +411,10 @@ triangle() {
     joint revolute "$ends<limit lower='2' upper='1'/>" "joint 'j': <limit>: lower is above upper"
     joint revolute "$ends<limit lower='' upper='1'/>" "joint 'j': <limit>: lower is empty"
     joint prismatic "$ends<axis xyz='0 0 0'/>$limit" "joint 'j': <axis>: xyz is 0"
-    joint revolute "$ends<mimic joint='k'/>$limit" "joint 'j': <mimic>: mimic joints are not supported"
+    joint revolute "$ends$limit<mimic/>" "joint 'j': <mimic> has no joint"
+    joint revolute "$ends$limit<mimic joint='k' multiplier='x'/>" "joint 'j': <mimic>: multiplier"
+    joint revolute "$ends$limit<mimic joint='k'/>" "joint 'j': <mimic>: 'k' is not a joint of the file"
+    joint revolute "$ends$limit<mimic joint='j'/>" "joint 'j': <mimic>: 'j' is itself a mimic joint"
     robot "<link name='a'/>
 <link name='a'/>"
     refused "robot.urdf: line 4: there is already a link 'a', in line 3" robot.urdf

@@ -113,6 +113,7 @@ static void check_robot(const struct robot *robot)
         FUZZ_CHECK(is_finite(joint->origin.p, 3));
         FUZZ_CHECK(joint->type == ROBOT_FIXED || fabs(n - 1) < 1e-15 * 8);
         FUZZ_CHECK(robot_find_joint(robot, joint->name->name) == joint);
+        FUZZ_CHECK(!joint->mimic_name || !robot->joints[joint->mimic].mimic_name);
     }
     for (size_t i = 0; i < robot->element_count; i++) {
         const struct robot_element *element = &robot->elements[i];
