@@ -244,9 +244,9 @@ void seeds_robots(void)
         "<mesh filename='102' scale='1 -1 2'/></geometry></collision></link><link name='b'/>"
         "<link name='c'><collision><geometry><cylinder radius='1' length='2'/></geometry>"
         "</collision></link><joint name='f' type='continuous'><parent link='a'/><child link='c'/>"
-        "</joint></robot>");
+        "<mimic joint='s' multiplier='-2' offset='.5'/></joint></robot>");
     log_bytes("", 1);
-    mesh_bytes("\xef\xbb\xbf f , s\r\n1,1\r\n");
+    mesh_bytes("\xef\xbb\xbf s \r\n1\r\n");
     log_bytes("", 1);
     mesh_bytes("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no a\nf 1 2 3\no b\nf -1 -2 -3\nf 1 2 4\n");
     end_robot("mesh");
