@@ -57,6 +57,9 @@ static bool read_any(struct mesh_source *source, const char *name, struct mesh *
     static const char mark[] = "\xef\xbb\xbf"; /* UTF-8 byte order mark */
     if (source->at == source->end)
         return mesh_refuse(source, source->begin, "the file is empty");
+    if (begins_with(source, "version https://git-lfs."))
+        return mesh_refuse(source, source->begin,
+                           "a Git LFS pointer, not the mesh: run 'git lfs pull'");
     if (begins_with(source, "ply") && mesh_is_space(source->at[3]))
         return mesh_ply(source, out);
     if (mesh_is_stl_binary(source))

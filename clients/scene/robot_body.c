@@ -246,7 +246,7 @@ static bool add_faces(struct frames *frames, const struct robot_element *element
     if (found == 0)
         return refuse(frames, element,
                       "%s: the hull of %zu vertices has more than %d of them: simplify the mesh, "
-                      "or divide it into objects (--objects)",
+                      "or divide it into convex objects of an OBJ file (--objects)",
                       path, count, (int) FMB_HULL_VERTICES_MAX);
     add_hull(frames, vertex, found);
     return true;

@@ -638,6 +638,7 @@ static void write_file(const char *path, const void *bytes, size_t size)
 
 static void only_regular_files_are_read(void **state)
 {
+    static const char lfs[] = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n";
     char folder[] = "/tmp/fmb-test-XXXXXX", path[64], error[MESH_ERROR_MAX];
     struct progress_seen seen = {0};
     const struct mesh_progress watch = {.report = progress_seen, .context = &seen};
@@ -652,6 +653,8 @@ static void only_regular_files_are_read(void **state)
     unlink(path);
     write_file(path, "", 0);
     expect_unread(path, "byte 0: the file is empty");
+    write_file(path, lfs, sizeof lfs - 1);
+    expect_unread(path, "byte 0: a Git LFS pointer, not the mesh: run 'git lfs pull'");
     write_file(path, obj, sizeof obj - 1);
     assert_true(mesh_read(path, MESH_TRIANGLES, &watch, &mesh, error));
     expect_mesh(mesh, 4, square, 2, halves);
