@@ -46,7 +46,6 @@ struct flaw {
 };
 
 struct printing {
-    const struct args *args;
     struct result_rows *results;
     struct log_channels channels;
     struct input input;
@@ -110,7 +109,7 @@ static bool report_flaws(const struct args *args, const struct flaw *flaw, const
 
 static int run_results(const struct args *args, enum report_form form, enum result_rows_pairs pairs)
 {
-    struct printing printing = {.args = args, .channels = log_channels(args->bus.prefix)};
+    struct printing printing = {.channels = log_channels(args->bus.prefix)};
     int code = ARGS_USAGE;
     if (input_open(&printing.input, args->operands, args->operand_count)) {
         printing.results = result_rows_open(stdout, form, pairs);

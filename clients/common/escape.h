@@ -2,7 +2,6 @@
 #ifndef ESCAPE_H
 #define ESCAPE_H
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 

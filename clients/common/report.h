@@ -31,23 +31,7 @@ struct report_row {
 /* Whether a separated pair is near: its scene has a margin, and the gap is no larger. */
 bool report_is_near(double margin, const struct fmb_answer *answer);
 
-/* Writes the members of a row, without braces:
- *
- *     "a": 1, "b": 2, "names": ["table", null], "verdict": "overlapping", "contact": [0, 1],
- *     "box": {"min": [0.5,0,0], "max": [1,1,1]}, "gap": [-0.25, -0.25], "frames": [0, 3],
- *     "direction": [0,0,1]
- *
- *     "a": 1, "b": 3, "verdict": "separated", "gap": [2, 2], "direction": [1,0,0],
- *     "witness": {"time": 0, "a": [1,0,0], "b": [3,0,0]}
- *
- * names are there if a body has one. frames are the indices, from 0, of the frames of a and b that
- * have the gap, where a or b has several. Doubles read back bit for bit. null is an infinite end of
- * a box, outward; or an infinite bound of a gap, positive where separated, else negative. A
- * "certificate" comes last; a pair that could not be decided has an "error" in place of the
- * verdict. */
-void report_row_json(struct json_writer *json, const struct report_row *row);
-
-/* The members from the verdict on, and "names". */
+/* Write members of a row in JSON (report_row_print()): those from the verdict on, and "names". */
 void report_answer_json(struct json_writer *json, int dim, bool names_frames,
                         const struct fmb_client_answer *answer);
 void report_names_json(struct json_writer *json, const char *const name[2]);
@@ -77,13 +61,6 @@ struct report_columns report_columns(void);
 /* Prints the line of column names. gap, box: whether rows have them. */
 void report_headings(FILE *out, const struct report_columns *columns, bool gap, bool box);
 
-/* Prints a line of a table for people; a certificate, which is shortened if it is long, has a line
- * of its own. indent: the columns of the line that are printed already.
- *
- *      table  cube  overlapping  0.25 to 0.5 s         -0.5          x        0 .. 1 ... */
-void report_row_text(FILE *out, int indent, const struct report_row *row,
-                     struct report_columns *columns);
-
 /* A destination of rows. */
 struct report_printer {
     FILE *out; /* not owned */
@@ -92,7 +69,27 @@ struct report_printer {
     struct report_columns columns; /* of the table */
 };
 
-/* Prints a row: in JSON as an element of an array. indent: as for report_row_text(). */
+/* Prints a row.
+ *
+ * In JSON it is an element of an array:
+ *
+ *     {"a": 1, "b": 2, "names": ["table", null], "verdict": "overlapping", "contact": [0, 1],
+ *      "box": {"min": [0.5,0,0], "max": [1,1,1]}, "gap": [-0.25, -0.25], "frames": [0, 3],
+ *      "direction": [0,0,1]}
+ *
+ *     {"a": 1, "b": 3, "verdict": "separated", "gap": [2, 2], "direction": [1,0,0],
+ *      "witness": {"time": 0, "a": [1,0,0], "b": [3,0,0]}}
+ *
+ * names are there if a body has one. frames are the indices, from 0, of the frames of a and b that
+ * have the gap, where a or b has several. Doubles read back bit for bit. null is an infinite end of
+ * a box, outward; or an infinite bound of a gap, positive where separated, else negative. A
+ * "certificate" comes last; a pair that could not be decided has an "error" in place of the
+ * verdict.
+ *
+ * In a table it is a line for people; a certificate, which is shortened if it is long, has a line
+ * of its own. indent: the columns of the line that are printed already.
+ *
+ *      table  cube  overlapping  0.25 to 0.5 s         -0.5          x        0 .. 1 ... */
 void report_row_print(struct report_printer *printer, int indent, const struct report_row *row);
 
 /* ---- Scenes ---- */

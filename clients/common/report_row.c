@@ -1,10 +1,8 @@
 #include "report.h"
 
 #include "escape.h"
-#include "utf8.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <string.h>
 
 bool report_is_near(double margin, const struct fmb_answer *answer)
@@ -77,7 +75,7 @@ void report_names_json(struct json_writer *json, const char *const name[2])
     json_end(json, ']');
 }
 
-void report_row_json(struct json_writer *json, const struct report_row *row)
+static void row_json(struct json_writer *json, const struct report_row *row)
 {
     json_integer(json, "a", row->id[0]);
     json_integer(json, "b", row->id[1]);
@@ -274,7 +272,7 @@ int report_body_width(const char *name, int64_t id)
     return (int) escape_characters(report_body(name, id, text));
 }
 
-void report_row_text(FILE *out, int indent, const struct report_row *row,
+static void row_text(FILE *out, int indent, const struct report_row *row,
                      struct report_columns *columns)
 {
     for (int i = 0; i < 2; i++) {
@@ -298,12 +296,12 @@ void report_row_text(FILE *out, int indent, const struct report_row *row,
 void report_row_print(struct report_printer *printer, int indent, const struct report_row *row)
 {
     if (printer->form == REPORT_TABLE) {
-        report_row_text(printer->out, indent, row, &printer->columns);
+        row_text(printer->out, indent, row, &printer->columns);
     } else if (printer->form == REPORT_CSV) {
         report_row_csv(printer->out, row);
     } else {
         json_begin(&printer->json, NULL, '{');
-        report_row_json(&printer->json, row);
+        row_json(&printer->json, row);
         json_end(&printer->json, '}');
     }
 }

@@ -41,7 +41,8 @@ void part_answers_clear(struct part_answers *answers)
     memset(answers, 0, sizeof *answers);
 }
 
-void part_refuse(struct part *part, int status, const char *text)
+/* Ends a part: its remaining pairs have this status. text: NULL or "": that of the status. */
+static void end_part(struct part *part, int status, const char *text)
 {
     struct part_answers *answers = &part->answers;
     answers->status = status;
@@ -393,7 +394,7 @@ static bool add_pair(struct part *part, const struct pair_result *result)
 
 static enum request_taken refuse(struct part *part, int status, const char *text)
 {
-    part_refuse(part, status, text);
+    end_part(part, status, text);
     return REQUEST_COMPLETE;
 }
 
@@ -472,7 +473,7 @@ void part_begin(struct scene_run *run, struct part *part, size_t bytes)
     part->unknown = part->definitions = 0;
     part->done = part->total == 0;
     if (run->status != FMB_OK)
-        part_refuse(part, run->status, NULL);
+        end_part(part, run->status, NULL);
     if (part->done)
         return;
     struct request *request = request_begin(

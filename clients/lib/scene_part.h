@@ -75,7 +75,4 @@ void part_begin(struct scene_run *run, struct part *part, size_t bytes);
 /* The handler of the requests of a part, which is their user. */
 request_handler part_take;
 
-/* Ends a part: its remaining pairs have this status. text: NULL or "": that of the status. */
-void part_refuse(struct part *part, int status, const char *text);
-
 #endif

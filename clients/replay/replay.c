@@ -3,7 +3,6 @@
 #include "allocate.h"
 #include "complain.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,14 +1,5 @@
 #include "cursor.h"
 
-int32_t cursor_int64s(struct cursor *cursor, int64_t *out, int max)
-{
-    const unsigned char *bytes;
-    const int32_t count = cursor_list(cursor, 8, &bytes);
-    for (int i = 0; i < count && i < max; i++)
-        out[i] = (int64_t) big_endian_64(bytes + 8 * i);
-    return count;
-}
-
 /* Indices read at a time, so that compilers vectorize: a scene can have tens of thousands. */
 enum { INDICES = 16 };
 

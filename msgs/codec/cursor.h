@@ -123,8 +123,7 @@ static inline int32_t cursor_doubles(struct cursor *cursor, double *out, int max
     return count;
 }
 
-/* The same for 64-bit integers, and for bytes. */
-int32_t cursor_int64s(struct cursor *cursor, int64_t *out, int max);
+/* The same for bytes. */
 int32_t cursor_bytes(struct cursor *cursor, unsigned char *out, int max);
 
 /* The same for 16-bit integers; a negative one becomes a number above 2^31. */

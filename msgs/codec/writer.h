@@ -64,13 +64,6 @@ static inline void writer_doubles(struct writer *writer, const double *number, i
         writer_double(writer, number[i]);
 }
 
-static inline void writer_int64s(struct writer *writer, const int64_t *number, int32_t count)
-{
-    writer_int32(writer, count);
-    for (int32_t i = 0; i < count; i++)
-        writer_int64(writer, number[i]);
-}
-
 /* Writes the lower 16 bits of each index. */
 static inline void writer_indices(struct writer *writer, const unsigned *index, int32_t count)
 {

@@ -90,7 +90,8 @@ static void simplest_between(mpq_t out, mpq_t low, mpq_t high)
 
 /* ---- Scaling ---- */
 
-void certificate_scale(mpq_t x, long exponent)
+/* x := x 2^exponent. */
+static void scale(mpq_t x, long exponent)
 {
     if (exponent < 0)
         mpq_div_2exp(x, x, (mp_bitcnt_t) -exponent);
@@ -103,7 +104,7 @@ void certificate_set_scaled(mpq_t x, const mpz_t num, const mpz_t den, long expo
     mpq_set_num(x, num);
     mpq_set_den(x, den);
     mpq_canonicalize(x);
-    certificate_scale(x, exponent);
+    scale(x, exponent);
 }
 
 /* ---- A point inside of Q, and the directions of Q ---- */
@@ -262,8 +263,8 @@ static void shorten_to_frame(struct chord *chord, const struct placed_frame *pla
         mpq_sub(chord->place[axis], chord->at[1 + axis], chord->place[axis]);
         mpq_mul(chord->way[axis], chord->number, chord->direction[0]);
         mpq_sub(chord->way[axis], chord->direction[1 + axis], chord->way[axis]);
-        certificate_scale(chord->place[axis], -exact->unit);
-        certificate_scale(chord->way[axis], -exact->unit);
+        scale(chord->place[axis], -exact->unit);
+        scale(chord->way[axis], -exact->unit);
         mpq_set_z(chord->number, exact->scale);
         mpq_mul(chord->place[axis], chord->place[axis], chord->number);
         mpq_mul(chord->way[axis], chord->way[axis], chord->number);

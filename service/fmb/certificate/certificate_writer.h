@@ -14,9 +14,6 @@ void certificate_write_text(struct certificate_writer *writer, const char *text)
 void certificate_write_number(struct certificate_writer *writer, const mpq_t number);
 void certificate_write_vector(struct certificate_writer *writer, int dim, mpq_t v[3]);
 
-/* x := x 2^exponent. */
-void certificate_scale(mpq_t x, long exponent);
-
 /* x := num / den 2^exponent, in lowest terms. */
 void certificate_set_scaled(mpq_t x, const mpz_t num, const mpz_t den, long exponent);
 

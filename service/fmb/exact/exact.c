@@ -190,7 +190,8 @@ void exact_pair_clear(struct exact_pair *pair)
 
 /* ---- Products ---- */
 
-mpz_t *exact_vector(struct exact_pair *pair, int number)
+/* Returns the vector of this number: [axis]. */
+static mpz_t *vector_of(struct exact_pair *pair, int number)
 {
     if (number == EXACT_OFFSET)
         return pair->offset;
@@ -202,7 +203,7 @@ mpz_t *exact_vector(struct exact_pair *pair, int number)
 void exact_set_values(struct exact_pair *pair, mpz_t normal[3], mpz_t value[EXACT_VECTORS])
 {
     for (int k = 0; k < EXACT_VECTORS; k++)
-        integer_dot(value[k], normal, exact_vector(pair, k), pair->scratch);
+        integer_dot(value[k], normal, vector_of(pair, k), pair->scratch);
 }
 
 /* Widens [low, high], which bounds normal . x over a part of the frame, by one component. */

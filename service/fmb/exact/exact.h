@@ -73,9 +73,6 @@ void exact_pair_complete(struct exact_pair *pair);
  * displacement. */
 mpz_ptr exact_length(struct exact_pair *pair, int number);
 
-/* Returns the vector of this number: [axis]. */
-mpz_t *exact_vector(struct exact_pair *pair, int number);
-
 /* value[k] := normal . vector k, for all vectors k of the pair. */
 void exact_set_values(struct exact_pair *pair, mpz_t normal[3], mpz_t value[EXACT_VECTORS]);
 

@@ -88,17 +88,6 @@ INLINE struct slab_extent extent_sum(const struct kernel_traits traits, struct s
                              : (struct slab_extent){b.low, b.high, a.radius};
 }
 
-/* How far the extent of a frame goes above the reference point, and below. */
-INLINE lanes reach_above(const struct kernel_traits traits, int which, struct slab_extent extent)
-{
-    return traits.simplex[which] ? extent.high : extent.radius;
-}
-
-INLINE lanes reach_below(const struct kernel_traits traits, int which, struct slab_extent extent)
-{
-    return traits.simplex[which] ? -extent.low : extent.radius;
-}
-
 /* The gap: how far the offset stays beyond D over the window, that is, beyond D widened by the
  * drift. */
 INLINE lanes gap_of(const struct kernel_traits traits, struct slab_extent d, lanes middle,

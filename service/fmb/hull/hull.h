@@ -11,12 +11,11 @@
  * stored: D is known by its support function, the greatest n . x, which takes one scan of each
  * frame's vertices.
  *
- *   hull_view_set()      a placed frame as an array of vertices, in body coordinates
- *   hull_pair_set()      two of them, and bounds on the errors of everything computed below
- *   hull_support()       the farthest point of D in a direction
- *   hull_point()         a point of D
- *   hull_decide()        verdict, contact and box; hull_decision_step(): the same in steps
- *   hull_gap()           the gap; hull_gap_step(): the same in steps
+ *   hull_pair_set()      two placed frames as arrays of vertices, in body coordinates, and bounds
+ * on the errors of everything computed below hull_support()       the farthest point of D in a
+ * direction hull_point()         a point of D hull_decide()        verdict, contact and box;
+ * hull_decision_step(): the same in steps hull_gap()           the gap; hull_gap_step(): the same
+ * in steps
  *
  * Accuracy of doubles. Let u = 2^-53, r the radius of a frame: the distance of its vertices from
  * the origin of its body is at most r. Rounding a direction n to body coordinates, R^T n, or a
@@ -58,8 +57,6 @@ struct hull_view {
     double centre[FMB_DIM_MAX]; /* a point of the frame, rounded, body coordinates */
     double small[FMB_DIM_MAX * HULL_SMALL];
 };
-
-void hull_view_set(struct placed_frame placed, struct hull_view *out);
 
 struct hull_pair {
     const struct frame_pair *frames;

@@ -53,7 +53,7 @@ static void set_hull(const struct fmb_frame *frame, struct hull_view *out)
     }
 }
 
-void hull_view_set(struct placed_frame placed, struct hull_view *out)
+static void set_view(struct placed_frame placed, struct hull_view *out)
 {
     const struct fmb_frame *frame = placed.frame;
     out->placed = placed;
@@ -109,8 +109,8 @@ void hull_pair_set(const struct frame_pair *frames, struct hull_pair *out)
     out->frames = frames;
     out->dim = frames->a.frame->dim;
     out->drifts = false;
-    hull_view_set(frames->a, &out->view[0]);
-    hull_view_set(frames->b, &out->view[1]);
+    set_view(frames->a, &out->view[0]);
+    set_view(frames->b, &out->view[1]);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
         const bool used = axis < out->dim;
         const double speed = used ? b->velocity[axis] - a->velocity[axis] : 0;

@@ -20,7 +20,7 @@ void hull_integers_each(struct hull_integers *integers, void (*call)(mpz_ptr))
         call(integers->drift[axis]);
 }
 
-unsigned hull_vertex_count(const struct fmb_frame *frame)
+static unsigned vertex_count_of(const struct fmb_frame *frame)
 {
     if (frame->shape == FMB_HULL)
         return frame->vertex_count;
@@ -31,7 +31,7 @@ unsigned hull_vertex_count(const struct fmb_frame *frame)
 static void set_small(struct hull_side *side, long unit)
 {
     struct exact_frame frame;
-    const unsigned count = hull_vertex_count(side->frame);
+    const unsigned count = vertex_count_of(side->frame);
     INTEGER_EACH_FROM(component, &frame, mpz_init);
     exact_frame_set(&frame, side->frame, unit);
     for (unsigned k = 0; k < count; k++)

@@ -28,8 +28,6 @@ void hull_integers_each(struct hull_integers *integers, void (*call)(mpz_ptr));
 /* Sets the integers of a checked pair, whose frames must outlive them. In: all numbers are 0. */
 void hull_integers_set(const struct frame_pair *frames, struct hull_integers *out);
 
-unsigned hull_vertex_count(const struct fmb_frame *frame);
-
 /* out := vertex i of frame f in the world at time 0. */
 void hull_integers_place(const struct hull_integers *integers, int f, unsigned i, mpz_t out[3]);
 

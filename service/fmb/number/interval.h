@@ -1,5 +1,4 @@
-/* Interval arithmetic: a number known to lie in [low, high], with sums and products rounded
- * outward.
+/* Interval arithmetic: a number known to lie in [low, high], with sums rounded outward.
  *
  * Exact results stay exact. The rounding error of a sum of two doubles is a double, and so is that
  * of a product (Knuth, The Art of Computer Programming, volume 2, 4.2.2, theorem B). Its sign says
@@ -66,20 +65,6 @@ static inline struct interval interval_sum(struct interval x, struct interval y)
     if (interval_sum_error(x.high, y.high, sum.high) > 0)
         sum.high = interval_step_up(sum.high);
     return sum;
-}
-
-/* The interval of x y. Below 2^-900 the error of a product may not be a double; it is then at most
- * 2^-953, and the interval is widened by that. */
-static inline struct interval interval_product(double x, double y)
-{
-    const double product = x * y;
-    if (product == 0 && (x == 0 || y == 0))
-        return interval_of(0);
-    if (fabs(product) < 0x1p-900)
-        return (struct interval){product - 0x1p-953, product + 0x1p-953};
-    const double error = fma(x, y, -product);
-    return (struct interval){error < 0 ? interval_step_down(product) : product,
-                             error > 0 ? interval_step_up(product) : product};
 }
 
 #endif
