@@ -50,8 +50,7 @@ int64_t log_event_bytes(size_t channel_length, size_t size)
     return LOG_HEADER_BYTES + (int64_t) channel_length + (int64_t) size;
 }
 
-/* ---- Writing ----------------------------------------------------------------------------------
- */
+/* ---- Writing ---- */
 
 static bool fail(struct log_writer *writer, int error)
 {
@@ -178,8 +177,7 @@ bool log_check(struct log_writer *writer)
     return !S_ISREG(file.st_mode) || (file.st_nlink > 0 && file.st_size >= (off_t) writer->whole);
 }
 
-/* ---- The end ----------------------------------------------------------------------------------
- */
+/* ---- The end ---- */
 
 int log_finish_soon(struct log_writer *writer, int *disk)
 {

@@ -135,8 +135,7 @@ static void put_numbers(FILE *out, const struct numbers *numbers)
     free(bytes);
 }
 
-/* ---- Lists of the data ------------------------------------------------------------------------
- */
+/* ---- Lists of the data ---- */
 
 enum { LIST_NOTES, LIST_LOGS, LIST_SHAPES, LIST_CASTS, LIST_STEPS, LIST_FAR, LISTS };
 

@@ -8,9 +8,10 @@
  *   2. pair_queries()   numbers the clients of the replayed logs by first appearance, and the
  *                       queries of a client within their group (type, label, first pair; for
  *                       pairs, the ids of both bodies). Repeated queries, with the same ids,
- *                       are one, with several times. Then it numbers those of the golden log in the
- * same way: equal numbers are a pair. A golden log without queries has only the types of its
- * results: then the group is the type, on both sides
+ *                       are one, with several times. Then it numbers those of the golden log
+ *                       in the same way: equal numbers are a pair. A golden log without
+ *                       queries has only the types of its results: then the group is the
+ *                       type, on both sides
  *   3. rename_results() gives each golden result the key of the query that its own query is paired
  *                       with, of a repeated one that of the same repeat, so that match_all()
  *                       matches it as if it were recorded with that query */

@@ -75,8 +75,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* ---- Messages ---------------------------------------------------------------------------------
- */
+/* ---- Messages ---- */
 
 static struct body make_body(struct world *world, double size)
 {
@@ -200,8 +199,7 @@ static void begin(struct world *world)
     assert_int_equal(record_bodies_owner(world->bodies), RECORD_OWN);
 }
 
-/* ---- Tests ------------------------------------------------------------------------------------
- */
+/* ---- Tests ---- */
 
 static void all_are_requested_in_pages(void **state)
 {
