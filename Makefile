@@ -390,7 +390,8 @@ demo: # builds on all cores, also where packages are installed first
 
 sed_text = $(subst |,\|,$(subst &,\&,$(subst \,\\,$1)))
 fill_in = sed -e 's|@PREFIX@|$(call sed_text,$(PREFIX))|' -e 's|@LIBDIR@|$(call sed_text,$(LIBDIR))|' \
-	-e 's|@VERSION@|$(VERSION)|'
+	-e 's|@VERSION@|$(VERSION)|' -e 's|@PREFIX_FROM_LIBDIR@|$(call sed_text,$(shell \
+	realpath -m --relative-to="$(LIBDIR)" "$(PREFIX)"))|'
 root := $(DESTDIR)$(PREFIX)
 .PHONY: install install-strip uninstall
 install: all

@@ -98,6 +98,12 @@ END
     run out/both-static
     mv "$root/elsewhere" "$root/lib"
     [ "$status" = 0 ]
+    # Staged by DESTDIR: the headers and libraries of the staged tree, not those of the prefix.
+    mv "$root" "$root.staged"
+    run env LD_LIBRARY_PATH="$root.staged/lib" sh -c "cmake -S . -B staged -DCMAKE_C_COMPILER=$compiler \
+        -DCMAKE_PREFIX_PATH=$root.staged && cmake --build staged && staged/both"
+    mv "$root.staged" "$root"
+    [ "$status" = 0 ]
     for wanted in 0.99 1.0; do
         run $configure -Dwanted=$wanted
         [ "$status" != 0 ]
