@@ -2,7 +2,8 @@
 # Variables: name (fmb-query), section, version, summary, also (pages for SEE ALSO). What it reads:
 #
 #   usage: fmb query [OPTIONS]     these lines up to the first empty one
-#   Commands:                      a heading is one capitalised word and a colon
+#   Commands:                      a heading, of commands
+#   Poses:                         one capitalised word and a colon: a heading, of options
 #   Exit codes: ...                begins a section too
 #     -l, --lcm-url URL   text     an item: a tag, two spaces, text that goes on in deeper lines
 #     anything else                lines to print as they are
@@ -47,6 +48,7 @@ function print_item(line,    tag, words, count, i)
     sub(/^ */, "", line)
     print line == "" ? "" : "\n" text(line)
     item = 1
+    begins = 0
 }
 
 BEGIN {
@@ -74,7 +76,12 @@ item && /^    / { sub(/^ */, ""); print text($0); next }
 }
 /^[^ ]/ { end_block() }
 /^Commands:$/ { heading(".SH", "COMMANDS"); commands = 1; next }
-/^[A-Z][a-z]*:$/ { sub(/:/, ""); heading(options++ ? ".SS" : ".SH", $0); next }
+/^[A-Z][a-z]*:$/ {
+    if (!options++) heading(".SH", "OPTIONS")
+    sub(/:/, "")
+    heading(".SS", $0)
+    next
+}
 /^Exit codes: / { heading(".SH", "EXIT STATUS"); sub(/^Exit codes: /, ""); notes = 1 }
 /^[^ ]/ && (options || commands) && !notes { heading(".SH", "NOTES"); notes = 1; commands = 0 }
 {

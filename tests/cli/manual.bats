@@ -26,6 +26,9 @@ pressed() {
         said=$("$FMB_BUILD/"$words --help)
         also=$(sed -n '/^SEE ALSO$/,$p' <<< "$output" | grep '^[[:space:]]')
         diff <(pressed <<< "$printed") <(pressed <<< "$said"; pressed <<< "$also")
+        # Its options are in one section; text after an option without a text is not its text.
+        [ "$(sed -n '/^OPTIONS$/,/^[A-Z]/p' <<< "$output" | grep -c '^       -')" = "$(grep -c '^  -' <<< "$said")" ]
+        [[ ! $output =~ --help$'\n'\ *[A-Z] || $said == *'--help  '* ]]
         count=$((count + 1))
     done < <(commands fmb; echo fmbd)
     [ $count -gt 10 ]
