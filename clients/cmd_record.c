@@ -62,6 +62,7 @@ struct record_options {
 
 struct recording {
     const struct record_options *options;
+    struct args_bus bus;
     struct fmb_client *client;
     struct log_channels channels;
     struct log_choice others; /* other channels that are recorded too */
@@ -244,6 +245,18 @@ static bool receive_remaining(struct recording *recording)
 
 /* ---- Begin and end --------------------------------------------------------------------------- */
 
+/* Reports a bus without a service: neither a heartbeat, which is sent once a second, nor a result
+ * was received. */
+static void report_no_service(const struct recording *recording)
+{
+    const int64_t *received = recording->recorded.received;
+    if (received[LOG_STATUS] + received[LOG_PAIR_RESULT] + received[LOG_SCENE_RESULT] > 0)
+        return;
+    complain("no heartbeat on channel %sFMB_STATUS of %s within %.1f s", recording->bus.prefix,
+             args_bus_name(&recording->bus), recording->recorded.seconds);
+    args_advise_service(&recording->bus, "");
+}
+
 static int end_of_recording(struct recording *recording, bool good)
 {
     struct recorded *recorded = &recording->recorded;
@@ -259,6 +272,7 @@ static int end_of_recording(struct recording *recording, bool good)
     if (recording->error)
         output_complain(recording->parts.name, recording->error);
     record_report_losses(recorded);
+    report_no_service(recording);
     (recording->options->json ? record_report_json : record_report_text)(recorded,
                                                                          &recording->parts);
     return output_flush() && !recording->error && good ? ARGS_ANSWERED : ARGS_FAILED;
@@ -302,6 +316,7 @@ static int record_from_bus(struct recording *recording)
 static bool open_bus(struct recording *recording, const struct args_bus *args)
 {
     const bool others = recording->options->all || recording->options->channel;
+    recording->bus = *args;
     recording->channels = log_channels(args->prefix);
     recording->client = args_open_client(args, (struct fmb_client_options){0});
     if (!recording->client)

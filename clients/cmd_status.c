@@ -130,7 +130,7 @@ static void advise(const struct status *status, const struct args_bus *bus)
         complain("but one that could not be read (%s): another version of fmbd?",
                  status->malformed);
     else
-        complain("start one with 'fmbd%s%s &'", *bus->prefix ? " --prefix " : "", bus->prefix);
+        args_advise_service(bus, "");
 }
 
 int cmd_status(int argc, char **argv)

@@ -174,10 +174,24 @@ int args_parse(struct args *args, int argc, char **argv)
     return ARGS_RUN;
 }
 
-const char *args_bus_name(const struct args_bus *bus)
+/* Returns NULL for the default bus. */
+static const char *bus_url(const struct args_bus *bus)
 {
     const char *url = bus->url ? bus->url : getenv("LCM_DEFAULT_URL");
-    return url && *url ? url : "the usual bus of this host";
+    return url && *url ? url : NULL;
+}
+
+const char *args_bus_name(const struct args_bus *bus)
+{
+    const char *url = bus_url(bus);
+    return url ? url : "the usual bus of this host";
+}
+
+void args_advise_service(const struct args_bus *bus, const char *instead)
+{
+    const char *url = bus_url(bus), *prefix = bus->prefix;
+    complain("start one with 'fmbd%s%s%s%s%s &'%s", url ? " --lcm-url \"" : "", url ? url : "",
+             url ? "\"" : "", *prefix ? " --prefix " : "", prefix, instead);
 }
 
 struct fmb_client *args_open_client(const struct args_bus *bus, struct fmb_client_options options)

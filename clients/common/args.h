@@ -79,6 +79,9 @@ bool args_check_span(const struct args *args, double from, double to);
 /* Returns the URL of a bus for messages; valid as long as the options. */
 const char *args_bus_name(const struct args_bus *bus);
 
+/* Reports how to start a service on this bus. instead: what to do otherwise, ", or ..."; or "". */
+void args_advise_service(const struct args_bus *bus, const char *instead);
+
 /* Opens a client with these options, and the URL and prefix of the bus. Returns NULL after an
  * error, which was reported on stderr. */
 struct fmb_client *args_open_client(const struct args_bus *bus, struct fmb_client_options options);

@@ -96,7 +96,8 @@ def _load() -> ctypes.CDLL:
 
 _lib = _load()
 _WANT_BOX, _WANT_TIMES, _WANT_GAP = 1, 4, 8
-_NO_MEMORY = -4
+_NO_SERVICE, _NO_MEMORY = -2, -4
+_HULL_VERTICES_MAX = 1024
 
 
 class Error(ValueError):
@@ -350,7 +351,10 @@ def hull(vertices: Array) -> Body:
 
     vertices: (n, dim)
     """
-    return _frame(_HULL, "vertices", vertices, ("n", "dim"), "", None)
+    numbers, dim = _numbers("vertices", vertices, ("n", "dim"))
+    if len(numbers) > dim * _HULL_VERTICES_MAX:
+        raise Error(f"vertices: {len(numbers) // dim}, at most {_HULL_VERTICES_MAX}", 3)
+    return Body("vertices", dim, [(_HULL, numbers)])
 
 
 def compound(bodies: Iterable[Body]) -> Body:
@@ -514,6 +518,9 @@ class Client(_Handle):
         tries = _int("tries", tries)
         if not 0 < tries < 2**31:
             raise ValueError(f"tries: {tries} is out of range")
+        bus = url or os.environ.get("LCM_DEFAULT_URL")
+        self._start = "fmbd" + (f' --lcm-url "{bus}"' if bus else "") + (
+            f" --prefix {prefix}" if prefix else "")
         self._handle = _lib.fmb_flat_open(_text("url", url), _text("prefix", prefix),
                                           _float("timeout", timeout), tries,
                                           _float("within", within), why, _WHY_MAX)
@@ -550,6 +557,10 @@ def _handle_of(client: Optional[Client]) -> Optional[int]:
     if client is not None and client._process != os.getpid():
         raise BusError("client: it was opened by another process: open one after the fork")
     return client and client._handle
+
+
+def _advice(status: int, client: Optional[Client]) -> str:
+    return f": start one with '{client._start} &'" if client and status == _NO_SERVICE else ""
 
 
 # ---- Scenes ----
@@ -601,10 +612,10 @@ class Scene(_Handle):
     def __len__(self) -> int:
         return len(self.bodies)
 
-    def _check(self, status: int, name: str = "") -> None:
+    def _check(self, status: int, name: str = "", client: Optional[Client] = None) -> None:
         if status:
-            raise _error(status, name + _lib.fmb_flat_why(self._handle).decode()
-                         if self._handle else status_text(status))
+            raise _error(status, name + _lib.fmb_flat_why(self._handle).decode() +
+                         _advice(status, client) if self._handle else status_text(status))
 
     def place(self, positions: Optional[Array] = None, orientations: Optional[Array] = None,
               velocities: Optional[Array] = None) -> None:
@@ -647,7 +658,7 @@ class Scene(_Handle):
         with self._lock, _lock_of(client):
             self._check(_lib.fmb_flat_pair(
                 self._handle, _handle_of(client), a, b, duration,
-                (_WANT_BOX if box else 0) + (_WANT_GAP if gap else 0)), "pair: ")
+                (_WANT_BOX if box else 0) + (_WANT_GAP if gap else 0)), "pair: ", client)
             one = self._one
             _lib.fmb_flat_answers(self._handle, None, *one)
             return _answer(self.names, a, b, 0, one[0][0], one[2][:], one[3][:] if box else None,
@@ -697,7 +708,7 @@ class Scene(_Handle):
                               want | (_WANT_GAP if margin else 0), client is not None)
         worst = min(memoryview(answers.statuses), default=0) if client else 0
         if worst < 0:
-            raise BusError(f"client: {status_text(worst)}", worst)
+            raise BusError(f"client: {status_text(worst)}{_advice(worst, client)}", worst)
         return answers
 
     def stream(self, duration: float, positions: Optional[Iterable[Array]] = None,

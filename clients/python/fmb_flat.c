@@ -5,6 +5,7 @@
 #include "geometry.h"
 #include "query.h"
 
+#include <inttypes.h>
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -244,15 +245,22 @@ int fmb_flat_place(struct fmb_flat_scene *scene, size_t first, size_t count,
 
 /* ---- Deciding ---- */
 
-/* Converts indices of placements. One out of range becomes UINT_MAX, which no placement has. */
-static bool convert(struct column *column, const int64_t *pairs, size_t count)
+/* Converts indices of placements. */
+static int convert(struct fmb_flat_scene *scene, struct column *column, const char *argument,
+                   const int64_t *pairs, size_t count)
 {
     if (!reserve(column, count, sizeof(unsigned[2])))
-        return false;
+        return refuse(scene, FMB_CLIENT_NO_MEMORY, NULL, 0);
     unsigned *out = column->data;
-    for (size_t i = 0; i < 2 * count; i++)
-        out[i] = (uint64_t) pairs[i] < UINT_MAX ? (unsigned) pairs[i] : UINT_MAX;
-    return true;
+    for (size_t i = 0; i < 2 * count; i++) {
+        if ((uint64_t) pairs[i] >= scene->placement_count) {
+            snprintf(scene->why, sizeof scene->why, "%s[%zu]: there is no body %" PRId64, argument,
+                     i / 2, pairs[i]);
+            return FMB_BAD_PAIR;
+        }
+        out[i] = (unsigned) pairs[i];
+    }
+    return FMB_OK;
 }
 
 static bool reserve_answers(struct fmb_flat_scene *scene, size_t count)
@@ -368,7 +376,10 @@ int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64
                                              want, &answer.answer);
     }
     append(scene, &answer);
-    if (answer.status != FMB_OK)
+    if ((uint64_t) a >= count || (uint64_t) b >= count)
+        snprintf(scene->why, sizeof scene->why, "there is no body %" PRId64,
+                 (uint64_t) a >= count ? a : b);
+    else if (answer.status != FMB_OK)
         snprintf(scene->why, sizeof scene->why, "%s",
                  client && answer.text ? answer.text : fmb_client_status_text(answer.status));
     return scene->failed ? refuse(scene, FMB_CLIENT_NO_MEMORY, NULL, 0) : answer.status;
@@ -393,9 +404,11 @@ int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, doub
         snprintf(flat->why, sizeof flat->why, "label: %s", fmb_status_text(FMB_BAD_NAME));
         return FMB_BAD_NAME;
     }
-    if (!convert(&flat->listed, pairs, pairs ? pair_count : 0) ||
-        !convert(&flat->ignored, ignored, ignored ? ignored_count : 0))
-        return refuse(flat, FMB_CLIENT_NO_MEMORY, NULL, 0);
+    int status = convert(flat, &flat->listed, "pairs", pairs, pairs ? pair_count : 0);
+    if (status == FMB_OK)
+        status = convert(flat, &flat->ignored, "ignored", ignored, ignored ? ignored_count : 0);
+    if (status != FMB_OK)
+        return status;
     const struct fmb_scene scene = {.placements = flat->placements,
                                     .placement_count = flat->placement_count,
                                     .duration = duration,
@@ -413,7 +426,7 @@ int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, doub
                                     .label = label};
     if (client)
         return decide_on_bus(flat, client, &scene);
-    int status = (int) fmb_scene_check(&scene, flat->why, sizeof flat->why);
+    status = (int) fmb_scene_check(&scene, flat->why, sizeof flat->why);
     if (status == FMB_OK) {
         status = pairs && flat->single && margin == 0 ? decide_batch(flat, &scene)
                                                       : decide_steps(flat, &scene);

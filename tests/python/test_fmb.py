@@ -231,7 +231,7 @@ class Bus(Answers):
                                ("client", lambda: scene.decide(0, pairs=[(1, 2)], client=client)),
                                ("client", lambda: list(scene.stream(0, [[[0, 0]] * 3], client=client))),
                                ("pair", lambda: scene.pair(0, 1, 0, client=client))):
-                with self.assertRaisesRegex(fmb.BusError, f"^{name}: .*no fmbd") as caught:
+                with self.assertRaisesRegex(fmb.BusError, f"^{name}: .*no fmbd.*: start one with 'fmbd .*--prefix none &'$") as caught:
                     call()
                 self.assertEqual(caught.exception.status, -2)
 
@@ -322,11 +322,11 @@ class Arrays(unittest.TestCase):
                 (TypeError, "pairs", lambda: scene.decide(0, pairs=[[0, 2**70]])),
                 (TypeError, "pairs", lambda: scene.decide(0, pairs=7)),
                 (ValueError, "pairs[0]", lambda: scene.decide(0, pairs=[[0, 1, 2]])),
-                (fmb.Error, "pairs[1]", lambda: scene.decide(0, pairs=[[0, 1], [0, 3]])),
-                (fmb.Error, "pairs[0]", lambda: scene.decide(0, pairs=[[-1, 1]])),
+                (fmb.Error, "pairs[1]: there is no body 3", lambda: scene.decide(0, pairs=[[0, 1], [0, 3]])),
+                (fmb.Error, "pairs[0]: there is no body -1", lambda: scene.decide(0, pairs=[[-1, 1]])),
                 (fmb.Error, "pairs[0]", lambda: scene.decide(0, pairs=[[2**32, 1]])),
                 (fmb.Error, "pairs[0]", lambda: scene.decide(0, pairs=[[1, 1]])),
-                (fmb.Error, "ignored[0]", lambda: scene.decide(0, ignored=[[0, 3]])),
+                (fmb.Error, "ignored[0]: there is no body 3", lambda: scene.decide(0, ignored=[[0, 3]])),
                 (ValueError, "ignored", lambda: scene.decide(0, ignored=[[0, 1]], pairs=[[0, 1]])),
                 (ValueError, "split", lambda: scene.decide(0, split=1, pairs=[[0, 1]])),
                 (ValueError, "split", lambda: scene.decide(0, split=-1)),
@@ -342,7 +342,7 @@ class Arrays(unittest.TestCase):
                 (fmb.Error, "label", lambda: scene.decide(0, label="\n", pairs=[[0, 1]])),
                 (TypeError, "positions", lambda: list(scene.stream(0, 5))),
                 (fmb.Error, "pair", lambda: scene.pair(0, 0, 1)),
-                (fmb.Error, "pair", lambda: scene.pair(0, 3, 1)),
+                (fmb.Error, "pair: there is no body 3", lambda: scene.pair(0, 3, 1)),
                 (fmb.Error, "pair", lambda: scene.pair(0, 1, -1)),
                 (ValueError, "a", lambda: scene.pair(2**64, 1, 1)),
                 (TypeError, "b", lambda: scene.pair(0, 1.0, 1)),
@@ -354,7 +354,7 @@ class Arrays(unittest.TestCase):
                 (TypeError, "components", fmb.tetrahedron),
                 (TypeError, "origin", lambda: fmb.face(vertices=[[0, 0, 0]] * 3, origin=[0, 0, 0])),
                 (fmb.Error, "vertices", lambda: fmb.face(vertices=[[0, 0]] * 3)),
-                (fmb.Error, "vertices", lambda: fmb.hull([[0, 0, i] for i in range(1025)])),
+                (fmb.Error, "vertices: 1025, at most 1024", lambda: fmb.hull([[0, 0, i] for i in range(1025)])),
                 (ValueError, "vertices[1]", lambda: fmb.hull([[0, 0, 0], [0, 0]])),
                 (ValueError, "vertices: it is empty", lambda: fmb.hull([])),
                 (ValueError, "size: it is empty", lambda: fmb.box([])),

@@ -137,7 +137,7 @@ is() {
     grep -Eqx '  lost +0' "$report"
     run ! grep -q malformed "$report"
     grep -qx 'fmb: lost: 0 datagrams .*, 2 queries by their sequence numbers, bodies of 0 handles' "$messages"
-    [ "$(wc -l < "$messages")" = 2 ]
+    [ "$(wc -l < "$messages")" = 4 ] # the first and this one; that there is no service
 }
 
 # bats test_tags=release
@@ -637,7 +637,7 @@ END
     wait_until has_events FMB_PAIR_QUERY "$log.2" 1000
     sleep 0.5
     finish_record
-    [ "$(wc -l < "$messages")" = 1 ]
+    [ "$(wc -l < "$messages")" = 3 ] # the first; that there is no service
     run ! grep -q 'messages' "$messages"
 }
 
@@ -657,9 +657,17 @@ END
     [[ ${lines[0]} =~ ^"$log: 0 messages in 0."[0-9]" s, 0 bytes"$ ]]
     [ "${lines[6]}" = '  lost                           0' ]
     [ "${#lines[@]}" = 7 ]
-    [[ $stderr = "fmb: recording to $log"* ]]
+    [[ $stderr = "fmb: recording to $log"*$'\nfmb: no heartbeat on channel quiet-FMB_STATUS of '*" within 0.0 s
+fmb: start one with 'fmbd "*"--prefix quiet- &'" ]]
     [ -f "$log" ]
     [ ! -s "$log" ]
+    # Neither where a service answers, though it has sent no heartbeat yet.
+    start_record --count 2 --prefix P "$log.2"
+    start_fmbd --prefix P
+    "$FMB" query --prefix P clients/demo/cube.json > /dev/null
+    wait "$record"
+    run ! grep -q 'no heartbeat' "$messages"
+    stop_fmbd
     "$FMB" record --json --duration 0.01 --prefix quiet- --split-mb 1 "$log" > "$report"
     [ "$(jq -c '[.files, .events, .bytes, .lost, .receive_buffer > 0]' "$report")" = \
         "[[\"$log.000\"],0,0,0,true]" ]
