@@ -5,6 +5,7 @@
 #include "args.h"
 #include "complain.h"
 #include "json.h"
+#include "number.h"
 #include "output.h"
 #include "progress.h"
 #include "query_page.h"
@@ -42,8 +43,10 @@ static const char usage[] =
     "                   points\n"
     "  --certificate    give a proof of each verdict too. It is checked here with the\n"
     "                   numbers of the scene alone; a verdict without a valid proof\n"
-    "                   counts as not decided. The service then decides each pair by\n"
-    "                   a query of its own, which takes longer\n"
+    "                   counts as not decided. A pair with a body of several frames\n"
+    "                   has a verdict, but no certificate; their number is reported.\n"
+    "                   The service decides each pair by a query of its own, which\n"
+    "                   takes longer\n"
     "  --html FILE      write a page that plays the scenes into FILE; implies --box\n"
     "  --force          overwrite FILE of --html even if it is no page\n"
     "  --method NAME    how to decide: certified (the default: never wrong, and\n"
@@ -94,8 +97,10 @@ struct query {
     struct answers_bus *answers; /* NULL: not opened yet */
     const struct fmb_scene *scene;
     struct progress progress;
-    bool undecided; /* a pair has no verdict */
-    int worst;      /* severity of all pairs */
+    bool undecided;    /* a pair has no verdict */
+    uint64_t unproven; /* pairs without a certificate because a body has several frames */
+    bool has_margin;   /* a scene has one */
+    int worst;         /* severity of all pairs */
 };
 
 static bool take_method(const struct args *args, void *out)
@@ -139,8 +144,13 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
     struct query *query = user;
     struct fmb_client_answer checked = *answer;
     char refutation[VERIFY_TEXT_MAX];
-    if (query->certificate && answer->status == FMB_OK)
-        verify_answer(query->scene, query->local ? "the" : "the service's", &checked, refutation);
+    if (query->certificate && answer->status == FMB_OK) {
+        if (pair_is_certified(query->scene, (unsigned[]){answer->a, answer->b}))
+            verify_answer(query->scene, query->local ? "the" : "the service's", &checked,
+                          refutation);
+        else
+            query->unproven++;
+    }
     for (int i = 0; i < 2 && query->report[i]; i++)
         query->report[i]->pair(query->report[i], &checked);
     query->undecided = query->undecided || checked.status != FMB_OK;
@@ -160,6 +170,7 @@ static bool answer_scene(struct query *query, struct owned_scene *owner)
                   (query->rows.gap ? FMB_WANT_GAP : 0) |
                   (query->certificate ? FMB_WANT_CERTIFICATE : 0);
     query->scene = scene;
+    query->has_margin = query->has_margin || scene->margin > 0;
     for (int i = 0; i < 2 && query->report[i]; i++) {
         query->report[i]->scene = owner;
         query->report[i]->begin(query->report[i]);
@@ -200,6 +211,17 @@ static int answer_scenes(struct query *query, int fd)
     return query->fail_if && query->worst >= query->fail_if ? FAILED_IF : ARGS_ANSWERED;
 }
 
+/* Reports what the answers do not show. */
+static void report_limits(const struct query *query)
+{
+    char text[NUMBER_TEXT_MAX];
+    if (query->unproven > 0)
+        complain("no certificate for %s of the pairs: a body has several frames",
+                 number_grouped((int64_t) query->unproven, text));
+    if (query->fail_if == 2 * FMB_SEPARATED + 1 && query->scene && !query->has_margin)
+        complain("--fail-if near: no scene has a \"margin\", so no separated pair is near");
+}
+
 static bool write_page(const struct output_options *options, struct page *page)
 {
     struct output *output;
@@ -220,6 +242,8 @@ static int run_query(struct query *query, int fd)
     query->report[1] = page.page ? &page.report : NULL;
     int code = answer_scenes(query, fd);
     report_rows_end(&rows);
+    if (code != ARGS_USAGE)
+        report_limits(query);
     if (query->answers)
         answers_bus_close(query->answers);
     bool good = code == ARGS_USAGE || write_page(&query->html, page.page);

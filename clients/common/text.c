@@ -60,7 +60,8 @@ enum text_outcome text_refuse(struct text *text, size_t offset, const char *form
 static enum text_outcome refuse_byte(struct text *text, int byte)
 {
     if (byte > 0x20 && byte < 0x7f)
-        return text_refuse(text, 0, "expected an object, '{', found '%c'", byte);
+        return text_refuse(text, 0, "expected an object, '{', found '%c'%s", byte,
+                           byte == '<' ? " (is it a URDF? fmb scene reads it)" : "");
     return text_refuse(text, 0, "expected an object, '{', found byte 0x%02x", (unsigned) byte);
 }
 

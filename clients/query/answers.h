@@ -1,9 +1,10 @@
 /* Answers all pairs of a scene, in their order: decides them in this process, or by the service on
- * the bus. With a margin, contacts and near pairs have a gap even if it is not wanted.
+ * the bus. With a margin, contacts and near pairs have a gap even if it is not wanted. A pair with
+ * a body of several frames has its verdict, but no certificate.
  *
  * In process, fmb_decide() decides each pair, separated ones too. The service is queried for all
- * pairs as a list if gaps are wanted or the method is not certain; otherwise the pairs that its
- * results leave out are separated. */
+ * pairs as a list if gaps or certificates are wanted or the method is not certain; otherwise the
+ * pairs that its results leave out are separated. */
 #ifndef ANSWERS_H
 #define ANSWERS_H
 
@@ -24,6 +25,9 @@ void answers_bus_close(struct answers_bus *answers);
  * sent a heartbeat since the bus was opened. */
 bool answers_bus_scene(struct answers_bus *answers, struct owned_scene *scene,
                        fmb_client_sink *sink, void *user);
+
+/* Whether both bodies of a pair have one frame: others have no certificate. */
+bool pair_is_certified(const struct fmb_scene *scene, const unsigned pair[2]);
 
 enum { VERIFY_TEXT_MAX = 256 };
 

@@ -65,6 +65,7 @@ struct bus_scene {
     struct pair_cursor delivered; /* pairs so far */
     fmb_client_sink *sink;
     void *user;
+    int newest; /* status of the newest answer */
 };
 
 /* Delivers the pairs before the one of `until`, or all that are left: with this status; FMB_OK:
@@ -87,6 +88,7 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
 {
     struct bus_scene *run = user;
     deliver(run, FMB_OK, "", answer);
+    run->newest = answer->status;
     run->sink(run->user, answer);
 }
 
@@ -117,8 +119,7 @@ static bool advise(struct answers_bus *answers, const char *kind)
     if (counts.malformed > 0)
         complain("%" PRIu64 " results could not be read: another version of fmbd?",
                  counts.malformed);
-    complain("start one with 'fmbd%s%s &', or decide without it: fmb query --local",
-             *prefix ? " --prefix " : "", prefix);
+    args_advise_service(&answers->bus, ", or decide without it: fmb query --local");
     return seen;
 }
 
@@ -133,8 +134,35 @@ static unsigned (*list_pairs(struct owned_scene *scene, size_t *count))[2]
     return pair;
 }
 
+/* Queries the listed pairs. The service refuses a certificate of a pair that has none: a run of
+ * such pairs is queried without. Once the service has stopped answering, no further run is queried.
+ */
+static int query_listed(struct answers_bus *answers, struct fmb_scene *queried,
+                        struct bus_scene *run)
+{
+    const unsigned(*pair)[2] = queried->pairs;
+    const size_t count = queried->pair_count;
+    const unsigned want = queried->want;
+    int status = FMB_OK;
+    for (size_t i = 0, end; i < count && status == FMB_OK; i = end) {
+        const bool certified = pair_is_certified(queried, pair[i]);
+        end = want & FMB_WANT_CERTIFICATE ? i + 1 : count;
+        while (end < count && pair_is_certified(queried, pair[end]) == certified)
+            end++;
+        queried->pairs = pair + i;
+        queried->pair_count = end - i;
+        queried->want = certified ? want : want & ~(unsigned) FMB_WANT_CERTIFICATE;
+        status = fmb_client_query(answers->client, queried, take_answer, run);
+        if (run->newest == FMB_CLIENT_NO_SERVICE) {
+            deliver(run, run->newest, fmb_client_status_text(run->newest), NULL);
+            break;
+        }
+    }
+    return status;
+}
+
 /* Of all pairs the library answers only contacts and near ones. So pairs are listed if each gets a
- * gap, and for a method that takes listed pairs only. */
+ * gap or a certificate, and for a method that takes listed pairs only. */
 bool answers_bus_scene(struct answers_bus *answers, struct owned_scene *owner,
                        fmb_client_sink *sink, void *user)
 {
@@ -146,14 +174,16 @@ bool answers_bus_scene(struct answers_bus *answers, struct owned_scene *owner,
         deliver(&run, FMB_CLIENT_NO_BUS, "no bus", NULL);
         return false;
     }
-    if (scene->which == FMB_PAIRS_ALL &&
-        (scene->want & FMB_WANT_GAP || (scene->method && !scene->method->certain))) {
+    if (scene->which == FMB_PAIRS_ALL && (scene->want & (FMB_WANT_GAP | FMB_WANT_CERTIFICATE) ||
+                                          (scene->method && !scene->method->certain))) {
         pair = list_pairs(owner, &queried.pair_count);
         queried.which = FMB_PAIRS_LISTED;
         queried.pairs = (const unsigned(*)[2]) pair;
         queried.ignored_count = 0;
     }
-    const int status = fmb_client_query(answers->client, &queried, take_answer, &run);
+    const int status = queried.which == FMB_PAIRS_LISTED
+                           ? query_listed(answers, &queried, &run)
+                           : fmb_client_query(answers->client, &queried, take_answer, &run);
     deliver(&run, status, fmb_client_why(answers->client), NULL);
     free(pair);
     return advise(answers, scene->want & FMB_WANT_CERTIFICATE ? "PAIR" : "SCENE");

@@ -17,7 +17,8 @@ static void decide(const struct fmb_scene *scene, struct fmb_client_answer *out,
     enum fmb_status status = fmb_decide(method, a, b, scene->duration, want, &out->answer);
     if (!(scene->want & FMB_WANT_GAP))
         query_remove_far_gap(scene->margin, &out->answer);
-    if (scene->want & FMB_WANT_CERTIFICATE && status == FMB_OK)
+    if (scene->want & FMB_WANT_CERTIFICATE && status == FMB_OK &&
+        pair_is_certified(scene, (unsigned[]){out->a, out->b}))
         status = fmb_certificate(a, b, scene->duration, text, FMB_CERTIFICATE_MAX, &length);
     out->certificate = length > 0 ? text : NULL;
     out->status = status;
@@ -40,6 +41,12 @@ void answers_local(struct owned_scene *scene, fmb_client_sink *sink, void *user)
         decide(&scene->scene, &answer, text);
         sink(user, &answer);
     }
+}
+
+bool pair_is_certified(const struct fmb_scene *scene, const unsigned pair[2])
+{
+    return scene->placements[pair[0]].body->frame_count == 1 &&
+           scene->placements[pair[1]].body->frame_count == 1;
 }
 
 void verify_answer(const struct fmb_scene *scene, const char *whose,

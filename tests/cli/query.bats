@@ -368,7 +368,9 @@ fails() {
     done
     fails 0 "$overlapping $apart"
     # Without a margin no pair is near.
-    fails 0 "${near/\"margin\": 1, /}" --fail-if near
+    run --separate-stderr "$FMB" query --local --fail-if near <<< "${near/\"margin\": 1, /}"
+    ended 0
+    said 'fmb: --fail-if near: no scene has a "margin", so no separated pair is near'
 }
 
 # bats test_tags=release
@@ -560,6 +562,17 @@ squares() {
 }
 
 # bats test_tags=release
+@test "a pair with a body of several frames has its verdict, but no certificate" {
+    box='"shape": "box", "size": [1,1]'
+    scene="{\"dim\": 2, \"bodies\": [{\"id\": 1, $box}, {\"id\": 2, $box, \"position\": [1,0]},
+        {\"id\": 3, \"frames\": [{$box}, {$box, \"position\": [5,0]}]}]}"
+    query "$scene" --certificate --fail-if overlapping
+    ended 3
+    said 'fmb: no certificate for 2 of the pairs: a body has several frames'
+    jq -e '[.pairs[] | [.a, .b, .verdict, has("certificate")]] ==
+        [[1, 2, "touching", true], [1, 3, "overlapping", false], [2, 3, "touching", false]]' <<< "$output"
+}
+
 @test "where an inexact method is wrong, the certificate does not hold" {
     scene='{"dim": 2, "bodies": [
         {"id": 1, "shape": "tetrahedron", "origin": [-0.5,-0.6], "components": [[-0.2,0.9], [0.5,-0.2]]},
@@ -686,7 +699,10 @@ refused() {
     said 'fmb: standard input: unknown key "bodys" (there are label, dim, duration, margin, bodies, pairs, ignore)'
 }
 
-@test "an empty input is refused" {
+@test "an empty input is refused, and a URDF" {
+    run "$FMB" query --local <<< '<robot/>'
+    ended 2
+    is "fmb: standard input: line 1, column 1: expected an object, '{', found '<' (is it a URDF? fmb scene reads it)"
     run "$FMB" query --local < /dev/null
     ended 2
     is 'fmb: standard input: the input is empty: expected a scene'

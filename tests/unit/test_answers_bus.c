@@ -44,10 +44,41 @@ static void later_scenes_are_queried_if_there_is_a_heartbeat(void **state)
     }
 }
 
+/* Pairs with a certificate and pairs without one, of a body of several frames, are separate
+ * queries. Those that are not sent, because nothing answers the first ones, have no verdict. */
+static void all_pairs_fail_where_certificates_are_wanted_and_nothing_answers(void **state)
+{
+    int pairs = 0;
+    const double size[] = {1, 1, 1};
+    struct fmb_frame frame[2];
+    struct fmb_body one, two;
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(fmb_frame_make(3, FMB_BOX, size, 3, &frame[i]), FMB_OK);
+    assert_int_equal(fmb_body_make_frames(frame, 1, &one), FMB_OK);
+    assert_int_equal(fmb_body_make_frames(frame, 2, &two), FMB_OK);
+    const struct fmb_placement placement[] = {
+        {.body = &one, .id = 1}, {.body = &one, .id = 2}, {.body = &two, .id = 3}};
+    struct owned_scene scene = {.dim = 3,
+                                .scene = {.placements = placement,
+                                          .placement_count = 3,
+                                          .duration = 1,
+                                          .want = FMB_WANT_CERTIFICATE}};
+    struct relay *relay = relay_new();
+    relay->deaf = true;
+    relay_open(relay, 10);
+    const struct args_bus bus = {.url = relay->url, .prefix = ""};
+    struct answers_bus *answers = answers_bus_open(&bus, 0.1, 0);
+    assert_false(answers_bus_scene(answers, &scene, count, &pairs));
+    assert_int_equal(pairs, 3);
+    answers_bus_close(answers);
+    relay_close(relay);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(later_scenes_are_queried_if_there_is_a_heartbeat),
+        cmocka_unit_test(all_pairs_fail_where_certificates_are_wanted_and_nothing_answers),
     };
     (void) argc;
     relay_enter(argv);
