@@ -11,6 +11,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 enum { EXIT_USAGE = 2 };
@@ -39,6 +40,19 @@ static const char usage[] =
     "\n"
     "Exit codes: 0 ended by a signal, 1 no bus, no memory or no such user, 2 wrong\n"
     "options.\n";
+
+/* Reports an option that getopt_long() refused. The name is argv[optind - 1] of a long option, and
+ * the letter optopt of a short one, which may share its word with others. */
+static int refused_option(int option, char **argv)
+{
+    const char letter[] = {'-', (char) optopt, '\0'};
+    const char *name = strncmp(argv[optind - 1], "--", 2) == 0 ? argv[optind - 1] : letter;
+    fprintf(stderr,
+            option == ':' ? "fmbd: option '%s' needs a value; see fmbd --help\n"
+                          : "fmbd: unknown option '%s'; see fmbd --help\n",
+            name);
+    return EXIT_USAGE;
+}
 
 static int wrong_option(const char *option, const char *value, const char *expected)
 {
@@ -92,8 +106,7 @@ static int parse_options(int argc, char **argv, struct daemon_options *out)
         case 'u': out->user = optarg; break;
         case 'h': printf(usage, DEFAULT_FRAMES, CACHE_FRAMES_MAX); return EXIT_SUCCESS;
         case 'V': printf("fmbd %s\n", fmb_version()); return EXIT_SUCCESS;
-        case ':': return wrong_option("option", argv[optind - 1], "a value after it");
-        default: return wrong_option("option", argv[optind - 1], "one that there is");
+        default: return refused_option(option, argv);
         }
     }
     if (optind < argc)

@@ -59,10 +59,14 @@ load service
     random_scene 2 3 > "$BATS_TEST_TMPDIR/scene.json"
     run "$FMB" query --timeout 0.1 --retries 1 "$BATS_TEST_TMPDIR/scene.json"
     [ "$status" = 1 ]
-    [[ "$output" == *fmbd* ]]
-    run "$FMB" status --timeout 0.1
-    [ "$status" = 1 ]
-    [[ "$output" == *fmbd* ]]
+    [[ "$output" == *"start one with 'fmbd"* ]]
+    # What to run is a service on this bus.
+    bus='udpm://239.255.76.67:7668?ttl=0'
+    for command in "query --timeout 0.01 --retries 1 $BATS_TEST_TMPDIR/scene.json" 'status --timeout 0.1'; do
+        run "$FMB" $command --lcm-url "$bus" --prefix P
+        [ "$status" = 1 ]
+        [[ "$output" == *"start one with 'fmbd --lcm-url \"$bus\" --prefix P &'"* ]]
+    done
 }
 
 # bats test_tags=release
@@ -296,6 +300,10 @@ load service
         run "$FMBD" "$options"
         [ "$status" = 2 ]
         [[ "$output" == *"fmbd --help"* ]]
+    done
+    for wrong in "-x:unknown option '-x'" "--no:unknown option '--no'" "-f:option '-f' needs a value"; do
+        run "$FMBD" "${wrong%%:*}"
+        [ "$status:$output" = "2:fmbd: ${wrong#*:}; see fmbd --help" ]
     done
     run "$FMBD" --help
     [ "$status" = 0 ]
