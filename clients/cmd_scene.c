@@ -1,6 +1,7 @@
 /* fmb scene: prints a robot of a URDF file as scenes. */
 #include "commands.h"
 
+#include "allocate.h"
 #include "args.h"
 #include "complain.h"
 #include "joints.h"
@@ -9,14 +10,17 @@
 
 #include <float.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char usage[] =
     "usage: fmb scene [OPTIONS] ROBOT.urdf\n"
     "\n"
     "Prints a robot as a scene for 'fmb query': a body for each link, with its name,\n"
-    "made of its <collision> elements. A link without any has no body. With a table\n"
-    "of joint values, prints a scene for each row:\n"
+    "made of its <collision> elements. A link without any has no body. Boxes stay\n"
+    "boxes. A mesh (STL, OBJ, PLY) becomes its convex hull, of at most 1024 vertices;\n"
+    "vertices of the mesh inside the hull do not count. With a table of joint values,\n"
+    "prints a scene for each row:\n"
     "\n"
     "  fmb scene robot.urdf --joints-csv path.csv --with world.json |\n"
     "    fmb query --local --contacts --fail-if overlapping\n"
@@ -34,8 +38,7 @@ static const char usage[] =
     "                       \"time\" are optional. With times, a row lasts until the\n"
     "                       time of the next row\n"
     "\n"
-    "Shapes. Boxes stay boxes. A mesh (STL, OBJ, PLY) becomes its convex hull, of at\n"
-    "most 1024 vertices; vertices of the mesh inside the hull do not count.\n"
+    "Shapes:\n"
     "  --sides N            sides of the hulls that enclose cylinders and spheres, a\n"
     "                       multiple of 4 up to 44 (16). A hull extends beyond a\n"
     "                       cylinder of radius r by at most r (1 / cos(pi/N) - 1),\n"
@@ -51,12 +54,13 @@ static const char usage[] =
     "  --with SCENE.json    adds the bodies of a scene, with its ignored pairs,\n"
     "                       duration and margin. Links have the ids from 1 on; a body\n"
     "                       with one of these gets another id, which is reported\n"
+    "  --ignore NAME,NAME   a pair of links or bodies that is not tested, by its names;\n"
+    "                       may be given several times\n"
     "  --margin M           the margin, in place of that of the scene\n"
     "  -h, --help\n"
     "\n"
     "A link is not tested against its parent, or, if that has no body, against the\n"
-    "nearest link above that has one. Other pairs that are always in contact can be\n"
-    "ignored by their ids, by a filter such as jq -c '.ignore += [[1,101]]'.\n"
+    "nearest link above that has one.\n"
     "\n"
     "Joints are revolute, continuous, prismatic or fixed. Capsules, COLLADA (.dae),\n"
     "xacro, SRDF and SDF are not supported. Poses are rounded to doubles: give a\n"
@@ -69,6 +73,8 @@ struct scene_options {
     struct robot_body_options body;
     long sides;
     const char *joints, *table, *world;
+    const char **ignored; /* owned, [ignored_count]: pairs of names */
+    size_t ignored_count, ignored_capacity;
     double margin; /* negative: not given */
 };
 
@@ -79,6 +85,16 @@ static bool take_once(const struct args *args, void *out)
     if (*text)
         return args_error(args, "--%s is given twice", args->option);
     *text = optarg;
+    return true;
+}
+
+static bool take_ignored(const struct args *args, void *out)
+{
+    struct scene_options *options = out;
+    (void) args;
+    options->ignored = allocate_grow(options->ignored, &options->ignored_capacity,
+                                     options->ignored_count + 1, sizeof *options->ignored);
+    options->ignored[options->ignored_count++] = optarg;
     return true;
 }
 
@@ -131,7 +147,8 @@ static bool print_robot(const struct scene_options *options, const struct robot 
     struct joints joints;
     bool good = joints_open(robot, options->joints, &joints) &&
                 robot_scene_make(robot, &options->body, scene) &&
-                (!options->world || robot_scene_add_world(scene, options->world));
+                (!options->world || robot_scene_add_world(scene, options->world)) &&
+                robot_scene_ignore(scene, options->ignored, options->ignored_count);
     if (options->margin >= 0)
         scene->owner.scene.margin = options->margin;
     if (good && options->table) {
@@ -148,6 +165,17 @@ static bool print_robot(const struct scene_options *options, const struct robot 
     return good;
 }
 
+static int print_file(const struct scene_options *options, const char *path)
+{
+    struct robot robot;
+    struct robot_scene scene = {.robot_bodies = 0};
+    bool good = robot_read(path, &robot) && print_robot(options, &robot, &scene);
+    robot_scene_clear(&scene);
+    robot_clear(&robot);
+    good = output_flush() && good;
+    return good ? ARGS_ANSWERED : ARGS_USAGE;
+}
+
 int cmd_scene(int argc, char **argv)
 {
     struct scene_options options = {.sides = ROBOT_SIDES, .margin = -1};
@@ -158,24 +186,20 @@ int cmd_scene(int argc, char **argv)
         {"objects", ARGS_FLAG, .out = &options.body.objects},
         {"package-path", ARGS_OTHER, &options.body.package_path, .take = take_once},
         {"with", ARGS_OTHER, &options.world, .take = take_once},
+        {"ignore", ARGS_OTHER, &options, .take = take_ignored},
         {"margin", ARGS_NUMBER, &options.margin, .high = DBL_MAX},
         {.name = NULL},
     };
     struct args args = {"scene",          usage, own, .operand = "ROBOT.urdf", .operands_min = 1,
                         .operands_max = 1};
-    const int code = args_parse(&args, argc, argv);
-    if (code != ARGS_RUN)
-        return code;
-    if (options.sides % 4 != 0) {
+    int code = args_parse(&args, argc, argv);
+    if (code == ARGS_RUN && options.sides % 4 != 0) {
         args_error(&args, "--sides: expected a multiple of 4, found %ld", options.sides);
-        return ARGS_USAGE;
+        code = ARGS_USAGE;
     }
     options.body.sides = (int) options.sides;
-    struct robot robot;
-    struct robot_scene scene = {.robot_bodies = 0};
-    bool good = robot_read(args.operands[0], &robot) && print_robot(&options, &robot, &scene);
-    robot_scene_clear(&scene);
-    robot_clear(&robot);
-    good = output_flush() && good;
-    return good ? ARGS_ANSWERED : ARGS_USAGE;
+    if (code == ARGS_RUN)
+        code = print_file(&options, args.operands[0]);
+    free(options.ignored);
+    return code;
 }

@@ -21,9 +21,10 @@ static bool check_value(const struct robot_joint *joint, double value, const cha
     char found[NUMBER_TEXT_MAX], low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
     number_exact(value, found);
     if (!(value >= joint->limit[0] && value <= joint->limit[1])) {
-        complain("%s: joint '%s'%s: %s is outside its limits, %s to %s", place, joint->name->name,
+        complain("%s: joint '%s'%s: %s is outside its limits, %s to %s%s", place, joint->name->name,
                  via, found, number_exact(joint->limit[0], low),
-                 number_exact(joint->limit[1], high));
+                 number_exact(joint->limit[1], high),
+                 joint->type != ROBOT_PRISMATIC ? " radians" : "");
         return false;
     }
     if (joint->type != ROBOT_PRISMATIC && fabs(value) > TURN_RADIANS_MAX) {
@@ -262,9 +263,10 @@ bool joint_table_open(const char *path, struct joints *joints, struct joint_tabl
                                 .time = NAN,
                                 .text = allocate_unset(TEXT_MAX),
                                 .place = allocate(COMPLAIN_PLACE_MAX, 1)};
-    if (!out->file || fstat(fileno(out->file), &about) != 0)
+    const bool is_stdin = strcmp(path, "-") == 0;
+    if (!is_stdin && (!out->file || fstat(fileno(out->file), &about) != 0))
         complain("%s: %s", path, strerror(errno));
-    else if (!S_ISREG(about.st_mode))
+    else if (is_stdin || !S_ISREG(about.st_mode))
         complain("%s: not a regular file, which is needed because it is read twice: save it to one",
                  path);
     else
@@ -309,8 +311,8 @@ static enum joint_row set_label(struct joint_table *table, const char *text)
     char time[NUMBER_TEXT_MAX], *label = table->label;
     size_t size = text ? strlen(text) : 0;
     if (size <= QUERY_NAME_MAX && table->has_time)
-        size = (size_t) snprintf(label, sizeof table->label, "%s%st = %s", text ? text : "",
-                                 size > 0 ? ", " : "", number_exact(table->time, time));
+        size = (size_t) snprintf(label, sizeof table->label, size > 0 ? "%s (t = %s)" : "%st = %s",
+                                 text ? text : "", number_exact(table->time, time));
     else if (size <= QUERY_NAME_MAX)
         strcpy(label, text ? text : "");
     return size <= QUERY_NAME_MAX && utf8_is_text(label)

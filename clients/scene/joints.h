@@ -34,7 +34,7 @@ struct joint_table {
     /* Of the current row. */
     bool has_time;
     double time;                    /* not before that of the previous row */
-    char label[QUERY_NAME_MAX + 1]; /* the label, then "t = " and the time; may be "" */
+    char label[QUERY_NAME_MAX + 1]; /* "label (t = 0.5)", "label", "t = 0.5" or "" */
     unsigned long line;             /* in the file, from 1 */
     char *place;                    /* the file and line, for messages */
     /* Private. */

@@ -129,7 +129,9 @@ static bool read_world(const char *path, struct owned_scene *out)
         scene_clear(&second);
         good = false;
     } else if (outcome != JSON_END) {
-        complain("%s: %s", path, json_error(reader));
+        const char *error = json_error(reader);
+        complain("%s: %s%s", path, error,
+                 strstr(error, ": no body has the id ") ? " (--ignore takes names of links)" : "");
         good = false;
     }
     json_close(reader);
@@ -200,6 +202,55 @@ bool robot_scene_add_world(struct robot_scene *scene, const char *path)
     out->margin = world->margin;
     scene_begin_ignored(owner);
     return set_ids(scene, path, world->placement_count);
+}
+
+/* ---- Ignored pairs ---- */
+
+/* Finds the only body of this name, which ends at `end`. Returns false after an error. */
+static bool find_body(const struct fmb_scene *scene, const char *name, const char *end,
+                      unsigned *out)
+{
+    const size_t length = (size_t) (end - name);
+    size_t found = 0;
+    for (size_t i = 0; i < scene->placement_count; i++) {
+        const char *of = scene->placements[i].name;
+        if (!of || strlen(of) != length || memcmp(of, name, length) != 0)
+            continue;
+        *out = (unsigned) i;
+        found++;
+    }
+    if (found != 1)
+        complain("--ignore: %s the name '%.*s'", found ? "several bodies have" : "no body has",
+                 (int) length, name);
+    return found == 1;
+}
+
+bool robot_scene_ignore(struct robot_scene *scene, const char *const *pair, size_t count)
+{
+    struct owned_scene *owner = &scene->owner;
+    struct fmb_scene *out = &owner->scene;
+    unsigned(*ignored)[2] = scene_alloc(owner, out->ignored_count + count, sizeof *ignored);
+    if (out->ignored_count > 0)
+        memcpy(ignored, out->ignored, out->ignored_count * sizeof *ignored);
+    for (size_t i = 0; i < count; i++) {
+        unsigned *ends = ignored[out->ignored_count + i];
+        const char *comma = strchr(pair[i], ',');
+        if (!comma) {
+            complain("--ignore: expected two names, NAME,NAME, found '%.128s'", pair[i]);
+            return false;
+        }
+        if (!find_body(out, pair[i], comma, &ends[0]) ||
+            !find_body(out, comma + 1, comma + strlen(comma), &ends[1]))
+            return false;
+        if (ends[0] == ends[1]) {
+            complain("--ignore: '%s': a body is no pair with itself", pair[i]);
+            return false;
+        }
+    }
+    out->ignored = (const unsigned(*)[2]) ignored;
+    out->ignored_count += count;
+    scene_begin_ignored(owner);
+    return true;
 }
 
 /* ---- Poses ---- */

@@ -258,7 +258,11 @@ static void read_shape(struct reader *reader, const struct node *node, struct ro
         out->size[0] = out->size[1] = out->size[2] = 1;
         read_numbers(reader, node, "scale", false, 3, out->size);
     } else {
-        refuse(reader, node->line, "<%.64s>: expected a box, cylinder, sphere or mesh", node->name);
+        refuse(reader, node->line, "<%.64s>: expected a box, cylinder, sphere or mesh%s",
+               node->name,
+               is(node, "capsule")
+                   ? "; give a capsule as a cylinder and two spheres, each a <collision>"
+                   : "");
     }
 }
 

@@ -202,7 +202,7 @@ triangle() {
 }
 
 @test "a value beyond a limit, or for an unknown joint, is an error, and is not clamped" {
-    refused "--joints: joint 'turn': 2.0000000000000004 is outside its limits, -1 to 2" robot.urdf --joints turn=2.0000000000000004
+    refused "--joints: joint 'turn': 2.0000000000000004 is outside its limits, -1 to 2 radians" robot.urdf --joints turn=2.0000000000000004
     refused "--joints: joint 'slide': -1.5 is outside its limits, -1 to 2" robot.urdf --joints turn=2,slide=-1.5
     refused "--joints: 'elbow' is not a joint of robot.urdf" robot.urdf --joints elbow=1
     refused "--joints: joint 'turn' is given twice" robot.urdf --joints turn=1,turn=1
@@ -252,8 +252,8 @@ triangle() {
     said ''
     shows '[.label, .duration, .bodies[2].position[1]]'
     is '["t = 0",0.25,1]
-["a \"b\", c, t = 0.25",0.75,2]
-["end, t = 1",0,-0.5]'
+["a \"b\", c (t = 0.25)",0.75,2]
+["end (t = 1)",0,-0.5]'
     printf 'turn,slide\n1,0\n' > t.csv
     scene robot.urdf --joints-csv t.csv
     shows '[has("label"), .duration]'
@@ -293,6 +293,7 @@ triangle() {
     bad 't.csv: line 3: expected a row of joint values, found none' turn,slide ''
     refused 'none.csv: No such file' robot.urdf --joints-csv none.csv
     refused '/dev/null: not a regular file' robot.urdf --joints-csv /dev/null
+    refused '-: not a regular file, which is needed because it is read twice' robot.urdf --joints-csv -
     head -c 2000000 /dev/zero > t.csv
     refused 't.csv: line 1: has a zero byte (save the table as UTF-8), or more than 1048575 bytes' robot.urdf --joints-csv t.csv
 }
@@ -329,6 +330,25 @@ triangle() {
     echo '{"dim": 3, "bodies": [{"id": 0}]}' > world.json
     refused 'world.json: bodies[0]' robot.urdf --with world.json
     refused 'none.json: No such file' robot.urdf --with none.json
+    echo "{\"dim\": 3, \"bodies\": [{\"id\": 9, $cube}], \"ignore\": [[1,9]]}" > world.json
+    refused 'world.json: ignore[0][0]: no body has the id 1 (--ignore takes names of links)' robot.urdf --with world.json
+}
+
+@test "--ignore names pairs of links and of bodies of the world" {
+    cube='"shape": "box", "size": [1,1,1]'
+    echo "{\"dim\": 3, \"bodies\": [{\"id\": 8, \"name\": \"x\", $cube}, {\"id\": 9, \"name\": \"y\", $cube},
+        {\"id\": 10, \"name\": \"twice\", $cube}, {\"id\": 11, \"name\": \"twice\", $cube}], \"ignore\": [[9,10]]}" > world.json
+    scene robot.urdf --with world.json --ignore tool,base --ignore base,y --ignore=arm,base
+    shows .ignore
+    is '[[1,2],[1,3],[1,9],[2,3],[9,10]]'
+    scene robot.urdf --ignore base,tool
+    shows .ignore
+    is '[[1,2],[1,3],[2,3]]'
+    refused "--ignore: no body has the name 'z'" robot.urdf --with world.json --ignore base,z
+    refused "--ignore: no body has the name 'tool,x'" robot.urdf --with world.json --ignore base,tool,x
+    refused "--ignore: several bodies have the name 'twice'" robot.urdf --with world.json --ignore base,twice
+    refused "--ignore: 'arm,arm': a body is no pair with itself" robot.urdf --ignore arm,arm
+    refused "--ignore: expected two names, NAME,NAME, found 'arm'" robot.urdf --ignore arm
 }
 
 # ---- Bad robots ------------------------------------------------------------------------------
@@ -387,7 +407,7 @@ triangle() {
     shape '<geometry><box size="1 -2 3"/></geometry>' '<box>: size is negative'
     shape '<geometry><box size="1 ${w} 3"/></geometry>' "<box>: size is '1 \${w} 3': expand the file with xacro first"
     shape '<geometry><mesh filename="$(find pkg)/a.stl"/></geometry>' "<mesh>: filename is '\$(find pkg)/a.stl': expand the file with xacro first"
-    shape '<geometry><capsule radius="1"/></geometry>' '<capsule>: expected a box, cylinder, sphere or mesh'
+    shape '<geometry><capsule radius="1"/></geometry>' '<capsule>: expected a box, cylinder, sphere or mesh; give a capsule as a cylinder and two spheres'
     shape '<geometry><sphere radius="1"/><sphere radius="1"/></geometry>' '<sphere>: there is already a shape'
     shape '<geometry><cylinder radius="1"/></geometry>' '<cylinder> has no length'
     shape '<geometry><sphere radius="1.79e308"/></geometry>' 'not a finite number'
@@ -524,6 +544,6 @@ triangle() {
     ended 3
     grep overlapping <<< "$output" | sed 's/,overlapping.*//' > "$BATS_TEST_TMPDIR/found"
     run cat "$BATS_TEST_TMPDIR/found"
-    is ',4,"swing, t = 1.5",4,102,"forearm","post"
-,4,"swing, t = 1.5",5,102,"hand","post"'
+    is ',4,"swing (t = 1.5)",4,102,"forearm","post"
+,4,"swing (t = 1.5)",5,102,"hand","post"'
 }
