@@ -61,18 +61,14 @@ static void note(struct flaw *flaw, int log, int64_t offset, const char *what)
     }
 }
 
-/* Returns false if later events are not to be read: of an old version. */
-static bool take_event(struct printing *printing, const struct log_event *event)
+static void take_event(struct printing *printing, const struct log_event *event)
 {
-    const enum log_kind kind = log_kind_of(&printing->channels, event);
-    const bool old = log_kind_old_version(kind, event) != 0;
-    const char *error = old ? "recorded by an old version, whose messages are others"
-                            : result_rows_take(printing->results, kind, event->number, event->data,
-                                               (uint32_t) event->kept);
+    const char *error =
+        result_rows_take(printing->results, log_kind_of(&printing->channels, event), event->number,
+                         event->data, (uint32_t) event->kept);
     if (error)
         note(error == result_rows_no_query ? &printing->no_query : &printing->unreadable,
              printing->input.log, event->offset, error);
-    return !old;
 }
 
 /* Damage ends the run, with the rows before it. */
@@ -85,8 +81,10 @@ static void take_all(struct printing *printing)
     bool more = true;
     while (more && !ferror(stdout) &&
            (outcome = input_next(&printing->input, &event, &damage)) != LOG_END) {
-        more = outcome == LOG_EVENT && take_event(printing, &event);
-        if (outcome != LOG_EVENT)
+        more = outcome == LOG_EVENT;
+        if (more)
+            take_event(printing, &event);
+        else
             note(&printing->unreadable, printing->input.log,
                  outcome == LOG_DAMAGE ? damage.offset : printing->input.passed,
                  outcome == LOG_DAMAGE ? damage.what : strerror(errno));

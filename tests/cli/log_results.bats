@@ -137,10 +137,10 @@ rows() {
     ended 2
     said "fmb: $log: offset $at: shorter than its fields, the first of 2"
     [ "${#lines[@]}" -gt 100 ]
-    edit arm --old 1 0
+    edit arm --old 1 6
     results "$log"
     ended 2
-    said "fmb: $log: offset 0: recorded by an old version, whose messages are others"
+    said "fmb: $log: offset $at: a message of version 1, which this version does not read"
 }
 
 @test "a log without results is reported" {
