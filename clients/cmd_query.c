@@ -111,12 +111,6 @@ static bool take_method(const struct args *args, void *out)
            args_error(args, "--method: there are certified, exact, fmb and sat, not '%s'", optarg);
 }
 
-static bool take_svg(const struct args *args, void *out)
-{
-    (void) out;
-    return args_error(args, "--svg: pictures are pages now: --html %s", optarg);
-}
-
 /* How close a pair comes: twice the verdict, and 1 more if it is near. */
 static int severity(double margin, const struct fmb_answer *answer)
 {
@@ -271,7 +265,6 @@ int cmd_query(int argc, char **argv)
         {"certificate", ARGS_FLAG, .out = &query.certificate},
         {"method", ARGS_OTHER, &query.method, .take = take_method},
         {"html", ARGS_TEXT, .out = &query.html.path},
-        {"svg", ARGS_OTHER, .take = take_svg},
         {"force", ARGS_FLAG, .out = &rules.force},
         {"timeout", ARGS_NUMBER, &query.timeout, .low = 0.001, .high = 3600},
         {"retries", ARGS_INTEGER, &query.retries, .high = 1000},

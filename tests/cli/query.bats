@@ -790,14 +790,6 @@ all_pairs() {
     said 'fmb: /no/such/folder/scene.html: No such file or directory'
 }
 
-# bats test_tags=release
-@test "--svg names the option that replaces it" {
-    query "$scene" --svg scene.svg
-    ended 2
-    said "fmb query: --svg: pictures are pages now: --html scene.svg
-Try 'fmb query --help'."
-}
-
 # ---- The command -----------------------------------------------------------------------------
 
 @test "--help prints the usage on standard output" {
@@ -908,7 +900,7 @@ Try 'fmb query --help'."
     printf x > "$name"
     printf '%s' "$scene" > "$name.json"
     cp "$BATS_TEST_DIRNAME/../logs/stack.log" "$name.log"
-    for arguments in "query --local @" "query @/none" "query --local --html @/none @.json" "query --svg @" "mesh --self @" \
+    for arguments in "query --local @" "query @/none" "query --local --html @/none @.json" "mesh --self @" \
         "mesh @.obj @.obj" "mesh @.obj @.obj --ply @/none" "log info @" "log info @.log" "log cut --output @/none @.log" \
         "log scene --event 99999 @.log" "log scene --event 1 @" "replay @" "replay @/none" "replay --golden @ @.log" \
         "record @/none" "record --@" "watch @" "log @" "@" "help @" "status --lcm-url @" "status --timeout @" "mesh --as @" "mesh --scale @"; do
