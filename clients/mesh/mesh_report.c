@@ -159,7 +159,7 @@ static unsigned char *put_bytes(unsigned char *at, uint64_t bits, size_t size)
     return at;
 }
 
-static void put_header(FILE *out, size_t vertices, size_t faces, bool coloured)
+static void put_header(FILE *out, size_t vertices, size_t faces)
 {
     fprintf(out,
             "ply\n"
@@ -170,10 +170,11 @@ static void put_header(FILE *out, size_t vertices, size_t faces, bool coloured)
             "property double z\n"
             "element face %zu\n"
             "property list uchar uint vertex_indices\n"
-            "%s"
+            "property uchar red\n"
+            "property uchar green\n"
+            "property uchar blue\n"
             "end_header\n",
-            vertices, faces,
-            coloured ? "property uchar red\nproperty uchar green\nproperty uchar blue\n" : "");
+            vertices, faces);
 }
 
 static void put_vertex(FILE *out, const double position[3])
@@ -187,28 +188,17 @@ static void put_vertex(FILE *out, const double position[3])
     fwrite(bytes, 1, (size_t) (at - bytes), out);
 }
 
-/* first: added to the indices. colour: red, green, blue; may be NULL. */
+/* first: added to the indices. colour: red, green, blue. */
 static void put_face(FILE *out, const unsigned corner[3], size_t first, const unsigned char *colour)
 {
     enum { INDEX_BYTES = 4 };
     unsigned char bytes[1 + 3 * INDEX_BYTES + 3], *at = put_bytes(bytes, 3, 1);
     for (int i = 0; i < 3; i++)
         at = put_bytes(at, first + corner[i], INDEX_BYTES);
-    for (int i = 0; colour && i < 3; i++)
+    for (int i = 0; i < 3; i++)
         at = put_bytes(at, colour[i], 1);
     fwrite(bytes, 1, (size_t) (at - bytes), out);
 }
-
-void mesh_write_ply(FILE *out, const struct mesh *mesh, const unsigned char (*face_colour)[3])
-{
-    put_header(out, mesh->vertex_count, mesh->face_count, face_colour != NULL);
-    for (size_t i = 0; i < mesh->vertex_count; i++)
-        put_vertex(out, mesh->vertex[i]);
-    for (size_t i = 0; i < mesh->face_count; i++)
-        put_face(out, mesh->face[i], 0, face_colour ? face_colour[i] : NULL);
-}
-
-/* ---- Colours --------------------------------------------------------------------------------- */
 
 static const unsigned char *colour_of(const struct mesh_report *report, int which, size_t face)
 {
@@ -227,7 +217,7 @@ void mesh_report_ply(FILE *out, const struct mesh_report *report)
     const struct mesh *const *mesh = report->mesh;
     size_t first = 0;
     put_header(out, mesh[0]->vertex_count + (meshes > 1 ? mesh[1]->vertex_count : 0),
-               mesh[0]->face_count + (meshes > 1 ? mesh[1]->face_count : 0), true);
+               mesh[0]->face_count + (meshes > 1 ? mesh[1]->face_count : 0));
     for (int m = 0; m < meshes; m++)
         for (size_t i = 0; i < mesh[m]->vertex_count; i++)
             put_vertex(out, mesh[m]->vertex[i]);

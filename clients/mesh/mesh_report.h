@@ -26,11 +26,8 @@ void mesh_report_text(FILE *out, const struct mesh_report *report, bool list);
  * "sharing_edge" and "sharing_vertex" precede the pairs. */
 void mesh_report_json(FILE *out, const struct mesh_report *report);
 
-/* Writes a mesh as binary little-endian PLY with double coordinates, so that reading it gives the
- * same bits. face_colour: red, green, blue of each face; NULL: none. */
-void mesh_write_ply(FILE *out, const struct mesh *mesh, const unsigned char (*face_colour)[3]);
-
-/* Writes both meshes as one PLY file, with colours by verdict. */
+/* Writes both meshes as one PLY file, with colours by verdict: binary and little-endian with double
+ * coordinates, so that reading it gives the same bits. */
 void mesh_report_ply(FILE *out, const struct mesh_report *report);
 
 /* Writes an HTML page (page.h) of both meshes, with the pairs, MESH_PAGE_PAIRS_MAX at most. It

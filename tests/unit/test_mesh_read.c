@@ -729,15 +729,13 @@ static void all_formats_are_the_same_mesh(void **state)
     }
 }
 
-static void write_plain(FILE *out, const struct mesh *mesh)
+/* The mesh alone: its first face overlaps another one, and its second touches one. */
+static void write_ply(FILE *out, const struct mesh *mesh)
 {
-    mesh_write_ply(out, mesh, NULL);
-}
-
-static void write_coloured(FILE *out, const struct mesh *mesh)
-{
-    static const unsigned char colours[][3] = {{1, 2, 3}, {254, 255, 0}};
-    mesh_write_ply(out, mesh, colours);
+    static unsigned char worst[] = {FMB_OVERLAPPING, FMB_TOUCHING};
+    const struct mesh_query query = {.a = mesh, .b = mesh};
+    const struct mesh_intersection intersection = {.worst = {worst, worst}};
+    mesh_report_ply(out, &(struct mesh_report){&query, {mesh, mesh}, {"", ""}, &intersection});
 }
 
 static void what_is_written_is_read(void **state)
@@ -745,21 +743,18 @@ static void what_is_written_is_read(void **state)
     static double vertex[][3] = {{-0.0, 0x1p-1074, -0x1.fffffffffffffp1023}, {0.1, 1e22, 0}};
     static unsigned face[][3] = {{0, 1, 0}, {1, 1, 1}};
     struct mesh mesh = {.vertex_count = 2, .face_count = 2, .vertex = vertex, .face = face};
-    expect_mesh(read_back(&mesh, write_plain), 2, (const double(*)[3]) vertex, 2,
-                (const unsigned(*)[3]) face);
-    expect_mesh(read_back(&mesh, write_coloured), 2, (const double(*)[3]) vertex, 2,
+    expect_mesh(read_back(&mesh, write_ply), 2, (const double(*)[3]) vertex, 2,
                 (const unsigned(*)[3]) face);
     mesh.face_count = 0;
-    expect_mesh(read_back(&mesh, write_plain), 2, (const double(*)[3]) vertex, 0, NULL);
+    expect_mesh(read_back(&mesh, write_ply), 2, (const double(*)[3]) vertex, 0, NULL);
     mesh.vertex_count = 0;
-    expect_mesh(read_back(&mesh, write_plain), 0, NULL, 0, NULL);
+    expect_mesh(read_back(&mesh, write_ply), 0, NULL, 0, NULL);
 }
 
 static void ply_is_written_byte_by_byte(void **state)
 {
     static double vertex[][3] = {{1, -2, 0.5}};
     static unsigned face[][3] = {{0, 0, 0}};
-    static const unsigned char colour[][3] = {{1, 2, 255}};
     static const char expected[] =
         "ply\nformat binary_little_endian 1.0\nelement vertex 1\n"
         "property double x\nproperty double y\nproperty double z\n"
@@ -767,12 +762,12 @@ static void ply_is_written_byte_by_byte(void **state)
         "property uchar red\nproperty uchar green\nproperty uchar blue\n"
         "end_header\n"
         "\0\0\0\0\0\0\360\77\0\0\0\0\0\0\0\300\0\0\0\0\0\0\340\77"
-        "\3\0\0\0\0\0\0\0\0\0\0\0\0\1\2\377";
+        "\3\0\0\0\0\0\0\0\0\0\0\0\0\334\50\50";
     const struct mesh mesh = {.vertex_count = 1, .face_count = 1, .vertex = vertex, .face = face};
     char *bytes;
     size_t size;
     FILE *file = open_memstream(&bytes, &size);
-    mesh_write_ply(file, &mesh, colour);
+    write_ply(file, &mesh);
     assert_int_equal(fclose(file), 0);
     assert_int_equal(size, sizeof expected - 1);
     assert_memory_equal(bytes, expected, size);
