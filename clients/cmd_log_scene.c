@@ -69,8 +69,7 @@ static void report_refusal(const struct log_query *query, const struct new_resul
 {
     struct logged_result *result = allocate(1, sizeof *result);
     logged_result_read(result, query->query.kind, refused->bytes, (uint32_t) refused->size);
-    complain("event %" PRId64 ": the service refuses it: %s", query->number,
-             query->query.kind == LOG_PAIR_QUERY ? result->pair.detail : result->scene.detail);
+    complain("event %" PRId64 ": the service refuses it: %s", query->number, result->head.detail);
     free(result);
 }
 

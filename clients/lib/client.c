@@ -40,29 +40,23 @@ static const char *text_of(int32_t status, const char *detail)
 
 struct fmb_client_result fmb_client_raw_result_of(bool is_pair, const void *result)
 {
+    const struct result_head *head = result;
     const struct pair_result *pair = result;
     const struct scene_result *scene = result;
-    const struct query_header *header = is_pair ? &pair->header : &scene->header;
-    struct fmb_client_result out = {.utime = header->utime,
-                                    .client_id = header->client_id,
-                                    .sequence_number = header->sequence_number,
+    struct fmb_client_result out = {.utime = head->utime,
+                                    .client_id = head->client_id,
+                                    .sequence_number = head->sequence_number,
+                                    .server_id = head->server_id,
+                                    .compute_ns = head->compute_ns,
+                                    .status = head->status,
+                                    .text = text_of(head->status, head->detail),
+                                    .dim = head->dim,
+                                    .names_frames = head->names_frames,
                                     .is_pair = is_pair,
                                     .internal = result};
     if (is_pair) {
-        out.server_id = pair->server_id;
-        out.compute_ns = pair->compute_ns;
-        out.status = pair->status;
-        out.text = text_of(pair->status, pair->detail);
-        out.dim = pair->dim;
-        out.names_frames = pair->names_frames;
         memcpy(out.body_id, pair->body_id, sizeof out.body_id);
     } else {
-        out.server_id = scene->server_id;
-        out.compute_ns = scene->compute_ns;
-        out.status = scene->status;
-        out.text = text_of(scene->status, scene->detail);
-        out.dim = scene->dim;
-        out.names_frames = scene->names_frames;
         out.names_pairs = scene->names_pairs || scene->verdict_count == 0;
         out.end_pair = scene->end_pair;
     }
@@ -102,14 +96,20 @@ bool fmb_client_next_answer(const struct fmb_client_result *result,
     return true;
 }
 
-/* Passes a result to the request engine if it is for this client. */
+/* Passes the result in client->received to the request engine if it is for this client. */
 static void take(struct fmb_client *client, const struct bus_message *message,
-                 const struct query_header *header, struct request_result result)
+                 enum fmb_client_kind kind)
 {
-    result.bytes = message->bytes;
-    result.size = message->size;
-    result.number = header->sequence_number;
-    if (header->client_id == client->requests.client_id)
+    const struct result_head *head = &client->received.head;
+    const struct request_result result = {.kind = kind,
+                                          .status = head->status,
+                                          .detail = head->detail,
+                                          .pair = &client->received.pair,
+                                          .scene = &client->received.scene,
+                                          .bytes = message->bytes,
+                                          .size = message->size,
+                                          .number = head->sequence_number};
+    if (head->client_id == client->requests.client_id)
         requests_take(&client->requests, &result);
 }
 
@@ -122,28 +122,19 @@ static bool is_for(const struct fmb_client *client, const struct query_header *h
 static const char *on_result(struct fmb_client *client, const struct bus_message *message,
                              bool is_pair)
 {
-    struct pair_result *pair = &client->received.pair;
-    struct scene_result *scene = &client->received.scene;
     struct query_header header;
     const uint32_t size = (uint32_t) message->size;
     const char *error = (is_pair ? wire_read_pair_result_header : wire_read_scene_result_header)(
         message->bytes, size, &header);
     if (error || !is_for(client, &header))
         return error;
-    error = is_pair ? wire_read_pair_result(message->bytes, size, pair)
-                    : wire_read_scene_result(message->bytes, size, scene);
+    error = is_pair ? wire_read_pair_result(message->bytes, size, &client->received.pair)
+                    : wire_read_scene_result(message->bytes, size, &client->received.scene);
     if (error)
         return error;
     if (client->watcher.result)
         show(client, is_pair);
-    struct request_result result = {
-        .kind = FMB_CLIENT_PAIR, .status = pair->status, .detail = pair->detail, .pair = pair};
-    if (!is_pair)
-        result = (struct request_result){.kind = FMB_CLIENT_SCENE,
-                                         .status = scene->status,
-                                         .detail = scene->detail,
-                                         .scene = scene};
-    take(client, message, &header, result);
+    take(client, message, is_pair ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE);
     return NULL;
 }
 
@@ -159,14 +150,10 @@ static const char *on_scene(struct fmb_client *client, const struct bus_message 
 
 static const char *on_definition(struct fmb_client *client, const struct bus_message *message)
 {
-    struct definition *result = &client->received.definition;
-    const char *error =
-        wire_read_definition(message->bytes, (uint32_t) message->size, client->hasher, result);
+    const char *error = wire_read_definition(message->bytes, (uint32_t) message->size,
+                                             client->hasher, &client->received.definition);
     if (!error)
-        take(
-            client, message, &result->header,
-            (struct request_result){
-                .kind = FMB_CLIENT_DEFINITION, .status = result->status, .detail = result->detail});
+        take(client, message, FMB_CLIENT_DEFINITION);
     return error;
 }
 

@@ -30,6 +30,7 @@ struct fmb_client {
     char text[QUERY_TEXT_MAX], certificate[FMB_CERTIFICATE_MAX];
     char why[FMB_CLIENT_WHY_MAX];
     union { /* the message being decoded */
+        struct result_head head;
         struct pair_result pair;
         struct scene_result scene;
         struct definition definition;

@@ -15,10 +15,9 @@ struct request_result {
     enum fmb_client_kind kind;
     int status;
     const char *detail; /* "" if OK, or if there is no result */
-    union {
-        const struct pair_result *pair;
-        const struct scene_result *scene;
-    };
+    /* The result, decoded. The one of another kind may be NULL, or is not to be read. */
+    const struct pair_result *pair;
+    const struct scene_result *scene;
     const unsigned char *bytes; /* of the message; NULL: there is no result */
     size_t size;
     int64_t number; /* sequence number of the query */

@@ -58,8 +58,7 @@ void body_names_take(struct body_names *names, const struct logged_query *query)
     int32_t count;
     const struct query_placement *placement = logged_query_placements(query, &count);
     for (int32_t i = 0; i < count; i++)
-        set(names, logged_query_header(query)->client_id, placement[i].placed.id,
-            placement[i].placed.name);
+        set(names, query->header.client_id, placement[i].placed.id, placement[i].placed.name);
 }
 
 const char *body_names_take_message(struct body_names *names, enum log_kind kind, const void *bytes,

@@ -37,24 +37,9 @@ const char *logged_result_read(struct logged_result *out, enum log_kind kind, co
                                   : wire_read_scene_result(bytes, size, &out->scene);
 }
 
-int32_t logged_result_status(const struct logged_result *result)
-{
-    return result->kind == LOG_PAIR_QUERY ? result->pair.status : result->scene.status;
-}
-
-int64_t logged_result_compute_ns(const struct logged_result *result)
-{
-    return result->kind == LOG_PAIR_QUERY ? result->pair.compute_ns : result->scene.compute_ns;
-}
-
 bool logged_status_is_transient(int32_t status)
 {
     return status == FMB_BUSY || status == FMB_UNKNOWN_BODY;
-}
-
-const struct query_header *logged_query_header(const struct logged_query *query)
-{
-    return query->kind == LOG_PAIR_QUERY ? &query->pair.header : &query->scene.header;
 }
 
 const struct query_placement *logged_query_placements(const struct logged_query *query,

@@ -8,6 +8,7 @@
 struct logged_query {
     enum log_kind kind; /* LOG_PAIR_QUERY or LOG_SCENE_QUERY */
     union {
+        struct query_header header;
         struct pair_query pair;
         struct scene_query scene;
     };
@@ -19,12 +20,11 @@ struct logged_query {
 const char *logged_query_read(struct logged_query *out, enum log_kind kind,
                               const unsigned char *bytes, uint32_t size);
 
-const struct query_header *logged_query_header(const struct logged_query *query);
-
 /* A result of a log. */
 struct logged_result {
     enum log_kind kind; /* of its query */
     union {
+        struct result_head head;
         struct pair_result pair;
         struct scene_result scene;
     };
@@ -34,8 +34,6 @@ struct logged_result {
  */
 const char *logged_result_read(struct logged_result *out, enum log_kind kind, const void *bytes,
                                uint32_t size);
-int32_t logged_result_status(const struct logged_result *result);
-int64_t logged_result_compute_ns(const struct logged_result *result);
 
 /* Whether the status depends on the moment, not on the query: the service was busy, or did not hold
  * a body. */

@@ -31,7 +31,7 @@ const char *match_read_status(struct match_item *result, const struct log_event 
 {
     const char *error = logged_result_read(memory, (enum log_kind) result->key.kind, event->data,
                                            (uint32_t) event->kept);
-    result->transient = !error && logged_status_is_transient(logged_result_status(memory));
+    result->transient = !error && logged_status_is_transient(memory->head.status);
     return error;
 }
 

@@ -32,7 +32,7 @@ static void add_bodies(struct page *page, const struct body_names *names,
 {
     int32_t count;
     const struct query_placement *placement = logged_query_placements(replayed->query, &count);
-    const int64_t client = logged_query_header(replayed->query)->client_id;
+    const int64_t client = replayed->query->header.client_id;
     for (int32_t i = 0; i < count; i++)
         add_body(page, &placement[i], body_names_find(names, client, placement[i].placed.id));
 }
@@ -44,17 +44,16 @@ static struct page_result result_of(const struct logged_query *query,
 {
     if (!result)
         return (struct page_result){.given = false};
-    const bool is_pair = query->kind == LOG_PAIR_QUERY;
-    const int32_t status = logged_result_status(result);
-    const int32_t method = is_pair ? result->pair.method : result->scene.method;
-    const struct fmb_method *by = method ? fmb_method_by_number(method) : NULL;
-    struct page_result out = {.given = true,
-                              .error = status == FMB_OK ? NULL : fmb_status_text(status),
-                              .method = by ? by->name : NULL,
-                              .compute_ns = logged_result_compute_ns(result)};
-    if (!is_pair)
+    const struct result_head *head = &result->head;
+    const struct fmb_method *by = head->method ? fmb_method_by_number(head->method) : NULL;
+    struct page_result out = {
+        .given = true,
+        .error = head->status == FMB_OK ? NULL : fmb_status_text(head->status),
+        .method = by ? by->name : NULL,
+        .compute_ns = head->compute_ns};
+    if (query->kind == LOG_SCENE_QUERY)
         replayed_count(&query->scene, &result->scene, out.count);
-    else if (status == FMB_OK && result->pair.answer.verdict <= FMB_OVERLAPPING)
+    else if (head->status == FMB_OK && result->pair.answer.verdict <= FMB_OVERLAPPING)
         out.count[result->pair.answer.verdict] = 1;
     return out;
 }

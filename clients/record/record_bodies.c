@@ -162,7 +162,7 @@ static void want(struct record_bodies *bodies, const struct handle *handle)
 static void keep_query(struct record_bodies *bodies)
 {
     struct logged_query *query = &bodies->message.query;
-    count_skipped(bodies, logged_query_header(query));
+    count_skipped(bodies, &query->header);
     body_names_take(bodies->names, query);
     definitions_add_query(bodies->definitions, query);
     for (int32_t i = 0; i < bodies->placement_count; i++)

@@ -40,7 +40,7 @@
 enum { POLL_EVERY = 256 };
 
 /* Offsets in results of the ids of the query, and of the service's id. */
-enum { CLIENT_AT = 16, SEQUENCE_AT = 24, SERVER_AT = 32 };
+enum { CLIENT_AT = 16, SEQUENCE_AT = 24 };
 
 /* The longest delay, some 30 years. */
 static const double delay_max_ns = 1e18;
@@ -93,7 +93,7 @@ static void stop(struct answer_bus *bus, enum answer_bus_end end, const struct m
 
 static void count_service(struct answer_bus *bus)
 {
-    const int64_t server_id = (int64_t) big_endian_64(bus->bytes + SERVER_AT);
+    const int64_t server_id = bus->result.head.server_id;
     bus->counts.services += bus->counts.services == 0 || server_id != bus->server_id;
     bus->server_id = server_id;
 }
@@ -103,7 +103,7 @@ static void decode_result(struct answer_bus *bus, enum log_kind kind,
 {
     /* Cannot fail: the library has decoded it. */
     logged_result_read(&bus->result, kind, bus->bytes, (uint32_t) out->size);
-    out->compute_ns = logged_result_compute_ns(&bus->result);
+    out->compute_ns = bus->result.head.compute_ns;
     out->pairs = out->status == FMB_OK;
     if (kind == LOG_PAIR_QUERY)
         return;
@@ -126,8 +126,8 @@ static void on_result(void *user, const struct fmb_client_raw_result *result)
     if (!is_running(bus) || !item)
         return;
     memcpy(bus->bytes, result->bytes, result->size);
-    count_service(bus);
     decode_result(bus, (enum log_kind) item->key.kind, result, &answered);
+    count_service(bus);
     big_endian_put_64(bus->bytes + CLIENT_AT, (uint64_t) item->key.client_id);
     big_endian_put_64(bus->bytes + SEQUENCE_AT, (uint64_t) item->key.sequence_number);
     bus->counts.ns = clock_ns() - bus->begun_at;

@@ -134,11 +134,10 @@ static struct difference_side side_of(const struct replayed_side *side,
                                       const struct logged_result *result, int dim)
 {
     const bool is_pair = result->kind == LOG_PAIR_QUERY;
-    return (struct difference_side){
-        .status = is_pair ? result->pair.status : FMB_OK,
-        .answer = answer_of(&side->answer, side->dim, dim),
-        .certificate = is_pair ? result->pair.certificate : NULL,
-        .names_frames = is_pair ? result->pair.names_frames : result->scene.names_frames};
+    return (struct difference_side){.status = is_pair ? result->head.status : FMB_OK,
+                                    .answer = answer_of(&side->answer, side->dim, dim),
+                                    .certificate = is_pair ? result->pair.certificate : NULL,
+                                    .names_frames = result->head.names_frames};
 }
 
 static struct difference difference_of(const struct replayed *replayed,
@@ -185,8 +184,8 @@ enum replay_outcome compare_results(const struct compare_options *options,
                                     void *user)
 {
     const struct logged_query *query = replayed->query;
-    const int32_t then = logged_result_status(replayed->then);
-    const int32_t now = logged_result_status(replayed->now);
+    const int32_t then = replayed->then->head.status;
+    const int32_t now = replayed->now->head.status;
     if (logged_status_is_transient(then) || logged_status_is_transient(now))
         return transient_outcome(then, now);
     if (query->kind == LOG_PAIR_QUERY ||

@@ -177,7 +177,7 @@ void replay_compare(struct replay *replay, const struct match_item *query,
         return;
     replay->item = query;
     const enum replay_outcome outcome = compare_both(replay, on_difference);
-    count(replay, query, outcome, logged_result_compute_ns(&replay->then));
+    count(replay, query, outcome, replay->then.head.compute_ns);
     if (replay->options->page)
         add_to_page(replay, query, &replay->then, outcome);
 }

@@ -97,6 +97,29 @@ static inline bool query_by_handle(const struct query_placement *placement)
            !handle_is_none(&body->handle);
 }
 
+/* Fields that every result has, of which definitions have those to detail, and 0 after them. */
+#define RESULT_FIELDS                                                                 \
+    QUERY_HEADER; /* of the query */                                                  \
+    int64_t server_id;                                                                \
+    int32_t status;              /* enum fmb_status */                                \
+    char detail[QUERY_TEXT_MAX]; /* "" if OK */                                       \
+    int32_t method;              /* 0 if not OK */                                    \
+    int32_t dim;                 /* of boxes and gaps, 2 or 3; 0 if there are none */ \
+    bool names_frames;           /* there are gaps, and a body has several frames */  \
+    int64_t compute_ns
+struct result_head {
+    RESULT_FIELDS;
+};
+
+/* Declares these fields in a struct, both by their names and as one struct `head`. */
+#define RESULT_HEAD              \
+    union {                      \
+        struct result_head head; \
+        struct {                 \
+            RESULT_FIELDS;       \
+        };                       \
+    }
+
 struct pair_query {
     QUERY_HEADER;
     double duration; /* seconds; also 0 for a struct fmb_scene with instant set */
@@ -106,18 +129,11 @@ struct pair_query {
 };
 
 struct pair_result {
-    QUERY_HEADER;
-    int64_t server_id;
+    RESULT_HEAD;
     int64_t body_id[2];
-    struct handle handle[2];     /* of bodies sent with frames and an id; else all 0 */
-    int32_t status;              /* enum fmb_status */
-    char detail[QUERY_TEXT_MAX]; /* "" if OK */
-    int32_t method;              /* 0 if not OK */
-    int32_t dim;                 /* of box and gap, 2 or 3; 0 if there is neither */
-    bool names_frames;           /* there is a gap, and a body has several frames */
-    struct fmb_answer answer;    /* all 0 if not OK */
-    const char *certificate;     /* NULL: none. Points into the answerer or the message */
-    int64_t compute_ns;
+    struct handle handle[2];  /* of bodies sent with frames and an id; else all 0 */
+    struct fmb_answer answer; /* all 0 if not OK */
+    const char *certificate;  /* NULL: none. Points into the answerer or the message */
 };
 
 /* ---- Scenes ---- */
@@ -177,20 +193,13 @@ enum {
 };
 
 struct scene_result {
-    QUERY_HEADER;
-    int64_t server_id;
-    int32_t status;              /* enum fmb_status */
-    char detail[QUERY_TEXT_MAX]; /* "" if OK */
-    int32_t method;              /* 0 if not OK */
+    RESULT_HEAD;
     int32_t end_pair;
-    int64_t compute_ns;
-    int dim;               /* of boxes and gaps, 2 or 3; 0 if there are none */
     int32_t unknown_count; /* placements whose handles are not held */
     int32_t handle_count;  /* placements sent with frames and an id */
     int32_t verdict_count; /* number of named pairs, or of answered pairs from first_pair on */
     int32_t contact_count; /* verdicts that touch or overlap */
     bool names_pairs, has_times, has_boxes, has_gaps;
-    bool names_frames;                          /* has_gaps, and a body has several frames */
     unsigned unknown[QUERY_PLACEMENTS_MAX];     /* [unknown_count] indices, ascending */
     struct handle handle[QUERY_PLACEMENTS_MAX]; /* [handle_count], in the order of placements */
     unsigned char verdict[QUERY_VERDICTS_MAX];
@@ -267,11 +276,8 @@ struct definition_query {
 };
 
 struct definition {
-    QUERY_HEADER;
-    int64_t server_id;
-    int32_t status;
-    char detail[QUERY_TEXT_MAX]; /* "" if OK */
-    int64_t next;                /* 0: complete */
+    RESULT_HEAD;
+    int64_t next; /* 0: complete */
     int32_t body_count;
     struct body_view body[QUERY_BODIES_MAX];
 };

@@ -62,8 +62,8 @@ static void append_bodies(const struct cache *cache, const struct definition_que
 void answer_definition(struct answerer *answerer, const struct definition_query *query,
                        struct definition *result)
 {
-    struct check_context context = {&result->status, result->detail, false, -1};
-    answerer_begin_definition(answerer, &query->header, result);
+    struct check_context context = {&result->head, false, -1};
+    answerer_begin_definition(answerer, &query->header, FMB_OK, result);
     if (check_definition_query(&context, query))
         append_bodies(answerer->cache, query, result);
 }

@@ -300,12 +300,13 @@ static int32_t step_end(const struct answer_job *job)
     return end;
 }
 
-static void begin_result(struct answer_job *job, const struct answerer *answerer)
+static void begin_result(struct answer_job *job, const struct answerer *answerer,
+                         enum fmb_status status)
 {
     if (job->is_pair)
-        answerer_begin_pair(answerer, &job->pair, &job->pair_result);
+        answerer_begin_pair(answerer, &job->pair, status, &job->pair_result);
     else
-        answerer_begin_scene(answerer, &job->query.header, &job->result);
+        answerer_begin_scene(answerer, &job->query.header, status, &job->result);
 }
 
 /* The stage CHECKING. No bodies are in use yet, so a refused query has none to release. The memory
@@ -314,7 +315,7 @@ static enum answer_stage check(struct answer_job *job, struct answerer *answerer
 {
     for (int32_t i = 0; job->placement_count <= STEP_PLACEMENTS && i < job->placement_count; i++)
         cache_prefetch(answerer->cache, &job->placements[i]);
-    begin_result(job, answerer);
+    begin_result(job, answerer, FMB_OK);
     if (!(job->is_pair ? check_pair(job) : check_scene(job)))
         return COMPLETE;
     memset(job->used, 0, (size_t) job->placement_count * sizeof *job->used);
@@ -691,10 +692,8 @@ const char *answer_job_begin(struct answer_job *job, enum answer_kind kind,
     const char *error = job->is_pair
                             ? wire_read_pair_query(job->bytes, (uint32_t) size, &job->pair)
                             : wire_read_scene_query(job->bytes, (uint32_t) size, &job->query);
-    job->context =
-        job->is_pair
-            ? (struct check_context){&job->pair_result.status, job->pair_result.detail, true, -1}
-            : (struct check_context){&job->result.status, job->result.detail, false, -1};
+    job->context = (struct check_context){job->is_pair ? &job->pair_result.head : &job->result.head,
+                                          job->is_pair, -1};
     job->placements = job->is_pair ? job->pair.placement : job->query.placement;
     job->placement_count = job->is_pair ? 2 : job->query.placement_count;
     if (!error)
@@ -727,12 +726,10 @@ void answer_job_stop(struct answer_job *job)
     assert(job->answerer);
     if (job->stage == DECIDING)
         fmb_scene_end(job->state);
-    if (answer_job_has_answers(job)) {
+    if (answer_job_has_answers(job))
         job->result.end_pair = (int32_t) fmb_scene_next_pair(job->state);
-    } else {
-        begin_result(job, job->answerer);
-        answerer_set_status(FMB_BUSY, job->context.status, job->context.detail);
-    }
+    else
+        begin_result(job, job->answerer, FMB_BUSY);
     job->stage = complete(job);
 }
 
@@ -760,8 +757,8 @@ size_t answer_job_write(struct answer_job *job, int64_t compute_ns,
                         unsigned char out[QUERY_BYTES_MAX], int32_t *status)
 {
     assert(job->stage == COMPLETE);
-    *status = *job->context.status;
-    *(job->is_pair ? &job->pair_result.compute_ns : &job->result.compute_ns) = compute_ns;
+    *status = job->context.result->status;
+    job->context.result->compute_ns = compute_ns;
     return job->is_pair ? wire_write_pair_result(&job->pair_result, out)
                         : wire_write_scene_result(&job->result, out);
 }
@@ -770,8 +767,8 @@ int32_t answer_job_decided(struct answer_job *job)
 {
     const struct scene_result *result = &job->result;
     assert(job->stage == COMPLETE);
-    if (job->is_pair || *job->context.status != FMB_OK)
-        return *job->context.status == FMB_OK;
+    if (job->is_pair || job->context.result->status != FMB_OK)
+        return job->context.result->status == FMB_OK;
     int64_t pairs = query_pairs_decided(&job->query, result->end_pair, job->memory);
     for (int32_t i = 0; i < result->verdict_count; i++)
         pairs -= result->verdict[i] == 0;

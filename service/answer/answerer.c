@@ -35,36 +35,36 @@ struct cache *answerer_cache(struct answerer *answerer)
 
 /* ---- Results ---- */
 
-void answerer_begin_pair(const struct answerer *answerer, const struct pair_query *query,
-                         struct pair_result *result)
+/* Begins a result: size bytes from its head on. */
+static void begin(const struct answerer *answerer, const struct query_header *query,
+                  enum fmb_status status, struct result_head *out, size_t size)
 {
-    memset(result, 0, sizeof *result);
-    result->header = query->header;
-    result->server_id = answerer->server_id;
+    memset(out, 0, size);
+    out->header = *query;
+    out->server_id = answerer->server_id;
+    out->status = (int32_t) status;
+    if (status != FMB_OK)
+        snprintf(out->detail, sizeof out->detail, "%s", fmb_status_text(out->status));
+}
+
+void answerer_begin_pair(const struct answerer *answerer, const struct pair_query *query,
+                         enum fmb_status status, struct pair_result *result)
+{
+    begin(answerer, &query->header, status, &result->head, sizeof *result);
     for (int f = 0; f < 2; f++)
         result->body_id[f] = query->placement[f].placed.id;
 }
 
 void answerer_begin_scene(const struct answerer *answerer, const struct query_header *query,
-                          struct scene_result *result)
+                          enum fmb_status status, struct scene_result *result)
 {
-    memset(result, 0, offsetof(struct scene_result, unknown));
-    result->header = *query;
-    result->server_id = answerer->server_id;
+    begin(answerer, query, status, &result->head, offsetof(struct scene_result, unknown));
 }
 
 void answerer_begin_definition(const struct answerer *answerer, const struct query_header *query,
-                               struct definition *result)
+                               enum fmb_status status, struct definition *result)
 {
-    memset(result, 0, offsetof(struct definition, body));
-    result->header = *query;
-    result->server_id = answerer->server_id;
-}
-
-void answerer_set_status(enum fmb_status status, int32_t *out, char detail[QUERY_TEXT_MAX])
-{
-    *out = (int32_t) status;
-    snprintf(detail, QUERY_TEXT_MAX, "%s", fmb_status_text(*out));
+    begin(answerer, query, status, &result->head, offsetof(struct definition, body));
 }
 
 /* ---- Refusals ---- */
@@ -73,27 +73,22 @@ static size_t refuse_pair(const struct answerer *answerer, const struct pair_que
                           enum fmb_status status, unsigned char out[QUERY_BYTES_MAX])
 {
     struct pair_result result;
-    answerer_begin_pair(answerer, query, &result);
-    answerer_set_status(status, &result.status, result.detail);
+    answerer_begin_pair(answerer, query, status, &result);
     return wire_write_pair_result(&result, out);
 }
 
 static size_t refuse_scene(struct answerer *answerer, const struct query_header *query,
                            enum fmb_status status, unsigned char out[QUERY_BYTES_MAX])
 {
-    struct scene_result *result = &answerer->scene;
-    answerer_begin_scene(answerer, query, result);
-    answerer_set_status(status, &result->status, result->detail);
-    return wire_write_scene_result(result, out);
+    answerer_begin_scene(answerer, query, status, &answerer->scene);
+    return wire_write_scene_result(&answerer->scene, out);
 }
 
 static size_t refuse_definition(struct answerer *answerer, const struct query_header *query,
                                 enum fmb_status status, unsigned char out[QUERY_BYTES_MAX])
 {
-    struct definition *result = &answerer->definition;
-    answerer_begin_definition(answerer, query, result);
-    answerer_set_status(status, &result->status, result->detail);
-    return wire_write_definition(result, out);
+    answerer_begin_definition(answerer, query, status, &answerer->definition);
+    return wire_write_definition(&answerer->definition, out);
 }
 
 const char *answer_refused(struct answerer *answerer, enum answer_kind kind,

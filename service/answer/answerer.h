@@ -12,15 +12,13 @@ struct answerer {
     struct definition definition;
 };
 
-/* Set all fields of a result except the contents of the arrays of a scene and a definition. */
+/* Set all fields of a result except the contents of the arrays of a scene and a definition. With a
+ * status other than FMB_OK, the detail is its text. */
 void answerer_begin_pair(const struct answerer *answerer, const struct pair_query *query,
-                         struct pair_result *result);
+                         enum fmb_status status, struct pair_result *result);
 void answerer_begin_scene(const struct answerer *answerer, const struct query_header *query,
-                          struct scene_result *result);
+                          enum fmb_status status, struct scene_result *result);
 void answerer_begin_definition(const struct answerer *answerer, const struct query_header *query,
-                               struct definition *result);
-
-/* Sets a status, and its text as the detail. */
-void answerer_set_status(enum fmb_status status, int32_t *out, char detail[QUERY_TEXT_MAX]);
+                               enum fmb_status status, struct definition *result);
 
 #endif

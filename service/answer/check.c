@@ -16,8 +16,8 @@ bool check_refuse(struct check_context *context, enum fmb_status status, const c
         snprintf(place, sizeof place, "%c.", 'a' + (char) context->index);
     else if (context->index >= 0)
         snprintf(place, sizeof place, "placements[%d].", (int) context->index);
-    *context->status = (int32_t) status;
-    snprintf(context->detail, QUERY_TEXT_MAX, "%s%s: %s", place, field,
+    context->result->status = (int32_t) status;
+    snprintf(context->result->detail, QUERY_TEXT_MAX, "%s%s: %s", place, field,
              reason ? reason : fmb_status_text(status));
     return false;
 }

@@ -10,10 +10,9 @@
 /* Context of a check: the part of the query that is being checked, and where to report. The name of
  * a field is formatted only if the field is wrong. */
 struct check_context {
-    int32_t *status; /* of the result */
-    char *detail;    /* [QUERY_TEXT_MAX] of the result */
-    bool is_pair;    /* placements are called a and b */
-    int32_t index;   /* of the placement that is being checked; -1: the query itself */
+    struct result_head *result;
+    bool is_pair;  /* placements are called a and b */
+    int32_t index; /* of the placement that is being checked; -1: the query itself */
 };
 
 /* Refuses the query: sets the status and a detail such as "b.numbers[4]: not a finite number". On

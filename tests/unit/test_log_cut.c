@@ -66,8 +66,7 @@ void __wrap_page_take(struct page *page, const struct body_names *names, int64_t
     (void) names;
     (void) begin;
     assert_true(taken->count < EVENTS_MAX);
-    taken->query[taken->count].sequence_number =
-        logged_query_header(replayed->query)->sequence_number;
+    taken->query[taken->count].sequence_number = replayed->query->header.sequence_number;
     taken->query[taken->count++].outcome = replayed->outcome;
 }
 
