@@ -96,9 +96,8 @@ static bool check_query(const struct log_query *query)
 
 static void report_ids(struct logged_query *query, const struct fmb_placement *printed)
 {
-    int32_t count;
-    const struct query_placement *placement = logged_query_placements(query, &count);
-    for (int32_t i = 0; i < count; i++) {
+    const struct query_placement *placement = query->placement;
+    for (int32_t i = 0; i < query->placement_count; i++) {
         if (placement[i].placed.id == printed[i].id)
             continue;
         if (placement[i].placed.id == 0)

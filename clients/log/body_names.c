@@ -55,10 +55,9 @@ static void set(struct body_names *names, int64_t client_id, int64_t body_id, co
 
 void body_names_take(struct body_names *names, const struct logged_query *query)
 {
-    int32_t count;
-    const struct query_placement *placement = logged_query_placements(query, &count);
-    for (int32_t i = 0; i < count; i++)
-        set(names, query->header.client_id, placement[i].placed.id, placement[i].placed.name);
+    for (int32_t i = 0; i < query->placement_count; i++)
+        set(names, query->header.client_id, query->placement[i].placed.id,
+            query->placement[i].placed.name);
 }
 
 const char *body_names_take_message(struct body_names *names, enum log_kind kind, const void *bytes,

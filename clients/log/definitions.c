@@ -128,11 +128,9 @@ bool definitions_add(struct definitions *definitions, const struct body_view *vi
 
 void definitions_add_query(struct definitions *definitions, const struct logged_query *query)
 {
-    int32_t count;
-    const struct query_placement *placement = logged_query_placements(query, &count);
-    for (int32_t i = 0; i < count; i++)
-        if (placement[i].placed.id != 0)
-            definitions_add(definitions, &placement[i].body);
+    for (int32_t i = 0; i < query->placement_count; i++)
+        if (query->placement[i].placed.id != 0)
+            definitions_add(definitions, &query->placement[i].body);
 }
 
 const char *definitions_add_message(struct definitions *definitions, struct body_names *names,
@@ -165,17 +163,15 @@ const struct body_view *definitions_find(struct definitions *definitions,
 
 int32_t definitions_fill(struct definitions *definitions, struct logged_query *query)
 {
-    struct query_placement *placement =
-        query->kind == LOG_PAIR_QUERY ? query->pair.placement : query->scene.placement;
-    int32_t missing = -1, count;
-    logged_query_placements(query, &count);
-    for (int32_t i = 0; i < count; i++) {
-        if (!query_by_handle(&placement[i]))
+    int32_t missing = -1;
+    for (int32_t i = 0; i < query->placement_count; i++) {
+        struct query_placement *placement = &query->placement[i];
+        if (!query_by_handle(placement))
             continue;
-        const struct body_view *view = definitions_find(definitions, &placement[i].body.handle);
+        const struct body_view *view = definitions_find(definitions, &placement->body.handle);
         if (view) {
-            placement[i].body = *view;
-            memset(&placement[i].body.handle, 0, sizeof placement[i].body.handle);
+            placement->body = *view;
+            memset(&placement->body.handle, 0, sizeof placement->body.handle);
         } else if (missing < 0) {
             missing = i;
         }

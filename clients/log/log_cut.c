@@ -82,7 +82,6 @@ static bool read_item(struct cutter *cut, enum log_kind kind, const struct log_e
 {
     const struct log_choice *choice = &cut->options->choice;
     const uint32_t size = (uint32_t) event->kept;
-    int32_t count;
     *out = (struct match_item){.place = {.log = cut->input.log, .offset = event->offset},
                                .is_result = log_kind_is_result(kind)};
     if (match_key_of(kind, event, &out->key))
@@ -91,9 +90,9 @@ static bool read_item(struct cutter *cut, enum log_kind kind, const struct log_e
         return !match_read_status(out, event, &cut->result);
     if (logged_query_read(&cut->query, kind, event->data, size))
         return false;
-    const struct query_placement *placement = logged_query_placements(&cut->query, &count);
-    out->place.in_range = log_choice_has_time(choice, cut->first_utime, event->utime) &&
-                          log_choice_has_body(choice, placement, count);
+    out->place.in_range =
+        log_choice_has_time(choice, cut->first_utime, event->utime) &&
+        log_choice_has_body(choice, cut->query.placement, cut->query.placement_count);
     return true;
 }
 
@@ -177,8 +176,8 @@ static void define(struct cutter *cut, enum log_kind kind, const struct log_even
     }
     if (logged_query_read(&cut->query, kind, event->data, size))
         return;
-    int32_t count;
-    const struct query_placement *placement = logged_query_placements(&cut->query, &count);
+    const struct query_placement *placement = cut->query.placement;
+    const int32_t count = cut->query.placement_count;
     const int32_t bodies = definitions_write(cut->definitions, placement, count, append_own, cut);
     cut->counts->defined += bodies > 0 ? bodies : 0;
     for (int32_t i = 0; i < count; i++)

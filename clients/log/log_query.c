@@ -176,14 +176,11 @@ static const struct match_item *find_query(struct query_search *search)
 /* Sets the names of placements without one. */
 static void fill_names(struct log_query *out)
 {
-    struct query_placement *placement =
-        out->query.kind == LOG_PAIR_QUERY ? out->query.pair.placement : out->query.scene.placement;
-    int32_t count;
-    logged_query_placements(&out->query, &count);
-    for (int32_t i = 0; i < count; i++)
-        if (!placement[i].placed.name || !*placement[i].placed.name)
-            placement[i].placed.name =
-                body_names_find(out->names, out->key.client_id, placement[i].placed.id);
+    for (int32_t i = 0; i < out->query.placement_count; i++) {
+        struct fmb_placement *placed = &out->query.placement[i].placed;
+        if (!placed->name || !*placed->name)
+            placed->name = body_names_find(out->names, out->key.client_id, placed->id);
+    }
 }
 
 /* Reads the query again, with the bodies and names of its placements. */
@@ -192,7 +189,6 @@ static void read_query(struct query_search *search, const struct match_item *que
     struct log_query *out = search->out;
     const int last = search->options->log_count - 1;
     uint32_t size;
-    int32_t count;
     if (!input_read_again(&search->input, last, query->place.offset, out->bytes, &size)) {
         complain("%s: %s", search->options->log[last], strerror(errno));
         search->outcome = LOG_QUERY_FAILED;
@@ -208,13 +204,12 @@ static void read_query(struct query_search *search, const struct match_item *que
         refuse(search, ": %s", error);
         return;
     }
-    const struct query_placement *placement = logged_query_placements(&out->query, &count);
     fill_names(out);
     const int32_t missing = definitions_fill(out->definitions, &out->query);
     if (missing >= 0)
         refuse(search,
                ": placement %d, body %" PRId64 ", came by a handle that no log here defines",
-               (int) missing, placement[missing].placed.id);
+               (int) missing, out->query.placement[missing].placed.id);
 }
 
 /* ---- The search ---- */

@@ -22,11 +22,14 @@ static const char *read_header(struct logged_query *out, const unsigned char *by
 const char *logged_query_read(struct logged_query *out, enum log_kind kind,
                               const unsigned char *bytes, uint32_t size)
 {
+    const bool pair = kind == LOG_PAIR_QUERY;
     out->kind = kind;
-    if (size > QUERY_BYTES_MAX)
-        return read_header(out, bytes, size);
-    return kind == LOG_PAIR_QUERY ? wire_read_pair_query(bytes, size, &out->pair)
-                                  : wire_read_scene_query(bytes, size, &out->scene);
+    const char *error = size > QUERY_BYTES_MAX ? read_header(out, bytes, size)
+                        : pair                 ? wire_read_pair_query(bytes, size, &out->pair)
+                                               : wire_read_scene_query(bytes, size, &out->scene);
+    out->placement = pair ? out->pair.placement : out->scene.placement;
+    out->placement_count = error ? 0 : pair ? 2 : query_stored_placements(&out->scene);
+    return error;
 }
 
 const char *logged_result_read(struct logged_result *out, enum log_kind kind, const void *bytes,
@@ -42,43 +45,26 @@ bool logged_status_is_transient(int32_t status)
     return status == FMB_BUSY || status == FMB_UNKNOWN_BODY;
 }
 
-const struct query_placement *logged_query_placements(const struct logged_query *query,
-                                                      int32_t *count)
-{
-    *count = query->kind == LOG_PAIR_QUERY ? 2 : query_stored_placements(&query->scene);
-    return query->kind == LOG_PAIR_QUERY ? query->pair.placement : query->scene.placement;
-}
-
-static bool placements_are_whole(const struct query_placement *placement, int32_t count)
-{
-    for (int32_t i = 0; i < count; i++)
-        if (placement[i].body.dim > FMB_DIM_MAX ||
-            placement[i].placed.orientation_count > QUERY_ORIENTATION_MAX ||
-            placement[i].velocity_count > FMB_DIM_MAX)
-            return false;
-    return true;
-}
-
 static bool is_whole(const struct logged_query *query)
 {
     const struct scene_query *scene = &query->scene;
-    if (query->kind == LOG_PAIR_QUERY)
-        return placements_are_whole(query->pair.placement, 2);
-    return scene->placement_count <= QUERY_PLACEMENTS_MAX &&
-           scene->index_count <= 2 * QUERY_PAIRS_MAX &&
-           scene->ignored_count <= 2 * QUERY_PAIRS_MAX &&
-           placements_are_whole(scene->placement, scene->placement_count);
+    for (int32_t i = 0; i < query->placement_count; i++)
+        if (query->placement[i].body.dim > FMB_DIM_MAX ||
+            query->placement[i].placed.orientation_count > QUERY_ORIENTATION_MAX ||
+            query->placement[i].velocity_count > FMB_DIM_MAX)
+            return false;
+    return query->kind == LOG_PAIR_QUERY || (scene->placement_count <= QUERY_PLACEMENTS_MAX &&
+                                             scene->index_count <= 2 * QUERY_PAIRS_MAX &&
+                                             scene->ignored_count <= 2 * QUERY_PAIRS_MAX);
 }
 
 static size_t bytes_of(const struct logged_query *query)
 {
     const bool pair = query->kind == LOG_PAIR_QUERY;
-    const struct query_placement *placement = pair ? query->pair.placement : query->scene.placement;
-    const int32_t count = pair ? 2 : query->scene.placement_count;
     size_t bytes =
         pair ? WIRE_PAIR_QUERY_BYTES : WIRE_SCENE_QUERY_BYTES + wire_text_bytes(query->scene.label);
-    for (int32_t i = 0; i < count; i++)
-        bytes += wire_placement_bytes(&placement[i]);
+    for (int32_t i = 0; i < query->placement_count; i++)
+        bytes += wire_placement_bytes(&query->placement[i]);
     if (!pair)
         bytes += WIRE_PAIR_BYTES / 2 *
                  ((size_t) query->scene.index_count + (size_t) query->scene.ignored_count);
@@ -192,9 +178,10 @@ static void set_ids(const struct query_placement *placement, size_t count,
 }
 
 /* grouped: whether the placements keep their groups. */
-static void set_bodies(const struct query_placement *placement, size_t count, bool grouped,
-                       struct owned_scene *scene)
+static void set_bodies(const struct logged_query *query, bool grouped, struct owned_scene *scene)
 {
+    const struct query_placement *placement = query->placement;
+    const size_t count = (size_t) query->placement_count;
     struct fmb_placement *out = scene_alloc(scene, count, sizeof *out);
     scene->dim = FMB_DIM_MAX;
     for (size_t i = 0; i < count; i++) {
@@ -254,12 +241,12 @@ void scene_of_query(const struct logged_query *query, struct owned_scene *out)
     *out = (struct owned_scene){.dim = 0};
     if (query->kind == LOG_PAIR_QUERY) {
         out->scene.duration = query->pair.duration;
-        set_bodies(query->pair.placement, 2, false, out);
+        set_bodies(query, false, out);
         return;
     }
     out->scene.duration = query->scene.duration;
     out->scene.margin = query->scene.margin;
     out->scene.label = copy_text(query->scene.label, out);
-    set_bodies(query->scene.placement, (size_t) query->scene.placement_count, true, out);
+    set_bodies(query, true, out);
     set_pairs(&query->scene, out);
 }

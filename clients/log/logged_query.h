@@ -7,6 +7,9 @@
 
 struct logged_query {
     enum log_kind kind; /* LOG_PAIR_QUERY or LOG_SCENE_QUERY */
+    /* Those in the struct: [placement_count] of pair or of scene. */
+    struct query_placement *placement;
+    int32_t placement_count;
     union {
         struct query_header header;
         struct pair_query pair;
@@ -38,10 +41,6 @@ const char *logged_result_read(struct logged_result *out, enum log_kind kind, co
 /* Whether the status depends on the moment, not on the query: the service was busy, or did not hold
  * a body. */
 bool logged_status_is_transient(int32_t status);
-
-/* The placements in the struct; *count of them. */
-const struct query_placement *logged_query_placements(const struct logged_query *query,
-                                                      int32_t *count);
 
 /* query_pairs_decided() with memory of its own. */
 int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair);

@@ -141,14 +141,12 @@ static void print_row(struct result_rows *results, const struct fmb_client_resul
 {
     const bool table = results->printer.form == REPORT_TABLE;
     const double margin = of->is_pair ? 0 : results->query.scene.margin;
-    int32_t count;
-    const struct query_placement *placement = logged_query_placements(&results->query, &count);
     if (results->pairs == RESULT_ROWS_CONTACTS && row->of->answer.verdict == FMB_SEPARATED &&
         !report_is_near(margin, &row->of->answer))
         return;
     for (int i = 0; i < 2; i++) {
         const struct fmb_placement *placed =
-            results->decoded ? &placement[placements[i]].placed : NULL;
+            results->decoded ? &results->query.placement[placements[i]].placed : NULL;
         row->id[i] = of->is_pair ? of->body_id[i] : placed->id;
         row->name[i] = placed && placed->name && *placed->name
                            ? placed->name

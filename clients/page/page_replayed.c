@@ -30,10 +30,9 @@ static void add_body(struct page *page, const struct query_placement *placement,
 static void add_bodies(struct page *page, const struct body_names *names,
                        const struct replayed *replayed)
 {
-    int32_t count;
-    const struct query_placement *placement = logged_query_placements(replayed->query, &count);
+    const struct query_placement *placement = replayed->query->placement;
     const int64_t client = replayed->query->header.client_id;
-    for (int32_t i = 0; i < count; i++)
+    for (int32_t i = 0; i < replayed->query->placement_count; i++)
         add_body(page, &placement[i], body_names_find(names, client, placement[i].placed.id));
 }
 

@@ -89,10 +89,10 @@ const char *record_bodies_read(struct record_bodies *bodies, enum log_kind kind,
 {
     const char *error = read_message(bodies, kind, bytes, (uint32_t) size);
     bodies->kind = error || size > QUERY_BYTES_MAX ? LOG_OTHER : kind;
-    bodies->placement_count = 0;
-    if (log_kind_is_query(bodies->kind))
-        bodies->placement =
-            logged_query_placements(&bodies->message.query, &bodies->placement_count);
+    const struct logged_query *query =
+        log_kind_is_query(bodies->kind) ? &bodies->message.query : NULL;
+    bodies->placement = query ? query->placement : NULL;
+    bodies->placement_count = query ? query->placement_count : 0;
     return error;
 }
 

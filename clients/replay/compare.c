@@ -143,8 +143,8 @@ static struct difference_side side_of(const struct replayed_side *side,
 static struct difference difference_of(const struct replayed *replayed,
                                        const struct replayed_pair *pair)
 {
-    int32_t count;
-    const struct query_placement *placement = logged_query_placements(replayed->query, &count);
+    const struct query_placement *placement = replayed->query->placement;
+    const int32_t count = replayed->query->placement_count;
     const int dim = dim_of(&placement[0]);
     struct difference difference = {.dim = dim,
                                     .placement = {pair->a, pair->b},

@@ -60,8 +60,8 @@ bool replay_on_answered(void *user, struct match_item *query, const struct new_r
  * only. */
 static void supply_service(struct replay *replay)
 {
-    int32_t count;
-    const struct query_placement *placement = logged_query_placements(&replay->query, &count);
+    const struct query_placement *placement = replay->query.placement;
+    const int32_t count = replay->query.placement_count;
     struct scene_query *supply = &replay->supply;
     for (int32_t next = 0; next < count;) {
         size_t size = WIRE_SCENE_QUERY_BYTES;

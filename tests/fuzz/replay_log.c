@@ -70,16 +70,14 @@ static void look_at_placements(struct look *look, const struct query_placement *
 static void look_at_query(struct look *look, enum log_kind kind, const struct log_event *event)
 {
     static struct logged_query query;
-    int32_t count;
     if (!log_kind_is_query(kind) ||
         logged_query_read(&query, kind, event->data, (uint32_t) event->kept))
         return;
-    const struct query_placement *placement = logged_query_placements(&query, &count);
-    if (count > PLACEMENTS_MAX ||
+    if (query.placement_count > PLACEMENTS_MAX ||
         (kind == LOG_SCENE_QUERY && query.scene.index_count > 2 * PAIRS_MAX))
         look->slow = true;
     else if (event->kept <= QUERY_BYTES_MAX)
-        look_at_placements(look, placement, count);
+        look_at_placements(look, query.placement, query.placement_count);
 }
 
 static void look_at_definition(struct look *look, const struct log_event *event)

@@ -23,7 +23,8 @@ static int tear_down(void **state)
 
 static void give(int64_t client_id, int64_t body_id, const char *name)
 {
-    static struct logged_query query = {.kind = LOG_PAIR_QUERY};
+    static struct logged_query query = {
+        .kind = LOG_PAIR_QUERY, .placement = query.pair.placement, .placement_count = 2};
     query.pair.client_id = client_id;
     query.pair.placement[0].placed = (struct fmb_placement){.id = body_id, .name = name};
     body_names_take(names, &query);

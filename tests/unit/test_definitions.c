@@ -99,7 +99,8 @@ static void bodies_of_a_pair_are_defined(void **state)
         definitions_add_message(world->definitions, NULL, LOG_PAIR_QUERY, world->bytes, size));
     assert_found(world, &whole);
     assert_null(definitions_find(world->definitions, &named.view.handle));
-    static struct logged_query anonymous = {.kind = LOG_PAIR_QUERY};
+    static struct logged_query anonymous = {
+        .kind = LOG_PAIR_QUERY, .placement = anonymous.pair.placement, .placement_count = 2};
     anonymous.pair.placement[0] = anonymous.pair.placement[1] = place(&named);
     anonymous.pair.placement[0].placed.id = anonymous.pair.placement[1].placed.id = 0;
     definitions_add_query(world->definitions, &anonymous);

@@ -207,11 +207,9 @@ static bool is_chosen(const struct log_choice *choice, const struct log_event *e
 {
     const bool in_time = log_choice_has_time(choice, LOG_WORLD_BEGIN, event->utime) &&
                          log_choice_has_channel(choice, event);
-    int32_t count;
     if (!read_query(event, &query))
         return in_time && choice->body_count == 0;
-    const struct query_placement *placement = logged_query_placements(&query, &count);
-    return in_time && log_choice_has_body(choice, placement, count);
+    return in_time && log_choice_has_body(choice, query.placement, query.placement_count);
 }
 
 /* The next event that the cut has not added. */

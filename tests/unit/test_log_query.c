@@ -373,7 +373,8 @@ static void set_placements(const int64_t *ids, int count)
     log_query_clear(&found);
     memset(&found, 0, sizeof found);
     found.query.kind = LOG_SCENE_QUERY;
-    found.query.scene.placement_count = count;
+    found.query.placement = found.query.scene.placement;
+    found.query.placement_count = found.query.scene.placement_count = count;
     found.query.scene.duration = 0.25;
     for (int i = 0; i < count; i++)
         found.query.scene.placement[i] = place(ids[i], unit);
@@ -438,7 +439,7 @@ static void numbers_read_back_as_the_same_bits(void **state)
     memcpy(placement->placed.position, numbers, 3 * sizeof *numbers);
     memcpy(placement->placed.velocity, numbers + 3, 3 * sizeof *numbers);
     placement->velocity_count = 3;
-    found.query.scene.placement_count = 1;
+    found.query.placement_count = found.query.scene.placement_count = 1;
     found.query.scene.placement[0] = *placement;
     found.query.scene.duration = 5e-324;
     struct owned_scene scene = scene_of_found();

@@ -116,6 +116,8 @@ static enum replay_outcome compare_with(double tolerance, const struct pair_quer
     reported_count = 0;
     of.kind = results[0].kind = results[1].kind = LOG_PAIR_QUERY;
     of.pair = *query;
+    of.placement = of.pair.placement;
+    of.placement_count = 2;
     results[0].pair = *then;
     results[1].pair = *now;
     const enum replay_outcome outcome = compare_results(&options, &replayed, on_difference, NULL);
@@ -520,6 +522,8 @@ static enum replay_outcome compare(void)
     reported_count = 0;
     of.kind = results[0].kind = results[1].kind = LOG_SCENE_QUERY;
     of.scene = scene;
+    of.placement = of.scene.placement;
+    of.placement_count = scene.placement_count;
     results[0].scene = then;
     results[1].scene = now;
     return compare_results(&exact, &replayed, on_difference, NULL);
