@@ -10,6 +10,9 @@ box, and how far apart they are. Decided in process, or by the service fmbd on a
     for answer in scene.decide(duration=0):
         print(answer.names, answer.verdict.name)    # ('table', 'cube') TOUCHING
 
+Bodies are made by box(), cuboid(), tetrahedron(), face(), hull() and compound(), and queried by the
+methods of Scene. "pydoc3 fmb.hull" or "pydoc3 fmb.Scene" describes one of them.
+
 fmb.h of libfmb defines shapes, verdicts, and the accuracy of numbers. Lengths may have any unit;
 times are in seconds, velocities per second; orientations are quaternions (w, x, y, z), in 2D (w, z),
 of any length except 0. Every window is [0, duration].
