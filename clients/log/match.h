@@ -41,9 +41,12 @@ struct match_item {
     bool transient; /* of a result: logged_status_is_transient() */
     bool second;    /* of a result: its query has another one */
     /* For the user: */
-    bool unreadable; /* only the key can be read */
-    bool sent_whole; /* sent with frames, after UNKNOWN_BODY */
-    bool left_over;  /* a recording by another client lacks this query */
+    bool unreadable;    /* only the key can be read */
+    bool sent_whole;    /* sent with frames, after UNKNOWN_BODY */
+    bool left_over;     /* a recording by another client lacks this query */
+    bool by_order;      /* of a golden result: of another client, matched by its order */
+    bool has_own;       /* of a golden result: its own query is in the golden log, */
+    int64_t own_offset; /* there */
 };
 
 /* Reads whether a result is transient. In: its key; memory for the decoded result. Returns NULL; or

@@ -114,7 +114,9 @@ void page_take(struct page *page, const struct body_names *names, int64_t begin,
         .outcome = {outcome[replayed->outcome], replayed->outcome == REPLAY_DIFFERENT},
         .result = {result_of(query, then), result_of(query, now)}};
     char note[100];
-    if (!scene) {
+    if (replayed->note) {
+        step.note = replayed->note;
+    } else if (!scene) {
         if (then && now && certificates_differ(&then->pair, &now->pair))
             step.note = "The certificates differ.";
     } else {

@@ -17,6 +17,25 @@ enum replay_outcome {
     REPLAY_OUTCOMES
 };
 
+/* A pair in one of two results. */
+enum { REPLAYED_NOT_ANSWERED = -2, REPLAYED_NOT_NAMED = -1 /* separated */ };
+struct replayed_at {
+    int32_t verdict; /* its index in the result, or one of the above */
+    int32_t contact; /* that of its times and box, if it has some */
+};
+
+/* How the pairs of a recorded result to another query correspond to those of the query. */
+struct replayed_match {
+    char detail[200]; /* bodies and pairs that only one query has, for people; "": none */
+    bool fits;        /* each result is one to its query */
+    int32_t count;
+    struct {
+        unsigned a, b; /* indices of the query */
+        bool swapped;  /* the recorded pair is (b, a) */
+        struct replayed_at then, now;
+    } pair[2 * QUERY_VERDICTS_MAX]; /* [count], those that a result names, in order */
+};
+
 struct replayed {
     const char *log;      /* path of the log */
     int64_t event_number; /* of the query */
@@ -27,6 +46,11 @@ struct replayed {
      * NULL if no result was recorded. */
     const struct logged_query *query;
     const struct logged_result *now, *then;
+    /* NULL: then is a result to this query, or one with the same bodies and pairs. */
+    const struct replayed_match *match;
+    /* then is paired with the query by its order alone, and its own query is not known. */
+    bool by_order;
+    const char *note; /* how the scenes differ; NULL: they do not */
 };
 
 /* ---- Pairs ---- */
@@ -39,24 +63,26 @@ struct replayed_side {
 };
 
 struct replayed_pair {
-    unsigned a, b; /* indices of placements; in a hostile log perhaps out of range */
+    unsigned a, b; /* indices of placements */
     struct replayed_side then, now;
 };
 
 /* Position of an iteration in one of the results. */
 struct replayed_place {
     const struct scene_result *result; /* NULL: none, or it answers nothing */
-    int32_t verdict, contact;          /* the next ones */
+    struct replayed_at at;             /* the next ones */
 };
 
 struct replayed_pairs {
     const struct replayed *replayed; /* not owned */
     bool pair_given;
+    int32_t next; /* of the match */
     struct replayed_place then, now;
 };
 
 /* Begins an iteration: over the pair of a pair query; over listed pairs that a result answers; over
- * pairs of all or across that a result names, since all others are separated. */
+ * pairs of all or across that a result names, since all others are separated. A result that is none
+ * to this query answers nothing. */
 void replayed_pairs_begin(const struct replayed *replayed, struct replayed_pairs *out);
 
 /* Returns true and the next pair, or false after the last one. Pairs come in the order of the

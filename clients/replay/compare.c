@@ -1,15 +1,21 @@
 #include "compare.h"
 
+#include "allocate.h"
 #include "big_endian.h"
+#include "geometry.h"
 #include "logged_query.h"
 
+#include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 const char *const difference_name[DIFFERENT_KINDS] = {
     [DIFFERENT_STATUS] = "status",     [DIFFERENT_VERDICT] = "verdict",
     [DIFFERENT_INTERVAL] = "interval", [DIFFERENT_BOX] = "box",
     [DIFFERENT_GAP] = "gap",           [DIFFERENT_CERTIFICATE] = "certificate",
+    [DIFFERENT_SCENE] = "scene",
 };
 
 /* ---- Numbers ---- */
@@ -36,69 +42,102 @@ static double largest(const double *number, int count, double most)
     return most;
 }
 
-enum { BOX_NUMBERS = 2 * FMB_DIM_MAX };
+/* ---- The largest coordinate of a query ---- */
+
+/* The largest distance of a corner from the origin of the body: of a vertex, or at most |origin|
+ * and the components together on each axis. */
+static double frame_radius(int dim, const struct geometry_frame *frame, const double *number)
+{
+    double most = 0, axis[FMB_DIM_MAX] = {0};
+    for (size_t i = 0; i < frame->count; i += (size_t) dim) {
+        double sum = 0;
+        for (int k = 0; k < dim; k++) {
+            axis[k] = frame->by_vertices ? fabs(number[i + (size_t) k])
+                                         : axis[k] + fabs(number[i + (size_t) k]);
+            sum += axis[k] * axis[k];
+        }
+        most = fmax(most, sqrt(sum));
+    }
+    return most;
+}
+
+/* 0: the geometry is not known. */
+static double body_radius(const struct body_view *body)
+{
+    double most = 0, *number = NULL;
+    size_t capacity = 0;
+    struct geometry_frame frame;
+    for (struct geometry_reader reader = geometry_begin(body); geometry_next(&reader, &frame);) {
+        number = allocate_grow(number, &capacity, frame.count, sizeof *number);
+        geometry_numbers(&frame, number);
+        const double radius = frame_radius(body->dim, &frame, number);
+        most = largest(&radius, 1, most);
+    }
+    free(number);
+    return most;
+}
+
+static double largest_coordinate(const struct logged_query *query, double duration)
+{
+    double most = 0;
+    const struct query_placement *placement = query->placement;
+    for (int32_t i = 0; i < query->placement_count; i++) {
+        const double radius = body_radius(&placement[i].body);
+        for (int k = 0; k < FMB_DIM_MAX; k++) {
+            const double *position = &placement[i].placed.position[k];
+            const double moved =
+                placement[i].velocity_count ? placement[i].placed.velocity[k] * duration : 0;
+            const double ends[2] = {fabs(*position) + radius, fabs(*position + moved) + radius};
+            most = largest(ends, 2, most);
+        }
+    }
+    return most;
+}
 
 /* ---- Answers ---- */
 
-/* Whether parts that both answers have are equal within the tolerance, which is not 0. */
+/* What numbers may differ by. */
+struct limits {
+    double tolerance; /* 0: not at all */
+    double time, length;
+};
 
-static bool close_boxes(double tolerance, int dim, const struct fmb_answer *a,
-                        const struct fmb_answer *b)
+/* Returns the parts that differ by more than the limits: a sum of FMB_WANT_ bits. */
+static unsigned parts_apart(const struct limits *limits, int dim, const struct fmb_answer *a,
+                            const struct fmb_answer *b)
 {
-    const double most = largest(a->box[0], BOX_NUMBERS,
-                                largest(b->box[0], BOX_NUMBERS, 0)); /* numbers beyond dim are 0 */
-    return within(a->box[0], b->box[0], dim, tolerance * most) &&
-           within(a->box[1], b->box[1], dim, tolerance * most);
-}
-
-static double largest_of_gap(const struct fmb_gap *gap, double most)
-{
-    return largest(gap->witness[0], BOX_NUMBERS, largest(gap->bounds, 2, most));
-}
-
-static bool close_gaps(double tolerance, const struct fmb_gap *a, const struct fmb_gap *b)
-{
-    const double most = largest_of_gap(a, largest_of_gap(b, 0));
-    return within(a->bounds, b->bounds, 2, tolerance * most);
-}
-
-/* Returns the parts that differ by more than the tolerance: a sum of FMB_WANT_ bits. */
-static unsigned parts_apart(const struct compare_options *options, double duration, int dim,
-                            const struct fmb_answer *a, const struct fmb_answer *b)
-{
-    const double tolerance = options->tolerance;
     unsigned parts = query_parts_that_differ(a, b);
-    if (!(tolerance > 0))
+    if (!(limits->tolerance > 0))
         return parts;
-    if (a->has_contact && b->has_contact && within(a->contact, b->contact, 2, tolerance * duration))
+    if (a->has_contact && b->has_contact && within(a->contact, b->contact, 2, limits->time))
         parts &= ~(unsigned) FMB_WANT_TIMES;
-    if (a->has_box && b->has_box && close_boxes(tolerance, dim, a, b))
+    if (a->has_box && b->has_box && within(a->box[0], b->box[0], dim, limits->length) &&
+        within(a->box[1], b->box[1], dim, limits->length))
         parts &= ~(unsigned) FMB_WANT_BOX;
-    if (a->has_gap && b->has_gap && close_gaps(tolerance, &a->gap, &b->gap))
+    if (a->has_gap && b->has_gap && within(a->gap.bounds, b->gap.bounds, 2, limits->length))
         parts &= ~(unsigned) FMB_WANT_GAP;
     return parts;
 }
 
-static bool same_certificates(const struct compare_options *options, const char *a, const char *b)
+static bool same_certificates(const struct limits *limits, const char *a, const char *b)
 {
-    if (options->tolerance > 0 || a == b)
+    if (limits->tolerance > 0 || a == b)
         return true;
     return a && b && strcmp(a, b) == 0;
 }
 
 /* Finds the first difference of the two sides. Returns false if there is none. */
-static bool find_difference(const struct compare_options *options, double duration,
-                            struct difference *out)
+static bool find_difference(const struct limits *limits, struct difference *out)
 {
     const struct difference_side *then = &out->then, *now = &out->now;
-    const unsigned parts = parts_apart(options, duration, out->dim, &then->answer, &now->answer);
+    const unsigned parts = parts_apart(limits, out->dim, &then->answer, &now->answer);
     const bool differs[DIFFERENT_KINDS] = {
         [DIFFERENT_STATUS] = then->status != now->status,
         [DIFFERENT_VERDICT] = then->answer.verdict != now->answer.verdict,
         [DIFFERENT_INTERVAL] = parts & FMB_WANT_TIMES,
         [DIFFERENT_BOX] = parts & FMB_WANT_BOX,
         [DIFFERENT_GAP] = parts & FMB_WANT_GAP,
-        [DIFFERENT_CERTIFICATE] = !same_certificates(options, then->certificate, now->certificate)};
+        [DIFFERENT_CERTIFICATE] = !same_certificates(limits, then->certificate, now->certificate)};
     int kind = 0;
     while (kind < DIFFERENT_KINDS && !differs[kind])
         kind++;
@@ -164,14 +203,19 @@ static enum replay_outcome compare_answers(const struct compare_options *options
     const struct logged_query *query = replayed->query;
     const bool is_pair = query->kind == LOG_PAIR_QUERY;
     const double duration = is_pair ? query->pair.duration : query->scene.duration;
+    struct limits limits = {.tolerance = options->tolerance};
     enum replay_outcome outcome = REPLAY_SAME;
     struct replayed_pairs pairs;
     struct replayed_pair pair;
+    if (limits.tolerance > 0) {
+        limits.time = limits.tolerance * duration;
+        limits.length = limits.tolerance * largest_coordinate(query, duration);
+    }
     replayed_pairs_begin(replayed, &pairs);
     while (replayed_pairs_next(&pairs, &pair)) {
         struct difference difference = difference_of(replayed, &pair);
         if ((is_pair || (pair.then.answered && pair.now.answered)) &&
-            find_difference(options, duration, &difference)) {
+            find_difference(&limits, &difference)) {
             sink(user, &difference);
             outcome = REPLAY_DIFFERENT;
         }
@@ -179,21 +223,45 @@ static enum replay_outcome compare_answers(const struct compare_options *options
     return outcome;
 }
 
-enum replay_outcome compare_results(const struct compare_options *options,
-                                    const struct replayed *replayed, difference_sink *sink,
-                                    void *user)
+/* Writes how the scene of a result differs from that of the query. Returns false if it does not, or
+ * that is not known. */
+static bool scenes_differ(const struct replayed *replayed, char *out, size_t size)
 {
-    const struct logged_query *query = replayed->query;
+    const struct scene_query *query = &replayed->query->scene;
+    const struct scene_result *then = &replayed->then->scene, *now = &replayed->now->scene;
+    const struct replayed_match *match = replayed->match;
+    *out = 0;
+    if (match && *match->detail) {
+        snprintf(out, size, "%s", match->detail);
+    } else if (replayed->query->kind == LOG_PAIR_QUERY) {
+        const int64_t *a = replayed->then->pair.body_id, *b = replayed->now->pair.body_id;
+        if (replayed->by_order && (a[0] != b[0] || a[1] != b[1]))
+            snprintf(out, size,
+                     "the recording has the bodies %" PRId64 " and %" PRId64 ", the query %" PRId64
+                     " and %" PRId64,
+                     a[0], a[1], b[0], b[1]);
+    } else if (then->status == FMB_OK && now->status == FMB_OK) {
+        if (replayed->by_order && then->end_pair != now->end_pair)
+            snprintf(out, size, "the recording answers %" PRId32 " pairs, the query has %" PRId64,
+                     then->end_pair - query->first_pair,
+                     query_pair_count(query) - query->first_pair);
+        else if (match ? !match->fits
+                       : !logged_result_fits(query, then) || !logged_result_fits(query, now))
+            snprintf(out, size, "a result is of other pairs than its query");
+    }
+    return *out;
+}
+
+/* Compares the statuses of a scene, and the pairs if both are OK. */
+static enum replay_outcome compare_scenes(const struct compare_options *options,
+                                          const struct replayed *replayed, difference_sink *sink,
+                                          void *user)
+{
     const int32_t then = replayed->then->head.status;
     const int32_t now = replayed->now->head.status;
-    if (logged_status_is_transient(then) || logged_status_is_transient(now))
-        return transient_outcome(then, now);
-    if (query->kind == LOG_PAIR_QUERY ||
-        (then == FMB_OK && now == FMB_OK &&
-         logged_result_fits(&query->scene, &replayed->then->scene) &&
-         logged_result_fits(&query->scene, &replayed->now->scene)))
+    if (then == FMB_OK && now == FMB_OK)
         return compare_answers(options, replayed, sink, user);
-    if (then == now && now != FMB_OK)
+    if (then == now)
         return REPLAY_SAME;
     sink(user, &(struct difference){.kind = DIFFERENT_STATUS,
                                     .whole = true,
@@ -201,6 +269,28 @@ enum replay_outcome compare_results(const struct compare_options *options,
                                     .then = {.status = then},
                                     .now = {.status = now}});
     return REPLAY_DIFFERENT;
+}
+
+enum replay_outcome compare_results(const struct compare_options *options,
+                                    const struct replayed *replayed, difference_sink *sink,
+                                    void *user)
+{
+    const int32_t then = replayed->then->head.status;
+    const int32_t now = replayed->now->head.status;
+    char detail[COMPARE_DETAIL_MAX];
+    if (logged_status_is_transient(then) || logged_status_is_transient(now))
+        return transient_outcome(then, now);
+    const bool differ = scenes_differ(replayed, detail, sizeof detail);
+    if (differ)
+        sink(user, &(struct difference){
+                       .kind = DIFFERENT_SCENE, .whole = true, .dim = 3, .detail = detail});
+    if (differ && !replayed->match)
+        return REPLAY_DIFFERENT;
+    const enum replay_outcome outcome = replayed->query->kind == LOG_SCENE_QUERY
+                                            ? compare_scenes(options, replayed, sink, user)
+                                        : differ ? REPLAY_DIFFERENT
+                                                 : compare_answers(options, replayed, sink, user);
+    return differ ? REPLAY_DIFFERENT : outcome;
 }
 
 /* ---- Encoded results ----

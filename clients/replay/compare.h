@@ -3,7 +3,9 @@
  * They are the same if their statuses are, and the verdicts, intervals, boxes, gaps and
  * certificates of all pairs that both answer: bit for bit, or within a tolerance. The service,
  * times and handles are not compared. The result of a scene may answer fewer pairs than requested
- * (end_pair): pairs that only one of the two answers are not compared. No shared state. */
+ * (end_pair): pairs that only one of the two answers are not compared. If the recorded result is to
+ * another query (align.h), bodies and pairs that only one query has are one difference, and the
+ * others are compared. No shared state. */
 #ifndef COMPARE_H
 #define COMPARE_H
 
@@ -19,10 +21,14 @@ enum difference_kind {
     DIFFERENT_BOX,
     DIFFERENT_GAP,
     DIFFERENT_CERTIFICATE,
+    DIFFERENT_SCENE, /* of the scene as a whole: bodies or pairs that only one side has */
     DIFFERENT_KINDS
 };
 
 extern const char *const difference_name[DIFFERENT_KINDS]; /* for example "verdict" */
+
+/* Most bytes of the detail of a difference, final 0 included. */
+enum { COMPARE_DETAIL_MAX = sizeof((struct replayed_match *) NULL)->detail };
 
 /* One of the two answers to a pair. */
 struct difference_side {
@@ -38,7 +44,8 @@ struct difference {
     enum log_kind query_kind;
     int64_t client_id, sequence_number;
     enum difference_kind kind;
-    bool whole; /* of the scene as a whole (its status), not of a pair */
+    bool whole;         /* of the scene as a whole (its status, bodies or pairs), not of a pair */
+    const char *detail; /* DIFFERENT_SCENE: what differs, for people; otherwise NULL */
     int64_t body_id[2];
     unsigned placement[2]; /* indices in the query */
     int dim;
@@ -46,10 +53,10 @@ struct difference {
 };
 
 struct compare_options {
-    /* 0: bit for bit. Otherwise the ends of intervals may differ by tolerance * duration, the ends
-     * of boxes by tolerance * (largest number of both boxes), and the bounds of gaps by tolerance *
-     * (largest number of both gaps). Directions, witness points and certificates are then not
-     * compared. */
+    /* 0: bit for bit. Otherwise the ends of intervals may differ by tolerance * duration, and the
+     * ends of boxes and gaps by tolerance * (largest coordinate of the query): of the position of a
+     * body, at the beginning or the end, plus its radius, which is 0 if its geometry is not in the
+     * query. Directions, witness points and certificates are then not compared. */
     double tolerance;
 };
 

@@ -1,6 +1,7 @@
-/* The differences that a replay lists: the first ones up to a limit, sorted by the positions of
- * their queries, in whatever order they are added. Differences of one query stay in the order of
- * arrival. Each takes some 1,000 bytes. */
+/* The differences that a replay lists, in whatever order they are added: first those of scenes,
+ * statuses and verdicts, then those of numbers and certificates; each sorted by the positions of
+ * their queries, and those of one query in the order of arrival. Differences beyond a limit are
+ * counted. Each kept takes some 1,200 bytes; at most twice the limit are kept. */
 #ifndef LISTING_H
 #define LISTING_H
 

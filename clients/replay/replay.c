@@ -77,6 +77,8 @@ static void count_definition(struct replay *replay, const struct log_event *even
 static void take_golden(struct replay *replay, enum log_kind kind, const struct log_event *event)
 {
     struct match_item item;
+    const char *undecoded =
+        body_names_take_message(replay->golden_names, kind, event->data, (uint32_t) event->kept);
     if (kind >= LOG_STATUS)
         return;
     const char *error = read_key(replay, kind, event, &item);
@@ -86,8 +88,36 @@ static void take_golden(struct replay *replay, enum log_kind kind, const struct 
         fail_golden(replay, event->offset, error);
     if (error)
         return;
+    item.unreadable = undecoded;
     replay_channel(replay, &item)->results += item.is_result;
-    match_add(item.is_result ? &replay->match : &replay->golden_queries, &item);
+    match_add(&replay->golden_queries, &item);
+}
+
+/* Moves the golden results to those that are compared, each with the place of its own query.
+ * Returns false if there are none, which was reported. */
+static bool move_golden_results(struct replay *replay)
+{
+    struct match *golden = &replay->golden_queries;
+    size_t queries = 0;
+    match_all(golden);
+    for (size_t i = 0; i < golden->count; i++) {
+        struct match_item result = golden->item[i];
+        if (!result.is_result)
+            continue;
+        result.has_own = result.other && !result.other->unreadable;
+        result.own_offset = result.has_own ? result.other->place.offset : 0;
+        match_add(&replay->match, &result);
+    }
+    for (size_t i = 0; i < golden->count; i++)
+        if (!golden->item[i].is_result)
+            golden->item[queries++] = golden->item[i];
+    const bool any = golden->count > queries;
+    golden->count = queries;
+    if (!any && !replay->failed)
+        complain("%s holds no results: is it an event log, and of this --prefix?",
+                 replay->options->golden);
+    replay->failed = replay->failed || !any;
+    return any;
 }
 
 static void take_event(struct replay *replay, const struct log_event *event)
@@ -148,6 +178,8 @@ static bool open_replay(struct replay *replay)
         !input_open(&replay->rereader, replay->paths, count))
         return false;
     replay->definitions = definitions_open();
+    replay->golden_names = options->golden ? body_names_open() : NULL;
+    replay->align = align_open(replay->golden_names, options->names);
     replay->local = local_answerer_open(options->frames, replay->definitions);
     if (options->bus)
         replay->bus = answer_bus_open(options->bus, replay_on_answered, replay);
@@ -173,6 +205,8 @@ static void close_replay(struct replay *replay)
     g_queue_clear(&replay->again);
     match_clear(&replay->match);
     match_clear(&replay->golden_queries);
+    align_close(replay->align);
+    body_names_close(replay->golden_names);
     input_close(&replay->rereader);
     free(replay->paths);
     hasher_destroy(replay->hasher);
@@ -220,7 +254,7 @@ static void read_logs(struct replay *replay)
 static void run(struct replay *replay)
 {
     read_logs(replay);
-    if (replay->old_version)
+    if (replay->old_version || (replay->options->golden && !move_golden_results(replay)))
         return;
     match_all(&replay->match);
     if (replay->options->golden)

@@ -7,6 +7,7 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
 void replay_fail(struct replay *replay, const char *what)
@@ -91,39 +92,40 @@ static bool read_compared(struct replay *replay, const struct match_item *query)
                              &replay->compared);
 }
 
-static bool read_both(struct replay *replay, const struct match_item *query,
-                      const struct new_result *answered)
+/* Reads the own query of a golden result. */
+static bool read_golden_query(struct replay *replay, const struct match_item *result)
 {
-    const char *error = logged_result_read(&replay->now, (enum log_kind) query->key.kind,
-                                           answered->bytes, (uint32_t) answered->size);
-    assert(!error); /* encoded by this process, or decoded before */
-    (void) error;
-    return read_compared(replay, query);
+    const struct match_item own = {
+        .key = result->key, .place = {.log = result->place.log, .offset = result->own_offset}};
+    uint32_t size;
+    return replay_read_query(replay, &replay->rereader, &own, replay->golden_bytes, &size,
+                             &replay->golden_query);
 }
 
-static void add_to_page(struct replay *replay, const struct match_item *query,
-                        const struct logged_result *then, enum replay_outcome outcome)
+static void read_new(struct replay *replay, enum log_kind kind, const struct new_result *answered)
 {
-    const struct replayed replayed = {.log = replay->paths[query->place.log],
-                                      .event_number = query->place.number,
-                                      .offset = query->place.offset,
-                                      .utime = query->place.utime,
-                                      .outcome = outcome,
-                                      .query = &replay->compared,
-                                      .then = then,
-                                      .now = &replay->now};
+    const char *error =
+        logged_result_read(&replay->now, kind, answered->bytes, (uint32_t) answered->size);
+    assert(!error); /* encoded by this process, or decoded before */
+    (void) error;
+}
+
+/* In: of, with the results. */
+static void add_to_page(struct replay *replay, const struct match_item *query,
+                        const struct replayed *of, enum replay_outcome outcome)
+{
+    struct replayed replayed = *of;
+    replayed.log = replay->paths[query->place.log];
+    replayed.event_number = query->place.number;
+    replayed.offset = query->place.offset;
+    replayed.utime = query->place.utime;
+    replayed.outcome = outcome;
+    replayed.note = *replay->note ? replay->note : NULL;
     definitions_fill(replay->definitions, &replay->compared);
     page_take(replay->options->page, replay->options->names, replay->tally->first_utime, &replayed);
 }
 
 /* ---- Comparing ---- */
-
-static enum replay_outcome compare_both(struct replay *replay, difference_sink *sink)
-{
-    const struct replayed replayed = {
-        .query = &replay->compared, .then = &replay->then, .now = &replay->now};
-    return compare_results(&replay->options->compare, &replayed, sink, replay);
-}
 
 static void on_difference(void *user, const struct difference *difference)
 {
@@ -135,6 +137,8 @@ static void on_difference(void *user, const struct difference *difference)
     located.client_id = query->key.client_id;
     located.sequence_number = query->key.sequence_number;
     replay_channel(replay, query)->differences[difference->kind]++;
+    if (difference->detail)
+        snprintf(replay->note, sizeof replay->note, "%s", difference->detail);
     replay->sink->difference(replay->sink->user, &located);
 }
 
@@ -149,9 +153,46 @@ static void count(struct replay *replay, const struct match_item *query,
 static void compare_unrecorded(struct replay *replay, const struct match_item *query,
                                const struct new_result *answered)
 {
+    const struct replayed replayed = {.query = &replay->compared, .now = &replay->now};
     count(replay, query, REPLAY_UNRECORDED, 0);
-    if (replay->options->page && read_both(replay, query, answered))
-        add_to_page(replay, query, NULL, REPLAY_UNRECORDED);
+    if (!replay->options->page || !read_compared(replay, query))
+        return;
+    read_new(replay, (enum log_kind) query->key.kind, answered);
+    add_to_page(replay, query, &replayed, REPLAY_UNRECORDED);
+}
+
+/* Compares a result that was read with the new one. same_bytes: of both results. */
+static void compare_read(struct replay *replay, const struct match_item *query,
+                         const struct new_result *answered, uint32_t size, bool same_bytes)
+{
+    const enum log_kind kind = (enum log_kind) query->key.kind;
+    const struct match_item *result = query->other;
+    struct replayed replayed = {
+        .query = &replay->compared,
+        .then = &replay->then,
+        .now = &replay->now,
+        .by_order =
+            !result->has_own && (result->by_order || result->key.utime != query->key.utime)};
+    if (!read_compared(replay, query) || (result->has_own && !read_golden_query(replay, result)))
+        return;
+    const bool aligned =
+        !result->has_own || align_queries(replay->align, &replay->golden_query, &replay->compared);
+    if (!is_unchanged(replay, result,
+                      logged_result_read(&replay->then, kind, replay->result_bytes, size)))
+        return;
+    read_new(replay, kind, answered);
+    if (replay->options->compare.tolerance > 0)
+        definitions_fill(replay->definitions, &replay->compared);
+    if (!aligned)
+        replayed.match = align_results(replay->align, &replay->then, &replay->now);
+    replay->item = query;
+    const enum replay_outcome outcome =
+        same_bytes && aligned
+            ? REPLAY_SAME
+            : compare_results(&replay->options->compare, &replayed, on_difference, replay);
+    count(replay, query, outcome, replay->then.head.compute_ns);
+    if (replay->options->page)
+        add_to_page(replay, query, &replayed, outcome);
 }
 
 void replay_compare(struct replay *replay, const struct match_item *query,
@@ -160,26 +201,19 @@ void replay_compare(struct replay *replay, const struct match_item *query,
     const enum log_kind kind = (enum log_kind) query->key.kind;
     const unsigned char *then = replay->result_bytes;
     uint32_t size;
+    replay->note[0] = 0;
     if (!query->other) {
         compare_unrecorded(replay, query, answered);
         return;
     }
     if (!read_again(replay, &replay->rereader, &query->other->place, replay->result_bytes, &size))
         return;
-    if (!replay->options->page &&
-        compare_bytes_same(kind, then, size, answered->bytes, answered->size)) {
-        /* Results of both types end with compute_ns. */
+    const bool same = compare_bytes_same(kind, then, size, answered->bytes, answered->size);
+    /* Results of both types end with compute_ns. */
+    if (same && !replay->options->page && !query->other->has_own)
         count(replay, query, REPLAY_SAME, (int64_t) big_endian_64(then + size - sizeof(int64_t)));
-        return;
-    }
-    if (!is_unchanged(replay, query->other, logged_result_read(&replay->then, kind, then, size)) ||
-        !read_both(replay, query, answered))
-        return;
-    replay->item = query;
-    const enum replay_outcome outcome = compare_both(replay, on_difference);
-    count(replay, query, outcome, replay->then.head.compute_ns);
-    if (replay->options->page)
-        add_to_page(replay, query, &replay->then, outcome);
+    else
+        compare_read(replay, query, answered, size, same);
 }
 
 /* ---- Second results, and results without a query ---- */
@@ -193,14 +227,19 @@ static void no_difference(void *user, const struct difference *difference)
 static void compare_second(struct replay *replay, const struct match_item *second)
 {
     const struct match_item *query = second->other;
+    const struct replayed replayed = {
+        .query = second->has_own ? &replay->golden_query : &replay->compared,
+        .then = &replay->then,
+        .now = &replay->now};
     struct tally_channel *channel = replay_channel(replay, second);
     bool differs = false;
-    if (!query->unreadable) {
-        if (!read_compared(replay, query) ||
+    if (second->has_own || !query->unreadable) {
+        if (!(second->has_own ? read_golden_query(replay, second) : read_compared(replay, query)) ||
             !read_result(replay, query->other, replay->query_bytes, &replay->now) ||
             !read_result(replay, second, replay->result_bytes, &replay->then))
             return;
-        differs = compare_both(replay, no_difference) == REPLAY_DIFFERENT;
+        differs = compare_results(&replay->options->compare, &replayed, no_difference, replay) ==
+                  REPLAY_DIFFERENT;
     }
     channel->results_again += !differs;
     channel->contradictions += differs;

@@ -50,7 +50,9 @@ static void write_difference(struct json_writer *json, const struct body_names *
         write_names(json, names, difference);
     }
     json_string(json, "kind", difference_name[difference->kind]);
-    if (difference->whole) {
+    if (difference->detail) {
+        json_string(json, "detail", difference->detail);
+    } else if (difference->whole) {
         write_status(json, "then", difference->then.status);
         write_status(json, "now", difference->now.status);
     } else {

@@ -203,6 +203,7 @@ static void rename_results(struct pairing *pairing)
             query = sent->query ? sent->query : query;
         }
         item->key = query->key;
+        item->by_order = true;
     }
 }
 

@@ -7,6 +7,7 @@
 #ifndef REPLAY_PARTS_H
 #define REPLAY_PARTS_H
 
+#include "align.h"
 #include "definitions.h"
 #include "log_write.h"
 #include "match.h"
@@ -30,7 +31,9 @@ struct replay {
     int old_version; /* that recorded a message; 0: none did */
 
     struct match match;          /* queries, and the results to compare with */
-    struct match golden_queries; /* of a golden log */
+    struct match golden_queries; /* of a golden log; while it is read, its results too */
+    struct body_names *golden_names;
+    struct align *align;
 
     struct local_answerer *local;
     struct answer_bus *bus; /* NULL: this process answers */
@@ -46,8 +49,11 @@ struct replay {
     /* The comparison in progress: its query, as in the log and decoded, and both results. */
     const struct match_item *item;
     struct logged_query compared;
+    struct logged_query golden_query; /* of the golden result, if it has its own */
     struct logged_result then, now;
-    unsigned char compared_bytes[LOG_DATA_MAX]; /* contain the geometries of compared */
+    char note[COMPARE_DETAIL_MAX]; /* how the scenes of both differ; "": they do not */
+    /* Contain the geometries of compared and golden_query. */
+    unsigned char compared_bytes[LOG_DATA_MAX], golden_bytes[LOG_DATA_MAX];
 };
 
 /* ---- replay_answer.c ---- */

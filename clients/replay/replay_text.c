@@ -70,12 +70,21 @@ void replay_line(FILE *out, enum escape form, const struct difference *differenc
     }
     fprintf(out, "event %" PRId64 "  %.6f s  ", difference->place.number,
             ((double) difference->place.utime - (double) first_utime) / 1e6);
-    fputs(difference->whole ? "the scene" : "bodies", out);
+    fputs(!difference->whole                         ? "bodies"
+          : difference->query_kind == LOG_PAIR_QUERY ? "the pair"
+                                                     : "the scene",
+          out);
     for (int i = 0; i < 2 && !difference->whole; i++) {
         const int64_t id = difference->body_id[i];
         putc(' ', out);
         put_text(out, form,
                  report_body(body_names_find(names, difference->client_id, id), id, text));
+    }
+    if (difference->detail) {
+        fputs(": ", out);
+        put_text(out, form, difference->detail);
+        putc('\n', out);
+        return;
     }
     fprintf(out, "  %s: ", difference_name[difference->kind]);
     put_side(out, form, difference, &difference->then);

@@ -17,7 +17,9 @@ static void on_found(void *user, const struct difference *found)
     }
     struct difference *put = &report->found[report->found_count++];
     *put = *found;
-    put->then.certificate = put->now.certificate = NULL;
+    put->then.certificate = put->now.certificate = put->detail = NULL;
+    if (found->detail)
+        strcpy(report->detail, found->detail);
 }
 
 static void on_unreadable(void *user, const struct match_place *place, const char *channel,

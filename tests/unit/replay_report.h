@@ -5,11 +5,12 @@
 #include "replay.h"
 
 struct replay_report {
-    bool good;          /* as replay_run() */
-    struct tally tally; /* of all logs */
-    struct difference
-        *found; /* owned, [found_count], by the places of their queries; no certificates */
+    bool good;                /* as replay_run() */
+    struct tally tally;       /* of all logs */
+    struct difference *found; /* owned, [found_count], by the places of their queries; no
+                                 certificates, no details */
     int64_t found_count, found_room;
+    char detail[COMPARE_DETAIL_MAX];            /* the last one */
     int64_t unreadable, damages, damaged_bytes; /* as they were reported, contradictions too */
     size_t most_memory;                         /* that malloc() had given out, bytes */
     int64_t progress;                           /* calls so far */

@@ -229,8 +229,9 @@ static void statuses_of_the_moment_are_not_compared(void **state)
 
 /* ---- Numbers ---- */
 
-/* Of two results with one of these for an end: what they are with this tolerance. Durations are 2,
- * and no number of the boxes is larger than these two but 1. */
+/* Of two results with one of these for an end: what they are with this tolerance. Durations are 2.
+ * The largest coordinate of the query is the larger of these two if it is finite and at least 1,
+ * else 1. */
 static const struct {
     double tolerance, then, now;
     bool interval, box; /* the same */
@@ -277,25 +278,36 @@ static void ends_of_intervals_are_compared(void **state)
         }
 }
 
+/* A query whose largest coordinate is that of these ends: of points. */
+static struct pair_query query_of_ends(int dim, double then, double now)
+{
+    struct pair_query query = pair(dim, 0, 0, BOX);
+    double most = 1;
+    for (int f = 0; f < 2; f++)
+        make_unknown(&query.placement[f]);
+    most = isfinite(then) ? fmax(most, fabs(then)) : most;
+    most = isfinite(now) ? fmax(most, fabs(now)) : most;
+    query.placement[1].placed.position[dim - 1] = -most;
+    return query;
+}
+
 static void set_box(struct pair_result *result, int side, int axis, double end)
 {
     memset(result->answer.box, 0, sizeof result->answer.box);
     result->answer.box[side][axis] = end;
-    if (fabs(end) < 1) /* something to measure by */
-        result->answer.box[1 - side][axis] = 1;
 }
 
 static void ends_of_boxes_are_compared(void **state)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        const struct pair_query query = pair(dim, 0.5, 0, BOX);
-        const struct pair_result good = answer(&query);
+        const struct pair_query boxed = pair(dim, 0.5, 0, BOX);
+        const struct pair_result good = answer(&boxed);
         for (size_t i = 0; i < COUNT(ends); i++)
             for (int at = 0; at < 2 * dim; at++) {
+                const struct pair_query query = query_of_ends(dim, ends[i].then, ends[i].now);
                 struct pair_result then = good, now = good;
                 set_box(&then, at / dim, at % dim, ends[i].then);
                 set_box(&now, at / dim, at % dim, ends[i].now);
-                then.answer.box[1 - at / dim][at % dim] = now.answer.box[1 - at / dim][at % dim];
                 if (ends[i].box)
                     expect_same(ends[i].tolerance, &query, &then, &now);
                 else
@@ -304,7 +316,7 @@ static void ends_of_boxes_are_compared(void **state)
     }
 }
 
-/* A result with one of the numbers for a bound of a gap, measured by its witness points. */
+/* A result with one of the numbers for a bound of a gap. */
 static void set_gap(struct pair_result *result, int bound, double value)
 {
     struct fmb_gap *gap = &result->answer.gap;
@@ -313,15 +325,15 @@ static void set_gap(struct pair_result *result, int bound, double value)
     result->answer.has_contact = false;
     result->answer.has_gap = gap->has_witness = true;
     gap->bounds[bound] = value;
-    gap->witness[1][2] = 1;
 }
 
 static void bounds_of_gaps_are_compared(void **state)
 {
-    const struct pair_query query = pair(3, 0.5, 0, 0);
-    const struct pair_result good = answer(&query);
+    const struct pair_query plain = pair(3, 0.5, 0, 0);
+    const struct pair_result good = answer(&plain);
     for (size_t i = 0; i < COUNT(ends); i++)
         for (int bound = 0; bound < 2; bound++) {
+            const struct pair_query query = query_of_ends(3, ends[i].then, ends[i].now);
             struct pair_result then = good, now = good;
             set_gap(&then, bound, ends[i].then);
             set_gap(&now, bound, ends[i].now);
@@ -332,18 +344,31 @@ static void bounds_of_gaps_are_compared(void **state)
         }
 }
 
-/* Of bodies that are small and near the origin. */
+/* Overlapping bodies have no nearest points: the coordinates are those of the query. */
+static void expect_scale(const struct pair_query *query, double scale)
+{
+    struct pair_result then = {.dim = 3}, now;
+    set_gap(&then, 0, -1e-3);
+    then.answer.verdict = FMB_OVERLAPPING;
+    then.answer.gap.has_witness = false;
+    now = then;
+    now.answer.gap.bounds[0] -= scale / 4;
+    expect_same(0.251, query, &then, &now);
+    expect_kind(0.249, query, &then, &now, DIFFERENT_GAP);
+}
+
 static void a_tolerance_is_relative_to_the_largest_coordinate(void **state)
 {
-    const struct pair_query query = pair(3, 0.5, 0, 0);
-    struct pair_result then = answer(&query);
-    set_gap(&then, 0, 1e-3);
-    set_gap(&then, 1, 1e-3);
-    then.answer.gap.witness[1][2] = 1e-3;
-    struct pair_result now = then;
-    now.answer.gap.bounds[1] += 1e-8;
-    expect_same(2e-5, &query, &then, &now);
-    expect_kind(5e-6, &query, &then, &now, DIFFERENT_GAP);
+    struct pair_query query = query_of_ends(3, 5, 0);
+    expect_scale(&query, 5);
+    query.placement[0].placed.velocity[1] = -3; /* for 2 s */
+    expect_scale(&query, 5);
+    query.placement[0].velocity_count = 3;
+    expect_scale(&query, 6);
+    query = pair(3, 0.5, 0, 0); /* cubes: a corner is sqrt(3) from the origin */
+    expect_scale(&query, 0.5 + sqrt(3));
+    query.placement[1].placed.position[0] = -1e-3;
+    expect_scale(&query, 1e-3 + sqrt(3));
 }
 
 /* Nearest points need not be the only ones. */
@@ -541,7 +566,8 @@ static void check_scene(void)
     }
     assert_int_equal(outcome, reported_count ? REPLAY_DIFFERENT : REPLAY_SAME);
     const int total = now.status == FMB_OK ? list_requested() : 0;
-    if (then.status == FMB_OK && now.status == FMB_OK) {
+    const bool both = then.status == FMB_OK && now.status == FMB_OK;
+    if (both) {
         assert_true(plain_of(&now, total, plain_now));
         if (plain_of(&then, total, plain_then)) {
             check_differences(total);
@@ -553,7 +579,7 @@ static void check_scene(void)
     }
     assert_int_equal(reported_count, 1);
     assert_true(reported[0].whole);
-    assert_int_equal(reported[0].kind, DIFFERENT_STATUS);
+    assert_int_equal(reported[0].kind, both ? DIFFERENT_SCENE : DIFFERENT_STATUS);
 }
 
 /* ---- Scenes: drawn ---- */
@@ -765,7 +791,7 @@ static void expect_whole(void)
     assert_int_equal(compare(), REPLAY_DIFFERENT);
     assert_int_equal(reported_count, 1);
     assert_true(reported[0].whole);
-    assert_int_equal(reported[0].kind, DIFFERENT_STATUS);
+    assert_int_equal(reported[0].kind, DIFFERENT_SCENE);
 }
 
 /* As many pairs as a message has room for, all of them in contact, and nothing else said. */

@@ -40,12 +40,21 @@ static struct difference draw_found(int number)
     struct difference found = {.place = {.number = number}};
     found.place.log = (int32_t) draw(3);
     found.place.offset = (int64_t) draw(40) - 20;
+    found.kind = (enum difference_kind) draw(DIFFERENT_KINDS);
     return found;
+}
+
+/* Numbers and certificates come last. */
+static bool is_number(const struct difference *difference)
+{
+    return difference->kind >= DIFFERENT_INTERVAL && difference->kind <= DIFFERENT_CERTIFICATE;
 }
 
 static int compare(const void *left, const void *right)
 {
     const struct difference *a = left, *b = right;
+    if (is_number(a) != is_number(b))
+        return is_number(a) - is_number(b);
     if (a->place.log != b->place.log)
         return a->place.log < b->place.log ? -1 : 1;
     if (a->place.offset != b->place.offset)
@@ -95,6 +104,7 @@ static void long_certificates_are_listed(void **state)
     memset(text, 'x', sizeof text - 1);
     struct difference found = {.place = {.number = 1}};
     found.then.certificate = text;
+    found.kind = DIFFERENT_CERTIFICATE;
     struct listing *listing = listing_open(1);
     listing_put(listing, &found);
     text[0] = '\0'; /* it is copied */

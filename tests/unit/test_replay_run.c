@@ -588,6 +588,102 @@ static void a_log_of_version_1_is_recognised(void **state)
     replay_report_free(&report);
 }
 
+/* ---- Scenes of two recordings ---- */
+
+/* Bodies of one edge at these positions, with the ids from 1 on; and the result of the answerer, or
+ * alone that. */
+static void log_scene(int64_t client_id, const double *position, int32_t count, bool result_only)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    static struct scene_query query;
+    const struct answerer_options of = {.frames = 100, .server_id = 99, .secret = {1, 2}};
+    struct answerer *answerer = answerer_create(&of);
+    struct answer_job *job = answer_job_create();
+    memset(&query, 0, sizeof query);
+    query.client_id = client_id;
+    query.sequence_number = 1;
+    query.utime = client_id;
+    query.placement_count = count;
+    query.which = FMB_PAIRS_ALL;
+    for (int32_t i = 0; i < count; i++)
+        query.placement[i] = whole(i + 1, 1, position[i]);
+    const size_t size = wire_write_scene_query(&query, bytes);
+    assert_null(answer_job_begin(job, ANSWER_SCENE, bytes, size));
+    if (!result_only)
+        log_draft_event(&recorded, WIRE_SCENE_QUERY, 0, bytes, size);
+    while (!answer_job_step(job, answerer))
+        continue;
+    log_draft_event(&recorded, WIRE_SCENE_RESULT, 1, bytes,
+                    wire_write_scene_result(answer_job_scene_result(job), bytes));
+    answer_job_destroy(job);
+    answerer_destroy(answerer);
+}
+
+/* Replays a scene of other bodies against a golden log. */
+static struct replay_report replay_scenes(int64_t client_id, const double *golden,
+                                          int32_t golden_count, bool results_only,
+                                          const double *position, int32_t count)
+{
+    char golden_path[LOG_DRAFT_PATH_MAX];
+    log_scene(7, golden, golden_count, results_only);
+    const int golden_file = log_draft_file(recorded.bytes, recorded.size, golden_path);
+    log_draft_free(&recorded);
+    log_scene(client_id, position, count, false);
+    open_log();
+    struct replay_options with = options();
+    with.golden = golden_path;
+    const struct replay_report report = replay_report_of(&with);
+    assert_true(report.good);
+    close(golden_file);
+    close_log();
+    return report;
+}
+
+static void expect_scene(struct replay_report report, const char *detail)
+{
+    assert_int_equal(outcome(&report, REPLAY_DIFFERENT), 1);
+    assert_int_equal(outcome(&report, REPLAY_SAME), 0);
+    assert_int_equal(report.found_count, 1);
+    assert_int_equal(report.found[0].kind, DIFFERENT_SCENE);
+    assert_string_equal(report.detail, detail);
+    replay_report_free(&report);
+}
+
+static const double row[] = {0, 0.5, 9}; /* the first two overlap */
+
+/* The new body overlaps the second one: it is after all pairs that the golden has. */
+static void a_golden_of_fewer_bodies_is_different(void **state)
+{
+    static const double more[] = {0, 0.5, 9, 1.25};
+    for (int64_t client = 7; client < 9; client++)
+        expect_scene(replay_scenes(client, row, 3, false, more, 4),
+                     "the recording has 3 bodies, the query 4: 4 is new");
+    expect_scene(replay_scenes(8, row, 3, true, more, 4),
+                 "the recording answers 3 pairs, the query has 6");
+}
+
+static void a_golden_of_more_bodies_is_different(void **state)
+{
+    for (int64_t client = 7; client < 9; client++)
+        expect_scene(replay_scenes(client, row, 3, false, row, 2),
+                     "the recording has 3 bodies, the query 2: 3 is missing");
+    expect_scene(replay_scenes(8, row, 3, true, row, 2),
+                 "the recording answers 3 pairs, the query has 1");
+    expect_scene(replay_scenes(7, row, 3, true, row, 2),
+                 "a result is of other pairs than its query");
+}
+
+static void a_golden_of_the_same_bodies_is_the_same(void **state)
+{
+    for (int results_only = 0; results_only < 2; results_only++)
+        for (int64_t client = 7; client < 9; client++) {
+            struct replay_report report = replay_scenes(client, row, 3, results_only, row, 3);
+            assert_int_equal(outcome(&report, REPLAY_SAME), 1);
+            assert_int_equal(report.found_count, 0);
+            replay_report_free(&report);
+        }
+}
+
 /* Some 100 bytes for a query and for its result, as the help of fmb replay says; the list of them
  * reserves up to twice its size. */
 static void results_after_all_queries_take_bounded_memory(void **state)
@@ -1002,6 +1098,9 @@ int main(void)
         TEST(queries_beyond_all_limits_replay_as_refused),
         TEST(negative_times_are_not_counted),
         TEST(a_log_of_version_1_is_recognised),
+        TEST(a_golden_of_fewer_bodies_is_different),
+        TEST(a_golden_of_more_bodies_is_different),
+        TEST(a_golden_of_the_same_bodies_is_the_same),
         TEST(results_after_all_queries_take_bounded_memory),
         TEST(worlds_spoiled_in_one_way),
         TEST(worlds_spoiled_in_many_ways),
