@@ -92,24 +92,25 @@ static void on_progress(void *user, int64_t bytes, int64_t of)
 }
 
 static const struct {
-    const char *json, *text;
+    const char *json, *one, *more;
 } kinds[LOG_KINDS] = {
-    [LOG_PAIR_QUERY] = {"pair_queries", "queries of pairs"},
-    [LOG_PAIR_RESULT] = {"pair_results", "results of pairs"},
-    [LOG_SCENE_QUERY] = {"scene_queries", "queries of scenes"},
-    [LOG_SCENE_RESULT] = {"scene_results", "results of scenes"},
-    [LOG_STATUS] = {"statuses", "heartbeats"},
-    [LOG_DEFINITION_QUERY] = {"definition_queries", "queries of definitions"},
-    [LOG_DEFINITION] = {"definitions", "definitions"},
-    [LOG_NAMES] = {"names", "lists of names"},
-    [LOG_OTHER] = {"other_events", "on other channels"},
+    [LOG_PAIR_QUERY] = {"pair_queries", "query of a pair", "queries of pairs"},
+    [LOG_PAIR_RESULT] = {"pair_results", "result of a pair", "results of pairs"},
+    [LOG_SCENE_QUERY] = {"scene_queries", "query of a scene", "queries of scenes"},
+    [LOG_SCENE_RESULT] = {"scene_results", "result of a scene", "results of scenes"},
+    [LOG_STATUS] = {"statuses", "heartbeat", "heartbeats"},
+    [LOG_DEFINITION_QUERY] = {"definition_queries", "query of definitions",
+                              "queries of definitions"},
+    [LOG_DEFINITION] = {"definitions", "definition", "definitions"},
+    [LOG_NAMES] = {"names", "list of names", "lists of names"},
+    [LOG_OTHER] = {"other_events", "on other channels", "on other channels"},
 };
 
-static void print_count(const char *name, int64_t count, const char *what)
+static void print_count(const char *name, int64_t count, const char *one, const char *more)
 {
     char text[NUMBER_TEXT_MAX];
     if (count > 0)
-        printf("%-13s %12s %s\n", name, number_grouped(count, text), what);
+        printf("%-13s %12s %s\n", name, number_grouped(count, text), count == 1 ? one : more);
 }
 
 static void print_text(const struct log_cut_counts *counts)
@@ -119,14 +120,15 @@ static void print_text(const struct log_cut_counts *counts)
            number_grouped(counts->events, events), 1e-6 * (double) counts->kept_bytes,
            1e-6 * (double) counts->bytes);
     for (int kind = 0; kind < LOG_KINDS; kind++)
-        print_count("", counts->kept[kind], kinds[kind].text);
-    print_count("defined", counts->defined, "bodies in front of them");
-    print_count("named", counts->names, "bodies in front of them");
-    print_count("unknown", counts->unknown, "handles that the logs do not define");
-    snprintf(recorded, sizeof recorded,
-             "messages recorded by version %d, whose bodies are not known", counts->old_version);
-    print_count("old", counts->old_messages, recorded);
-    print_count("left out", counts->damaged_bytes, "damaged bytes");
+        print_count("", counts->kept[kind], kinds[kind].one, kinds[kind].more);
+    print_count("defined", counts->defined, "body in front of them", "bodies in front of them");
+    print_count("named", counts->names, "body in front of them", "bodies in front of them");
+    print_count("unknown", counts->unknown, "handle that the logs do not define",
+                "handles that the logs do not define");
+    snprintf(recorded, sizeof recorded, "recorded by version %d, whose bodies are not known",
+             counts->old_version);
+    print_count("old", counts->old_messages, recorded, recorded);
+    print_count("left out", counts->damaged_bytes, "damaged byte", "damaged bytes");
 }
 
 static void print_json(const struct log_cut_counts *counts, int code)

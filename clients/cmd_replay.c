@@ -23,11 +23,12 @@ static const char usage[] =
     "usage: fmb replay [OPTIONS] LOG...\n"
     "\n"
     "Answers every query of one or more LCM event logs again, in this process, and\n"
-    "compares with the recorded results: verdicts, intervals, boxes and certificates\n"
-    "must be the same bits. A result belongs to the query with the same client id and\n"
-    "sequence number, anywhere in the logs. Several logs are read as one, in the\n"
-    "order given, as rotation wrote them. Handles are resolved by definitions, and by\n"
-    "bodies with an id that were sent whole, before or after the query.\n"
+    "compares with the recorded results: verdicts, intervals, boxes, gaps with their\n"
+    "directions and nearest points, and certificates must be the same bits. A result\n"
+    "belongs to the query with the same client id and sequence number, anywhere in\n"
+    "the logs. Several logs are read as one, in the order given, as rotation wrote\n"
+    "them. Handles are resolved by definitions, and by bodies with an id that were\n"
+    "sent whole, before or after the query.\n"
     "\n"
     "  --golden FILE        compare with the results in FILE, not with the recorded\n"
     "                       ones. A client without any result in FILE is paired with\n"
@@ -35,20 +36,27 @@ static const char usage[] =
     "                       their order within type, label and first pair (of pair\n"
     "                       queries: both body ids); if FILE has results only,\n"
     "                       within their type. Queries without a counterpart are\n"
-    "                       listed\n"
+    "                       listed. Bodies are the same if their names are or, where\n"
+    "                       one has none, their ids; bodies and pairs that only one\n"
+    "                       side has are one difference for each scene, and the\n"
+    "                       other pairs are compared\n"
     "  --write-golden FILE  write the results, as an event log, to compare with later\n"
     "  --force              overwrite any FILE; a page that replaces a page, and a\n"
     "                       JUnit report that replaces one, need no --force\n"
     "  --tolerance T        for logs of other versions: ends of intervals may differ\n"
     "                       by T times the duration, ends of boxes and gaps by T\n"
-    "                       times the largest coordinate; directions, nearest points\n"
-    "                       and certificates are not compared\n"
+    "                       times the largest coordinate of the query: of the position\n"
+    "                       of a body, at the beginning or the end, plus its radius.\n"
+    "                       Directions, nearest points and certificates are not\n"
+    "                       compared\n"
     "  --from S, --to S     only queries logged from S on and before S, in seconds\n"
     "                       since the first event; the remainder is read for\n"
     "                       definitions and results\n"
     "  --frames N           capacity of the cache, in frames, as fmbd --frames\n"
     "                       (65536)\n"
     "  --bus                the service on the bus answers, not this process\n"
+    "  --log-prefix P       the channels in the logs begin with P, if not with that of\n"
+    "                       --prefix, which is then that of the service on the bus\n"
     "  --speed X            with --bus: send X times as fast as was logged, 1 for\n"
     "                       real time; without it, or 0, as fast as the service\n"
     "                       answers\n"
@@ -58,7 +66,8 @@ static const char usage[] =
     "                       timeouts (9)\n"
     "  --json               one line of JSON in place of the text\n"
     "  --junit FILE         also write JUnit XML, for CI systems\n"
-    "  --limit N            list N differences, and only count the others (1000)\n"
+    "  --limit N            list N differences, and only count the others (1000);\n"
+    "                       changes of scenes and verdicts come first\n"
     "  --html FILE          write a page that plays the queries, with the "
     "differences\n" ARGS_COMMON_USAGE
     "\n"
@@ -72,8 +81,8 @@ static const char usage[] =
     "to decide are shown, not compared.\n"
     "\n"
     "The logs are read twice. Memory: some 300 bytes for each distinct body, and 100\n"
-    "bytes for each query and each result, also of a golden log; with a golden log of\n"
-    "other clients, 1 kB for each query.\n"
+    "bytes for each query and each result, also of a golden log, for whose results it\n"
+    "is 200; with a golden log of other clients, 1 kB for each query.\n"
     "\n"
     "On several machines, by GNU parallel ($SLURM_ARRAY_TASK_ID for {} with Slurm):\n"
     "  parallel --sshloginfile machines fmb replay --json --from {} \\\n"
@@ -93,6 +102,7 @@ struct replay_arguments {
     struct replay_options replay;
     struct answer_bus_options bus;
     struct args_bus where;
+    const char *log_prefix; /* NULL: that of the bus */
     long frames, limit, retries;
     bool json, live;
     struct output_options junit, html;
@@ -106,7 +116,8 @@ enum { COMPLAINTS_MAX = 20 };
 struct replay_run {
     const struct replay_arguments *options;
     struct progress progress;
-    bool begun; /* the logs were opened */
+    bool begun; /* the logs were opened, */
+    bool good;  /* and read to their end */
     int64_t first_utime;
     struct listing *differences;
     int64_t complaints;
@@ -179,32 +190,40 @@ static bool write_page(const struct replay_arguments *options)
     return output_close(output, true);
 }
 
-/* Returns the reason why nothing was compared; NULL: something was, or results were written. */
-static const char *why_nothing(const struct replay_arguments *options,
-                               const struct tally_channel *all)
+/* Reports why nothing was compared, if so, and what to do. Returns false if something was, or
+ * results were written. */
+static bool complain_nothing(const struct replay_arguments *options, const struct tally *all,
+                             const struct tally_channel *both)
 {
     const bool in_part = isfinite(options->replay.from) || isfinite(options->replay.to);
-    if (all->queries == 0)
-        return in_part ? "there are no queries of this service from --from to --to"
-                       : "there are no queries of this service";
-    if (tally_compared(all) > 0 || options->replay.write_golden.path)
-        return NULL;
-    return "there are no results to compare with";
+    if (all->events == 0)
+        complain("%s holds no events: is it an event log?", options->replay.log[0]);
+    else if (both->queries == 0 && in_part)
+        complain(
+            "there are no queries of this service from --from to --to; 'fmb log info' prints "
+            "the times of a log");
+    else if (both->queries == 0)
+        complain(
+            "there are no queries of this service; 'fmb log info' lists the channels of a log, "
+            "and --prefix chooses them");
+    else if (tally_compared(both) == 0 && !options->replay.write_golden.path)
+        complain(
+            "there are no results to compare with; --golden FILE takes them from another log, "
+            "and --write-golden FILE writes them");
+    else
+        return false;
+    return true;
 }
 
 /* Returns the exit code of a replay that reached its end. */
 static int code_of(const struct replay_arguments *options, const struct tally *all)
 {
     const struct tally_channel both = tally_both(all);
-    const char *nothing = why_nothing(options, &both);
     if (both.outcome[REPLAY_DIFFERENT] + both.contradictions + both.left_over > 0)
         return ARGS_FAILED;
-    if (nothing)
-        complain(
-            "%s: neither the same nor different; --prefix chooses the service,\n"
-            "--golden FILE the results, --write-golden FILE writes some",
-            nothing);
-    return nothing || all->damages > 0 || tally_unreadable(all) > 0 ? ARGS_USAGE : ARGS_ANSWERED;
+    return complain_nothing(options, all, &both) || all->damages > 0 || tally_unreadable(all) > 0
+               ? ARGS_USAGE
+               : ARGS_ANSWERED;
 }
 
 static void report_one(void *user, const struct difference *found)
@@ -220,11 +239,14 @@ static void report_one(void *user, const struct difference *found)
                 run->first_utime);
 }
 
-/* Whether counts have a meaning: not without a log or a bus, nor without a service on it. */
+/* Whether counts have a meaning: not without an event or an answer, nor without a service on the
+ * bus. */
 static bool has_counts(const struct replay_run *run, const struct tally *all)
 {
-    return run->begun && (!run->options->live || all->bus.answered > 0 ||
-                          (all->bus.used && all->bus.end == ANSWER_BUS_NO_END));
+    const bool any = run->good ? all->events > 0 : tally_both(all).queries > 0;
+    return run->begun && any &&
+           (!run->options->live || all->bus.answered > 0 ||
+            (all->bus.used && all->bus.end == ANSWER_BUS_NO_END));
 }
 
 static void report_all(struct replay_run *run, const struct tally *all, int code)
@@ -298,6 +320,7 @@ static int replay(struct replay_run *run, struct tally *tally)
     for (int log = 0; log < options->replay.log_count; log++)
         tally_add(&all, &tally[log]);
     run->begun = good || all.events + all.damages > 0;
+    run->good = good;
     run->first_utime = tally->first_utime;
     report_end(&all.bus, &options->bus, options->replay.log);
     int code = good ? code_of(options, &all) : ARGS_USAGE;
@@ -353,7 +376,7 @@ static void complete(struct replay_arguments *options)
     bus->timeout = bus->timeout > 0 ? bus->timeout : 0.5;
     bus->retries = (int) options->retries;
     options->replay.bus = options->live ? bus : NULL;
-    options->replay.prefix = options->where.prefix;
+    options->replay.prefix = options->log_prefix ? options->log_prefix : options->where.prefix;
     options->replay.frames = (size_t) options->frames;
 }
 
@@ -384,6 +407,7 @@ int cmd_replay(int argc, char **argv)
         {"html", ARGS_TEXT, .out = &options.html.path},
         {"limit", ARGS_INTEGER, &options.limit, .high = INT32_MAX},
         {"bus", ARGS_FLAG, .out = &options.live},
+        {"log-prefix", ARGS_OTHER, &options.log_prefix, .take = args_prefix},
         {"speed", ARGS_NUMBER, &options.bus.speed, .high = 1e9},
         {"timeout", ARGS_NUMBER, &options.bus.timeout, .low = 0.001, .high = 1e6},
         {"retries", ARGS_INTEGER, &options.retries, .high = 1000000},

@@ -51,12 +51,12 @@ bool args_check_span(const struct args *args, double from, double to)
 
 /* ---- Options --------------------------------------------------------------------------------- */
 
-static bool take_prefix(const struct args *args, void *out)
+bool args_prefix(const struct args *args, void *out)
 {
     const char **prefix = out;
     if (!fmb_client_prefix_ok(optarg))
-        return args_error(args, "--prefix: expected at most %d letters, digits, '_' or '-'",
-                          FMB_CLIENT_PREFIX_MAX);
+        return args_error(args, "--%s: expected at most %d letters, digits, '_' or '-'",
+                          args->option, FMB_CLIENT_PREFIX_MAX);
     *prefix = optarg;
     return true;
 }
@@ -135,7 +135,7 @@ int args_parse(struct args *args, int argc, char **argv)
     bool help = false;
     const struct args_option common[COMMON_OPTIONS] = {
         {"lcm-url", ARGS_TEXT, &args->bus.url, .letter = 'l'},
-        {"prefix", ARGS_OTHER, &args->bus.prefix, .take = take_prefix, .letter = 'p'},
+        {"prefix", ARGS_OTHER, &args->bus.prefix, .take = args_prefix, .letter = 'p'},
         {"help", ARGS_FLAG, &help, .letter = 'h'},
     };
     struct args_option options[ALL_MAX + 1] = {{0}};

@@ -69,6 +69,10 @@ bool args_error(const struct args *args, const char *format, ...)
 /* For take: reads optarg as an integer from low to high. Returns false after an error. */
 bool args_integer(const struct args *args, long low, long high, long *out);
 
+/* For take: reads optarg as a prefix of channels; out: const char **. Returns false after an error.
+ */
+bool args_prefix(const struct args *args, void *out);
+
 /* Checks that not both of two options are given; names: "--csv and --json". Returns false after an
  * error. */
 bool args_exclude(const struct args *args, bool one, bool other, const char *names);

@@ -79,6 +79,12 @@ const char *number_grouped(int64_t value, char text[NUMBER_TEXT_MAX])
     return text;
 }
 
+void number_count(FILE *out, int64_t count, const char *one, const char *more)
+{
+    char text[NUMBER_TEXT_MAX];
+    fprintf(out, "%s %s", number_grouped(count, text), count == 1 ? one : more);
+}
+
 void number_print(const char *name, int64_t count)
 {
     char text[NUMBER_TEXT_MAX];

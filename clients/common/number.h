@@ -3,6 +3,7 @@
 #define NUMBER_H
 
 #include <stdint.h>
+#include <stdio.h>
 
 enum { NUMBER_TEXT_MAX = 40 };
 
@@ -26,6 +27,9 @@ int number_ends(double low, double high, char low_text[NUMBER_TEXT_MAX],
 
 /* With a comma between thousands, for people: "4,194,304". Returns text. */
 const char *number_grouped(int64_t value, char text[NUMBER_TEXT_MAX]);
+
+/* Prints a count of things: "1 query", "2,500 queries". */
+void number_count(FILE *out, int64_t count, const char *one, const char *more);
 
 /* Prints a row of a table of counts on standard output. */
 void number_print(const char *name, int64_t count);

@@ -137,13 +137,6 @@ static void print_time(FILE *out, const char *name, int64_t utime)
     fprintf(out, "  %-5s %s.%06" PRId64 " UTC\n", name, text, part);
 }
 
-/* "1 event", "2,500 events". */
-static void print_count(FILE *out, int64_t count, const char *one)
-{
-    char text[NUMBER_TEXT_MAX];
-    fprintf(out, "%s %s%s", number_grouped(count, text), one, count == 1 ? "" : "s");
-}
-
 static void print_rate(FILE *out, double rate)
 {
     char text[NUMBER_TEXT_MAX];
@@ -162,7 +155,7 @@ static void print_span(FILE *out, const struct log_info *info)
         print_rate(out, rate_of(&info->all));
     if (info->backward > 0) {
         fputs("; time goes back ", out);
-        print_count(out, info->backward, "time");
+        number_count(out, info->backward, "time", "times");
     }
     putc('\n', out);
 }
@@ -173,13 +166,13 @@ static void print_damage(FILE *out, const struct log_info *info)
 {
     char offset[NUMBER_TEXT_MAX];
     fputs("  damage: ", out);
-    print_count(out, info->damages, "place");
+    number_count(out, info->damages, "place", "places");
     fputs(", ", out);
-    print_count(out, info->damaged, "byte");
+    number_count(out, info->damaged, "byte", "bytes");
     putc('\n', out);
     for (int64_t i = 0; i < info->damages && i < DAMAGE_LINES; i++) {
         fprintf(out, "    at %s, ", number_grouped(info->damage[i].offset, offset));
-        print_count(out, info->damage[i].length, "byte");
+        number_count(out, info->damage[i].length, "byte", "bytes");
         fprintf(out, ": %s\n", info->damage[i].what);
     }
     if (info->damages > DAMAGE_LINES)
@@ -205,9 +198,9 @@ void log_report_text(FILE *out, const struct log_report *report)
         fputs("empty, a log of no events\n", out);
         return;
     }
-    print_count(out, report->size, "byte");
+    number_count(out, report->size, "byte", "bytes");
     fputs(", ", out);
-    print_count(out, info->all.events, "event");
+    number_count(out, info->all.events, "event", "events");
     putc('\n', out);
     if (info->all.events > 0) {
         print_span(out, info);

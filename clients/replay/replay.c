@@ -113,8 +113,8 @@ static bool move_golden_results(struct replay *replay)
             golden->item[queries++] = golden->item[i];
     const bool any = golden->count > queries;
     golden->count = queries;
-    if (!any && !replay->failed)
-        complain("%s holds no results: is it an event log, and of this --prefix?",
+    if (!any)
+        complain("%s holds no results: is it an event log, with the prefix of the others?",
                  replay->options->golden);
     replay->failed = replay->failed || !any;
     return any;

@@ -1,5 +1,7 @@
 #include "replay_output.h"
 
+#include "number.h"
+
 #include <inttypes.h>
 #include <string.h>
 
@@ -40,15 +42,16 @@ static void write_channel(struct junit *junit, struct listing *list,
                           const struct tally_channel *channel)
 {
     FILE *out = junit->out;
-    int64_t pairs = 0;
+    int64_t differences = 0;
     for (int kind = 0; kind < DIFFERENT_KINDS; kind++)
-        pairs += channel->differences[kind];
+        differences += channel->differences[kind];
     begin_case(junit, tally_channel_name[junit->channel]);
     if (channel->outcome[REPLAY_DIFFERENT] > 0) {
-        fprintf(out,
-                "      <failure message=\"%" PRId64 " of %" PRId64
-                " queries are answered differently, in %" PRId64 " pairs\">",
-                channel->outcome[REPLAY_DIFFERENT], channel->queries, pairs);
+        fprintf(out, "      <failure message=\"%" PRId64 " of ",
+                channel->outcome[REPLAY_DIFFERENT]);
+        number_count(out, channel->queries, "query is", "queries are");
+        fputs(" answered differently: ", out);
+        number_count(out, differences, "difference\">", "differences\">");
         junit->lines = 0;
         listing_each(list, write_line, junit);
         fputs("</failure>\n", out);
@@ -56,7 +59,7 @@ static void write_channel(struct junit *junit, struct listing *list,
     fputs("      <system-out>", out);
     for (int i = 0; i < TALLY_COUNTS; i++)
         if (tally_count[i].junit)
-            fprintf(out, "%" PRId64 "%s", tally_counts(channel)[i], tally_count[i].junit);
+            fprintf(out, "%s%" PRId64, tally_count[i].junit, tally_counts(channel)[i]);
     fputs("</system-out>\n    </testcase>\n", out);
 }
 
@@ -78,18 +81,23 @@ static void write_log(struct junit *junit, struct listing *list, const struct ta
     for (junit->channel = 0; junit->channel < TALLY_CHANNELS; junit->channel++)
         write_channel(junit, list, &tally->channel[junit->channel]);
     begin_case(junit, "the log is whole");
-    if (!is_whole)
-        fprintf(out,
-                "      <error message=\"%" PRId64 " damaged places, %" PRId64
-                " messages that cannot be read, %" PRId64
-                " results that contradict earlier ones, %" PRId64
-                " queries in one recording only\"/>\n",
-                tally->damages, tally_unreadable(tally), both.contradictions, both.left_over);
+    if (!is_whole) {
+        fputs("      <error message=\"", out);
+        number_count(out, tally->damages, "damaged place, ", "damaged places, ");
+        number_count(out, tally_unreadable(tally), "message that cannot be read, ",
+                     "messages that cannot be read, ");
+        number_count(out, both.contradictions, "result that contradicts an earlier one, ",
+                     "results that contradict earlier ones, ");
+        number_count(out, both.left_over, "query in one recording only\"/>\n",
+                     "queries in one recording only\"/>\n");
+    }
     fputs("    </testcase>\n", out);
     if (bus->used)
         begin_case(junit, "the service answered all");
-    if (ended_early)
-        fprintf(out, "      <error message=\"it answered %" PRId64 " queries\"/>\n", bus->answered);
+    if (ended_early) {
+        fputs("      <error message=\"it answered ", out);
+        number_count(out, bus->answered, "query\"/>\n", "queries\"/>\n");
+    }
     fputs(bus->used ? "    </testcase>\n  </testsuite>\n" : "  </testsuite>\n", out);
 }
 

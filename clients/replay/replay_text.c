@@ -141,18 +141,27 @@ static void print_times(FILE *out, const char *name, const struct histogram *tim
 
 static void print_log(FILE *out, const struct tally *tally, const struct tally_channel *both)
 {
-    char events[NUMBER_TEXT_MAX], unmatched[NUMBER_TEXT_MAX], other[NUMBER_TEXT_MAX];
-    fprintf(out,
-            "%s events, %.1f MB; %s on other channels; %s results of queries that are not here",
-            number_grouped(tally->events, events), 1e-6 * (double) tally->bytes,
-            number_grouped(tally->other_events, other), number_grouped(both->unmatched, unmatched));
-    if (both->contradictions > 0)
-        fprintf(out, "; %" PRId64 " results that contradict earlier ones", both->contradictions);
-    if (both->left_over > 0)
-        fprintf(out, "; %" PRId64 " queries in one recording only", both->left_over);
-    if (tally->damages > 0)
-        fprintf(out, "; %" PRId64 " damaged places, %" PRId64 " bytes", tally->damages,
-                tally->damaged_bytes);
+    char text[NUMBER_TEXT_MAX];
+    number_count(out, tally->events, "event", "events");
+    fprintf(out, ", %.1f MB; %s on other channels; ", 1e-6 * (double) tally->bytes,
+            number_grouped(tally->other_events, text));
+    number_count(out, both->unmatched, "result of a query that is not here",
+                 "results of queries that are not here");
+    if (both->contradictions > 0) {
+        fputs("; ", out);
+        number_count(out, both->contradictions, "result that contradicts an earlier one",
+                     "results that contradict earlier ones");
+    }
+    if (both->left_over > 0) {
+        fputs("; ", out);
+        number_count(out, both->left_over, "query", "queries");
+        fputs(" in one recording only", out);
+    }
+    if (tally->damages > 0) {
+        fputs("; ", out);
+        number_count(out, tally->damages, "damaged place, ", "damaged places, ");
+        number_count(out, tally->damaged_bytes, "byte", "bytes");
+    }
     putc('\n', out);
 }
 
@@ -162,25 +171,31 @@ static void print_bus(FILE *out, const struct tally_bus *bus)
 {
     const struct {
         int64_t count;
-        const char *what;
-    } more[] = {{bus->resent, "sent again"},
-                {bus->whole, "sent once more with frames"},
-                {bus->not_sent, "that cannot be sent"},
-                {bus->supplied, "more that carried bodies"},
-                {bus->services > 1 ? bus->services - 1 : 0, "changes of the service"},
-                {bus->malformed, "results that could not be read"}};
+        const char *one, *more;
+    } counts[] = {
+        {bus->resent, "sent again", "sent again"},
+        {bus->whole, "sent once more with frames", "sent once more with frames"},
+        {bus->not_sent, "that cannot be sent", "that cannot be sent"},
+        {bus->supplied, "more that carried bodies", "more that carried bodies"},
+        {bus->services > 1 ? bus->services - 1 : 0, "change of the service",
+         "changes of the service"},
+        {bus->malformed, "result that could not be read", "results that could not be read"}};
     const double seconds = 1e-9 * (double) bus->ns;
     char text[NUMBER_TEXT_MAX];
-    fprintf(out, "fmbd answered %s queries in %.3f s", number_grouped(bus->answered, text),
-            seconds);
+    fputs("fmbd answered ", out);
+    number_count(out, bus->answered, "query", "queries");
+    fprintf(out, " in %.3f s", seconds);
     if (bus->ns > 0)
         fprintf(out, " (%s a second)",
                 number_grouped((int64_t) ((double) bus->answered / seconds), text));
     if (bus->late_ns > 0)
         fprintf(out, ", at most %.1f ms late", 1e-6 * (double) bus->late_ns);
-    for (size_t i = 0; i < sizeof more / sizeof *more; i++)
-        if (more[i].count > 0)
-            fprintf(out, ", %s %s", number_grouped(more[i].count, text), more[i].what);
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+        if (counts[i].count == 0)
+            continue;
+        fputs(", ", out);
+        number_count(out, counts[i].count, counts[i].one, counts[i].more);
+    }
     putc('\n', out);
 }
 

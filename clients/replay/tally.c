@@ -7,14 +7,14 @@
 const char *const tally_channel_name[TALLY_CHANNELS] = {WIRE_PAIR_QUERY, WIRE_SCENE_QUERY};
 
 const struct tally_count tally_count[TALLY_COUNTS] = {
-    {"queries", "queries", " queries: "},
+    {"queries", "queries", "queries: "},
     {"pairs", "pairs", NULL},
-    {"same", "same", " same, "},
-    {"different", "different", " different, "},
-    {"busy", "busy", " busy, "},
-    {"unknown_body", "unknown body", " unknown body, "},
-    {"not_defined", "not defined", " not defined, "},
-    {"no_result", "no result", " without result"},
+    {"same", "same", ", same: "},
+    {"different", "different", ", different: "},
+    {"busy", "busy", ", busy: "},
+    {"unknown_body", "unknown body", ", unknown body: "},
+    {"not_defined", "not defined", ", not defined: "},
+    {"no_result", "no result", ", no result: "},
     {"results", NULL, NULL},
     {"unmatched_results", NULL, NULL},
     {"second_results", NULL, NULL},

@@ -27,7 +27,7 @@ enum { TALLY_COUNTS = 15 };
 struct tally_count {
     const char *key;    /* in JSON */
     const char *column; /* in the table for people; NULL: none */
-    const char *junit;  /* after the number in JUnit XML; NULL: not there */
+    const char *junit;  /* before the number in JUnit XML; NULL: not there */
 };
 extern const struct tally_count tally_count[TALLY_COUNTS];
 

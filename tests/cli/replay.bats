@@ -248,7 +248,7 @@ xpath() {
     counts '.same == 72 and .different == 0 and .contradictions == 1 and .second_results == 0'
     [[ $stderr == *'spoiled.log: event '*': contradicts an earlier result of the same query' ]]
     run "$FMB" replay spoiled.log
-    [[ $output == *'; 1 results that contradict earlier ones'* ]]
+    [[ $output == *'; 1 result that contradicts an earlier one'* ]]
     junit spoiled.log
     [ "$(xpath '//testsuite/@errors')" = 1 ]
 }
@@ -344,7 +344,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
         replay $range arm.log
         ended 2
         counts '.queries == 0 and .exit == 2'
-        [[ $stderr == *'there are no queries of this service from --from to --to: neither the same nor different'* ]]
+        [[ $stderr == *'there are no queries of this service from --from to --to; '* ]]
     done
     # The recipe of the help: parts without queries do not count.
     recipe=$("$FMB" replay --help | sed -n "/jq -s '/,/}'/p" | sed "s/^ *jq -s '//; s/}'.*/}/")
@@ -380,6 +380,13 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     replay -p LAB_ spoiled.log arm.log
     ended 0
     counts '.same == 72 and .other_events == 146'
+    # That of the logs may be another than that of a service on the bus.
+    replay -p OTHER_ --log-prefix LAB_ spoiled.log
+    ended 0
+    counts '.same == 72'
+    run "$FMB" replay --log-prefix a/b spoiled.log
+    ended 2
+    [[ $output == *'--log-prefix: expected at most '* ]]
 }
 
 # ---- The golden --------------------------------------------------------------------------------
@@ -479,7 +486,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [[ $stderr == *'arm.log: event '*': FMB_'*'_QUERY: has no counterpart in the other recording' ]]
     run "$FMB" replay --golden arm.log less.log
     ended 1
-    [[ $output == *'; 1 queries in one recording only'* ]]
+    [[ $output == *'; 1 query in one recording only'* ]]
     junit --golden arm.log less.log
     [ "$(xpath '//testsuite/@errors')" = 1 ]
     # A query without a result has a counterpart all the same: the next ones do not move up.
@@ -538,6 +545,35 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     done
 }
 
+@test "a golden file without results, or of text, is one failure" {
+    echo 'q1,q2' > path.csv
+    : > empty.golden
+    "$EDIT" --events 0 1 arm.log query.golden
+    for golden in path.csv empty.golden query.golden; do
+        run --separate-stderr "$FMB" replay --golden $golden arm.log
+        ended 2
+        [ -z "$output" ] # nothing was compared: there are no counts
+        [ "${stderr##*$'\n'}" = "fmb: $golden holds no results: is it an event log, with the prefix of the others?" ]
+        [ "$(wc -l <<< "$stderr")" -le 2 ]
+    done
+}
+
+@test "a scene of other bodies is one difference, in every form" {
+    # The scenes of both logs have no label, and ids from 1 on: 10 bodies, and 16.
+    "$EDIT" --client 5 stack.log other.log
+    local says='the recording has 16 bodies, the query 10: 11, 12, 13 and 3 more are missing; of the others the recording decides 45 pairs, the query 17; for example 1 with 2 is missing'
+    replay --golden other.log arm.log
+    ended 1
+    counts '.same == 0 and .different_in.scene == .different' \
+        '.differences[0].kind == "scene" and (.differences[0] | has("a") | not)' \
+        ".differences[0].detail == \"$says\""
+    junit --golden other.log --html page.html arm.log
+    ended 1
+    [[ $'\n'$output == *$'\n'"event 1  0.000000 s  the scene: $says"$'\n'* ]]
+    [[ $output == *'different in: '*' verdict, '*' scene'* ]]
+    [[ $(xpath '//failure[1]') == *"the scene: $says"* ]]
+}
+
 # ---- What is broken ----------------------------------------------------------------------------
 
 @test "a truncated log is read up to its end" {
@@ -587,8 +623,10 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
         replay $log.log
         ended 2
         counts '.damages == 1 and .queries == 0 and .damaged_bytes == .bytes'
-        [[ $stderr == "fmb: $log.log: offset 0: "* ]]
+        [[ $stderr == "fmb: $log.log: offset 0: "*"fmb: $log.log holds no events: is it an event log?" ]]
     done
+    run "$FMB" replay text.log
+    [ "${#lines[@]}" = 2 ] # and no counts
     mkdir folder.log
     mkfifo pipe.log
     for log in folder pipe missing; do
@@ -680,7 +718,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     junit spoiled.log
     ended 2
     [ "$(xpath '//testsuite/@errors')" = 1 ]
-    [[ $(xpath '//error/@message') == '1 damaged place'* ]]
+    [[ $(xpath '//error/@message') == '1 damaged place, 0 messages that cannot be read, '* ]]
 }
 
 @test "JUnit: any text is kept within XML" {
@@ -698,7 +736,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     edit "${flips[@]}" blast.log
     junit spoiled.log
     ended 1
-    [[ $(xpath '//failure/@message') == '301 of 400 queries'*'in 301 pairs' ]]
+    [[ $(xpath '//failure/@message') == '301 of 400 queries'*': 301 differences' ]]
     [ "$(xpath '//failure' | grep -c ^event)" = 100 ]
 }
 
