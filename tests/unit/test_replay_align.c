@@ -336,7 +336,7 @@ static void draw_scene(int side, bool by_name, int32_t want, bool shuffled)
 static void drawn_scenes_compare_as_single_pairs(void **state)
 {
     int same = 0, details = 0, differences = 0, equal = 0;
-    for (int round = 0; round < (getenv("FMB_FAST") ? 300 : 3000); round++) {
+    for (int round = 0; round < 3000; round++) {
         const bool by_name = draw(2), shuffled = draw(4);
         const int32_t want =
             (int32_t) (draw(2) * FMB_WANT_BOX | draw(2) * FMB_WANT_GAP | draw(2) * FMB_WANT_TIMES);
