@@ -687,7 +687,7 @@ fmb: start one with 'fmbd "*"--prefix quiet- &'" ]]
     start_record "$log"
     for options in '' --box --certificate --gap; do
         # shellcheck disable=SC2086
-        "$FMB" query $options "$BATS_TEST_TMPDIR/table.json" > /dev/null || [ "$options" = --certificate ]
+        "$FMB" query $options "$BATS_TEST_TMPDIR/table.json" > /dev/null
         query $options
     done
     finish_record
