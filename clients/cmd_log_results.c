@@ -63,9 +63,8 @@ static void note(struct flaw *flaw, int log, int64_t offset, const char *what)
 
 static void take_event(struct printing *printing, const struct log_event *event)
 {
-    const char *error =
-        result_rows_take(printing->results, log_kind_of(&printing->channels, event), event->number,
-                         event->data, (uint32_t) event->kept);
+    const char *error = result_rows_take(printing->results, log_kind_of(&printing->channels, event),
+                                         event->number, event->data, (uint32_t) event->kept);
     if (error)
         note(error == result_rows_no_query ? &printing->no_query : &printing->unreadable,
              printing->input.log, event->offset, error);
