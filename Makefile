@@ -134,6 +134,7 @@ see_service/fmb/certificate := $(call fmb,number frame exact gap hull)
 see_service/fmb/hull := $(call fmb,number frame exact gap)
 see_service/fmb/decide := $(call fmb,number frame filter article tree exact gap hull)
 see_msgs/codec := service/fmb $(GEN)
+see_msgs/bus := msgs/common
 see_msgs/common := msgs/codec service/fmb
 see_service/answer := msgs/codec service/fmb
 see_service := service/answer $(wire)

@@ -1,7 +1,6 @@
 #!/bin/sh
 # run.sh BUILD_DIR: lets the service answer a scene, shows the answers, and writes a page that plays
-# them. Runs in a
-# private network, leaves nothing running, and ends by itself.
+# them. Runs in a private network, leaves nothing running, and ends by itself.
 set -u
 
 build=${1:?usage: run.sh BUILD_DIR}

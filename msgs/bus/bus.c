@@ -10,9 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "clock.h"
 #include "socket.h"
 #include "url.h"
 
@@ -50,7 +50,7 @@ struct bus {
     struct mmsghdr datagrams[BUS_BATCH];
     struct iovec buffers[BUS_BATCH];
     unsigned char *memory; /* owned: [BUS_BATCH][BUFFER_SIZE], the buffers */
-    int64_t spin_until;    /* CLOCK_MONOTONIC, ns, or SPIN_* */
+    int64_t spin_until;    /* of clock_ns(), or SPIN_* */
     int64_t pause_until;   /* no spinning before this time */
     struct bus_counts counts;
     uint32_t drops_read; /* the kernel's drop counter when it was last read */
@@ -191,13 +191,6 @@ bool bus_listen(struct bus *bus, const char *channel, char why[BUS_WHY_MAX])
 
 /* ---- Receiving ---- */
 
-static int64_t now(clockid_t clock, long unit_ns)
-{
-    struct timespec time;
-    clock_gettime(clock, &time);
-    return (int64_t) time.tv_sec * (1000000000 / unit_ns) + time.tv_nsec / unit_ns;
-}
-
 /* Finds channel and payload of a short datagram. An empty channel is malformed: no log can hold
  * it, and its payload could exceed BUS_PAYLOAD_MAX. */
 static bool parse_datagram(const unsigned char *bytes, size_t size, struct bus_message *out)
@@ -253,7 +246,7 @@ int bus_receive(struct bus *bus, bus_handler *handler, void *user)
     const int count = recvmmsg(bus->fd, bus->datagrams, BUS_BATCH, MSG_DONTWAIT, NULL);
     if (count < 0)
         return errno == EAGAIN || errno == EINTR ? 0 : -1;
-    struct bus_message message = {.utime = now(CLOCK_REALTIME, 1000)};
+    struct bus_message message = {.utime = clock_utime()};
     for (int i = 0; i < count; i++)
         handle_datagram(bus, &bus->datagrams[i], &message, handler, user);
     return count;
@@ -276,7 +269,7 @@ static int poll_both(const struct bus *bus, int other_fd, int timeout_ms)
  */
 static int spin(struct bus *bus, int other_fd)
 {
-    int64_t time = now(CLOCK_MONOTONIC, 1);
+    int64_t time = clock_ns();
     if (bus->spin_until == SPIN_FROM_NEXT_WAIT)
         bus->spin_until = time < bus->pause_until ? SPIN_NOT : time + BUS_SPIN_NS;
     while (time < bus->spin_until) {
@@ -285,7 +278,7 @@ static int spin(struct bus *bus, int other_fd)
             return ready;
         const int64_t before = time;
         sched_yield();
-        time = now(CLOCK_MONOTONIC, 1);
+        time = clock_ns();
         if (time - before > YIELD_LONG_NS)
             bus->pause_until = time + SPIN_PAUSE_NS;
     }
