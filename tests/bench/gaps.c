@@ -1,5 +1,5 @@
-/* What gaps cost: distance and depth of pairs at chosen gaps, beside other libraries, and how often
- * these are off. */
+/* The cost of gaps: distance and depth of pairs with chosen gaps, beside other libraries, and how
+ * often the results of these are off. */
 #include "batch.h"
 #include "bench.h"
 

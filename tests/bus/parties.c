@@ -22,7 +22,7 @@ enum { ECHO_BUFFER = 4 << 20, PATH_LENGTH_MAX = 4096 };
 static cpu_set_t allowed;
 static bool allowed_known;
 
-/* The first one and the last one that the program was started with. */
+/* The client runs on the last CPU that the program may use; the service too, or on the first one. */
 bool parties_cpus(int cores, struct cpus *out)
 {
     if (!allowed_known)
@@ -110,7 +110,7 @@ bool parties_start(const struct cpus *cpus, struct parties *out)
              port + 1, ECHO_BUFFER);
     out->service = out->echo = -1;
     if (!pin(cpus->client)) {
-        perror("bench-bus: tying it to a CPU");
+        perror("bench-bus: pinning it to a CPU");
         return false;
     }
     fflush(NULL);
@@ -119,7 +119,7 @@ bool parties_start(const struct cpus *cpus, struct parties *out)
     return out->service > 0 && out->echo > 0;
 }
 
-/* Two seconds are enough to end by itself. */
+/* A process that does not end within two seconds is killed. */
 static void end(pid_t process)
 {
     const struct timespec step = {0, 10000000};

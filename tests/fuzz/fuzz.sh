@@ -6,11 +6,11 @@
 #                        times, a hundredth), a tenth of that guided by values too, and a hundredth
 #                        with inputs of a datagram's size. Exit code 1 if anything was found
 #   fuzz.sh fuzz-afl     the same with AFL++, FUZZ_SECONDS of each (60)
-#   fuzz.sh fuzz-merge   makes tests/fuzz/corpus anew: the seeds, what has a name of its own there,
-#                        and the least that reaches all else that the corpus and what was fuzzed so
-#                        far reach
+#   fuzz.sh fuzz-merge   rebuilds tests/fuzz/corpus: the seeds, the files there with names of their
+#                        own, and the fewest inputs that reach all other branches which the corpus
+#                        and the inputs of earlier runs reach
 #
-# New inputs go to build/fuzz/corpus, which the next run begins with too; what was found to
+# New inputs go to build/fuzz/corpus, with which the next run begins too; findings go to
 # build/fuzz/findings. Needs what 'make deps-fuzz' installs.
 set -u
 cd "$(dirname "$0")/../.." || exit
@@ -24,7 +24,7 @@ runs=${FUZZ_RUNS:-10000000}
 seconds=${FUZZ_SECONDS:-60}
 large=66000 # bytes: a little more than a datagram
 
-# Bytes of an input: most suffice for what a target reads, few for much more of it.
+# The longest input of a target, bytes, in the first two legs.
 length_of() {
     case $1 in
     answer) echo 1280 ;; # the longest seed of a scene
@@ -47,8 +47,8 @@ options_of() {
     [ ! -f "tests/fuzz/$1.dict" ] || echo "-dict=tests/fuzz/$1.dict"
 }
 
-# libfuzzer TARGET OPTIONS... Whole traces of where each block of memory was taken cost too much. A
-# process may be stopped for minutes, which makes no input slow: only what hangs is found by time.
+# libfuzzer TARGET OPTIONS... Stack traces of allocations are short, since long ones cost too much.
+# Time limits only find inputs that hang, since a process may be stopped for minutes.
 libfuzzer() {
     target=$1
     shift
@@ -91,7 +91,7 @@ leg() {
         "$out/corpus/$target" "tests/fuzz/corpus/$target" > "$out/log/$log" 2>&1
 }
 
-# Values that are compared guide the second leg: they find a limit that is off by one.
+# The second leg is guided by compared values, which finds limits that are off by one.
 fuzz_one() {
     mkdir -p "$out/corpus/$1"
     begun=$(date +%s)
@@ -106,7 +106,7 @@ fuzz_one() {
         "$found" "$(count_files "$out/corpus/$1" '*')" "$(most_of "$1" cov:)" > "$out/log/$1.said"
 }
 
-# Executions of a target that runs.
+# The executions so far of a running target.
 so_far() {
     case $verb in
     --afl) afl_stat "$1" execs_done ;;
@@ -114,7 +114,7 @@ so_far() {
     esac
 }
 
-# While they run: what each is at.
+# Reports the progress of all targets while process PID runs.
 progress() {
     while kill -0 "$1" 2> /dev/null; do
         sleep 10
@@ -126,7 +126,8 @@ progress() {
     done
 }
 
-# each VERB: side by side, then what they said; exit code 1 if anything was found.
+# each VERB: runs all targets side by side, then prints their reports; exit code 1 if anything was
+# found.
 each() {
     verb=$1
     rm -rf "$out/log" "$out/findings"
@@ -188,7 +189,7 @@ write_seeds() {
     cp clients/demo/cube.json tests/cases/*.json "$out/seeds/scene_json"
 }
 
-# Of branches only, not of how often each was taken: those would be hundreds of files.
+# Only branches count, not how often each is taken: that would keep hundreds of files.
 merge_one() {
     target=$1 corpus=tests/fuzz/corpus/$1 old=$out/merged/$1
     rm -rf "$old"

@@ -1,7 +1,7 @@
 /* Describes an event log: describe-log FILE prints a line of JSON for each event, read with
- * liblcm's own reader, and results by lcm-gen's own decoders; nothing of the service's or its
- * clients' is in this program. Only for logs that can be trusted: liblcm's code cannot stand any
- * others. Exit code 1: it cannot be opened, or does not end where the file does. */
+ * liblcm's own reader, and results by lcm-gen's own decoders; this program has no code of the
+ * service or its clients. Only for trusted logs: other ones may crash liblcm. Exit code 1: the log
+ * cannot be opened, or the last event does not end with the file. */
 #include "fmb_msgs_pair_result_t.h"
 #include "fmb_msgs_scene_result_t.h"
 
@@ -50,7 +50,7 @@ static void describe_scene_result(const lcm_eventlog_event_t *event)
     fmb_msgs_scene_result_t_decode_cleanup(&result);
 }
 
-/* Channels have no characters that JSON would not take as they are. */
+/* No channel has characters that JSON escapes. */
 static void describe(const lcm_eventlog_event_t *event)
 {
     printf("{\"event\": %" PRId64 ", \"utime\": %" PRId64 ", \"channel\": \"%s\", \"size\": %d",
@@ -62,7 +62,7 @@ static void describe(const lcm_eventlog_event_t *event)
     printf("}\n");
 }
 
-/* liblcm's reader says the same of an end and of damage. */
+/* liblcm's reader does not distinguish the end of a log from damage. */
 static bool is_at_end(const lcm_eventlog_t *log)
 {
     struct stat file;

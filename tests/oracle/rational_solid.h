@@ -10,7 +10,7 @@
 /* Three coordinates. */
 typedef mpq_t rational_vector[FMB_DIM_MAX];
 
-/* In the world, at the start of the window; axes that are not there are 0. A point is
+/* In the world, at the start of the window; in 2D the third coordinate is 0. A point is
  *
  *     origin + sum_i x_i column_i,   0 <= x_i <= 1,
  *

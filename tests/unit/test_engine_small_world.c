@@ -1,9 +1,9 @@
 /* The exact method against the oracle in a small world, where nearly everything touches: all
- * numbers are small integers, and every degenerate case there is comes up.
+ * numbers are small integers, and every degenerate case comes up.
  *
- * In the plane all pairs are decided. In space there are too many (of cuboids: 19,683 bodies
- * at 64 places): a seeded sample, whose size is printed; FMB_SAMPLE=10 draws ten times as many,
- * FMB_FAST=1 takes an eighth, and thins out the plane as well. */
+ * In the plane all pairs are decided. In space there are too many (of cuboids: 19,683 bodies at 64
+ * places): a seeded sample is decided, whose size is printed. FMB_SAMPLE=10 draws ten times as
+ * many; FMB_FAST=1 draws an eighth, and of the plane takes one pair in 61. */
 
 #include "unit.h"
 
@@ -47,10 +47,10 @@ static struct solid with_vectors_exchanged(const struct solid *solid)
     return other;
 }
 
-/* The set of points of a frame is the same in whatever order its components come (its
- * definition is symmetric in the terms x_i c_i), and the truth does not know the order of the
- * pair: so the oracle is called once for the questions that the engine gets: both orders of the
- * vectors of A and of those of B, and with each of them one order of the pair. */
+/* A frame is the same set of points in every order of its components (its definition is symmetric
+ * in the terms x_i c_i), and the truth does not depend on the order of the pair. So one call of the
+ * oracle serves four questions to the engine: both orders of the vectors of A and of those of B,
+ * each with one order of the pair. */
 static void assert_all_orders(const struct question *question, const struct oracle_answer *truth)
 {
     for (int order = 0; order < 4; order++) {
