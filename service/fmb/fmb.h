@@ -741,6 +741,19 @@ enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
  * with a hull is divided into several steps. */
 bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *answers);
 
+/* Begins a scene again in which only the first placements have other poses: of a robot, then, among
+ * obstacles that stand where they are. What others need is kept. If they are of one group, as
+ * obstacles that are not tested against each other, they cost next to nothing.
+ *
+ * In:  state  begun by fmb_scene_begin(), complete or not; not ended
+ *      moved  the position, orientation and velocity of the first so many elements of the same
+ *             array of placements may have changed; nothing else of the query
+ * Returns FMB_OK; FMB_WRONG_COUNT for more than there are; FMB_BAD_DURATION or a status of
+ * fmb_placement_check(). Unless it is FMB_OK, the scene is as before the call.
+ * Cost: O(moved), with FMB_PAIRS_ALL and FMB_PAIRS_ACROSS O(n log n) of all n placements the first
+ * time, and again whenever moved grows. Answers are those of fmb_scene_begin(), bit for bit. */
+enum fmb_status fmb_scene_again(struct fmb_scene_state *state, size_t moved);
+
 /* Ends a scene. Required only of one that is abandoned: a decision in exact arithmetic that a step
  * has left unfinished holds memory. The state must not be used any more. */
 void fmb_scene_end(struct fmb_scene_state *state);

@@ -22,7 +22,8 @@ enum { ECHO_BUFFER = 4 << 20, PATH_LENGTH_MAX = 4096 };
 static cpu_set_t allowed;
 static bool allowed_known;
 
-/* The client runs on the last CPU that the program may use; the service too, or on the first one. */
+/* The client runs on the last CPU that the program may use; the service too, or on the first one.
+ */
 bool parties_cpus(int cores, struct cpus *out)
 {
     if (!allowed_known)

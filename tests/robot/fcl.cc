@@ -85,7 +85,7 @@ fcl::Transform3d transform_of(const fmb_placement &placement)
 struct fcl_robot {
     const robot *states;
     std::vector<std::unique_ptr<Part>> parts;
-    fcl::DynamicAABBTreeCollisionManagerd manager;
+    fcl::DynamicAABBTreeCollisionManagerd links, obstacles;
 };
 
 static void add(fcl_robot *out, int body, const fmb_frame &frame)
@@ -132,8 +132,10 @@ struct fcl_robot *fcl_robot_create(const struct robot *states)
             add(out, body, *fmb_body_frame(&states->body[body], i));
     move(out, 0, 0, bodies);
     for (const auto &part : out->parts)
-        out->manager.registerObject(part->object.get());
-    out->manager.setup();
+        (part->body < states->links ? out->links : out->obstacles)
+            .registerObject(part->object.get());
+    out->links.setup();
+    out->obstacles.setup();
     return out;
 }
 
@@ -146,7 +148,8 @@ int fcl_robot_decide(struct fcl_robot *robot, int state)
 {
     Pairs pairs = {robot->states, {}};
     move(robot, state, 0, robot->states->links);
-    robot->manager.update();
-    robot->manager.collide(&pairs, collide);
+    robot->links.update();
+    robot->links.collide(&pairs, collide);
+    robot->links.collide(&robot->obstacles, &pairs, collide);
     return static_cast<int>(pairs.met.size());
 }

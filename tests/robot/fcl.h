@@ -1,5 +1,6 @@
-/* FCL's broad-phase manager on the same states: each frame an object of its own, as its users have
- * it; pairs of one body and of neighbours are filtered by the callback. */
+/* FCL's broad-phase managers on the same states, one of the links and one of the obstacles, which
+ * does not change: each frame an object of its own, as its users have it; pairs of one body and of
+ * neighbours are filtered by the callback. */
 #ifndef FCL_H
 #define FCL_H
 

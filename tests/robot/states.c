@@ -127,6 +127,7 @@ static void draw_obstacles(struct draw *draw, int links, struct fmb_placement *p
             placement[i].position[axis] = draw_uniform(draw, -hall / 2, hall / 2);
         draw_turn(draw, 6.28, placement[i].orientation);
         placement[i].orientation_count = 4;
+        placement[i].group = 1;
     }
 }
 

@@ -19,7 +19,8 @@ enum {
     ROBOT_CONTACTS_MAX = 8 /* pairs of bodies in contact; at least 1 */
 };
 
-/* The robot: bodies 0 to links - 1 are links, ROBOT_OBSTACLES follow. */
+/* The robot: bodies 0 to links - 1 are links, ROBOT_OBSTACLES follow, which stand where they are,
+ * and are not tested against each other. */
 struct robot {
     int links;
     double hull[ROBOT_HULLS + ROBOT_OBSTACLES][ROBOT_HULL_DOUBLES];

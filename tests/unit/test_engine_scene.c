@@ -70,6 +70,18 @@ static void draw_orientation(struct draw *draw, int dim, struct fmb_placement *o
              out->orientation[3] == 0);
 }
 
+static void draw_pose(struct draw *draw, int wide, bool moving, struct fmb_placement *out)
+{
+    const int dim = out->body->dim;
+    out->orientation_count = 0;
+    memset(out->orientation, 0, sizeof out->orientation);
+    draw_orientation(draw, dim, out);
+    for (int axis = 0; axis < dim; axis++) {
+        out->position[axis] = below(draw, 2 * wide + 1) - wide;
+        out->velocity[axis] = moving && below(draw, 2) ? below(draw, 5) - 2 : 0;
+    }
+}
+
 static void draw_placements(struct draw *draw, size_t most_frames, struct world *out)
 {
     const int wide = 2 + below(draw, 12);
@@ -81,11 +93,7 @@ static void draw_placements(struct draw *draw, size_t most_frames, struct world 
         assert_int_equal(fmb_body_make_frames(out->frame[i], frames, &out->body[i]), FMB_OK);
         struct fmb_placement *placement = &out->placement[i];
         *placement = (struct fmb_placement){.body = &out->body[below(draw, (int) i + 1)]};
-        draw_orientation(draw, out->dim, placement);
-        for (int axis = 0; axis < out->dim; axis++) {
-            placement->position[axis] = below(draw, 2 * wide + 1) - wide;
-            placement->velocity[axis] = moving && below(draw, 2) ? below(draw, 5) - 2 : 0;
-        }
+        draw_pose(draw, wide, moving, placement);
     }
 }
 
@@ -128,6 +136,8 @@ static void draw_world(struct draw *draw, size_t count, size_t most_frames, stru
     scene->instant = scene->duration == 0;
     for (size_t i = 0; i < count && scene->which != FMB_PAIRS_LISTED && below(draw, 4) > 0; i++)
         out->placement[i].group = below(draw, 3) - 1;
+    for (size_t i = count; i > 1 && scene->which != FMB_PAIRS_LISTED && below(draw, 8) > 0; i--)
+        out->placement[i - 1].group = 1; /* obstacles */
     if (below(draw, 2))
         scene->first_pair = draw_bits(draw) % (fmb_scene_pair_count(scene) + 1);
 }
@@ -256,19 +266,12 @@ static void check_answer(const struct fmb_scene *scene, const struct fmb_scene_a
 static size_t near_pairs; /* so far */
 
 /* Returns how many of the pairs meet. */
-static size_t check_scene(const struct fmb_scene *scene, size_t slots)
+static size_t check_steps(const struct fmb_scene *scene, struct fmb_scene_state *state)
 {
     static struct truth truth[LISTED_MAX + PLACEMENTS_MAX * PLACEMENTS_MAX];
-    struct fmb_scene_limits limits = fmb_scene_limits_of(scene);
-    limits.slots = slots ? slots : limits.slots;
-    const size_t bytes = fmb_scene_bytes(&limits), count = find_truth(scene, truth);
-    unsigned char *memory = malloc(bytes + GUARDS);
-    struct fmb_scene_state *state;
+    const size_t count = find_truth(scene, truth);
     struct fmb_scene_answers answers;
     size_t at = 0, meeting = 0;
-    assert_non_null(memory);
-    memset(memory, 0xa5, bytes + GUARDS);
-    assert_int_equal(fmb_scene_begin(scene, &limits, memory, &state), FMB_OK);
     for (bool done = false; !done;) {
         done = fmb_scene_step(state, &answers);
         for (size_t k = 0; k < answers.count; k++, at++) {
@@ -284,6 +287,20 @@ static size_t check_scene(const struct fmb_scene *scene, size_t slots)
         assert_true(done == (next == fmb_scene_pair_count(scene)));
     }
     assert_int_equal(at, count);
+    return meeting;
+}
+
+static size_t check_scene(const struct fmb_scene *scene, size_t slots)
+{
+    struct fmb_scene_limits limits = fmb_scene_limits_of(scene);
+    limits.slots = slots ? slots : limits.slots;
+    const size_t bytes = fmb_scene_bytes(&limits);
+    unsigned char *memory = malloc(bytes + GUARDS);
+    struct fmb_scene_state *state;
+    assert_non_null(memory);
+    memset(memory, 0xa5, bytes + GUARDS);
+    assert_int_equal(fmb_scene_begin(scene, &limits, memory, &state), FMB_OK);
+    const size_t meeting = check_steps(scene, state);
     for (size_t i = bytes; i < bytes + GUARDS; i++)
         assert_int_equal(memory[i], 0xa5);
     free(memory);
@@ -312,6 +329,69 @@ static void random_scenes(void **state)
     }
     assert_true(meeting > 15 * scenes / 2);
     assert_true(near_pairs > 3 * scenes / 4);
+}
+
+/* Scenes in which the first placements move, begun again after any number of steps. */
+static void scenes_again(void **state)
+{
+    struct draw draw = {0xa9a1};
+    size_t meeting = 0;
+    const size_t scenes = (size_t) draw_sample(100);
+    for (size_t n = 0; n < scenes; n++) {
+        const size_t frames = n % 4 == 0 ? 20 : n % 4 == 1 ? 4 : 1;
+        const size_t few = 1 + (size_t) below(&draw, frames == 20 ? 8 : SOME);
+        const bool large = n % 10 == 2;
+        do
+            draw_world(&draw, large ? PLACEMENTS_MAX : few, large ? 1 + n / 10 % 2 : frames, &world);
+        while (large && world.scene.which == FMB_PAIRS_LISTED);
+        struct fmb_scene_limits limits = fmb_scene_limits_of(&world.scene);
+        if (below(&draw, 2))
+            limits.slots = FMB_SCENE_SLOTS_MIN + (size_t) below(&draw, 30);
+        void *memory = malloc(fmb_scene_bytes(&limits));
+        struct fmb_scene_state *scene;
+        struct fmb_scene_answers answers;
+        const bool moving = world.scene.duration > 0 && below(&draw, 2);
+        size_t moved = 0;
+        assert_int_equal(fmb_scene_begin(&world.scene, &limits, memory, &scene), FMB_OK);
+        for (int round = 0; round < 5; round++) {
+            if (below(&draw, 2))
+                meeting += check_steps(&world.scene, scene);
+            else
+                for (int steps = below(&draw, 5); steps > 0; steps--)
+                    if (fmb_scene_step(scene, &answers))
+                        break;
+            if (below(&draw, 2))
+                moved = below(&draw, 3) ? moved + (size_t) below(&draw, 4)
+                                        : (size_t) below(&draw, (int) world.count / 2 + 1);
+            moved = moved < world.count ? moved : world.count;
+            for (size_t i = 0; i < moved; i++)
+                draw_pose(&draw, 2 + below(&draw, 12), moving, &world.placement[i]);
+            assert_int_equal(fmb_scene_again(scene, moved), FMB_OK);
+        }
+        meeting += check_steps(&world.scene, scene);
+        free(memory);
+    }
+    assert_true(meeting > 5 * scenes);
+}
+
+/* What fmb_scene_again() refuses leaves the scene as it was. */
+static void refused_moves(void **state)
+{
+    struct draw draw = {7};
+    do
+        draw_world(&draw, SOME, 1, &world);
+    while (!world.scene.instant || world.scene.which != FMB_PAIRS_ALL);
+    const struct fmb_scene_limits limits = fmb_scene_limits_of(&world.scene);
+    void *memory = malloc(fmb_scene_bytes(&limits));
+    struct fmb_scene_state *scene;
+    assert_int_equal(fmb_scene_begin(&world.scene, &limits, memory, &scene), FMB_OK);
+    const struct fmb_placement before = world.placement[1];
+    assert_int_equal(fmb_scene_again(scene, SOME + 1), FMB_WRONG_COUNT);
+    world.placement[1].position[0] = NAN;
+    assert_int_equal(fmb_scene_again(scene, 2), FMB_NOT_FINITE);
+    world.placement[1] = before;
+    check_steps(&world.scene, scene);
+    free(memory);
 }
 
 /* In a heap, where all boxes meet, there is no memory for all pairs at once; in a row there is. Few
@@ -452,11 +532,11 @@ static void bad_scenes(void **state)
     draw_good(FMB_PAIRS_LISTED);
     scene->ignored = scene->pairs;
     scene->ignored_count = 1;
-    expect_refusal(scene, FMB_WRONG_COUNT, "ignored_count: ");
+    expect_refusal(scene, FMB_WRONG_COUNT, "ignored_count: not with which = FMB_PAIRS_LISTED");
     draw_good(FMB_PAIRS_ALL);
     scene->pairs = scene->ignored;
     scene->pair_count = 1;
-    expect_refusal(scene, FMB_WRONG_COUNT, "pair_count: ");
+    expect_refusal(scene, FMB_WRONG_COUNT, "pair_count: needs which = FMB_PAIRS_LISTED");
     draw_good(FMB_PAIRS_ALL);
     world.ignored[0][0] = 7;
     expect_refusal(scene, FMB_BAD_PAIR, "ignored[0]: ");
@@ -554,6 +634,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_scenes),
+        cmocka_unit_test(scenes_again),
+        cmocka_unit_test(refused_moves),
         cmocka_unit_test(heaps_and_rows),
         cmocka_unit_test(any_first_pair),
         cmocka_unit_test(every_method),

@@ -71,6 +71,7 @@ struct fmb_scene_state {
     struct fmb_scene scene;
     enum scene_stage stage;
     size_t next;  /* placement */
+    size_t moved; /* those to place: all, or the first so many */
     bool batched; /* the method is that of the batch */
     bool slow;    /* blocks of BLOCK_SLOW */
     void *tree;
@@ -179,19 +180,21 @@ static enum fmb_status refuse_element(struct why why, enum fmb_status status, co
     return status;
 }
 
-/* *moving: whether a placement moves. */
-static enum fmb_status check_placements(const struct fmb_scene *scene, struct why why, bool *moving)
+/* Checks the first count placements, and whether they may move. */
+static enum fmb_status check_placements(const struct fmb_scene *scene, size_t count, struct why why)
 {
-    *moving = false;
-    for (size_t i = 0; i < scene->placement_count; i++) {
+    bool moving = false;
+    for (size_t i = 0; i < count; i++) {
         const struct fmb_placement *placement = &scene->placements[i];
         enum fmb_status status = fmb_placement_check(placement);
         if (status == FMB_OK && placement->body->dim != scene->placements[0].body->dim)
             status = FMB_DIMENSIONS_DIFFER;
         if (status != FMB_OK)
             return refuse_element(why, status, "placements", i);
-        *moving = *moving || placement_moves(placement, placement->body->dim);
+        moving = moving || placement_moves(placement, placement->body->dim);
     }
+    if (scene->instant ? scene->duration != 0 : scene->duration == 0 && moving)
+        return refuse(why, FMB_BAD_DURATION, "duration", NULL);
     return FMB_OK;
 }
 
@@ -243,7 +246,9 @@ static enum fmb_status check_pairs(const struct fmb_scene *scene, struct why why
     if (scene->split > (scene->which == FMB_PAIRS_ACROSS ? placements : 0))
         return refuse(why, FMB_BAD_PAIR, "split", NULL);
     if (listed ? scene->ignored_count > 0 : scene->pair_count > 0)
-        return refuse(why, FMB_WRONG_COUNT, listed ? "ignored_count" : "pair_count", NULL);
+        return refuse(
+            why, FMB_WRONG_COUNT, listed ? "ignored_count" : "pair_count",
+            listed ? "not with which = FMB_PAIRS_LISTED" : "needs which = FMB_PAIRS_LISTED");
     enum fmb_status status =
         check_indices(scene->pairs, scene->pair_count, placements, why, "pairs");
     if (status == FMB_OK)
@@ -262,19 +267,14 @@ static enum fmb_status check_pairs(const struct fmb_scene *scene, struct why why
 enum fmb_status fmb_scene_check(const struct fmb_scene *scene, char *text, size_t size)
 {
     const struct why why = {text, size};
-    bool moving;
     if (!prepared_is_duration(scene->duration))
         return refuse(why, FMB_BAD_DURATION, "duration", NULL);
     if (!(scene->margin >= 0) || !isfinite(scene->margin))
         return refuse(why, FMB_BAD_MARGIN, "margin", NULL);
     if (scene->want & ~(unsigned) (FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP))
         return refuse(why, FMB_UNKNOWN_WANT, "want", NULL);
-    const enum fmb_status status = check_placements(scene, why, &moving);
-    if (status != FMB_OK)
-        return status;
-    if (scene->instant ? scene->duration != 0 : scene->duration == 0 && moving)
-        return refuse(why, FMB_BAD_DURATION, "duration", NULL);
-    return check_pairs(scene, why);
+    const enum fmb_status status = check_placements(scene, scene->placement_count, why);
+    return status == FMB_OK ? check_pairs(scene, why) : status;
 }
 
 static bool is_within(const struct fmb_scene *scene, const struct fmb_scene_limits *limits)
@@ -308,6 +308,20 @@ static void begin_frames(struct fmb_scene_state *state, const struct fmb_scene_l
     frames->boxed = !frames->direct || scene->which != FMB_PAIRS_LISTED;
 }
 
+/* Sets the state before the first placement. */
+static void restart(struct fmb_scene_state *state, size_t moved)
+{
+    struct scene_block *block = &state->block;
+    state->stage = PLACING;
+    state->next = 0;
+    state->moved = moved;
+    state->slow = state->scene.want & (FMB_WANT_BOX | FMB_WANT_GAP);
+    state->halfway = false;
+    block->count = block->done = block->open_count = block->next_open = 0;
+    block->body_count = block->given = 0;
+    block->first = state->scene.first_pair;
+}
+
 enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
                                 const struct fmb_scene_limits *limits, void *memory,
                                 struct fmb_scene_state **out)
@@ -324,17 +338,26 @@ enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
     state->scene = *scene;
     if (!scene->method)
         state->scene.method = fmb_method_default();
-    state->stage = PLACING;
     state->batched = state->scene.method == fmb_method_default();
     if (!state->scene.method->boxes)
         state->scene.want &= ~(unsigned) FMB_WANT_BOX;
-    state->slow = scene->want & (FMB_WANT_BOX | FMB_WANT_GAP);
     lay_out(limits, base, state);
     begin_frames(state, limits);
-    struct scene_block *block = &state->block;
-    block->count = block->done = block->open_count = block->next_open = 0;
-    block->body_count = block->given = 0;
-    block->first = scene->first_pair;
+    restart(state, scene->placement_count);
+    return FMB_OK;
+}
+
+enum fmb_status fmb_scene_again(struct fmb_scene_state *state, size_t moved)
+{
+    const size_t count = state->scene.placement_count;
+    enum fmb_status status = FMB_WRONG_COUNT;
+    if (moved <= count)
+        status = check_placements(&state->scene, moved, (struct why){NULL, 0});
+    if (status != FMB_OK)
+        return status;
+    fmb_scene_end(state);
+    /* A scene that was abandoned early has to place and search what it had to. */
+    restart(state, state->stage != DECIDING && state->moved > moved ? state->moved : moved);
     return FMB_OK;
 }
 
@@ -700,11 +723,11 @@ unsigned long long fmb_scene_next_pair(const struct fmb_scene_state *state)
 
 static void place_some(struct fmb_scene_state *state)
 {
-    const size_t left = state->scene.placement_count - state->next;
+    const size_t left = state->moved - state->next;
     const size_t end = state->next + (left < STEP_PLACEMENTS ? left : STEP_PLACEMENTS);
     for (; state->next < end; state->next++)
         scene_frames_add(&state->frames, (unsigned) state->next, state->scene.method->certain);
-    if (end == state->scene.placement_count)
+    if (end == state->moved)
         state->stage = SEARCHING;
 }
 
@@ -768,6 +791,7 @@ void fmb_scene_end(struct fmb_scene_state *state)
     hull_decision_end(&state->hull);
     if (state->hull_gap)
         hull_gap_end(state->hull_gap);
+    state->hull_gap = NULL;
 }
 
 bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *answers)
@@ -777,7 +801,8 @@ bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *ans
     if (state->stage == PLACING) {
         place_some(state);
     } else if (state->stage == SEARCHING) {
-        scene_pairs_begin(&state->pairs, &state->scene, state->frames.body_box, state->tree);
+        scene_pairs_begin(&state->pairs, &state->scene, state->frames.body_box, state->tree,
+                          state->moved);
         state->stage = DECIDING;
     } else {
         decide_some(state);

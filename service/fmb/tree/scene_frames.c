@@ -91,16 +91,13 @@ static bool is_prepared(const struct scene_frames *frames, const struct scene_ch
     return chunk->generation == frames->generation;
 }
 
-/* Prepares chunk k of a body into the next slots, and sets its boxes. In: the slots suffice. */
-static void prepare_chunk(struct scene_frames *frames, unsigned body, size_t k)
+/* Prepares chunk k of a body into its slots, and sets its boxes. */
+static void fill_chunk(struct scene_frames *frames, unsigned body, size_t k)
 {
     struct scene_chunk *chunk = chunk_of(frames, body, k);
-    const unsigned count = chunk_size(frames, body, k), first = (unsigned) frames->used;
+    const unsigned count = chunk_size(frames, body, k), first = chunk->slot;
     prepared_place(&frames->placement[body], (unsigned) k * SCENE_CHUNK, count,
                    &frames->slot[first]);
-    chunk->generation = frames->generation;
-    chunk->slot = first;
-    frames->used += count;
     frames->work += WORK_PREPARE;
     if (!frames->boxed)
         return;
@@ -108,6 +105,29 @@ static void prepare_chunk(struct scene_frames *frames, unsigned body, size_t k)
         frames->frame_box[i] = aabb_of(&frames->slot[i], frames->duration);
         chunk->box =
             i == first ? frames->frame_box[i] : aabb_union(chunk->box, frames->frame_box[i]);
+    }
+}
+
+/* The same, into the next slots. In: they suffice. */
+static void prepare_chunk(struct scene_frames *frames, unsigned body, size_t k)
+{
+    struct scene_chunk *chunk = chunk_of(frames, body, k);
+    chunk->generation = frames->generation;
+    chunk->slot = (unsigned) frames->used;
+    frames->used += chunk_size(frames, body, k);
+    fill_chunk(frames, body, k);
+}
+
+/* Prepares the chunks of a body that has moved anew: those in slots at once. */
+static void renew_chunks(struct scene_frames *frames, unsigned body)
+{
+    const size_t count = scene_chunks(frames->placement[body].body->frame_count);
+    for (size_t k = 0; k < count; k++) {
+        struct scene_chunk *chunk = chunk_of(frames, body, k);
+        if (is_prepared(frames, chunk))
+            fill_chunk(frames, body, k);
+        else
+            chunk->generation = 0;
     }
 }
 
@@ -166,6 +186,7 @@ static void expand(struct aabb *box, double margin)
 void scene_frames_add(struct scene_frames *frames, unsigned i, bool bounded)
 {
     const struct fmb_placement *placement = &frames->placement[i];
+    renew_chunks(frames, i);
     if (frames->direct) {
         set_chunk_box(frames, i, 0, true);
         frames->body_box[i] = chunk_of(frames, i, 0)->box;

@@ -42,9 +42,10 @@ static inline size_t scene_chunks(size_t frames)
     return (frames + SCENE_CHUNK - 1) / SCENE_CHUNK;
 }
 
-/* Adds placement i; placements are added in order. Sets its box, expanded by half of the margin,
- * and, if direct, prepares its frame. bounded: the box contains the frames as the method computes
- * them. Otherwise the box is unbounded, since an inexact method may place a frame outside. */
+/* Adds placement i, or one that was added and has moved. Placements are added in order at first.
+ * Sets its box, expanded by half of the margin, and, if direct, prepares its frame. bounded: the
+ * box contains the frames as the method computes them. Otherwise the box is unbounded, since an
+ * inexact method may place a frame outside. */
 void scene_frames_add(struct scene_frames *frames, unsigned i, bool bounded);
 
 /* The position of the enumeration of the frame pairs of a pair of bodies. */

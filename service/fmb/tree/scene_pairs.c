@@ -24,8 +24,7 @@ unsigned long long scene_pairs_position(const struct scene_pairs *pairs)
         return pairs->next;
     if (pairs->given < pairs->found_count)
         return pair_number(numbers, pairs->a, pairs->found[pairs->given]);
-    return pairs->a < pair_rows(numbers) ? pairs_before(numbers, pairs->a + 1)
-                                         : pairs_total(numbers);
+    return pairs->a < pairs->rows ? pairs_before(numbers, pairs->a + 1) : pairs_total(numbers);
 }
 
 /* Removes the ignored ones of the partners found, and those of the same group. */
@@ -89,10 +88,11 @@ INLINE unsigned mask_bits(floats_mask mask)
 
 /* Rounding is monotonic: x <= y implies (float) x <= (float) y, infinities included. So boxes that
  * overlap also overlap in floats. */
-static void set_rough(struct scene_pairs *pairs)
+static void set_rough(struct scene_pairs *pairs, size_t moved)
 {
     const size_t count = pairs->scene->placement_count;
-    for (size_t i = 0; i < count + SCENE_FEW_BLOCK; i++)
+    const size_t written = moved < count ? moved : count + SCENE_FEW_BLOCK;
+    for (size_t i = 0; i < written; i++)
         for (int axis = 0; axis < 2; axis++)
             for (int end = 0; end < 2; end++)
                 pairs->rough[axis][end][i] = i < count ? (float) pairs->box[i].end[axis][end] : NAN;
@@ -135,28 +135,38 @@ static size_t find_among_few(const struct scene_pairs *pairs, unsigned from, uns
     return found;
 }
 
+/* out := the placements from `from` on whose boxes overlap that of a, ascending: those before the
+ * first of the tree one by one, the others from the tree. Returns their number. */
+static size_t find_in_tree(const struct scene_pairs *pairs, unsigned from, unsigned *out)
+{
+    const struct aabb *box = pairs->box, probe = aabb_probe(&box[pairs->a]);
+    const unsigned first = pairs->first;
+    size_t before = 0;
+    for (; from < first; from++) {
+        out[before] = from;
+        before += aabb_overlaps(&box[from], &probe);
+    }
+    const size_t found = tree_query(&pairs->tree, &box[pairs->a], from - first, out + before);
+    for (size_t i = 0; first && i < found; i++)
+        out[before + i] += first;
+    return before + found;
+}
+
 static void find_partners(struct scene_pairs *pairs, unsigned from)
 {
     pairs->given = 0;
+    pairs->found = pairs->space;
     if (pairs->few) {
-        pairs->found = pairs->space;
         pairs->found_count = find_among_few(pairs, from, pairs->found);
-        remove_ignored(pairs);
-        return;
-    }
-    if (pairs->listed) {
+    } else if (pairs->listed) {
         const unsigned *start = &pairs->start[pairs->a];
         pairs->found = pairs->partner + start[0];
         pairs->found_count = start[1] - start[0];
         for (; pairs->found_count > 0 && *pairs->found < from; pairs->found_count--)
             pairs->found++;
     } else {
-        pairs->found = pairs->space;
-        pairs->found_count =
-            tree_query(&pairs->tree, &pairs->box[pairs->a], from - pairs->first, pairs->found);
+        pairs->found_count = find_in_tree(pairs, from, pairs->found);
     }
-    for (size_t i = 0; pairs->first && i < pairs->found_count; i++)
-        pairs->found[i] += pairs->first;
     remove_ignored(pairs);
 }
 
@@ -166,39 +176,60 @@ static void box_at(const void *context, unsigned index, double box[2][FMB_DIM_MA
     aabb_get_ends(&pairs->box[pairs->first + index], box);
 }
 
-static void build_tree(struct scene_pairs *pairs, void *memory)
+/* Builds the tree, unless that of the enumeration before has none of the placements that moved. If
+ * few moved, the tree is of the others, so that it can be kept the next time. Lists cannot be kept:
+ * remove_ignored() has overwritten them. */
+static void build_tree(struct scene_pairs *pairs, size_t moved, void *memory)
 {
     const struct fmb_scene *scene = pairs->scene;
     const struct fmb_boxes boxes = {
         .dim = scene->placements->body->dim, .at = box_at, .context = pairs};
+    const bool all = scene->which == FMB_PAIRS_ALL;
+    if (moved < scene->placement_count && moved <= pairs->first && !pairs->listed)
+        return;
+    pairs->first = (unsigned) (!all ? scene->split : moved <= SCENE_FEW ? moved : 0);
     fmb_tree_build(&boxes, scene->placement_count - pairs->first, 0, memory, &pairs->tree);
-    pairs->listed = scene->which == FMB_PAIRS_ALL && list_pairs(pairs);
+    pairs->listed = all && pairs->first == 0 && list_pairs(pairs);
 }
 
-static void begin_search(struct scene_pairs *pairs, void *memory)
+/* The number of placements that may come first in a pair that is decided: those at the end may be
+ * of one group. */
+static unsigned decided_rows(const struct fmb_scene *scene)
+{
+    const size_t most = pair_rows(pair_numbers_of(scene));
+    size_t rows = scene->placement_count;
+    while (rows > 1 && pair_is_within_group(scene, (unsigned) rows - 2, (unsigned) rows - 1))
+        rows--;
+    rows -= rows > 0; /* the last placement comes first in no pair */
+    return (unsigned) (rows < most ? rows : most);
+}
+
+static void begin_search(struct scene_pairs *pairs, size_t moved, void *memory)
 {
     const struct fmb_scene *scene = pairs->scene;
     const struct pair_numbers numbers = pair_numbers_of(scene);
-    pairs->first = scene->which == FMB_PAIRS_ACROSS ? (unsigned) scene->split : 0;
-    if (pair_rows(numbers) == 0)
+    if (moved == scene->placement_count) {
+        pairs->listed = false;
+        pairs->few = moved <= SCENE_FEW;
+        pairs->rows = decided_rows(scene);
+        ignored_begin(scene, pairs->ignored_memory, &pairs->ignored);
+    }
+    if (pairs->rows == 0)
         return;
-    pairs->few = scene->placement_count <= SCENE_FEW;
     if (pairs->few)
-        set_rough(pairs);
+        set_rough(pairs, moved);
     else
-        build_tree(pairs, memory);
-    ignored_begin(scene, pairs->ignored_memory, &pairs->ignored);
-    while (pairs->a < pair_rows(numbers) &&
-           pairs_before(numbers, pairs->a + 1) <= scene->first_pair)
+        build_tree(pairs, moved, memory);
+    while (pairs->a < pairs->rows && pairs_before(numbers, pairs->a + 1) <= scene->first_pair)
         pairs->a++;
     const unsigned long long before = pairs_before(numbers, pairs->a);
-    if (pairs->a < pair_rows(numbers))
+    if (pairs->a < pairs->rows)
         find_partners(
             pairs, (unsigned) (pair_first_partner(numbers, pairs->a) + scene->first_pair - before));
 }
 
 void scene_pairs_begin(struct scene_pairs *pairs, const struct fmb_scene *scene,
-                       const struct aabb *box, void *tree)
+                       const struct aabb *box, void *tree, size_t moved)
 {
     pairs->scene = scene;
     pairs->box = box;
@@ -206,23 +237,21 @@ void scene_pairs_begin(struct scene_pairs *pairs, const struct fmb_scene *scene,
     pairs->a = 0;
     pairs->found_count = pairs->given = 0;
     pairs->searches = 0;
-    pairs->listed = pairs->few = false;
     if (scene->which != FMB_PAIRS_LISTED)
-        begin_search(pairs, tree);
+        begin_search(pairs, moved, tree);
 }
 
 static size_t next_found(struct scene_pairs *pairs, unsigned (*out)[2], size_t max)
 {
     const struct pair_numbers numbers = pair_numbers_of(pairs->scene);
     size_t count = 0;
-    while (count < max && pairs->a < pair_rows(numbers)) {
+    while (count < max && pairs->a < pairs->rows) {
         if (pairs->given < pairs->found_count) {
             out[count][0] = pairs->a;
             out[count++][1] = pairs->found[pairs->given++];
         } else if (pairs->searches == SEARCHES_MAX) {
             break;
-        } else if (pairs->searches += !(pairs->listed || pairs->few),
-                   ++pairs->a < pair_rows(numbers)) {
+        } else if (pairs->searches += !(pairs->listed || pairs->few), ++pairs->a < pairs->rows) {
             find_partners(pairs, (unsigned) pair_first_partner(numbers, pairs->a));
         }
     }

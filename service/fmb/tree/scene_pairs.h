@@ -20,6 +20,7 @@ struct scene_pairs {
     const struct aabb *box; /* [placement] */
     struct fmb_tree tree;
     unsigned a, first;
+    unsigned rows; /* a is below it: of all later ones, none has a partner that is decided */
     size_t found_count, given;
     unsigned *found; /* in space, or in partner */
     int searches;    /* reset by the caller */
@@ -48,9 +49,10 @@ static inline size_t scene_pairs_capacity(size_t placements)
  *
  * In: a checked scene; pairs with its arrays set; tree: fmb_tree_bytes() of the placements; box:
  * those of the placements, which may be NULL with FMB_PAIRS_LISTED. All must stay valid until the
- * last pair. */
+ * last pair. moved: all placements; or, after another enumeration of the scene, those from 0 on
+ * whose boxes may have changed since. */
 void scene_pairs_begin(struct scene_pairs *pairs, const struct fmb_scene *scene,
-                       const struct aabb *box, void *tree);
+                       const struct aabb *box, void *tree, size_t moved);
 
 /* Writes the next pairs, at most max, to out. Returns how many; 0 also after several searches. */
 size_t scene_pairs_next(struct scene_pairs *pairs, unsigned (*out)[2], size_t max);
