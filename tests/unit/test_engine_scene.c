@@ -342,7 +342,8 @@ static void scenes_again(void **state)
         const size_t few = 1 + (size_t) below(&draw, frames == 20 ? 8 : SOME);
         const bool large = n % 10 == 2;
         do
-            draw_world(&draw, large ? PLACEMENTS_MAX : few, large ? 1 + n / 10 % 2 : frames, &world);
+            draw_world(&draw, large ? PLACEMENTS_MAX : few, large ? 1 + n / 10 % 2 : frames,
+                       &world);
         while (large && world.scene.which == FMB_PAIRS_LISTED);
         struct fmb_scene_limits limits = fmb_scene_limits_of(&world.scene);
         if (below(&draw, 2))
