@@ -336,7 +336,7 @@ static void scenes_again(void **state)
 {
     struct draw draw = {0xa9a1};
     size_t meeting = 0;
-    const size_t scenes = (size_t) draw_sample(100);
+    const size_t scenes = (size_t) draw_sample(60);
     for (size_t n = 0; n < scenes; n++) {
         const size_t frames = n % 4 == 0 ? 20 : n % 4 == 1 ? 4 : 1;
         const size_t few = 1 + (size_t) below(&draw, frames == 20 ? 8 : SOME);
