@@ -53,7 +53,7 @@ void check_copy(mpq_t out[AXES], mpq_t v[AXES])
         mpq_set(out[axis], v[axis]);
 }
 
-void check_add(mpq_t out[AXES], mpq_t v[AXES])
+static void add(mpq_t out[AXES], mpq_t v[AXES])
 {
     for (int axis = 0; axis < AXES; axis++)
         mpq_add(out[axis], out[axis], v[axis]);
@@ -248,7 +248,7 @@ void check_vertex(struct check_side *side, unsigned k, mpq_t out[AXES])
         mpq_set_d(out[axis], frame->vertices[(size_t) axis * frame->vertex_stride + k]);
     for (int i = 0; i < side->count; i++)
         if (has_component(side, k, i))
-            check_add(out, side->edge[i]);
+            add(out, side->edge[i]);
 }
 
 /* ---- The text ----

@@ -52,7 +52,6 @@ struct check_proof {
 void check_each(void *numbers, size_t bytes, void (*call)(mpq_ptr));
 
 void check_copy(mpq_t out[AXES], mpq_t v[AXES]);
-void check_add(mpq_t out[AXES], mpq_t v[AXES]);
 void check_subtract(mpq_t out[AXES], mpq_t u[AXES], mpq_t v[AXES]);
 
 /* out := out + v, of dim numbers. */

@@ -30,7 +30,6 @@
 
 #include "pair.h"
 
-#include <stdint.h>
 #include <string.h>
 
 enum {

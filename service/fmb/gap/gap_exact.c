@@ -29,7 +29,6 @@
 #include "gap_exact_simplex.h"
 #include "integer.h"
 
-#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>

@@ -79,7 +79,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
 enum { ROWS = 4, QUARTERS = 4, KEPT = 8 };
 
