@@ -479,7 +479,7 @@ static void extremes(void **state)
         }
         meeting += check_scene(&world.scene, 0);
     }
-    assert_true(meeting > 100);
+    assert_true(meeting > 2 * (size_t) rounds(60));
 }
 
 static enum fmb_status begin(const struct fmb_scene *scene)
