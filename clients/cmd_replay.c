@@ -340,7 +340,7 @@ static int run_replay(struct replay_arguments *options)
         options->replay.page = page_open(&(struct page_options){
             .kind = PAGE_REPLAY,
             .title = options->replay.log[0],
-            .sides = {options->replay.golden ? options->replay.golden : "recorded",
+            .sides = {options->replay.golden ? options->replay.golden : "the recording",
                       options->live ? "answered again by the service" : "answered again"}});
     options->replay.names = body_names_open();
     run.differences = listing_open(options->limit);

@@ -112,7 +112,8 @@ void page_take(struct page *page, const struct body_names *names, int64_t begin,
         .event = replayed->event_number,
         .offset = replayed->offset,
         .outcome = {outcome[replayed->outcome], replayed->outcome == REPLAY_DIFFERENT},
-        .result = {result_of(query, then), result_of(query, now)}};
+        .result = {result_of(replayed->then_query ? replayed->then_query : query, then),
+                   result_of(query, now)}};
     char note[100];
     if (replayed->note) {
         step.note = replayed->note;

@@ -183,7 +183,7 @@ void replayed_count(const struct scene_query *query, const struct scene_result *
                     int64_t count[FMB_OVERLAPPING + 1])
 {
     memset(count, 0, (FMB_OVERLAPPING + 1) * sizeof *count);
-    if (!result || result->status != FMB_OK)
+    if (!result || result->status != FMB_OK || !logged_result_fits(query, result))
         return;
     for (int32_t i = 0; i < result->verdict_count; i++)
         if (result->verdict[i] <= FMB_OVERLAPPING)

@@ -46,6 +46,7 @@ struct replayed {
      * NULL if no result was recorded. */
     const struct logged_query *query;
     const struct logged_result *now, *then;
+    const struct logged_query *then_query; /* of then; NULL: query, or it is not known */
     /* NULL: then is a result to this query, or one with the same bodies and pairs. */
     const struct replayed_match *match;
     /* then is paired with the query by its order alone, and its own query is not known. */
@@ -89,8 +90,8 @@ void replayed_pairs_begin(const struct replayed *replayed, struct replayed_pairs
  * query. */
 bool replayed_pairs_next(struct replayed_pairs *pairs, struct replayed_pair *out);
 
-/* Counts the pairs that the result answers with each verdict, including those it does not name. In:
- * a result to the query, or NULL. */
+/* Counts the pairs that the result answers with each verdict, including those it does not name;
+ * none if the result is NULL, or none to this query. */
 void replayed_count(const struct scene_query *query, const struct scene_result *result,
                     int64_t count[FMB_OVERLAPPING + 1]);
 

@@ -171,6 +171,7 @@ static void compare_read(struct replay *replay, const struct match_item *query,
         .query = &replay->compared,
         .then = &replay->then,
         .now = &replay->now,
+        .then_query = result->has_own ? &replay->golden_query : NULL,
         .by_order =
             !result->has_own && (result->by_order || result->key.utime != query->key.utime)};
     if (!read_compared(replay, query) || (result->has_own && !read_golden_query(replay, result)))

@@ -12,10 +12,12 @@
 /* Writes one line:
  *
  *     event 17  1.25 s  bodies table 7  verdict: touching, now separated
+ *     event 19  1.5 s  bodies table 7  gap lower bound: 0.25, now 0.5 (+0.25), and 3 more numbers
  *
- * The time is log time, in seconds since first_utime. Bodies without a name have their id. Numbers
- * read back as the same bits; certificates are truncated. log: name of the log; NULL if there is
- * only one. */
+ * The time is log time, in seconds since first_utime. Bodies without a name have their id. Of
+ * several numbers, the one that has changed most is printed; of a gap, one of its bounds, if these
+ * have changed. The two read back as the same bits; certificates are truncated. log: name of the
+ * log; NULL if there is only one. */
 void replay_line(FILE *out, enum escape form, const struct difference *difference,
                  const struct body_names *names, const char *log, int64_t first_utime);
 

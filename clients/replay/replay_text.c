@@ -4,6 +4,7 @@
 #include "report.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -16,22 +17,21 @@ static void put_text(FILE *out, enum escape form, const char *text)
     escape(out, form, text, strnlen(text, TEXT_MAX));
 }
 
+/* One side has no such numbers, so that those of the other need few digits. */
 static void put_box(FILE *out, int dim, const struct fmb_answer *answer)
 {
     char text[2][NUMBER_TEXT_MAX];
     for (int axis = 0; axis < dim; axis++)
         fprintf(out, "%s%c %s..%s", axis ? "  " : "", "xyz"[axis],
-                number_or_inf(answer->box[0][axis], text[0]),
-                number_or_inf(answer->box[1][axis], text[1]));
+                number_short(answer->box[0][axis], text[0]),
+                number_short(answer->box[1][axis], text[1]));
 }
 
-static void put_gap(FILE *out, int dim, const struct fmb_gap *gap)
+static void put_gap(FILE *out, const struct fmb_gap *gap)
 {
     char text[2][NUMBER_TEXT_MAX];
-    fprintf(out, "%s..%s along", number_or_inf(gap->bounds[0], text[0]),
-            number_or_inf(gap->bounds[1], text[1]));
-    for (int axis = 0; axis < dim; axis++)
-        fprintf(out, " %s", number_exact(gap->direction[axis], text[0]));
+    fprintf(out, "%s..%s", number_short(gap->bounds[0], text[0]),
+            number_short(gap->bounds[1], text[1]));
 }
 
 static void put_side(FILE *out, enum escape form, const struct difference *difference,
@@ -41,12 +41,12 @@ static void put_side(FILE *out, enum escape form, const struct difference *diffe
     const char *verdict = fmb_verdict_name((int) answer->verdict);
     char text[2][NUMBER_TEXT_MAX];
     if (difference->kind == DIFFERENT_INTERVAL && answer->has_contact)
-        fprintf(out, "%s to %s s", number_or_inf(answer->contact[0], text[0]),
-                number_or_inf(answer->contact[1], text[1]));
+        fprintf(out, "%s to %s s", number_short(answer->contact[0], text[0]),
+                number_short(answer->contact[1], text[1]));
     else if (difference->kind == DIFFERENT_BOX && answer->has_box)
         put_box(out, difference->dim, answer);
     else if (difference->kind == DIFFERENT_GAP && answer->has_gap)
-        put_gap(out, difference->dim, &answer->gap);
+        put_gap(out, &answer->gap);
     else if (difference->kind == DIFFERENT_CERTIFICATE && side->certificate)
         put_text(out, form, side->certificate);
     else if (difference->kind == DIFFERENT_VERDICT)
@@ -58,6 +58,106 @@ static void put_side(FILE *out, enum escape form, const struct difference *diffe
               out);
     else
         fputs("none", out);
+}
+
+/* ---- The number that has changed most ---- */
+
+/* Numbers of an answer that are next to each other. */
+struct numbers {
+    const char *name[3]; /* [number / dim], or [number] if each has its own */
+    const double *then, *now;
+    int count;
+    bool axes; /* dim numbers for each name */
+};
+
+struct change {
+    int differing; /* numbers in all */
+    const char *name;
+    int axis; /* -1: none */
+    double then, now;
+};
+
+static void find_change(const struct numbers *of, int dim, struct change *out)
+{
+    for (int i = 0; i < of->count; i++) {
+        const double then = of->then[i], now = of->now[i];
+        const double by = fabs(now - then);
+        if (memcmp(&then, &now, sizeof then) == 0)
+            continue;
+        if (out->differing++ > 0 && !(by > fabs(out->now - out->then)))
+            continue;
+        out->name = of->name[of->axes ? i / dim : i];
+        out->axis = of->axes ? i % dim : -1;
+        out->then = then;
+        out->now = now;
+    }
+}
+
+/* Of a gap the bounds come first: only they are compared with a tolerance. */
+static struct change change_of(const struct difference *difference)
+{
+    const struct fmb_answer *then = &difference->then.answer, *now = &difference->now.answer;
+    const struct fmb_gap *a = &then->gap, *b = &now->gap;
+    const int dim = difference->dim;
+    const double frame[2][2] = {{a->frame[0], a->frame[1]}, {b->frame[0], b->frame[1]}};
+    const struct numbers contact = {{"begin", "end"}, then->contact, now->contact, 2, false};
+    const struct numbers box[] = {{{"min"}, then->box[0], now->box[0], dim, true},
+                                  {{"max"}, then->box[1], now->box[1], dim, true}};
+    const struct numbers gap[] = {
+        {{"lower bound", "upper bound"}, a->bounds, b->bounds, 2, false},
+        {{"direction"}, a->direction, b->direction, dim, true},
+        {{"time"}, &a->time, &b->time, 1, false},
+        {{"nearest point of the first body"}, a->witness[0], b->witness[0], dim, true},
+        {{"nearest point of the second body"}, a->witness[1], b->witness[1], dim, true},
+        {{"frame of the first body", "frame of the second body"}, frame[0], frame[1], 2, false}};
+    struct change change = {.axis = -1}, other = {.axis = -1};
+    if (difference->kind == DIFFERENT_INTERVAL && then->has_contact && now->has_contact)
+        find_change(&contact, dim, &change);
+    for (int i = 0; i < 2 && difference->kind == DIFFERENT_BOX; i++)
+        if (then->has_box && now->has_box)
+            find_change(&box[i], dim, &change);
+    if (difference->kind != DIFFERENT_GAP || !then->has_gap || !now->has_gap)
+        return change;
+    find_change(&gap[0], dim, &change);
+    for (size_t i = 1; i < sizeof gap / sizeof *gap; i++)
+        find_change(&gap[i], dim, &other);
+    if (change.differing == 0)
+        return other;
+    change.differing += other.differing;
+    return change;
+}
+
+/* "gap lower bound: 0.25, now 0.5 (+0.25), and 3 more numbers" */
+static void put_change(FILE *out, const struct difference *difference, const struct change *change)
+{
+    char text[2][NUMBER_TEXT_MAX];
+    const double by = change->now - change->then;
+    fprintf(out, "  %s %s", difference_name[difference->kind], change->name);
+    if (change->axis >= 0)
+        fprintf(out, " %c", "xyz"[change->axis]);
+    fprintf(out, ": %s, now %s", number_or_inf(change->then, text[0]),
+            number_or_inf(change->now, text[1]));
+    if (isfinite(by))
+        fprintf(out, " (%+.3g)", by);
+    if (change->differing > 1) {
+        fputs(", and ", out);
+        number_count(out, change->differing - 1, "more number", "more numbers");
+    }
+    putc('\n', out);
+}
+
+static void put_both(FILE *out, enum escape form, const struct difference *difference)
+{
+    const struct change change = change_of(difference);
+    if (change.differing > 0) {
+        put_change(out, difference, &change);
+        return;
+    }
+    fprintf(out, "  %s: ", difference_name[difference->kind]);
+    put_side(out, form, difference, &difference->then);
+    fputs(", now ", out);
+    put_side(out, form, difference, &difference->now);
+    putc('\n', out);
 }
 
 void replay_line(FILE *out, enum escape form, const struct difference *difference,
@@ -86,11 +186,7 @@ void replay_line(FILE *out, enum escape form, const struct difference *differenc
         putc('\n', out);
         return;
     }
-    fprintf(out, "  %s: ", difference_name[difference->kind]);
-    put_side(out, form, difference, &difference->then);
-    fputs(", now ", out);
-    put_side(out, form, difference, &difference->now);
-    putc('\n', out);
+    put_both(out, form, difference);
 }
 
 /* ---- Counts ---- */

@@ -62,6 +62,10 @@ SCENE
     "$fmb" replay --html crowd.html crowd.log > replay.said || true
     edited stack.html jq -c '.steps |= to_entries | .steps |= map(.value + {t: (.value.t + if .key > 20 then 86400 else 0 end)})' > paused.html
     "$fmb" replay --golden "$logs/crowd.golden" --html golden.html "$logs/crowd.log" > replay.said || true
+    # The end of an interval that differs beyond six digits.
+    "${fmb%fmb}edit-log" --nudge 2 1e-13 "$logs/stack.log" nudged.log
+    "$fmb" replay --html nudged.html nudged.log > replay.said || true
+    "$fmb" replay --golden "$logs/stack.log" --html other.html "$logs/arm.log" > replay.said 2>&1 || true
     printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' > b.obj
     "$fmb" mesh --html mesh.html --json b.obj b.obj --translate 1.5,0.1,0.1 --velocity=-1,0,0 > mesh.json
     "$fmb" mesh --html self.html --self b.obj > self.said
@@ -104,6 +108,13 @@ setup() {
 }
 
 # ---- In a browser ----------------------------------------------------------------------------
+
+@test "a recording of other bodies is a note, and the pairs are those of the query" {
+    # 10 bodies and 17 pairs, against 16 bodies and 120 pairs.
+    data other.html | jq -e '.steps[0] | (.note | startswith("the recording has 16 bodies, the query 10: "))
+        and (.result[0][3:] | add) == 120 and (.result[1][3:] | add) == 17 and .differs' > /dev/null
+    data other.html | jq -e '[.steps[].pairs[][0:2][]] | max < 10' > /dev/null
+}
 
 @test "the pages open without errors" {
     found light '.done and .error == null'
@@ -207,7 +218,12 @@ setup() {
 @test "differences are marked, and name both recordings" {
     found light '.crowd | .different == 1 and (.counts | endswith("1 different")) and .rows == 100 and .more == 200 and (.notes | contains("left out"))' \
         '.difference | (.text | contains("step ")) and (.facts.query | endswith(": different")) and (.lane | index("difference")) != null' \
-        '.golden | (.title | contains("crowd.golden and answered again")) and (.facts | keys | any(endswith("crowd.golden")))'
+        '.golden | (.title | test("/crowd.log, answered again, compared with .*/crowd.golden$")) and (.facts | keys | any(endswith("crowd.golden")))'
+}
+
+@test "a number that differs beyond the digits of a fact has its name and all digits" {
+    found light '.nudged.facts | .contact == "0 to 0.01 s" and (has("first contact") or has("gap, upper bound") | not)' \
+        '.nudged.facts["last contact"] == "the recording: 0.0100000000001 · answered again: 0.01"'
 }
 
 @test "bodies that cannot be drawn, and refusals, are reported" {

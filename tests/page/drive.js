@@ -249,6 +249,9 @@ async function recording() {
     await open("golden.html");
     await press("d");
     found.golden = { title: page.title, ...moment() };
+    await open("nudged.html");
+    await press("d");
+    found.nudged = moment();
     await open("refused.html");
     found.refused = { bad: 0, missing: 0, outcomes: [] };
     for (let i = 0; i < view.fmb.steps.length; i++) {

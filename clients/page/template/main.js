@@ -3,7 +3,7 @@
 function showHead() {
     const count = (verdict) => rows.filter((row) => row.worst === verdict).length;
     const counts = [OVERLAPPING, TOUCHING, SEPARATED].map((verdict) => `${count(verdict)} ${verdictNames[verdict]}`);
-    one("title").textContent = document.title = isReplay ? `${data.title}: ${data.sides.join(" and ")}` : data.title;
+    one("title").textContent = document.title = isReplay ? `${data.title}, ${data.sides[1]}, compared with ${data.sides[0]}` : data.title;
     one("counts").textContent = [
         steps.length > 1 ? `${steps.length} ${isReplay ? "queries" : "scenes"}` : "",
         isMesh ? "" : `${rows.length} pairs: ${counts.join(", ")}`,

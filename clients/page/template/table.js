@@ -132,15 +132,32 @@ function factsOf(answer) {
     return facts;
 }
 
-/* Facts of two answers, side by side where they differ. */
+/* [fact, name, number] of each number of an answer: the fact that shows it rounded. */
+function numbersOf(answer) {
+    const { contact, box, gap } = answer ?? {}, axis = (i, dim) => "xyz"[i % dim];
+    const dim = (box?.length ?? 0) / 2, points = ((gap?.length ?? 2) - 3) / 2;
+    return [
+        ...(contact ?? []).map((number, i) => ["contact", ["first contact", "last contact"][i], number]),
+        ...(box ?? []).map((number, i) => [`box ${axis(i, dim)}`, `box ${i < dim ? "min" : "max"} ${axis(i, dim)}`, number]),
+        ...(gap ?? []).map((number, i) => ["gap", ["gap, lower bound", "gap, upper bound", "gap, time"][i]
+            ?? `nearest point of the ${i - 3 < points ? "first" : "second"}, ${axis(i - 3, points)}`, number]),
+    ];
+}
+
+/* Facts of two answers, side by side where they differ; numbers that differ beyond the digits of a fact
+ * have all digits. */
 function addComparison(list, pair) {
-    const now = factsOf(answerOf(nowOf(pair))), then = isDifferent(pair) ? factsOf(answerOf(pair[2])) : now;
-    for (const name of new Set([...Object.keys(then), ...Object.keys(now)]))
-        addFact(list, name, then[name] === now[name] ? now[name]
-            : `${data.sides[0]}: ${then[name] ?? "none"} · ${data.sides[1]}: ${now[name] ?? "none"}`, then[name] !== now[name]);
-    /* what differs may be beyond the digits, or a direction */
-    if (isDifferent(pair) && JSON.stringify(pair[2]) !== JSON.stringify(pair[3]) && Object.keys(now).every((name) => now[name] === then[name]))
-        addFact(list, "numbers", `${data.sides[0]}: ${JSON.stringify(pair[2])} · ${data.sides[1]}: ${JSON.stringify(pair[3])}`, true);
+    const [before, after] = [isDifferent(pair) ? pair[2] : nowOf(pair), nowOf(pair)].map(answerOf);
+    const then = factsOf(before), now = factsOf(after), differ = Object.keys({ ...then, ...now }).filter((name) => then[name] !== now[name]);
+    const both = (a, b) => `${data.sides[0]}: ${a ?? "none"} · ${data.sides[1]}: ${b ?? "none"}`;
+    const exact = new Map(numbersOf(before).map(([, name, number]) => [name, number]));
+    for (const name of Object.keys({ ...then, ...now }))
+        addFact(list, name, differ.includes(name) ? both(then[name], now[name]) : now[name], differ.includes(name));
+    const beyond = numbersOf(after).filter(([fact, name, number]) => !differ.includes(fact) && exact.get(name) !== number);
+    for (const [, name, number] of beyond)
+        addFact(list, name, both(exact.get(name) ?? "∞", number ?? "∞"), true);
+    if (isDifferent(pair) && differ.length + beyond.length === 0)
+        addFact(list, "gap, direction", "differs", true);
 }
 
 function resultText([error, method, ns, ...counts]) {
