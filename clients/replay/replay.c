@@ -175,7 +175,8 @@ static bool open_replay(struct replay *replay)
     memcpy(replay->paths, options->log, (size_t) logs * sizeof *replay->paths);
     replay->paths[logs] = (char *) (uintptr_t) options->golden;
     if (!input_open(&replay->input, replay->paths, count) ||
-        !input_open(&replay->rereader, replay->paths, count))
+        !input_open(&replay->rereader, replay->paths, count) ||
+        !input_open(&replay->golden_rereader, replay->paths, count))
         return false;
     replay->definitions = definitions_open();
     replay->golden_names = options->golden ? body_names_open() : NULL;
@@ -208,6 +209,7 @@ static void close_replay(struct replay *replay)
     align_close(replay->align);
     body_names_close(replay->golden_names);
     input_close(&replay->rereader);
+    input_close(&replay->golden_rereader);
     free(replay->paths);
     hasher_destroy(replay->hasher);
     definitions_close(replay->definitions);

@@ -75,12 +75,19 @@ bool replay_read_query(struct replay *replay, struct input *input, const struct 
                         logged_query_read(out, (enum log_kind) query->key.kind, bytes, *size));
 }
 
+/* What reads a result, or its query, again. */
+static struct input *rereader_of(struct replay *replay, const struct match_item *result)
+{
+    return result->place.log < replay->options->log_count ? &replay->rereader
+                                                          : &replay->golden_rereader;
+}
+
 /* Reads a result again and decodes it. */
 static bool read_result(struct replay *replay, const struct match_item *result,
                         unsigned char bytes[LOG_DATA_MAX], struct logged_result *out)
 {
     uint32_t size;
-    return read_again(replay, &replay->rereader, &result->place, bytes, &size) &&
+    return read_again(replay, rereader_of(replay, result), &result->place, bytes, &size) &&
            is_unchanged(replay, result,
                         logged_result_read(out, (enum log_kind) result->key.kind, bytes, size));
 }
@@ -98,7 +105,7 @@ static bool read_golden_query(struct replay *replay, const struct match_item *re
     const struct match_item own = {
         .key = result->key, .place = {.log = result->place.log, .offset = result->own_offset}};
     uint32_t size;
-    return replay_read_query(replay, &replay->rereader, &own, replay->golden_bytes, &size,
+    return replay_read_query(replay, rereader_of(replay, result), &own, replay->golden_bytes, &size,
                              &replay->golden_query);
 }
 
@@ -161,7 +168,8 @@ static void compare_unrecorded(struct replay *replay, const struct match_item *q
     add_to_page(replay, query, &replayed, REPLAY_UNRECORDED);
 }
 
-/* Compares a result that was read with the new one. same_bytes: of both results. */
+/* Compares a result that was read, and so its own query, with the new one. same_bytes: of both
+ * results. */
 static void compare_read(struct replay *replay, const struct match_item *query,
                          const struct new_result *answered, uint32_t size, bool same_bytes)
 {
@@ -174,7 +182,7 @@ static void compare_read(struct replay *replay, const struct match_item *query,
         .then_query = result->has_own ? &replay->golden_query : NULL,
         .by_order =
             !result->has_own && (result->by_order || result->key.utime != query->key.utime)};
-    if (!read_compared(replay, query) || (result->has_own && !read_golden_query(replay, result)))
+    if (!read_compared(replay, query))
         return;
     const bool aligned =
         !result->has_own || align_queries(replay->align, &replay->golden_query, &replay->compared);
@@ -207,7 +215,10 @@ void replay_compare(struct replay *replay, const struct match_item *query,
         compare_unrecorded(replay, query, answered);
         return;
     }
-    if (!read_again(replay, &replay->rereader, &query->other->place, replay->result_bytes, &size))
+    /* A query comes before its result: so the golden log is read forwards. */
+    if ((query->other->has_own && !read_golden_query(replay, query->other)) ||
+        !read_again(replay, rereader_of(replay, query->other), &query->other->place,
+                    replay->result_bytes, &size))
         return;
     const bool same = compare_bytes_same(kind, then, size, answered->bytes, answered->size);
     /* Results of both types end with compute_ns. */

@@ -21,8 +21,9 @@ struct replay {
     struct tally *tally; /* [log_count] */
     struct log_channels channels;
     char **paths; /* owned: of the logs, and of the golden log if there is one */
-    /* The first reads the logs, then the queries again; the other results, and in callbacks. */
-    struct input input, rereader;
+    /* The first reads the logs, then the queries again; the second results, and in callbacks. The
+     * third reads the golden log again, so that neither changes from one file to another. */
+    struct input input, rereader, golden_rereader;
     struct output *golden_file;    /* NULL: none */
     struct log_writer *new_golden; /* of golden_file */
     struct definitions *definitions;

@@ -369,6 +369,8 @@ static void a_tolerance_is_relative_to_the_largest_coordinate(void **state)
     expect_scale(&query, 0.5 + sqrt(3));
     query.placement[1].placed.position[0] = -1e-3;
     expect_scale(&query, 1e-3 + sqrt(3));
+    query = pair(3, -6, 3, 0); /* ends at 0 */
+    expect_scale(&query, 6 + sqrt(3));
 }
 
 /* Nearest points need not be the only ones. */
