@@ -54,7 +54,7 @@ static const char usage[] =
     "  --with SCENE.json    adds the bodies of a scene, with its ignored pairs,\n"
     "                       duration and margin. Links have the ids from 1 on; a body\n"
     "                       with one of these gets another id, which is reported\n"
-    "  --ignore NAME,NAME   a pair of links or bodies that is not tested, by its names;\n"
+    "  --ignore NAME,NAME   a pair of links or bodies that is not tested, by name;\n"
     "                       may be given several times\n"
     "  --margin M           the margin, in place of that of the scene\n"
     "  -h, --help\n"

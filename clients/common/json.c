@@ -500,7 +500,9 @@ static bool make_body(const struct place *at, const struct given_frame *given, s
     const size_t bytes = scene_body_bytes(given, count);
     size_t bad;
     if (bytes > FMB_CLIENT_BODY_BYTES_MAX)
-        return refuse(at, "%s: %zu bytes in a message, which has space for %d",
+        return refuse(at,
+                      "%s: %zu bytes in a message, which has space for %d: divide it into bodies "
+                      "of one group",
                       fmb_status_text(FMB_OVER_LIMIT), bytes, (int) FMB_CLIENT_BODY_BYTES_MAX);
     const enum fmb_status status = scene_make_body(at->reader->scene, given, count, out, &bad);
     const struct place frame = {at->reader, at, NULL, NULL, bad};

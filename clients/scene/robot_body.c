@@ -151,7 +151,7 @@ static void add_cylinder(struct frames *frames, const struct robot_element *elem
     set_ring(&enclosure, enclosure.radius, -enclosure.half, vertex);
     set_ring(&enclosure, enclosure.radius, enclosure.half, vertex + enclosure.sides);
     add_hull(frames, vertex, count);
-    report_outside(frames, radius * (1 / enclosure.k - 1));
+    report_outside(frames, enclosure.radius - radius);
 }
 
 static void add_sphere(struct frames *frames, const struct robot_element *element)
@@ -165,7 +165,7 @@ static void add_sphere(struct frames *frames, const struct robot_element *elemen
         set_ring(&enclosure, enclosure.radius * enclosure.turn[i][1] / enclosure.k,
                  enclosure.radius * enclosure.turn[i][0], vertex + i * enclosure.sides);
     add_hull(frames, vertex, count);
-    report_outside(frames, radius * (1 / (enclosure.k * enclosure.k) - 1));
+    report_outside(frames, enclosure.radius / enclosure.k - radius);
 }
 
 /* ---- Meshes ---- */

@@ -304,8 +304,8 @@ enum fmb_want {
  *                not overlap at any time of the window
  *
  * Of bodies of several frames it is the least gap of a pair of their frames, with its direction and
- * points; frame names that pair. Of several pairs with the same upper bound, points and direction,
- * one is named.
+ * points; frame names that pair. Of several pairs that doubles do not tell apart, one is named: its
+ * gap is the least up to the width.
  *
  * Lower bound. The direction n proves it: n . (b - a) >= bounds[0] |n| for all points a of the
  * first frame and b of the second at the same time of the window.
@@ -320,8 +320,9 @@ enum fmb_want {
  * time of the least distance may not be a double. bounds[1] then includes the distance that the
  * frames travel in the error of the time.) The lower bound of a separated pair may therefore be
  * below 0, by less than the width: it is what the direction proves; the verdict is exact. If the
- * bodies touch, both bounds are 0, and the direction proves 0 up to the same width. A bound
- * whose magnitude exceeds the largest double is infinite, with its sign.
+ * bodies touch, both bounds are 0. If the frames that are named touch, the direction proves the
+ * lower bound up to the same width. A bound whose magnitude exceeds the largest double is infinite,
+ * with its sign.
  *
  * Order. The swapped pair has the same bounds, the negated direction, and the points and frames
  * exchanged. If two placements are equal in all numbers, both orders are the same pair and have the
@@ -348,8 +349,7 @@ struct fmb_gap {
  *   certified  An end of a contact is at most 1e-12 T too far out. An end of a box is too far out
  *              by at most 1e-12 of the largest magnitude of a coordinate of any vertex of either
  *              body over the window. Where that is less than 2^-1074, the least double, an end is
- *              at most one double too far out. Ends that coincide with an end of a frame are exact,
- *              and so are small numbers in scenes of such numbers.
+ *              at most one double too far out.
  *
  * Both give the same bits for the swapped pair and on every machine; another version of the library
  * may give different bits within these limits. An end of a box whose magnitude exceeds the largest

@@ -816,7 +816,7 @@ all_pairs() {
 
 # bats test_tags=release
 @test "help fits 80 columns" {
-    for words in '' query watch record status replay log 'log info' 'log cut' 'log scene' 'log results' mesh; do
+    for words in '' query watch record status replay log 'log info' 'log cut' 'log scene' 'log results' mesh scene; do
         run "$FMB" $words --help
         ended 0
         [ "$(wc -L <<< "$output")" -le 80 ]

@@ -111,6 +111,11 @@ triangle() {
     said 'fmb: robot.urdf: hulls of 8 sides enclose its cylinders and spheres, and extend beyond them by at most 0.171575'
     shows '.bodies[0].vertices | [length, ([0,1,2][] as $axis | (map(.[$axis]) | max) - 1 | . > 0 and . < 1e-12)]'
     is '[32,true,true,true]'
+    link '<collision><geometry><sphere radius="5e-324"/></geometry></collision>'
+    scene robot.urdf --sides 4
+    said 'fmb: robot.urdf: hulls of 4 sides enclose its cylinders and spheres, and extend beyond them by at most 1.35152e-298'
+    shows '.bodies[0].vertices | map(.[0]) | max < 1.36e-298'
+    is true
 }
 
 # ---- Meshes ----------------------------------------------------------------------------------

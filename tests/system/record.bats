@@ -657,7 +657,7 @@ END
     [[ ${lines[0]} =~ ^"$log: 0 messages in 0."[0-9]" s, 0 bytes"$ ]]
     [ "${lines[6]}" = '  lost                           0' ]
     [ "${#lines[@]}" = 7 ]
-    [[ $stderr = "fmb: recording to $log"*$'\nfmb: no heartbeat on channel quiet-FMB_STATUS of '*" within 0.0 s
+    [[ $stderr = "fmb: recording to $log"*$'\nfmb: no heartbeat on channel quiet-FMB_STATUS of '*" within 0."?" s
 fmb: start one with 'fmbd "*"--prefix quiet- &'" ]]
     [ -f "$log" ]
     [ ! -s "$log" ]

@@ -372,7 +372,7 @@ static void scenes_again(void **state)
         meeting += check_steps(&world.scene, scene);
         free(memory);
     }
-    assert_true(meeting > 5 * scenes);
+    assert_true(meeting > scenes);
 }
 
 /* What fmb_scene_again() refuses leaves the scene as it was. */
