@@ -7,25 +7,12 @@
 #include "geometry_write.h"
 
 #include "answer_now.h"
+#include "replay_answerer.h"
 #include "wire.h"
-
-static struct answerer *answerer;
-static struct answer_job *job;
-static uint64_t drawn;
-
-static uint64_t draw(uint64_t below)
-{
-    drawn = drawn * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (drawn >> 33) % below;
-}
 
 static int set_up(void **state)
 {
-    const struct answerer_options options = {.frames = 2000, .server_id = 99, .secret = {1, 2}};
-    drawn = 1;
-    answerer = answerer_create(&options);
-    job = answer_job_create();
-    return answerer && job ? 0 : -1;
+    return open_answerer();
 }
 
 /* ---- Scenes ---- */
@@ -40,8 +27,7 @@ static int who[SIDES][BODIES]; /* which body a placement is */
 
 static int tear_down(void **state)
 {
-    answer_job_destroy(job);
-    answerer_destroy(answerer);
+    close_answerer();
     for (int side = 0; side < SIDES; side++) {
         body_names_close(names[side]);
         names[side] = NULL;

@@ -6,23 +6,13 @@
 #include "geometry_write.h"
 
 #include "answer_now.h"
+#include "replay_answerer.h"
 #include "wire.h"
 
 #include <float.h>
 #include <math.h>
 
 static const struct compare_options exact = {.tolerance = 0};
-
-static struct answerer *answerer;
-static struct answer_job *job;
-
-static uint64_t drawn;
-
-static uint64_t draw(uint64_t below)
-{
-    drawn = drawn * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (drawn >> 33) % below;
-}
 
 /* ---- What is reported ---- */
 
@@ -40,17 +30,12 @@ static void on_difference(void *user, const struct difference *difference)
 
 static int set_up(void **state)
 {
-    drawn = 1;
-    const struct answerer_options options = {.frames = 2000, .server_id = 99, .secret = {1, 2}};
-    answerer = answerer_create(&options);
-    job = answer_job_create();
-    return answerer && job ? 0 : -1;
+    return open_answerer();
 }
 
 static int tear_down(void **state)
 {
-    answer_job_destroy(job);
-    answerer_destroy(answerer);
+    close_answerer();
     return 0;
 }
 

@@ -2,14 +2,7 @@
 #include "unit.h"
 
 #include "listing.h"
-
-static uint64_t drawn = 1;
-
-static uint64_t draw(uint64_t below)
-{
-    drawn = drawn * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (drawn >> 33) % below;
-}
+#include "replay_draw.h"
 
 enum { PUT_MAX = 3000 };
 

@@ -4,6 +4,7 @@
 
 #include "geometry_write.h"
 #include "log_draft.h"
+#include "replay_draw.h"
 #include "replay_report.h"
 
 #include "answer_now.h"
@@ -12,14 +13,6 @@
 #include <malloc.h>
 #include <math.h>
 #include <unistd.h>
-
-static uint64_t drawn = 1;
-
-static uint64_t draw(uint64_t below)
-{
-    drawn = drawn * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (drawn >> 33) % below;
-}
 
 /* ---- A log, and its replay ---- */
 
