@@ -97,7 +97,7 @@ static inline bool query_by_handle(const struct query_placement *placement)
            !handle_is_none(&body->handle);
 }
 
-/* Fields that every result has, of which definitions have those to detail, and 0 after them. */
+/* Fields of every result. A definition sends them up to detail; the others are 0. */
 #define RESULT_FIELDS                                                                 \
     QUERY_HEADER; /* of the query */                                                  \
     int64_t server_id;                                                                \

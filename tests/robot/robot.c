@@ -1,5 +1,5 @@
-/* States of a robot a second: in process, as bodies, of which all or the links alone are new, and
- * as single frames; and in FCL. */
+/* States of a robot a second: in process, as bodies, where all are placed anew or only the links,
+ * and as single frames; and in FCL. */
 #include "fcl.h"
 #include "stopwatch.h"
 
@@ -189,7 +189,7 @@ static void report_bodies(struct in_process *in)
     static struct standing standing;
     standing = (struct standing){.in = *in};
     report(&(struct way){"bodies with poses", decide_bodies, in});
-    report(&(struct way){"bodies with poses, of which the links moved", decide_again, &standing});
+    report(&(struct way){"bodies with poses, only the links moved", decide_again, &standing});
 }
 
 int main(void)
