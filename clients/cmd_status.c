@@ -86,6 +86,7 @@ static void print_text(const struct fmb_client_heartbeat *status)
     number_print("  expired", status->expired);
     number_print("  refusals", status->refusals_unsent);
     number_print("malformed", status->malformed);
+    number_print("in fragments", status->fragmented);
     number_print("waiting", status->waiting);
     number_print("  at most", status->most_waiting);
     puts("bodies");

@@ -77,6 +77,7 @@ struct server {
     const char *malformed_reason;
     enum server_kind malformed_kind;
     uint32_t malformed_size;
+    uint64_t fragmented_reported; /* bus_counts.fragmented when it was reported last */
     /* The other service on the same channels that was reported last (0: none), and when. */
     int64_t other_id, other_reported_ns;
     bool can_begin; /* a job is free or can be stopped */
@@ -541,6 +542,7 @@ static void complete_status(const struct server *server, const struct bus_counts
     status->uptime_us = (clock_ns() - server->ready_ns) / 1000;
     status->receive_buffer = bus->receive_buffer;
     status->foreign = (int64_t) (bus->foreign + bus->malformed);
+    status->fragmented = (int64_t) bus->fragmented;
     status->dropped = (int64_t) bus->dropped;
     status->waiting = queue.datagrams;
     status->most_waiting = queue.datagrams_most;
@@ -556,6 +558,20 @@ static void complete_status(const struct server *server, const struct bus_counts
     status->compute_max_ns = server->compute_ns.max;
 }
 
+/* Reports queries that came in fragments since the last heartbeat on stderr. */
+static void report_fragmented(struct server *server, const struct bus_counts *bus)
+{
+    if (bus->fragmented == server->fragmented_reported || !stderr_ready())
+        return;
+    fprintf(stderr,
+            "fmbd: a query on %s came in fragments (%" PRIu32
+            " bytes) and is not answered: the "
+            "limit is %d bytes, divide the scene; %" PRIu64 " of them so far\n",
+            server->query_channel[bus->fragmented_listener], bus->fragmented_size,
+            (int) QUERY_BYTES_MAX, bus->fragmented);
+    server->fragmented_reported = bus->fragmented;
+}
+
 int server_heartbeat_due_ms(const struct server *server)
 {
     return clock_left_ms(server->heartbeat_due_ns);
@@ -569,6 +585,7 @@ void server_heartbeat(struct server *server, const struct bus_counts *bus)
     const size_t size = wire_write_status(&status, bytes);
     server->publish(server->user, server->result_channel[SERVER_STATUS], bytes, size);
     report_malformed(server);
+    report_fragmented(server, bus);
     server->heartbeat_due_ns = clock_ns() + heartbeat_ns;
 }
 

@@ -97,8 +97,9 @@ void server_resume(struct server *server);
 /* Milliseconds until the heartbeat is due, rounded up; 0: now. */
 int server_heartbeat_due_ms(const struct server *server);
 
-/* Publishes the heartbeat, and reports malformed messages that have not been reported yet on
- * stderr. On input: counts of the bus. */
+/* Publishes the heartbeat, and reports malformed messages and queries in fragments that have not
+ * been reported yet on stderr. On input: counts of the bus, whose listeners are the kinds of
+ * messages. */
 void server_heartbeat(struct server *server, const struct bus_counts *bus);
 
 #endif

@@ -20,10 +20,12 @@ enum {
     DATAGRAM_MAX = 65507, /* UDP's limit over IPv4 */
     BUFFER_SIZE = 65536,
     MAGIC_SIZE = 4,
-    HEADER_SIZE = 8 /* magic number, sequence number */
+    HEADER_SIZE = 8,          /* magic number, sequence number */
+    FRAGMENT_HEADER_SIZE = 20 /* these, size of the message, offset, number, count of fragments */
 };
 
 static const char short_magic[MAGIC_SIZE] = {'L', 'C', '0', '2'};
+static const char fragment_magic[MAGIC_SIZE] = {'L', 'C', '0', '3'};
 
 /* Values of bus.spin_until other than a time. */
 enum { SPIN_NOT = 0, SPIN_FROM_NEXT_WAIT = -1 };
@@ -191,14 +193,15 @@ bool bus_listen(struct bus *bus, const char *channel, char why[BUS_WHY_MAX])
 
 /* ---- Receiving ---- */
 
-/* Finds channel and payload of a short datagram. An empty channel is malformed: no log can hold
- * it, and its payload could exceed BUS_PAYLOAD_MAX. */
-static bool parse_datagram(const unsigned char *bytes, size_t size, struct bus_message *out)
+/* Finds channel and payload of a datagram with this header. An empty channel is malformed: no log
+ * can hold it, and its payload could exceed BUS_PAYLOAD_MAX. */
+static bool parse_datagram(const unsigned char *bytes, size_t size, const char magic[MAGIC_SIZE],
+                           size_t header_size, struct bus_message *out)
 {
-    if (size < HEADER_SIZE || memcmp(bytes, short_magic, MAGIC_SIZE) != 0)
+    if (size < header_size || memcmp(bytes, magic, MAGIC_SIZE) != 0)
         return false;
-    const size_t remaining = size - HEADER_SIZE;
-    const unsigned char *channel = bytes + HEADER_SIZE;
+    const size_t remaining = size - header_size;
+    const unsigned char *channel = bytes + header_size;
     const unsigned char *end =
         memchr(channel, '\0', remaining < BUS_CHANNEL_MAX ? remaining : BUS_CHANNEL_MAX);
     if (!end || end == channel)
@@ -218,6 +221,26 @@ static int find_listener(const struct bus *bus, const char *channel)
     return -1;
 }
 
+/* Counts a datagram that is not a whole message. The first fragment of a message is the one that
+ * names its channel. */
+static void count_malformed(struct bus *bus, const unsigned char *bytes, size_t size)
+{
+    static const unsigned char first[6] = {0}; /* offset and number */
+    struct bus_message message;
+    int listener = -1;
+    if (parse_datagram(bytes, size, fragment_magic, FRAGMENT_HEADER_SIZE, &message) &&
+        memcmp(bytes + 12, first, sizeof first) == 0)
+        listener = find_listener(bus, message.channel);
+    if (listener < 0) {
+        bus->counts.malformed++;
+        return;
+    }
+    bus->counts.fragmented++;
+    bus->counts.fragmented_listener = listener;
+    bus->counts.fragmented_size = (uint32_t) bytes[8] << 24 | (uint32_t) bytes[9] << 16 |
+                                  (uint32_t) bytes[10] << 8 | bytes[11];
+}
+
 static void handle_datagram(struct bus *bus, const struct mmsghdr *datagram,
                             struct bus_message *message, bus_handler *handler, void *user)
 {
@@ -225,8 +248,9 @@ static void handle_datagram(struct bus *bus, const struct mmsghdr *datagram,
     const bool trimmed = bus->trims && datagram->msg_len == BUS_SOCKET_TRIMMED &&
                          memcmp(bytes, short_magic, MAGIC_SIZE) == 0;
     if (datagram->msg_hdr.msg_flags & MSG_TRUNC ||
-        (!trimmed && !parse_datagram(bytes, datagram->msg_len, message))) {
-        bus->counts.malformed++;
+        (!trimmed &&
+         !parse_datagram(bytes, datagram->msg_len, short_magic, HEADER_SIZE, message))) {
+        count_malformed(bus, bytes, datagram->msg_len);
         return;
     }
     message->listener = trimmed ? -1 : find_listener(bus, message->channel);

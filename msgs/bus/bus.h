@@ -88,8 +88,12 @@ struct bus_counts {
     uint64_t received;   /* messages given to the handler */
     uint64_t foreign;    /* messages on other channels, those that this bus publishes included */
     uint64_t malformed;  /* datagrams that are not a whole message: fragments, bad magic, ... */
+    uint64_t fragmented; /* first fragments of messages on channels that are listened to */
     uint64_t dropped;    /* datagrams that the kernel dropped because its buffer was full */
     long receive_buffer; /* bytes granted by the system, as SO_RCVBUF reports them */
+    /* The last message of these: its listener, and its size in bytes according to its header. */
+    int fragmented_listener;
+    uint32_t fragmented_size;
 };
 
 /* Counts since bus_listen(). dropped follows a 32-bit counter of the kernel: it is right if fewer

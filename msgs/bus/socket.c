@@ -86,18 +86,22 @@ uint32_t bus_socket_drops(int fd)
  * number of bytes to keep:
  *
  *     if the length is less than BUS_SOCKET_TRIM_FROM: return WHOLE
+ *     if the magic number is that of a fragment: return FRAGMENT
  *     for each channel: if the channel name, final 0 included, is equal: return WHOLE
  *     return TRIMMED
  */
 
 enum {
-    TRIMMED = 8 + BUS_SOCKET_TRIMMED, /* bytes kept, UDP header included */
-    NAME_AT = 8 + 8, /* offset of the channel name, after UDP header and LCM header */
-    WHOLE = 1 << 20, /* more bytes than any datagram has */
+    TRIMMED = 8 + BUS_SOCKET_TRIMMED,   /* bytes kept, UDP header included */
+    FRAGMENT = 8 + BUS_SOCKET_FRAGMENT, /* the same, of a fragment */
+    MAGIC_AT = 8,                       /* offset of the magic number, after the UDP header */
+    FRAGMENT_MAGIC = 0x4c433033,        /* "LC03" */
+    NAME_AT = MAGIC_AT + 8,             /* offset of the channel name of a whole message */
+    WHOLE = 1 << 20,                    /* more bytes than any datagram has */
     /* Instructions to compare a name: two for each word, two for each byte that remains, and a
      * return. */
     PER_CHANNEL_MAX = 2 * (BUS_CHANNEL_MAX / 4 + 3) + 1,
-    PROGRAM_MAX = 3 + BUS_LISTENERS_MAX * PER_CHANNEL_MAX + 1
+    PROGRAM_MAX = 6 + BUS_LISTENERS_MAX * PER_CHANNEL_MAX + 1
 };
 
 struct program {
@@ -142,6 +146,8 @@ void bus_socket_trim(int fd, const char *const channels[], int count)
     add(&program,
         (struct sock_filter) BPF_JUMP(BPF_JMP | BPF_JGE | BPF_K, BUS_SOCKET_TRIM_FROM, 1, 0));
     add(&program, (struct sock_filter) BPF_STMT(BPF_RET | BPF_K, WHOLE));
+    add_comparison(&program, BPF_W, MAGIC_AT, FRAGMENT_MAGIC, program.length + 3);
+    add(&program, (struct sock_filter) BPF_STMT(BPF_RET | BPF_K, FRAGMENT));
     for (int i = 0; i < count; i++)
         add_channel(&program, channels[i]);
     add(&program, (struct sock_filter) BPF_STMT(BPF_RET | BPF_K, TRIMMED));

@@ -22,8 +22,8 @@ int bus_socket_open(const struct bus_url *url, long *granted, char why[BUS_WHY_M
  * if the kernel does not report it (before Linux 4.12). */
 uint32_t bus_socket_drops(int fd);
 
-/* A socket filter that truncates large datagrams on other channels before the kernel copies them.
- * It leaves only LCM's header, without the channel name.
+/* A socket filter that truncates large datagrams on other channels, and large fragments, before the
+ * kernel copies them. It leaves only LCM's header; of a fragment, also the channel name.
  *
  * Every member of the group receives all results. Without the filter a client, and the service
  * itself, would copy up to 63 kB for each result of another client, and then drop it because of its
@@ -36,11 +36,12 @@ uint32_t bus_socket_drops(int fd);
 
 enum {
     BUS_SOCKET_TRIM_FROM = 1024, /* smaller datagrams, UDP header included, are received whole */
-    BUS_SOCKET_TRIMMED = 8       /* bytes received of a truncated datagram: LCM's header */
+    BUS_SOCKET_TRIMMED = 8,      /* bytes received of a truncated datagram: LCM's header */
+    BUS_SOCKET_FRAGMENT = 20 + BUS_CHANNEL_MAX /* the same, of a fragment */
 };
 
 /* Attaches the filter to a socket, in place of any other. Larger datagrams on channels other than
- * these are truncated to BUS_SOCKET_TRIMMED bytes.
+ * these are truncated to BUS_SOCKET_TRIMMED bytes, and fragments to BUS_SOCKET_FRAGMENT.
  * On input: count names, at most BUS_LISTENERS_MAX, of fewer than BUS_CHANNEL_MAX bytes each; they
  * are copied. Has no effect if the system refuses filters. */
 void bus_socket_trim(int fd, const char *const channels[], int count);

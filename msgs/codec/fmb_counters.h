@@ -14,6 +14,7 @@
     X(definitions)      \
     X(pairs)            \
     X(malformed)        \
+    X(fragmented)       \
     X(foreign)          \
     X(dropped)          \
     X(waiting)          \

@@ -1,7 +1,10 @@
 /* plain: a client over plain LCM, without libfmb-client: lcm-gen's types, and liblcm's receiver.
  *
  * Sends a pair query, then the largest scene query that is served (63,900 bytes), and prints the
- * verdict, and the counts of verdicts and handles. Exit code 0: both had their result. */
+ * verdict, and the counts of verdicts and handles. Exit code 0: both had their result.
+ *
+ * plain fragments: sends a scene query of 601 cubes, which LCM divides into fragments, and prints
+ * its bytes. Exit code 0: publish() reported no error. */
 #include <lcm/lcm.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -14,6 +17,7 @@
 
 /* A scene query of 86 bytes, 182 for each cube and 4 for each pair. */
 enum { CUBES = 349, PAIRS = 74, LARGEST = 86 + 182 * CUBES + 4 * PAIRS, TRIES = 20, WAIT_MS = 500 };
+enum { TOO_MANY = 601 };
 _Static_assert(LARGEST == 63900, "the largest query");
 
 static const int64_t client_id = 4711;
@@ -66,28 +70,40 @@ static void send_pair(lcm_t *lcm)
     fmb_msgs_pair_query_t_publish(lcm, "FMB_PAIR_QUERY", &query);
 }
 
-static void send_scene(lcm_t *lcm)
+static fmb_msgs_scene_query_t scene_of(int cubes)
 {
-    static double position[CUBES][3];
-    static fmb_msgs_placement_t placement[CUBES];
+    static double position[TOO_MANY][3];
+    static fmb_msgs_placement_t placement[TOO_MANY];
     static int16_t index[2 * PAIRS];
-    for (int i = 0; i < CUBES; i++) {
+    for (int i = 0; i < cubes; i++) {
         position[i][0] = 0.75 * i;
         placement[i] = cube_at(1 + i, position[i]);
     }
     for (int i = 0; i < 2 * PAIRS; i++)
         index[i] = (int16_t) (i / 2 + i % 2);
     static char label[] = "s";
-    const fmb_msgs_scene_query_t query = {.client_id = client_id,
-                                          .sequence_number = 1,
-                                          .label = label,
-                                          .which = FMB_MSGS_SCENE_QUERY_T_PAIRS_LISTED,
-                                          .num_placements = CUBES,
-                                          .placements = placement,
-                                          .num_indices = 2 * PAIRS,
-                                          .indices = index};
+    return (fmb_msgs_scene_query_t){.client_id = client_id,
+                                    .sequence_number = 1,
+                                    .label = label,
+                                    .which = FMB_MSGS_SCENE_QUERY_T_PAIRS_LISTED,
+                                    .num_placements = cubes,
+                                    .placements = placement,
+                                    .num_indices = 2 * PAIRS,
+                                    .indices = index};
+}
+
+static void send_scene(lcm_t *lcm)
+{
+    const fmb_msgs_scene_query_t query = scene_of(CUBES);
     if (fmb_msgs_scene_query_t_encoded_size(&query) == LARGEST)
         fmb_msgs_scene_query_t_publish(lcm, "FMB_SCENE_QUERY", &query);
+}
+
+static bool send_fragments(lcm_t *lcm)
+{
+    const fmb_msgs_scene_query_t query = scene_of(TOO_MANY);
+    printf("%d\n", fmb_msgs_scene_query_t_encoded_size(&query));
+    return fmb_msgs_scene_query_t_publish(lcm, "FMB_SCENE_QUERY", &query) == 0;
 }
 
 /* LCM loses datagrams: a query is sent until its result comes. */
@@ -101,12 +117,17 @@ static bool query(lcm_t *lcm, void (*send)(lcm_t *lcm), const bool *answered)
     return *answered;
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     bool pair = false, scene = false;
     lcm_t *lcm = lcm_create(NULL);
     if (!lcm)
         return 1;
+    if (argc == 2 && strcmp(argv[1], "fragments") == 0) {
+        const bool sent = send_fragments(lcm);
+        lcm_destroy(lcm);
+        return sent ? 0 : 1;
+    }
     fmb_msgs_pair_result_t_subscribe(lcm, "FMB_PAIR_RESULT", on_pair, &pair);
     fmb_msgs_scene_result_t_subscribe(lcm, "FMB_SCENE_RESULT", on_scene, &scene);
     const bool answered = query(lcm, send_pair, &pair) && query(lcm, send_scene, &scene);

@@ -323,6 +323,22 @@ grid_scenes() {
     stop_fmbd
 }
 
+@test "a query in fragments is counted, reported once a second, and not answered" {
+    start_fmbd
+    begin=$SECONDS
+    for _ in 1 2 3 4 5; do bytes=$("$TOOLS/plain" fragments); done
+    "$TOOLS/crash-liblcm" wrap FMB_PAIR_QUERY
+    "$TOOLS/crash-liblcm" wrap FMB_PAIR_RESULT
+    "$FMB" status --json > "$BATS_TEST_TMPDIR/status"
+    jq -e '.fragmented == 6 and .received == 0 and .malformed == 0' "$BATS_TEST_TMPDIR/status"
+    "$TOOLS/plain" fragments
+    [ "$(status_of fragmented)" = 7 ]
+    grep -q "^fmbd: a query on FMB_SCENE_QUERY came in fragments ($bytes bytes) .* 63900 bytes, divide the scene; 7 " "$fmbd_log"
+    [ "$(grep -c 'came in fragments' "$fmbd_log")" -le $((SECONDS - begin + 2)) ]
+    random_scene 2 3 | "$FMB" query > /dev/null
+    stop_fmbd
+}
+
 # bats test_tags=release
 @test "prefixes keep two services apart" {
     start_fmbd --prefix ONE_

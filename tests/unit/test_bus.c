@@ -453,11 +453,14 @@ static void malformed_datagrams_are_counted_and_harmless(void **state)
         {BYTES("lc02\0\0\0\1C\0payload")},
         {BYTES("\0\0\0\0\0\0\0\1C\0payload")},
         /* LC03, sequence number, size, offset, fragment, fragments */
-        {BYTES("LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\1C\0abcd")},
-        {BYTES("LC03\0\0\0\2\0\0\1\0\0\0\0\0\0\0\0\2C\0abcd")},
+        {BYTES("LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\1\0\2C\0abcd")},
+        {BYTES("LC03\0\0\0\2\0\0\1\0\0\0\0\1\0\0\0\2C\0abcd")},
+        {BYTES("LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\1")},
+        {BYTES("LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\1\0abcd")},
+        {BYTES("LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\1CHANNEL")},
+        {BYTES("LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\1n" LONG_63 "\0abcd")},
         {BYTES("LC03\0\0\0\2\0\0\1\0\xff\xff\xff\xf0\0\1\0\2"
                "0123456789abcdef0123456789abcdef")},
-        {BYTES("LC03\0\0\0\3\0\0\1\0\0\0\0\0\0\0\0\2C\0abcd")},
         {BYTES("LC03\0\0\0\3")},
     };
     enum { COUNT = COUNT(malformed) };
@@ -480,6 +483,51 @@ static void malformed_datagrams_are_counted_and_harmless(void **state)
     expect_message(bus, "C", "", 0);
     assert_int_equal(bus_counts(bus).malformed, COUNT);
     bus_close(bus);
+    close(sender);
+}
+
+/* A fragment of this message, as large as LCM makes them; 20 bytes of header, and the name. */
+static void send_fragment(int fd, const char *channel, uint32_t message_size, bool first)
+{
+    unsigned char bytes[20 + 65487] = "LC03";
+    for (int i = 0; i < 4; i++)
+        bytes[8 + i] = (unsigned char) (message_size >> (24 - 8 * i));
+    bytes[17] = !first;
+    bytes[19] = 2;
+    strcpy((char *) bytes + 20, channel);
+    send_raw(fd, GROUP, bytes, sizeof bytes);
+}
+
+static void first_fragments_of_listened_channels_are_counted(void **state)
+{
+    static const char *const names[] = {"A", "CHANNEL", LONG_63};
+    static const uint32_t sizes[] = {0, 80619, UINT32_MAX};
+    const int sender = open_sender();
+    for (int every = 0; every < 2; every++) {
+        struct bus *bus = open_bus("");
+        for (size_t i = 0; i < COUNT(names); i++)
+            listen_to(bus, names[i]);
+        if (every)
+            listen_to(bus, NULL);
+        for (int i = 0; i < 3; i++) {
+            send_fragment(sender, names[i], sizes[i], true);
+            receive_datagrams(bus, 1);
+            assert_int_equal(bus_counts(bus).fragmented, i + 1);
+            assert_int_equal(bus_counts(bus).fragmented_listener, i);
+            assert_int_equal(bus_counts(bus).fragmented_size, sizes[i]);
+        }
+        send_fragment(sender, names[0], 1, false);
+        send_fragment(sender, "CHANNEL2", 1, true);
+        receive_datagrams(bus, 2);
+        assert_int_equal(bus_counts(bus).fragmented, every ? 4 : 3);
+        assert_int_equal(bus_counts(bus).malformed, every ? 1 : 2);
+        assert_int_equal(bus_counts(bus).received, 0);
+        /* No more of a fragment is copied than header and name, unless all channels are received.
+         */
+        send_fragment(sender, names[1], 80619, true);
+        assert_int_equal(receive_raw(bus), every ? 20 + 65487 : 20 + BUS_CHANNEL_MAX);
+        bus_close(bus);
+    }
     close(sender);
 }
 
@@ -886,6 +934,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(large_messages_are_whole_on_every_listened_channel),
         cmocka_unit_test(large_datagrams_on_other_channels_are_truncated),
         cmocka_unit_test(malformed_datagrams_are_counted_and_harmless),
+        cmocka_unit_test(first_fragments_of_listened_channels_are_counted),
         cmocka_unit_test(the_group_is_joined_until_the_bus_is_closed),
         cmocka_unit_test(a_socket_that_fails_is_reported),
         cmocka_unit_test(unicast_does_not_arrive),
