@@ -310,13 +310,14 @@ build/page/page.html: $(template)page.html $(template)page.css $(filter $(templa
 $(O)/clients/page/page.o: build/page/page.html
 $(O)/clients/page/page.o: flags += -DPAGE_FILE='"build/page/page.html"'
 
-# The picture of README.md, by chromium.
+# The picture of README.md, by chromium. A path has other letters than an address.
+url = $(subst ?,%3F,$(subst #,%23,$(subst $() ,%20,$(subst %,%25,$1))))
 .PHONY: picture
 picture: $(B)/fmb
 	$(B)/fmb query --local --html build/table.html clients/demo/table.json > build/table.said
 	chromium --headless --no-sandbox --enable-unsafe-swiftshader --use-angle=swiftshader --hide-scrollbars \
 		--window-size=1100,620 --virtual-time-budget=3000 --screenshot=clients/demo/table.png \
-		"file://$(CURDIR)/build/table.html#t=1.95"
+		"file://$(call url,$(CURDIR))/build/table.html#t=1.95"
 
 # ---- The manual: what --help prints ----
 
@@ -350,11 +351,11 @@ examples: $(E)/lua/fmb_msgs/init.lua
 
 # Each begins afresh: a type that is gone would stay.
 $(E)/lua/fmb_msgs/init.lua: $(message_files) Makefile
-	@rm -rf $(E)/lua
+	@rm -rf build/examples/lua
 	@mkdir -p $(E)/lua
 	$(call say,LCM,$(E)/lua) lcm-gen -l --lpath $(E)/lua $(message_files)
 $(E)/java/PosedPair.class: clients/examples/PosedPair.java tests/system/Largest.java $(message_files) Makefile
-	@rm -rf $(E)/java
+	@rm -rf build/examples/java
 	@mkdir -p $(E)/java
 	$(call say,LCM,$(E)/java) lcm-gen -j --jpath $(E)/java $(message_files)
 	$(call say,JAVAC,$@) javac -Xlint:all,-cast,-rawtypes -cp $(lcm_jar):$(E)/java -d $(E)/java $(filter %.java,$^)
@@ -434,7 +435,7 @@ uninstall:
 
 .PHONY: deb deb-test
 deb:
-	.debian/build.sh $(VERSION) $(CURDIR)/build/deb
+	.debian/build.sh $(VERSION)
 deb-test: deb programs
 	FMB_BUILD=$(B) bats --tap tests/deb/deb.bats
 

@@ -1,16 +1,16 @@
 #!/bin/sh
-# build.sh VERSION FOLDER: builds the packages of Debian into FOLDER, in a copy of the tree, whose
-# recipe is this folder. 'make deps-deb' installs what it needs.
+# build.sh VERSION: builds the packages of Debian into build/deb, in a copy of the tree, whose recipe is
+# this folder. 'make deps-deb' installs what it needs.
 set -eu
 
-version=$1 folder=$2
-copy=$folder/fmb-$version
+version=$1
+copy=build/deb/fmb-$version
 cd "$(dirname "$0")/.."
 for tool in dh lintian; do
     command -v $tool > /dev/null || { echo "make deb: no $tool here; 'make deps-deb' installs it" >&2; exit 2; }
 done
 
-rm -rf "$folder"
+rm -rf build/deb
 mkdir -p "$copy"
 tar --exclude=./build --exclude=./.git -c . | tar -x -C "$copy"
 mv "$copy/.debian" "$copy/debian"

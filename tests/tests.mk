@@ -203,12 +203,12 @@ $(capped_programs): $(O)/capped/$$(lastword $$(subst -, ,$$@)).o $(product) $(en
 
 # Its libraries are unpacked into a folder of the build: installed, some would replace this machine's.
 arm := aarch64-linux-gnu
-arm_root := $(CURDIR)/build/aarch64
+arm_root := build/aarch64
 arm_libraries := $(arm_root)/usr/lib/$(arm)
 arm_includes := $(addprefix $(arm_root)/usr/include/,. $(arm))
 arm_build := build/release-$(arm)-gcc
 arm_programs := $(arm_build)/fmb $(arm_build)/logs/generate
-unpack_deps-aarch64 := tests/unpack_aarch64.sh $(arm_root)
+unpack_deps-aarch64 := tests/unpack_aarch64.sh
 .PHONY: aarch64
 aarch64:
 	@command -v $(arm)-gcc qemu-aarch64 > /dev/null && [ -d $(arm_libraries) ] || { \

@@ -1,10 +1,11 @@
 #!/bin/sh
-# unpack_aarch64.sh FOLDER: unpacks the libraries of AArch64 that fmb is linked with into FOLDER. They
-# come from where this machine's packages come from; apt's files of that architecture stay in FOLDER
-# too, and nothing is installed. Needs no root.
+# unpack_aarch64.sh: unpacks the libraries of AArch64 that fmb is linked with into build/aarch64. They
+# come from where this machine's packages come from; apt's files of that architecture stay there too,
+# and nothing is installed. Needs no root.
 set -eu
 
-root=$1 apt=$1/apt
+cd "$(dirname "$0")/.."
+root=$PWD/build/aarch64 apt=$PWD/build/aarch64/apt
 [ ! -d "$root/usr" ] || exit 0
 libraries='liblcm1|libcjson1|libexpat1|libgmp10|libglib2.0-0|libpcre2-8-0|libseccomp2|zlib1g'
 headers='liblcm-dev|libcjson-dev|libexpat1-dev|libgmp-dev|libglib2.0-dev|libseccomp-dev|zlib1g-dev'

@@ -25,7 +25,7 @@ pages() {
     done
 }
 
-rm -rf "$folder"
 mkdir -p "$folder"
+rm -f "$folder/fmb.1" "$folder"/fmb-*.1 "$folder/fmbd.8"
 pages 1 '' fmb
 pages 8 '' fmbd
