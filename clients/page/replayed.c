@@ -22,7 +22,7 @@ static bool next_of_pair(struct replayed_pairs *pairs, struct replayed_pair *out
     pairs->pair_given = true;
     out->a = 0;
     out->b = 1;
-    out->then = pairs->replayed->match ? no_answer : side_of_pair(pairs->replayed->then);
+    out->then = pairs->replayed->change ? no_answer : side_of_pair(pairs->replayed->then);
     out->now = side_of_pair(pairs->replayed->now);
     return true;
 }
@@ -38,7 +38,7 @@ static int32_t listed_count(const struct scene_query *query)
 
 static bool has_verdict(const struct replayed_place *place)
 {
-    return place->result && place->at.verdict < place->result->verdict_count;
+    return place->result && place->verdict < place->result->verdict_count;
 }
 
 /* Returns the next answer of the result, and advances the position. */
@@ -46,7 +46,7 @@ static struct replayed_side take(struct replayed_place *place)
 {
     const struct scene_result *result = place->result;
     struct replayed_side side = {.answered = true};
-    wire_scene_answer(result, place->at.verdict++, &place->at.contact, &side.answer);
+    wire_scene_answer(result, place->verdict++, &place->contact, &side.answer);
     side.dim = side.answer.has_box || side.answer.has_gap ? result->dim : 0;
     return side;
 }
@@ -54,8 +54,8 @@ static struct replayed_side take(struct replayed_place *place)
 static bool next_listed(struct replayed_pairs *pairs, struct replayed_pair *out)
 {
     const struct scene_query *query = &pairs->replayed->query->scene;
-    const int32_t done = pairs->then.at.verdict > pairs->now.at.verdict ? pairs->then.at.verdict
-                                                                        : pairs->now.at.verdict;
+    const int32_t done =
+        pairs->then.verdict > pairs->now.verdict ? pairs->then.verdict : pairs->now.verdict;
     if (query->first_pair < 0 || query->first_pair >= listed_count(query) - done ||
         !(has_verdict(&pairs->then) || has_verdict(&pairs->now)))
         return false;
@@ -71,7 +71,7 @@ static bool comes_before(const struct replayed_place *place, bool found, unsigne
 {
     if (!has_verdict(place) || !place->result->names_pairs)
         return false;
-    const unsigned *pair = place->result->pair[place->at.verdict];
+    const unsigned *pair = place->result->pair[place->verdict];
     return !found || pair[0] < a || (pair[0] == a && pair[1] < b);
 }
 
@@ -82,8 +82,7 @@ static struct replayed_side side_of_named(const struct scene_query *query,
     if (!place->result)
         return side;
     if (has_verdict(place) && place->result->names_pairs &&
-        place->result->pair[place->at.verdict][0] == a &&
-        place->result->pair[place->at.verdict][1] == b)
+        place->result->pair[place->verdict][0] == a && place->result->pair[place->verdict][1] == b)
         return take(place);
     const int64_t number = query_pair_number(query, a, b);
     side.answered = number >= query->first_pair && number < place->result->end_pair;
@@ -98,8 +97,8 @@ static bool next_named(struct replayed_pairs *pairs, struct replayed_pair *out)
     for (int i = 0; i < 2; i++) {
         if (!comes_before(places[i], found, out->a, out->b))
             continue;
-        out->a = places[i]->result->pair[places[i]->at.verdict][0];
-        out->b = places[i]->result->pair[places[i]->at.verdict][1];
+        out->a = places[i]->result->pair[places[i]->verdict][0];
+        out->b = places[i]->result->pair[places[i]->verdict][1];
         found = true;
     }
     if (!found)
@@ -110,62 +109,23 @@ static bool next_named(struct replayed_pairs *pairs, struct replayed_pair *out)
     return true;
 }
 
-/* ---- A scene of other bodies or pairs ---------------------------------------------------------
- */
-
-static struct replayed_side side_at(const struct scene_result *result, struct replayed_at at)
-{
-    struct replayed_place place = {result, at};
-    if (at.verdict >= 0)
-        return take(&place);
-    return at.verdict == REPLAYED_NOT_NAMED
-               ? (struct replayed_side){.answered = true, .answer.verdict = FMB_SEPARATED}
-               : no_answer;
-}
-
-/* The gap of (b, a) as that of (a, b). Zeros stay positive. */
-static void swap_gap(struct fmb_gap *gap)
-{
-    const struct fmb_gap old = *gap;
-    for (int i = 0; i < FMB_DIM_MAX; i++)
-        gap->direction[i] = 0 - old.direction[i];
-    for (int f = 0; f < 2; f++) {
-        memcpy(gap->witness[f], old.witness[1 - f], sizeof gap->witness[f]);
-        gap->frame[f] = old.frame[1 - f];
-    }
-}
-
-static bool next_matched(struct replayed_pairs *pairs, struct replayed_pair *out)
-{
-    const struct replayed_match *match = pairs->replayed->match;
-    if (pairs->next == match->count)
-        return false;
-    const int32_t i = pairs->next++;
-    out->a = match->pair[i].a;
-    out->b = match->pair[i].b;
-    out->then = side_at(pairs->then.result, match->pair[i].then);
-    out->now = side_at(pairs->now.result, match->pair[i].now);
-    if (match->pair[i].swapped && out->then.answer.has_gap)
-        swap_gap(&out->then.answer.gap);
-    return true;
-}
-
 /* ---- Either ---------------------------------------------------------------------------------- */
 
 static struct replayed_place begin(const struct replayed *replayed,
                                    const struct logged_result *result)
 {
-    const bool scene =
-        result && result->kind == LOG_SCENE_QUERY && result->scene.status == FMB_OK &&
-        (replayed->match || logged_result_fits(&replayed->query->scene, &result->scene));
+    const bool scene = result && result->kind == LOG_SCENE_QUERY &&
+                       result->scene.status == FMB_OK &&
+                       logged_result_fits(&replayed->query->scene, &result->scene);
     return (struct replayed_place){.result = scene ? &result->scene : NULL};
 }
 
 void replayed_pairs_begin(const struct replayed *replayed, struct replayed_pairs *out)
 {
-    *out = (struct replayed_pairs){.replayed = replayed,
-                                   .then = begin(replayed, replayed->then),
-                                   .now = begin(replayed, replayed->now)};
+    *out =
+        (struct replayed_pairs){.replayed = replayed,
+                                .then = begin(replayed, replayed->change ? NULL : replayed->then),
+                                .now = begin(replayed, replayed->now)};
 }
 
 bool replayed_pairs_next(struct replayed_pairs *pairs, struct replayed_pair *out)
@@ -173,8 +133,6 @@ bool replayed_pairs_next(struct replayed_pairs *pairs, struct replayed_pair *out
     const struct logged_query *query = pairs->replayed->query;
     if (query->kind == LOG_PAIR_QUERY)
         return next_of_pair(pairs, out);
-    if (pairs->replayed->match)
-        return next_matched(pairs, out);
     return query->scene.which == FMB_PAIRS_LISTED ? next_listed(pairs, out)
                                                   : next_named(pairs, out);
 }

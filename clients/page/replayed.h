@@ -17,25 +17,6 @@ enum replay_outcome {
     REPLAY_OUTCOMES
 };
 
-/* A pair in one of two results. */
-enum { REPLAYED_NOT_ANSWERED = -2, REPLAYED_NOT_NAMED = -1 /* separated */ };
-struct replayed_at {
-    int32_t verdict; /* its index in the result, or one of the above */
-    int32_t contact; /* that of its times and box, if it has some */
-};
-
-/* How the pairs of a recorded result to another query correspond to those of the query. */
-struct replayed_match {
-    char detail[200]; /* bodies and pairs that only one query has, for people; "": none */
-    bool fits;        /* each result is one to its query */
-    int32_t count;
-    struct {
-        unsigned a, b; /* indices of the query */
-        bool swapped;  /* the recorded pair is (b, a) */
-        struct replayed_at then, now;
-    } pair[2 * QUERY_VERDICTS_MAX]; /* [count], those that a result names, in order */
-};
-
 struct replayed {
     const char *log;      /* path of the log */
     int64_t event_number; /* of the query */
@@ -47,8 +28,9 @@ struct replayed {
     const struct logged_query *query;
     const struct logged_result *now, *then;
     const struct logged_query *then_query; /* of then; NULL: query, or it is not known */
-    /* NULL: then is a result to this query, or one with the same bodies and pairs. */
-    const struct replayed_match *match;
+    /* How the scene of then_query differs from that of query: then no pair of one is a pair of the
+     * other. NULL: it does not, or then_query is not known. */
+    const char *change;
     /* then is paired with the query by its order alone, and its own query is not known. */
     bool by_order;
     const char *note; /* how the scenes differ; NULL: they do not */
@@ -71,19 +53,18 @@ struct replayed_pair {
 /* Position of an iteration in one of the results. */
 struct replayed_place {
     const struct scene_result *result; /* NULL: none, or it answers nothing */
-    struct replayed_at at;             /* the next ones */
+    int32_t verdict, contact; /* indices of the next verdict, and of the next times and box */
 };
 
 struct replayed_pairs {
     const struct replayed *replayed; /* not owned */
     bool pair_given;
-    int32_t next; /* of the match */
     struct replayed_place then, now;
 };
 
 /* Begins an iteration: over the pair of a pair query; over listed pairs that a result answers; over
  * pairs of all or across that a result names, since all others are separated. A result that is none
- * to this query answers nothing. */
+ * to this query, or to another scene, answers nothing. */
 void replayed_pairs_begin(const struct replayed *replayed, struct replayed_pairs *out);
 
 /* Returns true and the next pair, or false after the last one. Pairs come in the order of the

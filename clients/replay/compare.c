@@ -229,10 +229,9 @@ static bool scenes_differ(const struct replayed *replayed, char *out, size_t siz
 {
     const struct scene_query *query = &replayed->query->scene;
     const struct scene_result *then = &replayed->then->scene, *now = &replayed->now->scene;
-    const struct replayed_match *match = replayed->match;
     *out = 0;
-    if (match && *match->detail) {
-        snprintf(out, size, "%s", match->detail);
+    if (replayed->change) {
+        snprintf(out, size, "%s", replayed->change);
     } else if (replayed->query->kind == LOG_PAIR_QUERY) {
         const int64_t *a = replayed->then->pair.body_id, *b = replayed->now->pair.body_id;
         if (replayed->by_order && (a[0] != b[0] || a[1] != b[1]))
@@ -245,8 +244,7 @@ static bool scenes_differ(const struct replayed *replayed, char *out, size_t siz
             snprintf(out, size, "the recording answers %" PRId32 " pairs, the query has %" PRId64,
                      then->end_pair - query->first_pair,
                      query_pair_count(query) - query->first_pair);
-        else if (match ? !match->fits
-                       : !logged_result_fits(query, then) || !logged_result_fits(query, now))
+        else if (!logged_result_fits(query, then) || !logged_result_fits(query, now))
             snprintf(out, size, "a result is of other pairs than its query");
     }
     return *out;
@@ -280,17 +278,14 @@ enum replay_outcome compare_results(const struct compare_options *options,
     char detail[COMPARE_DETAIL_MAX];
     if (logged_status_is_transient(then) || logged_status_is_transient(now))
         return transient_outcome(then, now);
-    const bool differ = scenes_differ(replayed, detail, sizeof detail);
-    if (differ)
+    if (scenes_differ(replayed, detail, sizeof detail)) {
         sink(user, &(struct difference){
                        .kind = DIFFERENT_SCENE, .whole = true, .dim = 3, .detail = detail});
-    if (differ && !replayed->match)
         return REPLAY_DIFFERENT;
-    const enum replay_outcome outcome = replayed->query->kind == LOG_SCENE_QUERY
-                                            ? compare_scenes(options, replayed, sink, user)
-                                        : differ ? REPLAY_DIFFERENT
-                                                 : compare_answers(options, replayed, sink, user);
-    return differ ? REPLAY_DIFFERENT : outcome;
+    }
+    return replayed->query->kind == LOG_SCENE_QUERY
+               ? compare_scenes(options, replayed, sink, user)
+               : compare_answers(options, replayed, sink, user);
 }
 
 /* ---- Encoded results ----

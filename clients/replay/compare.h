@@ -4,14 +4,14 @@
  * certificates of all pairs that both answer: bit for bit, or within a tolerance. The service,
  * times and handles are not compared. The result of a scene may answer fewer pairs than requested
  * (end_pair): pairs that only one of the two answers are not compared. If the recorded result is to
- * another query (align.h), bodies and pairs that only one query has are one difference, and the
- * others are compared. No shared state. */
+ * a query of another scene (scene_change.h), that is the only difference. No shared state. */
 #ifndef COMPARE_H
 #define COMPARE_H
 
 #include "match.h"
 #include "query.h"
 #include "replayed.h"
+#include "scene_change.h"
 
 /* The first difference of a pair: everything listed before it is the same. */
 enum difference_kind {
@@ -21,14 +21,14 @@ enum difference_kind {
     DIFFERENT_BOX,
     DIFFERENT_GAP,
     DIFFERENT_CERTIFICATE,
-    DIFFERENT_SCENE, /* of the scene as a whole: bodies or pairs that only one side has */
+    DIFFERENT_SCENE, /* the two sides have other bodies or pairs, which are not compared */
     DIFFERENT_KINDS
 };
 
 extern const char *const difference_name[DIFFERENT_KINDS]; /* for example "verdict" */
 
 /* Most bytes of the detail of a difference, final 0 included. */
-enum { COMPARE_DETAIL_MAX = sizeof((struct replayed_match *) NULL)->detail };
+enum { COMPARE_DETAIL_MAX = SCENE_CHANGE_MAX };
 
 /* One of the two answers to a pair. */
 struct difference_side {

@@ -180,7 +180,6 @@ static bool open_replay(struct replay *replay)
         return false;
     replay->definitions = definitions_open();
     replay->golden_names = options->golden ? body_names_open() : NULL;
-    replay->align = align_open(replay->golden_names, options->names);
     replay->local = local_answerer_open(options->frames, replay->definitions);
     if (options->bus)
         replay->bus = answer_bus_open(options->bus, replay_on_answered, replay);
@@ -206,7 +205,6 @@ static void close_replay(struct replay *replay)
     g_queue_clear(&replay->again);
     match_clear(&replay->match);
     match_clear(&replay->golden_queries);
-    align_close(replay->align);
     body_names_close(replay->golden_names);
     input_close(&replay->rereader);
     input_close(&replay->golden_rereader);

@@ -182,21 +182,21 @@ static void compare_read(struct replay *replay, const struct match_item *query,
         .then_query = result->has_own ? &replay->golden_query : NULL,
         .by_order =
             !result->has_own && (result->by_order || result->key.utime != query->key.utime)};
-    if (!read_compared(replay, query))
-        return;
-    const bool aligned =
-        !result->has_own || align_queries(replay->align, &replay->golden_query, &replay->compared);
-    if (!is_unchanged(replay, result,
+    char change[SCENE_CHANGE_MAX];
+    if (!read_compared(replay, query) ||
+        !is_unchanged(replay, result,
                       logged_result_read(&replay->then, kind, replay->result_bytes, size)))
         return;
     read_new(replay, kind, answered);
     if (replay->options->compare.tolerance > 0)
         definitions_fill(replay->definitions, &replay->compared);
-    if (!aligned)
-        replayed.match = align_results(replay->align, &replay->then, &replay->now);
+    if (result->has_own &&
+        scene_change((struct scene_change_side){replay->golden_names, &replay->golden_query},
+                     (struct scene_change_side){replay->options->names, &replay->compared}, change))
+        replayed.change = change;
     replay->item = query;
     const enum replay_outcome outcome =
-        same_bytes && aligned
+        same_bytes && !replayed.change
             ? REPLAY_SAME
             : compare_results(&replay->options->compare, &replayed, on_difference, replay);
     count(replay, query, outcome, replay->then.head.compute_ns);

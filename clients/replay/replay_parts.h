@@ -7,11 +7,11 @@
 #ifndef REPLAY_PARTS_H
 #define REPLAY_PARTS_H
 
-#include "align.h"
 #include "definitions.h"
 #include "log_write.h"
 #include "match.h"
 #include "replay.h"
+#include "scene_change.h"
 
 #include <glib.h>
 
@@ -34,7 +34,6 @@ struct replay {
     struct match match;          /* queries, and the results to compare with */
     struct match golden_queries; /* of a golden log; while it is read, its results too */
     struct body_names *golden_names;
-    struct align *align;
 
     struct local_answerer *local;
     struct answer_bus *bus; /* NULL: this process answers */

@@ -5,8 +5,9 @@
 #include "compare.h"
 #include "geometry_write.h"
 
+#include "answer.h"
 #include "answer_now.h"
-#include "replay_answerer.h"
+#include "replay_draw.h"
 #include "wire.h"
 
 #include <float.h>
@@ -28,14 +29,22 @@ static void on_difference(void *user, const struct difference *difference)
     reported[reported_count++] = *difference;
 }
 
+static struct answerer *answerer;
+static struct answer_job *job;
+
 static int set_up(void **state)
 {
-    return open_answerer();
+    const struct answerer_options options = {.frames = 2000, .server_id = 99, .secret = {1, 2}};
+    drawn = 1;
+    answerer = answerer_create(&options);
+    job = answer_job_create();
+    return answerer && job ? 0 : -1;
 }
 
 static int tear_down(void **state)
 {
-    close_answerer();
+    answer_job_destroy(job);
+    answerer_destroy(answerer);
     return 0;
 }
 
