@@ -140,6 +140,22 @@ class Answers(unittest.TestCase):
                              [as_json(by_pair[single[a], single[b]]) for a, b in listed])
         self.assertEqual(seen, {fmb.SEPARATED, fmb.OVERLAPPING})
 
+    def test_each_part_is_the_same_whatever_else_is_wanted(self):
+        square = fmb.hull([[-2, -2], [2, -2], [2, 2], [-2, 2]])
+        kite = fmb.hull([[0, -3], [-1, -1], [1, 4], [-1, 1]])
+        tight = fmb.Scene([square, kite], positions=[[0, 0], [-1, 2]], velocities=[[0, 0], [-3, -1]])
+        for scene in tight, scene_of(random_scene(2, 8, 1))[0], scene_of(random_scene(3, 8, 2))[0]:
+            whole = [as_json(a) for a in scene.decide(1, client=self.client, **WANTED)]
+            self.assertGreater(len(whole), 0)
+            for wanted in itertools.product((False, True), repeat=3):
+                answers = scene.decide(1, client=self.client, **dict(zip(WANTED, wanted)))
+                left_out = {"contact", "box", "gap"}.difference(
+                    itertools.compress(("contact", "box", "gap"), wanted))
+                if "gap" in left_out:
+                    left_out.update(("direction", "witness", "frames"))
+                self.assertEqual([as_json(a) for a in answers],
+                                 [{k: v for k, v in a.items() if k not in left_out} for a in whole])
+
     def test_ways_to_name_pairs_agree(self):
         scene, pairs = scene_of(random_scene(3, 20, 9))
         listed = list(scene.decide(0.7, pairs=pairs, client=self.client, **WANTED))

@@ -7,15 +7,15 @@
 
 #include <math.h>
 
-/* Sets contact and box of an overlap that doubles prove. Returns false if they are not tight
- * enough. */
-static bool answer_in_doubles(const struct hull_pair *pair, unsigned want,
-                              const struct hull_simplex *simplex, struct fmb_answer *answer)
+/* Sets contact and box of an overlap that doubles prove, each if it is wanted and tight enough.
+ * Neither depends on whether the other is wanted. Returns those that are left to integers. */
+static unsigned answer_in_doubles(const struct hull_pair *pair, unsigned want,
+                                  const struct hull_simplex *simplex, struct fmb_answer *answer)
 {
-    answer->has_contact = want & FMB_WANT_TIMES;
-    answer->has_box = want & FMB_WANT_BOX;
-    return (!answer->has_contact || hull_contact(pair, simplex, answer->contact)) &&
-           (!answer->has_box || hull_box(pair, simplex, answer->box));
+    answer->has_contact = want & FMB_WANT_TIMES && hull_contact(pair, simplex, answer->contact);
+    answer->has_box = want & FMB_WANT_BOX && hull_box(pair, simplex, answer->box);
+    return want &
+           ~((answer->has_contact ? FMB_WANT_TIMES : 0u) | (answer->has_box ? FMB_WANT_BOX : 0u));
 }
 
 /* hull_decision_begin(). *nearest := the result of the search in doubles; *searched: whether there
@@ -26,24 +26,26 @@ static bool begin(const struct frame_pair *frames, unsigned want, enum hull_effo
 {
     struct hull_column first[FMB_DIM_MAX + 1];
     const struct hull_pair *pair = &out->pair;
+    unsigned left = want & (FMB_WANT_TIMES | FMB_WANT_BOX);
     out->swapped = hull_order(frames, &out->frames);
     hull_pair_set(&out->frames, &out->pair);
     out->exact = NULL;
     *searched = effort != HULL_EXACT && pair->usable;
     nearest->simplex.count = 0;
+    answer->has_contact = answer->has_box = false;
     answer->verdict =
         *searched
             ? hull_search(pair, want & FMB_WANT_GAP ? INFINITY : hull_separating_distance(pair),
                           nearest)
             : 0;
-    if (answer->verdict == FMB_SEPARATED ||
-        (answer->verdict == FMB_OVERLAPPING &&
-         answer_in_doubles(pair, want, &nearest->simplex, answer)))
+    if (answer->verdict == FMB_OVERLAPPING)
+        left = answer_in_doubles(pair, left, &nearest->simplex, answer);
+    if (answer->verdict == FMB_SEPARATED || (answer->verdict == FMB_OVERLAPPING && left == 0))
         return true;
     if (effort != HULL_QUICK) {
         for (unsigned i = 0; i < nearest->simplex.count; i++)
             first[i] = nearest->simplex.vertex[i].column;
-        out->exact = hull_exact_begin(pair, want, first, nearest->simplex.count);
+        out->exact = hull_exact_begin(pair, left, first, nearest->simplex.count);
     }
     return false;
 }

@@ -123,7 +123,8 @@ struct hull_decision {
 /* Begins the decision of a checked pair. want: as of fmb_decide(); the contact too only with
  * FMB_WANT_TIMES; the gap is not for this function. Returns whether it is complete, with *answer
  * set. Otherwise, of a quick one, it is for the exact method, and ends here; or
- * hull_decision_step() has to be called until it is complete. */
+ * hull_decision_step() has to be called until it is complete, with the same *answer, which has what
+ * doubles gave. */
 bool hull_decision_begin(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
                          struct hull_decision *out, struct fmb_answer *answer);
 

@@ -975,10 +975,9 @@ static void begin_target(struct hull_exact *e)
 /* Begins the next target from target on that is wanted. */
 static void next_target(struct hull_exact *e)
 {
-    if (e->target < TARGET_BOX && !e->pair->drifts)
+    if (e->target < TARGET_BOX && !(e->want & FMB_WANT_TIMES && e->pair->drifts))
         e->target = TARGET_BOX;
-    const bool box = e->want & FMB_WANT_BOX;
-    if (e->want == 0 || e->target >= TARGET_BOX + (box ? 2 * e->pair->dim : 0))
+    if (e->target >= TARGET_BOX + (e->want & FMB_WANT_BOX ? 2 * e->pair->dim : 0))
         finish(e, e->touching ? FMB_TOUCHING : FMB_OVERLAPPING);
     else
         begin_target(e);
@@ -1157,13 +1156,16 @@ struct hull_proof *hull_exact_proof(struct hull_exact *e)
 void hull_exact_end(struct hull_exact *e, struct fmb_answer *answer)
 {
     if (answer) {
+        const unsigned given = e->proof.verdict != FMB_SEPARATED ? e->want : 0;
         answer->verdict = e->proof.verdict;
-        answer->has_contact = e->proof.verdict != FMB_SEPARATED && e->want;
-        answer->has_box = e->proof.verdict != FMB_SEPARATED && e->want & FMB_WANT_BOX;
-        if (answer->has_contact)
+        if (given & FMB_WANT_TIMES) {
+            answer->has_contact = true;
             memcpy(answer->contact, e->contact, sizeof e->contact);
-        if (answer->has_box)
+        }
+        if (given & FMB_WANT_BOX) {
+            answer->has_box = true;
             memcpy(answer->box, e->box, sizeof e->box);
+        }
     }
     each(e, mpz_clear);
     memory_release(e, sizeof *e);
