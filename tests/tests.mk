@@ -29,7 +29,7 @@ see_tests/unit := $(call fmb,number frame filter article tree exact gap hull cer
 
 # ---- Programs of tests and measurements: the name, and the main file in tests/ ----
 
-test_programs := plain:system/plain fake-peer:system/fake_peer events:system/events crash-liblcm:system/crash_liblcm \
+test_programs := plain:system/plain busy:system/busy fake-peer:system/fake_peer events:system/events crash-liblcm:system/crash_liblcm \
 	edit-log:replay/edit_log logs/generate:logs/generate logs/describe-log:logs/describe_log \
 	mesh/make-mesh:mesh/make_mesh $(foreach s,load memory rate blast fair relay families,soak-$s:soak/$s)
 measures := validate:campaign/validate accuracy:campaign/accuracy checked:checked/checked \

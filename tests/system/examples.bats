@@ -1,35 +1,20 @@
-# Clients in other LCM languages (clients/examples/), and in C over plain LCM: what they print, also
-# on a bus with other clients.
+# The client in Java (clients/examples/), and one in C over plain LCM: what they print, also on a bus with
+# other clients.
 
 load service
 
-lua_is_there() {
-    command -v lua5.2 > /dev/null && lua5.2 -e 'require "lcm"' 2> /dev/null
+# The example is the same in all builds.
+need_java() {
+    command -v java > /dev/null && [ -f build/examples/java/PosedPair.class ] ||
+        skip "needs liblcm-java and default-jdk-headless"
 }
 
-java_is_there() {
-    command -v java > /dev/null && [ -f build/examples/java/PosedPair.class ]
+in_java() {
+    timeout 60 java -Djava.net.preferIPv4Stack=true -cp /usr/share/java/lcm.jar:build/examples/java "$@"
 }
 
-# need LANGUAGE: skips where it cannot run here. The examples are the same in all builds.
-need() {
-    case $1 in
-    lua) lua_is_there || skip "needs lua5.2 and liblcm-lua" ;;
-    java) java_is_there || skip "needs liblcm-java and default-jdk-headless" ;;
-    esac
-}
-
-in_lua() {
-    LUA_PATH='build/examples/lua/?.lua;;' timeout 60 lua5.2 "$@"
-}
-
-# posed_pair LANGUAGE: never longer than a minute.
 posed_pair() {
-    case $1 in
-    lua) in_lua clients/examples/posed_pair.lua ;;
-    java) timeout 60 java -Djava.net.preferIPv4Stack=true \
-        -cp /usr/share/java/lcm.jar:build/examples/java PosedPair 2> "$BATS_TEST_TMPDIR/said" ;;
-    esac
+    in_java PosedPair 2> "$BATS_TEST_TMPDIR/said"
 }
 
 # Records the queries on the bus, for queries().
@@ -54,46 +39,31 @@ queries_at_least() {
     [ "$(queries)" -ge "$1" ]
 }
 
-answers() {
-    need "$1"
+@test "Java: two posed bodies have their answer" {
+    need_java
     start_fmbd
-    [ "$(posed_pair "$1")" = overlapping ]
+    [ "$(posed_pair)" = overlapping ]
     [ "$(status_of received)" = 1 ]
     [ "$(status_of malformed)" = 0 ]
     stop_fmbd
 }
 
-@test "Lua: two posed bodies have their answer" {
-    answers lua
-}
-
-@test "Java: two posed bodies have their answer" {
-    answers java
-}
-
-@test "Lua: bodies are sent whole, then by the handles of the result" {
-    need lua
-    start_fmbd
-    [ "$(in_lua tests/system/handles.lua | tr '\t\n' ' ,')" = '0 2,0 3,unknown body,' ]
-    [ "$(status_of malformed)" = 0 ]
-    stop_fmbd
-}
-
-@test "C over plain LCM: a pair and the largest scene have their answers" {
+@test "C over plain LCM: a pair, whole and by handles, and the largest scene have their answers" {
     start_fmbd
     run "$TOOLS/plain"
     [ "$status" = 0 ]
     [ "$output" = "verdict 3, box 0.5 to 1
+verdict 3, box 0.5 to 1
+status 1
 status 0, 74 verdicts, 349 handles" ]
     [ "$(status_of malformed)" = 0 ]
     stop_fmbd
 }
 
 @test "Java: the largest scene and a page of definitions have their answers" {
-    need java
+    need_java
     start_fmbd
-    timeout 60 java -Djava.net.preferIPv4Stack=true \
-        -cp /usr/share/java/lcm.jar:build/examples/java Largest > "$BATS_TEST_TMPDIR/largest"
+    in_java Largest > "$BATS_TEST_TMPDIR/largest"
     [ "$(head -n 1 "$BATS_TEST_TMPDIR/largest")" = 'status 0, 74 verdicts, 349 handles' ]
     [ "$(tail -n 1 "$BATS_TEST_TMPDIR/largest")" = 'status 0, 349 bodies' ]
     [ "$(status_of malformed)" = 0 ]
@@ -102,14 +72,14 @@ status 0, 74 verdicts, 349 handles" ]
 
 # The service is stopped until the client has sent its query at least three times; then all results
 # come at once, among damaged ones.
-repeats() {
-    need "$1"
+@test "Java: repeats a query on a bus with damaged results" {
+    need_java
     start_log
     start_fmbd
     kill -STOP "$fmbd"
     local before client
     before=$(queries)
-    posed_pair "$1" > "$BATS_TEST_TMPDIR/answer" 3>&- &
+    posed_pair > "$BATS_TEST_TMPDIR/answer" 3>&- &
     client=$!
     started="$started $client"
     wait_until queries_at_least $((before + 4))
@@ -121,17 +91,9 @@ repeats() {
     stop_fmbd
 }
 
-@test "Lua: repeats a query on a bus with damaged results" {
-    repeats lua
-}
-
-@test "Java: repeats a query on a bus with damaged results" {
-    repeats java
-}
-
 # Another client queries without a pause, pairs that are separated.
-@test "in a flood of another client's results each gets its own answer" {
-    need lua
+@test "Java: in a flood of another client's results it gets its own answer" {
+    need_java
     start_fmbd
     while echo '{"dim":2,"bodies":[{"id":1,"shape":"box","size":[1,1]},{"id":2,"shape":"box","size":[1,1],"position":[9,0]}]}'; do :; done 2> /dev/null 3>&- |
         "$FMB" query --certificate > /dev/null 3>&- &
@@ -139,62 +101,32 @@ repeats() {
     started="$started $flood"
     flooded() { [ "$(status_of received)" -gt 1000 ]; }
     wait_until flooded
-    languages=lua
-    if java_is_there; then languages='lua java'; fi
-    for language in $languages; do
-        [ "$(posed_pair $language)" = overlapping ]
-    done
+    [ "$(posed_pair)" = overlapping ]
     # It was running to the end.
     kill $flood
     stop_fmbd
 }
 
-# A service that refuses the first query twice, then answers: tests/system/busy.lua.
-queries_later() {
-    need lua
-    need "$1"
-    LUA_PATH='build/examples/lua/?.lua;;' lua5.2 tests/system/busy.lua \
-        2 > "$BATS_TEST_TMPDIR/numbers" 3>&- &
+# A service that refuses the first query twice, then answers.
+@test "Java: queries a busy service again, later" {
+    need_java
+    "$TOOLS/busy" 2 > "$BATS_TEST_TMPDIR/numbers" 3>&- &
     started="${started-} $!"
-    [ "$(posed_pair "$1")" = separated ]
+    [ "$(posed_pair)" = separated ]
     [ "$(tr '\n' ' ' < "$BATS_TEST_TMPDIR/numbers")" = '0 busy 0 busy 0 ' ]
 }
 
-@test "Lua: queries a busy service again, later" {
-    queries_later lua
-}
-
-@test "Java: queries a busy service again, later" {
-    queries_later java
-}
-
-fails() {
-    need "$1"
-    run posed_pair "$1"
+@test "Java: a missing service is reported" {
+    need_java
+    run posed_pair
     [ "$status" = 1 ]
     [ "${lines[-1]}" = 'no fmbd answered' ]
 }
 
-@test "Lua: a missing service is reported" {
-    fails lua
-}
-
-@test "Java: a missing service is reported" {
-    fails java
-}
-
-other_bus() {
-    need "$1"
+@test "Java: the bus is that of LCM_DEFAULT_URL" {
+    need_java
     start_fmbd --lcm-url 'udpm://239.255.76.68:7700?ttl=0'
     export LCM_DEFAULT_URL='udpm://239.255.76.68:7700?ttl=0'
-    [ "$(posed_pair "$1")" = overlapping ]
+    [ "$(posed_pair)" = overlapping ]
     stop_fmbd
-}
-
-@test "Lua: the bus is that of LCM_DEFAULT_URL" {
-    other_bus lua
-}
-
-@test "Java: the bus is that of LCM_DEFAULT_URL" {
-    other_bus java
 }

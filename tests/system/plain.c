@@ -1,7 +1,9 @@
 /* plain: a client over plain LCM, without libfmb-client: lcm-gen's types, and liblcm's receiver.
  *
- * Sends a pair query, then the largest scene query that is served (63,900 bytes), and prints the
- * verdict, and the counts of verdicts and handles. Exit code 0: both had their result.
+ * Sends a pair query with whole bodies, the same by the handles of the result, and one by the
+ * handle of a body that no service holds; then the largest scene query that is served (63,900
+ * bytes). Prints statuses, verdicts and boxes, and the counts of verdicts and handles. Exit code 0:
+ * each had its result.
  *
  * plain fragments: sends a scene query of 601 cubes, which LCM divides into fragments, and prints
  * its bytes. Exit code 0: publish() reported no error. */
@@ -21,6 +23,14 @@ enum { TOO_MANY = 601 };
 _Static_assert(LARGEST == 63900, "the largest query");
 
 static const int64_t client_id = 4711;
+
+struct pair_answer {
+    bool answered;
+    int64_t sequence_number; /* of the query that it answers */
+    unsigned char handle[2][16];
+};
+
+static struct pair_answer pair;
 
 static fmb_msgs_placement_t cube_at(int64_t id, double *position)
 {
@@ -42,10 +52,19 @@ static void on_pair(const lcm_recv_buf_t *buffer, const char *channel,
 {
     (void) buffer;
     (void) channel;
-    if (result->client_id != client_id || *(bool *) user)
+    (void) user;
+    if (result->client_id != client_id || result->sequence_number != pair.sequence_number ||
+        pair.answered)
         return;
-    *(bool *) user = true;
-    printf("verdict %d, box %g to %g\n", result->verdict, result->box[0], result->box[3]);
+    pair.answered = true;
+    if (result->sequence_number == 0) {
+        memcpy(pair.handle[0], result->handle_a, sizeof pair.handle[0]);
+        memcpy(pair.handle[1], result->handle_b, sizeof pair.handle[1]);
+    }
+    if (result->status == FMB_MSGS_PAIR_RESULT_T_STATUS_OK)
+        printf("verdict %d, box %g to %g\n", result->verdict, result->box[0], result->box[3]);
+    else
+        printf("status %d\n", result->status);
 }
 
 static void on_scene(const lcm_recv_buf_t *buffer, const char *channel,
@@ -60,13 +79,20 @@ static void on_scene(const lcm_recv_buf_t *buffer, const char *channel,
            result->num_handle_bytes / 16);
 }
 
+/* Whole bodies in the first query, those of its handles in later ones. */
 static void send_pair(lcm_t *lcm)
 {
     static double position[2][3] = {{0, 0, 0}, {0.5, 0, 0}};
-    const fmb_msgs_pair_query_t query = {.client_id = client_id,
-                                         .want = FMB_MSGS_PAIR_QUERY_T_WANT_BOX,
-                                         .a = cube_at(1, position[0]),
-                                         .b = cube_at(2, position[1])};
+    fmb_msgs_pair_query_t query = {.client_id = client_id,
+                                   .sequence_number = pair.sequence_number,
+                                   .want = FMB_MSGS_PAIR_QUERY_T_WANT_BOX,
+                                   .a = cube_at(1, position[0]),
+                                   .b = cube_at(2, position[1])};
+    fmb_msgs_placement_t *placement[2] = {&query.a, &query.b};
+    for (int i = 0; i < 2 && pair.sequence_number > 0; i++) {
+        placement[i]->num_frames = placement[i]->num_numbers = 0;
+        memcpy(placement[i]->handle, pair.handle[i], sizeof pair.handle[i]);
+    }
     fmb_msgs_pair_query_t_publish(lcm, "FMB_PAIR_QUERY", &query);
 }
 
@@ -117,9 +143,22 @@ static bool query(lcm_t *lcm, void (*send)(lcm_t *lcm), const bool *answered)
     return *answered;
 }
 
+/* Whole, then by handles, then with one that is of no body. */
+static bool query_pairs(lcm_t *lcm)
+{
+    bool all = true;
+    for (int i = 0; i < 3 && all; i++) {
+        pair.answered = false;
+        pair.sequence_number = i;
+        pair.handle[1][0] ^= i == 2;
+        all = query(lcm, send_pair, &pair.answered);
+    }
+    return all;
+}
+
 int main(int argc, char **argv)
 {
-    bool pair = false, scene = false;
+    bool scene = false;
     lcm_t *lcm = lcm_create(NULL);
     if (!lcm)
         return 1;
@@ -128,9 +167,9 @@ int main(int argc, char **argv)
         lcm_destroy(lcm);
         return sent ? 0 : 1;
     }
-    fmb_msgs_pair_result_t_subscribe(lcm, "FMB_PAIR_RESULT", on_pair, &pair);
+    fmb_msgs_pair_result_t_subscribe(lcm, "FMB_PAIR_RESULT", on_pair, NULL);
     fmb_msgs_scene_result_t_subscribe(lcm, "FMB_SCENE_RESULT", on_scene, &scene);
-    const bool answered = query(lcm, send_pair, &pair) && query(lcm, send_scene, &scene);
+    const bool answered = query_pairs(lcm) && query(lcm, send_scene, &scene);
     lcm_destroy(lcm);
     return answered ? 0 : 1;
 }
