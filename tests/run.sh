@@ -30,7 +30,7 @@ slow="$slow cli/mesh.bats cli/log.bats cli/log_cut.bats cli/log_scene.bats syste
 slow="$slow system/python.bats system/bus.bats cli/page.bats cli/campaign.bats cli/bench.bats cli/report.bats"
 
 # A suite writes TAP; 77 means that it cannot run here.
-#   unit BUILD NAME | bats BUILD FILE | netns BUILD FILE | headers BUILD -
+#   unit BUILD NAME | bats BUILD FILE | netns BUILD FILE
 run_suite() {
     kind=$1 build=$2 what=$3
     export FMB_BUILD="$build" FMB_TOOLS="$release" CMOCKA_MESSAGE_OUTPUT=TAP
@@ -184,7 +184,7 @@ list_all() {
 rm -rf "$log"
 mkdir -p "$log"
 rm -rf $release/tests $asan/tests
-build PEERS=none format-check headers layers ${FMB_FAST:+fast-}tests
+build PEERS=none headers layers ${FMB_FAST:+fast-}tests
 if [ -z "${FMB_FAST-}" ]; then
     build MODE=asan programs unit-tests fuzzers replay-set
     [ ! -d build/aarch64/usr ] || build aarch64

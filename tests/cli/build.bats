@@ -76,3 +76,9 @@ make_arm() {
     grep -qx dpkg-buildpackage "$called"
     [ -f "$tree/build/deb"/fmb-*/debian/changelog ]
 }
+
+@test "the sources are formatted" {
+    run make -s format-check
+    [ "$status" = 0 ]
+    [ -z "$output" ] || skip "${output##*: }"
+}
