@@ -295,9 +295,10 @@ static int intersect(const struct mesh_options *options, const struct mesh *a, c
 int cmd_mesh(int argc, char **argv)
 {
     struct output_rules rules = {.force = false};
-    struct mesh_options options = {.duration = 1,
-                                   .ply = {.kind = OUTPUT_MESH, .rules = &rules},
-                                   .html = {.kind = OUTPUT_PAGE, .rules = &rules}};
+    struct mesh_options options = {
+        .duration = 1,
+        .ply = {.kind = OUTPUT_MESH, .rules = &rules},
+        .html = {.kind = OUTPUT_PAGE, .rules = &rules, .other = &options.ply}};
     const struct args_option own[] = {
         {"scale", ARGS_OTHER, options.placed, .take = take_scale},
         {"rotate", ARGS_OTHER, options.placed, .take = take_rotate},

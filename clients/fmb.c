@@ -1,7 +1,7 @@
 /* fmb: the command. Tables of its commands, and of those of fmb log; their help. */
 #include "args.h"
 #include "commands.h"
-#include "complain.h"
+#include "escape.h"
 #include "fmb.h"
 
 #include <stdbool.h>
@@ -75,7 +75,7 @@ static void print_help(const struct menu *menu, FILE *out)
 static int refuse(const struct menu *menu, const char *what, const char *word)
 {
     fprintf(stderr, "%s: unknown %s '", menu->name, what);
-    complain_text(word);
+    escape_text(stderr, word);
     fprintf(stderr, "'\nTry '%s --help'.\n", menu->name);
     return ARGS_USAGE;
 }

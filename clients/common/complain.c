@@ -7,46 +7,33 @@
 
 enum { COMPLAIN_MAX = 8192 }; /* bytes: twice the longest path */
 
-void complain_text(const char *text)
+static void print_line(const char *who, const char *place, const char *format, va_list list)
 {
-    escape(stderr, ESCAPE_TERMINAL, text, strlen(text));
-}
-
-static void print_line(const char *who, const char *line)
-{
-    fprintf(stderr, "%s: ", who);
-    complain_text(line);
+    char text[COMPLAIN_MAX];
+    vsnprintf(text, sizeof text, format, list);
+    fputs(who, stderr);
+    escape_text(stderr, place);
+    fputs(": ", stderr);
+    escape_text(stderr, text);
     putc('\n', stderr);
 }
 
 void complain(const char *format, ...)
 {
-    char text[COMPLAIN_MAX];
     va_list list;
     va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
+    print_line("fmb", "", format, list);
     va_end(list);
-    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"))
-        print_line("fmb", line);
 }
 
 void complain_as(const char *command, const char *format, va_list list)
 {
-    char text[COMPLAIN_MAX];
-    vsnprintf(text, sizeof text, format, list);
-    fputs("fmb ", stderr);
-    print_line(command, text);
+    print_line("fmb ", command, format, list);
 }
 
 void complain_at(const char *place, const char *format, va_list list)
 {
-    char text[COMPLAIN_MAX];
-    const int length = snprintf(text, sizeof text, "%s: ", place);
-    if (length >= 0 && (size_t) length < sizeof text)
-        vsnprintf(text + length, sizeof text - (size_t) length, format, list);
-    for (char *at = text; (at = strchr(at, '\n'));)
-        *at = ' ';
-    print_line("fmb", text);
+    print_line("fmb: ", place, format, list);
 }
 
 bool output_flush(void)

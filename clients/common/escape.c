@@ -7,6 +7,14 @@
 
 static const uint32_t replacement = 0xfffd;
 
+/* Whether a character would move the cursor, end the line or reorder what is around it: control
+ * characters, line separators, and the marks of bidirectional text. */
+static bool is_unsafe(uint32_t code)
+{
+    return utf8_is_control(code) || code == 0x61c || code == 0x200e || code == 0x200f ||
+           (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+}
+
 /* These functions return the replacement of a character; NULL: it is written as it is. In JSON it
  * is one or two units of UTF-16, unless it is printable ASCII. */
 static const char *json_of(uint32_t code, char text[16])
@@ -30,18 +38,17 @@ static const char *xml_of(uint32_t code)
     case '<': return "&lt;";
     case '>': return "&gt;";
     case '"': return "&quot;";
-    case '\n': return NULL;
     }
-    return utf8_is_control(code) || (code >= replacement && code <= 0xffff) ? "\xef\xbf\xbd" : NULL;
+    return is_unsafe(code) || (code >= replacement && code <= 0xffff) ? "\xef\xbf\xbd" : NULL;
 }
 
 static const char *terminal_of(uint32_t code, char text[16])
 {
     if (code == replacement)
         return "\xef\xbf\xbd";
-    if (!utf8_is_control(code))
+    if (!is_unsafe(code))
         return NULL;
-    snprintf(text, 16, "\\x%02x", (unsigned) code);
+    snprintf(text, 16, code < 0x100 ? "\\x%02x" : "\\u%04x", (unsigned) code);
     return text;
 }
 
@@ -66,6 +73,11 @@ void escape(FILE *out, enum escape form, const char *text, size_t size)
     fwrite(kept, 1, (size_t) (at - kept), out);
 }
 
+void escape_text(FILE *out, const char *text)
+{
+    escape(out, ESCAPE_TERMINAL, text, strlen(text));
+}
+
 size_t escape_characters(const char *text)
 {
     const unsigned char *at = (const unsigned char *) text, *end = at + strlen(text);
@@ -74,7 +86,7 @@ size_t escape_characters(const char *text)
         char buffer[16];
         uint32_t code;
         at += utf8_decode(at, (size_t) (end - at), &code);
-        count += utf8_is_control(code) ? strlen(terminal_of(code, buffer)) : 1;
+        count += is_unsafe(code) ? strlen(terminal_of(code, buffer)) : 1;
     }
     return count;
 }

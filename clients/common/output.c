@@ -29,8 +29,37 @@ void output_complain(const char *path, int error)
 {
     if (error == ESTALE)
         complain("%s: deleted or truncated by another program", path);
+    else if (error == EBUSY)
+        complain("%s: this command prints there too: write to another file", path);
     else
         complain("%s: %s%s", path, strerror(error), remedy(error));
+}
+
+/* ---- Paths ----------------------------------------------------------------------------------- */
+
+char *output_beside(const char *path, const char *name)
+{
+    const char *slash = strrchr(path, '/');
+    const size_t folder = slash && name[0] != '/' ? (size_t) (slash - path) + 1 : 0;
+    char *out = allocate(folder + strlen(name) + 1, 1);
+    memcpy(out, path, folder);
+    strcpy(out + folder, name);
+    return out;
+}
+
+/* The file that a path names after its symbolic links, which may not exist. On input: the system
+ * has followed them (no ELOOP), so their number is finite. The caller frees it. */
+static char *follow_links(const char *path)
+{
+    char link[PATH_MAX], *at = output_beside("", path);
+    ssize_t size;
+    while ((size = readlink(at, link, sizeof link - 1)) >= 0) {
+        link[size] = '\0';
+        char *next = output_beside(at, link);
+        free(at);
+        at = next;
+    }
+    return at;
 }
 
 /* ---- Existing files -------------------------------------------------------------------------- */
@@ -76,6 +105,32 @@ static bool is_input(const struct output_rules *rules, const struct stat *file)
     return is_at(rules->other_input, file);
 }
 
+/* Whether two outputs go to one regular file, which may not exist yet. */
+static bool goes_to_one_file(const char *a, const char *b)
+{
+    const char *const path[2] = {a, b};
+    char *target[2], *folder[2];
+    struct stat found[2] = {0};
+    int missing = 0, folders = 0;
+    for (int i = 0; i < 2; i++)
+        missing += stat(path[i], &found[i]) != 0 && errno == ENOENT;
+    if (missing < 2)
+        return missing == 0 && S_ISREG(found[0].st_mode) && is_same(&found[0], &found[1]);
+    for (int i = 0; i < 2; i++) {
+        target[i] = follow_links(path[i]);
+        folder[i] = output_beside(target[i], ".");
+        folders += stat(folder[i], &found[i]) == 0;
+    }
+    const bool same =
+        folders == 2 && is_same(&found[0], &found[1]) &&
+        strcmp(target[0] + strlen(folder[0]) - 1, target[1] + strlen(folder[1]) - 1) == 0;
+    for (int i = 0; i < 2; i++) {
+        free(target[i]);
+        free(folder[i]);
+    }
+    return same;
+}
+
 static bool is_of_kind(const char *path, const char *begin)
 {
     char found[BEGIN_MAX];
@@ -91,13 +146,26 @@ static bool is_of_kind(const char *path, const char *begin)
 bool output_check(const struct output_options *options)
 {
     struct stat old;
-    if (!options->path || stat(options->path, &old) != 0 || !S_ISREG(old.st_mode))
+    if (!options->path)
+        return true;
+    for (const struct output_options *other = options->other; other; other = other->other)
+        if (other->path && goes_to_one_file(options->path, other->path)) {
+            complain("%s: two outputs of this command: write to two files", options->path);
+            return false;
+        }
+    if (stat(options->path, &old) != 0 || !S_ISREG(old.st_mode))
         return true;
     if (is_input(options->rules, &old)) {
         complain("%s: this command reads it: write to another file", options->path);
         return false;
     }
-    if (options->rules->force || old.st_size == 0 || standard_fd(&old) >= 0)
+    if (standard_fd(&old) >= 0) {
+        const bool asked = strncmp(options->path, "/dev/", 5) == 0; /* as /dev/stdout */
+        if (!asked)
+            output_complain(options->path, EBUSY);
+        return asked;
+    }
+    if (options->rules->force || old.st_size == 0)
         return true;
     if (options->kind == OUTPUT_LOG) {
         output_complain(options->path, EEXIST);
@@ -146,31 +214,6 @@ static void install_cleanup(void)
         action.sa_flags = (int) SA_RESETHAND;
         sigaction(signals[i], &action, NULL);
     }
-}
-
-char *output_beside(const char *path, const char *name)
-{
-    const char *slash = strrchr(path, '/');
-    const size_t folder = slash && name[0] != '/' ? (size_t) (slash - path) + 1 : 0;
-    char *out = allocate(folder + strlen(name) + 1, 1);
-    memcpy(out, path, folder);
-    strcpy(out + folder, name);
-    return out;
-}
-
-/* The file that a path names after its symbolic links, which may not exist. On input: the system
- * has followed them (no ELOOP), so their number is finite. The caller frees it. */
-static char *follow_links(const char *path)
-{
-    char link[PATH_MAX], *at = output_beside("", path);
-    ssize_t size;
-    while ((size = readlink(at, link, sizeof link - 1)) >= 0) {
-        link[size] = '\0';
-        char *next = output_beside(at, link);
-        free(at);
-        at = next;
-    }
-    return at;
 }
 
 /* The name is registered before its file exists, so that on_signal() removes it at any time. */
@@ -256,8 +299,10 @@ int output_open_in_place(const char *path, bool force)
     const int fd = open(path, O_WRONLY | O_APPEND | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (fd >= 0 || errno != EEXIST)
         return fd;
-    if (!force && stat(path, &old) == 0 && S_ISREG(old.st_mode) && old.st_size > 0) {
-        errno = EEXIST;
+    const bool regular = stat(path, &old) == 0 && S_ISREG(old.st_mode);
+    const bool printed = regular && standard_fd(&old) >= 0;
+    if (printed || (!force && regular && old.st_size > 0)) {
+        errno = printed ? EBUSY : EEXIST;
         return -1;
     }
     return open(path, O_WRONLY | O_APPEND | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOCTTY, 0666);

@@ -1,5 +1,6 @@
-/* The files that commands write. No option overwrites a file that the command reads, or, without
- * --force, an existing file that is neither empty nor of the kind to be written. */
+/* The files that commands write. No option overwrites a file that the command reads or
+ * that another of its outputs goes to, or, without --force, an existing file that is neither empty
+ * nor of the kind to be written. */
 #ifndef OUTPUT_H
 #define OUTPUT_H
 
@@ -22,6 +23,7 @@ struct output_options {
     const char *path; /* NULL: no file is wanted */
     enum output_kind kind;
     const struct output_rules *rules;
+    const struct output_options *other; /* another output of the command, and so on; NULL: none */
 };
 
 struct output {
@@ -50,7 +52,8 @@ bool output_close(struct output *output, bool keep);
 
 /* Opens a recording, which is written in place, so that it survives the end of the process. If the
  * file exists and is not empty, it is overwritten if force is true; otherwise that is an error
- * (EEXIST). Returns a descriptor; -1 on error: errno. */
+ * (EEXIST). Standard output and standard error may not go there (EBUSY). Returns a descriptor; -1
+ * on error: errno. */
 int output_open_in_place(const char *path, bool force);
 
 /* Reports why a file cannot be written, and what to do. error: a value of errno. */

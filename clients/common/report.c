@@ -1,5 +1,7 @@
 #include "report.h"
 
+#include "escape.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -43,8 +45,11 @@ static void begin_table(struct report_rows *rows)
     rows->printer.columns = columns_for(rows->report.scene);
     fprintf(rows->printer.out, "%sscene %" PRId64, rows->scenes > rows->apart + 1 ? "\n" : "",
             rows->scenes);
-    if (scene->label)
-        fprintf(rows->printer.out, " (%s)", scene->label);
+    if (scene->label) {
+        fputs(" (", rows->printer.out);
+        escape_text(rows->printer.out, scene->label);
+        putc(')', rows->printer.out);
+    }
     fprintf(rows->printer.out, ": %zu bod%s in %dD, %s pair%s, 0 to %s s\n", scene->placement_count,
             scene->placement_count == 1 ? "y" : "ies", rows->report.scene->dim,
             number_grouped((int64_t) count, pairs), count == 1 ? "" : "s",

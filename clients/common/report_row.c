@@ -281,7 +281,7 @@ static void row_text(FILE *out, int indent, const struct report_row *row,
         const int width = report_body_width(row->name[i], row->id[i]);
         columns->body = width > columns->body ? width : columns->body;
         fprintf(out, "  %*s", columns->body - width, "");
-        escape(out, ESCAPE_TERMINAL, name, strlen(name));
+        escape_text(out, name);
     }
     fputs("  ", out);
     if (row->of->status != FMB_OK)

@@ -119,7 +119,7 @@ static void print_names(FILE *out, struct body_names *names)
     for (int i = 0; name && i < NAME_LINES; i++, name = name->hh.next) {
         fprintf(out, "    client %" PRId64 ", body %" PRId64 ": ", name->key.client_id,
                 name->key.body_id);
-        escape(out, ESCAPE_TERMINAL, name->name, strlen(name->name));
+        escape_text(out, name->name);
         putc('\n', out);
     }
     if (count > NAME_LINES)
@@ -192,7 +192,7 @@ static int old_version(const struct log_info *info)
 void log_report_text(FILE *out, const struct log_report *report)
 {
     const struct log_info *info = report->info;
-    escape(out, ESCAPE_TERMINAL, report->path, strlen(report->path));
+    escape_text(out, report->path);
     fputs(": ", out);
     if (report->size == 0) {
         fputs("empty, a log of no events\n", out);

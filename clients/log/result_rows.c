@@ -247,7 +247,7 @@ static void print_counts(const struct result_rows *results, const struct fmb_cli
     fprintf(out, "  up to pair %" PRId64, of->end_pair);
     if (label && *label) {
         fputs(" of ", out);
-        escape(out, ESCAPE_TERMINAL, label, strlen(label));
+        escape_text(out, label);
     }
     fprintf(out, ": %" PRId64 " overlapping, %" PRId64 " touching, %" PRId64 " %s",
             count[FMB_OVERLAPPING], count[FMB_TOUCHING], count[FMB_SEPARATED],

@@ -17,7 +17,7 @@ static void put_count(FILE *out, uint64_t count, const char *what)
 
 static void put_name(FILE *out, const struct mesh_report *report, int which)
 {
-    escape(out, ESCAPE_TERMINAL, report->name[which], strlen(report->name[which]));
+    escape_text(out, report->name[which]);
 }
 
 static void put_faces(FILE *out, const struct mesh_report *report, int which)

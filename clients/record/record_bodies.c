@@ -134,12 +134,14 @@ bool record_bodies_define(struct record_bodies *bodies, log_sink *sink, void *us
 static void count_skipped(struct record_bodies *bodies, const struct query_header *query)
 {
     struct query_header *last = &bodies->last[(uint64_t) query->client_id % CLIENTS];
-    const int64_t step = last->client_id == query->client_id && last->sequence_number > 0
-                             ? query->sequence_number - last->sequence_number
-                             : 1;
-    if (step > 1 && step <= STEP_MAX)
-        bodies->counts.skipped += step - 1;
-    if (step > 0 || step < -STEP_MAX)
+    const bool known = last->client_id == query->client_id && last->sequence_number > 0;
+    const bool ahead = query->sequence_number > last->sequence_number;
+    const uint64_t number = (uint64_t) query->sequence_number;
+    const uint64_t before = (uint64_t) last->sequence_number;
+    const uint64_t step = ahead ? number - before : before - number;
+    if (known && ahead && step <= STEP_MAX)
+        bodies->counts.skipped += (int64_t) step - 1;
+    if (!known || ahead || step > STEP_MAX)
         *last = *query;
 }
 

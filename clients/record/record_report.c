@@ -68,7 +68,7 @@ void record_report_json(const struct recorded *recorded, const struct log_parts 
 static void print_where(const struct log_parts *parts)
 {
     const char *path = parts->options.path;
-    escape(stdout, ESCAPE_TERMINAL, path, strlen(path));
+    escape_text(stdout, path);
     if (parts->options.part_bytes == 0)
         printf(": ");
     else if (parts->first == parts->number)

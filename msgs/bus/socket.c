@@ -25,8 +25,8 @@ bool bus_socket_route(const struct sockaddr_in *group, char why[BUS_WHY_MAX])
         return true;
     inet_ntop(AF_INET, &group->sin_addr, address, sizeof address);
     snprintf(why, BUS_WHY_MAX,
-             "no route to the multicast group %s (%s); to keep the bus on this host, run:\n"
-             "  sudo ip link set lo up multicast on && sudo ip route add 224.0.0.0/4 dev lo",
+             "no route to the multicast group %s (%s); to keep the bus on this host, run: "
+             "sudo ip link set lo up multicast on && sudo ip route add 224.0.0.0/4 dev lo",
              address, strerror(error));
     return false;
 }

@@ -90,6 +90,38 @@ unchanged() {
     done
 }
 
+@test "two outputs of a command never go to one file" {
+    mkdir folder
+    ln -s .. folder/up
+    ln -s new dangling
+    for command in 'mesh a.obj b.obj --ply * --html' 'replay a.log --html * --junit' \
+        'replay a.log --html * --write-golden' 'replay a.log --write-golden * --junit'; do
+        for other in new ./new "$PWD/new" folder/up/new dangling; do
+            # shellcheck disable=SC2086
+            run --separate-stderr "$FMB" ${command/'*'/new} "$other" --force
+            ended 2
+            is ''
+            [[ $stderr == "fmb: "*": two outputs of this command: write to two files" ]]
+            [ ! -e new ]
+        done
+        : > new
+        ln new hard
+        # shellcheck disable=SC2086
+        run --separate-stderr "$FMB" ${command/'*'/new} hard
+        ended 2
+        rm new hard
+    done
+    for command in "${commands[@]}"; do
+        # shellcheck disable=SC2086
+        run --separate-stderr bash -c '"$0" "$@" > new' "$FMB" $command ./new --force
+        ended 2
+        [[ $stderr == "fmb: ./new: this command prints there too: write to another file" ]]
+        [ ! -s new ]
+        rm new
+    done
+    "$FMB" mesh a.obj b.obj --ply /dev/null --html /dev/null > said
+}
+
 @test "golden results are overwritten with --force" {
     "$FMB" replay --write-golden golden a.log > text
     cp golden before

@@ -895,7 +895,8 @@ Try 'fmb query --help'."
 }
 
 @test "names with control characters are escaped on the terminal, by every command" {
-    name=$(printf '%s/\033[31mred\302\233' "$BATS_TEST_TMPDIR")
+    # Of the terminal, a line that seems to be another message, and marks that reorder the text after them.
+    name=$(printf '%s/\033[31mred\302\233\nfmb: forged\342\200\256' "$BATS_TEST_TMPDIR")
     printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > "$name.obj"
     printf x > "$name"
     printf '%s' "$scene" > "$name.json"
@@ -903,11 +904,22 @@ Try 'fmb query --help'."
     for arguments in "query --local @" "query @/none" "query --local --html @/none @.json" "mesh --self @" \
         "mesh @.obj @.obj" "mesh @.obj @.obj --ply @/none" "log info @" "log info @.log" "log cut --output @/none @.log" \
         "log scene --event 99999 @.log" "log scene --event 1 @" "replay @" "replay @/none" "replay --golden @ @.log" \
-        "record @/none" "record --@" "watch @" "log @" "@" "help @" "status --lcm-url @" "status --timeout @" "mesh --as @" "mesh --scale @"; do
+        "replay --junit /dev/stderr @.log" "scene @" "scene --joints @ @" "record @/none" "record --@" "watch @" "log @" "@" \
+        "help @" "status --lcm-url @" "status --timeout @" "mesh --as @" "mesh --scale @"; do
         words=()
         for word in $arguments; do words+=("${word/@/$name}"); done
         "$FMB" "${words[@]}" > "$BATS_TEST_TMPDIR/said" 2>&1 < /dev/null || true
-        grep -qaF '\x1b[31mred' "$BATS_TEST_TMPDIR/said" || { echo "does not name it: $arguments"; cat -v "$BATS_TEST_TMPDIR/said"; false; }
-        ! LC_ALL=C grep -qa -e $'\033' -e $'\302\233' "$BATS_TEST_TMPDIR/said" || { echo "raw: $arguments"; false; }
+        grep -qaE '(\\x1b|�)\[31mred' "$BATS_TEST_TMPDIR/said" || { echo "does not name it: $arguments"; cat -v "$BATS_TEST_TMPDIR/said"; false; }
+        ! LC_ALL=C grep -qa -e $'\033' -e $'\302\233' -e '^fmb: forged' -e $'\342\200\256' "$BATS_TEST_TMPDIR/said" ||
+            { echo "raw: $arguments"; cat -v "$BATS_TEST_TMPDIR/said"; false; }
+    done
+    for mark in 061c 200e 200f 2028 2029 202a 202b 202c 202d 202e 2066 2067 2068 2069; do
+        jq -c ".label = \"l\\u$mark\" | .bodies[0].name = \"n\\u$mark\"" <<< "$scene" > "$BATS_TEST_TMPDIR/marked"
+        for form in '' --csv; do
+            # shellcheck disable=SC2086
+            run "$FMB" query --local $form "$BATS_TEST_TMPDIR/marked"
+            ended 0
+            [[ $output == *"l\\u$mark"* && $output == *"n\\u$mark"* && $output != *$(jq -r '.label[1:]' "$BATS_TEST_TMPDIR/marked")* ]]
+        done
     done
 }

@@ -7,6 +7,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -64,7 +65,8 @@ static struct output *open_page(const char *path, bool force, const char *input)
 {
     const struct output_rules rules = {.force = force, .other_input = input};
     struct output *output;
-    const bool opened = output_open(&(struct output_options){path, OUTPUT_PAGE, &rules}, &output);
+    const bool opened = output_open(
+        &(struct output_options){.path = path, .kind = OUTPUT_PAGE, .rules = &rules}, &output);
     assert_int_equal(opened, output != NULL);
     return output;
 }
@@ -129,11 +131,11 @@ static void each_kind_replaces_its_own_kind(void **state)
     for (int kind = OUTPUT_PAGE; kind <= OUTPUT_LOG; kind++)
         for (int old = OUTPUT_PAGE; old <= OUTPUT_LOG; old++) {
             put_file("file", text[old]);
-            assert_int_equal(
-                output_check(&(struct output_options){"file", (enum output_kind) kind, &rules}),
-                kind == old && kind != OUTPUT_LOG);
-            assert_true(
-                output_check(&(struct output_options){"file", (enum output_kind) kind, &force}));
+            assert_int_equal(output_check(&(struct output_options){
+                                 .path = "file", .kind = (enum output_kind) kind, .rules = &rules}),
+                             kind == old && kind != OUTPUT_LOG);
+            assert_true(output_check(&(struct output_options){
+                .path = "file", .kind = (enum output_kind) kind, .rules = &force}));
         }
 }
 
@@ -153,7 +155,27 @@ static void an_input_is_never_replaced(void **state)
     /* One of several. */
     char missing[] = "missing", found[] = "input", *const input[] = {missing, found};
     const struct output_rules rules = {.force = true, .input = input, .input_count = 2};
-    assert_false(output_check(&(struct output_options){"input", OUTPUT_LOG, &rules}));
+    assert_false(output_check(
+        &(struct output_options){.path = "input", .kind = OUTPUT_LOG, .rules = &rules}));
+}
+
+static void a_recording_does_not_go_where_the_program_prints(void **state)
+{
+    static const char *const path[] = {"said", "/dev/stdout"};
+    int fd[COUNT(path)], error[COUNT(path)];
+    fflush(stdout);
+    const int standard = dup(STDOUT_FILENO), said = open("said", O_WRONLY | O_CREAT, 0666);
+    dup2(said, STDOUT_FILENO);
+    for (size_t i = 0; i < COUNT(path); i++) {
+        fd[i] = output_open_in_place(path[i], true);
+        error[i] = errno;
+    }
+    dup2(standard, STDOUT_FILENO);
+    for (size_t i = 0; i < COUNT(path); i++) {
+        assert_int_equal(fd[i], -1);
+        assert_int_equal(error[i], EBUSY);
+    }
+    assert_int_equal(close(standard) + close(said), 0);
 }
 
 /* ---- Links, modes, and files that are not regular ---- */
@@ -304,6 +326,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(only_force_replaces_another_kind, set_up, tear_down),
         cmocka_unit_test_setup_teardown(each_kind_replaces_its_own_kind, set_up, tear_down),
         cmocka_unit_test_setup_teardown(an_input_is_never_replaced, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_recording_does_not_go_where_the_program_prints, set_up,
+                                        tear_down),
         cmocka_unit_test_setup_teardown(symbolic_links_stay, set_up, tear_down),
         cmocka_unit_test_setup_teardown(new_files_follow_the_umask_and_others_keep_their_mode,
                                         set_up, tear_down),

@@ -19,7 +19,8 @@ struct body {
 struct world {
     struct record_bodies *bodies;
     struct hasher *hasher;
-    int64_t now_ns, sequence_number;
+    int64_t now_ns;
+    uint64_t sequence_number;
     int requests;
     struct definition_query request; /* the last one */
     int definitions, defined;        /* messages and bodies that were written */
@@ -129,7 +130,7 @@ static void receive(struct world *world, enum log_kind kind, size_t size)
 static void receive_query(struct world *world, struct query_placement a, struct query_placement b)
 {
     const struct pair_query query = {.client_id = CLIENT,
-                                     .sequence_number = ++world->sequence_number,
+                                     .sequence_number = (int64_t) ++world->sequence_number,
                                      .duration = 1,
                                      .placement = {a, b}};
     receive(world, LOG_PAIR_QUERY, wire_write_pair_query(&query, world->bytes));
@@ -414,9 +415,11 @@ static void skipped_sequence_numbers_are_counted(void **state)
     const struct body body = make_body(world, 1);
     static const struct {
         int64_t number, skipped;
-    } steps[] = {{10, 0}, {11, 0}, {11, 0}, {14, 2}, {13, 2}, {15, 2}, {1000000, 2}, {1000001, 2}};
+    } steps[] = {{10, 0},        {11, 0},      {11, 0},      {14, 2}, {13, 2},
+                 {15, 2},        {1000000, 2}, {1000001, 2}, {5, 2},  {INT64_MIN, 2},
+                 {INT64_MAX, 2}, {1, 2},       {3, 3}};
     for (size_t i = 0; i < COUNT(steps); i++) {
-        world->sequence_number = steps[i].number - 1;
+        world->sequence_number = (uint64_t) steps[i].number - 1;
         receive_query(world, place_whole(&body), place_whole(&body));
         assert_int_equal(record_bodies_counts(world->bodies).skipped, steps[i].skipped);
     }
