@@ -76,9 +76,10 @@ static const char usage[] =
     "what was answered so far.\n"
     "\n"
     "Not compared, but counted: results that say the service was busy or did not hold\n"
-    "a body, and queries with handles that the logs do not define. Second results of\n"
-    "a query that contradict the first are reported and counted as different. Times\n"
-    "to decide are shown, not compared.\n"
+    "a body, and queries that are left out: the logs do not define their handles, or\n"
+    "their bodies do not fit into the cache. Second results of a query that\n"
+    "contradict the first are reported and counted as different. Times to decide are\n"
+    "shown, not compared.\n"
     "\n"
     "The logs are read twice. Memory: some 300 bytes for each distinct body, and 100\n"
     "bytes for each query and each result, also of a golden log, for whose results it\n"
@@ -95,8 +96,9 @@ static const char usage[] =
     "\n"
     "Exit codes: 0 all the same; 1 something differs; 2 unusable: a log cannot be\n"
     "read, is damaged ('fmb log cut' copies what is intact) or was recorded by an\n"
-    "old version, a message on the service's channels cannot be read, there is\n"
-    "nothing to compare, or the service on the bus does not answer all queries.\n";
+    "old version, a message on the service's channels cannot be read, a query is left\n"
+    "out, there is nothing to compare, or the service on the bus does not answer all\n"
+    "queries.\n";
 
 struct replay_arguments {
     struct replay_options replay;
@@ -215,13 +217,31 @@ static bool complain_nothing(const struct replay_arguments *options, const struc
     return true;
 }
 
+/* Reports how many queries were not answered, and what would help. Returns false if all were. */
+static bool complain_left_out(const struct replay_arguments *options,
+                              const struct tally_channel *both)
+{
+    const int64_t undefined = both->outcome[REPLAY_UNDEFINED];
+    const int64_t not_held = both->outcome[REPLAY_NOT_HELD];
+    char text[NUMBER_TEXT_MAX];
+    if (undefined > 0)
+        complain("queries left out because the logs do not define their handles: %s",
+                 number_grouped(undefined, text));
+    if (not_held > 0)
+        complain("queries left out because their bodies do not fit into the cache (%s--frames): %s",
+                 options->live ? "fmbd " : "", number_grouped(not_held, text));
+    return undefined + not_held > 0;
+}
+
 /* Returns the exit code of a replay that reached its end. */
 static int code_of(const struct replay_arguments *options, const struct tally *all)
 {
     const struct tally_channel both = tally_both(all);
+    const bool left_out = complain_left_out(options, &both);
     if (both.outcome[REPLAY_DIFFERENT] + both.contradictions + both.left_over > 0)
         return ARGS_FAILED;
-    return complain_nothing(options, all, &both) || all->damages > 0 || tally_unreadable(all) > 0
+    return left_out || complain_nothing(options, all, &both) || all->damages > 0 ||
+                   tally_unreadable(all) > 0
                ? ARGS_USAGE
                : ARGS_ANSWERED;
 }

@@ -98,7 +98,8 @@ void page_take(struct page *page, const struct body_names *names, int64_t begin,
                const struct replayed *replayed)
 {
     static const char *const outcome[REPLAY_OUTCOMES] = {
-        "same", "different", "busy", "unknown body", "not defined", "no result recorded"};
+        "same",     "different",         "busy", "unknown body", "not defined",
+        "not held", "no result recorded"};
     const struct logged_query *query = replayed->query;
     const struct logged_result *then = replayed->then, *now = replayed->now;
     const struct scene_query *scene = query->kind == LOG_SCENE_QUERY ? &query->scene : NULL;

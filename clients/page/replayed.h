@@ -13,6 +13,7 @@ enum replay_outcome {
     REPLAY_BUSY,       /* the service was busy */
     REPLAY_UNKNOWN,    /* the service did not hold a body then */
     REPLAY_UNDEFINED,  /* a handle that the log does not define */
+    REPLAY_NOT_HELD,   /* not answered: the cache has no memory for the bodies */
     REPLAY_UNRECORDED, /* no result was recorded */
     REPLAY_OUTCOMES
 };

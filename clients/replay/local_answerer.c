@@ -16,6 +16,7 @@ struct local_answerer {
     struct answerer *answerer;
     struct answer_job *job;
     struct definitions *definitions;
+    const struct cached *pinned[QUERY_PLACEMENTS_MAX];
     unsigned char bytes[QUERY_BYTES_MAX];
 };
 
@@ -45,39 +46,29 @@ void local_answerer_close(struct local_answerer *local)
 
 /* ---- Definitions ---- */
 
-/* Whether the cache holds the body, which then becomes the most recently used one. */
-static bool is_held(struct cache *cache, const struct handle *handle)
-{
-    const struct cached *cached = cache_find(cache, handle);
-    if (cached)
-        cache_release(cache, cached);
-    return cached != NULL;
-}
-
-/* Adds the bodies of the handles of a query to the cache, except those that a service refuses.
- * Bodies already held are touched first, so that the others do not evict them. Returns false if a
- * handle is not defined. */
-static bool supply(struct local_answerer *local)
+/* Adds the bodies of the handles of a query to the cache, except those that a service refuses. All
+ * stay pinned until the last is added, so that none evicts another. Returns false if a handle is
+ * not defined. *held: whether the cache holds all that are defined. */
+static bool supply(struct local_answerer *local, bool *held)
 {
     struct cache *cache = answerer_cache(local->answerer);
+    const struct cached **pinned = local->pinned;
     int32_t count;
     const struct query_placement *placement = answer_job_placements(local->job, &count);
     bool defined = true;
-    for (int32_t i = 0; i < count; i++)
-        if (query_by_handle(&placement[i]))
-            is_held(cache, &placement[i].body.handle);
+    *held = true;
     for (int32_t i = 0; i < count; i++) {
-        struct handle handle = placement[i].body.handle;
-        if (!query_by_handle(&placement[i]) || is_held(cache, &handle))
-            continue;
-        const struct body_view *found = definitions_find(local->definitions, &handle);
-        struct body_view view = found ? *found : (struct body_view){.size = 0};
-        const struct cached *kept =
-            found && scene_takes(found) ? cache_intern(cache, 0, &view) : NULL;
-        defined = defined && found;
-        if (kept)
-            cache_release(cache, kept);
+        const bool named = query_by_handle(&placement[i]);
+        const struct body_view *found =
+            named ? definitions_find(local->definitions, &placement[i].body.handle) : NULL;
+        const bool taken = found && scene_takes(found);
+        pinned[i] = taken ? cache_add(cache, 0, found, NULL) : NULL;
+        *held = *held && (pinned[i] || !taken);
+        defined = defined && (found || !named);
     }
+    for (int32_t i = 0; i < count; i++)
+        if (pinned[i])
+            cache_release(cache, pinned[i]);
     return defined;
 }
 
@@ -122,7 +113,15 @@ const char *local_answer(struct local_answerer *local, enum log_kind kind,
 {
     *out = (struct new_result){.bytes = local->bytes};
     const char *error = decide(local, kind, bytes, size, out);
-    if (!error && out->status == FMB_UNKNOWN_BODY && supply(local))
-        decide(local, kind, bytes, size, out);
-    return error;
+    bool held;
+    if (error || out->status != FMB_UNKNOWN_BODY || !supply(local, &held))
+        return error;
+    /* Bodies that fit one after the other may not fit between those that the cache held. */
+    if (!held) {
+        cache_clear(answerer_cache(local->answerer));
+        supply(local, &held);
+    }
+    decide(local, kind, bytes, size, out);
+    out->not_held = !held;
+    return NULL;
 }

@@ -18,6 +18,7 @@ struct new_result {
     size_t size;
     int64_t compute_ns, pairs; /* time taken, pairs decided */
     int32_t status;
+    bool not_held; /* not answered: the cache has no memory for bodies that are defined */
 };
 
 /* Answers a query. In: its bytes in the log, at most the first LOG_DATA_MAX. Returns NULL; or a

@@ -36,7 +36,7 @@ static void take_answer(struct replay *replay, const struct match_item *query,
                         const struct new_result *answered)
 {
     count_answer(replay, query, answered);
-    if (replay->new_golden)
+    if (replay->new_golden && !answered->not_held)
         write_golden(replay, query, answered);
     replay_compare(replay, query, answered);
 }
@@ -48,8 +48,10 @@ bool replay_on_answered(void *user, struct match_item *query, const struct new_r
 {
     struct replay *replay = user;
     const bool is_last = answered->status != FMB_UNKNOWN_BODY || query->sent_whole;
+    struct new_result taken = *answered;
+    taken.not_held = answered->status == FMB_UNKNOWN_BODY && query->defined;
     if (is_last)
-        take_answer(replay, query, answered);
+        take_answer(replay, query, &taken);
     else
         g_queue_push_tail(&replay->again, query);
     return is_last;
@@ -92,7 +94,7 @@ static void send_again(struct replay *replay)
         if (!replay_read_query(replay, &replay->input, query, replay->query_bytes, &query_size,
                                &replay->query))
             continue;
-        definitions_fill(replay->definitions, &replay->query);
+        query->defined = definitions_fill(replay->definitions, &replay->query) < 0;
         const size_t size = logged_query_write(&replay->query, replay->whole);
         query->sent_whole = true;
         if (size > 0) {

@@ -161,11 +161,12 @@ static void compare_unrecorded(struct replay *replay, const struct match_item *q
                                const struct new_result *answered)
 {
     const struct replayed replayed = {.query = &replay->compared, .now = &replay->now};
-    count(replay, query, REPLAY_UNRECORDED, 0);
+    const enum replay_outcome outcome = answered->not_held ? REPLAY_NOT_HELD : REPLAY_UNRECORDED;
+    count(replay, query, outcome, 0);
     if (!replay->options->page || !read_compared(replay, query))
         return;
     read_new(replay, (enum log_kind) query->key.kind, answered);
-    add_to_page(replay, query, &replayed, REPLAY_UNRECORDED);
+    add_to_page(replay, query, &replayed, outcome);
 }
 
 /* Compares a result that was read, and so its own query, with the new one. same_bytes: of both
@@ -196,7 +197,8 @@ static void compare_read(struct replay *replay, const struct match_item *query,
         replayed.change = change;
     replay->item = query;
     const enum replay_outcome outcome =
-        same_bytes && !replayed.change
+        answered->not_held ? REPLAY_NOT_HELD
+        : same_bytes && !replayed.change
             ? REPLAY_SAME
             : compare_results(&replay->options->compare, &replayed, on_difference, replay);
     count(replay, query, outcome, replay->then.head.compute_ns);

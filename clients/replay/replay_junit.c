@@ -68,8 +68,9 @@ static void write_log(struct junit *junit, struct listing *list, const struct ta
     FILE *out = junit->out;
     const struct tally_channel both = tally_both(tally);
     const struct tally_bus *bus = &tally->bus;
+    const int64_t left_out = both.outcome[REPLAY_UNDEFINED] + both.outcome[REPLAY_NOT_HELD];
     const bool is_whole = tally->damages == 0 && tally_unreadable(tally) == 0 &&
-                          both.contradictions == 0 && both.left_over == 0;
+                          both.contradictions == 0 && both.left_over == 0 && left_out == 0;
     const bool ended_early = bus->used && bus->end != ANSWER_BUS_NO_END;
     int failures = 0;
     for (int i = 0; i < TALLY_CHANNELS; i++)
@@ -88,6 +89,7 @@ static void write_log(struct junit *junit, struct listing *list, const struct ta
                      "messages that cannot be read, ");
         number_count(out, both.contradictions, "result that contradicts an earlier one, ",
                      "results that contradict earlier ones, ");
+        number_count(out, left_out, "query left out, ", "queries left out, ");
         number_count(out, both.left_over, "query in one recording only\"/>\n",
                      "queries in one recording only\"/>\n");
     }

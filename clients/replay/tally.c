@@ -14,6 +14,7 @@ const struct tally_count tally_count[TALLY_COUNTS] = {
     {"busy", "busy", ", busy: "},
     {"unknown_body", "unknown body", ", unknown body: "},
     {"not_defined", "not defined", ", not defined: "},
+    {"not_held", NULL, ", not held: "},
     {"no_result", "no result", ", no result: "},
     {"results", NULL, NULL},
     {"unmatched_results", NULL, NULL},

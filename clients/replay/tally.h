@@ -23,7 +23,7 @@ enum { TALLY_PAIRS, TALLY_SCENES, TALLY_CHANNELS };
 extern const char *const tally_channel_name[TALLY_CHANNELS]; /* of the queries */
 
 /* The counts of a channel, in the order of the struct, with their names in reports. */
-enum { TALLY_COUNTS = 15 };
+enum { TALLY_COUNTS = 16 };
 struct tally_count {
     const char *key;    /* in JSON */
     const char *column; /* in the table for people; NULL: none */

@@ -382,6 +382,12 @@ static void evict_around_oldest(struct cache *cache, int32_t slots)
     }
 }
 
+void cache_clear(struct cache *cache)
+{
+    while (cache->entry[SENTINEL].newer != SENTINEL)
+        evict(cache, cache->entry[SENTINEL].newer);
+}
+
 /* An entry for a body that takes so many slots; evicts bodies if necessary. NONE: there are not
  * enough slots. */
 static int32_t take_entry(struct cache *cache, int32_t slots)

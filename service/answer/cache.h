@@ -68,6 +68,9 @@ const struct cached *cache_add(struct cache *cache, int64_t id, const struct bod
 /* Finds a body, or makes it in one step and adds it: cache_lookup(), then cache_add(). */
 const struct cached *cache_intern(struct cache *cache, int64_t id, struct body_view *view);
 
+/* Evicts all bodies that are not pinned. */
+void cache_clear(struct cache *cache);
+
 /* Unpins a body. On input: a body that one of the functions above returned pinned, not released
  * since. */
 void cache_release(struct cache *cache, const struct cached *cached);

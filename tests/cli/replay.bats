@@ -772,7 +772,34 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [[ $output == *'fmb: standard output: No space left on device'* ]]
 }
 
-@test "a cache of one body leaves queries open, and none different" {
-    report_of --frames 1 arm.log > one
-    jq -e '.different == 0 and .queries == .same + .unknown_body + .not_defined' one
+# Bodies of 1 to 8 frames: a pair of the largest fits into 16, wherever the cache holds other bodies.
+@test "a query whose bodies fit into the cache is answered, and others are left out with exit code 2" {
+    "$TOOLS/logs/generate" --blast pairs 400 --by-handle --compound --bodies 64 compound.log
+    for frames in 16 17 20 29 64 100; do
+        replay --frames $frames compound.log
+        ended 0
+        said ''
+        counts '.same == 400'
+    done
+    # So many pairs have 16 frames together, and are not sent whole.
+    replay --frames 15 --write-golden fitting.golden compound.log
+    ended 2
+    counts '.not_held > 0 and .not_defined == 0 and .same + .not_held == 400'
+    left=$(jq .not_held <<< "$output")
+    said "fmb: queries left out because their bodies do not fit into the cache (--frames): $left"
+    # A golden log lacks what was not answered.
+    replay --golden fitting.golden compound.log
+    counts ".no_result == $left and .same == 400 - $left"
+    junit --frames 15 compound.log
+    ended 2
+    [[ $(xpath '//error/@message') == *", $left queries left out, "* ]]
+}
+
+@test "a query whose handles the log does not define is left out with exit code 2" {
+    "$TOOLS/logs/generate" --blast pairs 60 --by-handle --bodies 8 handles.log
+    "$EDIT" --events 40 1000 handles.log late.log
+    replay late.log
+    ended 2
+    counts '.not_defined > 0 and .not_held == 0 and .same + .not_defined == .queries'
+    said "fmb: queries left out because the logs do not define their handles: $(jq .not_defined <<< "$output")"
 }

@@ -1,5 +1,6 @@
 #include "blast.h"
 
+#include "geometry_write.h"
 #include "log_client.h"
 #include "parts.h"
 
@@ -85,6 +86,20 @@ static void draw_bodies(struct blasting *blasting)
     }
 }
 
+/* The same body with its frame repeated. What the placements of a query point to stays. */
+static void repeat_frame(int count, struct query_placement *out)
+{
+    static unsigned char bytes[2][BLAST_COMPOUND_MAX * GEOMETRY_FRAME_BYTES_MAX];
+    static int next;
+    struct geometry_reader reader = geometry_begin(&out->body);
+    struct plain_frame frame[BLAST_COMPOUND_MAX];
+    geometry_read(&reader, &frame[0]);
+    for (int i = 1; i < count; i++)
+        frame[i] = frame[0];
+    next = !next;
+    out->body = geometry_write_frames(out->body.dim, frame, count, bytes[next]);
+}
+
 /* A body at a new place. */
 static void draw_placement(struct blasting *blasting, int i, bool moving,
                            struct query_placement *out)
@@ -106,9 +121,12 @@ static void draw_pair(struct blasting *blasting, struct pair_query *query)
     const int first = flat ? 0 : BODIES_2D;
     const int last = first + (blast->bodies ? blast->bodies / 2 : BODIES_2D) - 1;
     const int movers = moving ? draw_int(draw, 1, 3) : 0;
-    for (int f = 0; f < 2; f++)
-        draw_placement(blasting, draw_int(draw, first, last), movers >> f & 1,
-                       &query->placement[f]);
+    for (int f = 0; f < 2; f++) {
+        const int i = draw_int(draw, first, last);
+        draw_placement(blasting, i, movers >> f & 1, &query->placement[f]);
+        if (blast->compound)
+            repeat_frame(1 + i % BLAST_COMPOUND_MAX, &query->placement[f]);
+    }
 }
 
 bool blast_pairs(struct tape *tape, const struct blast *blast)

@@ -18,11 +18,12 @@ struct blast {
     int by_handle; /* bodies go by handle once it is known: 0, or 1; -1: one time in two */
     int32_t want;  /* FMB_WANT_ bits, of pairs */
     int bodies;    /* from 2 to BLAST_BODIES: of each dimension half as many; 0: BLAST_BODIES */
+    bool compound; /* bodies of pairs have 1 to BLAST_COMPOUND_MAX frames, all alike */
 };
 
 /* Pairs of BLAST_BODIES bodies of all shapes, drawn anew for each query, each body at a place of
  * its own; some half of them in contact. All of the options count. */
-enum { BLAST_BODIES = 8192 };
+enum { BLAST_BODIES = 8192, BLAST_COMPOUND_MAX = 8 };
 bool blast_pairs(struct tape *tape, const struct blast *blast);
 
 /* Scenes of BLAST_FRAMES bodies in 3D, one half cuboids and one half tetrahedra, at rest, by

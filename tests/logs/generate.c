@@ -51,6 +51,7 @@ static const char usage[] =
     "  --moving        pairs that move only\n"
     "  --whole         pairs of whole bodies only\n"
     "  --by-handle     pairs by handle, as soon as it is known\n"
+    "  --compound      pairs of bodies of 1 to 8 frames\n"
     "  --box           pairs with boxes\n"
     "  --certificate   pairs with certificates\n"
     "  --gap           pairs with gaps\n"
@@ -72,6 +73,7 @@ enum {
     MOVING,
     WHOLE,
     BY_HANDLE,
+    COMPOUND,
     BOX,
     CERTIFICATE,
     GAP,
@@ -88,6 +90,7 @@ static const struct option long_options[] = {{"blast", required_argument, NULL, 
                                              {"moving", no_argument, NULL, MOVING},
                                              {"whole", no_argument, NULL, WHOLE},
                                              {"by-handle", no_argument, NULL, BY_HANDLE},
+                                             {"compound", no_argument, NULL, COMPOUND},
                                              {"box", no_argument, NULL, BOX},
                                              {"certificate", no_argument, NULL, CERTIFICATE},
                                              {"gap", no_argument, NULL, GAP},
@@ -136,6 +139,7 @@ static bool take(int option, char **argv, struct options *out)
     case MOVING: out->blast.moving = 1; return true;
     case WHOLE: out->blast.by_handle = 0; return true;
     case BY_HANDLE: out->blast.by_handle = 1; return true;
+    case COMPOUND: out->blast.compound = true; return true;
     case BOX: out->blast.want |= FMB_WANT_BOX; return true;
     case CERTIFICATE: out->blast.want |= FMB_WANT_CERTIFICATE; return true;
     case GAP: out->blast.want |= FMB_WANT_GAP; return true;

@@ -185,8 +185,9 @@ event() {
     # A service that cannot hold as many bodies.
     start_fmbd --frames 10
     replay scenes.log
-    [ "$code" = 0 ]
-    holds replayed '.not_defined > 0 and .same + .not_defined == .queries'
+    [ "$code" = 2 ]
+    holds replayed '.not_held > 0 and .not_defined == 0 and .same + .not_held == .queries'
+    grep -Fx "fmb: queries left out because their bodies do not fit into the cache (fmbd --frames): $(jq .not_held replayed)" stderr
     stop_fmbd
 }
 
