@@ -17,16 +17,16 @@ fmb.h of libfmb defines shapes, verdicts, and the accuracy of numbers. Lengths m
 times are in seconds, velocities per second; orientations are quaternions (w, x, y, z), in 2D (w, z),
 of any length except 0. Every window is [0, duration].
 
-Arguments that are arrays may be nested sequences, or objects with a buffer of float64 or int64 in C
-order, such as numpy arrays, which are not copied. Arrays that are returned are numpy arrays if numpy
-is installed, and otherwise memoryviews of the same shape and type.
+Arguments that are arrays may be nested sequences, numpy arrays, tables of pandas, or other buffers,
+of numbers of at most 64 bits; float64 and int64 in C order are not copied. Arrays that are returned
+are numpy arrays if numpy is installed, else memoryviews, or Rows, of the same shape and type.
 
 Refused input raises an exception whose text begins with the name of the argument: TypeError,
 ValueError, or Error, a ValueError with a status of fmb.h. If the bus fails, or no
 service answers, BusError is raised. A pair that the service could not decide has a status other
 than 0, and no verdict.
 
-Several threads may share a scene or a client; calls on the same one wait for each other.
+Threads may share a scene or a client, and take turns. A child process may use scenes, not clients.
 """
 
 from __future__ import annotations
@@ -34,11 +34,13 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import enum
+import functools
 import itertools
 import math
 import operator
 import os
 import threading
+import weakref
 from array import array
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
@@ -51,7 +53,7 @@ if TYPE_CHECKING:
     Array = Union["numpy.ndarray", memoryview, Sequence[Any]]
 
 __all__ = ["Answer", "Answers", "Body", "BusError", "Client", "Error", "OVERLAPPING", "SEPARATED",
-           "Scene", "TOUCHING", "Verdict", "box", "compound", "cuboid", "face", "hull",
+           "Rows", "Scene", "TOUCHING", "Verdict", "box", "compound", "cuboid", "face", "hull",
            "status_text", "tetrahedron", "version"]
 
 # ---- The library: fmb_flat.h ----
@@ -76,6 +78,8 @@ def _load() -> ctypes.CDLL:
     integer, size, long, real, text, pointer = (
         ctypes.c_int, ctypes.c_size_t, ctypes.c_int64, ctypes.c_double, ctypes.c_char_p,
         ctypes.c_void_p)
+    # Calls of held keep the interpreter locked: no fork of another thread finds half of the poses set.
+    held = ctypes.PyDLL(_SONAME)
     for name, result, arguments in (
             ("fmb_version", text, ()),
             ("fmb_client_status_text", text, (integer,)),
@@ -85,6 +89,7 @@ def _load() -> ctypes.CDLL:
             ("fmb_flat_body_free", None, (pointer,)),
             ("fmb_flat_scene_make", integer, (size,) + 5 * (pointer,)),
             ("fmb_flat_scene_free", None, (pointer,)),
+            ("fmb_flat_scene_forked", None, (pointer,)),
             ("fmb_flat_why", text, (pointer,)),
             ("fmb_flat_place", integer, (pointer, size, size, pointer, pointer, pointer)),
             ("fmb_flat_pair", integer, (pointer, pointer, long, long, real, integer)),
@@ -92,8 +97,9 @@ def _load() -> ctypes.CDLL:
                                           pointer, size, pointer, size, text)),
             ("fmb_flat_count", size, (pointer,)),
             ("fmb_flat_answers", None, 11 * (pointer,))):
-        function = getattr(library, name)
+        function = getattr(held if name == "fmb_flat_place" else library, name)
         function.restype, function.argtypes = result, arguments
+        setattr(library, name, function)
     return library
 
 
@@ -136,6 +142,9 @@ def _error(status: int, message: str) -> Exception:
     return (BusError if status < 0 else Error)(message, status)
 
 
+_OF_SCENES = "Scene() takes poses, velocities, names, groups and ids; place() and move() change poses"
+
+
 class _Handle:
     """Owner of an object of the library."""
 
@@ -146,13 +155,32 @@ class _Handle:
         if self._handle:
             self._free(self._handle)
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        if self._handle and name[0] != "_":
+            raise AttributeError(f"{name}: cannot be set: {_OF_SCENES}")
+        super().__setattr__(name, value)
+
     def __reduce_ex__(self, protocol: Any) -> Any:
         raise TypeError(f"fmb: a {type(self).__name__} cannot be copied")
 
 
+_shared: weakref.WeakSet[Any] = weakref.WeakSet()  # scenes and clients: a thread at a time uses one
+
+
+def _in_child() -> None:
+    for user in list(_shared):
+        was_used, user._lock = user._lock.locked(), threading.Lock()
+        user._in_child(was_used)
+
+
+os.register_at_fork(after_in_child=_in_child)
+
+
 # ---- Arguments ----
 
-_TYPES = {"d": ("float64", "d"), "q": ("int64", "ql")}
+# What is expected of an array; the formats that are used as they are, and all that are taken.
+_TYPES = {"d": ("numbers of at most 64 bits", "d", "bBhHiIlLqQefd"),
+          "q": ("integers of at most 64 bits", "ql", "bBhHiIlLqQ")}
 
 
 def _float(name: str, value: Any) -> float:
@@ -185,53 +213,60 @@ def _text(name: str, value: Optional[str]) -> Optional[bytes]:
 
 
 def _flat(name: str, value: Any, code: str, shape: tuple) -> tuple[memoryview, tuple]:
-    """Returns an array as a buffer, and its shape. shape: the expected one; a str stands for any
-    length."""
-    type_name, formats = _TYPES[code]
+    """Returns an array as a buffer, and its shape. shape: as expected; a str stands for any length."""
+    expected, same, copied = _TYPES[code]
+    if value.__class__ is Rows:
+        value = value.view
+    if numpy is not None and hasattr(value, "__array__"):
+        if isinstance(value, numpy.ma.MaskedArray):
+            raise TypeError(f"{name}: masked arrays are refused: pass the result of filled()")
+        value = numpy.asarray(value)
+        if value.dtype.char in copied:
+            value = numpy.asarray(value, code, "C")
     try:
         view = memoryview(value)
     except (TypeError, ValueError):
-        view, found = _from_sequence(name, value, code, shape)
-    else:
-        found = view.shape
-        if view.format not in formats:
-            raise TypeError(f"{name}: expected {type_name}, found {getattr(value, 'dtype', view.format)}")
+        view = None
+    if view is not None and view.format.lstrip("<") not in copied:
+        raise TypeError(f"{name}: expected {expected}, found {getattr(value, 'dtype', view.format)}")
+    usable = view is not None and view.format in same and view.c_contiguous
+    view, found = (view, view.shape) if usable else _from_sequence(name, value, code, shape)
     if len(found) != len(shape) or any(s != f for s, f in zip(shape, found) if s.__class__ is int):
         raise ValueError(f"{name}: expected shape {_shape_text(shape)}, found {_shape_text(found)}")
-    if hasattr(value, "mask"):
-        raise TypeError(f"{name}: masked arrays are refused: pass the result of filled()")
-    if not view.c_contiguous:
-        raise ValueError(f"{name}: not in C order: use numpy.ascontiguousarray()")
     return view, found
 
 
 def _from_sequence(name: str, value: Any, code: str, shape: tuple) -> tuple[memoryview, tuple]:
+    value = _rows(value)
+    rows = _iterate(name, value, shape)
     out = array(code)
     try:
         if len(shape) == 1:
-            out.extend(value)
+            out.extend(rows)
             return memoryview(out), (len(out),)
         width = shape[1] if shape[1].__class__ is int else len(value[0]) if len(value) else 0
-        for i, row in enumerate(value):
+        for i, row in enumerate(rows):
             if len(row) != width:
                 raise ValueError(f"{name}[{i}]: expected {width} numbers, found {len(row)}")
             out.extend(row)
         found = len(value), width
         return memoryview(out).cast("B").cast(code, found) if out else memoryview(out), found
-    except (TypeError, OverflowError, LookupError) as error:
-        raise TypeError(f"{name}: expected {_TYPES[code][0]} of shape {_shape_text(shape)}: "
+    except (TypeError, OverflowError, LookupError, NotImplementedError) as error:
+        raise TypeError(f"{name}: expected {_TYPES[code][0]}, of shape {_shape_text(shape)}: "
                         f"{error}") from None
 
 
-def _iterate(name: str, value: Any) -> Iterator[Any]:
+def _iterate(name: str, value: Any, shape: tuple = ()) -> Iterator[Any]:
     try:
-        return iter(None if isinstance(value, str) else value)
+        return iter(None if isinstance(value, (str, bytes, bytearray)) else _rows(value))
     except TypeError:
-        raise TypeError(f"{name}: expected a sequence, found {value!r:.40}") from None
+        expected = f"an array of shape {_shape_text(shape)}" if shape else "a sequence"
+        raise TypeError(f"{name}: expected {expected}, found {value!r:.40}") from None
 
 
 def _shape_text(shape: tuple) -> str:
-    return f"({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
+    return (f"({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})" +
+            " with dim 2 or 3" * ("dim" in shape))
 
 
 def _pointer(buffer: Any) -> Any:
@@ -366,6 +401,19 @@ def compound(bodies: Iterable[Body]) -> Body:
     return Body("bodies", parts[0].dim, [frame for part in parts for frame in part._frames])
 
 
+def _maker(make: Any) -> Any:
+    @functools.wraps(make)
+    def checked(*values: Any, **named: Any) -> Body:
+        for name in named.keys() - make.__annotations__:
+            raise TypeError(f"{name}: no argument of {make.__name__}(): {_OF_SCENES}")
+        return make(*values, **named)
+    return checked
+
+
+box, cuboid, tetrahedron, face, hull, compound = map(
+    _maker, (box, cuboid, tetrahedron, face, hull, compound))
+
+
 def _bodies(bodies: Iterable[Body]) -> tuple[Body, ...]:
     out = tuple(_iterate("bodies", bodies))
     if not out:
@@ -381,10 +429,23 @@ def _bodies(bodies: Iterable[Body]) -> tuple[Body, ...]:
 # ---- Answers ----
 
 
-class Verdict(enum.IntEnum):
+class Verdict(int, enum.Enum):
+    """Equal to its name in JSON, "touching", by which sets find it, and to its number in arrays."""
+
     SEPARATED = 1
     TOUCHING = 2
     OVERLAPPING = 3
+
+    def __str__(self) -> str:
+        return self.name.lower()
+
+    def __eq__(self, other: object) -> bool:
+        return str(self) == other if isinstance(other, str) else int.__eq__(self, other)
+
+    __ne__ = object.__ne__
+
+    def __hash__(self) -> int:
+        return hash(str(self))
 
 
 SEPARATED, TOUCHING, OVERLAPPING = Verdict
@@ -427,6 +488,27 @@ def _answer(names: Any, a: int, b: int, status: int, verdict: int, contact: Any,
                   if gap else (None,) * 4)
 
 
+class Rows(Sequence):
+    """An array of several axes, where numpy is not installed. Its rows are memoryviews, or again Rows."""
+
+    def __init__(self, view: memoryview) -> None:
+        self.view, self.shape = view, view.shape
+        self.tolist, self.tobytes = view.tolist, view.tobytes
+
+    def __len__(self) -> int:
+        return len(self.view)
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, (slice, tuple)):
+            return _rows(self.view[index])
+        k = range(len(self))[index]
+        return _rows(memoryview(self.view[k:k + 1].tobytes()).cast(self.view.format, self.shape[1:]))
+
+
+def _rows(value: Any) -> Any:
+    return Rows(value) if isinstance(value, memoryview) and value.ndim > 1 else value
+
+
 class Answers(Sequence):
     """The answers to n pairs, in their order. A sequence of Answer, and an array for each field;
     None where it was not wanted.
@@ -444,34 +526,27 @@ class Answers(Sequence):
     frames: (n, 2) int64, indices of the frames of a and b that have this gap
     """
 
-    def __init__(self, handle: int, dim: int, names: Any, pairs: Any, wanted: int, on_bus: bool) -> None:
+    def __init__(self, handle: int, dim: int, names: Any, pairs: Any, wanted: int) -> None:
         self._names = names
         self._count = n = _lib.fmb_flat_count(handle)
         contact, corners, gap = wanted & _WANT_TIMES, wanted & _WANT_BOX, wanted & _WANT_GAP
 
-        def new(wanted: Any, code: str, *shape: int) -> Any:
+        def new(wanted: Any, code: str, *shape: int) -> Any:  # of zeros
             if not wanted:
                 return None
             if numpy is not None:
-                return numpy.empty((n,) + shape, code)
-            out = memoryview(bytearray(n * math.prod(shape) * array(code).itemsize))
-            return out.cast(code, (n,) + shape) if n else out.cast(code)
+                return numpy.zeros((n,) + shape, code)
+            out = memoryview(bytearray((n or 1) * math.prod(shape) * array(code).itemsize))
+            return out.cast(code, (n or 1,) + shape)[:n]
 
-        columns = (new(pairs is None, "q", 2), new(True, "B"), new(on_bus, "i"), new(contact, "d", 2),
+        columns = (new(pairs is None, "q", 2), new(True, "B"), new(True, "i"), new(contact, "d", 2),
                    new(corners, "d", 2, dim), new(gap, "d", 2), new(gap, "d", dim), new(gap, "d"),
                    new(gap, "d", 2, dim), new(gap, "q", 2))
         _lib.fmb_flat_answers(handle, *map(_pointer, columns))
-        (self.pairs, self.verdicts, self._statuses, self.contacts, self.boxes, self.gaps,
-         self.directions, self.times, self.witnesses, self.frames) = columns
+        (self.pairs, self.verdicts, self.statuses, self.contacts, self.boxes, self.gaps,
+         self.directions, self.times, self.witnesses, self.frames) = map(_rows, columns)
         if pairs is not None:
-            self.pairs = pairs if numpy is None else numpy.asarray(pairs)
-
-    @property
-    def statuses(self) -> Any:
-        if self._statuses is None:  # in process each pair has a verdict
-            zeros = array("i", bytes(4 * self._count))
-            self._statuses = memoryview(zeros) if numpy is None else numpy.asarray(zeros)
-        return self._statuses
+            self.pairs = _rows(pairs) if numpy is None else numpy.asarray(pairs)
 
     def __len__(self) -> int:
         return self._count
@@ -482,11 +557,7 @@ class Answers(Sequence):
         k = range(self._count)[index]
 
         def row(column: Any, code: str = "d") -> Any:
-            if column is None:
-                return None
-            values = memoryview(column).cast("B").cast(code)
-            width = len(values) // self._count
-            return values[k * width:(k + 1) * width].tolist()
+            return None if column is None else array(code, column[k:k + 1].tobytes()).tolist()
 
         a, b = row(self.pairs, "q")
         return _answer(self._names, a, b, int(self.statuses[k]), int(self.verdicts[k]),
@@ -498,9 +569,9 @@ class Answers(Sequence):
 
 
 class Client(_Handle):
-    """A client of fmbd on an LCM bus. A client sends each body once: use it for all queries. After a
-    fork, the child needs a client of its own. Signals (Ctrl-C) are handled when the current
-    call returns.
+    """A client of fmbd on an LCM bus. A client sends each body once: use it for all queries. A fork
+    closes it in the child, which needs one of its own. Signals (Ctrl-C) are handled when the
+    current call returns.
 
     url: of the bus, udpm://[GROUP:PORT][?ttl=N]; None: LCM_DEFAULT_URL, or else only this host
     prefix: of the service's channels
@@ -516,7 +587,7 @@ class Client(_Handle):
     def __init__(self, url: Optional[str] = None, prefix: Optional[str] = None, *,
                  timeout: float = 0.5, tries: int = 6, within: float = 0) -> None:
         self._lock = threading.Lock()
-        self._process = os.getpid()
+        _shared.add(self)
         why = ctypes.create_string_buffer(_WHY_MAX)
         tries = _int("tries", tries)
         if not 0 < tries < 2**31:
@@ -535,6 +606,11 @@ class Client(_Handle):
         with self._lock:
             self.__del__()
             self._handle = None
+
+    def _in_child(self, was_used: bool) -> None:
+        if not was_used:  # else it is as a thread that does not exist here left it
+            self.__del__()
+        self._handle = None
 
     def __enter__(self) -> Client:
         return self
@@ -556,9 +632,7 @@ def _lock_of(client: Optional[Client]) -> Any:
 
 def _handle_of(client: Optional[Client]) -> Optional[int]:
     if client is not None and not client._handle:
-        raise BusError("client: it is closed")
-    if client is not None and client._process != os.getpid():
-        raise BusError("client: it was opened by another process: open one after the fork")
+        raise BusError("client: it is closed, or was opened by another process: open one after a fork")
     return client and client._handle
 
 
@@ -590,6 +664,7 @@ class Scene(_Handle):
                  names: Optional[Sequence[Optional[str]]] = None, groups: Optional[Array] = None,
                  ids: Optional[Array] = None) -> None:
         self._lock = threading.Lock()
+        _shared.add(self)
         self.bodies = _bodies(bodies)
         self.dim = dim = self.bodies[0].dim
         n = len(self.bodies)
@@ -612,13 +687,18 @@ class Scene(_Handle):
         self._check(status)
         self.place(positions, orientations, velocities)
 
+    def _in_child(self, was_used: bool) -> None:
+        if was_used:
+            _lib.fmb_flat_scene_forked(self._handle)
+
     def __len__(self) -> int:
         return len(self.bodies)
 
     def _check(self, status: int, name: str = "", client: Optional[Client] = None) -> None:
         if status:
-            raise _error(status, name + _lib.fmb_flat_why(self._handle).decode() +
-                         _advice(status, client) if self._handle else status_text(status))
+            why = _lib.fmb_flat_why(self._handle).decode() if self._handle else status_text(status)
+            raise _error(status, name + why + _advice(status, client) +
+                         (": pass instant=True" if why.endswith(" moves") else ""))
 
     def place(self, positions: Optional[Array] = None, orientations: Optional[Array] = None,
               velocities: Optional[Array] = None) -> None:
@@ -704,11 +784,9 @@ class Scene(_Handle):
                 _pointer(listed), 0 if listed is None else len(listed),
                 _pointer(left_out), 0 if left_out is None else len(left_out),
                 _text("label", label))
-            if status == 9 and duration == 0:
-                raise Error("duration: it is 0, but bodies move: pass instant=True", status)
             self._check(status)
             answers = Answers(self._handle, self.dim, self.names, listed,
-                              want | (_WANT_GAP if margin else 0), client is not None)
+                              want | (_WANT_GAP if margin else 0))
         worst = min(memoryview(answers.statuses), default=0) if client else 0
         if worst < 0:
             raise BusError(f"client: {status_text(worst)}{_advice(worst, client)}", worst)

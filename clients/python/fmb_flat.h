@@ -58,6 +58,11 @@ int fmb_flat_scene_make(size_t count, struct fmb_flat_body *const *bodies, const
                         struct fmb_flat_scene **out);
 void fmb_flat_scene_free(struct fmb_flat_scene *scene); /* may be NULL */
 
+/* In a child process after a fork during which another thread was using the scene: makes the scene
+ * usable, without answers. If the thread was in fmb_flat_place(), the poses of those placements
+ * have to be set again. Memory that the thread was using is not freed. */
+void fmb_flat_scene_forked(struct fmb_flat_scene *scene);
+
 /* Returns what was wrong in the last call that failed: "positions[3]: not a finite number". */
 const char *fmb_flat_why(const struct fmb_flat_scene *scene);
 

@@ -1,14 +1,19 @@
 """Tests of fmb.py. FMB is the program to compare with. The tests on the bus need fmbd, and BUS=1."""
 
+import contextlib
 import copy
+import ctypes
 import glob
+import importlib.util
 import itertools
 import json
 import math
 import os
 import random
+import signal
 import subprocess
 import threading
+import time
 import unittest
 from array import array
 
@@ -98,6 +103,40 @@ def of_json(pair):
 
 
 WANTED = {"contacts": True, "boxes": True, "gaps": True}
+
+
+def in_child(work):
+    """Returns whether work() is true in a child process that does not hang."""
+    child = os.fork()
+    if child == 0:
+        signal.alarm(20)
+        try:
+            os._exit(not work())
+        finally:
+            os._exit(2)
+    return os.waitpid(child, 0)[1] == 0
+
+
+class Busy:
+    """A thread that calls work() until the end of the context."""
+
+    def __init__(self, work):
+        self.begun, self.over = threading.Event(), threading.Event()
+        self.thread = threading.Thread(target=self.run, args=(work,))
+
+    def run(self, work):
+        while not self.over.is_set():
+            self.begun.set()
+            work()
+
+    def __enter__(self):
+        self.thread.start()
+        self.begun.wait()
+        time.sleep(0.02)
+
+    def __exit__(self, *_):
+        self.over.set()
+        self.thread.join()
 
 
 class Answers(unittest.TestCase):
@@ -199,11 +238,29 @@ class Answers(unittest.TestCase):
             list(scene.stream(0, steps, velocities=[], client=self.client))
 
     def test_a_moving_body_needs_a_window_or_an_instant(self):
-        scene = fmb.Scene([fmb.box([1, 1])] * 2, velocities=[[1, 0], [0, 0]])
-        with self.assertRaisesRegex(fmb.Error, "^duration: .*instant=True") as caught:
+        scene = fmb.Scene([fmb.box([1, 1])] * 3, velocities=[[0, 0], [0, -1], [0, 0]])
+        with self.assertRaisesRegex(fmb.Error, "^duration: .*body 1 moves: .*instant=True") as caught:
             scene.decide(0, client=self.client)
         self.assertEqual(caught.exception.status, 9)
-        self.assertEqual(len(scene.decide(0, instant=True, client=self.client)), 1)
+        self.assertEqual(len(scene.decide(0, instant=True, client=self.client)), 3)
+        self.assertEqual(scene.pair(0, 1, 0, client=self.client).verdict, fmb.OVERLAPPING)
+
+    def test_a_verdict_equals_its_name_and_its_number(self):
+        scene = fmb.Scene([fmb.box([1, 1])] * 3, positions=[[0, 0], [1, 0], [0.5, 0]])
+        answers = scene.decide(0, client=self.client)
+        self.assertEqual([a.verdict for a in answers], ["touching", "overlapping", "overlapping"])
+        touching = answers[0].verdict
+        self.assertTrue(touching == "touching" and "touching" == touching)
+        self.assertFalse(touching != "touching" or touching == "overlapping" or touching == "x")
+        for words in (["touching"], ("touching",), {"touching"}, {"touching": 1}, {fmb.TOUCHING}):
+            self.assertIn(touching, words)
+        self.assertNotIn(touching, {"overlapping", "separated"})
+        self.assertEqual((f"{touching}", str(touching)), ("touching", "touching"))
+        self.assertEqual((touching, touching.name, int(touching)), (2, "TOUCHING", 2))
+        self.assertTrue(touching != 3 and touching is fmb.TOUCHING and touching < fmb.OVERLAPPING)
+        self.assertEqual([v == fmb.TOUCHING for v in answers.verdicts], [True, False, False])
+        if fmb.numpy:
+            self.assertEqual((answers.verdicts == fmb.OVERLAPPING).tolist(), [False, True, True])
 
 
 @unittest.skipUnless(BUS, "needs fmbd")
@@ -228,15 +285,31 @@ class Bus(Answers):
     def test_a_client_is_not_used_by_another_process(self):
         # Both would take the answers to each other's queries for their own.
         scene = fmb.Scene([fmb.box([1, 1])] * 2)
-        child = os.fork()
-        if child == 0:
+
+        def is_refused():
             try:
-                scene.pair(0, 1, 0, client=self.client)
+                scene.pair(0, 1, 0, client=client)
             except fmb.BusError as error:
-                self.client.close()
-                os._exit(0 if str(error).startswith("client: ") else 1)
-            os._exit(1)
-        self.assertEqual(os.waitpid(child, 0)[1], 0)
+                return str(error).startswith("client: it is closed, or was opened")
+
+        def is_left():
+            with fmb.Client() as own:  # both locks are free
+                answered = scene.pair(0, 1, 0, client=own).verdict == "overlapping"
+            answered = answered and is_refused()
+            client.close()
+            client.__del__()
+            return answered and is_refused()
+
+        client = self.client
+        self.assertTrue(in_child(is_left))
+        # Another thread uses both.
+        with fmb.Client(prefix="none", timeout=0.2, tries=2) as client:
+            def wait():
+                with contextlib.suppress(fmb.BusError):
+                    scene.decide(0, client=client)
+
+            with Busy(wait):
+                self.assertTrue(in_child(is_left))
         self.assertEqual(scene.pair(0, 1, 0, client=self.client).verdict, fmb.OVERLAPPING)
 
     def test_without_a_service_nothing_is_answered(self):
@@ -274,7 +347,7 @@ class Arrays(unittest.TestCase):
         return answers
 
     def test_results_have_the_shapes_that_are_documented(self):
-        array_of = fmb.numpy.ndarray if fmb.numpy else memoryview
+        array_of = fmb.numpy.ndarray if fmb.numpy else (memoryview, fmb.Rows)
         self.assertEqual(self.check(array_of).pairs.tolist(), [[0, 1]])
         listed = self.check(array_of, pairs=[[2, 0], [1, 0]])
         self.assertEqual(listed.verdicts.tolist(), [fmb.SEPARATED, fmb.OVERLAPPING])
@@ -304,10 +377,99 @@ class Arrays(unittest.TestCase):
             self.assertEqual(self.scene.pair(0, 1, 0, box=True), before)
 
     def test_buffers_are_accepted_without_numpy(self):
-        positions = memoryview(array("d", [0, 0, 0, 9, 0, 0, 1, 0, 0])).cast("B").cast("d", (3, 3))
-        pairs = memoryview(bytes(array("q", [0, 1, 0, 2]))).cast("q", (2, 2))  # read-only
-        self.scene.place(positions)
-        self.assertEqual(list(self.scene.decide(0, pairs=pairs).verdicts), [1, 2])
+        for code in "dfbhilqBHILQ":
+            with self.subTest(code):
+                numbers = array(code, [0, 0, 0, 9, 0, 0, 1, 0, 0])
+                rows = memoryview(numbers).cast("B").cast(code, (3, 3))
+                self.scene.place(rows)
+                self.assertEqual([a.verdict for a in self.scene.decide(0, pairs=[[0, 1], [0, 2]])], [1, 2])
+                self.scene.place(rows[::-1])  # not in C order
+                self.assertEqual([a.verdict for a in self.scene.decide(0, pairs=[[0, 2], [0, 1]])], [2, 1])
+                self.scene.move(0, memoryview(numbers)[3:6])
+                self.assertEqual(self.scene.pair(0, 1, 0).verdict, fmb.OVERLAPPING)
+        self.scene.place([[0, 0, 0], [9, 0, 0], [1, 0, 0]])
+        for code in "bhilqBHILQ":
+            pairs = memoryview(bytes(array(code, [0, 1, 0, 2]))).cast(code, (2, 2))  # read-only
+            self.assertEqual(list(self.scene.decide(0, pairs=pairs).verdicts), [1, 2])
+            self.assertEqual(list(self.scene.decide(0, pairs=pairs[::-1]).verdicts), [2, 1])
+        rows = (ctypes.c_double * 3 * 3)((0, 0, 0), (1, 0, 0), (9, 0, 0))
+        self.scene.place(rows)
+        self.assertEqual(list(self.scene.decide(0, pairs=[[0, 1], [0, 2]]).verdicts), [2, 1])
+
+    def test_rows_of_results_can_be_indexed(self):
+        answers = self.scene.decide(0, pairs=[[2, 0], [1, 0]], contacts=True, boxes=True, gaps=True)
+        for name in ("pairs", "contacts", "boxes", "gaps", "directions", "witnesses", "frames"):
+            column = getattr(answers, name)
+            rows = column.tolist()
+            with self.subTest(name):
+                self.assertEqual(str([row.tolist() for row in column]), str(rows))
+                self.assertEqual(str(column[-1].tolist()), str(rows[1]))
+                self.assertEqual(str(column[1:].tolist()), str(rows[1:]))
+                self.assertEqual(str(column[::-1][1].tolist()), str(rows[0]))
+                self.assertEqual(str([column[0][k].tolist() if name == "boxes" else column[0][k]
+                                      for k in range(len(rows[0]))]).count("nan"), str(rows[0]).count("nan"))
+                with self.assertRaises(IndexError):
+                    column[2]
+        self.assertEqual((answers.gaps[0][0], answers.gaps[0, 1], len(answers.gaps)), (2, 2, 2))
+        self.assertEqual(answers.boxes[1][0].tolist(), [0, -0.5, -0.5])
+        self.assertEqual(answers.boxes[1, 1, 0], 0.5)
+        # An array of results is an argument, too.
+        found = self.scene.decide(0)
+        self.assertEqual(len(self.scene.decide(0, ignored=found.pairs)), 0)
+        self.assertEqual(len(self.scene.decide(0, pairs=answers.pairs[1:])), 1)
+        self.scene.place(answers.boxes[1].tolist() + [list(answers.directions[0])])
+        bounds = [fmb.hull(corners).dim for corners in answers.boxes[1:]]
+        self.assertEqual(bounds, [3])
+
+    def test_a_stream_takes_an_array_of_scenes(self):
+        steps = memoryview(array("d", [0, 0, 0, 1, 0, 0, 9, 0, 0, 0, 0, 0, 2, 0, 0, 9, 0, 0])).cast("B")
+        self.assertEqual([len(answers) for answers in self.scene.stream(0, steps.cast("d", (2, 3, 3)))],
+                         [1, 0])
+
+    def test_what_bodies_do_not_have_is_refused(self):
+        box = fmb.box([1, 1, 1])
+        for error, start, call in (
+                (TypeError, "position: ", lambda: fmb.box([1, 1, 1], position=[0, 0, 0])),
+                (TypeError, "name: ", lambda: fmb.hull(vertices=[[0, 0]], name="table")),
+                (TypeError, "componets: ", lambda: fmb.cuboid(componets=[[1, 0], [0, 1]])),
+                (AttributeError, "postion: ", lambda: setattr(box, "postion", [0, 0, 0])),
+                (AttributeError, "position: ", lambda: setattr(box, "position", [0, 0, 0])),
+                (AttributeError, "dim: ", lambda: setattr(box, "dim", 2)),
+                (AttributeError, "positions: ", lambda: setattr(self.scene, "positions", [[0, 0, 0]] * 3))):
+            with self.subTest(start), self.assertRaises(error) as caught:
+                call()
+            self.assertTrue(str(caught.exception).startswith(start), str(caught.exception))
+        with self.assertRaisesRegex(TypeError, r"^position: .*Scene"):
+            fmb.box([1, 1, 1], position=[0, 0, 0])
+        with self.assertRaisesRegex(AttributeError, r"^position: .*Scene"):
+            box.position = [0, 0, 0]
+        self.assertFalse(hasattr(box, "position"))
+
+    def test_scenes_are_usable_in_a_child_process(self):
+        # Another thread decides, or sets poses, at the moment of the fork: both are complete in the child.
+        count = 20000
+        far, near = (array("d", [x, 0.0, 0.0] * count) for x in (100.0, 0.0))
+        places = [memoryview(numbers).cast("B").cast("d", (count, 3)) for numbers in (far, near)]
+        cube = fmb.box([1, 1, 1])
+        scene = fmb.Scene([cube] * count, groups=[1] * count)
+        few = fmb.Scene([cube] * 50)
+        expected = list(few.decide(0, **WANTED))
+
+        def place():
+            for positions in places:
+                scene.place(positions)
+
+        def is_usable():
+            verdicts = {scene.pair(0, k, 0).verdict for k in range(1, count, 100)}
+            scene.place(places[0])
+            return verdicts == {fmb.OVERLAPPING} and len(scene.decide(0)) == 0
+
+        with Busy(place):
+            for _ in range(15):
+                self.assertTrue(in_child(is_usable))
+        with Busy(lambda: few.decide(0, **WANTED)):
+            for _ in range(5):
+                self.assertTrue(in_child(lambda: list(few.decide(0, **WANTED)) == expected))
 
     def refused(self, error, start, call):
         with self.subTest(start):
@@ -324,8 +486,13 @@ class Arrays(unittest.TestCase):
                 (ValueError, "positions[1]", lambda: scene.place([[0, 0, 0], [0, 0], [0, 0, 0]])),
                 (TypeError, "positions", lambda: scene.place([0, 0, 0])),
                 (TypeError, "positions", lambda: scene.place([["a", 0, 0]] * 3)),
-                (TypeError, "positions", lambda: scene.place(array("f", [0] * 9))),
+                ((TypeError, ValueError), "positions", lambda: scene.place(array("f", [0] * 9))),
                 (ValueError, "positions", lambda: scene.place(array("d", [0] * 9))),
+                (TypeError, "size", lambda: fmb.box(b"abc")),
+                (TypeError, "size", lambda: fmb.box(memoryview(b"\1\1\1").cast("?"))),
+                (TypeError, "size: expected an array of shape (dim,) with dim 2 or 3, found 1", lambda: fmb.box(1)),
+                (TypeError, "positions", lambda: scene.place(1.5)),
+                (TypeError, "pairs", lambda: scene.decide(0, pairs=memoryview(array("d", [0, 1])).cast("B").cast("d", (1, 2)))),
                 (fmb.Error, "positions[2]", lambda: scene.place([[0, 0, 0], [0, 0, 0], [0, nan, 0]])),
                 (fmb.Error, "velocities[0]", lambda: scene.place(velocities=[[nan, 0, 0]] * 3)),
                 (fmb.Error, "orientations[0]", lambda: scene.place(orientations=[[0, 0, 0, 0]] * 3)),
@@ -399,29 +566,65 @@ class Arrays(unittest.TestCase):
         self.assertEqual(scene.pair(0, 1, 0).verdict, fmb.OVERLAPPING)
 
     @unittest.skipUnless(fmb.numpy, "needs numpy")
-    def test_numpy_arrays_need_the_right_type_and_order(self):
+    def test_numpy_arrays_of_any_real_type_and_order_are_taken(self):
         numpy, scene = fmb.numpy, self.scene
         good = numpy.array([[0.0, 0, 0], [1, 0, 0], [9, 0, 0]])
-        scene.place(good)
+        wide = numpy.zeros((6, 3, 2))
+        wide[::2, :, 1] = good
+        read_only = good.copy()
+        read_only.setflags(write=False)
         pairs = numpy.argwhere(numpy.tri(3, k=-1))  # not in C order
-        self.refused(ValueError, "pairs", lambda: scene.decide(0, pairs=pairs))
-        pairs = numpy.ascontiguousarray(pairs)
-        self.assertEqual(scene.decide(0, pairs=pairs).verdicts.tolist(), [2, 1, 1])
-        good.setflags(write=False)
+        for positions in (good, read_only, numpy.asfortranarray(good), wide[::2, :, 1], good[::-1][::-1],
+                          *(good.astype(code) for code in ("f2", "f4", ">f4", ">f8", "i1", "u8", ">i4"))):
+            scene.place([[5, 5, 5]] * 3)
+            scene.place(positions)
+            self.assertEqual(scene.decide(0, pairs=pairs).verdicts.tolist(), [2, 1, 1])
+            scene.move(2, positions[0])
+            scene.move(1, position=positions[1])
+            self.assertEqual(scene.pair(0, 2, 0).verdict, fmb.OVERLAPPING)
         scene.place(good)
+        for listed in (numpy.ascontiguousarray(pairs), numpy.asfortranarray(pairs), pairs.astype("u4"),
+                       pairs.astype("i2"), pairs.astype(">i8"), pairs.astype("u8")):
+            self.assertEqual(scene.decide(0, pairs=listed).verdicts.tolist(), [2, 1, 1])
+        narrow = numpy.float32([[0.1, 0, 0], [0, 0.1, 0]])
+        exact = fmb.Scene([fmb.hull(narrow), fmb.hull(narrow.astype(float))])
+        self.assertEqual(exact.pair(0, 1, 0, gap=True).witness, None)
+        whole = numpy.eye(3, dtype=int)
+        for body in (fmb.box(whole[0] + 1, centre=whole[1]), fmb.cuboid(whole, whole[0]), fmb.face(whole[:2]),
+                     fmb.tetrahedron(vertices=numpy.float32([[0, 0], [1, 0], [0, 1]]))):
+            self.assertIn(body.dim, (2, 3))
+        ids = numpy.array([5, 6, 7], "u2")
+        fmb.Scene([fmb.box(whole[0])] * 3, positions=good.astype("f4"), orientations=numpy.eye(3, 4, dtype="i1"),
+                  velocities=numpy.asfortranarray(good), ids=ids, groups=ids[::-1])
+        steps = numpy.float32([good, good * 2]).transpose(0, 1, 2)
+        self.assertEqual([len(answers) for answers in scene.stream(0, steps)], [1, 0])
         for error, start, call in (
-                (TypeError, "positions", lambda: scene.place(good.astype("f4"))),
-                (TypeError, "positions", lambda: scene.place(good.astype(int))),
-                (TypeError, "positions", lambda: scene.place(good.astype(">f8"))),
                 (TypeError, "positions", lambda: scene.place(good.astype(object))),
+                (TypeError, "positions", lambda: scene.place(good.astype(complex))),
+                (TypeError, "positions", lambda: scene.place(good.astype(numpy.longdouble))),
+                (TypeError, "positions", lambda: scene.place(good.astype(bool))),
+                (TypeError, "positions", lambda: scene.place(good.astype("M8[s]"))),
+                (TypeError, "positions", lambda: scene.place(good.astype(str))),
                 (TypeError, "positions", lambda: scene.place(numpy.ma.masked_equal(good, 9))),
-                (ValueError, "positions", lambda: scene.place(numpy.asfortranarray(good))),
-                (ValueError, "positions", lambda: scene.place(numpy.zeros((3, 6))[:, ::2])),
+                (TypeError, "positions", lambda: scene.place(numpy.ma.masked_equal(good.astype("f4"), 9))),
                 (ValueError, "positions", lambda: scene.place(good[:2])),
+                (ValueError, "size", lambda: fmb.box(numpy.float32(1))),
+                (fmb.Error, "positions[2]", lambda: scene.place(numpy.float32([[0] * 3, [0] * 3, [numpy.inf] * 3]))),
                 (TypeError, "pairs", lambda: scene.decide(0, pairs=numpy.array([[0.0, 1.0]]))),
-                (TypeError, "pairs", lambda: scene.decide(0, pairs=numpy.array([[0, 1]], "u4"))),
+                (TypeError, "pairs", lambda: scene.decide(0, pairs=numpy.array([[True, False]]))),
+                (fmb.Error, "pairs[0]", lambda: scene.decide(0, pairs=numpy.array([[0, 2**64 - 1]], "u8"))),
                 (ValueError, "pairs", lambda: scene.decide(0, pairs=numpy.array([0, 1])))):
             self.refused(error, start, call)
+
+    @unittest.skipUnless(importlib.util.find_spec("pandas"), "needs pandas")
+    def test_tables_of_pandas_are_arrays(self):
+        import pandas
+        table = pandas.DataFrame({"x": [0, 1, 9], "y": [0.0, 0, 0], "z": [0, 0, 0], "name": list("abc")})
+        self.scene.place(table[["x", "y", "z"]])
+        self.assertEqual([a.verdict for a in self.scene.decide(0)], ["touching"])
+        scene = fmb.Scene([fmb.box(table[["x", "y", "z"]].loc[2])] * 3, names=table["name"], ids=table.index + 1)
+        self.assertEqual(scene.names, ("a", "b", "c"))
+        self.refused(TypeError, "positions", lambda: scene.place(table[["x", "y", "name"]]))
 
     def test_threads_may_share_a_scene(self):
         scene, pairs = scene_of(random_scene(3, 12, 3))

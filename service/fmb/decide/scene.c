@@ -183,7 +183,7 @@ static enum fmb_status refuse_element(struct why why, enum fmb_status status, co
 /* Checks the first count placements, and whether they may move. */
 static enum fmb_status check_placements(const struct fmb_scene *scene, size_t count, struct why why)
 {
-    bool moving = false;
+    size_t moving = count;
     for (size_t i = 0; i < count; i++) {
         const struct fmb_placement *placement = &scene->placements[i];
         enum fmb_status status = fmb_placement_check(placement);
@@ -191,11 +191,15 @@ static enum fmb_status check_placements(const struct fmb_scene *scene, size_t co
             status = FMB_DIMENSIONS_DIFFER;
         if (status != FMB_OK)
             return refuse_element(why, status, "placements", i);
-        moving = moving || placement_moves(placement, placement->body->dim);
+        if (moving == count && placement_moves(placement, placement->body->dim))
+            moving = i;
     }
-    if (scene->instant ? scene->duration != 0 : scene->duration == 0 && moving)
-        return refuse(why, FMB_BAD_DURATION, "duration", NULL);
-    return FMB_OK;
+    if (scene->instant && scene->duration != 0)
+        return refuse(why, FMB_BAD_DURATION, "duration", "not 0, but instant is set");
+    const bool bad = !scene->instant && scene->duration == 0 && moving < count;
+    if (bad)
+        snprintf(why.text, why.size, "duration: it is 0, but body %zu moves", moving);
+    return bad ? FMB_BAD_DURATION : FMB_OK;
 }
 
 static bool is_pair(const unsigned pair[2], size_t placements)
