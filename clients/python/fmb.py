@@ -8,7 +8,7 @@ box, and how far apart they are. Decided in process, or by the service fmbd on a
     scene = fmb.Scene([table, cube], names=["table", "cube"])
     scene.place(positions=[[0, 0, 0.125], [0.5, 0, 0.375]])
     for answer in scene.decide(duration=0):
-        print(answer.names, answer.verdict.name)    # ('table', 'cube') TOUCHING
+        print(answer.names, answer.verdict)    # ('table', 'cube') touching
 
 Bodies are made by box(), cuboid(), tetrahedron(), face(), hull() and compound(), and queried by the
 methods of Scene. "pydoc3 fmb.hull" or "pydoc3 fmb.Scene" describes one of them.

@@ -592,7 +592,8 @@ static void bodies_that_move_need_a_window(void **state)
                 placement[1] = placement[0];
                 placement[1].velocity[2] = moving;
                 if (duration ? instant : !instant && moving) {
-                    wrong(client, &scene, FMB_BAD_DURATION, "duration: ");
+                    wrong(client, &scene, FMB_BAD_DURATION,
+                          instant ? "duration: " : "duration: it is 0, but body 1 moves");
                     continue;
                 }
                 assert_int_equal(fmb_client_query(client, &scene, count_meeting, &contacts),

@@ -196,10 +196,10 @@ static enum fmb_status check_placements(const struct fmb_scene *scene, size_t co
     }
     if (scene->instant && scene->duration != 0)
         return refuse(why, FMB_BAD_DURATION, "duration", "not 0, but instant is set");
-    const bool bad = !scene->instant && scene->duration == 0 && moving < count;
-    if (bad)
-        snprintf(why.text, why.size, "duration: it is 0, but body %zu moves", moving);
-    return bad ? FMB_BAD_DURATION : FMB_OK;
+    if (scene->instant || scene->duration != 0 || moving == count)
+        return FMB_OK;
+    snprintf(why.text, why.size, "duration: it is 0, but body %zu moves", moving);
+    return FMB_BAD_DURATION;
 }
 
 static bool is_pair(const unsigned pair[2], size_t placements)
