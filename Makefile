@@ -1,20 +1,22 @@
 # The FMB query service. Two commands for a bare Debian machine:
 #
-#   make deps demo          installs what building needs, then lets the service answer a scene
-#   make deps-test test     installs what the tests need, then runs them
+#   make deps demo        installs what building needs, then lets the service answer a scene
+#   make deps-test test   installs what the tests need, then runs them
 #
-# Build:    all (default), examples, install, install-strip, uninstall, clean
-# Test:     test (all, in two builds), test-fast (one build, small samples), unit-tests; headers,
-#           layers, format, format-check
-# Packages: deb: of Debian, into build/deb; deb-test: tries them in a chroot (deps-deb first; root)
-# Longer:   validate, accuracy, depth (deps-bench first), checked, hull-poses, soak, fuzz, fuzz-afl,
-#           fuzz-merge (deps-fuzz first)
-# Measure:  bench (deps-bench first, for other libraries), bench-bus, bench-replay, bench-mesh,
-#           bench-page, bench-python, report (deps-report first)
-# Port:     aarch64: fmb for AArch64, which 'make test' then emulates (deps-aarch64 first)
-# Rewrite:  logs, goldens: the regression logs, and the results that they are compared with;
-#           picture: that of README.md;
-#           abi: the names and sizes that programs linked with the libraries depend on
+# Targets, after the one that installs the packages which suffice for them:
+#
+#   deps          all (default), programs, manual, demo, install, install-strip, uninstall, clean, help;
+#                 examples: in Java, where it is; headers, layers: what a folder may include and call;
+#                 logs, goldens: the regression logs, and the results that they are compared with;
+#                 abi: the names and sizes that programs linked with the libraries depend on
+#   deps-test     test, check (all, in two builds), test-fast (one build, small samples), unit-tests;
+#                 tests, fast-tests, tested-programs, replay-set: what these build;
+#                 format, format-check; bench-page; picture: that of README.md
+#   deps-bench    bench, bench-bus, bench-replay, bench-mesh, bench-python, report (of what they measured);
+#                 validate, accuracy, depth, checked, hull-poses, soak: campaigns that take longer
+#   deps-fuzz     fuzz, fuzz-afl, fuzz-merge, fuzzers
+#   deps-deb      deb: packages of Debian, into build/deb; deb-test: tries them in a chroot (root)
+#   deps-aarch64  aarch64: fmb for AArch64, which 'make test' then emulates
 #
 # Variables:
 #   MODE=release|debug|asan        optimised, for a debugger, with sanitizers and fuzzers (clang)
@@ -450,13 +452,12 @@ packages_deps := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libexpat1-dev 
 packages_deps-test := $(packages_deps) libcmocka-dev bats jq clang clang-format lld libclang-rt-dev \
 	liblcm-java default-jdk-headless chromium libxml2-utils g++ cmake man-db \
 	gnuplot-nox python3 python3-numpy python3-pandas python3-matplotlib
-packages_deps-fuzz := $(packages_deps) clang libclang-rt-dev llvm afl++
-packages_deps-bench := libccd-dev libfcl-dev libbullet-dev libode-dev libbox2d-dev libcgal-dev \
-	libmpfr-dev pkg-config
-packages_deps-report := jq
+packages_deps-bench := $(packages_deps) g++ jq python3 python3-numpy libccd-dev libfcl-dev libbullet-dev libode-dev \
+	libbox2d-dev libcgal-dev libmpfr-dev
+packages_deps-fuzz := $(packages_deps) clang libclang-rt-dev lld llvm afl++
 packages_deps-deb := $(packages_deps) build-essential debhelper dh-python python3 lintian bats debootstrap
-packages_deps-aarch64 := gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
-deps := deps deps-test deps-fuzz deps-bench deps-report deps-deb deps-aarch64
+packages_deps-aarch64 := $(packages_deps) gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
+deps := deps deps-test deps-bench deps-fuzz deps-deb deps-aarch64
 
 as_root = $$([ $$(id -u) = 0 ] || echo sudo)
 .PHONY: $(deps)

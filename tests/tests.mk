@@ -20,12 +20,12 @@ see_tests/logs := tests/encode tests/campaign tests/oracle service/answer $(wire
 	$(call fmb,frame filter) $(GEN)
 see_tests/python := tests/bench service/fmb
 see_tests/soak := tests/encode tests/campaign $(see_tests/campaign) clients/lib $(wire)
-see_tests/replay := clients/replay $(see_clients/replay) tests/unit tests/bench tests/encode
-see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/unit tests/hostile $(GEN)
+see_tests/replay := clients/replay $(see_clients/replay) tests/bench tests/encode
+see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/replay tests/hostile $(GEN)
 see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
 see_tests/unit/kernels := $(call fmb,number frame filter)
 see_tests/unit := $(call fmb,number frame filter article tree exact gap hull certificate decide) service clients \
-	$(see_clients) tests/encode tests/oracle tests/campaign tests/checked tests/hostile tests/mesh $(GEN)
+	$(see_clients) tests/encode tests/oracle tests/replay tests/campaign tests/checked tests/hostile tests/mesh $(GEN)
 
 # ---- Programs of tests and measurements: the name, and the main file in tests/ ----
 
@@ -44,16 +44,16 @@ program_names = $(foreach p,$1,$(B)/$(firstword $(subst :, ,$p)))
 test_programs := $(call program_names,$(test_programs))
 measures := $(call program_names,$(measures)) $(B)/accuracy-planted
 
-# What the programs of tests share, and what benchmarks share besides. Programs that look into the
-# engine link its objects, the others the library.
-test_folders := $(addprefix tests/,encode oracle hostile campaign checked mesh soak logs)
+# What the programs of tests share, and what benchmarks and unit tests, which need cmocka, share besides.
+# Programs that look into the engine link its objects, the others the library.
+test_folders := $(addprefix tests/,encode oracle hostile campaign checked mesh soak logs replay)
 shared := $(O)/shared.a
-$(shared): $(filter-out $(mains:%=$(O)/tests/%.o),$(call objects_in,$(test_folders))) \
-		$(patsubst tests/unit/%.c,$(O)/tests/unit/%.o,$(filter-out %/slab_truth.c %/slab_kernel.c \
-			tests/unit/test_%,$(wildcard tests/unit/*.c)))
+$(shared): $(filter-out $(mains:%=$(O)/tests/%.o),$(call objects_in,$(test_folders)))
+units := $(O)/units.a
+$(units): $(filter-out %/slab_truth.o %/slab_kernel.o $(O)/tests/unit/test_%,$(call objects_in,tests/unit))
 measuring := $(O)/measuring.a
 $(measuring): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in,$(addprefix tests/,bench bus robot)))
-$(shared) $(measuring):
+$(shared) $(units) $(measuring):
 	@rm -f $@
 	$(call say,AR,$@) $(AR) qcs $@ $^
 looks_inside := validate accuracy checked bench/bench bus/bench-bus logs/generate soak-families
@@ -132,8 +132,8 @@ fast_release := -O1
 $(unit_names:%=$(O)/tests/unit/%.o): flags += $(fast_$(MODE))
 $(addprefix $(B)/tests/,test_bounds test_kernels): $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
 	kernel_fused.o kernel_planted.o)
-$(internal_tests): $(O)/tests/unit/slab_truth.o $(shared) $(client) $(product) $(engine)
-$(filter-out $(internal_tests),$(unit_tests)): $(shared) $(client) $(product) $(B)/libfmb.a
+$(internal_tests): $(O)/tests/unit/slab_truth.o $(units) $(shared) $(client) $(product) $(engine)
+$(filter-out $(internal_tests),$(unit_tests)): $(units) $(shared) $(client) $(product) $(B)/libfmb.a
 $(unit_tests): libraries += -lcmocka
 $(unit_tests): $(B)/tests/%: $(O)/tests/unit/%.o | $(B)/netns
 	$(link)

@@ -1,46 +1,185 @@
-# What 'make' prints, and what its targets need.
+# What 'make' prints, what its targets need, and what they remove.
 
-# A copy of the tree in a folder whose path has a space, beside one that has the part of this path before it.
-# Its tools are one script, which writes down how it was called and makes what it is to make: a copy of itself.
+# A copy of the tree in a folder whose path has a space, beside one that has the part of this path before
+# it. The tools there are one script, which writes down how it was called, and makes what it is to make: a
+# copy of itself.
 setup_file() {
     cd "$BATS_TEST_DIRNAME/../.." || return
-    export decoy=$BATS_FILE_TMPDIR/my tree="$BATS_FILE_TMPDIR/my tree" tools=$BATS_FILE_TMPDIR/tools called=$BATS_FILE_TMPDIR/called
-    mkdir -p "$decoy/kept" "$tree" "$tools"
+    export decoy=$BATS_FILE_TMPDIR/my tree="$BATS_FILE_TMPDIR/my tree" tool=$BATS_FILE_TMPDIR/tool
+    export called=$BATS_FILE_TMPDIR/called known=$BATS_FILE_TMPDIR/known
+    mkdir -p "$decoy/kept" "$tree"
     tar --exclude=./build --exclude=./.git -c . | tar -x -C "$tree"
-    cat > "$tools/tool" << END
+    # What make knows; it makes nothing, as there is no such target.
+    env -u MAKEFLAGS -u MAKELEVEL make -npq no-such-target > "$known" 2> /dev/null || true
+    cat > "$tool" << END
 #!/bin/sh
-printf '%s\\n' "\${0##*/}" "\$@" >> $called
+printf '%s\\n' "\${0##*/}" "\$@" >> "$called"
+out=
 case \${0##*/} in
-ar) out=\$2 ;;
-chromium) for out in "\$@"; do case \$out in --screenshot=*) out=\${out#*=}; break ;; esac done ;;
-*)
-    out=
-    for word in "\$@"; do [ "\$before" != -o ] || out=\$word; before=\$word; done
-    ;;
+*ar) out=\$2 ;;
+chromium) for word in "\$@"; do case \$word in --screenshot=*) out=\${word#*=} ;; esac done ;;
+clang-format) echo 'version 14.' ;;
+afl-fuzz) for word in "\$@"; do [ ! -d "\$word" ] || { mkdir -p "\$word/default"; echo 'saved_crashes : 0' > "\$word/default/fuzzer_stats"; }; done ;;
+*) for word in "\$@"; do [ "\$before" != -o ] || out=\$word; before=\$word; done ;;
 esac
-if [ "\$out" ]; then
-    [ -d "\${out%/*}" ] && cp $tools/tool "\$out"
-else
+[ "\$out" ] && [ "\$out" != /dev/null ] || {
     echo ready >&2
-    [ -z "\$CMOCKA_MESSAGE_OUTPUT" ] || printf '1..1\\nok 1 of a stub\\n'
-fi
+    [ -z "\$CMOCKA_MESSAGE_OUTPUT" ] || printf '1..1\\nok 1 of no suite\\n'
+    exit 0
+}
+case \$out in
+*.[ao]) : > "\$out" ;;
+*) cp "$tool" "\$out" ;;
+esac
 END
-    chmod +x "$tools/tool"
-    for name in gcc clang g++ afl-clang-fast ar objcopy nm lcm-gen javac bats jq python3 chromium clang-format dh lintian \
-        dpkg-buildpackage aarch64-linux-gnu-{gcc,ar,objcopy} qemu-aarch64; do
-        ln -s tool "$tools/$name"
+    chmod +x "$tool"
+}
+
+# brings PACKAGE: the programs of a package in the lists of the Makefile that its targets call. The others have
+# headers and libraries, or what tests alone call.
+brings() {
+    case $1 in
+    gcc) echo gcc ar nm objcopy strip ;;
+    afl++) echo afl-clang-fast afl-fuzz ;;
+    build-essential) echo dpkg-buildpackage ;;
+    debhelper) echo dh ;;
+    default-jdk-headless) echo javac java ;;
+    gcc-aarch64-linux-gnu) echo aarch64-linux-gnu-gcc aarch64-linux-gnu-ar aarch64-linux-gnu-objcopy ;;
+    liblcm-bin) echo lcm-gen ;;
+    qemu-user) echo qemu-aarch64 ;;
+    lib* | *-dev | *-cross) ;;
+    *) echo "$1" ;;
+    esac
+}
+
+# What a machine has that has nothing else than git and make.
+common='awk base64 basenc bash basename cat chmod cmp comm cp cut date diff dirname du env expr find git grep head id install ln ls
+    make mkdir mktemp mv nice nproc paste printf readlink realpath rm sed sh sha256sum sort stat tail tar tee timeout touch tr true
+    uname uniq wc xargs'
+
+# listed DEPS: the targets that the table at the top of the Makefile has after it, a line each.
+listed() {
+    sed -n '/^# Targets/,/^# Variables/{ s/([^)]*)//g; p; }' Makefile | awk -v deps="$1" '
+        /^#   [a-z]/ { inside = ($2 == deps); $2 = "" }
+        inside && !/^#$/ { text = text substr($0, 2) }
+        END {
+            parts = split(text, part, ";")
+            for (i = 1; i <= parts; i++) {
+                sub(/:.*/, "", part[i])
+                gsub(/ /, "", part[i])
+                gsub(/,/, "\n", part[i])
+                print part[i]
+            }
+        }'
+}
+
+# packages_of DEPS: what 'make DEPS' installs.
+packages_of() {
+    sed -n "s/^packages_$1 := //p" "$known"
+}
+
+# make_there DEPS ARGUMENTS...: in the copy, with the tools of these packages alone.
+make_there() {
+    local tools=$BATS_TEST_TMPDIR/tools package name
+    mkdir -p "$tools"
+    for name in $common; do ln -sf "$(command -v "$name")" "$tools/$name"; done
+    for package in $(packages_of "$1"); do
+        for name in $(brings "$package"); do ln -sf "$tool" "$tools/$name"; done
     done
     printf '#!/bin/sh\n' > "$tools/sleep"
     chmod +x "$tools/sleep"
+    shift
+    run env -u MAKEFLAGS -u MAKELEVEL PATH="$tools" make -s -j2 -C "$tree" python=python3 DESTDIR="$tree/build/dest dir" "$@"
+    # No path was taken apart: no argument ends with the first part of it, or begins with the second.
+    ! grep -n -e "$decoy\$" -e '^tree\(/\|$\)' "$called" || return
+    [ -d "$decoy/kept" ]
 }
 
-# make_there ARGUMENTS...: in the copy, with these tools.
-make_there() {
+# included: the system's headers that the sources which were compiled include, and the headers that these do.
+included() {
+    grep -x '[^/].*\.\(c\|cc\)' "$called" | sort -u > "$BATS_TEST_TMPDIR/sources"
+    (cd "$tree" && grep -roE --include='*.[ch]' --include='*.cc' --include='*.hpp' '^ *# *include [<"][^>"]*' service msgs clients tests) |
+        awk -F: -v sources="$BATS_TEST_TMPDIR/sources" '
+            {
+                text = $2
+                sub(/.*include /, "", text)
+                includes[$1] = includes[$1] " " text
+                name = $1
+                sub(/.*\//, "", name)
+                if (!(($1) in known)) files[name] = files[name] " " $1
+                known[$1] = 1
+            }
+            function visit(file,   count, word, i, name, j, found, path) {
+                if (seen[file]++) return
+                count = split(includes[file], word, " ")
+                for (i = 1; i <= count; i++) {
+                    name = substr(word[i], 2)
+                    if (word[i] ~ /^</) { print name; continue }
+                    sub(/.*\//, "", name)
+                    for (j = split(files[name], path, " "); j > 0; j--) visit(path[j])
+                }
+            }
+            END { while ((getline file < sources) > 0) visit(file) }' | sort -u
+}
+
+# suffices DEPS: for each target that is listed after it. One will do of those that are one script.
+suffices() {
+    local target
+    [ "$(packages_of "$1")" ]
+    # What earlier targets leave, and 'make deps-aarch64'.
+    mkdir -p "$tree"/build/{bench,bus}
+    touch "$tree"/build/{bench/report,bus/report,accuracy}.json
+    [ "$1" != deps-aarch64 ] || mkdir -p "$tree/build/aarch64/usr/lib/aarch64-linux-gnu"
     : > "$called"
-    run env -u MAKEFLAGS -u MAKELEVEL PATH="$tools:$PATH" make -C "$tree" python=python3 "$@"
-    # Nobody took the path apart: no argument ends with the first part of it, or begins with the second.
-    ! grep -n -e "$decoy\$" -e '^tree\(/\|$\)' "$called"
-    [ -d "$decoy/kept" ]
+    for target in $(listed "$1" | grep -vx -e clean -e check -e test-fast); do
+        make_there "$1" "$target"
+        [ "$status" = 0 ] || { echo "make $target: $output"; false; }
+    done
+    # Each header is of the compiler, of the C library, or of one of the packages.
+    command -v dpkg > /dev/null || return 0
+    included | while read -r header; do
+        find /usr/include/{,"$(gcc -dumpmachine)/",glib-2.0/}"$header" 2> /dev/null | head -n 1
+    done | xargs dpkg -S | sed 's/: .*//; s/:[a-z0-9]*//g' | sort -u | grep -vxF -e libc6-dev -e linux-libc-dev |
+        grep -vxFf <(packages_of "$1" | tr ' ' '\n') && return 1 || true
+    rm -rf "$tree/build"
+}
+
+@test "the table of the Makefile has each target once" {
+    for deps in $(sed -n 's/^deps := //p' "$known"); do listed "$deps"; done | sort > "$BATS_TEST_TMPDIR/listed"
+    sed -n 's/^\.PHONY: //p' "$known" | tr ' ' '\n' | grep -v -e '^deps' -e '^FORCE$' | sort | diff - "$BATS_TEST_TMPDIR/listed"
+}
+
+@test "deps suffices for its targets, wherever the tree is" {
+    suffices deps
+}
+
+@test "deps-test suffices for its targets, wherever the tree is" {
+    suffices deps-test
+}
+
+@test "deps-bench suffices for its targets, wherever the tree is" {
+    suffices deps-bench
+}
+
+@test "deps-fuzz suffices for its targets, wherever the tree is" {
+    suffices deps-fuzz
+}
+
+@test "deps-deb suffices for its targets, wherever the tree is" {
+    suffices deps-deb
+}
+
+@test "deps-aarch64 suffices for its targets, wherever the tree is" {
+    suffices deps-aarch64
+}
+
+@test "'make deb' removes nothing but its own folder, wherever the tree is" {
+    mkdir -p "$tree/build/deb/old"
+    make_there deps-deb deb
+    [ "$status" = 0 ]
+    [ ! -e "$tree/build/deb/old" ]
+    grep -qx dpkg-buildpackage "$called"
+    [ -f "$tree/build/deb"/fmb-*/debian/changelog ]
 }
 
 # make_arm OPTIONS: one program of one file, elsewhere, anew.
@@ -66,15 +205,6 @@ make_arm() {
     run env -u MAKEFLAGS -u MAKELEVEL PATH=/nonexistent "$make" GEN="$BATS_TEST_TMPDIR" "$BATS_TEST_TMPDIR/fmb_msgs_body_t.h"
     [ "$status" != 0 ]
     [[ $output == *"no lcm-gen here; 'make deps' installs"* ]]
-}
-
-@test "'make deb' removes nothing but its own folder, wherever the tree is" {
-    mkdir -p "$tree/build/deb/old"
-    make_there deb
-    [ "$status" = 0 ]
-    [ ! -e "$tree/build/deb/old" ]
-    grep -qx dpkg-buildpackage "$called"
-    [ -f "$tree/build/deb"/fmb-*/debian/changelog ]
 }
 
 @test "the sources are formatted" {

@@ -29,7 +29,7 @@ draw() {
     mv "$out/$1.part" "$out/$1"
 }
 
-command -v jq > /dev/null || fail "there is no jq: 'make deps-report' installs it"
+command -v jq > /dev/null || fail "there is no jq: 'make deps-bench' installs it"
 need "$bench" bench cells
 need "$accuracy" accuracy families
 if [ -f "$bus" ]; then need "$bus" bench-bus bus; else bus=/dev/null; fi
