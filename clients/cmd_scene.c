@@ -9,6 +9,7 @@
 #include "scene_json.h"
 
 #include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,12 +32,14 @@ static const char usage[] =
     "Poses:\n"
     "  --joints LIST        NAME=VALUE,...: values of joints, in radians, or lengths\n"
     "                       of prismatic joints. Without a value, a mimic joint\n"
-    "                       follows the joint that it names; any other has 0. A value\n"
-    "                       outside the limits of its joint is an error\n"
+    "                       follows the joint that it names; any other has 0\n"
     "  --joints-csv FILE    a table with a column for each joint that moves, named in\n"
     "                       its first line; columns for mimic joints, \"label\" and\n"
     "                       \"time\" are optional. With times, a row lasts until the\n"
     "                       time of the next row\n"
+    "  --limit-slack D      how far values may be outside the limits of their joints,\n"
+    "                       in radians or lengths, before they are refused (0.001;\n"
+    "                       inf: any). They are used as they are, and reported\n"
     "\n"
     "Shapes:\n"
     "  --sides N            sides of the hulls that enclose cylinders and spheres, a\n"
@@ -76,6 +79,7 @@ struct scene_options {
     const char **ignored; /* owned, [ignored_count]: pairs of names */
     size_t ignored_count, ignored_capacity;
     double margin; /* negative: not given */
+    double slack;
 };
 
 /* Takes a text that may be given once: the last of several would hide the others. */
@@ -112,7 +116,8 @@ static bool print_rows(struct robot_scene *scene, struct joint_table *table, boo
         const double time = table->time;
         char label[sizeof table->label];
         strcpy(label, table->label);
-        good = robot_scene_place(scene, table->joints->value, table->has_time ? time - begin : 0,
+        good = table->joints->refused ||
+               robot_scene_place(scene, table->joints->value, table->has_time ? time - begin : 0,
                                  table->place);
         row = joint_table_next(table);
         out->label = *label ? label : NULL;
@@ -131,8 +136,11 @@ static bool print_table(const struct scene_options *options, struct joints *join
                         struct robot_scene *scene)
 {
     struct joint_table table;
-    bool good = joint_table_open(options->table, joints, &table) && joints_check(joints) &&
-                print_rows(scene, &table, false) && joint_table_rewind(&table);
+    bool good = joint_table_open(options->table, joints, &table);
+    if (good)
+        joints_check(joints);
+    good = good && print_rows(scene, &table, false) && joints_report(joints) &&
+           joint_table_rewind(&table);
     if (good) {
         robot_scene_report(scene, options->body.sides);
         good = print_rows(scene, &table, true);
@@ -145,7 +153,7 @@ static bool print_robot(const struct scene_options *options, const struct robot 
                         struct robot_scene *scene)
 {
     struct joints joints;
-    bool good = joints_open(robot, options->joints, &joints) &&
+    bool good = joints_open(robot, options->joints, options->slack, &joints) &&
                 robot_scene_make(robot, &options->body, scene) &&
                 (!options->world || robot_scene_add_world(scene, options->world)) &&
                 robot_scene_ignore(scene, options->ignored, options->ignored_count);
@@ -154,8 +162,9 @@ static bool print_robot(const struct scene_options *options, const struct robot 
     if (good && options->table) {
         good = print_table(options, &joints, scene);
     } else if (good) {
-        good = joints_check(&joints) && joints_follow(&joints, robot->path) &&
-               robot_scene_place(scene, joints.value, 0, robot->path);
+        joints_check(&joints);
+        joints_follow(&joints, robot->path, 0);
+        good = joints_report(&joints) && robot_scene_place(scene, joints.value, 0, robot->path);
         if (good) {
             robot_scene_report(scene, options->body.sides);
             scene_json_write(stdout, &scene->owner);
@@ -178,10 +187,11 @@ static int print_file(const struct scene_options *options, const char *path)
 
 int cmd_scene(int argc, char **argv)
 {
-    struct scene_options options = {.sides = ROBOT_SIDES, .margin = -1};
+    struct scene_options options = {.sides = ROBOT_SIDES, .margin = -1, .slack = 0.001};
     const struct args_option own[] = {
         {"joints", ARGS_OTHER, &options.joints, .take = take_once},
         {"joints-csv", ARGS_OTHER, &options.table, .take = take_once},
+        {"limit-slack", ARGS_NUMBER, &options.slack, .high = INFINITY},
         {"sides", ARGS_INTEGER, &options.sides, .low = 4, .high = ROBOT_SIDES_MAX},
         {"objects", ARGS_FLAG, .out = &options.body.objects},
         {"package-path", ARGS_OTHER, &options.body.package_path, .take = take_once},

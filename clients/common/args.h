@@ -27,7 +27,7 @@ struct args;
 enum args_kind {
     ARGS_FLAG,    /* out: bool, set to true */
     ARGS_TEXT,    /* out: const char * */
-    ARGS_NUMBER,  /* out: double, finite, from low to high */
+    ARGS_NUMBER,  /* out: double, from low to high */
     ARGS_INTEGER, /* out: long, from low to high */
     ARGS_OTHER    /* take processes the value, which is optarg */
 };

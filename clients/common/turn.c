@@ -10,7 +10,11 @@
  *   products with both are exact. radians - quarters P1 is a multiple of 2^-53 or of the last
  *   place of radians, if that is larger, and below 1: exact. The remaining two differences cost u
  *   each, the third product and P3 less than 2^-64.
- * The total is below 8 u = TURN_ERROR. */
+ * The total is below 8 u = TURN_ERROR.
+ *
+ * The double nearest to a multiple of pi / 4 below 4 stands for that multiple, which is off by half
+ * of its last place at most, 2 u: a quarter turn has exactly equal sine and cosine of its half, and
+ * no other rounding than that of the sum. */
 #include "turn.h"
 
 #include <math.h>
@@ -26,9 +30,12 @@ static double series(double x, int first)
     return sum;
 }
 
+#define EIGHTH 0x1.921fb54442d18p-1 /* the double nearest to pi / 4 */
+
 static void turn_reduced(double x, int quarters, double turn[2])
 {
-    const double cosine = series(x, 0), sine = series(x, 1);
+    const double cosine = series(x, 0);
+    const double sine = fabs(x) == EIGHTH ? copysign(cosine, x) : series(x, 1);
     switch (quarters & 3) {
     case 0: turn[0] = cosine, turn[1] = sine; break;
     case 1: turn[0] = -sine, turn[1] = cosine; break;
@@ -48,6 +55,12 @@ void turn_radians(double radians, double turn[2])
 {
     const double per_radian = 0.63661977236758138; /* 2 / pi */
     const double p1 = 0x1.921fb544p0, p2 = 0x0.42d18469p-32, p3 = 0x0.898cc51701b83p-64;
-    const double quarters = rint(radians * per_radian);
-    turn_reduced(radians - quarters * p1 - quarters * p2 - quarters * p3, (int) quarters, turn);
+    const double quarters = rint(radians * per_radian), size = fabs(radians);
+    const double near = (nextafter(size, INFINITY) - size) / 2;
+    double x = radians - quarters * p1 - quarters * p2 - quarters * p3;
+    if (size < 4 && quarters != 0 && fabs(x) <= near)
+        x = 0;
+    else if (size < 4 && fabs(fabs(x) - EIGHTH) <= near)
+        x = copysign(EIGHTH, x);
+    turn_reduced(x, (int) quarters, turn);
 }

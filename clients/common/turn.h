@@ -11,7 +11,8 @@
  * finite angle. */
 void turn_degrees(double degrees, double turn[2]);
 
-/* In: at most TURN_RADIANS_MAX in magnitude. */
+/* The double nearest to a multiple of pi / 4, if it is below 4, stands for that multiple: the
+ * numbers are 0 and +-1, or have equal magnitudes. In: at most TURN_RADIANS_MAX in magnitude. */
 #define TURN_RADIANS_MAX 0x1p20
 void turn_radians(double radians, double turn[2]);
 

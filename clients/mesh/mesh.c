@@ -26,6 +26,14 @@ static bool ends_with(const char *name, const char *ending)
     return length >= wanted && strcasecmp(name + length - wanted, ending) == 0;
 }
 
+const char *mesh_unsupported(const char *name)
+{
+    return ends_with(name, ".dae")
+               ? "COLLADA is not supported: convert it to STL or OBJ, by a program that leaves its "
+                 "axes as they are"
+               : NULL;
+}
+
 /* Text contains no 0 byte. The facet count of a binary STL file does, unless there are more than
  * sixteen million facets. */
 static bool has_zero(const struct mesh_source *source)
@@ -158,7 +166,10 @@ bool mesh_read(const char *path, enum mesh_faces faces, const struct mesh_progre
 {
     size_t size = 0;
     *out = (struct mesh){0};
-    unsigned char *bytes = read_file(path, &size, error);
+    const char *why = mesh_unsupported(path);
+    if (why)
+        snprintf(error, MESH_ERROR_MAX, "%s", why);
+    unsigned char *bytes = why ? NULL : read_file(path, &size, error);
     const bool good = bytes && mesh_parse(bytes, size, path, faces, watch, out, error);
     if (good && watch)
         watch->report(watch->context, (int64_t) size, (int64_t) size);

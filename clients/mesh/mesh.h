@@ -57,6 +57,9 @@ enum mesh_faces {
     MESH_POLYGONS   /* faces of more vertices, as a fan of triangles, which has the same hull */
 };
 
+/* Returns why a file of this name is not read, by its extension; NULL: it may be. */
+const char *mesh_unsupported(const char *name);
+
 /* Reads a mesh from a regular file. The whole file is in memory during the call. watch: may be
  * NULL. Returns true and a mesh, which the caller passes to mesh_free(); or false, an empty mesh
  * and the error. A path that is not a regular file is an error, and never blocks. */

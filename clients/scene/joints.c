@@ -14,36 +14,89 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* place: where the value is given, for messages; via: "", or how it follows from there. */
-static bool check_value(const struct robot_joint *joint, double value, const char *place,
-                        const char *via)
+/* Takes note of the value of joint j if it is outside the limits. */
+static void check_value(struct joints *joints, size_t j, const char *path, unsigned long line)
 {
-    char found[NUMBER_TEXT_MAX], low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
-    number_exact(value, found);
-    if (!(value >= joint->limit[0] && value <= joint->limit[1])) {
-        complain("%s: joint '%s'%s: %s is outside its limits, %s to %s%s", place, joint->name->name,
-                 via, found, number_exact(joint->limit[0], low),
-                 number_exact(joint->limit[1], high),
-                 joint->type != ROBOT_PRISMATIC ? " radians" : "");
-        return false;
+    static const double full_turn = 6.2831853071795862;
+    const struct robot_joint *joint = &joints->robot->joints[j];
+    const bool turns = joint->type != ROBOT_PRISMATIC;
+    struct joint_report found = {.value = joints->value[j], .path = path, .line = line};
+    found.by = fmax(joint->limit[0] - found.value, found.value - joint->limit[1]);
+    if (isnan(found.value) || (turns && fabs(found.value) > TURN_RADIANS_MAX))
+        found.by = INFINITY;
+    else if (turns && fabs(found.value) > fmax(full_turn, fabs(joints->full.value)) &&
+             (found.by > joints->slack || joint->type == ROBOT_CONTINUOUS)) {
+        joints->full = found;
+        joints->full_joint = j;
     }
-    if (joint->type != ROBOT_PRISMATIC && fabs(value) > TURN_RADIANS_MAX) {
-        complain("%s: joint '%s'%s: %s is beyond %.0f radians", place, joint->name->name, via,
-                 found, TURN_RADIANS_MAX);
-        return false;
-    }
-    return true;
+    if (!(found.by > 0))
+        return;
+    joints->outside_count++;
+    joints->refused = joints->refused || found.by > joints->slack || isinf(found.by);
+    if (found.by > joints->outside[j].by)
+        joints->outside[j] = found;
 }
 
-static bool set_value(struct joints *joints, unsigned j, const char *text, const char *place)
+/* Reports a value of joint j. what: about it. */
+static void report_value(const struct joints *joints, size_t j, const struct joint_report *at,
+                         const char *what)
 {
     const struct robot_joint *joint = &joints->robot->joints[j];
-    if (!robot_numbers(text, 1, &joints->value[j])) {
-        complain("%s: joint '%s': expected a finite number, found '%.64s'", place,
-                 joint->name->name, text);
-        return false;
+    const bool given = joints->given[j], follows = !given && joint->mimic_name;
+    char line[32] = "", value[NUMBER_TEXT_MAX];
+    if (at->line > 0)
+        snprintf(line, sizeof line, ": line %lu", at->line);
+    complain("%s%s%s: joint '%s'%s%s%s: %s %s", at->path, line,
+             given || follows ? "" : ": by default (--joints sets other values)", joint->name->name,
+             follows ? " (a mimic of '" : "", follows ? joint->mimic_name : "", follows ? "')" : "",
+             number_or_inf(at->value, value), what);
+}
+
+/* Reports the farthest value of joint j. after: the end of the line. */
+static void report_outside(const struct joints *joints, size_t j, const char *after)
+{
+    const struct robot_joint *joint = &joints->robot->joints[j];
+    const bool turns = joint->type != ROBOT_PRISMATIC;
+    char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX], what[256];
+    if (turns && fabs(joints->outside[j].value) > TURN_RADIANS_MAX)
+        snprintf(what, sizeof what, "is beyond %.0f radians", TURN_RADIANS_MAX);
+    else
+        snprintf(what, sizeof what, "is outside its limits, %s to %s%s%s",
+                 number_exact(joint->limit[0], low), number_exact(joint->limit[1], high),
+                 turns ? " radians" : "", after);
+    report_value(joints, j, &joints->outside[j], what);
+}
+
+bool joints_report(const struct joints *joints)
+{
+    char slack[NUMBER_TEXT_MAX], after[128];
+    size_t farthest = 0;
+    for (size_t j = 0; j < joints->robot->joint_count; j++) {
+        if (joints->outside[j].by > joints->slack || isinf(joints->outside[j].by))
+            report_outside(joints, j, "");
+        farthest = joints->outside[j].by > joints->outside[farthest].by ? j : farthest;
     }
-    return check_value(joint, joints->value[j], place, "");
+    snprintf(after, sizeof after,
+             ": within --limit-slack %s (values outside their limits: %zu; this is the farthest)",
+             number_or_inf(joints->slack, slack), joints->outside_count);
+    if (!joints->refused && joints->outside_count > 0)
+        report_outside(joints, farthest, after);
+    if (joints->full.value != 0)
+        report_value(joints, joints->full_joint, &joints->full,
+                     "is more than a full turn: is it in degrees? Values are in radians");
+    return !joints->refused;
+}
+
+static bool set_value(struct joints *joints, unsigned j, const char *text, const char *path,
+                      unsigned long line, const char *place)
+{
+    const bool good = robot_numbers(text, 1, &joints->value[j]);
+    if (good)
+        check_value(joints, j, path, line);
+    else
+        complain("%s: joint '%s': expected a finite number, found '%.64s'", place,
+                 joints->robot->joints[j].name->name, text);
+    return good;
 }
 
 /* Finds a joint that moves and is not given yet. Returns UINT32_MAX after an error. */
@@ -64,16 +117,18 @@ static unsigned take_joint(struct joints *joints, const char *name, const char *
     return j;
 }
 
-bool joints_open(const struct robot *robot, const char *text, struct joints *out)
+bool joints_open(const struct robot *robot, const char *text, double slack, struct joints *out)
 {
     static const char place[] = "--joints";
     *out = (struct joints){.robot = robot,
+                           .slack = slack,
                            .value = allocate(robot->joint_count, sizeof *out->value),
+                           .outside = allocate(robot->joint_count, sizeof *out->outside),
                            .given = allocate(robot->joint_count, sizeof *out->given)};
     char *copy = allocate(strlen(text ? text : "") + 1, 1);
     bool good = true;
     strcpy(copy, text ? text : "");
-    for (char *at = text ? copy : NULL, *next; good && at; at = next) {
+    for (char *at = text ? copy : NULL, *next; at; at = next) {
         next = strchr(at, ',');
         if (next)
             *next++ = '\0';
@@ -83,7 +138,7 @@ bool joints_open(const struct robot *robot, const char *text, struct joints *out
         else
             complain("%s: expected name=value,..., found '%.64s'", place, at);
         const unsigned j = value ? take_joint(out, at, place) : UINT32_MAX;
-        good = j != UINT32_MAX && set_value(out, j, value, place);
+        good = j != UINT32_MAX && set_value(out, j, value, place, 0, place) && good;
     }
     free(copy);
     return good;
@@ -93,6 +148,7 @@ void joints_clear(struct joints *joints)
 {
     free(joints->value);
     free(joints->given);
+    free(joints->outside);
 }
 
 /* Whether a joint that moves is neither given nor a mimic joint. */
@@ -102,32 +158,22 @@ static bool needs_value(const struct joints *joints, size_t j)
     return joint->type != ROBOT_FIXED && !joint->mimic_name && !joints->given[j];
 }
 
-bool joints_check(const struct joints *joints)
+void joints_check(struct joints *joints)
 {
-    char place[COMPLAIN_PLACE_MAX];
-    for (size_t j = 0; j < joints->robot->joint_count; j++) {
-        const struct robot_joint *joint = &joints->robot->joints[j];
-        snprintf(place, sizeof place, "%s: line %lu: by default (--joints sets other values)",
-                 joints->robot->path, joint->name->line);
-        if (needs_value(joints, j) && !check_value(joint, 0, place, ""))
-            return false;
-    }
-    return true;
+    for (size_t j = 0; j < joints->robot->joint_count; j++)
+        if (needs_value(joints, j))
+            check_value(joints, j, joints->robot->path, joints->robot->joints[j].name->line);
 }
 
-bool joints_follow(struct joints *joints, const char *place)
+void joints_follow(struct joints *joints, const char *path, unsigned long line)
 {
     for (size_t j = 0; j < joints->robot->joint_count; j++) {
         const struct robot_joint *joint = &joints->robot->joints[j];
-        char via[QUERY_NAME_MAX + 20];
         if (!joint->mimic_name || joints->given[j])
             continue;
         joints->value[j] = joint->multiplier * joints->value[joint->mimic] + joint->offset;
-        snprintf(via, sizeof via, " (a mimic of '%s')", joint->mimic_name);
-        if (!check_value(joint, joints->value[j], place, via))
-            return false;
+        check_value(joints, j, path, line);
     }
-    return true;
 }
 
 /* ---- Lines of CSV ---- */
@@ -237,21 +283,21 @@ static unsigned take_column(struct joint_table *table, size_t i)
 static bool read_columns(struct joint_table *table)
 {
     const enum joint_row outcome = read_line(table, &table->columns);
+    bool good = outcome == JOINT_ROW;
     if (outcome == JOINT_ROW_END)
         complain("%s: expected a line of joint names, found none", table->path);
-    if (outcome != JOINT_ROW)
+    if (!good)
         return false;
     for (size_t i = 0; i < table->columns; i++)
-        if ((table->column[i] = take_column(table, i)) == UINT32_MAX)
-            return false;
+        good = (table->column[i] = take_column(table, i)) != UINT32_MAX && good;
     const struct robot *robot = table->joints->robot;
     for (size_t j = 0; j < robot->joint_count; j++)
         if (needs_value(table->joints, j)) {
             refuse(table, "no column for joint '%s': add one, or give its value by --joints",
                    robot->joints[j].name->name);
-            return false;
+            good = false;
         }
-    return true;
+    return good;
 }
 
 bool joint_table_open(const char *path, struct joints *joints, struct joint_table *out)
@@ -295,12 +341,14 @@ void joint_table_close(struct joint_table *table)
 
 static enum joint_row take_time(struct joint_table *table, const char *text)
 {
+    char before[NUMBER_TEXT_MAX];
     double time;
     if (!robot_numbers(text, 1, &time))
         return refuse(table, "column 'time': expected a finite number, found '%.64s'", text);
     if (time < table->time || time - table->time > DBL_MAX)
-        return refuse(table,
-                      "column 'time': earlier than in the previous row, or too far after it");
+        return refuse(table, "column 'time': %s the previous row, %s",
+                      time < table->time ? "earlier than in" : "more than doubles hold after",
+                      number_exact(table->time, before));
     table->time = time;
     return JOINT_ROW;
 }
@@ -336,10 +384,11 @@ enum joint_row joint_table_next(struct joint_table *table)
             label = table->field[i];
         else if (column == COLUMN_TIME)
             outcome = take_time(table, table->field[i]);
-        else if (!set_value(table->joints, column, table->field[i], table->place))
+        else if (!set_value(table->joints, column, table->field[i], table->path, table->line,
+                            table->place))
             outcome = JOINT_ROW_BAD;
     }
-    if (outcome == JOINT_ROW && !joints_follow(table->joints, table->place))
-        return JOINT_ROW_BAD;
+    if (outcome == JOINT_ROW)
+        joints_follow(table->joints, table->path, table->line);
     return outcome == JOINT_ROW ? set_label(table, label) : outcome;
 }

@@ -1,5 +1,6 @@
-/* Values of the joints of a robot: from a text, and from the rows of a CSV file. A value outside
- * the limits of its joint is an error. Errors are reported on stderr in one line. */
+/* Values of the joints of a robot: from a text, and from the rows of a CSV file. Values outside the
+ * limits of their joints are used as they are, and reported at the end, or refused then. Errors are
+ * reported on stderr, each in one line. */
 #ifndef JOINTS_H
 #define JOINTS_H
 
@@ -8,24 +9,44 @@
 
 #include <stdio.h>
 
+/* A value that is to be reported, and where it is. */
+struct joint_report {
+    double value, by; /* by: how far it is outside the limits of its joint */
+    const char *path;
+    unsigned long line; /* 0: none */
+};
+
 struct joints {
     const struct robot *robot;
     double *value; /* [joint_count]; 0 unless given or that of a mimic joint */
-    bool *given;   /* [joint_count], private: by the text, or in a column */
+    /* Whether a value is outside its limits by more than the slack, or too large to be turned by:
+     * robot_place() may not be called. */
+    bool refused;
+    /* Private. */
+    bool *given;                  /* [joint_count]: by the text, or in a column */
+    double slack;                 /* by which values may be outside */
+    struct joint_report *outside; /* [joint_count]: the farthest one of each joint; by 0: none is */
+    size_t outside_count;         /* values */
+    struct joint_report full;     /* the largest one, of joint full_joint, that may be in degrees */
+    size_t full_joint;
 };
 
-/* In: text: "name=value,name=value"; NULL: none. Returns false after an error. The caller passes
- * the joints to joints_clear() in either case. */
-bool joints_open(const struct robot *robot, const char *text, struct joints *out);
+/* In: text: "name=value,name=value"; NULL: none. slack: at least 0. Returns false after an error.
+ * The caller passes the joints to joints_clear() in either case. */
+bool joints_open(const struct robot *robot, const char *text, double slack, struct joints *out);
 void joints_clear(struct joints *joints);
 
-/* Checks that 0 is within the limits of all joints that are neither given nor mimic joints. */
-bool joints_check(const struct joints *joints);
+/* Takes note of the joints that are neither given nor mimic joints and whose limits exclude 0. */
+void joints_check(struct joints *joints);
 
-/* Sets the mimic joints that are not given, from the values of the joints that they follow. place:
- * where these are given, for messages. Returns false after an error. joint_table_next() does it for
- * each row. */
-bool joints_follow(struct joints *joints, const char *place);
+/* Sets the mimic joints that are not given, from the values of the joints that they follow. path
+ * and line: where these are given, for messages. joint_table_next() does it for each row. */
+void joints_follow(struct joints *joints, const char *path, unsigned long line);
+
+/* Reports the values outside the limits: if all are within the slack, in one line; otherwise the
+ * farthest one of each joint that is not, and returns false. Also whether values seem to be in
+ * degrees: more than a full turn of a joint without limits, or outside them. */
+bool joints_report(const struct joints *joints);
 
 /* A CSV file (RFC 4180, without line breaks in fields). Its first line has the names of columns, in
  * any order: one for each joint that moves and has no value in joints; optional are those of mimic

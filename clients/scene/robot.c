@@ -101,10 +101,14 @@ bool robot_connect(struct robot *robot)
     const size_t count = robot->link_count;
     size_t *depth = scene_alloc(&robot->memory, count, sizeof *depth), placed = 0;
     unsigned root = 0;
-    for (size_t i = 0; i < robot->joint_count; i++)
-        if (!connect_joint(robot, &robot->joints[i]) ||
-            (robot->joints[i].mimic_name && !connect_mimic(robot, &robot->joints[i])))
-            return false;
+    bool good = true;
+    for (size_t i = 0; i < robot->joint_count; i++) {
+        struct robot_joint *joint = &robot->joints[i];
+        good = connect_joint(robot, joint) && good;
+        good = (!joint->mimic_name || connect_mimic(robot, joint)) && good;
+    }
+    if (!good)
+        return false;
     for (unsigned i = 0; i < count; i++) {
         unsigned up = i;
         while (robot->links[up].joint != ROBOT_ROOT && depth[i] < count) {

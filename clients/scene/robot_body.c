@@ -15,7 +15,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 /* The frames of the body under construction. */
@@ -52,11 +51,23 @@ static void add_frame(struct frames *frames, const struct given_frame *given)
     frames->frame[frames->count++] = *given;
 }
 
-/* Adds a hull; places its vertices, [count][axis], which the scene owns. */
-static void add_hull(struct frames *frames, double (*vertex)[3], size_t count)
+/* Returns x + by, rounded to the side of x. */
+static double shift_outwards(double x, double by)
+{
+    const double sum = by + x, part = sum - by, error = (by - (sum - part)) + (x - part);
+    return error != 0 && (error > 0) == (x > 0) ? nextafter(sum, copysign(INFINITY, x)) : sum;
+}
+
+/* Adds a hull; places its vertices, [count][axis], which the scene owns. outwards: see ENCLOSE; the
+ * placement is a translation. */
+static void add_hull(struct frames *frames, double (*vertex)[3], size_t count, bool outwards)
 {
     for (size_t i = 0; i < count && frames->placed; i++)
-        pose_apply(frames->placed, vertex[i]);
+        if (!outwards)
+            pose_apply(frames->placed, vertex[i]);
+        else
+            for (int axis = 0; axis < 3; axis++)
+                vertex[i][axis] = shift_outwards(vertex[i][axis], frames->placed->p[axis]);
     add_frame(frames, &(struct given_frame){FMB_HULL, true, 3 * count, vertex[0]});
 }
 
@@ -94,9 +105,17 @@ static void add_box(struct frames *frames, const struct robot_element *element)
  * product with a direction by 9 u s / k more on each axis: 42 u s in all. The radius of a ring is
  * off by 38 u of at most 2 s: the vertices of a sphere are off by less than 150 u s. ENCLOSE, 512
  * u, is more than either. Numbers that are subnormal have absolute errors of a few 2^-1074: TINY.
- * Where the hull is placed within a body, pose_apply() moves a vertex by at most sqrt(3) POSE_ERROR
+ * Where the hull is turned within a body, pose_apply() moves a vertex by at most sqrt(3) POSE_ERROR
  * (|p|_1 + |x|_1) + sqrt(3) 2^-1000, |x|_1 < 4 (r + h): the radius and the half length are that
- * much larger first. */
+ * much larger first.
+ *
+ * An upright cylinder rests exactly where it should: its sides that face the axes are at s, and its
+ * ends at h. A vertex (s, y) of such a side has an extent s cos a + y sin a >= s in the directions
+ * a from 0 to 2 pi / N if y >= s tan(pi / N): y grows by ENCLOSE s, more than its error. This is
+ * left out where TINY is not below the rounding errors. If the cylinder is shifted within a body,
+ * each coordinate of a vertex is rounded away from the centre. Since the sides and ends that face
+ * the axes remain normal to them, extents in the directions of an octant are those of its vertices,
+ * which move outwards on every axis. */
 #define ENCLOSE 0x1p-44
 #define TINY 0x1p-990
 
@@ -106,7 +125,9 @@ struct enclosure {
     double k, radius, half;          /* radius: s / k; half: h */
 };
 
-static struct enclosure enclose(const struct frames *frames, double radius, double length)
+/* rests: the hull is not turned, see above. */
+static struct enclosure enclose(const struct frames *frames, double radius, double length,
+                                bool rests)
 {
     struct enclosure out = {.sides = frames->options->sides, .half = length / 2};
     double k[2], grow = 0;
@@ -115,7 +136,7 @@ static struct enclosure enclose(const struct frames *frames, double radius, doub
         turn_degrees((i + 0.5) * 360 / out.sides, out.turn[i]);
     if (2 * out.half < length) /* subnormal */
         out.half += DBL_TRUE_MIN;
-    if (frames->placed) {
+    if (frames->placed && !rests) {
         const double *p = frames->placed->p;
         grow = TINY +
                2 * POSE_ERROR * (fabs(p[0]) + fabs(p[1]) + fabs(p[2]) + 4 * (radius + out.half));
@@ -136,6 +157,21 @@ static void set_ring(const struct enclosure *enclosure, double radius, double z,
     }
 }
 
+/* Sets the sides of a cylinder that face the axes. */
+static void set_resting_sides(const struct enclosure *enclosure, double radius, double (*vertex)[3])
+{
+    const int half = enclosure->sides / 2, quarter = half / 2;
+    for (int i = 0; i < 2 * enclosure->sides; i++) {
+        const int k = i % half;
+        const bool faces[2] = {k == 0 || k == half - 1, k == quarter || k == quarter - 1};
+        for (int axis = 0; axis < 2; axis++)
+            if (faces[axis])
+                vertex[i][axis] = copysign(radius, vertex[i][axis]);
+            else if (faces[1 - axis])
+                vertex[i][axis] += copysign(ENCLOSE * radius, vertex[i][axis]);
+    }
+}
+
 static void report_outside(const struct frames *frames, double distance)
 {
     if (distance > *frames->outside)
@@ -145,26 +181,30 @@ static void report_outside(const struct frames *frames, double distance)
 static void add_cylinder(struct frames *frames, const struct robot_element *element)
 {
     const double radius = element->size[0];
-    const struct enclosure enclosure = enclose(frames, radius, element->size[1]);
+    const bool rests =
+        radius > TINY / DBL_EPSILON && (!frames->placed || pose_is_translation(frames->placed));
+    const struct enclosure enclosure = enclose(frames, radius, element->size[1], rests);
     const size_t count = 2 * (size_t) enclosure.sides;
     double(*vertex)[3] = scene_alloc(frames->scene, count, sizeof *vertex);
     set_ring(&enclosure, enclosure.radius, -enclosure.half, vertex);
     set_ring(&enclosure, enclosure.radius, enclosure.half, vertex + enclosure.sides);
-    add_hull(frames, vertex, count);
+    if (rests)
+        set_resting_sides(&enclosure, radius, vertex);
+    add_hull(frames, vertex, count, rests);
     report_outside(frames, enclosure.radius - radius);
 }
 
 static void add_sphere(struct frames *frames, const struct robot_element *element)
 {
     const double radius = element->size[0];
-    const struct enclosure enclosure = enclose(frames, radius, 0);
+    const struct enclosure enclosure = enclose(frames, radius, 0, false);
     const int rings = enclosure.sides / 2;
     const size_t count = (size_t) (enclosure.sides * rings);
     double(*vertex)[3] = scene_alloc(frames->scene, count, sizeof *vertex);
     for (int i = 0; i < rings; i++)
         set_ring(&enclosure, enclosure.radius * enclosure.turn[i][1] / enclosure.k,
                  enclosure.radius * enclosure.turn[i][0], vertex + i * enclosure.sides);
-    add_hull(frames, vertex, count);
+    add_hull(frames, vertex, count, false);
     report_outside(frames, enclosure.radius / enclosure.k - radius);
 }
 
@@ -186,13 +226,25 @@ static char *find_in_packages(const char *folders, const char *name)
     return NULL;
 }
 
+static void refuse_path(const struct frames *frames, const struct robot_element *element)
+{
+    refuse(frames, element, "%s: expected a path with '/', file://PATH or package://NAME/PATH",
+           element->file);
+}
+
 /* Returns the path of a mesh, which the caller frees; or NULL after an error. */
 static char *find_mesh(const struct frames *frames, const struct robot_element *element)
 {
     static const char package[] = "package://", scheme[] = "file://";
     const char *file = element->file, *folders = frames->options->package_path;
     if (strncmp(file, package, sizeof package - 1) == 0) {
-        char *path = find_in_packages(folders, file + sizeof package - 1);
+        const char *name = file + sizeof package - 1, *rest = name + strcspn(name, "/");
+        if (rest == name || strncmp(name, "../", 3) == 0 || strncmp(name, "./", 2) == 0 ||
+            strlen(rest) < 2) {
+            refuse_path(frames, element);
+            return NULL;
+        }
+        char *path = find_in_packages(folders, name);
         if (!path)
             refuse(frames, element, "%s: %s%s", file,
                    folders ? "not found in --package-path "
@@ -203,17 +255,10 @@ static char *find_mesh(const struct frames *frames, const struct robot_element *
     if (strncmp(file, scheme, sizeof scheme - 1) == 0)
         file += sizeof scheme - 1;
     if (strstr(file, "://") || strchr(file, '\\')) {
-        refuse(frames, element, "%s: expected a path with '/', file://PATH or package://NAME/PATH",
-               file);
+        refuse_path(frames, element);
         return NULL;
     }
     return output_beside(frames->robot->path, file);
-}
-
-static bool is_collada(const char *file)
-{
-    const char *dot = strrchr(file, '.');
-    return dot && strcasecmp(dot, ".dae") == 0;
 }
 
 static size_t least(size_t a, size_t b)
@@ -221,11 +266,13 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* Adds the hull of faces first to end - 1, if there are any. In/out: used: [vertex_count], end of
- * the last call that used a vertex, or 0. */
+/* Adds the hull of faces first to end - 1, if there are any. object: its number; 0: none. In/out:
+ * used: [vertex_count], end of the last call that used a vertex, or 0. */
 static bool add_faces(struct frames *frames, const struct robot_element *element, const char *path,
-                      const struct mesh *mesh, size_t first, size_t end, size_t *used)
+                      size_t object, const struct mesh *mesh, size_t first, size_t end,
+                      size_t *used)
 {
+    char of[40] = "";
     if (first == end)
         return true;
     double(*point)[3] = allocate(least(3 * (end - first), mesh->vertex_count), sizeof *point);
@@ -243,12 +290,14 @@ static bool add_faces(struct frames *frames, const struct robot_element *element
     free(point);
     if (status != FMB_OK)
         return refuse(frames, element, "%s: %s", path, fmb_status_text((int) status));
+    if (object > 0)
+        snprintf(of, sizeof of, ": object %zu", object);
     if (found == 0)
         return refuse(frames, element,
-                      "%s: the hull of %zu vertices has more than %d of them: simplify the mesh, "
-                      "or divide it into convex objects of an OBJ file (--objects)",
-                      path, count, (int) FMB_HULL_VERTICES_MAX);
-    add_hull(frames, vertex, found);
+                      "%s%s: the hull of its %zu vertices has more than %d: simplify the mesh, or "
+                      "divide it into convex objects of an OBJ file (--objects)",
+                      path, of, count, (int) FMB_HULL_VERTICES_MAX);
+    add_hull(frames, vertex, found, false);
     return true;
 }
 
@@ -260,7 +309,7 @@ static bool add_objects(struct frames *frames, const struct robot_element *eleme
     size_t *used = allocate(mesh->vertex_count, sizeof *used);
     bool good = true;
     for (size_t i = 0; good && i <= objects; i++)
-        good = add_faces(frames, element, path, mesh, i > 0 ? mesh->object[i - 1] : 0,
+        good = add_faces(frames, element, path, i, mesh, i > 0 ? mesh->object[i - 1] : 0,
                          i < objects ? mesh->object[i] : mesh->face_count, used);
     free(used);
     return good &&
@@ -271,9 +320,9 @@ static bool add_mesh(struct frames *frames, const struct robot_element *element)
 {
     char error[MESH_ERROR_MAX];
     struct mesh mesh;
-    if (is_collada(element->file))
-        return refuse(frames, element, "%s: COLLADA is not supported: convert it to STL or OBJ",
-                      element->file);
+    const char *why = mesh_unsupported(element->file);
+    if (why)
+        return refuse(frames, element, "%s: %s", element->file, why);
     char *path = find_mesh(frames, element);
     if (!path)
         return false;
@@ -327,12 +376,12 @@ const struct fmb_body *robot_body(const struct robot *robot, const struct robot_
     const struct fmb_body *body = NULL;
     bool good = true;
     *origin = link->element_count == 1 ? element->origin : POSE_IDENTITY;
-    for (size_t i = 0; good && i < link->element_count; i++) {
+    for (size_t i = 0; i < link->element_count; i++) {
         const struct pose *at = &element[i].origin;
         const bool none =
             pose_is_translation(at) && at->p[0] == 0 && at->p[1] == 0 && at->p[2] == 0;
         frames.placed = link->element_count == 1 || none ? NULL : at;
-        good = add_element(&frames, &element[i]);
+        good = add_element(&frames, &element[i]) && good;
     }
     if (good)
         body = make_body(&frames, element);

@@ -75,6 +75,7 @@ bool robot_scene_make(const struct robot *robot, const struct robot_body_options
 {
     *out = (struct robot_scene){.robot = robot, .owner = {.dim = 3}};
     struct owned_scene *owner = &out->owner;
+    bool good = true;
     out->placements = scene_alloc(owner, robot->link_count, sizeof *out->placements);
     out->link = scene_alloc(owner, robot->link_count, sizeof *out->link);
     out->origin = scene_alloc(owner, robot->link_count, sizeof *out->origin);
@@ -89,10 +90,11 @@ bool robot_scene_make(const struct robot *robot, const struct robot_body_options
             .body = robot_body(robot, link, options, owner, &out->origin[n], &out->outside),
             .name = link->name->name,
             .id = (int64_t) n + 1};
-        if (!out->placements[n].body)
-            return false;
+        good = out->placements[n].body && good;
         out->robot_bodies++;
     }
+    if (!good)
+        return false;
     if (out->robot_bodies == 0)
         complain("%s: no link has a <collision> (<visual> is not read)", robot->path);
     ignore_neighbours(out);
@@ -206,23 +208,28 @@ bool robot_scene_add_world(struct robot_scene *scene, const char *path)
 
 /* ---- Ignored pairs ---- */
 
-/* Finds the only body of this name, which ends at `end`. Returns false after an error. */
-static bool find_body(const struct fmb_scene *scene, const char *name, const char *end,
+/* Finds the only body of this name, which ends at `end`; *out: UINT32_MAX for a link without a
+ * body. Returns false after an error. */
+static bool find_body(const struct robot_scene *scene, const char *name, const char *end,
                       unsigned *out)
 {
     const size_t length = (size_t) (end - name);
+    const struct robot_name *link;
     size_t found = 0;
-    for (size_t i = 0; i < scene->placement_count; i++) {
+    for (size_t i = 0; i < scene->owner.scene.placement_count; i++) {
         const char *of = scene->placements[i].name;
         if (!of || strlen(of) != length || memcmp(of, name, length) != 0)
             continue;
         *out = (unsigned) i;
         found++;
     }
-    if (found != 1)
+    HASH_FIND(hh, scene->robot->link_names, name, length, link);
+    if (found == 0 && link)
+        *out = UINT32_MAX;
+    else if (found != 1)
         complain("--ignore: %s the name '%.*s'", found ? "several bodies have" : "no body has",
                  (int) length, name);
-    return found == 1;
+    return found == 1 || (found == 0 && link);
 }
 
 bool robot_scene_ignore(struct robot_scene *scene, const char *const *pair, size_t count)
@@ -233,22 +240,23 @@ bool robot_scene_ignore(struct robot_scene *scene, const char *const *pair, size
     if (out->ignored_count > 0)
         memcpy(ignored, out->ignored, out->ignored_count * sizeof *ignored);
     for (size_t i = 0; i < count; i++) {
-        unsigned *ends = ignored[out->ignored_count + i];
+        unsigned *ends = ignored[out->ignored_count];
         const char *comma = strchr(pair[i], ',');
         if (!comma) {
             complain("--ignore: expected two names, NAME,NAME, found '%.128s'", pair[i]);
             return false;
         }
-        if (!find_body(out, pair[i], comma, &ends[0]) ||
-            !find_body(out, comma + 1, comma + strlen(comma), &ends[1]))
+        if (!find_body(scene, pair[i], comma, &ends[0]) ||
+            !find_body(scene, comma + 1, comma + strlen(comma), &ends[1]))
             return false;
-        if (ends[0] == ends[1]) {
+        if (strlen(comma + 1) == (size_t) (comma - pair[i]) &&
+            strncmp(pair[i], comma + 1, (size_t) (comma - pair[i])) == 0) {
             complain("--ignore: '%s': a body is no pair with itself", pair[i]);
             return false;
         }
+        out->ignored_count += ends[0] != UINT32_MAX && ends[1] != UINT32_MAX;
     }
     out->ignored = (const unsigned(*)[2]) ignored;
-    out->ignored_count += count;
     scene_begin_ignored(owner);
     return true;
 }

@@ -34,8 +34,9 @@ void robot_scene_report(const struct robot_scene *scene, int sides);
  * id is that of a link gets another one, which is reported. To be called once at most. */
 bool robot_scene_add_world(struct robot_scene *scene, const char *path);
 
-/* Ignores pairs of bodies. In: pair: [count], "NAME,NAME", of links or of bodies of the world,
- * which must have been added. Returns false after an error: not exactly one body has a name. */
+/* Ignores pairs of bodies. In: pair: [count], "NAME,NAME", of links, with or without a body, or of
+ * bodies of the world, which must have been added. Returns false after an error: not exactly one
+ * has a name. */
 bool robot_scene_ignore(struct robot_scene *scene, const char *const *pair, size_t count);
 
 /* Sets the poses for values of the joints, as of robot_place(), and moves the bodies of the world

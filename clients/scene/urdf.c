@@ -266,17 +266,27 @@ static void read_shape(struct reader *reader, const struct node *node, struct ro
     }
 }
 
+/* Returns the first of a list of elements whose name has no prefix of another namespace, or NULL.
+ */
+static const struct node *skip_foreign(const struct node *node)
+{
+    while (node && strchr(node->name, ':'))
+        node = node->next;
+    return node;
+}
+
 static void read_collision(struct reader *reader, const struct node *node)
 {
     struct robot *robot = reader->robot;
     const struct node *geometry = find_child(reader, node, "geometry");
-    const struct node *shape = geometry ? geometry->child : NULL;
+    const struct node *first = geometry ? geometry->child : NULL, *own = skip_foreign(first);
+    const struct node *second = own ? skip_foreign(own->next) : NULL, *shape = own ? own : first;
     if (robot->element_count == ROBOT_COUNT_MAX)
         refuse(reader, node->line, "more than %d <collision> elements", (int) ROBOT_COUNT_MAX);
     if (!shape)
         refuse(reader, node->line, "<collision> has no <geometry> with a shape");
-    else if (shape->next)
-        refuse(reader, shape->next->line, "<%.64s>: there is already a shape", shape->next->name);
+    else if (second)
+        refuse(reader, second->line, "<%.64s>: there is already a shape", second->name);
     if (reader->failed)
         return;
     robot->elements = allocate_grow(robot->elements, &robot->element_capacity,

@@ -104,8 +104,8 @@ triangle() {
     link '<collision><geometry><cylinder radius="1" length="3"/></geometry></collision>'
     scene robot.urdf
     said 'fmb: robot.urdf: hulls of 16 sides enclose its cylinders and spheres, and extend beyond them by at most 0.0195914'
-    shows '.bodies[0] | [.shape, (.vertices | length, (map(.[2]) | min, max)), ((.vertices | map(.[0]) | max) - 1 | . > 0 and . < 1e-12)]'
-    is '["hull",32,-1.5,1.5,true]'
+    shows '.bodies[0] | [.shape, (.vertices | length, ([0, 1, 2][] as $axis | map(.[$axis]) | min, max))]'
+    is '["hull",32,-1,1,-1,1,-1.5,1.5]'
     link '<collision><geometry><sphere radius="1"/></geometry></collision>'
     scene robot.urdf --sides 8
     said 'fmb: robot.urdf: hulls of 8 sides enclose its cylinders and spheres, and extend beyond them by at most 0.171575'
@@ -116,6 +116,20 @@ triangle() {
     said 'fmb: robot.urdf: hulls of 4 sides enclose its cylinders and spheres, and extend beyond them by at most 1.35152e-298'
     shows '.bodies[0].vertices | map(.[0]) | max < 1.36e-298'
     is true
+}
+
+@test "wheels and cylinders rest on the floor, beside other elements and turned by a quarter too" {
+    echo '{"dim": 3, "bodies": [{"id": 1, "name": "floor", "shape": "box", "size": [8,8,1], "position": [0,0,-0.75]}]}' > floor.json
+    wheel='<geometry><cylinder radius="0.25" length="0.125"/></geometry></collision>'
+    for turn in 1.5707963267948966 -1.5707963267948966 3.1415926535897931; do
+        link "<collision><origin xyz='0 0 $([ ${turn%.*} = 3 ] && echo -0.1875 || echo 0)' rpy='$turn 0 0'/>$wheel"
+        "$FMB" scene robot.urdf --with floor.json | "$FMB" query --local --csv > answer.csv
+        grep -q ',touching,' answer.csv
+    done
+    link "$box<collision><origin xyz='0 0 0.375'/><geometry><cylinder radius='0.25' length='1.25'/></geometry></collision>"
+    sed -i 's/size="1 2 3"/size="0.1 0.1 0.1"/' robot.urdf
+    "$FMB" scene robot.urdf --with floor.json | "$FMB" query --local --csv > answer.csv
+    grep -q ',touching,' answer.csv
 }
 
 # ---- Meshes ----------------------------------------------------------------------------------
@@ -194,7 +208,10 @@ triangle() {
 @test "a hull of too many vertices is refused, with the number of vertices" {
     awk 'BEGIN { for (i = 0; i < 1100; i++) print "v", i, i * i, 0; for (i = 3; i <= 1100; i++) print "f 1 2", i }' > m.obj
     link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
-    refused "line 3: link 'a': m.obj: the hull of 1100 vertices has more than 1024 of them: simplify the mesh" robot.urdf
+    refused "line 3: link 'a': m.obj: the hull of its 1100 vertices has more than 1024: simplify the mesh" robot.urdf
+    { sed '/^f/d' m.obj; printf '%s\n' 'o a' 'f 1 2 3' 'o b'; sed -n '/^f/p' m.obj; } > objects.obj
+    sed -i 's/m\.obj/objects.obj/' robot.urdf
+    refused "objects.obj: object 2: the hull of its 1100 vertices has more than 1024: " robot.urdf --objects
 }
 
 # ---- Poses -----------------------------------------------------------------------------------
@@ -207,23 +224,63 @@ triangle() {
 }
 
 @test "a value beyond a limit, or for an unknown joint, is an error, and is not clamped" {
-    refused "--joints: joint 'turn': 2.0000000000000004 is outside its limits, -1 to 2 radians" robot.urdf --joints turn=2.0000000000000004
-    refused "--joints: joint 'slide': -1.5 is outside its limits, -1 to 2" robot.urdf --joints turn=2,slide=-1.5
-    refused "--joints: 'elbow' is not a joint of robot.urdf" robot.urdf --joints elbow=1
-    refused "--joints: joint 'turn' is given twice" robot.urdf --joints turn=1,turn=1
-    refused "--joints: expected name=value,..., found 'turn'" robot.urdf --joints turn
-    refused "expected name=value,..., found ''" robot.urdf --joints turn=1,
-    refused "--joints: joint 'turn': expected a finite number, found '1e999'" robot.urdf --joints turn=1e999
+    strict() { refused "$@" --limit-slack 0; }
+    strict "--joints: joint 'turn': 2.0000000000000004 is outside its limits, -1 to 2 radians" robot.urdf --joints turn=2.0000000000000004
+    strict "--joints: joint 'slide': -1.5 is outside its limits, -1 to 2" robot.urdf --joints turn=2,slide=-1.5
+    strict "--joints: 'elbow' is not a joint of robot.urdf" robot.urdf --joints elbow=1
+    strict "--joints: joint 'turn' is given twice" robot.urdf --joints turn=1,turn=1
+    strict "--joints: expected name=value,..., found 'turn'" robot.urdf --joints turn
+    strict "expected name=value,..., found ''" robot.urdf --joints turn=1,
+    strict "--joints: joint 'turn': expected a finite number, found '1e999'" robot.urdf --joints turn=1e999
     sed -i 's/lower="-1"/lower="0.5"/' robot.urdf
-    refused "robot.urdf: line 4: by default (--joints sets other values): joint 'turn': 0 is outside its limits, 0.5 to 2" robot.urdf
+    refused "robot.urdf: line 4: by default (--joints sets other values): joint 'turn': 0 is outside its limits, 0.5 to 2" robot.urdf --joints slide=1
     scene robot.urdf --joints turn=2,slide=0.5
     ended 0
     sed -i "s/'revolute'/'continuous'/" robot.urdf
     scene robot.urdf --joints turn=1000000,slide=1
+    said "fmb: --joints: joint 'turn': 1000000 is more than a full turn: is it in degrees? Values are in radians"
     ended 0
-    refused "is beyond 1048576 radians" robot.urdf --joints turn=-2000000,slide=1
+    refused "is beyond 1048576 radians" robot.urdf --joints turn=-2000000,slide=1 --limit-slack inf
     sed -i "s/'continuous'/'fixed'/" robot.urdf
     refused "--joints: 'turn' is a fixed joint of robot.urdf" robot.urdf --joints turn=0
+}
+
+@test "values within --limit-slack are used as they are, and counted; beyond it, all joints are named" {
+    scene robot.urdf --joints turn=2.0000026
+    said "fmb: --joints: joint 'turn': 2.0000026 is outside its limits, -1 to 2 radians: within --limit-slack 0.001 (values outside their limits: 1; this is the farthest)"
+    shows .bodies[1].orientation
+    found=$output
+    sed -i 's/upper="2"/upper="1000"/' robot.urdf
+    scene robot.urdf --joints turn=2.0000026
+    said ''
+    shows .bodies[1].orientation
+    is "$found"
+    sed -i 's/upper="1000"/upper="2"/' robot.urdf
+    printf '%s\n' turn,slide 2.0005,0 0,2.00025 2.0001,0 > t.csv
+    scene robot.urdf --joints-csv t.csv
+    said "fmb: t.csv: line 2: joint 'turn': 2.0005 is outside its limits, -1 to 2 radians: within --limit-slack 0.001 (values outside their limits: 3; this is the farthest)"
+    shows .dim
+    is $'3\n3\n3'
+    printf '%s\n' turn,slide 90,0 -180,2.25 2.0005,-1.5 > t.csv
+    scene robot.urdf --joints-csv t.csv
+    ended 2
+    is ''
+    said "fmb: t.csv: line 3: joint 'turn': -180 is outside its limits, -1 to 2 radians
+fmb: t.csv: line 4: joint 'slide': -1.5 is outside its limits, -1 to 2
+fmb: t.csv: line 3: joint 'turn': -180 is more than a full turn: is it in degrees? Values are in radians"
+    scene robot.urdf --joints-csv t.csv --limit-slack inf
+    said "fmb: t.csv: line 3: joint 'turn': -180 is outside its limits, -1 to 2 radians: within --limit-slack inf (values outside their limits: 5; this is the farthest)"
+    # So are a mimic joint, and those that have 0.
+    sed -i "s|child link='tool'/>|&<mimic joint='turn' multiplier='-2'/>|; s/lower=\"-1\"/lower=\"0.5\"/" robot.urdf
+    scene robot.urdf --joints turn=0.49975 --limit-slack 1.5
+    said "fmb: robot.urdf: joint 'slide' (a mimic of 'turn'): -0.9995 is outside its limits, 0.5 to 2: within --limit-slack 1.5 (values outside their limits: 2; this is the farthest)"
+    scene robot.urdf
+    said "fmb: robot.urdf: line 4: by default (--joints sets other values): joint 'turn': 0 is outside its limits, 0.5 to 2 radians
+fmb: robot.urdf: joint 'slide' (a mimic of 'turn'): 0 is outside its limits, 0.5 to 2"
+    scene robot.urdf --joints turn=1e308 --limit-slack inf
+    ended 2
+    said "fmb: --joints: joint 'turn': 1e+308 is beyond 1048576 radians
+fmb: robot.urdf: joint 'slide' (a mimic of 'turn'): -inf is outside its limits, 0.5 to 2"
 }
 
 @test "a mimic joint follows another unless it is given" {
@@ -277,10 +334,17 @@ triangle() {
     bad "t.csv: line 3: 1 columns, but the first line has 2" turn,slide 1,1 1
     bad "t.csv: line 2: 3 columns" turn,slide 1,1,1
     bad "t.csv: line 1: no column for joint 'slide': add one, or give its value by --joints" turn
+    echo elbow,slide,wrist > t.csv
+    scene robot.urdf --joints-csv t.csv
+    ended 2
+    said "fmb: t.csv: line 1: 'elbow' is not a joint of robot.urdf
+fmb: t.csv: line 1: 'wrist' is not a joint of robot.urdf
+fmb: t.csv: line 1: no column for joint 'turn': add one, or give its value by --joints"
     bad "t.csv: line 1: 'elbow' is not a joint of robot.urdf" turn,slide,elbow
     bad "t.csv: line 1: joint 'turn' is given twice" turn,slide,turn
     bad "t.csv: line 1: column 'time' appears twice" turn,time,slide,time
-    bad "t.csv: line 3: column 'time': earlier than in the previous row" turn,slide,time 1,1,2 1,1,1
+    bad "t.csv: line 3: column 'time': earlier than in the previous row, 2" turn,slide,time 1,1,2 1,1,1
+    bad "t.csv: line 3: column 'time': more than doubles hold after the previous row, -1e+308" turn,slide,time 1,1,-1e308 1,1,1e308
     bad "t.csv: line 2: column 'time': expected a finite number" turn,slide,time 1,1,
     bad "t.csv: line 2: a quote is misplaced or missing" turn,slide '"1,1'
     bad "t.csv: line 2: the label, time included, has more than 64 bytes" turn,slide,label "1,1,$(printf '%065d' 0)"
@@ -349,6 +413,15 @@ triangle() {
     scene robot.urdf --ignore base,tool
     shows .ignore
     is '[[1,2],[1,3],[2,3]]'
+    robot "<link name='a'>$box</link><link name='empty'/><link name='void'/>
+        <joint name='j' type='fixed'><parent link='a'/><child link='empty'/></joint>
+        <joint name='k' type='fixed'><parent link='a'/><child link='void'/></joint>"
+    scene robot.urdf --with world.json --ignore a,x --ignore empty,void --ignore y,empty
+    shows .ignore
+    is '[[1,8],[9,10]]'
+    refused "--ignore: 'void,void': a body is no pair with itself" robot.urdf --ignore void,void
+    refused "--ignore: no body has the name 'z'" robot.urdf --ignore void,z
+    setup
     refused "--ignore: no body has the name 'z'" robot.urdf --with world.json --ignore base,z
     refused "--ignore: no body has the name 'tool,x'" robot.urdf --with world.json --ignore base,tool,x
     refused "--ignore: several bodies have the name 'twice'" robot.urdf --with world.json --ignore base,twice
@@ -360,9 +433,13 @@ triangle() {
 
 @test "a line end in a name leaves an error one line" {
     echo '<robot name="r"><link name="a&#10;b"/></robot>' > robot.urdf
-    refused "robot.urdf: line 1: <link>: the name 'a b'" robot.urdf
+    refused "robot.urdf: line 1: <link>: the name 'a\x0ab'" robot.urdf
     echo '<robot name="r"><link name="a"/><joint name="j" type="fixed"><parent link="x&#10;y"/><child link="a"/></joint></robot>' > robot.urdf
-    refused "robot.urdf: line 1: joint 'j': <parent>: the link 'x y' has control characters" robot.urdf
+    refused "robot.urdf: line 1: joint 'j': <parent>: the link 'x\x0ay' has control characters" robot.urdf
+    # Nor can one forge another.
+    robot "<link name='a'/><link name='b'/><joint name='j' type='prismatic'><parent link='a'/><child link='b'/>
+$limit<mimic joint='q&#10;fmb: all is well'/></joint>"
+    refused "robot.urdf: line 3: joint 'j': <mimic>: 'q\x0afmb: all is well' is not a joint of the file" robot.urdf
 }
 
 @test "links and joints that are not a tree are refused" {
@@ -394,6 +471,11 @@ triangle() {
     refused "robot.urdf: line 7: joint 'ad': its child 'd' is not a link of the file" robot.urdf
     joined a b d c
     refused "joint 'dc': its parent 'd' is not a link of the file" robot.urdf
+    joined a b d c e a
+    scene robot.urdf
+    ended 2
+    said "fmb: robot.urdf: line 7: joint 'dc': its parent 'd' is not a link of the file
+fmb: robot.urdf: line 8: joint 'ea': its parent 'e' is not a link of the file"
 }
 
 @test "elements that are missing, repeated or wrong are refused with line and element" {
@@ -414,6 +496,15 @@ triangle() {
     shape '<geometry><mesh filename="$(find pkg)/a.stl"/></geometry>' "<mesh>: filename is '\$(find pkg)/a.stl': expand the file with xacro first"
     shape '<geometry><capsule radius="1"/></geometry>' '<capsule>: expected a box, cylinder, sphere or mesh; give a capsule as a cylinder and two spheres'
     shape '<geometry><sphere radius="1"/><sphere radius="1"/></geometry>' '<sphere>: there is already a shape'
+    # Elements of other namespaces beside a shape say more about it; alone they are no shape.
+    foreign='<drake:declare_convex/>'
+    for shapes in "$foreign<sphere radius='1'/>" "<sphere radius='1'/>$foreign<drake:a/>" "$foreign<sphere radius='1'/>$foreign"; do
+        robot "<link xmlns:drake='urn:drake' name='a'><collision><geometry>$shapes</geometry></collision></link>"
+        scene robot.urdf
+        ended 0
+    done
+    shape "<geometry xmlns:drake='urn:drake'>$foreign<sphere radius='1'/>$foreign<box size='1 1 1'/></geometry>" '<box>: there is already a shape'
+    shape "<geometry xmlns:drake='urn:drake'>$foreign</geometry>" '<drake:declare_convex>: expected a box, cylinder, sphere or mesh'
     shape '<geometry><cylinder radius="1"/></geometry>' '<cylinder> has no length'
     shape '<geometry><sphere radius="1.79e308"/></geometry>' 'not a finite number'
     shape '<origin rpy="1e9 0 0"/><geometry><sphere radius="1"/></geometry>' '<origin>: rpy is beyond 1048576 radians'
@@ -462,7 +553,20 @@ triangle() {
     mesh none.stl 'none.stl: No such file'
     mesh 'package:\\pkg\m.stl' "package:\\\\pkg\\m.stl: expected a path with '/', file://PATH or package://NAME/PATH"
     mesh model://m.stl "model://m.stl: expected a path with '/', file://PATH or package://NAME/PATH"
-    mesh m.DAE 'm.DAE: COLLADA is not supported: convert it to STL or OBJ'
+    for path in package:// package://.. package://. package://m.obj package://m/ package:///m.obj package://../m.obj; do
+        mesh "$path" "$path: expected a path with '/', file://PATH or package://NAME/PATH"
+    done
+    mesh m.DAE 'm.DAE: COLLADA is not supported: convert it to STL or OBJ, by a program that leaves its axes as they are'
+    robot "<link name='a'><collision><geometry><mesh filename='a.stl'/></geometry></collision>
+<collision><geometry><mesh filename='b.stl'/></geometry></collision></link>
+<link name='b'><collision><geometry><mesh filename='c.dae'/></geometry></collision></link>
+<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>"
+    scene robot.urdf
+    ended 2
+    is ''
+    said "fmb: robot.urdf: line 3: link 'a': a.stl: No such file or directory
+fmb: robot.urdf: line 4: link 'a': b.stl: No such file or directory
+fmb: robot.urdf: line 5: link 'b': c.dae: COLLADA is not supported: convert it to STL or OBJ, by a program that leaves its axes as they are"
     printf 'v 0 0 0\nv 1 0 x\n' > m.obj
     mesh m.obj "m.obj: line 2: 'x' is not a number"
     printf 'v 0 0 0\nv 1 0 0\n' > m.obj
@@ -530,6 +634,8 @@ triangle() {
     wrong scene a --sides 18
     wrong scene a --sides 48
     wrong scene a --margin -1
+    wrong scene a --limit-slack -0.1
+    wrong scene a --limit-slack nan
     wrong scene a --with a.json --with b.json # not only the bodies of one of them
     wrong scene a --joints a=1 --joints b=1
     wrong scene a --joints-csv a.csv --joints-csv b.csv

@@ -154,6 +154,32 @@ static double distance_outside(struct rings *rings, double radius, double length
     return most;
 }
 
+/* Whether the sides and ends of a cylinder that face the axes are where it ends; shifted, by at
+ * most a rounding to the outside of it. */
+static void check_resting(const struct fmb_frame *hull, const double half[3],
+                          const double centre[3], bool alone)
+{
+    double numbers[6 * ROBOT_SIDES_MAX];
+    bool by_vertices;
+    const size_t count = fmb_frame_numbers(hull, &by_vertices, numbers);
+    for (int axis = 0; axis < 3; axis++)
+        for (int side = -1; side <= 1; side += 2) {
+            double most = -INFINITY;
+            mpq_t exact, found;
+            for (size_t i = 0; i < count; i += 3)
+                most = fmax(most, side * numbers[i + axis]);
+            mpq_inits(exact, found, NULL);
+            mpq_set_d(exact, alone ? 0 : side * centre[axis]);
+            mpq_set_d(found, half[axis]);
+            mpq_add(exact, exact, found);
+            mpq_set_d(found, most);
+            assert_true(mpq_cmp(found, exact) >= 0);
+            mpq_set_d(found, alone ? most : nextafter(most, -INFINITY));
+            assert_true(alone ? mpq_equal(found, exact) : mpq_cmp(found, exact) < 0);
+            mpq_clears(exact, found, NULL);
+        }
+}
+
 /* A cylinder, or a sphere (length < 0), alone in its link or beside a box. */
 static void check_enclosure(int sides, double radius, double length, const double origin[6],
                             bool alone)
@@ -183,6 +209,10 @@ static void check_enclosure(int sides, double radius, double length, const doubl
     rings_init(fmb_body_frame(body, 0), &placed, sides, &rings);
     if (!contains(&rings, radius, length))
         fail_msg("%d sides do not enclose: %s", sides, text);
+    const bool upright = alone || (origin[3] == 0 && origin[4] == 0 && origin[5] == 0);
+    if (length >= DBL_MIN && radius > 0x1p-900 && upright)
+        check_resting(fmb_body_frame(body, 0), (const double[]){radius, radius, length / 2}, origin,
+                      alone);
     double rounding = radius + fabs(length);
     for (int i = 0; i < 3; i++)
         rounding += fabs(origin[i]);
@@ -208,8 +238,9 @@ static void hulls_enclose_cylinders_and_spheres(void **state)
         const double length = draw_coin(&draw) ? fabs(draw_log(&draw, -size, size)) : -1;
         double origin[6];
         for (int k = 0; k < 3; k++) {
-            origin[k] = draw_log(&draw, -size, size);
-            origin[k + 3] = draw_uniform(&draw, -7, 7);
+            const bool turned = i % 2 == 0;
+            origin[k] = turned ? draw_log(&draw, -size, size) : radius * draw_uniform(&draw, -9, 9);
+            origin[k + 3] = turned ? draw_uniform(&draw, -7, 7) : 0;
         }
         check_enclosure(sides, radius, length, origin, draw_coin(&draw));
     }
@@ -340,6 +371,25 @@ static void hulls_of_too_many_vertices_are_refused(void **state)
 
 /* ---- Poses ----------------------------------------------------------------------------------- */
 
+static void turns_by_multiples_of_45_degrees_are_even(void **state)
+{
+    const double pi = acos(-1);
+    for (int eighths = -5; eighths <= 5; eighths++) {
+        double turn[2], same[2];
+        turn_radians(eighths * pi / 4, turn);
+        turn_degrees(eighths * 45, same);
+        assert_memory_equal(turn, same, sizeof turn);
+        if (eighths % 2 != 0)
+            assert_true(fabs(turn[0]) == fabs(turn[1]));
+        else
+            assert_true(turn[0] == 0 || turn[1] == 0);
+        for (int side = -1; side <= 1; side += 2) { /* the next doubles are not */
+            turn_radians(nextafter(eighths * pi / 4, side * INFINITY), same);
+            assert_true(same[0] * same[1] != 0);
+        }
+    }
+}
+
 static void turns_agree_with_the_math_library(void **state)
 {
     struct draw draw;
@@ -456,6 +506,7 @@ int main(void)
         cmocka_unit_test(hulls_of_grids_keep_only_their_corners),
         cmocka_unit_test(hulls_of_random_points_contain_them_all),
         cmocka_unit_test(hulls_of_too_many_vertices_are_refused),
+        cmocka_unit_test(turns_by_multiples_of_45_degrees_are_even),
         cmocka_unit_test(turns_agree_with_the_math_library),
         cmocka_unit_test(poses_of_links_agree_with_matrices),
     };
