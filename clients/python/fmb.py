@@ -429,7 +429,14 @@ def _bodies(bodies: Iterable[Body]) -> tuple[Body, ...]:
 # ---- Answers ----
 
 
-class Verdict(int, enum.Enum):
+def _comparison(compare: Any) -> Any:
+    def compared(self: Verdict, other: Any) -> Any:
+        other = _NUMBERS.get(other, other) if isinstance(other, str) else getattr(other, "_value_", other)
+        return compare(self._value_, other)
+    return compared
+
+
+class Verdict(enum.Enum):
     """Equal to its name in JSON, "touching", by which sets find it, and to its number in arrays."""
 
     SEPARATED = 1
@@ -437,19 +444,22 @@ class Verdict(int, enum.Enum):
     OVERLAPPING = 3
 
     def __str__(self) -> str:
-        return self.name.lower()
-
-    def __eq__(self, other: object) -> bool:
-        return str(self) == other if isinstance(other, str) else int.__eq__(self, other)
-
-    __ne__ = object.__ne__
+        return self._name_.lower()
 
     def __hash__(self) -> int:
         return hash(str(self))
 
+    def __index__(self) -> int:
+        return self._value_
+
+    __eq__, __ne__, __lt__, __le__, __gt__, __ge__ = map(
+        _comparison, (operator.eq, operator.ne, operator.lt, operator.le, operator.gt, operator.ge))
+    __array_ufunc__ = None  # arrays leave comparisons to these
+
 
 SEPARATED, TOUCHING, OVERLAPPING = Verdict
 _VERDICTS = (None,) + tuple(Verdict)
+_NUMBERS = {str(verdict): verdict.value for verdict in Verdict}
 
 Vector = tuple[float, ...]
 
@@ -513,7 +523,7 @@ class Answers(Sequence):
     """The answers to n pairs, in their order. A sequence of Answer, and an array for each field;
     None where it was not wanted.
 
-    pairs: (n, 2) int64, [pair][a, b], indices of bodies; of a list of pairs, the array that was passed in
+    pairs: (n, 2) int64, [pair][a, b], indices of bodies; of a list of pairs, this list
     verdicts: (n,) uint8, of Verdict; 0: none, the status says why
     statuses: (n,) int32, 0; or why there is no verdict
     contacts: (n, 2), first and last time of contact, seconds; NaN for pairs that never meet

@@ -257,10 +257,16 @@ class Answers(unittest.TestCase):
         self.assertNotIn(touching, {"overlapping", "separated"})
         self.assertEqual((f"{touching}", str(touching)), ("touching", "touching"))
         self.assertEqual((touching, touching.name, int(touching)), (2, "TOUCHING", 2))
-        self.assertTrue(touching != 3 and touching is fmb.TOUCHING and touching < fmb.OVERLAPPING)
+        self.assertTrue(touching != 3 and touching is fmb.TOUCHING)
+        self.assertTrue(fmb.SEPARATED < touching <= "touching" < fmb.OVERLAPPING > "separated")
+        with self.assertRaises(TypeError):
+            touching < "x"
         self.assertEqual([v == fmb.TOUCHING for v in answers.verdicts], [True, False, False])
         if fmb.numpy:
             self.assertEqual((answers.verdicts == fmb.OVERLAPPING).tolist(), [False, True, True])
+            self.assertEqual((fmb.OVERLAPPING != answers.verdicts).tolist(), [True, False, False])
+            self.assertEqual((answers.verdicts >= fmb.OVERLAPPING).tolist(), [False, True, True])
+            self.assertTrue(fmb.numpy.isin(answers.verdicts, [fmb.TOUCHING, fmb.OVERLAPPING]).all())
 
 
 @unittest.skipUnless(BUS, "needs fmbd")
@@ -622,6 +628,9 @@ class Arrays(unittest.TestCase):
         table = pandas.DataFrame({"x": [0, 1, 9], "y": [0.0, 0, 0], "z": [0, 0, 0], "name": list("abc")})
         self.scene.place(table[["x", "y", "z"]])
         self.assertEqual([a.verdict for a in self.scene.decide(0)], ["touching"])
+        found = pandas.DataFrame(self.scene.decide(0, pairs=[(0, 1), (0, 2)]))
+        for touching in ("touching", fmb.TOUCHING):
+            self.assertEqual((found.verdict == touching).tolist(), [True, False])
         scene = fmb.Scene([fmb.box(table[["x", "y", "z"]].loc[2])] * 3, names=table["name"], ids=table.index + 1)
         self.assertEqual(scene.names, ("a", "b", "c"))
         self.refused(TypeError, "positions", lambda: scene.place(table[["x", "y", "name"]]))
