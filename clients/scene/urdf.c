@@ -19,6 +19,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#if XML_MAJOR_VERSION == 2 && XML_MINOR_VERSION < 9
+#define XML_GetCurrentLineNumber64 XML_GetCurrentLineNumber /* which later versions deprecate */
+#endif
+
 struct node {
     const char *name;
     const char **attributes; /* name, value (NULL: ""), ..., NULL */
@@ -59,7 +63,7 @@ __attribute__((format(printf, 3, 4))) static void refuse(struct reader *reader, 
 /* As refuse(), and stops the parser. */
 static void stop(struct reader *reader, const char *name, const char *why)
 {
-    refuse(reader, XML_GetCurrentLineNumber(reader->xml), "<%.64s>: %s", name, why);
+    refuse(reader, XML_GetCurrentLineNumber64(reader->xml), "<%.64s>: %s", name, why);
     XML_StopParser(reader->xml, XML_FALSE);
 }
 
@@ -73,7 +77,7 @@ static void XMLCALL on_begin(void *user, const XML_Char *name, const XML_Char **
         count++;
     *node = (struct node){.name = scene_text(memory, name),
                           .attributes = scene_alloc(memory, count + 1, sizeof *node->attributes),
-                          .line = XML_GetCurrentLineNumber(reader->xml),
+                          .line = XML_GetCurrentLineNumber64(reader->xml),
                           .parent = parent};
     for (size_t i = 0; i < count; i++)
         node->attributes[i] = scene_text(memory, attributes[i]);
@@ -127,7 +131,7 @@ static bool parse(struct reader *reader, FILE *file)
         }
         if (XML_ParseBuffer(reader->xml, (int) size, size == 0) != XML_STATUS_OK) {
             const enum XML_Error error = XML_GetErrorCode(reader->xml);
-            refuse(reader, XML_GetCurrentLineNumber(reader->xml), "XML: %s%s",
+            refuse(reader, XML_GetCurrentLineNumber64(reader->xml), "XML: %s%s",
                    XML_ErrorString(error), xml_remedy(error));
         }
     } while (size > 0 && !reader->failed);
