@@ -321,8 +321,8 @@ enum fmb_want {
  * frames travel in the error of the time.) The lower bound of a separated pair may therefore be
  * below 0, by less than the width: it is what the direction proves; the verdict is exact. If the
  * bodies touch, both bounds are 0. If the frames that are named touch, the direction proves the
- * lower bound up to the same width. A bound whose magnitude exceeds the largest double is infinite,
- * with its sign.
+ * lower bound up to the same width. A bound, or a coordinate of a witness point, whose magnitude
+ * exceeds the largest double is infinite, with its sign: the points then prove no upper bound.
  *
  * Order. The swapped pair has the same bounds, the negated direction, and the points and frames
  * exchanged. If two placements are equal in all numbers, both orders are the same pair and have the
@@ -392,8 +392,9 @@ struct fmb_method {
  * Cost: exact takes tens of microseconds for numbers of similar size. Its time is bounded for any
  * numbers: the slowest pairs, whose exponents span the whole range of doubles, take up to 6 ms with
  * box and gap. The same bound holds for certified. It is not that of pairs with a hull: doubles
- * decide these by a few scans of all vertices, and exact arithmetic, for pairs that touch or nearly
- * do, takes some milliseconds for the largest hulls. A scene divides it into steps. */
+ * decide these by a few scans of all vertices. Exact arithmetic, for pairs that touch or nearly do,
+ * takes some milliseconds for the largest hulls, and up to 60 ms with box and gap if their
+ * exponents span the range of doubles. A scene divides it into steps of less than one. */
 
 /* Return a method from a static table, valid for the life of the program. Thread safe.
  * fmb_method_at() returns NULL if index is past the last method; fmb_method_by_name() and

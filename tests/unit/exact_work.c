@@ -5,7 +5,7 @@
 #include "integer.h"
 
 double exact_work;
-long exact_ends;
+long exact_ends, exact_terms;
 
 static double larger(size_t x, size_t y)
 {
@@ -65,6 +65,7 @@ void __wrap___gmpz_mul_si(mpz_ptr out, mpz_srcptr x, long y);
 void __wrap___gmpz_mul_si(mpz_ptr out, mpz_srcptr x, long y)
 {
     exact_work += (double) mpz_size(x);
+    exact_terms++;
     __real___gmpz_mul_si(out, x, y);
 }
 

@@ -12,4 +12,7 @@ extern double exact_work;
 /* Number of ends of contacts and boxes that were computed exactly. */
 extern long exact_ends;
 
+/* Number of products of an integer and a double, as in the value of a vertex in a direction. */
+extern long exact_terms;
+
 #endif

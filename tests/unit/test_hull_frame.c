@@ -191,7 +191,10 @@ static void flat_unless_surely_solid(void **state)
     static const double solid[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1e-9};
     static const double plane[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
     static const double segment[] = {0, 0, 1, 1, 2, 2};
-    static const double huge[] = {DBL_MAX, 0, 0, -DBL_MAX, 0, 0, 0, DBL_MAX, 0, 0, 0, DBL_MAX};
+    const double m = DBL_MAX; /* differences overflow */
+    const double huge[] = {m, 0, 0, -m, 0, 0, 0, m, 0, 0, 0, m};
+    const double huge_plane[] = {m, 0.25, 0, -m, -0.25, 0, 0, 0, 1, 0, 0, -1};
+    const double huge_segment[] = {m, 0.25, -m, -0.25, 0, 0};
     struct fmb_frame frame;
     fmb_frame_make_hull(3, solid, COUNT(solid), memory, &frame);
     assert_false(frame.flat);
@@ -199,8 +202,12 @@ static void flat_unless_surely_solid(void **state)
     assert_true(frame.flat);
     fmb_frame_make_hull(2, segment, COUNT(segment), memory, &frame);
     assert_true(frame.flat);
-    fmb_frame_make_hull(3, huge, COUNT(huge), memory, &frame);
+    fmb_frame_make_hull(3, huge_plane, COUNT(huge_plane), memory, &frame);
     assert_true(frame.flat);
+    fmb_frame_make_hull(2, huge_segment, COUNT(huge_segment), memory, &frame);
+    assert_true(frame.flat);
+    fmb_frame_make_hull(3, huge, COUNT(huge), memory, &frame);
+    assert_false(frame.flat);
 }
 
 int main(void)

@@ -228,6 +228,38 @@ static void draw_hull(struct draw *draw, int dim, int most, size_t count, struct
     make_hull(dim, out);
 }
 
+/* The same pair with coordinates near the largest double has the same answer, times 2^1022. */
+static void expect_huge(const struct fmb_placement *a, const struct fmb_placement *b,
+                        double duration, const struct fmb_answer *answer)
+{
+    const double unit = 0x1p1022;
+    struct hull hull[2];
+    struct fmb_placement at[2] = {*a, *b};
+    struct fmb_answer huge;
+    for (int f = 0; f < 2; f++) {
+        const struct fmb_frame *frame = fmb_body_frame(at[f].body, 0);
+        bool by_vertices;
+        hull[f].count = frame->vertex_count;
+        const size_t numbers = fmb_frame_numbers(frame, &by_vertices, hull[f].vertices);
+        for (size_t i = 0; i < numbers; i++)
+            hull[f].vertices[i] *= unit;
+        make_hull(frame->dim, &hull[f]);
+        at[f].body = &hull[f].body;
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+            at[f].position[axis] *= unit;
+            at[f].velocity[axis] *= unit;
+        }
+    }
+    verdict_of(&at[0], &at[1], duration);
+    fmb_decide(fmb_method_by_name("exact"), &at[0], &at[1], duration, FMB_WANT_BOX, &huge);
+    assert_int_equal(huge.verdict, answer->verdict);
+    assert_memory_equal(huge.contact, answer->contact, sizeof huge.contact);
+    for (int k = 0; k < 2 * FMB_DIM_MAX; k++) {
+        const int end = k / FMB_DIM_MAX, axis = k % FMB_DIM_MAX;
+        assert_true(huge.box[end][axis] == answer->box[end][axis] * unit);
+    }
+}
+
 /* The answer depends on the set alone: not on the order of the vertices, on repeated ones, or on
  * those inside. */
 static void the_list_of_vertices_does_not_matter(void **state)
@@ -261,6 +293,7 @@ static void the_list_of_vertices_does_not_matter(void **state)
         fmb_decide(exact, &at_longer, &at_b, duration, FMB_WANT_BOX, &other);
         assert_memory_equal(&one, &other, sizeof one);
         verdict_of(&at_longer, &at_b, duration);
+        expect_huge(&at_a, &at_b, duration, &one);
     }
 }
 

@@ -175,6 +175,7 @@ static void set_bits(struct fmb_frame *frame)
 /* Vectors from the first vertex to others, scaled to a largest coordinate near 1. */
 struct scaled {
     const struct fmb_frame *frame;
+    double part; /* 1/2 if differences of the vertices may overflow, else 1 */
     double first[FMB_DIM_MAX], scale[2];
 };
 
@@ -184,14 +185,18 @@ static void get_scaled(const struct scaled *scaled, unsigned i, double out[FMB_D
 {
     get_vertex(scaled->frame, i, out);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        out[axis] = (out[axis] - scaled->first[axis]) * scaled->scale[0] * scaled->scale[1];
+        out[axis] = (scaled->part * out[axis] - scaled->part * scaled->first[axis]) *
+                    scaled->scale[0] * scaled->scale[1];
 }
 
 static void set_scale(const struct fmb_frame *frame, struct scaled *out)
 {
     double largest = 0;
     int exponent;
-    *out = (struct scaled){.frame = frame, .scale = {1, 1}};
+    *out = (struct scaled){.frame = frame, .part = 1, .scale = {1, 1}};
+    for (int axis = 0; axis < frame->dim; axis++)
+        if (frame->component[axis][axis] >= 0x1p1023) /* the size of its box */
+            out->part = 0.5;
     get_vertex(frame, 0, out->first);
     for (unsigned i = 1; i < frame->vertex_count; i++) {
         double v[FMB_DIM_MAX];
