@@ -1,34 +1,13 @@
 # For suites that open pages in Chromium; without Chromium those tests are skipped.
 
-# as_chromium PART COLOURS [OPTION]: opens the driver, and stops when it has written its findings to
-# PART.json. WebGL is drawn without a GPU. No host name resolves, so that nothing leaves the machine.
-as_chromium() {
-    local log=$BATS_FILE_TMPDIR/$1.log pid
-    : > "$log"
-    timeout 300 chromium --headless --no-sandbox --no-first-run --disable-sync \
-        --disable-background-networking --disable-component-update --disable-extensions \
-        --host-resolver-rules='MAP * ~NOTFOUND' --user-data-dir="$BATS_FILE_TMPDIR/$1" \
-        --allow-file-access-from-files --enable-logging=stderr --v=0 --remote-debugging-port=0 \
-        --window-size=1500,1200 --blink-settings="preferredColorScheme=$2" \
-        ${3:---enable-unsafe-swiftshader --use-angle=swiftshader} \
-        "file://$BATS_FILE_TMPDIR/drive.html#$1" > "$log" 2>&1 < /dev/null 3>&- &
-    pid=$!
-    grep -aq ' END"' <(tail -n +1 -f --pid=$pid "$log") || true
-    kill $pid 2> /dev/null || true
-    wait $pid || true
-    sed -n 's/.*"FOUND \(.*\) END", source: .*/\1/p' "$log" > "$BATS_FILE_TMPDIR/$1.json"
-    # The pages' own messages: errors, refusals.
-    grep -a 'CONSOLE:.*source: file:' "$log" | grep -av 'source: [^ ]*\(drive\|tools\)\.js' > "$BATS_FILE_TMPDIR/$1.console" || true
-}
-
-# found PART FILTER...: the jq filters must be true of PART.json.
+# found FILTER...: the jq filters must be true of what the driver has found.
 found() {
     command -v chromium > /dev/null || skip 'there is no chromium'
-    [ -s "$1.json" ] || {
-        tail -n 20 "$1.log"
+    [ -s found.json ] || {
+        tail -n 20 browser.said
         return 1
     }
-    holds "$1.json" "${@:2}"
+    holds found.json "$@"
 }
 
 # data PAGE: the data, as JSON.

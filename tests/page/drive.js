@@ -3,21 +3,17 @@
 
 /* ---- What a page shows ---- */
 
-/* Counts of pixels of the scene: all that are drawn, those of a colour, and a checksum. */
-function picture() {
-    const scene = one("#scene"), canvas = page.createElement("canvas");
-    view.fmb.stage.dirty = true;
-    view.fmb.drawScene();
-    canvas.width = scene.width;
-    canvas.height = scene.height;
-    const to = canvas.getContext("2d");
-    to.drawImage(scene, 0, 0);
-    const { data } = to.getImageData(0, 0, canvas.width, canvas.height);
-    const count = { drawn: 0, red: 0, yellow: 0, blue: 0, violet: 0, sum: 0 };
+/* Counts of pixels of the scene as it is, within the frame that drew it, or of a rectangle of an image: all that
+ * are drawn, those of a colour, and a checksum. */
+const copy = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+function pixels(image = one("#scene"), { x, y, width, height } = { x: 0, y: 0, width: image.width, height: image.height }) {
+    Object.assign(copy.canvas, { width, height });
+    copy.drawImage(image, -x, -y);
+    const { data } = copy.getImageData(0, 0, width, height), count = { drawn: 0, red: 0, yellow: 0, blue: 0, violet: 0, sum: 0 };
     for (let i = 0; i < data.length; i += 4) {
-        const [r, g, b, a] = data.subarray(i, i + 4);
-        if (a < 60)
+        if (data[i + 3] < 60)
             continue;
+        const r = data[i], g = data[i + 1], b = data[i + 2];
         count.drawn++;
         count.red += r > g + 90 && r > b + 90 && r > 120 ? 1 : 0;
         count.yellow += r > 140 && g > 90 && b < g - 70 && r > g + 20 ? 1 : 0;
@@ -26,6 +22,13 @@ function picture() {
         count.sum = (count.sum * 31 + r + 2 * g + 3 * b + i) % 1000000007;
     }
     return count;
+}
+
+/* Draws, and counts. */
+function picture() {
+    view.fmb.stage.dirty = true;
+    view.fmb.drawScene();
+    return pixels();
 }
 
 /* The table: each row as a text of its cells. */
@@ -70,12 +73,6 @@ function overprints() {
         && a.top < b.bottom && b.top < a.bottom)).length;
 }
 
-/* The links to a moment are written ten times a second at most. */
-async function momentLinked() {
-    await wait(200);
-    return moment();
-}
-
 /* Texts that stand for a missing or invalid value. */
 function badTexts() {
     return (page.body.innerText.match(/NaN|Infinity|undefined|null|\[object/g) ?? []).length;
@@ -94,13 +91,10 @@ function lane(row) {
     return seen;
 }
 
-function wait(ms) {
-    return new Promise((done) => setTimeout(done, ms));
-}
-
+/* Waits for an event, for a minute at most. */
 async function until(holds) {
-    for (let i = 0; i < 200 && !holds(); i++)
-        await wait(50);
+    for (const from = performance.now(); !holds() && performance.now() - from < 60000;)
+        await drawn();
 }
 
 /* ---- A scene ---- */
@@ -115,7 +109,8 @@ async function scene() {
     await mouse(all("#pairs tr")[2].cells[0]);
     found.gap = { ...picture(), ...moment() };
     await press("n");
-    found.contact = { ...picture(), ...await momentLinked() };
+    await until(() => view.location.hash === "#t=1.9"); /* written ten times a second at most */
+    found.contact = { ...picture(), ...moment() };
     await press("n");
     found.nextContact = { ...picture(), ...moment(), places: places() };
     await press("Home");
@@ -126,10 +121,11 @@ async function scene() {
     await until(() => !view.fmb.player.playing);
     found.played = { ...picture(), ...moment(), places: places(), button: text("#play") };
     one("#loop").checked = true;
+    view.fmb.seek(1.9);
     await press(" ");
-    await wait(300);
+    await until(() => view.fmb.player.s < 1.9);
+    found.looped = view.fmb.player.playing;
     await press(" ");
-    found.looped = view.fmb.player.s;
     await type("#scrub", "1");
     found.scrubbed = { ...moment(), places: places() };
     view.location.hash = "#t=0.5";
@@ -170,6 +166,67 @@ async function shapes() {
     found.empty = { counts: text("#counts"), rows: table().length, bad: badTexts() };
 }
 
+/* ---- Sizes of the window ---- */
+
+function setSize(width, height) {
+    Object.assign(frame.style, { width: `${width}px`, height: `${height}px` });
+}
+
+/* Resizes the page, which must change the size of its stage. Returns the pixels of the scene as that frame paints
+ * them: this observer follows the page's own, after which nothing comes but painting. */
+function resize(width, height) {
+    return new Promise((done) => {
+        const before = [one("#stage").clientWidth, one("#stage").clientHeight].join();
+        const observer = new view.ResizeObserver(([{ contentRect }]) => {
+            if (before === [contentRect.width, contentRect.height].join())
+                return;
+            observer.disconnect();
+            done(pixels());
+        });
+        observer.observe(one("#stage"));
+        setSize(width, height);
+    });
+}
+
+/* The scene's part of a screenshot of a page that was resized, as "chromium --screenshot" does before it takes one. */
+async function screenshot(scheme, width, height) {
+    await setColours(scheme);
+    setSize(width, height - 90);
+    await open("table.html");
+    const painted = await resize(width, height);
+    const at = frame.getBoundingClientRect(), box = one("#stage").getBoundingClientRect(), image = new Image();
+    const clip = { x: at.left + box.left, y: at.top + box.top, width: box.width, height: box.height, scale: 1 };
+    image.src = `data:image/png;base64,${(await command("Page.captureScreenshot", { clip })).data}`;
+    await image.decode();
+    return { scheme, size: [width, height], painted, seen: pixels(image) };
+}
+
+/* Screenshots of pages that draw no frame but their first. */
+async function screenshots() {
+    found.screenshots = [];
+    const script = "let frames = 0; const next = requestAnimationFrame; requestAnimationFrame = (draw) => frames++ ? 0 : next(draw);";
+    await beginningWith(script, async () => {
+        for (const scheme of ["dark", "light"])
+            for (const [width, height] of [[1400, 900], [1100, 620], [390, 800]])
+                found.screenshots.push(await screenshot(scheme, width, height));
+    });
+    setSize(1400, 900);
+}
+
+/* The GPU forgets all that it has, as after a reset of its driver. */
+async function restored() {
+    await open("table.html");
+    const scene = one("#scene"), gpu = scene.getContext("webgl2") ?? scene.getContext("webgl"), loses = gpu.getExtension("WEBGL_lose_context");
+    const comes = (event) => new Promise((done) => scene.addEventListener(event, done, { once: true }));
+    const lost = comes("webglcontextlost"), back = comes("webglcontextrestored");
+    loses.loseContext();
+    await lost;
+    await drawn();
+    loses.restoreContext();
+    await back;
+    found.restored = await new Promise((done) => view.requestAnimationFrame(() => done(pixels())));
+}
+
 /* ---- Scenes, and recordings ---- */
 
 async function arm() {
@@ -192,11 +249,9 @@ async function arm() {
     const names = texts("#pairs td:first-child");
     await mouse(all("#heads th")[0]);
     found.sorted = { first: names[0], last: names[names.length - 1], down: texts("#pairs td:first-child")[0] };
-    frame.style.width = "390px";
-    await wait(100);
+    await resize(390, 900);
     found.narrow = { width: page.scrollingElement.scrollWidth, stage: one("#stage").clientWidth, overprints: overprints() };
-    frame.style.width = "1400px";
-    await wait(100);
+    await resize(1400, 900);
     found.wide = ["#stage", "#rows", "#play", "#overview", "#scrub"].map((selector) => one(selector).getBoundingClientRect().bottom);
     found.scrolls = page.scrollingElement.scrollHeight;
 }
@@ -258,7 +313,7 @@ async function recording() {
         found.refused.bad += badTexts();
         found.refused.missing += facts()["not drawn"] ? 1 : 0;
         found.refused.outcomes.push(facts().query.split(": ").pop());
-        await press("ArrowRight");
+        key("ArrowRight");
     }
 }
 
@@ -269,7 +324,7 @@ async function sizes() {
         await open(name);
         for (let i = 0; i < view.fmb.steps.length; i += 3) {
             view.fmb.seek(view.fmb.begins[i]);
-            await press("c"); /* all bodies may be far apart for their sizes */
+            key("c"); /* all bodies may be far apart for their sizes */
             found.sizes.push({ step: i, drawn: picture().drawn, bad: badTexts(), labels: labels().length });
         }
     }
@@ -303,22 +358,32 @@ async function network() {
     image.setAttribute("onclick", "document.title = 'ran'");
     page.body.append(image);
     image.click();
-    await wait(100);
-    found.refused = { directives: refused.sort(), title: page.title };
+    await until(() => refused.length === 3);
+    found.foreign = { directives: refused.sort(), title: page.title };
 }
 
-async function dark() {
-    await open("table.html");
-    found.dark = { ...picture(), ground: view.getComputedStyle(page.body).backgroundColor };
+async function broken() {
     await load("changed.html");
     await load("cut.html");
 }
 
-async function noScene() {
-    await open("arm.html");
-    found.none = { stage: one("#stage").hidden, said: text("#no-scene"), rows: table(), lane: lane(0) };
-    await press("n");
-    found.none.next = moment();
+async function dark() {
+    await setColours("dark");
+    await open("table.html");
+    found.dark = { ...picture(), ground: view.getComputedStyle(page.body).backgroundColor };
+    await setColours("light");
 }
 
-drive({ "#dark": [network, dark], "#bare": [noScene] }[location.hash] ?? [scene, shapes, arm, slow, recording, sizes, meshes]);
+/* In a browser that has no WebGL, such a context is null. */
+async function noScene() {
+    const script = "const { getContext } = HTMLCanvasElement.prototype; HTMLCanvasElement.prototype.getContext = function (kind, how) {"
+        + " return kind.includes('webgl') ? null : getContext.call(this, kind, how); };";
+    await beginningWith(script, async () => {
+        await open("arm.html");
+        found.none = { stage: one("#stage").hidden, said: text("#no-scene"), rows: table(), lane: lane(0) };
+        await press("n");
+        found.none.next = moment();
+    });
+}
+
+drive([screenshots, restored, scene, shapes, arm, slow, recording, sizes, meshes, network, broken, dark, noScene]);

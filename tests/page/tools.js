@@ -1,5 +1,5 @@
 /* Common to the drivers, which open pages in turn in an iframe, operate them as a reader does, and
- * write their findings as JSON to the console. The page is a document of its own, with its own
+ * send their findings to browser.py. The page is a document of its own, with its own
  * policy. */
 "use strict";
 
@@ -8,7 +8,7 @@ const found = {};
 let page, view;
 
 function drawn() {
-    return new Promise((done) => view.requestAnimationFrame(() => setTimeout(done)));
+    return new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
 }
 
 async function load(name) {
@@ -66,9 +66,14 @@ async function mouse(element, x = 0.5, y = 0.5, move = null) {
     await drawn();
 }
 
-async function press(key, shiftKey = false) {
+/* What a key changes in the document is there at once, the picture with the next frame. */
+function key(key, shiftKey = false) {
     page.body.dispatchEvent(new view.KeyboardEvent("keydown",
         { key, shiftKey, bubbles: true, cancelable: true }));
+}
+
+async function press(...keys) {
+    key(...keys);
     await drawn();
 }
 
@@ -78,14 +83,34 @@ async function type(selector, value, event = "input") {
     await drawn();
 }
 
-async function drive(parts) {
-    const all = async () => {
-        for (const part of parts)
-            await part();
-        found.done = true;
-    };
-    await all().catch((error) => {
-        found.error = String(error.stack ?? error);
+/* ---- The browser, by browser.py ---- */
+
+let answered;
+
+/* A command of the DevTools protocol, to this page; "messages": those of its console since the last time. */
+function command(method, params = {}) {
+    return new Promise((done) => {
+        answered = done;
+        toBrowser(JSON.stringify({ method, params }));
     });
-    console.log(`FOUND ${JSON.stringify(found)} END`);
+}
+
+/* Opens pages in light or dark colours from now on. */
+const setColours = (value) => command("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value }] });
+
+/* Does work while each page that is opened begins with a script. */
+async function beginningWith(source, work) {
+    const { identifier } = await command("Page.addScriptToEvaluateOnNewDocument", { source });
+    await work();
+    await command("Page.removeScriptToEvaluateOnNewDocument", { identifier });
+}
+
+/* Does all parts, and sends what they have found. */
+async function drive(parts) {
+    Object.assign(found, { errors: [], console: {} });
+    for (const part of parts) {
+        await part().catch((error) => found.errors.push(`${part.name}: ${error.stack ?? error}`));
+        found.console[part.name] = await command("messages");
+    }
+    toBrowser(JSON.stringify({ found }));
 }

@@ -444,7 +444,12 @@ if (renderer) {
     controls.addEventListener("change", () => { stage.dirty = true; });
     controls.addEventListener("start", () => { stage.turning = true; });
     controls.addEventListener("end", () => { stage.turning = false; });
-    new ResizeObserver(resize).observe(one("stage"));
+    /* A new size clears the canvas, and this frame's drawing is already done: it is drawn again before it is painted. */
+    new ResizeObserver(() => {
+        resize();
+        drawScene();
+    }).observe(one("stage"));
+    one("scene").addEventListener("webglcontextrestored", () => { stage.dirty = true; });
     one("scene").addEventListener("pointermove", drawPointed);
     one("scene").addEventListener("pointerleave", () => { one("pointed").hidden = true; });
 }
