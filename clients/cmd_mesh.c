@@ -19,11 +19,10 @@
 
 static const char usage[] =
     "usage: fmb mesh [OPTIONS] A B\n"
-    "       fmb mesh [OPTIONS] --self A\n"
     "\n"
-    "Decides exactly which faces of the triangle mesh A meet which faces of B, or of\n"
-    "A itself. A and B are files in PLY (ASCII or binary), STL (ASCII or binary) or\n"
-    "OBJ. Faces are numbered from 0, in the order of the file.\n"
+    "Decides exactly which faces of the triangle mesh A meet which faces of B. A and\n"
+    "B are files in PLY (ASCII or binary), STL (ASCII or binary) or OBJ. Faces are\n"
+    "numbered from 0, in the order of the file.\n"
     "\n"
     "Transformations, applied in the order given. Those after a file apply to that\n"
     "mesh, those before the first file to both.\n"
@@ -37,8 +36,6 @@ static const char usage[] =
     "  --duration T         length of the window, in seconds (1)\n"
     "\n"
     "Query:\n"
-    "  --self               A with itself. Faces that share a vertex or an edge and\n"
-    "                       have nothing else in common are counted separately\n"
     "  --as tetrahedra      a face is the tetrahedron of its edges and its unit\n"
     "                       normal, as in the article; --as faces: a triangle (the\n"
     "                       default)\n"
@@ -77,7 +74,7 @@ struct placed {
 struct mesh_options {
     struct placed placed[2];
     double duration;
-    bool self, json, list;
+    bool json, list;
     enum mesh_as as;
     const struct fmb_method *method;
     struct output_options ply, html;
@@ -195,22 +192,6 @@ static bool take_method(const struct args *args, void *out)
     return true;
 }
 
-/* Checks the combination of options, and the number of files. */
-static bool check(const struct args *args, const struct mesh_options *options)
-{
-    const int wanted = options->self ? 1 : 2;
-    if (args->operand_count != wanted)
-        return args_error(args,
-                          options->self ? "expected one mesh with --self, found %d"
-                                        : "expected two meshes, found %d; or one and --self",
-                          args->operand_count);
-    if (options->self && options->as == MESH_TETRAHEDRA)
-        return args_error(args, "--self asks faces, not tetrahedra");
-    if (options->self && options->placed[0].moving)
-        return args_error(args, "--self and --velocity: a mesh does not move against itself");
-    return true;
-}
-
 /* ---- Reading --------------------------------------------------------------------------------- */
 
 static bool read_mesh(const char *path, const struct placed *placed, struct mesh *out)
@@ -260,13 +241,12 @@ static int print_answer(const struct mesh_options *options, const struct mesh_re
     return good ? ARGS_ANSWERED : ARGS_FAILED;
 }
 
-static int intersect(const struct mesh_options *options, const struct mesh *a, const struct mesh *b,
-                     char **names)
+static int intersect(const struct mesh_options *options, const struct mesh mesh[2], char **names)
 {
     struct progress progress = progress_begin("faces", 0);
     const struct mesh_query query = {
-        .a = a,
-        .b = b,
+        .a = &mesh[0],
+        .b = &mesh[1],
         .as = options->as,
         .velocity = {options->placed[0].moving ? options->placed[0].velocity : NULL,
                      options->placed[1].moving ? options->placed[1].velocity : NULL},
@@ -284,8 +264,8 @@ static int intersect(const struct mesh_options *options, const struct mesh *a, c
         return ARGS_FAILED;
     }
     const struct mesh_report report = {.query = &query,
-                                       .mesh = {a, b},
-                                       .name = {names[0], names[a != b]},
+                                       .mesh = {&mesh[0], &mesh[1]},
+                                       .name = {names[0], names[1]},
                                        .intersection = &intersection};
     const int code = print_answer(options, &report);
     mesh_intersection_free(&intersection);
@@ -306,7 +286,6 @@ int cmd_mesh(int argc, char **argv)
         {"translate", ARGS_OTHER, options.placed, .take = take_translate},
         {"velocity", ARGS_OTHER, options.placed, .take = take_velocity},
         {"duration", ARGS_NUMBER, &options.duration, .high = DBL_MAX},
-        {"self", ARGS_FLAG, .out = &options.self},
         {"as", ARGS_OTHER, &options.as, .take = take_as},
         {"method", ARGS_OTHER, &options.method, .take = take_method},
         {"json", ARGS_FLAG, .out = &options.json},
@@ -320,19 +299,23 @@ int cmd_mesh(int argc, char **argv)
                         .usage = usage,
                         .options = own,
                         .operand = "mesh",
-                        .operands_max = INT_MAX /* check() counts them */};
+                        .operands_max = INT_MAX /* counted below */};
     struct mesh mesh[2] = {{0}};
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
     rules.input = args.operands;
     rules.input_count = args.operand_count;
-    if (!check(&args, &options) || !output_check(&options.ply) || !output_check(&options.html))
+    if (args.operand_count != 2) {
+        args_error(&args, "expected two meshes, found %d", args.operand_count);
+        return ARGS_USAGE;
+    }
+    if (!output_check(&options.ply) || !output_check(&options.html))
         return ARGS_USAGE;
     code = ARGS_USAGE;
     if (read_mesh(args.operands[0], &options.placed[0], &mesh[0]) &&
-        (options.self || read_mesh(args.operands[1], &options.placed[1], &mesh[1])))
-        code = intersect(&options, &mesh[0], &mesh[!options.self], args.operands);
+        read_mesh(args.operands[1], &options.placed[1], &mesh[1]))
+        code = intersect(&options, mesh, args.operands);
     mesh_free(&mesh[0]);
     mesh_free(&mesh[1]);
     return code;

@@ -2,7 +2,6 @@
 
 #include "allocate.h"
 #include "clock.h"
-#include "mesh_adjacency.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,8 +12,7 @@ enum { BLOCK = 512, FRAMES = 2 * BLOCK };
 struct mesh_search {
     const struct mesh_query *query;
     struct mesh_intersection *intersection;
-    struct fmb_tree tree[2];         /* of one mesh only the first */
-    struct mesh_adjacency adjacency; /* of one mesh with itself only */
+    struct fmb_tree tree[2];
     enum fmb_status status;
 
     /* The block: candidates and their frames. */
@@ -130,32 +128,8 @@ static void decide_block(struct mesh_search *search)
                  moving ? search->contact[i] : none);
 }
 
-/* Of one mesh: removes the adjacent pairs from the block and counts them. */
-static void remove_adjacent(struct mesh_search *search)
-{
-    static const double none[2] = {0, 0};
-    struct mesh_intersection *intersection = search->intersection;
-    size_t kept = 0;
-    for (size_t i = 0; i < search->count; i++) {
-        const unsigned face[2] = {search->face[i][0], search->face[i][1]};
-        enum fmb_verdict verdict = FMB_SEPARATED;
-        switch (mesh_adjacency_of(&search->adjacency, face[0], face[1], &verdict)) {
-        case MESH_SHARE_EDGE: intersection->sharing_edge++; break;
-        case MESH_SHARE_VERTEX: intersection->sharing_vertex++; break;
-        case MESH_SHARE_AND_INTERSECT:
-            intersection->candidates++;
-            add_pair(search, face, verdict, none);
-            break;
-        case MESH_NOT_ADJACENT: memmove(search->face[kept++], face, sizeof face); break;
-        }
-    }
-    search->count = kept;
-}
-
 static void decide_candidates(struct mesh_search *search)
 {
-    if (mesh_is_self(search->query))
-        remove_adjacent(search);
     search->intersection->candidates += search->count;
     if (!search->query->method && search->count > 0)
         decide_block(search);
@@ -177,8 +151,8 @@ static void decide_all(struct mesh_search *search)
     const struct mesh_query *query = search->query;
     struct fmb_tree_cursor cursor = {0};
     while (search->status == FMB_OK &&
-           fmb_tree_pairs(&search->tree[0], &search->tree[!mesh_is_self(query)], &cursor,
-                          search->face, BLOCK, &search->count) == FMB_OK &&
+           fmb_tree_pairs(&search->tree[0], &search->tree[1], &cursor, search->face, BLOCK,
+                          &search->count) == FMB_OK &&
            search->count > 0) {
         search->frame_count = 0;
         decide_candidates(search);
@@ -214,8 +188,7 @@ static size_t count_marked(const unsigned char *worst, size_t count)
 static void mark_faces(const struct mesh_query *query, struct mesh_intersection *intersection)
 {
     intersection->worst[0] = allocate(query->a->face_count, 1);
-    intersection->worst[1] =
-        mesh_is_self(query) ? intersection->worst[0] : allocate(query->b->face_count, 1);
+    intersection->worst[1] = allocate(query->b->face_count, 1);
     for (size_t i = 0; i < intersection->count; i++) {
         const struct mesh_pair *pair = &intersection->pair[i];
         mark(&intersection->worst[0][pair->a], pair->verdict);
@@ -232,17 +205,14 @@ enum fmb_status mesh_intersect(const struct mesh_query *query, struct mesh_inter
 {
     struct mesh_search *search = allocate(1, sizeof *search);
     void *memory[2] = {NULL, NULL};
-    const bool self = mesh_is_self(query);
     memset(out, 0, sizeof *out);
     out->moving = query->velocity[0] || query->velocity[1];
     search->query = query;
     search->intersection = out;
     search->placed = allocate(FRAMES, sizeof *search->placed);
     search->frame = allocate(FRAMES, sizeof *search->frame);
-    if (self)
-        mesh_adjacency_open(query->a, &search->adjacency);
     const int64_t begin = clock_ns();
-    for (int which = 0; which < 2 - self; which++)
+    for (int which = 0; which < 2; which++)
         memory[which] = build_tree(query, which, &search->tree[which]);
     out->build_ns = clock_ns() - begin;
     decide_all(search);
@@ -250,8 +220,6 @@ enum fmb_status mesh_intersect(const struct mesh_query *query, struct mesh_inter
     const enum fmb_status status = search->status;
     for (int which = 0; which < 2; which++)
         free(memory[which]);
-    if (self)
-        mesh_adjacency_close(&search->adjacency);
     free(search->frame);
     free(search->placed);
     free(search);
@@ -268,8 +236,7 @@ enum fmb_status mesh_intersect(const struct mesh_query *query, struct mesh_inter
 void mesh_intersection_free(struct mesh_intersection *intersection)
 {
     free(intersection->pair);
-    if (intersection->worst[1] != intersection->worst[0])
-        free(intersection->worst[1]);
     free(intersection->worst[0]);
+    free(intersection->worst[1]);
     memset(intersection, 0, sizeof *intersection);
 }

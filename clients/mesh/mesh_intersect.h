@@ -1,12 +1,12 @@
-/* Intersects the faces of two meshes, or of one mesh with itself. Bounding volume trees (fmb.h)
- * yield the candidate pairs, and each candidate is decided. */
+/* Intersects the faces of two meshes. Bounding volume trees (fmb.h) yield the candidate pairs, and
+ * each candidate is decided. */
 #ifndef MESH_INTERSECT_H
 #define MESH_INTERSECT_H
 
 #include "mesh_face.h"
 
 struct mesh_query {
-    const struct mesh *a, *b; /* equal pointers: one mesh with itself, as FACES */
+    const struct mesh *a, *b;
     enum mesh_as as;
     const double *velocity[2];       /* [3] of a and of b, finite; NULL: at rest */
     double duration;                 /* of the window, seconds; finite, from 0 */
@@ -16,13 +16,8 @@ struct mesh_query {
     void *context;
 };
 
-static inline bool mesh_is_self(const struct mesh_query *query)
-{
-    return query->a == query->b;
-}
-
 struct mesh_pair {
-    unsigned a, b; /* indices of faces; of one mesh a < b */
+    unsigned a, b; /* indices of faces */
     enum fmb_verdict verdict;
     double contact[2]; /* seconds; set if a mesh has a velocity */
 };
@@ -31,14 +26,11 @@ struct mesh_intersection {
     struct mesh_pair *pair; /* owned; sorted by a, then by b */
     size_t count, capacity;
     size_t overlapping, touching; /* of the pairs, by verdict */
-    size_t faces[2]; /* faces of a and of b in at least one pair; of one mesh both the same */
+    size_t faces[2];              /* faces of a and of b in at least one pair */
     /* Owned; [face] of a and of b: the worst verdict of its pairs (OVERLAPPING before TOUCHING), or
-     * 0 without a pair. Of one mesh both are the same array. */
+     * 0 without a pair. */
     unsigned char *worst[2];
     uint64_t candidates; /* candidate pairs decided */
-    /* Of one mesh: adjacent pairs that share an edge, or a vertex, and no other point. No other
-     * count includes them. */
-    uint64_t sharing_edge, sharing_vertex;
     bool moving;
     int64_t build_ns, query_ns; /* time to build the trees, and the remaining time */
 };

@@ -6,8 +6,7 @@
 
 static void add_meshes(struct page *page, const struct mesh_report *report)
 {
-    const int count = mesh_is_self(report->query) ? 1 : 2;
-    for (int m = 0; m < count; m++) {
+    for (int m = 0; m < 2; m++) {
         const struct mesh *mesh = report->mesh[m];
         char note[600];
         page_mesh(page, &(struct page_mesh){.name = report->name[m],
@@ -23,33 +22,25 @@ static void add_meshes(struct page *page, const struct mesh_report *report)
     }
 }
 
-static void note_counts(struct page *page, const struct mesh_intersection *found, bool self)
+static void note_counts(struct page *page, const struct mesh_intersection *found)
 {
     char note[200];
     snprintf(note, sizeof note, "%zu pairs of faces meet: %zu overlap, %zu touch", found->count,
              found->overlapping, found->touching);
-    page_note(page, note);
-    if (!self)
-        return;
-    snprintf(note, sizeof note,
-             "adjacent pairs: %llu share no more than an edge, %llu no more than a vertex",
-             (unsigned long long) found->sharing_edge, (unsigned long long) found->sharing_vertex);
     page_note(page, note);
 }
 
 void mesh_page_write(FILE *out, const struct mesh_report *report)
 {
     const struct mesh_intersection *found = report->intersection;
-    const bool self = mesh_is_self(report->query);
     char title[1000];
-    snprintf(title, sizeof title, self ? "%.400s" : "%.400s and %.400s", report->name[0],
-             report->name[1]);
+    snprintf(title, sizeof title, "%.400s and %.400s", report->name[0], report->name[1]);
     struct page *page = page_open(&(struct page_options){
         .kind = PAGE_MESH, .title = title, .pairs_max = MESH_PAGE_PAIRS_MAX});
     page_step_begin(page,
                     &(struct page_step){.duration = found->moving ? report->query->duration : 0});
     add_meshes(page, report);
-    note_counts(page, found, self);
+    note_counts(page, found);
     for (size_t i = 0; i < found->count; i++) {
         const struct mesh_pair *pair = &found->pair[i];
         const struct fmb_answer answer = {.verdict = pair->verdict,

@@ -101,16 +101,10 @@ void mesh_report_text(FILE *out, const struct mesh_report *report, bool list)
     put_count(out, intersection->touching, "touch");
     fputs("in them are\n", out);
     put_faces(out, report, 0);
-    if (mesh_is_self(report->query)) {
-        fputs("and beside each other, with nothing else in common, are\n", out);
-        put_count(out, intersection->sharing_edge, "pairs that share an edge");
-        put_count(out, intersection->sharing_vertex, "pairs that share a vertex");
-    } else {
-        put_faces(out, report, 1);
-    }
+    put_faces(out, report, 1);
     if (intersection->moving && intersection->count > 0)
         put_times(out, intersection);
-    if (intersection->count == 0 && !mesh_is_self(report->query))
+    if (intersection->count == 0)
         put_hint(out, report);
 }
 
@@ -139,10 +133,6 @@ void mesh_report_json(FILE *out, const struct mesh_report *report)
     json_integer(&json, "touching", (int64_t) intersection->touching);
     json_integer(&json, "faces_a", (int64_t) intersection->faces[0]);
     json_integer(&json, "faces_b", (int64_t) intersection->faces[1]);
-    if (mesh_is_self(report->query)) {
-        json_integer(&json, "sharing_edge", (int64_t) intersection->sharing_edge);
-        json_integer(&json, "sharing_vertex", (int64_t) intersection->sharing_vertex);
-    }
     json_begin(&json, "pairs", '[');
     for (size_t i = 0; i < intersection->count; i++)
         put_pair_json(&json, &intersection->pair[i], intersection->moving);
@@ -213,11 +203,11 @@ static const unsigned char *colour_of(const struct mesh_report *report, int whic
 
 void mesh_report_ply(FILE *out, const struct mesh_report *report)
 {
-    const int meshes = mesh_is_self(report->query) ? 1 : 2;
+    const int meshes = 2;
     const struct mesh *const *mesh = report->mesh;
     size_t first = 0;
-    put_header(out, mesh[0]->vertex_count + (meshes > 1 ? mesh[1]->vertex_count : 0),
-               mesh[0]->face_count + (meshes > 1 ? mesh[1]->face_count : 0));
+    put_header(out, mesh[0]->vertex_count + mesh[1]->vertex_count,
+               mesh[0]->face_count + mesh[1]->face_count);
     for (int m = 0; m < meshes; m++)
         for (size_t i = 0; i < mesh[m]->vertex_count; i++)
             put_vertex(out, mesh[m]->vertex[i]);

@@ -9,7 +9,7 @@
 
 struct mesh_report {
     const struct mesh_query *query; /* not owned, as all members */
-    const struct mesh *mesh[2];     /* equal pointers: one mesh with itself */
+    const struct mesh *mesh[2];
     const char *name[2];
     const struct mesh_intersection *intersection;
 };
@@ -22,8 +22,7 @@ void mesh_report_text(FILE *out, const struct mesh_report *report, bool list);
  *     {"overlapping": N, "touching": N, "faces_a": N, "faces_b": N,
  *      "pairs": [[i, j, "overlapping"], ...]}
  *
- * If a mesh moves, the interval of contact follows the verdict. For one mesh with itself,
- * "sharing_edge" and "sharing_vertex" precede the pairs. */
+ * If a mesh moves, the interval of contact follows the verdict. */
 void mesh_report_json(FILE *out, const struct mesh_report *report);
 
 /* Writes both meshes as one PLY file, with colours by verdict: binary and little-endian with double

@@ -169,7 +169,6 @@ $counts"
         answers "$nothing" $empty b.obj
         answers "$nothing" b.obj $empty
         answers "$nothing" $empty $empty --velocity 1,0,0
-        answers "${nothing/\"pairs/\"sharing_edge\": 0, \"sharing_vertex\": 0, \"pairs}" --self $empty
         mesh $empty b.obj --list --ply out.ply
         ended 0
         is "             0  pairs of faces meet:
@@ -243,49 +242,6 @@ apart() {
     said 'fmb: the normal of a face is beyond the doubles: scale the meshes'
 }
 
-# ---- A mesh with itself ------------------------------------------------------------------------
-
-@test "--self counts intersections apart from shared vertices and edges" {
-    # A tetrahedron whose last face is there twice, and a triangle through it.
-    obj self.obj '0 0 0' '1 0 0' '0 1 0' '0 0 1' '0.1 0.1 -1' '0.1 0.1 0.5' '9 9 9' -- \
-        '1 3 2' '1 2 4' '1 4 3' '2 3 4' '4 2 3' '5 6 7' '2 7 7'
-    answers '{"overlapping": 4, "touching": 0, "faces_a": 4, "faces_b": 4, "sharing_edge": 9, "sharing_vertex": 5, "pairs": [[0, 5, "overlapping"], [3, 4, "overlapping"], [3, 5, "overlapping"], [4, 5, "overlapping"]]}' --self self.obj
-    mesh self.obj --self --list
-    ended 0
-    is '0 5 overlapping
-3 4 overlapping
-3 5 overlapping
-4 5 overlapping
-             4  pairs of faces meet:
-             4  overlap
-             0  touch
-in them are
-             4  of 7 faces of self.obj
-and beside each other, with nothing else in common, are
-             9  pairs that share an edge
-             5  pairs that share a vertex'
-}
-
-# bats test_tags=release
-@test "--self refuses options that exclude it" {
-    wrong mesh --self a.obj b.obj
-    wrong mesh --self
-    wrong mesh --self --as tetrahedra a.obj
-    wrong mesh --self a.obj --velocity 0,0,1
-    wrong mesh --velocity 0,0,1 --self a.obj
-    said "fmb mesh: --self and --velocity: a mesh does not move against itself
-Try 'fmb mesh --help'."
-}
-
-# bats test_tags=release
-@test "a closed mesh shares three edges for every two faces" {
-    "$MAKE_MESH" --faces 1000 one.ply
-    mesh --self --json one.ply
-    ended 0
-    faces=$("$MAKE_MESH" --faces 1000 | sed -n 's/^element face //p')
-    jq -e --argjson n "$faces" '.sharing_edge == $n * 3 / 2' <<< "$output"
-}
-
 # ---- Files -------------------------------------------------------------------------------------
 
 @test "--ply writes both meshes in one file with colours, which reads back" {
@@ -294,7 +250,7 @@ Try 'fmb mesh --help'."
     grep -a -q 'element vertex 9' out.ply
     grep -a -q 'element face 3' out.ply
     # A and B of it are where they were put.
-    answers '{"overlapping": 1, "touching": 1, "faces_a": 3, "faces_b": 3, "sharing_edge": 0, "sharing_vertex": 0, "pairs": [[0, 1, "overlapping"], [0, 2, "touching"]]}' --self out.ply
+    answers '{"overlapping": 1, "touching": 1, "faces_a": 2, "faces_b": 2, "pairs": [[1, 0, "overlapping"], [2, 1, "touching"]]}' out.ply b.obj --translate 0,0,1.5
     mesh a.obj b.obj --ply out.ply
     # The last bytes are faces: 3, three indices, three colours: red, red, yellow.
     colours() {
@@ -307,10 +263,6 @@ Try 'fmb mesh --help'."
     [ "$(colours 3)" = "190 190 190
 120 160 220
 120 160 220" ]
-    mesh --self b.obj --ply out.ply
-    grep -a -q 'element vertex 6' out.ply
-    [ "$(colours 2)" = "190 190 190
-190 190 190" ]
 }
 
 @test "all formats, and every mixture of them, give the same answer" {
@@ -320,14 +272,10 @@ Try 'fmb mesh --help'."
         ended 0
         [ "${expected:=$output}" = "$output" ]
         answers "$expected" one.ply-ascii one.$format --translate 0.1,0.2,0.3
-        mesh --self one.$format --json
-        [ "${shared:=$output}" = "$output" ]
     done
     jq -e '.overlapping > 100' <<< "$expected"
     # Floats: the same mesh, as near as they have it.
     "$MAKE_MESH" --faces 800 --format stl-binary one.stl
-    mesh --self one.stl --json
-    [ "$shared" = "$output" ]
     mesh one.stl one.stl --translate 0.1,0.2,0.3 --json
     [ "$(jq -c .overlapping <<< "$output")" = "$(jq -c .overlapping <<< "$expected")" ]
 }
@@ -337,7 +285,7 @@ Try 'fmb mesh --help'."
     cannot_read 'no.obj: No such file or directory' a.obj no.obj
     cannot_read "$BATS_TEST_TMPDIR: a folder, not a file" a.obj "$BATS_TEST_TMPDIR"
     : > nothing.obj
-    cannot_read 'nothing.obj: byte 0: the file is empty' --self nothing.obj
+    cannot_read 'nothing.obj: byte 0: the file is empty' nothing.obj b.obj
     printf 'v 0 0 0\nv 1 0 0\nf 1 2 3\n' > broken.obj
     mesh a.obj broken.obj --json
     ended 2
@@ -407,7 +355,7 @@ Try 'fmb mesh --help'."
     run "$FMB" help
     [[ $output == *'mesh'*'which faces of two triangle meshes meet'* ]]
     # Every option is there, once.
-    for option in scale rotate mirror translate velocity duration self as method json list ply; do
+    for option in scale rotate mirror translate velocity duration as method json list ply; do
         [ "$(grep -c "^  --$option" <<< "$help")" = 1 ]
     done
 }

@@ -68,7 +68,7 @@ SCENE
     "$fmb" replay --golden "$logs/stack.log" --html other.html "$logs/arm.log" > replay.said 2>&1 || true
     printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' > b.obj
     "$fmb" mesh --html mesh.html --json b.obj b.obj --translate 1.5,0.1,0.1 --velocity=-1,0,0 > mesh.json
-    "$fmb" mesh --html self.html --self b.obj > self.said
+    "$fmb" mesh --html apart.html b.obj b.obj --translate 5,0,0 > apart.said
     sed 's/^start();$/start(); start;/' arm.html > changed.html
     sed '/id="data">$/{n;s/^./!/;}' arm.html > cut.html
     ! command -v chromium > /dev/null ||
@@ -238,7 +238,7 @@ setup() {
     pairs=$(jq '.pairs | length' mesh.json)
     found ".mesh | (.rows | length) == $pairs and (.notes | contains(\"$pairs pairs of faces meet\")) and .red > 1000" \
         '(.face.facts.pair | test("^A [0-3] – B [0-3]$")) and .face.violet > 50 and .moved.sum != .mesh.sum and .moved.text == "1.000 s"' \
-        '.self | .drawn > 10000 and .red == 0 and .rows == 0 and .hidden and (.notes | contains("share no more than an edge"))'
+        '.apart | .drawn > 10000 and .red == 0 and .rows == 0 and .hidden and (.notes | contains("0 pairs of faces meet"))'
 }
 
 @test "without WebGL table and timeline remain, and one line says so" {

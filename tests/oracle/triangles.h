@@ -31,8 +31,4 @@ void triangles_clear(struct triangles_answer *truth);
 void triangles_decide(const struct triangle pair[2], double duration, bool ends,
                       struct triangles_answer *truth);
 
-/* On input: triangles at rest; one or two points that both of them contain.
- * On output: whether they have no other point in common than that one, or those between the two. */
-bool triangles_share_only(const struct triangle pair[2], const double (*point)[3], int points);
-
 #endif

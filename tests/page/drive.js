@@ -339,8 +339,8 @@ async function meshes() {
     await press("f");
     await press("End");
     found.moved = { ...picture(), ...moment() };
-    await open("self.html");
-    found.self = { ...picture(), notes: text("#notes"), rows: table().length, hidden: one("#time").hidden };
+    await open("apart.html");
+    found.apart = { ...picture(), notes: text("#notes"), rows: table().length, hidden: one("#time").hidden };
 }
 
 /* ---- Protection ---- */

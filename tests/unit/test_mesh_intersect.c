@@ -1,5 +1,5 @@
 /* Which faces of meshes intersect: against a test of every pair by an oracle that knows the
- * vertices only; what faces of one mesh share; where steps put a mesh. */
+ * vertices only; where steps put a mesh. */
 
 #include "unit.h"
 
@@ -11,7 +11,6 @@
 #include "draw.h"
 #include "mesh_face.h"
 #include "mesh_intersect.h"
-#include "mesh_adjacency.h"
 #include "mesh_transform.h"
 #include "progress_seen.h"
 #include "triangles.h"
@@ -141,19 +140,18 @@ static void assert_contact(const struct mesh_pair *pair, double duration,
 static void assert_counts(const struct mesh_query *question,
                           const struct mesh_intersection *meeting)
 {
-    const bool self = question->a == question->b;
     size_t of[4] = {0}, faces[2] = {0};
     unsigned char *in[2] = {allocate(question->a->face_count, 1),
                             allocate(question->b->face_count, 1)};
     for (size_t k = 0; k < meeting->count; k++) {
         of[meeting->pair[k].verdict]++;
         in[0][meeting->pair[k].a] = 1;
-        in[!self][meeting->pair[k].b] = 1;
+        in[1][meeting->pair[k].b] = 1;
     }
     for (size_t i = 0; i < question->a->face_count; i++)
         faces[0] += in[0][i];
     for (size_t i = 0; i < question->b->face_count; i++)
-        faces[1] += in[!self][i];
+        faces[1] += in[1][i];
     assert_int_equal(of[FMB_OVERLAPPING], meeting->overlapping);
     assert_int_equal(of[FMB_TOUCHING], meeting->touching);
     assert_int_equal(of[FMB_OVERLAPPING] + of[FMB_TOUCHING], meeting->count);
@@ -186,8 +184,6 @@ static void assert_meeting_of_two(const struct mesh_query *question)
                 assert_contact(found, question->duration, &truth);
         }
     assert_int_equal(at, meeting.count);
-    assert_int_equal(meeting.sharing_edge, 0);
-    assert_int_equal(meeting.sharing_vertex, 0);
     assert_counts(question, &meeting);
     mesh_intersection_free(&meeting);
     triangles_clear(&truth);
@@ -268,87 +264,7 @@ static void closed_meshes_meet_where_every_pair_says(void **state)
     }
 }
 
-/* ---- One mesh with itself ---- */
-
-static bool same_place(const double x[3], const double y[3])
-{
-    return x[0] == y[0] && x[1] == y[1] && x[2] == y[2];
-}
-
-/* The places that are corners of both, each once. */
-static int shared_places(const struct triangle pair[2], double out[3][3])
-{
-    int count = 0;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            bool is_new = same_place(pair[0].vertex[i], pair[1].vertex[j]);
-            for (int k = 0; k < count; k++)
-                is_new = is_new && !same_place(out[k], pair[0].vertex[i]);
-            if (is_new)
-                memcpy(out[count++], pair[0].vertex[i], sizeof out[0]);
-        }
-    return count;
-}
-
-struct shared {
-    uint64_t edge, vertex;
-};
-
-/* Returns whether the faces belong to the pairs that meet. */
-static bool is_met(const struct triangle pair[2], struct shared *shared,
-                   struct triangles_answer *truth)
-{
-    double place[3][3];
-    const int places = shared_places(pair, place);
-    triangles_decide(pair, 0, false, truth);
-    const bool only = (places == 1 || places == 2) &&
-                      triangles_share_only(pair, (const double(*)[3]) place, places);
-    shared->edge += only && places == 2;
-    shared->vertex += only && places == 1;
-    return !only && truth->verdict != FMB_SEPARATED;
-}
-
-static void assert_meeting_with_itself(const struct mesh *mesh, const struct fmb_method *method)
-{
-    const struct mesh_query question = {.a = mesh, .b = mesh, .duration = 1, .method = method};
-    struct mesh_intersection meeting;
-    struct triangles_answer truth;
-    struct shared shared = {0};
-    size_t at = 0;
-    triangles_init(&truth);
-    assert_int_equal(mesh_intersect(&question, &meeting), FMB_OK);
-    assert_false(meeting.moving);
-    for (size_t i = 0; i < mesh->face_count; i++)
-        for (size_t j = i + 1; j < mesh->face_count; j++) {
-            struct triangle pair[2];
-            set_triangle(mesh, i, NULL, &pair[0]);
-            set_triangle(mesh, j, NULL, &pair[1]);
-            const bool met = is_met(pair, &shared, &truth);
-            const struct mesh_pair *found = take_pair(&meeting, &at, i, j);
-            if (met != (found != NULL))
-                fail_of(mesh, i, mesh, j, met ? "a pair is missing" : "a pair too much");
-            if (found && found->verdict != truth.verdict)
-                fail_of(mesh, i, mesh, j, "another verdict");
-        }
-    assert_int_equal(at, meeting.count);
-    assert_int_equal(meeting.sharing_edge, shared.edge);
-    assert_int_equal(meeting.sharing_vertex, shared.vertex);
-    assert_counts(&question, &meeting);
-    mesh_intersection_free(&meeting);
-    triangles_clear(&truth);
-}
-
-static void a_mesh_meets_itself_where_every_pair_says(void **state)
-{
-    struct draw draw;
-    draw_begin(&draw, "a_mesh_meets_itself_where_every_pair_says");
-    for (long n = draw_sample(300); n > 0; n--) {
-        struct mesh mesh;
-        draw_any_soup(&draw, &mesh);
-        assert_meeting_with_itself(&mesh, n % 8 ? NULL : fmb_method_by_name("exact"));
-        mesh_free(&mesh);
-    }
-}
+/* ---- A mesh and itself ---- */
 
 /* On a line most faces have no area, and lie upon each other. */
 static void faces_on_a_line_or_in_a_plane(void **state)
@@ -363,7 +279,7 @@ static void faces_on_a_line_or_in_a_plane(void **state)
             if (n % 2)
                 mesh.vertex[v][1] = v % 5 ? mesh.vertex[0][1] : mesh.vertex[v][1];
         }
-        assert_meeting_with_itself(&mesh, NULL);
+        assert_meeting_of_two(&(struct mesh_query){.a = &mesh, .b = &mesh, .duration = 1});
         mesh_free(&mesh);
     }
 }
@@ -408,8 +324,8 @@ static void draw_thin(struct draw *draw, double point[NEAR_VERTICES][3])
     }
 }
 
-/* Faces nearly in a plane that have a vertex in common: whether they have more than that depends on
- * the last bits; products underflow, or overflow. */
+/* Faces nearly in a plane that have a vertex in common: whether they overlap depends on the last
+ * bits; products underflow, or overflow. */
 static void faces_nearly_on_lines(void **state)
 {
     static const int scales[][2] = {{0, 0},       {0, 0},     {0, 30},     {-400, 0}, {-480, -480},
@@ -429,153 +345,7 @@ static void faces_nearly_on_lines(void **state)
             for (int corner = 0; corner < 3; corner++)
                 mesh.face[f][corner] =
                     corner == f % 3 ? 0 : (unsigned) draw_int(&draw, 1, NEAR_VERTICES - 1);
-        assert_meeting_with_itself(&mesh, NULL);
-        mesh_free(&mesh);
-    }
-}
-
-/* What is closed shares edges and vertices, and where it does not meet itself nothing else. */
-static void a_closed_mesh_shares_edges_and_vertices(void **state)
-{
-    for (uint64_t seed = 1; seed < 4; seed++) {
-        struct mesh mesh;
-        struct mesh_intersection meeting;
-        bumpy_make(128, seed, &mesh);
-        const struct mesh_query question = {.a = &mesh, .b = &mesh, .duration = 1};
-        assert_meeting_with_itself(&mesh, NULL);
-        assert_int_equal(mesh_intersect(&question, &meeting), FMB_OK);
-        if (meeting.count == 0) /* three edges a face, each of two */
-            assert_int_equal(meeting.sharing_edge, 3 * mesh.face_count / 2);
-        mesh_intersection_free(&meeting);
-        mesh_free(&mesh);
-    }
-}
-
-/* Two faces, by coordinates: what mesh_adjacency_of() says of them. */
-struct near_case {
-    const char *name;
-    double vertex[2][3][3];
-    enum mesh_relation nearness;
-    enum fmb_verdict verdict; /* where they meet */
-};
-
-static const struct near_case near_cases[] = {
-    {"a fan",
-     {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {-1, 0, 0}, {0, 0, 1}}},
-     MESH_SHARE_VERTEX,
-     0},
-    {"through a face from its vertex",
-     {{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {{0, 0, 0}, {1, 1, 1}, {1, 1, -1}}},
-     MESH_SHARE_AND_INTERSECT,
-     FMB_OVERLAPPING},
-    {"along an edge from a vertex",
-     {{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}},
-     MESH_SHARE_AND_INTERSECT,
-     FMB_TOUCHING},
-    {"a hinge",
-     {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}},
-     MESH_SHARE_EDGE,
-     0},
-    {"a hinge that is open",
-     {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}}},
-     MESH_SHARE_EDGE,
-     0},
-    {"a hinge that is shut",
-     {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}},
-     MESH_SHARE_AND_INTERSECT,
-     FMB_OVERLAPPING},
-    {"the same",
-     {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {0, 0, 0}, {1, 0, 0}}},
-     MESH_SHARE_AND_INTERSECT,
-     FMB_OVERLAPPING},
-    {"no vertex in common",
-     {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}},
-     MESH_NOT_ADJACENT,
-     0},
-    {"a point and its face",
-     {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
-     MESH_SHARE_VERTEX,
-     0},
-    {"a segment beside a face, their vertex within it",
-     {{{0, 0, 0}, {-1, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
-     MESH_SHARE_VERTEX,
-     0},
-    {"segments that cross at their vertex",
-     {{{0, 0, 0}, {-1, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {0, 1, 0}, {0, -1, 0}}},
-     MESH_SHARE_VERTEX,
-     0},
-    {"a segment into a face, their vertex within it",
-     {{{0, 0, 0}, {-1, -1, 0}, {1, 1, 0}}, {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}},
-     MESH_SHARE_AND_INTERSECT,
-     FMB_OVERLAPPING},
-    {"segments that go on from what they share, to either side",
-     {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {-1, 0, 0}}},
-     MESH_SHARE_EDGE,
-     0},
-    {"segments that go on from what they share, to one side",
-     {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}},
-     MESH_SHARE_AND_INTERSECT,
-     FMB_OVERLAPPING},
-    {"a segment as a face twice",
-     {{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}},
-     MESH_SHARE_EDGE,
-     0},
-    {"faces in one plane, whose products underflow",
-     {{{0, 0, 0},
-       {-3 * 0x1p-538, -2 * 0x1p-538, 2 * 0x1p-538},
-       {2 * 0x1p-538, 3 * 0x1p-538, -0x1p-538}},
-      {{0, 0, 0}, {-3 * 0x1p-538, -2 * 0x1p-538, 2 * 0x1p-538}, {-1, 1, 1}}},
-     MESH_SHARE_AND_INTERSECT,
-     FMB_OVERLAPPING},
-    {"faces in one plane, whose products are rounded",
-     {{{0, 0, 0},
-       {-0x1.80a231418ed38p+49, 0x1.db9db1c7ae1aep+51, -0x1.f0c455dae68c0p+47},
-       {0x1.63834bd1c19d4p+50, -0x1.a5033234d8720p+48, -0x1.bf61115677570p+50}},
-      {{0, 0, 0},
-       {-0x1.80a231418ed38p+49, 0x1.db9db1c7ae1aep+51, -0x1.f0c455dae68c0p+47},
-       {0x1.46646661f4670p+49, 0x1.a6fd4b81130cap+51, -0x1.fd799c11d4288p+50}}},
-     MESH_SHARE_AND_INTERSECT,
-     FMB_OVERLAPPING},
-    /* All that is rounded on the way to the side of the last vertex is off by nearly half a unit in
-     * the last place, and to the other side. */
-    {"faces in one plane, whose differences are rounded",
-     {{{-0x1p-53, -0x1p-53, 0}, {0x1.172c0ef343440p+0, 0x1.2c981056b24abp+0, 0}, {0, 1, 0}},
-      {{-0x1p-53, -0x1p-53, 0},
-       {0x1.172c0ef343440p+0, 0x1.2c981056b24abp+0, 0},
-       {0x1.125be85cf1685p+0, 0x1.27695d9bf6d2ap+0, 0}}},
-     MESH_SHARE_AND_INTERSECT,
-     FMB_OVERLAPPING},
-    /* The cone of the second face contains that of the first. Of a product of theirs the rounding
-     * error is less than any double. */
-    {"faces in one plane, whose products have tiny errors",
-     {{{0, 0, 0}, {(1 + 0x1p-52) * 0x1p-500, 0x1p-500, 0}, {0x1p-500, 0, 0}},
-      {{0, 0, 0},
-       {-(1 + 5 * 0x1p-52) * 0x1p-500, -(1 + 4 * 0x1p-52) * 0x1p-500, 0},
-       {(1 + 2 * 0x1p-52) * 0x1p300, (1 + 0x1p-52) * 0x1p300, 0}}},
-     MESH_SHARE_AND_INTERSECT,
-     FMB_OVERLAPPING},
-};
-
-static void cases_of_two_faces(void **state)
-{
-    for (size_t n = 0; n < COUNT(near_cases) * 18; n++) {
-        const struct near_case *c = &near_cases[n / 18];
-        const int turn = (int) (n % 18), swapped = turn / 9;
-        struct mesh mesh;
-        struct mesh_adjacency near;
-        enum fmb_verdict verdict = 0;
-        make_mesh(6, 2, &mesh);
-        for (unsigned k = 0; k < 6; k++) {
-            const unsigned by = (unsigned) (k / 3 ? turn / 3 : turn);
-            memcpy(mesh.vertex[k], c->vertex[k / 3][(k + by) % 3], sizeof mesh.vertex[k]);
-            mesh.face[k / 3][k % 3] = k;
-        }
-        mesh_adjacency_open(&mesh, &near);
-        if (mesh_adjacency_of(&near, (unsigned) swapped, (unsigned) !swapped, &verdict) !=
-                c->nearness ||
-            (c->nearness == MESH_SHARE_AND_INTERSECT && verdict != c->verdict))
-            fail_msg("%s, turn %d", c->name, turn);
-        mesh_adjacency_close(&near);
+        assert_meeting_of_two(&(struct mesh_query){.a = &mesh, .b = &mesh, .duration = 1});
         mesh_free(&mesh);
     }
 }
@@ -718,11 +488,12 @@ static void empty_meshes_meet_nothing(void **state)
     bumpy_make(8, 1, &mesh[1]);
     make_mesh(5, 0, &mesh[2]); /* only vertices */
     for (int k = 0; k < 9; k++) {
+        if (k == 4)
+            continue; /* the one with faces, and itself */
         const struct mesh_query question = {.a = &mesh[k / 3], .b = &mesh[k % 3], .duration = 1};
         struct mesh_intersection meeting;
         assert_int_equal(mesh_intersect(&question, &meeting), FMB_OK);
         assert_int_equal(meeting.count, 0);
-        assert_int_equal(meeting.sharing_edge, k == 4 ? 12 : 0);
         mesh_intersection_free(&meeting);
     }
     for (int m = 0; m < 3; m++)
@@ -858,11 +629,8 @@ int main(void)
         cmocka_unit_test(moving_meshes_meet_where_every_pair_says),
         cmocka_unit_test(soups_of_more_than_a_block),
         cmocka_unit_test(closed_meshes_meet_where_every_pair_says),
-        cmocka_unit_test(a_mesh_meets_itself_where_every_pair_says),
         cmocka_unit_test(faces_on_a_line_or_in_a_plane),
         cmocka_unit_test(faces_nearly_on_lines),
-        cmocka_unit_test(a_closed_mesh_shares_edges_and_vertices),
-        cmocka_unit_test(cases_of_two_faces),
         cmocka_unit_test(tetrahedra_are_those_of_the_article),
         cmocka_unit_test(normals_beyond_the_doubles_are_reported),
         cmocka_unit_test(progress_goes_on_to_its_end),
