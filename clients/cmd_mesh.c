@@ -45,9 +45,6 @@ static const char usage[] =
     "Output:\n"
     "  --json               one line of JSON: counts, and all pairs\n"
     "  --list               all pairs, a line each\n"
-    "  --ply FILE           write both meshes as one, coloured: red for faces that\n"
-    "                       overlap, yellow for those that touch, grey (A) and blue\n"
-    "                       (B) for the others\n"
     "  --html FILE          write a page that shows them, and the pairs: for any\n"
     "                       browser, with nothing to install or to fetch\n"
     "  --force              overwrite FILE even if it is of another kind\n"
@@ -77,7 +74,7 @@ struct mesh_options {
     bool json, list;
     enum mesh_as as;
     const struct fmb_method *method;
-    struct output_options ply, html;
+    struct output_options html;
 };
 
 /* ---- Options --------------------------------------------------------------------------------- */
@@ -215,17 +212,14 @@ static bool read_mesh(const char *path, const struct placed *placed, struct mesh
 
 /* ---- Answers --------------------------------------------------------------------------------- */
 
-typedef void write_function(FILE *out, const struct mesh_report *report);
-
-/* Writes a file if it is wanted. */
-static bool write_file(const struct output_options *options, write_function *write,
-                       const struct mesh_report *report)
+/* Writes the page if it is wanted. */
+static bool write_page(const struct output_options *options, const struct mesh_report *report)
 {
     struct output *output;
     if (!output_open(options, &output))
         return false;
     if (output)
-        write(output->file, report);
+        mesh_page_write(output->file, report);
     return output_close(output, true);
 }
 
@@ -235,9 +229,8 @@ static int print_answer(const struct mesh_options *options, const struct mesh_re
         mesh_report_json(stdout, report);
     else
         mesh_report_text(stdout, report, options->list);
-    bool good = write_file(&options->ply, mesh_report_ply, report);
-    good = write_file(&options->html, mesh_page_write, report) && good;
-    good = output_flush() && good;
+    const bool written = write_page(&options->html, report);
+    const bool good = output_flush() && written;
     return good ? ARGS_ANSWERED : ARGS_FAILED;
 }
 
@@ -275,10 +268,7 @@ static int intersect(const struct mesh_options *options, const struct mesh mesh[
 int cmd_mesh(int argc, char **argv)
 {
     struct output_rules rules = {.force = false};
-    struct mesh_options options = {
-        .duration = 1,
-        .ply = {.kind = OUTPUT_MESH, .rules = &rules},
-        .html = {.kind = OUTPUT_PAGE, .rules = &rules, .other = &options.ply}};
+    struct mesh_options options = {.duration = 1, .html = {.kind = OUTPUT_PAGE, .rules = &rules}};
     const struct args_option own[] = {
         {"scale", ARGS_OTHER, options.placed, .take = take_scale},
         {"rotate", ARGS_OTHER, options.placed, .take = take_rotate},
@@ -290,7 +280,6 @@ int cmd_mesh(int argc, char **argv)
         {"method", ARGS_OTHER, &options.method, .take = take_method},
         {"json", ARGS_FLAG, .out = &options.json},
         {"list", ARGS_FLAG, .out = &options.list},
-        {"ply", ARGS_TEXT, .out = &options.ply.path},
         {"html", ARGS_TEXT, .out = &options.html.path},
         {"force", ARGS_FLAG, .out = &rules.force},
         {.name = NULL},
@@ -310,7 +299,7 @@ int cmd_mesh(int argc, char **argv)
         args_error(&args, "expected two meshes, found %d", args.operand_count);
         return ARGS_USAGE;
     }
-    if (!output_check(&options.ply) || !output_check(&options.html))
+    if (!output_check(&options.html))
         return ARGS_USAGE;
     code = ARGS_USAGE;
     if (read_mesh(args.operands[0], &options.placed[0], &mesh[0]) &&

@@ -73,7 +73,6 @@ static const struct {
     [OUTPUT_PAGE] = {"a page (HTML)", "<!DOCTYPE html>"},
     [OUTPUT_REPORT] = {"a JUnit report",
                        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites "},
-    [OUTPUT_MESH] = {"a mesh (PLY)", "ply\n"},
 };
 
 static bool is_same(const struct stat *a, const struct stat *b)

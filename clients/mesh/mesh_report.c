@@ -5,7 +5,6 @@
 #include "number.h"
 
 #include <math.h>
-#include <string.h>
 
 /* ---- For people ------------------------------------------------------------------------------ */
 
@@ -138,80 +137,4 @@ void mesh_report_json(FILE *out, const struct mesh_report *report)
         put_pair_json(&json, &intersection->pair[i], intersection->moving);
     json_end(&json, ']');
     json_object_end(&json);
-}
-
-/* ---- PLY ---------------------------------------------------------------------------------- */
-
-static unsigned char *put_bytes(unsigned char *at, uint64_t bits, size_t size)
-{
-    for (size_t i = 0; i < size; i++)
-        *at++ = (unsigned char) (bits >> 8 * i);
-    return at;
-}
-
-static void put_header(FILE *out, size_t vertices, size_t faces)
-{
-    fprintf(out,
-            "ply\n"
-            "format binary_little_endian 1.0\n"
-            "element vertex %zu\n"
-            "property double x\n"
-            "property double y\n"
-            "property double z\n"
-            "element face %zu\n"
-            "property list uchar uint vertex_indices\n"
-            "property uchar red\n"
-            "property uchar green\n"
-            "property uchar blue\n"
-            "end_header\n",
-            vertices, faces);
-}
-
-static void put_vertex(FILE *out, const double position[3])
-{
-    unsigned char bytes[3 * sizeof(double)], *at = bytes;
-    for (int axis = 0; axis < 3; axis++) {
-        uint64_t bits;
-        memcpy(&bits, &position[axis], sizeof bits);
-        at = put_bytes(at, bits, sizeof bits);
-    }
-    fwrite(bytes, 1, (size_t) (at - bytes), out);
-}
-
-/* first: added to the indices. colour: red, green, blue. */
-static void put_face(FILE *out, const unsigned corner[3], size_t first, const unsigned char *colour)
-{
-    enum { INDEX_BYTES = 4 };
-    unsigned char bytes[1 + 3 * INDEX_BYTES + 3], *at = put_bytes(bytes, 3, 1);
-    for (int i = 0; i < 3; i++)
-        at = put_bytes(at, first + corner[i], INDEX_BYTES);
-    for (int i = 0; i < 3; i++)
-        at = put_bytes(at, colour[i], 1);
-    fwrite(bytes, 1, (size_t) (at - bytes), out);
-}
-
-static const unsigned char *colour_of(const struct mesh_report *report, int which, size_t face)
-{
-    static const unsigned char of_mesh[2][3] = {{190, 190, 190}, {120, 160, 220}};
-    static const unsigned char of_touching[3] = {240, 200, 40}, of_overlapping[3] = {220, 40, 40};
-    switch (report->intersection->worst[which][face]) {
-    case FMB_OVERLAPPING: return of_overlapping;
-    case FMB_TOUCHING: return of_touching;
-    default: return of_mesh[which];
-    }
-}
-
-void mesh_report_ply(FILE *out, const struct mesh_report *report)
-{
-    const int meshes = 2;
-    const struct mesh *const *mesh = report->mesh;
-    size_t first = 0;
-    put_header(out, mesh[0]->vertex_count + mesh[1]->vertex_count,
-               mesh[0]->face_count + mesh[1]->face_count);
-    for (int m = 0; m < meshes; m++)
-        for (size_t i = 0; i < mesh[m]->vertex_count; i++)
-            put_vertex(out, mesh[m]->vertex[i]);
-    for (int m = 0; m < meshes; first += mesh[m++]->vertex_count)
-        for (size_t i = 0; i < mesh[m]->face_count; i++)
-            put_face(out, mesh[m]->face[i], first, colour_of(report, m, i));
 }

@@ -169,7 +169,7 @@ $counts"
         answers "$nothing" $empty b.obj
         answers "$nothing" b.obj $empty
         answers "$nothing" $empty $empty --velocity 1,0,0
-        mesh $empty b.obj --list --ply out.ply
+        mesh $empty b.obj --list
         ended 0
         is "             0  pairs of faces meet:
              0  overlap
@@ -244,27 +244,6 @@ apart() {
 
 # ---- Files -------------------------------------------------------------------------------------
 
-@test "--ply writes both meshes in one file with colours, which reads back" {
-    mesh a.obj b.obj --translate 0,0,0.5 --ply out.ply
-    ended 0
-    grep -a -q 'element vertex 9' out.ply
-    grep -a -q 'element face 3' out.ply
-    # A and B of it are where they were put.
-    answers '{"overlapping": 1, "touching": 1, "faces_a": 2, "faces_b": 2, "pairs": [[1, 0, "overlapping"], [2, 1, "touching"]]}' out.ply b.obj --translate 0,0,1.5
-    mesh a.obj b.obj --ply out.ply
-    # The last bytes are faces: 3, three indices, three colours: red, red, yellow.
-    colours() {
-        tail -c $((16 * $1)) out.ply | od -An -v -tu1 -w16 | awk '{print $14, $15, $16}'
-    }
-    [ "$(colours 3)" = "220 40 40
-220 40 40
-240 200 40" ]
-    mesh a.obj b.obj --translate 0,0,5 --ply out.ply
-    [ "$(colours 3)" = "190 190 190
-120 160 220
-120 160 220" ]
-}
-
 @test "all formats, and every mixture of them, give the same answer" {
     for format in ply-ascii ply-le ply-be stl-ascii obj; do
         "$MAKE_MESH" --faces 800 --format $format one.$format
@@ -306,11 +285,11 @@ apart() {
 
 # bats test_tags=release
 @test "output that cannot be written is reported" {
-    mesh a.obj b.obj --json --ply "$BATS_TEST_TMPDIR/no/out.ply"
+    mesh a.obj b.obj --json --html "$BATS_TEST_TMPDIR/no/out.html"
     ended 1
-    said "fmb: $BATS_TEST_TMPDIR/no/out.ply: No such file or directory"
+    said "fmb: $BATS_TEST_TMPDIR/no/out.html: No such file or directory"
     jq -e .overlapping <<< "$output"
-    mesh a.obj b.obj --ply /dev/full
+    mesh a.obj b.obj --html /dev/full
     ended 1
     said 'fmb: /dev/full: No space left on device; free space there, or write elsewhere'
     run bash -c "'$FMB' mesh a.obj b.obj --json 2>&1 > /dev/full"
@@ -355,7 +334,7 @@ Try 'fmb mesh --help'."
     run "$FMB" help
     [[ $output == *'mesh'*'which faces of two triangle meshes meet'* ]]
     # Every option is there, once.
-    for option in scale rotate mirror translate velocity duration as method json list ply; do
+    for option in scale rotate mirror translate velocity duration as method json list html; do
         [ "$(grep -c "^  --$option" <<< "$help")" = 1 ]
     done
 }

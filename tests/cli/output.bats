@@ -18,7 +18,7 @@ setup() {
 }
 
 # Each option that writes a file, in a command that reads these files.
-commands=('query --local scene.json --html' 'mesh a.obj b.obj --ply' 'mesh a.obj b.obj --html' 'replay a.log b.log --html'
+commands=('query --local scene.json --html' 'mesh a.obj b.obj --html' 'replay a.log b.log --html'
     'replay a.log b.log --junit' 'replay a.log b.log --write-golden' 'log cut a.log b.log -o')
 
 # unchanged: the files are those of the beginning.
@@ -76,7 +76,7 @@ unchanged() {
     done
 }
 
-@test "any file replaces an empty one; pages, reports and meshes replace one of their kind" {
+@test "any file replaces an empty one; pages and reports replace one of their kind" {
     for command in "${commands[@]}"; do
         : > out
         for time in 1 2; do
@@ -94,7 +94,7 @@ unchanged() {
     mkdir folder
     ln -s .. folder/up
     ln -s new dangling
-    for command in 'mesh a.obj b.obj --ply * --html' 'replay a.log --html * --junit' \
+    for command in 'replay a.log --html * --junit' \
         'replay a.log --html * --write-golden' 'replay a.log --write-golden * --junit'; do
         for other in new ./new "$PWD/new" folder/up/new dangling; do
             # shellcheck disable=SC2086
@@ -119,7 +119,7 @@ unchanged() {
         [ ! -s new ]
         rm new
     done
-    "$FMB" mesh a.obj b.obj --ply /dev/null --html /dev/null > said
+    "$FMB" replay a.log --html /dev/null --junit /dev/null > said
 }
 
 @test "golden results are overwritten with --force" {

@@ -1,12 +1,10 @@
 /* Any bytes, read as a mesh, under a name that their number chooses: what is refused is reported
  * with a place that is there, and nothing is left of it; what is read is a mesh, no larger than its
- * bytes can be, which written and read again has the same bits. What is a number, and which, is
- * what strtod() says. */
+ * bytes can be. What is a number, and which, is what strtod() says. */
 #include "fuzz.h"
 
 #include "mesh.h"
 #include "mesh_source.h"
-#include "mesh_report.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -87,34 +85,6 @@ static void check_mesh(const struct mesh *mesh, size_t size)
             FUZZ_CHECK(mesh->face[i][corner] < mesh->vertex_count);
 }
 
-static void check_same(const struct mesh *a, const struct mesh *b)
-{
-    FUZZ_CHECK(a->vertex_count == b->vertex_count && a->face_count == b->face_count);
-    if (a->vertex_count > 0)
-        FUZZ_CHECK(memcmp(a->vertex, b->vertex, a->vertex_count * sizeof *a->vertex) == 0);
-    if (a->face_count > 0)
-        FUZZ_CHECK(memcmp(a->face, b->face, a->face_count * sizeof *a->face) == 0);
-}
-
-static void check_written(const struct mesh *mesh)
-{
-    char *bytes, error[MESH_ERROR_MAX];
-    size_t size;
-    struct mesh again;
-    FILE *file = open_memstream(&bytes, &size);
-    unsigned char *worst = calloc(mesh->face_count + 1, 1);
-    const struct mesh_query query = {.a = mesh, .b = mesh};
-    const struct mesh_intersection intersection = {.worst = {worst, worst}};
-    FUZZ_CHECK(file && worst);
-    mesh_report_ply(file, &(struct mesh_report){&query, {mesh, mesh}, {"", ""}, &intersection});
-    FUZZ_CHECK(!ferror(file) && fclose(file) == 0);
-    free(worst);
-    FUZZ_CHECK(mesh_parse(bytes, size, "", MESH_TRIANGLES, NULL, &again, error));
-    check_same(mesh, &again);
-    mesh_free(&again);
-    free(bytes);
-}
-
 /* ---- STL as it is written ------------------------------------------------------------- */
 
 /* Each coordinate is the float at its place, and no two vertices are the same. */
@@ -151,7 +121,6 @@ static void check_file(const uint8_t *bytes, size_t size, const char *name)
     char error[MESH_ERROR_MAX];
     if (mesh_parse(bytes, size, name, MESH_TRIANGLES, NULL, &mesh, error)) {
         check_mesh(&mesh, size);
-        check_written(&mesh);
         if (is_stl(bytes, size))
             check_stl(&mesh, bytes);
     } else {
