@@ -13,6 +13,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -97,10 +98,13 @@ struct query {
     struct answers_bus *answers; /* NULL: not opened yet */
     const struct fmb_scene *scene;
     struct progress progress;
-    bool undecided;    /* a pair has no verdict */
-    uint64_t unproven; /* pairs without a certificate because a body has several frames */
-    bool has_margin;   /* a scene has one */
-    int worst;         /* severity of all pairs */
+    bool undecided;        /* a pair has no verdict */
+    uint64_t unproven;     /* pairs without a certificate because a body has several frames */
+    bool has_margin;       /* a scene has one */
+    int64_t scenes, empty; /* empty: scenes without a pair to decide */
+    bool moves;            /* a body moves in a scene whose duration is not 0 */
+    int64_t still_scene, still_body; /* the first one that would but for the duration; 0: none */
+    int worst;                       /* severity of all pairs */
 };
 
 static bool take_method(const struct args *args, void *out)
@@ -153,6 +157,24 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
     progress_to(&query->progress, query->progress.done + 1, query->progress.total);
 }
 
+/* Takes note of what report_limits() reports of a scene. */
+static void note_scene(struct query *query, const struct fmb_scene *scene, uint64_t pairs)
+{
+    query->scenes++;
+    query->empty += pairs == 0;
+    query->has_margin = query->has_margin || scene->margin > 0;
+    for (size_t i = 0; i < scene->placement_count; i++) {
+        const struct fmb_placement *body = &scene->placements[i];
+        const double *v = body->velocity;
+        const bool moving = v[0] != 0 || v[1] != 0 || v[2] != 0;
+        query->moves = query->moves || (moving && scene->duration > 0);
+        if (moving && scene->duration == 0 && !query->still_scene) {
+            query->still_scene = query->scenes;
+            query->still_body = body->id;
+        }
+    }
+}
+
 /* The bus is opened for the first scene: an invalid one is reported without a bus. Returns false if
  * later scenes need not be queried. */
 static bool answer_scene(struct query *query, struct owned_scene *owner)
@@ -164,12 +186,13 @@ static bool answer_scene(struct query *query, struct owned_scene *owner)
                   (query->rows.gap ? FMB_WANT_GAP : 0) |
                   (query->certificate ? FMB_WANT_CERTIFICATE : 0);
     query->scene = scene;
-    query->has_margin = query->has_margin || scene->margin > 0;
+    const uint64_t pairs = scene_count_pairs(owner);
+    note_scene(query, scene, pairs);
     for (int i = 0; i < 2 && query->report[i]; i++) {
         query->report[i]->scene = owner;
         query->report[i]->begin(query->report[i]);
     }
-    query->progress = progress_begin("pairs", (int64_t) scene_count_pairs(owner));
+    query->progress = progress_begin("pairs", (int64_t) pairs);
     if (isatty(STDOUT_FILENO)) /* the answers themselves show the progress */
         query->progress.enabled = false;
     if (!query->local && !query->answers)
@@ -214,6 +237,15 @@ static void report_limits(const struct query *query)
                  number_grouped((int64_t) query->unproven, text));
     if (query->fail_if == 2 * FMB_SEPARATED + 1 && query->scene && !query->has_margin)
         complain("--fail-if near: no scene has a \"margin\", so no separated pair is near");
+    if (query->still_scene && !query->moves)
+        complain("scene %" PRId64 ": body %" PRId64
+                 " has a velocity, but \"duration\" is 0: nothing moves",
+                 query->still_scene, query->still_body);
+    if (query->empty > 0 && query->scenes == 1)
+        complain("the scene has no pair to decide");
+    else if (query->empty > 0)
+        complain("%" PRId64 " of %" PRId64 " scenes have no pair to decide", query->empty,
+                 query->scenes);
 }
 
 static bool write_page(const struct output_options *options, struct page *page)

@@ -800,8 +800,13 @@ static enum json_outcome read_object_text(struct json_reader *reader, const char
     if (parsed)
         return JSON_BAD;
     bad = bad < end ? bad : end;
+    const char *word = bad + (*bad == '-');
+    const bool not_finite = strncmp(word, "NaN", 3) == 0 || strncmp(word, "Infinity", 8) == 0;
     text_refuse(&reader->text, (size_t) (bad - object), "%s",
-                strncmp(bad, "\\u0000", 6) == 0 ? "a string contains \\u0000" : "invalid JSON");
+                strncmp(bad, "\\u0000", 6) == 0 ? "a string contains \\u0000"
+                : not_finite
+                    ? "NaN and Infinity are not JSON, though json.dumps of Python writes them"
+                    : "invalid JSON");
     return fail(reader, JSON_BAD, reader->text.error);
 }
 

@@ -74,27 +74,27 @@ extern "C" {
 enum { FMB_DIM_MAX = 3, FMB_COMPONENTS_MAX = FMB_DIM_MAX * FMB_DIM_MAX };
 
 /* Status codes. Their numbers are used in messages and logs: a retired number is never reused. */
-#define FMB_STATUS_MAP(X)                                                  \
-    X(OK, 0, "ok")                                                         \
-    X(UNKNOWN_BODY, 1, "unknown body")                                     \
-    X(BUSY, 2, "busy")                                                     \
-    X(OVER_LIMIT, 3, "over the limit")                                     \
-    X(UNKNOWN_SHAPE, 4, "unknown shape")                                   \
-    X(WRONG_DIMENSION, 5, "wrong dimension")                               \
-    X(WRONG_COUNT, 6, "wrong count of numbers")                            \
-    X(NOT_FINITE, 7, "not a finite number")                                \
-    X(DIMENSIONS_DIFFER, 8, "a 2D body against a 3D one")                  \
-    X(BAD_DURATION, 9, "the duration is negative, not finite, or missing") \
-    X(BAD_ID, 10, "id out of range")                                       \
-    X(UNKNOWN_METHOD, 11, "unknown method")                                \
-    X(UNKNOWN_WANT, 12, "wants what this version does not give")           \
-    X(CANNOT_DECIDE, 13, "this method cannot decide this pair")            \
-    X(NOT_SUPPORTED, 14, "this version does not support it")               \
-    X(BAD_PAIR, 15, "indices that name no two frames")                     \
-    X(BAD_ORIENTATION, 16, "an orientation that is no rotation")           \
-    X(BAD_SIZE, 17, "a box of negative size")                              \
-    X(NO_FRAMES, 18, "a body without frames")                              \
-    X(BAD_MARGIN, 19, "the margin is negative or not finite")              \
+#define FMB_STATUS_MAP(X)                                                                  \
+    X(OK, 0, "ok")                                                                         \
+    X(UNKNOWN_BODY, 1, "unknown body")                                                     \
+    X(BUSY, 2, "busy")                                                                     \
+    X(OVER_LIMIT, 3, "over the limit")                                                     \
+    X(UNKNOWN_SHAPE, 4, "unknown shape")                                                   \
+    X(WRONG_DIMENSION, 5, "wrong dimension")                                               \
+    X(WRONG_COUNT, 6, "wrong count of numbers")                                            \
+    X(NOT_FINITE, 7, "not a finite number")                                                \
+    X(DIMENSIONS_DIFFER, 8, "a 2D body against a 3D one")                                  \
+    X(BAD_DURATION, 9, "the duration is negative, not finite, or 0 although a body moves") \
+    X(BAD_ID, 10, "id out of range")                                                       \
+    X(UNKNOWN_METHOD, 11, "unknown method")                                                \
+    X(UNKNOWN_WANT, 12, "wants what this version does not give")                           \
+    X(CANNOT_DECIDE, 13, "this method cannot decide this pair")                            \
+    X(NOT_SUPPORTED, 14, "not supported here; fmb_body_make_hull() makes hulls")           \
+    X(BAD_PAIR, 15, "indices that name no two frames")                                     \
+    X(BAD_ORIENTATION, 16, "an orientation that is no rotation")                           \
+    X(BAD_SIZE, 17, "a box of negative size")                                              \
+    X(NO_FRAMES, 18, "a body without frames")                                              \
+    X(BAD_MARGIN, 19, "the margin is negative or not finite")                              \
     X(BAD_NAME, 20, "a name that is not UTF-8 of at most 64 bytes without controls")
 
 enum fmb_status {

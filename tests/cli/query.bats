@@ -373,6 +373,24 @@ fails() {
     said 'fmb: --fail-if near: no scene has a "margin", so no separated pair is near'
 }
 
+@test "scenes without a pair, and velocities without a duration, are reported" {
+    one='{"dim": 2, "bodies": [{"id": 7, "shape": "box", "size": [1,1]}]}'
+    query "$one"
+    ended 0
+    said 'fmb: the scene has no pair to decide'
+    query "$one ${scene%\}}, \"pairs\": []} $scene"
+    ended 0
+    said 'fmb: 2 of 3 scenes have no pair to decide'
+    moving='{"dim": 2, "duration": 0, "bodies": [{"id": 7, "shape": "box", "size": [1,1]}, {"id": 8, "shape": "box", "size": [1,1], "velocity": [0,-1]}]}'
+    query "$scene $moving $moving"
+    ended 0
+    said 'fmb: scene 2: body 8 has a velocity, but "duration" is 0: nothing moves'
+    query "$moving ${moving/: 0/: 1}" # the last one of a path, perhaps
+    said ''
+    query "${moving/,-1/,0}"
+    said ''
+}
+
 # bats test_tags=release
 @test "with --fail-if, 1 and 2 keep their meaning" {
     flat='{"dim": 2, "bodies": [{"id": 1, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[1,0]]},

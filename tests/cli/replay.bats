@@ -180,7 +180,7 @@ xpath() {
     replay spoiled.log
     ended 1
     counts '.different_in.status == 2 and .differences[1].then.error == "unknown status"' \
-        '.differences[0] | .then == {"error": "the duration is negative, not finite, or missing"} and .now.verdict'
+        '.differences[0] | .then == {"error": "the duration is negative, not finite, or 0 although a body moves"} and .now.verdict'
     run "$FMB" replay spoiled.log
     [[ $output == *' status: unknown status, now '* ]]
 }

@@ -214,6 +214,32 @@ triangle() {
     refused "objects.obj: object 2: the hull of its 1100 vertices has more than 1024: " robot.urdf --objects
 }
 
+# Coordinates that span the doubles: most points need exact arithmetic.
+@test "the progress of a hull is shown on a terminal only" {
+    script -qfc true /dev/null < /dev/null > /dev/null 2>&1 3>&- || skip 'there is no pseudo-terminal'
+    awk 'BEGIN {
+        srand(1)
+        for (i = 1; i <= 20000; i++) {
+            printf "v"
+            for (axis = 0; axis < 3; axis++) printf " %s%.9fe%d", rand() < 0.5 ? "-" : "", 1 + 9 * rand(), 600 * rand() - 300
+            print ""
+        }
+        for (i = 3; i <= 20000; i++) print "f", i - 2, i - 1, i
+    }' > m.obj
+    link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
+    script -qfc "$FMB scene robot.urdf" screen < /dev/null > /dev/null 3>&- &
+    script=$!
+    for _ in $(seq 600); do
+        grep -q 'of 20,000 vertices of a hull' screen && break
+        sleep 0.1
+    done
+    kill "$script" || true
+    wait "$script" || true
+    grep -q 'fmb: [0-9,]* of 20,000 vertices of a hull' screen
+    run --separate-stderr timeout 2 "$FMB" scene robot.urdf
+    said ''
+}
+
 # ---- Poses -----------------------------------------------------------------------------------
 
 @test "joints move links" {

@@ -654,7 +654,16 @@ static const struct {
     {"{\"dim\": 3,}", "line 1, column 11: invalid JSON"},
     {"{\"\xc3\xa4\": [1,]}", "line 1, column 10: invalid JSON"},
     {"{\"dim\": [1 2]}", "line 1, column 12: invalid JSON"},
-    {"{\"dim\": NaN}", "line 1, column 9: invalid JSON"},
+    {"{\"dim\": NaN}",
+     "line 1, column 9: NaN and Infinity are not JSON, though json.dumps of Python "
+     "writes them"},
+    {"{\"dim\": [1,\n -Infinity, 2]}",
+     "line 2, column 2: NaN and Infinity are not JSON, though "
+     "json.dumps of Python writes them"},
+    {"{\"dim\": Infinity}",
+     "line 1, column 9: NaN and Infinity are not JSON, though json.dumps of "
+     "Python writes them"},
+    {"{\"dim\": -Inf}", "line 1, column 9: invalid JSON"},
     {"{\"dim\": nul}", "line 1, column 9: invalid JSON"},
     {"{\"dim\": 'a'}", "line 1, column 9: invalid JSON"},
     {"{dim: 3}", "line 1, column 3: invalid JSON"},
