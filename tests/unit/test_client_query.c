@@ -593,7 +593,7 @@ static void bodies_that_move_need_a_window(void **state)
                 placement[1].velocity[2] = moving;
                 if (duration ? instant : !instant && moving) {
                     wrong(client, &scene, FMB_BAD_DURATION,
-                          instant ? "duration: " : "duration: it is 0, but placements[1] moves");
+                          instant ? "duration: " : "duration: it is 0, but body 1 moves");
                     continue;
                 }
                 assert_int_equal(fmb_client_query(client, &scene, count_meeting, &contacts),

@@ -613,7 +613,7 @@ static void bodies_that_move_need_a_window(void **state)
                 } else
                     expect_refusal(&scene, FMB_BAD_DURATION,
                                    instant ? "duration: not 0, but instant is set"
-                                           : "duration: it is 0, but placements[1] moves");
+                                           : "duration: it is 0, but body 1 moves");
             }
 }
 

@@ -198,7 +198,7 @@ static enum fmb_status check_placements(const struct fmb_scene *scene, size_t co
         return refuse(why, FMB_BAD_DURATION, "duration", "not 0, but instant is set");
     if (scene->instant || scene->duration != 0 || moving == count)
         return FMB_OK;
-    snprintf(why.text, why.size, "duration: it is 0, but placements[%zu] moves", moving);
+    snprintf(why.text, why.size, "duration: it is 0, but body %zu moves", moving);
     return FMB_BAD_DURATION;
 }
 
