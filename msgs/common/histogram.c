@@ -24,7 +24,7 @@ static int64_t end_of(int bucket)
 
 void histogram_add(struct histogram *histogram, int64_t value)
 {
-    histogram->bucket[bucket_of(value)]++;
+    histogram->bucket[bucket_of(value > 0 ? value : 0)]++;
     histogram->count++;
     if (value > histogram->max)
         histogram->max = value;
