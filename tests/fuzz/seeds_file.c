@@ -260,4 +260,11 @@ void seeds_robots(void)
         "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
         "vertex 0 1 0\nendloop\nendfacet\nendsolid\n");
     end_robot("stl");
+    mesh_bytes(
+        "<robot xmlns:e='e'><link name='a'><collision><geometry><e:x/><sphere radius='1'/>"
+        "</geometry></collision></link><link name='b'/><joint name='j' type='revolute'>"
+        "<parent link='a'/><child link='b'/><limit upper='1'/></joint></robot>");
+    log_bytes("", 1);
+    mesh_bytes("j\n1.0009\n90\n");
+    end_robot("outside");
 }
