@@ -26,7 +26,7 @@
 #   V=1                            shows commands, not one line a file
 #   HELP_FROM=build                whose programs print the manual; for those of another machine
 #   PYTHONDIR                      where fmb.py goes
-#   CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX, LIBDIR, DESTDIR   as usual
+#   CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX, LIBDIR, DESTDIR   as usual; flags that change numbers are left out
 
 VERSION := 0.1.0
 MODE ?= release
@@ -84,23 +84,35 @@ endif
 # LLVM's linker takes a third of the time.
 mode_link_asan = -fsanitize=address,undefined -no-pie $(if $(shell command -v ld.lld),-fuse-ld=lld)
 
-# -ffp-contract=off: the same bits on every machine. -fPIC: archives fit into shared objects too;
-# without interposition it costs the programs nothing.
-flags := -std=c17 -D_POSIX_C_SOURCE=200809L -DFMB_VERSION='"$(VERSION)"' -ffp-contract=off \
-	-fPIC -fno-semantic-interposition \
+# A user's flags that change how numbers are rounded would change verdicts. Programs linked with some of them also
+# flush subnormals to zero from their start. What gets past this list is refused by integer.h where the compiler tells.
+rounding := -Ofast -ffast-math -funsafe-math-optimizations -fassociative-math -freciprocal-math -fapprox-func \
+	-ffinite-math-only -fno-honor-nans -fno-honor-infinities -fno-signed-zeros -fsingle-precision-constant \
+	-ffp-model=% -ffp-eval-method=% -fdenormal-fp-math% -mdaz-ftz -ffp-contract=% -fexcess-precision=% -mfpmath=%
+rounding := $(filter-out %=off %=standard %=sse,$(filter $(rounding),$(CC) $(CPPFLAGS) $(CFLAGS) $(LDFLAGS)))
+ifneq ($(rounding),)
+$(warning left out, as answers would change: $(sort $(rounding)))
+$(foreach v,CC CPPFLAGS CFLAGS LDFLAGS,$(eval override $v := $$(filter-out $$(rounding),$$($v))))
+endif
+
+# -ffp-contract=off: the same bits on every machine. A user's flags come last, but for those that a file needs.
+# -fPIC: archives fit into shared objects too; without interposition it costs the programs nothing.
+flags := -std=c17 -D_POSIX_C_SOURCE=200809L -DFMB_VERSION='"$(VERSION)"' -ffp-contract=off -fno-semantic-interposition \
 	-Wall -Wextra -Wshadow -Wvla -Wstrict-prototypes -Wmissing-prototypes -Wwrite-strings \
-	$(if $(WERROR),-Werror) $(mode_flags_$(MODE)) $(CPPFLAGS) $(CFLAGS)
+	$(if $(WERROR),-Werror) $(mode_flags_$(MODE))
+user_flags := $(CPPFLAGS) $(CFLAGS)
+needed := -fPIC
 # Release builds are hardened. The engine is compiled without stack protector and _FORTIFY_SOURCE:
 # its loops write into arrays of known size, and every instruction of them counts. A user's own
 # _FORTIFY_SOURCE is kept.
 hardened_release := -fstack-protector-strong
 hardened_link_release := -pie -Wl,-z,relro,-z,now
-ifeq ($(findstring _FORTIFY_SOURCE,$(CPPFLAGS) $(CFLAGS)),)
+ifeq ($(findstring _FORTIFY_SOURCE,$(user_flags))$(filter -O0,$(user_flags)),)
 hardened_release += -D_FORTIFY_SOURCE=2
 endif
 hardened := $(hardened_$(MODE))
 $(O)/service/fmb/%.o: hardened :=
-compile = $(call say,CC,$<) $(CC) $(flags) $(hardened) $(whole) -MMD -MP -c $< -o $@
+compile = $(call say,CC,$<) $(CC) $(flags) $(hardened) $(user_flags) $(needed) $(whole) -MMD -MP -c $< -o $@
 link_user := $(mode_link_$(MODE)) $(hardened_link_$(MODE)) $(CFLAGS) $(LDFLAGS)
 
 # The path of a query, from its bytes to those of its result, is faster by a tenth with -O3, and by
@@ -112,7 +124,7 @@ whole := -fno-lto
 ifeq ($(MODE),release)
 $(O)/service/%.o $(O)/msgs/%.o $(O)/clients/log/%.o $(O)/clients/replay/%.o: flags += -O3
 ifneq ($(filter gcc%,$(compiler)),)
-link_whole := $(link_user) -flto=auto -O3
+link_whole := -O3 $(link_user) -flto=auto
 $(O)/service/%.o $(O)/msgs/%.o $(O)/clients/log/%.o $(O)/clients/replay/%.o: \
 	whole := -flto=auto -ffat-lto-objects
 $(O)/service/fmb/%.o: whole := -fno-lto
@@ -179,8 +191,8 @@ x86 := $(filter x86_64%,$(shell $(CC) -dumpmachine 2> /dev/null || uname -m))
 filter := $(O)/service/fmb/filter
 # Vectors are passed between functions of one file alone.
 $(filter)/%.o $(O)/tests/unit/kernels/%.o $(O)/slabs/%.o: flags += -Wno-psabi
-$(filter)/%_avx2.o: flags += -mavx2 -mfma
-$(filter)/%_avx512.o: flags += -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
+$(filter)/%_avx2.o: needed += -mavx2 -mfma
+$(filter)/%_avx512.o: needed += -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
 verdict_kernels := $(patsubst %.c,$(O)/%.o,$(wildcard $(addprefix service/fmb/filter/,verdicts_*.c single_*.c)))
 $(verdict_kernels): flags += -ffp-contract=fast
 ifeq ($(MODE),release)
@@ -332,7 +344,7 @@ $(M)/fmb.1: clients/manual/pages.sh clients/manual/man.awk $(HELP_FROM)/fmb $(HE
 
 # ---- Settings: everything is built again when flags or lists of files change ----
 
-settings := $(CC) $(flags) $(hardened) $(link_flags) $(link_whole) \
+settings := $(CC) $(flags) $(hardened) $(user_flags) $(needed) $(link_flags) $(link_whole) \
 	$(engine_objects) $(product_objects) $(client_objects)
 $(O)/settings: Makefile tests/tests.mk FORCE
 	@mkdir -p $(@D)
@@ -372,7 +384,7 @@ headers: $(patsubst %,$(O)/%.ok,$(filter-out tests/unit/% tests/robot/% tests/ch
 	$(filter %.h,$(sources))))
 $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
 	@mkdir -p $(@D)
-	$(call say,CC,$<) $(CC) $(flags) $(sees) -fsyntax-only -x c $<
+	$(call say,CC,$<) $(CC) $(flags) $(user_flags) $(sees) -fsyntax-only -x c $<
 	@touch $@
 formatted := $(sources) $(shell find tests -name '*.cc' -o -name '*.hpp')
 # Versions of clang-format differ in what they make of some lines.
@@ -396,6 +408,8 @@ sed_text = $(subst |,\|,$(subst &,\&,$(subst \,\\,$1)))
 fill_in = sed -e 's|@PREFIX@|$(call sed_text,$(PREFIX))|' -e 's|@LIBDIR@|$(call sed_text,$(LIBDIR))|' \
 	-e 's|@VERSION@|$(VERSION)|' -e 's|@PREFIX_FROM_LIBDIR@|$(call sed_text,$(shell \
 	realpath -m --relative-to="$(LIBDIR)" "$(PREFIX)"))|'
+# The file has its mode before its text, whatever the umask.
+filled = $(INSTALL) -m 644 /dev/null $1 && $2 > $1
 root := $(DESTDIR)$(PREFIX)
 .PHONY: install install-strip uninstall
 install: all
@@ -417,11 +431,11 @@ install: all
 	$(INSTALL) -m 644 $(M)/*.8 "$(root)/share/man/man8"
 	for name in fmb fmbd; do $(INSTALL) -m 644 clients/manual/fmb.bash \
 		"$(root)/share/bash-completion/completions/$$name" || exit; done
-	$(fill_in) service/fmb/fmb.pc.in > "$(DESTDIR)$(LIBDIR)/pkgconfig/fmb.pc"
-	$(fill_in) clients/lib/fmb-client.pc.in > "$(DESTDIR)$(LIBDIR)/pkgconfig/fmb-client.pc"
-	for name in fmb-config fmb-config-version; do $(fill_in) clients/lib/$$name.cmake.in \
-		> "$(DESTDIR)$(LIBDIR)/cmake/fmb/$$name.cmake" || exit; done
-	$(subst %,%%,$(fill_in)) service/fmbd.service.in > "$(root)/lib/systemd/system/fmbd.service"
+	$(call filled,"$(DESTDIR)$(LIBDIR)/pkgconfig/fmb.pc",$(fill_in) service/fmb/fmb.pc.in)
+	$(call filled,"$(DESTDIR)$(LIBDIR)/pkgconfig/fmb-client.pc",$(fill_in) clients/lib/fmb-client.pc.in)
+	for name in fmb-config fmb-config-version; do \
+		$(call filled,"$(DESTDIR)$(LIBDIR)/cmake/fmb/$$name.cmake",$(fill_in) clients/lib/$$name.cmake.in) || exit; done
+	$(call filled,"$(root)/lib/systemd/system/fmbd.service",$(subst %,%%,$(fill_in)) service/fmbd.service.in)
 
 install-strip: strip_option := -s
 install-strip: install

@@ -200,6 +200,34 @@ make_arm() {
     [ -z "$output" ]
 }
 
+@test "a user's flags come last, and those that change numbers are left out, with a warning" {
+    make_arm V=1 CC='gcc -Ofast' CPPFLAGS=-DX=1 CFLAGS='-O0 -funsafe-math-optimizations -ffp-contract=fast -Wno-shadow' \
+        LDFLAGS='-ffast-math -Wl,-O1'
+    [[ ${lines[0]} == *': left out, as answers would change: -Ofast -ffast-math -ffp-contract=fast -funsafe-math-optimizations' ]]
+    [[ ${lines[-2]} == 'gcc -std='*' -O2 '*' -DX=1 -O0 -Wno-shadow '* && ${lines[-1]} == 'gcc '*' -Wl,-O1 '* ]]
+    [[ ${lines[*]:1} != *-math* && ${lines[*]:1} != *-contract=fast* && ${lines[*]:1} != *-Ofast* ]]
+    # What flushes subnormals at the start of a program.
+    ! grep -q set_fast_math "$BATS_TEST_TMPDIR/b/arm" || false
+    make_arm CFLAGS='-ffp-contract=off -O1'
+    [[ $output != *'left out'* ]]
+    # What a file cannot do without follows, with its own contraction.
+    kernel=$BATS_TEST_TMPDIR/o/service/fmb/filter/verdicts_avx2.o
+    run env -u MAKEFLAGS -u MAKELEVEL make -n O="$BATS_TEST_TMPDIR/o" B="$BATS_TEST_TMPDIR/b" CFLAGS='-O1 -flto -mno-avx2' "$kernel"
+    [[ $(uname -m) != x86_64 || $output == *' -ffp-contract=fast '*' -O1 -flto -mno-avx2 '*' -mavx2 '*' -fno-lto '*" -o $kernel "* ]]
+}
+
+@test "a compiler that rounds otherwise than the bounds assume is refused" {
+    for compiler in gcc clang; do
+        refused=(-ffast-math -Ofast -ffinite-math-only)
+        [[ $compiler = clang || $(uname -m) != x86_64 ]] || refused+=(-fassociative-math\ -fno-signed-zeros\ -fno-trapping-math -mfpmath=387)
+        for flags in '' "${refused[@]}"; do
+            # shellcheck disable=SC2086
+            run $compiler -std=c17 -O2 $flags -Iservice/fmb -fsyntax-only -x c service/fmb/number/integer.h
+            if [ "$flags" ]; then [[ $output == *'answers would be wrong'* ]]; else [ "$status" = 0 ]; fi
+        done
+    done
+}
+
 @test "without lcm-gen, make says what to run" {
     make=$(command -v make)
     run env -u MAKEFLAGS -u MAKELEVEL PATH=/nonexistent "$make" GEN="$BATS_TEST_TMPDIR" "$BATS_TEST_TMPDIR/fmb_msgs_body_t.h"

@@ -2,11 +2,11 @@
 
 load service
 
-# What was built is installed as it is.
+# What was built is installed as it is, by someone whose own files are read by no others.
 setup_file() {
     case $FMB_BUILD in *asan*) return ;; esac
     options_of_build
-    make -s -o all "${options[@]}" install PREFIX="$BATS_FILE_TMPDIR/root"
+    (umask 077 && make -s -o all "${options[@]}" install PREFIX="$BATS_FILE_TMPDIR/root")
 }
 
 options_of_build() {
@@ -20,6 +20,12 @@ setup() {
     options_of_build
     root=$BATS_FILE_TMPDIR/root
     export PKG_CONFIG_PATH=$root/lib/pkgconfig LD_LIBRARY_PATH=$root/lib
+}
+
+@test "what is installed is there for all users, whatever the umask" {
+    [ "$(stat -c %a "$root")" = 755 ]
+    [ -z "$(find "$root" ! -type l ! -perm -444 -o -type d ! -perm -755)" ]
+    [ "$(find "$root" -type f -perm /111 -printf '%f %m\n' | sort | xargs)" = 'fmb 755 fmbd 755' ]
 }
 
 @test "the examples build against the installed library, and query scenes" {

@@ -6,11 +6,20 @@
 #ifndef FMB_INTEGER_H
 #define FMB_INTEGER_H
 
+#include <float.h>
 #include <gmp.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+
+/* Every error bound of the engine holds for operations on doubles that are each rounded once, to
+ * nearest. */
+#if defined __FAST_MATH__ || (defined __FINITE_MATH_ONLY__ && __FINITE_MATH_ONLY__) || \
+    defined __ASSOCIATIVE_MATH__ || defined __RECIPROCAL_MATH__ || FLT_EVAL_METHOD != 0
+#error \
+    "compile without -ffast-math and -Ofast, and for arithmetic in doubles (-mfpmath=sse): answers would be wrong"
+#endif
 
 /* value = mantissa * 2^exponent; the mantissa is odd, or 0 with exponent INTEGER_NO_EXPONENT. */
 struct dyadic {
