@@ -45,6 +45,9 @@ enum listen_end listen_until(const struct args_bus *bus, const struct fmb_client
     } else if (client) {
         const int signals = signals_open();
         if (signals >= 0) {
+            if (!watcher)
+                complain("watching %sFMB_PAIR_RESULT and %sFMB_SCENE_RESULT of %s", bus->prefix,
+                         bus->prefix, args_bus_name(bus));
             end = listen_to(client, signals, enough, timeout);
             close(signals);
         } else {

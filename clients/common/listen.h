@@ -9,8 +9,9 @@ enum listen_end { LISTEN_ENOUGH, LISTEN_SIGNAL, LISTEN_TIMEOUT, LISTEN_FAILED };
 
 /* Opens the bus and receives until a callback sets *enough, which is false at first: the callbacks
  * of the watcher; or, where that is NULL, tap, which gets all messages on the service's channels,
- * and user. timeout: seconds; negative: no limit. SIGINT and SIGTERM end it once the bus is open,
- * and stay blocked. LISTEN_FAILED: the bus or the signals failed, which was reported on stderr. */
+ * and user; stderr then says when it receives. timeout: seconds; negative: no limit. SIGINT and
+ * SIGTERM end it once the bus is open, and stay blocked. LISTEN_FAILED: the bus or the signals
+ * failed, which was reported on stderr. */
 enum listen_end listen_until(const struct args_bus *bus, const struct fmb_client_watcher *watcher,
                              bus_handler *tap, void *user, const bool *enough, double timeout);
 
