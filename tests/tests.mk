@@ -19,7 +19,7 @@ see_tests/mesh := clients/mesh clients/common tests/bench service/fmb
 see_tests/logs := tests/encode tests/campaign tests/oracle service/answer $(wire) \
 	$(call fmb,frame filter) $(GEN)
 see_tests/python := tests/bench service/fmb
-see_tests/soak := tests/encode tests/campaign $(see_tests/campaign) clients/lib $(wire)
+see_tests/soak := tests/encode tests/hostile tests/campaign $(see_tests/campaign) clients/lib $(wire)
 see_tests/replay := clients/replay $(see_clients/replay) tests/bench tests/encode
 see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/replay tests/hostile $(GEN)
 see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
@@ -50,7 +50,7 @@ test_folders := $(addprefix tests/,encode oracle hostile campaign checked mesh s
 shared := $(O)/shared.a
 $(shared): $(filter-out $(mains:%=$(O)/tests/%.o),$(call objects_in,$(test_folders)))
 units := $(O)/units.a
-$(units): $(filter-out %/slab_truth.o %/slab_kernel.o $(O)/tests/unit/test_%,$(call objects_in,tests/unit))
+$(units): $(filter-out %/slab_truth.o %/slab_kernel.o %/leap_clock.o $(O)/tests/unit/test_%,$(call objects_in,tests/unit))
 measuring := $(O)/measuring.a
 $(measuring): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in,$(addprefix tests/,bench bus robot)))
 $(shared) $(units) $(measuring):
@@ -134,6 +134,7 @@ $(addprefix $(B)/tests/,test_bounds test_kernels): $(addprefix $(O)/slabs/,fused
 	kernel_fused.o kernel_planted.o)
 $(internal_tests): $(O)/tests/unit/slab_truth.o $(units) $(shared) $(client) $(product) $(engine)
 $(filter-out $(internal_tests),$(unit_tests)): $(units) $(shared) $(client) $(product) $(B)/libfmb.a
+$(addprefix $(B)/tests/,test_bus test_client_bad test_client_raw test_server): $(O)/tests/unit/leap_clock.o
 $(unit_tests): libraries += -lcmocka
 $(unit_tests): $(B)/tests/%: $(O)/tests/unit/%.o | $(B)/netns
 	$(link)

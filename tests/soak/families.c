@@ -1,5 +1,6 @@
 /* The pairs of the campaigns, hulls and posed bodies among them, through the service: in both
- * orders, first with whole bodies, then by handle. The bus is that of LCM_DEFAULT_URL.
+ * orders, first with whole bodies, then by handle. The bus is that of LCM_DEFAULT_URL; a recorder
+ * on it is waited for where it is slow.
  *
  * soak-families [PREFIX]: one pair of each cell of the families whose names begin so; of each
  * seventh cell with FMB_FAST. Prints a line of JSON. Exit code 0: each answer was that of
@@ -7,6 +8,7 @@
 #include "posed.h"
 #include "fmb_client.h"
 #include "query.h"
+#include "receivers.h"
 #include "trial.h"
 
 #include <inttypes.h>
@@ -34,6 +36,7 @@ static void query_both(struct soak *soak, const struct trial *trial)
         struct fmb_client_answer answer;
         struct fmb_answer expected;
         soak->pairs++;
+        receivers_wait();
         if (fmb_decide(fmb_method_default(), &asked[0], &asked[1], duration, WANT, &expected) !=
                 FMB_OK ||
             fmb_client_query_pair(soak->client, asked, duration, WANT, &answer) != FMB_OK)

@@ -17,6 +17,26 @@ overflowed() {
     awk '/^Udp: [0-9]/ { print $6 }' /proc/net/snmp
 }
 
+# Up to a minute.
+wait_until() {
+    tries=1200
+    until "$@" || [ $tries = 0 ]; do
+        tries=$((tries - 1))
+        sleep 0.05
+    done
+}
+
+# Whether the recorder's socket is there, with its log; and whether it holds nothing, and the log has grown
+# no more since the last look.
+receives() {
+    [ -e "$log" ] && grep -q ':1DF3 ' /proc/net/udp
+}
+has_read() {
+    before=${size-}
+    size=$(stat -c %s "$log")
+    [ "$size" = "$before" ] && ! grep ':1DF3 ' /proc/net/udp | grep -qv ' 00000000:00000000 '
+}
+
 # one RECORDER WHAT RATE: in a network of its own.
 one() {
     rm -f "$log"
@@ -27,14 +47,9 @@ one() {
     lcm-logger-4MB) lcm-logger -q --lcm-url="$url" "$log" 2> /dev/null & ;;
     esac
     recorder=$!
-    tries=100
-    until [ -e "$log" ] || [ $tries = 0 ]; do
-        tries=$((tries - 1))
-        sleep 0.05
-    done
-    sleep 0.3
+    wait_until receives
     blast=$("$build/soak-blast" "$2" "$3" "$seconds")
-    sleep 0.5
+    wait_until has_read
     cpu=$(awk '{ print $14 + $15 }' "/proc/$recorder/stat")
     kill -INT $recorder
     wait $recorder

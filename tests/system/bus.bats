@@ -1,7 +1,7 @@
 # The small form of the benchmark of the bus: it runs, its report is complete, and no process of it
 # remains. No test depends on times.
 
-load ../ran
+load service
 
 # Beside other programs a comparison may lose messages in every block: then it is measured again.
 setup_file() {
@@ -30,27 +30,17 @@ remaining_processes() {
     done 2> /dev/null
 }
 
-# nothing_left: within some seconds.
 nothing_left() {
-    for _ in $(seq 100); do
-        [ -z "$(remaining_processes)" ] && return
-        sleep 0.05
-    done
-    remaining_processes
-    return 1
+    [ -z "$(remaining_processes)" ]
 }
 
-# all_there: the benchmark, fmbd and the echo run, within some seconds.
+# all_there: the benchmark, fmbd and the echo run.
 all_there() {
-    for _ in $(seq 200); do
-        [ "$(remaining_processes | wc -l)" -ge 3 ] && return
-        sleep 0.05
-    done
-    return 1
+    [ "$(remaining_processes | wc -l)" -ge 3 ]
 }
 
 @test "bench-bus --quick measures every section, and its numbers are consistent" {
-    nothing_left
+    wait_until nothing_left
     # Three forms of a pair, and of scenes of two sizes, on each number of cores. A placement takes 182
     # bytes whole and 85 by handle, a velocity 24. Results have handles of bodies that came whole.
     holds "$JSON" "([.pairs[].cores] | max) as \$cores | \$cores == $(($(nproc) < 2 ? 1 : 2))
@@ -86,7 +76,7 @@ all_there() {
 
 @test "a section is measured by itself" {
     timeout 120 "$BENCH" --quick --section status --json "$BATS_TEST_TMPDIR/status.json" > "$BATS_TEST_TMPDIR/table" 3>&-
-    nothing_left
+    wait_until nothing_left
     holds "$BATS_TEST_TMPDIR/status.json" 'has("status") and (has("pairs") or has("flow") or has("oneway") | not)'
 }
 
@@ -101,10 +91,10 @@ all_there() {
         # A shell's background job ignores SIGINT; env gives it back.
         env --default-signal=INT "$BENCH" > "$BATS_TEST_TMPDIR/table" 3>&- &
         bench=$!
-        all_there
+        wait_until all_there
         kill -$signal $bench
         wait $bench || true
-        nothing_left
+        wait_until nothing_left
     done
 }
 

@@ -15,23 +15,30 @@ load service
     start_fmbd
     random_scene 3 900 > "$BATS_TEST_TMPDIR/scene.json"
     for client in 1 2; do
-        "$FMB" query --box --json --timeout 0.2 --retries 0 "$BATS_TEST_TMPDIR/scene.json" > /dev/null 2>&1 3>&- &
+        while :; do cat "$BATS_TEST_TMPDIR/scene.json"; done 2> /dev/null |
+            "$FMB" query --box --json --timeout 0.2 --retries 0 > /dev/null 2>&1 3>&- &
         started="$started $!"
     done
-    sleep 0.5
-    [ "$(status_of pairs)" -gt 100 ]
+    is_loaded() { [ "$(status_of pairs)" -gt 100 ]; }
+    wait_until is_loaded
+    # At the pace that the machine has: that of a daemon that does nothing else.
+    begin=${EPOCHREALTIME/./}
+    "$FMBD" --version
+    pace=$((${EPOCHREALTIME/./} - begin))
     kill -TERM "$fmbd"
     begin=${EPOCHREALTIME/./}
     wait "$fmbd"
-    [ $((${EPOCHREALTIME/./} - begin)) -lt 2000000 ]
+    [ $((${EPOCHREALTIME/./} - begin)) -lt $((2000000 + 10 * pace)) ]
 }
 
 @test "a client that queries before the service starts gets its answers" {
     random_scene 2 20 > "$BATS_TEST_TMPDIR/scene.json"
+    log=$BATS_TEST_TMPDIR/log messages=$BATS_TEST_TMPDIR/messages report=$BATS_TEST_TMPDIR/report
+    start_record "$log"
     "$FMB" query --json --timeout 0.2 --retries 50 "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus" 3>&- &
     client=$!
     started="${started-} $client"
-    sleep 0.5
+    wait_until grep -qa FMB_SCENE_QUERY "$log"
     start_fmbd
     wait $client
     "$FMB" query --json --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
@@ -39,18 +46,22 @@ load service
 }
 
 @test "no answer is lost when the service dies and restarts" {
-    random_scene 3 400 > "$BATS_TEST_TMPDIR/scene.json"
+    random_scene 3 100 > "$BATS_TEST_TMPDIR/scene.json"
     start_fmbd
-    "$FMB" query --json --box --timeout 0.2 --retries 50 "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus" 3>&- &
+    touch "$BATS_TEST_TMPDIR/more"
+    while [ -e "$BATS_TEST_TMPDIR/more" ]; do cat "$BATS_TEST_TMPDIR/scene.json"; done |
+        "$FMB" query --json --box --timeout 0.2 --retries 500 > "$BATS_TEST_TMPDIR/bus" 3>&- &
     client=$!
     started="$started $client"
     for _ in 1 2 3; do
-        sleep 0.1
+        wait_until has_lines "$BATS_TEST_TMPDIR/bus" $(($(wc -l < "$BATS_TEST_TMPDIR/bus") + 2))
         kill -KILL "$fmbd"
         start_fmbd
     done
+    wait_until has_lines "$BATS_TEST_TMPDIR/bus" $(($(wc -l < "$BATS_TEST_TMPDIR/bus") + 2))
+    rm "$BATS_TEST_TMPDIR/more"
     wait $client
-    "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
+    "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/scene.json" | cmp - <(sort -u "$BATS_TEST_TMPDIR/bus")
     stop_fmbd
 }
 
@@ -86,7 +97,7 @@ load service
     "$FMBD" 2> "$BATS_TEST_TMPDIR/log" 3>&- &
     fmbd=$!
     started="${started-} $fmbd"
-    "$FMB" query --json "$BATS_TEST_TMPDIR/scenes.json" | cmp - "$BATS_TEST_TMPDIR/local"
+    "$FMB" query --json --retries 100 "$BATS_TEST_TMPDIR/scenes.json" | cmp - "$BATS_TEST_TMPDIR/local"
     mkfifo "$BATS_TEST_TMPDIR/fifo"
     "$FMB" query --json --timeout 0.2 --retries 0 < "$BATS_TEST_TMPDIR/fifo" > "$BATS_TEST_TMPDIR/bus" 2> /dev/null 3>&- &
     client=$!
@@ -95,13 +106,18 @@ load service
     wait_until test -s "$BATS_TEST_TMPDIR/bus"
     stop_fmbd
     sed -n 11,14p "$BATS_TEST_TMPDIR/scenes.json" >&5
-    wait_until has "$BATS_TEST_TMPDIR/bus" 'no fmbd answered'
+    wait_until has_lines "$BATS_TEST_TMPDIR/bus" 14
+    [[ $(sed -n 14p "$BATS_TEST_TMPDIR/bus") == *'no fmbd answered'* ]]
     start_fmbd 5>&-
-    tail -n +15 "$BATS_TEST_TMPDIR/scenes.json" >&5
+    # On a slow machine an answer may take longer than the timeout.
+    for ((line = 15; line <= 40; line++)); do
+        sed -n ${line}p "$BATS_TEST_TMPDIR/scenes.json" >&5
+        wait_until has_lines "$BATS_TEST_TMPDIR/bus" $line
+        if [ "$(sed -n ${line}p "$BATS_TEST_TMPDIR/bus")" = "$(sed -n ${line}p "$BATS_TEST_TMPDIR/local")" ]; then break; fi
+    done
+    [ $line -le 40 ]
     exec 5>&-
     wait $client || [ $? = 1 ]
-    [ "$(wc -l < "$BATS_TEST_TMPDIR/bus")" = 40 ]
-    tail -n 1 "$BATS_TEST_TMPDIR/bus" | cmp - <(tail -n 1 "$BATS_TEST_TMPDIR/local")
     stop_fmbd
 }
 
@@ -110,11 +126,11 @@ load service
     random_scene 3 20 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query --json --box "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
     "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
-    # The first body stays while the scene uses it; there is no space for the others.
+    # The first body stays while a scene uses it; there is no space for the others.
     "$FMB" status --json > "$BATS_TEST_TMPDIR/status"
     [ "$(jq .server_id "$BATS_TEST_TMPDIR/status")" = "$("$FMB" status | sed 's/.*server \([0-9-]*\),.*/\1/;q')" ]
     jq -e '.utime / 1000000 - now | fabs < 60' "$BATS_TEST_TMPDIR/status"
-    [ "$(jq -c '[.bodies, .misses, .evictions]' "$BATS_TEST_TMPDIR/status")" = '[1,20,0]' ]
+    jq -e '.bodies == 1 and .misses == 1 + 19 * .scenes and .evictions == 0' "$BATS_TEST_TMPDIR/status"
     "$FMB" query --json --certificate "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
     "$FMB" query --json --certificate --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
     # All but the first and the last are the first of some single pair.
@@ -167,10 +183,12 @@ load service
     [ "$FMB_NETNS" = own ] || skip "needs namespaces"
     unshare -rn true || skip "needs user namespaces"
     unshare -rn sh -c 'ip link set lo up; ip link set lo multicast on
-        ip route add 224.0.0.0/4 dev lo; exec timeout 1 "$@"' sh "$FMBD" \
-        2> "$BATS_TEST_TMPDIR/err" 3>&- || true
+        ip route add 224.0.0.0/4 dev lo; exec "$@"' sh "$FMBD" 2> "$BATS_TEST_TMPDIR/err" 3>&- &
+    fmbd=$!
+    started="${started-} $fmbd"
+    wait_until has "$BATS_TEST_TMPDIR/err" ready
     [ "$(grep -c warning "$BATS_TEST_TMPDIR/err")" = 1 ]
-    grep -q ready "$BATS_TEST_TMPDIR/err"
+    stop_fmbd
 }
 
 @test "a filter of system calls is installed" {
@@ -208,7 +226,8 @@ load service
         done) 3>&- &
         started="$started $!" clients="$clients $!"
     done
-    sleep 0.5
+    is_loaded() { [ "$(status_of pairs)" -gt 0 ]; }
+    wait_until is_loaded
     signs() { grep -c '^WATCHDOG=1$' "$BATS_TEST_TMPDIR/received"; }
     before=$(signs)
     "$FMB" status > /dev/null
@@ -239,9 +258,8 @@ load service
     unshare -rn true || skip "needs a network without routes"
     run unshare -rn "$FMBD" --lcm-url udpm://239.8.7.6:7667
     [ "$status" = 1 ]
-    [ "${#lines[@]}" = 2 ]
-    [[ "${lines[0]}" == "fmbd: no route to the multicast group 239.8.7.6"* ]]
-    [[ "${lines[1]}" == *"ip route add 224.0.0.0/4 dev lo"* ]]
+    [[ $output == "fmbd: no route to the multicast group 239.8.7.6"*"ip route add 224.0.0.0/4 dev lo" ]]
+    [ "${#lines[@]}" = 1 ]
 }
 
 # bats test_tags=release
@@ -261,7 +279,7 @@ load service
         if [ $reader = gone ]; then
             head -n 1 < "$BATS_TEST_TMPDIR/pipe" > /dev/null 3>&- &
         else
-            sleep 60 < "$BATS_TEST_TMPDIR/pipe" 3>&- &
+            sleep 600 < "$BATS_TEST_TMPDIR/pipe" 3>&- &
             started="${started-} $!"
         fi
         "$FMBD" 2> "$BATS_TEST_TMPDIR/pipe" 3>&- &
@@ -269,7 +287,7 @@ load service
         started="$started $fmbd"
         wait_until "$FMB" status --timeout 0.2
         # Fill the pipe to the brim without a reader.
-        [ $reader = gone ] || timeout 1 dd if=/dev/zero of="$BATS_TEST_TMPDIR/pipe" bs=4096 2> /dev/null || true
+        [ $reader = gone ] || dd if=/dev/zero of="$BATS_TEST_TMPDIR/pipe" bs=4096 oflag=nonblock 2> /dev/null || true
         "$TOOLS/fake-peer" FMB_PAIR_QUERY status
         [ "$(status_of malformed)" -gt 100 ]
         stop_fmbd

@@ -43,7 +43,7 @@ queries_at_least() {
     need_java
     start_fmbd
     [ "$(posed_pair)" = overlapping ]
-    [ "$(status_of received)" = 1 ]
+    [ "$(status_of received)" -ge 1 ]
     [ "$(status_of malformed)" = 0 ]
     stop_fmbd
 }
@@ -83,7 +83,7 @@ status 0, 74 verdicts, 349 handles" ]
     client=$!
     started="$started $client"
     wait_until queries_at_least $((before + 4))
-    for type in pair_query pair_result status; do "$TOOLS/fake-peer" FMB_PAIR_RESULT $type; done
+    for type in pair_query pair_result status; do "$TOOLS/fake-peer" burst FMB_PAIR_RESULT $type; done
     kill -CONT "$fmbd"
     wait $client
     [ "$(cat "$BATS_TEST_TMPDIR/answer")" = overlapping ]
@@ -113,7 +113,9 @@ status 0, 74 verdicts, 349 handles" ]
     "$TOOLS/busy" 2 > "$BATS_TEST_TMPDIR/numbers" 3>&- &
     started="${started-} $!"
     [ "$(posed_pair)" = separated ]
-    [ "$(tr '\n' ' ' < "$BATS_TEST_TMPDIR/numbers")" = '0 busy 0 busy 0 ' ]
+    # More where it repeated a query without waiting for its result, on a slow machine.
+    [ "$(uniq "$BATS_TEST_TMPDIR/numbers" | tr '\n' ' ')" = '0 busy 0 ' ]
+    [ "$(grep -c busy "$BATS_TEST_TMPDIR/numbers")" = 2 ]
 }
 
 @test "Java: a missing service is reported" {

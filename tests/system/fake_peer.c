@@ -13,9 +13,15 @@
  * fake-peer listen PATH: prints the datagrams that a service manager gets at this socket, one a
  * line; until it is ended.
  *
+ * With damaged messages and numbers it waits for slow receivers, so that no datagram is lost; not
+ * where its first word is burst.
+ *
+ * fake-peer wait: waits for them.
+ *
  * fake-peer lie CERTIFICATE: a service that says of every pair, with this certificate, that it
  * overlaps, and of the first pair of every scene; until it is ended. */
 #include "hostile.h"
+#include "receivers.h"
 
 #include <lcm/lcm.h>
 #include <stdbool.h>
@@ -26,28 +32,30 @@
 #include <sys/un.h>
 #include <time.h>
 
+/* Datagrams before the receivers are waited for. */
+enum { PORTION = 40 };
+
 struct sending {
     lcm_t *lcm;
     const char *channel;
-    size_t failed;
+    bool burst;
+    size_t sent, failed;
 };
 
-/* Slow enough that no buffer overflows: the receiver counts them all. */
 static void publish(void *context, const char *what, const unsigned char *bytes, size_t size)
 {
     struct sending *sending = context;
-    const struct timespec pause = {.tv_nsec = 200000};
     (void) what;
-    if (lcm_publish(sending->lcm, sending->channel, bytes, (unsigned) size) != 0)
+    if (lcm_publish(sending->lcm, sending->channel, bytes, (unsigned) size) != 0 ||
+        (!sending->burst && ++sending->sent % PORTION == 0 && !receivers_wait()))
         sending->failed++;
-    nanosleep(&pause, NULL);
 }
 
-static int damage(lcm_t *lcm, const char *channel, const char *type)
+static int damage(struct sending *sending, const char *channel, const char *type)
 {
-    struct sending sending = {.lcm = lcm, .channel = channel};
-    printf("%zu\n", hostile_each(type, publish, &sending));
-    return sending.failed != 0;
+    sending->channel = channel;
+    printf("%zu\n", hostile_each(type, publish, sending));
+    return sending->failed != 0;
 }
 
 static int flood(lcm_t *lcm, const char *type, long long client_id, long seconds)
@@ -64,15 +72,15 @@ static int flood(lcm_t *lcm, const char *type, long long client_id, long seconds
     return 0;
 }
 
-static int numbers(lcm_t *lcm, long long client_id, int count, char **number)
+static int numbers(struct sending *sending, long long client_id, int count, char **number)
 {
-    int failed = 0;
+    sending->channel = "FMB_PAIR_QUERY";
     for (int i = 0; i < count; i++) {
         unsigned char bytes[HOSTILE_BYTES_MAX];
-        const size_t size = hostile_flood("pair_query", client_id, atoll(number[i]), bytes);
-        failed |= lcm_publish(lcm, "FMB_PAIR_QUERY", bytes, (unsigned) size);
+        publish(sending, "", bytes,
+                hostile_flood("pair_query", client_id, atoll(number[i]), bytes));
     }
-    return failed != 0;
+    return sending->failed != 0;
 }
 
 static int listen_at(const char *path)
@@ -129,13 +137,19 @@ static int lie(lcm_t *lcm, char *certificate)
 
 int main(int argc, char **argv)
 {
+    struct sending sending = {.burst = argc > 1 && strcmp(argv[1], "burst") == 0};
+    argc -= sending.burst;
+    argv += sending.burst;
     const char *what = argc > 1 ? argv[1] : "";
+    if (argc == 2 && strcmp(what, "wait") == 0)
+        return !receivers_wait();
     const bool floods = strcmp(what, "flood") == 0, counts = strcmp(what, "numbers") == 0;
     if (counts ? argc < 4 : argc != (floods ? 5 : 3)) {
         fputs(
-            "usage: fake-peer CHANNEL TYPE\n"
+            "usage: fake-peer [burst] CHANNEL TYPE\n"
             "       fake-peer flood TYPE CLIENT SECONDS\n"
-            "       fake-peer numbers CLIENT NUMBER...\n"
+            "       fake-peer [burst] numbers CLIENT NUMBER...\n"
+            "       fake-peer wait\n"
             "       fake-peer listen PATH\n"
             "       fake-peer lie CERTIFICATE\n",
             stderr);
@@ -143,16 +157,16 @@ int main(int argc, char **argv)
     }
     if (strcmp(what, "listen") == 0)
         return listen_at(argv[2]);
-    lcm_t *lcm = lcm_create(NULL);
+    lcm_t *lcm = sending.lcm = lcm_create(NULL);
     if (!lcm)
         return 1;
     int code;
     if (floods)
         code = flood(lcm, argv[2], atoll(argv[3]), atol(argv[4]));
     else if (counts)
-        code = numbers(lcm, atoll(argv[2]), argc - 3, argv + 3);
+        code = numbers(&sending, atoll(argv[2]), argc - 3, argv + 3);
     else
-        code = strcmp(what, "lie") == 0 ? lie(lcm, argv[2]) : damage(lcm, what, argv[2]);
+        code = strcmp(what, "lie") == 0 ? lie(lcm, argv[2]) : damage(&sending, what, argv[2]);
     lcm_destroy(lcm);
     return code;
 }

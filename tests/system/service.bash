@@ -7,12 +7,12 @@ load ../ran
 FMBD=$FMB_BUILD/fmbd
 FMB=$FMB_BUILD/fmb
 
-# Waits up to 10 s until a command succeeds. A read from a pipe without data sleeps without a process of
+# Waits up to a minute until a command succeeds. A read from a pipe without data sleeps without a process of
 # its own.
 exec {nothing}<> <(:)
 wait_until() {
     local i
-    for ((i = 0; i < 200; i++)); do
+    for ((i = 0; i < 1200; i++)); do
         if "$@"; then return 0; fi
         read -rt 0.05 -u "$nothing" || true
     done
@@ -60,6 +60,46 @@ start_record() {
 finish_record() {
     kill -"${1:-INT}" "$record"
     wait "$record"
+}
+
+# start_watch [OPTIONS]: what it prints is in $watched, from the first result that is sent now.
+start_watch() {
+    watched=$BATS_TEST_TMPDIR/watched.$((++watches))
+    "$FMB" watch "$@" > "$watched" 2> "$watched.said" 3>&- &
+    watch=$!
+    started="${started-} $watch"
+    wait_until has "$watched.said" 'watching FMB_PAIR_RESULT and FMB_SCENE_RESULT of '
+}
+
+# wait_until_watched FILTER...: until it is true of the array of the lines of JSON.
+wait_until_watched() {
+    wait_until jq -es "$@" "$watched" > "$watched.is" 2> "$watched.why" || {
+        tail -n 1 "$watched.why"
+        return 1
+    }
+}
+
+# has_lines FILE COUNT: or more.
+has_lines() {
+    [ "$(wc -l < "$1")" -ge "$2" ]
+}
+
+# query_in_step: queries the scenes of standard input, one a line, by one client: bodies go by handle
+# where they were in an earlier scene. Twenty at a time are answered, and read by all receivers.
+query_in_step() {
+    local scene count=0 scenes=$BATS_TEST_TMPDIR/in_step answers=$BATS_TEST_TMPDIR/in_step.answers
+    mkfifo "$scenes"
+    "$FMB" query --json - < "$scenes" > "$answers" 3>&- &
+    exec 9> "$scenes"
+    while read -r scene; do
+        echo "$scene" >&9
+        if ((++count % 20)); then continue; fi
+        wait_until has_lines "$answers" $count
+        "$TOOLS/fake-peer" wait
+    done
+    exec 9>&-
+    wait $!
+    rm "$scenes"
 }
 
 # status_of FIELD: a number of the next heartbeat.

@@ -168,20 +168,23 @@ grid_scenes() {
     [[ ${lines[2]} == *"  1  2  not decided: no certificate: numbers that span more than 512 bits have none" ]]
 }
 
+# A scene may be answered in parts, and a part twice where the query was repeated.
+parts='def parts: unique_by(.end_pair) | map(.pairs) | add; '
+
 @test "watch shows the scenes that pass, in JSON" {
     start_fmbd
-    "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
-    watch=$!
-    started="$started $watch"
+    start_watch --json
     grid_scene 3 1 | sed 's/{/{"margin":0.75,/' > "$BATS_TEST_TMPDIR/scene.json"
-    query_until_watched() {
-        "$FMB" query --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
-        ! kill -0 $watch 2> /dev/null
-    }
-    wait_until query_until_watched
-    jq -e --slurpfile bus "$BATS_TEST_TMPDIR/bus" '
-        .end_pair == ($bus[0].pairs | length) and any(.pairs[]; .verdict == "separated") and
-        .pairs == [$bus[0].pairs[] | select(.verdict != "separated" or .gap)]' "$BATS_TEST_TMPDIR/watch"
+    "$FMB" query --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+    wait_until_watched 'last.end_pair == 66'
+    jq -es --slurpfile bus "$BATS_TEST_TMPDIR/bus" "$parts"'
+        ($bus[0].pairs | length) == 66 and (parts | any(.verdict == "separated")) and
+        parts == [$bus[0].pairs[] | select(.verdict != "separated" or .gap)]' "$watched"
+    # It ends after --count results.
+    start_watch --json --count 1
+    "$FMB" query --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+    wait "$watch"
+    [ "$(wc -l < "$watched")" = 1 ]
     stop_fmbd
 }
 
@@ -189,64 +192,43 @@ grid_scenes() {
 @test "watch shows the pairs of scenes with times, boxes and gaps, in JSON" {
     grid_scene 3 1 | sed 's/{/{"margin":0.75,"duration":2,/' | jq -c '.bodies[0].velocity = [0.1, 0, 0.25]' > "$BATS_TEST_TMPDIR/all"
     jq -c '.pairs = [[2, 1], [1, 2], [1, 6], [3, 7]] | del(.margin)' "$BATS_TEST_TMPDIR/all" > "$BATS_TEST_TMPDIR/listed"
+    start_fmbd
     for scene in all listed; do
-        start_fmbd # a repeat of the query before is not answered while this scene is watched
-        "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
-        watch=$!
-        started="$started $watch"
-        query_until_watched() {
-            "$FMB" query --box --json "$BATS_TEST_TMPDIR/$scene" > "$BATS_TEST_TMPDIR/bus"
-            ! kill -0 $watch 2> /dev/null
-        }
-        wait_until query_until_watched
-        jq -e --slurpfile bus "$BATS_TEST_TMPDIR/bus" '
+        start_watch --json
+        "$FMB" query --box --json "$BATS_TEST_TMPDIR/$scene" > "$BATS_TEST_TMPDIR/bus"
+        wait_until_watched "last.end_pair == $(jq '.pairs | length' "$BATS_TEST_TMPDIR/bus")"
+        jq -es --slurpfile bus "$BATS_TEST_TMPDIR/bus" --arg scene $scene "$parts"'
             [$bus[0].pairs[] | select(.verdict != "separated" or .gap or $scene == "listed")] as $wanted
-            | .pairs == $wanted and (.pairs | length) > 3 and any(.pairs[]; .contact and .box)' \
-            --arg scene $scene "$BATS_TEST_TMPDIR/watch"
-        stop_fmbd
+            | parts == $wanted and ($wanted | length) > 3 and any($wanted[]; .contact and .box)' "$watched"
+        kill -INT "$watch"
+        wait "$watch"
     done
+    stop_fmbd
 }
 
 @test "watch shows the status of errors, in JSON" {
     start_fmbd
-    "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
-    watch=$!
-    started="$started $watch"
-    query_until_watched() { # this method does not decide flat frames
-        "$FMB" query --method sat --certificate --json <<< '{"dim": 2, "bodies": [
-            {"id": 1, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[2,0]]},
-            {"id": 2, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[0,1]]}]}' > "$BATS_TEST_TMPDIR/bus"
-        ! kill -0 $watch 2> /dev/null
-    }
-    wait_until query_until_watched
-    jq -e --arg error "$(jq -r '.pairs[0].error' "$BATS_TEST_TMPDIR/bus")" \
-        '.pairs[0].error == $error and .status > 0' "$BATS_TEST_TMPDIR/watch"
-    "$FMB" watch --json --count 300 > "$BATS_TEST_TMPDIR/watch" 3>&- &
-    watch=$!
-    started="$started $watch"
-    replay_until_watched() { # the log has scenes that are refused
-        "$FMB" replay --bus tests/logs/refused.log > /dev/null 2>&1 || true
-        ! kill -0 $watch 2> /dev/null
-    }
-    wait_until replay_until_watched
-    jq -es 'any(.[]; (has("pairs") | not) and .status > 0 and (.error | length > 0))' "$BATS_TEST_TMPDIR/watch"
+    start_watch --json
+    # This method does not decide flat frames.
+    run "$FMB" query --method sat --certificate --json <<< '{"dim": 2, "bodies": [
+        {"id": 1, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[2,0]]},
+        {"id": 2, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[0,1]]}]}'
+    ended 1
+    wait_until_watched --arg error "$(jq -r '.pairs[0].error' <<< "$output")" 'any(.[]; .pairs[0].error == $error and .status > 0)'
+    # The log has scenes that are refused.
+    "$FMB" replay --bus tests/logs/refused.log
+    wait_until_watched 'any(.[]; (has("pairs") | not) and .status > 0 and (.error | length > 0))'
     stop_fmbd
 }
 
 @test "watch shows the certificates and gaps that pass, in JSON" {
     start_fmbd
-    "$FMB" watch --json --count 1 > "$BATS_TEST_TMPDIR/watch" 3>&- &
-    watch=$!
-    started="$started $watch"
+    start_watch --json
     random_scene 2 2 > "$BATS_TEST_TMPDIR/scene.json"
-    query_until_watched() {
-        "$FMB" query --certificate --gap --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
-        ! kill -0 $watch 2> /dev/null
-    }
-    wait_until query_until_watched
-    for member in certificate gap direction; do
-        [ "$(jq -c .pairs[0].$member "$BATS_TEST_TMPDIR/watch")" = "$(jq -c ".pairs[0].$member" "$BATS_TEST_TMPDIR/bus")" ]
-    done
+    "$FMB" query --certificate --gap --json "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
+    wait_until_watched --slurpfile bus "$BATS_TEST_TMPDIR/bus" '
+        any(.[].pairs[0]; .certificate and .gap and .direction and
+            [.certificate, .gap, .direction] == ($bus[0].pairs[0] | [.certificate, .gap, .direction]))'
     stop_fmbd
 }
 
@@ -288,16 +270,10 @@ grid_scenes() {
 
 @test "damaged messages on every channel are counted, and harm neither service nor clients" {
     start_fmbd
-    "$FMB" watch > "$BATS_TEST_TMPDIR/watch" 2> "$BATS_TEST_TMPDIR/watch.err" 3>&- &
-    watch=$!
-    started="$started $watch"
-    # It prints a line of what passes only once it listens.
+    start_watch
     random_scene 2 3 > "$BATS_TEST_TMPDIR/scene.json"
-    received() {
-        "$FMB" query "$BATS_TEST_TMPDIR/scene.json" > /dev/null
-        grep -q 'up to pair 3: ' "$BATS_TEST_TMPDIR/watch"
-    }
-    wait_until received
+    "$FMB" query "$BATS_TEST_TMPDIR/scene.json" > /dev/null
+    wait_until has "$watched" 'up to pair 3: '
     sent=0 to_watch=0 results=0 begin=$SECONDS
     for type in pair_query pair_result scene_query scene_result definition_query definition status; do
         to_watch=$((to_watch + $("$TOOLS/fake-peer" FMB_PAIR_QUERY $type)))
@@ -312,14 +288,14 @@ grid_scenes() {
     [ "$(status_of malformed)" = "$sent" ]
     # At most one a second is reported.
     [ "$(grep -c malformed "$fmbd_log")" -le $((SECONDS - begin + 2)) ]
-    lines=$(wc -l < "$BATS_TEST_TMPDIR/watch")
+    lines=$(wc -l < "$watched")
     "$FMB" query "$BATS_TEST_TMPDIR/scene.json"
-    still_heard() { tail -n +$((lines + 1)) "$BATS_TEST_TMPDIR/watch" |
+    still_heard() { tail -n +$((lines + 1)) "$watched" |
         grep -q 'up to pair 3: [0-9]* overlapping, [0-9]* touching'; }
     wait_until still_heard
-    kill -INT $watch
-    wait $watch
-    grep -qx "fmb: $to_watch messages could not be read" "$BATS_TEST_TMPDIR/watch.err"
+    kill -INT "$watch"
+    wait "$watch"
+    grep -qx "fmb: $to_watch messages could not be read" "$watched.said"
     stop_fmbd
 }
 
@@ -368,9 +344,7 @@ send_crash_packets() {
 
 @test "packets that crash liblcm harm neither service nor clients" {
     start_fmbd
-    "$FMB" watch > /dev/null 2>&1 3>&- &
-    watch=$!
-    started="$started $watch"
+    start_watch
     random_scene 3 60 > "$BATS_TEST_TMPDIR/scene.json"
     "$FMB" query --json --local "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/local"
     for _ in 1 2 3 4 5; do

@@ -14,7 +14,7 @@
 /* Numbers of the bus_listen() calls. */
 enum relay_kind { RELAY_PAIR, RELAY_SCENE, RELAY_DEFINITION, RELAY_KINDS };
 
-enum { RELAY_SERVICES = 2, RELAY_ARRIVALS = 256 };
+enum { RELAY_SERVICES = 2 };
 
 struct relay;
 
@@ -23,16 +23,9 @@ typedef void relay_lie(struct scene_result *result, int turn);
 typedef void relay_pair_lie(struct pair_result *result, int turn);
 typedef void relay_before(struct relay *relay);
 
-struct relay_arrival {
-    int64_t time; /* clock_ns() */
-    int64_t number;
-};
-
 struct relay {
     _Atomic int queries;  /* received */
     _Atomic size_t bytes; /* of them */
-    /* [query % RELAY_ARRIVALS]; pair queries have their number. */
-    struct relay_arrival arrival[RELAY_ARRIVALS];
     /* Every so many; 0: none. */
     _Atomic int lose_query, lose_result, double_result, delay_result, busy;
     _Atomic bool deaf; /* no query is answered */
@@ -76,6 +69,9 @@ void relay_restart(struct relay *relay, size_t frames);
 void relay_add_service(struct relay *relay, size_t frames);
 
 void relay_publish(struct relay *relay, const char *channel, const void *bytes, size_t size);
+
+/* Waits until the relay has received as many queries, and answered them as it does. */
+void relay_wait(struct relay *relay, uint64_t queries);
 
 /* Datagrams that the relay's receive buffer had no space for. */
 uint64_t relay_dropped(struct relay *relay);

@@ -3,11 +3,11 @@
 #include "unit.h"
 
 #include "client.h"
-#include "clock.h"
 #include "hostile.h"
 #include "fmb_client_raw.h"
-#include "relay.h"
 #include "held.h"
+#include "leap_clock.h"
+#include "relay.h"
 #include "request.h"
 #include "scene_part.h"
 #include "wire.h"
@@ -16,10 +16,11 @@
 #include <math.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { PLACEMENTS = 700, ALL_WANTS = FMB_WANT_BOX | FMB_WANT_TIMES };
+
+static const int64_t ms = 1000000, s = 1000000000; /* nanoseconds */
 
 static struct fmb_placement placement[PLACEMENTS];
 static unsigned list[2000][2];
@@ -61,7 +62,7 @@ static void what_the_bus_loses_is_sent_again(void **state)
     relay->delay_result = 4;
     relay->busy = 11;
     relay_open(relay, 200);
-    struct fmb_client *client = relay_client(relay, 0.05, 30);
+    struct fmb_client *client = relay_client(relay, 0.05, 1000);
     struct fmb_scene scene = all_pairs();
     for (int i = 0; i < 3; i++)
         relay_query(client, &scene);
@@ -273,25 +274,25 @@ static bool receive_a_wrong_number(void *user)
 static void wait_a_millisecond(void *user, int other_fd, int timeout_ms)
 {
     (void) user, (void) other_fd, (void) timeout_ms;
-    nanosleep(&(struct timespec){0, 1000000}, NULL);
+    clock_leap(ms);
 }
 
 static void results_without_a_query_do_not_prolong_others(void **state)
 {
-    enum { MS = 1000000, TIMEOUT = 20 * MS, TRIES = 3 };
+    const int64_t timeout = 20 * ms;
     static struct requests requests, *forged = &requests;
     int status = FMB_OK;
     requests.transport = (struct request_transport){&forged, publish_nothing, wait_a_millisecond,
                                                     receive_a_wrong_number};
-    requests.timeout_ns = TIMEOUT;
-    requests.tries = TRIES;
+    requests.timeout_ns = timeout;
+    requests.tries = 3;
     requests_forget_pace(&requests);
     struct request *request =
         request_begin(&requests, FMB_CLIENT_DEFINITION, REQUEST_IDS_END, note_status, &status);
     request->size = REQUEST_IDS_END;
     request_send(&requests, request);
     const int64_t begin = clock_ns();
-    while (requests.count > 0 && clock_ns() < begin + 100 * (int64_t) TIMEOUT)
+    while (requests.count > 0 && clock_ns() < begin + 100 * timeout)
         requests_step(&requests, -1, INT64_MAX);
     assert_int_equal(status, FMB_CLIENT_NO_ANSWER);
     assert_true(requests.counts.repeated > 0);
@@ -320,14 +321,11 @@ static struct tally query(struct fmb_client *client, const struct fmb_scene *sce
     return tally;
 }
 
-/* Again while no result was sent: beside other programs the relay may be too late. */
-static struct tally query_liar(struct fmb_client *client, const struct fmb_scene *scene,
-                               const struct relay *relay)
+/* The time for all passes while the service does not answer, or after its first lie. */
+static void let_time_pass(struct relay *relay)
 {
-    struct tally tally = query(client, scene);
-    for (int i = 0; i < 20 && relay->turn == 0; i++)
-        tally = query(client, scene);
-    return tally;
+    if (relay->deaf || relay->turn > 0)
+        clock_leap(100 * s);
 }
 
 static double seconds_since(int64_t start)
@@ -339,10 +337,11 @@ static double seconds_since(int64_t start)
  * takes a timeout, and sends one query alone. */
 static void a_service_that_comes_back_is_found(void **state)
 {
-    const double timeout = 0.1;
+    const double timeout = 30;
     const int tries = 10;
     struct relay *relay = relay_new();
     relay->deaf = true;
+    relay->before = let_time_pass;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, timeout, tries);
     const struct fmb_scene scene = listed();
@@ -358,9 +357,6 @@ static void a_service_that_comes_back_is_found(void **state)
     }
     assert_int_equal(fmb_client_get_counts(client).outages, 1);
     relay->deaf = false;
-    /* On a busy machine an answer may take longer than a call waits while there is none. */
-    for (int i = 0; i < 50 && query(client, &scene).good == 0; i++)
-        continue;
     relay_query(client, &scene);
     assert_int_equal(fmb_client_get_counts(client).outages, 1);
     relay->deaf = true;
@@ -386,13 +382,14 @@ static void a_repeat_finds_the_service(void **state)
     struct relay *relay = relay_new();
     relay->deaf = true;
     relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 0.3, 1);
+    relay->before = let_time_pass;
+    struct fmb_client *client = relay_client(relay, 30, 1);
     const struct fmb_scene scene = listed();
     struct fmb_scene one = scene;
     one.pair_count = 1;
     assert_int_equal(query(client, &one).none[-FMB_CLIENT_NO_SERVICE], 1);
-    relay->queries = 0;
     relay->before = hear_third;
+    relay->queries = 0;
     relay_query(client, &scene);
     fmb_client_close(client);
     relay_close(relay);
@@ -417,103 +414,13 @@ static void no_service_costs_the_time_of_one_query(void **state)
     relay_close(relay);
 }
 
-/* ---- Repeats ---- */
-
-/* Under one number, the first time soon, then after twice the time each: a datagram that is lost
- * costs milliseconds, and a service that is slow is not flooded. */
-static void a_lost_query_is_repeated_soon_and_then_more_rarely(void **state)
-{
-    struct relay *relay = relay_new();
-    struct fmb_client_answer answer;
-    relay_open(relay, 10);
-    struct fmb_client *client = relay_client(relay, 0.5, 2);
-    relay_draw(placement, 2, 3, 1, 1, 1);
-    for (int i = 0; i < 20; i++)
-        assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
-    const uint64_t before = fmb_client_get_counts(client).repeated;
-    relay->deaf = true;
-    const int first = relay->queries;
-    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer),
-                     FMB_CLIENT_NO_SERVICE);
-    const int count = relay->queries - first;
-    assert_in_range(fmb_client_get_counts(client).repeated - before, count - 1, count);
-    assert_in_range(count, 5, 10); /* 8, 16, ... 512 ms, about, in a second */
-    for (int i = 0; i + 1 < count; i++) {
-        const struct relay_arrival *at = &relay->arrival[(first + i) % RELAY_ARRIVALS];
-        const struct relay_arrival *next = &relay->arrival[(first + i + 1) % RELAY_ARRIVALS];
-        assert_int_equal(next->number, at->number);
-        assert_true(i > 0 || next->time - at->time < 250000000);
-    }
-    fmb_client_close(client);
-    relay_close(relay);
-}
-
-/* A service that is slow, and at first stops for a while, has not reached most queries: of those
- * that wait, only the oldest is repeated. */
-static void lose_one_and_be_slow(struct relay *relay)
-{
-    const long ms = relay->queries == 1 ? 100 : 3;
-    nanosleep(&(struct timespec){0, 1000000 * ms}, NULL);
-    relay->deaf = relay->queries == 3;
-}
-
-static void queries_in_line_are_not_repeated(void **state)
-{
-    struct relay *relay = relay_new();
-    relay->before = lose_one_and_be_slow;
-    struct tally tally;
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
-    struct fmb_scene scene = listed();
-    scene.pair_count = 150;
-    scene.want = FMB_WANT_CERTIFICATE;
-    relay_use_first_frames(placement, PLACEMENTS); /* certificates are of those */
-    tally = query(client, &scene);
-    assert_int_equal(tally.good, 150);
-    assert_in_range(fmb_client_get_counts(client).repeated, 1, 30);
-    /* The lost one is repeated once later ones have their results, not when nothing else is left of
-     * the window. */
-    int again = 3;
-    while (relay->arrival[again].number != relay->arrival[2].number)
-        again++;
-    assert_true(again < 60);
-    fmb_client_close(client);
-    relay_close(relay);
-}
-
-/* Takes 85 ms for each query, so that the first is repeated after 10, 30 and 70; drops repeats. */
-static void be_slow_and_answer_once(struct relay *relay)
-{
-    const int last = relay->queries - 1;
-    const int64_t number = relay->arrival[last % RELAY_ARRIVALS].number;
-    relay->deaf = last > 0 && relay->arrival[(last - 1) % RELAY_ARRIVALS].number == number;
-    if (!relay->deaf)
-        nanosleep(&(struct timespec){0, 85000000}, NULL);
-}
-
-/* The time from the last repeat to the result of the first query is not the time that the service
- * takes. A client that measured it would go on to repeat. */
-static void a_slow_service_gets_repeats_at_first_only(void **state)
-{
-    struct relay *relay = relay_new();
-    struct fmb_client_answer answer;
-    relay->before = be_slow_and_answer_once;
-    relay_open(relay, 10);
-    struct fmb_client *client = relay_client(relay, 5, 2);
-    relay_draw(placement, 2, 3, 1, 1, 1);
-    for (int i = 0; i < 20; i++)
-        assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
-    assert_in_range(fmb_client_get_counts(client).repeated, 1, 10);
-    fmb_client_close(client);
-    relay_close(relay);
-}
-
 /* ---- An end ---- */
 
 /* The service ends during a scene: the answers so far are given, and a status for the others. */
 static void die(struct relay *relay)
 {
     relay->deaf = relay->queries > 3;
+    let_time_pass(relay);
 }
 
 static void the_others_have_no_answer(void **state)
@@ -522,7 +429,7 @@ static void the_others_have_no_answer(void **state)
     relay->before = die;
     struct relay_truth truth;
     relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 0.3, 1);
+    struct fmb_client *client = relay_client(relay, 30, 1);
     struct fmb_scene scene = listed();
     relay_truth_make(&scene, &truth);
     assert_int_equal(fmb_client_query(client, &scene, relay_check, &truth), FMB_OK);
@@ -551,51 +458,70 @@ static void the_time_for_all_ends_it(void **state)
     relay_close(relay);
 }
 
-/* Takes longer for the first answers than a query waits. */
+/* Takes longer for the first answers than a query waits, so that the results of all that are under
+ * way come meanwhile. */
+struct slowly {
+    struct relay_truth truth;
+    struct relay *relay;
+    struct fmb_client *client;
+};
+
 static void check_slowly(void *user, const struct fmb_client_answer *answer)
 {
-    const struct relay_truth *truth = user;
-    if (truth->given < 8)
-        nanosleep(&(struct timespec){0, 120000000}, NULL);
-    relay_check(user, answer);
+    struct slowly *slowly = user;
+    const struct fmb_client_counts counts = fmb_client_get_counts(slowly->client);
+    if (slowly->truth.given < 8) {
+        relay_wait(slowly->relay, counts.queries + counts.repeated);
+        clock_leap(40 * s);
+    }
+    relay_check(&slowly->truth, answer);
 }
 
 static void a_caller_that_takes_long_gets_all_answers(void **state)
 {
-    struct relay *relay = relay_new();
-    struct relay_truth truth;
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 0.1, 4);
+    struct slowly slowly = {.relay = relay_new()};
+    relay_open(slowly.relay, 2000);
+    struct fmb_client *client = slowly.client = relay_client(slowly.relay, 30, 4);
     struct fmb_scene scene = listed();
     scene.pair_count = 200;
     scene.want = ALL_WANTS | FMB_WANT_CERTIFICATE;
     relay_use_first_frames(placement, PLACEMENTS); /* certificates are of those */
-    relay_truth_make(&scene, &truth);
-    assert_int_equal(fmb_client_query(client, &scene, check_slowly, &truth), FMB_OK);
-    assert_int_equal(truth.failed, 0);
-    assert_int_equal(truth.given, 200);
-    relay_truth_clear(&truth);
+    relay_truth_make(&scene, &slowly.truth);
+    assert_int_equal(fmb_client_query(client, &scene, check_slowly, &slowly), FMB_OK);
+    assert_int_equal(slowly.truth.failed, 0);
+    assert_int_equal(slowly.truth.given, 200);
+    relay_truth_clear(&slowly.truth);
     fmb_client_close(client);
-    relay_close(relay);
+    relay_close(slowly.relay);
 }
 
 /* What is under way at once fits into a usual receive buffer: two of the largest datagrams, or many
  * small ones. */
+static _Atomic int enough;
+
+static void end_the_time_when_enough(struct relay *relay)
+{
+    if (relay->queries == enough)
+        clock_leap(100 * s);
+}
+
 static void what_is_under_way_is_limited(void **state)
 {
     struct fmb_scene scene = all_pairs();
     for (int small = 0; small < 2; small++) {
         struct relay *relay = relay_new();
         relay->deaf = true;
+        relay->before = end_the_time_when_enough;
+        enough = small ? 31 : 2;
         relay_open(relay, 10);
         struct fmb_client *client = relay_client(relay, 1000, 1);
         if (small)
             scene = listed();
         scene.want = small ? FMB_WANT_CERTIFICATE : 0;
-        client->run.within = 0.005;
+        client->run.within = 60;
         query(client, &scene);
         const struct fmb_client_counts counts = fmb_client_get_counts(client);
-        assert_true(small ? counts.queries > 30 && counts.queries <= 64 : counts.queries == 2);
+        assert_true(small ? counts.queries >= 31 && counts.queries <= 64 : counts.queries == 2);
         assert_true(counts.bytes <= (small ? 20000 : 130000) * (1 + counts.repeated));
         fmb_client_close(client);
         relay_close(relay);
@@ -782,7 +708,8 @@ static const struct {
     {"separated is named", separated_is_named, true, true},
 };
 
-/* A forged result is ignored: it gives no answer, and counts as malformed. */
+/* A forged result is ignored: it gives no answer, and counts as malformed. One that comes when its
+ * query has been given up shows at least that there is a service. */
 static void forged_results_are_ignored(void **state)
 {
     for (size_t i = 0; i < COUNT(lies); i++)
@@ -792,15 +719,17 @@ static void forged_results_are_ignored(void **state)
                 continue;
             struct relay *relay = relay_new();
             relay->lie = lies[i].lie;
+            relay->before = let_time_pass;
             scene.placement_count = of_list ? 100 : 400;
             scene.want = lies[i].list ? ALL_WANTS : 0; /* of names alone: nothing else shows them */
             relay_open(relay, 2000);
-            struct fmb_client *client = relay_client(relay, 0.1, 1);
-            const struct tally tally = query_liar(client, &scene, relay);
-            if (tally.good != 0 || tally.none[-FMB_CLIENT_NO_SERVICE] == 0)
+            struct fmb_client *client = relay_client(relay, 30, 1);
+            const struct tally tally = query(client, &scene);
+            if (tally.good != 0)
                 print_error("lie: %s, %s\n", lies[i].name, of_list ? "listed" : "all");
             assert_int_equal(tally.good, 0);
-            assert_int_equal(tally.none[-FMB_CLIENT_NO_SERVICE], of_list ? 2000 : 400 * 399 / 2);
+            assert_int_equal(tally.none[-FMB_CLIENT_NO_SERVICE] + tally.none[-FMB_CLIENT_NO_ANSWER],
+                             of_list ? 2000 : 400 * 399 / 2);
             assert_in_range(fmb_client_get_counts(client).malformed, 1, relay->turn);
             fmb_client_close(client);
             relay_close(relay);
@@ -859,9 +788,10 @@ static void forged_gaps_are_ignored(void **state)
         scene.want = 0;
         scene.margin = gap_lies[i] == gaps_unwanted ? 0 : 0.5;
         relay->lie = gap_lies[i];
+        relay->before = let_time_pass;
         relay_open(relay, 2000);
-        struct fmb_client *client = relay_client(relay, 0.1, 1);
-        const struct tally tally = query_liar(client, &scene, relay);
+        struct fmb_client *client = relay_client(relay, 30, 1);
+        const struct tally tally = query(client, &scene);
         if (tally.good != 0)
             print_error("lie %zu\n", i);
         assert_int_equal(tally.good, 0);
@@ -1147,7 +1077,7 @@ static void a_late_answer_to_the_query_by_handle_is_taken(void **state)
     struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 0.5, 1);
+    struct fmb_client *client = relay_client(relay, 30, 1);
     relay_draw(placement, 2, 3, 1, 1, 1);
     assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
     relay_add_service(relay, 2000);
@@ -1180,9 +1110,10 @@ static void wrong_handles_of_a_pair_are_malformed(void **state)
     for (int i = 0; i < 2; i++) {
         struct relay *relay = relay_new();
         relay->pair_lie = lie[i];
+        relay->before = let_time_pass;
         struct fmb_client_answer answer;
         relay_open(relay, 2000);
-        struct fmb_client *client = relay_client(relay, 0.3, 1);
+        struct fmb_client *client = relay_client(relay, 30, 1);
         relay_draw(placement, 2, 3, 1, 1, 1);
         assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer),
                          FMB_CLIENT_NO_SERVICE);
@@ -1256,10 +1187,11 @@ static void busy(struct scene_result *result, int turn)
     result->handle_count = 0;
 }
 
-/* Reads second results that still wait. */
-static uint64_t contradicting(struct fmb_client *client)
+/* Reads second results until so many have contradicted, or if none will, those that wait. */
+static uint64_t contradicting(struct fmb_client *client, uint64_t expected)
 {
-    while (fmb_client_handle(client, 0.05) > 0)
+    while (fmb_client_get_counts(client).contradicting < expected + (expected == 0) &&
+           fmb_client_handle(client, expected > 0 ? 60 : 0.05) > 0)
         continue;
     return fmb_client_get_counts(client).contradicting;
 }
@@ -1286,9 +1218,9 @@ static void contradicting_second_results_are_counted(void **state)
         const uint64_t results = fmb_client_get_counts(client).answered;
         assert_true(results > 1);
         if (second[i].contradicts) /* more where a query was repeated */
-            assert_true(contradicting(client) >= results);
+            assert_true(contradicting(client, results) >= results);
         else
-            assert_int_equal(contradicting(client), 0);
+            assert_int_equal(contradicting(client, 0), 0);
         fmb_client_close(client);
         relay_close(relay);
     }
@@ -1303,10 +1235,10 @@ static void contradicting_results_of_pairs_are_counted(void **state)
     struct fmb_client *client = relay_client(relay, 5, 1);
     relay_draw(placement, 2, 3, 1, 1, 1);
     assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
-    assert_int_equal(contradicting(client), 0);
+    assert_int_equal(contradicting(client, 0), 0);
     relay->second_pair_lie = other_pair_verdict;
     assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
-    assert_true(contradicting(client) >= 1);
+    assert_true(contradicting(client, 1) >= 1);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -1485,7 +1417,7 @@ static void a_watcher_sees_all_results(void **state)
     relay_publish(relay, WIRE_STATUS, heartbeat, wire_write_status(&status, heartbeat));
     relay_publish(relay, WIRE_STATUS, "no status", 9);
     assert_true(fmb_client_fileno(watch) >= 0);
-    while (fmb_client_handle(watch, 0.1) > 0)
+    while (watching.malformed == 0 && fmb_client_handle(watch, 60) > 0)
         continue;
     /* On a busy machine queries may have been repeated: then their results were too. */
     assert_true(watching.scenes >= 1);
@@ -1543,9 +1475,6 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_service_that_comes_back_is_found),
         cmocka_unit_test(a_repeat_finds_the_service),
         cmocka_unit_test(no_service_costs_the_time_of_one_query),
-        cmocka_unit_test(a_lost_query_is_repeated_soon_and_then_more_rarely),
-        cmocka_unit_test(queries_in_line_are_not_repeated),
-        cmocka_unit_test(a_slow_service_gets_repeats_at_first_only),
         cmocka_unit_test(the_others_have_no_answer),
         cmocka_unit_test(the_time_for_all_ends_it),
         cmocka_unit_test(a_caller_that_takes_long_gets_all_answers),

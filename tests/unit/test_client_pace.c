@@ -35,7 +35,11 @@ int clock_left_ms(int64_t until_ns)
 
 /* ---- The network ---- */
 
-enum { RESULTS_MAX = 1 << 16, QUERY_SIZE = 400, SEND_NS = 2000 };
+enum { RESULTS_MAX = 1 << 16, SENDINGS_MAX = 256, QUERY_SIZE = 400, SEND_NS = 2000 };
+
+struct passage {
+    int64_t time, number;
+};
 
 /* A service that answers one query after the other, in the order of their arrival. */
 static struct network {
@@ -44,12 +48,13 @@ static struct network {
     int64_t service;    /* time that the service takes for a query */
     int64_t free_at;    /* time at which the service has answered all queries */
     int status;         /* of its results */
+    uint64_t lost;      /* the datagram from the client that is lost, counted from 1; 0: none */
+    bool drops_repeats; /* the service drops a query that has the number of the one before */
     uint64_t random;
     uint64_t sent, waits; /* datagrams from the client; calls of wait() */
-    size_t first, count;  /* results on their way, in the order of their arrival */
-    struct arrival {
-        int64_t time, number;
-    } result[RESULTS_MAX];
+    struct passage sending[SENDINGS_MAX];
+    size_t first, count; /* results on their way, in the order of their arrival */
+    struct passage result[RESULTS_MAX];
     struct requests requests;
 } net;
 
@@ -61,7 +66,7 @@ static bool draw(double share)
     return (double) (net.random >> 11) * 0x1p-53 < share;
 }
 
-static void add_result(struct arrival arrival)
+static void add_result(struct passage arrival)
 {
     assert_true(net.count < RESULTS_MAX);
     size_t i = net.first + net.count++;
@@ -73,19 +78,21 @@ static void add_result(struct arrival arrival)
 static bool publish(void *user, enum fmb_client_kind kind, const unsigned char *query, size_t size)
 {
     (void) user, (void) kind, (void) size;
+    int64_t number = 0;
+    for (int i = 0; i < 8; i++)
+        number = number << 8 | query[REQUEST_IDS_END - 8 + i];
+    const int64_t before = net.sending[(net.sent - 1) % SENDINGS_MAX].number;
+    const bool dropped = net.drops_repeats && net.sent > 0 && number == before;
     now += SEND_NS;
-    net.sent++;
-    if (draw(net.loss))
+    net.sending[net.sent++ % SENDINGS_MAX] = (struct passage){now, number};
+    if (draw(net.loss) || net.sent == net.lost || dropped)
         return true;
     const int64_t arrival = now + net.delay;
     net.free_at = (arrival > net.free_at ? arrival : net.free_at) + net.service;
     if (draw(net.loss))
         return true;
-    int64_t number = 0;
-    for (int i = 0; i < 8; i++)
-        number = number << 8 | query[REQUEST_IDS_END - 8 + i];
     const int64_t lag = draw(net.late) ? net.lag : 0;
-    add_result((struct arrival){net.free_at + net.delay + lag, number});
+    add_result((struct passage){net.free_at + net.delay + lag, number});
     return true;
 }
 
@@ -224,6 +231,33 @@ static void a_lost_single_query_is_repeated_soon(void **state)
     assert_int_equal(load.given_up, 0);
 }
 
+/* Under one number, the first two times soon, then after twice the time each: a datagram that is
+ * lost costs milliseconds, and a service that is slow is not flooded. */
+static void a_lost_query_is_repeated_soon_and_then_more_rarely(void **state)
+{
+    int64_t intervals[SENDINGS_MAX];
+    open_network(0, 0, 100 * us);
+    net.requests.tries = 2;
+    query_for(10 * ms, 1);
+    assert_int_equal(net.requests.counts.repeated, 0);
+    net.loss = 1;
+    const struct passage *at = &net.sending[net.sent];
+    const int before = (int) net.sent;
+    query_for(s, 1);
+    const int count = (int) net.sent - before;
+    assert_true(net.sent < SENDINGS_MAX);
+    assert_in_range(count, 5, 10);
+    for (int i = 1; i < count; i++) {
+        assert_int_equal(at[i].number, at[0].number);
+        intervals[i] = at[i].time - at[i - 1].time;
+        if (i <= 2)
+            assert_in_range(intervals[i], ms, 20 * ms);
+        else
+            assert_in_range(intervals[i], 2 * intervals[i - 1] - 2 * ms, 2 * intervals[i - 1] + ms);
+    }
+    assert_int_equal(load.given_up, 1);
+}
+
 /* A wait does not end before a deadline or a result: the client does not spin. */
 static void a_wait_lasts_until_something_is_due(void **state)
 {
@@ -257,7 +291,38 @@ static void slow_queries_that_are_overtaken_back_off(void **state)
     assert_true((double) net.requests.counts.repeated < 8 * slow);
 }
 
+/* A service that is slow, and at first stops for a while, has not reached most queries: of those
+ * that wait, only the oldest is repeated. One that is lost is repeated once later ones have their
+ * results, not when nothing else is left of the window. */
+static void queries_in_line_are_not_repeated(void **state)
+{
+    open_network(0, 0, 3 * ms);
+    net.requests.timeout_ns = 5 * s;
+    net.free_at = now + 100 * ms;
+    net.lost = 3;
+    query_for(550 * ms, FMB_CLIENT_RAW_WINDOW);
+    assert_true(load.answers >= 140 && net.sent < SENDINGS_MAX);
+    assert_in_range(net.requests.counts.repeated, 1, 30);
+    int again = 3;
+    while (net.sending[again].number != net.sending[2].number)
+        again++;
+    assert_true(again < FMB_CLIENT_RAW_WINDOW + 16);
+}
+
 /* ---- Delay ---- */
+
+/* The service takes 85 ms for each query, so that the first is repeated after 10, 30 and 70. The
+ * time from the last repeat to its result is not the time that the service takes: a client that
+ * measured it would go on to repeat. */
+static void a_slow_service_gets_repeats_at_first_only(void **state)
+{
+    open_network(0, 0, 85 * ms);
+    net.requests.timeout_ns = 5 * s;
+    net.drops_repeats = true;
+    query_for(20 * 86 * ms, 1);
+    assert_in_range(load.answers, 19, 21);
+    assert_in_range(net.requests.counts.repeated, 1, 10);
+}
 
 /* When the network becomes slow, at first every query is repeated before its result comes. */
 static void the_interval_adapts_to_a_longer_delay(void **state)
@@ -336,9 +401,12 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_full_window_keeps_a_share_of_its_rate_under_loss),
         cmocka_unit_test(a_lost_single_query_is_repeated_soon),
+        cmocka_unit_test(a_lost_query_is_repeated_soon_and_then_more_rarely),
         cmocka_unit_test(a_wait_lasts_until_something_is_due),
         cmocka_unit_test(reordered_results_cause_few_repeats),
         cmocka_unit_test(slow_queries_that_are_overtaken_back_off),
+        cmocka_unit_test(queries_in_line_are_not_repeated),
+        cmocka_unit_test(a_slow_service_gets_repeats_at_first_only),
         cmocka_unit_test(the_interval_adapts_to_a_longer_delay),
         cmocka_unit_test(a_busy_service_is_queried_for_a_minute),
         cmocka_unit_test(no_service_takes_precedence_over_late),

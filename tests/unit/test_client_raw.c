@@ -3,14 +3,16 @@
 
 #include "fmb_client_raw.h"
 #include "geometry_write.h"
+#include "leap_clock.h"
 #include "relay.h"
 #include "wire.h"
 
 #include <sys/ioctl.h>
-#include <time.h>
 #include <unistd.h>
 
-enum { BODIES = 30, PATIENCE_S = 10 };
+enum { BODIES = 30, PATIENCE_S = 60 };
+
+static const int64_t s = 1000000000; /* nanoseconds */
 
 /* A cube of its own size for each id. */
 static struct query_placement cube_of(int64_t id, unsigned char geometry[GEOMETRY_FRAME_BYTES_MAX])
@@ -90,7 +92,7 @@ static void many_pairs_are_answered_over_a_bad_bus(void **state)
     relay->double_result = 3;
     memset(pair, 0, sizeof pair);
     relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 0.05, 60);
+    struct fmb_client *client = relay_client(relay, 0.05, 1000);
     for (int i = 0; i < COUNT; i++)
         send_pair(client, 1 + i % BODIES, 1 + (i + 7) % BODIES, &pair[i]);
     finish(client);
@@ -109,14 +111,21 @@ static void many_pairs_are_answered_over_a_bad_bus(void **state)
     relay_close(relay);
 }
 
+static void let_all_time_pass(struct relay *relay)
+{
+    (void) relay;
+    clock_leap(100 * s);
+}
+
 static void a_window_of_64_is_under_way(void **state)
 {
     static struct pair pair[FMB_CLIENT_RAW_WINDOW];
     struct relay *relay = relay_new();
     relay->deaf = true;
+    relay->before = let_all_time_pass;
     memset(pair, 0, sizeof pair);
     relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 0.05, 2);
+    struct fmb_client *client = relay_client(relay, 30, 2);
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++) {
         assert_true(fmb_client_raw_ready(client, 400));
         send_pair(client, 1, 2, &pair[i]);
@@ -128,6 +137,8 @@ static void a_window_of_64_is_under_way(void **state)
         assert_int_equal(pair[i].status, FMB_CLIENT_NO_SERVICE);
     }
     /* Known to be silent, it gets one query at a time. */
+    relay_wait(relay, FMB_CLIENT_RAW_WINDOW);
+    relay->before = NULL;
     send_pair(client, 1, 2, &pair[0]);
     assert_false(fmb_client_raw_ready(client, 400));
     relay->deaf = false;
@@ -138,7 +149,6 @@ static void a_window_of_64_is_under_way(void **state)
     relay_close(relay);
 }
 
-/* No more bytes than a stock receive buffer holds: two of the largest datagrams. */
 /* A query is lost, and its caller comes back only when the time for all its repeats is over. */
 static void a_caller_that_was_away_repeats_its_query(void **state)
 {
@@ -146,9 +156,10 @@ static void a_caller_that_was_away_repeats_its_query(void **state)
     struct relay *relay = relay_new();
     relay->lose_query = 1;
     relay_open(relay, 10);
-    struct fmb_client *client = relay_client(relay, 0.2, 2);
+    struct fmb_client *client = relay_client(relay, 30, 2);
     send_pair(client, 1, 2, &pair);
-    nanosleep(&(struct timespec){0, 600000000}, NULL);
+    relay_wait(relay, 1);
+    clock_leap(90 * s);
     relay->lose_query = 0;
     finish(client);
     assert_int_equal(pair.called, 1);
@@ -157,6 +168,7 @@ static void a_caller_that_was_away_repeats_its_query(void **state)
     relay_close(relay);
 }
 
+/* No more bytes than a stock receive buffer holds: two of the largest datagrams. */
 static void large_queries_are_few_at_a_time(void **state)
 {
     static struct pair pair;
@@ -268,7 +280,7 @@ static void scenes_and_definitions_are_answered(void **state)
     struct relay *relay = relay_new();
     relay->lose_query = 3;
     relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 0.1, 60);
+    struct fmb_client *client = relay_client(relay, 0.1, 600);
     query_scene(client, &scene);
     assert_int_equal(scene.verdict_count, BODIES * (BODIES - 1) / 2);
     assert_int_equal(scene.handle_count, BODIES);
@@ -324,7 +336,7 @@ static void no_call_within_a_callback(void **state)
     struct relay *relay = relay_new();
     unsigned char message[QUERY_BYTES_MAX];
     relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 1, 6);
+    struct fmb_client *client = relay_client(relay, 10, 6);
     const size_t size = pair_query(1, 2, message);
     assert_int_equal(
         fmb_client_raw_send(client, FMB_CLIENT_PAIR, message, size, size, step_within, client),
