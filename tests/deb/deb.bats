@@ -1,10 +1,11 @@
-# The packages that 'make deb' built, and the first command of the README, on a bare Debian 12.
+# The packages that 'make deb' built, and the first command of the README, on a bare Debian of this machine's
+# release.
 # 'make deb-test' runs this; it needs root, and a mirror of Debian (MIRROR=).
 
 setup_file() {
     [ "$(id -u)" = 0 ] && command -v debootstrap > /dev/null || return 0
     export root=$BATS_FILE_TMPDIR/root
-    debootstrap --variant=minbase bookworm "$root" ${MIRROR-} > "$BATS_FILE_TMPDIR/debootstrap" 2>&1 ||
+    debootstrap --variant=minbase "$(. /etc/os-release; echo "$VERSION_CODENAME")" "$root" ${MIRROR-} > "$BATS_FILE_TMPDIR/debootstrap" 2>&1 ||
         { tail "$BATS_FILE_TMPDIR/debootstrap"; return 1; }
     mount -t proc proc "$root/proc"
     # Without its own files: build, and what git keeps.

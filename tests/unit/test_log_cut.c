@@ -263,7 +263,7 @@ static struct log_cut_counts cut_logs(char *const *log, int count, const char *o
     const struct log_cut_options options = {.log = log,
                                             .log_count = count,
                                             .prefix = "",
-                                            .output = {output, OUTPUT_LOG, &rules},
+                                            .output = {output, OUTPUT_LOG, &rules, NULL},
                                             .choice = *choice};
     const struct log_cut_sink sink = {on_cut_damage, on_cut_progress, NULL};
     struct log_cut_counts counts;
