@@ -54,12 +54,10 @@ static const char usage[] =
     "                       definitions and results\n"
     "  --frames N           capacity of the cache, in frames, as fmbd --frames\n"
     "                       (65536)\n"
-    "  --bus                the service on the bus answers, not this process\n"
+    "  --bus                the service on the bus answers, not this process, as fast\n"
+    "                       as it can\n"
     "  --log-prefix P       the channels in the logs begin with P, if not with that\n"
     "                       of --prefix, which is then that of the service on the bus\n"
-    "  --speed X            with --bus: send X times as fast as was logged, 1 for\n"
-    "                       real time; without it, or 0, as fast as the service\n"
-    "                       answers\n"
     "  --timeout SECONDS    with --bus: longest time before a query is sent again\n"
     "                       (0.5)\n"
     "  --retries N          with --bus: give a query up, and end, after N + 1\n"
@@ -378,9 +376,8 @@ static bool check_bus(const struct args *args, const struct replay_arguments *op
 {
     if (options->live && options->frames > 0)
         return args_error(args, "--frames does not go with --bus");
-    if (!options->live && (options->bus.speed >= 0 || options->bus.timeout > 0 ||
-                           options->retries >= 0 || args->bus.url))
-        return args_error(args, "--speed, --timeout, --retries and --lcm-url go with --bus");
+    if (!options->live && (options->bus.timeout > 0 || options->retries >= 0 || args->bus.url))
+        return args_error(args, "--timeout, --retries and --lcm-url go with --bus");
     return true;
 }
 
@@ -392,7 +389,6 @@ static void complete(struct replay_arguments *options)
     options->retries = options->retries >= 0 ? options->retries : 9;
     bus->url = options->where.url;
     bus->prefix = options->where.prefix;
-    bus->speed = bus->speed >= 0 ? bus->speed : 0;
     bus->timeout = bus->timeout > 0 ? bus->timeout : 0.5;
     bus->retries = (int) options->retries;
     options->replay.bus = options->live ? bus : NULL;
@@ -409,7 +405,6 @@ int cmd_replay(int argc, char **argv)
                    .write_golden = {.kind = OUTPUT_LOG, .rules = &rules}},
         .junit = {.kind = OUTPUT_REPORT, .rules = &rules, .other = &options.replay.write_golden},
         .html = {.kind = OUTPUT_PAGE, .rules = &rules, .other = &options.junit},
-        .bus = {.speed = -1},
         .limit = 1000,
         .retries = -1,
     };
@@ -428,7 +423,6 @@ int cmd_replay(int argc, char **argv)
         {"limit", ARGS_INTEGER, &options.limit, .high = INT32_MAX},
         {"bus", ARGS_FLAG, .out = &options.live},
         {"log-prefix", ARGS_OTHER, &options.log_prefix, .take = args_prefix},
-        {"speed", ARGS_NUMBER, &options.bus.speed, .high = 1e9},
         {"timeout", ARGS_NUMBER, &options.bus.timeout, .low = 0.001, .high = 1e6},
         {"retries", ARGS_INTEGER, &options.retries, .high = 1000000},
         {.name = NULL},

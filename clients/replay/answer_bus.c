@@ -5,8 +5,8 @@
  * sink for each query, with the encoded result, which has the ids of the query in the log.
  *
  * Steps of a query:
- *   1. wait_for_turn() handles results until the query is due at the pace of the log (due_at()),
- *      and the request engine has capacity for it and its expected result (bytes_of()).
+ *   1. wait_for_capacity() handles results until the request engine has capacity for the query and
+ *      its expected result (bytes_of()).
  *   2. send() takes a slot and passes the query to the engine (fmb_client_raw.h), which assigns
  *      its own ids, repeats lost queries and pauses while the service is busy.
  *   3. step() runs the engine, which calls on_result() for each result, or with a negative status
@@ -29,7 +29,6 @@
 #include "process.h"
 #include "replayed.h"
 
-#include <math.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,9 +40,6 @@ enum { POLL_EVERY = 256 };
 
 /* Offsets in results of the ids of the query, and of the service's id. */
 enum { CLIENT_AT = 16, SEQUENCE_AT = 24 };
-
-/* The longest delay, some 30 years. */
-static const double delay_max_ns = 1e18;
 
 /* A query under way. */
 struct slot {
@@ -59,7 +55,7 @@ struct answer_bus {
     int signals; /* readable after SIGINT and SIGTERM */
     struct slot slot[FMB_CLIENT_RAW_WINDOW];
     int under_way;
-    int64_t begun_at, first_utime, server_id;
+    int64_t begun_at, server_id;
     unsigned polls;
     struct tally_bus counts;
     struct logged_query query;    /* the one to be sent */
@@ -162,28 +158,12 @@ bool answer_bus_is_running(struct answer_bus *bus)
 
 /* ---- Queries ---- */
 
-/* When a query is due, nanoseconds of clock_ns(). Times of a log may have any value. */
-static int64_t due_at(struct answer_bus *bus, int64_t utime)
+/* Returns whether the replay goes on. */
+static bool wait_for_capacity(struct answer_bus *bus, size_t bytes)
 {
-    if (bus->begun_at == 0) {
-        bus->begun_at = clock_ns();
-        bus->first_utime = utime;
-    }
-    if (bus->options.speed == 0)
-        return bus->begun_at;
-    const double us = (double) utime - (double) bus->first_utime;
-    return bus->begun_at + (int64_t) fmin(fmax(0, 1000 * us / bus->options.speed), delay_max_ns);
-}
-
-static void wait_for_turn(struct answer_bus *bus, const struct match_place *place, size_t bytes)
-{
-    const int64_t due = due_at(bus, place->utime);
-    int64_t time;
-    while (is_running(bus) &&
-           ((time = clock_ns()) < due || !fmb_client_raw_ready(bus->client, bytes)))
-        step(bus, time < due ? due : time + 1000000000);
-    if (bus->options.speed > 0 && clock_ns() - due > bus->counts.late_ns)
-        bus->counts.late_ns = clock_ns() - due;
+    while (is_running(bus) && !fmb_client_raw_ready(bus->client, bytes))
+        step(bus, clock_ns() + 1000000000);
+    return is_running(bus);
 }
 
 /* The larger of the query and its expected result, bytes. A result with many contacts may be
@@ -221,9 +201,7 @@ static void send(struct answer_bus *bus, struct match_item *item, const unsigned
 void answer_bus_supply(struct answer_bus *bus, const unsigned char *bytes, uint32_t size)
 {
     logged_query_read(&bus->query, LOG_SCENE_QUERY, bytes, size);
-    while (is_running(bus) && !fmb_client_raw_ready(bus->client, size))
-        step(bus, clock_ns() + 1000000000);
-    if (!is_running(bus))
+    if (!wait_for_capacity(bus, size))
         return;
     bus->counts.supplied++;
     send(bus, NULL, bytes, size, size);
@@ -235,8 +213,9 @@ void answer_bus_query(struct answer_bus *bus, struct match_item *item, const uns
 {
     logged_query_read(&bus->query, (enum log_kind) item->key.kind, bytes, size);
     const size_t largest = bytes_of(bus, size);
-    wait_for_turn(bus, &item->place, largest);
-    if (!is_running(bus))
+    if (bus->begun_at == 0)
+        bus->begun_at = clock_ns();
+    if (!wait_for_capacity(bus, largest))
         return;
     bus->counts.whole += item->sent_whole;
     send(bus, item, bytes, size, largest);

@@ -1,7 +1,7 @@
 /* Answers the queries of a log by a service on the bus; local_answerer.h does so in this process.
  * Uses the request engine of the client library, which keeps many queries under way, repeats lost
- * ones and pauses when the service is busy. This module adds the pace of the log, and restores the
- * ids. For one thread at a time. */
+ * ones and pauses when the service is busy. This module restores the ids. For one thread at a time.
+ */
 #ifndef ANSWER_BUS_H
 #define ANSWER_BUS_H
 
@@ -12,7 +12,6 @@
 struct answer_bus_options {
     const char *url;    /* NULL: LCM_DEFAULT_URL, or this host */
     const char *prefix; /* of the channels; "": none */
-    double speed;       /* factor on the pace of the log; 0: as fast as possible */
     double timeout;     /* seconds; as in fmb_client_options */
     int retries;        /* a query fails after retries + 1 timeouts */
 };
@@ -32,9 +31,8 @@ void answer_bus_close(struct answer_bus *bus); /* may be NULL */
 
 /* The next three functions may call the sink for earlier queries. */
 
-/* Sends a query as soon as it is due and the client library has capacity for it. In: valid ids; at
- * most QUERY_BYTES_MAX bytes, which are copied. The item has to stay valid until the sink is
- * called. */
+/* Sends a query as soon as the client library has capacity for it. In: valid ids; at most
+ * QUERY_BYTES_MAX bytes, which are copied. The item has to stay valid until the sink is called. */
 void answer_bus_query(struct answer_bus *bus, struct match_item *item, const unsigned char *bytes,
                       uint32_t size);
 

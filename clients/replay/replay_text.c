@@ -284,8 +284,6 @@ static void print_bus(FILE *out, const struct tally_bus *bus)
     if (bus->ns > 0)
         fprintf(out, " (%s a second)",
                 number_grouped((int64_t) ((double) bus->answered / seconds), text));
-    if (bus->late_ns > 0)
-        fprintf(out, ", at most %.1f ms late", 1e-6 * (double) bus->late_ns);
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
         if (counts[i].count == 0)
             continue;

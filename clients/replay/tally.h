@@ -40,7 +40,6 @@ struct tally_bus {
     int64_t end;       /* enum answer_bus_end */
     int64_t answered;  /* queries of the log answered */
     int64_t ns;        /* from the first query to the last answer, nanoseconds */
-    int64_t late_ns;   /* largest delay of a query at the pace of the log, nanoseconds */
     int64_t resent;    /* queries sent again for lack of an answer */
     int64_t whole;     /* queries sent again with frames that the service did not hold */
     int64_t not_sent;  /* queries too long for a datagram, or with ids out of range */
