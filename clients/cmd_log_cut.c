@@ -7,7 +7,6 @@
 #include "log_cut.h"
 #include "number.h"
 #include "progress.h"
-#include "query.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -27,8 +26,6 @@ static const char usage[] =
     "  --channel NAME       events on this channel; or NAME is a POSIX extended\n"
     "                       regular expression that matches the whole name. May be\n"
     "                       repeated\n"
-    "  --body ID            queries that contain a body with this id, and their\n"
-    "                       results; no other events. May be repeated\n"
     "  --json               one line of JSON in place of the text\n"
     "  -p, --prefix P       the service's channels begin with P\n"
     "  -h, --help\n"
@@ -54,15 +51,6 @@ static bool take_channel(const struct args *args, void *choice)
     char why[LOG_CHOICE_WHY_MAX];
     return log_choice_add_channel(choice, optarg, why) ||
            args_error(args, "--channel: '%s' is no regular expression: %s", optarg, why);
-}
-
-static bool take_body(const struct args *args, void *choice)
-{
-    long id;
-    if (!args_integer(args, 1, QUERY_ID_MAX, &id))
-        return false;
-    log_choice_add_body(choice, id);
-    return true;
 }
 
 /* ---- Reports ---- */
@@ -190,7 +178,6 @@ int cmd_log_cut(int argc, char **argv)
         {"from", ARGS_NUMBER, &choice->from, .high = 1e12},
         {"to", ARGS_NUMBER, &choice->to, .high = 1e12},
         {"channel", ARGS_OTHER, choice, .take = take_channel},
-        {"body", ARGS_OTHER, choice, .take = take_body},
         {"json", ARGS_FLAG, .out = &options.json},
         {.name = NULL},
     };

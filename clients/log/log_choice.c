@@ -25,7 +25,6 @@ void log_choice_clear(struct log_choice *choice)
         free(choice->channel[i].text);
     }
     free(choice->channel);
-    free(choice->body);
     *choice = log_choice_all();
 }
 
@@ -46,17 +45,9 @@ bool log_choice_add_channel(struct log_choice *choice, const char *text,
     return true;
 }
 
-void log_choice_add_body(struct log_choice *choice, int64_t id)
-{
-    choice->body = allocate_grow(choice->body, &choice->body_capacity, choice->body_count + 1,
-                                 sizeof *choice->body);
-    choice->body[choice->body_count++] = id;
-}
-
 bool log_choice_is_all(const struct log_choice *choice)
 {
-    return choice->from == -INFINITY && choice->to == INFINITY && choice->channel_count == 0 &&
-           choice->body_count == 0;
+    return choice->from == -INFINITY && choice->to == INFINITY && choice->channel_count == 0;
 }
 
 bool log_choice_has_time(const struct log_choice *choice, int64_t first_utime, int64_t utime)
@@ -84,21 +75,4 @@ bool log_choice_has_channel(const struct log_choice *choice, const struct log_ev
         if (matches(&choice->channel[i], event))
             return true;
     return choice->channel_count == 0;
-}
-
-static bool is_chosen(const struct log_choice *choice, int64_t id)
-{
-    for (size_t i = 0; i < choice->body_count; i++)
-        if (choice->body[i] == id)
-            return true;
-    return false;
-}
-
-bool log_choice_has_body(const struct log_choice *choice, const struct query_placement *placement,
-                         int32_t count)
-{
-    for (int32_t i = 0; i < count; i++)
-        if (is_chosen(choice, placement[i].placed.id))
-            return true;
-    return choice->body_count == 0;
 }

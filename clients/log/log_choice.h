@@ -1,21 +1,18 @@
-/* Selects events of a log by time, channel and body. An event must meet all conditions given.
+/* Selects events of a log by time and channel. An event must meet all conditions given.
  * log_choice_all() has no conditions. */
 #ifndef LOG_CHOICE_H
 #define LOG_CHOICE_H
 
 #include "log_read.h"
-#include "query.h"
 
 struct log_channel_choice;
 
 struct log_choice {
     /* from <= t < to, log time in seconds since the first event; -INFINITY, INFINITY: no limit. */
     double from, to;
-    /* Owned. Without channels all of them are chosen; without bodies any query. */
+    /* Owned. Without channels all of them are chosen. */
     struct log_channel_choice *channel;
     size_t channel_count, channel_capacity;
-    int64_t *body; /* ids, from 1 */
-    size_t body_count, body_capacity;
 };
 
 struct log_choice log_choice_all(void);
@@ -26,7 +23,6 @@ void log_choice_clear(struct log_choice *choice);
 enum { LOG_CHOICE_WHY_MAX = 128 };
 bool log_choice_add_channel(struct log_choice *choice, const char *text,
                             char why[LOG_CHOICE_WHY_MAX]);
-void log_choice_add_body(struct log_choice *choice, int64_t id);
 
 /* Whether there are no conditions. */
 bool log_choice_is_all(const struct log_choice *choice);
@@ -34,7 +30,5 @@ bool log_choice_is_all(const struct log_choice *choice);
 /* Check a single condition. Times are log times, microseconds. */
 bool log_choice_has_time(const struct log_choice *choice, int64_t first_utime, int64_t utime);
 bool log_choice_has_channel(const struct log_choice *choice, const struct log_event *event);
-bool log_choice_has_body(const struct log_choice *choice, const struct query_placement *placement,
-                         int32_t count);
 
 #endif

@@ -75,12 +75,11 @@ static void read_logs(struct cutter *cut,
 
 /* ---- The first pass ---- */
 
-/* Reads a query or result, and of a query whether it is chosen by time and bodies. Returns false if
- * it cannot be decoded. */
+/* Reads a query or result, and of a query whether it is chosen by time. Returns false if it cannot
+ * be decoded. */
 static bool read_item(struct cutter *cut, enum log_kind kind, const struct log_event *event,
                       struct match_item *out)
 {
-    const struct log_choice *choice = &cut->options->choice;
     const uint32_t size = (uint32_t) event->kept;
     *out = (struct match_item){.place = {.log = cut->input.log, .offset = event->offset},
                                .is_result = log_kind_is_result(kind)};
@@ -91,8 +90,7 @@ static bool read_item(struct cutter *cut, enum log_kind kind, const struct log_e
     if (logged_query_read(&cut->query, kind, event->data, size))
         return false;
     out->place.in_range =
-        log_choice_has_time(choice, cut->first_utime, event->utime) &&
-        log_choice_has_body(choice, cut->query.placement, cut->query.placement_count);
+        log_choice_has_time(&cut->options->choice, cut->first_utime, event->utime);
     return true;
 }
 
@@ -199,7 +197,7 @@ static const struct match_item *next_item(struct cutter *cut, const struct log_e
 }
 
 /* A result is chosen with its query. Results without a query and other messages are chosen by their
- * own time, unless bodies are chosen. */
+ * own time. */
 static bool is_chosen(struct cutter *cut, enum log_kind kind, const struct log_event *event)
 {
     const struct log_choice *choice = &cut->options->choice;
@@ -209,7 +207,7 @@ static bool is_chosen(struct cutter *cut, enum log_kind kind, const struct log_e
         return false;
     if (query)
         return query->place.in_range;
-    return choice->body_count == 0 && log_choice_has_time(choice, cut->first_utime, event->utime) &&
+    return log_choice_has_time(choice, cut->first_utime, event->utime) &&
            (kind != LOG_NAMES || log_choice_is_all(choice));
 }
 

@@ -3,7 +3,7 @@
  *
  * Events are copied unchanged, with their log times, and renumbered from 0. A result is copied with
  * its query (match.h), wherever it is in the logs. A result without a query is chosen by its own
- * time. Events that are neither queries nor results have no bodies. Damage is left out.
+ * time. Damage is left out.
  *
  * A query that names a body by handle is preceded by a definition of it (definition_t, of client 0
  * and server 0), from anywhere in the logs, unless a copied event defines it earlier. Handles that

@@ -95,19 +95,6 @@ outcomes() {
     outcomes "$cut" | jq -e '.[1][1] == .[1][0] and .[1][0] > 5'
 }
 
-@test "--body selects the queries of a body and their results" {
-    generate clients "$log"
-    cuts 0 "$log" -o "$cut" --body 3
-    has '.pair_queries > 0 and .pair_results > 0 and .scene_queries > 0 and .statuses == 0'
-    outcomes "$cut" | jq -e '.[0][2] == 0 and .[1][2] == 0 and .[0][1] > 0'
-    one=$(jq .kept_events <<< "$output")
-    cuts 0 "$log" -o "$cut" --force --body 3 --body 103
-    has ".kept_events > $one"
-    cuts 0 "$log" -o "$cut" --force --body 3 --from 0.02 --channel FMB_PAIR_QUERY
-    has '.pair_queries > 0 and .kept_events == .pair_queries'
-    cuts 1 "$log" -o "$cut" --force --body 4711
-}
-
 @test "--channel selects by name and by expression" {
     generate foreign "$log"
     cuts 0 "$log" -o "$cut"
@@ -277,7 +264,7 @@ outcomes() {
 
 @test "wrong usage is refused with exit code 2" {
     for arguments in '' 'LOG' '-o FILE' 'LOG -o FILE --from -1' 'LOG -o FILE --to x' \
-        'LOG -o FILE --body 0' 'LOG -o FILE --body 9007199254740992' 'LOG -o FILE --channel (' \
+        'LOG -o FILE --channel (' \
         'LOG -o FILE --from 10 --to 5' 'LOG -o FILE --from 1 --to 1' 'LOG -o FILE --what'; do
         # shellcheck disable=SC2086
         run --separate-stderr "$FMB" log cut $arguments

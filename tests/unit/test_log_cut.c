@@ -4,7 +4,6 @@
 
 #include "log_cut.h"
 
-#include "logged_query.h"
 #include "input.h"
 #include "log_world.h"
 #include "log_write.h"
@@ -169,18 +168,11 @@ static bool read_next(struct reading *reading)
     return outcome == LOG_EVENT;
 }
 
-static struct logged_query query;
 static struct log_channels channels;
 
 static enum log_kind kind_of(const struct log_event *event)
 {
     return log_kind_of(&channels, event);
-}
-
-static bool read_query(const struct log_event *event, struct logged_query *out)
-{
-    return log_kind_is_query(kind_of(event)) &&
-           !logged_query_read(out, kind_of(event), event->data, (uint32_t) event->kept);
 }
 
 static bool is_same_event(const struct log_event *a, const struct log_event *b)
@@ -205,11 +197,8 @@ static bool is_added(const struct log_event *event)
 
 static bool is_chosen(const struct log_choice *choice, const struct log_event *event)
 {
-    const bool in_time = log_choice_has_time(choice, LOG_WORLD_BEGIN, event->utime) &&
-                         log_choice_has_channel(choice, event);
-    if (!read_query(event, &query))
-        return in_time && choice->body_count == 0;
-    return in_time && log_choice_has_body(choice, query.placement, query.placement_count);
+    return log_choice_has_time(choice, LOG_WORLD_BEGIN, event->utime) &&
+           log_choice_has_channel(choice, event);
 }
 
 /* The next event that the cut has not added. */
@@ -326,8 +315,6 @@ static struct log_choice draw_choice(struct log_world *world)
         choice.from = draw_time(world);
     if (world_draw(world, 4) > 1)
         choice.to = choice.from == -INFINITY ? draw_time(world) : choice.from + draw_time(world);
-    for (int i = world_draw(world, 4) - 1; i > 0; i--)
-        log_choice_add_body(&choice, 1 + world_draw(world, 10));
     if (world_draw(world, 4) == 0)
         assert_true(log_choice_add_channel(&choice, channel[world_draw(world, 3)], why));
     return choice;
@@ -335,11 +322,8 @@ static struct log_choice draw_choice(struct log_world *world)
 
 static void name_cut(const struct log_world *world, const struct log_choice *choice)
 {
-    int used = snprintf(cut_name, sizeof cut_name, "seed %lu: from %g to %g",
-                        (unsigned long) world->seed, choice->from, choice->to);
-    for (size_t i = 0; i < choice->body_count; i++)
-        used += snprintf(cut_name + used, sizeof cut_name - (size_t) used, ", body %ld",
-                         (long) choice->body[i]);
+    snprintf(cut_name, sizeof cut_name, "seed %lu: from %g to %g", (unsigned long) world->seed,
+             choice->from, choice->to);
 }
 
 /* A cut of the world's log, and a cut of that. */
