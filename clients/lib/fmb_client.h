@@ -154,13 +154,10 @@ const char *fmb_client_why(const struct fmb_client *client);
 
 /* Counts since fmb_client_open(). */
 struct fmb_client_counts {
-    uint64_t queries;   /* sent, repeats not counted */
-    uint64_t answered;  /* queries with a result, refusals included */
-    uint64_t repeated;  /* queries sent again */
-    uint64_t malformed; /* results that could not be decoded, or did not match their query */
-    /* Second results of a query that contradict the first: a service on the bus is wrong, or a
-     * program forges results. Detected for the last 256 queries. */
-    uint64_t contradicting;
+    uint64_t queries;          /* sent, repeats not counted */
+    uint64_t answered;         /* queries with a result, refusals included */
+    uint64_t repeated;         /* queries sent again */
+    uint64_t malformed;        /* results that could not be decoded, or did not match their query */
     uint64_t unsent;           /* queries that could not be sent */
     uint64_t outages;          /* times that the service stopped answering */
     uint64_t bytes;            /* of queries sent */

@@ -2,7 +2,7 @@
  *
  * LCM loses datagrams without notice. A query without a result is therefore sent again, with the
  * same sequence number. A busy service is queried again after a pause. A second result of a query
- * is ignored, but compared with the first (recent.h).
+ * is ignored.
  *
  * A service answers the queries of a client in order, with few exceptions. So, as in RACK (RFC
  * 8985), a query is presumed lost and is repeated when a query that was sent later has its result:
@@ -22,10 +22,25 @@
 #ifndef REQUEST_H
 #define REQUEST_H
 
+#include "fmb_client_raw.h"
 #include "query.h"
-#include "recent.h"
 
+#include <stdbool.h>
 #include <stdint.h>
+
+/* A well-formed result; or the end of a request without one: status is negative (enum
+ * fmb_client_status). */
+struct request_result {
+    enum fmb_client_kind kind;
+    int status;
+    const char *detail; /* "" if OK, or if there is no result */
+    /* The result, decoded. The one of another kind may be NULL, or is not to be read. */
+    const struct pair_result *pair;
+    const struct scene_result *scene;
+    const unsigned char *bytes; /* of the message; NULL: there is no result */
+    size_t size;
+    int64_t number; /* sequence number of the query */
+};
 
 /* What a handler returns about a result. */
 enum request_taken {
@@ -42,7 +57,7 @@ enum { REQUEST_IDS_END = 32 };
 
 struct request;
 
-/* Called with a result of the request; or without one (recent.h), when the request has ended. */
+/* Called with a result of the request; or without one, when the request has ended. */
 typedef enum request_taken request_handler(void *user, struct request *request,
                                            const struct request_result *result);
 
@@ -87,6 +102,14 @@ struct request_pace {
     int64_t reordering_window;  /* from the result of a later query to the repeat of this one */
 };
 
+/* A query that has its result. */
+struct request_answered {
+    bool used, repeated; /* repeated: it was sent more than once */
+    enum fmb_client_kind kind;
+    int64_t number;
+};
+enum { REQUEST_ANSWERED_MAX = 256 };
+
 /* The functions by which requests reach the bus, from the owner of the requests. */
 struct request_transport {
     void *user;
@@ -106,7 +129,7 @@ struct requests {
     int64_t timeout_ns; /* of one try */
     int tries;
     struct fmb_client_counts counts;
-    struct recent recent;
+    struct request_answered answered[REQUEST_ANSWERED_MAX]; /* [number % REQUEST_ANSWERED_MAX] */
     struct request request[FMB_CLIENT_RAW_WINDOW];
     int count;           /* under way */
     size_t charge;       /* of all of them */

@@ -1047,7 +1047,6 @@ static void an_answer_counts_more_than_an_unknown_body(void **state)
         relay_query(client, &scene);
     assert_int_equal(fmb_client_get_counts(client).malformed, 0);
     assert_int_equal(relay_dropped(relay), 0);
-    assert_int_equal(fmb_client_get_counts(client).contradicting, 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -1167,112 +1166,36 @@ static void other_pair_verdict(struct pair_result *result, int turn)
 {
     (void) turn;
     result->answer.verdict = result->answer.verdict == FMB_SEPARATED ? FMB_TOUCHING : FMB_SEPARATED;
-    result->answer.has_contact = result->answer.has_box = false;
+    result->answer.has_contact = result->answer.verdict == FMB_TOUCHING;
+    result->answer.contact[0] = result->answer.contact[1] = 0;
+    result->answer.has_box = false;
     result->dim = 0;
 }
 
-/* What may differ: service, compute time, and whether bodies came whole. */
-static void other_service(struct scene_result *result, int turn)
-{
-    (void) turn;
-    result->server_id++;
-    result->compute_ns += 1000;
-    result->handle_count = 0;
-}
-
-static void busy(struct scene_result *result, int turn)
-{
-    not_on(result, turn);
-    result->status = FMB_BUSY;
-    result->handle_count = 0;
-}
-
-/* Reads second results until so many have contradicted, or if none will, those that wait. */
-static uint64_t contradicting(struct fmb_client *client, uint64_t expected)
-{
-    while (fmb_client_get_counts(client).contradicting < expected + (expected == 0) &&
-           fmb_client_handle(client, expected > 0 ? 60 : 0.05) > 0)
-        continue;
-    return fmb_client_get_counts(client).contradicting;
-}
-
-static void contradicting_second_results_are_counted(void **state)
-{
-    static const struct {
-        relay_lie *lie;
-        bool contradicts;
-    } second[] = {{NULL, false},
-                  {other_verdict, true},
-                  {other_service, false},
-                  {busy, false},
-                  {step_by_step, false}};
-    for (size_t i = 0; i < COUNT(second); i++) {
-        struct relay *relay = relay_new();
-        relay->double_result = 1;
-        relay->second_lie = second[i].lie;
-        relay_open(relay, 2000);
-        struct fmb_client *client = relay_client(relay, 5, 1);
-        struct fmb_scene scene = listed();
-        scene.want = 0;
-        relay_query(client, &scene);
-        const uint64_t results = fmb_client_get_counts(client).answered;
-        assert_true(results > 1);
-        if (second[i].contradicts) /* more where a query was repeated */
-            assert_true(contradicting(client, results) >= results);
-        else
-            assert_int_equal(contradicting(client, 0), 0);
-        fmb_client_close(client);
-        relay_close(relay);
-    }
-}
-
-static void contradicting_results_of_pairs_are_counted(void **state)
+/* The answers are those of the first results. */
+static void second_results_are_ignored(void **state)
 {
     struct relay *relay = relay_new();
-    relay->double_result = 1;
     struct fmb_client_answer answer;
+    struct fmb_scene scene = listed();
+    relay->double_result = 1;
+    relay->second_lie = other_verdict;
+    relay->second_pair_lie = other_pair_verdict;
     relay_open(relay, 2000);
     struct fmb_client *client = relay_client(relay, 5, 1);
-    relay_draw(placement, 2, 3, 1, 1, 1);
-    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
-    assert_int_equal(contradicting(client, 0), 0);
-    relay->second_pair_lie = other_pair_verdict;
-    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
-    assert_true(contradicting(client, 1) >= 1);
+    scene.want = 0;
+    for (int i = 0; i < 5; i++) {
+        relay_query(client, &scene);
+        assert_int_equal(fmb_client_query_pair(client, &placement[i], 1, 0, &answer), FMB_OK);
+        struct fmb_answer expected;
+        assert_int_equal(
+            fmb_decide(fmb_method_default(), &placement[i], &placement[i + 1], 1, 0, &expected),
+            FMB_OK);
+        assert_int_equal(answer.answer.verdict, expected.verdict);
+    }
+    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
-}
-
-/* Of recent results as many are kept as the numbers have remainders: an old one is not taken for a
- * newer one of the same remainder. */
-static void old_results_contradict_nothing(void **state)
-{
-    static struct recent recent;
-    struct pair_result pair = {.answer = {.verdict = FMB_SEPARATED}};
-    unsigned char bytes[2][QUERY_BYTES_MAX];
-    struct request_result result[2];
-    for (int i = 0; i < 2; i++) {
-        pair.method = i;
-        result[i] = (struct request_result){.kind = FMB_CLIENT_PAIR,
-                                            .pair = &pair,
-                                            .bytes = bytes[i],
-                                            .size = wire_write_pair_result(&pair, bytes[i])};
-    }
-    recent_note(&recent, &result[0], 0, false);
-    assert_true(recent_contradicts(&recent, &result[1]));
-    /* Refusals that depend on the state of the service contradict nothing, first or second. */
-    static const int refusals[] = {FMB_BUSY, FMB_UNKNOWN_BODY};
-    for (int i = 0; i < 2; i++) {
-        struct request_result refusal = result[1];
-        refusal.status = refusals[i];
-        assert_false(recent_contradicts(&recent, &refusal));
-        refusal.number = 1;
-        recent_note(&recent, &refusal, 1, false);
-        refusal.status = FMB_OK;
-        assert_false(recent_contradicts(&recent, &refusal));
-    }
-    result[1].number = RECENT_MAX;
-    assert_false(recent_contradicts(&recent, &result[1]));
 }
 
 /* ---- The process ---- */
@@ -1492,9 +1415,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_late_answer_to_the_query_by_handle_is_taken),
         cmocka_unit_test(wrong_handles_of_a_pair_are_malformed),
         cmocka_unit_test(bodies_are_kept_until_the_table_is_full),
-        cmocka_unit_test(contradicting_second_results_are_counted),
-        cmocka_unit_test(contradicting_results_of_pairs_are_counted),
-        cmocka_unit_test(old_results_contradict_nothing),
+        cmocka_unit_test(second_results_are_ignored),
         cmocka_unit_test(many_open_descriptors_do_not_matter),
         cmocka_unit_test(a_child_that_closes_harms_nothing),
         cmocka_unit_test(no_call_within_a_callback),
