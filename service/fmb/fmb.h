@@ -780,44 +780,31 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  * A certificate proves the verdict of a pair; checking it requires no trust in the engine. It is
  * one line of ASCII, in one of the forms
  *
- *     separated NORMAL
- *     touching NORMAL at TIME (X Y Z)
- *     overlapping at TIME (X Y Z)
+ *     separated normal (X Y Z)
+ *     touching normal (X Y Z) at TIME a WEIGHTS b WEIGHTS
+ *     overlapping at TIME a WEIGHTS b WEIGHTS
  *
- * TIME (seconds, in [0, T]; 0 for a static pair) and the world coordinates X Y Z (X Y in 2D) are
- * exact rational numbers in lowest terms: 3, -3, 0, 22/7. NORMAL is a sign and a direction: "+ " or
- * "- ", then U, U x V or (U x V) x W, cross products of vectors with these names:
+ * TIME (seconds, in [0, T]; 0 for a static pair) and the coordinates X Y Z (X Y in 2D) of the
+ * normal N are exact rational numbers in lowest terms: 3, -3, 0, 22/7.
  *
- *     a0..a5, b0..b5   edges of the first frame and of the second: a0, a1, a2 the components c_0,
- *                      c_1, c_2; of a tetrahedron in 3D a3, a4, a5 = c_1 - c_0, c_2 - c_0,
- *                      c_2 - c_1; of a tetrahedron in 2D and of a face a2 = c_1 - c_0; all of
- *                      them rotated by the orientation, R(q) c
- *     v                velocity of the second minus that of the first, 0 for a missing one
- *     d                origin of the second minus that of the first
- *     z                (0, 0, 1), in 2D only: such pairs lie in the plane z = 0
+ * WEIGHTS are one or more of INDEX:WEIGHT and INDEX, in ascending order of the indices, separated
+ * by spaces: vertices of the frame, and positive rational numbers. Vertex 0 of a tetrahedron or a
+ * face is its origin, vertex i + 1 the end of c_i; vertex k of a cuboid or a box is the origin plus
+ * the c_i for which bit i of k is set. The vertices of a hull are those of struct fmb_frame, from
+ * 0. A frame's weights times its vertices at TIME sum to a point. The weights of each frame sum to
+ * 1, and both frames have the same point. Weights that these equations determine are left out.
  *
- * Let N be the direction times the sign. The certificate states:
+ * The certificate states:
  *   separated    N . (b - a) > 0 for all points a of the first frame and b of the second, at all
  *                times of the window.
  *   touching     N . (b - a) >= 0 for all those points and times, and N is not constant on at least
  *                one of the frames, so that no point is ever in both relative interiors. At TIME
- *                the point is in both frames.
- *   overlapping  At TIME the point is in the relative interiors of both frames.
+ *                the frames have a point in common.
+ *   overlapping  At TIME the frames have a point in common, and the vertices named of each have the
+ *                same affine hull as the frame: so the point is in both relative interiors.
  *
- * Of a pair with a hull the forms are
- *
- *     separated normal (X Y Z)
- *     touching normal (X Y Z) at TIME (X Y Z) a WEIGHTS b WEIGHTS
- *     overlapping at TIME (X Y Z) a WEIGHTS b WEIGHTS
- *
- * with a normal N of rational numbers, and WEIGHTS one or more of INDEX:WEIGHT, in ascending order
- * of the indices, separated by spaces: vertices of the frame, and positive rational numbers that
- * add up to one. The vertices of a hull are those of struct fmb_frame, from 0. Vertex 0 of a
- * tetrahedron or a face is its origin, vertex i + 1 the end of c_i; vertex k of a cuboid or a box
- * is the origin plus the c_i for which bit i of k is set. These certificates state, besides the
- * above, that the point is the sum of the weights times the vertices of each frame at TIME; and, if
- * overlapping, that these vertices have the same affine hull as the frame: so the point is in its
- * relative interior.
+ * "overlapping at 0 a 0 1 2:1/16 4 b 0 1:1/16 2 4:1/16" of two cubes: three weights are stated, and
+ * five follow from five equations.
  */
 
 /* The capacity that every certificate fits into, its terminating 0 included. */
@@ -838,24 +825,21 @@ enum { FMB_CERTIFICATE_MAX = 16384 };
  * A pair whose numbers span more than 512 bits has no certificate: the status is FMB_OK and the
  * text is empty. The span is measured as follows. Let 2^e be the largest power of two that divides
  * every coordinate of every component, origin, vertex of a hull, position and v T of the pair, and
- * half of every size of a box. Let n be |q|^2 for the smallest integers q that are proportional to
- * the orientation; 1 without one, and m the product of both n, or one of them if they are equal.
- * The pair spans at most 512 bits if the magnitude of each coordinate of m times the components and
- * origins in the world, and m v T, is less than 2^(e + 512). For a pair with a hull, let 2^f be the
- * least power of two above the magnitudes of all these coordinates and halves, where the product of
- * such a power for the coordinates of v and one for T stands for v T. The pair spans f - e bits
- * plus the number of bits of m.
+ * half of every size of a box. Let 2^f be the least power of two above the magnitudes of all these,
+ * where the product of such a power for the coordinates of v and one for T stands for v T. Let n be
+ * |q|^2 for the smallest integers q that are proportional to the orientation; 1 without one, and m
+ * the product of both n, or one of them if they are equal. The pair spans f - e bits plus the
+ * number of bits of m.
  *
- * Most certificates are shorter than 200 bytes; of frames that are flat or touch, some thousand are
- * possible. The text is also empty if it would exceed the capacity above; no such pair is known.
- * The coordinates are chosen one after the other, each the simplest number on a line segment.
- * Cost: 50 microseconds for numbers of similar size, 6 ms at most; of a pair with a hull about that
- * of its verdict by the exact method. Memory is allocated as by the exact method. */
+ * Half of all certificates are shorter than 100 bytes. Longer are those that state times in windows
+ * of extreme length, and normals of pairs that touch. The text is also empty if it would exceed the
+ * capacity above; no such pair is known.
+ * Cost: about that of the verdict by the exact method. Memory is allocated as by the exact method.
+ */
 enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
                                 double duration, char *text, size_t size, size_t *length);
 
-/* The same in steps. A step takes less than a millisecond for a pair with a hull; any other pair
- * takes one step.
+/* The same in steps, each of less than a millisecond.
  *
  * fmb_certificate_begin() allocates *state. The placements must outlive it. Returns the status of
  * fmb_certificate(), but never FMB_OVER_LIMIT; *state is NULL if the status is not FMB_OK.

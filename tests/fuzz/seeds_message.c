@@ -100,7 +100,7 @@ static void write_pair_results(void)
     result.answer.box[1][0] = HUGE_VAL;
     write_pair_result("box-2d", &result);
     result.answer.has_contact = false;
-    result.certificate = "overlapping at 0 (1/2 1/3)";
+    result.certificate = "overlapping at 0 a 0 3 b 0:1/2 3:1/2";
     write_pair_result("certificate", &result);
     result = (struct pair_result){.method = 4, .dim = 3};
     result.answer.verdict = FMB_SEPARATED;

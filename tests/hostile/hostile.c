@@ -81,7 +81,7 @@ static size_t good_pair_query(unsigned char *out)
 
 static size_t good_pair_result(unsigned char *out)
 {
-    char detail[] = "", certificate[] = "touching + a0 at 0 (1 0 1/2)";
+    char detail[] = "", certificate[] = "touching normal (1 0 0) at 0 a 1 b 0";
     double contact[2] = {0, 0.5}, box[6] = {0, 0, 0, 1, 1, 1}, gap[2] = {0}, direction[3] = {0, 1};
     fmb_msgs_pair_result_t result = {.client_id = 2,
                                      .detail = detail,

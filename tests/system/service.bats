@@ -131,20 +131,19 @@ grid_scenes() {
 
 @test "a certificate of many digits passes over the bus" {
     start_fmbd
-    echo '{"dim": 3, "bodies": [
-        {"id": 1, "shape": "face", "origin": [7,0,-7e-60], "velocity": [-0.1,-1e60,0],
-         "components": [[5e-60,-1e60,0], [-3e-60,3e60,3e-30]]},
-        {"id": 2, "shape": "face", "origin": [0.1,0,0], "velocity": [-0.1,7,-1e30],
-         "components": [[1e60,-3e-30,3e60], [-5e-60,7,0.1]]}]}' > "$BATS_TEST_TMPDIR/scene.json"
+    echo '{"dim": 2, "duration": 1e-300, "bodies": [
+        {"id": 1, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[0,1]]},
+        {"id": 2, "shape": "cuboid", "origin": [-3,0.3], "velocity": [4e300,0],
+         "components": [[1,0],[0,1]]}]}' > "$BATS_TEST_TMPDIR/scene.json"
     same_answers --certificate "$BATS_TEST_TMPDIR/scene.json"
-    [ "$(jq '.pairs[0].certificate | length' "$BATS_TEST_TMPDIR/bus")" -gt 1500 ]
+    [ "$(jq '.pairs[0].certificate | length' "$BATS_TEST_TMPDIR/bus")" -gt 300 ]
     stop_fmbd
 }
 
 @test "a false answer is detected where a certificate is requested" {
     cube='"shape": "cuboid", "components": [[1,0],[0,1]]'
     echo "{\"dim\": 2, \"bodies\": [{\"id\": 1, $cube, \"origin\": [0,0]}, {\"id\": 2, $cube, \"origin\": [2,0]}]}" > "$BATS_TEST_TMPDIR/scene.json"
-    for certificate in 'overlapping at 0 (1/2 1/2)' 'separated + a0' 'nonsense'; do
+    for certificate in 'overlapping at 0 a 0 3 b 0:1/2 3:1/2' 'separated normal (-1 0)' 'nonsense'; do
         "$TOOLS/fake-peer" lie "$certificate" 3>&- &
         started="${started-} $!"
         run "$FMB" query --json --timeout 0.2 --retries 50 "$BATS_TEST_TMPDIR/scene.json"

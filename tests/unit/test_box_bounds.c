@@ -15,7 +15,6 @@
 #include "cell.h"
 #include "certified.h"
 #include "draw.h"
-#include "exact.h"
 #include "instructions.h"
 #include "limbs.h"
 #include "pair_draw.h"
@@ -30,6 +29,14 @@ extern kernel_box_function kernel_boxes_bare, kernel_boxes_planted;
 typedef double box_ends[2][FMB_DIM_MAX];
 
 enum { REAL, PLANTED, BARE, KERNELS };
+
+static void exact_box(const struct pair *pair, box_ends out)
+{
+    struct fmb_answer answer;
+    assert_int_equal(pair_decide(fmb_method_by_name("exact"), pair, FMB_WANT_BOX, &answer), FMB_OK);
+    assert_true(answer.has_box);
+    memcpy(out, answer.box, sizeof answer.box);
+}
 
 /* False where doubles give none. */
 static bool box_of(kernel_box_function *kernel, const struct fmb_prepared frame[2], double duration,
@@ -81,7 +88,7 @@ static double ratio_of(const struct question *question)
     for (int i = 0; i < KERNELS; i++)
         if (!box_of(kernels[i], frame, question->duration, box[i]))
             return -1;
-    exact_box(&frames, exact);
+    exact_box(&ready.pair, exact);
     double worst = -1;
     for (int axis = 0; axis < question->a.dim; axis++)
         for (int end = 0; end < 2; end++) {
@@ -337,13 +344,13 @@ static double largest_of(const struct fmb_prepared frame[2], double duration)
 
 /* Compares a box with the exact one. Returns what share of the limit its ends are off by at most.
  */
-static double compare_box(const struct question *question, const struct frame_pair *frames,
+static double compare_box(const struct question *question, const struct pair *pair,
                           const struct fmb_prepared frame[2], box_ends box)
 {
     const double limit = 1e-12 * largest_of(frame, question->duration);
     double worst = 0;
     box_ends exact;
-    exact_box(frames, exact);
+    exact_box(pair, exact);
     for (int axis = 0; axis < question->a.dim; axis++) {
         const double out[2] = {exact[0][axis] - box[0][axis], box[1][axis] - exact[1][axis]};
         for (int end = 0; end < 2; end++) {
@@ -387,12 +394,11 @@ static void boxes_of_edges_that_all_but_depend(void **state)
         draw_dependent(&draw, &cell, &question);
         if (!prepare_contact(&question, &ready, frame))
             continue;
-        const struct frame_pair frames = pair_frames(&ready.pair);
         met++;
         if (!certified_box(&frame[0], &frame[1], question.duration, box))
             continue;
         known++;
-        worst = fmax(worst, compare_box(&question, &frames, frame, box));
+        worst = fmax(worst, compare_box(&question, &ready.pair, frame, box));
     }
     printf("# %ld meet, boxes known of %ld; at most %.3g of the limit out\n", met, known, worst);
     assert_true(known > met / 2);
@@ -433,12 +439,11 @@ static void boxes_in_integers_hold_the_exact_ones(void **state)
             draw_dependent(&draw, &cell, &question);
         if (!prepare_contact(&question, &ready, frame))
             continue;
-        const struct frame_pair frames = pair_frames(&ready.pair);
         met++;
         if (!box_in_integers(&frame[0], &frame[1], question.duration, box))
             continue;
         known++;
-        worst = fmax(worst, compare_box(&question, &frames, frame, box));
+        worst = fmax(worst, compare_box(&question, &ready.pair, frame, box));
         assert_true(box_in_integers(&frame[1], &frame[0], question.duration, swapped));
         if (memcmp(box, swapped, sizeof box) != 0)
             referee_fail(&question, "another box in the other order");

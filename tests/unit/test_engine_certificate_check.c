@@ -1,6 +1,6 @@
 /* The checker of certificates: by hand, and on random texts that say something of small pairs,
- * flat or not. What it says of a point is held against the oracle, what it says of a normal
- * against whole numbers. */
+ * flat or not. What it says of weights is held against the oracle, what it says of a normal against
+ * whole numbers. */
 
 #include "unit.h"
 
@@ -92,109 +92,108 @@ struct by_hand {
     bool right;
 };
 
+/* Vertex k of a cube has the components i for which bit i of k is set. */
 static const struct by_hand cubes_by_hand[] = {
-    {3, false, FMB_SEPARATED, "separated + a0", true},
-    {3, false, FMB_SEPARATED, "separated + d", true},
-    {3, false, FMB_SEPARATED, "separated + a1 x b2", true},
-    {3, false, FMB_SEPARATED, "separated - b2 x a1", true},
-    {3, false, FMB_SEPARATED, "separated + (a0 x b1) x d", false},
-    {3, false, FMB_SEPARATED, "separated + (a1 x d) x b1", true},
-    {3, false, FMB_SEPARATED, "separated - a0", false},
-    {3, false, FMB_SEPARATED, "separated + v", false},
-    {3, false, FMB_SEPARATED, "separated + a3", false},
-    {3, false, FMB_SEPARATED, "separated + b3", false},
-    {3, false, FMB_SEPARATED, "separated + z", false},
-    {3, false, FMB_SEPARATED, "separated + a1 x z", false},
-    {3, false, FMB_SEPARATED, "separated + a", false},
-    {3, false, FMB_SEPARATED, "separated + c0", false},
-    {3, false, FMB_SEPARATED, "separated + ", false},
+    {3, false, FMB_SEPARATED, "separated normal (1 0 0)", true},
+    {3, false, FMB_SEPARATED, "separated normal (1/3 0 0)", true},
+    {3, false, FMB_SEPARATED, "separated normal (7 -1/2 5)", true},
+    {3, false, FMB_SEPARATED, "separated normal (2/6 0 0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (-1 0 0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (0 0 0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (0 1 0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (1 0 -0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (1 0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (1 0 0 0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (1 0 0", false},
+    {3, false, FMB_SEPARATED, "separated normal 1 0 0", false},
+    {3, false, FMB_SEPARATED, "separated normal ( 1 0 0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (1  0 0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (01 0 0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (+1 0 0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (1. 0 0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (1e3 0 0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (1/0 0 0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (1/ 0 0)", false},
+    {3, false, FMB_SEPARATED, "separated  normal (1 0 0)", false},
+    {3, false, FMB_SEPARATED, " separated normal (1 0 0)", false},
+    {3, false, FMB_SEPARATED, "separated normal (1 0 0) ", false},
+    {3, false, FMB_SEPARATED, "separated normal (1 0 0)\n", false},
+    {3, false, FMB_SEPARATED, "separated normal (1 0 0) at 0 a 1 b 0", false},
+    {3, false, FMB_SEPARATED, "separated + a0", false},
     {3, false, FMB_SEPARATED, "separated", false},
     {3, false, FMB_SEPARATED, "", false},
-    {3, false, FMB_SEPARATED, "separated a0", false},
-    {3, false, FMB_SEPARATED, "separated  + a0", false},
-    {3, false, FMB_SEPARATED, " separated + a0", false},
-    {3, false, FMB_SEPARATED, "separated + a0 ", false},
-    {3, false, FMB_SEPARATED, "separated + a0\n", false},
-    {3, false, FMB_SEPARATED, "separated + a00", false},
-    {3, false, FMB_SEPARATED, "separated + a0 at 0 (1 0 0)", false},
-    {3, false, FMB_SEPARATED, "separated + a1 x a1", false},
-    {3, false, FMB_SEPARATED, "separated + a1 x", false},
-    {3, false, FMB_SEPARATED, "separated + a1 x ", false},
-    {3, false, FMB_SEPARATED, "separated + a1 x b2 x b2", false},
-    {3, false, FMB_SEPARATED, "separated + (a1 x b2)", false},
-    {3, false, FMB_SEPARATED, "separated + (a1 x b2) x", false},
-    {3, false, FMB_SEPARATED, "separated + (a1) x b2", false},
-    {3, false, FMB_SEPARATED, "separated + ((a1 x b2) x a1) x a1", false},
-    {3, false, FMB_TOUCHING, "separated + a0", false},
-    {3, false, FMB_OVERLAPPING, "separated + a0", false},
-    {3, false, FMB_TOUCHING, "touching + a0 at 0 (1 0 0)", false},
-    {3, false, FMB_OVERLAPPING, "overlapping at 0 (1 0 0)", false},
+    {3, false, FMB_TOUCHING, "separated normal (1 0 0)", false},
+    {3, false, FMB_OVERLAPPING, "separated normal (1 0 0)", false},
+    {3, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 1:1 b 0:1", false},
+    {3, false, FMB_OVERLAPPING, "overlapping at 0 a 0 7 b 0:1/2 7:1/2", false},
 
-    {1, false, FMB_TOUCHING, "touching + a0 at 0 (1 0 0)", true},
-    {1, false, FMB_TOUCHING, "touching - b1 x a2 at 0 (1 1/2 2/3)", false},
-    {1, false, FMB_TOUCHING, "touching + b1 x a2 at 0 (1 1/2 2/3)", true},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 1:1 b 0:1", true},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 1 b 0", true},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 1:1/3 7:2/3 b 0:1/3 6:2/3", true},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 1:1/3 7 b 0 6", true},
     {1, false, FMB_TOUCHING,
-     "touching + b1 x a2 at 0 (1 1/2 123456789012345678901/"
-     "123456789012345678902)",
-     true},
+     "touching normal (1 0 0) at 0 a 1:123456789012345678901/123456789012345678902 7 b 0 6", true},
     {1, false, FMB_TOUCHING,
-     "touching + b1 x a2 at 0 (1 1/2 123456789012345678902/"
-     "123456789012345678901)",
+     "touching normal (1 0 0) at 0 a 1:123456789012345678902/123456789012345678901 7 b 0 6", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 1 7 b 0 6", false},
+    {1, false, FMB_TOUCHING, "touching normal (-1 0 0) at 0 a 1 b 0", false},
+    {1, false, FMB_TOUCHING, "touching normal (0 1 0) at 0 a 1 b 0", false},
+    {1, false, FMB_TOUCHING, "touching normal (0 0 0) at 0 a 1 b 0", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 1 a 1 b 0", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 1 b 2", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 0 b 0", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 1:1/2 b 0:1/2", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 8 b 0", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 1", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 b 0 a 1", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 a1 b0", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 01 b 0", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at a 1 b 0", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0)", false},
+    {1, false, FMB_TOUCHING, "touching at 0 a 1 b 0", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 1 b 0x", false},
+    {1, false, FMB_TOUCHING, "touching normal (1 0 0) at 0 (1 0 0) a 1 b 0", false},
+    {1, false, FMB_SEPARATED, "separated normal (1 0 0)", false},
+    {1, false, FMB_OVERLAPPING, "overlapping at 0 a 0:1/8 1:1/2 2:1/8 4:1/4 b 0 1:1/8 2 4", false},
+
+    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 a 0 1 2 4 b 0:7/10 1:1/10 2:1/10 4:1/10", true},
+    {0.5, false, FMB_OVERLAPPING,
+     "overlapping at 0 a 0:1/5 1:3/5 2:1/10 4:1/10 b 0:7/10 1:1/10 2:1/10 4:1/10", true},
+    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 a 0:1/5 1 2 4 b 0 1 2:1/10 4:1/10", true},
+    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 a 0:1/5 1 2 4:1/10 b 0 1 2:1/10 4:1/10", true},
+    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 a 0:1/5 1 2 4:1/10 b 0 1 2:1/10 4:1/9", false},
+    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 a 0:1/5 1 2 4 b 0 1:1/10 2 4", false},
+    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 a 0 1 2 4 b 0 1 2:1/10 4:1/10", false},
+    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 a 0 1 2 4 b 0:2/10 1:6/10 2:1/10 4:1/10",
      false},
-    {1, false, FMB_TOUCHING, "touching + v at 0 (1 0 0)", false},
-    {1, false, FMB_TOUCHING, "touching + a1 at 0 (1 0 0)", false},
-    {1, false, FMB_TOUCHING, "touching + a0 at 1 (1 0 0)", false},
-    {1, false, FMB_TOUCHING, "touching + a0 at 0 (1 0 -1/9)", false},
-    {1, false, FMB_TOUCHING, "touching + a0 at 0 (0 0 0)", false},
-    {1, false, FMB_TOUCHING, "touching + a0 at 0 (2 0 0)", false},
-    {1, false, FMB_TOUCHING, "touching + a0 at 0 (1 0)", false},
-    {1, false, FMB_TOUCHING, "touching + a0 at 0 (1 0 0 0)", false},
-    {1, false, FMB_TOUCHING, "touching + a0 at 0 (1 0 0", false},
-    {1, false, FMB_TOUCHING, "touching + a0 at 0 1 0 0", false},
-    {1, false, FMB_TOUCHING, "touching + a0 at (1 0 0)", false},
-    {1, false, FMB_TOUCHING, "touching + a0", false},
-    {1, false, FMB_TOUCHING, "touching at 0 (1 0 0)", false},
-    {1, false, FMB_TOUCHING, "touching + a0 at 0 (1 0 0)x", false},
-    {1, false, FMB_SEPARATED, "separated + a0", false},
-    {1, false, FMB_OVERLAPPING, "overlapping at 0 (1 1/2 1/2)", false},
-
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (2/3 1/2 1/2)", true},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (1/2 1/2 1/2)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (1 1/2 1/2)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (4/6 1/2 1/2)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (-2/-3 1/2 1/2)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (2/3 1/2 +1/2)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (2/3 01/2 1/2)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (2/3 1/02 1/2)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (2/3 1/2 1/0)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (2/3 1/2 0/0)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (2/3 1/2 1/)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (2/3 1/2 /2)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (2/3 1/2 .5)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (2/3 1/2 0.5)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (2/3 1/2 5e-1)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 (2/3  1/2 1/2)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0/1 (2/3 1/2 1/2)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0/3 (2/3 1/2 1/2)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at -0 (2/3 1/2 1/2)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 1 (2/3 1/2 1/2)", false},
-    {0.5, false, FMB_OVERLAPPING, "overlapping at 0/0 (2/3 1/2 1/2)", false},
+    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 a 0 1 2 4 b 0:1/5 1:3/5 2:1/10 4:1/10", false},
+    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 a 0:1/4 1:3/4 b 0:3/4 1:1/4", false},
+    {0.5, false, FMB_OVERLAPPING, "overlapping at 0 a 1 6 b 0:1/2 7:1/2", false},
+    {0.5, false, FMB_OVERLAPPING, "overlapping at 0/1 a 0 1 2 4 b 0:7/10 1:1/10 2:1/10 4:1/10",
+     false},
+    {0.5, false, FMB_OVERLAPPING, "overlapping at 1 a 0 1 2 4 b 0:7/10 1:1/10 2:1/10 4:1/10",
+     false},
+    {0.5, false, FMB_OVERLAPPING, "overlapping at -0 a 0 1 2 4 b 0:7/10 1:1/10 2:1/10 4:1/10",
+     false},
     {0.5, false, FMB_OVERLAPPING, "overlapping", false},
 
-    {-1.5, true, FMB_OVERLAPPING, "overlapping at 3/2 (1/8 1/2 1/2)", true},
-    {-1.5, true, FMB_OVERLAPPING, "overlapping at 1 (0 1/2 1/2)", false},
-    {-1.5, true, FMB_OVERLAPPING, "overlapping at 3 (1/2 1/2 1/2)", false},
-    {-1.5, true, FMB_OVERLAPPING, "overlapping at -1 (1/2 1/2 1/2)", false},
-    {0.5, true, FMB_OVERLAPPING, "overlapping at 1/2 (7/8 1/2 1/2)", true},
-    {0.5, true, FMB_OVERLAPPING, "overlapping at -1/2 (7/8 1/2 1/2)", false},
-    {-2, true, FMB_TOUCHING, "touching - a0 at 2 (0 0 1/3)", true},
-    {-2, true, FMB_TOUCHING, "touching - v at 2 (0 0 1/3)", true},
-    {-2, true, FMB_TOUCHING, "touching - v at 1 (0 0 1/3)", false},
-    {-2, true, FMB_TOUCHING, "touching + v at 2 (0 0 1/3)", false},
-    {1, true, FMB_TOUCHING, "touching + v at 0 (1 1 1)", true},
-    {1.5, true, FMB_SEPARATED, "separated + v", true},
-    {-2.5, true, FMB_SEPARATED, "separated - v", true},
-    {-1.5, true, FMB_SEPARATED, "separated - v", false},
+    {-1.5, true, FMB_OVERLAPPING, "overlapping at 3/2 a 0 1 2 4 b 0:1/10 1:7/10 2:1/10 4:1/10",
+     false},
+    {-1.5, true, FMB_OVERLAPPING, "overlapping at 2 a 0 1 2 4 b 0:1/10 1:7/10 2:1/10 4:1/10", true},
+    {-1.5, true, FMB_OVERLAPPING, "overlapping at 3 a 0 1 2 4 b 0:1/10 1:7/10 2:1/10 4:1/10",
+     false},
+    {-1.5, true, FMB_OVERLAPPING, "overlapping at 1 a 0 1 2 4 b 0:1/10 1:7/10 2:1/10 4:1/10",
+     false},
+    {-1.5, true, FMB_OVERLAPPING, "overlapping at -1 a 0 1 2 4 b 0:1/10 1:7/10 2:1/10 4:1/10",
+     false},
+    {-2, true, FMB_TOUCHING, "touching normal (-1 0 0) at 2 a 0:2/3 4:1/3 b 1 5", true},
+    {-2, true, FMB_TOUCHING, "touching normal (-1 0 0) at 1 a 0:2/3 4:1/3 b 1 5", false},
+    {-2, true, FMB_TOUCHING, "touching normal (1 0 0) at 2 a 0:2/3 4:1/3 b 1 5", false},
+    {1, true, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 1 b 0", true},
+    {1.5, true, FMB_SEPARATED, "separated normal (1 0 0)", true},
+    {-2.5, true, FMB_SEPARATED, "separated normal (-1 0 0)", true},
+    {-1.5, true, FMB_SEPARATED, "separated normal (-1 0 0)", false},
 };
 
 static void cubes_by_hand_are_judged_right(void **state)
@@ -209,20 +208,16 @@ static void cubes_by_hand_are_judged_right(void **state)
     }
 }
 
-/* A tetrahedron in space has six edges. */
-static void edges_of_tetrahedra_have_six_names(void **state)
+/* Vertex 0 of a tetrahedron is its origin, vertex i + 1 the end of component i. */
+static void vertices_of_tetrahedra_are_counted_from_the_origin(void **state)
 {
-    struct question question = cubes(3, false);
+    struct question question = cubes(1, false);
     question.a.shape = question.b.shape = FMB_TETRAHEDRON;
     struct ready ready;
     referee_ready(&question, &ready);
-    assert_true(holds(&ready.pair, FMB_SEPARATED, "separated - a3")); /* (-1, 1, 0) */
-    assert_true(holds(&ready.pair, FMB_SEPARATED, "separated - b4")); /* (-1, 0, 1) */
-    assert_false(holds(&ready.pair, FMB_SEPARATED, "separated - b5"));
-    assert_false(holds(&ready.pair, FMB_SEPARATED, "separated - a6"));
-    assert_false(holds(&ready.pair, FMB_SEPARATED, "separated + b6"));
-    assert_false(holds(&ready.pair, FMB_SEPARATED, "separated + a/"));
-    assert_false(holds(&ready.pair, FMB_SEPARATED, "separated + a:"));
+    assert_true(holds(&ready.pair, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 1 b 0"));
+    assert_false(holds(&ready.pair, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 2 b 0"));
+    assert_false(holds(&ready.pair, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 4 b 0"));
 }
 
 static void unknown_verdicts_are_not_proved(void **state)
@@ -230,12 +225,12 @@ static void unknown_verdicts_are_not_proved(void **state)
     const struct question question = cubes(3, false);
     struct ready ready;
     referee_ready(&question, &ready);
-    assert_false(holds(&ready.pair, (enum fmb_verdict) 0, "separated + a0"));
-    assert_false(holds(&ready.pair, (enum fmb_verdict) 4, "separated + a0"));
+    assert_false(holds(&ready.pair, (enum fmb_verdict) 0, "separated normal (1 0 0)"));
+    assert_false(holds(&ready.pair, (enum fmb_verdict) 4, "separated normal (1 0 0)"));
     assert_false(holds(&ready.pair, (enum fmb_verdict) - 1, ""));
 }
 
-/* In the plane z = 0 points have two coordinates, and there is a z. */
+/* In the plane normals have two coordinates. */
 static void squares_by_hand_are_judged_right(void **state)
 {
     struct question question = {.a = {2, FMB_TETRAHEDRON, {{1, 0}, {0, 1}}, {0}, {0}, false},
@@ -243,14 +238,13 @@ static void squares_by_hand_are_judged_right(void **state)
                                 .duration = 1};
     struct ready ready;
     referee_ready(&question, &ready);
-    assert_true(holds(&ready.pair, FMB_TOUCHING, "touching + z x a2 at 0 (1/2 1/2)") !=
-                holds(&ready.pair, FMB_TOUCHING, "touching - z x a2 at 0 (1/2 1/2)"));
-    assert_true(holds(&ready.pair, FMB_TOUCHING, "touching - z x a2 at 0 (1/2 1/2)"));
-    assert_false(holds(&ready.pair, FMB_TOUCHING, "touching - z x a2 at 0 (1/2 1/2 0)"));
-    assert_false(holds(&ready.pair, FMB_TOUCHING, "touching - z x a2 at 0 (1/2)"));
-    assert_false(holds(&ready.pair, FMB_TOUCHING, "touching - z x a3 at 0 (1/2 1/2)"));
-    assert_false(holds(&ready.pair, FMB_TOUCHING, "touching + z at 0 (1/2 1/2)"));
-    assert_false(holds(&ready.pair, FMB_TOUCHING, "touching - z x b2 at 0 (1/2 1/2)"));
+    assert_true(holds(&ready.pair, FMB_TOUCHING, "touching normal (1 1) at 0 a 1:1/2 2:1/2 b 0:1"));
+    assert_true(holds(&ready.pair, FMB_TOUCHING, "touching normal (1 1) at 0 a 1 2 b 0"));
+    assert_false(holds(&ready.pair, FMB_TOUCHING, "touching normal (1 1 0) at 0 a 1 2 b 0"));
+    assert_false(holds(&ready.pair, FMB_TOUCHING, "touching normal (1) at 0 a 1 2 b 0"));
+    assert_false(holds(&ready.pair, FMB_TOUCHING, "touching normal (-1 -1) at 0 a 1 2 b 0"));
+    assert_false(holds(&ready.pair, FMB_TOUCHING, "touching normal (1 2) at 0 a 1 2 b 0"));
+    assert_false(holds(&ready.pair, FMB_TOUCHING, "touching normal (1 1) at 0 a 1 3 b 0"));
 }
 
 static void the_reason_is_optional(void **state)
@@ -259,9 +253,12 @@ static void the_reason_is_optional(void **state)
     struct ready ready;
     char why[4] = "###";
     referee_ready(&question, &ready);
-    assert_true(pair_certificate_holds(&ready.pair, FMB_SEPARATED, "separated + a0", NULL, 0));
-    assert_false(pair_certificate_holds(&ready.pair, FMB_SEPARATED, "separated - a0", NULL, 0));
-    assert_false(pair_certificate_holds(&ready.pair, FMB_SEPARATED, "separated - a0", why, 2));
+    assert_true(
+        pair_certificate_holds(&ready.pair, FMB_SEPARATED, "separated normal (1 0 0)", NULL, 0));
+    assert_false(
+        pair_certificate_holds(&ready.pair, FMB_SEPARATED, "separated normal (-1 0 0)", NULL, 0));
+    assert_false(
+        pair_certificate_holds(&ready.pair, FMB_SEPARATED, "separated normal (-1 0 0)", why, 2));
     assert_int_equal('\0', why[1]);
     assert_int_equal('#', why[2]);
 }
@@ -288,31 +285,6 @@ static enum fmb_verdict oracle_of_point(const struct solid *solid, double t, con
     return verdict;
 }
 
-/* before, then quarters / 4 in lowest terms; returns its length. */
-static int print_quarters(char *out, size_t size, const char *before, int quarters)
-{
-    if (quarters % 4 == 0)
-        return snprintf(out, size, "%s%d", before, quarters / 4);
-    if (quarters % 2 == 0)
-        return snprintf(out, size, "%s%d/2", before, quarters / 2);
-    return snprintf(out, size, "%s%d/4", before, quarters);
-}
-
-/* A point of the frame at time t, or near it: parameters that are quarters, of a simplex too. */
-static void draw_point(struct draw *draw, const struct solid *solid, double t,
-                       double p[FMB_DIM_MAX])
-{
-    for (int axis = 0; axis < solid->dim; axis++)
-        p[axis] = solid->origin[axis] + (solid->moving ? t * solid->velocity[axis] : 0);
-    for (int i = 0; i < solid_count(solid); i++) {
-        const double x = draw_int(draw, 0, solid->shape == FMB_CUBOID ? 4 : 2) / 4.0;
-        for (int axis = 0; axis < solid->dim; axis++)
-            p[axis] += x * solid->component[i][axis];
-    }
-    if (draw_int(draw, 0, 3) == 0)
-        p[draw_int(draw, 0, solid->dim - 1)] += draw_int(draw, -1, 1) / 4.0;
-}
-
 static bool has_velocity(const struct solid *solid)
 {
     for (int axis = 0; axis < solid->dim && solid->moving; axis++)
@@ -321,56 +293,101 @@ static bool has_velocity(const struct solid *solid)
     return false;
 }
 
-/* On output: " at TIME (POINT)" in text, the numbers in *t and p, all of them quarters. */
-static void draw_event(struct draw *draw, const struct question *question, char *text, size_t size,
-                       double *t, double p[FMB_DIM_MAX])
+/* A point in eighths of vertices: all of them or a few, some weights left out. */
+struct weighted {
+    char text[300];
+    bool all, stated;
+    double point[FMB_DIM_MAX]; /* at time t */
+};
+
+static int count_of_vertices(const struct solid *solid)
 {
-    const bool moving = has_velocity(&question->a) || has_velocity(&question->b);
-    const int quarters = moving ? draw_int(draw, 0, (int) (4 * question->duration)) : 0;
-    int used = print_quarters(text, size, " at ", quarters);
-    *t = quarters / 4.0;
-    draw_point(draw, draw_coin(draw) ? &question->a : &question->b, *t, p);
-    for (int axis = 0; axis < question->a.dim; axis++)
-        used += print_quarters(text + used, size - (size_t) used, axis == 0 ? " (" : " ",
-                               (int) (4 * p[axis]));
-    snprintf(text + used, size - (size_t) used, ")");
+    const int count = solid_count(solid);
+    return solid->shape == FMB_CUBOID ? 1 << count : count + 1;
 }
 
-/* The certificate with the event in place of its own. */
-static void put_event(const char *certificate, const char *event, char *out, size_t size)
+static bool has_component(const struct solid *solid, int vertex, int i)
 {
-    const char *at = strstr(certificate, " at ");
-    snprintf(out, size, "%.*s%s", (int) (at - certificate), certificate, event);
+    return solid->shape == FMB_CUBOID ? vertex >> i & 1 : vertex == i + 1;
 }
 
-static void points_are_where_the_oracle_says(void **state)
+static void set_weighted(struct draw *draw, const struct solid *solid, const int eighths[8],
+                         double t, struct weighted *out)
+{
+    const bool states_all = draw_coin(draw);
+    size_t used = 0;
+    out->all = out->stated = true;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        out->point[axis] = solid->origin[axis] + (solid->moving ? t * solid->velocity[axis] : 0);
+    for (int v = 0; v < count_of_vertices(solid); v++) {
+        const int divisor = eighths[v] % 2 ? 1 : eighths[v] % 4 ? 2 : eighths[v] % 8 ? 4 : 8;
+        const bool states = states_all || draw_coin(draw);
+        out->all = out->all && eighths[v] > 0;
+        if (eighths[v] == 0)
+            continue;
+        out->stated = out->stated && states;
+        used += (size_t) snprintf(out->text + used, sizeof out->text - used,
+                                  !states        ? " %d"
+                                  : divisor == 8 ? " %d:%d"
+                                                 : " %d:%d/%d",
+                                  v, eighths[v] / divisor, 8 / divisor);
+        for (int i = 0; i < solid_count(solid); i++)
+            for (int axis = 0; axis < FMB_DIM_MAX && has_component(solid, v, i); axis++)
+                out->point[axis] += eighths[v] / 8.0 * solid->component[i][axis];
+    }
+}
+
+static void draw_eighths(struct draw *draw, int vertices, int eighths[8])
+{
+    const bool all = draw_coin(draw);
+    for (int v = 0; v < 8; v++)
+        eighths[v] = all && v < vertices;
+    for (int left = all ? 8 - vertices : 8; left > 0; left--)
+        eighths[draw_int(draw, 0, vertices - 1)]++;
+}
+
+/* " at TIME a WEIGHTS b WEIGHTS" takes the place of what the certificate says. A text that holds
+ * names a point that the oracle finds in both frames; one that states all weights, of all vertices,
+ * holds if and only if they give one point. */
+static void weights_are_what_the_oracle_says(void **state)
 {
     struct draw draw;
-    draw_begin(&draw, "points_are_where_the_oracle_says");
-    long taken = 0, refused = 0;
-    char text[TEXT_SIZE], event[200], other[2 * TEXT_SIZE];
+    draw_begin(&draw, "weights_are_what_the_oracle_says");
+    long taken = 0, refused = 0, followed = 0;
+    char text[TEXT_SIZE], other[2 * TEXT_SIZE];
     for (long n = draw_sample(12000); n > 0; n--) {
-        struct question question;
+        const struct question question = draw_question(&draw);
         struct ready ready;
-        double t, p[FMB_DIM_MAX] = {0};
-        question = draw_question(&draw);
+        struct weighted a, b;
+        int eighths[2][8];
         referee_ready(&question, &ready);
         const enum fmb_verdict verdict = make(&ready.pair, text);
         if (verdict == FMB_SEPARATED)
             continue;
-        draw_event(&draw, &question, event, sizeof event, &t, p);
-        put_event(text, event, other, sizeof other);
-        const enum fmb_verdict in_a = oracle_of_point(&question.a, t, p);
-        const enum fmb_verdict in_b = oracle_of_point(&question.b, t, p);
-        const bool right = in_a >= verdict && in_b >= verdict;
-        if (holds(&ready.pair, verdict, other) != right) {
-            printf("# %s\n", other);
-            referee_fail(&question, "the checker and the oracle differ over a point");
-        }
-        *(right ? &taken : &refused) += 1;
+        const bool moving = has_velocity(&question.a) || has_velocity(&question.b);
+        const double t = moving ? draw_int(&draw, 0, (int) question.duration) : 0;
+        draw_eighths(&draw, count_of_vertices(&question.a), eighths[0]);
+        draw_eighths(&draw, count_of_vertices(&question.b), eighths[1]);
+        const bool same = count_of_vertices(&question.a) == count_of_vertices(&question.b);
+        set_weighted(&draw, &question.a, eighths[0], t, &a);
+        set_weighted(&draw, &question.b, eighths[!same], t, &b);
+        snprintf(other, sizeof other, "%.*s at %g a%s b%s", (int) (strstr(text, " at ") - text),
+                 text, t, a.text, b.text);
+        const bool does = holds(&ready.pair, verdict, other);
+        const bool one = memcmp(a.point, b.point, sizeof a.point) == 0;
+        if (a.stated && b.stated && (a.all || verdict == FMB_TOUCHING) &&
+            (b.all || verdict == FMB_TOUCHING) && does != one)
+            referee_fail(&question, other);
+        if (does && a.stated &&
+            (oracle_of_point(&question.a, t, a.point) < verdict ||
+             oracle_of_point(&question.b, t, a.point) < verdict))
+            referee_fail(&question, other);
+        *(does ? &taken : &refused) += 1;
+        followed += does && !(a.stated && b.stated);
     }
-    printf("# %ld points taken, %ld refused\n", taken, refused);
-    assert_true(taken > 0 && refused > 0);
+    printf("# %ld taken, %ld of them with weights that follow, %ld refused\n", taken, followed,
+           refused);
+    assert_true(taken > 0 && followed > 0 && refused > 0);
 }
 
 /* ---- Normals, against whole numbers ---- */
@@ -403,59 +420,46 @@ static long dot(struct integer_vector u, struct integer_vector v)
     return u.at[0] * v.at[0] + u.at[1] * v.at[1] + u.at[2] * v.at[2];
 }
 
-/* A name that fmb.h gives to a vector of the pair, and the vector. */
-static struct integer_vector draw_vector(struct draw *draw, const struct question *question,
-                                         char name[3])
+/* A vector of the pair: a difference of vertices, the offset, the velocity, or the normal of the
+ * plane. */
+static struct integer_vector draw_vector(struct draw *draw, const struct question *question)
 {
     static const struct integer_vector zero;
     const struct solid *a = &question->a, *b = &question->b;
     const int kind = draw_int(draw, 0, 9);
-    name[1] = '\0';
-    if (kind == 0) {
-        name[0] = 'd';
+    if (kind == 0)
         return difference(integer_vector(b->origin), integer_vector(a->origin));
-    }
-    if (kind == 1) {
-        name[0] = 'v';
+    if (kind == 1)
         return difference(b->moving ? integer_vector(b->velocity) : zero,
                           a->moving ? integer_vector(a->velocity) : zero);
-    }
-    if (kind <= 4 && a->dim == 2) {
-        name[0] = 'z';
+    if (kind <= 4 && a->dim == 2)
         return (struct integer_vector){{0, 0, 1}};
-    }
-    static const int from[] = {-1, -1, -1, 0, 0, 1}, to[] = {0, 1, 2, 1, 2, 2};
     const struct solid *solid = draw_coin(draw) ? a : b;
-    const int count = solid_count(solid);
-    const bool simplex = solid->shape != FMB_CUBOID;
-    const int edge = draw_int(draw, 0, simplex ? count * (count + 1) / 2 - 1 : count - 1);
-    name[0] = solid == a ? 'a' : 'b';
-    name[1] = (char) ('0' + edge);
-    name[2] = '\0';
-    if (simplex && count == 2 && edge == 2)
-        return difference(integer_vector(solid->component[1]), integer_vector(solid->component[0]));
-    const struct integer_vector end = integer_vector(solid->component[to[edge]]);
-    return from[edge] < 0 ? end : difference(end, integer_vector(solid->component[from[edge]]));
+    const int count = solid_count(solid), i = draw_int(draw, 0, count - 1);
+    const int j = draw_int(draw, 0, count - 1);
+    const struct integer_vector edge = integer_vector(solid->component[i]);
+    return solid->shape == FMB_CUBOID || i == j
+               ? edge
+               : difference(edge, integer_vector(solid->component[j]));
 }
 
-/* On output: " NORMAL" in text. Returns N. */
-static struct integer_vector draw_normal(struct draw *draw, const struct question *question,
-                                         char *text, size_t size)
+/* A product of such vectors, with either sign. */
+static struct integer_vector draw_normal(struct draw *draw, const struct question *question)
 {
-    char u[3], v[3], w[3], sign = draw_coin(draw) ? '+' : '-';
-    struct integer_vector normal = draw_vector(draw, question, u);
-    const int vectors = draw_int(draw, 1, 3);
-    if (vectors > 1)
-        normal = product(normal, draw_vector(draw, question, v));
-    if (vectors > 2)
-        normal = product(normal, draw_vector(draw, question, w));
-    switch (vectors) {
-    case 1: snprintf(text, size, " %c %s", sign, u); break;
-    case 2: snprintf(text, size, " %c %s x %s", sign, u, v); break;
-    case 3: snprintf(text, size, " %c (%s x %s) x %s", sign, u, v, w); break;
-    }
     static const struct integer_vector zero;
-    return sign == '-' ? difference(zero, normal) : normal;
+    struct integer_vector normal = draw_vector(draw, question);
+    for (int vectors = draw_int(draw, 1, 3); vectors > 1; vectors--)
+        normal = product(normal, draw_vector(draw, question));
+    if (question->a.dim == 2)
+        normal.at[2] = 0;
+    return draw_coin(draw) ? difference(zero, normal) : normal;
+}
+
+/* " normal (X Y Z)" */
+static void print_normal(char *out, size_t size, int dim, struct integer_vector normal)
+{
+    snprintf(out, size, dim == 3 ? " normal (%ld %ld %ld)" : " normal (%ld %ld)", normal.at[0],
+             normal.at[1], normal.at[2]);
 }
 
 /* [0] least and [1] greatest N . x over a frame at t = 0. */
@@ -495,7 +499,7 @@ static void normals_are_what_whole_numbers_say(void **state)
     struct draw draw;
     draw_begin(&draw, "normals_are_what_whole_numbers_say");
     long taken = 0, refused = 0;
-    char text[TEXT_SIZE], normal_text[40], other[2 * TEXT_SIZE];
+    char text[TEXT_SIZE], normal_text[80], other[2 * TEXT_SIZE];
     for (long n = draw_sample(12000); n > 0; n--) {
         struct question question;
         struct ready ready;
@@ -504,8 +508,8 @@ static void normals_are_what_whole_numbers_say(void **state)
         const enum fmb_verdict verdict = make(&ready.pair, text);
         if (verdict == FMB_OVERLAPPING)
             continue;
-        const struct integer_vector normal =
-            draw_normal(&draw, &question, normal_text, sizeof normal_text);
+        const struct integer_vector normal = draw_normal(&draw, &question);
+        print_normal(normal_text, sizeof normal_text, question.a.dim, normal);
         const char *event = strstr(text, " at ");
         snprintf(other, sizeof other, "%s%s%s", fmb_verdict_name(verdict), normal_text,
                  event ? event : "");
@@ -546,16 +550,18 @@ static void random_bytes_prove_nothing(void **state)
 static void many_digits_are_read(void **state)
 {
     enum { ZEROS = 20000 };
-    const struct question question = cubes(0, false);
+    const struct question question = cubes(1, false);
     struct ready ready;
     referee_ready(&question, &ready);
     const size_t size = 2 * ZEROS + 100;
     char *zeros = calloc(ZEROS + 1, 1), *text = malloc(size);
     memset(zeros, '0', ZEROS);
-    snprintf(text, size, "overlapping at 0 (1/2 1/2 1%s/1%s1)", zeros, zeros + 1);
-    assert_true(holds(&ready.pair, FMB_OVERLAPPING, text));
-    snprintf(text, size, "overlapping at 0 (1/2 1/2 1%s1/1%s)", zeros + 1, zeros);
-    assert_false(holds(&ready.pair, FMB_OVERLAPPING, text));
+    static const char *const formats[2] = {"touching normal (1 0 0) at 0 a 1:1%s0/1%s1 7 b 0 6",
+                                           "touching normal (1 0 0) at 0 a 1:1%s1/1%s0 7 b 0 6"};
+    for (int i = 0; i < 2; i++) {
+        snprintf(text, size, formats[i], zeros + 1, zeros + 1);
+        assert_true(holds(&ready.pair, FMB_TOUCHING, text) == (i == 0));
+    }
     free(text);
     free(zeros);
 }
@@ -570,8 +576,8 @@ static void corners_beyond_the_doubles_are_judged(void **state)
     question.a.local[0] = -DBL_MAX;
     question.b.local[0] = DBL_MAX;
     referee_ready(&question, &ready);
-    assert_true(holds(&ready.pair, FMB_SEPARATED, "separated + a1 x a2"));
-    assert_false(holds(&ready.pair, FMB_TOUCHING, "touching + a1 x a2 at 0 (0 0 0)"));
+    assert_true(holds(&ready.pair, FMB_SEPARATED, "separated normal (1 0 0)"));
+    assert_false(holds(&ready.pair, FMB_TOUCHING, "touching normal (1 0 0) at 0 a 1 b 0"));
 }
 
 int main(void)
@@ -579,10 +585,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cubes_by_hand_are_judged_right),
         cmocka_unit_test(squares_by_hand_are_judged_right),
-        cmocka_unit_test(edges_of_tetrahedra_have_six_names),
+        cmocka_unit_test(vertices_of_tetrahedra_are_counted_from_the_origin),
         cmocka_unit_test(unknown_verdicts_are_not_proved),
         cmocka_unit_test(the_reason_is_optional),
-        cmocka_unit_test(points_are_where_the_oracle_says),
+        cmocka_unit_test(weights_are_what_the_oracle_says),
         cmocka_unit_test(normals_are_what_whole_numbers_say),
         cmocka_unit_test(random_bytes_prove_nothing),
         cmocka_unit_test(many_digits_are_read),

@@ -685,7 +685,7 @@ static void bodies_are_the_hulls_of_their_frames(void **state)
             FMB_CANNOT_DECIDE);
         assert_true(length == 0 && text[0] == 0);
         assert_false(fmb_certificate_holds(&a.placement, &b.placement, duration, FMB_SEPARATED,
-                                           "separated + a0", NULL, 0));
+                                           "separated normal (1 0 0)", NULL, 0));
     }
     printf("# %ld separated, %ld touching, %ld overlapping\n", of_verdict[FMB_SEPARATED],
            of_verdict[FMB_TOUCHING], of_verdict[FMB_OVERLAPPING]);

@@ -103,7 +103,7 @@ static void tamper(struct draw *draw, char text[TEXT_SIZE + 1])
 static void tampered_texts_prove_no_wrong_verdict(void **state)
 {
     struct draw draw;
-    long held = 0, points = 0;
+    long held = 0;
     draw_begin(&draw, "tampered_texts_prove_no_wrong_verdict");
     for (long i = draw_sample(2000); i > 0; i--) {
         struct hull_pair_draw drawn;
@@ -119,14 +119,12 @@ static void tampered_texts_prove_no_wrong_verdict(void **state)
                 if (holds && other != (int) verdict)
                     fail_msg("%s | %s", text, changed);
                 held += holds && strcmp(text, changed) != 0;
-                points += holds && strcmp(text, changed) != 0 && verdict == FMB_OVERLAPPING;
             }
         }
     }
-    /* Another normal may prove the same; of points and weights no single number may change. */
+    /* Another normal, or another point, may prove the same. */
     print_message("%ld of the changed texts hold\n", held);
     assert_true(held > 0);
-    assert_int_equal(points, 0);
 }
 
 /* Each flaw that the checker names, by hand: two squares that share an edge. */
@@ -137,26 +135,38 @@ static void flaws_are_named(void **state)
         const char *text, *why;
         int verdict;
     } cases[] = {
-        {"touching normal (1 0) at 0 (1 1/2) a 1:1/2 2:1/2 b 0:1/2 3:1/2", "", FMB_TOUCHING},
-        {"touching normal (2 0) at 0 (1 0) a 1:1 b 0:1", "", FMB_TOUCHING},
-        {"touching normal (0 1) at 0 (1 0) a 1:1 b 0:1", "two sides", FMB_TOUCHING},
-        {"touching normal (0 0) at 0 (1 0) a 1:1 b 0:1", "constant", FMB_TOUCHING},
-        {"touching normal (1 0) at 1 (1 0) a 1:1 b 0:1", "window", FMB_TOUCHING},
-        {"touching normal (1 0) at 0 (1 0) a 2:1 b 0:1", "first frame", FMB_TOUCHING},
-        {"touching normal (1 0) at 0 (1 0) a 1:1 b 3:1", "second frame", FMB_TOUCHING},
-        {"touching normal (1 0) at 0 (1 0) a 1:1/2 b 0:1", "sum to 1", FMB_TOUCHING},
-        {"touching normal (1 0) at 0 (1 0) a 1:1 b", "sum to 1", FMB_TOUCHING},
-        {"touching normal (1 0) at 0 (1 0) a 1:2 1:-1 b 0:1", "weights", FMB_TOUCHING},
-        {"touching normal (1 0) at 0 (1 0) a 1:1/2 1:1/2 b 0:1", "weights", FMB_TOUCHING},
-        {"touching normal (1 0) at 0 (1 0) a 4:1 b 0:1", "weights", FMB_TOUCHING},
-        {"touching normal (1 0) at 0 (1 0) a 0:0 1:1 b 0:1", "weights", FMB_TOUCHING},
-        {"touching normal (1 0) at 0 (1 0) a 1:1 b 0:1 ", "follows", FMB_TOUCHING},
-        {"touching normal (1 0 0) at 0 (1 0) a 1:1 b 0:1", "normal", FMB_TOUCHING},
-        {"touching normal (1 0) at 0 (1 0 0) a 1:1 b 0:1", "point", FMB_TOUCHING},
-        {"touching + a0 at 0 (1 0)", "normal", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1:1/2 2:1/2 b 0:1/2 3:1/2", "", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1:1/2 2 b 0 3", "", FMB_TOUCHING},
+        {"touching normal (2 0) at 0 a 1:1 b 0:1", "", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1 b 0", "", FMB_TOUCHING},
+        {"touching normal (0 1) at 0 a 1:1 b 0:1", "two sides", FMB_TOUCHING},
+        {"touching normal (0 0) at 0 a 1:1 b 0:1", "constant", FMB_TOUCHING},
+        {"touching normal (1 0) at 1 a 1:1 b 0:1", "window", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 2:1 b 0:1", "no common point", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1:1 b 3:1", "no common point", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1 b 3", "no common point", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1:1/2 b 0:1", "no common point", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1 2 b 0 3", "do not follow", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 0 1 2 3 b 0 1", "weights", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1:3/2 2 b 0 3", "not positive", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1:3/2 2 b 0:1 3", "no common point", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1 2 b 0:1", "not positive", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1:1 b", "weights", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1:2 1:-1 b 0:1", "weights", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1:1/2 1:1/2 b 0:1", "weights", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 4:1 b 0:1", "weights", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 4 b 0:1", "weights", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 0:0 1:1 b 0:1", "weights", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1:2/2 b 0:1", "weights", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1: b 0:1", "weights", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 a 1:1 b 0:1 ", "follows", FMB_TOUCHING},
+        {"touching normal (1 0) at 0 (1 0) a 1:1 b 0:1", "weights", FMB_TOUCHING},
+        {"touching normal (1 0 0) at 0 a 1:1 b 0:1", "normal", FMB_TOUCHING},
+        {"touching + a0 at 0 a 1:1 b 0:1", "normal", FMB_TOUCHING},
+        {"touching normal (1 0) at 0/1 a 1:1 b 0:1", "time", FMB_TOUCHING},
         {"separated normal (1 0)", "apart", FMB_SEPARATED},
-        {"overlapping at 0 (1 0) a 1:1 b 0:1", "span the first frame", FMB_OVERLAPPING},
-        {"overlapping at 0 (1 1/2) a 1:1/2 2:1/2 b 0:1/2 3:1/2", "span the first", FMB_OVERLAPPING},
+        {"overlapping at 0 a 1:1 b 0:1", "span the first frame", FMB_OVERLAPPING},
+        {"overlapping at 0 a 1:1/2 2:1/2 b 0:1/2 3:1/2", "span the first", FMB_OVERLAPPING},
     };
     double memory[2][64];
     struct fmb_body body[2];

@@ -20,7 +20,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "certificate_hull.h"
+#include "certificate_text.h"
 #include "draw.h"
 #include "exact_work.h"
 #include "hull_vertices.h"

@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "draw.h"
-#include "exact.h"
+#include "hull_vertices.h"
 #define LIMBS_MAX LIMBS_WIDE
 #include "limbs_decide.h"
 #include "question.h"
@@ -306,55 +306,89 @@ static void share_orientation(struct draw *draw, struct question *question)
         question->b.orientation[i] = sign * question->a.orientation[i];
 }
 
-static void set_edge(struct exact_pair *pair, int edge, int dim, mpz_t out[3])
+/* The vertices of a pair in integers (hull_vertices.h). */
+static void set_vertex(struct hull_integers *integers, int f, int vertex, mpz_t out[3])
 {
-    const int e = edge % SLABS_EDGES, p = dim == 2 ? 0 : (e + 1) % 3,
-              q = dim == 2 ? 1 : (e + 2) % 3;
-    mpz_t *from = NULL, *to = pair->drift;
-    if (edge != SLABS_DRIFT) {
-        struct exact_frame *frame = &pair->frame[edge >= SLABS_EDGE_OF_B];
-        from = e < dim ? NULL : frame->component[p];
-        to = frame->component[e < dim ? e : q];
-    }
-    for (int axis = 0; axis < 3; axis++) {
-        mpz_set(out[axis], to[axis]);
-        if (from)
-            mpz_sub(out[axis], out[axis], from[axis]);
-    }
+    hull_integers_place(integers, f, (unsigned) vertex, out);
 }
 
-/* start - low, high - start, slope of the same slab, from the numbers of the exact step. */
-static void set_expected(struct exact_pair *pair, struct slab_normal edges, int dim, mpz_t out[3])
+/* out := component i of frame f; i < 0: 0. */
+static void set_component(struct hull_integers *integers, int f, int i, mpz_t out[3])
 {
-    mpz_t u[3], v[3], normal[3], value[EXACT_VECTORS], range[4];
+    const bool simplex = frame_is_simplex(integers->side[f].frame);
+    mpz_t origin[3];
+    mpz_inits(origin[0], origin[1], origin[2], NULL);
+    set_vertex(integers, f, 0, origin);
+    set_vertex(integers, f, i < 0 ? 0 : simplex ? i + 1 : 1 << i, out);
+    for (int axis = 0; axis < 3; axis++)
+        mpz_sub(out[axis], out[axis], origin[axis]);
+    mpz_clears(origin[0], origin[1], origin[2], NULL);
+}
+
+static void set_edge(struct hull_integers *integers, int edge, int dim, mpz_t out[3])
+{
+    const int e = edge % SLABS_EDGES, f = edge >= SLABS_EDGE_OF_B;
+    const int p = dim == 2 ? 0 : (e + 1) % 3, q = dim == 2 ? 1 : (e + 2) % 3;
+    mpz_t from[3];
+    mpz_inits(from[0], from[1], from[2], NULL);
+    if (edge == SLABS_DRIFT) {
+        for (int axis = 0; axis < 3; axis++)
+            mpz_set(out[axis], integers->drift[axis]);
+    } else {
+        set_component(integers, f, e < dim ? -1 : p, from);
+        set_component(integers, f, e < dim ? e : q, out);
+    }
+    for (int axis = 0; axis < 3; axis++)
+        mpz_sub(out[axis], out[axis], from[axis]);
+    mpz_clears(from[0], from[1], from[2], NULL);
+}
+
+/* range := the least and the greatest normal . x over a frame. */
+static void set_range(struct hull_integers *integers, int f, mpz_t normal[3], mpz_t range[2])
+{
+    const struct fmb_frame *frame = integers->side[f].frame;
+    const int count = frame_is_simplex(frame) ? frame->count + 1 : 1 << frame->count;
+    mpz_t vertex[3], value, scratch;
+    mpz_inits(vertex[0], vertex[1], vertex[2], value, scratch, NULL);
+    for (int i = 0; i < count; i++) {
+        set_vertex(integers, f, i, vertex);
+        integer_dot(value, normal, vertex, scratch);
+        if (i == 0 || mpz_cmp(value, range[0]) < 0)
+            mpz_set(range[0], value);
+        if (i == 0 || mpz_cmp(value, range[1]) > 0)
+            mpz_set(range[1], value);
+    }
+    mpz_clears(vertex[0], vertex[1], vertex[2], value, scratch, NULL);
+}
+
+/* start - low, high - start, slope of the same slab. */
+static void set_expected(struct hull_integers *integers, struct slab_normal edges, int dim,
+                         mpz_t out[3])
+{
+    mpz_t u[3], v[3], normal[3], range[2][2], scratch;
+    mpz_init(scratch);
     for (int i = 0; i < 3; i++)
         mpz_inits(u[i], v[i], normal[i], NULL);
-    for (int k = 0; k < EXACT_VECTORS; k++)
-        mpz_init(value[k]);
-    for (int i = 0; i < 4; i++)
-        mpz_init(range[i]);
-    set_edge(pair, edges.u, dim, u);
+    for (int f = 0; f < 2; f++)
+        mpz_inits(range[f][0], range[f][1], NULL);
+    set_edge(integers, edges.u, dim, u);
     if (dim == 2) {
         mpz_neg(normal[0], u[1]);
         mpz_set(normal[1], u[0]);
     } else {
-        set_edge(pair, edges.v, dim, v);
-        integer_cross(normal, u, v, pair->scratch);
+        set_edge(integers, edges.v, dim, v);
+        integer_cross(normal, u, v, scratch);
     }
-    exact_set_values(pair, normal, value);
     for (int f = 0; f < 2; f++)
-        exact_extent(pair, f, value, range[2 * f], range[2 * f + 1]);
-    mpz_sub(out[0], value[EXACT_OFFSET], range[0]); /* low of a - high of b */
-    mpz_add(out[0], out[0], range[3]);
-    mpz_sub(out[1], range[1], range[2]);
-    mpz_sub(out[1], out[1], value[EXACT_OFFSET]);
-    mpz_set(out[2], value[EXACT_DRIFT]);
+        set_range(integers, f, normal, range[f]);
+    mpz_sub(out[0], range[1][1], range[0][0]);
+    mpz_sub(out[1], range[0][1], range[1][0]);
+    integer_dot(out[2], normal, integers->drift, scratch);
+    mpz_clear(scratch);
     for (int i = 0; i < 3; i++)
         mpz_clears(u[i], v[i], normal[i], NULL);
-    for (int k = 0; k < EXACT_VECTORS; k++)
-        mpz_clear(value[k]);
-    for (int i = 0; i < 4; i++)
-        mpz_clear(range[i]);
+    for (int f = 0; f < 2; f++)
+        mpz_clears(range[f][0], range[f][1], NULL);
 }
 
 /* Whether x is y times a positive number, or both are 0. */
@@ -386,7 +420,7 @@ static int expected_sign(mpz_t number[3], mpz_t scratch)
 
 /* Returns the sign of the gap. */
 static int compare_posed(const struct question *question, struct limbs_pair *limbs,
-                         struct exact_pair *exact, struct slab_normal edges)
+                         struct hull_integers *exact, struct slab_normal edges)
 {
     mpz_t low, high, start, found[3], expected[3], scratch[2];
     mpz_inits(low, high, start, scratch[0], scratch[1], NULL);
@@ -424,12 +458,14 @@ static void turned_slabs_are_gmp(void **state)
         struct ready ready;
         struct limbs_question integers;
         static struct limbs_pair limbs;
-        struct exact_pair exact;
+        static struct hull_integers exact;
         referee_ready(&question, &ready);
         const struct frame_pair frames = pair_frames(&ready.pair);
         limbs_question_set(&frames, limbs_span_of(&frames), LIMBS_SLABS, &integers);
         limbs_prepare(&integers, &limbs);
-        exact_pair_init(&exact, &frames);
+        memset(&exact, 0, sizeof exact);
+        hull_integers_each(&exact, mpz_init);
+        hull_integers_set(&frames, &exact);
         for (int k = 0; k < 6; k++) {
             const struct slab_normal edges = draw_normal(&draw, &question);
             const int sign = compare_posed(&question, &limbs, &exact, edges);
@@ -437,7 +473,7 @@ static void turned_slabs_are_gmp(void **state)
                 referee_fail(&question, "other signs in integers of other capacities");
             seen[sign + 1]++;
         }
-        exact_pair_clear(&exact);
+        hull_integers_each(&exact, mpz_clear);
         same += limbs.common != NULL;
         limbs_of_pair[limbs.limbs]++;
     }

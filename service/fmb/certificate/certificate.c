@@ -1,239 +1,119 @@
-/* Writes certificates: proofs of a verdict that do not rely on the engine. certificate_point.c
- * finds the point; this file finds the normal.
- *
- * As in limbs_decide.h, let D = A - B be the Minkowski difference of both frames with their origins
- * at 0. Let W be the segment of the offset w of the frames, offset + tau drift, tau in [0,1]. The
- * frames meet where W meets D, and overlap where W meets ri D, the relative interior. Let S = W -
- * D: all b - a of all points and times. A normal N then proves
- *
- *   SEPARATED: N . s > 0 for all s of S;
- *   TOUCHING:  N . s >= 0 for all s of S, and N is not constant on D: a point d of ri D then has
- *              N . d < max N . D <= min N . W, so d is no point w of W, at any time of the window.
- *
- * S is a polytope whose edges are edges of A, edges of B, and the drift. If the frames are
- * separated, 0 lies outside of S: outside of its affine hull, or beyond a facet.
- *
- * If they touch, 0 lies on a facet of S whose normal is not constant on D. Proof: 0 is not in ri S
- * = ri W - ri D (Rockafellar, Convex Analysis, corollary 6.6.2), so it is in the relative interior
- * of a proper face F of S. Let N be the sum of the normals of all facets that contain F; N takes
- * its least value on F only. If each of these normals were constant on D, N would be too. Then F =
- * W' - D with a face W' of W, and from 0 in ri F = ri W' - ri D it would follow that W meets ri D.
- *
- * So it suffices to try, for a rank r of all edges together and with both signs,
- *
- *   r = 3: u x v of two edges, which span a facet;
- *   r = 2: u x v, the normal of the plane of S; and within that plane (u x v) x w, the normals of
- *          the edges w. In 2D these are w x z;
- *   r = 1: u itself; and perpendicular to it (u x d) x u = (u . u) d - (u . d) u, if the line of S,
- *          which passes through d along u, does not contain 0. In 2D that is u x z;
- *   r = 0: d, since S is the point d.
- *
- * The rank need not be known: the first normal that proves the verdict is taken. */
-#include "certificate_hull.h"
-#include "certificate_writer.h"
-#include "exact.h"
-#include "hull.h"
+/* Writes certificates, in steps: proofs of a verdict that do not rely on the engine. A direction in
+ * doubles proves most separated pairs; hull_exact.c proves the others, and certificate_weights.c
+ * shortens the weights of the common point. */
+#include "certificate_text.h"
+#include "certificate_weights.h"
+#include "hull_search.h"
 #include "integer.h"
 #include "memory.h"
 
-#include <assert.h>
-#include <stdarg.h>
-#include <stdio.h>
+#include <math.h>
 #include <string.h>
 
-#include <gmp.h>
-
-/* ---- The normal ---- */
-
-enum {
-    DIRECTIONS_MAX = 2 * EXACT_EDGES_MAX + 3, /* v, z, d */
-    NORMAL_TEXT_SIZE = 20                     /* "+ (a0 x a1) x b2" */
+struct fmb_certificate_state {
+    struct frame_pair frames;
+    struct hull_pair pair;
+    struct hull_exact *exact; /* NULL: none, or complete */
+    struct certificate_weights weights;
+    enum { DECIDING, WEIGHING, WRITING, COMPLETE } stage; /* what comes next */
+    int side;                                             /* whose weights are written next */
+    struct certificate_writer writer;
 };
 
-/* A direction that certificates can name. */
-struct named {
-    char name[3];
-    enum { OF_A, OF_B, OF_NEITHER, OFFSET } owner; /* of edges, the frame */
-    mpz_t *vector;                                 /* not 0 */
-};
+/* ---- Text ---- */
 
-struct normal_search {
-    struct exact_pair *pair;
-    enum fmb_verdict verdict;
-    int directions; /* those of edges first; the last is d, if that is not 0 */
-    struct named direction[DIRECTIONS_MAX];
-    char text[NORMAL_TEXT_SIZE];
-    mpz_t z[3];
-    mpz_t plane[3], normal[3];
-    mpz_t value[EXACT_VECTORS];       /* normal . each vector of the pair */
-    struct exact_range range[2], all; /* of the normal over the frames, and over S */
-    mpz_t scratch;
-};
-
-static void add_direction(struct normal_search *search, char letter, int number, int owner,
-                          mpz_t *vector)
+/* Divides n by the greatest common divisor of its coordinates. */
+static void write_normal(struct certificate_writer *writer, int dim, mpz_t n[3])
 {
-    if (integer_is_zero(vector))
-        return;
-    struct named *named = &search->direction[search->directions++];
-    named->name[0] = letter;
-    named->name[1] = number < 0 ? '\0' : (char) ('0' + number);
-    named->name[2] = '\0';
-    named->owner = owner;
-    named->vector = vector;
+    mpq_t number;
+    mpz_t divisor;
+    mpq_init(number);
+    mpz_init(divisor);
+    mpz_gcd(divisor, n[0], n[1]);
+    mpz_gcd(divisor, divisor, n[2]);
+    for (int axis = 0; axis < dim; axis++) {
+        mpz_divexact(mpq_numref(number), n[axis], divisor);
+        certificate_write_text(writer, axis == 0 ? " normal (" : " ");
+        certificate_write_number(writer, number);
+    }
+    certificate_write_text(writer, ")");
+    mpq_clear(number);
+    mpz_clear(divisor);
 }
 
-static void set_directions(struct normal_search *search, int dim)
+static void write_time(struct certificate_writer *writer, const struct certificate_weights *weights)
 {
-    struct exact_pair *pair = search->pair;
-    for (int f = 0; f < 2; f++)
-        for (int e = 0; e < pair->frame[f].edges; e++)
-            add_direction(search, f ? 'b' : 'a', e, f, pair->frame[f].edge[e]);
-    add_direction(search, 'v', -1, OF_NEITHER, pair->drift);
-    mpz_set_ui(search->z[2], dim == 2);
-    add_direction(search, 'z', -1, OF_NEITHER, search->z);
-    add_direction(search, 'd', -1, OFFSET, pair->offset);
+    certificate_write_text(writer, " at ");
+    certificate_write_number(writer, weights->time);
 }
 
-static bool varies(const struct exact_range *range)
+/* Returns the weight of the first vertex of frame f from vertex on; NULL: there is none. */
+static const struct certificate_weight *next_weight(const struct certificate_weights *weights,
+                                                    int f, unsigned vertex)
 {
-    return mpz_cmp(range->low, range->high) != 0;
+    const struct certificate_weight *next = NULL;
+    for (unsigned k = 0; k < weights->count; k++) {
+        const struct certificate_weight *of = &weights->weight[k];
+        if (of->f == f && of->vertex >= vertex && (!next || of->vertex < next->vertex))
+            next = of;
+    }
+    return next;
 }
 
-/* 1 if the normal proves the verdict, -1 if its opposite does, else 0. */
-static int proving_sign(struct normal_search *search)
+static void write_weights(struct certificate_writer *writer,
+                          const struct certificate_weights *weights, int f)
 {
-    exact_ranges(search->pair, search->value, search->range, &search->all);
-    const int least = mpz_sgn(search->all.low), most = mpz_sgn(search->all.high);
-    if (search->verdict == FMB_SEPARATED)
-        return least > 0 ? 1 : most < 0 ? -1 : 0;
-    if (!varies(&search->range[0]) && !varies(&search->range[1]))
-        return 0;
-    return least >= 0 ? 1 : most <= 0 ? -1 : 0;
+    const struct certificate_weight *of;
+    mpq_t number;
+    mpq_init(number);
+    certificate_write_text(writer, f ? " b" : " a");
+    for (unsigned v = 0; (of = next_weight(weights, f, v)) != NULL; v = of->vertex + 1) {
+        certificate_write_text(writer, " %u", of->vertex);
+        if (of->row >= 0)
+            continue;
+        mpq_set_z(number, of->stated);
+        mpq_div_2exp(number, number, weights->bits);
+        certificate_write_text(writer, ":");
+        certificate_write_number(writer, number);
+    }
+    mpq_clear(number);
 }
 
-/* Whether search->normal, or its opposite, proves the verdict; if so, search->text
- * says which. */
-static bool try_normal(struct normal_search *search, const char *format, ...)
-{
-    exact_set_values(search->pair, search->normal, search->value);
-    const int sign = proving_sign(search);
-    if (sign == 0)
-        return false;
-    va_list names;
-    va_start(names, format);
-    search->text[0] = sign > 0 ? '+' : '-';
-    search->text[1] = ' ';
-    vsnprintf(search->text + 2, sizeof search->text - 2, format, names);
-    va_end(names);
-    return true;
-}
+/* ---- Separated by doubles ---- */
 
-/* u x v: first the faces of each frame; then an edge of one with one of the other, with v, or
- * with z. */
-static bool try_products(struct normal_search *search)
+/* Writes a normal of few bits, near the direction of the point of D nearest to the origin, if its
+ * values in doubles prove that the frames are separated. Returns whether they do. */
+static bool write_separated(struct certificate_writer *writer, const struct hull_pair *pair,
+                            const double direction[FMB_DIM_MAX])
 {
-    for (int mixed = 0; mixed < 2; mixed++)
-        for (int i = 0; i < search->directions; i++)
-            for (int j = i + 1; j < search->directions; j++) {
-                const struct named *u = &search->direction[i], *v = &search->direction[j];
-                if ((u->owner != v->owner) != mixed || v->owner == OFFSET)
-                    continue;
-                integer_cross(search->normal, u->vector, v->vector, search->scratch);
-                if (try_normal(search, "%s x %s", u->name, v->name))
-                    return true;
-            }
-    return false;
-}
-
-static bool try_directions(struct normal_search *search)
-{
-    for (int i = 0; i < search->directions; i++) {
-        const struct named *u = &search->direction[i];
-        for (int axis = 0; axis < 3; axis++)
-            mpz_set(search->normal[axis], u->vector[axis]);
-        if (try_normal(search, "%s", u->name))
-            return true;
+    for (int bits = 3; bits <= 48; bits *= 2) {
+        double outward[FMB_DIM_MAX];
+        struct hull_column column;
+        mpz_t n[3];
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            outward[axis] = -ldexp(trunc(ldexp(direction[axis], bits)), -bits);
+        if (!(hull_support(pair, outward, &column) < -1.01 * pair->error)) /* its length: < 1.01 */
+            continue;
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            mpz_init_set_d(n[axis], -ldexp(outward[axis], bits));
+        certificate_write_text(writer, fmb_verdict_name(FMB_SEPARATED));
+        write_normal(writer, pair->dim, n);
+        mpz_clears(n[0], n[1], n[2], NULL);
+        return true;
     }
     return false;
 }
 
-/* (u x v) x w, with u x v the first that is not 0: of two edges or, where all edges are parallel,
- * of one of them and d. */
-static bool try_within_plane(struct normal_search *search)
-{
-    const struct named *u = &search->direction[0], *v = u;
-    do {
-        v++;
-        assert(v < u + search->directions);
-        integer_cross(search->plane, u->vector, v->vector, search->scratch);
-    } while (integer_is_zero(search->plane));
-    for (int i = 0; i < search->directions; i++) {
-        const struct named *w = &search->direction[i];
-        integer_cross(search->normal, search->plane, w->vector, search->scratch);
-        if (try_normal(search, "(%s x %s) x %s", u->name, v->name, w->name))
-            return true;
-    }
-    return false;
-}
+/* ---- Steps ---- */
 
-/* ---- The text ---- */
+/* The span that fmb.h defines, in bits. Fractions of more would take milliseconds each to reduce.
+ */
+enum { SPAN_MAX = 512 };
 
-static size_t used_of(const struct certificate_writer *writer)
+static bool is_wide(const struct frame_pair *frames, const struct hull_integers *integers)
 {
-    return writer->length < FMB_CERTIFICATE_MAX ? writer->length : FMB_CERTIFICATE_MAX;
-}
-
-void certificate_write_text(struct certificate_writer *writer, const char *text)
-{
-    const size_t used = used_of(writer);
-    writer->length +=
-        (size_t) snprintf(writer->text + used, FMB_CERTIFICATE_MAX - used, "%s", text);
-}
-
-void certificate_write_number(struct certificate_writer *writer, const mpq_t number)
-{
-    const size_t used = used_of(writer);
-    writer->length +=
-        (size_t) gmp_snprintf(writer->text + used, FMB_CERTIFICATE_MAX - used, "%Qd", number);
-}
-
-/* Writes the sign and direction of a normal that proves the verdict. */
-static void write_normal(struct certificate_writer *writer, struct exact_pair *pair, int dim,
-                         enum fmb_verdict verdict)
-{
-    struct normal_search search = {.pair = pair, .verdict = verdict};
-    INTEGER_EACH_FROM(z, &search, mpz_init);
-    set_directions(&search, dim);
-    bool found = try_products(&search) || try_directions(&search) || try_within_plane(&search);
-    assert(found);
-    (void) found;
-    certificate_write_text(writer, " ");
-    certificate_write_text(writer, search.text);
-    INTEGER_EACH_FROM(z, &search, mpz_clear);
-}
-
-static bool is_wide(struct exact_pair *exact)
-{
-    for (int k = 0; k < EXACT_LENGTHS; k++)
-        if (mpz_sizeinbase(exact_length(exact, k), 2) > CERTIFICATE_SPAN_MAX)
-            return true;
-    return false;
-}
-
-static void write_certificate(struct certificate_writer *writer, const struct frame_pair *pair)
-{
-    struct exact_pair exact;
-    exact_pair_init(&exact, pair);
-    if (!is_wide(&exact)) {
-        const enum fmb_verdict verdict = exact_verdict(pair, false, NULL);
-        certificate_write_text(writer, fmb_verdict_name(verdict));
-        if (verdict != FMB_OVERLAPPING)
-            write_normal(writer, &exact, pair->a.frame->dim, verdict);
-        if (verdict != FMB_SEPARATED)
-            certificate_write_meeting(writer, &exact, pair);
-    }
-    exact_pair_clear(&exact);
+    const struct dyadic_span span = limbs_span_of(frames);
+    return span.top - span.unit + (long) mpz_sizeinbase(integers->scale, 2) > SPAN_MAX;
 }
 
 static enum fmb_status check(const struct fmb_placement *a, const struct fmb_placement *b,
@@ -245,12 +125,16 @@ static enum fmb_status check(const struct fmb_placement *a, const struct fmb_pla
     return status;
 }
 
-struct fmb_certificate_state {
-    struct frame_pair frames;
-    struct certificate_hull hull; /* of a pair with a hull that is not complete */
-    struct certificate_writer writer;
-    bool complete;
-};
+/* Abandons or ends all work. */
+static void end(struct fmb_certificate_state *state)
+{
+    if (state->stage == WEIGHING || state->stage == WRITING)
+        certificate_weights_end(&state->weights);
+    if (state->exact)
+        hull_exact_end(state->exact, NULL);
+    state->exact = NULL;
+    state->stage = COMPLETE;
+}
 
 enum fmb_status fmb_certificate_begin(const struct fmb_placement *a, const struct fmb_placement *b,
                                       double duration, struct fmb_certificate_state **state)
@@ -260,26 +144,66 @@ enum fmb_status fmb_certificate_begin(const struct fmb_placement *a, const struc
     if (status != FMB_OK)
         return status;
     struct fmb_certificate_state *begun = memory_allocate(sizeof *begun);
+    struct hull_nearest nearest = {.simplex = {.count = 0}};
+    struct hull_column first[FMB_DIM_MAX + 1];
+    enum fmb_verdict verdict = 0;
     begun->frames = (struct frame_pair){
         {fmb_body_frame(a->body, 0), a}, {fmb_body_frame(b->body, 0), b}, duration};
-    begun->hull.exact = NULL;
+    begun->stage = DECIDING;
     begun->writer.length = 0;
-    begun->complete = hull_takes(begun->frames.a.frame, begun->frames.b.frame) &&
-                      certificate_hull_begin(&begun->frames, &begun->writer, &begun->hull);
+    hull_pair_set(&begun->frames, &begun->pair);
+    if (begun->pair.usable)
+        verdict = hull_search(&begun->pair, INFINITY, &nearest);
+    for (unsigned i = 0; i < nearest.simplex.count; i++)
+        first[i] = nearest.simplex.vertex[i].column;
+    begun->exact =
+        hull_exact_begin(&begun->pair, FMB_WANT_CERTIFICATE, first, nearest.simplex.count);
+    if (is_wide(&begun->frames, hull_exact_proof(begun->exact)->integers) ||
+        (verdict == FMB_SEPARATED &&
+         write_separated(&begun->writer, &begun->pair, nearest.direction)))
+        end(begun);
     *state = begun;
     return FMB_OK;
+}
+
+/* Writes verdict and normal of a proof. */
+static void decided(struct fmb_certificate_state *state)
+{
+    struct hull_proof *proof = hull_exact_proof(state->exact);
+    certificate_write_text(&state->writer, fmb_verdict_name(proof->verdict));
+    if (proof->verdict != FMB_OVERLAPPING)
+        write_normal(&state->writer, state->pair.dim, proof->normal);
+    if (proof->verdict == FMB_SEPARATED) {
+        end(state);
+        return;
+    }
+    certificate_weights_begin(proof, state->pair.dim, state->frames.duration, &state->weights);
+    state->stage = WEIGHING;
 }
 
 const char *fmb_certificate_step(struct fmb_certificate_state *state)
 {
     struct certificate_writer *writer = &state->writer;
-    if (!state->complete && state->hull.exact)
-        state->complete = certificate_hull_step(&state->hull, writer);
-    else if (!state->complete) {
-        write_certificate(writer, &state->frames);
-        state->complete = true;
+    switch (state->stage) {
+    case DECIDING:
+        if (hull_exact_step(state->exact))
+            decided(state);
+        break;
+    case WEIGHING:
+        if (!certificate_weights_step(&state->weights))
+            break;
+        write_time(writer, &state->weights);
+        state->stage = WRITING;
+        state->side = 0;
+        break;
+    case WRITING:
+        write_weights(writer, &state->weights, state->side++);
+        if (state->side == 2)
+            end(state);
+        break;
+    case COMPLETE: break;
     }
-    if (!state->complete)
+    if (state->stage != COMPLETE)
         return NULL;
     if (writer->length == 0 || writer->length >= FMB_CERTIFICATE_MAX)
         writer->text[0] = '\0';
@@ -290,7 +214,7 @@ void fmb_certificate_end(struct fmb_certificate_state *state)
 {
     if (!state)
         return;
-    certificate_hull_end(&state->hull);
+    end(state);
     memory_release(state, sizeof *state);
 }
 

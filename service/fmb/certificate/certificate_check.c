@@ -13,30 +13,15 @@
  *   second frame at that time, so that no b equals a. Together with a point that both frames have
  *   in common at a time of the window: TOUCHING.
  *
- * A point p. The frame is the image of its parameters under the map x -> o + t v + sum x_i c_i. Its
- * relative interior is the image of those strictly inside their bounds (Rockafellar, Convex
- * Analysis, theorem 6.6; a frame may be flat). The check is therefore whether
- *
- *     sum_i x_i c_i = p - o - t v,   0 < x_i < 1   or   0 < x_i, sum x_i < 1
- *
- * has a solution, with <= in place of < for the closed frame. Gaussian elimination removes one
- * unknown for each independent equation, Fourier's method the others; what remains are comparisons
- * of numbers with 0. The point of a pair with a hull comes with weights of vertices instead:
- * certificate_check_weights.c. */
+ * A common point comes as weights of vertices: certificate_check_weights.c.
+ */
 #include "certificate_check.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include <gmp.h>
-
-enum {
-    UNKNOWNS = 3,
-    COLUMNS = UNKNOWNS + 1,
-    ROWS_MAX = 20 /* has_point() */
-};
 
 /* ---- Vectors ---- */
 
@@ -116,13 +101,12 @@ static void cross(mpq_t out[AXES], mpq_t u[AXES], mpq_t v[AXES])
 
 /* ---- The pair ---- */
 
-/* Calls one of mpq_init and mpq_clear for every number, those of spans only of hulls. */
+/* Calls one of mpq_init and mpq_clear for every number. */
 static void proof_each(struct check_proof *proof, void (*call)(mpq_ptr))
 {
     for (int f = 0; f < 2; f++) {
         struct check_side *side = &proof->side[f];
-        if (proof->hulls)
-            check_each(side->span.vector, sizeof side->span.vector, call);
+        check_each(side->span.vector, sizeof side->span.vector, call);
         check_each(side->origin, sizeof *side - offsetof(struct check_side, origin), call);
     }
     check_each(&proof->duration, sizeof *proof - offsetof(struct check_proof, duration), call);
@@ -185,28 +169,13 @@ static void set_frame(struct check_side *side)
     mpq_clear(half);
 }
 
-/* Moves a frame from body coordinates into the world. */
-static void place_frame(struct check_side *side)
-{
-    check_turn(side->placement, false, side->origin);
-    check_add_numbers(side->origin, side->frame->dim, side->placement->position);
-    for (int i = 0; i < side->count; i++)
-        check_turn(side->placement, false, side->edge[i]);
-}
-
-static void set_side(struct check_side *side, const struct fmb_placement *placement, bool hulls)
+static void set_side(struct check_side *side, const struct fmb_placement *placement)
 {
     side->placement = placement;
     side->frame = fmb_body_frame(placement->body, 0);
     check_add_numbers(side->velocity, side->frame->dim, placement->velocity);
     if (side->frame->shape != FMB_HULL)
         set_frame(side);
-    if (!hulls)
-        place_frame(side);
-    side->edges = side->count;
-    for (int i = 0; side->simplex && i < side->count; i++)
-        for (int j = i + 1; j < side->count; j++)
-            check_subtract(side->edge[side->edges++], side->edge[j], side->edge[i]);
 }
 
 static bool is_zero_vector(mpq_t v[AXES])
@@ -219,13 +188,11 @@ static void set_pair(struct check_proof *proof, const struct fmb_placement *a,
 {
     proof->dim = a->body->dim;
     mpq_set_d(proof->duration, duration);
-    set_side(&proof->side[0], a, proof->hulls);
-    set_side(&proof->side[1], b, proof->hulls);
+    set_side(&proof->side[0], a);
+    set_side(&proof->side[1], b);
     proof->moving =
         !is_zero_vector(proof->side[0].velocity) || !is_zero_vector(proof->side[1].velocity);
     check_subtract(proof->v, proof->side[1].velocity, proof->side[0].velocity);
-    check_subtract(proof->d, proof->side[1].origin, proof->side[0].origin);
-    mpq_set_ui(proof->z[2], 1, 1);
 }
 
 unsigned check_vertex_count(const struct check_side *side)
@@ -318,83 +285,13 @@ bool check_take_number(const char **at, mpq_t out)
     return take_denominator(at, mpq_denref(out)) && in_lowest_terms(out);
 }
 
-static bool take_point(const char **at, int dim, mpq_t out[AXES])
+/* " normal (X Y Z)". */
+static bool take_normal(const char **at, int dim, mpq_t out[AXES])
 {
-    for (int axis = 0; axis < dim; axis++)
-        if (!check_take(at, axis == 0 ? " (" : " ") || !check_take_number(at, out[axis]))
-            return false;
-    return check_take(at, ")");
-}
-
-/* The vector that has this name in this pair; NULL: none has. */
-static mpq_t *take_vector(const char **at, struct check_proof *proof)
-{
-    if (check_take(at, "v"))
-        return proof->v;
-    if (check_take(at, "d"))
-        return proof->d;
-    if (proof->dim == 2 && check_take(at, "z"))
-        return proof->z;
-    struct check_side *side = check_take(at, "a")   ? &proof->side[0]
-                              : check_take(at, "b") ? &proof->side[1]
-                                                    : NULL;
-    if (!side || !check_is_digit(**at) || **at - '0' >= side->edges)
-        return NULL;
-    return side->edge[*(*at)++ - '0'];
-}
-
-/* "U x V": out := their product. */
-static bool take_product(const char **at, struct check_proof *proof, mpq_t out[AXES])
-{
-    mpq_t *u = take_vector(at, proof);
-    mpq_t *v = u && check_take(at, " x ") ? take_vector(at, proof) : NULL;
-    if (!v)
-        return false;
-    cross(out, u, v);
-    return true;
-}
-
-/* "(U x V) x W". */
-static bool take_double_product(const char **at, struct check_proof *proof, mpq_t out[AXES])
-{
-    mpq_t product[AXES], *w = NULL;
-    check_each(product, sizeof product, mpq_init);
-    if (check_take(at, "(") && take_product(at, proof, product) && check_take(at, ") x "))
-        w = take_vector(at, proof);
-    if (w)
-        cross(out, product, w);
-    check_each(product, sizeof product, mpq_clear);
-    return w;
-}
-
-static bool take_direction(const char **at, struct check_proof *proof, mpq_t out[AXES])
-{
-    if (**at == '(')
-        return take_double_product(at, proof, out);
-    const char *ahead = *at;
-    mpq_t *u = take_vector(&ahead, proof);
-    if (!u)
-        return false;
-    if (*ahead == ' ' && ahead[1] == 'x')
-        return take_product(at, proof, out);
-    check_copy(out, u);
-    *at = ahead;
-    return true;
-}
-
-/* " + DIRECTION", " - DIRECTION"; of hulls " normal (X Y Z)". */
-static bool take_normal(const char **at, struct check_proof *proof)
-{
-    if (proof->hulls)
-        return check_take(at, " normal") && take_point(at, proof->dim, proof->normal);
-    bool negative = check_take(at, " - ");
-    if (!negative && !check_take(at, " + "))
-        return false;
-    if (!take_direction(at, proof, proof->normal))
-        return false;
-    for (int axis = 0; negative && axis < AXES; axis++)
-        mpq_neg(proof->normal[axis], proof->normal[axis]);
-    return true;
+    bool good = check_take(at, " normal (");
+    for (int axis = 0; good && axis < dim; axis++)
+        good = (axis == 0 || check_take(at, " ")) && check_take_number(at, out[axis]);
+    return good && check_take(at, ")");
 }
 
 /* The functions that find flaws return what is wrong, or NULL. */
@@ -404,15 +301,13 @@ static const char *flaw_of_text(struct check_proof *proof, enum fmb_verdict verd
     const char *at = text, *name = fmb_verdict_name(verdict);
     if (!name || !check_take(&at, name))
         return "the text does not begin with the verdict";
-    if (verdict != FMB_OVERLAPPING && !take_normal(&at, proof))
+    if (verdict != FMB_OVERLAPPING && !take_normal(&at, proof->dim, proof->normal))
         return "the verdict is not followed by a normal of this pair";
     if (verdict != FMB_SEPARATED) {
         if (!check_take(&at, " at ") || !check_take_number(&at, proof->time))
             return "there is no time in lowest terms where it is due";
-        if (!take_point(&at, proof->dim, proof->point))
-            return "the time is not followed by a point of this dimension in lowest terms";
-        if (proof->hulls && !check_take_weights(&at, proof))
-            return "the point is not followed by weights of vertices of both frames";
+        if (!check_take_weights(&at, proof))
+            return "the time is not followed by weights of vertices of both frames";
     }
     return *at == '\0' ? NULL : "something follows the certificate";
 }
@@ -443,8 +338,7 @@ static void set_range(struct check_proof *proof, struct check_side *side)
     check_each(vertex, sizeof vertex, mpq_init);
     check_each(of_edge, sizeof of_edge, mpq_init);
     check_copy(normal, proof->normal);
-    if (proof->hulls)
-        check_turn(side->placement, true, normal);
+    check_turn(side->placement, true, normal);
     dot(of_origin, normal, side->origin);
     for (int i = 0; i < side->count; i++)
         dot(of_edge[i], normal, side->edge[i]);
@@ -463,8 +357,7 @@ static void set_range(struct check_proof *proof, struct check_side *side)
         if (k == 0 || mpq_cmp(value, side->high) > 0)
             mpq_set(side->high, value);
     }
-    if (proof->hulls)
-        add_position(proof, side);
+    add_position(proof, side);
     check_each(of_edge, sizeof of_edge, mpq_clear);
     check_each(vertex, sizeof vertex, mpq_clear);
     check_each(normal, sizeof normal, mpq_clear);
@@ -497,162 +390,13 @@ static const char *flaw_of_normal(struct check_proof *proof, enum fmb_verdict ve
                : NULL;
 }
 
-/* ---- The point ---- */
-
-/* Rows stand for row[0..2] . x + row[3]: an equation for = 0, the others for > 0, or >= 0 if not
- * strict. */
-struct rows {
-    bool strict;
-    int count;
-    mpq_t equation[AXES][COLUMNS];
-    mpq_t row[ROWS_MAX][COLUMNS];
-    mpq_t next[ROWS_MAX][COLUMNS]; /* the list in the making */
-};
-
-/* x_i > 0; and 1 - x_i > 0, or once 1 - sum x_i > 0. */
-static void set_bounds(struct rows *rows, const struct check_side *side)
-{
-    for (int i = 0; i < side->count; i++)
-        mpq_set_ui(rows->row[rows->count++][i], 1, 1);
-    int upper = side->simplex ? 1 : side->count;
-    for (int r = 0; r < upper; r++, rows->count++) {
-        mpq_set_ui(rows->row[rows->count][UNKNOWNS], 1, 1);
-        for (int i = 0; i < side->count; i++)
-            if (side->simplex || i == r)
-                mpq_set_si(rows->row[rows->count][i], -1, 1);
-    }
-}
-
-/* sum x_i c_i + o + t v - p = 0 along each axis. */
-static void set_equations(struct rows *rows, struct check_proof *proof, struct check_side *side)
-{
-    for (int axis = 0; axis < AXES; axis++) {
-        mpq_t *equation = rows->equation[axis];
-        for (int i = 0; i < side->count; i++)
-            mpq_set(equation[i], side->edge[i][axis]);
-        mpq_mul(equation[UNKNOWNS], proof->time, side->velocity[axis]);
-        mpq_add(equation[UNKNOWNS], equation[UNKNOWNS], side->origin[axis]);
-        mpq_sub(equation[UNKNOWNS], equation[UNKNOWNS], proof->point[axis]);
-    }
-}
-
-/* row := row + the multiple of the equation that takes unknown k away. */
-static void substitute(mpq_t row[COLUMNS], mpq_t equation[COLUMNS], int k)
-{
-    mpq_t factor;
-    mpq_init(factor);
-    if (mpq_sgn(row[k]) != 0) {
-        mpq_div(factor, row[k], equation[k]);
-        mpq_neg(factor, factor);
-        check_add_multiple(row, factor, equation, COLUMNS);
-    }
-    mpq_clear(factor);
-}
-
-/* Solves equation e for an unknown, which leaves all that come after it. An equation without
- * unknowns has to hold as it is. */
-static bool use_equation(struct rows *rows, int e)
-{
-    int k = 0;
-    while (k < UNKNOWNS && mpq_sgn(rows->equation[e][k]) == 0)
-        k++;
-    if (k == UNKNOWNS)
-        return mpq_sgn(rows->equation[e][UNKNOWNS]) == 0;
-    for (int other = e + 1; other < AXES; other++)
-        substitute(rows->equation[other], rows->equation[e], k);
-    for (int r = 0; r < rows->count; r++)
-        substitute(rows->row[r], rows->equation[e], k);
-    return true;
-}
-
-/* The sum of a row with a positive and one with a negative coefficient of unknown k, each times
- * the size of the other's: the unknown is gone. */
-static void combine(mpq_t out[COLUMNS], mpq_t positive[COLUMNS], mpq_t negative[COLUMNS], int k)
-{
-    mpq_t size;
-    mpq_init(size);
-    mpq_neg(size, negative[k]);
-    for (int i = 0; i < COLUMNS; i++)
-        mpq_set_ui(out[i], 0, 1);
-    check_add_multiple(out, size, positive, COLUMNS);
-    check_add_multiple(out, positive[k], negative, COLUMNS);
-    mpq_clear(size);
-}
-
-static mpq_t *next_row(struct rows *rows, int *count)
-{
-    assert(*count < ROWS_MAX);
-    return rows->next[(*count)++];
-}
-
-/* Fourier: there is an x_k for the other unknowns if and only if each lower bound of it is below
- * each upper one. */
-static void eliminate(struct rows *rows, int k)
-{
-    int count = 0;
-    for (int p = 0; p < rows->count; p++) {
-        int sign = mpq_sgn(rows->row[p][k]);
-        if (sign == 0) {
-            mpq_t *kept = next_row(rows, &count);
-            for (int i = 0; i < COLUMNS; i++)
-                mpq_set(kept[i], rows->row[p][i]);
-        }
-        for (int n = 0; sign > 0 && n < rows->count; n++)
-            if (mpq_sgn(rows->row[n][k]) < 0)
-                combine(next_row(rows, &count), rows->row[p], rows->row[n], k);
-    }
-    for (int r = 0; r < count; r++)
-        for (int i = 0; i < COLUMNS; i++)
-            mpq_swap(rows->row[r][i], rows->next[r][i]);
-    rows->count = count;
-}
-
-static bool all_hold(const struct rows *rows)
-{
-    for (int r = 0; r < rows->count; r++) {
-        int sign = mpq_sgn(rows->row[r][UNKNOWNS]);
-        if (sign < 0 || (rows->strict && sign == 0))
-            return false;
-    }
-    return true;
-}
-
-/* Whether the frame has the point at the time; if strict, its relative interior.
- *
- * There are at most 6 rows to begin with. Eliminating one unknown makes at most 3 x 3 = 9 of them,
- * a second one at most 4 x 5 = 20. A third one is left only if all components are 0; then the rows
- * are still the bounds, and get fewer each time. */
-static bool has_point(struct check_proof *proof, struct check_side *side, bool strict)
-{
-    struct rows rows = {.strict = strict};
-    check_each(rows.equation, sizeof rows - offsetof(struct rows, equation), mpq_init);
-    set_bounds(&rows, side);
-    set_equations(&rows, proof, side);
-    bool has = true;
-    for (int axis = 0; has && axis < AXES; axis++)
-        has = use_equation(&rows, axis);
-    for (int k = 0; has && k < UNKNOWNS; k++)
-        eliminate(&rows, k);
-    has = has && all_hold(&rows);
-    check_each(rows.equation, sizeof rows - offsetof(struct rows, equation), mpq_clear);
-    return has;
-}
-
 static const char *flaw_of_point(struct check_proof *proof, enum fmb_verdict verdict)
 {
-    static const char *const flaws[2][2] = {
-        {"the point is not in the first frame", "the point is not in the second frame"},
-        {"the point is not in the relative interior of the first frame",
-         "the point is not in the relative interior of the second frame"}};
-    const bool strict = verdict == FMB_OVERLAPPING;
     if (mpq_sgn(proof->time) < 0 || mpq_cmp(proof->time, proof->duration) > 0)
         return "the time is not in the window";
     if (!proof->moving && mpq_sgn(proof->time) != 0)
         return "the time of a static pair is not 0";
-    for (int f = 0; f < 2 && !proof->hulls; f++)
-        if (!has_point(proof, &proof->side[f], strict))
-            return flaws[strict][f];
-    return proof->hulls ? check_flaw_of_weights(proof, verdict) : NULL;
+    return check_flaw_of_weights(proof, verdict);
 }
 
 static const char *flaw_of(struct check_proof *proof, enum fmb_verdict verdict, const char *text)
@@ -691,8 +435,6 @@ bool fmb_certificate_holds(const struct fmb_placement *a, const struct fmb_place
     if (!flaw) {
         struct check_proof proof;
         memset(&proof, 0, sizeof proof);
-        proof.hulls = fmb_body_frame(a->body, 0)->shape == FMB_HULL ||
-                      fmb_body_frame(b->body, 0)->shape == FMB_HULL;
         proof_each(&proof, mpq_init);
         set_pair(&proof, a, b, duration);
         flaw = flaw_of(&proof, verdict, text);

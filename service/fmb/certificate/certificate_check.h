@@ -7,10 +7,7 @@
 
 #include <gmp.h>
 
-enum {
-    AXES = 3, /* in 2D all lies in the plane z = 0 */
-    EDGES_MAX = 6
-};
+enum { AXES = 3 }; /* in 2D all lies in the plane z = 0 */
 
 /* A linearly independent set of vectors in echelon form. */
 struct check_span {
@@ -19,32 +16,35 @@ struct check_span {
     mpq_t vector[AXES][AXES];
 };
 
-/* A placed frame: in the world at time 0, or in body coordinates if the pair has a hull, so that
- * few vectors are rotated. */
+/* A placed frame, in body coordinates: few vectors are rotated. */
 struct check_side {
     const struct fmb_placement *placement;
     const struct fmb_frame *frame;
     int count; /* of components; 0 of a hull, whose origin is 0 */
     bool simplex;
-    int edges;
     struct check_span span; /* of the named vertices: the directions of their affine hull */
     mpq_t origin[AXES];
-    mpq_t edge[EDGES_MAX][AXES]; /* components, then their differences, in the order of fmb.h */
+    mpq_t edge[AXES][AXES]; /* the components */
     mpq_t velocity[AXES];
     mpq_t low, high;        /* of the normal over the frame at time 0, in the world */
-    mpq_t sum[AXES], total; /* of the weighted vertices; of the weights */
+    mpq_t sum[AXES], total; /* of the weighted vertices; of the weights: of those that are stated */
 };
+
+/* Equations for the weights that are not stated: those of each frame complete the sum of all to 1,
+ * and on each axis the weighted vertices of both frames are the same point. */
+enum { EQUATIONS = 2 + AXES, FOLLOWING_MAX = EQUATIONS };
 
 /* The pair, and the contents of the text. */
 struct check_proof {
     int dim;
-    bool hulls;  /* a frame is a hull: the text has the other form */
-    bool moving; /* a velocity is not 0 */
+    bool moving;   /* a velocity is not 0 */
+    int following; /* weights that are not stated */
     struct check_side side[2];
     mpq_t duration;
-    mpq_t v[AXES], d[AXES], z[AXES];
+    mpq_t v[AXES]; /* velocity of the second frame relative to the first */
     mpq_t normal[AXES];
-    mpq_t time, point[AXES];
+    mpq_t time;
+    mpq_t equation[EQUATIONS][FOLLOWING_MAX + 1]; /* coefficients, and the sum */
 };
 
 /* Calls one of mpq_init and mpq_clear for every number of an array, or of a struct of such arrays,
@@ -76,10 +76,10 @@ bool check_is_digit(char c);
 bool check_take_digits(const char **at, mpz_t out); /* a natural number without leading zeros */
 bool check_take_number(const char **at, mpq_t out); /* in lowest terms */
 
-/* Takes the weights of vertices of both frames. */
+/* Takes " a WEIGHTS b WEIGHTS". */
 bool check_take_weights(const char **at, struct check_proof *proof);
 
-/* Returns what is wrong with the point of a pair with a hull, or NULL. */
+/* Returns what is wrong with the weights, or NULL. */
 const char *check_flaw_of_weights(struct check_proof *proof, enum fmb_verdict verdict);
 
 #endif

@@ -1,10 +1,13 @@
-/* Checks the point of a certificate of a pair with a hull, by the definitions of fmb.h. A frame is
- * the convex hull of its vertices, in body coordinates: v_0, v_1, ...
+/* Checks the common point of a certificate, by the definitions of fmb.h. A frame is the convex hull
+ * of its vertices, in body coordinates: v_0, v_1, ...
  *
- * With positive weights that sum to 1, and position + R sum_i w_i v_i + t v = p, R the rotation of
- * the placement, the point p is in the frame. It is in the relative interior of the hull of the
- * named vertices (Rockafellar, Convex Analysis, theorem 6.9), which is part of that of the frame if
- * both have the same affine hull. */
+ * With positive weights that sum to 1, the point position + R sum_i w_i v_i + t v, R the rotation
+ * of the placement, is in the frame. It is in the relative interior of the hull of the named
+ * vertices (Rockafellar, Convex Analysis, theorem 6.9), which is part of that of the frame if both
+ * have the same affine hull.
+ *
+ * Weights that are not stated are unknowns of linear equations: the weights of each frame sum to 1,
+ * and both frames have the same point. Gaussian elimination has to leave exactly one solution. */
 #include "certificate_check.h"
 
 /* Adds a vector, or nothing if it depends on those that there are. It is overwritten. */
@@ -27,54 +30,126 @@ static void span_add(struct check_span *span, mpq_t v[AXES])
     span->pivot[span->rank++] = pivot;
 }
 
-/* Takes " LETTER INDEX:WEIGHT INDEX:WEIGHT ...", indices ascending, weights positive. Sets the sum,
- * the total and the span of a side. */
-static bool take_weights_of(const char **at, const char *letter, struct check_side *side)
+/* Makes the weight of a vertex of side f an unknown. Returns false if there are too many. The
+ * vertex is overwritten. */
+static bool add_following(struct check_proof *proof, int f, mpq_t vertex[AXES])
 {
+    const int k = proof->following++;
+    if (k == FOLLOWING_MAX)
+        return false;
+    check_turn(proof->side[f].placement, false, vertex);
+    mpq_set_ui(proof->equation[f][k], 1, 1);
+    for (int axis = 0; axis < AXES; axis++)
+        (f ? mpq_neg : mpq_set)(proof->equation[2 + axis][k], vertex[axis]);
+    return true;
+}
+
+/* Takes " LETTER" and one or more of " INDEX:WEIGHT" and " INDEX", indices ascending, weights
+ * positive. Sets the sum, the total and the span of side f. */
+static bool take_weights_of(const char **at, const char *letter, struct check_proof *proof, int f)
+{
+    struct check_side *side = &proof->side[f];
     unsigned next = 0;
     mpz_t index;
-    mpq_t weight, first[AXES], vertex[AXES];
+    mpq_t weight, first[AXES], vertex[AXES], edge[AXES];
     mpz_init(index);
     mpq_init(weight);
     check_each(first, sizeof first, mpq_init);
     check_each(vertex, sizeof vertex, mpq_init);
+    check_each(edge, sizeof edge, mpq_init);
     bool good = check_take(at, letter);
     while (good && **at == ' ' && check_is_digit((*at)[1])) {
         ++*at;
         good = check_take_digits(at, index) && mpz_cmp_ui(index, next) >= 0 &&
-               mpz_cmp_ui(index, check_vertex_count(side)) < 0 && check_take(at, ":") &&
-               check_take_number(at, weight) && mpq_sgn(weight) > 0;
+               mpz_cmp_ui(index, check_vertex_count(side)) < 0;
         if (!good)
             break;
         check_vertex(side, (unsigned) mpz_get_ui(index), vertex);
-        mpq_add(side->total, side->total, weight);
-        check_add_multiple(side->sum, weight, vertex, AXES);
         if (next == 0)
             check_copy(first, vertex);
-        check_subtract(vertex, vertex, first);
-        span_add(&side->span, vertex);
+        check_subtract(edge, vertex, first);
+        span_add(&side->span, edge);
         next = (unsigned) mpz_get_ui(index) + 1;
+        if (!check_take(at, ":")) {
+            good = add_following(proof, f, vertex);
+            continue;
+        }
+        good = check_take_number(at, weight) && mpq_sgn(weight) > 0;
+        mpq_add(side->total, side->total, weight);
+        check_add_multiple(side->sum, weight, vertex, AXES);
     }
+    check_each(edge, sizeof edge, mpq_clear);
     check_each(vertex, sizeof vertex, mpq_clear);
     check_each(first, sizeof first, mpq_clear);
     mpq_clear(weight);
     mpz_clear(index);
-    return good;
+    return good && next > 0;
 }
 
 bool check_take_weights(const char **at, struct check_proof *proof)
 {
-    return take_weights_of(at, " a", &proof->side[0]) && take_weights_of(at, " b", &proof->side[1]);
+    return take_weights_of(at, " a", proof, 0) && take_weights_of(at, " b", proof, 1);
 }
 
-/* Whether the weighted vertices of the frame are the point at the time. */
-static bool has_point(struct check_proof *proof, struct check_side *side)
+/* Completes the equations by their sums. */
+static void set_sums(struct check_proof *proof)
 {
-    check_turn(side->placement, false, side->sum);
-    check_add_multiple(side->sum, proof->time, side->velocity, AXES);
-    check_add_numbers(side->sum, proof->dim, side->placement->position);
-    return mpq_equal(side->sum[0], proof->point[0]) && mpq_equal(side->sum[1], proof->point[1]) &&
-           mpq_equal(side->sum[2], proof->point[2]);
+    for (int f = 0; f < 2; f++) {
+        struct check_side *side = &proof->side[f];
+        mpq_set_ui(proof->equation[f][proof->following], 1, 1);
+        mpq_sub(proof->equation[f][proof->following], proof->equation[f][proof->following],
+                side->total);
+        check_turn(side->placement, false, side->sum);
+        check_add_multiple(side->sum, proof->time, side->velocity, AXES);
+        check_add_numbers(side->sum, proof->dim, side->placement->position);
+    }
+    for (int axis = 0; axis < AXES; axis++)
+        mpq_sub(proof->equation[2 + axis][proof->following], proof->side[1].sum[axis],
+                proof->side[0].sum[axis]);
+}
+
+/* Adds a multiple of equation k, from unknown k on, to equation e, which then lacks unknown k. */
+static void substitute(struct check_proof *proof, int k, int e)
+{
+    mpq_t factor;
+    mpq_init(factor);
+    mpq_div(factor, proof->equation[e][k], proof->equation[k][k]);
+    mpq_neg(factor, factor);
+    check_add_multiple(proof->equation[e] + k, factor, proof->equation[k] + k,
+                       proof->following + 1 - k);
+    mpq_clear(factor);
+}
+
+/* Solves equation k for unknown k. Returns false if none has it. */
+static bool eliminate(struct check_proof *proof, int k)
+{
+    int from = k;
+    while (from < EQUATIONS && mpq_sgn(proof->equation[from][k]) == 0)
+        from++;
+    if (from == EQUATIONS)
+        return false;
+    for (int i = 0; i <= proof->following && from > k; i++)
+        mpq_swap(proof->equation[k][i], proof->equation[from][i]);
+    for (int e = 0; e < EQUATIONS; e++)
+        if (e != k && mpq_sgn(proof->equation[e][k]) != 0)
+            substitute(proof, k, e);
+    return true;
+}
+
+static const char *flaw_of_equations(struct check_proof *proof)
+{
+    const int sum = proof->following;
+    set_sums(proof);
+    for (int k = 0; k < proof->following; k++)
+        if (!eliminate(proof, k))
+            return "the weights that are not stated do not follow from the others";
+    for (int e = proof->following; e < EQUATIONS; e++)
+        if (mpq_sgn(proof->equation[e][sum]) != 0)
+            return "with these weights the frames have no common point";
+    for (int k = 0; k < proof->following; k++)
+        if (mpq_sgn(proof->equation[k][k]) != mpq_sgn(proof->equation[k][sum]))
+            return "a weight that follows is not positive";
+    return NULL;
 }
 
 /* Whether no vertex lies outside of the affine hull of the named ones. Adds one that does. */
@@ -98,19 +173,10 @@ static bool is_spanned(struct check_side *side)
 
 const char *check_flaw_of_weights(struct check_proof *proof, enum fmb_verdict verdict)
 {
-    static const char *const of_place[2] = {
-        "the point is not that of the weights in the first frame",
-        "the point is not that of the weights in the second frame"};
-    static const char *const of_span[2] = {"the named vertices do not span the first frame",
-                                           "the named vertices do not span the second frame"};
-    for (int f = 0; f < 2; f++) {
-        struct check_side *side = &proof->side[f];
-        if (mpq_cmp_ui(side->total, 1, 1) != 0)
-            return "the weights do not sum to 1";
-        if (!has_point(proof, side))
-            return of_place[f];
-        if (verdict == FMB_OVERLAPPING && !is_spanned(side))
-            return of_span[f];
-    }
-    return NULL;
+    const char *flaw = flaw_of_equations(proof);
+    if (flaw || verdict != FMB_OVERLAPPING)
+        return flaw;
+    return !is_spanned(&proof->side[0])   ? "the named vertices do not span the first frame"
+           : !is_spanned(&proof->side[1]) ? "the named vertices do not span the second frame"
+                                          : NULL;
 }

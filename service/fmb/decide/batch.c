@@ -615,8 +615,11 @@ static enum gap_outcome gap_of_pair(const struct batch_job *job, size_t i, enum 
     const struct fmb_batch *batch = job->batch;
     const struct fmb_prepared *a = &batch->frames[batch->pairs[i][0]];
     const struct fmb_prepared *b = &batch->frames[batch->pairs[i][1]];
+    enum gap_outcome known = GAP_UNSURE;
     if (!hull_takes(a->frame, b->frame))
-        return gap_of(a, b, batch->duration, verdict, job->farthest, batch->open != NULL, out);
+        known = gap_of(a, b, batch->duration, verdict, job->farthest, out);
+    if (known != GAP_UNSURE)
+        return known;
     const struct frame_pair frames = {
         {a->frame, a->placement}, {b->frame, b->placement}, batch->duration};
     if (!batch->open)

@@ -309,8 +309,11 @@ enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
         !certified_box_unsure(a, b, duration, quick, answer->box))
         return FMB_CANNOT_DECIDE;
     if (answer->has_gap &&
-        gap_of(a, b, duration, answer->verdict, INFINITY, quick, &answer->gap) == GAP_UNSURE)
-        return FMB_CANNOT_DECIDE;
+        gap_of(a, b, duration, answer->verdict, INFINITY, &answer->gap) == GAP_UNSURE) {
+        if (quick)
+            return FMB_CANNOT_DECIDE;
+        hull_gap(&pair, answer->verdict, INFINITY, &answer->gap);
+    }
     return FMB_OK;
 }
 

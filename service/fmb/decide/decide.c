@@ -8,6 +8,7 @@
 #include "memory.h"
 #include "pair_number.h"
 
+#include <math.h>
 #include <string.h>
 
 static enum fmb_status decide_exactly(const struct frame_pair *pair, unsigned want,
@@ -18,7 +19,7 @@ static enum fmb_status decide_exactly(const struct frame_pair *pair, unsigned wa
     const enum fmb_status status = exact_decide(pair, want, answer);
     answer->has_gap = want & FMB_WANT_GAP;
     if (answer->has_gap)
-        gap_exact_any_order(pair, answer->verdict, &answer->gap);
+        hull_gap(pair, answer->verdict, INFINITY, &answer->gap);
     return status;
 }
 

@@ -4,31 +4,6 @@
 
 #include <string.h>
 
-static void set_edges(struct exact_frame *frame)
-{
-    for (int i = 0; i < frame->count; i++)
-        frame->edge[i] = frame->component[i];
-    frame->edges = frame->count;
-    for (int i = 0; i < frame->count && frame->simplex; i++)
-        for (int j = i + 1; j < frame->count; j++) {
-            mpz_t *difference = frame->difference[frame->edges - frame->count];
-            for (int axis = 0; axis < 3; axis++)
-                mpz_sub(difference[axis], frame->component[j][axis], frame->component[i][axis]);
-            frame->edge[frame->edges++] = difference;
-        }
-}
-
-void exact_pair_complete(struct exact_pair *pair)
-{
-    struct exact_frame *a = &pair->frame[0], *b = &pair->frame[1];
-    set_edges(a);
-    set_edges(b);
-    for (int axis = 0; axis < 3; axis++) {
-        mpz_sub(pair->offset[axis], b->origin[axis], a->origin[axis]);
-        mpz_sub(pair->drift[axis], b->displacement[axis], a->displacement[axis]);
-    }
-}
-
 /* ---- Orientations ----
  *
  * For a quaternion q of integers, n R(q) is a matrix of integers, n = |q|^2. All lengths of a pair
@@ -160,15 +135,6 @@ static void pair_each(struct exact_pair *pair, void (*call)(mpz_ptr))
     INTEGER_EACH_FROM(scale, pair, call);
 }
 
-mpz_ptr exact_length(struct exact_pair *pair, int number)
-{
-    struct exact_frame *frame = &pair->frame[number % 2];
-    const int vector = number / 2 % 5, axis = number / 10;
-    return vector < 3    ? frame->component[vector][axis]
-           : vector == 3 ? frame->origin[axis]
-                         : frame->displacement[axis];
-}
-
 static void set_question(const struct frame_pair *pair, struct limbs_question *out)
 {
     limbs_question_set(pair, limbs_span_of(pair), LIMBS_FLAT, out);
@@ -180,66 +146,11 @@ void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair)
     set_question(pair, &out->question);
     out->unit = out->question.span.unit;
     set_frames(out);
-    exact_pair_complete(out);
 }
 
 void exact_pair_clear(struct exact_pair *pair)
 {
     pair_each(pair, mpz_clear);
-}
-
-/* ---- Products ---- */
-
-/* Returns the vector of this number: [axis]. */
-static mpz_t *vector_of(struct exact_pair *pair, int number)
-{
-    if (number == EXACT_OFFSET)
-        return pair->offset;
-    if (number == EXACT_DRIFT)
-        return pair->drift;
-    return pair->frame[number / EXACT_OF_B].component[number % EXACT_OF_B];
-}
-
-void exact_set_values(struct exact_pair *pair, mpz_t normal[3], mpz_t value[EXACT_VECTORS])
-{
-    for (int k = 0; k < EXACT_VECTORS; k++)
-        integer_dot(value[k], normal, vector_of(pair, k), pair->scratch);
-}
-
-/* Widens [low, high], which bounds normal . x over a part of the frame, by one component. */
-static void add_component(const struct exact_frame *frame, mpz_t low, mpz_t high, const mpz_t at)
-{
-    if (!frame->simplex) {
-        mpz_ptr end = mpz_sgn(at) < 0 ? low : high;
-        mpz_add(end, end, at);
-    } else if (mpz_cmp(at, low) < 0) {
-        mpz_set(low, at);
-    } else if (mpz_cmp(at, high) > 0) {
-        mpz_set(high, at);
-    }
-}
-
-void exact_extent(const struct exact_pair *pair, int f, mpz_t value[EXACT_VECTORS], mpz_t low,
-                  mpz_t high)
-{
-    const struct exact_frame *frame = &pair->frame[f];
-    mpz_set_ui(low, 0);
-    mpz_set_ui(high, 0);
-    for (int i = 0; i < frame->count; i++)
-        add_component(frame, low, high, value[f * EXACT_OF_B + i]);
-}
-
-void exact_ranges(const struct exact_pair *pair, mpz_t value[EXACT_VECTORS],
-                  struct exact_range frame[2], struct exact_range *all)
-{
-    mpz_ptr late = mpz_sgn(value[EXACT_DRIFT]) < 0 ? all->low : all->high;
-    for (int f = 0; f < 2; f++)
-        exact_extent(pair, f, value, frame[f].low, frame[f].high);
-    mpz_sub(all->low, frame[1].low, frame[0].high);
-    mpz_add(all->low, all->low, value[EXACT_OFFSET]);
-    mpz_sub(all->high, frame[1].high, frame[0].low);
-    mpz_add(all->high, all->high, value[EXACT_OFFSET]);
-    mpz_add(late, late, value[EXACT_DRIFT]);
 }
 
 /* ---- The method ---- */

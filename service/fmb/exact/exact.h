@@ -1,4 +1,4 @@
-/* The method exact; and pairs in integers of GMP, for exact points, certificates and gaps.
+/* The method exact, without gaps; and pairs in integers of GMP, for exact points.
  *
  * Everything is three-dimensional here: a 2D frame lies in the plane z = 0.
  *
@@ -11,25 +11,11 @@
 
 #include <gmp.h>
 
-enum {
-    EXACT_EDGES_MAX = 6, /* directions of edges: 3 of a cuboid, 6 of a tetrahedron */
-    EXACT_LENGTHS = 30   /* of exact_length() */
-};
-
-/* The vectors of a pair, by number: the components of frame 0 and of frame 1, the offset, the
- * drift. All quantities are linear in them: edges, vertices, and their projections on normals. */
-enum { EXACT_OF_B = 3, EXACT_OFFSET = 6, EXACT_DRIFT = 7, EXACT_VECTORS = 8 };
-
 /* A frame at tau = 0. All numbers are integers, in units of 2^unit / scale of the pair. */
 struct exact_frame {
-    int count;    /* components: 2 or 3 */
-    bool simplex; /* tetrahedron or face; else cuboid */
-    /* The distinct directions of edges: the components; for a simplex also the differences c_j -
-     * c_i, i < j, stored in difference. [edge]: [axis]. */
-    int edges;
-    mpz_t *edge[EXACT_EDGES_MAX];
+    int count;             /* components: 2 or 3 */
+    bool simplex;          /* tetrahedron or face; else cuboid */
     mpz_t component[3][3]; /* [component][axis]; 0 beyond count */
-    mpz_t difference[3][3];
     mpz_t origin[3];
     mpz_t displacement[3]; /* v T */
 };
@@ -38,9 +24,7 @@ struct exact_pair {
     struct limbs_question question; /* the same pair */
     long unit;                      /* every length is an integer times 2^unit / scale */
     struct exact_frame frame[2];
-    mpz_t scale;     /* > 0; 1 if nothing is rotated */
-    mpz_t offset[3]; /* origin of frame[1] - origin of frame[0] */
-    mpz_t drift[3];  /* displacement of frame[1] - displacement of frame[0] */
+    mpz_t scale; /* > 0; 1 if nothing is rotated */
     mpz_t scratch;
 };
 
@@ -65,31 +49,6 @@ void exact_frame_set(struct exact_frame *out, const struct fmb_frame *frame, lon
  * allocates. */
 void exact_pair_init(struct exact_pair *out, const struct frame_pair *pair);
 void exact_pair_clear(struct exact_pair *pair);
-
-/* Sets edges, offset and drift of a pair from its components, origins and displacements. */
-void exact_pair_complete(struct exact_pair *pair);
-
-/* Returns a coordinate, by number from 0 to EXACT_LENGTHS - 1, of a component, an origin or a
- * displacement. */
-mpz_ptr exact_length(struct exact_pair *pair, int number);
-
-/* value[k] := normal . vector k, for all vectors k of the pair. */
-void exact_set_values(struct exact_pair *pair, mpz_t normal[3], mpz_t value[EXACT_VECTORS]);
-
-/* [low, high] := the interval of normal . x over frame f with its origin at 0. value: of the
- * normal. */
-void exact_extent(const struct exact_pair *pair, int f, mpz_t value[EXACT_VECTORS], mpz_t low,
-                  mpz_t high);
-
-/* The interval of a normal over a set of points. */
-struct exact_range {
-    mpz_t low, high;
-};
-
-/* frame[f] := the interval over frame f with its origin at 0; all := that of all b - a over the
- * window, for points a of frame 0 and b of frame 1. value: of the normal. */
-void exact_ranges(const struct exact_pair *pair, mpz_t value[EXACT_VECTORS],
-                  struct exact_range frame[2], struct exact_range *all);
 
 /* Coordinates of a point in space and time: [0] tau, in windows; [1] to [3] the place, in units
  * of 2^unit of the pair. */

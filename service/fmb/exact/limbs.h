@@ -70,9 +70,6 @@ struct limbs_visitor {
     void *context;
 };
 
-/* Called for each normal, [axis]. */
-typedef void (*limbs_normal_visit)(void *context, mpz_t normal[3]);
-
 /* Edges are numbered as in slabs.h. */
 struct limbs_functions {
     /* Decides a pair by all its slabs, flat frames included. If contact is not NULL and the pair is
@@ -96,10 +93,6 @@ struct limbs_functions {
                 double box[2][FMB_DIM_MAX]);
     /* Visits the points of points_walk(). In: use LIMBS_FLAT. GMP allocates. */
     void (*points)(const struct limbs_question *question, const struct limbs_visitor *visitor);
-    /* Visits the normals of slabs whose intersection is frame f, in world coordinates, each times a
-     * positive factor. In: use LIMBS_FLAT. GMP allocates. */
-    void (*normals)(const struct limbs_question *question, int f, limbs_normal_visit visit,
-                    void *context);
 };
 
 extern const struct limbs_functions limbs_narrow, limbs_wide;

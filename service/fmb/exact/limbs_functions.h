@@ -74,36 +74,7 @@ static void points(const struct limbs_question *question, const struct limbs_vis
     LIMBS_RELEASE(pair);
 }
 
-static void normals(const struct limbs_question *question, int f, limbs_normal_visit visit,
-                    void *context)
-{
-    LIMBS_WORK(struct limbs_pair, pair);
-    const int n = question->limbs;
-    struct slab_set set;
-    struct normal normal;
-    struct limbs_vector turned;
-    mpz_t world[3];
-    bool pins;
-    mpz_inits(world[0], world[1], world[2], NULL);
-    limbs_prepare(question, pair);
-    set_slabs_of(pair, f, f, &set);
-    for (int i = 0; set_normal_of_set(pair, &set, i, &normal, &pins); i++) {
-        const struct limbs_vector *at = normal.at[WORLD];
-        if (pair->common) /* of equal orientations, the world is turned as the frames are */
-            at = limbs_transform(n, pair->rotation[0].row[0], at, &turned);
-        for (int axis = 0; axis < 3; axis++)
-            limbs_to_mpz(n, at->at[axis], world[axis]);
-        visit(context, world);
-    }
-    mpz_clears(world[0], world[1], world[2], NULL);
-    LIMBS_RELEASE(pair);
-}
-
-const struct limbs_functions LIMBS_FUNCTIONS = {.verdict = verdict,
-                                                .slabs = slabs,
-                                                .planes = planes,
-                                                .box = box,
-                                                .points = points,
-                                                .normals = normals};
+const struct limbs_functions LIMBS_FUNCTIONS = {
+    .verdict = verdict, .slabs = slabs, .planes = planes, .box = box, .points = points};
 
 #endif

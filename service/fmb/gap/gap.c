@@ -1,18 +1,17 @@
 /* The gap of two frames: the order of the pair, the preparation in doubles, and the choice of step.
  *
  *   In     two prepared frames, the window, their verdict
- *   Out    struct fmb_gap; GAP_FAR if the gap is surely greater than farthest; with quick,
- *          GAP_UNSURE if it needs GMP
+ *   Out    struct fmb_gap; GAP_FAR if the gap is surely greater than farthest; GAP_UNSURE if
+ * doubles do not suffice: then the vertices of both frames give it (hull_gap.h)
  *
  * Steps (gap_of()):
  *
  *   1. gap_frames_swap()  puts the pair into an order that depends on its numbers only
  *   2. gap_pair_set()     collects offset, vectors, error and scale in doubles
  *   3. gap_in_doubles()   gap_axis_aligned(), then gap_distance() or gap_depth() by the verdict
- *   4. gap_exact()        integers, if the enclosure is wider than the limit
  *
- * Each file proves its own bounds: gap_axis_aligned.c, gap_distance.c, gap_depth.c with
- * gap_bounds.c, and gap_exact.c. The functions for bodies of several frames take the least gap of
+ * Each file proves its own bounds: gap_axis_aligned.c, gap_distance.c, and gap_depth.c with
+ * gap_bounds.c. The functions for bodies of several frames take the least gap of
  * their frames.
  */
 #include "gap.h"
@@ -228,7 +227,7 @@ static enum gap_outcome gap_in_doubles(const struct fmb_prepared *a, const struc
 }
 
 enum gap_outcome gap_of(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                        enum fmb_verdict verdict, double farthest, bool quick, struct fmb_gap *out)
+                        enum fmb_verdict verdict, double farthest, struct fmb_gap *out)
 {
     const struct placed_frame first = {a->frame, a->placement}, second = {b->frame, b->placement};
     const bool swaps = gap_frames_swap(&first, &second);
@@ -236,22 +235,7 @@ enum gap_outcome gap_of(const struct fmb_prepared *a, const struct fmb_prepared 
         gap_in_doubles(swaps ? b : a, swaps ? a : b, duration, verdict, farthest, out);
     if (outcome == GAP_KNOWN && swaps)
         gap_turn_round(out);
-    if (outcome != GAP_UNSURE || quick)
-        return outcome;
-    const struct frame_pair pair = {first, second, duration};
-    gap_exact_any_order(&pair, verdict, out);
-    return GAP_KNOWN;
-}
-
-void gap_exact_any_order(const struct frame_pair *pair, enum fmb_verdict verdict,
-                         struct fmb_gap *out)
-{
-    const bool swaps = gap_frames_swap(&pair->a, &pair->b);
-    const struct frame_pair ordered = {swaps ? pair->b : pair->a, swaps ? pair->a : pair->b,
-                                       pair->duration};
-    gap_exact(&ordered, verdict, out);
-    if (swaps)
-        gap_turn_round(out);
+    return outcome;
 }
 
 /* ---- Bodies of several frames ---- */

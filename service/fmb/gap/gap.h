@@ -13,8 +13,8 @@
  *
  * Doubles give the gap of nearly all pairs: gap_axis_aligned.c that of axis-aligned cuboids;
  * gap_distance.c that of separated pairs, by the point of P closest to the origin; gap_depth.c that
- * of the others, by the normals of facets. If the enclosure is wider than the limit, gap_exact.c
- * computes it in integers.
+ * of the others, by the normals of facets. If the enclosure is wider than the limit, the
+ * vertices of both frames give it (hull_gap.h).
  *
  * The pair is put into an order that depends on its numbers only, so that the swapped pair has the
  * same bits. */
@@ -101,21 +101,14 @@ enum gap_outcome gap_distance(const struct gap_pair *pair, double farthest, stru
 enum gap_outcome gap_depth(const struct gap_pair *pair, enum fmb_verdict verdict,
                            struct fmb_gap *out);
 
-/* The gap of a checked and ordered pair with this verdict, in integers. */
-void gap_exact(const struct frame_pair *pair, enum fmb_verdict verdict, struct fmb_gap *out);
-
-/* The same for a checked pair in any order. */
-void gap_exact_any_order(const struct frame_pair *pair, enum fmb_verdict verdict,
-                         struct fmb_gap *out);
-
 /* Returns a distance: frames that are farther apart have a gap that is surely greater than
  * farthest, as computed in doubles. In: a usable pair. */
 double gap_far_threshold(const struct fmb_prepared *a, const struct fmb_prepared *b,
                          double duration, double farthest);
 
-/* The gap of a prepared pair with this verdict. quick: returns GAP_UNSURE if it needs GMP. */
+/* The gap of a prepared pair with this verdict. Returns GAP_UNSURE if doubles do not give it. */
 enum gap_outcome gap_of(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                        enum fmb_verdict verdict, double farthest, bool quick, struct fmb_gap *out);
+                        enum fmb_verdict verdict, double farthest, struct fmb_gap *out);
 
 /* Returns whether the gap of these frames is computed for the swapped pair. */
 bool gap_frames_swap(const struct placed_frame *a, const struct placed_frame *b);

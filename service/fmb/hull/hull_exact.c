@@ -44,7 +44,8 @@
  *    greatest value, is in its relative interior: TOUCHING.
  *
  * 5. Proof (hull_exact.h), on request, instead of heights. A normal that separates is known from
- *    step 1 or 2.
+ *    step 1 or 2. Of its truncations to a few bits the shortest that separates takes its place
+ *    (shorten_step()).
  *    If the frames touch, the solution of step 2 is the origin as a combination of vertices, and N
  *    is the normal, unless a face N' was taken before, at one end of the window. N then proves the
  *    verdict at that end, where N' . x = 0. If N . x increases towards the other end, the normal is
@@ -103,7 +104,7 @@ struct kept {
     mpz_t at[3];
 };
 
-enum stage { SPANNING_A, SPANNING_B, SPANNING, SHOOTING, RAISING, COMPLETE };
+enum stage { SPANNING_A, SPANNING_B, SPANNING, SHOOTING, RAISING, SHORTENING, COMPLETE };
 
 struct hull_exact {
     const struct hull_pair *pair;
@@ -763,12 +764,42 @@ static void finish(struct hull_exact *e, enum fmb_verdict verdict)
 
 /* ---- Proof ---- */
 
+enum { BITS_LEAST = 3 };
+
 /* normal[1] separates. */
 static void finish_separated(struct hull_exact *e)
 {
     for (int axis = 0; axis < 3; axis++)
         mpz_neg(e->proof.normal[axis], e->normal[1][axis]);
     finish(e, FMB_SEPARATED);
+    if (e->proves)
+        e->stage = SHORTENING;
+    e->attempt = BITS_LEAST;
+}
+
+/* Tries the normal of the proof truncated to so many bits. */
+static void shorten_step(struct hull_exact *e)
+{
+    size_t bits = 0;
+    for (int axis = 0; axis < 3; axis++)
+        if (mpz_sizeinbase(e->proof.normal[axis], 2) > bits)
+            bits = mpz_sizeinbase(e->proof.normal[axis], 2);
+    if ((size_t) e->attempt >= bits) {
+        e->stage = COMPLETE;
+        return;
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_tdiv_q_2exp(e->normal[1][axis], e->proof.normal[axis], bits - (size_t) e->attempt);
+        mpz_neg(e->normal[1][axis], e->normal[1][axis]);
+    }
+    set_point(e, price_difference(e, false), &e->entering);
+    dot(e->normal[1], e->entering.x, e->sum);
+    e->attempt *= 2;
+    if (mpz_sgn(e->sum) >= 0)
+        return;
+    for (int axis = 0; axis < 3; axis++)
+        mpz_neg(e->proof.normal[axis], e->normal[1][axis]);
+    e->stage = COMPLETE;
 }
 
 /* The basis contains the origin, and the normal leaves out vertices. If a face was taken before, it
@@ -1144,6 +1175,7 @@ bool hull_exact_step(struct hull_exact *e)
         break;
     case SHOOTING: shoot_step(e); break;
     case RAISING: height_step(e); break;
+    case SHORTENING: shorten_step(e); break;
     case COMPLETE: break;
     }
     return e->stage == COMPLETE;

@@ -1,0 +1,18 @@
+/* The text of a certificate in progress. */
+#ifndef FMB_CERTIFICATE_TEXT_H
+#define FMB_CERTIFICATE_TEXT_H
+
+#include "fmb.h"
+
+#include <gmp.h>
+
+struct certificate_writer {
+    char text[FMB_CERTIFICATE_MAX];
+    size_t length; /* of all that was written, beyond the end of text too */
+};
+
+/* Append to the text what fits: as gmp_printf(), and a number. */
+void certificate_write_text(struct certificate_writer *writer, const char *format, ...);
+void certificate_write_number(struct certificate_writer *writer, const mpq_t number);
+
+#endif

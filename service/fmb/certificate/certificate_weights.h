@@ -1,0 +1,44 @@
+/* Weights of few digits for the common point of a proof (hull_exact.h). */
+#ifndef FMB_CERTIFICATE_WEIGHTS_H
+#define FMB_CERTIFICATE_WEIGHTS_H
+
+#include "hull_exact.h"
+
+enum {
+    WEIGHTS_MAX = 2 * HULL_PROOF_MAX, /* vertices with a weight, of both frames */
+    WEIGHTS_ROWS = 2 + FMB_DIM_MAX,
+    WEIGHTS_COLUMNS = WEIGHTS_MAX + 2
+};
+
+/* A vertex of frame f with its weight. */
+struct certificate_weight {
+    int f, row; /* row: the equation from which the weight follows; -1: it is stated */
+    unsigned vertex;
+    mpz_t proven; /* times the total of the proof */
+    mpz_t stated; /* times 2^bits */
+};
+
+/* Weights in progress. Not to be copied. */
+struct certificate_weights {
+    const struct hull_proof *proof;
+    double duration;
+    unsigned count, next;
+    int rows, rank;
+    struct certificate_weight weight[WEIGHTS_MAX]; /* the greatest first */
+    mpz_t row[WEIGHTS_ROWS][WEIGHTS_COLUMNS];      /* the two last: sum, and what the drift adds */
+    mpz_t det, scratch, sum;
+    unsigned long bits;
+    mpq_t time; /* of the point, seconds */
+};
+
+/* Begins with a complete proof of a pair that meets. certificate_weights_end() frees what is
+ * allocated. */
+void certificate_weights_begin(const struct hull_proof *proof, int dim, double duration,
+                               struct certificate_weights *out);
+
+/* Performs a step. Returns whether all is set: bits, time, and which weights are stated. */
+bool certificate_weights_step(struct certificate_weights *weights);
+
+void certificate_weights_end(struct certificate_weights *weights);
+
+#endif
