@@ -103,8 +103,8 @@ struct query {
     bool has_margin;       /* a scene has one */
     int64_t scenes, empty; /* empty: scenes without a pair to decide */
     bool moves;            /* a body moves in a scene whose duration is not 0 */
-    int64_t still_scene, still_body; /* the first one that would but for the duration; 0: none */
-    int worst;                       /* severity of all pairs */
+    int64_t still_body;    /* the first one that would but for the duration; 0: none */
+    int worst;             /* severity of all pairs */
 };
 
 static bool take_method(const struct args *args, void *out)
@@ -168,10 +168,8 @@ static void note_scene(struct query *query, const struct fmb_scene *scene, uint6
         const double *v = body->velocity;
         const bool moving = v[0] != 0 || v[1] != 0 || v[2] != 0;
         query->moves = query->moves || (moving && scene->duration > 0);
-        if (moving && scene->duration == 0 && !query->still_scene) {
-            query->still_scene = query->scenes;
+        if (moving && !query->moves && !query->still_body)
             query->still_body = body->id;
-        }
     }
 }
 
@@ -237,10 +235,9 @@ static void report_limits(const struct query *query)
                  number_grouped((int64_t) query->unproven, text));
     if (query->fail_if == 2 * FMB_SEPARATED + 1 && query->scene && !query->has_margin)
         complain("--fail-if near: no scene has a \"margin\", so no separated pair is near");
-    if (query->still_scene && !query->moves)
-        complain("scene %" PRId64 ": body %" PRId64
-                 " has a velocity, but \"duration\" is 0: nothing moves",
-                 query->still_scene, query->still_body);
+    if (query->still_body && !query->moves)
+        complain("body %" PRId64 " has a velocity, but \"duration\" is 0: nothing moves",
+                 query->still_body);
     if (query->empty > 0 && query->scenes == 1)
         complain("the scene has no pair to decide");
     else if (query->empty > 0)

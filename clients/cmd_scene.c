@@ -136,11 +136,9 @@ static bool print_table(const struct scene_options *options, struct joints *join
                         struct robot_scene *scene)
 {
     struct joint_table table;
-    bool good = joint_table_open(options->table, joints, &table);
-    if (good)
-        joints_check(joints);
-    good = good && print_rows(scene, &table, false) && joints_report(joints) &&
-           joint_table_rewind(&table);
+    bool good = joint_table_open(options->table, joints, &table) &&
+                print_rows(scene, &table, false) && joints_report(joints) &&
+                joint_table_rewind(&table);
     if (good) {
         robot_scene_report(scene, options->body.sides);
         good = print_rows(scene, &table, true);

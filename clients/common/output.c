@@ -107,25 +107,18 @@ static bool is_input(const struct output_rules *rules, const struct stat *file)
 /* Whether two outputs go to one regular file, which may not exist yet. */
 static bool goes_to_one_file(const char *a, const char *b)
 {
-    const char *const path[2] = {a, b};
-    char *target[2], *folder[2];
-    struct stat found[2] = {0};
-    int missing = 0, folders = 0;
-    for (int i = 0; i < 2; i++)
-        missing += stat(path[i], &found[i]) != 0 && errno == ENOENT;
-    if (missing < 2)
-        return missing == 0 && S_ISREG(found[0].st_mode) && is_same(&found[0], &found[1]);
+    struct stat file[2] = {0}, folder[2];
+    const bool absent = stat(a, &file[0]) != 0 && errno == ENOENT;
+    if (stat(b, &file[1]) == 0 || errno != ENOENT || !absent)
+        return S_ISREG(file[0].st_mode) && is_same(&file[0], &file[1]);
+    char *at[] = {follow_links(a), follow_links(b)};
+    char *in[] = {output_beside(at[0], "."), output_beside(at[1], ".")};
+    const bool same = stat(in[0], &folder[0]) == 0 && stat(in[1], &folder[1]) == 0 &&
+                      is_same(&folder[0], &folder[1]) &&
+                      strcmp(at[0] + strlen(in[0]) - 1, at[1] + strlen(in[1]) - 1) == 0;
     for (int i = 0; i < 2; i++) {
-        target[i] = follow_links(path[i]);
-        folder[i] = output_beside(target[i], ".");
-        folders += stat(folder[i], &found[i]) == 0;
-    }
-    const bool same =
-        folders == 2 && is_same(&found[0], &found[1]) &&
-        strcmp(target[0] + strlen(folder[0]) - 1, target[1] + strlen(folder[1]) - 1) == 0;
-    for (int i = 0; i < 2; i++) {
-        free(target[i]);
-        free(folder[i]);
+        free(at[i]);
+        free(in[i]);
     }
     return same;
 }
@@ -158,13 +151,12 @@ bool output_check(const struct output_options *options)
         complain("%s: this command reads it: write to another file", options->path);
         return false;
     }
-    if (standard_fd(&old) >= 0) {
-        const bool asked = strncmp(options->path, "/dev/", 5) == 0; /* as /dev/stdout */
-        if (!asked)
-            output_complain(options->path, EBUSY);
-        return asked;
+    const bool printed = standard_fd(&old) >= 0;
+    if (printed && strncmp(options->path, "/dev/", 5) != 0) { /* not /dev/stdout itself */
+        output_complain(options->path, EBUSY);
+        return false;
     }
-    if (options->rules->force || old.st_size == 0)
+    if (options->rules->force || old.st_size == 0 || printed)
         return true;
     if (options->kind == OUTPUT_LOG) {
         output_complain(options->path, EEXIST);

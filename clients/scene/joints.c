@@ -37,52 +37,46 @@ static void check_value(struct joints *joints, size_t j, const char *path, unsig
         joints->outside[j] = found;
 }
 
-/* Reports a value of joint j. what: about it. */
+/* Reports a value of joint j. limited: whether its limits are named; what: the end of the line. */
 static void report_value(const struct joints *joints, size_t j, const struct joint_report *at,
-                         const char *what)
+                         bool limited, const char *what)
 {
     const struct robot_joint *joint = &joints->robot->joints[j];
     const bool given = joints->given[j], follows = !given && joint->mimic_name;
-    char line[32] = "", value[NUMBER_TEXT_MAX];
+    char line[32] = "", value[NUMBER_TEXT_MAX], limits[2 * NUMBER_TEXT_MAX + 64] = "";
+    char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
     if (at->line > 0)
         snprintf(line, sizeof line, ": line %lu", at->line);
-    complain("%s%s%s: joint '%s'%s%s%s: %s %s", at->path, line,
+    if (limited)
+        snprintf(limits, sizeof limits, "is outside its limits, %s to %s%s",
+                 number_or_inf(joint->limit[0], low), number_or_inf(joint->limit[1], high),
+                 joint->type != ROBOT_PRISMATIC ? " radians" : "");
+    complain("%s%s%s: joint '%s'%s%s%s: %s %s%s", at->path, line,
              given || follows ? "" : ": by default (--joints sets other values)", joint->name->name,
              follows ? " (a mimic of '" : "", follows ? joint->mimic_name : "", follows ? "')" : "",
-             number_or_inf(at->value, value), what);
-}
-
-/* Reports the farthest value of joint j. after: the end of the line. */
-static void report_outside(const struct joints *joints, size_t j, const char *after)
-{
-    const struct robot_joint *joint = &joints->robot->joints[j];
-    const bool turns = joint->type != ROBOT_PRISMATIC;
-    char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX], what[256];
-    if (turns && fabs(joints->outside[j].value) > TURN_RADIANS_MAX)
-        snprintf(what, sizeof what, "is beyond %.0f radians", TURN_RADIANS_MAX);
-    else
-        snprintf(what, sizeof what, "is outside its limits, %s to %s%s%s",
-                 number_exact(joint->limit[0], low), number_exact(joint->limit[1], high),
-                 turns ? " radians" : "", after);
-    report_value(joints, j, &joints->outside[j], what);
+             number_or_inf(at->value, value), limits, what);
 }
 
 bool joints_report(const struct joints *joints)
 {
-    char slack[NUMBER_TEXT_MAX], after[128];
+    const struct joint_report *outside = joints->outside;
+    char slack[NUMBER_TEXT_MAX], what[128];
     size_t farthest = 0;
     for (size_t j = 0; j < joints->robot->joint_count; j++) {
-        if (joints->outside[j].by > joints->slack || isinf(joints->outside[j].by))
-            report_outside(joints, j, "");
-        farthest = joints->outside[j].by > joints->outside[farthest].by ? j : farthest;
+        const bool beyond = joints->robot->joints[j].type != ROBOT_PRISMATIC &&
+                            fabs(outside[j].value) > TURN_RADIANS_MAX;
+        snprintf(what, sizeof what, "is beyond %.0f radians", TURN_RADIANS_MAX);
+        if (outside[j].by > joints->slack || isinf(outside[j].by))
+            report_value(joints, j, &outside[j], !beyond, beyond ? what : "");
+        farthest = outside[j].by > outside[farthest].by ? j : farthest;
     }
-    snprintf(after, sizeof after,
+    snprintf(what, sizeof what,
              ": within --limit-slack %s (values outside their limits: %zu; this is the farthest)",
              number_or_inf(joints->slack, slack), joints->outside_count);
     if (!joints->refused && joints->outside_count > 0)
-        report_outside(joints, farthest, after);
+        report_value(joints, farthest, &outside[farthest], true, what);
     if (joints->full.value != 0)
-        report_value(joints, joints->full_joint, &joints->full,
+        report_value(joints, joints->full_joint, &joints->full, false,
                      "is more than a full turn: is it in degrees? Values are in radians");
     return !joints->refused;
 }

@@ -226,39 +226,30 @@ static char *find_in_packages(const char *folders, const char *name)
     return NULL;
 }
 
-static void refuse_path(const struct frames *frames, const struct robot_element *element)
-{
-    refuse(frames, element, "%s: expected a path with '/', file://PATH or package://NAME/PATH",
-           element->file);
-}
-
 /* Returns the path of a mesh, which the caller frees; or NULL after an error. */
 static char *find_mesh(const struct frames *frames, const struct robot_element *element)
 {
     static const char package[] = "package://", scheme[] = "file://";
     const char *file = element->file, *folders = frames->options->package_path;
-    if (strncmp(file, package, sizeof package - 1) == 0) {
-        const char *name = file + sizeof package - 1, *rest = name + strcspn(name, "/");
-        if (rest == name || strncmp(name, "../", 3) == 0 || strncmp(name, "./", 2) == 0 ||
-            strlen(rest) < 2) {
-            refuse_path(frames, element);
-            return NULL;
-        }
-        char *path = find_in_packages(folders, name);
-        if (!path)
-            refuse(frames, element, "%s: %s%s", file,
-                   folders ? "not found in --package-path "
-                           : "give the folders that packages are in by --package-path",
-                   folders ? folders : "");
-        return path;
-    }
-    if (strncmp(file, scheme, sizeof scheme - 1) == 0)
-        file += sizeof scheme - 1;
-    if (strstr(file, "://") || strchr(file, '\\')) {
-        refuse_path(frames, element);
+    const bool packaged = strncmp(file, package, sizeof package - 1) == 0;
+    if (packaged || strncmp(file, scheme, sizeof scheme - 1) == 0)
+        file += (packaged ? sizeof package : sizeof scheme) - 1;
+    const size_t name = strcspn(file, "/"); /* of the package: none, and . and .., is refused */
+    if (packaged ? strncmp(file, "..", name) == 0 || strlen(file + name) < 2
+                 : strstr(file, "://") || strchr(file, '\\')) {
+        refuse(frames, element, "%s: expected a path with '/', file://PATH or package://NAME/PATH",
+               element->file);
         return NULL;
     }
-    return output_beside(frames->robot->path, file);
+    if (!packaged)
+        return output_beside(frames->robot->path, file);
+    char *path = find_in_packages(folders, file);
+    if (!path)
+        refuse(frames, element, "%s: %s%s", element->file,
+               folders ? "not found in --package-path "
+                       : "give the folders that packages are in by --package-path",
+               folders ? folders : "");
+    return path;
 }
 
 static size_t least(size_t a, size_t b)

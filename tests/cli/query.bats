@@ -384,7 +384,7 @@ fails() {
     moving='{"dim": 2, "duration": 0, "bodies": [{"id": 7, "shape": "box", "size": [1,1]}, {"id": 8, "shape": "box", "size": [1,1], "velocity": [0,-1]}]}'
     query "$scene $moving $moving"
     ended 0
-    said 'fmb: scene 2: body 8 has a velocity, but "duration" is 0: nothing moves'
+    said 'fmb: body 8 has a velocity, but "duration" is 0: nothing moves'
     query "$moving ${moving/: 0/: 1}" # the last one of a path, perhaps
     said ''
     query "${moving/,-1/,0}"
