@@ -53,14 +53,14 @@ struct certified {
     struct fmb_prepared projected[2];
 };
 
-static void set_pair(struct certified *certified, const struct fmb_prepared *a,
-                     const struct fmb_prepared *b, double duration)
+/* a, b: the frames of the pair, prepared. */
+static void set_pair(struct certified *certified, const struct frame_pair *pair,
+                     const struct fmb_prepared *a, const struct fmb_prepared *b)
 {
-    certified->pair =
-        (struct frame_pair){{a->frame, a->placement}, {b->frame, b->placement}, duration};
+    certified->pair = *pair;
     certified->frame[0] = a;
     certified->frame[1] = b;
-    certified->kind = kernel_kind_of(a, b, duration, &certified->swapped);
+    certified->kind = kernel_kind_of(a, b, pair->duration, &certified->swapped);
     certified->state = SLABS_UNKNOWN;
     certified->contact[0] = NAN;
 }
@@ -89,6 +89,8 @@ static bool are_faces(const struct certified *certified)
 
 static bool drifts(const struct certified *certified)
 {
+    if (certified->kind < KERNEL_KINDS)
+        return certified->kind & KERNEL_DRIFTS;
     return certified->pair.duration > 0 &&
            kernel_pair_drifts(certified->frame[0], certified->frame[1]);
 }
@@ -105,7 +107,7 @@ static enum slabs_outcome call_kernel(const struct certified *certified,
     return (enum slabs_outcome) out->outcome[0];
 }
 
-static enum slabs_outcome first_pass(struct certified *certified)
+INLINE enum slabs_outcome first_pass(struct certified *certified)
 {
     const struct kernel_set *kernels = kernel_set_best();
     struct kernel_one one;
@@ -166,12 +168,16 @@ static enum slabs_outcome all_slabs(struct certified *certified)
                                               times ? certified->exact_contact : NULL);
 }
 
-typedef enum slabs_outcome rung_function(struct certified *certified);
-
-static rung_function *const rungs[] = {[CERTIFIED_FILTER] = first_pass,
-                                       [CERTIFIED_SECOND] = second_pass,
-                                       [CERTIFIED_LIMBS] = open_slabs,
-                                       [CERTIFIED_EXACT] = all_slabs};
+/* Inlined, and with no pointers to functions: nearly every pair takes the first rung only. */
+INLINE enum slabs_outcome take_rung(struct certified *certified)
+{
+    switch (certified->path) {
+    case CERTIFIED_FILTER: return first_pass(certified);
+    case CERTIFIED_SECOND: return second_pass(certified);
+    case CERTIFIED_LIMBS: return open_slabs(certified);
+    default: return all_slabs(certified);
+    }
+}
 
 /* Sets the planes of two faces that no slab separates, and that do not lie strictly inside all
  * slabs. Faces that share a plane are replaced by their projections. Returns the next rung; the
@@ -186,7 +192,7 @@ static enum certified_path rung_of_faces(struct certified *certified)
         const struct frame_pair *plane = &certified->projection.pair;
         prepared_set(plane->a, &certified->projected[0]);
         prepared_set(plane->b, &certified->projected[1]);
-        set_pair(certified, &certified->projected[0], &certified->projected[1], plane->duration);
+        set_pair(certified, plane, &certified->projected[0], &certified->projected[1]);
         return CERTIFIED_FILTER;
     }
     certified->flat = planes == FACES_UNDECIDED;
@@ -200,7 +206,7 @@ static enum fmb_verdict climb(struct certified *certified, enum certified_path n
     enum slabs_outcome outcome = SLABS_UNSURE;
     while (next < CERTIFIED_PATHS) {
         certified->path = next++;
-        outcome = rungs[certified->path](certified);
+        outcome = take_rung(certified);
         if (outcome == SLABS_TOUCHING && are_faces(certified) && next < CERTIFIED_PATHS)
             next = rung_of_faces(certified);
         else if (outcome != SLABS_UNSURE)
@@ -278,24 +284,30 @@ bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepare
 /* ---- Decisions ---- */
 
 /* Begins the decision of a pair. times: contact is wanted. */
-static void begin(struct certified *certified, const struct fmb_prepared *a,
-                  const struct fmb_prepared *b, double duration, bool times, bool quick)
+static void begin(struct certified *certified, const struct frame_pair *pair,
+                  const struct fmb_prepared *a, const struct fmb_prepared *b, bool times,
+                  bool quick)
 {
     certified->times = times;
     certified->quick = quick;
     certified->flat = false;
-    set_pair(certified, a, b, duration);
+    set_pair(certified, pair, a, b);
 }
 
-enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
-                                          const struct fmb_prepared *b, double duration,
-                                          unsigned want, bool quick, struct fmb_answer *answer)
+static struct frame_pair pair_of(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                                 double duration)
 {
+    return (struct frame_pair){{a->frame, a->placement}, {b->frame, b->placement}, duration};
+}
+
+/* Decides a pair without a hull, whose prepared frames are a and b. */
+INLINE enum fmb_status decide(const struct frame_pair *pair, const struct fmb_prepared *a,
+                              const struct fmb_prepared *b, unsigned want, bool quick,
+                              struct fmb_answer *answer)
+{
+    const double duration = pair->duration;
     struct certified certified;
-    const struct frame_pair pair = {{a->frame, a->placement}, {b->frame, b->placement}, duration};
-    if (hull_takes(a->frame, b->frame))
-        return hull_decide(&pair, want, effort_of(quick), answer);
-    begin(&certified, a, b, duration, true, quick);
+    begin(&certified, pair, a, b, true, quick);
     answer->verdict = climb(&certified, CERTIFIED_FILTER);
     if (!answer->verdict)
         return FMB_CANNOT_DECIDE;
@@ -317,6 +329,15 @@ enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
     return FMB_OK;
 }
 
+enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
+                                          const struct fmb_prepared *b, double duration,
+                                          unsigned want, bool quick, struct fmb_answer *answer)
+{
+    const struct frame_pair pair = pair_of(a, b, duration);
+    return hull_takes(a->frame, b->frame) ? hull_decide(&pair, want, effort_of(quick), answer)
+                                          : decide(&pair, a, b, want, quick, answer);
+}
+
 enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
                                  struct fmb_answer *answer)
 {
@@ -325,7 +346,7 @@ enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
         return hull_decide(pair, want | FMB_WANT_TIMES, HULL_CERTIFIED, answer);
     prepared_set(pair->a, &a);
     prepared_set(pair->b, &b);
-    return certified_decide_prepared(&a, &b, pair->duration, want | FMB_WANT_TIMES, false, answer);
+    return decide(pair, &a, &b, want | FMB_WANT_TIMES, false, answer);
 }
 
 enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path)
@@ -334,7 +355,7 @@ enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified
     struct fmb_prepared a, b;
     prepared_set(pair->a, &a);
     prepared_set(pair->b, &b);
-    begin(&certified, &a, &b, pair->duration, false, false);
+    begin(&certified, pair, &a, &b, false, false);
     const enum fmb_verdict verdict = climb(&certified, CERTIFIED_FILTER);
     *path = certified.path;
     return verdict;
@@ -343,8 +364,9 @@ enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified
 enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
                                   double duration, int passes, bool quick)
 {
+    const struct frame_pair pair = pair_of(a, b, duration);
     struct certified certified;
-    begin(&certified, a, b, duration, false, quick);
+    begin(&certified, &pair, a, b, false, quick);
     return climb(&certified,
                  passes == 2 && !are_faces(&certified) ? CERTIFIED_LIMBS : CERTIFIED_SECOND);
 }

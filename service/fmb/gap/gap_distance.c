@@ -117,7 +117,8 @@ static void set_witness(const struct gap_pair *pair, const struct gap_simplex *s
     out->bounds[1] = (sqrt(vec3_dot(apart, apart)) + error) * (1 + 0x1p-49);
 }
 
-enum gap_outcome gap_distance(const struct gap_pair *pair, double farthest, struct fmb_gap *out)
+FLATTEN enum gap_outcome gap_distance(const struct gap_pair *pair, double farthest,
+                                      struct fmb_gap *out)
 {
     const double error = gap_error(pair), close = 0x1p-47 * pair->reach;
     const double far = farthest + GAP_FAR_MARGIN * (pair->far[0] + pair->far[1]) + error;

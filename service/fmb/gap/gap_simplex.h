@@ -171,7 +171,7 @@ typedef void gap_support(const void *context, const double n[3], struct gap_corn
 INLINE bool gap_is_beyond(double far, double f, double square)
 {
     const bool known = square >= GAP_LEAST_SQUARE; /* else it may have underflowed */
-    return f > 0 && known && far < INFINITY && f > far * sqrt(square);
+    return far < INFINITY && f > 0 && known && f > far * sqrt(square);
 }
 
 /* Finds the point of P nearest to the origin.

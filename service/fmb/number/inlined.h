@@ -17,7 +17,9 @@
 #endif
 #endif
 
+/* FLATTEN also inlines what a function calls by a pointer that is a constant. */
 #ifdef INLINED_NOT
+#define FLATTEN
 #define INLINE static inline
 #define UNROLL(times)
 /* Without the constants gcc does not see which axes are set. */
@@ -25,6 +27,7 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 #else
+#define FLATTEN __attribute__((flatten))
 #define INLINE static inline __attribute__((always_inline))
 #define UNROLL(times) INLINED_PRAGMA(GCC unroll times)
 #define INLINED_PRAGMA(text) _Pragma(#text)
