@@ -249,6 +249,17 @@ const int64_t *queue_waiting(const struct queue *queue, int client)
     return queue->client[client].waiting;
 }
 
+int64_t queue_oldest_ns(const struct queue *queue, int client)
+{
+    int64_t oldest_ns = INT64_MAX;
+    for (int fifo = 0; fifo < QUEUE_FIFOS; fifo++) {
+        const int32_t datagram = queue->client[client].oldest[fifo];
+        if (datagram && queue->chunk[datagram].arrived_ns < oldest_ns)
+            oldest_ns = queue->chunk[datagram].arrived_ns;
+    }
+    return oldest_ns;
+}
+
 bool queue_pop(struct queue *queue, int client, enum queue_fifo fifo, struct queue_datagram *out,
                unsigned char bytes[QUEUE_DATAGRAM_MAX])
 {

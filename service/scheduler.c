@@ -4,10 +4,15 @@
 
 enum { ENTRIES = SCHEDULER_CLIENTS + 1, SHARED = SCHEDULER_CLIENTS, BUCKET_BITS = 11 };
 
+/* Think time of a client that is unknown, and the longest that is estimated. */
+enum { FIRST_GUESS_NS = 50000, THINK_MAX_NS = 16000000 };
+
 struct scheduled_client {
     int64_t id;
     int64_t used_ns;  /* virtual time */
     int64_t idle;     /* value of scheduler.moments when it became idle */
+    int64_t idle_ns;  /* when it became idle; 0: it never did */
+    int64_t think_ns; /* estimate */
     int32_t position; /* in scheduler.active; -1: idle */
     int32_t next;     /* next client in the bucket; -1: none */
 };
@@ -31,8 +36,8 @@ struct scheduler *scheduler_create(uint64_t random)
     scheduler->multiplier = random | 1;
     for (int i = 0; i < 1 << BUCKET_BITS; i++)
         scheduler->bucket[i] = -1;
-    scheduler->client[SHARED] =
-        (struct scheduled_client){.used_ns = SCHEDULER_ENTRY_NS, .position = -1, .next = -1};
+    scheduler->client[SHARED] = (struct scheduled_client){
+        .used_ns = SCHEDULER_ENTRY_NS, .think_ns = FIRST_GUESS_NS, .position = -1, .next = -1};
     return scheduler;
 }
 
@@ -91,6 +96,7 @@ static int32_t add(struct scheduler *scheduler, int64_t id)
         (struct scheduled_client){.id = id,
                                   .used_ns = scheduler->now_ns + SCHEDULER_ENTRY_NS,
                                   .idle = scheduler->moments,
+                                  .think_ns = FIRST_GUESS_NS,
                                   .position = -1,
                                   .next = *bucket};
     *bucket = c;
@@ -114,17 +120,30 @@ static int64_t resume_ns(const struct scheduler *scheduler, int client)
     return used_ns > scheduler->now_ns ? used_ns : scheduler->now_ns;
 }
 
-void scheduler_activate(struct scheduler *scheduler, int client)
+/* Moves the estimate a quarter up or down. It stays if the bounds do not tell on which side of it
+ * the time is. */
+static void estimate_think(struct scheduled_client *c, int64_t min_ns, int64_t max_ns)
+{
+    if (min_ns > c->think_ns && c->think_ns < THINK_MAX_NS)
+        c->think_ns *= 2;
+    else if (max_ns < c->think_ns)
+        c->think_ns -= c->think_ns / 4;
+}
+
+void scheduler_activate(struct scheduler *scheduler, int client, int64_t arrival_min_ns,
+                        int64_t arrival_max_ns)
 {
     struct scheduled_client *c = &scheduler->client[client];
     if (c->position >= 0)
         return;
+    if (c->idle_ns)
+        estimate_think(c, arrival_min_ns - c->idle_ns, arrival_max_ns - c->idle_ns);
     c->used_ns = resume_ns(scheduler, client);
     c->position = scheduler->active_count;
     scheduler->active[scheduler->active_count++] = client;
 }
 
-void scheduler_deactivate(struct scheduler *scheduler, int client)
+void scheduler_deactivate(struct scheduler *scheduler, int client, int64_t now_ns)
 {
     struct scheduled_client *c = &scheduler->client[client];
     if (c->position < 0)
@@ -134,6 +153,7 @@ void scheduler_deactivate(struct scheduler *scheduler, int client)
     scheduler->client[last].position = c->position;
     c->position = -1;
     c->idle = ++scheduler->moments;
+    c->idle_ns = now_ns;
 }
 
 int scheduler_active(const struct scheduler *scheduler)
@@ -146,56 +166,36 @@ void scheduler_charge(struct scheduler *scheduler, int client, int64_t ns)
     scheduler->client[client].used_ns += ns;
 }
 
-/* The active client with the least virtual time, among those that the filter accepts (NULL: all),
- * except one (-1: no exception). Returns -1 if there is none. */
-static int least_of(const struct scheduler *scheduler, scheduler_filter *may, const void *user,
-                    int except)
+/* The active client with the least virtual time, among those that the filter accepts (NULL: all);
+ * -1: none. */
+static int least_of(const struct scheduler *scheduler, scheduler_filter *may, const void *user)
 {
     int found = -1;
     for (int32_t i = 0; i < scheduler->active_count; i++) {
         const int32_t c = scheduler->active[i];
-        if (c != except && (!may || may(user, c)) &&
+        if ((!may || may(user, c)) &&
             (found < 0 || scheduler->client[c].used_ns < scheduler->client[found].used_ns))
             found = c;
     }
     return found;
 }
 
-int scheduler_least(const struct scheduler *scheduler)
+int scheduler_next(struct scheduler *scheduler, scheduler_filter *may, const void *user)
 {
-    return least_of(scheduler, NULL, NULL, -1);
-}
-
-/* The virtual time of `other` minus that of `client`. INT64_MAX: other is -1. */
-static int64_t lead_over(const struct scheduler *scheduler, int client, int other)
-{
-    return other < 0 ? INT64_MAX
-                     : scheduler->client[other].used_ns - scheduler->client[client].used_ns;
-}
-
-int scheduler_next(const struct scheduler *scheduler, scheduler_filter *may, const void *user,
-                   int last, int64_t *lead_ns)
-{
-    const int other = least_of(scheduler, may, user, last);
-    if (last >= 0 && scheduler->client[last].position >= 0 && (!may || may(user, last))) {
-        *lead_ns = lead_over(scheduler, last, other);
-        if (*lead_ns > -SCHEDULER_SLICE_NS)
-            return last;
-    }
-    *lead_ns =
-        other < 0 ? INT64_MAX : lead_over(scheduler, other, least_of(scheduler, may, user, other));
-    return other;
-}
-
-void scheduler_advance(struct scheduler *scheduler)
-{
-    const int least = scheduler_least(scheduler);
+    const int least = least_of(scheduler, NULL, NULL);
     if (least >= 0 && scheduler->client[least].used_ns > scheduler->now_ns)
         scheduler->now_ns = scheduler->client[least].used_ns;
+    return least < 0 || !may || may(user, least) ? least : least_of(scheduler, may, user);
 }
 
-int64_t scheduler_lead(const struct scheduler *scheduler, int client)
+int64_t scheduler_patience(const struct scheduler *scheduler, int client)
 {
-    const int least = scheduler_least(scheduler);
-    return least < 0 ? INT64_MAX : scheduler->client[least].used_ns - resume_ns(scheduler, client);
+    const struct scheduled_client *c = &scheduler->client[client];
+    const int least = c->position < 0 ? least_of(scheduler, NULL, NULL) : -1;
+    if (least < 0)
+        return 0;
+    const int64_t lead_ns = scheduler->client[least].used_ns - resume_ns(scheduler, client);
+    if (c->think_ns > lead_ns)
+        return 0;
+    return 2 * c->think_ns < lead_ns ? 2 * c->think_ns : lead_ns;
 }

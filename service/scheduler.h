@@ -1,18 +1,28 @@
-/* Fair scheduler: chooses the client to serve next by the compute time that each has used (similar
- * to start-time fair queueing, with equal weights).
+/* Fair scheduler: chooses the client to serve next by the time that each has used (similar to
+ * start-time fair queueing, with equal weights).
  *
  * Each client has a virtual time: the nanoseconds charged to it. The active client with the least
- * virtual time is served next, except that the client served last continues for a slice
- * (scheduler_next()). The system's virtual time is the least of the active clients; it never
- * decreases. A client that becomes active resumes at the maximum of its own and the system's
+ * virtual time is served next. The system's virtual time is the least of the active clients; it
+ * never decreases. A client that becomes active resumes at the maximum of its own and the system's
  * virtual time, so that idling earns no credit. A client whose virtual time is above the system's
  * is in debt, and stays so while it is idle. A new id starts SCHEDULER_ENTRY_NS above the system's
  * virtual time, so that a client gains nothing by changing its id.
+ *
+ * A client that waits for each answer before it sends its next query is idle after each turn,
+ * however little time it has used. If work for another client began at once, it would delay the
+ * next query, each time by as much as it takes (deceptive idleness; Iyer, Druschel: Anticipatory
+ * scheduling, 2001). So the service waits for such a client as long as it leads: its virtual time
+ * is less than that of the active clients (scheduler_patience()). The wait is charged to it. Let
+ * the turns of n other clients take X: after one turn of each, the client has the time X for
+ * queries and waits. So it has 1 / (n + 1) of the time if it sends its next query within X; and if
+ * it takes longer, it is not delayed by more than the turn that is in progress.
  *
  * SCHEDULER_CLIENTS ids have an entry of their own. A new id replaces the client without debt that
  * has been idle longest; if there is none, the new id shares one entry with all other ids without
  * an entry.
  *
+ * Times are those of one clock that counts while other programs run too: if it did not, a client
+ * in closed loop would be charged for waits of the wall clock, and others only for part of theirs.
  * Allocates nothing after scheduler_create(). One scheduler may be used by one thread at a time;
  * schedulers share no state. */
 #ifndef SCHEDULER_H
@@ -23,8 +33,7 @@
 
 enum {
     SCHEDULER_CLIENTS = 1024,
-    SCHEDULER_ENTRY_NS = 1000000, /* debt of a new id */
-    SCHEDULER_SLICE_NS = 500000   /* see scheduler_next() */
+    SCHEDULER_ENTRY_NS = 1000000 /* debt of a new id */
 };
 
 struct scheduler;
@@ -40,9 +49,13 @@ void scheduler_destroy(struct scheduler *scheduler);
  * call with another id. Below, client is such a number. */
 int scheduler_client(struct scheduler *scheduler, int64_t id);
 
-/* Makes a client active or idle. No effect if it already is. */
-void scheduler_activate(struct scheduler *scheduler, int client);
-void scheduler_deactivate(struct scheduler *scheduler, int client);
+/* Makes a client active or idle. No effect if it already is. On input: arrival_min_ns,
+ * arrival_max_ns: bounds on the time at which its query arrived, which the service may have read
+ * later; now_ns: the time of its answer. From these its think time is estimated: the median of the
+ * times from an answer to the next query. */
+void scheduler_activate(struct scheduler *scheduler, int client, int64_t arrival_min_ns,
+                        int64_t arrival_max_ns);
+void scheduler_deactivate(struct scheduler *scheduler, int client, int64_t now_ns);
 
 /* Number of active clients. */
 int scheduler_active(const struct scheduler *scheduler);
@@ -50,25 +63,14 @@ int scheduler_active(const struct scheduler *scheduler);
 /* Adds nanoseconds to the virtual time of a client, active or idle. */
 void scheduler_charge(struct scheduler *scheduler, int client, int64_t ns);
 
-/* The client to serve, among the active clients that the filter accepts (NULL: all). This is the
- * client `last` while its virtual time exceeds that of no other by SCHEDULER_SLICE_NS or more, so
- * that clients do not alternate at every query; otherwise the one with the least virtual time.
- * On input: last: the client served last; -1: none.
- * Returns the client; -1: none. *lead_ns: the least virtual time of the others minus that of this
- * client, which may be negative while it continues its slice; INT64_MAX: there are no others. */
+/* The client to serve: the one with the least virtual time among the active clients that the filter
+ * accepts (NULL: all); -1: none. Advances the system's virtual time. */
 typedef bool scheduler_filter(const void *user, int client);
-int scheduler_next(const struct scheduler *scheduler, scheduler_filter *may, const void *user,
-                   int last, int64_t *lead_ns);
+int scheduler_next(struct scheduler *scheduler, scheduler_filter *may, const void *user);
 
-/* The active client with the least virtual time; -1: none is active. */
-int scheduler_least(const struct scheduler *scheduler);
-
-/* Advances the system's virtual time to the least of the active clients. To be called before a
- * client is served. */
-void scheduler_advance(struct scheduler *scheduler);
-
-/* The lead of an idle client: the least virtual time of an active client minus the virtual time at
- * which this client would resume if it became active now. INT64_MAX: no client is active. */
-int64_t scheduler_lead(const struct scheduler *scheduler, int client);
+/* How long to wait for the next query of a client before another client is served, in nanoseconds:
+ * twice its think time, but only while it leads. 0: not at all, since the client is active, no
+ * other client is active, or the client's think time exceeds its lead. */
+int64_t scheduler_patience(const struct scheduler *scheduler, int client);
 
 #endif

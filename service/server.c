@@ -1,17 +1,15 @@
 /* The path of a query: server_receive() puts it into the queue; server_work() takes it from there
  * when the scheduler chooses its client, answers it at once (one pair of frames, or a definition)
- * or in steps (a job), and publishes the result. All time that this takes is measured (meter.h) and
- * charged to the client. */
+ * or in steps (a job), and publishes the result. All time that this takes is charged to the client.
+ */
 #include "server.h"
 
 #include "answer.h"
 #include "clock.h"
-#include "anticipation.h"
 #include "histogram.h"
 #include "jobs.h"
 #include "queue.h"
 #include "process.h"
-#include "quota.h"
 #include "scheduler.h"
 #include "wire.h"
 
@@ -39,13 +37,19 @@ enum {
     BATCH_MAX = 64
 };
 
-/* How long server_work() serves clients before the bus is read again. */
-static const int64_t work_ns = 250000;
+/* How long server_work() serves clients before the bus is read again, which takes about half a
+ * microsecond. A query that arrives meanwhile waits for this long, or for one turn: a pair or a
+ * definition, or this much of a job. */
+static const int64_t work_ns = 25000, job_turn_ns = 250000;
 
 /* A scene that has used more time than this is stopped if other work is pending. One datagram can
  * request a million pairs that take milliseconds each; most scenes take less than one millisecond
  * altogether. */
 static const int64_t scene_limit_ns = 100000000;
+
+/* A client gets refusals_most refusals at once, and one more after each refusal_ns: 100 a second. A
+ * client that has 64 queries under way gets all of them. */
+static const int64_t refusal_ns = 10000000, refusals_most = 64;
 
 /* Interval between heartbeats. */
 static const int64_t heartbeat_ns = 1000000000;
@@ -53,24 +57,26 @@ static const int64_t heartbeat_ns = 1000000000;
 struct server {
     bool (*publish)(void *user, const char *channel, const unsigned char *bytes, size_t size);
     void *user;
-    const struct meter_clocks *clocks;
+    int64_t (*clock_ns)(void);
     char query_channel[SERVER_KINDS][BUS_CHANNEL_MAX];
     char result_channel[SERVER_KINDS][BUS_CHANNEL_MAX];
     struct answerer *answerer;
     struct queue *queue;
     struct scheduler *scheduler;
     struct jobs jobs;
-    struct anticipation anticipation;
-    struct meter meter;
+    int64_t charged_ns; /* time up to which all time has been charged to clients, or discarded */
+    /* The client for whose next query the service waits (-1: none), since when, and how long. */
+    int awaited;
+    int64_t awaited_since_ns, patience_ns;
     /* Clients whose messages were read since the last charge, one entry for each message, and the
      * time that reading took. */
     int batch[BATCH_MAX], batch_count;
     int64_t batch_ns;
-    int64_t bus_empty_ns;                      /* when the bus was last empty */
-    struct quota quota[SCHEDULER_CLIENTS + 1]; /* [client] */
-    int last_client;                           /* the client served last; -1: none */
-    struct histogram compute_ns;               /* of all queries answered with FMB_OK */
-    struct wire_status status; /* counts so far; complete_status() sets the other fields */
+    int64_t bus_empty_ns; /* when the bus was last empty */
+    /* [client] Theoretical arrival time of the next refusal (generic cell rate algorithm). */
+    int64_t next_refusal_ns[SCHEDULER_CLIENTS + 1];
+    struct histogram compute_ns; /* of all queries answered with FMB_OK */
+    struct wire_status status;   /* counts so far; complete_status() sets the other fields */
     int64_t ready_ns, heartbeat_due_ns;
     /* Messages that cannot be decoded, and those of them not reported yet; the last one. */
     int64_t malformed_unreported, malformed_reported_ns;
@@ -158,6 +164,22 @@ static bool is_malformed(struct server *server, enum server_kind kind, size_t si
     return true;
 }
 
+/* ---- Time ---- */
+
+/* Returns the nanoseconds since the time up to which all time has been charged, to be charged now.
+ */
+static int64_t take_time(struct server *server)
+{
+    const int64_t before_ns = server->charged_ns;
+    server->charged_ns = server->clock_ns();
+    return server->charged_ns - before_ns;
+}
+
+static void charge(struct server *server, int client)
+{
+    scheduler_charge(server->scheduler, client, take_time(server));
+}
+
 /* ---- Activity ---- */
 
 /* Whether the client has a job or a query in the queue. */
@@ -170,31 +192,40 @@ static bool has_work(const struct server *server, int client)
 /* Makes a client that has work active, and any other idle. */
 static void update_activity(struct server *server, int client)
 {
-    if (has_work(server, client)) {
-        scheduler_activate(server->scheduler, client);
-    } else {
-        scheduler_deactivate(server->scheduler, client);
-        anticipation_answered(&server->anticipation, client, server->meter.wall_ns);
-    }
+    if (has_work(server, client))
+        scheduler_activate(server->scheduler, client, server->bus_empty_ns, server->charged_ns);
+    else
+        scheduler_deactivate(server->scheduler, client, server->charged_ns);
 }
 
 /* ---- Refusals ---- */
 
-/* Refuses a query; without a result if the quota of refusals of its client is used up. The time is
+/* Whether a refusal may be sent to a client now. If so, it is counted as sent. */
+static bool take_refusal(struct server *server, int client)
+{
+    const int64_t now_ns = server->charged_ns;
+    int64_t *next_ns = &server->next_refusal_ns[client];
+    if (*next_ns - now_ns > (refusals_most - 1) * refusal_ns)
+        return false;
+    *next_ns = (*next_ns > now_ns ? *next_ns : now_ns) + refusal_ns;
+    return true;
+}
+
+/* Refuses a query; without a result if its client has used up its refusals. The time is
  * charged to its client, not to the batch. */
 static void refuse(struct server *server, const struct queue_datagram *datagram,
                    const unsigned char *bytes, enum fmb_status status)
 {
     const enum server_kind kind = (enum server_kind) datagram->kind;
     size_t size;
-    server->batch_ns += meter_read(&server->meter);
-    if (!quota_take_refusal(&server->quota[datagram->client], server->meter.wall_ns))
+    server->batch_ns += take_time(server);
+    if (!take_refusal(server, datagram->client))
         drop(server, kind, &server->status.refusals_unsent);
     else if (!is_malformed(server, kind, datagram->size,
                            answer_refused(server->answerer, (enum answer_kind) kind, bytes,
                                           datagram->size, status, server->out, &size)))
         publish_result(server, kind, size, (int32_t) status);
-    scheduler_charge(server->scheduler, datagram->client, meter_read(&server->meter));
+    charge(server, datagram->client);
 }
 
 /* Evicts the newest query of a client and refuses it as busy. Returns false if it has none. */
@@ -223,7 +254,6 @@ static void answer_definition_query(struct server *server, const unsigned char *
 
 static void finish_job(struct server *server, struct job *job)
 {
-    quota_add_sample(&server->quota[job->client], QUEUE_SCENES, job->used_ns);
     publish_answer(server, (enum server_kind) job->kind, job->answer, job->used_ns);
     jobs_give_back(&server->jobs, job);
 }
@@ -242,9 +272,9 @@ static void stop_longest_job(struct server *server, int for_client)
 {
     struct job *job = jobs_longest(&server->jobs);
     const int client = job->client;
-    scheduler_charge(server->scheduler, for_client, meter_read(&server->meter));
+    charge(server, for_client);
     stop_job(server, job);
-    scheduler_charge(server->scheduler, client, meter_read(&server->meter));
+    charge(server, client);
     update_activity(server, client);
 }
 
@@ -252,13 +282,13 @@ static void stop_longest_job(struct server *server, int for_client)
 static bool answer_short(struct server *server)
 {
     struct answer_job *answer = server->jobs.spare;
-    const int64_t begin_ns = server->clocks->wall_ns();
+    const int64_t begin_ns = server->clock_ns();
     bool complete = answer_job_step(answer, server->answerer);
     if (!complete && !answer_job_is_short(answer, server->answerer))
         return false;
     while (!complete)
         complete = answer_job_step(answer, server->answerer);
-    publish_answer(server, SERVER_PAIRS, answer, server->clocks->wall_ns() - begin_ns);
+    publish_answer(server, SERVER_PAIRS, answer, server->clock_ns() - begin_ns);
     return true;
 }
 
@@ -299,15 +329,15 @@ static bool other_work_pending(const struct server *server)
     return server->jobs.free < JOBS - 1 || queue_counts(server->queue).datagrams > 0;
 }
 
-/* Steps a job for about max_ns nanoseconds: it ends with the first step that reaches them. */
-static void advance_job(struct server *server, struct job *job, int64_t max_ns)
+/* Steps a job for a turn, which ends with the first step that reaches job_turn_ns. */
+static void advance_job(struct server *server, struct job *job)
 {
-    const int64_t begin_ns = server->meter.wall_ns;
+    const int64_t begin_ns = server->charged_ns;
     bool complete = false;
     int64_t turn_ns = 0;
-    while (!complete && turn_ns < max_ns) {
+    while (!complete && turn_ns < job_turn_ns) {
         complete = answer_job_step(job->answer, server->answerer);
-        turn_ns = server->clocks->wall_ns() - begin_ns;
+        turn_ns = server->clock_ns() - begin_ns;
     }
     job->used_ns += turn_ns;
     if (complete)
@@ -328,135 +358,80 @@ static bool may_serve(const void *user, int client)
            server->can_begin;
 }
 
-/* Nanoseconds charged for one call of serve() that took used_ns. A long call delays every other
- * client, lets their cores go to sleep and evicts their data from the CPU caches. So the time
- * beyond short_ns counts twice. */
-static int64_t charge_of(int64_t used_ns)
-{
-    static const int64_t short_ns = 50000;
-    return used_ns > short_ns ? 2 * used_ns - short_ns : used_ns;
-}
-
-/* Evicts the newest queries of a client while its waiting queries exceed its quota. */
-static void enforce_quota(struct server *server, int client)
-{
-    while (quota_exceeded(&server->quota[client], queue_waiting(server->queue, client),
-                          queue_counts(server->queue).clients))
-        evict(server, client);
-}
-
 /* Does one unit of work for the client and charges it: answers its oldest short query or, if it has
  * none, advances its job or begins the next one. A query that has waited too long is dropped. */
-static void serve(struct server *server, int client, int64_t job_max_ns)
+static void serve(struct server *server, int client)
 {
     struct job *job = server->jobs.of_client[client];
     struct queue_datagram query;
-    if (client != server->last_client)
-        meter_base(&server->meter);
-    server->last_client = client;
-    scheduler_advance(server->scheduler);
     unsigned char *message = answer_job_message(server->jobs.spare);
     const bool is_short = queue_pop(server->queue, client, QUEUE_SHORT, &query, message);
     const bool begins =
         is_short || (!job && queue_pop(server->queue, client, QUEUE_SCENES, &query, message));
-    const bool expired = begins && server->clocks->wall_ns() - query.arrived_ns > QUOTA_AGE_NS;
+    const bool expired = begins && server->clock_ns() - query.arrived_ns > SERVER_EXPIRY_NS;
     if (expired)
         drop(server, (enum server_kind) query.kind, &server->status.expired);
     if (begins)
         job = expired ? NULL : begin(server, &query, is_short ? QUEUE_SHORT : QUEUE_SCENES);
     if (job)
-        advance_job(server, job, job_max_ns);
-    const int64_t used_ns = meter_read(&server->meter);
-    if (is_short && !expired && !job)
-        quota_add_sample(&server->quota[client], QUEUE_SHORT, used_ns);
-    scheduler_charge(server->scheduler, client, charge_of(used_ns));
-    enforce_quota(server, client);
+        advance_job(server, job);
+    charge(server, client);
     update_activity(server, client);
 }
 
-/* Estimated time of the client's next query. */
-static int64_t next_ns(const struct server *server, int client)
+/* Returns whether to keep waiting for the next query of the client that was served last. If not,
+ * charges it for the wait; not for longer than was intended, since other programs may have run. */
+static bool keep_waiting(struct server *server)
 {
-    return quota_estimate(&server->quota[client], queue_waiting(server->queue, client)[QUEUE_SHORT]
-                                                      ? QUEUE_SHORT
-                                                      : QUEUE_SCENES);
-}
-
-/* Begins to anticipate the next query of the client just served. Requires that the client is idle,
- * that other clients have work, and that this client would be served before them. Besides, its lead
- * must exceed a slice, or the work that would begin instead must usually take longer than the next
- * query takes to arrive. */
-static bool begin_anticipating(struct server *server, int client)
-{
-    const int next = has_work(server, client) ? -1 : scheduler_least(server->scheduler);
-    if (next < 0)
+    if (server->awaited < 0)
         return false;
-    const int64_t lead_ns = scheduler_lead(server->scheduler, client);
-    return anticipation_begin(&server->anticipation, client, server->meter.wall_ns,
-                              lead_ns + SCHEDULER_SLICE_NS, next_ns(server, next),
-                              lead_ns > SCHEDULER_SLICE_NS);
-}
-
-/* Returns whether to keep waiting for the anticipated client: its query has not arrived, the time
- * is not over, and its virtual time is less than a slice above that of every other client.
- * Otherwise charges it for the wait. */
-static bool keep_anticipating(struct server *server)
-{
-    struct anticipation *anticipation = &server->anticipation;
-    const int client = anticipation->client;
-    if (client < 0)
-        return false;
-    const int64_t now_ns = server->clocks->wall_ns();
-    if (anticipation_poll(anticipation, now_ns) && !has_work(server, client) &&
-        scheduler_lead(server->scheduler, client) > -SCHEDULER_SLICE_NS)
+    const int64_t waited_ns = server->clock_ns() - server->awaited_since_ns;
+    if (waited_ns < scheduler_patience(server->scheduler, server->awaited))
         return true;
-    scheduler_charge(server->scheduler, client, anticipation_end(anticipation, now_ns));
+    scheduler_charge(server->scheduler, server->awaited,
+                     clock_earlier(waited_ns, server->patience_ns));
+    server->awaited = -1;
     return false;
 }
 
-/* A job may run until the client's slice is used up, but no longer than the remaining time. */
 enum server_state server_work(struct server *server)
 {
-    if (keep_anticipating(server))
+    if (keep_waiting(server))
         return SERVER_ANTICIPATING;
-    const int64_t until_ns = server->meter.wall_ns + work_ns;
-    int64_t left_ns = work_ns;
-    while (left_ns > 0) {
-        int64_t lead_ns;
+    const int64_t until_ns = server->charged_ns + work_ns;
+    do {
         server->can_begin = server->jobs.free > 0 || jobs_longest(&server->jobs);
-        const int client =
-            scheduler_next(server->scheduler, may_serve, server, server->last_client, &lead_ns);
+        const int client = scheduler_next(server->scheduler, may_serve, server);
         if (client < 0)
             return SERVER_IDLE;
-        serve(server, client,
-              lead_ns < work_ns ? clock_earlier(left_ns, lead_ns + SCHEDULER_SLICE_NS) : left_ns);
-        if (begin_anticipating(server, client))
+        serve(server, client);
+        server->patience_ns = scheduler_patience(server->scheduler, client);
+        if (server->patience_ns > 0) {
+            server->awaited = client;
+            server->awaited_since_ns = server->charged_ns;
             return SERVER_ANTICIPATING;
-        left_ns = until_ns - server->meter.wall_ns;
-    }
+        }
+    } while (server->charged_ns < until_ns);
     return scheduler_active(server->scheduler) > 0 ? SERVER_WORKING : SERVER_IDLE;
 }
 
 void server_resume(struct server *server)
 {
-    meter_skip(&server->meter);
+    server->charged_ns = server->clock_ns();
 }
 
 /* ---- Queries that arrive ---- */
 
 /* Puts a query into the queue, and refuses the queries that are evicted for it; or refuses the
- * query itself, if it exceeds its client's quota or share of the queue. */
+ * query itself, if it exceeds its client's share of the queue, or an older one of its client has
+ * waited too long. */
 static void enqueue(struct server *server, const struct queue_datagram *query,
                     const unsigned char *bytes)
 {
-    const int client = query->client;
-    const enum queue_fifo fifo = kinds[query->kind].fifo;
     enum queue_put_result result = QUEUE_REFUSED;
-    int64_t waiting[QUEUE_FIFOS];
-    memcpy(waiting, queue_waiting(server->queue, client), sizeof waiting);
-    waiting[fifo]++;
-    if (!quota_exceeded(&server->quota[client], waiting, queue_counts(server->queue).clients))
-        while ((result = queue_put(server->queue, fifo, query, bytes)) == QUEUE_FULL &&
+    if (query->arrived_ns - queue_oldest_ns(server->queue, query->client) <= SERVER_BUSY_NS)
+        while ((result = queue_put(server->queue, kinds[query->kind].fifo, query, bytes)) ==
+                   QUEUE_FULL &&
                evict(server, queue_largest(server->queue)))
             continue;
     if (result != QUEUE_ADDED)
@@ -467,7 +442,7 @@ static void enqueue(struct server *server, const struct queue_datagram *query,
  * share of datagrams that are no queries is charged to none. */
 static void charge_batch(struct server *server, int datagrams)
 {
-    server->batch_ns += meter_read(&server->meter);
+    server->batch_ns += take_time(server);
     for (int i = 0; i < server->batch_count; i++)
         scheduler_charge(server->scheduler, server->batch[i], server->batch_ns / datagrams);
     server->batch_count = 0;
@@ -482,14 +457,10 @@ static void receive_query(struct server *server, enum server_kind kind, const un
     if (is_malformed(server, kind, size, error))
         return;
     const int client = scheduler_client(server->scheduler, header.client_id);
-    struct quota *quota = &server->quota[client];
-    if (client < SCHEDULER_CLIENTS && quota->client_id != header.client_id)
-        *quota = (struct quota){.client_id = header.client_id};
-    const struct queue_datagram query = {client, kind, size, server->clocks->wall_ns()};
+    const struct queue_datagram query = {client, kind, size, server->clock_ns()};
     if (server->batch_count == BATCH_MAX)
         charge_batch(server, BATCH_MAX);
     server->batch[server->batch_count++] = client;
-    anticipation_arrived(&server->anticipation, client, server->bus_empty_ns);
     if (size > QUERY_BYTES_MAX)
         refuse(server, &query, bytes, FMB_OVER_LIMIT);
     else
@@ -527,7 +498,7 @@ void server_end_batch(struct server *server, int datagrams)
 {
     if (datagrams > 0)
         charge_batch(server, datagrams);
-    server->bus_empty_ns = server->meter.wall_ns;
+    server->bus_empty_ns = server->charged_ns;
 }
 
 /* ---- Heartbeat ---- */
@@ -605,9 +576,8 @@ static bool open_server(struct server *server, const struct server_options *opti
     cache_prefault(answerer_cache(server->answerer));
     server->status.server_id = options->server_id;
     snprintf(server->status.version, sizeof server->status.version, "%s", fmb_version());
-    server->last_client = -1;
-    anticipation_init(&server->anticipation);
-    meter_init(&server->meter, server->clocks);
+    server->awaited = -1;
+    server->charged_ns = server->clock_ns();
     server->ready_ns = clock_ns();
     return true;
 }
@@ -619,7 +589,7 @@ struct server *server_create(const struct server_options *options)
         return NULL;
     server->publish = options->publish;
     server->user = options->user;
-    server->clocks = options->clocks ? options->clocks : &meter_system_clocks;
+    server->clock_ns = options->clock_ns ? options->clock_ns : clock_ns;
     for (int kind = 0; kind < SERVER_KINDS; kind++) {
         bus_channel(server->query_channel[kind], options->prefix, kinds[kind].query);
         bus_channel(server->result_channel[kind], options->prefix, kinds[kind].result);

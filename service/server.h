@@ -1,22 +1,22 @@
 /* The service: accepts queries from any source, and publishes results through a callback.
  *
  * Queries are put into a queue (queue.h), so that the bus is read before anything is computed.
- * Clients share compute time (scheduler.h): of the clients with a query, the one that has used
- * least is served next. A client's pair and definition queries do not wait for its own scenes;
- * pairs with a hull or a body of several frames do. Scenes are answered in steps; between them
+ * Clients share time (scheduler.h): of the clients with a query, the one that has used least is
+ * served next, for one turn. A client's pair and definition queries do not wait for its own scenes;
+ * pairs with a hull or a body of several frames do. Scenes are answered in steps; between turns
  * other clients are served and the bus is read. If the queue is full, the client that holds most of
- * it gets FMB_BUSY for its newest query; so does a client whose waiting queries exceed its quota
- * (quota.h). Queries that have waited too long, and refusals beyond the quota of a client, get no
- * result; they are counted. If all jobs (jobs.h) are in use and another client needs one, the job
- * that has used most time ends: with the pairs answered so far, or as FMB_BUSY.
+ * it gets FMB_BUSY for its newest query; so does a client one of whose queries has waited for
+ * longer than SERVER_BUSY_NS. Queries that have waited for longer than SERVER_EXPIRY_NS, and
+ * refusals beyond the quota of a client, get no result; they are counted. If all jobs (jobs.h) are
+ * in use and another client needs one, the job that has used most time ends: with the pairs
+ * answered so far, or as FMB_BUSY.
  *
  * What each part of fair sharing is for:
  *
- *     scheduler     clients use equal time, whatever they query
- *     anticipation  a client that waits for each answer keeps its turn
- *     meter         no client is charged for what other programs use
- *     queue, quota  a flood takes no capacity of others; waiting and refusing are bounded
- *     jobs          memory for scenes is bounded, and long ones let short ones begin
+ *     scheduler  clients use equal time, whatever they query, and whether or not they wait for
+ *                each answer
+ *     queue      a flood takes no capacity of others
+ *     jobs       memory for scenes is bounded, and long ones let short ones begin
  *
  * One server may be used by one thread at a time; servers share no state. The caller's loop:
  *
@@ -29,11 +29,16 @@
 
 #include "answer.h"
 #include "bus.h"
-#include "meter.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* A query that has waited for longer since its arrival is dropped; a repeat has its own arrival.
+ * While a query of a client has waited for longer than SERVER_BUSY_NS, its new ones are refused. A
+ * client that repeats queries which wait would otherwise have each of them answered many times. */
+#define SERVER_EXPIRY_NS INT64_C(5000000000)
+#define SERVER_BUSY_NS INT64_C(1000000000)
 
 struct server;
 
@@ -54,11 +59,11 @@ struct server_options {
     /* Publishes a message. Returns false if it could not be sent. */
     bool (*publish)(void *user, const char *channel, const unsigned char *bytes, size_t size);
     void *user;
-    const struct meter_clocks *clocks; /* NULL: the system's clocks */
+    int64_t (*clock_ns)(void); /* nanoseconds; NULL: clock_ns() */
 };
 
 /* Allocates all memory; after this only GMP and the publisher allocate. The options are copied;
- * user and clocks must outlive the server. Returns NULL if out of memory. server_destroy() accepts
+ * user must outlive the server. Returns NULL if out of memory. server_destroy() accepts
  * NULL. */
 struct server *server_create(const struct server_options *options);
 void server_destroy(struct server *server);
@@ -69,9 +74,9 @@ const char *server_query_channel(const struct server *server, enum server_kind k
 const char *server_result_channel(const struct server *server, enum server_kind kind);
 
 /* Processes a message from the query channel of a kind. A query is queued; it is refused if it is
- * too long, exceeds its client's quota or the queue is full. A message that is malformed is counted
- * and reported. A heartbeat is checked for another service. On input: size bytes, untrusted, of any
- * alignment; they are not used after the call. */
+ * too long, an older one of its client has waited too long, or the queue is full. A message that is
+ * malformed is counted and reported. A heartbeat is checked for another service. On input: size
+ * bytes, untrusted, of any alignment; they are not used after the call. */
 void server_receive(struct server *server, enum server_kind kind, const unsigned char *bytes,
                     size_t size);
 
@@ -83,12 +88,12 @@ void server_end_batch(struct server *server, int datagrams);
 enum server_state {
     SERVER_IDLE,         /* no query is pending */
     SERVER_WORKING,      /* queries are pending */
-    SERVER_ANTICIPATING, /* queries are pending, but a more urgent one is expected (anticipation.h)
-                          */
+    SERVER_ANTICIPATING, /* queries are pending, but a more urgent one is expected (scheduler.h) */
 };
 
-/* Answers pending queries for about 0.3 ms; or longer, if one step (at most a block of pairs in
- * doubles, or one pair of frames in exact arithmetic) takes longer. Returns what to do next. */
+/* Answers pending queries for 25 microseconds, or for one turn if it takes longer: a quarter of a
+ * millisecond, or one step (at most a block of pairs in doubles, or one pair of frames in exact
+ * arithmetic). Returns what to do next. */
 enum server_state server_work(struct server *server);
 
 /* Discards the time since the last call: the caller has waited. */

@@ -10,9 +10,6 @@ int64_t clock_ns(void);
 /* Wall clock: microseconds since 1970, the utime of messages. */
 int64_t clock_utime(void);
 
-/* CPU time of the calling thread: nanoseconds. */
-int64_t clock_thread_ns(void);
-
 /* Returns the earlier of two times. */
 static inline int64_t clock_earlier(int64_t a, int64_t b)
 {

@@ -17,8 +17,9 @@
 enum { IDS_MAX = 64 };
 
 const struct attack attacks[] = {
-    {"certificates", 0, 4}, {"boxes", 0, 4},  {"bodies", 0, 4},    {"rate", 26000, 0},
-    {"definitions", 0, 4},  {"ids", 5000, 0}, {"flood", 26000, 0}, /* of certificates */
+    {"pairs", 0, 2},  {"certificates", 0, 4}, {"mixed", 0, 4}, /* pairs and certificates in turns */
+    {"boxes", 0, 4},  {"bodies", 0, 4},       {"rate", 26000, 0}, {"definitions", 0, 4},
+    {"ids", 5000, 0}, {"flood", 26000, 0}, /* of certificates */
 };
 const int attack_count = sizeof attacks / sizeof *attacks;
 
@@ -138,7 +139,9 @@ static void send_query(struct attacker *attacker, long i)
     } else if (strcmp(name, "ids") == 0) {
         size = write_pair(attacker, id + attacker->sent, false);
     } else {
-        size = write_pair(attacker, id, strcmp(name, "rate") != 0);
+        const bool plain = strcmp(name, "rate") == 0 || strcmp(name, "pairs") == 0 ||
+                           (strcmp(name, "mixed") == 0 && attacker->sent % 2);
+        size = write_pair(attacker, id, !plain);
     }
     attacker->under_way[i]++;
     bus_publish(attacker->bus, channel, bytes, size);

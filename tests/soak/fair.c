@@ -2,9 +2,10 @@
  * of LCM_DEFAULT_URL.
  *
  * soak-fair ATTACK [--and ATTACK] [--ids N] [--seconds S] [--scenes] [--window W]
- *           [--headroom H] [--service PID]
+ *           [--turnaround US] [--headroom H] [--service PID]
  *
- * The client has W queries under way (1), of pairs or of scenes of 40 bodies. The attack, or each
+ * The client has W queries under way (1), of pairs or of scenes of 40 bodies, and sends the next
+ * one US microseconds after an answer (0). The attack, or each
  * of the two (attack.c), comes from N client ids (1). The attackers send alternately to a port
  * without a service and to the service, for S seconds in all (4), so that they use the same share
  * of the machine in both. Prints a line of JSON. Exit code 0: no answer was lost, and the client
@@ -36,7 +37,7 @@ static const int64_t lost_ns = 2000000000;
 
 struct plan {
     const struct attack *attack[2]; /* the second may be NULL */
-    long ids, window;
+    long ids, window, turnaround_us;
     long service;
     double seconds, headroom;
     bool scenes;
@@ -48,6 +49,7 @@ struct client {
     int64_t sequence_number;
     int64_t expected[WINDOW_MAX]; /* sequence number under way; 0: none */
     int64_t sent_ns[WINDOW_MAX];
+    int64_t due_ns[WINDOW_MAX]; /* while none is under way: when the next one is sent */
     int64_t answers, lost, failed, longest_ns;
     unsigned char bytes[QUERY_BYTES_MAX];
 };
@@ -105,6 +107,7 @@ static void take(struct client *client, int64_t sequence_number, int32_t status)
         const int64_t time_ns = clock_ns() - client->sent_ns[slot];
         client->longest_ns = time_ns > client->longest_ns ? time_ns : client->longest_ns;
         client->expected[slot] = 0;
+        client->due_ns[slot] = clock_ns() + client->plan->turnaround_us * 1000;
         client->answers += status == FMB_OK;
         client->failed += status != FMB_OK;
     }
@@ -139,11 +142,26 @@ static bool is_under_way(struct client *client)
     return any;
 }
 
-static void receive(struct client *client)
+static void receive(struct client *client, int timeout_ms)
 {
-    bus_wait(client->bus, -1, 50);
+    bus_wait(client->bus, -1, timeout_ms);
     while (bus_receive(client->bus, on_result, client) > 0)
         continue;
+}
+
+/* Sends the queries that are due. Returns whether one will be due without an answer. */
+static bool send_due(struct client *client)
+{
+    bool later = false;
+    for (long slot = 0; slot < client->plan->window; slot++) {
+        if (client->expected[slot])
+            continue;
+        if (clock_ns() >= client->due_ns[slot])
+            send_query(client, slot);
+        else
+            later = true;
+    }
+    return later;
 }
 
 /* Answers a second. */
@@ -155,15 +173,12 @@ static double measure(struct client *client, double seconds)
     const int64_t begin_ns = clock_ns(), end_ns = begin_ns + (int64_t) (1e9 * seconds);
     const int64_t before = client->answers;
     while (clock_ns() < end_ns) {
-        for (long slot = 0; slot < client->plan->window; slot++)
-            if (!client->expected[slot])
-                send_query(client, slot);
-        receive(client);
+        receive(client, send_due(client) ? 0 : 50);
         is_under_way(client);
     }
     const int64_t after = client->answers;
     while (is_under_way(client))
-        receive(client);
+        receive(client, 50);
     return (double) (after - before) / seconds;
 }
 
@@ -247,14 +262,15 @@ static int run_trial(struct client *client)
     const double least = (ids == 1 ? 1. / 3 : 0.4 / (double) ids) / plan->headroom;
     printf(
         "{\"attack\": \"%s%s%s\", \"ids\": %ld, \"client\": \"%s\", \"window\": %ld, "
+        "\"turnaround_us\": %ld, "
         "\"undisturbed_per_second\": %.0f, \"beside_per_second\": %.0f, \"share\": %.3f, "
         "\"least\": %.3f, \"lost\": %" PRId64 ", \"failed\": %" PRId64
         ", \"longest_ms\": %.1f, "
         "\"others\": %.2f}\n",
         plan->attack[0]->name, plan->attack[1] ? "+" : "",
         plan->attack[1] ? plan->attack[1]->name : "", ids, plan->scenes ? "scenes" : "pairs",
-        plan->window, undisturbed, beside, share, least, client->lost, client->failed,
-        1e-6 * (double) client->longest_ns, others);
+        plan->window, plan->turnaround_us, undisturbed, beside, share, least, client->lost,
+        client->failed, 1e-6 * (double) client->longest_ns, others);
     if (share >= least && client->lost == 0 && client->failed == 0)
         return EXIT_SUCCESS;
     return others > 0.1 ? 77 : EXIT_FAILURE;
@@ -276,6 +292,8 @@ static bool parse(int argc, char **argv, struct plan *out)
             out->ids = strtol(argv[++i], &end, 10);
         else if (i + 1 < argc && strcmp(argv[i], "--window") == 0)
             out->window = strtol(argv[++i], &end, 10);
+        else if (i + 1 < argc && strcmp(argv[i], "--turnaround") == 0)
+            out->turnaround_us = strtol(argv[++i], &end, 10);
         else if (i + 1 < argc && strcmp(argv[i], "--seconds") == 0)
             out->seconds = strtod(argv[++i], &end);
         else if (i + 1 < argc && strcmp(argv[i], "--headroom") == 0)
@@ -288,7 +306,8 @@ static bool parse(int argc, char **argv, struct plan *out)
             return false;
     }
     return out->ids >= 1 && out->ids <= 64 && out->window >= 1 && out->window <= WINDOW_MAX &&
-           out->seconds > 0 && out->headroom > 0;
+           out->turnaround_us >= 0 && out->turnaround_us <= 1000000 && out->seconds > 0 &&
+           out->headroom > 0;
 }
 
 int main(int argc, char **argv)
@@ -299,7 +318,7 @@ int main(int argc, char **argv)
     if (!parse(argc, argv, &plan)) {
         fputs(
             "usage: soak-fair ATTACK [--and ATTACK] [--ids N] [--seconds S] [--scenes] "
-            "[--window W] [--headroom H] [--service PID]\n",
+            "[--window W] [--turnaround US] [--headroom H] [--service PID]\n",
             stderr);
         return 2;
     }

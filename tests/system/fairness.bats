@@ -13,44 +13,22 @@ share() {
     [ $code = 0 ]
 }
 
-@test "pairs get their answers beside each attack" {
+@test "a client keeps its share beside others, and their queries wait for at most five seconds" {
     start_fmbd
-    for attack in certificates boxes bodies rate flood definitions ids; do
+    "$TOOLS/soak-fair" flood --ids 4 --seconds 3 || true
+    settled() {
+        "$FMB" status --json > "$BATS_TEST_TMPDIR/status"
+        jq -e '.waiting == 0' "$BATS_TEST_TMPDIR/status"
+    }
+    wait_until settled
+    jq -e '.received == .answered + .unsent and .answered == ([.results[]] | add) and
+        .results.BUSY > 0 and .results.BUSY <= 5 * (64 + .uptime_us / 10000)' "$BATS_TEST_TMPDIR/status"
+    for attack in pairs mixed certificates boxes bodies rate definitions ids; do
         share $attack
     done
-    stop_fmbd
-}
-
-@test "pairs get their answers beside two and four clients that flood" {
-    start_fmbd
-    share rate --and certificates
+    share pairs --ids 4 --turnaround 60
+    share certificates --ids 4 --scenes
     share rate --and flood
-    share flood --ids 4
-    for _ in {1..8}; do # until the queries that wait at a heartbeat have their results
-        "$FMB" status --json > "$BATS_TEST_TMPDIR/status"
-        ! jq -e '.received == .answered + .unsent' "$BATS_TEST_TMPDIR/status" || break
-    done
-    cat "$BATS_TEST_TMPDIR/status"
-    jq -e '.received == .answered + .unsent and
-        .results.BUSY <= 11 * (64 + .uptime_us / 10000)' "$BATS_TEST_TMPDIR/status" # of 11 clients
-    stop_fmbd
-}
-
-@test "scenes get their answers beside each attack, and beside four ids" {
-    start_fmbd
-    for attack in certificates boxes bodies rate definitions; do
-        share $attack --scenes --ids 4
-    done
-    "$FMB" status --json | jq -e '.received == .answered + .unsent and
-        .answered == ([.results[]] | add)'
-    stop_fmbd
-}
-
-@test "queries of clients that are gone wait for at most five seconds" {
-    start_fmbd
-    timeout -s INT 5 "$TOOLS/soak-fair" flood --ids 4 --seconds 16 || [ $? = 124 ]
-    sleep 7
-    "$FMB" status --json | jq -e '.waiting == 0 and .results.BUSY > 0'
     stop_fmbd
 }
 

@@ -14,16 +14,23 @@ struct service service;
 
 /* ---- What is published ---- */
 
+static int64_t cost_of(const struct service_result *result)
+{
+    if (result->status == FMB_BUSY)
+        return service.refusal_ns;
+    const int64_t odd_ns = service.odd_cost_ns[result->client_id];
+    return result->sequence_number % 2 && odd_ns ? odd_ns : service.cost_ns[result->client_id];
+}
+
 static void add(struct service_result result)
 {
     assert_true(service.count < SERVICE_RESULTS_MAX);
+    if (result.client_id < SERVICE_CLIENTS) {
+        service.now_ns += cost_of(&result);
+        service.answers[result.client_id]++;
+    }
+    result.published_ns = service.now_ns;
     service.result[service.count++] = result;
-    if (result.client_id >= SERVICE_CLIENTS)
-        return;
-    service.now_ns +=
-        result.status == FMB_BUSY ? service.refusal_ns : service.cost_ns[result.client_id];
-    service.answers[result.client_id]++;
-    service.answered_ns[result.client_id] = service.now_ns;
 }
 
 static void take_pair(const unsigned char *bytes, uint32_t size)
@@ -42,8 +49,11 @@ static void take_scene(const unsigned char *bytes, uint32_t size)
     static struct scene_result result;
     assert_null(wire_read_scene_result(bytes, size, &result));
     service.scene_compute_ns = result.compute_ns;
-    add((struct service_result){SERVER_SCENES, result.client_id, result.sequence_number,
-                                result.status, result.end_pair});
+    add((struct service_result){.kind = SERVER_SCENES,
+                                .client_id = result.client_id,
+                                .sequence_number = result.sequence_number,
+                                .status = result.status,
+                                .end_pair = result.end_pair});
 }
 
 static void take_definition(const unsigned char *bytes, uint32_t size)
@@ -86,13 +96,12 @@ static int64_t clock_now(void)
 
 int service_open(void **state)
 {
-    static const struct meter_clocks clocks = {clock_now, clock_now};
     const struct server_options options = {.prefix = "T_",
                                            .frames = 2000,
                                            .server_id = 11,
                                            .secret = {5, 6, 7},
                                            .publish = on_publish,
-                                           .clocks = &clocks};
+                                           .clock_ns = clock_now};
     (void) state;
     memset(&service, 0, sizeof service);
     service.now_ns = 1;

@@ -23,11 +23,6 @@ int64_t clock_utime(void)
     return clock_ns() / 1000;
 }
 
-int64_t clock_thread_ns(void)
-{
-    return clock_ns();
-}
-
 int clock_left_ms(int64_t until_ns)
 {
     return until_ns > now ? (int) ((until_ns - now + 999999) / 1000000) : 0;

@@ -76,11 +76,13 @@ static void expect_eviction(struct queue *queue, int client, int kind, size_t si
 static void expect_empty(struct queue *queue)
 {
     struct queue_datagram got;
-    for (int client = 0; client < CLIENTS; client++)
+    for (int client = 0; client < CLIENTS; client++) {
+        assert_int_equal(queue_oldest_ns(queue, client), INT64_MAX);
         for (int line = 0; line < QUEUE_FIFOS; line++) {
             assert_int_equal(queue_waiting(queue, client)[line], 0);
             assert_false(queue_pop(queue, client, (enum queue_fifo) line, &got, got_bytes));
         }
+    }
     assert_int_equal(queue_largest(queue), -1);
     assert_false(queue_evict(queue, 0, &got, got_bytes));
     struct queue_counts counts = queue_counts(queue);
@@ -116,12 +118,15 @@ static void lines_are_independent(void **state)
         keep(queue, 1, 10 + i, 50);
     keep(queue, CLIENTS - 1, 20, 9000);
     keep(queue, 0, 31, 1);
+    assert_int_equal(queue_oldest_ns(queue, 0), 1031);
+    assert_int_equal(queue_oldest_ns(queue, 1), 1010);
     expect_pop(queue, 1, 11, 50);
     expect_pop(queue, 1, 13, 50);
     assert_int_equal(queue_waiting(queue, 1)[QUEUE_SCENES], 0);
     expect_pop(queue, CLIENTS - 1, 20, 9000);
     keep(queue, 1, 15, 60);
     expect_pop(queue, 1, 10, 50);
+    assert_int_equal(queue_oldest_ns(queue, 1), 1012);
     expect_pop(queue, 0, 31, 1);
     expect_pop(queue, 1, 15, 60);
     expect_pop(queue, 1, 12, 50);
