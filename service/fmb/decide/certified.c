@@ -324,7 +324,7 @@ INLINE enum fmb_status decide(const struct frame_pair *pair, const struct fmb_pr
         gap_of(a, b, duration, answer->verdict, INFINITY, &answer->gap) == GAP_UNSURE) {
         if (quick)
             return FMB_CANNOT_DECIDE;
-        hull_gap(&pair, answer->verdict, INFINITY, &answer->gap);
+        hull_gap(pair, answer->verdict, INFINITY, &answer->gap);
     }
     return FMB_OK;
 }
