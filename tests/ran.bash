@@ -1,6 +1,10 @@
 # What suites share: the programs of the tests, and checks of what a command printed, said on stderr, and
 # ended with.
 
+# A pipeline fails where any of its commands does. One that ends before it has read all, such as grep -q or
+# head, takes its input from a file: a writer that finds no reader has failed too.
+set -o pipefail
+
 # The programs of the tests themselves: run.sh takes those of the default build, which start sooner than
 # sanitized ones.
 TOOLS=${FMB_TOOLS:-${FMB_BUILD:-build}}

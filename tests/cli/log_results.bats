@@ -188,7 +188,8 @@ rows() {
     [ "$status" = 2 ]
     [[ $(< "$T/said") =~ 'the first of '([0-9]+)': give the log before it, too' ]]
     lost=${BASH_REMATCH[1]}
-    [ "$lost" -gt 10 ] && [ "$lost" -lt 100 ]
+    [ "$lost" -gt 10 ]
+    [ "$lost" -lt 100 ]
     # The first ones; the others are whole.
     cmp <(tail -n +$((lost + 1)) "$T/rows" | sed 's/"scene":[^,]*,//') <(tail -n +$((lost + 1)) "$T/expected" | sed 's/"scene":[^,]*,//')
     [ "$(grep -vc '"pairs":' "$T/rows")" = "$lost" ]

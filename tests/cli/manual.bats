@@ -5,7 +5,7 @@ load ../ran
 # commands WORD...: those that its help lists, a line each, with those that they have; and itself.
 commands() {
     echo "$*"
-    "$FMB_BUILD/$@" --help | sed -n '/^Commands:$/,/^$/s/^  \([a-z]*\)  .*/\1/p' | grep -v '^help$' |
+    "$FMB_BUILD/$@" --help | sed -n '/^Commands:$/,/^$/s/^  \([a-z]*\)  .*/\1/p' | sed '/^help$/d' |
         while read -r command; do commands "$@" "$command"; done
 }
 

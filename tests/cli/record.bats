@@ -28,7 +28,7 @@ Try 'fmb record --help'." ]
     help=$output
     run "$FMB" help record
     [ "$output" = "$help" ]
-    "$FMB" --help | grep -q '^  record  '
+    grep -q '^  record  ' <<< "$("$FMB" --help)"
 }
 
 @test "wrong options are refused with exit code 2" {

@@ -176,7 +176,7 @@ triangle() {
 
 # 256 MB suffice.
 @test "objects without faces take no memory" {
-    { for i in 1 2 3; do echo "v $i $((i * i)) 0"; done; yes 'o x' | head -n 50000; echo 'f 1 2 3'; } > m.obj
+    { for i in 1 2 3; do echo "v $i $((i * i)) 0"; done; head -n 50000 <(yes 'o x'); echo 'f 1 2 3'; } > m.obj
     link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
     (ulimit -v 262144 && "$FMB" scene robot.urdf --objects) > output.txt
     output=$(< output.txt) status=0

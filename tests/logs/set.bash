@@ -5,7 +5,7 @@ LOGS=$BATS_TEST_DIRNAME/../logs
 
 # Those that this machine has; the others' programs would be the same as one of these.
 has_set() {
-    "$TOOLS/logs/generate" --instructions | grep -qx "$1"
+    grep -qx "$1" <<< "$("$TOOLS/logs/generate" --instructions)"
 }
 
 need_set() {

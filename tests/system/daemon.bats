@@ -128,7 +128,7 @@ load service
     "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
     # The first body stays while a scene uses it; there is no space for the others.
     "$FMB" status --json > "$BATS_TEST_TMPDIR/status"
-    [ "$(jq .server_id "$BATS_TEST_TMPDIR/status")" = "$("$FMB" status | sed 's/.*server \([0-9-]*\),.*/\1/;q')" ]
+    [ "$(jq .server_id "$BATS_TEST_TMPDIR/status")" = "$("$FMB" status | sed -n '1s/.*server \([0-9-]*\),.*/\1/p')" ]
     jq -e '.utime / 1000000 - now | fabs < 60' "$BATS_TEST_TMPDIR/status"
     jq -e '.bodies == 1 and .misses == 1 + 19 * .scenes and .evictions == 0' "$BATS_TEST_TMPDIR/status"
     "$FMB" query --json --certificate "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"

@@ -127,7 +127,7 @@ END
     for name in fmb fmb-client; do
         file=$root/lib/lib$name.so
         [ "$(readlink "$file")" = lib$name.so.0 ]
-        objdump -p "$file" | grep -q "SONAME *lib$name.so.0\$"
+        grep -q "SONAME *lib$name.so.0\$" <<< "$(objdump -p "$file")"
         headers=$root/include/${name/-/_}.h
         [ "$name" = fmb ] || headers="$headers $root/include/fmb_flat.h"
         nm -D --defined-only "$file" | awk '$2 != "A" { print $3 }' > "$BATS_TEST_TMPDIR/names"
@@ -149,7 +149,7 @@ END
     uses_both both.c
     $compiler both.c $(pkg-config --cflags --libs fmb fmb-client) -o with_shared
     ./with_shared
-    for name in fmb fmb-client; do ldd with_shared | grep -q "lib$name.so.0 => $root/"; done
+    for name in fmb fmb-client; do grep -q "lib$name.so.0 => $root/" <<< "$(ldd with_shared)"; done
     $compiler -shared -fPIC -DPLUGIN both.c $(pkg-config --cflags fmb-client) -o plugin.so \
         "$root/lib/libfmb-client.a" "$root/lib/libfmb.a" -llcm -lglib-2.0 -lgmp -lm
     cat > main.c << 'END'
@@ -192,7 +192,7 @@ END
         ./small
         cd "$OLDPWD"
         [ -f "$prefix/share/doc/fmb/LICENSE" ]
-        ! nm "$prefix/bin/fmb" 2> /dev/null | grep -q main || false
+        [[ $(nm "$prefix/bin/fmb" 2>&1) != *main* ]]
         make -s "${options[@]}" uninstall PREFIX="$prefix" LIBDIR="$(realpath -m "$prefix")/lib64"
         [ -z "$(find "$prefix" ! -type d)" ]
     done

@@ -227,7 +227,7 @@ failed() {
     grep -qx "fmb: $log: $1" "$messages"
     "$TOOLS/events" "$log" > "$BATS_TEST_TMPDIR/left"
     is ".events >= $(wc -l < "$BATS_TEST_TMPDIR/left") and .bytes == $(stat -c %s "$log")"
-    "$FMB" log info "$log" | grep -qx '  no damage'
+    grep -qx '  no damage' <<< "$("$FMB" log info "$log")"
 }
 
 # Scenes of one client: its bodies go by handle from the second on.
@@ -333,7 +333,7 @@ END
         [ $code = 1 ]
         grep -qx "fmb: $log: deleted or truncated by another program" "$messages"
         # What was being written in that moment may be there.
-        "$FMB" log info "$log" | grep -qE '  no damage|: empty'
+        grep -qE '  no damage|: empty' <<< "$("$FMB" log info "$log")"
         [ "$(stat -c %s "$log")" -lt 1000000 ]
     done
     stop_fmbd
@@ -343,7 +343,7 @@ END
 
 # feed COUNT: the same scene so often, of one client: its bodies go by handle from the second on.
 feed() {
-    yes "$(tr '\n' ' ' < "$BATS_TEST_TMPDIR/scene.json")" | head -n "$1"
+    head -n "$1" <(yes "$(tr '\n' ' ' < "$BATS_TEST_TMPDIR/scene.json")")
 }
 
 # resolves FILE...: a replay finds each query the same, and all bodies defined.
@@ -450,8 +450,8 @@ hulls() {
     finish_record
     stop_fmbd
     # The same messages once more, from the second query on and without a service.
-    offset=$("$TOOLS/events" "$log" | awk '$3 == "FMB_SCENE_QUERY" && ++queries == 2 { exit }
-        { offset += 28 + length($3) + $4 } END { print offset }')
+    offset=$("$TOOLS/events" "$log" | awk '$3 == "FMB_SCENE_QUERY" && ++queries == 2 { found = 1 }
+        !found { offset += 28 + length($3) + $4 } END { print offset }')
     tail -c +$((offset + 1)) "$log" > "$log.late"
     start_record "$log.2"
     lcm-logplayer "$log.late" 3>&-
@@ -478,8 +478,8 @@ END
     is '.added_names == 2 and .names == 0 and .unknown_handles == 0 and .scene_queries > 0'
     for file in "$second" "$cut"; do
         [ "$("$FMB" log info --json "$file" | jq -c '[.names[] | [.body_id, .name]]')" = '[[1,"table <top>"],[3,"näpf"]]' ]
-        "$FMB" log info "$file" | grep -qx "    client $client, body 1: table <top>"
-        event=$("$TOOLS/events" "$file" | awk '$3 == "FMB_SCENE_QUERY" { print $1; exit }')
+        grep -qx "    client $client, body 1: table <top>" <<< "$("$FMB" log info "$file")"
+        event=$("$TOOLS/events" "$file" | awk '$3 == "FMB_SCENE_QUERY" && !found++ { print $1 }')
         "$FMB" log scene --event "$event" "$file" > "$BATS_TEST_TMPDIR/again.json"
         [ "$(jq -c '[.bodies[].name]' "$BATS_TEST_TMPDIR/again.json")" = '["table <top>",null,"näpf"]' ]
         "$TOOLS/edit-log" --flip 0 "$file" "$BATS_TEST_TMPDIR/flipped"
@@ -587,7 +587,7 @@ END
         printf '\xed\xa1\xda\x01'
         head -c 16 /dev/zero
         printf '\0\0\0\5\0\0\x9c\x40OTHER'
-        seq 100000 | head -c 40000
+        head -c 40000 <(seq 100000)
     } > "$BATS_TEST_TMPDIR/large"
     for options in '--channel OTH.*' '--all'; do
         start_record --force $options "$log"

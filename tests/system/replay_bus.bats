@@ -221,7 +221,8 @@ event() {
     start_fmbd
     as_in_process --golden golden long.log -- '.same == 2 and .bus.not_sent == 2 and .bus.answered == 2'
     [ "$code" = 0 ]
-    "$FMB" replay --bus --golden golden long.log | grep -q '2 that cannot be sent'
+    "$FMB" replay --bus --golden golden long.log > text
+    grep -q '2 that cannot be sent' text
     stop_fmbd
 }
 
