@@ -345,7 +345,7 @@ Try 'fmb mesh --help'."
 @test "progress is shown on a terminal only" {
     script -qfc true /dev/null < /dev/null > /dev/null 2>&1 3>&- || skip 'there is no pseudo-terminal'
     "$MAKE_MESH" --faces 100000 large.ply
-    script -qfc "$FMB mesh --method exact large.ply large.ply" screen < /dev/null > /dev/null 3>&- &
+    script -qfc "'$FMB' mesh --method exact large.ply large.ply" screen < /dev/null > /dev/null 3>&- &
     script=$!
     for _ in $(seq 600); do
         grep -q 'of 100,352 faces' screen && break

@@ -227,7 +227,7 @@ triangle() {
         for (i = 3; i <= 20000; i++) print "f", i - 2, i - 1, i
     }' > m.obj
     link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
-    script -qfc "$FMB scene robot.urdf" screen < /dev/null > /dev/null 3>&- &
+    script -qfc "'$FMB' scene robot.urdf" screen < /dev/null > /dev/null 3>&- &
     script=$!
     for _ in $(seq 600); do
         grep -q 'of 20,000 vertices of a hull' screen && break

@@ -615,7 +615,7 @@ END
 @test "progress is shown on a terminal only" {
     script -qfc true /dev/null < /dev/null > /dev/null 2>&1 3>&- || skip 'there is no pseudo-terminal'
     mkfifo "$BATS_TEST_TMPDIR/keys"
-    script -qfc "$FMB record --json $log > $report" "$BATS_TEST_TMPDIR/screen" \
+    script -qfc "'$FMB' record --json '$log' > '$report'" "$BATS_TEST_TMPDIR/screen" \
         < "$BATS_TEST_TMPDIR/keys" > /dev/null 3>&- &
     script=$!
     started=$script
