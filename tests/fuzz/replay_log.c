@@ -184,8 +184,9 @@ static int64_t number_in(const cJSON *json, const char *name)
 static void check_json(const char *text, const struct reporting *reporting,
                        const struct tally *tally)
 {
-    static const char *const outcome[] = {"same",         "different",   "busy",
-                                          "unknown_body", "not_defined", "no_result"};
+    static const char *const outcome[] = {"same",        "different", "busy",     "unknown_body",
+                                          "not_defined", "not_held",  "no_result"};
+    _Static_assert(sizeof outcome / sizeof *outcome == REPLAY_OUTCOMES, "each has its name");
     cJSON *json = cJSON_Parse(text);
     FUZZ_CHECK(json);
     const cJSON *list = cJSON_GetObjectItemCaseSensitive(json, "differences");

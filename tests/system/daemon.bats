@@ -181,9 +181,8 @@ load service
 # bats test_tags=release
 @test "where an id does not exist, the daemon warns once and continues" {
     [ "$FMB_NETNS" = own ] || skip "needs namespaces"
-    unshare -rn true || skip "needs user namespaces"
-    unshare -rn sh -c 'ip link set lo up; ip link set lo multicast on
-        ip route add 224.0.0.0/4 dev lo; exec "$@"' sh "$FMBD" 2> "$BATS_TEST_TMPDIR/err" 3>&- &
+    unshare -r true || skip "needs user namespaces"
+    unshare -r "$TOOLS/netns" "$FMBD" 2> "$BATS_TEST_TMPDIR/err" 3>&- &
     fmbd=$!
     started="${started-} $fmbd"
     wait_until has "$BATS_TEST_TMPDIR/err" ready
