@@ -50,13 +50,13 @@ static double frame_radius(int dim, const struct geometry_frame *frame, const do
 {
     double most = 0, axis[FMB_DIM_MAX] = {0};
     for (size_t i = 0; i < frame->count; i += (size_t) dim) {
-        double sum = 0;
+        double distance = 0;
         for (int k = 0; k < dim; k++) {
             axis[k] = frame->by_vertices ? fabs(number[i + (size_t) k])
                                          : axis[k] + fabs(number[i + (size_t) k]);
-            sum += axis[k] * axis[k];
+            distance = hypot(distance, axis[k]); /* squares could overflow */
         }
-        most = fmax(most, sqrt(sum));
+        most = fmax(most, distance);
     }
     return most;
 }

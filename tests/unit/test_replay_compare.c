@@ -353,6 +353,9 @@ static void expect_scale(const struct pair_query *query, double scale)
 
 static void a_tolerance_is_relative_to_the_largest_coordinate(void **state)
 {
+    static const struct plain_frame huge = {.shape = FMB_CUBOID,
+                                            .components = {1e200, 0, 0, 0, 1e200, 0, 0, 0, 1e200}};
+    unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
     struct pair_query query = query_of_ends(3, 5, 0);
     expect_scale(&query, 5);
     query.placement[0].placed.velocity[1] = -3; /* for 2 s */
@@ -365,6 +368,8 @@ static void a_tolerance_is_relative_to_the_largest_coordinate(void **state)
     expect_scale(&query, 1e-3 + sqrt(3));
     query = pair(3, -6, 3, 0); /* ends at 0 */
     expect_scale(&query, 6 + sqrt(3));
+    query.placement[1].body = geometry_write(3, &huge, bytes);
+    expect_scale(&query, 1e200 * sqrt(3)); /* the squares overflow */
 }
 
 /* Nearest points need not be the only ones. */
