@@ -337,7 +337,8 @@ enum gap_outcome hull_gap_begin(const struct frame_pair *frames, enum fmb_verdic
  */
 static void begin_placed(struct hull_gap_work *work)
 {
-    const double farthest = ldexp(work->farthest, (int) -work->placed.exponent);
+    /* scale_lengths() lowers the bound by at most 1.5 * 2^-1074. */
+    const double farthest = ldexp(work->farthest + 2 * 0x1p-1074, (int) -work->placed.exponent);
     work->gap = (struct hull_gap){.pair = &work->placed.pair, .duration = work->frames.duration};
     memcpy(work->gap.displacement, work->placed.displacement, sizeof work->gap.displacement);
     set_bounds(&work->gap, work->placed.least);
