@@ -21,4 +21,4 @@ sed -n '/^Permission/,$ { s/^$/./; s/^/ /; p }' LICENSE >> "$copy/debian/copyrig
 } > "$copy/debian/changelog"
 cd "$copy"
 dpkg-buildpackage -b -us -uc
-lintian --fail-on warning ../*.changes
+lintian --fail-on error,warning ../*.changes
