@@ -27,11 +27,6 @@ int64_t clock_utime(void)
     return read_ns(CLOCK_REALTIME) / 1000;
 }
 
-int64_t clock_thread_ns(void)
-{
-    return read_ns(CLOCK_THREAD_CPUTIME_ID);
-}
-
 int clock_left_ms(int64_t until_ns)
 {
     const int64_t left_ns = until_ns - clock_ns();
