@@ -374,7 +374,8 @@ resolves() {
     exec 9>&-
     wait "$client"
     finish_record
-    is '.lost == 0 and .defined_bodies == 12 and .unresolved_handles == 0'
+    # All twelve again where the service is slow, and the recorder repeats its request.
+    is '.lost == 0 and .unresolved_handles == 0' '.defined_bodies >= 12 and .defined_bodies % 12 == 0'
     resolves "$log"
     stop_fmbd
 }
