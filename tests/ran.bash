@@ -1,5 +1,5 @@
-# What suites share: the programs of the tests, and checks of what a command printed, said on stderr, and
-# ended with.
+# What suites share: the programs of the tests, waiting with bounds, and checks of what a command printed,
+# said on stderr, and ended with.
 
 # A pipeline fails where any of its commands does. One that ends before it has read all, such as grep -q or
 # head, takes its input from a file: a writer that finds no reader has failed too.
@@ -33,6 +33,31 @@ read_text() {
     IFS= read -rd '' "$1" < "$3"
     while [[ ${!1} == *$'\n' ]]; do printf -v "$1" %s "${!1%$'\n'}"; done
     IFS=$'\n' read -rd '' -a "$2" < "$3"
+}
+
+# Waits up to a minute until a command succeeds. A read from a pipe without data sleeps without a process of
+# its own.
+exec {nothing}<> <(:)
+wait_until() {
+    local i
+    for ((i = 0; i < 1200; i++)); do
+        if "$@"; then return 0; fi
+        read -rt 0.05 -u "$nothing" || true
+    done
+    echo "waited in vain for: $*" >&2
+    return 1
+}
+
+# has FILE TEXT
+has() {
+    local text
+    IFS= read -rd '' text 2> /dev/null < "$1" || true
+    [[ $text == *"$2"* ]]
+}
+
+# has_lines FILE COUNT: or more.
+has_lines() {
+    [ "$(wc -l < "$1")" -ge "$2" ]
 }
 
 # is TEXT

@@ -347,13 +347,9 @@ Try 'fmb mesh --help'."
     "$MAKE_MESH" --faces 100000 large.ply
     script -qfc "'$FMB' mesh --method exact large.ply large.ply" screen < /dev/null > /dev/null 3>&- &
     script=$!
-    for _ in $(seq 600); do
-        grep -q 'of 100,352 faces' screen && break
-        sleep 0.1
-    done
+    wait_until grep -q 'fmb: [0-9,]* of 100,352 faces' screen
     kill "$script"
     wait "$script" || true
-    grep -q 'fmb: [0-9,]* of 100,352 faces' screen
     run --separate-stderr timeout 2 "$FMB" mesh --method exact large.ply large.ply
     ended 124
     said ''

@@ -119,10 +119,7 @@ $two, \"pairs\": []}"
     "$FMB" query --local --json < "$BATS_TEST_TMPDIR/in" > "$BATS_TEST_TMPDIR/out" 3>&- &
     exec 9> "$BATS_TEST_TMPDIR/in"
     echo "$scene" >&9
-    for _ in $(seq 200); do
-        [ -s "$BATS_TEST_TMPDIR/out" ] && break
-        sleep 0.05
-    done
+    wait_until has_lines "$BATS_TEST_TMPDIR/out" 1
     [ "$(wc -l < "$BATS_TEST_TMPDIR/out")" = 1 ]
     exec 9>&-
     wait $!

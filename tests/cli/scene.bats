@@ -229,13 +229,9 @@ triangle() {
     link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
     script -qfc "'$FMB' scene robot.urdf" screen < /dev/null > /dev/null 3>&- &
     script=$!
-    for _ in $(seq 600); do
-        grep -q 'of 20,000 vertices of a hull' screen && break
-        sleep 0.1
-    done
+    wait_until grep -q 'fmb: [0-9,]* of 20,000 vertices of a hull' screen
     kill "$script" || true
     wait "$script" || true
-    grep -q 'fmb: [0-9,]* of 20,000 vertices of a hull' screen
     run --separate-stderr timeout 2 "$FMB" scene robot.urdf
     said ''
 }

@@ -1,4 +1,4 @@
-# For the tests of the daemon: start and stop it, and wait with bounds. Each file of tests runs
+# For the tests of the daemon: start and stop it. Each file of tests runs
 # in a network namespace of its own (tests/run.sh).
 
 load ../ran
@@ -6,26 +6,6 @@ load ../ran
 : "${FMB_BUILD:=build}"
 FMBD=$FMB_BUILD/fmbd
 FMB=$FMB_BUILD/fmb
-
-# Waits up to a minute until a command succeeds. A read from a pipe without data sleeps without a process of
-# its own.
-exec {nothing}<> <(:)
-wait_until() {
-    local i
-    for ((i = 0; i < 1200; i++)); do
-        if "$@"; then return 0; fi
-        read -rt 0.05 -u "$nothing" || true
-    done
-    echo "waited in vain for: $*" >&2
-    return 1
-}
-
-# has FILE TEXT
-has() {
-    local text
-    IFS= read -rd '' text 2> /dev/null < "$1" || true
-    [[ $text == *"$2"* ]]
-}
 
 # start_fmbd [OPTIONS]: the pid is in $fmbd, what it says in $fmbd_log.
 start_fmbd() {
@@ -77,11 +57,6 @@ wait_until_watched() {
         tail -n 1 "$watched.why"
         return 1
     }
-}
-
-# has_lines FILE COUNT: or more.
-has_lines() {
-    [ "$(wc -l < "$1")" -ge "$2" ]
 }
 
 # query_in_step: queries the scenes of standard input, one a line, by one client: bodies go by handle
