@@ -89,7 +89,7 @@ make_there() {
     printf '#!/bin/sh\n' > "$tools/sleep"
     chmod +x "$tools/sleep"
     shift
-    run env -u MAKEFLAGS -u MAKELEVEL PATH="$tools" make -s -j2 -C "$tree" python=python3 DESTDIR="$tree/build/dest dir" "$@"
+    run env -u MAKEFLAGS -u MAKELEVEL -u CMOCKA_MESSAGE_OUTPUT PATH="$tools" make -s -j2 -C "$tree" python=python3 DESTDIR="$tree/build/dest dir" "$@"
     # No path was taken apart: no argument ends with the first part of it, or begins with the second.
     ! grep -n -e "$decoy\$" -e '^tree\(/\|$\)' "$called" || return
     [ -d "$decoy/kept" ]
