@@ -20,6 +20,10 @@ asan=build/asan-clang
 sanitized='system/service.bats system/daemon.bats system/record.bats system/replay_bus.bats'
 sanitized="$sanitized system/soak.bats cli/query.bats cli/record.bats cli/replay.bats cli/mesh.bats"
 
+# Of the release build, those that wait more than they compute: they begin while the other one is compiled.
+waiting='cli/page.bats system/replay_bus.bats system/daemon.bats system/service.bats system/record.bats'
+waiting="$waiting system/examples.bats"
+
 # Those that take longest, which begin first; and what 'make test-fast' leaves out.
 first='system/service.bats system/daemon.bats system/record.bats fuzz/fuzz.bats cli/page.bats system/bus.bats'
 first="$first system/replay_bus.bats system/fairness.bats system/soak.bats cli/query.bats cli/replay.bats"
@@ -136,9 +140,12 @@ if [ "${1-}" = --suite ]; then
     exit 0
 fi
 
+beside= # the process that runs suites beside a build
+
 # build OPTIONS...: a build that fails is a failure to report, not a reason to be silent.
 build() {
     make -s -j"$(nproc)" ${CI:+WERROR=1} "$@" > build/tests.build 2>&1 || {
+        [ -z "$beside" ] || { kill "$beside"; wait "$beside"; }
         cat build/tests.build
         echo "make $*: the build failed"
         echo "0 passed, 1 failed"
@@ -181,15 +188,28 @@ list_all() {
     list_units $asan
 }
 
+# run_suites LIST PROCESSES: in a process of its own, which a signal ends. Until it has ended, a suite has failed.
+run_suites() {
+    while read -r kind build what; do
+        out_of "$kind" "$build" "$what"
+        echo "0 1 0" > "$out.count"
+    done < "$1"
+    exec xargs -d '\n' -n 1 -P "$2" "$self" --suite < "$1"
+}
+
 rm -rf "$log"
 mkdir -p "$log"
 rm -rf $release/tests $asan/tests
 build PEERS=none headers layers ${FMB_FAST:+fast-}tests
 if [ -z "${FMB_FAST-}" ]; then
+    list_release | awk -v those=" $waiting " 'index(those, " " $3 " ")' > "$log/waiting"
+    run_suites "$log/waiting" 1 &
+    beside=$!
     build MODE=asan programs unit-tests fuzzers replay-set
     [ ! -d build/aarch64/usr ] || build aarch64
 fi
-list_all | awk -v first="$first" 'BEGIN { count = split(first, name) }
+touch "$log/waiting"
+list_all | grep -vxFf "$log/waiting" | awk -v first="$first" 'BEGIN { count = split(first, name) }
     { line[NR] = $0; what[NR] = $3 }
     END {
         for (i = 1; i <= count; i++)
@@ -199,13 +219,9 @@ list_all | awk -v first="$first" 'BEGIN { count = split(first, name) }
             if (k in line) print line[k]
     }' > "$log/list"
 
-# Until it has ended, a suite has failed.
-while read -r kind build what; do
-    out_of "$kind" "$build" "$what"
-    echo "0 1 0" > "$out.count"
-done < "$log/list"
 # One more than there are cores: suites that wait for a bus leave theirs to others.
-xargs -d '\n' -n 1 -P $(($(nproc) + 1)) "$self" --suite < "$log/list"
+(run_suites "$log/list" $(($(nproc) + 1)))
+[ -z "$beside" ] || wait "$beside"
 
 cat "$log"/netns.*.count | awk '$1 + $2 { ran = 1 } END { exit !ran }' ||
     echo "no test of the bus ran: no network namespace, and no route for multicast"
