@@ -1,6 +1,7 @@
+#include <stdarg.h> /* before gmp.h, which then declares functions of a va_list */
+
 #include "certificate_text.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 
 void certificate_write_text(struct certificate_writer *writer, const char *format, ...)
