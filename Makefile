@@ -3,7 +3,7 @@
 #   make deps demo        installs what building needs, then lets the service answer a scene
 #   make deps-test test   installs what the tests need, then runs them
 #
-# Targets, after the one that installs the packages which suffice for them:
+# Targets, each group after the target that installs the packages it needs:
 #
 #   deps          all (default), programs, manual, demo, install, install-strip, uninstall, clean, help;
 #                 examples: in Java, where it is; headers, layers: what a folder may include and call;
@@ -85,7 +85,7 @@ endif
 mode_link_asan = -fsanitize=address,undefined -no-pie $(if $(shell command -v ld.lld),-fuse-ld=lld)
 
 # A user's flags that change how numbers are rounded would change verdicts. Programs linked with some of them also
-# flush subnormals to zero from their start. What gets past this list is refused by integer.h where the compiler tells.
+# flush subnormals to zero from their start. integer.h refuses flags that this list misses, if the compiler tells.
 rounding := -Ofast -ffast-math -funsafe-math-optimizations -fassociative-math -freciprocal-math -fapprox-func \
 	-ffinite-math-only -fno-honor-nans -fno-honor-infinities -fno-signed-zeros -fsingle-precision-constant \
 	-ffp-model=% -ffp-eval-method=% -fdenormal-fp-math% -mdaz-ftz -ffp-contract=% -fexcess-precision=% -mfpmath=%
@@ -95,7 +95,7 @@ $(warning left out, as answers would change: $(sort $(rounding)))
 $(foreach v,CC CPPFLAGS CFLAGS LDFLAGS,$(eval override $v := $$(filter-out $$(rounding),$$($v))))
 endif
 
-# -ffp-contract=off: the same bits on every machine. A user's flags come last, but for those that a file needs.
+# -ffp-contract=off: the same bits on every machine. A user's flags come last, except for those that a file needs.
 # -fPIC: archives fit into shared objects too; without interposition it costs the programs nothing.
 flags := -std=c17 -D_POSIX_C_SOURCE=200809L -DFMB_VERSION='"$(VERSION)"' -ffp-contract=off -fno-semantic-interposition \
 	-Wall -Wextra -Wshadow -Wvla -Wstrict-prototypes -Wmissing-prototypes -Wwrite-strings \
@@ -324,7 +324,7 @@ build/page/page.html: $(template)page.html $(template)page.css $(filter $(templa
 $(O)/clients/page/page.o: build/page/page.html
 $(O)/clients/page/page.o: flags += -DPAGE_FILE='"build/page/page.html"'
 
-# The picture of README.md, by chromium. A path has other letters than an address.
+# The picture of README.md, drawn by chromium. Some characters of a path are escaped in an address.
 url = $(subst ?,%3F,$(subst #,%23,$(subst $() ,%20,$(subst %,%25,$1))))
 .PHONY: picture
 picture: $(B)/fmb
@@ -362,7 +362,7 @@ examples:
 		$(MAKE) -s build/examples/java/PosedPair.class; \
 	else echo 'make $@: there is no javac, or no $(lcm_jar)'; fi
 
-# It begins afresh: a type that is gone would stay.
+# The folder is removed first, since the classes of removed types would stay.
 build/examples/java/PosedPair.class: clients/examples/PosedPair.java tests/system/Largest.java $(message_files) Makefile
 	@rm -rf build/examples/java
 	@mkdir -p $(@D)
@@ -387,7 +387,7 @@ $(O)/%.h.ok: %.h $(O)/settings | $(message_headers)
 	$(call say,CC,$<) $(CC) $(flags) $(user_flags) $(sees) -fsyntax-only -x c $<
 	@touch $@
 formatted := $(sources) $(shell find tests -name '*.cc' -o -name '*.hpp')
-# Versions of clang-format differ in what they make of some lines.
+# Versions of clang-format format some lines differently.
 formatter := 14
 formats = clang-format --version | grep -q 'version $(formatter)\.'
 format:
@@ -408,7 +408,7 @@ sed_text = $(subst |,\|,$(subst &,\&,$(subst \,\\,$1)))
 fill_in = sed -e 's|@PREFIX@|$(call sed_text,$(PREFIX))|' -e 's|@LIBDIR@|$(call sed_text,$(LIBDIR))|' \
 	-e 's|@VERSION@|$(VERSION)|' -e 's|@PREFIX_FROM_LIBDIR@|$(call sed_text,$(shell \
 	realpath -m --relative-to="$(LIBDIR)" "$(PREFIX)"))|'
-# The file has its mode before its text, whatever the umask.
+# Sets the mode before the text is written, whatever the umask.
 filled = $(INSTALL) -m 644 /dev/null $1 && $2 > $1
 root := $(DESTDIR)$(PREFIX)
 .PHONY: install install-strip uninstall

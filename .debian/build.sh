@@ -1,5 +1,5 @@
 #!/bin/sh
-# build.sh VERSION: builds the packages of Debian into build/deb, in a copy of the tree, whose recipe is
+# build.sh VERSION: builds the packages of Debian into build/deb, from a copy of the tree. The recipe is
 # this folder. 'make deps-deb' installs what it needs.
 set -eu
 

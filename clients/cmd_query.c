@@ -100,10 +100,10 @@ struct query {
     struct progress progress;
     bool undecided;        /* a pair has no verdict */
     uint64_t unproven;     /* pairs without a certificate because a body has several frames */
-    bool has_margin;       /* a scene has one */
+    bool has_margin;       /* a scene has a margin */
     int64_t scenes, empty; /* empty: scenes without a pair to decide */
     bool moves;            /* a body moves in a scene whose duration is not 0 */
-    int64_t still_body;    /* the first one that would but for the duration; 0: none */
+    int64_t still_body;    /* first body that would move if the duration were not 0; 0: none */
     int worst;             /* severity of all pairs */
 };
 
@@ -157,7 +157,7 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
     progress_to(&query->progress, query->progress.done + 1, query->progress.total);
 }
 
-/* Takes note of what report_limits() reports of a scene. */
+/* Records what report_limits() reports of a scene. */
 static void note_scene(struct query *query, const struct fmb_scene *scene, uint64_t pairs)
 {
     query->scenes++;

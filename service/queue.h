@@ -77,7 +77,7 @@ enum queue_put_result queue_put(struct queue *queue, enum queue_fifo fifo,
 /* [fifo] Number of datagrams in each FIFO of a client. The array follows later changes. */
 const int64_t *queue_waiting(const struct queue *queue, int client);
 
-/* When the oldest pending datagram of a client arrived; INT64_MAX: it has none. */
+/* Arrival time of the oldest pending datagram of a client, nanoseconds; INT64_MAX: none. */
 int64_t queue_oldest_ns(const struct queue *queue, int client);
 
 /* Removes the oldest datagram of a FIFO. On output: *out, and its out->size bytes. Returns false,

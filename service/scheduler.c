@@ -11,7 +11,7 @@ struct scheduled_client {
     int64_t id;
     int64_t used_ns;  /* virtual time */
     int64_t idle;     /* value of scheduler.moments when it became idle */
-    int64_t idle_ns;  /* when it became idle; 0: it never did */
+    int64_t idle_ns;  /* when it became idle; 0: never */
     int64_t think_ns; /* estimate */
     int32_t position; /* in scheduler.active; -1: idle */
     int32_t next;     /* next client in the bucket; -1: none */
@@ -120,8 +120,8 @@ static int64_t resume_ns(const struct scheduler *scheduler, int client)
     return used_ns > scheduler->now_ns ? used_ns : scheduler->now_ns;
 }
 
-/* Moves the estimate a quarter up or down. It stays if the bounds do not tell on which side of it
- * the time is. */
+/* Doubles the estimate if the think time was longer, and reduces it by a quarter if it was shorter.
+ * No change if the bounds include the estimate. */
 static void estimate_think(struct scheduled_client *c, int64_t min_ns, int64_t max_ns)
 {
     if (min_ns > c->think_ns && c->think_ns < THINK_MAX_NS)

@@ -12,7 +12,7 @@
  * however little time it has used. If work for another client began at once, it would delay the
  * next query, each time by as much as it takes (deceptive idleness; Iyer, Druschel: Anticipatory
  * scheduling, 2001). So the service waits for such a client as long as it leads: its virtual time
- * is less than that of the active clients (scheduler_patience()). The wait is charged to it. Let
+ * is less than any active client's (scheduler_patience()). The wait is charged to it. Let
  * the turns of n other clients take X: after one turn of each, the client has the time X for
  * queries and waits. So it has 1 / (n + 1) of the time if it sends its next query within X; and if
  * it takes longer, it is not delayed by more than the turn that is in progress.
@@ -21,8 +21,8 @@
  * has been idle longest; if there is none, the new id shares one entry with all other ids without
  * an entry.
  *
- * Times are those of one clock that counts while other programs run too: if it did not, a client
- * in closed loop would be charged for waits of the wall clock, and others only for part of theirs.
+ * All times come from one clock that also counts while other programs run. Otherwise a client in
+ * closed loop would be charged for waits in wall time, and other clients only for part of theirs.
  * Allocates nothing after scheduler_create(). One scheduler may be used by one thread at a time;
  * schedulers share no state. */
 #ifndef SCHEDULER_H
@@ -51,8 +51,9 @@ int scheduler_client(struct scheduler *scheduler, int64_t id);
 
 /* Makes a client active or idle. No effect if it already is. On input: arrival_min_ns,
  * arrival_max_ns: bounds on the time at which its query arrived, which the service may have read
- * later; now_ns: the time of its answer. From these its think time is estimated: the median of the
- * times from an answer to the next query. */
+ * later; now_ns: the time of its answer. From these its think time is estimated, which is the time
+ * from an answer to the next query: the estimate is doubled if it was too short, and reduced by a
+ * quarter if it was too long, so that about 70 % of the times are shorter. */
 void scheduler_activate(struct scheduler *scheduler, int client, int64_t arrival_min_ns,
                         int64_t arrival_max_ns);
 void scheduler_deactivate(struct scheduler *scheduler, int client, int64_t now_ns);

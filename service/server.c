@@ -166,8 +166,7 @@ static bool is_malformed(struct server *server, enum server_kind kind, size_t si
 
 /* ---- Time ---- */
 
-/* Returns the nanoseconds since the time up to which all time has been charged, to be charged now.
- */
+/* Returns the nanoseconds since charged_ns, which the caller charges, and advances charged_ns. */
 static int64_t take_time(struct server *server)
 {
     const int64_t before_ns = server->charged_ns;
@@ -211,8 +210,8 @@ static bool take_refusal(struct server *server, int client)
     return true;
 }
 
-/* Refuses a query; without a result if its client has used up its refusals. The time is
- * charged to its client, not to the batch. */
+/* Refuses a query. No result is sent if its client has used up its refusals. The time is charged to
+ * the client, not to the batch. */
 static void refuse(struct server *server, const struct queue_datagram *datagram,
                    const unsigned char *bytes, enum fmb_status status)
 {
@@ -380,7 +379,8 @@ static void serve(struct server *server, int client)
 }
 
 /* Returns whether to keep waiting for the next query of the client that was served last. If not,
- * charges it for the wait; not for longer than was intended, since other programs may have run. */
+ * charges the client for the wait, but at most for the intended time, since other programs may have
+ * run. */
 static bool keep_waiting(struct server *server)
 {
     if (server->awaited < 0)
@@ -422,8 +422,8 @@ void server_resume(struct server *server)
 
 /* ---- Queries that arrive ---- */
 
-/* Puts a query into the queue, and refuses the queries that are evicted for it; or refuses the
- * query itself, if it exceeds its client's share of the queue, or an older one of its client has
+/* Puts a query into the queue, and refuses the queries that are evicted for it. Refuses the query
+ * itself if it exceeds its client's share of the queue, or if an older query of its client has
  * waited too long. */
 static void enqueue(struct server *server, const struct queue_datagram *query,
                     const unsigned char *bytes)
@@ -529,7 +529,7 @@ static void complete_status(const struct server *server, const struct bus_counts
     status->compute_max_ns = server->compute_ns.max;
 }
 
-/* Reports queries that came in fragments since the last heartbeat on stderr. */
+/* Reports on stderr the queries that arrived in fragments since the last heartbeat. */
 static void report_fragmented(struct server *server, const struct bus_counts *bus)
 {
     if (bus->fragmented == server->fragmented_reported || !stderr_ready())

@@ -5,11 +5,11 @@
  * served next, for one turn. A client's pair and definition queries do not wait for its own scenes;
  * pairs with a hull or a body of several frames do. Scenes are answered in steps; between turns
  * other clients are served and the bus is read. If the queue is full, the client that holds most of
- * it gets FMB_BUSY for its newest query; so does a client one of whose queries has waited for
- * longer than SERVER_BUSY_NS. Queries that have waited for longer than SERVER_EXPIRY_NS, and
- * refusals beyond the quota of a client, get no result; they are counted. If all jobs (jobs.h) are
- * in use and another client needs one, the job that has used most time ends: with the pairs
- * answered so far, or as FMB_BUSY.
+ * it gets FMB_BUSY for its newest query. While a query of a client has waited for longer than
+ * SERVER_BUSY_NS, its new queries get FMB_BUSY. Queries that have waited for longer than
+ * SERVER_EXPIRY_NS, and refusals beyond the limit of a client, get no result; they are counted. If
+ * all jobs (jobs.h) are in use and another client needs one, the job that has used most time ends:
+ * with the pairs answered so far, or as FMB_BUSY.
  *
  * What each part of fair sharing is for:
  *
@@ -35,8 +35,8 @@
 #include <stdint.h>
 
 /* A query that has waited for longer since its arrival is dropped; a repeat has its own arrival.
- * While a query of a client has waited for longer than SERVER_BUSY_NS, its new ones are refused. A
- * client that repeats queries which wait would otherwise have each of them answered many times. */
+ * While a query of a client has waited for longer than SERVER_BUSY_NS, its new queries are refused.
+ * Otherwise a client that repeats waiting queries would have each of them answered many times. */
 #define SERVER_EXPIRY_NS INT64_C(5000000000)
 #define SERVER_BUSY_NS INT64_C(1000000000)
 
@@ -73,10 +73,10 @@ void server_destroy(struct server *server);
 const char *server_query_channel(const struct server *server, enum server_kind kind);
 const char *server_result_channel(const struct server *server, enum server_kind kind);
 
-/* Processes a message from the query channel of a kind. A query is queued; it is refused if it is
- * too long, an older one of its client has waited too long, or the queue is full. A message that is
- * malformed is counted and reported. A heartbeat is checked for another service. On input: size
- * bytes, untrusted, of any alignment; they are not used after the call. */
+/* Processes a message from the query channel of a kind. A query is queued. It is refused if it is
+ * too long, if an older query of its client has waited too long, or if the queue is full. A
+ * malformed message is counted and reported. A heartbeat is checked for another service. On input:
+ * size bytes, untrusted, of any alignment; they are not used after the call. */
 void server_receive(struct server *server, enum server_kind kind, const unsigned char *bytes,
                     size_t size);
 
@@ -102,8 +102,8 @@ void server_resume(struct server *server);
 /* Milliseconds until the heartbeat is due, rounded up; 0: now. */
 int server_heartbeat_due_ms(const struct server *server);
 
-/* Publishes the heartbeat, and reports malformed messages and queries in fragments that have not
- * been reported yet on stderr. On input: counts of the bus, whose listeners are the kinds of
+/* Publishes the heartbeat. Reports on stderr the malformed messages and the queries in fragments
+ * that have not been reported yet. On input: counts of the bus, whose listeners are the kinds of
  * messages. */
 void server_heartbeat(struct server *server, const struct bus_counts *bus);
 

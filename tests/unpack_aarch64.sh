@@ -1,7 +1,7 @@
 #!/bin/sh
 # unpack_aarch64.sh: unpacks the libraries of AArch64 that fmb is linked with into build/aarch64. They
-# come from where this machine's packages come from; apt's files of that architecture stay there too,
-# and nothing is installed. Needs no root.
+# come from the package sources of this machine. apt's files of that architecture stay in that folder
+# too, and nothing is installed. Needs no root.
 set -eu
 
 cd "$(dirname "$0")/.."

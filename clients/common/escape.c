@@ -7,7 +7,7 @@
 
 static const uint32_t replacement = 0xfffd;
 
-/* Whether a character would move the cursor, end the line or reorder what is around it: control
+/* Whether a character would move the cursor, end the line or reorder the text around it: control
  * characters, line separators, and the marks of bidirectional text. */
 static bool is_unsafe(uint32_t code)
 {

@@ -47,8 +47,8 @@ char *output_beside(const char *path, const char *name)
     return out;
 }
 
-/* The file that a path names after its symbolic links, which may not exist. On input: the system
- * has followed them (no ELOOP), so their number is finite. The caller frees it. */
+/* Resolves the symbolic links of a path, whose target may not exist. On input: the system has
+ * followed the links (no ELOOP), so their number is finite. The caller frees the result. */
 static char *follow_links(const char *path)
 {
     char link[PATH_MAX], *at = output_beside("", path);
@@ -104,7 +104,7 @@ static bool is_input(const struct output_rules *rules, const struct stat *file)
     return is_at(rules->other_input, file);
 }
 
-/* Whether two outputs go to one regular file, which may not exist yet. */
+/* Whether two outputs go to the same regular file, which may not exist yet. */
 static bool goes_to_one_file(const char *a, const char *b)
 {
     struct stat file[2] = {0}, folder[2];

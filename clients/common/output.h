@@ -23,7 +23,7 @@ struct output_options {
     const char *path; /* NULL: no file is wanted */
     enum output_kind kind;
     const struct output_rules *rules;
-    const struct output_options *other; /* another output of the command, and so on; NULL: none */
+    const struct output_options *other; /* next output of the command (a list); NULL: none */
 };
 
 struct output {
@@ -52,8 +52,8 @@ bool output_close(struct output *output, bool keep);
 
 /* Opens a recording, which is written in place, so that it survives the end of the process. If the
  * file exists and is not empty, it is overwritten if force is true; otherwise that is an error
- * (EEXIST). Standard output and standard error may not go there (EBUSY). Returns a descriptor; -1
- * on error: errno. */
+ * (EEXIST). It is an error (EBUSY) if standard output or standard error goes to this file. Returns
+ * a descriptor; -1 on error: errno. */
 int output_open_in_place(const char *path, bool force);
 
 /* Reports why a file cannot be written, and what to do. error: a value of errno. */

@@ -34,7 +34,7 @@ struct request_result {
     enum fmb_client_kind kind;
     int status;
     const char *detail; /* "" if OK, or if there is no result */
-    /* The result, decoded. The one of another kind may be NULL, or is not to be read. */
+    /* The decoded result. Only the member of its kind may be read. */
     const struct pair_result *pair;
     const struct scene_result *scene;
     const unsigned char *bytes; /* of the message; NULL: there is no result */

@@ -10,7 +10,7 @@ struct log_channel_choice;
 struct log_choice {
     /* from <= t < to, log time in seconds since the first event; -INFINITY, INFINITY: no limit. */
     double from, to;
-    /* Owned. Without channels all of them are chosen. */
+    /* Owned. If there are none, all channels are chosen. */
     struct log_channel_choice *channel;
     size_t channel_count, channel_capacity;
 };

@@ -75,8 +75,8 @@ static void read_logs(struct cutter *cut,
 
 /* ---- The first pass ---- */
 
-/* Reads a query or result, and of a query whether it is chosen by time. Returns false if it cannot
- * be decoded. */
+/* Reads a query or result. For a query, also determines whether it is chosen by time. Returns false
+ * if it cannot be decoded. */
 static bool read_item(struct cutter *cut, enum log_kind kind, const struct log_event *event,
                       struct match_item *out)
 {

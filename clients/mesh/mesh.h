@@ -57,7 +57,7 @@ enum mesh_faces {
     MESH_POLYGONS   /* faces of more vertices, as a fan of triangles, which has the same hull */
 };
 
-/* Returns why a file of this name is not read, by its extension; NULL: it may be. */
+/* Returns why a file with the extension of this name is refused; NULL: it may be a mesh. */
 const char *mesh_unsupported(const char *name);
 
 /* Reads a mesh from a regular file. The whole file is in memory during the call. watch: may be

@@ -29,8 +29,8 @@ struct replayed {
     const struct logged_query *query;
     const struct logged_result *now, *then;
     const struct logged_query *then_query; /* of then; NULL: query, or it is not known */
-    /* How the scene of then_query differs from that of query: then no pair of one is a pair of the
-     * other. NULL: it does not, or then_query is not known. */
+    /* How the scene of then_query differs from the scene of query; if it does, their pairs do not
+     * correspond. NULL: it does not differ, or then_query is not known. */
     const char *change;
     /* then is paired with the query by its order alone, and its own query is not known. */
     bool by_order;
@@ -64,8 +64,8 @@ struct replayed_pairs {
 };
 
 /* Begins an iteration: over the pair of a pair query; over listed pairs that a result answers; over
- * pairs of all or across that a result names, since all others are separated. A result that is none
- * to this query, or to another scene, answers nothing. */
+ * pairs of all or across that a result names, since all others are separated. A result that does
+ * not belong to this query, or belongs to another scene, answers no pair. */
 void replayed_pairs_begin(const struct replayed *replayed, struct replayed_pairs *out);
 
 /* Returns true and the next pair, or false after the last one. Pairs come in the order of the

@@ -78,7 +78,7 @@ def _load() -> ctypes.CDLL:
     integer, size, long, real, text, pointer = (
         ctypes.c_int, ctypes.c_size_t, ctypes.c_int64, ctypes.c_double, ctypes.c_char_p,
         ctypes.c_void_p)
-    # Calls of held keep the interpreter locked: no fork of another thread finds half of the poses set.
+    # Calls of held keep the interpreter locked, so that no other thread forks while some poses are set.
     held = ctypes.PyDLL(_SONAME)
     for name, result, arguments in (
             ("fmb_version", text, ()),
@@ -178,7 +178,7 @@ os.register_at_fork(after_in_child=_in_child)
 
 # ---- Arguments ----
 
-# What is expected of an array; the formats that are used as they are, and all that are taken.
+# Expected elements of an array; formats that are used without a copy; all formats that are accepted.
 _TYPES = {"d": ("numbers of at most 64 bits", "d", "bBhHiIlLqQefd"),
           "q": ("integers of at most 64 bits", "ql", "bBhHiIlLqQ")}
 
@@ -437,7 +437,7 @@ def _comparison(compare: Any) -> Any:
 
 
 class Verdict(enum.Enum):
-    """Equal to its name in JSON, "touching", by which sets find it, and to its number in arrays."""
+    """Equal to its name in JSON ("touching"), which has the same hash, and to its number in arrays."""
 
     SEPARATED = 1
     TOUCHING = 2
@@ -499,7 +499,7 @@ def _answer(names: Any, a: int, b: int, status: int, verdict: int, contact: Any,
 
 
 class Rows(Sequence):
-    """An array of several axes, where numpy is not installed. Its rows are memoryviews, or again Rows."""
+    """An array of several axes, if numpy is not installed. Its rows are memoryviews or Rows."""
 
     def __init__(self, view: memoryview) -> None:
         self.view, self.shape = view, view.shape
@@ -580,7 +580,7 @@ class Answers(Sequence):
 
 class Client(_Handle):
     """A client of fmbd on an LCM bus. A client sends each body once: use it for all queries. A fork
-    closes it in the child, which needs one of its own. Signals (Ctrl-C) are handled when the
+    closes it in the child, which needs its own client. Signals (Ctrl-C) are handled when the
     current call returns.
 
     url: of the bus, udpm://[GROUP:PORT][?ttl=N]; None: LCM_DEFAULT_URL, or else only this host
@@ -618,7 +618,7 @@ class Client(_Handle):
             self._handle = None
 
     def _in_child(self, was_used: bool) -> None:
-        if not was_used:  # else it is as a thread that does not exist here left it
+        if not was_used:  # else its state is unknown: the thread that used it does not exist here
             self.__del__()
         self._handle = None
 

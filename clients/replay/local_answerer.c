@@ -116,7 +116,7 @@ const char *local_answer(struct local_answerer *local, enum log_kind kind,
     bool held;
     if (error || out->status != FMB_UNKNOWN_BODY || !supply(local, &held))
         return error;
-    /* Bodies that fit one after the other may not fit between those that the cache held. */
+    /* Bodies that fit into an empty cache may not fit between the bodies already held. */
     if (!held) {
         cache_clear(answerer_cache(local->answerer));
         supply(local, &held);

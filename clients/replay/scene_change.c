@@ -9,12 +9,12 @@
 
 enum { NO_BODY = -1 };
 
-/* One of the queries. */
+/* The bodies of one query. */
 struct bodies {
     const struct query_placement *placement;
     int32_t count;                          /* of placements */
     const char *name[QUERY_PLACEMENTS_MAX]; /* [placement]; "": none */
-    int32_t other[QUERY_PLACEMENTS_MAX];    /* [placement]: that of the other query; NO_BODY */
+    int32_t other[QUERY_PLACEMENTS_MAX];    /* [placement]: index in the other query; NO_BODY */
 };
 
 static void list_bodies(struct bodies *bodies, const struct scene_change_side *side)
@@ -37,8 +37,8 @@ static bool are_same(const struct bodies *a, int32_t i, const struct bodies *b, 
                            : a->placement[i].placed.id == b->placement[k].placed.id;
 }
 
-/* Sets other[] of both. The search for a body begins after the one before it, so that it is short
- * where bodies were inserted or removed. */
+/* Sets other[] of both. The search for a body begins after the previous match, so that it is short
+ * if bodies were inserted or removed. */
 static void match_bodies(struct bodies *then, struct bodies *now)
 {
     int32_t next = 0;
@@ -75,7 +75,7 @@ static bool same_pairs(const struct scene_query *a, const struct scene_query *b)
     return true;
 }
 
-/* ---- For people ---- */
+/* ---- Text ---- */
 
 /* Appends to the text, which is truncated. */
 __attribute__((format(printf, 2, 3))) static void say(char *out, const char *format, ...)
@@ -87,8 +87,8 @@ __attribute__((format(printf, 2, 3))) static void say(char *out, const char *for
     va_end(arguments);
 }
 
-/* The first bodies that the other query does not have (moved: has at another index), for example
- * "post, crate and 3 more are new". */
+/* Names the first bodies that the other query lacks or, if moved is true, has at another index. For
+ * example "post, crate and 3 more are new". */
 static void say_bodies(char *out, const struct bodies *bodies, bool moved, const char *what)
 {
     enum { NAMED = 3 };

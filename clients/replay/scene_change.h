@@ -1,8 +1,8 @@
-/* How the scenes of two queries differ, one of a recording and one of another: by their bodies, or
- * by the pairs that they decide.
+/* How the scenes of two queries from different recordings differ: in their bodies, or in the pairs
+ * that they decide.
  *
- * Bodies are the same if their names are or, where one has no name, their ids; poses do not count.
- * Several with the same name or id, and anonymous ones, are taken in their order. */
+ * Two bodies are the same if their names are equal or, if either has no name, their ids. Poses are
+ * ignored. Several bodies with the same name or id, and anonymous bodies, are matched in order. */
 #ifndef SCENE_CHANGE_H
 #define SCENE_CHANGE_H
 
@@ -20,9 +20,10 @@ struct scene_change_side {
     const struct logged_query *query;
 };
 
-/* Writes what differs, for people: which bodies are new, missing or moved to another index, or that
- * other pairs are decided. Returns false, with an empty text, if nothing does: then both queries
- * decide the same pairs of bodies, by the same indices. In: decoded queries of one kind. */
+/* Describes the difference in words: which bodies are new, missing or moved to another index, or
+ * that other pairs are decided. Returns false, with an empty text, if the scenes do not differ:
+ * both queries then decide the same pairs of bodies, by the same indices. In: decoded queries of
+ * one kind. */
 bool scene_change(struct scene_change_side then, struct scene_change_side now,
                   char out[SCENE_CHANGE_MAX]);
 

@@ -14,7 +14,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Takes note of the value of joint j if it is outside the limits. */
+/* Records the value of joint j if it is outside the limits. */
 static void check_value(struct joints *joints, size_t j, const char *path, unsigned long line)
 {
     static const double full_turn = 6.2831853071795862;
@@ -37,7 +37,7 @@ static void check_value(struct joints *joints, size_t j, const char *path, unsig
         joints->outside[j] = found;
 }
 
-/* Reports a value of joint j. limited: whether its limits are named; what: the end of the line. */
+/* Reports a value of joint j. limited: whether to name its limits; what: the end of the line. */
 static void report_value(const struct joints *joints, size_t j, const struct joint_report *at,
                          bool limited, const char *what)
 {

@@ -1,5 +1,5 @@
 /* Values of the joints of a robot: from a text, and from the rows of a CSV file. Values outside the
- * limits of their joints are used as they are, and reported at the end, or refused then. Errors are
+ * limits of their joints are used unchanged, and reported or refused at the end. Errors are
  * reported on stderr, each in one line. */
 #ifndef JOINTS_H
 #define JOINTS_H
@@ -9,7 +9,7 @@
 
 #include <stdio.h>
 
-/* A value that is to be reported, and where it is. */
+/* A value to be reported, and its place. */
 struct joint_report {
     double value, by; /* by: how far it is outside the limits of its joint */
     const char *path;
@@ -19,15 +19,15 @@ struct joint_report {
 struct joints {
     const struct robot *robot;
     double *value; /* [joint_count]; 0 unless given or that of a mimic joint */
-    /* Whether a value is outside its limits by more than the slack, or too large to be turned by:
-     * robot_place() may not be called. */
+    /* Whether a value exceeds its limits by more than the slack, or is too large for an angle. If
+     * so, robot_place() must not be called. */
     bool refused;
     /* Private. */
     bool *given;                  /* [joint_count]: by the text, or in a column */
-    double slack;                 /* by which values may be outside */
-    struct joint_report *outside; /* [joint_count]: the farthest one of each joint; by 0: none is */
-    size_t outside_count;         /* values */
-    struct joint_report full;     /* the largest one, of joint full_joint, that may be in degrees */
+    double slack;                 /* by which values may exceed limits */
+    struct joint_report *outside; /* [joint_count]: farthest value of each joint; by is 0: none */
+    size_t outside_count;         /* number of values */
+    struct joint_report full;     /* largest value that may be in degrees, of full_joint */
     size_t full_joint;
 };
 
@@ -36,16 +36,17 @@ struct joints {
 bool joints_open(const struct robot *robot, const char *text, double slack, struct joints *out);
 void joints_clear(struct joints *joints);
 
-/* Takes note of the joints that are neither given nor mimic joints and whose limits exclude 0. */
+/* Records the joints that are neither given nor mimic joints and whose limits exclude 0. */
 void joints_check(struct joints *joints);
 
 /* Sets the mimic joints that are not given, from the values of the joints that they follow. path
- * and line: where these are given, for messages. joint_table_next() does it for each row. */
+ * and line: place of those values, for messages. joint_table_next() calls it for each row. */
 void joints_follow(struct joints *joints, const char *path, unsigned long line);
 
-/* Reports the values outside the limits: if all are within the slack, in one line; otherwise the
- * farthest one of each joint that is not, and returns false. Also whether values seem to be in
- * degrees: more than a full turn of a joint without limits, or outside them. */
+/* Reports the values outside the limits. If all are within the slack, prints one line. Otherwise
+ * prints the farthest value of each joint that exceeds the slack, and returns false. Also reports
+ * whether values seem to be in degrees: more than a full turn of a joint without limits, or outside
+ * the limits. */
 bool joints_report(const struct joints *joints);
 
 /* A CSV file (RFC 4180, without line breaks in fields). Its first line has the names of columns, in

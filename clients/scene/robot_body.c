@@ -51,15 +51,15 @@ static void add_frame(struct frames *frames, const struct given_frame *given)
     frames->frame[frames->count++] = *given;
 }
 
-/* Returns x + by, rounded to the side of x. */
+/* Returns x + by, rounded towards the infinity that has the sign of x. */
 static double shift_outwards(double x, double by)
 {
     const double sum = by + x, part = sum - by, error = (by - (sum - part)) + (x - part);
     return error != 0 && (error > 0) == (x > 0) ? nextafter(sum, copysign(INFINITY, x)) : sum;
 }
 
-/* Adds a hull; places its vertices, [count][axis], which the scene owns. outwards: see ENCLOSE; the
- * placement is a translation. */
+/* Adds a hull and places its vertices, [count][axis], which the scene owns. outwards: rounds them
+ * away from the centre (see ENCLOSE); the placement is a translation. */
 static void add_hull(struct frames *frames, double (*vertex)[3], size_t count, bool outwards)
 {
     for (size_t i = 0; i < count && frames->placed; i++)
@@ -234,7 +234,7 @@ static char *find_mesh(const struct frames *frames, const struct robot_element *
     const bool packaged = strncmp(file, package, sizeof package - 1) == 0;
     if (packaged || strncmp(file, scheme, sizeof scheme - 1) == 0)
         file += (packaged ? sizeof package : sizeof scheme) - 1;
-    const size_t name = strcspn(file, "/"); /* of the package: none, and . and .., is refused */
+    const size_t name = strcspn(file, "/"); /* of the package; "", "." and ".." are refused */
     if (packaged ? strncmp(file, "..", name) == 0 || strlen(file + name) < 2
                  : strstr(file, "://") || strchr(file, '\\')) {
         refuse(frames, element, "%s: expected a path with '/', file://PATH or package://NAME/PATH",

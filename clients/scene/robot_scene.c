@@ -208,8 +208,8 @@ bool robot_scene_add_world(struct robot_scene *scene, const char *path)
 
 /* ---- Ignored pairs ---- */
 
-/* Finds the only body of this name, which ends at `end`; *out: UINT32_MAX for a link without a
- * body. Returns false after an error. */
+/* Finds the body with this name, which ends at `end`. *out: UINT32_MAX for a link without a body.
+ * Returns false after an error: the name is unknown or ambiguous. */
 static bool find_body(const struct robot_scene *scene, const char *name, const char *end,
                       unsigned *out)
 {

@@ -35,8 +35,8 @@ void robot_scene_report(const struct robot_scene *scene, int sides);
 bool robot_scene_add_world(struct robot_scene *scene, const char *path);
 
 /* Ignores pairs of bodies. In: pair: [count], "NAME,NAME", of links, with or without a body, or of
- * bodies of the world, which must have been added. Returns false after an error: not exactly one
- * has a name. */
+ * bodies of the world, which must have been added. Returns false after an error: a name is unknown
+ * or ambiguous. */
 bool robot_scene_ignore(struct robot_scene *scene, const char *const *pair, size_t count);
 
 /* Sets the poses for values of the joints, as of robot_place(), and moves the bodies of the world

@@ -221,8 +221,8 @@ static int find_listener(const struct bus *bus, const char *channel)
     return -1;
 }
 
-/* Counts a datagram that is not a whole message. The first fragment of a message is the one that
- * names its channel. */
+/* Counts a datagram that is not a whole message. Only the first fragment of a message names its
+ * channel. */
 static void count_malformed(struct bus *bus, const unsigned char *bytes, size_t size)
 {
     static const unsigned char first[6] = {0}; /* offset and number */

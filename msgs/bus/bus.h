@@ -91,7 +91,7 @@ struct bus_counts {
     uint64_t fragmented; /* first fragments of messages on channels that are listened to */
     uint64_t dropped;    /* datagrams that the kernel dropped because its buffer was full */
     long receive_buffer; /* bytes granted by the system, as SO_RCVBUF reports them */
-    /* The last message of these: its listener, and its size in bytes according to its header. */
+    /* The last of these messages: its listener, and its size in bytes according to its header. */
     int fragmented_listener;
     uint32_t fragmented_size;
 };

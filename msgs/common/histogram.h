@@ -15,7 +15,7 @@ struct histogram {
     int64_t count, max;
 };
 
-/* A negative value counts as 0: results from the bus hold any time. */
+/* A negative value counts as 0: times in results from the bus are untrusted. */
 void histogram_add(struct histogram *histogram, int64_t value);
 
 /* An upper bound of the quantile `share`, in (0,1]: the largest value of the bucket that contains

@@ -391,10 +391,10 @@ struct fmb_method {
  *
  * Cost: exact takes tens of microseconds for numbers of similar size. Its time is bounded for any
  * numbers: the slowest pairs, whose exponents span the whole range of doubles, take up to 6 ms with
- * box and gap. The same bound holds for certified. It is not that of pairs with a hull: doubles
+ * box and gap. The same bound holds for certified, but not for pairs with a hull. Doubles
  * decide these by a few scans of all vertices. Exact arithmetic, for pairs that touch or nearly do,
  * takes some milliseconds for the largest hulls, and up to 60 ms with box and gap if their
- * exponents span the range of doubles. A scene divides it into steps of less than one. */
+ * exponents span the range of doubles. A scene divides it into steps of less than a millisecond. */
 
 /* Return a method from a static table, valid for the life of the program. Thread safe.
  * fmb_method_at() returns NULL if index is past the last method; fmb_method_by_name() and
@@ -791,8 +791,8 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  * by spaces: vertices of the frame, and positive rational numbers. Vertex 0 of a tetrahedron or a
  * face is its origin, vertex i + 1 the end of c_i; vertex k of a cuboid or a box is the origin plus
  * the c_i for which bit i of k is set. The vertices of a hull are those of struct fmb_frame, from
- * 0. A frame's weights times its vertices at TIME sum to a point. The weights of each frame sum to
- * 1, and both frames have the same point. Weights that these equations determine are left out.
+ * 0. The vertices of a frame at TIME times their weights sum to a point. The weights of each frame
+ * sum to 1, and the points are equal. Weights that these equations determine are left out.
  *
  * The certificate states:
  *   separated    N . (b - a) > 0 for all points a of the first frame and b of the second, at all
@@ -827,13 +827,13 @@ enum { FMB_CERTIFICATE_MAX = 16384 };
  * every coordinate of every component, origin, vertex of a hull, position and v T of the pair, and
  * half of every size of a box. Let 2^f be the least power of two above the magnitudes of all these,
  * where the product of such a power for the coordinates of v and one for T stands for v T. Let n be
- * |q|^2 for the smallest integers q that are proportional to the orientation; 1 without one, and m
- * the product of both n, or one of them if they are equal. The pair spans f - e bits plus the
- * number of bits of m.
+ * |q|^2 for the smallest integers q that are proportional to the orientation, or 1 without an
+ * orientation. Let m be the product of both n, or n itself if they are equal. The pair spans f - e
+ * bits plus the number of bits of m.
  *
- * Half of all certificates are shorter than 100 bytes. Longer are those that state times in windows
- * of extreme length, and normals of pairs that touch. The text is also empty if it would exceed the
- * capacity above; no such pair is known.
+ * Half of all certificates are shorter than 100 bytes. Those with times in windows of
+ * extreme length, and those with normals of touching pairs, are longer. The text is also empty if
+ * it would exceed the capacity above; no such pair is known.
  * Cost: about that of the verdict by the exact method. Memory is allocated as by the exact method.
  */
 enum fmb_status fmb_certificate(const struct fmb_placement *a, const struct fmb_placement *b,

@@ -1,15 +1,14 @@
 # What 'make' prints, what its targets need, and what they remove.
 
-# A copy of the tree in a folder whose path has a space, beside one that has the part of this path before
-# it. The tools there are one script, which writes down how it was called, and makes what it is to make: a
-# copy of itself.
+# Copies the tree into a folder whose path has a space. The part of the path before the space names another
+# folder. All tools are one script, which records how it was called and makes its output: a copy of itself.
 setup_file() {
     cd "$BATS_TEST_DIRNAME/../.." || return
     export decoy=$BATS_FILE_TMPDIR/my tree="$BATS_FILE_TMPDIR/my tree" tool=$BATS_FILE_TMPDIR/tool
     export called=$BATS_FILE_TMPDIR/called known=$BATS_FILE_TMPDIR/known
     mkdir -p "$decoy/kept" "$tree"
     tar --exclude=./build --exclude=./.git -c . | tar -x -C "$tree"
-    # What make knows; it makes nothing, as there is no such target.
+    # The database of make. Nothing is made, since there is no such target.
     env -u MAKEFLAGS -u MAKELEVEL make -npq no-such-target > "$known" 2> /dev/null || true
     cat > "$tool" << END
 #!/bin/sh
@@ -35,8 +34,8 @@ END
     chmod +x "$tool"
 }
 
-# brings PACKAGE: the programs of a package in the lists of the Makefile that its targets call. The others have
-# headers and libraries, or what tests alone call.
+# brings PACKAGE: the programs of a package that the targets of the Makefile call. The other packages have
+# headers and libraries, or programs that only tests call.
 brings() {
     case $1 in
     gcc) echo gcc ar nm objcopy strip ;;
@@ -52,12 +51,12 @@ brings() {
     esac
 }
 
-# What a machine has that has nothing else than git and make.
+# The programs of a machine that has only git and make.
 common='awk base64 basenc bash basename cat chmod cmp comm cp cut date diff dirname du env expr find git grep head id install ln ls
     make mkdir mktemp mv nice nproc paste printf readlink realpath rm sed sh sha256sum sort stat tail tar tee timeout touch tr true
     uname uniq wc xargs'
 
-# listed DEPS: the targets that the table at the top of the Makefile has after it, a line each.
+# listed DEPS: the targets that the table at the top of the Makefile lists for it, one a line.
 listed() {
     sed -n '/^# Targets/,/^# Variables/{ s/([^)]*)//g; p; }' Makefile | awk -v deps="$1" '
         /^#   [a-z]/ { inside = ($2 == deps); $2 = "" }
@@ -78,7 +77,7 @@ packages_of() {
     sed -n "s/^packages_$1 := //p" "$known"
 }
 
-# make_there DEPS ARGUMENTS...: in the copy, with the tools of these packages alone.
+# make_there DEPS ARGUMENTS...: runs make in the copy, with the tools of these packages only.
 make_there() {
     local tools=$BATS_TEST_TMPDIR/tools package name
     mkdir -p "$tools"
@@ -90,12 +89,12 @@ make_there() {
     chmod +x "$tools/sleep"
     shift
     run env -u MAKEFLAGS -u MAKELEVEL -u CMOCKA_MESSAGE_OUTPUT PATH="$tools" make -s -j2 -C "$tree" python=python3 DESTDIR="$tree/build/dest dir" "$@"
-    # No path was taken apart: no argument ends with the first part of it, or begins with the second.
+    # No path was split: no argument ends with its first part, or begins with the second.
     ! grep -n -e "$decoy\$" -e '^tree\(/\|$\)' "$called" || return
     [ -d "$decoy/kept" ]
 }
 
-# included: the system's headers that the sources which were compiled include, and the headers that these do.
+# included: the system's headers that the compiled sources include, directly or through other headers.
 included() {
     grep -x '[^/].*\.\(c\|cc\)' "$called" | sort -u > "$BATS_TEST_TMPDIR/sources"
     (cd "$tree" && grep -roE --include='*.[ch]' --include='*.cc' --include='*.hpp' '^ *# *include [<"][^>"]*' service msgs clients tests) |
@@ -135,7 +134,7 @@ suffices() {
         make_there "$1" "$target"
         [ "$status" = 0 ] || { echo "make $target: $output"; false; }
     done
-    # Each header is of the compiler, of the C library, or of one of the packages.
+    # Each header belongs to the compiler, to the C library, or to one of the packages.
     command -v dpkg > /dev/null || return 0
     included | while read -r header; do
         find /usr/include/{,"$(gcc -dumpmachine)/",glib-2.0/}"$header" 2> /dev/null | head -n 1

@@ -458,7 +458,7 @@ fmb: t.csv: line 1: no column for joint 'turn': add one, or give its value by --
     refused "robot.urdf: line 1: <link>: the name 'a\x0ab'" robot.urdf
     echo '<robot name="r"><link name="a"/><joint name="j" type="fixed"><parent link="x&#10;y"/><child link="a"/></joint></robot>' > robot.urdf
     refused "robot.urdf: line 1: joint 'j': <parent>: the link 'x\x0ay' has control characters" robot.urdf
-    # Nor can one forge another.
+    # Nor can a name forge another line.
     robot "<link name='a'/><link name='b'/><joint name='j' type='prismatic'><parent link='a'/><child link='b'/>
 $limit<mimic joint='q&#10;fmb: all is well'/></joint>"
     refused "robot.urdf: line 3: joint 'j': <mimic>: 'q\x0afmb: all is well' is not a joint of the file" robot.urdf
@@ -518,7 +518,7 @@ fmb: robot.urdf: line 8: joint 'ea': its parent 'e' is not a link of the file"
     shape '<geometry><mesh filename="$(find pkg)/a.stl"/></geometry>' "<mesh>: filename is '\$(find pkg)/a.stl': expand the file with xacro first"
     shape '<geometry><capsule radius="1"/></geometry>' '<capsule>: expected a box, cylinder, sphere or mesh; give a capsule as a cylinder and two spheres'
     shape '<geometry><sphere radius="1"/><sphere radius="1"/></geometry>' '<sphere>: there is already a shape'
-    # Elements of other namespaces beside a shape say more about it; alone they are no shape.
+    # Elements of other namespaces may stand beside a shape, but are not shapes.
     foreign='<drake:declare_convex/>'
     for shapes in "$foreign<sphere radius='1'/>" "<sphere radius='1'/>$foreign<drake:a/>" "$foreign<sphere radius='1'/>$foreign"; do
         robot "<link xmlns:drake='urn:drake' name='a'><collision><geometry>$shapes</geometry></collision></link>"

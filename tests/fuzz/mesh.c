@@ -1,6 +1,6 @@
-/* Any bytes, read as a mesh, under a name that their number chooses: what is refused is reported
- * with a place that is there, and nothing is left of it; what is read is a mesh, no larger than its
- * bytes can be. What is a number, and which, is what strtod() says. */
+/* Reads any bytes as a mesh, under a name chosen by their number. If the bytes are refused, the
+ * report names a place that exists, and nothing of the mesh is left. If they are read, the mesh is
+ * valid, and no larger than the bytes allow. Numbers are those that strtod() reads. */
 #include "fuzz.h"
 
 #include "mesh.h"

@@ -1,6 +1,6 @@
-/* A robot, a table of joint values, and a mesh, separated by zero bytes, as files: what is refused
- * is reported; what is read is a tree, whose poses are rotations; a scene of it is
- * valid, and reads back as the same; a table read again has the same rows. */
+/* Reads a robot, a table of joint values, and a mesh, separated by zero bytes, as files. What is
+ * refused is reported. What is read is a tree whose poses are rotations; its scene is valid, and
+ * reads back the same; a table that is read again has the same rows. */
 #define _GNU_SOURCE /* memfd_create */
 #include "fuzz.h"
 

@@ -86,7 +86,7 @@ static void draw_bodies(struct blasting *blasting)
     }
 }
 
-/* The same body with its frame repeated. What the placements of a query point to stays. */
+/* Repeats the frame of a body. The memory that the placements of a query point to stays valid. */
 static void repeat_frame(int count, struct query_placement *out)
 {
     static unsigned char bytes[2][BLAST_COMPOUND_MAX * GEOMETRY_FRAME_BYTES_MAX];

@@ -18,7 +18,7 @@ struct blast {
     int by_handle; /* bodies go by handle once it is known: 0, or 1; -1: one time in two */
     int32_t want;  /* FMB_WANT_ bits, of pairs */
     int bodies;    /* from 2 to BLAST_BODIES: of each dimension half as many; 0: BLAST_BODIES */
-    bool compound; /* bodies of pairs have 1 to BLAST_COMPOUND_MAX frames, all alike */
+    bool compound; /* bodies of pairs have 1 to BLAST_COMPOUND_MAX equal frames */
 };
 
 /* Pairs of BLAST_BODIES bodies of all shapes, drawn anew for each query, each body at a place of

@@ -3,8 +3,8 @@
 
 Use: browser.py PAGE WIDTH HEIGHT [OPTION OF CHROMIUM...]
 
-The script sends commands of the DevTools protocol: for other colours, for screenshots, and for what the console
-of the page has received. Chromium has no GPU, and resolves no host name, so that nothing leaves the machine.
+The script sends commands of the DevTools protocol, to change colours, to take screenshots, and to read the
+console of the page. Chromium has no GPU, and resolves no host name, so that nothing leaves the machine.
 """
 
 import json
@@ -60,7 +60,7 @@ class Browser:
 
 
 def message(method, params):
-    """A message of a page to its console, as one line; None: what the driver has caused, by reading pixels."""
+    """A message of a page to its console, as one line; None: caused by the driver, which reads pixels."""
     if method == "Runtime.exceptionThrown":
         detail = params["exceptionDetails"]
         said, url = detail.get("exception", {}).get("description", detail["text"]), detail.get("url")

@@ -3,8 +3,8 @@
 
 /* ---- What a page shows ---- */
 
-/* Counts of pixels of the scene as it is, within the frame that drew it, or of a rectangle of an image: all that
- * are drawn, those of a colour, and a checksum. */
+/* Counts pixels of the scene, in the frame that drew it, or of a rectangle of an image: all drawn pixels, those of
+ * each colour, and a checksum. */
 const copy = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
 function pixels(image = one("#scene"), { x, y, width, height } = { x: 0, y: 0, width: image.width, height: image.height }) {
     Object.assign(copy.canvas, { width, height });
@@ -188,7 +188,7 @@ function resize(width, height) {
     });
 }
 
-/* The scene's part of a screenshot of a page that was resized, as "chromium --screenshot" does before it takes one. */
+/* Resizes a page, as "chromium --screenshot" does first, and counts the pixels of the scene in a screenshot. */
 async function screenshot(scheme, width, height) {
     await setColours(scheme);
     setSize(width, height - 90);
@@ -213,7 +213,7 @@ async function screenshots() {
     setSize(1400, 900);
 }
 
-/* The GPU forgets all that it has, as after a reset of its driver. */
+/* The GPU loses all its contents, as after a reset of its driver. */
 async function restored() {
     await open("table.html");
     const scene = one("#scene"), gpu = scene.getContext("webgl2") ?? scene.getContext("webgl"), loses = gpu.getExtension("WEBGL_lose_context");

@@ -1,6 +1,5 @@
 /* Common to the drivers, which open pages in turn in an iframe, operate them as a reader does, and
- * send their findings to browser.py. The page is a document of its own, with its own
- * policy. */
+ * send their findings to browser.py. The page is a document of its own, with its own policy. */
 "use strict";
 
 const frame = document.getElementById("page");
@@ -66,7 +65,7 @@ async function mouse(element, x = 0.5, y = 0.5, move = null) {
     await drawn();
 }
 
-/* What a key changes in the document is there at once, the picture with the next frame. */
+/* Presses a key. The document changes at once, the picture with the next frame. */
 function key(key, shiftKey = false) {
     page.body.dispatchEvent(new view.KeyboardEvent("keydown",
         { key, shiftKey, bubbles: true, cancelable: true }));
@@ -98,14 +97,14 @@ function command(method, params = {}) {
 /* Opens pages in light or dark colours from now on. */
 const setColours = (value) => command("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value }] });
 
-/* Does work while each page that is opened begins with a script. */
+/* Calls work() while each page that is opened begins with a script. */
 async function beginningWith(source, work) {
     const { identifier } = await command("Page.addScriptToEvaluateOnNewDocument", { source });
     await work();
     await command("Page.removeScriptToEvaluateOnNewDocument", { identifier });
 }
 
-/* Does all parts, and sends what they have found. */
+/* Executes all parts, and sends their findings. */
 async function drive(parts) {
     Object.assign(found, { errors: [], console: {} });
     for (const part of parts) {

@@ -5,13 +5,12 @@
  *           [--turnaround US] [--headroom H] [--service PID]
  *
  * The client has W queries under way (1), of pairs or of scenes of 40 bodies, and sends the next
- * one US microseconds after an answer (0). The attack, or each
- * of the two (attack.c), comes from N client ids (1). The attackers send alternately to a port
- * without a service and to the service, for S seconds in all (4), so that they use the same share
- * of the machine in both. Prints a line of JSON. Exit code 0: no answer was lost, and the client
- * kept the promised share of its rate: a third beside one id, 0.4 / N beside N, divided by H (1).
- * 77: it did not, but other programs used more than a tenth of the machine. PID is the process of
- * the service. */
+ * one US microseconds after an answer (0). The attack, or each of the two (attack.c), comes from N
+ * client ids (1). The attackers send alternately to a port without a service and to the service,
+ * for S seconds in all (4), so that they use the same share of the machine in both. Prints a line
+ * of JSON. Exit code 0: no answer was lost, and the client kept the promised share of its rate: a
+ * third beside one id, 0.4 / N beside N, divided by H (1). 77: it did not, but other programs used
+ * more than a tenth of the machine. PID is the process of the service. */
 #include "attack.h"
 #include "bus.h"
 #include "clock.h"

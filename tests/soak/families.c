@@ -1,6 +1,6 @@
 /* The pairs of the campaigns, hulls and posed bodies among them, through the service: in both
- * orders, first with whole bodies, then by handle. The bus is that of LCM_DEFAULT_URL; a recorder
- * on it is waited for where it is slow.
+ * orders, first with whole bodies, then by handle. The bus is that of LCM_DEFAULT_URL; the
+ * program waits for a slow recorder on it.
  *
  * soak-families [PREFIX]: one pair of each cell of the families whose names begin so; of each
  * seventh cell with FMB_FAST. Prints a line of JSON. Exit code 0: each answer was that of

@@ -26,8 +26,8 @@ wait_until() {
     done
 }
 
-# Whether the recorder's socket is there, with its log; and whether it holds nothing, and the log has grown
-# no more since the last look.
+# receives: whether the recorder's socket and log exist. has_read: whether the socket is empty, and the log
+# has not grown since the last call.
 receives() {
     [ -e "$log" ] && grep -q ':1DF3 ' /proc/net/udp
 }

@@ -1,6 +1,5 @@
-/* busy N: a service over plain LCM that is busy N times, then says of every pair that it is
- * separated. Prints the sequence number of each query, and whether it was busy; until it is ended.
- */
+/* busy N: a service over plain LCM that is busy N times, then reports every pair as separated.
+ * Prints the sequence number of each query, and whether it was busy, until it is ended. */
 #include <lcm/lcm.h>
 #include <stdbool.h>
 #include <stdio.h>

@@ -21,7 +21,7 @@ load service
     done
     is_loaded() { [ "$(status_of pairs)" -gt 100 ]; }
     wait_until is_loaded
-    # At the pace that the machine has: that of a daemon that does nothing else.
+    # The pace of the machine: the time of a daemon that does nothing else.
     begin=${EPOCHREALTIME/./}
     "$FMBD" --version
     pace=$((${EPOCHREALTIME/./} - begin))

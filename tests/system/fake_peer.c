@@ -13,10 +13,10 @@
  * fake-peer listen PATH: prints the datagrams that a service manager gets at this socket, one a
  * line; until it is ended.
  *
- * With damaged messages and numbers it waits for slow receivers, so that no datagram is lost; not
- * where its first word is burst.
+ * When it sends damaged messages or numbers, it waits for slow receivers, so that no datagram is
+ * lost, unless its first word is burst.
  *
- * fake-peer wait: waits for them.
+ * fake-peer wait: waits for slow receivers.
  *
  * fake-peer lie CERTIFICATE: a service that says of every pair, with this certificate, that it
  * overlaps, and of the first pair of every scene; until it is ended. */
@@ -32,7 +32,7 @@
 #include <sys/un.h>
 #include <time.h>
 
-/* Datagrams before the receivers are waited for. */
+/* Number of datagrams that are sent before it waits for the receivers. */
 enum { PORTION = 40 };
 
 struct sending {

@@ -2,7 +2,7 @@
 
 load service
 
-# What was built is installed as it is, by someone whose own files are read by no others.
+# Installs the build unchanged, as a user whose own files no other user can read.
 setup_file() {
     case $FMB_BUILD in *asan*) return ;; esac
     options_of_build

@@ -79,7 +79,7 @@ static void on_scene(const lcm_recv_buf_t *buffer, const char *channel,
            result->num_handle_bytes / 16);
 }
 
-/* Whole bodies in the first query, those of its handles in later ones. */
+/* Sends whole bodies in the first query, and handles in later ones. */
 static void send_pair(lcm_t *lcm)
 {
     static double position[2][3] = {{0, 0, 0}, {0.5, 0, 0}};
@@ -143,7 +143,7 @@ static bool query(lcm_t *lcm, void (*send)(lcm_t *lcm), const bool *answered)
     return *answered;
 }
 
-/* Whole, then by handles, then with one that is of no body. */
+/* With whole bodies, then by handles, then with a handle of no body. */
 static bool query_pairs(lcm_t *lcm)
 {
     bool all = true;

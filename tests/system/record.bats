@@ -374,7 +374,7 @@ resolves() {
     exec 9>&-
     wait "$client"
     finish_record
-    # All twelve again where the service is slow, and the recorder repeats its request.
+    # All twelve are defined again if the service is slow and the recorder repeats its request.
     is '.lost == 0 and .unresolved_handles == 0' '.defined_bodies >= 12 and .defined_bodies % 12 == 0'
     resolves "$log"
     stop_fmbd
@@ -628,7 +628,7 @@ END
     wait "$script"
     exec 9>&-
     is '.events == 1001'
-    # Elsewhere, though more than the second between two heartbeats passes.
+    # To a file there is one line, although more than the second between two heartbeats passes.
     start_fmbd
     start_record "$log.2"
     "$TOOLS/fake-peer" numbers 5 $(seq 1000)

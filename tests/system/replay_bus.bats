@@ -60,7 +60,7 @@ place_of() {
     echo $(($(grep -abo "$2" "$1" | sed -n "$3s/:.*//p") + ${#2}))
 }
 
-# begin_watch: a process that ends after the next few results, $watch.
+# begin_watch: starts $watch, a process that ends after the next few results.
 begin_watch() {
     "$FMB" watch --count 6 > /dev/null 2> watched 3>&- &
     watch=$!
@@ -72,7 +72,7 @@ answered_or_ended() {
     ! kill -0 "$watch" 2> /dev/null || ! kill -0 "$replay" 2> /dev/null
 }
 
-# begin_replay OPTIONS: of a log of so many queries, $replay; returns while most are not answered yet.
+# begin_replay OPTIONS: starts $replay on a log of $many queries; returns while most are not answered yet.
 begin_replay() {
     many=50000
     [[ $FMB_BUILD != *asan* ]] || many=5000

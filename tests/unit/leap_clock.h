@@ -1,5 +1,5 @@
-/* The clock of the product, which a test can put forward: a time that is over costs no time. A test
- * links leap_clock.o (tests.mk) in place of the product's clock. */
+/* The product's clock, which a test can advance, so that it need not wait. A test links
+ * leap_clock.o (tests.mk) in place of the product's clock. */
 #ifndef LEAP_CLOCK_H
 #define LEAP_CLOCK_H
 

@@ -70,7 +70,7 @@ void relay_add_service(struct relay *relay, size_t frames);
 
 void relay_publish(struct relay *relay, const char *channel, const void *bytes, size_t size);
 
-/* Waits until the relay has received as many queries, and answered them as it does. */
+/* Waits until the relay has received this many queries and has processed them. */
 void relay_wait(struct relay *relay, uint64_t queries);
 
 /* Datagrams that the relay's receive buffer had no space for. */

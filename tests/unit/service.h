@@ -18,17 +18,17 @@ extern struct service {
     struct server *server;
     int count;
     struct service_result result[SERVICE_RESULTS_MAX];
-    int64_t answers[SERVICE_CLIENTS]; /* of each client: how many results */
+    int64_t answers[SERVICE_CLIENTS]; /* [client_id] number of results */
     struct pair_result pair; /* the last one; its certificate is a copy, "" where it has none */
     char certificate[FMB_CERTIFICATE_MAX];
     int64_t scene_compute_ns;  /* of the last scene */
     int32_t definition_bodies; /* of the last definition */
     struct wire_status status; /* the last heartbeat */
-    /* The clock: it stands still but for tick_ns at each reading, and cost_ns[client_id] while a
-     * result is published; refusal_ns if it is FMB_BUSY, and odd_cost_ns[client_id], unless 0, if
-     * its sequence number is odd. */
+    /* The clock advances by tick_ns at each reading, and by the cost of a result while that is
+     * published: refusal_ns for FMB_BUSY; for others odd_cost_ns[client_id], if not 0 and the
+     * sequence number is odd; otherwise cost_ns[client_id]. */
     int64_t now_ns, tick_ns, refusal_ns, cost_ns[SERVICE_CLIENTS], odd_cost_ns[SERVICE_CLIENTS];
-    int64_t batch_ns;  /* what it takes to read a batch */
+    int64_t batch_ns;  /* time to read a batch */
     int64_t opened_ns; /* clock_ns() before the server was created */
     bool refuses;      /* the bus does */
 } service;

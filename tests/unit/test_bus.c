@@ -728,7 +728,7 @@ static void wait_before_listening_and_after_messages_sleeps(void **state)
 }
 
 static int yields;
-static int64_t yield_ns; /* that each takes */
+static int64_t yield_ns; /* time that each takes */
 
 int __wrap_sched_yield(void);
 int __wrap_sched_yield(void)

@@ -321,7 +321,8 @@ static struct tally query(struct fmb_client *client, const struct fmb_scene *sce
     return tally;
 }
 
-/* The time for all passes while the service does not answer, or after its first lie. */
+/* Advances the clock beyond all time limits if the service does not answer, or after its first lie.
+ */
 static void let_time_pass(struct relay *relay)
 {
     if (relay->deaf || relay->turn > 0)
@@ -458,8 +459,8 @@ static void the_time_for_all_ends_it(void **state)
     relay_close(relay);
 }
 
-/* Takes longer for the first answers than a query waits, so that the results of all that are under
- * way come meanwhile. */
+/* Handles the first answers for longer than the timeout of a query, so that the results of all
+ * queries under way arrive meanwhile. */
 struct slowly {
     struct relay_truth truth;
     struct relay *relay;
@@ -708,8 +709,8 @@ static const struct {
     {"separated is named", separated_is_named, true, true},
 };
 
-/* A forged result is ignored: it gives no answer, and counts as malformed. One that comes when its
- * query has been given up shows at least that there is a service. */
+/* A forged result is ignored: it gives no answer, and counts as malformed. If it arrives after its
+ * query was given up, it shows at least that there is a service. */
 static void forged_results_are_ignored(void **state)
 {
     for (size_t i = 0; i < COUNT(lies); i++)

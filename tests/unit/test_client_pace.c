@@ -226,8 +226,8 @@ static void a_lost_single_query_is_repeated_soon(void **state)
     assert_int_equal(load.given_up, 0);
 }
 
-/* Under one number, the first two times soon, then after twice the time each: a datagram that is
- * lost costs milliseconds, and a service that is slow is not flooded. */
+/* A query is repeated with the same number, twice soon, then after intervals that double. So a lost
+ * datagram costs milliseconds, and a slow service is not flooded. */
 static void a_lost_query_is_repeated_soon_and_then_more_rarely(void **state)
 {
     int64_t intervals[SENDINGS_MAX];
@@ -286,9 +286,9 @@ static void slow_queries_that_are_overtaken_back_off(void **state)
     assert_true((double) net.requests.counts.repeated < 8 * slow);
 }
 
-/* A service that is slow, and at first stops for a while, has not reached most queries: of those
- * that wait, only the oldest is repeated. One that is lost is repeated once later ones have their
- * results, not when nothing else is left of the window. */
+/* A slow service, which stops for a while at first, has not reached most queries: only the oldest
+ * of the waiting queries is repeated. A lost query is repeated once later queries have their
+ * results, not only when nothing else is left of the window. */
 static void queries_in_line_are_not_repeated(void **state)
 {
     open_network(0, 0, 3 * ms);

@@ -151,8 +151,8 @@ static void put_verdict(const char *text, enum fmb_verdict verdict, char *out, s
     snprintf(out, size, "%s%s", fmb_verdict_name(verdict), text + strcspn(text, " "));
 }
 
-/* What is left of a text proves no other verdict, and none without weights of both frames. The last
- * weight may be one that follows from the others: then it need not be there. */
+/* A truncated text proves no other verdict, and none without weights of both frames. It may hold if
+ * the weight that is missing follows from the others. */
 static void cut_everywhere(const struct question *question, const struct pair *pair,
                            enum fmb_verdict verdict, const char *text)
 {
@@ -251,8 +251,8 @@ static int compare_lengths(const void *x, const void *y)
     return (*a > *b) - (*a < *b);
 }
 
-/* Numbers of 53 bits, turned, half of them moving: half of all texts, of overlapping boxes too, are
- * shorter than 200 characters. */
+/* Numbers of 53 bits, rotated, half of the pairs moving: half of all texts, also of those of
+ * overlapping boxes, are shorter than 200 characters. */
 static void texts_are_short(void **state)
 {
     enum { TEXTS = 400 };

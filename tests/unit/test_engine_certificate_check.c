@@ -1,6 +1,6 @@
-/* The checker of certificates: by hand, and on random texts that say something of small pairs,
- * flat or not. What it says of weights is held against the oracle, what it says of a normal against
- * whole numbers. */
+/* The checker of certificates: worked examples, and random texts about small pairs, flat or not.
+ * Its answers about weights are compared with the oracle, its answers about normals with integer
+ * arithmetic. */
 
 #include "unit.h"
 
@@ -346,9 +346,9 @@ static void draw_eighths(struct draw *draw, int vertices, int eighths[8])
         eighths[draw_int(draw, 0, vertices - 1)]++;
 }
 
-/* " at TIME a WEIGHTS b WEIGHTS" takes the place of what the certificate says. A text that holds
- * names a point that the oracle finds in both frames; one that states all weights, of all vertices,
- * holds if and only if they give one point. */
+/* Replaces " at TIME a WEIGHTS b WEIGHTS" in the certificate. If the text holds, the oracle finds
+ * its point in both frames. A text that states all weights, of all vertices, holds if and only if
+ * both frames have the same point. */
 static void weights_are_what_the_oracle_says(void **state)
 {
     struct draw draw;

@@ -33,7 +33,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* A pair, its answer with everything wanted, and its question where it has one. */
+/* A pair, its answer with everything wanted, and its question if it has one. */
 struct subject {
     const struct pair *pair;
     const struct question *question;
@@ -249,8 +249,8 @@ static void parts_of_all_shapes(void **state)
     printf("# %ld pairs\n", pairs);
 }
 
-/* Ends that doubles give tight enough are those of a contact more often than of a box, or the other
- * way round. */
+/* Doubles give ends that are tight enough more often for contacts than for boxes, or the other way
+ * round. */
 static void parts_of_small_hulls(void **state)
 {
     static struct hull_pair_draw small;

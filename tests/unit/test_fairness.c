@@ -6,10 +6,10 @@
 
 enum { HONEST = 1, IDS_MAX = 4, WINDOW_MAX = 64, US = 1000, MS = 1000000 };
 
-/* What it takes to look at the bus, to read a query, and to let other programs run. */
+/* Time to look at the bus, to read a query, and to let other programs run. */
 enum { LOOK_NS = 500, READ_NS = 2000, YIELD_NS = 1000 };
 
-/* Queries are numbered from 0. All cost the same, or odd ones something else. */
+/* Queries are numbered from 0. All cost the same, unless odd ones have another cost. */
 struct kind {
     const char *name;
     int64_t turnaround_ns, cost_ns, odd_cost_ns;

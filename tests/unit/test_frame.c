@@ -473,7 +473,7 @@ static void statuses(void **state)
     assert_string_equal(fmb_status_text(0), "ok");
     assert_string_equal(fmb_status_text(-1), "unknown status");
     assert_string_equal(fmb_status_text(1000), "unknown status");
-    /* Those of a frequent mistake name the remedy, or all causes. */
+    /* The texts of frequent mistakes name the remedy, or all causes. */
     assert_non_null(strstr(fmb_status_text(FMB_NOT_SUPPORTED), "fmb_body_make_hull()"));
     assert_non_null(strstr(fmb_status_text(FMB_BAD_DURATION), "0 although a body moves"));
     assert_int_equal(FMB_UNKNOWN_BODY, 1);

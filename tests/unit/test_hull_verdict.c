@@ -85,7 +85,7 @@ static void check_search(const struct frame_pair *frames, enum fmb_verdict verdi
     assert_true(found == 0 || found == verdict);
 }
 
-/* with_oracle: as it takes its time. */
+/* with_oracle: false saves the time of the oracle. */
 static void check(const struct question *question, bool with_oracle)
 {
     struct fmb_body a, b;

@@ -1,5 +1,5 @@
-/* How much a pair of the largest hulls and each of its steps take, counted and not timed: the
- * service looks at the bus between two steps, at least once a millisecond.
+/* The work of a pair of the largest hulls and of each of its steps, counted, not timed. The service
+ * looks at the bus between two steps, at least once a millisecond.
  *
  * Derivation. The work of a step is the sum of
  *
@@ -213,8 +213,8 @@ static void steps_of_certificates_are_short(void **state)
     assert_true(written > 0);
 }
 
-/* Also if the bound on the distance of vertices from the origin of their body overflows, doubles
- * tell vertices apart: at most 128 of 2,048 in a step, on average, get a value in integers. */
+/* Doubles tell vertices apart even if the bound on their distance from the origin of their body
+ * overflows: at most 128 of 2,048 in a step, on average, get a value in integers. */
 static void few_vertices_of_huge_hulls_get_a_value_in_integers(void **state)
 {
     static const int range[2] = {-1000, 900};

@@ -489,7 +489,7 @@ static void empty_meshes_meet_nothing(void **state)
     make_mesh(5, 0, &mesh[2]); /* only vertices */
     for (int k = 0; k < 9; k++) {
         if (k == 4)
-            continue; /* the one with faces, and itself */
+            continue; /* the mesh with faces, and itself */
         const struct mesh_query question = {.a = &mesh[k / 3], .b = &mesh[k % 3], .duration = 1};
         struct mesh_intersection meeting;
         assert_int_equal(mesh_intersect(&question, &meeting), FMB_OK);

@@ -728,7 +728,7 @@ static void all_formats_are_the_same_mesh(void **state)
     }
 }
 
-/* By binary PLY, in both orders of bytes. */
+/* From binary PLY, in both byte orders. */
 static void extremes_are_read(void **state)
 {
     static double vertex[][3] = {{-0.0, 0x1p-1074, -0x1.fffffffffffffp1023}, {0.1, 1e22, 0}};

@@ -1,5 +1,5 @@
-/* How the scenes of two queries differ, in words; that nothing else is compared then is a case of
- * test_replay_run.c. */
+/* How the scenes of two queries differ, in words. test_replay_run.c tests that nothing else is
+ * compared then. */
 #include "unit.h"
 
 #include "scene_change.h"

@@ -176,7 +176,7 @@ static void an_endless_stream_of_ids_is_served(void **state)
 
 /* ---- Waiting ---- */
 
-/* Answered at `answered`, and active again at a time within these bounds; idle afterwards. */
+/* The client gets an answer at 1000, becomes active within these bounds after it, then idle. */
 static void return_between(int client, int64_t min_ns, int64_t max_ns)
 {
     scheduler_deactivate(turns, client, 1000);

@@ -161,7 +161,7 @@ static void begin_to_wait(void)
     assert_int_equal(answers_to(CHEAP), 1);
 }
 
-/* Of a client that does not return. */
+/* The client does not return. */
 static void waiting_for_a_client_ends(void **state)
 {
     begin_to_wait();
@@ -359,7 +359,7 @@ static void an_endless_stream_of_ids_gains_nothing(void **state)
     expect_all_ok(IDS + (int) sent);
 }
 
-/* ---- Quotas ---- */
+/* ---- Limits ---- */
 
 static void queries_expire(void **state)
 {
@@ -640,7 +640,7 @@ static void expect_short_spans(int count)
         server_work(service.server);
         const int64_t used_ns = service.now_ns - begin_ns;
         longest_ns = used_ns > longest_ns ? used_ns : longest_ns;
-        service.now_ns += US; /* otherwise an anticipation would not end */
+        service.now_ns += US; /* otherwise a wait for a client would not end */
         server_resume(service.server);
     }
     assert_true(service.now_ns - all_ns > MS); /* the clock runs */

@@ -154,8 +154,8 @@ static double distance_outside(struct rings *rings, double radius, double length
     return most;
 }
 
-/* Whether the sides and ends of a cylinder that face the axes are where it ends; shifted, by at
- * most a rounding to the outside of it. */
+/* Whether the sides and ends that face the axes are where the cylinder ends; if it is shifted, at
+ * most a rounding outside it. */
 static void check_resting(const struct fmb_frame *hull, const double half[3],
                           const double centre[3], bool alone)
 {

@@ -15,7 +15,7 @@ struct fmb_certificate_state {
     struct hull_pair pair;
     struct hull_exact *exact; /* NULL: none, or complete */
     struct certificate_weights weights;
-    enum { DECIDING, WEIGHING, WRITING, COMPLETE } stage; /* what comes next */
+    enum { DECIDING, WEIGHING, WRITING, COMPLETE } stage; /* the next stage */
     int side;                                             /* whose weights are written next */
     struct certificate_writer writer;
 };
@@ -106,7 +106,7 @@ static bool write_separated(struct certificate_writer *writer, const struct hull
 
 /* ---- Steps ---- */
 
-/* The span that fmb.h defines, in bits. Fractions of more would take milliseconds each to reduce.
+/* The span that fmb.h defines, in bits. Reducing a fraction of more bits would take milliseconds.
  */
 enum { SPAN_MAX = 512 };
 

@@ -27,11 +27,11 @@ struct check_side {
     mpq_t edge[AXES][AXES]; /* the components */
     mpq_t velocity[AXES];
     mpq_t low, high;        /* of the normal over the frame at time 0, in the world */
-    mpq_t sum[AXES], total; /* of the weighted vertices; of the weights: of those that are stated */
+    mpq_t sum[AXES], total; /* of weighted vertices; of weights: stated ones only */
 };
 
-/* Equations for the weights that are not stated: those of each frame complete the sum of all to 1,
- * and on each axis the weighted vertices of both frames are the same point. */
+/* Equations for the weights that are not stated: the weights of each frame sum to 1, and on each
+ * axis the weighted vertices of both frames sum to the same coordinate. */
 enum { EQUATIONS = 2 + AXES, FOLLOWING_MAX = EQUATIONS };
 
 /* The pair, and the contents of the text. */

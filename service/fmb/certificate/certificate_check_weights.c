@@ -108,7 +108,7 @@ static void set_sums(struct check_proof *proof)
                 proof->side[0].sum[axis]);
 }
 
-/* Adds a multiple of equation k, from unknown k on, to equation e, which then lacks unknown k. */
+/* Eliminates unknown k from equation e: adds a multiple of equation k, from unknown k on. */
 static void substitute(struct check_proof *proof, int k, int e)
 {
     mpq_t factor;
@@ -120,7 +120,7 @@ static void substitute(struct check_proof *proof, int k, int e)
     mpq_clear(factor);
 }
 
-/* Solves equation k for unknown k. Returns false if none has it. */
+/* Solves equation k for unknown k. Returns false if no equation contains it. */
 static bool eliminate(struct check_proof *proof, int k)
 {
     int from = k;

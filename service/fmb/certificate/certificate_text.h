@@ -8,10 +8,10 @@
 
 struct certificate_writer {
     char text[FMB_CERTIFICATE_MAX];
-    size_t length; /* of all that was written, beyond the end of text too */
+    size_t length; /* of all that was written, including what did not fit */
 };
 
-/* Append to the text what fits: as gmp_printf(), and a number. */
+/* Append to the text what fits: formatted as by gmp_printf(), or a number. */
 void certificate_write_text(struct certificate_writer *writer, const char *format, ...);
 void certificate_write_number(struct certificate_writer *writer, const mpq_t number);
 

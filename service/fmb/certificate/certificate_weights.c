@@ -6,18 +6,18 @@
  *     sum w_j = 1 over the vertices of A, and over those of B,
  *     sum w_j x_j over those of A - sum w_j x_j over those of B = tau drift.
  *
- * Gaussian elimination finds a greatest set of vertices whose columns in these equations are
- * linearly independent, those of great weights first. Their weights follow from all others and
- * from tau, as continuous functions. The others are rounded to multiples of 2^-bits, but not to 0,
- * and the time to one of 2^-bits times a power of two above the window, for the least number of
- * bits tried with which all that follow are positive. With sufficiently many bits they are, since
- * they are near the weights of the proof.
+ * Gaussian elimination finds a maximal set of vertices whose columns in these equations are
+ * linearly independent, those with large weights first. Their weights are continuous functions of
+ * all other weights and tau. The other weights are rounded to multiples of 2^-bits, but not to 0,
+ * and the time to a multiple of 2^-bits times a power of two above the window. bits is the least
+ * number tried with which all dependent weights are positive. With sufficiently many bits they are,
+ * since they are near the weights of the proof.
  *
  * If the equations leave a row without vertices in which the drift is not 0, tau follows from this
- * row, as where two plates pass through each other's plane: then the time is not rounded.
+ * row, for example if two plates pass through each other's plane. The time is then not rounded.
  *
  * The elimination is that of Bareiss (Mathematics of Computation 22, 1968): the numbers remain
- * integers, minors of the matrix, and each step divides by the pivot before without remainder. */
+ * integers, minors of the matrix, and each step divides by the previous pivot without remainder. */
 #include "certificate_weights.h"
 
 #include <math.h>
@@ -83,7 +83,7 @@ static void set_rows(struct certificate_weights *w)
     mpz_clears(at[0], at[1], at[2], NULL);
 }
 
-/* time := that of the proof. */
+/* time := the time of the proof. */
 static void set_time(struct certificate_weights *w)
 {
     mpq_t window;
@@ -125,8 +125,8 @@ void certificate_weights_end(struct certificate_weights *w)
     mpq_clear(w->time);
 }
 
-/* Takes column j into the basis, if it does not depend on those that are in it. Rows from rank on
- * have no column of the basis. Returns whether it is taken. */
+/* Adds column j to the basis unless it depends on the columns there. Rows from rank on have no
+ * column of the basis. Returns whether it was added. */
 static bool eliminate(struct certificate_weights *w, unsigned j)
 {
     const unsigned columns = w->count + 2;
@@ -185,7 +185,7 @@ static void round_weights(struct certificate_weights *w)
     }
 }
 
-/* Whether all weights that follow are positive at this fraction of the window. */
+/* Whether all dependent weights are positive at this fraction of the window. */
 static bool follow_positive(struct certificate_weights *w, const mpq_t tau)
 {
     for (int i = 0; i < w->rank; i++) {

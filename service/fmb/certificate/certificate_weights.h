@@ -25,7 +25,7 @@ struct certificate_weights {
     unsigned count, next;
     int rows, rank;
     struct certificate_weight weight[WEIGHTS_MAX]; /* the greatest first */
-    mpz_t row[WEIGHTS_ROWS][WEIGHTS_COLUMNS];      /* the two last: sum, and what the drift adds */
+    mpz_t row[WEIGHTS_ROWS][WEIGHTS_COLUMNS];      /* last two: sum, and the term of the drift */
     mpz_t det, scratch, sum;
     unsigned long bits;
     mpq_t time; /* of the point, seconds */
@@ -36,7 +36,7 @@ struct certificate_weights {
 void certificate_weights_begin(const struct hull_proof *proof, int dim, double duration,
                                struct certificate_weights *out);
 
-/* Performs a step. Returns whether all is set: bits, time, and which weights are stated. */
+/* Performs a step. Returns whether it was the last: bits, time and the stated weights are set. */
 bool certificate_weights_step(struct certificate_weights *weights);
 
 void certificate_weights_end(struct certificate_weights *weights);

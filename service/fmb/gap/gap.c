@@ -2,7 +2,7 @@
  *
  *   In     two prepared frames, the window, their verdict
  *   Out    struct fmb_gap; GAP_FAR if the gap is surely greater than farthest; GAP_UNSURE if
- * doubles do not suffice: then the vertices of both frames give it (hull_gap.h)
+ *          doubles do not suffice: hull_gap.h then computes it from the vertices of both frames
  *
  * Steps (gap_of()):
  *
@@ -11,8 +11,7 @@
  *   3. gap_in_doubles()   gap_axis_aligned(), then gap_distance() or gap_depth() by the verdict
  *
  * Each file proves its own bounds: gap_axis_aligned.c, gap_distance.c, and gap_depth.c with
- * gap_bounds.c. The functions for bodies of several frames take the least gap of
- * their frames.
+ * gap_bounds.c. The functions for bodies of several frames take the least gap of their frames.
  */
 #include "gap.h"
 

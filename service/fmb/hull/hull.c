@@ -8,7 +8,7 @@
 #include <math.h>
 
 /* Sets contact and box of an overlap that doubles prove, each if it is wanted and tight enough.
- * Neither depends on whether the other is wanted. Returns those that are left to integers. */
+ * Neither depends on whether the other is wanted. Returns the parts that are left to integers. */
 static unsigned answer_in_doubles(const struct hull_pair *pair, unsigned want,
                                   const struct hull_simplex *simplex, struct fmb_answer *answer)
 {

@@ -44,7 +44,7 @@
  *    greatest value, is in its relative interior: TOUCHING.
  *
  * 5. Proof (hull_exact.h), on request, instead of heights. A normal that separates is known from
- *    step 1 or 2. Of its truncations to a few bits the shortest that separates takes its place
+ *    step 1 or 2. It is replaced by the shortest of its truncations to a few bits that separates
  *    (shorten_step()).
  *    If the frames touch, the solution of step 2 is the origin as a combination of vertices, and N
  *    is the normal, unless a face N' was taken before, at one end of the window. N then proves the
@@ -777,7 +777,7 @@ static void finish_separated(struct hull_exact *e)
     e->attempt = BITS_LEAST;
 }
 
-/* Tries the normal of the proof truncated to so many bits. */
+/* Tries the normal of the proof truncated to this many bits. */
 static void shorten_step(struct hull_exact *e)
 {
     size_t bits = 0;

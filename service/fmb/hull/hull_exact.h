@@ -52,7 +52,7 @@ bool hull_exact_step(struct hull_exact *exact);
 struct hull_proof *hull_exact_proof(struct hull_exact *exact);
 
 /* Sets the answer of a complete decision: the verdict, and if the frames meet, the contact and the
- * box that are wanted, with ends rounded outward; the rest is not touched. Ends the decision,
+ * box that are wanted, with ends rounded outward; the rest is unchanged. Ends the decision,
  * complete or not; answer may be NULL. */
 void hull_exact_end(struct hull_exact *exact, struct fmb_answer *answer);
 
