@@ -182,7 +182,7 @@ load service
 @test "where an id does not exist, the daemon warns once and continues" {
     [ "$FMB_NETNS" = own ] || skip "needs namespaces"
     unshare -r true || skip "needs user namespaces"
-    unshare -r "$TOOLS/netns" "$FMBD" 2> "$BATS_TEST_TMPDIR/err" 3>&- &
+    unshare -r "$FMBD" 2> "$BATS_TEST_TMPDIR/err" 3>&- &
     fmbd=$!
     started="${started-} $fmbd"
     wait_until has "$BATS_TEST_TMPDIR/err" ready
