@@ -60,9 +60,10 @@ place_of() {
     echo $(($(grep -abo "$2" "$1" | sed -n "$3s/:.*//p") + ${#2}))
 }
 
-# begin_watch: starts $watch, a process that ends after the next few results.
+# begin_watch: starts $watch, a process that ends after the next results: more than a replay has under way, so
+# that it has received the first of them.
 begin_watch() {
-    "$FMB" watch --count 6 > /dev/null 2> watched 3>&- &
+    "$FMB" watch --count 200 > /dev/null 2> watched 3>&- &
     watch=$!
     started="$started $watch"
     wait_until has watched 'watching '
@@ -194,7 +195,7 @@ event() {
     generate --blast scenes 60 scenes.log
     "$FMB" log cut --from 0.001 scenes.log -o cut.log
     start_fmbd
-    as_in_process cut.log -- '.pairs > 500000 and .bus.supplied > 0 and .not_defined == 0'
+    as_in_process cut.log -- '.pairs > 100000 and .bus.supplied > 0 and .not_defined == 0'
     [ "$code" = 0 ]
     stop_fmbd
     # A service that cannot hold as many bodies.
