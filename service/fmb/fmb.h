@@ -490,10 +490,11 @@ struct fmb_batch {
      * Both NULL: every pair is decided.
      *
      * Otherwise a pair is left open if its verdict or contact (if wanted) needs integers of more
-     * than 512 bits, or if its box or gap needs integers of any width. A pair that the filter in
-     * doubles does not decide is also left open if 32 of the same 128 pairs have already been
-     * decided after the filter. Which pairs are left open does not depend on the machine.
-     * open[0] to open[*open_count - 1] are the positions in pairs of those left open, ascending.
+     * than 512 bits, if its box needs integers of any width, or if the first search in doubles does
+     * not give its gap. A pair that the filter in doubles does not decide is also left open if 32
+     * of the same 128 pairs have already been decided after the filter. Which pairs are left open
+     * does not depend on the machine. open[0] to open[*open_count - 1] are the positions in pairs
+     * of those left open, ascending.
      *
      * A pair that is left open may take as long as fmb_decide() of one pair; any other takes tens
      * of microseconds at most and allocates no memory. A batch of that one pair with both NULL

@@ -1337,7 +1337,10 @@ static bool expect_quick(const struct question *question, unsigned want)
     assert_int_equal(certified_decide(&frames, want, &answer), FMB_OK);
     if (status == FMB_OK && !referee_same(&quick, &answer))
         referee_fail(question, "a quick decision differs");
-    if (status != FMB_OK && gmp_allocations == before && !needs_wide_limbs(&frames, want))
+    /* Vertices in doubles may give a gap that the first search does not: fmb.h promises it only
+     * with the search. */
+    if (status != FMB_OK && gmp_allocations == before && !(want & FMB_WANT_GAP) &&
+        !needs_wide_limbs(&frames, want))
         referee_fail(question, "a quick decision leaves open what needs no wide integers");
     return status != FMB_OK;
 }

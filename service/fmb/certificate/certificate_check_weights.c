@@ -75,6 +75,8 @@ static bool take_weights_of(const char **at, const char *letter, struct check_pr
             continue;
         }
         good = check_take_number(at, weight) && mpq_sgn(weight) > 0;
+        if (!good)
+            break;
         mpq_add(side->total, side->total, weight);
         check_add_multiple(side->sum, weight, vertex, AXES);
     }

@@ -132,7 +132,7 @@ LIMBS_FUNCTION void set_slabs_of(struct limbs_pair *pair, int first, int last, s
     struct limbs_products of;
     int u = 0;
     out->rank = 3;
-    out->edges = 0;
+    out->edges = out->axis = 0;
     out->faces = list_faces(pair->frame[first], first, out->face);
     if (!pair->frame[first]->flat || !pair->frame[last]->flat)
         return;
