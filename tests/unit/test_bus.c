@@ -799,6 +799,20 @@ static void on_lcm(const lcm_recv_buf_t *buffer, const char *channel, void *user
     snprintf(out->channel, sizeof out->channel, "%s", channel);
 }
 
+__attribute__((weak)) void __lsan_disable(void);
+__attribute__((weak)) void __lsan_enable(void);
+
+/* liblcm 1.5 never frees a lock that it takes here first. */
+static int handle_without_leaks(lcm_t *lcm)
+{
+    if (__lsan_disable)
+        __lsan_disable();
+    const int handled = lcm_handle_timeout(lcm, PATIENCE_MS);
+    if (__lsan_enable)
+        __lsan_enable();
+    return handled;
+}
+
 static void plain_lcm_understands_both_ways(void **state)
 {
     static const size_t sizes[] = {0, 1, 1400, LARGEST};
@@ -811,7 +825,7 @@ static void plain_lcm_understands_both_ways(void **state)
     for (size_t i = 0; i < COUNT(sizes); i++) {
         latest = (struct latest){0};
         assert_true(bus_publish(bus, "B", noise(), sizes[i]));
-        assert_true(lcm_handle_timeout(lcm, PATIENCE_MS) > 0);
+        assert_true(handle_without_leaks(lcm) > 0);
         assert_int_equal(latest.count, 1);
         assert_string_equal(latest.channel, "B");
         assert_int_equal(latest.size, sizes[i]);
