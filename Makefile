@@ -11,8 +11,8 @@
 #                 abi: the names and sizes that programs linked with the libraries depend on
 #   deps-test     test, check (all, in two builds), test-fast (one build, small samples), unit-tests;
 #                 tests, fast-tests, tested-programs, replay-set: what these build;
-#                 format, format-check; bench-page; picture: that of README.md
-#   deps-bench    bench, bench-bus, bench-replay, bench-mesh, bench-python, report (of what they measured);
+#                 format, format-check; picture: that of README.md
+#   deps-bench    bench, bench-bus, bench-commands; speed-error: the picture of what accuracy measured;
 #                 validate, accuracy, depth, checked, hull-poses, soak: campaigns that take longer
 #   deps-fuzz     fuzz, fuzz-afl, fuzz-merge, fuzzers
 #   deps-deb      deb: packages of Debian, into build/deb; deb-test: tries them in a chroot (root)
@@ -202,9 +202,8 @@ left_out := $(if $(x86),$(if $(INSTRUCTIONS),%_avx2.o %_avx512.o),%_avx2.o %_avx
 
 $(O)/service/fmb/filter/instructions.o: flags += $(if $(INSTRUCTIONS),-DINSTRUCTIONS_MOST=2)
 
-# Contenders of the benchmark meet no NaN: minima and maxima are one instruction each.
-fast_math := tests/bench/gpr tests/bench/lean_sat tests/bench/seidel
-$(fast_math:%=$(O)/%.o): flags += -ffinite-math-only -fno-signed-zeros
+# The yardstick of the benchmark meets no NaN: minima and maxima are one instruction each.
+$(O)/tests/bench/lean_sat.o: flags += -ffinite-math-only -fno-signed-zeros
 
 engine_folders := $(call fmb,number frame filter article tree exact gap hull certificate decide)
 engine_objects_in = $(filter-out $(left_out),$(call objects_in,$1))
@@ -466,8 +465,8 @@ packages_deps := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libexpat1-dev 
 packages_deps-test := $(packages_deps) libcmocka-dev bats jq clang clang-format lld libclang-rt-dev \
 	liblcm-java default-jdk-headless chromium libxml2-utils g++ cmake man-db \
 	gnuplot-nox python3 python3-numpy python3-pandas python3-matplotlib
-packages_deps-bench := $(packages_deps) g++ jq python3 python3-numpy libccd-dev libfcl-dev libbullet-dev libode-dev \
-	libbox2d-dev libcgal-dev libmpfr-dev
+packages_deps-bench := $(packages_deps) g++ jq libccd-dev libfcl-dev libbullet-dev \
+	libcgal-dev libmpfr-dev
 packages_deps-fuzz := $(packages_deps) clang libclang-rt-dev lld llvm afl++
 packages_deps-deb := $(packages_deps) build-essential debhelper dh-python python3 lintian bats debootstrap
 packages_deps-aarch64 := $(packages_deps) gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user

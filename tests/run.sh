@@ -31,7 +31,7 @@ first="$first system/examples.bats cli/campaign.bats test_engine_small_world tes
 first="$first test_engine_work test_server_turns test_engine_scene test_engine_pose test_limbs test_client_bad cli/log.bats"
 slow='system/soak.bats system/fairness.bats system/record.bats system/replay_bus.bats cli/replay.bats'
 slow="$slow cli/mesh.bats cli/log.bats cli/log_cut.bats cli/log_scene.bats system/examples.bats system/library.bats"
-slow="$slow system/python.bats system/bus.bats cli/page.bats cli/campaign.bats cli/bench.bats cli/report.bats"
+slow="$slow system/python.bats system/bus.bats cli/page.bats cli/campaign.bats cli/bench.bats"
 
 # A suite writes TAP; 77 means that it cannot run here.
 #   unit BUILD NAME | bats BUILD FILE | netns BUILD FILE

@@ -12,15 +12,14 @@ see_tests/bench := tests/campaign tests/oracle $(call fmb,number frame filter ar
 see_tests/bench/peers := tests/bench
 see_tests/encode := msgs/codec service/fmb service/answer
 see_tests/bus := tests/encode tests/bench $(see_tests/bench) service $(see_service)
-see_tests/robot := tests/encode tests/bus tests/bench tests/oracle service $(wire)
+see_tests/robot := tests/bench tests/oracle service/fmb
 see_tests/hostile := $(GEN)
 see_tests/system := tests/hostile $(GEN)
-see_tests/mesh := clients/mesh clients/common tests/bench service/fmb
+see_tests/mesh := clients/mesh clients/common service/fmb
 see_tests/logs := tests/encode tests/campaign tests/oracle service/answer $(wire) \
 	$(call fmb,frame filter) $(GEN)
-see_tests/python := tests/bench service/fmb
 see_tests/soak := tests/encode tests/hostile tests/campaign $(see_tests/campaign) clients/lib $(wire)
-see_tests/replay := clients/replay $(see_clients/replay) tests/bench tests/encode
+see_tests/replay := clients/replay $(see_clients/replay) tests/encode
 see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/replay tests/hostile $(GEN)
 see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
 see_tests/unit/kernels := $(call fmb,number frame filter)
@@ -34,9 +33,7 @@ test_programs := plain:system/plain busy:system/busy fake-peer:system/fake_peer 
 	mesh/make-mesh:mesh/make_mesh $(foreach s,load memory rate blast fair relay families,soak-$s:soak/$s)
 measures := validate:campaign/validate accuracy:campaign/accuracy checked:checked/checked \
 	hull-poses:bench/hull_poses bench/bench:bench/bench bus/bench-bus:bus/bench_bus \
-	bus/robot-bus:robot/bus bus/echo:bus/echo robot/robot:robot/robot \
-	replay/bench-replay:replay/bench_replay mesh/bench-mesh:mesh/bench_mesh \
-	python/bench-batch:python/bench_batch
+	bus/echo:bus/echo robot/robot:robot/robot
 mains := $(foreach p,$(test_programs) $(measures),$(lastword $(subst :, ,$p)))
 $(foreach p,$(test_programs) $(measures),$(eval \
 	$(B)/$(firstword $(subst :, ,$p)): $(O)/tests/$(lastword $(subst :, ,$p)).o))
@@ -221,8 +218,7 @@ aarch64:
 # ---- Running the tests ----
 
 .PHONY: tests fast-tests tested-programs unit-tests replay-set test test-fast check
-# Of bench-replay the object suffices: its link optimises the whole program.
-tests: fast-tests examples $(filter-out %/bench-replay,$(measures)) $(O)/tests/replay/bench_replay.o
+tests: fast-tests examples $(measures)
 fast-tests: tested-programs unit-tests $(capped_programs)
 tested-programs: programs $(if $(filter asan,$(MODE)),,manual) $(test_programs)
 unit-tests: $(unit_tests) $(replayers) $(B)/netns
@@ -293,26 +289,19 @@ abi: $(shared_libraries)
 # Other libraries are measured too where they are installed, unless PEERS=none.
 installed = $(if $(PEERS),,$(shell for p in $1; do pkg-config --exists $$p && echo $$p; done 2> /dev/null))
 bullet := $(firstword $(call installed,bullet-float64 bullet))
-peer_packages := $(call installed,ccd fcl ode box2d) $(bullet)
-peer_libraries := $(peer_packages:%-float64=%) \
-	$(and $(if $(PEERS),,yes),$(wildcard /usr/include/CGAL/version.h),$(wildcard /usr/include/mpfr.h),cgal)
+peer_packages := $(call installed,ccd fcl) $(bullet)
+peer_libraries := $(peer_packages:%-float64=%)
 peers := $(O)/peers/$(or $(subst $() ,_,$(strip $(peer_libraries))),none).o
 $(peers): tests/bench/peers.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile) $(sees) -DPEER_LIBRARIES='$(patsubst %,X(%),$(peer_libraries))'
 peer_flags_bullet = $$(pkg-config --cflags $(bullet))
-peer_flags_cgal = -frounding-math # its intervals change the direction of rounding
 $(O)/tests/bench/peers/%.o: tests/bench/peers/%.cc $(O)/settings
 	@mkdir -p $(@D)
 	$(call say,CXX,$<) $(CXX) $(or $(peer_flags_$*),$$(pkg-config --cflags $*)) -std=c++17 -O2 -DNDEBUG -MMD -MP \
 		$(sees) -c $< -o $@
-# The article's elimination once more, with rows in an order that the benchmark chooses.
-$(O)/ordered/eliminate.o: service/fmb/article/eliminate.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile) $(sees) -Drows_of_pair=ordered_rows_of_pair -Deliminate_decide=ordered_decide
-$(B)/bench/bench: $(peers) $(peer_libraries:%=$(O)/tests/bench/peers/%.o) $(O)/ordered/eliminate.o
-$(B)/bench/bench: libraries += $(if $(peer_packages),$$(pkg-config --libs $(peer_packages))) \
-	$(if $(peer_libraries),$(if $(filter cgal,$(peer_libraries)),-lmpfr) -lstdc++)
+$(B)/bench/bench: $(peers) $(peer_libraries:%=$(O)/tests/bench/peers/%.o)
+$(B)/bench/bench: libraries += $(if $(peer_packages),$$(pkg-config --libs $(peer_packages)) -lstdc++)
 
 fcl := $(call installed,fcl)
 $(B)/robot/robot: $(if $(fcl),$(O)/tests/robot/fcl.o)
@@ -320,47 +309,21 @@ $(B)/robot/robot: libraries += $(if $(fcl),$$(pkg-config --libs fcl) -lstdc++)
 $(O)/tests/robot/fcl.o: tests/robot/fcl.cc $(O)/settings
 	@mkdir -p $(@D)
 	$(call say,CXX,$<) $(CXX) $$(pkg-config --cflags fcl) -std=c++17 -O2 -MMD -MP $(sees) -c $< -o $@
-$(B)/bus/bench-bus $(B)/bus/robot-bus: | $(B)/bus/echo $(B)/fmbd
-$(B)/replay/bench-replay: linking = $(link_whole)
+$(B)/bus/bench-bus: | $(B)/bus/echo $(B)/fmbd
 
-# Minutes each. What bench and bench-bus measured is in report.json then, for 'make report'.
-.PHONY: bench bench-bus bench-replay bench-mesh bench-page bench-python report
+# Minutes each. What bench and bench-bus measured is in report.json then.
+.PHONY: bench bench-bus bench-commands speed-error
 bench: $(B)/bench/bench $(B)/robot/robot
 	$< --json $(B)/bench/report.json
 	$(B)/robot/robot
-bench-bus: $(B)/bus/bench-bus $(B)/bus/robot-bus $(B)/netns
+bench-bus: $(B)/bus/bench-bus $(B)/netns
 	$(B)/netns $< --json $(B)/bus/report.json
-	$(B)/netns $(B)/bus/robot-bus
 
-# Some hundred megabytes of logs in build/replay/.
-blast_scenes := scenes 400
-blast_pairs := pairs 500000
-blast_pairs-64-bodies := pairs 500000 --bodies 64
-blast_pairs-whole := pairs 500000 --whole
-blast_pairs-by-handle := pairs 500000 --by-handle
-bench_logs := $(patsubst %,$(B)/replay/%.log,scenes pairs pairs-64-bodies pairs-whole pairs-by-handle)
-$(B)/replay/%.log: $(B)/logs/generate
-	@mkdir -p $(@D)
-	$< --blast $(blast_$*) $@
-bench-replay: $(B)/replay/bench-replay $(B)/fmb $(bench_logs)
-	$< $(B)/fmb $(bench_logs)
+# Commands, on logs and meshes of some hundred megabytes in build/commands/.
+bench-commands: programs $(B)/logs/generate $(B)/mesh/make-mesh
+	tests/bench/commands.sh $(B) $(MESH)
 
-# The article's scene of MESH=bunny.ply, whose coordinates it multiplies by 1000 as the article
-# does; or of a mesh that is made, about as large and of as many faces.
-$(B)/mesh/bumpy.ply: $(B)/mesh/make-mesh
-	$< --faces 70000 --format ply-ascii > $@
-bench-mesh: $(B)/mesh/bench-mesh $(B)/fmb $(if $(MESH),,$(B)/mesh/bumpy.ply)
-	$< $(B)/fmb $(or $(MESH),$(B)/mesh/bumpy.ply) $(if $(MESH),1000,60)
-
-# A page of 10,000 scenes, by Chromium without a GPU.
-bench-page: $(B)/fmb
-	tests/page/bench.sh $(B)
-
-# fmb.py beside the same work in C.
-bench-python: $(B)/python/bench-batch $(shared_libraries)
-	LD_LIBRARY_PATH=$(B) PYTHONPATH=clients/python $(python) tests/python/bench.py $< $(B)/python/scene
-
-# One page of what bench, accuracy and bench-bus measured; runs none of them.
-report:
-	tests/report/report.sh $(B)/bench/report.json $(B)/accuracy.json $(B)/report \
-		$(B)/bus/report.json
+# The picture of tests/bench/README.md, of what accuracy measured; runs nothing.
+speed-error:
+	@[ -f $(B)/accuracy.json ] || { echo "make $@: there is no $(B)/accuracy.json: 'make accuracy' makes it" >&2; exit 1; }
+	jq -r --rawfile css tests/report/picture.css -f tests/report/speed_error.jq $(B)/accuracy.json > tests/report/speed-error.svg

@@ -1,5 +1,5 @@
-/* The benchmark: what a verdict costs, by kind of pair and by method, beside the article's numbers;
- * what else costs what; how it grows; and the worst that was found. */
+/* The benchmark: what a verdict costs, by kind of pair and by method; what else costs what; and the
+ * worst that was found. */
 #include "bench.h"
 
 #include <errno.h>
@@ -155,15 +155,10 @@ int main(int argc, char **argv)
     }
     print_head(&bench);
     cells_run(&bench);
-    article_run(&bench);
-    instructions_run(&bench);
-    growth_run(&bench);
-    grids_run(&bench);
     contacts_run(&bench);
     poses_run(&bench);
     gaps_run(&bench);
     hulls_run(&bench);
-    broad_run(&bench);
     worst_run(&bench);
     print_noise(pinned);
     const bool complete = fclose(bench.json.out) == 0;

@@ -39,17 +39,11 @@ void arena_open(const struct bench *bench, const struct cell *cell, bool in_cont
                 struct arena *out);
 void arena_close(struct arena *arena);
 
-void cells_run(struct bench *bench);        /* cells, inverse, order, hybrid, box */
-void article_run(struct bench *bench);      /* article */
-void instructions_run(struct bench *bench); /* instructions */
-void growth_run(struct bench *bench);       /* growth */
-void grids_run(struct bench *bench);        /* grids */
-void contacts_run(struct bench *bench);     /* contacts */
-void poses_run(struct bench *bench);        /* poses */
-void gaps_run(struct bench *bench);         /* gaps */
-void margins_run(struct bench *bench);      /* part of gaps */
-void hulls_run(struct bench *bench);        /* hulls */
-void broad_run(struct bench *bench);        /* broad */
-void worst_run(struct bench *bench);        /* worst */
+void cells_run(struct bench *bench);    /* cells, box */
+void contacts_run(struct bench *bench); /* contacts */
+void poses_run(struct bench *bench);    /* poses */
+void gaps_run(struct bench *bench);     /* gaps */
+void hulls_run(struct bench *bench);    /* hulls */
+void worst_run(struct bench *bench);    /* worst */
 
 #endif

@@ -1,7 +1,6 @@
 #define _DEFAULT_SOURCE
 #include "bench_scene.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/mman.h>
@@ -133,46 +132,6 @@ struct scene scene_of_questions(const struct question *questions, size_t count)
     return scene;
 }
 
-struct scene scene_of_grid(double pitch, int side)
-{
-    const double edges[9] = {pitch, 0, 0, 0, pitch, 0, 0, 0, pitch};
-    const size_t cubes = (size_t) (side * side * side);
-    struct scene scene = scene_of_size(cubes, 1);
-    fmb_body_make(3, FMB_CUBOID, edges, 9, scene.body);
-    for (size_t at = 0; at < cubes; at++) {
-        const int i = (int) at;
-        const int place[3] = {i / side / side, i / side % side, i % side};
-        scene.placement[at].body = scene.body;
-        for (int axis = 0; axis < 3; axis++)
-            scene.placement[at].position[axis] = place[axis] * pitch;
-        prepare(&scene, at);
-    }
-    return scene;
-}
-
-/* Boxes of a mean size s along each axis meet where centres are no farther than that from each
- * other: those of (2 s)^3. Of three uniform components s is 3/4, of the hull of two of them and 0
- * it is 5/12. */
-struct scene scene_of_cloud(enum fmb_shape shape, bool moving, double neighbours, size_t count,
-                            uint64_t seed)
-{
-    struct draw draw = {seed};
-    struct scene scene = scene_of_size(count, count);
-    const double size = shape == FMB_CUBOID ? 0.75 : 5.0 / 12;
-    const double wide = 2 * size * cbrt((double) count / neighbours);
-    for (size_t i = 0; i < count; i++) {
-        struct solid solid = {.dim = 3, .shape = shape, .moving = moving};
-        for (int axis = 0; axis < 3; axis++) {
-            solid.origin[axis] = draw_uniform(&draw, 0, wide);
-            solid.velocity[axis] = draw_uniform(&draw, -0.05, 0.05);
-            for (int c = 0; c < solid_count(&solid); c++)
-                solid.component[c][axis] = draw_uniform(&draw, -0.5, 0.5);
-        }
-        add(&solid, &scene, i);
-    }
-    return scene;
-}
-
 static void set_vertices(struct peer_solid *solid)
 {
     const bool simplex = solid->count == solid->dim + 1;
@@ -272,38 +231,4 @@ struct pairs pairs_draw_of(const struct scene *scene, bool in_contact, size_t co
         pairs_free(&some);
     }
     return out;
-}
-
-/* The neighbours (i, j, k) that come after (0, 0, 0) in the order of rows. */
-static bool comes_after(int i, int j, int k)
-{
-    return i > 0 || (i == 0 && (j > 0 || (j == 0 && k > 0)));
-}
-
-static void add_neighbours(struct pairs *pairs, int side, const int at[3])
-{
-    for (int step = 0; step < 18; step++) {
-        const int way[3] = {step / 9, step / 3 % 3 - 1, step % 3 - 1};
-        bool inside = comes_after(way[0], way[1], way[2]);
-        int to[3];
-        for (int axis = 0; axis < 3; axis++) {
-            to[axis] = at[axis] + way[axis];
-            inside = inside && to[axis] >= 0 && to[axis] < side;
-        }
-        if (!inside)
-            continue;
-        unsigned *pair = pairs->at[pairs->count++];
-        pair[0] = (unsigned) ((at[0] * side + at[1]) * side + at[2]);
-        pair[1] = (unsigned) ((to[0] * side + to[1]) * side + to[2]);
-    }
-}
-
-struct pairs pairs_of_grid(int side)
-{
-    struct pairs pairs = pairs_of_size((size_t) (13 * side * side * side));
-    for (int i = 0; i < side; i++)
-        for (int j = 0; j < side; j++)
-            for (int k = 0; k < side; k++)
-                add_neighbours(&pairs, side, (const int[3]){i, j, k});
-    return pairs;
 }

@@ -38,13 +38,6 @@ struct scene scene_draw_posed(const struct cell *cell, size_t bodies, uint64_t s
 struct scene scene_of_corners(const struct scene *posed);
 /* Those of the questions: all a, then all b; one frame each. */
 struct scene scene_of_questions(const struct question *questions, size_t count);
-/* Cubes in a grid, side of them along each axis: origins are whole multiples of the pitch as
- * doubles give them, and so is the edge. */
-struct scene scene_of_grid(double pitch, int side);
-/* Frames anywhere in a cube, so dense that the box of each meets those of about so many others.
- * Components are uniform in [-1/2, 1/2], velocities in a tenth of that. */
-struct scene scene_of_cloud(enum fmb_shape shape, bool moving, double neighbours, size_t count,
-                            uint64_t seed);
 /* Its bodies of one frame as other libraries are given them: [count], to be freed. No faces. */
 struct peer_solid *scene_solids(const struct scene *scene);
 void scene_free(struct scene *scene);
@@ -53,8 +46,6 @@ void scene_free(struct scene *scene);
 struct pairs pairs_draw(const struct scene *scene, size_t count, uint64_t seed);
 /* The same, such as are in contact, or such as are not; sorted out by the certified method. */
 struct pairs pairs_draw_of(const struct scene *scene, bool in_contact, size_t count, uint64_t seed);
-/* All cubes of a grid with those of their 26 neighbours that come after them. */
-struct pairs pairs_of_grid(int side);
 struct pairs pairs_copy(const struct pairs *pairs);
 void pairs_free(struct pairs *pairs);
 

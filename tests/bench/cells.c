@@ -54,33 +54,11 @@ static void put_methods(struct json_writer *json, const struct spread *times)
     json_end(json, ']');
 }
 
-/* ---- hybrid ---- */
-
-static double hybrid_of(const struct spread *times)
-{
-    return fmin(times[CONTENDER_FMB].median, times[CONTENDER_SAT].median);
-}
-
-static void print_hybrid_title(void)
-{
-    printf(" %9s %9s", "hybrid", "ratio");
-}
-
-static void print_hybrid(const struct spread *times)
-{
-    printf(" %9.1f %9.2f", hybrid_of(times), times[CONTENDER_SINGLE].median / hybrid_of(times));
-}
-
-static void put_hybrid(struct json_writer *json, const struct spread *times)
-{
-    json_number(json, "hybrid_ns", hybrid_of(times));
-}
-
 /* ---- box ---- */
 
 static void print_box_title(void)
 {
-    printf(" %9s %9s %9s", "+query", "+batch", "+fmb");
+    printf(" %9s %9s", "+query", "+batch");
 }
 
 static double extra(const struct spread *times, enum contender with, enum contender without)
@@ -90,39 +68,22 @@ static double extra(const struct spread *times, enum contender with, enum conten
 
 static void print_box(const struct spread *times)
 {
-    printf(" %9.1f %9.1f %9.1f", extra(times, CONTENDER_QUERY_BOX, CONTENDER_QUERY),
-           extra(times, CONTENDER_BATCH_BOX, CONTENDER_BATCH),
-           extra(times, CONTENDER_FMB_BOX, CONTENDER_FMB));
+    printf(" %9.1f %9.1f", extra(times, CONTENDER_QUERY_BOX, CONTENDER_QUERY),
+           extra(times, CONTENDER_BATCH_BOX, CONTENDER_BATCH));
 }
 
 /* clang-format off */
 static const struct view views[] = {
     {"cells", "Random pairs (the article's distribution), nanoseconds a pair, each decided once in turn.\n"
-     "Ratios: certified to the yardstick, below 1 where certified is the faster one.", false, 9,
+     "Ratios: certified to the yardstick, below 1 where certified is the faster one.", false, 8,
      {{CONTENDER_BATCH, NULL, "batch"}, {CONTENDER_BATCH_INTERVAL, NULL, "+interval"},
       {CONTENDER_BATCH_BOX, NULL, "+box"}, {CONTENDER_SINGLE, NULL, "single"},
       {CONTENDER_QUERY, NULL, "query"}, {CONTENDER_FMB, NULL, "fmb"}, {CONTENDER_SAT, NULL, "sat"},
-      {CONTENDER_SAT_QUERY, NULL, "sat query"}, {CONTENDER_EXACT, NULL, "exact"}},
+      {CONTENDER_EXACT, NULL, "exact"}},
      print_ratios_title, print_ratios, put_methods},
-    {"inverse", "The inverse kept with the body, or computed in the call; frames prepared, or in the call.",
-     false, 4,
-     {{CONTENDER_FMB, "fmb_cached_ns", "fmb"}, {CONTENDER_FMB_COMPUTED, "fmb_computed_ns", "computed"},
-      {CONTENDER_SINGLE, "certified_prepared_ns", "certified"},
-      {CONTENDER_SINGLE_COMPUTED, "certified_computed_ns", "computed"}}, NULL, NULL, NULL},
-    {"order", "fmb by which frame is projected onto which, and by the order of its first rows: that of\n"
-     "the article's listing, those with least slack first, the listing's backwards.", false, 4,
-     {{CONTENDER_FMB, "ab_ns", "A-B"}, {CONTENDER_FMB_BA, "ba_ns", "B-A"},
-      {CONTENDER_FMB_SORTED, "sorted_ns", "sorted"},
-      {CONTENDER_FMB_REVERSED, "reversed_ns", "backwards"}}, NULL, NULL, NULL},
-    {"hybrid", "The hybrid of the article's conclusion: for each kind of pair the better of fmb and sat (as\n"
-     "if it were known beforehand), against certified (single).", false, 3,
-     {{CONTENDER_FMB, "fmb_ns", "fmb"}, {CONTENDER_SAT, "sat_ns", "sat"},
-      {CONTENDER_SINGLE, "certified_ns", "certified"}},
-     print_hybrid_title, print_hybrid, put_hybrid},
-    {"box", "What the box costs, pairs in contact: certified's tight one, the article's loose one.", true, 6,
+    {"box", "What the box costs, pairs in contact.", true, 4,
      {{CONTENDER_QUERY, "none_ns", "query"}, {CONTENDER_QUERY_BOX, "box_ns", "with box"},
-      {CONTENDER_BATCH, "batch_none_ns", "batch"}, {CONTENDER_BATCH_BOX, "batch_box_ns", "with box"},
-      {CONTENDER_FMB, "fmb_none_ns", "fmb"}, {CONTENDER_FMB_BOX, "fmb_box_ns", "with box"}},
+      {CONTENDER_BATCH, "batch_none_ns", "batch"}, {CONTENDER_BATCH_BOX, "batch_box_ns", "with box"}},
      print_box_title, print_box, NULL},
 };
 /* clang-format on */
@@ -134,33 +95,7 @@ enum { VIEWS = sizeof views / sizeof *views };
 struct result {
     struct spread times[CONTENDERS]; /* NAN where it does not run */
     size_t pairs;
-    double volume_ratio; /* of fmb's box to certified's, the median; NAN: not measured */
 };
-
-static double volume_of(const struct fmb_answer *answer, int dim)
-{
-    double volume = 1;
-    for (int axis = 0; axis < dim; axis++)
-        volume *= answer->box[1][axis] - answer->box[0][axis];
-    return volume;
-}
-
-static double volume_ratio_of(const struct work *work, int dim)
-{
-    enum { MOST = 512 };
-    double ratio[MOST];
-    int count = 0;
-    for (size_t i = 0; i < work->count && count < MOST; i++) {
-        const struct fmb_placement *a = &work->scene->placement[work->pair[i][0]],
-                                   *b = &work->scene->placement[work->pair[i][1]];
-        struct fmb_answer tight, loose;
-        fmb_decide(fmb_method_by_name("certified"), a, b, 1, FMB_WANT_BOX, &tight);
-        fmb_decide(fmb_method_by_name("fmb"), a, b, 1, FMB_WANT_BOX, &loose);
-        if (tight.has_box && loose.has_box && volume_of(&tight, dim) > 0)
-            ratio[count++] = volume_of(&loose, dim) / volume_of(&tight, dim);
-    }
-    return spread_of(ratio, count).median;
-}
 
 static bool is_raced(const struct bench *bench, enum contender contender, bool in_contact)
 {
@@ -190,8 +125,6 @@ static void measure(const struct bench *bench, const struct cell *cell, bool in_
     for (int i = 0; i < count; i++)
         out->times[raced[i]] = times[i];
     out->pairs = arena.work.count;
-    out->volume_ratio =
-        in_contact && bench_wants(bench, "box") ? volume_ratio_of(&arena.work, cell->dim) : NAN;
     arena_close(&arena);
 }
 
@@ -214,8 +147,6 @@ static void print_row(const struct view *view, const struct cell *cell, bool in_
         print_time(result->times[view->column[i].contender].median);
     if (view->print)
         view->print(result->times);
-    if (view->contact_only)
-        printf("  %9.1f", result->volume_ratio);
     putchar('\n');
 }
 
@@ -231,8 +162,6 @@ static void put_row(struct json_writer *json, const struct view *view, const str
             json_number(json, view->column[i].key, result->times[view->column[i].contender].median);
     if (view->put)
         view->put(json, result->times);
-    if (view->contact_only)
-        json_number(json, "volume_ratio", result->volume_ratio);
     json_end(json, '}');
 }
 
@@ -244,7 +173,7 @@ static void show(struct bench *bench, const struct view *view, const struct cell
         printf(" %9s", view->column[i].title);
     if (view->print_title)
         view->print_title();
-    printf("%s\n", view->contact_only ? "  volumes, fmb to certified" : "");
+    putchar('\n');
     json_begin(&bench->json, view->section, '[');
     for (int i = 0; i < count; i++)
         for (int contact = 1; contact >= view->contact_only; contact--) {

@@ -154,9 +154,8 @@ static void open_arena(const struct bench *bench, const struct cell *cell,
 /* ---- Races ---- */
 
 /* BATCH_BOX after BATCH: the table shows the difference. */
-static const enum contender own[] = {CONTENDER_BATCH,  CONTENDER_BATCH_BOX, CONTENDER_SINGLE,
-                                     CONTENDER_QUERY,  CONTENDER_SAT,       CONTENDER_OBB,
-                                     CONTENDER_SEIDEL, CONTENDER_GPR};
+static const enum contender own[] = {CONTENDER_BATCH, CONTENDER_BATCH_BOX, CONTENDER_SINGLE,
+                                     CONTENDER_QUERY, CONTENDER_SAT,       CONTENDER_OBB};
 
 static int list_raced(const struct cell *cell, enum contender raced[CONTENDERS_AND_PEERS])
 {

@@ -6,10 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "gpr.h"
-#include "ordered.h"
-#include "seidel.h"
-
 static volatile unsigned sink; /* so that nothing is left out */
 
 struct work work_of(const struct scene *scene, const struct pairs *pairs)
@@ -91,28 +87,12 @@ static unsigned char verdict_of(bool meets)
     return meets ? FMB_OVERLAPPING : FMB_SEPARATED;
 }
 
-static inline void run_lean(const struct work *work,
-                            bool (*test)(const struct lean_frame *, const struct lean_frame *,
-                                         double))
+static void sat(const struct work *work)
 {
     const struct lean_frame *lean = work->scene->lean;
     for (size_t i = 0; i < work->count; i++)
-        work->verdicts[i] = verdict_of(test(&lean[work->pair[i][0]], &lean[work->pair[i][1]], 1));
-}
-
-static void sat(const struct work *work)
-{
-    run_lean(work, lean_meets);
-}
-
-static void seidel(const struct work *work)
-{
-    run_lean(work, seidel_meets);
-}
-
-static void gpr(const struct work *work)
-{
-    run_lean(work, gpr_meets);
+        work->verdicts[i] =
+            verdict_of(lean_meets(&lean[work->pair[i][0]], &lean[work->pair[i][1]], 1));
 }
 
 static void sat_placed(const struct work *work)
@@ -158,86 +138,36 @@ static void placing(const struct work *work)
         sink += fmb_prepare(&scene->placement[at], 0, 1, &out);
 }
 
-/* first: the side that is A. */
-static void run_method(const struct work *work, const struct fmb_method *method, unsigned want,
-                       int first)
+static void run_method(const struct work *work, const char *name, unsigned want)
 {
+    const struct fmb_method *method = fmb_method_by_name(name);
     const struct fmb_placement *placement = work->scene->placement;
     for (size_t i = 0; i < work->count; i++) {
         struct fmb_answer answer;
-        fmb_decide(method, &placement[work->pair[i][first]], &placement[work->pair[i][!first]], 1,
-                   want, &answer);
+        fmb_decide(method, &placement[work->pair[i][0]], &placement[work->pair[i][1]], 1, want,
+                   &answer);
         work->verdicts[i] = (unsigned char) answer.verdict;
     }
 }
 
 static void query(const struct work *work)
 {
-    run_method(work, fmb_method_by_name("certified"), 0, 0);
+    run_method(work, "certified", 0);
 }
 
 static void query_box(const struct work *work)
 {
-    run_method(work, fmb_method_by_name("certified"), FMB_WANT_BOX, 0);
+    run_method(work, "certified", FMB_WANT_BOX);
 }
 
 static void fmb(const struct work *work)
 {
-    run_method(work, fmb_method_by_name("fmb"), 0, 0);
-}
-
-static void fmb_box(const struct work *work)
-{
-    run_method(work, fmb_method_by_name("fmb"), FMB_WANT_BOX, 0);
-}
-
-static void fmb_ba(const struct work *work)
-{
-    run_method(work, fmb_method_by_name("fmb"), 0, 1);
-}
-
-static void sat_query(const struct work *work)
-{
-    run_method(work, fmb_method_by_name("sat"), 0, 0);
+    run_method(work, "fmb", 0);
 }
 
 static void exact(const struct work *work)
 {
-    run_method(work, fmb_method_by_name("exact"), 0, 0);
-}
-
-static const struct fmb_method ordered = {.name = "ordered", .decide = ordered_decide};
-
-static void fmb_sorted(const struct work *work)
-{
-    ordered_choose(ORDER_SORTED);
-    run_method(work, &ordered, 0, 0);
-}
-
-static void fmb_reversed(const struct work *work)
-{
-    ordered_choose(ORDER_REVERSED);
-    run_method(work, &ordered, 0, 0);
-}
-
-/* The body of a, whose inverse it is, is made anew. */
-static void fmb_computed(const struct work *work)
-{
-    const struct fmb_placement *placement = work->scene->placement;
-    for (size_t i = 0; i < work->count; i++) {
-        struct fmb_placement a = placement[work->pair[i][0]];
-        const struct fmb_frame *frame = fmb_body_frame(a.body, 0);
-        const size_t dim = (size_t) frame->dim;
-        double number[FMB_COMPONENTS_MAX];
-        for (size_t k = 0; k < dim; k++)
-            memcpy(&number[k * dim], frame->component[k], dim * sizeof *number);
-        struct fmb_body made;
-        fmb_body_make(frame->dim, frame->shape, number, dim * dim, &made);
-        a.body = &made;
-        struct fmb_answer answer;
-        fmb_decide(fmb_method_by_name("fmb"), &a, &placement[work->pair[i][1]], 1, 0, &answer);
-        work->verdicts[i] = (unsigned char) answer.verdict;
-    }
+    run_method(work, "exact", 0);
 }
 
 static void run_peer(const struct work *work, int peer)
@@ -267,9 +197,8 @@ const char *contender_name(enum contender contender)
 
 static bool peer_runs(int peer, const struct cell *cell)
 {
-    const bool boxes = cell->shape[0] == FMB_BOX && cell->shape[1] == FMB_BOX;
-    return peer_name(peer) && peer_answers(peer) & PEER_VERDICT &&
-           peer_takes(peer, cell->dim, cell->moving, boxes);
+    return cell->dim == 3 && peer_name(peer) && peer_answers(peer) & PEER_VERDICT &&
+           peer_takes(peer, cell->moving ? PEER_MOVING : 0);
 }
 
 bool contender_runs(enum contender contender, const struct cell *cell)
@@ -278,9 +207,6 @@ bool contender_runs(enum contender contender, const struct cell *cell)
         return peer_runs((int) (contender - CONTENDERS), cell);
     switch (table[contender].where) {
     case ONLY_MOVING: return cell->moving;
-    case ONLY_TETRAHEDRA_AT_REST:
-        return cell->dim == 3 && !cell->moving && cell->shape[0] == FMB_TETRAHEDRON &&
-               cell->shape[1] == FMB_TETRAHEDRON;
     case ONLY_BOXES_AT_REST:
         return cell->dim == 3 && !cell->moving && cell->shape[0] == FMB_BOX &&
                cell->shape[1] == FMB_BOX;
@@ -302,13 +228,10 @@ void contender_help(void)
         "batch: fmb_decide_batch(), verdicts only; +interval, +box: with these. single: "
         "fmb_decide_prepared()\n"
         "of prepared frames; computed: prepared in the call. query: fmb_decide(), certified, with\n"
-        "the interval of moving pairs. fmb, sat query, exact: the same by these methods; fmb with\n"
-        "the inverse kept in the body; computed: in the call. sat: separating axes in plain "
-        "doubles,\n"
-        "verdict only, of placed frames: the yardstick; placed: in the call. obb: oriented "
-        "boxes,\n"
-        "the same way. seidel, gpr: methods that the article names, in doubles, of placed "
-        "frames.\n");
+        "the interval of moving pairs. fmb, exact: the same by these methods; fmb with the "
+        "inverse\n"
+        "kept in the body. sat: separating axes in plain doubles, verdict only, of placed frames:\n"
+        "the yardstick; placed: in the call. obb: oriented boxes, the same way.\n");
 }
 
 /* ---- Races ---- */

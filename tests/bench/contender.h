@@ -25,7 +25,7 @@ struct work {
 struct work work_of(const struct scene *scene, const struct pairs *pairs);
 void work_free(struct work *work);
 
-enum { ANYWHERE = 0, ONLY_MOVING = 1, ONLY_TETRAHEDRA_AT_REST = 2, ONLY_BOXES_AT_REST = 3 };
+enum { ANYWHERE, ONLY_MOVING, ONLY_BOXES_AT_REST };
 
 /* What each of them is, contender_help() says. */
 #define CONTENDER_MAP(X)                                             \
@@ -37,20 +37,12 @@ enum { ANYWHERE = 0, ONLY_MOVING = 1, ONLY_TETRAHEDRA_AT_REST = 2, ONLY_BOXES_AT
     X(QUERY, "query", query, ANYWHERE)                               \
     X(QUERY_BOX, "query+box", query_box, ANYWHERE)                   \
     X(FMB, "fmb", fmb, ANYWHERE)                                     \
-    X(FMB_BOX, "fmb+box", fmb_box, ANYWHERE)                         \
-    X(FMB_COMPUTED, "fmb computed", fmb_computed, ANYWHERE)          \
-    X(FMB_BA, "fmb B-A", fmb_ba, ANYWHERE)                           \
-    X(FMB_SORTED, "fmb sorted", fmb_sorted, ANYWHERE)                \
-    X(FMB_REVERSED, "fmb reversed", fmb_reversed, ANYWHERE)          \
     X(SAT, "sat", sat, ANYWHERE)                                     \
     X(SAT_PLACED, "sat placed", sat_placed, ANYWHERE)                \
     X(OBB, "obb", obb, ONLY_BOXES_AT_REST)                           \
     X(OBB_PLACED, "obb placed", obb_placed, ONLY_BOXES_AT_REST)      \
     X(PLACING, "placing", placing, ANYWHERE)                         \
-    X(SAT_QUERY, "sat query", sat_query, ANYWHERE)                   \
-    X(EXACT, "exact", exact, ANYWHERE)                               \
-    X(SEIDEL, "seidel", seidel, ANYWHERE)                            \
-    X(GPR, "gpr", gpr, ONLY_TETRAHEDRA_AT_REST)
+    X(EXACT, "exact", exact, ANYWHERE)
 
 enum contender {
 #define X(id, name, run, where) CONTENDER_##id,

@@ -232,5 +232,4 @@ void gaps_run(struct bench *bench)
     table(bench, true);
     table(bench, false);
     json_end(&bench->json, ']');
-    margins_run(bench);
 }

@@ -347,7 +347,7 @@ static int runs_of(const struct contact *contact, int out[RUNS_MAX])
     int count = 0;
     for (int k = 0; run_name(k) && count < RUNS_MAX; k++)
         if (k < OWN_RUNS ||
-            (peer_takes_hulls(k - OWN_RUNS) && peer_answers(k - OWN_RUNS) & answers))
+            (peer_takes(k - OWN_RUNS, PEER_HULLS) && peer_answers(k - OWN_RUNS) & answers))
             out[count++] = k;
     return count;
 }

@@ -37,7 +37,7 @@ static bool library_takes(const struct peer_library *library, int needs)
 
 static int needs_of(const struct peer_solid *solid, size_t count)
 {
-    int needs = solid->dim == 3 ? PEER_3D : PEER_2D;
+    int needs = 0;
     for (size_t i = 0; i < count; i++)
         needs |= solid[i].hull ? PEER_HULLS : 0;
     return needs;
@@ -46,7 +46,7 @@ static int needs_of(const struct peer_solid *solid, size_t count)
 struct peers *peers_open(const struct peer_solid *solid, size_t count)
 {
     struct peers *peers = scene_allocate(1, sizeof *peers);
-    for (int i = 0; i < LIBRARIES && count > 0; i++)
+    for (int i = 0; i < LIBRARIES && count > 0 && solid->dim == 3; i++)
         if (library_takes(libraries[i], needs_of(solid, count)))
             peers->bodies[i] = libraries[i]->open(solid, count);
     return peers;
@@ -73,18 +73,10 @@ int peer_answers(int peer)
     return find(peer, &library)->answers;
 }
 
-bool peer_takes(int peer, int dim, bool moving, bool boxes)
+bool peer_takes(int peer, int needs)
 {
     int library;
-    const int takes = find(peer, &library)->takes;
-    return takes & (dim == 3 ? PEER_3D : PEER_2D) && (takes & PEER_MOVING || !moving) &&
-           (boxes || !(takes & PEER_BOXES));
-}
-
-bool peer_takes_hulls(int peer)
-{
-    int library;
-    return find(peer, &library)->takes & PEER_HULLS;
+    return (find(peer, &library)->takes & needs) == needs;
 }
 
 void peer_run(const struct peers *peers, int peer, const unsigned (*pair)[2], size_t count,

@@ -31,23 +31,21 @@ enum { PEERS_MAX = 16 };
 
 struct peers;
 
-/* The solids are all of one dimension and must outlive the peers. If one is a hull, only libraries
- * that take hulls may be run. */
+/* The solids are all in 3D, else no library has them, and must outlive the peers. If one is a hull,
+ * only libraries that take hulls may be run. */
 struct peers *peers_open(const struct peer_solid *solid, size_t count);
 void peers_close(struct peers *peers);
 
 /* What a peer answers: a sum. PEER_VERDICT: it is raced for verdicts. */
 enum { PEER_VERDICT = 1, PEER_DISTANCE = 2, PEER_DEPTH = 4 };
 
-/* Which pairs it takes: a sum. Moving ones and hulls need their bits; with PEER_BOXES it takes
- * nothing else. */
-enum { PEER_2D = 1, PEER_3D = 2, PEER_MOVING = 4, PEER_BOXES = 8, PEER_HULLS = 16 };
+/* Which pairs it takes besides solids at rest in 3D: a sum. */
+enum { PEER_MOVING = 1, PEER_HULLS = 2 };
 
 /* NULL past the last. */
 const char *peer_name(int peer);
 int peer_answers(int peer);
-bool peer_takes(int peer, int dim, bool moving, bool boxes);
-bool peer_takes_hulls(int peer);
+bool peer_takes(int peer, int needs);
 
 /* pair: [count], indices of solids. Writes the gaps: positive for separated, else overlapping or
  * touching; infinite where the peer gives the verdict only; NAN where it failed. */
@@ -73,8 +71,7 @@ struct peer_library {
     void (*close)(void *bodies);
 };
 
-extern const struct peer_library peer_library_bullet, peer_library_box2d, peer_library_ccd,
-    peer_library_cgal, peer_library_fcl, peer_library_ode;
+extern const struct peer_library peer_library_bullet, peer_library_ccd, peer_library_fcl;
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,5 @@
-/* The benchmark of the bus: pairs, scenes and the heartbeat beside a bare LCM echo of as many
- * bytes, with the time to decide apart from that of the bus. */
+/* The benchmark of the bus: pairs and scenes beside a bare LCM echo of as many bytes, with the time
+ * to decide apart from that of the bus. */
 #include "bus_bench.h"
 
 #include <errno.h>
@@ -90,32 +90,6 @@ static bool run_trips(struct bus_bench *bench, const char *section, void (*run)(
     return good;
 }
 
-static bool run_section(struct bus_bench *bench, const char *section, char bracket,
-                        const char *title, void (*run)(struct bus_bench *))
-{
-    if (!bus_bench_wants(bench, section))
-        return true;
-    printf("\n%s\n\n", title);
-    json_begin(&bench->json, section, bracket);
-    const bool good = run_on(bench, most_cores(), run);
-    json_end(&bench->json, bracket == '[' ? ']' : '}');
-    return good;
-}
-
-static bool run_sections(struct bus_bench *bench)
-{
-    return run_trips(bench, "pairs", trips_pairs) && run_trips(bench, "scenes", trips_scenes) &&
-           run_section(
-               bench, "flow", '[',
-               "Pairs a second from bus to bus, scenes by handle; MB/s both ways; engine: its "
-               "batch of the\nsame pairs, million pairs/s on one core.",
-               flow_run) &&
-           run_section(bench, "oneway", '[',
-                       "The highest rate at which three tries of three lose nothing.",
-                       oneway_run) &&
-           run_section(bench, "status", '{', "The heartbeat, once a second.", heartbeat_run);
-}
-
 /* ---- Around them ---- */
 
 static const char *network(void)
@@ -196,7 +170,8 @@ int main(int argc, char **argv)
         return EXIT_FAILURE;
     }
     print_head(&bench);
-    const bool run = run_sections(&bench);
+    const bool run =
+        run_trips(&bench, "pairs", trips_pairs) && run_trips(&bench, "scenes", trips_scenes);
     print_tail(&bench);
     const bool complete = fclose(bench.json.out) == 0 && run;
     const bool written = complete && (!path || write_json(&bench, text, path));

@@ -12,7 +12,6 @@ struct bus_bench {
     int blocks;      /* of each side of a comparison */
     int trips;       /* of pairs, a block */
     int scene_trips; /* of scenes, a block */
-    double seconds;  /* of each try of a rate */
     uint64_t seed;
     bool quick;
     const char *section; /* NULL: all */
@@ -37,9 +36,6 @@ void bus_bench_fail(const char *what);
 /* Sections. On input: both programs run, on one core or two. */
 void trips_pairs(struct bus_bench *bench);
 void trips_scenes(struct bus_bench *bench);
-void flow_run(struct bus_bench *bench);
-void oneway_run(struct bus_bench *bench);
-void heartbeat_run(struct bus_bench *bench);
 
 /* "key": {median, low, high}. */
 void bus_bench_put(struct json_writer *json, const char *key, struct spread spread);

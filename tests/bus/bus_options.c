@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const sections[] = {"pairs", "scenes", "flow", "oneway", "status"};
+static const char *const sections[] = {"pairs", "scenes"};
 
 enum { SECTIONS = sizeof sections / sizeof *sections };
 
@@ -44,7 +44,6 @@ static void set_quick(struct bus_bench *bench)
     bench->blocks = 2;
     bench->trips = 20;
     bench->scene_trips = 4;
-    bench->seconds = 0.02;
 }
 
 int bus_options(int argc, char **argv, struct bus_bench *bench, const char **json)
@@ -55,8 +54,7 @@ int bus_options(int argc, char **argv, struct bus_bench *bench, const char **jso
                                             {"quick", no_argument, NULL, QUICK},
                                             {"help", no_argument, NULL, HELP},
                                             {NULL, 0, NULL, 0}};
-    *bench = (struct bus_bench){
-        .blocks = 60, .trips = 500, .scene_trips = 60, .seconds = 0.3, .seed = 20240607};
+    *bench = (struct bus_bench){.blocks = 60, .trips = 500, .scene_trips = 60, .seed = 20240607};
     *json = NULL;
     int outcome = OPTIONS_RUN;
     for (int option;

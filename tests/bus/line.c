@@ -47,46 +47,37 @@ static void take_result(struct line *line, const struct bus_message *message, si
     line->compute_ns = (int64_t) big_endian_64(line->bytes + line->size - 8);
 }
 
-enum { LISTENER_PAIRS, LISTENER_SCENES, LISTENER_STATUS, LISTENERS };
-static const char *const channels[LISTENERS] = {WIRE_PAIR_RESULT, WIRE_SCENE_RESULT, WIRE_STATUS};
+enum { LISTENER_PAIRS, LISTENER_SCENES, LISTENERS };
+static const char *const channels[LISTENERS] = {WIRE_PAIR_RESULT, WIRE_SCENE_RESULT};
 
 static void on_message(void *user, const struct bus_message *message)
 {
     struct line *line = user;
-    if (message->listener == LISTENER_STATUS)
-        wire_read_status(message->bytes, (uint32_t) message->size, &line->heartbeat);
-    else
-        take_result(line, message,
-                    message->listener == LISTENER_PAIRS ? PAIR_STATUS_AT : SCENE_STATUS_AT);
+    take_result(line, message,
+                message->listener == LISTENER_PAIRS ? PAIR_STATUS_AT : SCENE_STATUS_AT);
 }
 
 /* ---- Opening ---- */
 
-static bool open_echo(struct line *line, bool listening)
+static bool open_echo(struct line *line)
 {
     line->lcm = lcm_create(line->url);
-    if (!line->lcm || !listening)
-        return line->lcm;
+    if (!line->lcm)
+        return false;
     lcm_subscription_t *replies = lcm_subscribe(line->lcm, ECHO_RESULT, on_echo, line);
     return replies && lcm_subscription_set_queue_capacity(replies, ECHO_QUEUE) == 0;
 }
 
-static bool open_service(struct line *line, bool listening)
+static bool open_service(struct line *line)
 {
     char why[BUS_WHY_MAX];
     line->bus = bus_open(line->url, why);
     bool ok = line->bus;
-    for (int i = 0; ok && listening && i < LISTENERS; i++)
+    for (int i = 0; ok && i < LISTENERS; i++)
         ok = bus_listen(line->bus, channels[i], why);
-    if (ok && listening)
+    if (ok)
         line->receive_buffer = bus_counts(line->bus).receive_buffer;
     return ok;
-}
-
-bool line_reopen(struct line *line, bool listening)
-{
-    line_close(line);
-    return line->echo ? open_echo(line, listening) : open_service(line, listening);
 }
 
 void line_close(struct line *line)
@@ -108,12 +99,6 @@ static bool publish(struct line *line, const struct datagram *datagram)
                        (unsigned) datagram->size) == 0;
 }
 
-bool line_send(struct line *line, struct datagram *datagram)
-{
-    datagram_next(datagram, ++line->sequence);
-    return publish(line, datagram);
-}
-
 /* Milliseconds after which a wait for fmbd looks at the guard, whose signal may have come just
  * before it. */
 enum { LOOK_MS = 100 };
@@ -127,7 +112,8 @@ static bool handle(struct line *line)
            !guard_hit();
 }
 
-bool line_await(struct line *line, int64_t id)
+/* Waits for the reply with this id, or a later one. False: the guard was hit, or the bus failed. */
+static bool await(struct line *line, int64_t id)
 {
     while (line->id < id && handle(line))
         continue;
@@ -138,18 +124,17 @@ double line_round_trip(struct line *line, struct datagram *datagram)
 {
     datagram_next(datagram, ++line->sequence);
     const int64_t begin = clock_ns();
-    if (!publish(line, datagram) || !line_await(line, line->sequence))
+    if (!publish(line, datagram) || !await(line, line->sequence))
         return NAN;
     return (double) (line->arrived_ns - begin);
 }
 
-/* ---- Probing, counting ---- */
+/* ---- Probing ---- */
 
 static const int64_t patience_ns = 10000000000;
 
-/* A probe is repeated soon where the other end may not have started, and late where a repeat would
- * be counted besides. */
-enum { SOON_MS = 50, LATE_MS = 2000 };
+/* A probe is repeated soon, as the other end may not have started. */
+enum { SOON_MS = 50 };
 
 /* Handles one message or some; returns false where none came in time. */
 static bool handle_for(struct line *line, int timeout_ms)
@@ -169,7 +154,7 @@ static void make_probe(const struct line *line, struct datagram *out)
 }
 
 /* A request for nothing, repeated until it is answered. */
-static bool probe(struct line *line, int repeat_ms)
+static bool probe(struct line *line)
 {
     static struct datagram datagram;
     const char *channel = line->query_channel;
@@ -177,9 +162,9 @@ static bool probe(struct line *line, int repeat_ms)
     line->query_channel = line->echo ? ECHO_QUERY : WIRE_SCENE_QUERY;
     const int64_t first = line->sequence + 1, end = clock_ns() + patience_ns;
     while (line->id < first && clock_ns() < end) {
-        line_send(line, &datagram);
-        line->probes++;
-        while (line->id < first && handle_for(line, repeat_ms))
+        datagram_next(&datagram, ++line->sequence);
+        publish(line, &datagram);
+        while (line->id < first && handle_for(line, SOON_MS))
             continue;
     }
     line->query_channel = channel;
@@ -193,25 +178,5 @@ bool line_open(const char *url, bool echo, struct line *out)
     out->echo = echo;
     out->client_id = random_id();
     out->query_channel = echo ? ECHO_QUERY : WIRE_SCENE_QUERY;
-    return line_reopen(out, true) && probe(out, SOON_MS);
-}
-
-/* The next heartbeat at which no query waited. */
-static bool await_heartbeat(struct line *line)
-{
-    const int64_t begin = clock_utime(), end = clock_ns() + patience_ns;
-    while ((line->heartbeat.utime < begin || line->heartbeat.waiting > 0) && clock_ns() < end)
-        handle_for(line, LATE_MS);
-    return line->heartbeat.utime >= begin && line->heartbeat.waiting == 0;
-}
-
-/* Messages are read in the order in which they were sent: those before the probe have been read
- * when it is answered. */
-int64_t line_count(struct line *line)
-{
-    if (!probe(line, LATE_MS))
-        return -1;
-    if (line->echo)
-        return (int64_t) big_endian_64(line->bytes + ECHO_COUNT_AT) - line->probes;
-    return await_heartbeat(line) ? line->heartbeat.pairs : -1;
+    return (echo ? open_echo(out) : open_service(out)) && probe(out);
 }

@@ -15,18 +15,15 @@ struct line {
     bool echo;
     lcm_t *lcm;                /* the echo's, else NULL */
     struct bus *bus;           /* fmbd's, else NULL */
-    const char *query_channel; /* of line_send(): scenes, unless it is set */
+    const char *query_channel; /* scenes, unless it is set */
     long receive_buffer;       /* fmbd's client: granted, bytes */
     int64_t client_id, sequence;
-    int64_t probes; /* sent by line_open() and line_count() */
     /* The last reply. */
     int64_t id, arrived_ns;
     int64_t compute_ns; /* as the service reports it; the echo: 0 */
     int32_t status;     /* the echo: 0 */
     size_t size;
     unsigned char bytes[QUERY_BYTES_MAX];
-    /* fmbd's last heartbeat. */
-    struct wire_status heartbeat;
 };
 
 /* Opens the line and waits until the other end answers, ten seconds at most. False: it does not, or
@@ -34,21 +31,8 @@ struct line {
 bool line_open(const char *url, bool echo, struct line *out);
 void line_close(struct line *line);
 
-/* Opens it anew, as the same client; a line that does not listen can only send. */
-bool line_reopen(struct line *line, bool listening);
-
-/* Sends the datagram as the next one of this line. */
-bool line_send(struct line *line, struct datagram *datagram);
-/* Waits for the reply with this id, or a later one. False: the guard was hit, or the bus failed. */
-bool line_await(struct line *line, int64_t id);
-
 /* Nanoseconds from before the datagram is sent until its reply is handed over; NAN: there was none.
  */
 double line_round_trip(struct line *line, struct datagram *datagram);
-
-/* What the other end has handled of the messages sent so far: pairs that the service decided, or
- * requests that the echo received, less probes. Waits for it, a second as a rule with fmbd. -1: no
- * answer within ten seconds. */
-int64_t line_count(struct line *line);
 
 #endif

@@ -31,9 +31,9 @@ static void trips_of_scene(struct bus_bench *bench, int bodies, enum form form)
 {
     static struct datagram query;
     enum { PAIRS = 200 };
-    struct workload_scene scene = workload_scene_draw(bodies, false, PAIRS, bench->seed);
+    struct workload_scene scene = workload_scene_draw(bodies, PAIRS, bench->seed);
     char name[64];
-    const size_t pairs = workload_scene(bench, &scene, form, FMB_PAIRS_LISTED, 0, &query);
+    const size_t pairs = workload_scene(bench, &scene, form, &query);
     const struct duel duel = duel_run(bench, &query, bench->blocks / 3 + 1, bench->scene_trips);
     snprintf(name, sizeof name, "scene of %d %s", bodies, form_name(form));
     duel_print(name, &duel);

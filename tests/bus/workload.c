@@ -94,11 +94,10 @@ static void shuffle(struct pairs *pairs, uint64_t seed)
     }
 }
 
-struct workload_scene workload_scene_draw(int bodies, bool moving, size_t pairs, uint64_t seed)
+struct workload_scene workload_scene_draw(int bodies, size_t pairs, uint64_t seed)
 {
-    const struct cell cell = {3, moving, {FMB_CUBOID, FMB_TETRAHEDRON}};
-    struct workload_scene out = {.scene = scene_draw(&cell, (size_t) bodies, seed),
-                                 .moving = moving};
+    const struct cell cell = {3, false, {FMB_CUBOID, FMB_TETRAHEDRON}};
+    struct workload_scene out = {.scene = scene_draw(&cell, (size_t) bodies, seed)};
     out.pairs = pairs_draw_of(&out.scene, true, pairs, seed);
     struct pairs apart = pairs_draw_of(&out.scene, false, pairs / 2, seed);
     memcpy(out.pairs.at, apart.at, pairs / 2 * sizeof *apart.at);
@@ -168,27 +167,23 @@ static size_t pairs_answered(struct bus_bench *bench, const struct scene_query *
 }
 
 size_t workload_scene(struct bus_bench *bench, const struct workload_scene *scene, enum form form,
-                      int32_t which, int32_t want, struct datagram *out)
+                      struct datagram *out)
 {
     static struct scene_query query;
     static unsigned char geometry[QUERY_PLACEMENTS_MAX][GEOMETRY_FRAME_BYTES_MAX];
     query = (struct scene_query){.client_id = bench->service.client_id,
                                  .duration = 1,
-                                 .want = want,
-                                 .which = which,
+                                 .which = FMB_PAIRS_LISTED,
                                  .placement_count = (int32_t) scene->scene.count};
     bench->service.query_channel = WIRE_SCENE_QUERY;
     for (int i = 0; i < query.placement_count; i++)
         set_whole(&scene->scene.placement[i], scene_bodies + i, &query.placement[i], geometry[i]);
     if (form == FORM_BY_HANDLE)
         set_handles(bench, &query);
-    if (which == FMB_PAIRS_LISTED) {
-        const size_t space = space_for_pairs(&query), drawn = scene->pairs.count;
-        list_pairs(&scene->pairs, space < drawn ? space : drawn, &query);
-    }
+    const size_t space = space_for_pairs(&query), drawn = scene->pairs.count;
+    list_pairs(&scene->pairs, space < drawn ? space : drawn, &query);
     const size_t count = pairs_answered(bench, &query);
-    if (which == FMB_PAIRS_LISTED)
-        list_pairs(&scene->pairs, count, &query);
+    list_pairs(&scene->pairs, count, &query);
     datagram_of_scene(&query, out);
     if (form == FORM_NEW)
         datagram_renew(out, &query.placement[0], query.placement_count);

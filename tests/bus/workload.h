@@ -14,15 +14,13 @@ void workload_pair(struct bus_bench *bench, enum form form, struct datagram *out
 struct workload_scene {
     struct scene scene;
     struct pairs pairs;
-    bool moving;
 };
-struct workload_scene workload_scene_draw(int bodies, bool moving, size_t pairs, uint64_t seed);
+struct workload_scene workload_scene_draw(int bodies, size_t pairs, uint64_t seed);
 void workload_scene_free(struct workload_scene *scene);
 
-/* The query of a scene. On input: which is FMB_PAIRS_LISTED or FMB_PAIRS_ALL; want its bits.
- * Listed are as many of the pairs as query and result have space for. Returns the number of pairs
- * of the query. */
+/* The query of a scene: as many of the pairs as query and result have space for. Returns the number
+ * of pairs of the query. */
 size_t workload_scene(struct bus_bench *bench, const struct workload_scene *scene, enum form form,
-                      int32_t which, int32_t want, struct datagram *out);
+                      struct datagram *out);
 
 #endif

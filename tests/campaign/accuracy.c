@@ -19,7 +19,6 @@ static const struct option option_list[] = {{"pairs", required_argument, NULL, O
                                             {"family", required_argument, NULL, OPTION_FAMILY},
                                             {"seed", required_argument, NULL, OPTION_SEED},
                                             {"workers", required_argument, NULL, OPTION_WORKERS},
-                                            {"cells", no_argument, NULL, OPTION_CELLS},
                                             {"json", required_argument, NULL, OPTION_JSON},
                                             {"help", no_argument, NULL, OPTION_HELP},
                                             {NULL, 0, NULL, 0}};
@@ -37,8 +36,7 @@ static void help(void)
         "                 repeated (all)\n"
         "  --seed S       what to draw from\n"
         "  --workers N    threads (one a processor); the counts do not depend on it\n"
-        "  --cells        a line a cell, not a family\n"
-        "  --json FILE    write everything there too\n"
+        "  --json FILE    write the counts and times of all methods there\n"
         "  --help\n"
         "\n"
         "Exit codes: 0 the methods that are never wrong were not, 1 one was, 2 wrong usage.\n"

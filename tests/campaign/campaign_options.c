@@ -77,7 +77,6 @@ static bool take(const struct options_program *program, int option, char **argv,
     case OPTION_WORKERS: return take_integer(program, "workers", 1, 256, &out->workers);
     case OPTION_SEED: return take_seed(program, &out->seed);
     case OPTION_FAMILY: return take_family(program, out);
-    case OPTION_CELLS: out->cells = true; return true;
     case OPTION_JSON: out->json = optarg; return true;
     case ':': return refuse(program, "option '%s' needs a value", argv[optind - 1]);
     default: return refuse(program, "unknown option '%s'", argv[optind - 1]);

@@ -17,7 +17,6 @@ struct options {
     long pairs;
     long workers;
     uint64_t seed;
-    bool cells;
     const char *json; /* NULL: none */
     const struct family *family[OPTIONS_FAMILIES_MAX];
     int families; /* 0: all */
@@ -30,15 +29,7 @@ struct options_program {
     long pairs; /* default */
 };
 
-enum {
-    OPTION_PAIRS = 1,
-    OPTION_SEED,
-    OPTION_WORKERS,
-    OPTION_FAMILY,
-    OPTION_CELLS,
-    OPTION_JSON,
-    OPTION_HELP
-};
+enum { OPTION_PAIRS = 1, OPTION_SEED, OPTION_WORKERS, OPTION_FAMILY, OPTION_JSON, OPTION_HELP };
 
 /* On output: OPTIONS_RUN and *out, or the exit code where nothing is to be run. */
 enum { OPTIONS_RUN = -1 };

@@ -1,4 +1,5 @@
-/* What the accuracy campaign has found, as a table for people and as JSON. */
+/* What the accuracy campaign has found: of the methods that are never wrong as text, of all as
+ * JSON. */
 #ifndef REPORT_H
 #define REPORT_H
 
@@ -15,9 +16,8 @@ struct report {
     size_t measures;
 };
 
-/* A line a family and method; or a cell and method, where the options request it. Then what each
- * method that is never wrong did, and a reproducer of the first reply of it that was wrong in a
- * cell, of some of these cells. */
+/* What each method that is never wrong did, and a reproducer of the first reply of it that was
+ * wrong in a cell, of some of these cells. */
 void report_print(const struct report *report, FILE *out);
 
 /* Everything, a cell and a method at a time. A number that is infinite is null. False if it could

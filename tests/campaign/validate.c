@@ -3,6 +3,7 @@
  * with SAT; here all are compared with the exact one. Then the same for random poses and all
  * shapes, with certificates: of some pairs the exact verdict is compared with the oracle's, and its
  * certificate with both. */
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +12,6 @@
 #include "family.h"
 #include "campaign_options.h"
 #include "posed.h"
-#include "table.h"
 #include "campaign_tally.h"
 #include "trial.h"
 #include "workers.h"
@@ -152,23 +152,16 @@ static void validate_part(void *context, size_t job)
 
 /* ---- Report ---- */
 
-static void add_row(struct table *table, const struct validation *validation, int at,
-                    const char *method, const struct tally *tally)
+static void print_row(const struct validation *validation, int at, const char *method,
+                      const struct tally *tally)
 {
-    static const enum fmb_verdict then[][2] = {
-        {FMB_SEPARATED, FMB_TOUCHING},    {FMB_SEPARATED, FMB_OVERLAPPING},
-        {FMB_TOUCHING, FMB_SEPARATED},    {FMB_TOUCHING, FMB_OVERLAPPING},
-        {FMB_OVERLAPPING, FMB_SEPARATED}, {FMB_OVERLAPPING, FMB_TOUCHING}};
-    char text[CELL_TEXT_MAX], name[CELL_TEXT_MAX + 8];
-    cell_text(&validation->cell[at], text);
-    snprintf(name, sizeof name, "%s%s", text, is_posed((size_t) at) ? " posed" : "");
-    table_text(table, name);
-    table_text(table, method);
-    table_count(table, tally->queries);
-    for (size_t i = 0; i < sizeof then / sizeof *then; i++)
-        table_count(table, tally->count[then[i][1]][then[i][0]]);
-    table_count(table, tally->order_verdict);
-    table_count(table, tally->refused);
+    char text[CELL_TEXT_MAX];
+    printf("%s%s, %s: %" PRIu64 " queries, called separated in contact %" PRIu64
+           ", in contact separated %" PRIu64 ", touching and overlapping confused %" PRIu64
+           ", orders differ %" PRIu64 ", refused %" PRIu64 "\n",
+           cell_text(&validation->cell[at], text), is_posed((size_t) at) ? " posed" : "", method,
+           tally->queries, tally_false_separated(tally), tally_false_contact(tally),
+           tally_false_kind(tally), tally->order_verdict, tally->refused);
 }
 
 static struct tally cell_sum(const struct validation *validation, int cell, int method)
@@ -182,28 +175,19 @@ static struct tally cell_sum(const struct validation *validation, int cell, int 
 /* Returns how many replies were wrong of methods that never must be. */
 static uint64_t print_report(const struct validation *validation)
 {
-    static const char *const heads[] = {"cell",    "method",  "queries", "sep/tou",
-                                        "sep/ovl", "tou/sep", "tou/ovl", "ovl/sep",
-                                        "ovl/tou", "order",   "refused", NULL};
     uint64_t broken = 0;
-    struct table table;
-    table_begin(&table, heads, 2);
+    printf("Random pairs, each in both orders, against the exact method.\n\n");
     for (int cell = 0; cell < CELLS; cell++)
         for (int m = 0; m < trial_methods(); m++) {
             const char *name = fmb_method_at((size_t) m)->name;
             struct tally sum = cell_sum(validation, cell, m);
-            add_row(&table, validation, cell, name, &sum);
+            print_row(validation, cell, name, &sum);
             broken += sum.broken;
             if (sum.broken == 0)
                 continue;
             printf("# %s: %s\n", name, sum.first.why);
             question_print(&sum.first.question);
         }
-    printf(
-        "Random pairs, each in both orders, against the exact method. sep/tou: said to be\n"
-        "separated, and touching in truth. order: pairs whose two orders differ.\n\n");
-    table_print(&table, stdout);
-    table_end(&table);
     uint64_t certificates = 0;
     for (size_t job = 0; job < JOBS; job++)
         certificates += validation->certificates[job];

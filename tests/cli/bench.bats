@@ -1,5 +1,4 @@
-# The benchmark, in small: it runs, and the report can be made of what it writes. Nothing here is
-# about time.
+# The benchmark, in small: it runs. Nothing here is about time.
 
 load ../ran
 
@@ -9,12 +8,10 @@ setup() {
     JSON=$BATS_TEST_TMPDIR/report.json
 }
 
-@test "bench --quick measures every section, in every cell, by every method; the report is made of that" {
+@test "bench --quick measures every section, in every cell, by every method" {
     run "$BENCH" --quick --json "$JSON"
     [ "$status" = 0 ]
-    holds "$JSON" 'all(.cells, .inverse, .order, .hybrid, .box, .article, .instructions, .grids, .contacts,
-                   .poses, .rest, .gaps, .margins, .hulls, .broad, .worst;
-               length > 0)' \
+    holds "$JSON" 'all(.cells, .box, .contacts, .poses, .rest, .gaps, .hulls, .worst; length > 0)' \
         '[.cells[] | [.dim, .moving, .shapes, .contact]] | unique | length == 32' \
         'all(.cells[]; [.methods[].name] | contains(["batch", "single", "query", "fmb", "sat", "exact"]))' \
         'all(.cells[].methods[]; .ns > 0 and .low <= .ns and .ns <= .high)' \
@@ -22,23 +19,17 @@ setup() {
         '.unsure.unsure < 5' \
         '[.gaps[] | [.kind, .gap]] | unique | length == 32' \
         'all(.gaps[]; [.runs[].name] | contains(["batch", "single", "query"]))' \
-        'any(.margins[]; .near > 0)' \
         '[.hulls[].pairs_are] | unique | length == 48' \
-        'all(.hulls[]; [.methods[].name] | contains(["batch", "query", "query+box", "query+gap"]))' \
-        '(.growth.bodies | length > 2) and (.growth.pairs | length > 2)'
+        'all(.hulls[]; [.methods[].name] | contains(["batch", "query", "query+box", "query+gap"]))'
     # Certified verdicts are right; the other methods are right about random pairs, not about all; what
     # other libraries have here is nearly right about random pairs.
     holds "$JSON" '[.contacts[] | [.dim, .moving, .shapes, .pairs_are]] | unique | length == 140' \
-        'all(.contacts[]; [.methods[].name] | contains(["batch", "batch+box", "single", "query", "sat", "seidel"]))' \
-        '[.contacts[] | select([.methods[].name] | index("gpr")) | [.dim, .moving, .shapes]]
-            | length == 11 and unique == [[3, false, "TT"]]' \
+        'all(.contacts[]; [.methods[].name] | contains(["batch", "batch+box", "single", "query", "sat"]))' \
         'all(.contacts[].methods[]; .ns > 0 and .wrong >= 0 and .wrong <= 1)' \
         'all(.contacts[].methods[] | select(.name | test("batch|single|query")); .wrong == 0)' \
         '[.contacts[] | select(.pairs_are | startswith("random")) | .methods[]]
-            | all(.[] | select(.name == ("sat", "seidel", "gpr")); .wrong == 0) and all(.[]; .wrong < 0.05)' \
+            | all(.[] | select(.name == "sat"); .wrong == 0) and all(.[]; .wrong < 0.05)' \
         'any(.contacts[].methods[] | select(.name == "sat"); .wrong > 0)'
-    tests/report/report.sh "$JSON" tests/report/fixture/accuracy.json "$BATS_TEST_TMPDIR/report"
-    grep -q '3D static CC' "$BATS_TEST_TMPDIR/report/index.html"
 }
 
 @test "bench reports a wrong option with exit code 2" {

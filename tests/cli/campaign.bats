@@ -20,6 +20,15 @@ setup() {
         'all(.cells[]; .not_as_made == 0)' \
         '[.families[] | select(.verdict == "touching") | .name] |
          contains(["touch-face-face", "pose-whole-255", "pose-yaw", "hull-whole-255"])'
+    # The picture of tests/bench/README.md, of these counts.
+    jq -r --rawfile css tests/report/picture.css -f tests/report/speed_error.jq "$JSON" > "$BATS_TEST_TMPDIR/picture.svg"
+    grouped() { sed -E ':a; s/^([0-9]+)([0-9]{3})/\1,\2/; ta' <<< "$1"; }
+    for method in certified exact; do
+        grep -qF ">$method: none wrong of $(grouped $((2 * pairs * $(jq '.cells | length' "$JSON"))))," "$BATS_TEST_TMPDIR/picture.svg"
+    done
+    [ "$(grep -c '^<path class="mark ' "$BATS_TEST_TMPDIR/picture.svg")" = "$(jq '[.cells[] | .family as $family | .methods[]
+        | select(.refused < .queries) | [$family, .name]] | unique | length + 4' "$JSON")" ]
+    ! command -v xmllint > /dev/null || xmllint --noout "$BATS_TEST_TMPDIR/picture.svg"
     # tests/bench/README.md counts the same families and cells.
     read -r families posed hulls flat_cells posed_cells hull_cells <<< "$(jq -r '
         def count(test): map(select(test)) | length;
@@ -27,7 +36,6 @@ setup() {
         | [($families | length, count(test("^pose-")), count(test("^hull-"))),
            ($cells | count(test("^(pose|hull)-") | not), count(test("^pose-")), count(test("^hull-")))] | @tsv' "$JSON")"
     has() { grep -qF -- "$1" tests/bench/README.md || { echo "not in README.md: $1"; false; }; }
-    grouped() { sed -E ':a; s/^([0-9]+)([0-9]{3})/\1,\2/; ta' <<< "$1"; }
     has "| $families families of hard pairs"
     has "and $posed families posed by quaternions"
     has "and $hulls families of hulls"

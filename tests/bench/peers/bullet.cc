@@ -93,7 +93,7 @@ double gap(void *bodies, size_t a, size_t b)
 }
 
 const peer methods[] = {
-    {"bullet", PEER_VERDICT | PEER_DISTANCE | PEER_DEPTH, PEER_3D | PEER_MOVING | PEER_HULLS, gap}};
+    {"bullet", PEER_VERDICT | PEER_DISTANCE | PEER_DEPTH, PEER_MOVING | PEER_HULLS, gap}};
 
 }  // namespace
 

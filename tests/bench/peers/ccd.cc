@@ -152,7 +152,7 @@ void close(void *)
 {
 }
 
-constexpr int at_rest = PEER_3D | PEER_HULLS, moving = at_rest | PEER_MOVING;
+constexpr int at_rest = PEER_HULLS, moving = at_rest | PEER_MOVING;
 
 const peer methods[] = {{"ccd gjk", PEER_VERDICT, moving, gjk},
                         {"ccd mpr", PEER_VERDICT, moving, mpr},

@@ -96,9 +96,9 @@ double distance_tight(void *bodies, size_t a, size_t b)
     return fcl::distance(object(bodies, a), object(bodies, b), request, result);
 }
 
-const peer methods[] = {{"fcl", PEER_VERDICT, PEER_3D | PEER_HULLS, collide},
-                        {"fcl distance", PEER_DISTANCE, PEER_3D | PEER_HULLS, distance},
-                        {"fcl 1e-10", PEER_DISTANCE, PEER_3D | PEER_HULLS, distance_tight}};
+const peer methods[] = {{"fcl", PEER_VERDICT, PEER_HULLS, collide},
+                        {"fcl distance", PEER_DISTANCE, PEER_HULLS, distance},
+                        {"fcl 1e-10", PEER_DISTANCE, PEER_HULLS, distance_tight}};
 
 }  // namespace
 
