@@ -103,7 +103,7 @@ static void print_count(const char *name, int64_t count, const char *one, const 
 
 static void print_text(const struct log_cut_counts *counts)
 {
-    char kept[NUMBER_TEXT_MAX], events[NUMBER_TEXT_MAX], recorded[80];
+    char kept[NUMBER_TEXT_MAX], events[NUMBER_TEXT_MAX];
     printf("kept %s of %s events; %.1f MB, of %.1f\n", number_grouped(counts->kept_events, kept),
            number_grouped(counts->events, events), 1e-6 * (double) counts->kept_bytes,
            1e-6 * (double) counts->bytes);
@@ -113,9 +113,6 @@ static void print_text(const struct log_cut_counts *counts)
     print_count("named", counts->names, "body in front of them", "bodies in front of them");
     print_count("unknown", counts->unknown, "handle that the logs do not define",
                 "handles that the logs do not define");
-    snprintf(recorded, sizeof recorded, "recorded by version %d, whose bodies are not known",
-             counts->old_version);
-    print_count("old", counts->old_messages, recorded, recorded);
     print_count("left out", counts->damaged_bytes, "damaged byte", "damaged bytes");
 }
 
@@ -133,8 +130,6 @@ static void print_json(const struct log_cut_counts *counts, int code)
     json_integer(&json, "added_bodies", counts->defined);
     json_integer(&json, "added_names", counts->names);
     json_integer(&json, "unknown_handles", counts->unknown);
-    json_integer(&json, "old_messages", counts->old_messages);
-    json_integer(&json, "old_version", counts->old_version);
     json_integer(&json, "damages", counts->damages);
     json_integer(&json, "damaged_bytes", counts->damaged_bytes);
     json_object_end(&json);

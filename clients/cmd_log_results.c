@@ -34,8 +34,8 @@ static const char usage[] =
     "verdict). Any log takes the same memory, some 25 MB.\n"
     "\n"
     "Exit codes: 0 all results are printed; 1 the output failed; 2 wrong usage, a log\n"
-    "that cannot be read, is damaged or was recorded by an old version, a message\n"
-    "that cannot be read, no results, or results whose query is not in the logs.\n";
+    "that cannot be read or is damaged, a message that cannot be read, no results,\n"
+    "or results whose query is not in the logs.\n";
 
 /* The first of the messages with the same flaw. */
 struct flaw {

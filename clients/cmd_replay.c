@@ -47,7 +47,7 @@ static const char usage[] =
     "                       by T times the duration, ends of boxes and gaps by T\n"
     "                       times the largest coordinate of the query: of the\n"
     "                       position of a body, at the beginning or the end, plus its\n"
-    "                       radius. Directions, nearest points and certificates are\n"
+    "                       reach. Directions, nearest points and certificates are\n"
     "                       not compared\n"
     "  --from S, --to S     only queries logged from S on and before S, in seconds\n"
     "                       since the first event; the remainder is read for\n"
@@ -93,10 +93,9 @@ static const char usage[] =
     "    parts\n"
     "\n"
     "Exit codes: 0 all the same; 1 something differs; 2 unusable: a log cannot be\n"
-    "read, is damaged ('fmb log cut' copies what is intact) or was recorded by an\n"
-    "old version, a message on the service's channels cannot be read, a query is left\n"
-    "out, there is nothing to compare, or the service on the bus does not answer all\n"
-    "queries.\n";
+    "read or is damaged ('fmb log cut' copies what is intact), a message on the\n"
+    "service's channels cannot be read, a query is left out, there is nothing to\n"
+    "compare, or the service on the bus does not answer all queries.\n";
 
 struct replay_arguments {
     struct replay_options replay;

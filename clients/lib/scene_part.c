@@ -259,15 +259,17 @@ static bool fits_frames(const struct part *part, const unsigned pair[2], const s
            gap->frame[1] < placement_of(part, pair[1])->body->frame_count;
 }
 
-/* Whether a result has what was wanted: gaps if and only if there is a verdict, boxes at most, and
- * names of frames if and only if there are gaps and a body has several frames. */
-static bool fits_want(const struct part *part, bool any, bool gaps, bool boxes, int dim, bool named)
+/* Whether a result has what was wanted: gaps if and only if there is a verdict, of optional parts
+ * (FMB_WANT_BOX, FMB_WANT_POINT) at most those wanted, and names of frames if and only if there are
+ * gaps and a body has several frames. */
+static bool fits_want(const struct part *part, bool any, bool gaps, unsigned optional, int dim,
+                      bool named)
 {
     const struct fmb_scene *scene = part->run->scene;
     bool several = false;
     for (int32_t i = 0; i < part->placement_count && gaps; i++)
         several = several || placement_of(part, (unsigned) i)->body->frame_count > 1;
-    return gaps == (wants_gaps(scene) && any) && (!boxes || scene->want & FMB_WANT_BOX) &&
+    return gaps == (wants_gaps(scene) && any) && (optional & ~scene->want) == 0 &&
            (dim == 0 || dim == scene->placements[0].body->dim) && named == several;
 }
 
@@ -308,6 +310,11 @@ static bool fits_pairs(const struct part *part, const struct scene_result *resul
     return true;
 }
 
+static unsigned optional_parts(bool box, bool point)
+{
+    return (box ? FMB_WANT_BOX : 0) | (point ? FMB_WANT_POINT : 0);
+}
+
 static bool fits_scene(const struct part *part, const struct scene_result *result)
 {
     const int32_t first = part->answers.answered;
@@ -319,7 +326,8 @@ static bool fits_scene(const struct part *part, const struct scene_result *resul
         return false;
     return result->has_times ==
                (part->run->scene->want & FMB_WANT_TIMES && result->contact_count > 0) &&
-           fits_want(part, any, result->has_gaps, result->has_boxes, result->dim,
+           fits_want(part, any, result->has_gaps,
+                     optional_parts(result->has_boxes, result->has_points), result->dim,
                      result->names_frames) &&
            fits_pairs(part, result);
 }
@@ -328,7 +336,8 @@ static bool fits_pair(const struct part *part, const struct pair_result *result)
 {
     const struct fmb_answer *answer = &result->answer;
     const unsigned pair[2] = {part->pair[0][0], part->pair[0][1]};
-    return fits_want(part, true, answer->has_gap, answer->has_box, result->dim,
+    return fits_want(part, true, answer->has_gap,
+                     optional_parts(answer->has_box, answer->has_point), result->dim,
                      result->names_frames) &&
            (!answer->has_box || answer->verdict >= FMB_TOUCHING) &&
            fits_frames(part, pair, &answer->gap) &&

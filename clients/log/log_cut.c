@@ -219,13 +219,10 @@ static void copy_event(struct cutter *cut, const struct log_event *event)
     const enum log_kind kind = log_kind_of(&cut->channels, event);
     if (!is_chosen(cut, kind, event))
         return;
-    const int old_version = log_kind_old_version(kind, event);
     cut->utime = event->utime;
     if (counts->kept_events++ == 0)
         begin_output(cut);
     counts->kept[kind]++;
-    counts->old_messages += old_version > 0;
-    counts->old_version = old_version ? old_version : counts->old_version;
     define(cut, kind, event);
     copy(cut, event);
 }

@@ -34,9 +34,7 @@ struct log_cut_counts {
     /* Definitions added, which do not count as kept; the bodies in them; handles in kept queries
      * that the logs do not define. */
     int64_t definitions, defined, unknown;
-    int64_t names;        /* added to the beginning */
-    int64_t old_messages; /* kept messages of an old version, whose bodies are not known */
-    int old_version;      /* the version of the last of them; 0: there are none */
+    int64_t names; /* added to the beginning */
     int64_t damages, damaged_bytes;
 };
 

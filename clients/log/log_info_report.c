@@ -179,16 +179,6 @@ static void print_damage(FILE *out, const struct log_info *info)
         fprintf(out, "    and %s more\n", number_grouped(info->damages - DAMAGE_LINES, offset));
 }
 
-/* Returns the highest old version of a message; 0: there is none. */
-static int old_version(const struct log_info *info)
-{
-    int version = 0;
-    for (const struct log_row *row = info->rows; row; row = row->hh.next)
-        if (wire_type_old_version(row->type.fingerprint) > version)
-            version = wire_type_old_version(row->type.fingerprint);
-    return version;
-}
-
 void log_report_text(FILE *out, const struct log_report *report)
 {
     const struct log_info *info = report->info;
@@ -207,9 +197,6 @@ void log_report_text(FILE *out, const struct log_report *report)
         print_channels(out, info);
         print_names(out, info->names);
     }
-    if (old_version(info))
-        fprintf(out, "  recorded by version %d, whose messages this version does not read\n",
-                old_version(info));
     if (info->damages > 0)
         print_damage(out, info);
     if (report->error)

@@ -1,9 +1,7 @@
 #include "log_kind.h"
 
-#include "big_endian.h"
 #include "bus.h"
 #include "wire.h"
-#include "wire_type.h"
 
 #include <string.h>
 
@@ -32,11 +30,4 @@ enum log_kind log_kind_of(const struct log_channels *channels, const struct log_
             memcmp(event->channel, channels->name[kind], event->channel_length) == 0)
             return (enum log_kind) kind;
     return LOG_OTHER;
-}
-
-int log_kind_old_version(enum log_kind kind, const struct log_event *event)
-{
-    return kind != LOG_OTHER && event->kept >= 8
-               ? wire_type_old_version((int64_t) big_endian_64(event->data))
-               : 0;
 }

@@ -57,8 +57,4 @@ static inline enum log_kind log_kind_result_of(enum log_kind query)
 /* Writes a message of a kind. Returns false if it failed. */
 typedef bool log_sink(void *user, enum log_kind kind, const void *bytes, size_t size);
 
-/* The version of the message type of an event on a channel of the service, if it is an old one,
- * such as 1; else 0. */
-int log_kind_old_version(enum log_kind kind, const struct log_event *event);
-
 #endif

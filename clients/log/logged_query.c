@@ -51,7 +51,9 @@ static bool is_whole(const struct logged_query *query)
     for (int32_t i = 0; i < query->placement_count; i++)
         if (query->placement[i].body.dim > FMB_DIM_MAX ||
             query->placement[i].placed.orientation_count > QUERY_ORIENTATION_MAX ||
-            query->placement[i].velocity_count > FMB_DIM_MAX)
+            query->placement[i].velocity_count > FMB_DIM_MAX ||
+            query->placement[i].placed.end_count >
+                query->placement[i].body.dim + QUERY_ORIENTATION_MAX)
             return false;
     return query->kind == LOG_PAIR_QUERY || (scene->placement_count <= QUERY_PLACEMENTS_MAX &&
                                              scene->index_count <= 2 * QUERY_PAIRS_MAX &&

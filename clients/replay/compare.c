@@ -46,7 +46,7 @@ static double largest(const double *number, int count, double most)
 
 /* The largest distance of a corner from the origin of the body: of a vertex, or at most |origin|
  * and the components together on each axis. */
-static double frame_radius(int dim, const struct geometry_frame *frame, const double *number)
+static double frame_reach(int dim, const struct geometry_frame *frame, const double *number)
 {
     double most = 0, axis[FMB_DIM_MAX] = {0};
     for (size_t i = 0; i < frame->count; i += (size_t) dim) {
@@ -62,7 +62,7 @@ static double frame_radius(int dim, const struct geometry_frame *frame, const do
 }
 
 /* 0: the geometry is not known. */
-static double body_radius(const struct body_view *body)
+static double body_reach(const struct body_view *body)
 {
     double most = 0, *number = NULL;
     size_t capacity = 0;
@@ -70,8 +70,8 @@ static double body_radius(const struct body_view *body)
     for (struct geometry_reader reader = geometry_begin(body); geometry_next(&reader, &frame);) {
         number = allocate_grow(number, &capacity, frame.count, sizeof *number);
         geometry_numbers(&frame, number);
-        const double radius = frame_radius(body->dim, &frame, number);
-        most = largest(&radius, 1, most);
+        const double reach = frame_reach(body->dim, &frame, number);
+        most = largest(&reach, 1, most);
     }
     free(number);
     return most;
@@ -82,12 +82,12 @@ static double largest_coordinate(const struct logged_query *query, double durati
     double most = 0;
     const struct query_placement *placement = query->placement;
     for (int32_t i = 0; i < query->placement_count; i++) {
-        const double radius = body_radius(&placement[i].body);
+        const double reach = body_reach(&placement[i].body);
         for (int k = 0; k < FMB_DIM_MAX; k++) {
             const double *position = &placement[i].placed.position[k];
             const double moved =
                 placement[i].velocity_count ? placement[i].placed.velocity[k] * duration : 0;
-            const double ends[2] = {fabs(*position) + radius, fabs(*position + moved) + radius};
+            const double ends[2] = {fabs(*position) + reach, fabs(*position + moved) + reach};
             most = largest(ends, 2, most);
         }
     }

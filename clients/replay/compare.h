@@ -55,7 +55,7 @@ struct difference {
 struct compare_options {
     /* 0: bit for bit. Otherwise the ends of intervals may differ by tolerance * duration, and the
      * ends of boxes and gaps by tolerance * (largest coordinate of the query): of the position of a
-     * body, at the beginning or the end, plus its radius, which is 0 if its geometry is not in the
+     * body, at the beginning or the end, plus its reach, which is 0 if its geometry is not in the
      * query. Directions, witness points and certificates are then not compared. */
     double tolerance;
 };

@@ -135,8 +135,6 @@ static void take_event(struct replay *replay, const struct log_event *event)
     tally->bytes += event->length;
     tally->statuses += kind == LOG_STATUS;
     tally->other_events += kind == LOG_OTHER;
-    if ((replay->old_version = log_kind_old_version(kind, event)) != 0)
-        return;
     const char *error = definitions_add_message(replay->definitions, replay->options->names, kind,
                                                 event->data, (uint32_t) event->kept);
     if (log_kind_is_query(kind) || log_kind_is_result(kind))
@@ -223,13 +221,6 @@ static void close_replay(struct replay *replay)
 
 /* ---- The run ---- */
 
-static void fail_old_version(struct replay *replay)
-{
-    complain("%s: recorded by version %d, whose messages are others: replay it with that",
-             replay->options->log[replay->input.log], replay->old_version);
-    replay->failed = true;
-}
-
 static void read_logs(struct replay *replay)
 {
     struct log_event event;
@@ -242,9 +233,7 @@ static void read_logs(struct replay *replay)
             take_damage(replay, &damage);
         replay->sink->progress(replay->sink->user, replay->input.passed / 2,
                                input_size(&replay->input));
-        if (replay->old_version)
-            fail_old_version(replay);
-        if (replay->old_version || replay_has_ended(replay))
+        if (replay_has_ended(replay))
             return;
     }
     if (outcome == LOG_FAILED)
@@ -254,7 +243,7 @@ static void read_logs(struct replay *replay)
 static void run(struct replay *replay)
 {
     read_logs(replay);
-    if (replay->old_version || (replay->options->golden && !move_golden_results(replay)))
+    if (replay->options->golden && !move_golden_results(replay))
         return;
     match_all(&replay->match);
     if (replay->options->golden)

@@ -37,7 +37,7 @@ struct replay_options {
 };
 
 /* Replays, and adds to tally[log_count]. Returns false if a file cannot be opened, read or written,
- * a log was recorded by an old version, or the bus cannot be opened; this was reported on stderr.
+ * or the bus cannot be opened; this was reported on stderr.
  * Also returns false if no service answers or a signal arrived: see tally[0].bus.end. Answers until
  * then are counted. For one thread at a time. */
 bool replay_run(const struct replay_options *options, const struct replay_sink *sink,

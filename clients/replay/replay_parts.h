@@ -29,7 +29,6 @@ struct replay {
     struct definitions *definitions;
     struct hasher *hasher;
     bool started, failed;
-    int old_version; /* that recorded a message; 0: none did */
 
     struct match match;          /* queries, and the results to compare with */
     struct match golden_queries; /* of a golden log; while it is read, its results too */

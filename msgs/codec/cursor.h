@@ -8,7 +8,6 @@
 #define CURSOR_H
 
 #include "big_endian.h"
-#include "wire_type.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -81,7 +80,7 @@ static inline struct cursor cursor_begin(const void *bytes, uint32_t size, int64
         cursor_fail(&cursor, "size out of range");
     const int64_t found = cursor_int64(&cursor);
     if (!cursor.error && found != fingerprint)
-        cursor_fail(&cursor, wire_type_mismatch(found));
+        cursor_fail(&cursor, "another message type, or another version of it");
     return cursor;
 }
 

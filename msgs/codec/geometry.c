@@ -36,6 +36,11 @@ int geometry_code(int shape, bool by_vertices)
                              : FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON_VERTICES;
 }
 
+bool geometry_with_radius(int code)
+{
+    return geometry_shape(code - FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS).shape != 0;
+}
+
 int64_t geometry_number_count(int dim, int code, int32_t vertices)
 {
     const int shape = geometry_shape(code).shape, components = fmb_component_count(dim, shape);

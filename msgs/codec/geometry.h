@@ -16,6 +16,10 @@ struct geometry_shape {
 struct geometry_shape geometry_shape(int code);
 int geometry_code(int shape, bool by_vertices);
 
+/* Whether the code is that of a known shape with a radius, which is not supported yet:
+ * geometry_shape() knows no such shape. */
+bool geometry_with_radius(int code);
+
 /* Number of numbers of a frame in a body: of origin or centre, and components; or of its vertices.
  * code: a value of placement_t.shapes. vertices: the number of them; read for hulls only, since
  * that of other shapes is fixed. 0: there is no such shape in this dimension. */

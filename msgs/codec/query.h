@@ -79,8 +79,8 @@ enum {
 };
 
 /* A placement, and the body that it places. If there are more numbers than an array holds, the
- * first are stored; the counts of orientation and velocity are those of the message, 0 or more and
- * not checked. */
+ * first are stored; the counts of orientation, velocity and end are those of the message, 0 or more
+ * and not checked. */
 struct query_placement {
     /* Its body is NULL: the code that decides the pair sets it in a copy. The name, any bytes, is
      * in the message or in memory of the writer; NULL is the same as "". */
@@ -138,10 +138,10 @@ struct pair_result {
 
 /* ---- Scenes ---- */
 
-/* Most valid placements, and most pairs listed, of a query of QUERY_BYTES_MAX: a placement takes 77
+/* Most valid placements, and most pairs listed, of a query of QUERY_BYTES_MAX: a placement takes 81
  * bytes (2D, by handle, at rest) or more, a pair 4. */
 enum {
-    QUERY_PLACEMENT_BYTES_MIN = 77,
+    QUERY_PLACEMENT_BYTES_MIN = 81,
     QUERY_PLACEMENTS_MAX = QUERY_BYTES_MAX / QUERY_PLACEMENT_BYTES_MIN,
     QUERY_PAIRS_MAX = QUERY_BYTES_MAX / 4
 };
@@ -199,13 +199,14 @@ struct scene_result {
     int32_t handle_count;  /* placements sent with frames and an id */
     int32_t verdict_count; /* number of named pairs, or of answered pairs from first_pair on */
     int32_t contact_count; /* verdicts that touch or overlap */
-    bool names_pairs, has_times, has_boxes, has_gaps;
+    bool names_pairs, has_times, has_boxes, has_points, has_gaps;
     unsigned unknown[QUERY_PLACEMENTS_MAX];     /* [unknown_count] indices, ascending */
     struct handle handle[QUERY_PLACEMENTS_MAX]; /* [handle_count], in the order of placements */
     unsigned char verdict[QUERY_VERDICTS_MAX];
     unsigned pair[QUERY_NAMED_MAX][2]; /* [verdict_count][a, b], if names_pairs */
     double times[QUERY_NUMBERS_MAX];   /* [contact][first, last], seconds, if has_times */
     double boxes[QUERY_NUMBERS_MAX];   /* [contact][lower, upper][dim], if has_boxes */
+    double points[QUERY_NUMBERS_MAX];  /* [contact][time, coordinates], if has_points */
     /* [verdict_count], if has_gaps. A separated pair may have no gap: bounds NaN, the rest 0. */
     struct fmb_gap gap[QUERY_GAPS_MAX];
 };
@@ -236,23 +237,26 @@ static inline bool query_same_gap(const struct fmb_gap *a, const struct fmb_gap 
            memcmp(a->frame, b->frame, sizeof a->frame) == 0;
 }
 
-/* Returns the parts of two answers that differ, a sum of FMB_WANT_TIMES, BOX and GAP: one answer
- * lacks the part, or its numbers are not equal bit for bit (0 and -0 differ). */
+/* Returns the parts of two answers that differ, a sum of FMB_WANT_TIMES, BOX, POINT and GAP: one
+ * answer lacks the part, or its numbers are not equal bit for bit (0 and -0 differ). */
 static inline unsigned query_parts_that_differ(const struct fmb_answer *a,
                                                const struct fmb_answer *b)
 {
     /* Flags and padding take 8 bytes in each struct. A new number changes a size. */
-    static_assert(sizeof *a == 8 + sizeof a->contact + sizeof a->box + sizeof a->gap &&
-                      sizeof a->gap == 8 + sizeof a->gap.bounds + sizeof a->gap.direction +
-                                           sizeof a->gap.time + sizeof a->gap.witness +
-                                           sizeof a->gap.frame,
-                  "a number that is not compared");
+    static_assert(
+        sizeof *a == 8 + sizeof a->contact + sizeof a->box + sizeof a->point + sizeof a->gap &&
+            sizeof a->gap == 8 + sizeof a->gap.bounds + sizeof a->gap.direction +
+                                 sizeof a->gap.time + sizeof a->gap.witness + sizeof a->gap.frame,
+        "a number that is not compared");
     const bool times = a->has_contact != b->has_contact ||
                        (a->has_contact && memcmp(a->contact, b->contact, sizeof a->contact) != 0);
     const bool box =
         a->has_box != b->has_box || (a->has_box && memcmp(a->box, b->box, sizeof a->box) != 0);
     const bool gap = a->has_gap != b->has_gap || (a->has_gap && !query_same_gap(&a->gap, &b->gap));
-    return (times ? FMB_WANT_TIMES : 0) | (box ? FMB_WANT_BOX : 0) | (gap ? FMB_WANT_GAP : 0);
+    const bool point = a->has_point != b->has_point ||
+                       (a->has_point && memcmp(a->point, b->point, sizeof a->point) != 0);
+    return (times ? FMB_WANT_TIMES : 0) | (box ? FMB_WANT_BOX : 0) | (gap ? FMB_WANT_GAP : 0) |
+           (point ? FMB_WANT_POINT : 0);
 }
 
 static inline bool query_same_answer(const struct fmb_answer *a, const struct fmb_answer *b)

@@ -102,13 +102,13 @@ size_t wire_write_names(const struct names *names, unsigned char out[QUERY_BYTES
 /* Sizes of messages without their lists. A pair query adds its placements; a scene query its
  * label, its placements, and WIRE_PAIR_BYTES for each pair listed or ignored. A scene result (size
  * with the longest detail) adds 2 bytes for each unknown body, 16 for each handle, 1 for each
- * verdict, 4 for each named pair, 8 for each number of times and boxes, and wire_gap_bytes() for
- * each gap. A definition adds 16 bytes and the encoded body for each; names 21 bytes and the name
- * for each body. A pair result always fits. */
+ * verdict, 4 for each named pair, 8 for each number of times, boxes and points, and
+ * wire_gap_bytes() for each gap. A definition adds 16 bytes and the encoded body for each; names 21
+ * bytes and the name for each body. A pair result always fits. */
 enum {
     WIRE_PAIR_QUERY_BYTES = 8 + 3 * 8 + 8 + 2 * 4,
     WIRE_SCENE_QUERY_BYTES = 8 + 3 * 8 + 4 + 1 + 8 + 2 * 4 + 8 + 3 * 4 + 3 * 4,
-    WIRE_SCENE_RESULT_BYTES = 8 + 4 * 8 + 4 + 4 + QUERY_TEXT_MAX + 4 + 11 * 4 + 8,
+    WIRE_SCENE_RESULT_BYTES = 8 + 4 * 8 + 4 + 4 + QUERY_TEXT_MAX + 4 + 12 * 4 + 8,
     WIRE_DEFINITION_BYTES = 8 + 4 * 8 + 4 + 4 + QUERY_TEXT_MAX + 8 + 4,
     WIRE_NAMES_BYTES = 8 + 8 + 4,
     WIRE_PAIR_BYTES = 4

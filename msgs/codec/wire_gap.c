@@ -21,6 +21,14 @@ static void take_numbers(const unsigned char *bytes, double *out, int count)
         out[i] = cursor_double_at(bytes + 8 * i);
 }
 
+bool wire_is_point(const double *point, int count)
+{
+    bool good = point[0] >= 0;
+    for (int i = 0; i < count; i++)
+        good = good && isfinite(point[i]);
+    return good;
+}
+
 /* Whether the time is finite and 0 or more, and the points are not NaN. */
 static bool is_witness(const double *witness, int count)
 {

@@ -11,7 +11,7 @@
 #include <string.h>
 
 /* The fixed fields of a result, the most numbers that its lists can have, and its texts. */
-static_assert(8 + 6 * 8 + 2 * HANDLE_BYTES + 11 * 4 + 2 * 2 + 8 * (5 + 5 * FMB_DIM_MAX) +
+static_assert(8 + 6 * 8 + 2 * HANDLE_BYTES + 12 * 4 + 2 * 2 + 8 * (6 + 6 * FMB_DIM_MAX) +
                       QUERY_TEXT_MAX + FMB_CERTIFICATE_MAX + 8 <=
                   QUERY_BYTES_MAX,
               "a result is one datagram");
@@ -24,7 +24,8 @@ static_assert((int) FMB_SEPARATED == FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED &&
 static_assert((int) FMB_WANT_BOX == FMB_MSGS_PAIR_QUERY_T_WANT_BOX &&
                   (int) FMB_WANT_CERTIFICATE == FMB_MSGS_PAIR_QUERY_T_WANT_CERTIFICATE &&
                   (int) FMB_WANT_TIMES == FMB_MSGS_PAIR_QUERY_T_WANT_TIMES &&
-                  (int) FMB_WANT_GAP == FMB_MSGS_PAIR_QUERY_T_WANT_GAP,
+                  (int) FMB_WANT_GAP == FMB_MSGS_PAIR_QUERY_T_WANT_GAP &&
+                  (int) FMB_WANT_POINT == FMB_MSGS_PAIR_QUERY_T_WANT_POINT,
               "wants");
 #define X(name, number, text) \
     static_assert((int) FMB_##name == FMB_MSGS_PAIR_RESULT_T_STATUS_##name, text);
@@ -83,6 +84,19 @@ static void read_contact(struct cursor *cursor, struct fmb_answer *out)
         cursor_fail(cursor, "a contact interval that is no interval");
 }
 
+/* Reads a point of a contact, of the dimension of the box if there is one. */
+static void read_point(struct cursor *cursor, struct pair_result *out)
+{
+    const int32_t count = cursor_doubles(cursor, out->answer.point, 1 + FMB_DIM_MAX);
+    out->answer.has_point = count > 0;
+    if (count == 0)
+        return;
+    if ((count != 3 && count != 4) || (out->dim > 0 && count != 1 + out->dim) ||
+        out->answer.verdict < FMB_TOUCHING || !wire_is_point(out->answer.point, count))
+        cursor_fail(cursor, "a point that is no point of a contact");
+    out->dim = count - 1;
+}
+
 static void read_gap(struct cursor *cursor, struct pair_result *out)
 {
     const unsigned char verdict = (unsigned char) out->answer.verdict;
@@ -90,7 +104,7 @@ static void read_gap(struct cursor *cursor, struct pair_result *out)
                                    &out->names_frames, &out->answer.gap);
     out->answer.has_gap = dim > 0;
     if (dim > 0 && ((out->dim > 0 && out->dim != dim) || !query_has_gap(&out->answer.gap)))
-        cursor_fail(cursor, "no gap, or one of another dimension than the box");
+        cursor_fail(cursor, "no gap, or one of another dimension");
     out->dim = dim > 0 ? dim : out->dim;
 }
 
@@ -129,6 +143,7 @@ const char *wire_read_pair_result(const void *bytes, uint32_t size, struct pair_
     out->answer.verdict = (enum fmb_verdict) verdict;
     read_contact(&cursor, &out->answer);
     read_box(&cursor, out);
+    read_point(&cursor, out);
     read_gap(&cursor, out);
     read_certificate(&cursor, out);
     out->compute_ns = cursor_int64(&cursor);
@@ -171,6 +186,7 @@ size_t wire_write_pair_result(const struct pair_result *result, unsigned char ou
     writer_int32(&writer, (int32_t) result->answer.verdict);
     writer_doubles(&writer, result->answer.contact, result->answer.has_contact ? 2 : 0);
     write_box(&writer, result);
+    writer_doubles(&writer, result->answer.point, result->answer.has_point ? 1 + result->dim : 0);
     wire_write_gaps(&writer, &result->answer.gap, 1, result->answer.gap.has_witness,
                     result->names_frames, result->answer.has_gap ? result->dim : 0);
     wire_write_text(&writer, result->certificate);

@@ -74,6 +74,17 @@ static void read_numbers(struct cursor *cursor, int32_t count, double *out, int 
         out[i] = i < count ? cursor_double_at(bytes + 8 * i) : 0;
 }
 
+/* The position, as many numbers as the body has dimensions, then the orientation. */
+static void read_end(struct cursor *cursor, struct query_placement *out)
+{
+    struct fmb_placement *placed = &out->placed;
+    const int32_t count = cursor_count(cursor, 8), dim = out->body.dim > 0 ? out->body.dim : 0;
+    const int32_t turned = count > dim ? count - dim : 0;
+    placed->end_count = count;
+    read_numbers(cursor, count - turned, placed->end_position, FMB_DIM_MAX);
+    read_numbers(cursor, turned, placed->end_orientation, QUERY_ORIENTATION_MAX);
+}
+
 void wire_read_placement(struct cursor *cursor, struct query_placement *out)
 {
     struct cursor local = *cursor;
@@ -90,6 +101,7 @@ void wire_read_placement(struct cursor *cursor, struct query_placement *out)
     read_numbers(&local, placed->orientation_count, placed->orientation, QUERY_ORIENTATION_MAX);
     out->velocity_count = cursor_count(&local, 8);
     read_numbers(&local, out->velocity_count, placed->velocity, FMB_DIM_MAX);
+    read_end(&local, out);
     *cursor = local;
 }
 
@@ -104,12 +116,17 @@ void wire_write_placement(struct writer *writer, const struct query_placement *p
         writer_double(writer, placed->position[axis]);
     writer_doubles(writer, placed->orientation, placed->orientation_count);
     writer_doubles(writer, placed->velocity, placement->velocity_count);
+    writer_int32(writer, placed->end_count);
+    for (int i = 0; i < placed->end_count; i++)
+        writer_double(writer, i < placement->body.dim
+                                  ? placed->end_position[i]
+                                  : placed->end_orientation[i - placement->body.dim]);
 }
 
 size_t wire_placement_bytes(const struct query_placement *placement)
 {
     const size_t numbers = (size_t) (placement->body.dim + placement->placed.orientation_count +
-                                     placement->velocity_count);
+                                     placement->velocity_count + placement->placed.end_count);
     return 8 + HANDLE_BYTES + placement->body.size + 4 + wire_text_bytes(placement->placed.name) +
-           1 + 8 + 4 + 4 + sizeof(double) * numbers;
+           1 + 8 + 3 * 4 + sizeof(double) * numbers;
 }

@@ -52,6 +52,9 @@ static inline void wire_write_text(struct writer *writer, const char *text)
     writer_string(writer, text ? text : "");
 }
 
+/* Whether a time, 0 or more, and count - 1 coordinates are finite. */
+bool wire_is_point(const double *point, int count);
+
 /* Reads the lists of gaps: bounds, directions, witnesses, frames. There is a gap for each of count
  * verdicts, or for none; witnesses is the number of gaps with a witness in the encoding (it depends
  * on the message type, and is 0 or count). *names_frames: whether frames are present. Returns the

@@ -16,7 +16,7 @@ static_assert((int) FMB_PAIRS_LISTED == FMB_MSGS_SCENE_QUERY_T_PAIRS_LISTED &&
               "which pairs");
 
 /* Least bytes of a placement: one of dimension 0, which is read but not valid. */
-enum { PLACEMENT_BYTES_LEAST = 61 };
+enum { PLACEMENT_BYTES_LEAST = 65 };
 
 /* ---- Queries ---- */
 
@@ -161,6 +161,20 @@ static void read_boxes(struct cursor *cursor, struct scene_result *out)
     out->has_boxes = count > 0;
 }
 
+static void read_points(struct cursor *cursor, struct scene_result *out)
+{
+    const int32_t count = cursor_doubles(cursor, out->points, QUERY_NUMBERS_MAX);
+    const int dim = count == 0 ? out->dim : count == 3 * out->contact_count ? 2 : 3;
+    if ((count != 0 && count != (1 + dim) * out->contact_count) || count > QUERY_NUMBERS_MAX ||
+        (out->dim > 0 && dim != out->dim))
+        cursor_fail(cursor, "a point of 3 or 4 numbers for each contact, or none");
+    for (int32_t i = 0; i < count && !cursor->error; i += 1 + dim)
+        if (!wire_is_point(&out->points[i], 1 + dim))
+            cursor_fail(cursor, "a point that is no point");
+    out->dim = dim;
+    out->has_points = count > 0;
+}
+
 static void read_gaps(struct cursor *cursor, struct scene_result *out)
 {
     const int32_t count = out->verdict_count;
@@ -168,7 +182,7 @@ static void read_gaps(struct cursor *cursor, struct scene_result *out)
         wire_read_gaps(cursor, out->verdict, count, count, &out->names_frames, out->gap);
     out->has_gaps = dim > 0;
     if (dim > 0 && out->dim > 0 && dim != out->dim)
-        cursor_fail(cursor, "gaps of another dimension than the boxes");
+        cursor_fail(cursor, "gaps of another dimension than boxes or points");
     out->dim = dim > 0 ? dim : out->dim;
     for (int32_t i = 0; i < count && out->names_pairs && !cursor->error; i++)
         if (out->verdict[i] < FMB_TOUCHING && !(out->has_gaps && query_has_gap(&out->gap[i])))
@@ -196,6 +210,7 @@ const char *wire_read_scene_result(const void *bytes, uint32_t size, struct scen
     read_pairs(&cursor, out);
     read_times(&cursor, out);
     read_boxes(&cursor, out);
+    read_points(&cursor, out);
     read_gaps(&cursor, out);
     out->compute_ns = cursor_int64(&cursor);
     return cursor_end(&cursor);
@@ -218,6 +233,9 @@ void wire_scene_answer(const struct scene_result *result, int32_t k, int32_t *co
     out->has_box = result->has_boxes;
     for (int i = 0; i < 2 * dim && result->has_boxes; i++)
         out->box[i / dim][i % dim] = result->boxes[2 * dim * n + i];
+    out->has_point = result->has_points;
+    if (result->has_points)
+        memcpy(out->point, &result->points[(1 + dim) * n], (size_t) (1 + dim) * sizeof *out->point);
 }
 
 size_t wire_write_scene_result(const struct scene_result *result,
@@ -237,6 +255,7 @@ size_t wire_write_scene_result(const struct scene_result *result,
     writer_indices(&writer, result->pair[0], result->names_pairs ? 2 * result->verdict_count : 0);
     writer_doubles(&writer, result->times, result->has_times ? 2 * contacts : 0);
     writer_doubles(&writer, result->boxes, result->has_boxes ? 2 * result->dim * contacts : 0);
+    writer_doubles(&writer, result->points, result->has_points ? (1 + result->dim) * contacts : 0);
     wire_write_gaps(&writer, result->gap, result->verdict_count, result->verdict_count,
                     result->names_frames, result->has_gaps ? result->dim : 0);
     writer_int64(&writer, result->compute_ns);

@@ -46,7 +46,7 @@ void body_copy(const struct body_view *view, const struct fmb_body *body, void *
 
 /* The bodies that one query defines. The memory suffices for all bodies that one message can
  * define. Of a message, a frame takes at least GEOMETRY_FRAME_BYTES_MIN = 21 bytes, and the
- * placement of a body 77 more, BODY_BYTES(n) being less than the size of n + 1 frames. A hull of n
+ * placement of a body 81 more, BODY_BYTES(n) being less than the size of n + 1 frames. A hull of n
  * vertices takes 5 + 8 dim n bytes of it, and 8 (dim 8 ceil(n / 8) + ceil(n / 2)) bytes of memory:
  * at most 6.9 times as many, less than BODY_HULL_BYTES for each 21. */
 enum { BODY_HULL_BYTES = 21 * 7 };

@@ -55,6 +55,9 @@ static bool check_finite(struct check_context *context, const char *list, const 
     return true;
 }
 
+/* Of what messages can say and this version does not do. */
+static const char *const not_supported = "not supported yet";
+
 /* ---- Frames ---- */
 
 static double number_at(const struct geometry_reader *reader, int32_t i)
@@ -79,7 +82,9 @@ static bool check_shapes(struct check_context *context, const struct body_view *
         const int32_t vertices = counted ? vertices_at(&reader, counts) : 1;
         const int64_t count = geometry_number_count(body->dim, code, vertices);
         if (shape.shape == 0)
-            return check_refuse_at(context, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
+            return geometry_with_radius(code)
+                       ? check_refuse_at(context, FMB_NOT_SUPPORTED, "shapes", i, not_supported)
+                       : check_refuse_at(context, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
         if (count == 0 && shape.shape != FMB_HULL)
             return check_refuse(context, FMB_WRONG_DIMENSION, "dim", "a face is in 3D");
         if (counted && (count == 0 || count != (int64_t) body->dim * vertices))
@@ -175,7 +180,9 @@ bool check_placement(struct check_context *context, const struct query_placement
            check_orientation(context, dim, placed) &&
            (placement->velocity_count == 0 ||
             (check_count(context, "num_velocity", dim, placement->velocity_count) &&
-             check_finite(context, "velocity", placed->velocity, dim)));
+             check_finite(context, "velocity", placed->velocity, dim))) &&
+           (placed->end_count == 0 ||
+            check_refuse(context, FMB_NOT_SUPPORTED, "num_end", not_supported));
 }
 
 /* ---- Queries ---- */

@@ -89,7 +89,7 @@ enum { FMB_DIM_MAX = 3, FMB_COMPONENTS_MAX = FMB_DIM_MAX * FMB_DIM_MAX };
     X(UNKNOWN_METHOD, 11, "unknown method")                                                \
     X(UNKNOWN_WANT, 12, "wants what this version does not give")                           \
     X(CANNOT_DECIDE, 13, "this method cannot decide this pair")                            \
-    X(NOT_SUPPORTED, 14, "not supported here; fmb_body_make_hull() makes hulls")           \
+    X(NOT_SUPPORTED, 14, "not supported yet; hulls are made by fmb_body_make_hull()")      \
     X(BAD_PAIR, 15, "indices that name no two frames")                                     \
     X(BAD_ORIENTATION, 16, "an orientation that is no rotation")                           \
     X(BAD_SIZE, 17, "a box of negative size")                                              \
@@ -135,8 +135,11 @@ struct fmb_frame {
     bool flat;            /* the volume is exactly zero, as of every face; no inverse. Of a hull:
                              unless doubles prove that it is not */
     bool inverted;        /* the inverse is present: not flat, and all its entries are finite */
-    double radius;        /* bounds the distance of each vertex from the origin of the body; may be
+    double reach;         /* bounds the distance of each vertex from the origin of the body; may be
                              infinite */
+    /* The frame is the set of points within this distance of the shape. Not supported yet: 0, and a
+     * body or a placement of a frame with another radius is refused with FMB_NOT_SUPPORTED. */
+    double radius;
     /* Of a box it is rounded: the exact origin is centre - size / 2. Of a hull, origin and
      * components are those of its box in body coordinates, sizes rounded up: a cuboid that contains
      * it. */
@@ -224,7 +227,7 @@ size_t fmb_frame_numbers(const struct fmb_frame *frame, bool *by_vertices, doubl
 /* A rigid body: one or more frames in body coordinates. Filled by one of the functions below only;
  * it may be copied. A body of one frame may contain it; other frames belong to the caller. */
 struct fmb_body {
-    double radius; /* bounds the distance of each vertex from the origin; may be infinite */
+    double reach; /* bounds the distance of each vertex from the origin; may be infinite */
     double box[2][FMB_DIM_MAX]; /* [lower, upper][axis]: contains all frames */
     int dim;
     unsigned frame_count;
@@ -252,8 +255,8 @@ enum fmb_status fmb_body_make_hull(int dim, const double *vertices, size_t count
  *
  * In:  frames  [count], of one dimension; not copied: they must outlive the body and all its copies
  * Out: *out    unspecified if the status is not FMB_OK
- * Returns FMB_OK, FMB_NO_FRAMES, FMB_DIMENSIONS_DIFFER, or FMB_OVER_LIMIT (more than
- * FMB_FRAMES_MAX). */
+ * Returns FMB_OK, FMB_NO_FRAMES, FMB_DIMENSIONS_DIFFER, FMB_OVER_LIMIT (more than FMB_FRAMES_MAX),
+ * or FMB_NOT_SUPPORTED (a frame whose radius is not 0). */
 enum { FMB_FRAMES_MAX = 65536 };
 enum fmb_status fmb_body_make_frames(const struct fmb_frame *frames, size_t count,
                                      struct fmb_body *out);
@@ -266,6 +269,10 @@ struct fmb_placement {
     double velocity[FMB_DIM_MAX]; /* per second */
     double orientation[4];        /* w, x, y, z (2D: w, z); of any length but 0 */
     int orientation_count;        /* 0: not rotated; 4 (2D: 2) */
+    /* The pose at the end of the window, in place of a velocity. Not supported yet: end_count is 0,
+     * and these are not read. */
+    double end_position[FMB_DIM_MAX], end_orientation[4];
+    int end_count; /* 0: none; otherwise the dimension plus orientation_count */
     /* Not 0: in a scene, placements of one group are not tested against each other. */
     int64_t group;
     /* Not read by the engine; the client library and its messages use them. */
@@ -281,6 +288,7 @@ struct fmb_placement {
  *   FMB_NOT_FINITE       position or velocity
  *   FMB_WRONG_COUNT      orientation_count is neither 0 nor that of the dimension; or it is 0 and
  *                        orientation is not all 0
+ *   FMB_NOT_SUPPORTED    end_count is not 0, or the body has a frame whose radius is not 0
  *   FMB_BAD_ORIENTATION  the orientation is all 0, is not finite, or has a component other than 0
  *                        whose magnitude is less than 2^-200 of the largest */
 enum fmb_status fmb_placement_check(const struct fmb_placement *placement);
@@ -293,7 +301,8 @@ enum fmb_want {
     FMB_WANT_BOX = 1,
     FMB_WANT_CERTIFICATE = 2,
     FMB_WANT_TIMES = 4, /* contact intervals; fmb_decide() always gives them */
-    FMB_WANT_GAP = 8    /* only of methods that are certain */
+    FMB_WANT_GAP = 8,   /* only of methods that are certain */
+    FMB_WANT_POINT = 16 /* not supported yet: FMB_UNKNOWN_WANT */
 };
 
 /* An enclosure of the gap, the signed distance of two bodies over the window:
@@ -360,9 +369,11 @@ struct fmb_answer {
     bool has_contact;           /* touching or overlapping */
     bool has_box;               /* wanted, touching or overlapping, and the method gives boxes */
     bool has_gap;               /* wanted, and the method is certain */
+    bool has_point;             /* wanted, touching or overlapping; not supported yet */
     double contact[2];          /* first and last time of contact, seconds, within [0, T] */
     double box[2][FMB_DIM_MAX]; /* [lower, upper][axis], world coordinates; axes beyond dim are 0 */
-    struct fmb_gap gap;         /* all 0 if not has_gap */
+    double point[1 + FMB_DIM_MAX]; /* a time, seconds, and a point of both bodies at that time */
+    struct fmb_gap gap;            /* all 0 if not has_gap */
 };
 
 /* A method of deciding. All methods are in one table, in the order of fmb_method_at(). */

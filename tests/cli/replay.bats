@@ -664,16 +664,6 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     done
 }
 
-@test "a log of an old version is recognised" {
-    for version in 1 2; do
-        edit --old "$version" 4 arm.log
-        run --separate-stderr "$FMB" replay spoiled.log
-        ended 2
-        [[ $stderr == "fmb: spoiled.log: recorded by version $version, "* ]]
-        [ "$(wc -l <<< "$stderr")" = 1 ]
-    done
-}
-
 @test "reports are printed without control characters" {
     edit --certify 2 "$(printf '%%s%%n\e[31m')" blast.log || true # what the reader refuses
     replay spoiled.log

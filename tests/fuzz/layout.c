@@ -77,7 +77,7 @@ static void skip_fields(struct walk *walk, const char *layout)
             for (size_t i = 0; i < walk->count && walk->good; i++)
                 skip_string(walk);
             break;
-        case 'P': skip_fields(walk, "lhdBILslDLL"); break;
+        case 'P': skip_fields(walk, "lhdBILslDLLL"); break;
         case 'M': skip_structs(walk, "P"); break;
         case 'O': skip_structs(walk, "hiBIL"); break;
         default: walk->good = false; break;

@@ -18,9 +18,9 @@
 #include <stdint.h>
 
 #define LAYOUT_PAIR_QUERY "lllliiPP"
-#define LAYOUT_PAIR_RESULT "llllllhhisiiLLLLLHsl"
+#define LAYOUT_PAIR_RESULT "llllllhhisiiLLLLLLHsl"
 #define LAYOUT_SCENE_QUERY "lllsliiliiiMHH"
-#define LAYOUT_SCENE_RESULT "llllisiHBiBHLLLLLHl"
+#define LAYOUT_SCENE_RESULT "llllisiHBiBHLLLLLLHl"
 #define LAYOUT_DEFINITION_QUERY "llllB"
 #define LAYOUT_DEFINITION "llllislO"
 #define LAYOUT_STATUS "llscSC"

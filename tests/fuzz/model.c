@@ -196,7 +196,8 @@ bool model_good_placement(const struct query_placement *placement)
            good_name(placement->placed.name) && are_finite(placement->placed.position, dim) &&
            good_orientation(placement) &&
            (placement->velocity_count == 0 ||
-            (placement->velocity_count == dim && are_finite(placement->placed.velocity, dim)));
+            (placement->velocity_count == dim && are_finite(placement->placed.velocity, dim))) &&
+           placement->placed.end_count == 0; /* not supported yet */
 }
 
 bool model_good_request(int64_t client_id, int64_t sequence_number, double duration, int32_t method,

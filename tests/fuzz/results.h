@@ -14,6 +14,9 @@ struct results_gap {
 /* Whether all numbers are NaN, with the bits that stand for no number. */
 bool results_are_none(const double *numbers, int count);
 
+/* Whether a time, 0 or more, and coordinates are finite. */
+bool results_is_point(const double *point, int count);
+
 /* Whether they are what wire.h describes, and what the reader made of them. */
 bool results_is_gap(int verdict, int dim, const struct results_gap *gap);
 bool results_same_gap(const struct fmb_gap *read, int dim, const struct results_gap *gap);

@@ -34,6 +34,23 @@ static bool is_box(const fmb_msgs_pair_result_t *message)
     return good;
 }
 
+bool results_is_point(const double *point, int count)
+{
+    bool good = point[0] >= 0;
+    for (int i = 0; i < count && good; i++)
+        good = fabs(point[i]) <= DBL_MAX;
+    return good;
+}
+
+/* Of the dimension of the box, if there is one. */
+static bool is_point(const fmb_msgs_pair_result_t *message)
+{
+    const int32_t count = message->num_point;
+    return count == 0 ||
+           ((message->num_box ? count == 1 + message->num_box / 2 : count == 3 || count == 4) &&
+            results_is_point(message->point, count));
+}
+
 bool results_are_none(const double *numbers, int count)
 {
     bool none = true;
@@ -92,6 +109,7 @@ static bool is_gap(const fmb_msgs_pair_result_t *message)
         return dim == 0 && message->num_witness == 0 && message->num_gap_frames == 0;
     return message->num_gap == 2 && (dim == 2 || dim == 3) &&
            (message->num_box == 0 || message->num_box == 2 * dim) &&
+           (message->num_point == 0 || message->num_point == 1 + dim) &&
            message->num_witness == (gap.witness ? 1 + 2 * dim : 0) &&
            (message->num_gap_frames == 0 || message->num_gap_frames == 2) &&
            results_is_gap(message->verdict, dim, &gap);
@@ -113,8 +131,8 @@ static bool is_result(const fmb_msgs_pair_result_t *message)
     const bool answered = message->status == FMB_MSGS_PAIR_RESULT_T_STATUS_OK;
     const bool meet = message->verdict >= FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING;
     return (answered ? is_verdict(message->verdict) : message->verdict == 0) &&
-           (meet ? is_contact(message) && is_box(message)
-                 : message->num_contact == 0 && message->num_box == 0) &&
+           (meet ? is_contact(message) && is_box(message) && is_point(message)
+                 : message->num_contact == 0 && message->num_box == 0 && message->num_point == 0) &&
            is_gap(message) && is_certificate(message);
 }
 
@@ -134,7 +152,9 @@ static bool same_ids(const struct pair_result *result, const fmb_msgs_pair_resul
 static bool same_answer(const struct pair_result *result, const fmb_msgs_pair_result_t *message)
 {
     const struct fmb_answer *answer = &result->answer;
-    const int dim = message->num_box > 0 ? message->num_box / 2 : message->num_direction;
+    const int dim = message->num_box > 0     ? message->num_box / 2
+                    : message->num_point > 0 ? message->num_point - 1
+                                             : message->num_direction;
     const struct results_gap gap = gap_of(message);
     bool same = (int) answer->verdict == message->verdict && result->dim == dim &&
                 answer->has_gap == (message->num_gap > 0) &&
@@ -142,6 +162,8 @@ static bool same_answer(const struct pair_result *result, const fmb_msgs_pair_re
                 (!answer->has_gap || results_same_gap(&answer->gap, dim, &gap)) &&
                 answer->has_contact == (message->num_contact > 0) &&
                 answer->has_box == (message->num_box > 0) &&
+                answer->has_point == (message->num_point > 0) &&
+                same_doubles(answer->point, message->point, (size_t) message->num_point) &&
                 same_doubles(answer->contact, message->contact, (size_t) message->num_contact);
     for (int side = 0; side < 2 && same && answer->has_box; side++)
         same = same_doubles(answer->box[side], message->box + side * dim, (size_t) dim);

@@ -42,12 +42,24 @@ enum { SEPARATED = FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED };
 
 static int32_t dim_of_gaps(const fmb_msgs_scene_result_t *message)
 {
-    return message->num_gaps > 0 ? message->num_directions / message->num_verdicts : 0;
+    return message->num_gaps > 0 && message->num_verdicts > 0
+               ? message->num_directions / message->num_verdicts
+               : 0;
 }
 
 static int32_t dim_of_boxes(const fmb_msgs_scene_result_t *message)
 {
     return message->num_boxes == 0 ? 0 : message->num_boxes == 4 * contacts_of(message) ? 2 : 3;
+}
+
+/* Of boxes, points or gaps. */
+static int32_t dim_of(const fmb_msgs_scene_result_t *message)
+{
+    if (message->num_boxes > 0)
+        return dim_of_boxes(message);
+    if (message->num_points > 0)
+        return message->num_points == 3 * contacts_of(message) ? 2 : 3;
+    return dim_of_gaps(message);
 }
 
 static struct results_gap gap_of(const fmb_msgs_scene_result_t *message, int32_t i)
@@ -82,7 +94,7 @@ static bool are_gaps(const fmb_msgs_scene_result_t *message)
     bool good = (dim == 2 || dim == 3) && message->num_directions == dim * verdicts &&
                 message->num_witnesses == points * verdicts &&
                 (message->num_gap_frames == 0 || message->num_gap_frames == 2 * verdicts) &&
-                (message->num_boxes == 0 || dim_of_boxes(message) == dim);
+                dim_of(message) == dim;
     for (int32_t i = 0; i < verdicts && good; i++) {
         const struct results_gap gap = gap_of(message, i);
         const double *witness = message->witnesses + points * i;
@@ -147,6 +159,15 @@ static bool are_boxes(const fmb_msgs_scene_result_t *message, int64_t contacts)
     return good;
 }
 
+static bool are_points(const fmb_msgs_scene_result_t *message, int64_t contacts)
+{
+    const int64_t count = message->num_points, each = 1 + dim_of(message);
+    bool good = count == 0 || (count == each * contacts && count <= QUERY_NUMBERS_MAX);
+    for (int64_t i = 0; i < count && good; i += each)
+        good = results_is_point(message->points + i, (int) each);
+    return good;
+}
+
 static bool is_result(const fmb_msgs_scene_result_t *message)
 {
     const int64_t contacts = contacts_of(message);
@@ -155,7 +176,8 @@ static bool is_result(const fmb_msgs_scene_result_t *message)
            message->num_handle_bytes % HANDLE_BYTES == 0 &&
            message->num_handle_bytes / HANDLE_BYTES <= QUERY_PLACEMENTS_MAX &&
            are_verdicts(message) && are_names(message) && are_times(message, contacts) &&
-           are_boxes(message, contacts) && are_gaps(message) && are_named(message);
+           are_boxes(message, contacts) && are_points(message, contacts) && are_gaps(message) &&
+           are_named(message);
 }
 
 /* ---- The same fields ---- */
@@ -196,9 +218,10 @@ static bool same_contacts(const struct scene_result *result, const fmb_msgs_scen
     const int64_t contacts = contacts_of(message);
     return result->contact_count == contacts && result->has_times == (message->num_times > 0) &&
            same_doubles(result->times, message->times, (size_t) message->num_times) &&
-           result->has_boxes == (boxes > 0) &&
-           result->dim == (boxes > 0 ? dim_of_boxes(message) : dim_of_gaps(message)) &&
-           same_doubles(result->boxes, message->boxes, (size_t) boxes);
+           result->has_boxes == (boxes > 0) && result->dim == dim_of(message) &&
+           result->has_points == (message->num_points > 0) &&
+           same_doubles(result->boxes, message->boxes, (size_t) boxes) &&
+           same_doubles(result->points, message->points, (size_t) message->num_points);
 }
 
 static bool same_gaps(const struct scene_result *result, const fmb_msgs_scene_result_t *message)

@@ -94,6 +94,7 @@ bool same_placement(const struct query_placement *placement, const fmb_msgs_plac
                                   .counts = message->counts,
                                   .num_numbers = message->num_numbers,
                                   .numbers = message->numbers};
+    const int32_t placed = message->num_end < message->dim ? message->num_end : message->dim;
     return placement->placed.id == message->body_id &&
            memcmp(placement->body.handle.bytes, message->handle, sizeof message->handle) == 0 &&
            placement->body.dim == message->dim &&
@@ -104,19 +105,24 @@ bool same_placement(const struct query_placement *placement, const fmb_msgs_plac
            placement->placed.group == message->group &&
            placement->placed.orientation_count == message->num_orientation &&
            placement->velocity_count == message->num_velocity &&
+           placement->placed.end_count == message->num_end &&
            same_geometry(&placement->body, &body) &&
            same_numbers(placement->placed.position, FMB_DIM_MAX, message->position, message->dim) &&
            same_numbers(placement->placed.orientation, QUERY_ORIENTATION_MAX, message->orientation,
                         message->num_orientation) &&
            same_numbers(placement->placed.velocity, FMB_DIM_MAX, message->velocity,
-                        message->num_velocity);
+                        message->num_velocity) &&
+           same_numbers(placement->placed.end_position, FMB_DIM_MAX, message->end, placed) &&
+           same_numbers(placement->placed.end_orientation, QUERY_ORIENTATION_MAX,
+                        message->end + placed, message->num_end - placed);
 }
 
 bool same_can_hold(const struct query_placement *placement)
 {
     return placement->body.dim <= FMB_DIM_MAX &&
            placement->placed.orientation_count <= QUERY_ORIENTATION_MAX &&
-           placement->velocity_count <= FMB_DIM_MAX;
+           placement->velocity_count <= FMB_DIM_MAX &&
+           placement->placed.end_count <= placement->body.dim + QUERY_ORIENTATION_MAX;
 }
 
 bool same_handles(const struct handle *handle, int32_t count, int32_t max, const uint8_t *bytes,

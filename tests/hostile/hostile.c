@@ -23,15 +23,15 @@
  * the last dimension says, f a count and its placements, o a count and its bodies, s a string, p
  * one that is printable, v a count, as many strings, and as many numbers of 8 bytes; w the same
  * with two such lists of numbers, which come first. */
-#define PLACEMENT "llldbmnslcnn"
+#define PLACEMENT "llldbmnslcnnn"
 #define BODY "lldbmn"
 static const struct {
     const char *type, *layout;
 } layouts[] = {
     {"pair_query", "llllii" PLACEMENT PLACEMENT},
-    {"pair_result", "llllllllllisiinnnnnhpl"},
+    {"pair_result", "llllllllllisiinnnnnnhpl"},
     {"scene_query", "lllsliiliiifhh"},
-    {"scene_result", "llllisihbibhnnnnnhl"},
+    {"scene_result", "llllisihbibhnnnnnnhl"},
     {"definition_query", "llllb"},
     {"definition", "llllislo"},
     {"status", "llsv"},
@@ -58,7 +58,7 @@ static double cube[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 static fmb_msgs_placement_t good_placement(void)
 {
     static char name[] = "b\xc3\xb6x";
-    static double position[3] = {0.5, -1, 2}, velocity[3] = {1, 0, -0.25};
+    static double position[3] = {0.5, -1, 2}, velocity[3] = {1, 0, -0.25}, end[3] = {3, 2, 1};
     return (fmb_msgs_placement_t){.body_id = 7,
                                   .dim = 3,
                                   .num_frames = 1,
@@ -68,7 +68,9 @@ static fmb_msgs_placement_t good_placement(void)
                                   .name = name,
                                   .position = position,
                                   .num_velocity = 3,
-                                  .velocity = velocity};
+                                  .velocity = velocity,
+                                  .num_end = 0,
+                                  .end = end};
 }
 
 static size_t good_pair_query(unsigned char *out)
@@ -83,6 +85,7 @@ static size_t good_pair_result(unsigned char *out)
 {
     char detail[] = "", certificate[] = "touching normal (1 0 0) at 0 a 1 b 0";
     double contact[2] = {0, 0.5}, box[6] = {0, 0, 0, 1, 1, 1}, gap[2] = {0}, direction[3] = {0, 1};
+    double point[4] = {0.5, 1, 1, 0};
     fmb_msgs_pair_result_t result = {.client_id = 2,
                                      .detail = detail,
                                      .method = FMB_MSGS_PAIR_QUERY_T_METHOD_EXACT,
@@ -91,6 +94,8 @@ static size_t good_pair_result(unsigned char *out)
                                      .contact = contact,
                                      .num_box = 6,
                                      .box = box,
+                                     .num_point = 4,
+                                     .point = point,
                                      .num_gap = 2,
                                      .gap = gap,
                                      .num_direction = 3,
@@ -108,6 +113,7 @@ static size_t good_scene_query(unsigned char *out)
     memset(placements[2].handle, 0xa5, sizeof placements[2].handle);
     placements[2].name = none;
     placements[2].num_frames = placements[2].num_numbers = placements[2].num_velocity = 0;
+    placements[2].num_end = 3;
     fmb_msgs_scene_query_t query = {.client_id = 2,
                                     .sequence_number = 3,
                                     .label = label,
@@ -136,6 +142,7 @@ static size_t good_scene_result(unsigned char *out)
     for (int i = 0; i < 21; i++)
         witnesses[i] = i < 14 ? NAN : i - 14;
     double times[4] = {0, 0.5, 0.25, 0.25}, boxes[12] = {0, 0, 0, 1, 1, 1, -1, 2, 0, 1, 2, 3};
+    double points[8] = {0, 1, 1, 1, 0.25, -1, 3, 0};
     fmb_msgs_scene_result_t result = {.client_id = 2,
                                       .detail = detail,
                                       .method = FMB_MSGS_PAIR_QUERY_T_METHOD_CERTIFIED,
@@ -150,6 +157,8 @@ static size_t good_scene_result(unsigned char *out)
                                       .times = times,
                                       .num_boxes = 12,
                                       .boxes = boxes,
+                                      .num_points = 8,
+                                      .points = points,
                                       .num_gaps = 6,
                                       .gaps = gaps,
                                       .num_directions = 9,

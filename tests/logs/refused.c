@@ -497,12 +497,12 @@ static void query_spoilt_scenes(struct refusing *refusing)
 
 /* ---- Too much ---- */
 
-/* A scene of so many placements of nothing: each is 61 bytes of 0, of no body and no dimension, but
+/* A scene of so many placements of nothing: each is 65 bytes of 0, of no body and no dimension, but
  * for the length of its empty name. After the count of placements come those of indices and of
  * ignored ones, which are 0. */
 static void query_placements_of_nothing(struct refusing *refusing, int32_t placements)
 {
-    enum { PLACEMENT = 61, NAME = 40, COUNTS = 12, LONGEST = QUERY_BYTES_MAX + 1000 };
+    enum { PLACEMENT = 65, NAME = 40, COUNTS = 12, LONGEST = QUERY_BYTES_MAX + 1000 };
     static unsigned char bytes[COUNTS + LONGEST];
     set_good_scene(refusing);
     nothing_placed(&refusing->scene);

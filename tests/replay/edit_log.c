@@ -30,7 +30,6 @@ static const char usage[] =
     "  --utime N          result N does not echo the utime of its query\n"
     "  --clock N US       from event N on the clock of the log is late by so much\n"
     "  --version N        event N is of another message type\n"
-    "  --old V N          event N is a pair query of version V, 1 or 2\n"
     "  --shorten N        event N lacks its last byte\n"
     "  --garbage N        before event N stands what is no event\n"
     "  --prefix P         channels begin with P\n"
@@ -421,14 +420,6 @@ static void version(char **argument)
     event[number(is_any, argument[0])].data[7] ^= 1;
 }
 
-static void old(char **argument)
-{
-    static const unsigned char fingerprint[2][8] = {
-        {0x17, 0x04, 0x23, 0x1d, 0xbc, 0x74, 0xa7, 0x2c},
-        {0xf9, 0xda, 0xdc, 0x6e, 0x7e, 0x54, 0xda, 0x5d}};
-    memcpy(event[number(is_any, argument[1])].data, fingerprint[argument[0][0] == '2'], 8);
-}
-
 static void shorten(char **argument)
 {
     event[number(is_any, argument[0])].size--;
@@ -468,18 +459,29 @@ static const struct edit {
     int arguments;
     void (*make)(char **argument);
 } edits[] = {
-    {"--flip", 1, flip},         {"--nudge", 2, nudge},
-    {"--busy", 1, busy},         {"--unknown", 1, unknown},
-    {"--certify", 2, certify},   {"--utime", 1, utime},
-    {"--drop", 1, drop},         {"--drop-query", 1, drop_query},
-    {"--repeat", 1, repeat},     {"--delay", 1, delay},
-    {"--last", 0, last},         {"--first", 0, first},
-    {"--clock", 2, set_clock},   {"--version", 1, version},
-    {"--shorten", 1, shorten},   {"--garbage", 1, garbage},
-    {"--prefix", 1, prefix},     {"--rename", 2, rename_channel},
-    {"--events", 2, some},       {"--refuse", 2, refuse},
-    {"--old", 2, old},           {"--repeat-query", 1, repeat_query},
-    {"--client", 1, add_client}, {"--sequence", 1, add_sequence},
+    {"--flip", 1, flip},
+    {"--nudge", 2, nudge},
+    {"--busy", 1, busy},
+    {"--unknown", 1, unknown},
+    {"--certify", 2, certify},
+    {"--utime", 1, utime},
+    {"--drop", 1, drop},
+    {"--drop-query", 1, drop_query},
+    {"--repeat", 1, repeat},
+    {"--delay", 1, delay},
+    {"--last", 0, last},
+    {"--first", 0, first},
+    {"--clock", 2, set_clock},
+    {"--version", 1, version},
+    {"--shorten", 1, shorten},
+    {"--garbage", 1, garbage},
+    {"--prefix", 1, prefix},
+    {"--rename", 2, rename_channel},
+    {"--events", 2, some},
+    {"--refuse", 2, refuse},
+    {"--repeat-query", 1, repeat_query},
+    {"--client", 1, add_client},
+    {"--sequence", 1, add_sequence},
 };
 
 static const struct edit *find_edit(const char *name)

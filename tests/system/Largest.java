@@ -19,8 +19,8 @@ import lcm.lcm.LCMEncodable;
 
 public final class Largest
 {
-    /* 86 bytes, 182 for each cube and 4 for each pair. */
-    private static final int CUBES = 349, PAIRS = 74, LARGEST = 63900, TRIES = 20;
+    /* 86 bytes, 186 for each cube and 4 for each pair. */
+    private static final int CUBES = 343, PAIRS = 4, LARGEST = 63900, TRIES = 20;
     private static final long CLIENT_ID = 815;
 
     private static placement_t cube(int i)
@@ -35,7 +35,7 @@ public final class Largest
         cube.counts = new int[0];
         cube.name = "";
         cube.position = new double[] {0.75 * i, 0, 0};
-        cube.orientation = cube.velocity = new double[0];
+        cube.orientation = cube.velocity = cube.end = new double[0];
         return cube;
     }
 

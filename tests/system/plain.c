@@ -17,8 +17,8 @@
 #include "fmb_msgs_scene_query_t.h"
 #include "fmb_msgs_scene_result_t.h"
 
-/* A scene query of 86 bytes, 182 for each cube and 4 for each pair. */
-enum { CUBES = 349, PAIRS = 74, LARGEST = 86 + 182 * CUBES + 4 * PAIRS, TRIES = 20, WAIT_MS = 500 };
+/* A scene query of 86 bytes, 186 for each cube and 4 for each pair. */
+enum { CUBES = 343, PAIRS = 4, LARGEST = 86 + 186 * CUBES + 4 * PAIRS, TRIES = 20, WAIT_MS = 500 };
 enum { TOO_MANY = 601 };
 _Static_assert(LARGEST == 63900, "the largest query");
 

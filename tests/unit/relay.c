@@ -406,7 +406,7 @@ static void add(struct relay_truth *truth, const unsigned pair[2], const struct 
 }
 
 /* Whether the pair is surely farther apart than the margin: no vertex is as far from a body's
- * position as its radius. */
+ * position as its reach. */
 static bool are_far(const struct fmb_placement *a, const struct fmb_placement *b,
                     const struct fmb_scene *scene)
 {
@@ -416,7 +416,7 @@ static bool are_far(const struct fmb_placement *a, const struct fmb_placement *b
         speed += fabs(a->velocity[axis] - b->velocity[axis]);
     }
     return sqrt(distance) >
-           a->body->radius + b->body->radius + scene->duration * speed + scene->margin + 0.001;
+           a->body->reach + b->body->reach + scene->duration * speed + scene->margin + 0.001;
 }
 
 static bool is_ignored(const struct fmb_scene *scene, unsigned a, unsigned b)

@@ -30,11 +30,14 @@ static inline void sample_pose(int i, struct query_placement *out)
     }
     for (int k = 0; k < out->placed.orientation_count; k++)
         out->placed.orientation[k] = k ? 0x1p-600 * k : -i;
+    for (int k = 0; k < out->placed.end_count; k++)
+        *(k < out->body.dim ? &out->placed.end_position[k]
+                            : &out->placed.end_orientation[k - out->body.dim]) = k ? i + k : -0.0;
 }
 
 /* Number i: 2D and 3D, all shapes, whole and by handle, of one frame (0, 6 and others) and of
- * several, by components and by vertices, at rest and moving, with and without orientation, name
- * and group. bytes: SAMPLE_BYTES_MAX, or
+ * several, by components and by vertices, at rest and moving, with and without orientation, end,
+ * name and group. bytes: SAMPLE_BYTES_MAX, or
  * GEOMETRY_FRAME_BYTES_MAX for one frame; they must live as long as the placement. */
 static inline struct query_placement sample_placement(int i, unsigned char *bytes)
 {
@@ -48,6 +51,7 @@ static inline struct query_placement sample_placement(int i, unsigned char *byte
     struct plain_frame frames[SAMPLE_FRAMES] = {
         sample_frame(dim, shape), sample_frame(dim, FMB_BOX), sample_frame(dim, FMB_TETRAHEDRON)};
     out.placed.name = names[i % 5];
+    out.placed.end_count = i % 4 == 2 ? dim + out.placed.orientation_count : 0;
     out.placed.group = i % 4 == 3 ? INT64_MIN + i : 0;
     sample_pose(i, &out);
     for (int f = 0; f < SAMPLE_FRAMES; f++)
@@ -80,7 +84,12 @@ static inline bool same_placement(const struct query_placement *a, const struct 
            memcmp(a->placed.position, b->placed.position, sizeof a->placed.position) == 0 &&
            memcmp(a->placed.orientation, b->placed.orientation, sizeof a->placed.orientation) ==
                0 &&
-           memcmp(a->placed.velocity, b->placed.velocity, sizeof a->placed.velocity) == 0;
+           memcmp(a->placed.velocity, b->placed.velocity, sizeof a->placed.velocity) == 0 &&
+           a->placed.end_count == b->placed.end_count &&
+           memcmp(a->placed.end_position, b->placed.end_position, sizeof a->placed.end_position) ==
+               0 &&
+           memcmp(a->placed.end_orientation, b->placed.end_orientation,
+                  sizeof a->placed.end_orientation) == 0;
 }
 
 #endif

@@ -8,6 +8,8 @@
 #include "wire.h"
 #include "writer.h"
 
+#include "fmb_msgs_placement_t.h"
+
 #include <math.h>
 
 static struct answerer *answerer;
@@ -572,7 +574,8 @@ static void four_dimensions(void **state)
 static void unknown_shapes_and_dimensions_are_refused(void **state)
 {
     for (int shape = 0; shape < 256; shape++) {
-        if (shape >= FMB_CUBOID && shape <= 7)
+        const int core = shape & ~FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS;
+        if (shape < 32 && core >= FMB_CUBOID && core <= 7)
             continue;
         struct pair_query query = cubes();
         bytes[0][8] = (unsigned char) shape;
@@ -822,6 +825,22 @@ static void bad_ids_are_refused(void **state)
     assert_int_equal(answer_to(&query).status, FMB_OK);
 }
 
+/* What messages can say, but this version does not do. */
+static void ends_and_radii_are_not_supported(void **state)
+{
+    struct pair_query query;
+    for (int count = 1; count <= 7; count++) {
+        query = cubes();
+        query.placement[0].placed.end_count = count;
+        expect(&query, FMB_NOT_SUPPORTED, "a.num_end: not supported yet");
+    }
+    for (int code = 1; code <= 7; code++) {
+        query = cubes();
+        set_geometry(&query, 1, 3, 1, FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS + code, 13);
+        expect(&query, FMB_NOT_SUPPORTED, "b.shapes[0]: not supported yet");
+    }
+}
+
 static void bad_requests_are_refused(void **state)
 {
     const double durations[] = {-1, NAN, INFINITY, -5e-324};
@@ -834,8 +853,10 @@ static void bad_requests_are_refused(void **state)
     query.method = 77;
     expect(&query, FMB_UNKNOWN_METHOD, "method: unknown method");
     query = cubes();
-    query.want = FMB_WANT_BOX | 1 << 20;
-    expect(&query, FMB_UNKNOWN_WANT, "want: wants what this version does not give");
+    for (int bit = 4; bit < 31; bit++) { /* FMB_WANT_POINT and all that have no name */
+        query.want = FMB_WANT_BOX | 1 << bit;
+        expect(&query, FMB_UNKNOWN_WANT, "want: wants what this version does not give");
+    }
     query.want = FMB_WANT_GAP;
     for (query.method = 2; query.method <= 3; query.method++)
         expect(&query, FMB_CANNOT_DECIDE, "method: gives no gaps");
@@ -987,6 +1008,7 @@ int main(void)
                                         tear_down),
         TEST(a_body_larger_than_the_cache_is_answered),
         TEST(bad_ids_are_refused),
+        TEST(ends_and_radii_are_not_supported),
         TEST(bad_requests_are_refused),
         TEST(refused_without_being_read),
         TEST(certificates_are_given_on_request),

@@ -502,6 +502,8 @@ static void wrong_scenes_are_refused(void **state)
     scene.label = NULL;
     frame[2].orientation_count = 3;
     wrong(client, &scene, FMB_WRONG_COUNT, "placements[2]: ");
+    frame[2] = good[2], frame[2].end_count = 3;
+    wrong(client, &scene, FMB_NOT_SUPPORTED, "placements[2]: ");
     frame[2] = good[2], frame[0].velocity[1] = NAN;
     wrong(client, &scene, FMB_NOT_FINITE, "placements[0]: ");
     frame[0] = good[0], frame[0].id = INT64_C(1) << 53;
@@ -523,7 +525,7 @@ static void wrong_scenes_are_refused(void **state)
     wrong(client, &scene, FMB_BAD_PAIR, "split: ");
     scene.which = (enum fmb_pairs) 3;
     wrong(client, &scene, FMB_BAD_PAIR, "which: ");
-    scene.which = FMB_PAIRS_ALL, scene.want = 16;
+    scene.which = FMB_PAIRS_ALL, scene.want = FMB_WANT_POINT;
     wrong(client, &scene, FMB_UNKNOWN_WANT, "want: ");
     scene.want = 0, scene.duration = -1;
     wrong(client, &scene, FMB_BAD_DURATION, "duration: ");
@@ -871,7 +873,7 @@ static const struct fmb_body *body_of(int count, int cuboids, int unique)
 /* Bytes of a message that a body in 3D takes which is at rest and not turned. */
 static int bytes_of(int geometry)
 {
-    return 8 + HANDLE_BYTES + geometry + 4 + 1 + 8 + 3 * 8 + 4 + 4;
+    return 8 + HANDLE_BYTES + geometry + 4 + 1 + 8 + 3 * 8 + 3 * 4;
 }
 
 /* A listed pair in a query that is as large as a datagram, and a byte less, and a few more: then

@@ -316,7 +316,7 @@ static void bodies_of_one_frame_hold_it(void **state)
     assert_int_equal(copy.dim, 3);
     assert_ptr_equal(fmb_body_frame(&copy, 0), &copy.one);
     assert_memory_equal(&copy.one, &frame, sizeof frame);
-    assert_true(copy.radius == frame.radius);
+    assert_true(copy.reach == frame.reach);
     struct fmb_frame gone = frame;
     assert_int_equal(fmb_body_make_frames(&gone, 1, &again), FMB_OK);
     memset(&gone, 0xa5, sizeof gone);
@@ -324,7 +324,7 @@ static void bodies_of_one_frame_hold_it(void **state)
 }
 
 /* The farthest vertex, (4, 8, 12), is 14.97 away; the one opposite, (-2, -4, -6), is nearer. */
-static void no_vertex_is_beyond_the_radius(void **state)
+static void no_vertex_is_beyond_the_reach(void **state)
 {
     static const double near[6] = {0, 0, 0, 1, 1, 1}, far[6] = {1, 2, 3, 6, 12, 18};
     const struct fmb_frame frames[3] = {make_box(3, near, 6), make_box(3, far, 6),
@@ -333,9 +333,9 @@ static void no_vertex_is_beyond_the_radius(void **state)
     assert_int_equal(fmb_body_make_frames(frames, 3, &body), FMB_OK);
     assert_int_equal(body.frame_count, 3);
     assert_ptr_equal(fmb_body_frame(&body, 1), &frames[1]);
-    assert_true(frames[0].radius >= sqrt(0.75) && frames[1].radius >= sqrt(16 + 64 + 144));
-    assert_true(frames[0].radius < 0.8661 && frames[1].radius < 14.967);
-    assert_true(body.radius == frames[1].radius);
+    assert_true(frames[0].reach >= sqrt(0.75) && frames[1].reach >= sqrt(16 + 64 + 144));
+    assert_true(frames[0].reach < 0.8661 && frames[1].reach < 14.967);
+    assert_true(body.reach == frames[1].reach);
 }
 
 /* The three edges at the origin enclose a volume of `thickness`; the first and edge `second` are
@@ -370,7 +370,7 @@ static void radii_of_large_frames_are_rounded_up(void **state)
     static const double number[9] = {0x1p600, 0, 0, 0x1p547, 0, 0, 0x1p547, 0, 0};
     struct fmb_frame frame;
     assert_int_equal(fmb_frame_make(3, FMB_FACE, number, 9, &frame), FMB_OK);
-    assert_true(frame.radius > 0x1p600);
+    assert_true(frame.reach > 0x1p600);
 }
 
 static void bodies_that_are_refused(void **state)
@@ -430,6 +430,24 @@ static void placements_without_a_body_are_refused(void **state)
     expect_status(&(struct fmb_placement){.body = NULL}, FMB_NO_FRAMES);
     expect_status(&(struct fmb_placement){.body = &never_made}, FMB_NO_FRAMES);
     expect_status(&(struct fmb_placement){.body = &plane_body}, FMB_OK);
+}
+
+/* What the structs can say, but this version does not do. */
+static void ends_and_radii_are_not_supported(void **state)
+{
+    static const double radii[] = {0x1p-1074, -1, INFINITY, NAN};
+    plane_body = make_body(2, unit2);
+    for (int count = -1; count <= 7; count++)
+        expect_status(&(struct fmb_placement){.body = &plane_body, .end_count = count},
+                      count == 0 ? FMB_OK : FMB_NOT_SUPPORTED);
+    for (size_t i = 0; i < COUNT(radii); i++) {
+        struct fmb_body rounded = plane_body, made;
+        rounded.one.radius = radii[i];
+        expect_status(&(struct fmb_placement){.body = &rounded}, FMB_NOT_SUPPORTED);
+        const struct fmb_frame frames[2] = {plane_body.one, rounded.one};
+        assert_int_equal(fmb_body_make_frames(&frames[1], 1, &made), FMB_NOT_SUPPORTED);
+        assert_int_equal(fmb_body_make_frames(frames, 2, &made), FMB_NOT_SUPPORTED);
+    }
 }
 
 static void placements_that_are_not_finite_are_refused(void **state)
@@ -583,11 +601,12 @@ int main(void)
         cmocka_unit_test(frames_give_the_numbers_they_were_made_of),
         cmocka_unit_test(vertices_are_recovered_exactly),
         cmocka_unit_test(bodies_of_one_frame_hold_it),
-        cmocka_unit_test(no_vertex_is_beyond_the_radius),
+        cmocka_unit_test(no_vertex_is_beyond_the_reach),
         cmocka_unit_test(thin_frames_are_not_sturdy),
         cmocka_unit_test(radii_of_large_frames_are_rounded_up),
         cmocka_unit_test(bodies_that_are_refused),
         cmocka_unit_test(placements_without_a_body_are_refused),
+        cmocka_unit_test(ends_and_radii_are_not_supported),
         cmocka_unit_test(placements_that_are_not_finite_are_refused),
         cmocka_unit_test(counts_of_orientations),
         cmocka_unit_test(orientations_by_hand),

@@ -555,6 +555,9 @@ static void bad_scenes(void **state)
     draw_good(FMB_PAIRS_ALL);
     scene->want |= FMB_WANT_CERTIFICATE;
     expect_refusal(scene, FMB_UNKNOWN_WANT, "want: ");
+    draw_good(FMB_PAIRS_ALL);
+    scene->want |= FMB_WANT_POINT;
+    expect_refusal(scene, FMB_UNKNOWN_WANT, "want: ");
     static const double margins[] = {-0x1p-1074, INFINITY, NAN};
     for (int i = 0; i < 3; i++) {
         draw_good(FMB_PAIRS_ALL);

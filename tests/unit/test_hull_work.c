@@ -227,7 +227,7 @@ static void few_vertices_of_huge_hulls_get_a_value_in_integers(void **state)
         for (int f = 0; f < 2; f++)
             make_large(&draw, turn % 2 ? HUGE_BALL : HUGE_PRISM, range, &large[f]);
         put(&draw, turn % 4 ? ANYWHERE : CONCENTRIC, huge_unit, large);
-        assert_true(isinf(large[0].body.radius));
+        assert_true(isinf(large[0].body.reach));
         steps_of_scene(large, &steps);
         printf("# %ld coordinates in %d steps\n", exact_terms - before, steps);
         assert_true(exact_terms - before <= (long) steps * 128 * FMB_DIM_MAX);

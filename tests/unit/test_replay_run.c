@@ -566,21 +566,6 @@ static void negative_times_are_not_counted(void **state)
     replay_report_free(&report);
 }
 
-/* Logs of version 1 begin with other fingerprints. */
-static void a_log_of_version_1_is_recognised(void **state)
-{
-    static const unsigned char bytes[64] = {0x17, 0x04, 0x23, 0x1d, 0xbc, 0x74, 0xa7, 0x2c};
-    const struct replay_options with = options();
-    log_both(0, pair(1, whole(3, 2, 0), whole(2, 1, 2)));
-    log_draft_event(&recorded, WIRE_PAIR_QUERY, 1, bytes, sizeof bytes);
-    log_both(2, pair(2, whole(3, 2, 0), whole(2, 1, 2)));
-    open_log();
-    struct replay_report report = replay_report_of(&with);
-    assert_false(report.good);
-    assert_int_equal(report.unreadable, 0);
-    replay_report_free(&report);
-}
-
 /* ---- Scenes of two recordings ---- */
 
 /* Bodies of one edge at these positions, with the ids from 1 on; and the result of the answerer, or
@@ -1090,7 +1075,6 @@ int main(void)
         TEST(an_unreadable_result_is_counted),
         TEST(queries_beyond_all_limits_replay_as_refused),
         TEST(negative_times_are_not_counted),
-        TEST(a_log_of_version_1_is_recognised),
         TEST(a_golden_of_fewer_bodies_is_different),
         TEST(a_golden_of_more_bodies_is_different),
         TEST(a_golden_of_the_same_bodies_is_the_same),

@@ -168,7 +168,7 @@ static void lists_beyond_the_capacity_keep_the_first(void **state)
 /* ---- Results ---- */
 
 /* What results have besides verdicts. */
-enum { NAMES = 1, TIMES = 2, BOXES = 4, GAPS = 8, FRAMES = 16, FORMS = 32 };
+enum { NAMES = 1, TIMES = 2, BOXES = 4, GAPS = 8, FRAMES = 16, POINTS = 32, FORMS = 64 };
 
 /* A gap that goes with the verdict. Every seventh of separated pairs that are not named has none.
  */
@@ -199,6 +199,7 @@ static void set_gap(int dim, int32_t i)
 static void set_result(int dim, int32_t handles, int32_t verdicts, int form)
 {
     const bool names = form & NAMES, times = form & TIMES, boxes = form & BOXES;
+    const bool points = form & POINTS;
     result.utime = 1;
     result.client_id = 2;
     result.sequence_number = 3;
@@ -218,8 +219,8 @@ static void set_result(int dim, int32_t handles, int32_t verdicts, int form)
         result.contact_count += result.verdict[i] >= 2;
         if (!names)
             continue;
-        result.pair[i][0] = (unsigned) i / 700;
-        result.pair[i][1] = 100 + (unsigned) i % 700;
+        result.pair[i][0] = (unsigned) i / 600;
+        result.pair[i][1] = 100 + (unsigned) i % 600;
     }
     for (int32_t i = 0; i < result.contact_count && times; i++) {
         result.times[2 * i] = i % 3 ? 0.25 : 0;
@@ -227,14 +228,17 @@ static void set_result(int dim, int32_t handles, int32_t verdicts, int form)
     }
     for (int32_t i = 0; i < 2 * dim * result.contact_count && boxes; i++)
         result.boxes[i] = i / dim % 2 ? (i % 5 ? i : HUGE_VAL) : -1.5;
+    for (int32_t i = 0; i < (1 + dim) * result.contact_count && points; i++)
+        result.points[i] = i % (1 + dim) ? -0.75 * i : i;
     result.names_pairs = names && verdicts > 0;
     result.has_times = times && result.contact_count > 0;
     result.has_boxes = boxes && result.contact_count > 0;
+    result.has_points = points && result.contact_count > 0;
     result.has_gaps = form & GAPS && verdicts > 0;
     result.names_frames = result.has_gaps && form & FRAMES;
     for (int32_t i = 0; i < verdicts && result.has_gaps; i++)
         set_gap(dim, i);
-    result.dim = result.has_boxes || result.has_gaps ? dim : 0;
+    result.dim = result.has_boxes || result.has_points || result.has_gaps ? dim : 0;
 }
 
 static size_t bound_of_result(void)
@@ -245,6 +249,7 @@ static size_t bound_of_result(void)
            (result.names_pairs ? WIRE_PAIR_BYTES * verdicts : 0) +
            (result.has_times ? 16 * contacts : 0) +
            (result.has_boxes ? 16 * (size_t) result.dim * contacts : 0) +
+           (result.has_points ? 8 * (size_t) (1 + result.dim) * contacts : 0) +
            (result.has_gaps ? (size_t) wire_gap_bytes(result.dim, result.names_frames) * verdicts
                             : 0);
 }
@@ -270,6 +275,10 @@ static void assert_same_result(void)
     assert_int_equal(result.names_pairs, result_read.names_pairs);
     assert_int_equal(result.has_times, result_read.has_times);
     assert_int_equal(result.has_boxes, result_read.has_boxes);
+    assert_int_equal(result.has_points, result_read.has_points);
+    if (result.has_points)
+        assert_memory_equal(result.points, result_read.points,
+                            (1 + (size_t) result.dim) * contacts * sizeof(double));
     assert_int_equal(result.has_gaps, result_read.has_gaps);
     for (size_t i = 0; i < verdicts && result.has_gaps; i++)
         assert_true(query_same_gap(&result.gap[i], &result_read.gap[i]));
@@ -341,6 +350,12 @@ static void inconsistent_results_are_refused(void **state)
     set_result(3, 0, 2, NAMES | GAPS);
     result.gap[0].time = INFINITY;
     expect_refused();
+    for (int i = 0; i < 2; i++) {
+        set_result(3, 0, 4, BOXES | POINTS);
+        write_and_read();
+        result.points[i] = i ? NAN : -0.5; /* times are not negative */
+        expect_refused();
+    }
     memset(&result, 0, sizeof result);
     result.status = FMB_BUSY;
     result.handle_count = 1;
@@ -363,10 +378,11 @@ static void inconsistent_results_are_refused(void **state)
     }
 }
 
-/* Only the padding, 1 byte after the flags and 7 after has_witness, does not count. */
+/* Only the padding, 7 bytes after has_witness, does not count. */
 static void answers_that_differ_in_any_byte_are_not_the_same(void **state)
 {
-    const struct fmb_answer full = {.has_contact = true, .has_box = true, .has_gap = true};
+    const struct fmb_answer full = {
+        .has_contact = true, .has_box = true, .has_gap = true, .has_point = true};
     size_t same = 0;
     for (size_t i = 0; i < sizeof full; i++) {
         struct fmb_answer other;
@@ -374,7 +390,7 @@ static void answers_that_differ_in_any_byte_are_not_the_same(void **state)
         ((unsigned char *) &other)[i] ^= 1;
         same += query_same_answer(&full, &other);
     }
-    assert_int_equal(same, 8);
+    assert_int_equal(same, 7);
     assert_true(query_same_answer(&full, &full));
 }
 

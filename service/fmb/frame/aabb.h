@@ -23,7 +23,7 @@
  * The numbers of a hull are those of a cuboid that contains it. The box of a frame with an error is
  * expanded by the error. If the error or a coordinate is not finite, or a frame other than a hull
  * is rotated and not usable, the box is that of a ball: no point of the frame is farther than its
- * radius from the position of its body.
+ * reach from the position of its body.
  *
  * No shared state. */
 #ifndef FMB_AABB_H
@@ -149,7 +149,7 @@ INLINE void aabb_of_ball(const struct fmb_prepared *frame, struct aabb *out)
 {
     for (int axis = 0; axis < frame->frame->dim; axis++) {
         const double at = frame->placement->position[axis];
-        out->end[axis] = aabb_sum_down((lanes){at, -at}, lanes_of(-frame->frame->radius));
+        out->end[axis] = aabb_sum_down((lanes){at, -at}, lanes_of(-frame->frame->reach));
     }
 }
 

@@ -183,20 +183,20 @@ static double farthest_along(const struct fmb_frame *frame, int axis, double *su
     return low > high ? low : high;
 }
 
-/* Returns the radius of a frame: the distance of the farthest corner of its bounding box from the
+/* Returns the reach of a frame: the distance of the farthest corner of its bounding box from the
  * origin of the body. Where squares might overflow or underflow, it is the sum of the magnitudes of
  * all coordinates. The coordinate of a corner passes at most 4 roundings, and a remainder is at
  * most 2^-53 of its component: 2^-49 of the sum covers both. The factor covers the rounding of the
  * root, 2^-1000 underflow. */
-static double radius_of(const struct fmb_frame *frame)
+static double reach_of(const struct fmb_frame *frame)
 {
     double square = 0, sum = 0;
     for (int axis = 0; axis < frame->dim; axis++) {
         const double farthest = farthest_along(frame, axis, &sum);
         square += farthest * farthest;
     }
-    const double radius = sum > 0x1p-400 && sum < 0x1p500 ? sqrt(square) + 0x1p-49 * sum : sum;
-    return radius * PREPARED_MARGIN + 0x1p-1000;
+    const double reach = sum > 0x1p-400 && sum < 0x1p500 ? sqrt(square) + 0x1p-49 * sum : sum;
+    return reach * PREPARED_MARGIN + 0x1p-1000;
 }
 
 /* Returns the slack of a frame. The origin of a box, centre - size / 2, is off by at most half a
@@ -220,7 +220,7 @@ static double slack_of(const struct fmb_frame *frame)
 #define SINGLE_PRODUCT_ERROR (1.1 * 0x1p-53)
 
 /* Returns the turn_error of a frame: how far an inexact rotation moves a vertex v. The error of the
- * matrix moves it by MATRIX_ERROR |v|, |v| being at most the radius; the products of the matrix
+ * matrix moves it by MATRIX_ERROR |v|, |v| being at most the reach; the products of the matrix
  * with the origin and with the components are off by PRODUCT_ERROR of their lengths. The origin is
  * a vertex too. A component of a box has one coordinate, so that its product is rounded once only.
  */
@@ -230,7 +230,7 @@ static double turn_error_of(const struct fmb_frame *frame)
     for (int i = 0; i < frame->count; i++)
         lengths +=
             frame->in_range ? prepared_size(frame->summary, i) : vec3_sum(frame->component[i]);
-    const double of_origin = (MATRIX_ERROR + PRODUCT_ERROR) * frame->radius;
+    const double of_origin = (MATRIX_ERROR + PRODUCT_ERROR) * frame->reach;
     const double of_components =
         (frame_has_axes(frame) ? SINGLE_PRODUCT_ERROR : PRODUCT_ERROR) * lengths;
     return PREPARED_MARGIN * (of_origin + of_components) + 0x1p-1060; /* where products underflow */
@@ -242,7 +242,7 @@ static void complete(struct fmb_frame *frame)
     invert(frame);
     measure(frame);
     frame->summary = prepared_summary_of(frame);
-    frame->radius = radius_of(frame);
+    frame->reach = reach_of(frame);
     frame->slack = slack_of(frame);
     frame->turn_error = turn_error_of(frame);
 }
@@ -264,8 +264,8 @@ void frame_set_bounds(const double bounds[2][FMB_DIM_MAX], struct fmb_frame *out
     }
     measure(out);
     out->summary = prepared_summary_of(out);
-    out->radius = radius_of(out);
-    out->slack = out->radius < 0x1p1000 ? 0 : INFINITY;
+    out->reach = reach_of(out);
+    out->slack = out->reach < 0x1p1000 ? 0 : INFINITY;
     out->turn_error = turn_error_of(out);
 }
 
@@ -471,7 +471,7 @@ static enum fmb_status complete_body(enum fmb_status status, struct fmb_body *ou
     out->dim = out->one.dim;
     out->frame_count = 1;
     out->frames = NULL;
-    out->radius = out->one.radius;
+    out->reach = out->one.reach;
     set_body_box(out);
     return FMB_OK;
 }
@@ -503,7 +503,9 @@ enum fmb_status fmb_body_make_frames(const struct fmb_frame *frames, size_t coun
     for (size_t i = 0; i < count; i++) {
         if (frames[i].dim != frames[0].dim)
             return FMB_DIMENSIONS_DIFFER;
-        out->radius = fmax(out->radius, frames[i].radius);
+        if (frames[i].radius != 0)
+            return FMB_NOT_SUPPORTED;
+        out->reach = fmax(out->reach, frames[i].reach);
     }
     out->dim = frames[0].dim;
     out->frame_count = (unsigned) count;

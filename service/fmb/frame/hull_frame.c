@@ -132,7 +132,7 @@ static void get_vertex(const struct fmb_frame *frame, unsigned i, double out[FMB
 /* Returns a bound of the distances of the vertices from the origin. The sum of squares and its root
  * are off by less than 2^-50 of themselves. Where squares might overflow or underflow, it is the
  * largest sum of magnitudes. */
-static double radius_of(const struct fmb_frame *frame)
+static double reach_of(const struct fmb_frame *frame)
 {
     double square = 0, sum = 0;
     for (unsigned i = 0; i < frame->vertex_count; i++) {
@@ -141,8 +141,8 @@ static double radius_of(const struct fmb_frame *frame)
         square = fmax(square, vec3_dot(v, v));
         sum = fmax(sum, vec3_sum(v));
     }
-    const double radius = sum > 0x1p-400 && sum < 0x1p500 ? sqrt(square) : sum;
-    return radius * PREPARED_MARGIN + 0x1p-1000;
+    const double reach = sum > 0x1p-400 && sum < 0x1p500 ? sqrt(square) : sum;
+    return reach * PREPARED_MARGIN + 0x1p-1000;
 }
 
 /* Sets the box of the vertices, and the fields that are derived from it as from a cuboid. */
@@ -273,7 +273,7 @@ enum fmb_status fmb_frame_make_hull(int dim, const double *vertices, size_t coun
     store(vertices, count / (size_t) dim, memory, out);
     set_box(out);
     set_bits(out);
-    out->radius = radius_of(out);
+    out->reach = reach_of(out);
     choose_spanning(out);
     return FMB_OK;
 }

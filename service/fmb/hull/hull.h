@@ -17,7 +17,7 @@
  * hull_decision_step(): the same in steps hull_gap()           the gap; hull_gap_step(): the same
  * in steps
  *
- * Accuracy of doubles. Let u = 2^-53, r the radius of a frame: the distance of its vertices from
+ * Accuracy of doubles. Let u = 2^-53, r the reach of a frame: the distance of its vertices from
  * the origin of its body is at most r. Rounding a direction n to body coordinates, R^T n, or a
  * vertex to world coordinates, R v, is off by at most 18.3 u |n| or 18.3 u r (rotation.h; the
  * argument holds for the transposed matrix too). A product n . v is off by 3.01 u |n| r
@@ -51,9 +51,9 @@ struct hull_view {
     struct placed_frame placed;
     struct support_vertices vertices; /* body coordinates, rounded unless slack is 0 */
     struct rotation_matrix rotation;
-    double radius; /* at least the distance of each vertex from the origin of the body */
-    double slack;  /* bounds the distance of a stored vertex from the exact one */
-    bool solid;    /* certainly not flat */
+    double reach; /* at least the distance of each vertex from the origin of the body */
+    double slack; /* bounds the distance of a stored vertex from the exact one */
+    bool solid;   /* certainly not flat */
     double centre[FMB_DIM_MAX]; /* a point of the frame, rounded, body coordinates */
     double small[FMB_DIM_MAX * HULL_SMALL];
 };
@@ -88,7 +88,7 @@ double hull_support(const struct hull_pair *pair, const double n[FMB_DIM_MAX],
 void hull_point(const struct hull_pair *pair, struct hull_column column, double out[FMB_DIM_MAX]);
 
 /* Returns the vertex of a view with the greatest n . R v as computed, and that value. It is off by
- * at most |n| (22 u radius + slack). */
+ * at most |n| (22 u reach + slack). */
 struct support hull_view_support(const struct hull_view *view, const double n[FMB_DIM_MAX]);
 
 /* out := R v, a vertex without its position, in world coordinates. */

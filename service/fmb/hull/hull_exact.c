@@ -264,7 +264,7 @@ struct direction {
  * overflows. Each coordinate is truncated to 53 bits, off by at most 2^-52 of itself, and by
  * 2^-1074 if it is far smaller than the largest. The product with a vertex v is off by another 3.01
  * 2^-53 of the magnitudes of its terms (support.h). With |n| < 1/9, a value is off by less than
- * 5.01/9 2^-53 |v| + slack + 2^-1000. |v| is at most the radius, which may be infinite, and less
+ * 5.01/9 2^-53 |v| + slack + 2^-1000. |v| is at most the reach, which may be infinite, and less
  * than sqrt(3) 2^1024, since coordinates are finite: 2^972 bounds the first term then. Coordinates
  * of a frame that is not a hull are sums, which may overflow; its slack is then infinite, and no
  * vertex is left out. */
@@ -283,7 +283,7 @@ static void round_direction(struct hull_exact *e, const struct side *side, struc
         const long down = largest - exponent[axis];
         out->n[axis] = out->n[axis] == 0 || down > 1100 ? 0 : ldexp(out->n[axis], (int) -down - 4);
     }
-    const double rounding = fmin(0x1p-53 * side->view->radius, 0x1p972);
+    const double rounding = fmin(0x1p-53 * side->view->reach, 0x1p972);
     const double error = rounding + side->view->slack + 0x1p-1000;
     out->least = -INFINITY;
     for (unsigned k = 0; k < side->count; k++)

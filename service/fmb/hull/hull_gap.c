@@ -51,7 +51,7 @@ static void set_bounds(struct hull_gap *gap, double least)
     gap->far = gap->late = 0;
     for (int f = 0; f < 2; f++) {
         const double way = vec3_sum(gap->displacement[f]);
-        gap->far += vec3_sum(gap->position[f]) + way + pair->view[f].radius;
+        gap->far += vec3_sum(gap->position[f]) + way + pair->view[f].reach;
         gap->late += way;
     }
     gap->late *=

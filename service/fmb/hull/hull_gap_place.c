@@ -67,8 +67,8 @@ static double complete(struct hull_view *view, double *at)
         largest = fmax(largest, most);
         square += most * most;
     }
-    view->radius = sqrt(square) * (1 + 0x1p-40);
-    view->slack = 0x1p-51 * view->radius;
+    view->reach = sqrt(square) * (1 + 0x1p-40);
+    view->slack = 0x1p-51 * view->reach;
     return largest;
 }
 
@@ -115,7 +115,7 @@ static void set_pair(struct hull_gap_placed *placed)
         placed->least = fmax(placed->least, complete(view, placed->memory[f]));
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             placed->least = fmax(placed->least, 0.5 * fabs(placed->displacement[f][axis]));
-        reach += view->radius;
+        reach += view->reach;
         error += view->slack;
     }
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)

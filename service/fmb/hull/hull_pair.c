@@ -63,7 +63,7 @@ static void set_view(struct placed_frame placed, struct hull_view *out)
         set_hull(frame, out);
     else
         set_small(frame, out);
-    out->radius = frame->radius + out->slack;
+    out->reach = frame->reach + out->slack;
     rotation_of(placed.placement, frame->dim, &out->rotation);
 }
 
@@ -118,7 +118,7 @@ void hull_pair_set(const struct frame_pair *frames, struct hull_pair *out)
         out->drift[axis] = speed * frames->duration;
         out->drifts = out->drifts || (speed != 0 && frames->duration > 0);
     }
-    out->reach = ((out->view[0].radius + out->view[1].radius) +
+    out->reach = ((out->view[0].reach + out->view[1].reach) +
                   (vec3_sum(out->offset) + vec3_sum(out->drift)));
     out->error =
         32 * unit_roundoff * out->reach + (out->view[0].slack + out->view[1].slack) + 0x1p-1000;
