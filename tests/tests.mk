@@ -74,12 +74,12 @@ $(B)/checked $(B)/tests/test_checked: $(checked_kernels)
 # ---- Unit tests ----
 
 # The code that these test is compiled without sanitizers in all modes, so only the release build has them.
-bare_tests := test_bounds test_box_bounds test_checked test_kernels
+bare_tests := test_box_bounds test_checked test_kernels
 unit_names := $(filter-out $(if $(filter asan,$(MODE)),$(bare_tests)), \
 	$(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c)))
 unit_tests := $(unit_names:%=$(B)/tests/%)
-internal_tests := $(addprefix $(B)/tests/,test_bounds test_box_bounds test_engine_batch \
-	test_engine_pose test_engine_tree test_engine_triangle test_limbs test_outward test_kernels \
+internal_tests := $(addprefix $(B)/tests/,test_box_bounds test_engine_batch \
+	test_engine_tree test_engine_triangle test_limbs test_outward test_kernels \
 	test_placing test_engine_work test_hull_frame test_hull_verdict test_hull_bounds \
 	test_hull_gap test_hull_work test_hull_certificate test_checked)
 comma := ,
@@ -95,31 +95,19 @@ wraps_test_log_cut := $(call wraps,page_take)
 wraps_test_answer_scene := $(call wraps,malloc calloc realloc aligned_alloc)
 wraps_test_bus := $(call wraps,bus_socket_drops sched_yield)
 
-# slabs.c and the kernels of test_bounds are there three times: as they are, with fused operations
-# (which a compiler makes only where it optimises), and with a wrong bound. They are optimised in all
-# modes.
+# Kernels are optimised in all modes.
 compile_bare = $(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) $(sees)
-renamed = $(foreach name,$2,-D$(name)=$1_$(name))
-slabs_fused := -ffp-contract=fast $(if $(x86),-mfma)
-slabs_planted := -DSLABS_ROUNDING=0x1p-54
-$(O)/slabs/fused.o $(O)/slabs/planted.o: $(O)/slabs/%.o: service/fmb/filter/slabs.c $(O)/settings
+$(O)/slabs/kernel.o: tests/unit/slab_kernel.c $(O)/settings
 	@mkdir -p $(@D)
-	$(compile_bare) $(slabs_$*) \
-		$(call renamed,$*,slabs_prepare slabs_list slab_inequalities)
-$(O)/slabs/kernel.o $(O)/slabs/kernel_fused.o $(O)/slabs/kernel_planted.o: $(O)/slabs/%.o: \
-		tests/unit/slab_kernel.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile_bare) -DLANES=1 $(slabs_$(*:kernel_%=%)) $(if $(filter kernel_%,$*), \
-		$(call renamed,$(*:kernel_%=%),slab_kernel_list slab_kernel_axes slab_kernel_times))
+	$(compile_bare) -DLANES=1
 
 # Kernels of eight lanes in vectors that every machine has; and with bounds that are wrong.
 tested_kernels := $(patsubst %.c,$(O)/%.o,$(wildcard tests/unit/kernels/*.c))
 $(tested_kernels): flags += -O1
 $(tested_kernels): $(O)/%.o: %.c $(O)/settings
 	@mkdir -p $(@D)
-	$(compile_bare) $(if $(findstring verdicts,$@),-ffp-contract=fast)
-$(B)/tests/test_kernels: $(filter $(O)/tests/unit/kernels/verdicts_%,$(tested_kernels))
-$(B)/tests/test_box_bounds: $(filter $(O)/tests/unit/kernels/boxes_%,$(tested_kernels))
+	$(compile_bare) -ffp-contract=fast
+$(B)/tests/test_kernels: $(tested_kernels) $(O)/slabs/kernel.o
 
 # cmocka hands each test a state, which few read.
 $(O)/tests/unit/%.o: flags += -Wno-unused-parameter
@@ -127,8 +115,6 @@ $(O)/tests/unit/%.o: flags += -Wno-unused-parameter
 fast_asan := -O0 -fno-sanitize=undefined -fno-sanitize=fuzzer-no-link
 fast_release := -O1
 $(unit_names:%=$(O)/tests/unit/%.o): flags += $(fast_$(MODE))
-$(addprefix $(B)/tests/,test_bounds test_kernels): $(addprefix $(O)/slabs/,fused.o planted.o kernel.o \
-	kernel_fused.o kernel_planted.o)
 $(internal_tests): $(O)/tests/unit/slab_truth.o $(units) $(shared) $(client) $(product) $(engine)
 $(filter-out $(internal_tests),$(unit_tests)): $(units) $(shared) $(client) $(product) $(B)/libfmb.a
 $(addprefix $(B)/tests/,test_bus test_client_bad test_client_raw test_server): $(O)/tests/unit/leap_clock.o

@@ -297,8 +297,8 @@ static double ratio_of(struct slab_truth *truth, const mpz_t exact, long unit, d
     return bound == 0 ? HUGE_VAL : ldexp(size / of_size, (int) of_error);
 }
 
-double slab_truth_ratio(struct slab_truth *truth, const mpz_t exact, int factor, double value,
-                        double bound)
+static double slab_truth_ratio(struct slab_truth *truth, const mpz_t exact, int factor,
+                               double value, double bound)
 {
     return ratio_of(truth, exact, truth->dim * truth->unit + factor, value, bound);
 }
@@ -320,30 +320,4 @@ double slab_truth_worst(struct slab_truth *truth, const struct slab_value *slab)
         worst = fmax(worst, slab_truth_ratio(truth, truth->rise[i], factor, side[i].g, bound));
     }
     return worst;
-}
-
-/* The gap along an axis: that of the slab across it. */
-static void compute_axis(struct slab_truth *truth, int axis)
-{
-    for (int i = 0; i < FMB_DIM_MAX; i++)
-        mpz_set_ui(truth->normal[i], i == axis);
-    set_along_normal(truth);
-    set_gap(truth);
-}
-
-double slab_truth_axes(struct slab_truth *truth, double surely, double bound)
-{
-    const bool doubled = truth->shape[0] == FMB_CUBOID || truth->shape[1] == FMB_CUBOID;
-    const long unit = truth->unit + (doubled ? 1 : 0);
-    mpz_t gap;
-    mpz_init(gap);
-    for (int axis = 0; axis < truth->dim; axis++) {
-        compute_axis(truth, axis);
-        if (axis == 0 || mpz_cmp(truth->gap, gap) > 0)
-            mpz_set(gap, truth->gap);
-    }
-    const double most = ratio_of(truth, gap, unit, surely, bound);
-    const double rounded = ldexp(mpz_get_d(gap), (int) unit);
-    mpz_clear(gap);
-    return rounded < -1 ? 0 : 1 + (rounded < surely ? most : -most);
 }

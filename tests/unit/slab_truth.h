@@ -40,18 +40,8 @@ void slab_truth_set(struct slab_truth *truth, const struct pair *pair);
 /* On output: low to zero, of this slab of the pair that is set. */
 void slab_truth_compute(struct slab_truth *truth, struct slab_normal normal);
 
-/* |value - exact| / bound, exact being one of low to rise, value and bound in the lengths of the
- * pair times 2^factor: 0 if value is exact; infinite if it is not and bound is 0. */
-double slab_truth_ratio(struct slab_truth *truth, const mpz_t exact, int factor, double value,
-                        double bound);
-
-/* The largest of these, of all numbers of a slab, its gap, and the inequalities that are made of
+/* The largest |value - exact| / bound, 0 for what is exact, of all numbers of a slab, its gap, and the inequalities that are made of
  * it; its own normal is the one computed. */
 double slab_truth_worst(struct slab_truth *truth, const struct slab_value *slab);
-
-/* On input: what axes said of the pair that is set, in space: a gap made smaller by bound. On
- * output: by how much of the bound the gap was too large (< 0: too small); 0 where it is below -1,
- * which the kernels do not report. */
-double slab_truth_axes(struct slab_truth *truth, double surely, double bound);
 
 #endif

@@ -1,12 +1,5 @@
-/* The bounds on the errors of boxes, attacked: a search for pairs whose boxes, as doubles have them
- * without any bound, miss most of the exact box, relative to the bound. The kernels are there three
- * times: as they are, with bounds that are too small, and with none (tests.mk).
- *
- * The search climbs: it changes a number at a time, and keeps what makes the error of one end
- * larger relative to its bound.
- *
- * And boxes of frames whose edges all but depend on each other, and boxes in integers,
- * beside exact ones. */
+/* Boxes of frames whose edges all but depend on each other, and boxes in integers, beside exact
+ * ones. */
 
 #include "unit.h"
 
@@ -15,20 +8,15 @@
 #include "cell.h"
 #include "certified.h"
 #include "draw.h"
-#include "instructions.h"
 #include "limbs.h"
 #include "pair_draw.h"
 #include "question.h"
 #include "referee.h"
 #include "kernel.h"
 
-extern kernel_box_function kernel_boxes_bare, kernel_boxes_planted;
-
 /* ---- Boxes of one pair ---- */
 
 typedef double box_ends[2][FMB_DIM_MAX];
-
-enum { REAL, PLANTED, BARE, KERNELS };
 
 static void exact_box(const struct pair *pair, box_ends out)
 {
@@ -36,179 +24,6 @@ static void exact_box(const struct pair *pair, box_ends out)
     assert_int_equal(pair_decide(fmb_method_by_name("exact"), pair, FMB_WANT_BOX, &answer), FMB_OK);
     assert_true(answer.has_box);
     memcpy(out, answer.box, sizeof answer.box);
-}
-
-/* False where doubles give none. */
-static bool box_of(kernel_box_function *kernel, const struct fmb_prepared frame[2], double duration,
-                   box_ends out)
-{
-    const struct fmb_prepared *pairs[KERNEL_LANES][2];
-    double boxes[KERNEL_LANES][2][FMB_DIM_MAX];
-    bool swapped;
-    const enum kernel_kind kind = kernel_box_kind(&frame[0], &frame[1], duration, &swapped);
-    const struct kernel_call run = {
-        .pairs = pairs, .count = 1, .duration = duration, .boxes = boxes};
-    for (int lane = 0; lane < KERNEL_LANES; lane++) {
-        pairs[lane][0] = &frame[swapped];
-        pairs[lane][1] = &frame[!swapped];
-    }
-    if (kind >= KERNEL_KINDS)
-        return false;
-    kernel(&run, kind);
-    memcpy(out, boxes[0], sizeof(box_ends));
-    return !isnan(out[0][0]);
-}
-
-/* An end of each box, as an upper one. An end that an extent decides is that whatever the bounds
- * are; of others, the planted bound is its share of the real one. Returns by how much of the
- * planted bound the bare end is below the exact one. */
-static double ratio_of_end(const double end[KERNELS], double exact)
-{
-    const double planted = end[PLANTED] - end[BARE], real = end[REAL] - end[BARE];
-    return planted > 0 && real > 4 * planted ? (exact - end[BARE]) / planted : -1;
-}
-
-/* The largest of these over all ends; -1 where there is no box. */
-static double ratio_of(const struct question *question)
-{
-    struct kernel_set set;
-    struct ready ready;
-    struct fmb_prepared frame[2];
-    box_ends box[KERNELS], exact;
-    enum fmb_verdict verdict;
-    referee_ready(question, &ready);
-    const struct frame_pair frames = pair_frames(&ready.pair);
-    prepared_set(frames.a, &frame[0]);
-    prepared_set(frames.b, &frame[1]);
-    assert_true(kernel_set_of(INSTRUCTIONS_PLAIN, &set));
-    kernel_box_function *const kernels[] = {set.boxes, kernel_boxes_planted, kernel_boxes_bare};
-    if (fmb_decide_prepared(&frame[0], &frame[1], question->duration, &verdict) != FMB_OK ||
-        verdict == FMB_SEPARATED)
-        return -1;
-    for (int i = 0; i < KERNELS; i++)
-        if (!box_of(kernels[i], frame, question->duration, box[i]))
-            return -1;
-    exact_box(&ready.pair, exact);
-    double worst = -1;
-    for (int axis = 0; axis < question->a.dim; axis++)
-        for (int end = 0; end < 2; end++) {
-            const double sign = end ? 1 : -1;
-            double ends[KERNELS];
-            for (int i = 0; i < KERNELS; i++)
-                ends[i] = sign * box[i][end][axis];
-            if (ends[REAL] < sign * exact[end][axis])
-                referee_fail(question, "an error beyond its bound");
-            worst = fmax(worst, ratio_of_end(ends, sign * exact[end][axis]));
-        }
-    return worst;
-}
-
-/* ---- The search ---- */
-
-struct kind {
-    int dim;
-    enum fmb_shape a, b;
-    bool moving;
-};
-
-static double draw_number(struct draw *draw)
-{
-    double x = draw_uniform(draw, 1, 2);
-    switch (draw_int(draw, 0, 3)) {
-    case 0: x = 2 - draw_int(draw, 1, 3) * 0x1p-52; break;
-    case 1: x = 1 + draw_int(draw, 1, 3) * 0x1p-52; break;
-    default: break;
-    }
-    x = ldexp(x, draw_int(draw, -2, 1));
-    return draw_coin(draw) ? x : -x;
-}
-
-static struct question draw_question(struct draw *draw, struct kind kind)
-{
-    struct question question = {{.dim = kind.dim, .shape = kind.a, .moving = kind.moving},
-                                {.dim = kind.dim, .shape = kind.b, .moving = kind.moving},
-                                1};
-    double *number[QUESTION_NUMBERS_MAX];
-    for (int i = question_numbers(&question, number) - 1; i >= 0; i--)
-        *number[i] = draw_number(draw);
-    return question;
-}
-
-/* Ends near 0 have finer units in the last place than the coordinates they are made of. */
-static void move_both(struct question *question, int axis, double by)
-{
-    double *a = &question->a.origin[axis], *b = &question->b.origin[axis];
-    if (fabs(*a - by) > 8 || fabs(*b - by) > 8)
-        return;
-    *a -= by;
-    *b -= by;
-}
-
-static void mutate(struct draw *draw, struct question *question)
-{
-    double *number[QUESTION_NUMBERS_MAX];
-    const int count = question_numbers(question, number);
-    double *x = number[draw_int(draw, 0, count - 1)];
-    if (draw_int(draw, 0, 4) == 0) {
-        move_both(question, draw_int(draw, 0, question->a.dim - 1), *x);
-        return;
-    }
-    switch (draw_int(draw, 0, 4)) {
-    case 0: *x *= 1 + draw_int(draw, -4, 4) * 0x1p-52; break;
-    case 1: *x += ldexp(*x, -draw_int(draw, 1, 52)); break;
-    case 2: *x -= ldexp(*x, -draw_int(draw, 2, 53)); break;
-    case 3: *x = draw_number(draw); break;
-    default: *x = *number[draw_int(draw, 0, count - 1)]; break;
-    }
-    if (!(fabs(*x) < 8))
-        *x = draw_number(draw);
-}
-
-/* The worst that some climbs find; one that comes to enough is the last. */
-static double search(struct draw *draw, struct kind kind, long climbs, double enough)
-{
-    double worst = -1;
-    for (; climbs > 0 && worst < enough; climbs--) {
-        struct question best = draw_question(draw, kind);
-        double most = ratio_of(&best);
-        for (int n = 0; n < 300 && most < enough; n++) {
-            struct question changed = best;
-            for (int times = draw_int(draw, 1, 2); times > 0; times--)
-                mutate(draw, &changed);
-            const double ratio = ratio_of(&changed);
-            if (ratio < most)
-                continue;
-            most = ratio;
-            best = changed;
-        }
-        worst = fmax(worst, most);
-    }
-    return worst;
-}
-
-static const struct kind kinds[] = {
-    {2, FMB_CUBOID, FMB_CUBOID, false},           {2, FMB_CUBOID, FMB_TETRAHEDRON, false},
-    {2, FMB_TETRAHEDRON, FMB_TETRAHEDRON, false}, {2, FMB_CUBOID, FMB_CUBOID, true},
-    {2, FMB_CUBOID, FMB_TETRAHEDRON, true},       {2, FMB_TETRAHEDRON, FMB_TETRAHEDRON, true},
-    {3, FMB_CUBOID, FMB_CUBOID, false},           {3, FMB_CUBOID, FMB_TETRAHEDRON, false},
-    {3, FMB_TETRAHEDRON, FMB_TETRAHEDRON, false}, {3, FMB_CUBOID, FMB_FACE, false},
-    {3, FMB_TETRAHEDRON, FMB_FACE, false},        {3, FMB_CUBOID, FMB_CUBOID, true},
-    {3, FMB_CUBOID, FMB_TETRAHEDRON, true},       {3, FMB_TETRAHEDRON, FMB_TETRAHEDRON, true},
-};
-
-/* No end is beyond the real bound, and one of each kind is beyond the planted one. */
-static void bounds_hold_and_smaller_ones_do_not(void **state)
-{
-    struct draw draw;
-    draw_begin(&draw, "bounds of boxes");
-    for (size_t i = 0; i < COUNT(kinds); i++) {
-        const struct kind kind = kinds[i];
-        const double worst = search(&draw, kind, kind.moving ? 200 : 1000, 1.01);
-        printf("# %dD %s %s %s: an error %.3g of the planted bound\n", kind.dim,
-               kind.moving ? "moving" : "static", fmb_shape_name((int) kind.a),
-               fmb_shape_name((int) kind.b), worst);
-        assert_true(worst > 1);
-    }
 }
 
 /* ---- Edges that all but depend on each other ---- */
@@ -454,8 +269,7 @@ static void boxes_in_integers_hold_the_exact_ones(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(bounds_hold_and_smaller_ones_do_not),
-                                       cmocka_unit_test(boxes_of_edges_that_all_but_depend),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(boxes_of_edges_that_all_but_depend),
                                        cmocka_unit_test(boxes_in_integers_hold_the_exact_ones)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -424,6 +424,34 @@ static void compare(const struct question *question, const struct ready *ready, 
     tally->box = fmax(tally->box, box.out);
 }
 
+/* The slabs of a pair depend on nothing that was in memory before. */
+static void slabs_are_set_whole(void **state)
+{
+    struct draw draw;
+    draw_begin(&draw, "slabs_are_set_whole");
+    for (long n = draw_sample(2000); n > 0; n--) {
+        const struct question question = draw_meeting(&draw);
+        struct ready ready;
+        struct slabs_pair pair[2];
+        static struct slab_value slab[2][SLABS_MAX];
+        int count[2];
+        referee_ready(&question, &ready);
+        for (int i = 0; i < 2; i++) {
+            memset(&pair[i], i ? 0x3f : 0xff, sizeof pair[i]);
+            memset(slab[i], i ? 0x3f : 0xff, sizeof slab[i]);
+            count[i] =
+                slab_truth_prepare(&ready.pair, &pair[i]) ? slabs_list(&pair[i], true, slab[i]) : 0;
+        }
+        assert_int_equal(count[0], count[1]);
+        for (int k = 0; k < count[0]; k++) {
+            const struct slab_value *one = &slab[0][k], *other = &slab[1][k];
+            assert_true(one->low == other->low && one->high == other->high &&
+                        one->middle == other->middle && one->swing == other->swing &&
+                        one->error == other->error && slab_gap(one) == slab_gap(other));
+        }
+    }
+}
+
 static void doubles_hold_contact_and_box(void **state)
 {
     const struct family *family = *state;
@@ -460,6 +488,7 @@ int main(void)
         cmocka_unit_test(quotients_hold_the_exact_one),
         cmocka_unit_test(cuts_are_outside_and_inside),
         cmocka_unit_test(cuts_within_errors_are_outside_and_inside),
+        cmocka_unit_test(slabs_are_set_whole),
     };
     struct CMUnitTest tests[COUNT(numbers) + COUNT(families)];
     memcpy(tests, numbers, sizeof numbers);

@@ -22,10 +22,8 @@
 #include "slabs_evaluate.h"
 #include "slabs_exact.h"
 
-/* u; tests plant a smaller one. */
-#ifndef BOX_UNIT
+/* u. */
 #define BOX_UNIT 0x1p-53
-#endif
 #define BOX_PLACE_ROUNDING (20.1 * BOX_UNIT)
 #define BOX_PLACE_ROUNDING_EXACT (6.1 * BOX_UNIT)
 
