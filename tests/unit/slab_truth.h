@@ -40,8 +40,8 @@ void slab_truth_set(struct slab_truth *truth, const struct pair *pair);
 /* On output: low to zero, of this slab of the pair that is set. */
 void slab_truth_compute(struct slab_truth *truth, struct slab_normal normal);
 
-/* The largest |value - exact| / bound, 0 for what is exact, of all numbers of a slab, its gap, and the inequalities that are made of
- * it; its own normal is the one computed. */
+/* The largest |value - exact| / bound, 0 for what is exact, of all numbers of a slab, its gap, and
+ * the inequalities that are made of it; its own normal is the one computed. */
 double slab_truth_worst(struct slab_truth *truth, const struct slab_value *slab);
 
 #endif
