@@ -122,10 +122,10 @@ link_flags := $(link_user) -fno-lto
 link_whole := $(link_flags)
 whole := -fno-lto
 ifeq ($(MODE),release)
-$(O)/service/%.o $(O)/msgs/%.o $(O)/clients/log/%.o $(O)/clients/replay/%.o: flags += -O3
+$(O)/service/%.o $(O)/msgs/%.o $(O)/clients/log/%.o $(O)/clients/exchange/%.o $(O)/clients/replay/%.o: flags += -O3
 ifneq ($(filter gcc%,$(compiler)),)
 link_whole := -O3 $(link_user) -flto=auto
-$(O)/service/%.o $(O)/msgs/%.o $(O)/clients/log/%.o $(O)/clients/replay/%.o: \
+$(O)/service/%.o $(O)/msgs/%.o $(O)/clients/log/%.o $(O)/clients/exchange/%.o $(O)/clients/replay/%.o: \
 	whole := -flto=auto -ffat-lto-objects
 $(O)/service/fmb/%.o: whole := -fno-lto
 # Vectors of three doubles that are stored one by one and loaded in pairs would stall.
@@ -156,11 +156,12 @@ see_clients/lib := $(wire)
 see_clients/common := clients/lib msgs/common msgs/codec service/fmb msgs/bus
 see_clients/query := clients/page clients/common clients/lib msgs/codec msgs/common service/fmb
 see_clients/log := clients/common clients/lib $(wire)
-see_clients/page := clients/log $(see_clients/log)
+see_clients/exchange := clients/log $(see_clients/log)
+see_clients/page := clients/exchange $(see_clients/exchange)
 see_clients/record := clients/log $(see_clients/log)
-see_clients/mesh := clients/page clients/common msgs/common service/fmb
+see_clients/mesh := clients/page clients/common clients/lib msgs/common msgs/codec service/fmb
 see_clients/scene := clients/mesh clients/common clients/lib msgs/codec msgs/common service/fmb
-see_clients/replay := clients/page clients/log service/answer $(see_clients/log)
+see_clients/replay := clients/page clients/exchange service/answer $(see_clients/exchange)
 see_clients := $(addprefix clients/,query record mesh scene replay) $(see_clients/replay)
 see_clients/demo :=
 see_clients/examples := clients/lib msgs/codec service/fmb
@@ -223,7 +224,7 @@ $(O)/msgs/%.o: $(GEN)/%.c $(O)/settings | $(message_headers)
 wire_objects := $(call objects_in,$(filter-out service/fmb,$(wire))) $(message_objects)
 client_objects := $(call objects_in,clients/lib clients/python)
 product_objects := $(filter-out %/main.o %/fmb.o,$(wire_objects) $(call objects_in,service service/answer clients \
-	$(addprefix clients/,common query log page record mesh scene replay)))
+	$(addprefix clients/,common query log exchange page record mesh scene replay)))
 
 # Of unmerged archives the linker takes what a program needs; what stands before them on its command
 # line replaces the member of that name. Members of two folders may have one name.

@@ -8,7 +8,7 @@
 #include "number.h"
 #include "output.h"
 #include "progress.h"
-#include "query_page.h"
+#include "page.h"
 #include "report.h"
 
 #include <errno.h>
@@ -85,7 +85,7 @@ enum { FAILED_IF = 3 };
 struct query {
     /* Options. */
     bool local, json, csv, certificate;
-    struct report_rows rows;         /* their options */
+    struct report_rows rows;
     int fail_if;                     /* least severity; 0: not given */
     const struct fmb_method *method; /* NULL: the default, of this process or of the service */
     struct output_options html;
@@ -94,7 +94,7 @@ struct query {
     struct args_bus bus;
     const char *input; /* name of the file */
     /* The run. */
-    struct report *report[2];    /* the printed one, and the page or NULL */
+    struct page *page;           /* NULL: none */
     struct answers_bus *answers; /* NULL: not opened yet */
     const struct fmb_scene *scene;
     struct progress progress;
@@ -149,8 +149,9 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
         else
             query->unproven++;
     }
-    for (int i = 0; i < 2 && query->report[i]; i++)
-        query->report[i]->pair(query->report[i], &checked);
+    report_pair(&query->rows, &checked);
+    if (query->page)
+        page_pair(query->page, query->rows.scene->dim, NULL, &checked);
     query->undecided = query->undecided || checked.status != FMB_OK;
     const int found = severity(query->scene->margin, &checked.answer);
     query->worst = found > query->worst ? found : query->worst;
@@ -186,10 +187,9 @@ static bool answer_scene(struct query *query, struct owned_scene *owner)
     query->scene = scene;
     const uint64_t pairs = scene_count_pairs(owner);
     note_scene(query, scene, pairs);
-    for (int i = 0; i < 2 && query->report[i]; i++) {
-        query->report[i]->scene = owner;
-        query->report[i]->begin(query->report[i]);
-    }
+    report_begin_scene(&query->rows, owner);
+    if (query->page)
+        page_scene_begin(query->page, scene);
     query->progress = progress_begin("pairs", (int64_t) pairs);
     if (isatty(STDOUT_FILENO)) /* the answers themselves show the progress */
         query->progress.enabled = false;
@@ -200,8 +200,9 @@ static bool answer_scene(struct query *query, struct owned_scene *owner)
     else
         more = answers_bus_scene(query->answers, owner, take_answer, query);
     progress_end(&query->progress);
-    for (int i = 0; i < 2 && query->report[i]; i++)
-        query->report[i]->end(query->report[i]);
+    report_end_scene(&query->rows);
+    if (query->page)
+        page_step_end(query->page);
     return more;
 }
 
@@ -245,32 +246,19 @@ static void report_limits(const struct query *query)
                  query->scenes);
 }
 
-static bool write_page(const struct output_options *options, struct page *page)
-{
-    struct output *output;
-    if (!output_open(options, &output))
-        return false;
-    if (output)
-        page_write(page, output->file);
-    return output_close(output, true);
-}
-
 static int run_query(struct query *query, int fd)
 {
-    struct report_rows rows = report_rows(&query->rows);
-    struct query_page page = {.page = NULL};
+    report_begin(&query->rows);
     if (query->html.path)
-        page = query_page_open(query->input);
-    query->report[0] = &rows.report;
-    query->report[1] = page.page ? &page.report : NULL;
+        query->page = page_open(&(struct page_options){.kind = PAGE_SCENES, .title = query->input});
     int code = answer_scenes(query, fd);
-    report_rows_end(&rows);
+    report_end(&query->rows);
     if (code != ARGS_USAGE)
         report_limits(query);
     if (query->answers)
         answers_bus_close(query->answers);
-    bool good = code == ARGS_USAGE || write_page(&query->html, page.page);
-    page_close(page.page);
+    bool good = code == ARGS_USAGE || page_save(query->page, &query->html);
+    page_close(query->page);
     good = output_flush() && good;
     return good || code == ARGS_USAGE ? code : ARGS_FAILED;
 }

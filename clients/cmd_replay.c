@@ -179,16 +179,6 @@ static bool write_junit(const struct replay_run *run, const struct tally *tally)
     return output_close(output, true);
 }
 
-static bool write_page(const struct replay_arguments *options)
-{
-    struct output *output;
-    if (!output_open(&options->html, &output))
-        return false;
-    if (output)
-        page_write(options->replay.page, output->file);
-    return output_close(output, true);
-}
-
 /* Reports why nothing was compared, if so, and what to do. Returns false if something was, or
  * results were written. */
 static bool complain_nothing(const struct replay_arguments *options, const struct tally *all,
@@ -341,7 +331,8 @@ static int replay(struct replay_run *run, struct tally *tally)
     run->first_utime = tally->first_utime;
     report_end(&all.bus, &options->bus, options->replay.log);
     int code = good ? code_of(options, &all) : ARGS_USAGE;
-    if (run->begun && (!write_junit(run, tally) || !write_page(options)))
+    if (run->begun &&
+        (!write_junit(run, tally) || !page_save(options->replay.page, &options->html)))
         code = ARGS_USAGE;
     report_all(run, &all, code);
     return output_flush() ? code : ARGS_USAGE;

@@ -86,17 +86,19 @@ void json_integers(struct json_writer *json, const char *key, const int64_t *int
     json_end(json, ']');
 }
 
+static const char *number_text(const struct json_writer *json, double number,
+                               char text[NUMBER_TEXT_MAX])
+{
+    if (json->digits == 0 || !isfinite(number))
+        return number_exact(number, text);
+    snprintf(text, NUMBER_TEXT_MAX, "%.*g", json->digits, number);
+    return text;
+}
+
 void json_number(struct json_writer *json, const char *key, double number)
 {
     char text[NUMBER_TEXT_MAX];
-    value(json, key, number_exact(number, text));
-}
-
-void json_rounded(struct json_writer *json, const char *key, double number, int digits)
-{
-    char text[NUMBER_TEXT_MAX];
-    snprintf(text, sizeof text, "%.*g", digits, number);
-    value(json, key, isfinite(number) ? text : "null");
+    value(json, key, number_text(json, number, text));
 }
 
 void json_numbers(struct json_writer *json, const char *key, const double *numbers, int count)
@@ -104,7 +106,7 @@ void json_numbers(struct json_writer *json, const char *key, const double *numbe
     char text[NUMBER_TEXT_MAX];
     json_begin(json, key, '[');
     for (int i = 0; i < count; i++)
-        fprintf(json->out, "%s%s", i ? "," : "", number_exact(numbers[i], text));
+        fprintf(json->out, "%s%s", i ? "," : "", number_text(json, numbers[i], text));
     json_end(json, ']');
 }
 

@@ -15,10 +15,11 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* The caller sets out (not owned) and page; all else is 0 at first. */
+/* The caller sets out (not owned), page and digits; all else is 0 at first. */
 struct json_writer {
     FILE *out;
     bool page;         /* for scripts: no spaces, and integers beyond +-(2^53 - 1) as strings */
+    int digits;        /* of numbers; 0: as many as read back as the same bits */
     bool comma;        /* private: the next element needs a comma before it */
     const char *space; /* private: of json_break(), or NULL */
 };
@@ -38,11 +39,8 @@ void json_null(struct json_writer *json, const char *key);
 void json_bool(struct json_writer *json, const char *key, bool value);
 void json_integer(struct json_writer *json, const char *key, int64_t value);
 
-/* A number that reads back as the same bits; null if not finite. */
+/* null if not finite. */
 void json_number(struct json_writer *json, const char *key, double value);
-
-/* A number of so many significant digits; null if not finite. */
-void json_rounded(struct json_writer *json, const char *key, double number, int digits);
 
 void json_integers(struct json_writer *json, const char *key, const int64_t *integers, int count);
 

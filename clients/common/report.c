@@ -31,18 +31,18 @@ static struct report_columns columns_for(const struct owned_scene *scene)
 static void begin_json(struct report_rows *rows)
 {
     json_begin(&rows->printer.json, NULL, '{');
-    if (rows->report.scene->scene.label)
-        json_string(&rows->printer.json, "label", rows->report.scene->scene.label);
+    if (rows->scene->scene.label)
+        json_string(&rows->printer.json, "label", rows->scene->scene.label);
     json_begin(&rows->printer.json, "pairs", '[');
 }
 
 static void begin_table(struct report_rows *rows)
 {
-    const struct fmb_scene *scene = &rows->report.scene->scene;
-    const uint64_t count = scene_count_pairs(rows->report.scene);
+    const struct fmb_scene *scene = &rows->scene->scene;
+    const uint64_t count = scene_count_pairs(rows->scene);
     char duration[NUMBER_TEXT_MAX], pairs[NUMBER_TEXT_MAX];
     rows->begun = true;
-    rows->printer.columns = columns_for(rows->report.scene);
+    rows->printer.columns = columns_for(rows->scene);
     fprintf(rows->printer.out, "%sscene %" PRId64, rows->scenes > rows->apart + 1 ? "\n" : "",
             rows->scenes);
     if (scene->label) {
@@ -51,7 +51,7 @@ static void begin_table(struct report_rows *rows)
         putc(')', rows->printer.out);
     }
     fprintf(rows->printer.out, ": %zu bod%s in %dD, %s pair%s, 0 to %s s\n", scene->placement_count,
-            scene->placement_count == 1 ? "y" : "ies", rows->report.scene->dim,
+            scene->placement_count == 1 ? "y" : "ies", rows->scene->dim,
             number_grouped((int64_t) count, pairs), count == 1 ? "" : "s",
             number_short(scene->duration, duration));
     if (count > 0)
@@ -70,7 +70,7 @@ static void end_table(const struct report_rows *rows)
         fprintf(rows->printer.out, "%s%s %s", i ? ", " : "",
                 number_grouped((int64_t) rows->count[order[i]], count),
                 fmb_verdict_name((int) order[i]));
-    if (rows->report.scene->scene.margin > 0)
+    if (rows->scene->scene.margin > 0)
         fprintf(rows->printer.out, " (%s near)", number_grouped((int64_t) rows->near, count));
     if (rows->count[0] > 0)
         fprintf(rows->printer.out, ", %s not decided",
@@ -78,9 +78,9 @@ static void end_table(const struct report_rows *rows)
     putc('\n', rows->printer.out);
 }
 
-static void begin_scene(struct report *report)
+void report_begin_scene(struct report_rows *rows, struct owned_scene *scene)
 {
-    struct report_rows *rows = (struct report_rows *) report;
+    rows->scene = scene;
     rows->scenes++;
     memset(rows->count, 0, sizeof rows->count);
     rows->near = rows->left_out = 0;
@@ -91,9 +91,8 @@ static void begin_scene(struct report *report)
         begin_table(rows);
 }
 
-static void end_scene(struct report *report)
+void report_end_scene(struct report_rows *rows)
 {
-    struct report_rows *rows = (struct report_rows *) report;
     if (rows->printer.form == REPORT_JSON) {
         json_end(&rows->printer.json, ']');
         json_object_end(&rows->printer.json);
@@ -108,7 +107,7 @@ static void end_scene(struct report *report)
 
 static struct report_row row_of(const struct report_rows *rows, const struct fmb_client_answer *of)
 {
-    const struct fmb_scene *scene = &rows->report.scene->scene;
+    const struct fmb_scene *scene = &rows->scene->scene;
     const struct fmb_placement *a = &scene->placements[of->a], *b = &scene->placements[of->b];
     return (struct report_row){
         .utime = REPORT_NONE,
@@ -116,16 +115,15 @@ static struct report_row row_of(const struct report_rows *rows, const struct fmb
         .label = scene->label,
         .id = {a->id, b->id},
         .name = {a->name, b->name},
-        .dim = rows->report.scene->dim,
+        .dim = rows->scene->dim,
         .names_frames = a->body->frame_count > 1 || b->body->frame_count > 1,
         .of = of,
     };
 }
 
-static void take_pair(struct report *report, const struct fmb_client_answer *of)
+void report_pair(struct report_rows *rows, const struct fmb_client_answer *of)
 {
-    struct report_rows *rows = (struct report_rows *) report;
-    const bool near = report_is_near(report->scene->scene.margin, &of->answer);
+    const bool near = report_is_near(rows->scene->scene.margin, &of->answer);
     const bool apart = of->answer.verdict == FMB_SEPARATED && !near;
     const struct report_row row = row_of(rows, of);
     rows->count[of->answer.verdict]++;
@@ -142,7 +140,7 @@ static void take_pair(struct report *report, const struct fmb_client_answer *of)
     report_row_print(&rows->printer, 0, &row);
 }
 
-void report_rows_end(const struct report_rows *rows)
+void report_end(const struct report_rows *rows)
 {
     char apart[NUMBER_TEXT_MAX], scenes[NUMBER_TEXT_MAX];
     if (rows->printer.form != REPORT_TABLE || rows->apart == 0)
@@ -155,12 +153,9 @@ void report_rows_end(const struct report_rows *rows)
                 number_grouped(rows->scenes, scenes));
 }
 
-struct report_rows report_rows(const struct report_rows *options)
+void report_begin(struct report_rows *rows)
 {
-    struct report_rows rows = *options;
-    rows.report = (struct report){begin_scene, take_pair, end_scene, NULL};
-    rows.printer.json = (struct json_writer){.out = rows.printer.out};
-    if (rows.printer.form == REPORT_CSV)
-        report_csv_begin(rows.printer.out);
-    return rows;
+    rows->printer.json = (struct json_writer){.out = rows->printer.out};
+    if (rows->printer.form == REPORT_CSV)
+        report_csv_begin(rows->printer.out);
 }

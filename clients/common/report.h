@@ -94,15 +94,6 @@ void report_row_print(struct report_printer *printer, int indent, const struct r
 
 /* ---- Scenes ---- */
 
-/* For each scene, the caller sets scene, and calls begin, then pair for each answer in the order of
- * the pairs, then end. */
-struct report {
-    void (*begin)(struct report *report);
-    void (*pair)(struct report *report, const struct fmb_client_answer *answer);
-    void (*end)(struct report *report);
-    struct owned_scene *scene;
-};
-
 /* Most rows of separated pairs that are not near in the table of a scene, unless all are wanted. */
 enum { REPORT_SEPARATED_MAX = 20 };
 
@@ -111,23 +102,28 @@ enum { REPORT_SEPARATED_MAX = 20 };
  * digits, or more where the ends of an interval would have the same digits. Flushed at the end of
  * each scene. */
 struct report_rows {
-    struct report report;
     /* Set by the caller. */
     struct report_printer printer; /* out and form */
     bool box, gap;                 /* wanted: columns of tables */
     bool contacts, all;            /* rows: no separated pairs but near ones; in tables all */
     /* Private. */
+    struct owned_scene *scene;
     int64_t scenes, apart; /* apart: the scenes without a row, if only contacts are wanted */
     bool begun;            /* the table of the scene has begun */
     uint64_t count[FMB_OVERLAPPING + 1]; /* [verdict] of the scene; [0]: not decided */
     uint64_t near, left_out;             /* of those separated */
 };
 
-/* options: with the members that the caller sets. Writes the column names of CSV. */
-struct report_rows report_rows(const struct report_rows *options);
+/* In: rows: with the members that the caller sets. Writes the column names of CSV. */
+void report_begin(struct report_rows *rows);
+
+/* For each scene: its begin, each answer in the order of the pairs, and its end. */
+void report_begin_scene(struct report_rows *rows, struct owned_scene *scene);
+void report_pair(struct report_rows *rows, const struct fmb_client_answer *answer);
+void report_end_scene(struct report_rows *rows);
 
 /* To be called after the last scene. If only contacts are wanted, a scene without one has no table;
  * this prints how many there are. */
-void report_rows_end(const struct report_rows *rows);
+void report_end(const struct report_rows *rows);
 
 #endif

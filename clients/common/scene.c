@@ -84,6 +84,21 @@ bool scene_next_pair(struct owned_scene *scene, struct pair_cursor *cursor, unsi
     return pair_next(&scene->scene, &scene->ignored, cursor, out);
 }
 
+bool scene_next_pair_before(struct owned_scene *scene, struct pair_cursor *cursor,
+                            const unsigned until[2], unsigned out[2])
+{
+    const struct pair_cursor here = *cursor;
+    if (!scene_next_pair(scene, cursor, out))
+        return false;
+    if (!until || (out[0] == until[0] && out[1] == until[1]))
+        return !until;
+    const bool is_past = scene->scene.which != FMB_PAIRS_LISTED &&
+                         (out[0] > until[0] || (out[0] == until[0] && out[1] > until[1]));
+    if (is_past)
+        *cursor = here;
+    return !is_past;
+}
+
 uint64_t scene_count_pairs(struct owned_scene *scene)
 {
     struct pair_cursor cursor = {0};

@@ -57,6 +57,11 @@ bool scene_leaves_out(struct owned_scene *scene, unsigned a, unsigned b);
 /* As pair_next(), of this scene. */
 bool scene_next_pair(struct owned_scene *scene, struct pair_cursor *cursor, unsigned out[2]);
 
+/* As scene_next_pair(), but returns false at the pair `until` too, after which the iteration then
+ * continues. until: any pair of the scene; NULL: none. */
+bool scene_next_pair_before(struct owned_scene *scene, struct pair_cursor *cursor,
+                            const unsigned until[2], unsigned out[2]);
+
 /* Returns the number of these pairs. Cost: O(placements^2) with ALL. */
 uint64_t scene_count_pairs(struct owned_scene *scene);
 

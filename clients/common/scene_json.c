@@ -1,7 +1,6 @@
 #include "scene_json.h"
 
 #include "allocate.h"
-#include "json_write.h"
 #include "pair_number.h"
 
 #include <math.h>
@@ -60,7 +59,7 @@ static void write_shape(struct json_writer *json, const struct fmb_frame *frame,
         write_vectors(json, "components", given->number + dim, dim, (int) given->count / dim - 1);
 }
 
-static void write_frames(struct json_writer *json, const struct fmb_body *body)
+void scene_json_frames(struct json_writer *json, const struct fmb_body *body)
 {
     json_begin(json, "frames", '[');
     for (unsigned i = 0; i < body->frame_count; i++) {
@@ -96,7 +95,7 @@ static void write_body(struct json_writer *json, const struct fmb_placement *pla
     if (only)
         write_shape(json, first, &given);
     else
-        write_frames(json, placement->body);
+        scene_json_frames(json, placement->body);
     if (components && placement->orientation_count == 0)
         json_numbers(json, "origin", placement->position, dim);
     else

@@ -2,6 +2,7 @@
 #ifndef SCENE_JSON_H
 #define SCENE_JSON_H
 
+#include "json_write.h"
 #include "scene.h"
 
 #include <stdio.h>
@@ -9,5 +10,8 @@
 /* Writes a scene with finite numbers so that it reads back as the same bits: one object, a line for
  * each body. Check ferror(out) for write errors. */
 void scene_json_write(FILE *out, struct owned_scene *scene);
+
+/* Writes the member "frames" of a body. */
+void scene_json_frames(struct json_writer *json, const struct fmb_body *body);
 
 #endif

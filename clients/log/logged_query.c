@@ -1,7 +1,6 @@
 #include "logged_query.h"
 
 #include "allocate.h"
-#include "pair_number.h"
 #include "scene.h"
 #include "wire.h"
 
@@ -203,17 +202,17 @@ static void set_bodies(const struct logged_query *query, bool grouped, struct ow
 /* Lists the pairs of ALL or ACROSS from first_pair on that are not left out. */
 static void list_pairs(const struct scene_query *query, struct owned_scene *out)
 {
-    const struct pair_numbers numbers = {query->which == FMB_PAIRS_ACROSS,
-                                         out->scene.placement_count, (size_t) query->split};
-    unsigned(*pair)[2] = scene_alloc(out, (size_t) pairs_total(numbers), sizeof *pair);
-    int32_t skip = query->first_pair;
-    for (size_t a = 0, b = 0; pair_find(numbers, &a, &b); b++) {
-        if (skip-- > 0 || scene_leaves_out(out, (unsigned) a, (unsigned) b))
-            continue;
-        pair[out->scene.pair_count][0] = (unsigned) a;
-        pair[out->scene.pair_count++][1] = (unsigned) b;
+    struct fmb_scene *scene = &out->scene;
+    struct pair_cursor cursor = {0};
+    scene->which = (enum fmb_pairs) query->which;
+    scene->split = (size_t) query->split;
+    unsigned(*pair)[2] =
+        scene_alloc(out, (size_t) query_pair_count(query) + 1, sizeof *pair); /* 1: the last */
+    while (scene_next_pair(out, &cursor, pair[scene->pair_count])) {
+        const unsigned *last = pair[scene->pair_count];
+        scene->pair_count += query_pair_number(query, last[0], last[1]) >= query->first_pair;
     }
-    out->scene.pairs = (const unsigned(*)[2]) pair;
+    scene->pairs = (const unsigned(*)[2]) pair;
 }
 
 static void set_pairs(const struct scene_query *query, struct owned_scene *out)

@@ -43,10 +43,13 @@ void mesh_page_write(FILE *out, const struct mesh_report *report)
     note_counts(page, found);
     for (size_t i = 0; i < found->count; i++) {
         const struct mesh_pair *pair = &found->pair[i];
-        const struct fmb_answer answer = {.verdict = pair->verdict,
-                                          .has_contact = found->moving,
-                                          .contact = {pair->contact[0], pair->contact[1]}};
-        page_pair(page, pair->a, pair->b, 3, NULL, &(struct page_answer){.answer = &answer});
+        const struct fmb_client_answer answer = {
+            .a = pair->a,
+            .b = pair->b,
+            .answer = {.verdict = pair->verdict,
+                       .has_contact = found->moving,
+                       .contact = {pair->contact[0], pair->contact[1]}}};
+        page_pair(page, 3, NULL, &answer);
     }
     page_step_end(page);
     page_write(page, out);

@@ -1,8 +1,10 @@
 #include "page.h"
 
-#include "json_write.h"
 #include "keyed_hash.h"
+#include "report.h"
+#include "scene_json.h"
 
+#include <float.h>
 #include <glib.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,6 +12,8 @@
 #include <zlib.h>
 
 /* ---- JSON in memory -------------------------------------------------------------------------- */
+
+enum { DIGITS = 9 };
 
 struct text {
     struct json_writer json;
@@ -24,20 +28,20 @@ static size_t text_size(struct text *text)
     return text->size;
 }
 
-static void text_open(struct text *text)
-{
-    FILE *stream = open_memstream(&text->bytes, &text->size);
-    if (!stream)
-        allocate_failed();
-    text->json = (struct json_writer){.out = stream, .page = true};
-    text_size(text);
-}
-
 /* Makes the text empty. */
 static void text_rewind(struct text *text)
 {
     rewind(text->json.out);
-    text->json = (struct json_writer){.out = text->json.out, .page = true};
+    text->json = (struct json_writer){.out = text->json.out, .page = true, .digits = DIGITS};
+}
+
+static void text_open(struct text *text)
+{
+    text->json.out = open_memstream(&text->bytes, &text->size);
+    if (!text->json.out)
+        allocate_failed();
+    text_size(text);
+    text_rewind(text);
 }
 
 static void text_close(struct text *text)
@@ -46,176 +50,59 @@ static void text_close(struct text *text)
     free(text->bytes);
 }
 
-/* Copies a text. Its bytes may move while its size is taken. */
-static void put_text(struct json_writer *json, struct text *text)
+/* Appends a text of elements that are JSON to an array that has begun. */
+static void put_elements(struct json_writer *json, struct text *text)
 {
     const size_t size = text_size(text);
-    fwrite(text->bytes, 1, size, json->out);
-}
-
-/* Writes a text of elements that are JSON as an array. */
-static void put_array(struct json_writer *json, const char *key, struct text *text)
-{
-    json_begin(json, key, '[');
-    put_text(json, text);
-    json_end(json, ']');
-}
-
-/* Appends a text of elements that are JSON. */
-static void put_element(struct json_writer *json, struct text *text)
-{
+    if (size == 0)
+        return;
     json_break(json, "\n");
     json_begin(json, NULL, ' '); /* nothing but the comma */
-    put_text(json, text);
+    fwrite(text->bytes, 1, size, json->out);
     json->comma = true;
-}
-
-/* ---- Packed elements ------------------------------------------------------------------------- */
-
-/* Writes an element that holds the bytes in zlib's format, in base64. The fastest level:
- * higher ones make the page little smaller. */
-static void put_packed(FILE *out, const char *id, const void *bytes, size_t size)
-{
-    uLongf count = compressBound(size);
-    unsigned char *packed = allocate_unset(count);
-    if (compress2(packed, &count, bytes, size, Z_BEST_SPEED) != Z_OK)
-        allocate_failed();
-    char *text = g_base64_encode(packed, count);
-    fprintf(out, "<script type=\"text/plain\" id=\"%s\">\n%s\n</script>\n", id, text);
-    g_free(text);
-    free(packed);
-}
-
-/* ---- Numbers of meshes and steps ------------------------------------------------------------- */
-
-struct numbers {
-    uint32_t *word; /* [count], owned */
-    size_t count, capacity;
-    uint32_t (*last)[2]; /* [last_count]: a number of the last step, and its change; owned */
-    size_t last_count;
-};
-
-static void numbers_add(struct numbers *numbers, uint32_t word)
-{
-    numbers->word =
-        allocate_grow(numbers->word, &numbers->capacity, numbers->count + 1, sizeof *numbers->word);
-    numbers->word[numbers->count++] = word;
-}
-
-/* Adds the numbers of a step. Bodies move steadily, so a number changes by about as much as in the
- * step before. The difference d of these two changes is added, modulo 2^32, in zigzag code: 2 d if
- * d >= 0, -2 d - 1 if d < 0. Where the count of numbers differs from that of the step before, the
- * last numbers and changes are taken as 0. */
-static void numbers_add_step(struct numbers *numbers, const int32_t *number, size_t count)
-{
-    if (count != numbers->last_count) {
-        free(numbers->last);
-        numbers->last = allocate(count + 1, sizeof *numbers->last);
-        numbers->last_count = count;
-    }
-    for (size_t i = 0; i < count; i++) {
-        const uint32_t change = (uint32_t) number[i] - numbers->last[i][0];
-        const uint32_t differs = change - numbers->last[i][1];
-        numbers_add(numbers, differs << 1 ^ (differs >> 31 ? UINT32_MAX : 0));
-        numbers->last[i][0] += change;
-        numbers->last[i][1] = change;
-    }
-}
-
-/* Writes the words by planes of bytes: the lowest bytes of all words first, the highest ones, which
- * are mostly 0, last. */
-static void put_numbers(FILE *out, const struct numbers *numbers)
-{
-    const size_t count = numbers->count;
-    unsigned char *bytes = allocate_unset(4 * count + 1);
-    for (size_t k = 0; k < 4; k++)
-        for (size_t i = 0; i < count; i++)
-            bytes[k * count + i] = (unsigned char) (numbers->word[i] >> 8 * k);
-    put_packed(out, "numbers", bytes, 4 * count);
-    free(bytes);
-}
-
-/* ---- Lists of the data ---- */
-
-enum { LIST_NOTES, LIST_LOGS, LIST_SHAPES, LIST_CASTS, LIST_STEPS, LIST_FAR, LISTS };
-
-static const char *const list_name[LISTS] = {"notes", "logs", "shapes", "casts", "steps", "far"};
-
-/* An element that many steps have, and that is written once. */
-struct element {
-    size_t index;
-    UT_hash_handle hh;
-    unsigned char key[];
-};
-
-struct list {
-    struct text text;
-    size_t count;            /* of those with a key */
-    struct element *element; /* owned: hash table; NULL: empty */
-};
-
-/* Returns the index of the element with the key. On output: *is_new: it is not written yet. */
-static size_t list_index(struct list *list, const void *key, size_t size, bool *is_new)
-{
-    struct element *found;
-    HASH_FIND(hh, list->element, key, size, found);
-    *is_new = !found;
-    if (found)
-        return found->index;
-    found = allocate(1, sizeof *found + size);
-    memcpy(found->key, key, size);
-    found->index = list->count++;
-    HASH_ADD_KEYPTR(hh, list->element, found->key, size, found);
-    return found->index;
-}
-
-static void list_close(struct list *list)
-{
-    struct element *at, *next;
-    HASH_ITER(hh, list->element, at, next)
-    {
-        HASH_DEL(list->element, at);
-        free(at);
-    }
-    text_close(&list->text);
 }
 
 /* ---- The page -------------------------------------------------------------------------------- */
 
+enum { LIST_NOTES, LIST_LOGS, LIST_SHAPES, LIST_STEPS, LISTS };
+static const char *const list_name[LISTS] = {"notes", "logs", "shapes", "steps"};
+
 /* The order in which the pairs of a step are kept. */
 enum rank { RANK_DIFFERENT, RANK_NEAR, RANK_FAR, RANK_COUNT };
 
-/* The pose of a body of the step. */
-struct pose {
-    double position[FMB_DIM_MAX], shift[FMB_DIM_MAX]; /* shift: over the window */
-    double orientation[4];                            /* w, x, y, z; of length 1 */
+/* A shape or a log, which many steps have, and which is written once. */
+struct element {
+    size_t index;
+    UT_hash_handle hh;
+    char key[]; /* JSON */
+};
+
+/* A body of the step that is being added. */
+struct body {
+    struct fmb_placement placed; /* its body is not used */
+    int dim;                     /* 0: it is not drawn */
+    int64_t shape;
+    char missing[100]; /* why it is not drawn */
 };
 
 struct page {
     int64_t pairs_max;
     struct text data; /* an object: kind, title and sides */
-    struct list list[LISTS];
-    struct numbers numbers;     /* of meshes, then of steps */
-    bool has_origin;            /* there was a body */
-    double origin[FMB_DIM_MAX]; /* its position */
+    struct text list[LISTS];
+    struct element *element[LISTS]; /* owned: hash tables */
     int64_t step_count, left_out, left_out_different;
-    int64_t kept; /* steps in the list */
     double left_out_time[2];
-    bool full;         /* PAGE_STEPS_BYTES were reached, */
-    size_t full_bytes; /* and these were the bytes */
-    bool far_left_out;
-    int64_t far_count;
+    double end;        /* of the window of the last scene of page_scene_begin() */
+    size_t full_bytes; /* of the steps when PAGE_STEPS_BYTES were reached; 0: they were not */
+    size_t far_bytes;  /* kept */
+    int64_t far_left_out;
     /* The step that is being added. */
     struct page_step step;
-    bool keeps, rotates, moves;
-    double largest;   /* half of the largest coordinate or shift */
-    struct text cast; /* [id, shape, name], ...: the bodies */
-    struct text pairs[RANK_COUNT];
+    bool keeps;
+    struct body *body; /* [body_count], owned */
+    size_t body_count, body_capacity;
+    struct text shape, pairs[RANK_COUNT];
     int64_t pair_count[RANK_COUNT];
-    struct pose *pose; /* [pose_count], owned */
-    size_t pose_count, pose_capacity;
-    double *number; /* owned: of a shape */
-    size_t number_capacity;
 };
 
 struct page *page_open(const struct page_options *options)
@@ -226,9 +113,9 @@ struct page *page_open(const struct page_options *options)
     struct json_writer *json = &page->data.json;
     page->pairs_max = options->pairs_max ? options->pairs_max : PAGE_PAIRS_MAX;
     text_open(&page->data);
-    text_open(&page->cast);
+    text_open(&page->shape);
     for (int list = 0; list < LISTS; list++)
-        text_open(&page->list[list].text);
+        text_open(&page->list[list]);
     for (int rank = 0; rank < RANK_COUNT; rank++)
         text_open(&page->pairs[rank]);
     json_begin(json, NULL, '{');
@@ -243,312 +130,236 @@ struct page *page_open(const struct page_options *options)
 
 void page_close(struct page *page)
 {
+    struct element *at, *next;
     if (!page)
         return;
     text_close(&page->data);
-    text_close(&page->cast);
-    for (int list = 0; list < LISTS; list++)
-        list_close(&page->list[list]);
+    text_close(&page->shape);
+    for (int list = 0; list < LISTS; list++) {
+        text_close(&page->list[list]);
+        HASH_ITER(hh, page->element[list], at, next)
+        {
+            HASH_DEL(page->element[list], at);
+            free(at);
+        }
+    }
     for (int rank = 0; rank < RANK_COUNT; rank++)
         text_close(&page->pairs[rank]);
-    free(page->numbers.word);
-    free(page->numbers.last);
-    free(page->pose);
-    free(page->number);
+    free(page->body);
     free(page);
+}
+
+/* Returns the index in a list of the JSON in page->shape, which is added if it is new. */
+static int64_t index_of(struct page *page, int list)
+{
+    const size_t size = text_size(&page->shape);
+    struct element *found;
+    HASH_FIND(hh, page->element[list], page->shape.bytes, size, found);
+    if (found)
+        return (int64_t) found->index;
+    found = allocate(1, sizeof *found + size);
+    memcpy(found->key, page->shape.bytes, size);
+    found->index = HASH_COUNT(page->element[list]);
+    HASH_ADD_KEYPTR(hh, page->element[list], found->key, size, found);
+    put_elements(&page->list[list].json, &page->shape);
+    return (int64_t) found->index;
 }
 
 /* ---- Bodies ---------------------------------------------------------------------------------- */
 
-/* A shape is the frames of a body, one after the other as numbers: shape (enum fmb_shape), 1 if by
- * vertices, else 0, how many numbers follow, and these, as of fmb_frame_numbers(). */
-static size_t shape_index(struct page *page, const struct fmb_body *body)
+static int64_t shape_of(struct page *page, const struct fmb_body *body)
 {
-    struct list *shapes = &page->list[LIST_SHAPES];
-    size_t count = 0;
-    bool by_vertices, is_new;
-    for (unsigned i = 0; i < body->frame_count; i++) {
-        const struct fmb_frame *frame = fmb_body_frame(body, i);
-        const size_t size = fmb_frame_numbers(frame, &by_vertices, NULL), needed = count + 3 + size;
-        page->number =
-            allocate_grow(page->number, &page->number_capacity, needed, sizeof *page->number);
-        double *to = page->number + count;
-        to[0] = frame->shape;
-        to[1] = by_vertices;
-        to[2] = (double) size;
-        fmb_frame_numbers(frame, &by_vertices, to + 3);
-        count = needed;
-    }
-    const size_t index = list_index(shapes, page->number, count * sizeof *page->number, &is_new);
-    if (is_new) {
-        struct json_writer *json = &shapes->text.json;
-        json_break(json, "\n");
-        json_begin(json, NULL, '{');
-        json_integer(json, "dim", body->dim);
-        json_numbers(json, "frames", page->number, (int) count);
-        json_end(json, '}');
-    }
-    return index;
+    text_rewind(&page->shape);
+    json_begin(&page->shape.json, NULL, '{');
+    json_integer(&page->shape.json, "dim", body->dim);
+    scene_json_frames(&page->shape.json, body);
+    json_end(&page->shape.json, '}');
+    return index_of(page, LIST_SHAPES);
 }
 
-/* The unit quaternion; components of any finite size, not all 0. */
-static void set_orientation(int dim, const struct fmb_placement *placement, double out[4])
+static void add_body(struct page *page, const struct body *body)
 {
-    double largest = 0, length = 0;
-    if (placement->orientation_count == 0) {
-        out[0] = 1;
-        return;
-    }
-    for (int i = 0, step = dim == 2 ? 3 : 1; i < 4; i += step)
-        out[i] = placement->orientation[i / step]; /* in 2D w and z */
-    for (int i = 0; i < 4; i++)
-        largest = fmax(largest, fabs(out[i]));
-    for (int i = 0; i < 4; i++) {
-        out[i] /= largest;
-        length += out[i] * out[i];
-    }
-    for (int i = 0; i < 4; i++)
-        out[i] /= sqrt(length);
-}
-
-/* dim: 0: of a body that is not drawn. */
-static void add_pose(struct page *page, int dim, const struct fmb_placement *placement)
-{
-    page->pose =
-        allocate_grow(page->pose, &page->pose_capacity, page->pose_count + 1, sizeof *page->pose);
-    struct pose *pose = &page->pose[page->pose_count++];
-    memset(pose, 0, sizeof *pose);
-    if (dim == 0)
-        return;
-    if (!page->has_origin)
-        memcpy(page->origin, placement->position, (size_t) dim * sizeof *page->origin);
-    page->has_origin = true;
-    for (int axis = 0; axis < dim; axis++) {
-        /* half the distance from the origin of the page, which is always finite */
-        pose->position[axis] = placement->position[axis] / 2 - page->origin[axis] / 2;
-        /* of a body that leaves the range of the doubles: at its end */
-        pose->shift[axis] =
-            fmax(-0x1p1022, fmin(page->step.duration / 2 * placement->velocity[axis], 0x1p1022));
-        page->moves = page->moves || pose->shift[axis] != 0;
-        page->largest =
-            fmax(page->largest, fmax(fabs(pose->position[axis]), fabs(pose->shift[axis])));
-    }
-    set_orientation(dim, placement, pose->orientation);
-    page->rotates = page->rotates || placement->orientation_count > 0;
-}
-
-/* [id, shape, name]; of a body that is not drawn, the reason stands in place of the shape. */
-static void put_cast(struct page *page, int64_t id, int64_t shape, const char *missing,
-                     const char *name)
-{
-    struct json_writer *json = &page->cast.json;
-    json_begin(json, NULL, '[');
-    json_integer(json, NULL, id);
-    if (missing)
-        json_string(json, NULL, missing);
-    else
-        json_integer(json, NULL, shape);
-    if (name)
-        json_string(json, NULL, name);
-    json_end(json, ']');
+    page->body =
+        allocate_grow(page->body, &page->body_capacity, page->body_count + 1, sizeof *page->body);
+    page->body[page->body_count++] = *body;
 }
 
 void page_body(struct page *page, const struct fmb_placement *placement, const char *missing)
 {
+    struct body body = {.placed = *placement, .dim = missing ? 0 : placement->body->dim};
     if (!page->keeps)
         return;
-    add_pose(page, missing ? 0 : placement->body->dim, placement);
-    put_cast(page, placement->id, missing ? -1 : (int64_t) shape_index(page, placement->body),
-             missing, placement->name);
+    if (missing)
+        g_strlcpy(body.missing, missing, sizeof body.missing);
+    else
+        body.shape = shape_of(page, placement->body);
+    add_body(page, &body);
+}
+
+/* Writes numbers with their digits down to 1e-6 of the extent; 0: all digits. */
+static void put_vector(struct json_writer *json, const char *key, const double *vector, int dim,
+                       double extent)
+{
+    const int digits = json->digits;
+    json_begin(json, key, '[');
+    for (int i = 0; i < dim; i++) {
+        const double apart = log10(fabs(vector[i])) - log10(extent);
+        const bool is_small = vector[i] == 0 || apart < -6;
+        json->digits = extent > 0 ? (int) fmin(fmax(7 + floor(apart), 1), 17) : 0;
+        json_number(json, NULL, is_small ? 0 : vector[i]);
+    }
+    json_end(json, ']');
+    json->digits = digits;
+}
+
+/* The largest distance from `from`, NULL: from 0, halved, so that it is a double. */
+static double largest_of(const double *vector, const double *from, int dim)
+{
+    double largest = 0;
+    for (int axis = 0; axis < dim; axis++)
+        largest = fmax(largest, fabs(vector[axis] / 2 - (from ? from[axis] / 2 : 0)));
+    return largest;
+}
+
+static void put_bodies(struct page *page, struct json_writer *json)
+{
+    double extent = 0, speed = 0;
+    const struct body *first = NULL;
+    for (size_t i = 0; i < page->body_count; i++) {
+        const struct body *body = &page->body[i];
+        first = first || body->dim == 0 ? first : body;
+        if (body->dim == 0)
+            continue;
+        extent = fmax(extent, largest_of(body->placed.position, first->placed.position, body->dim));
+        speed = fmax(speed, largest_of(body->placed.velocity, NULL, body->dim));
+    }
+    extent = fmax(extent, fmin(speed * page->step.duration, DBL_MAX));
+    json_begin(json, "bodies", '[');
+    for (size_t i = 0; i < page->body_count; i++) {
+        const struct body *body = &page->body[i];
+        const struct fmb_placement *placed = &body->placed;
+        json_begin(json, NULL, '{');
+        json_integer(json, "id", placed->id);
+        if (placed->name && *placed->name)
+            json_string(json, "name", placed->name);
+        if (body->dim == 0)
+            json_string(json, "missing", body->missing);
+        else
+            json_integer(json, "shape", body->shape);
+        if (body->dim > 0)
+            put_vector(json, "position", placed->position, body->dim, extent);
+        if (body->dim > 0 && placed->orientation_count > 0)
+            put_vector(json, "orientation", placed->orientation, placed->orientation_count,
+                       largest_of(placed->orientation, NULL, placed->orientation_count));
+        if (largest_of(placed->velocity, NULL, body->dim) > 0)
+            put_vector(json, "velocity", placed->velocity, body->dim,
+                       page->step.duration > 0 ? extent / page->step.duration : 0);
+        json_end(json, '}');
+    }
+    json_end(json, ']');
 }
 
 /* ---- Pairs ----------------------------------------------------------------------------------- */
 
-static void put_number(struct json_writer *json, bool exact, double number)
+static void put_answer(struct json_writer *json, const char *key, int dim,
+                       const struct fmb_client_answer *answer)
 {
-    if (exact)
-        json_number(json, NULL, number);
-    else
-        json_rounded(json, NULL, number, 9);
+    struct fmb_client_answer shown = *answer;
+    shown.certificate = NULL;
+    if (key)
+        json_begin(json, key, '{');
+    report_answer_json(json, dim, false, &shown);
+    if (key)
+        json_end(json, '}');
 }
 
-/* null; "error"; a verdict; or [verdict, first, last, box, gap], without the nulls at its end. box:
- * lower ends, upper ends, null where infinite. gap: [lower, upper] bound, or [lower, upper, time,
- * points of a and of b...]. */
-static void put_answer(struct json_writer *json, int dim, bool exact,
-                       const struct page_answer *given)
-{
-    const struct fmb_answer *answer = given->answer;
-    if (given->error || !answer) {
-        json_string(json, NULL, given->error);
-        return;
-    }
-    if (!answer->has_contact && !answer->has_box && !answer->has_gap) {
-        json_integer(json, NULL, answer->verdict);
-        return;
-    }
-    json_begin(json, NULL, '[');
-    json_integer(json, NULL, answer->verdict);
-    for (int end = 0; end < 2; end++)
-        put_number(json, exact, answer->has_contact ? answer->contact[end] : NAN);
-    if (answer->has_box) {
-        json_begin(json, NULL, '[');
-        for (int i = 0; i < 2 * dim; i++)
-            put_number(json, exact, answer->box[i / dim][i % dim]);
-        json_end(json, ']');
-    } else if (answer->has_gap) {
-        json_null(json, NULL);
-    }
-    if (answer->has_gap) {
-        const struct fmb_gap *gap = &answer->gap;
-        json_begin(json, NULL, '[');
-        put_number(json, exact, gap->bounds[0]);
-        put_number(json, exact, gap->bounds[1]);
-        if (gap->has_witness) {
-            put_number(json, exact, gap->time);
-            for (int i = 0; i < 2 * dim; i++)
-                put_number(json, exact, gap->witness[i / dim][i % dim]);
-        }
-        json_end(json, ']');
-    }
-    json_end(json, ']');
-}
-
-static bool is_near(const struct page *page, const struct page_answer *given)
-{
-    const struct fmb_answer *answer = given->answer;
-    return given->error || (answer && (answer->verdict != FMB_SEPARATED ||
-                                       (answer->has_gap && page->step.margin > 0 &&
-                                        answer->gap.bounds[0] <= page->step.margin)));
-}
-
-void page_pair(struct page *page, int64_t a, int64_t b, int dim, const struct page_answer *then,
-               const struct page_answer *now)
+void page_pair(struct page *page, int dim, const struct fmb_client_answer *then,
+               const struct fmb_client_answer *now)
 {
     if (!page->keeps)
         return;
-    const enum rank rank = then ? RANK_DIFFERENT : is_near(page, now) ? RANK_NEAR : RANK_FAR;
+    const bool is_near = now->status != FMB_OK || now->answer.verdict != FMB_SEPARATED ||
+                         report_is_near(page->step.margin, &now->answer);
+    const enum rank rank = then ? RANK_DIFFERENT : is_near ? RANK_NEAR : RANK_FAR;
     if (page->pair_count[rank]++ >= page->pairs_max)
         return;
     struct json_writer *json = &page->pairs[rank].json;
-    json_begin(json, NULL, '[');
-    json_integer(json, NULL, a);
-    json_integer(json, NULL, b);
+    json->digits = then ? 0 : DIGITS;
+    json_begin(json, NULL, '{');
+    json_integers(json, "bodies", (const int64_t[]){now->a, now->b}, 2);
     if (then)
-        put_answer(json, dim, true, then);
-    put_answer(json, dim, then != NULL, now);
-    json_end(json, ']');
+        put_answer(json, "then", dim, then);
+    put_answer(json, then ? "now" : NULL, dim, now);
+    json_end(json, '}');
 }
 
 /* ---- Steps ----------------------------------------------------------------------------------- */
 
-static size_t bytes_of(struct page *page)
-{
-    return text_size(&page->list[LIST_STEPS].text) + text_size(&page->list[LIST_CASTS].text) +
-           text_size(&page->list[LIST_SHAPES].text) +
-           page->numbers.count * sizeof *page->numbers.word;
-}
-
 static bool may_keep(struct page *page, bool differs)
 {
-    const size_t bytes = bytes_of(page);
-    if (!page->full) {
-        page->full = bytes >= PAGE_STEPS_BYTES;
+    const size_t bytes = text_size(&page->list[LIST_STEPS]) + text_size(&page->list[LIST_SHAPES]);
+    if (page->full_bytes == 0 && bytes >= PAGE_STEPS_BYTES)
         page->full_bytes = bytes;
-    }
-    return !page->full || (differs && bytes - page->full_bytes < PAGE_DIFFERENT_BYTES);
-}
-
-static void leave_out(struct page *page, const struct page_step *step)
-{
-    if (page->left_out++ == 0)
-        page->left_out_time[0] = page->left_out_time[1] = step->time;
-    page->left_out_time[0] = fmin(page->left_out_time[0], step->time);
-    page->left_out_time[1] = fmax(page->left_out_time[1], step->time);
-    page->left_out_different += step->outcome.differs;
+    return page->full_bytes == 0 || (differs && bytes - page->full_bytes < PAGE_DIFFERENT_BYTES);
 }
 
 void page_step_begin(struct page *page, const struct page_step *step)
 {
     page->step_count++;
-    page->keeps = may_keep(page, step->outcome.differs);
+    page->keeps = may_keep(page, step->differs);
     if (!page->keeps) {
-        leave_out(page, step);
+        if (page->left_out++ == 0)
+            page->left_out_time[0] = page->left_out_time[1] = step->time;
+        page->left_out_time[0] = fmin(page->left_out_time[0], step->time);
+        page->left_out_time[1] = fmax(page->left_out_time[1], step->time);
+        page->left_out_different += step->differs;
         return;
     }
     page->step = *step;
-    page->rotates = page->moves = false;
-    page->largest = 0;
-    page->pose_count = 0;
-    text_rewind(&page->cast);
+    page->body_count = 0;
     for (int rank = 0; rank < RANK_COUNT; rank++) {
         text_rewind(&page->pairs[rank]);
         page->pair_count[rank] = 0;
     }
 }
 
-/* number / 2^(exponent - 24), rounded. In: |number| <= 2^exponent. */
-static int32_t fixed(double number, int exponent)
+void page_scene_begin(struct page *page, const struct fmb_scene *scene)
 {
-    return (int32_t) floor(ldexp(number, 24 - exponent) + 0.5);
+    page_step_begin(page, &(struct page_step){.time = page->end,
+                                              .duration = scene->duration,
+                                              .margin = scene->margin,
+                                              .label = scene->label});
+    for (size_t i = 0; i < scene->placement_count; i++)
+        page_body(page, &scene->placements[i], NULL);
+    page->end += scene->duration;
 }
 
-/* Writes the exponent `at` and the count `numbers`, and adds as many numbers: the positions of all
- * bodies, [body][x, y, z]; if a body has an orientation, the unit quaternions of all, [body][w, x,
- * y, z]; if a body moves, the shifts of all over the window, [body][x, y, z]. A coordinate of a
- * position is origin + 2^(at - 24) times its number, one of a shift 2^(at - 24) times, one of a
- * quaternion 2^-24 times its number. */
-static void put_poses(struct page *page, struct json_writer *json)
-{
-    const size_t count = page->pose_count;
-    const struct pose *pose = page->pose;
-    int exponent = -1075; /* of nothing but zeros */
-    size_t used = 0;
-    int32_t *number = allocate(10 * count + 1, sizeof *number);
-    if (page->largest > 0)
-        (void) frexp(page->largest, &exponent);
-    for (size_t i = 0; i < 3 * count; i++)
-        number[used++] = fixed(pose[i / 3].position[i % 3], exponent);
-    for (size_t i = 0; i < 4 * count && page->rotates; i++)
-        number[used++] = fixed(pose[i / 4].orientation[i % 4], 0);
-    for (size_t i = 0; i < 3 * count && page->moves; i++)
-        number[used++] = fixed(pose[i / 3].shift[i % 3], exponent);
-    json_integer(json, "at", exponent + 1);
-    json_integer(json, "numbers", (int64_t) used);
-    numbers_add_step(&page->numbers, number, used);
-    free(number);
-}
-
-/* null, or [error, method, ns, separated, touching, overlapping]. */
 static void put_result(struct json_writer *json, const struct page_result *result)
 {
     if (!result->given) {
         json_null(json, NULL);
         return;
     }
-    json_begin(json, NULL, '[');
-    json_string(json, NULL, result->error);
-    json_string(json, NULL, result->method);
-    json_integer(json, NULL, result->compute_ns);
-    for (int verdict = FMB_SEPARATED; verdict <= FMB_OVERLAPPING; verdict++)
-        json_integer(json, NULL, result->count[verdict]);
-    json_end(json, ']');
+    json_begin(json, NULL, '{');
+    if (result->error)
+        json_string(json, "error", result->error);
+    if (result->method)
+        json_string(json, "method", result->method);
+    json_integer(json, "compute_ns", result->compute_ns);
+    json_integers(json, "counts", &result->count[FMB_SEPARATED], FMB_OVERLAPPING);
+    json_end(json, '}');
 }
 
 static void put_recording(struct page *page, struct json_writer *json)
 {
     const struct page_step *step = &page->step;
-    bool is_new;
-    struct list *logs = &page->list[LIST_LOGS];
-    const size_t log = list_index(logs, step->log, strlen(step->log) + 1, &is_new);
-    if (is_new)
-        json_string(&logs->text.json, NULL, step->log);
-    json_integer(json, "log", (int64_t) log);
+    text_rewind(&page->shape);
+    json_string(&page->shape.json, NULL, step->log);
+    json_integer(json, "log", index_of(page, LIST_LOGS));
     json_integer(json, "event", step->event);
     json_integer(json, "offset", step->offset);
-    if (step->outcome.text)
-        json_string(json, "outcome", step->outcome.text);
-    if (step->outcome.differs)
+    json_string(json, "outcome", step->outcome);
+    if (step->differs)
         json_bool(json, "differs", true);
     json_begin(json, "result", '[');
     for (int side = 0; side < 2; side++)
@@ -556,61 +367,41 @@ static void put_recording(struct page *page, struct json_writer *json)
     json_end(json, ']');
 }
 
-/* The pairs that differ and that are near. Returns how many were left out. */
+/* Returns how many pairs that differ or are near were left out. */
 static int64_t put_pairs(struct page *page, struct json_writer *json)
 {
     int64_t dropped = 0;
     json_begin(json, "pairs", '[');
     for (int rank = 0; rank < RANK_FAR; rank++) {
         const int64_t count = page->pair_count[rank];
-        if (count > 0)
-            put_element(json, &page->pairs[rank]);
+        put_elements(json, &page->pairs[rank]);
         dropped += count > page->pairs_max ? count - page->pairs_max : 0;
+    }
+    const size_t far = text_size(&page->pairs[RANK_FAR]);
+    if (page->pair_count[RANK_FAR] > page->pairs_max || page->far_bytes + far > PAGE_FAR_BYTES) {
+        page->far_left_out += page->pair_count[RANK_FAR];
+    } else {
+        page->far_bytes += far;
+        put_elements(json, &page->pairs[RANK_FAR]);
     }
     json_end(json, ']');
     return dropped;
 }
 
-/* Far pairs of the step: [step, pair...]. */
-static void put_far(struct page *page)
-{
-    struct text *pairs = &page->pairs[RANK_FAR], *far = &page->list[LIST_FAR].text;
-    const int64_t count = page->pair_count[RANK_FAR];
-    page->far_count += count;
-    if (count == 0 || page->far_left_out)
-        return;
-    if (count > page->pairs_max || text_size(far) + text_size(pairs) > PAGE_FAR_BYTES) {
-        page->far_left_out = true;
-        text_rewind(far);
-        return;
-    }
-    json_break(&far->json, "\n");
-    json_begin(&far->json, NULL, '[');
-    json_integer(&far->json, NULL, page->kept);
-    put_element(&far->json, pairs);
-    json_end(&far->json, ']');
-}
-
 void page_step_end(struct page *page)
 {
     const struct page_step *step = &page->step;
-    struct list *casts = &page->list[LIST_CASTS];
-    struct json_writer *json = &page->list[LIST_STEPS].text.json;
-    bool is_new;
+    struct json_writer *json = &page->list[LIST_STEPS].json;
     if (!page->keeps)
         return;
-    const size_t size = text_size(&page->cast);
-    const size_t cast = list_index(casts, page->cast.bytes, size, &is_new);
-    if (is_new) {
-        json_break(&casts->text.json, "\n");
-        put_array(&casts->text.json, NULL, &page->cast);
-    }
     json_break(json, "\n");
     json_begin(json, NULL, '{');
+    json->digits = 0;
     json_number(json, "t", step->time);
-    json_number(json, "T", step->duration);
+    json_number(json, "duration", step->duration);
     if (step->margin > 0)
         json_number(json, "margin", step->margin);
+    json->digits = DIGITS;
     if (step->label && *step->label)
         json_string(json, "label", step->label);
     if (step->all)
@@ -619,81 +410,57 @@ void page_step_end(struct page *page)
         json_string(json, "note", step->note);
     if (step->log)
         put_recording(page, json);
-    json_integer(json, "cast", (int64_t) cast);
-    put_poses(page, json);
+    put_bodies(page, json);
     const int64_t dropped = put_pairs(page, json);
     if (dropped > 0)
         json_integer(json, "more", dropped);
     json_end(json, '}');
-    put_far(page);
-    page->kept++;
 }
 
 /* ---- Meshes ---------------------------------------------------------------------------------- */
 
-/* The least and the greatest coordinate of each axis; of an empty mesh 0. */
-static void find_extent(const struct page_mesh *mesh, double centre[3], int *exponent)
-{
-    double largest = 0;
-    *exponent = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        double low = INFINITY, high = -INFINITY;
-        for (size_t v = 0; v < mesh->vertex_count; v++) {
-            low = fmin(low, mesh->vertex[v][axis]);
-            high = fmax(high, mesh->vertex[v][axis]);
-        }
-        /* halved first: a sum or a difference of two doubles may be no double */
-        centre[axis] = low <= high ? low / 2 + high / 2 : 0;
-        largest = low <= high ? fmax(largest, high / 2 - low / 2) : largest;
-    }
-    if (largest > 0)
-        (void) frexp(largest, exponent);
-}
-
 void page_mesh(struct page *page, const struct page_mesh *mesh)
 {
-    struct json_writer *json = &page->list[LIST_SHAPES].text.json;
-    struct fmb_placement placement = {.orientation_count = 0};
-    double centre[3];
-    int exponent;
-    find_extent(mesh, centre, &exponent);
-    json_break(json, "\n");
+    struct body body = {.placed = {.name = mesh->name}, .dim = 3};
+    struct json_writer *json = &page->shape.json;
+    double extent = 0;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        extent = fmax(extent, largest_of(mesh->vertex[i], mesh->vertex[0], 3));
+    text_rewind(&page->shape);
     json_begin(json, NULL, '{');
     json_integer(json, "dim", 3);
-    json_numbers(json, "centre", centre, 3);
-    json_integer(json, "at", exponent);
-    json_integer(json, "first", (int64_t) page->numbers.count);
-    json_integer(json, "corners", (int64_t) mesh->vertex_count);
-    json_integer(json, "faces", (int64_t) mesh->face_count);
-    json_end(json, '}');
-    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
-        numbers_add(
-            &page->numbers,
-            (uint32_t) fixed(mesh->vertex[i / 3][i % 3] / 2 - centre[i % 3] / 2, exponent - 1));
+    put_vector(json, "vertices", (const double *) mesh->vertex, 3 * (int) mesh->vertex_count,
+               extent);
+    json_begin(json, "faces", '[');
     for (size_t i = 0; i < 3 * mesh->face_count; i++)
-        numbers_add(&page->numbers, mesh->face[i / 3][i % 3]);
+        json_integer(json, NULL, mesh->face[i / 3][i % 3]);
+    json_end(json, ']');
+    json_begin(json, "verdicts", '[');
     for (size_t i = 0; i < mesh->face_count; i++)
-        numbers_add(&page->numbers, mesh->verdict[i]);
+        json_integer(json, NULL, mesh->verdict[i]);
+    json_end(json, ']');
+    json_integer(json, "number", (int64_t) page->body_count); /* two equal meshes are two shapes */
+    json_end(json, '}');
     if (mesh->velocity)
-        memcpy(placement.velocity, mesh->velocity, sizeof placement.velocity);
-    add_pose(page, 3, &placement);
-    put_cast(page, 0, (int64_t) page->list[LIST_SHAPES].count++, NULL, mesh->name);
+        memcpy(body.placed.velocity, mesh->velocity, sizeof body.placed.velocity);
+    body.shape = index_of(page, LIST_SHAPES);
+    add_body(page, &body);
 }
 
 /* ---- Writing --------------------------------------------------------------------------------- */
 
 void page_note(struct page *page, const char *note)
 {
-    json_string(&page->list[LIST_NOTES].text.json, NULL, note);
+    json_string(&page->list[LIST_NOTES].json, NULL, note);
 }
 
 static void note_left_out(struct page *page)
 {
     char note[300];
-    if (page->far_left_out) {
+    if (page->far_left_out > 0) {
         snprintf(note, sizeof note,
                  "Pairs that are separated and not within the margin are left out: %lld answers.",
-                 (long long) page->far_count);
+                 (long long) page->far_left_out);
         page_note(page, note);
     }
     if (page->left_out == 0)
@@ -704,6 +471,19 @@ static void note_left_out(struct page *page)
              (long long) page->left_out, (long long) page->step_count, page->left_out_time[0],
              page->left_out_time[1], (long long) page->left_out_different);
     page_note(page, note);
+}
+
+/* Writes an element that holds the bytes in zlib's format, in base64. */
+static void put_packed(FILE *out, const char *id, const void *bytes, size_t size)
+{
+    uLongf count = compressBound(size);
+    unsigned char *packed = allocate_unset(count);
+    if (compress2(packed, &count, bytes, size, Z_DEFAULT_COMPRESSION) != Z_OK)
+        allocate_failed();
+    char *text = g_base64_encode(packed, count);
+    fprintf(out, "<script type=\"text/plain\" id=\"%s\">\n%s\n</script>\n", id, text);
+    g_free(text);
+    free(packed);
 }
 
 /* The page without its data: text, style, scripts and three.js, which the Makefile puts together in
@@ -722,13 +502,24 @@ void page_write(struct page *page, FILE *out)
     const char *data = strstr(page_template, mark);
     struct json_writer *json = &page->data.json;
     note_left_out(page);
-    json_numbers(json, "origin", page->origin, FMB_DIM_MAX);
-    for (int list = 0; list < LISTS; list++)
-        put_array(json, list_name[list], &page->list[list].text);
+    for (int list = 0; list < LISTS; list++) {
+        json_begin(json, list_name[list], '[');
+        put_elements(json, &page->list[list]);
+        json_end(json, ']');
+    }
     json_end(json, '}');
     const size_t size = text_size(&page->data);
     fwrite(page_template, 1, (size_t) (data - page_template), out);
     put_packed(out, "data", page->data.bytes, size);
-    put_numbers(out, &page->numbers);
     fputs(data + strlen(mark), out);
+}
+
+bool page_save(struct page *page, const struct output_options *options)
+{
+    struct output *output;
+    if (!output_open(options, &output))
+        return false;
+    if (output)
+        page_write(page, output->file);
+    return output_close(output, true);
 }

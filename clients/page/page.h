@@ -1,36 +1,40 @@
-/* Writes an HTML page that plays scenes: one file that fetches nothing. A page is a list of steps.
- * A step is one query: its placed bodies, a window of time, and the answers to pairs of them.
+/* Writes an HTML page that plays scenes: one file that fetches nothing. Its data is JSON,
+ * compressed: a list of steps. A step is one query: its scene and the answers to pairs of it, in
+ * the form of scene_json.h and report.h.
  *
  *     struct page *page = page_open(&options);
  *     page_step_begin(page, &step);      // for each step, in any order of time:
  *     page_body(page, &placement, NULL); // each body, in the order of the indices of the pairs
- *     page_pair(page, a, b, ...);        // each pair that has an answer
+ *     page_pair(page, ...);              // each pair that has an answer
  *     page_step_end(page);
  *     page_write(page, out);
  *
- * Poses are for pictures: multiples of 2^-24 of the extent of the step, relative to the first body
- * of the page. Numbers of answers have nine digits, and all digits where two answers differ. All
- * texts may be any bytes. The data are compressed.
+ * page_exchange.h does this for the queries of a log, page_scene_begin() for the bodies of a scene.
+ * Shapes are written once. Poses are for pictures: rounded to some 1e-6 of the extent of the step.
+ * Numbers of answers have nine digits, and all digits where two answers differ. All texts may be
+ * any bytes.
  *
  * All functions exit with status 1 if memory is exhausted. For one thread at a time. */
 #ifndef PAGE_H
 #define PAGE_H
 
-#include "fmb.h"
+#include "fmb_client.h"
 #include "json_write.h"
+#include "output.h"
 
 #include <stdio.h>
 
 /* A page stays below PAGE_BYTES_MAX, its own text of about a megabyte included. All other limits
- * are of bytes before they are compressed. Steps are kept as a whole up to PAGE_STEPS_BYTES, steps
- * that differ up to PAGE_DIFFERENT_BYTES more. Separated pairs without a gap within the margin are
- * kept up to PAGE_FAR_BYTES, or else left out of all steps. Of a step PAGE_PAIRS_MAX pairs that
- * differ are kept, and as many in contact or near. The page says what was left out. */
+ * are of bytes before they are compressed, which is to less than half. Steps are kept as a whole up
+ * to PAGE_STEPS_BYTES, steps that differ up to PAGE_DIFFERENT_BYTES more. Separated pairs without a
+ * gap within the margin are kept up to PAGE_FAR_BYTES in all. Of a step PAGE_PAIRS_MAX pairs that
+ * differ are kept, as many in contact or near, and as many others. The page says what was left out.
+ */
 enum {
     PAGE_BYTES_MAX = 40 << 20,
-    PAGE_STEPS_BYTES = 30 << 20,
+    PAGE_STEPS_BYTES = 64 << 20,
     PAGE_DIFFERENT_BYTES = 5 << 20,
-    PAGE_FAR_BYTES = 3 << 20,
+    PAGE_FAR_BYTES = 5 << 20,
     PAGE_PAIRS_MAX = 1000
 };
 
@@ -48,12 +52,6 @@ struct page *page_open(const struct page_options *options);
 void page_close(struct page *page); /* may be NULL */
 
 /* ---- Steps ---- */
-
-/* How the answers then and now compare, or why there is nothing to compare. Shown as they are. */
-struct page_outcome {
-    const char *text; /* NULL: nothing is compared */
-    bool differs;
-};
 
 /* What was answered to a whole query. */
 struct page_result {
@@ -74,7 +72,8 @@ struct page_step {
     /* Of a recording: */
     const char *log; /* path; NULL: none */
     int64_t event, offset;
-    struct page_outcome outcome;
+    const char *outcome; /* how the answers then and now compare, shown as it is */
+    bool differs;
     struct page_result result[2]; /* [then, now] */
 };
 
@@ -83,17 +82,15 @@ void page_step_begin(struct page *page, const struct page_step *step);
 /* Adds a body. missing: NULL; or why the body cannot be drawn: then only id and name are read. */
 void page_body(struct page *page, const struct fmb_placement *placement, const char *missing);
 
-/* An answer to a pair of the step. */
-struct page_answer {
-    const struct fmb_answer *answer; /* NULL: none; verdict 0: the method could not decide */
-    const char *error;               /* not NULL: why there is no verdict */
-};
-
-/* a, b: indices of bodies; of a mesh, of faces. then: NULL: the same as now. */
-void page_pair(struct page *page, int64_t a, int64_t b, int dim, const struct page_answer *then,
-               const struct page_answer *now);
+/* Adds the answer to a pair, whose a and b are indices of bodies; of a mesh, of faces. then: NULL:
+ * the same as now. */
+void page_pair(struct page *page, int dim, const struct fmb_client_answer *then,
+               const struct fmb_client_answer *now);
 
 void page_step_end(struct page *page);
+
+/* Begins a step with the bodies of a scene. The windows of the scenes follow each other. */
+void page_scene_begin(struct page *page, const struct fmb_scene *scene);
 
 /* ---- Meshes: a page of one step, whose bodies are meshes ---- */
 
@@ -115,5 +112,8 @@ void page_note(struct page *page, const char *note);
 
 /* Call it once. On output: ferror(out) is set if writing failed. */
 void page_write(struct page *page, FILE *out);
+
+/* As page_write(), to a file if one is wanted. Returns false after an error, which was reported. */
+bool page_save(struct page *page, const struct output_options *options);
 
 #endif

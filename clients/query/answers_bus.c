@@ -65,9 +65,9 @@ struct bus_scene {
 static void deliver(struct bus_scene *run, int status, const char *text,
                     const struct fmb_client_answer *until)
 {
+    const unsigned last[2] = {until ? until->a : 0, until ? until->b : 0};
     unsigned pair[2];
-    while (scene_next_pair(run->scene, &run->delivered, pair) &&
-           !(until && pair[0] == until->a && pair[1] == until->b)) {
+    while (scene_next_pair_before(run->scene, &run->delivered, until ? last : NULL, pair)) {
         struct fmb_client_answer answer = {
             .a = pair[0], .b = pair[1], .status = status, .text = text};
         if (status == FMB_OK)

@@ -26,8 +26,8 @@
 #include "clock.h"
 #include "complain.h"
 #include "fmb_client_raw.h"
+#include "exchange.h"
 #include "process.h"
-#include "replayed.h"
 
 #include <poll.h>
 #include <stdio.h>
@@ -104,7 +104,9 @@ static void decode_result(struct answer_bus *bus, enum log_kind kind,
     if (kind == LOG_PAIR_QUERY)
         return;
     logged_query_read(&bus->answered, kind, result->query, (uint32_t) result->query_size);
-    out->pairs = replayed_decided(&bus->answered.scene, &bus->result.scene);
+    struct exchange exchange = {.query = &bus->answered, .result = &bus->result};
+    exchange_begin(&exchange);
+    out->pairs = exchange_decided(&exchange);
 }
 
 static void on_result(void *user, const struct fmb_client_raw_result *result)

@@ -55,7 +55,7 @@ static bool precedes(const struct difference *a, const struct difference *b)
            (a->place.log == b->place.log && a->place.offset < b->place.offset);
 }
 
-static void copy_certificate(struct difference_side *side, char copy[LISTING_CERTIFICATE_MAX])
+static void copy_certificate(struct fmb_client_answer *side, char copy[LISTING_CERTIFICATE_MAX])
 {
     if (!side->certificate)
         return;

@@ -7,7 +7,7 @@
 #include "body_names.h"
 #include "input.h"
 #include "output.h"
-#include "page_replayed.h"
+#include "page_exchange.h"
 
 /* Callbacks for the progress and the findings of a replay. None may be NULL. */
 struct replay_sink {

@@ -117,19 +117,16 @@ static void read_new(struct replay *replay, enum log_kind kind, const struct new
     (void) error;
 }
 
-/* In: of, with the results. */
 static void add_to_page(struct replay *replay, const struct match_item *query,
-                        const struct replayed *of, enum replay_outcome outcome)
+                        struct exchange *then, struct exchange *now, enum replay_outcome outcome)
 {
-    struct replayed replayed = *of;
-    replayed.log = replay->paths[query->place.log];
-    replayed.event_number = query->place.number;
-    replayed.offset = query->place.offset;
-    replayed.utime = query->place.utime;
-    replayed.outcome = outcome;
-    replayed.note = *replay->note ? replay->note : NULL;
+    const struct page_replayed replayed = {.log = replay->paths[query->place.log],
+                                           .place = query->place,
+                                           .begin = replay->tally->first_utime,
+                                           .outcome = outcome,
+                                           .note = replay->note};
     definitions_fill(replay->definitions, &replay->compared);
-    page_take(replay->options->page, replay->options->names, replay->tally->first_utime, &replayed);
+    page_take(replay->options->page, &replayed, then, now);
 }
 
 /* ---- Comparing ---- */
@@ -157,16 +154,23 @@ static void count(struct replay *replay, const struct match_item *query,
         histogram_add(&tally_of(replay, &query->place)->then, then_ns);
 }
 
+/* The exchange of the query with a result. */
+static struct exchange exchange_of(struct replay *replay, const struct logged_result *result)
+{
+    return (struct exchange){
+        .query = &replay->compared, .result = result, .names = replay->options->names};
+}
+
 static void compare_unrecorded(struct replay *replay, const struct match_item *query,
                                const struct new_result *answered)
 {
-    const struct replayed replayed = {.query = &replay->compared, .now = &replay->now};
+    struct exchange then = exchange_of(replay, NULL), now = exchange_of(replay, &replay->now);
     const enum replay_outcome outcome = answered->not_held ? REPLAY_NOT_HELD : REPLAY_UNRECORDED;
     count(replay, query, outcome, 0);
     if (!replay->options->page || !read_compared(replay, query))
         return;
     read_new(replay, (enum log_kind) query->key.kind, answered);
-    add_to_page(replay, query, &replayed, outcome);
+    add_to_page(replay, query, &then, &now, outcome);
 }
 
 /* Compares a result that was read, and so its own query, with the new one. same_bytes: of both
@@ -176,14 +180,13 @@ static void compare_read(struct replay *replay, const struct match_item *query,
 {
     const enum log_kind kind = (enum log_kind) query->key.kind;
     const struct match_item *result = query->other;
-    struct replayed replayed = {
-        .query = &replay->compared,
-        .then = &replay->then,
-        .now = &replay->now,
-        .then_query = result->has_own ? &replay->golden_query : NULL,
-        .by_order =
-            !result->has_own && (result->by_order || result->key.utime != query->key.utime)};
-    char change[SCENE_CHANGE_MAX];
+    struct exchange then = exchange_of(replay, &replay->then),
+                    now = exchange_of(replay, &replay->now);
+    if (result->has_own) {
+        then.query = &replay->golden_query;
+        then.names = replay->golden_names;
+    }
+    then.by_order = !result->has_own && (result->by_order || result->key.utime != query->key.utime);
     if (!read_compared(replay, query) ||
         !is_unchanged(replay, result,
                       logged_result_read(&replay->then, kind, replay->result_bytes, size)))
@@ -191,19 +194,15 @@ static void compare_read(struct replay *replay, const struct match_item *query,
     read_new(replay, kind, answered);
     if (replay->options->compare.tolerance > 0)
         definitions_fill(replay->definitions, &replay->compared);
-    if (result->has_own &&
-        scene_change((struct scene_change_side){replay->golden_names, &replay->golden_query},
-                     (struct scene_change_side){replay->options->names, &replay->compared}, change))
-        replayed.change = change;
     replay->item = query;
     const enum replay_outcome outcome =
         answered->not_held ? REPLAY_NOT_HELD
-        : same_bytes && !replayed.change
+        : same_bytes && !result->has_own
             ? REPLAY_SAME
-            : compare_results(&replay->options->compare, &replayed, on_difference, replay);
+            : compare_exchanges(&replay->options->compare, &then, &now, on_difference, replay);
     count(replay, query, outcome, replay->then.head.compute_ns);
     if (replay->options->page)
-        add_to_page(replay, query, &replayed, outcome);
+        add_to_page(replay, query, &then, &now, outcome);
 }
 
 void replay_compare(struct replay *replay, const struct match_item *query,
@@ -241,18 +240,18 @@ static void no_difference(void *user, const struct difference *difference)
 static void compare_second(struct replay *replay, const struct match_item *second)
 {
     const struct match_item *query = second->other;
-    const struct replayed replayed = {
-        .query = second->has_own ? &replay->golden_query : &replay->compared,
-        .then = &replay->then,
-        .now = &replay->now};
+    struct exchange then = exchange_of(replay, &replay->then),
+                    now = exchange_of(replay, &replay->now);
     struct tally_channel *channel = replay_channel(replay, second);
     bool differs = false;
+    if (second->has_own)
+        then.query = now.query = &replay->golden_query;
     if (second->has_own || !query->unreadable) {
         if (!(second->has_own ? read_golden_query(replay, second) : read_compared(replay, query)) ||
             !read_result(replay, query->other, replay->query_bytes, &replay->now) ||
             !read_result(replay, second, replay->result_bytes, &replay->then))
             return;
-        differs = compare_results(&replay->options->compare, &replayed, no_difference, replay) ==
+        differs = compare_exchanges(&replay->options->compare, &then, &now, no_difference, NULL) ==
                   REPLAY_DIFFERENT;
     }
     channel->results_again += !differs;

@@ -16,17 +16,15 @@ static void write_status(struct json_writer *json, const char *key, int status)
     json_end(json, '}');
 }
 
-static void write_side(struct json_writer *json, const char *key, int dim,
-                       const struct difference_side *side)
+static void write_side(struct json_writer *json, const char *key, int dim, bool names_frames,
+                       const struct fmb_client_answer *side)
 {
-    const bool decided = side->status == FMB_OK && side->answer.verdict != 0;
-    const int status = side->status || decided ? side->status : FMB_CANNOT_DECIDE;
-    const struct fmb_client_answer answer = {.status = status,
-                                             .text = fmb_status_text(status),
-                                             .answer = side->answer,
-                                             .certificate = side->certificate};
+    struct fmb_client_answer answer = *side;
+    if (answer.status == FMB_OK && answer.answer.verdict == 0)
+        answer.status = FMB_CANNOT_DECIDE;
+    answer.text = fmb_status_text(answer.status);
     json_begin(json, key, '{');
-    report_answer_json(json, dim, side->names_frames, &answer);
+    report_answer_json(json, dim, names_frames, &answer);
     json_end(json, '}');
 }
 
@@ -56,8 +54,8 @@ static void write_difference(struct json_writer *json, const struct body_names *
         write_status(json, "then", difference->then.status);
         write_status(json, "now", difference->now.status);
     } else {
-        write_side(json, "then", difference->dim, &difference->then);
-        write_side(json, "now", difference->dim, &difference->now);
+        write_side(json, "then", difference->dim, difference->names_frames[0], &difference->then);
+        write_side(json, "now", difference->dim, difference->names_frames[1], &difference->now);
     }
 }
 

@@ -11,7 +11,6 @@
 #include "log_write.h"
 #include "match.h"
 #include "replay.h"
-#include "scene_change.h"
 
 #include <glib.h>
 

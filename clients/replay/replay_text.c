@@ -35,7 +35,7 @@ static void put_gap(FILE *out, const struct fmb_gap *gap)
 }
 
 static void put_side(FILE *out, enum escape form, const struct difference *difference,
-                     const struct difference_side *side)
+                     const struct fmb_client_answer *side)
 {
     const struct fmb_answer *answer = &side->answer;
     const char *verdict = fmb_verdict_name((int) answer->verdict);

@@ -22,7 +22,7 @@ hulls='.shapes |= ([
     [[0,0,0],[1,0,0],[0,1,0],[1,1,0],[0,0,1],[1,0,1],[0,1,1],[1,1,1],[0.5,0.5,0.5]],
     [[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0.5,0.5,0]],
     [[0,0,0],[1,0,0],[0,1,0],[0,0,1],[0,0,1]], [[0,0,0],[1,1,1]], [[0,0,0]]]
-    | map({dim: 3, frames: ([5, 1, 3 * length] + (. | add))}))'
+    | map({dim: 3, frames: [{shape: "hull", vertices: .}]}))'
 
 setup_file() {
     local top fmb logs
@@ -91,15 +91,15 @@ setup() {
 }
 
 @test "hostile names and labels end neither script nor page" {
-    [ "$(grep -c '</script>' hostile.html)" = 3 ]
+    [ "$(grep -c '</script>' hostile.html)" = 2 ]
     [ "$(grep -c '<!--' hostile.html)" = 0 ]
-    data hostile.html | jq -e --arg name "$hostile" '.casts[0][0][2] == $name and .steps[0].label == $name'
+    data hostile.html | jq -e --arg name "$hostile" '.steps[0].bodies[0].name == $name and .steps[0].label == $name'
     found '.hostile | .bold == 0 and (.labels | any(startswith("<b>x</b></script>")))'
 }
 
 @test "the pairs of a mesh's page are those of the program" {
-    jq -c '[.pairs[] | .[:2] + [if .[2] == "overlapping" then 3 else 2 end] | flatten]' mesh.json > expected
-    data mesh.html | jq -c '[.steps[0].pairs[] | [.[0], .[1], .[2][0]]]' > held
+    jq -c '[.pairs[] | .[:3]]' mesh.json > expected
+    data mesh.html | jq -c '[.steps[0].pairs[] | .bodies + [.verdict]]' > held
     diff expected held
 }
 
@@ -108,8 +108,8 @@ setup() {
 @test "a recording of other bodies is a note, and the pairs are those of the query" {
     # 10 bodies and 17 pairs, against 16 bodies and 120 pairs.
     data other.html | jq -e '.steps[0] | (.note | startswith("the recording has 16 bodies, the query 10: "))
-        and (.result[0][3:] | add) == 120 and (.result[1][3:] | add) == 17 and .differs' > /dev/null
-    data other.html | jq -e '[.steps[].pairs[][0:2][]] | max < 10' > /dev/null
+        and (.result[0].counts | add) == 120 and (.result[1].counts | add) == 17 and .differs' > /dev/null
+    data other.html | jq -e '[.steps[].pairs[].bodies[]] | max < 10' > /dev/null
 }
 
 @test "the pages open without errors" {

@@ -55,17 +55,16 @@ struct query_outcomes {
 
 static struct query_outcomes *taken;
 
-void __wrap_page_take(struct page *page, const struct body_names *names, int64_t begin,
-                      const struct replayed *replayed);
+void __wrap_page_take(struct page *page, const struct page_replayed *replayed,
+                      struct exchange *then, struct exchange *now);
 
-void __wrap_page_take(struct page *page, const struct body_names *names, int64_t begin,
-                      const struct replayed *replayed)
+void __wrap_page_take(struct page *page, const struct page_replayed *replayed,
+                      struct exchange *then, struct exchange *now)
 {
     (void) page;
-    (void) names;
-    (void) begin;
+    (void) then;
     assert_true(taken->count < EVENTS_MAX);
-    taken->query[taken->count].sequence_number = replayed->query->header.sequence_number;
+    taken->query[taken->count].sequence_number = now->query->header.sequence_number;
     taken->query[taken->count++].outcome = replayed->outcome;
 }
 

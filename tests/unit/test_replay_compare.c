@@ -106,7 +106,8 @@ static enum replay_outcome compare_with(double tolerance, const struct pair_quer
     const struct compare_options options = {.tolerance = tolerance};
     static struct logged_query of;
     static struct logged_result results[2];
-    const struct replayed replayed = {.query = &of, .then = &results[0], .now = &results[1]};
+    struct exchange before = {.query = &of, .result = &results[0]};
+    struct exchange after = {.query = &of, .result = &results[1]};
     reported_count = 0;
     of.kind = results[0].kind = results[1].kind = LOG_PAIR_QUERY;
     of.pair = *query;
@@ -114,7 +115,8 @@ static enum replay_outcome compare_with(double tolerance, const struct pair_quer
     of.placement_count = 2;
     results[0].pair = *then;
     results[1].pair = *now;
-    const enum replay_outcome outcome = compare_results(&options, &replayed, on_difference, NULL);
+    const enum replay_outcome outcome =
+        compare_exchanges(&options, &before, &after, on_difference, NULL);
     assert_int_equal(reported_count, outcome == REPLAY_DIFFERENT);
     return outcome;
 }
@@ -544,7 +546,8 @@ static enum replay_outcome compare(void)
 {
     static struct logged_query of;
     static struct logged_result results[2];
-    const struct replayed replayed = {.query = &of, .then = &results[0], .now = &results[1]};
+    struct exchange before = {.query = &of, .result = &results[0]};
+    struct exchange after = {.query = &of, .result = &results[1]};
     reported_count = 0;
     of.kind = results[0].kind = results[1].kind = LOG_SCENE_QUERY;
     of.scene = scene;
@@ -552,7 +555,7 @@ static enum replay_outcome compare(void)
     of.placement_count = scene.placement_count;
     results[0].scene = then;
     results[1].scene = now;
-    return compare_results(&exact, &replayed, on_difference, NULL);
+    return compare_exchanges(&exact, &before, &after, on_difference, NULL);
 }
 
 static void check_scene(void)

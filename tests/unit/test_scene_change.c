@@ -34,8 +34,8 @@ static int begin_both(void **state)
 static void expect(const char *expected)
 {
     char text[SCENE_CHANGE_MAX];
-    const bool changed = scene_change((struct scene_change_side){NULL, &query[THEN]},
-                                      (struct scene_change_side){NULL, &query[NOW]}, text);
+    const bool changed = scene_change(&(struct exchange){.query = &query[THEN]},
+                                      &(struct exchange){.query = &query[NOW]}, text);
     assert_string_equal(text, expected);
     assert_int_equal(changed, *expected != 0);
 }
@@ -121,8 +121,8 @@ static void a_query_that_was_refused_is_compared(void **state)
     scene[NOW]->ignored_count = scene[NOW]->index_count = INT32_MAX;
     scene[NOW]->placement_count = INT32_MAX;
     query[NOW].placement_count = query_stored_placements(scene[NOW]);
-    assert_true(scene_change((struct scene_change_side){NULL, &query[THEN]},
-                             (struct scene_change_side){NULL, &query[NOW]}, text));
+    assert_true(scene_change(&(struct exchange){.query = &query[THEN]},
+                             &(struct exchange){.query = &query[NOW]}, text));
     assert_non_null(strstr(text, "the recording has 3 bodies"));
 }
 

@@ -13,36 +13,34 @@ function unpack(id) {
 
 if (!globalThis.DecompressionStream)
     one("counts").textContent = "This browser is too old for the page: it has no DecompressionStream.";
-const [data, planes] = await Promise.all([unpack("data").json(), unpack("numbers").arrayBuffer()]);
+const data = await unpack("data").json();
 const SEPARATED = 1, TOUCHING = 2, OVERLAPPING = 3;
 const verdictNames = ["not decided", "separated", "touching", "overlapping"];
 const { steps } = data, isMesh = data.kind === "mesh", isReplay = data.kind === "replay";
 
-/* ---- Numbers of meshes and steps: whole, of 32 bits ---- */
+/* ---- Scenes and answers as JSON ---- */
 
-const bytes = new Uint8Array(planes), numbers = new Int32Array(bytes.length / 4);
-for (let i = 0, n = numbers.length; i < n; i++)
-    numbers[i] = bytes[i] | bytes[i + n] << 8 | bytes[i + 2 * n] << 16 | bytes[i + 3 * n] << 24;
-
-/* Sets in each step whether bodies turn and move, and the indices of their positions, quaternions and
- * shifts. Decodes the numbers in place (numbers_add_step() of page.c encodes them). */
-function readPoses(at) {
-    let last = [], change = [];
-    for (const step of steps) {
-        const count = data.casts[step.cast].length, each = step.numbers / count, turns = each >= 7;
-        Object.assign(step, { turns, moves: each === 6 || each === 10, first: at, turn: at + 3 * count, shift: at + (turns ? 7 : 3) * count });
-        if (step.numbers !== last.length)
-            [last, change] = [new Int32Array(step.numbers), new Int32Array(step.numbers)];
-        for (let i = 0; i < step.numbers; i++, at++) {
-            change[i] += numbers[at] >>> 1 ^ -(numbers[at] & 1);
-            numbers[at] = last[i] += change[i];
-        }
-    }
+/* An answer as the page uses it: {verdict, error, contact, box, gap}. box: lower ends, then upper ends; gap:
+ * bounds, and where there are nearest points their time and they. */
+function readAnswer({ verdict, error, contact, box, gap, witness }) {
+    return {
+        verdict: Math.max(verdictNames.indexOf(verdict), 0), error, contact, box: box && [...box.min, ...box.max],
+        gap: gap && [...gap, ...witness ? [witness.time, ...witness.a, ...witness.b] : []],
+    };
 }
 
-readPoses(data.shapes.reduce((sum, shape) => sum + (shape.corners === undefined ? 0 : 3 * shape.corners + 4 * shape.faces), 0));
-for (const [step, ...pairs] of data.far)
-    steps[step].pairs.push(...pairs);
+/* The bodies of a step without their poses; one list for all steps with the same bodies. */
+const castByKey = new Map();
+function castOf({ bodies }) {
+    const cast = bodies.map(({ id, name, shape, missing }) => [id, missing ?? shape, name]), key = JSON.stringify(cast);
+    return castByKey.get(key) ?? castByKey.set(key, cast).get(key);
+}
+
+for (const step of steps) {
+    Object.assign(step, { T: step.duration, poses: step.bodies, bodies: castOf(step), moves: step.bodies.some(({ velocity }) => velocity) && step.duration > 0 });
+    step.pairs = step.pairs.map(({ bodies: [a, b], then, now, ...answer }) => [a, b, ...(then ? [then, now] : [answer]).map(readAnswer)]);
+}
+data.origin = steps[0]?.poses.find(({ position }) => position)?.position ?? [0, 0, 0];
 steps.sort((a, b) => a.t - b.t);
 /* Scenes without duration are counted. */
 const unit = steps.some((step) => step.T > 0) || isReplay ? "s" : "";
@@ -65,19 +63,7 @@ function interval(low, high) {
 
 /* ---- Answers ---- */
 
-function verdictOf(raw) {
-    return Array.isArray(raw) ? raw[0] : typeof raw === "number" ? raw : 0;
-}
-
-/* {verdict, error, contact, box, gap}; null: there is no answer. */
-function answerOf(raw) {
-    if (raw === null || raw === undefined)
-        return null;
-    if (typeof raw === "string")
-        return { verdict: 0, error: raw };
-    const [verdict, first = null, last, box, gap] = [raw].flat(1);
-    return { verdict, contact: first === null ? null : [first, last], box, gap };
-}
+const verdictOf = (answer) => answer?.verdict ?? 0;
 
 /* The later answer of a pair [a, b, answer] or [a, b, then, now]; and whether the two differ. */
 const nowOf = (pair) => pair[pair.length - 1];
@@ -127,10 +113,7 @@ function addPair(step, i, pair) {
     row.differs = row.differs || isDifferent(pair);
 }
 
-steps.forEach((step, i) => {
-    step.bodies = data.casts[step.cast];
-    step.pairs.forEach((pair) => addPair(step, i, pair));
-});
+steps.forEach((step, i) => step.pairs.forEach((pair) => addPair(step, i, pair)));
 
 /* The index of the last of ascending numbers that is no larger than x; -1: none. */
 function lastUpTo(ascending, x) {
@@ -157,7 +140,7 @@ function pairAt(row, i) {
     if (row.at[mark] === i)
         return row.pairs[mark];
     const step = steps[i];
-    return step?.all && row.keys.every((key) => keysOf(step).has(key)) ? [-1, -1, SEPARATED] : null;
+    return step?.all && row.keys.every((key) => keysOf(step).has(key)) ? [-1, -1, { verdict: SEPARATED }] : null;
 }
 
 /* ---- Time: what is shown runs over `s`, which leaves long pauses out ---- */
@@ -178,18 +161,18 @@ const recent = Math.max(10 * usualPause, 0.1);
 const nextLike = new Array(steps.length).fill(-1); /* [step]: the next one of the same bodies */
 const lastLike = new Map();
 steps.forEach((step, i) => {
-    if (lastLike.has(step.cast))
-        nextLike[lastLike.get(step.cast)] = i;
-    lastLike.set(step.cast, i);
+    if (lastLike.has(step.bodies))
+        nextLike[lastLike.get(step.bodies)] = i;
+    lastLike.set(step.bodies, i);
 });
 
 /* The steps that hold at step i: itself, and of a replay those of other bodies that are not long ago,
  * and that are queried again soon. */
 function streamsOf(i) {
-    const streams = [i], casts = new Set([steps[i].cast]);
+    const streams = [i], casts = new Set([steps[i].bodies]);
     for (let j = i - 1; isReplay && j >= 0 && i - j < 50 && begins[i] - begins[j] <= recent; j--)
-        if (!casts.has(steps[j].cast)) {
-            casts.add(steps[j].cast);
+        if (!casts.has(steps[j].bodies)) {
+            casts.add(steps[j].bodies);
             if (nextLike[j] > i && begins[nextLike[j]] - begins[i] <= recent)
                 streams.push(j);
         }

@@ -8,9 +8,9 @@ function spanOf(row, mark) {
     const i = row.at[mark], step = steps[i], from = begins[i], like = begins[nextLike[i]] ?? Infinity;
     const to = isReplay && like - from <= recent ? like : begins[i + 1];
     const answer = nowOf(row.pairs[mark]);
-    if (verdictOf(answer) < TOUCHING || !Array.isArray(answer) || answer[1] === null || step.T === 0 || to - from < 0.999 * step.T)
+    if (verdictOf(answer) < TOUCHING || !answer.contact || step.T === 0 || to - from < 0.999 * step.T)
         return [from, to];
-    return [from + answer[1], Math.min(from + answer[2], to)];
+    return [from + answer.contact[0], Math.min(from + answer.contact[1], to)];
 }
 
 /* The row as [from, to, verdict], in order; what follows with the same verdict is one. */
@@ -125,7 +125,7 @@ function drawOverview() {
 /* [[s, gap], ...] of a row; then: of the first of two answers. */
 function gapsOf(row, then = false) {
     return row.at.flatMap((i, mark) => {
-        const gap = answerOf(then ? row.pairs[mark][2] : nowOf(row.pairs[mark]))?.gap;
+        const gap = (then ? row.pairs[mark][2] : nowOf(row.pairs[mark])).gap;
         return gap && gap[0] !== null ? [[begins[i], gap[0]]] : [];
     });
 }

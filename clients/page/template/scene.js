@@ -26,21 +26,27 @@ const bodyColours = ["#4e79a7", "#f28e2b", "#59a14f", "#b07aa1", "#76b7b2", "#ed
 
 /* ---- Poses ---- */
 
+/* Quaternions of scenes may have any length. */
 function orientationOf(step, k) {
-    const [w, x, y, z] = step.turns ? numbers.subarray(step.turn + 4 * k, step.turn + 4 * k + 4) : [1, 0, 0, 0];
-    return new THREE.Quaternion(x, y, z, w).normalize();
+    const given = step.poses[k].orientation ?? [1, 0, 0, 0], [w, x, y, z] = given.length === 2 ? [given[0], 0, 0, given[1]] : given;
+    const largest = Math.max(...given.map(Math.abs));
+    return new THREE.Quaternion(x / largest, y / largest, z / largest, w / largest).normalize();
 }
 
-/* The position of body k after a part of the window, in units of 2^exponent. */
-function positionOf(step, k, part) {
-    const factor = scaled(1, step.at - 24 - stage.exponent);
-    return new THREE.Vector3(...[0, 1, 2].map((axis) => factor * (numbers[step.first + 3 * k + axis] + (step.moves ? part * numbers[step.shift + 3 * k + axis] : 0))));
-}
+/* How far a body moves over the window; one that leaves the range of the doubles stops at its end. */
+const shiftOf = (step, k) => [0, 1, 2].map((axis) =>
+    Math.max(-(2 ** 1023), Math.min(step.T * (step.poses[k].velocity?.[axis] ?? 0), 2 ** 1023)));
 
-/* A world point in these units. */
+/* A world point in units of 2^exponent. */
 function pointOf(point) {
     return new THREE.Vector3(...[0, 1, 2].map((axis) => axis < point.length
-        ? scaled(point[axis], -stage.exponent) - scaled(data.origin[axis], -stage.exponent) : 0));
+        ? scaled(point[axis], -stage.exponent) - scaled(data.origin[axis] ?? 0, -stage.exponent) : 0));
+}
+
+/* The position of body k after a part of the window, in these units. */
+function positionOf(step, k, part) {
+    const at = pointOf(step.poses[k].position);
+    return step.moves ? sum(at, vectorOf(shiftOf(step, k), stage.exponent), part) : at;
 }
 
 /* ---- Bodies ---- */
@@ -111,7 +117,7 @@ function placeBodies() {
 /* In a page of one step, dashed edges where moving bodies end. */
 function drawEnds() {
     const { step } = stage.streams[0];
-    const moving = stage.items.filter(({ source: { k } }) => step.moves && numbers.subarray(step.shift + 3 * k, step.shift + 3 * k + 3).some(Boolean));
+    const moving = stage.items.filter(({ source: { k } }) => step.moves && step.poses[k].velocity);
     setLines(ends, moving.flatMap(({ surface: { corners, edges: lines }, source: { k } }) =>
         placed(lines.flat().map((corner) => corners[corner]), step, k, 1).map((point) => point.sub(stage.centre))));
     Object.assign(ends.material, { dashSize: stage.radius / 30, gapSize: stage.radius / 45 });
@@ -160,7 +166,10 @@ function setExtent(corners) {
 }
 
 function exponentOfStep(step) {
-    return step.bodies.reduce((most, body) => isDrawn(body) ? Math.max(most, exponentOf(data.shapes[body[1]])) : most, step.at);
+    step.exponent ??= Math.max(1 + exponentOfAll(step.poses.flatMap(({ position }, k) =>
+        position ? [...position.map((x, axis) => x / 2 - (data.origin[axis] ?? 0) / 2), ...shiftOf(step, k).map((x) => x / 2)] : [])),
+        ...step.bodies.filter(isDrawn).map((body) => exponentOf(data.shapes[body[1]])));
+    return step.exponent;
 }
 
 /* Steps at most 4 times as large as step i, or as small, spread over the page. */
@@ -258,7 +267,7 @@ function statesOf(step, offset) {
         return states;
     for (const pair of step.pairs) {
         const answer = nowOf(pair), verdict = verdictOf(answer);
-        const [first, last] = Array.isArray(answer) && answer[1] !== null ? answer.slice(1, 3) : [0, Infinity];
+        const [first, last] = answer.contact ?? [0, Infinity];
         const isNow = verdict >= TOUCHING && first <= offset && offset <= last;
         for (const k of pair.slice(0, 2)) {
             const state = states[k];
@@ -308,12 +317,11 @@ function drawAnswers() {
     if (!isMesh && key === stage.answers)
         return;
     stage.answers = key;
-    const box = (raw) => answerOf(raw)?.box;
     const shown = stage.streams.flatMap(({ step }) => step.pairs).slice(0, 300);
-    setLines(boxes, shown.map((pair) => box(nowOf(pair))).filter(Boolean).flatMap(boxPoints));
-    setLines(boxesThen, shown.filter(isDifferent).map((pair) => box(pair[2])).filter(Boolean).flatMap(boxPoints));
+    setLines(boxes, shown.map((pair) => nowOf(pair).box).filter(Boolean).flatMap(boxPoints));
+    setLines(boxesThen, shown.filter(isDifferent).map((pair) => pair[2].box).filter(Boolean).flatMap(boxPoints));
     const pair = stage.row && pairNow(stage.row, stage.step);
-    const [, , , ...points] = (pair && !isMesh && answerOf(nowOf(pair))?.gap) || [];
+    const [, , , ...points] = (pair && !isMesh && nowOf(pair).gap) || [];
     const ends = points.length > 0 ? [points.slice(0, points.length / 2), points.slice(points.length / 2)].map(pointOf) : [];
     setLines(gapLine, ends);
     setLines(gapEnds, ends);

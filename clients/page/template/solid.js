@@ -1,7 +1,5 @@
 /* The surfaces of shapes: corners in body coordinates, triangles and edges as indices of corners. */
 
-const SHAPE_CUBOID = 1, SHAPE_BOX = 4, SHAPE_HULL = 5;
-
 /* number * 2^exponent, also where 2^exponent is no double. */
 function scaled(number, exponent) {
     const half = Math.trunc(exponent / 2);
@@ -67,46 +65,36 @@ function hullOf(corners) {
 
 /* ---- Shapes ---- */
 
-/* A frame of numbers, in units of 2^unit: its shape, whether they are vertices, their count, and they. */
-function frameOf([shape, byVertices, , ...numbers], dim, unit) {
-    const points = [];
-    for (let at = 0; at < numbers.length; at += dim)
-        points.push(new THREE.Vector3(...[0, 1, 2].map((axis) => axis < dim ? scaled(numbers[at + axis], -unit) : 0)));
-    const [origin, ...rest] = points;
-    if (shape === SHAPE_HULL)
-        return hullOf(points);
-    if (shape === SHAPE_BOX)
-        return boxOf(sum(origin, rest[0], -0.5), rest[0], dim);
-    return shape === SHAPE_CUBOID ? cuboidOf(origin, rest) : simplexOf(byVertices ? points : [origin, ...rest.map((component) => sum(origin, component))]);
+/* A point of up to three coordinates, in units of 2^unit. */
+const vectorOf = (numbers, unit) => new THREE.Vector3(...[0, 1, 2].map((axis) => scaled(numbers[axis] ?? 0, -unit)));
+
+/* A frame of scenes, in units of 2^unit. */
+function frameOf({ shape, origin, position, size, components = [], vertices }, dim, unit) {
+    const at = vectorOf(origin ?? position ?? [], unit), edges = components.map((component) => vectorOf(component, unit));
+    if (shape === "box") {
+        const half = vectorOf(size, unit + 1);
+        return boxOf(sum(at, half, -1), half.multiplyScalar(2), dim);
+    }
+    if (vertices)
+        return (shape === "hull" ? hullOf : simplexOf)(vertices.map((vertex) => vectorOf(vertex, unit)));
+    return shape === "cuboid" ? cuboidOf(at, edges) : simplexOf([at, ...edges.map((edge) => sum(at, edge))]);
 }
 
 /* A mesh: three corners for each triangle, so that each has the colour of its verdict; no edges. */
-function meshOf(shape, unit) {
-    const centre = shape.centre.map((x) => scaled(x, -unit)), factor = scaled(1, shape.at - 24 - unit);
-    const first = shape.first + 3 * shape.corners, last = first + 3 * shape.faces, corners = [];
-    for (const k of numbers.subarray(first, last))
-        corners.push(new THREE.Vector3(...centre.map((x, axis) => x + factor * numbers[shape.first + 3 * k + axis])));
+function meshOf({ vertices, faces, verdicts }, unit) {
     return {
-        corners, triangles: Array.from({ length: shape.faces }, (_, i) => [3 * i, 3 * i + 1, 3 * i + 2]), edges: [],
-        verdicts: numbers.subarray(last, last + shape.faces),
+        corners: faces.map((k) => vectorOf(vertices.slice(3 * k, 3 * k + 3), unit)),
+        triangles: verdicts.map((_, i) => [3 * i, 3 * i + 1, 3 * i + 2]), edges: [], verdicts,
     };
-}
-
-/* The frames of a shape, as lists of numbers. */
-function framesOf({ frames = [] }) {
-    const out = [];
-    for (let at = 0; at < frames.length; at += out[out.length - 1].length)
-        out.push(frames.slice(at, at + 3 + frames[at + 2]));
-    return out;
 }
 
 /* The surface of a shape, in units of 2^unit. */
 function solidOf(shape, unit) {
-    if (shape.corners !== undefined)
+    if (shape.faces)
         return meshOf(shape, unit);
     const solid = { corners: [], triangles: [], edges: [] };
-    for (const numbers of framesOf(shape)) {
-        const frame = frameOf(numbers, shape.dim, unit), first = solid.corners.length;
+    for (const given of shape.frames) {
+        const frame = frameOf(given, shape.dim, unit), first = solid.corners.length;
         frame.corners.forEach((corner) => solid.corners.push(corner));
         frame.triangles.forEach((triangle) => solid.triangles.push(triangle.map((k) => k + first)));
         frame.edges.forEach((edge) => solid.edges.push(edge.map((k) => k + first)));
@@ -114,12 +102,15 @@ function solidOf(shape, unit) {
     return solid;
 }
 
-/* An exponent that bounds the coordinates of a shape: they are less than 2^exponent. */
-function exponentOf(shape) {
-    if (shape.exponent !== undefined)
-        return shape.exponent;
-    const numbers = [...shape.centre ?? [], ...framesOf(shape).flatMap((frame) => frame.slice(3))];
+/* An exponent that bounds numbers: they are less than 2^exponent. */
+function exponentOfAll(numbers) {
     const largest = numbers.reduce((most, x) => Math.max(most, Math.abs(x)), 0);
-    shape.exponent = Math.max(largest > 0 ? Math.floor(Math.log2(largest)) + 3 : -1074, shape.at ?? -1074);
+    return largest > 0 ? Math.floor(Math.log2(Math.min(largest, Number.MAX_VALUE))) + 1 : -1074;
+}
+
+/* An exponent that bounds the coordinates of a shape. */
+function exponentOf(shape) {
+    shape.exponent ??= 2 + exponentOfAll(shape.vertices ?? shape.frames
+        .flatMap(({ origin, position, size, components, vertices }) => [origin ?? position ?? [], size ?? [], components ?? [], vertices ?? []].flat(2)));
     return shape.exponent;
 }

@@ -1,8 +1,8 @@
 /* The table of pairs: their answers at this moment, and a lane of verdicts over time. */
 
 const table = { shown: [], limit: 100, sort: null, down: false, step: -1, time: 0, cells: [] };
-const hasContacts = steps.some((step) => step.T > 0 && step.pairs.some((pair) => answerOf(nowOf(pair))?.contact));
-const hasGaps = steps.some((step) => step.pairs.some((pair) => answerOf(nowOf(pair))?.gap));
+const hasContacts = steps.some((step) => step.T > 0 && step.pairs.some((pair) => nowOf(pair).contact));
+const hasGaps = steps.some((step) => step.pairs.some((pair) => nowOf(pair).gap));
 /* title: of an answer, its name among the facts; value: what is sorted by. */
 const columns = [
     { title: "pair", width: "20%", value: (row) => row.name },
@@ -15,7 +15,7 @@ const collator = new Intl.Collator(undefined, { numeric: true });
 
 function currentAnswer(row) {
     const pair = pairNow(row, Math.max(table.step, 0));
-    return pair && answerOf(nowOf(pair));
+    return pair && nowOf(pair);
 }
 
 /* ---- Which rows ---- */
@@ -147,7 +147,7 @@ function numbersOf(answer) {
 /* Facts of two answers, side by side where they differ; numbers that differ beyond the digits of a fact
  * have all digits. */
 function addComparison(list, pair) {
-    const [before, after] = [isDifferent(pair) ? pair[2] : nowOf(pair), nowOf(pair)].map(answerOf);
+    const [before, after] = [isDifferent(pair) ? pair[2] : nowOf(pair), nowOf(pair)];
     const then = factsOf(before), now = factsOf(after), differ = Object.keys({ ...then, ...now }).filter((name) => then[name] !== now[name]);
     const both = (a, b) => `${data.sides[0]}: ${a ?? "none"} · ${data.sides[1]}: ${b ?? "none"}`;
     const exact = new Map(numbersOf(before).map(([, name, number]) => [name, number]));
@@ -160,8 +160,8 @@ function addComparison(list, pair) {
         addFact(list, "gap, direction", "differs", true);
 }
 
-function resultText([error, method, ns, ...counts]) {
-    return error ?? `${counts.slice(0, 3).map((count, k) => count ? `${count} ${verdictNames[k + 1]}` : "").filter(Boolean).join(", ") || "no pairs"}${method ? `, by ${method}` : ""}, ${short(ns / 1000)} µs`;
+function resultText({ error, method, compute_ns: ns, counts }) {
+    return error ?? `${counts.map((count, k) => count ? `${count} ${verdictNames[k + 1]}` : "").filter(Boolean).join(", ") || "no pairs"}${method ? `, by ${method}` : ""}, ${short(ns / 1000)} µs`;
 }
 
 function drawDetail() {

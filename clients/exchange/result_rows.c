@@ -1,11 +1,8 @@
 #include "result_rows.h"
 
-#include "body_names.h"
 #include "escape.h"
-#include "fmb_client_raw.h"
-#include "ignored.h"
+#include "exchange.h"
 #include "match.h"
-#include "scene.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -35,10 +32,6 @@ struct result_rows {
     struct kept_query *decoded; /* whose query is in `query`, with texts in its bytes */
     struct logged_query query;
     struct logged_result result;
-    /* The pairs of its query, if it does not list them: which, placements and ignored ones. */
-    struct owned_scene all;
-    struct fmb_placement placement[QUERY_PLACEMENTS_MAX];
-    unsigned ignored[2 * QUERY_PLACEMENTS_MAX + QUERY_PAIRS_MAX];
 };
 
 struct result_rows *result_rows_open(FILE *out, enum report_form form, enum result_rows_pairs pairs)
@@ -135,84 +128,28 @@ static void print_start(const struct result_rows *results, const struct fmb_clie
             of->sequence_number, 1e-3 * (double) of->compute_ns);
 }
 
-/* Prints a row if it is wanted. placements: indices, if the query is known. */
-static void print_row(struct result_rows *results, const struct fmb_client_result *of,
-                      struct report_row *row, const unsigned placements[2])
+/* Prints the row of an answer if it is wanted. */
+static void print_row(struct result_rows *results, const struct exchange *exchange,
+                      struct report_row *row)
 {
-    const bool table = results->printer.form == REPORT_TABLE;
-    const double margin = of->is_pair ? 0 : results->query.scene.margin;
+    const struct fmb_client_result *of = &exchange->of;
+    const double margin = of->is_pair ? 0 : exchange->query->scene.margin;
     if (results->pairs == RESULT_ROWS_CONTACTS && row->of->answer.verdict == FMB_SEPARATED &&
         !report_is_near(margin, &row->of->answer))
         return;
     for (int i = 0; i < 2; i++) {
-        const struct fmb_placement *placed =
-            results->decoded ? &results->query.placement[placements[i]].placed : NULL;
-        row->id[i] = of->is_pair ? of->body_id[i] : placed->id;
-        row->name[i] = placed && placed->name && *placed->name
-                           ? placed->name
-                           : body_names_find(results->names, of->client_id, row->id[i]);
+        const int32_t placement = (int32_t) (i ? row->of->b : row->of->a);
+        const struct query_placement *of_query =
+            exchange->query ? &exchange->query->placement[placement] : NULL;
+        row->id[i] = of->is_pair ? of->body_id[i] : of_query->placed.id;
+        row->name[i] = of_query ? exchange_name(exchange, placement)
+                                : body_names_find(results->names, of->client_id, row->id[i]);
     }
-    if (table && of->is_pair)
+    if (results->printer.form == REPORT_TABLE && of->is_pair)
         print_start(results, of);
-    else if (table)
+    else if (results->printer.form == REPORT_TABLE)
         fprintf(results->printer.out, "%*s", INDENT, "");
     report_row_print(&results->printer, INDENT, row);
-}
-
-/* ---- The pairs of a scene ---- */
-
-static void begin_all(struct result_rows *results)
-{
-    const struct scene_query *query = &results->query.scene;
-    for (int32_t i = 0; i < query->placement_count; i++)
-        results->placement[i] = query->placement[i].placed;
-    results->all.scene = (struct fmb_scene){.placements = results->placement,
-                                            .placement_count = (size_t) query->placement_count,
-                                            .which = (enum fmb_pairs) query->which,
-                                            .split = (size_t) query->split,
-                                            .ignored = query->ignored,
-                                            .ignored_count = (size_t) (query->ignored_count / 2)};
-    ignored_begin(&results->all.scene, results->ignored, &results->all.ignored);
-}
-
-/* Prints the pairs that the result does not name and that come before one that it names; NULL: all
- * that are left. */
-static void print_separated(struct result_rows *results, const struct fmb_client_result *of,
-                            struct report_row *row, struct pair_cursor *at,
-                            const struct fmb_client_answer *until)
-{
-    const struct scene_query *query = &results->query.scene;
-    const struct fmb_client_answer separated = {.answer = {.verdict = FMB_SEPARATED}};
-    unsigned pair[2];
-    row->of = &separated;
-    while (scene_next_pair(&results->all, at, pair) &&
-           !(until && pair[0] == until->a && pair[1] == until->b)) {
-        const int64_t number = query_pair_number(query, pair[0], pair[1]);
-        if (number >= query->first_pair && number < of->end_pair)
-            print_row(results, of, row, pair);
-    }
-}
-
-static void print_rows(struct result_rows *results, const struct fmb_client_result *of,
-                       struct report_row *row)
-{
-    const bool listed = !of->is_pair && results->query.scene.which == FMB_PAIRS_LISTED;
-    const bool all = !of->is_pair && !listed && results->pairs == RESULT_ROWS_ALL;
-    struct fmb_client_cursor cursor = {0};
-    struct pair_cursor at = {0};
-    struct fmb_client_answer answer;
-    if (all)
-        begin_all(results);
-    while (fmb_client_next_answer(of, &cursor, &answer)) {
-        if (all)
-            print_separated(results, of, row, &at, &answer);
-        row->of = &answer;
-        print_row(
-            results, of, row,
-            listed ? results->query.scene.pair[answer.a] : (const unsigned[]){answer.a, answer.b});
-    }
-    if (all)
-        print_separated(results, of, row, &at, NULL);
 }
 
 /* ---- Results ---- */
@@ -270,11 +207,12 @@ static void print_refused(struct result_rows *results, const struct fmb_client_r
         fprintf(results->printer.out, "  not decided: %s\n", of->text);
 }
 
-static void print(struct result_rows *results, const struct fmb_client_result *of,
-                  struct report_row *row)
+static void print(struct result_rows *results, struct exchange *exchange, struct report_row *row)
 {
+    const struct fmb_client_result *of = &exchange->of;
     struct json_writer *json = results->printer.form == REPORT_JSON ? &results->printer.json : NULL;
     const bool refused = !of->is_pair && of->status != FMB_OK;
+    struct fmb_client_answer answer;
     if (json)
         begin_json(json, of, row);
     if (!of->is_pair && results->printer.form == REPORT_TABLE)
@@ -283,10 +221,12 @@ static void print(struct result_rows *results, const struct fmb_client_result *o
         print_refused(results, of, row);
     else if (!of->is_pair && results->printer.form == REPORT_TABLE)
         print_counts(results, of, row->label);
-    if (!refused && (of->is_pair || results->decoded)) {
+    if (!refused && (of->is_pair || exchange->query)) {
         if (json)
             json_begin(json, "pairs", '[');
-        print_rows(results, of, row);
+        row->of = &answer;
+        while (exchange_next(exchange, results->pairs == RESULT_ROWS_ALL, &answer))
+            print_row(results, exchange, row);
         if (json)
             json_end(json, ']');
     }
@@ -295,30 +235,34 @@ static void print(struct result_rows *results, const struct fmb_client_result *o
 }
 
 /* Of several results of a query the first is printed, and those that depend on the moment. */
-static const char *print_result(struct result_rows *results, bool is_pair)
+static const char *print_result(struct result_rows *results)
 {
-    const struct fmb_client_result of = fmb_client_raw_result_of(is_pair, &results->result.pair);
-    const struct match_key key = {is_pair ? LOG_PAIR_QUERY : LOG_SCENE_QUERY, of.client_id,
-                                  of.sequence_number, of.utime};
+    const struct result_head *head = &results->result.head;
+    const struct match_key key = {results->result.kind, head->client_id, head->sequence_number,
+                                  head->utime};
     struct kept_query *kept = find(results, &key);
+    struct exchange exchange = {.result = &results->result, .names = results->names};
     if (kept && kept->answered)
         return NULL;
-    if (!kept || decode(results, kept))
-        results->decoded = NULL;
-    const struct scene_query *scene = results->decoded && !is_pair ? &results->query.scene : NULL;
-    if (scene && of.status == FMB_OK && !logged_result_fits(scene, &results->result.scene))
+    if (kept && !decode(results, kept))
+        exchange.query = &results->query;
+    exchange_begin(&exchange);
+    const bool is_scene = !exchange.of.is_pair, is_good = head->status == FMB_OK;
+    if (exchange.query && is_good && !exchange.fits)
         return "does not match its query";
     if (kept)
-        kept->answered = !logged_status_is_transient(of.status);
+        kept->answered = !logged_status_is_transient(head->status);
     results->count++;
-    struct report_row row = {.utime = of.utime,
-                             .scene = kept ? kept->number : REPORT_NONE,
-                             .label = scene ? scene->label : NULL,
-                             .id = {REPORT_NONE, REPORT_NONE},
-                             .dim = of.dim,
-                             .names_frames = of.names_frames};
-    print(results, &of, &row);
-    return is_pair || scene || of.status != FMB_OK ? NULL : result_rows_no_query;
+    struct report_row row = {
+        .utime = head->utime,
+        .scene = kept ? kept->number : REPORT_NONE,
+        .label = exchange.query && is_scene ? results->query.scene.label : NULL,
+        .id = {REPORT_NONE, REPORT_NONE},
+        .dim = head->dim,
+        .names_frames = head->names_frames};
+    print(results, &exchange, &row);
+    exchange_end(&exchange);
+    return is_scene && !exchange.query && is_good ? result_rows_no_query : NULL;
 }
 
 /* ---- Messages ---- */
@@ -331,5 +275,5 @@ const char *result_rows_take(struct result_rows *results, enum log_kind kind, in
     if (!log_kind_is_result(kind))
         return body_names_take_message(results->names, kind, bytes, size);
     const char *error = logged_result_read(&results->result, log_kind_query_of(kind), bytes, size);
-    return error ? error : print_result(results, kind == LOG_PAIR_RESULT);
+    return error ? error : print_result(results);
 }

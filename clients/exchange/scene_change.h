@@ -6,25 +6,16 @@
 #ifndef SCENE_CHANGE_H
 #define SCENE_CHANGE_H
 
-#include "body_names.h"
-#include "logged_query.h"
-
-#include <stddef.h>
+#include "exchange.h"
 
 /* Most bytes of the text, final 0 included. */
 enum { SCENE_CHANGE_MAX = 200 };
-
-/* A query, and the names of the bodies of its recording; names may be NULL. */
-struct scene_change_side {
-    const struct body_names *names;
-    const struct logged_query *query;
-};
 
 /* Describes the difference in words: which bodies are new, missing or moved to another index, or
  * that other pairs are decided. Returns false, with an empty text, if the scenes do not differ:
  * both queries then decide the same pairs of bodies, by the same indices. In: decoded queries of
  * one kind. */
-bool scene_change(struct scene_change_side then, struct scene_change_side now,
+bool scene_change(const struct exchange *then, const struct exchange *now,
                   char out[SCENE_CHANGE_MAX]);
 
 #endif

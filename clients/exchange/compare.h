@@ -1,4 +1,4 @@
-/* Compares two results of one query: the recorded one (then) and the new one (now).
+/* Compares two exchanges: that of a recording (then) and a new one (now).
  *
  * They are the same if their statuses are, and the verdicts, intervals, boxes, gaps and
  * certificates of all pairs that both answer: bit for bit, or within a tolerance. The service,
@@ -9,9 +9,20 @@
 #define COMPARE_H
 
 #include "match.h"
-#include "query.h"
-#include "replayed.h"
 #include "scene_change.h"
+
+/* How two exchanges compare. */
+enum replay_outcome {
+    REPLAY_SAME,
+    REPLAY_DIFFERENT,
+    /* Nothing to compare: */
+    REPLAY_BUSY,       /* the service was busy */
+    REPLAY_UNKNOWN,    /* the service did not hold a body then */
+    REPLAY_UNDEFINED,  /* a handle that the log does not define */
+    REPLAY_NOT_HELD,   /* not answered: the cache has no memory for the bodies */
+    REPLAY_UNRECORDED, /* no result was recorded */
+    REPLAY_OUTCOMES
+};
 
 /* The first difference of a pair: everything listed before it is the same. */
 enum difference_kind {
@@ -30,14 +41,6 @@ extern const char *const difference_name[DIFFERENT_KINDS]; /* for example "verdi
 /* Most bytes of the detail of a difference, final 0 included. */
 enum { COMPARE_DETAIL_MAX = SCENE_CHANGE_MAX };
 
-/* One of the two answers to a pair. */
-struct difference_side {
-    int32_t status;           /* as in the result */
-    struct fmb_answer answer; /* all 0 if the status is not OK or the method cannot decide */
-    const char *certificate;  /* NULL: none */
-    bool names_frames;        /* as in the result */
-};
-
 struct difference {
     /* Of the query, set by the caller of compare_results(). */
     struct match_place place;
@@ -49,7 +52,9 @@ struct difference {
     int64_t body_id[2];
     unsigned placement[2]; /* indices in the query */
     int dim;
-    struct difference_side then, now;
+    bool names_frames[2]; /* of the gap of then and of now: a body has several frames */
+    /* In a scene the status is OK, and the verdict 0 if the method cannot decide. */
+    struct fmb_client_answer then, now;
 };
 
 struct compare_options {
@@ -62,11 +67,10 @@ struct compare_options {
 
 typedef void difference_sink(void *user, const struct difference *difference);
 
-/* Calls the sink for each difference. In: a query with two results, which were decoded. Never
- * returns REPLAY_UNRECORDED. */
-enum replay_outcome compare_results(const struct compare_options *options,
-                                    const struct replayed *replayed, difference_sink *sink,
-                                    void *user);
+/* Calls the sink for each difference. In: two exchanges with a result. Never returns
+ * REPLAY_UNRECORDED. */
+enum replay_outcome compare_exchanges(const struct compare_options *options, struct exchange *then,
+                                      struct exchange *now, difference_sink *sink, void *user);
 
 /* Quick check: returns true if the compared bytes of two encoded results are the same; false if not
  * known. In: kind: of the query; now: encoded by wire_write_*(). */

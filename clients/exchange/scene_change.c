@@ -17,15 +17,13 @@ struct bodies {
     int32_t other[QUERY_PLACEMENTS_MAX];    /* [placement]: index in the other query; NO_BODY */
 };
 
-static void list_bodies(struct bodies *bodies, const struct scene_change_side *side)
+static void list_bodies(struct bodies *bodies, const struct exchange *exchange)
 {
-    const int64_t client = side->query->header.client_id;
-    bodies->placement = side->query->placement;
-    bodies->count = side->query->placement_count;
+    bodies->placement = exchange->query->placement;
+    bodies->count = exchange->query->placement_count;
     for (int32_t i = 0; i < bodies->count; i++) {
-        const struct fmb_placement *placed = &bodies->placement[i].placed;
-        const char *name = body_names_find(side->names, client, placed->id);
-        bodies->name[i] = name ? name : placed->name ? placed->name : "";
+        const char *name = exchange_name(exchange, i);
+        bodies->name[i] = name ? name : "";
         bodies->other[i] = NO_BODY;
     }
 }
@@ -110,14 +108,14 @@ static void say_bodies(char *out, const struct bodies *bodies, bool moved, const
         say(out, " %s %s", count > 1 ? "are" : "is", what);
 }
 
-bool scene_change(struct scene_change_side then, struct scene_change_side now,
+bool scene_change(const struct exchange *then, const struct exchange *now,
                   char out[SCENE_CHANGE_MAX])
 {
     struct bodies old, new;
     bool differ, moved = false;
     *out = 0;
-    list_bodies(&old, &then);
-    list_bodies(&new, &now);
+    list_bodies(&old, then);
+    list_bodies(&new, now);
     match_bodies(&old, &new);
     differ = old.count != new.count;
     for (int32_t i = 0; i < new.count; i++) {
@@ -131,8 +129,8 @@ bool scene_change(struct scene_change_side then, struct scene_change_side now,
     } else if (moved) {
         say(out, "the recording has the same bodies in another order");
         say_bodies(out, &new, true, "moved");
-    } else if (now.query->kind == LOG_SCENE_QUERY &&
-               !same_pairs(&then.query->scene, &now.query->scene)) {
+    } else if (now->query->kind == LOG_SCENE_QUERY &&
+               !same_pairs(&then->query->scene, &now->query->scene)) {
         say(out, "the recording and the query decide different pairs of the same bodies");
     }
     return *out;

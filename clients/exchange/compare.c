@@ -3,7 +3,6 @@
 #include "allocate.h"
 #include "big_endian.h"
 #include "geometry.h"
-#include "logged_query.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -129,7 +128,7 @@ static bool same_certificates(const struct limits *limits, const char *a, const 
 /* Finds the first difference of the two sides. Returns false if there is none. */
 static bool find_difference(const struct limits *limits, struct difference *out)
 {
-    const struct difference_side *then = &out->then, *now = &out->now;
+    const struct fmb_client_answer *then = &out->then, *now = &out->now;
     const unsigned parts = parts_apart(limits, out->dim, &then->answer, &now->answer);
     const bool differs[DIFFERENT_KINDS] = {
         [DIFFERENT_STATUS] = then->status != now->status,
@@ -153,69 +152,56 @@ static enum replay_outcome transient_outcome(int32_t then, int32_t now)
     return then == FMB_BUSY || now == FMB_BUSY ? REPLAY_BUSY : REPLAY_UNDEFINED;
 }
 
-static int dim_of(const struct query_placement *placement)
-{
-    return placement->body.dim == 2 ? 2 : 3;
-}
+/* ---- Exchanges ---- */
 
-/* A box or gap of another dimension than the query's is ignored. */
-static struct fmb_answer answer_of(const struct fmb_answer *answer, int dim, int query_dim)
+/* Returns an answer as it is compared: a box or gap of another dimension than the query's is
+ * ignored, and a scene's pairs without a verdict have no status of their own. */
+static struct fmb_client_answer compared(const struct exchange *exchange,
+                                         const struct fmb_client_answer *answer, int dim)
 {
-    struct fmb_answer out = *answer;
-    out.has_box = answer->has_box && dim == query_dim;
-    out.has_gap = answer->has_gap && dim == query_dim;
+    struct fmb_client_answer out = *answer;
+    out.answer.has_box = answer->answer.has_box && exchange->of.dim == dim;
+    out.answer.has_gap = answer->answer.has_gap && exchange->of.dim == dim;
+    if (!exchange->of.is_pair)
+        out.status = FMB_OK;
     return out;
 }
 
-/* ---- Results ---- */
-
-static struct difference_side side_of(const struct replayed_side *side,
-                                      const struct logged_result *result, int dim)
+static struct difference difference_of(struct exchange *const both[2],
+                                       const struct exchange_pair *pair)
 {
-    const bool is_pair = result->kind == LOG_PAIR_QUERY;
-    return (struct difference_side){.status = is_pair ? result->head.status : FMB_OK,
-                                    .answer = answer_of(&side->answer, side->dim, dim),
-                                    .certificate = is_pair ? result->pair.certificate : NULL,
-                                    .names_frames = result->head.names_frames};
-}
-
-static struct difference difference_of(const struct replayed *replayed,
-                                       const struct replayed_pair *pair)
-{
-    const struct query_placement *placement = replayed->query->placement;
-    const int32_t count = replayed->query->placement_count;
-    const int dim = dim_of(&placement[0]);
-    struct difference difference = {.dim = dim,
-                                    .placement = {pair->a, pair->b},
-                                    .then = side_of(&pair->then, replayed->then, dim),
-                                    .now = side_of(&pair->now, replayed->now, dim)};
-    for (int f = 0; f < 2; f++)
-        if (difference.placement[f] < (unsigned) count)
-            difference.body_id[f] = placement[difference.placement[f]].placed.id;
+    const struct logged_query *query = both[1]->query;
+    const int dim = query->placement[0].body.dim == 2 ? 2 : 3;
+    struct difference difference = {
+        .dim = dim,
+        .placement = {pair->a, pair->b},
+        .names_frames = {both[0]->of.names_frames, both[1]->of.names_frames},
+        .then = compared(both[0], &pair->answer[0], dim),
+        .now = compared(both[1], &pair->answer[1], dim)};
+    for (int i = 0; i < 2; i++)
+        if (difference.placement[i] < (unsigned) query->placement_count)
+            difference.body_id[i] = query->placement[difference.placement[i]].placed.id;
     return difference;
 }
 
-/* Compares the pairs that both results answer; of a pair query also the statuses. */
+/* Compares the pairs that both results answer. */
 static enum replay_outcome compare_answers(const struct compare_options *options,
-                                           const struct replayed *replayed, difference_sink *sink,
+                                           struct exchange *const both[2], difference_sink *sink,
                                            void *user)
 {
-    const struct logged_query *query = replayed->query;
-    const bool is_pair = query->kind == LOG_PAIR_QUERY;
-    const double duration = is_pair ? query->pair.duration : query->scene.duration;
+    const struct logged_query *query = both[1]->query;
+    const double duration =
+        query->kind == LOG_PAIR_QUERY ? query->pair.duration : query->scene.duration;
     struct limits limits = {.tolerance = options->tolerance};
     enum replay_outcome outcome = REPLAY_SAME;
-    struct replayed_pairs pairs;
-    struct replayed_pair pair;
+    struct exchange_pair pair;
     if (limits.tolerance > 0) {
         limits.time = limits.tolerance * duration;
         limits.length = limits.tolerance * largest_coordinate(query, duration);
     }
-    replayed_pairs_begin(replayed, &pairs);
-    while (replayed_pairs_next(&pairs, &pair)) {
-        struct difference difference = difference_of(replayed, &pair);
-        if ((is_pair || (pair.then.answered && pair.now.answered)) &&
-            find_difference(&limits, &difference)) {
+    while (exchange_next_of_both(both, &pair)) {
+        struct difference difference = difference_of(both, &pair);
+        if (pair.answered[0] && pair.answered[1] && find_difference(&limits, &difference)) {
             sink(user, &difference);
             outcome = REPLAY_DIFFERENT;
         }
@@ -225,67 +211,55 @@ static enum replay_outcome compare_answers(const struct compare_options *options
 
 /* Writes how the scene of a result differs from that of the query. Returns false if it does not, or
  * that is not known. */
-static bool scenes_differ(const struct replayed *replayed, char *out, size_t size)
+static bool scenes_differ(const struct exchange *then, const struct exchange *now,
+                          char out[COMPARE_DETAIL_MAX])
 {
-    const struct scene_query *query = &replayed->query->scene;
-    const struct scene_result *then = &replayed->then->scene, *now = &replayed->now->scene;
+    const struct fmb_client_result *a = &then->of, *b = &now->of;
+    if (then->query != now->query && scene_change(then, now, out))
+        return true;
     *out = 0;
-    if (replayed->change) {
-        snprintf(out, size, "%s", replayed->change);
-    } else if (replayed->query->kind == LOG_PAIR_QUERY) {
-        const int64_t *a = replayed->then->pair.body_id, *b = replayed->now->pair.body_id;
-        if (replayed->by_order && (a[0] != b[0] || a[1] != b[1]))
-            snprintf(out, size,
+    if (b->is_pair) {
+        if (then->by_order && (a->body_id[0] != b->body_id[0] || a->body_id[1] != b->body_id[1]))
+            snprintf(out, COMPARE_DETAIL_MAX,
                      "the recording has the bodies %" PRId64 " and %" PRId64 ", the query %" PRId64
                      " and %" PRId64,
-                     a[0], a[1], b[0], b[1]);
-    } else if (then->status == FMB_OK && now->status == FMB_OK) {
-        if (replayed->by_order && then->end_pair != now->end_pair)
-            snprintf(out, size, "the recording answers %" PRId32 " pairs, the query has %" PRId64,
-                     then->end_pair - query->first_pair,
-                     query_pair_count(query) - query->first_pair);
-        else if (!logged_result_fits(query, then) || !logged_result_fits(query, now))
-            snprintf(out, size, "a result is of other pairs than its query");
+                     a->body_id[0], a->body_id[1], b->body_id[0], b->body_id[1]);
+    } else if (a->status == FMB_OK && b->status == FMB_OK) {
+        const struct scene_query *query = &now->query->scene;
+        if (then->by_order && a->end_pair != b->end_pair)
+            snprintf(out, COMPARE_DETAIL_MAX,
+                     "the recording answers %" PRId64 " pairs, the query has %" PRId64,
+                     a->end_pair - query->first_pair, query_pair_count(query) - query->first_pair);
+        else if (!then->fits || !now->fits)
+            snprintf(out, COMPARE_DETAIL_MAX, "a result is of other pairs than its query");
     }
     return *out;
 }
 
-/* Compares the statuses of a scene, and the pairs if both are OK. */
-static enum replay_outcome compare_scenes(const struct compare_options *options,
-                                          const struct replayed *replayed, difference_sink *sink,
-                                          void *user)
+enum replay_outcome compare_exchanges(const struct compare_options *options, struct exchange *then,
+                                      struct exchange *now, difference_sink *sink, void *user)
 {
-    const int32_t then = replayed->then->head.status;
-    const int32_t now = replayed->now->head.status;
-    if (then == FMB_OK && now == FMB_OK)
-        return compare_answers(options, replayed, sink, user);
-    if (then == now)
-        return REPLAY_SAME;
-    sink(user, &(struct difference){.kind = DIFFERENT_STATUS,
-                                    .whole = true,
-                                    .dim = 3,
-                                    .then = {.status = then},
-                                    .now = {.status = now}});
-    return REPLAY_DIFFERENT;
-}
-
-enum replay_outcome compare_results(const struct compare_options *options,
-                                    const struct replayed *replayed, difference_sink *sink,
-                                    void *user)
-{
-    const int32_t then = replayed->then->head.status;
-    const int32_t now = replayed->now->head.status;
+    struct exchange *const both[2] = {then, now};
     char detail[COMPARE_DETAIL_MAX];
-    if (logged_status_is_transient(then) || logged_status_is_transient(now))
-        return transient_outcome(then, now);
-    if (scenes_differ(replayed, detail, sizeof detail)) {
-        sink(user, &(struct difference){
-                       .kind = DIFFERENT_SCENE, .whole = true, .dim = 3, .detail = detail});
-        return REPLAY_DIFFERENT;
+    struct difference whole = {.whole = true, .dim = 3};
+    exchange_begin(then);
+    exchange_begin(now);
+    whole.then.status = then->of.status;
+    whole.now.status = now->of.status;
+    if (logged_status_is_transient(then->of.status) || logged_status_is_transient(now->of.status))
+        return transient_outcome(then->of.status, now->of.status);
+    if (scenes_differ(then, now, detail)) {
+        whole.kind = DIFFERENT_SCENE;
+        whole.detail = detail;
+    } else if (now->of.is_pair || (then->of.status == FMB_OK && now->of.status == FMB_OK)) {
+        return compare_answers(options, both, sink, user);
+    } else if (then->of.status == now->of.status) {
+        return REPLAY_SAME;
+    } else {
+        whole.kind = DIFFERENT_STATUS;
     }
-    return replayed->query->kind == LOG_SCENE_QUERY
-               ? compare_scenes(options, replayed, sink, user)
-               : compare_answers(options, replayed, sink, user);
+    sink(user, &whole);
+    return REPLAY_DIFFERENT;
 }
 
 /* ---- Encoded results ----

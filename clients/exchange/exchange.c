@@ -1,0 +1,165 @@
+#include "exchange.h"
+
+#include "allocate.h"
+#include "fmb_client_raw.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static bool lists_pairs(const struct exchange *exchange)
+{
+    return exchange->query && exchange->query->kind == LOG_SCENE_QUERY &&
+           exchange->query->scene.which == FMB_PAIRS_LISTED;
+}
+
+/* Reads the next pair that the result names, and its number in the query. */
+static void read_named(struct exchange *exchange)
+{
+    struct fmb_client_answer *named = &exchange->named;
+    exchange->number = INT64_MAX;
+    if (!exchange->fits || !fmb_client_next_answer(&exchange->of, &exchange->cursor, named))
+        return;
+    if (exchange->of.is_pair) {
+        exchange->number = 0;
+    } else if (lists_pairs(exchange)) {
+        const unsigned *pair = exchange->query->scene.pair[named->a];
+        exchange->number = named->a;
+        named->a = pair[0];
+        named->b = pair[1];
+    } else {
+        exchange->number = query_pair_number(&exchange->query->scene, named->a, named->b);
+    }
+}
+
+void exchange_begin(struct exchange *exchange)
+{
+    const struct logged_query *query = exchange->query;
+    const struct logged_result *result = exchange->result;
+    const bool is_pair = result && result->kind == LOG_PAIR_QUERY;
+    exchange->of = (struct fmb_client_result){.status = FMB_OK};
+    if (result)
+        exchange->of = fmb_client_raw_result_of(is_pair, &result->pair);
+    exchange->fits = is_pair || (result && query && result->head.status == FMB_OK &&
+                                 logged_result_fits(&query->scene, &result->scene));
+    exchange->cursor = (struct fmb_client_cursor){0};
+    exchange->pair = (struct pair_cursor){0};
+    read_named(exchange);
+}
+
+void exchange_end(struct exchange *exchange)
+{
+    if (!exchange->all)
+        return;
+    scene_clear(exchange->all);
+    free(exchange->all);
+    exchange->all = NULL;
+}
+
+/* Makes the pairs of the query, if it does not list them. */
+static void make_pairs(struct exchange *exchange)
+{
+    const struct scene_query *query = &exchange->query->scene;
+    struct owned_scene *all = exchange->all = allocate(1, sizeof *all);
+    struct fmb_placement *placement =
+        scene_alloc(all, (size_t) query->placement_count, sizeof *placement);
+    for (int32_t i = 0; i < query->placement_count; i++)
+        placement[i] = query->placement[i].placed;
+    all->scene = (struct fmb_scene){.placements = placement,
+                                    .placement_count = (size_t) query->placement_count,
+                                    .which = (enum fmb_pairs) query->which,
+                                    .split = (size_t) query->split,
+                                    .ignored = query->ignored,
+                                    .ignored_count = (size_t) (query->ignored_count / 2)};
+    scene_begin_ignored(all);
+}
+
+/* Whether the result, which does not name the pair with this number, separates it. */
+static bool separates(const struct exchange *exchange, int64_t number)
+{
+    return exchange->fits && !exchange->of.is_pair && !lists_pairs(exchange) &&
+           number >= exchange->query->scene.first_pair && number < exchange->of.end_pair;
+}
+
+static struct fmb_client_answer separated_answer(unsigned a, unsigned b)
+{
+    return (struct fmb_client_answer){.a = a, .b = b, .text = "", .answer.verdict = FMB_SEPARATED};
+}
+
+/* Returns the next pair before the one that the result names next. */
+static bool next_separated(struct exchange *exchange, struct fmb_client_answer *out)
+{
+    const struct scene_query *query = &exchange->query->scene;
+    unsigned pair[2];
+    if (!exchange->all)
+        make_pairs(exchange);
+    const unsigned until[2] = {exchange->named.a, exchange->named.b};
+    while (scene_next_pair_before(exchange->all, &exchange->pair,
+                                  exchange->number < INT64_MAX ? until : NULL, pair))
+        if (separates(exchange, query_pair_number(query, pair[0], pair[1]))) {
+            *out = separated_answer(pair[0], pair[1]);
+            return true;
+        }
+    return false;
+}
+
+bool exchange_next(struct exchange *exchange, bool separated, struct fmb_client_answer *out)
+{
+    if (separated && exchange->fits && !exchange->of.is_pair && !lists_pairs(exchange) &&
+        next_separated(exchange, out))
+        return true;
+    if (exchange->number == INT64_MAX)
+        return false;
+    *out = exchange->named;
+    read_named(exchange);
+    return true;
+}
+
+bool exchange_next_of_both(struct exchange *const both[2], struct exchange_pair *out)
+{
+    const int first = both[1]->number < both[0]->number;
+    const int64_t number = both[first]->number;
+    if (number == INT64_MAX)
+        return false;
+    *out = (struct exchange_pair){.a = both[first]->named.a, .b = both[first]->named.b};
+    for (int i = 0; i < 2; i++) {
+        out->answered[i] = both[i]->number == number || separates(both[i], number);
+        if (both[i]->number == number)
+            exchange_next(both[i], false, &out->answer[i]);
+        else if (out->answered[i])
+            out->answer[i] = separated_answer(out->a, out->b);
+    }
+    return true;
+}
+
+struct exchange_counts exchange_count(const struct exchange *exchange)
+{
+    struct exchange named = *exchange;
+    struct exchange_counts counts = {{0}};
+    struct fmb_client_answer answer;
+    exchange_begin(&named);
+    while (exchange_next(&named, false, &answer))
+        counts.verdict[answer.answer.verdict]++;
+    if (exchange->fits && !exchange->of.is_pair && !lists_pairs(exchange)) {
+        int64_t others =
+            logged_query_pairs_until(&exchange->query->scene, exchange->result->scene.end_pair);
+        for (int verdict = 0; verdict <= FMB_OVERLAPPING; verdict++)
+            others -= counts.verdict[verdict];
+        counts.verdict[FMB_SEPARATED] += others > 0 ? others : 0;
+    }
+    return counts;
+}
+
+int64_t exchange_decided(const struct exchange *exchange)
+{
+    const struct exchange_counts counts = exchange_count(exchange);
+    return counts.verdict[FMB_SEPARATED] + counts.verdict[FMB_TOUCHING] +
+           counts.verdict[FMB_OVERLAPPING];
+}
+
+const char *exchange_name(const struct exchange *exchange, int32_t placement)
+{
+    const struct fmb_placement *placed = &exchange->query->placement[placement].placed;
+    const char *name =
+        body_names_find(exchange->names, exchange->query->header.client_id, placed->id);
+    return name ? name : placed->name && *placed->name ? placed->name : NULL;
+}
