@@ -7,7 +7,7 @@
 see_tests/oracle := service/fmb service/fmb/frame
 see_tests/campaign := tests/oracle $(call fmb,number frame filter exact gap hull decide)
 see_tests/checked := tests/campaign $(see_tests/campaign)
-see_tests/bench := tests/campaign tests/oracle $(call fmb,number frame filter article tree exact decide) \
+see_tests/bench := tests/campaign tests/oracle $(call fmb,number frame filter article tree exact gap hull decide) \
 	clients/common
 see_tests/bench/peers := tests/bench
 see_tests/encode := msgs/codec service/fmb service/answer
@@ -85,8 +85,8 @@ internal_tests := $(addprefix $(B)/tests/,test_box_bounds test_engine_batch \
 comma := ,
 wraps = $(addprefix -Wl$(comma)--wrap=,$1)
 wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_mul_si z_mul_2exp z_addmul z_submul \
-	z_add z_sub z_fdiv_q z_tdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize n_addmul_1 \
-	n_submul_1 n_add_n n_sub_n n_mul_n) integer_ratio_round)
+	z_add z_sub z_fdiv_q z_tdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize) \
+	integer_ratio_round)
 wraps_test_hull_work := $(wraps_test_engine_work) $(call wraps,support_max hull_integers_place \
 	certificate_write_number)
 wraps_test_log_read := $(call wraps,pread64)

@@ -1,7 +1,8 @@
 /* Answers pair and scene queries in stages: CHECKING the fields, FINDING bodies by handle, ADDING
  * bodies that have frames, DECIDING, CERTIFYING, COMPLETE. answer_job_step() does a part of one
- * stage; a refused query is COMPLETE at once. A pair of bodies of several frames, or
- * with a hull, is a scene of one listed pair; any other pair of frames is decided at once. */
+ * stage; a refused query is COMPLETE at once. A pair of bodies of several frames, or with a hull,
+ * or whose numbers span too many bits, is a scene of one listed pair; any other pair of frames is
+ * decided at once. */
 #include "answerer.h"
 
 #include "body.h"
@@ -38,7 +39,7 @@ struct answer_job {
     int32_t next;        /* the next placement in FINDING and ADDING */
     int64_t frames;      /* of the placements before next in FINDING, then of all */
     bool several_frames; /* of a body */
-    bool in_steps;       /* a pair that takes long: a body has several frames or is a hull */
+    bool in_steps;       /* a pair that may take long: a body has several frames or is a hull */
     long capacity;       /* bytes of the result of a scene that are left for answers */
     struct fmb_scene scene;
     struct fmb_scene_state *state; /* in memory */
@@ -465,14 +466,59 @@ static enum answer_stage begin_certificate(struct answer_job *job, enum fmb_stat
     return job->certificate ? certify(job) : complete_pair(job, status);
 }
 
-/* Decides a pair of frames. */
-static enum answer_stage decide_frames(struct answer_job *job)
+/* Decides a pair of frames by the default method, if that takes microseconds. */
+static bool decide_at_once(struct answer_job *job)
+{
+    static const unsigned pair[1][2] = {{0, 1}};
+    const struct pair_query *query = &job->pair;
+    const bool box = query->want & FMB_WANT_BOX, gap = query->want & FMB_WANT_GAP;
+    struct fmb_answer *answer = &job->pair_result.answer;
+    struct fmb_prepared frames[2];
+    unsigned char verdict;
+    size_t open, open_count;
+    fmb_prepare(&job->placed[0], 0, 1, &frames[0]);
+    fmb_prepare(&job->placed[1], 0, 1, &frames[1]);
+    const struct fmb_batch batch = {.frames = frames,
+                                    .frame_count = 2,
+                                    .pairs = pair,
+                                    .pair_count = 1,
+                                    .duration = query->duration,
+                                    .instant = query->duration == 0,
+                                    .verdicts = &verdict,
+                                    .contacts = &answer->contact,
+                                    .boxes = box ? &answer->box : NULL,
+                                    .gaps = gap ? &answer->gap : NULL,
+                                    .open = &open,
+                                    .open_count = &open_count};
+    const enum fmb_status status = fmb_decide_batch(&batch);
+    assert(status == FMB_OK);
+    (void) status;
+    if (open_count > 0)
+        return false;
+    if (verdict < FMB_TOUCHING) { /* no NAN */
+        memset(answer->contact, 0, sizeof answer->contact);
+        memset(answer->box, 0, sizeof answer->box);
+    }
+    answer->verdict = (enum fmb_verdict) verdict;
+    answer->has_contact = verdict >= FMB_TOUCHING;
+    answer->has_box = answer->has_contact && box;
+    answer->has_gap = gap;
+    return true;
+}
+
+/* Decides a pair of frames, unless it takes steps. */
+static bool decide_frames(struct answer_job *job, enum fmb_status *status)
 {
     const struct pair_query *query = &job->pair;
-    const enum fmb_status status = fmb_decide(
-        fmb_method_by_number(query->method), &job->placed[0], &job->placed[1], query->duration,
-        (unsigned) query->want & (FMB_WANT_BOX | FMB_WANT_GAP), &job->pair_result.answer);
-    return begin_certificate(job, status);
+    const struct fmb_method *method = fmb_method_by_number(query->method);
+    *status = FMB_OK;
+    if (method == fmb_method_default())
+        return decide_at_once(job);
+    if (!method->certain)
+        *status = fmb_decide(method, &job->placed[0], &job->placed[1], query->duration,
+                             (unsigned) query->want & (FMB_WANT_BOX | FMB_WANT_GAP),
+                             &job->pair_result.answer);
+    return !method->certain;
 }
 
 /* Takes the answer of a pair that was decided in steps. */
@@ -510,13 +556,14 @@ static void begin_answers(struct answer_job *job)
 /* Begins the engine's scene, or decides a pair of frames. */
 static enum answer_stage begin_deciding(struct answer_job *job)
 {
-    if (job->is_pair && !job->in_steps)
-        return decide_frames(job);
+    enum fmb_status status;
+    if (job->is_pair && !job->in_steps && decide_frames(job, &status))
+        return begin_certificate(job, status);
     job->scene = job->is_pair ? scene_of_pair(&job->pair) : scene_of(&job->query);
     job->scene.placements = job->placed;
     if (!job->is_pair)
         begin_answers(job);
-    const enum fmb_status status = fmb_scene_begin(&job->scene, &limits, job->memory, &job->state);
+    status = fmb_scene_begin(&job->scene, &limits, job->memory, &job->state);
     assert(status == FMB_OK);
     (void) status;
     return DECIDING;

@@ -400,12 +400,12 @@ struct fmb_method {
  *
  * fmb and sat are inexact and cannot decide flat frames and hulls.
  *
- * Cost: exact takes tens of microseconds for numbers of similar size. Its time is bounded for any
- * numbers: the slowest pairs, whose exponents span the whole range of doubles, take up to 6 ms with
- * box and gap. The same bound holds for certified, but not for pairs with a hull. Doubles
- * decide these by a few scans of all vertices. Exact arithmetic, for pairs that touch or nearly do,
- * takes some milliseconds for the largest hulls, and up to 60 ms with box and gap if their
- * exponents span the range of doubles. A scene divides it into steps of less than a millisecond. */
+ * Cost: exact takes tens to hundreds of microseconds for numbers of similar size. Its time is
+ * bounded for any numbers, as is that of certified: of the pairs whose exponents span the whole
+ * range of doubles, a search found none that takes more than 70 million products of limbs of 64
+ * bits with box and gap, about 35 ms. Doubles decide most pairs with a hull by a few scans of all
+ * vertices. Exact arithmetic takes some milliseconds for the largest hulls, and up to 60 ms with
+ * box and gap if their exponents span that range. A scene divides it into steps below one. */
 
 /* Return a method from a static table, valid for the life of the program. Thread safe.
  * fmb_method_at() returns NULL if index is past the last method; fmb_method_by_name() and

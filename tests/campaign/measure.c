@@ -6,7 +6,7 @@
 #include <time.h>
 
 #include "gap_check.h"
-#include "hull.h"
+#include "hull_decision.h"
 #include "memory.h"
 
 /* Pairs of a batch: the methods are timed over all of them, one after the other, each decided once,

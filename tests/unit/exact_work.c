@@ -93,28 +93,6 @@ void __wrap___gmpz_tdiv_qr(mpz_ptr q, mpz_ptr r, mpz_srcptr num, mpz_srcptr den)
     __real___gmpz_tdiv_qr(q, r, num, den);
 }
 
-/* Wide integers of n limbs: rows of products, and sums. */
-#define WRAP_LIMBS(name, third, fourth, ...)                         \
-    mp_limb_t __real_##name(mp_ptr out, mp_srcptr x, third, fourth); \
-    mp_limb_t __wrap_##name(mp_ptr out, mp_srcptr x, third, fourth); \
-    mp_limb_t __wrap_##name(mp_ptr out, mp_srcptr x, third, fourth)  \
-    {                                                                \
-        exact_work += (double) n;                                    \
-        return __real_##name(out, x, __VA_ARGS__);                   \
-    }
-WRAP_LIMBS(__gmpn_addmul_1, mp_size_t n, mp_limb_t y, n, y)
-WRAP_LIMBS(__gmpn_submul_1, mp_size_t n, mp_limb_t y, n, y)
-WRAP_LIMBS(__gmpn_add_n, mp_srcptr y, mp_size_t n, y, n)
-WRAP_LIMBS(__gmpn_sub_n, mp_srcptr y, mp_size_t n, y, n)
-
-void __real___gmpn_mul_n(mp_ptr out, mp_srcptr x, mp_srcptr y, mp_size_t n);
-void __wrap___gmpn_mul_n(mp_ptr out, mp_srcptr x, mp_srcptr y, mp_size_t n);
-void __wrap___gmpn_mul_n(mp_ptr out, mp_srcptr x, mp_srcptr y, mp_size_t n)
-{
-    exact_work += (double) n * (double) n;
-    __real___gmpn_mul_n(out, x, y, n);
-}
-
 double __real_integer_ratio_round(const mpz_t num, const mpz_t den, long unit,
                                   enum round_direction direction, mpz_t scratch[2]);
 double __wrap_integer_ratio_round(const mpz_t num, const mpz_t den, long unit,

@@ -1,12 +1,12 @@
-/* Counts the exact arithmetic of the code under test, in GMP and in wide integers: the link
- * wraps the functions (tests.mk). */
+/* Counts the exact arithmetic of the code under test in GMP: the link wraps the functions
+ * (tests.mk). */
 #ifndef EXACT_WORK_H
 #define EXACT_WORK_H
 
 /* The work so far, in products of limbs of about half a nanosecond each: n m for a product of n and
  * m limbs, and for a division of n + m - 1 limbs by m; n^2 for an operation on fractions of n
- * limbs; n for a sum or a shift. Without integers of up to LIMBS_NARROW limbs, whose work is small.
- */
+ * limbs; n for a sum or a shift. Integers of at most 512 bits are not counted: their work is
+ * small. */
 extern double exact_work;
 
 /* Number of ends of contacts and boxes that were computed exactly. */

@@ -1083,7 +1083,7 @@ static void set_slivers(int32_t count)
 }
 
 /* In the middle of a block too, which the next query has nothing to do with. */
-static void a_step_decides_one_exact_pair(void **state)
+static void no_step_decides_two_exact_pairs(void **state)
 {
     int steps = 0;
     set_slivers(8);
@@ -1091,7 +1091,7 @@ static void a_step_decides_one_exact_pair(void **state)
     while (!answer_job_step(job, answerer))
         steps += answer_job_has_answers(job);
     scene_assert(query, answer_job_scene_result(job));
-    assert_in_range(steps, 8 * 7 / 2 - 2, 8 * 7 / 2);
+    assert_true(steps > 8 * 7 / 2); /* programs take several each */
     for (query->first_pair = 0; query->first_pair < 8 * 7 / 2; query->first_pair++) {
         set_slivers(8);
         scene_begin(job, query);
@@ -1170,7 +1170,7 @@ int main(void)
         TEST(two_jobs_run_at_once),
         TEST(a_job_can_be_begun_anew),
         TEST(a_stopped_scene_continues_where_it_ended),
-        TEST(a_step_decides_one_exact_pair),
+        TEST(no_step_decides_two_exact_pairs),
         TEST(steps_are_short),
     };
     return cmocka_run_group_tests_name("answer_scene", tests, NULL, NULL);

@@ -232,7 +232,7 @@ static bool box_in_integers(const struct fmb_prepared *a, const struct fmb_prepa
         {frame[0]->frame, frame[0]->placement}, {frame[1]->frame, frame[1]->placement}, duration};
     struct limbs_question question;
     limbs_question_set(&pair, limbs_span_of(&pair), LIMBS_FLAT, &question);
-    return limbs_functions_of(&question)->box(&question, frame, box);
+    return limbs_suffice(&question) && limbs_box(&question, frame, box);
 }
 
 /* Whatever doubles give. Of hard pairs, and of edges that all but depend on each other. */

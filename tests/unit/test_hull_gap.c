@@ -9,10 +9,22 @@
 
 #include "draw.h"
 #include "gap_check.h"
-#include "hull.h"
+#include "hull_decision.h"
 #include "hull_draw.h"
 #include "question.h"
 #include "referee.h"
+
+/* The gap of a pair with this verdict, from its vertices. */
+static struct fmb_gap gap_of_vertices(const struct frame_pair *frames, enum fmb_verdict verdict)
+{
+    struct hull_decision decision;
+    struct fmb_answer answer = {0};
+    bool done = hull_decision_begin_gap(frames, verdict, INFINITY, false, &decision, &answer);
+    while (!done)
+        done = hull_decision_step(&decision, &answer);
+    assert_true(answer.has_gap);
+    return answer.gap;
+}
 
 /* The gap of both solids as hulls, or of one of them: bit 0, the first is one; bit 1, the second.
  */
@@ -21,14 +33,10 @@ static struct fmb_gap gap_of_hulls(const struct question *question, unsigned whi
 {
     struct ready ready;
     struct shape_hull hull[2];
-    struct fmb_gap out;
     referee_ready(question, &ready);
     hull_replace(question, which, hull, &ready.pair);
     const struct frame_pair frames = pair_frames(&ready.pair);
-    const enum gap_outcome outcome = hull_gap(&frames, verdict, INFINITY, &out);
-    if (outcome != GAP_KNOWN)
-        referee_fail(question, "unsure");
-    return out;
+    return gap_of_vertices(&frames, verdict);
 }
 
 static enum fmb_verdict check(const struct question *question, unsigned which)
@@ -283,7 +291,7 @@ static void small_hulls(void **state)
         while (!pair_certificate_holds(&drawn.pair, verdict, text, NULL, 0))
             assert_true(++verdict <= FMB_OVERLAPPING);
         verdicts[verdict]++;
-        assert_int_equal(hull_gap(&frames, verdict, INFINITY, &gap), GAP_KNOWN);
+        gap = gap_of_vertices(&frames, verdict);
         assert_true(gap.bounds[0] <= gap.bounds[1] && gap.bounds[1] - gap.bounds[0] <= 1e-11);
         assert_true(fabs(dot(gap.direction, gap.direction) - 1) < 1e-14);
         if (verdict == FMB_SEPARATED) {
@@ -374,7 +382,7 @@ static void check_large(struct draw *draw, const struct large hulls[2], const st
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         size = fmax(size, fabs(pair->a.position[axis]) + fabs(pair->b.position[axis]));
     assert_int_equal(pair_decide(fmb_method_default(), pair, 0, &answer), FMB_OK);
-    assert_int_equal(hull_gap(&frames, answer.verdict, INFINITY, &answer.gap), GAP_KNOWN);
+    answer.gap = gap_of_vertices(&frames, answer.verdict);
     const double *bounds = answer.gap.bounds, error = 1e-13 * (1 + size);
     const double towards[FMB_DIM_MAX] = {-answer.gap.direction[0], -answer.gap.direction[1],
                                          -answer.gap.direction[2]};
@@ -494,13 +502,15 @@ static void make_ball(double turn_by, double far, struct large *out)
 /* Performs at most so many steps. Returns how many were made, and sets *gap if that is all. */
 static int step_gap(const struct frame_pair *frames, int most, struct fmb_gap *gap)
 {
-    struct hull_gap_work *work;
+    struct hull_decision decision;
+    struct fmb_answer answer = {0};
     int steps = 1;
-    enum gap_outcome outcome = hull_gap_begin(frames, FMB_OVERLAPPING, INFINITY, gap, &work);
-    for (; outcome == GAP_UNSURE && steps < most; steps++)
-        outcome = hull_gap_step(work, gap);
-    if (outcome == GAP_UNSURE)
-        hull_gap_end(work);
+    bool done =
+        hull_decision_begin_gap(frames, FMB_OVERLAPPING, INFINITY, false, &decision, &answer);
+    for (; !done && steps < most; steps++)
+        done = hull_decision_step(&decision, &answer);
+    hull_decision_end(&decision);
+    *gap = answer.gap;
     return steps;
 }
 
@@ -519,7 +529,7 @@ static void steps_leave_no_memory(void **state)
         const struct frame_pair frames = {{&balls[0].body.one, &a}, {&balls[1].body.one, &b}, 0};
         struct fmb_gap gap, stepped;
         live = 0;
-        assert_int_equal(hull_gap(&frames, FMB_OVERLAPPING, INFINITY, &gap), GAP_KNOWN);
+        gap = gap_of_vertices(&frames, FMB_OVERLAPPING);
         assert_int_equal(live, 0);
         const int steps = step_gap(&frames, 1000, &stepped);
         assert_true(steps > 2 && steps < 1000);

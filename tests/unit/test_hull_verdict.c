@@ -7,8 +7,8 @@
 #include <math.h>
 
 #include "family.h"
+#include "hull_decision.h"
 #include "hull_exact.h"
-#include "hull_search.h"
 #include "oracle.h"
 #include "referee.h"
 

@@ -21,9 +21,7 @@
 #include "batch.h"
 
 #include "certified.h"
-#include "exact.h"
 #include "gap.h"
-#include "hull.h"
 #include "inlined.h"
 #include "kernel.h"
 
@@ -308,11 +306,20 @@ static bool may_decide_single(struct batch_block *block, size_t k)
     const struct fmb_prepared *const *pair = block->pair[k];
     if (!batch->open)
         return true;
-    if (!hull_takes(pair[0]->frame, pair[1]->frame))
+    if (pair[0]->frame->vertex_count + pair[1]->frame->vertex_count == 0)
         return block->singles++ < SINGLE_MAX;
     const bool may = block->scanned < SCANNED_MAX;
     block->scanned += cost_of(batch, pair);
     return may;
+}
+
+static void put_answer(const struct fmb_batch *batch, size_t i, const struct fmb_answer *answer)
+{
+    batch->verdicts[i] = (unsigned char) answer->verdict;
+    if (batch->contacts && answer->has_contact)
+        memcpy(batch->contacts[i], answer->contact, sizeof answer->contact);
+    if (answer->has_box)
+        memcpy(batch->boxes[i], answer->box, sizeof answer->box);
 }
 
 /* Decides pair k by itself, or leaves it open. want: FMB_WANT_BOX and FMB_WANT_TIMES. In: its
@@ -322,19 +329,15 @@ static void decide_single(struct batch_block *block, size_t k, unsigned want)
     const struct fmb_batch *batch = block->batch;
     const struct fmb_prepared *const *pair = block->pair[k];
     const size_t i = block->first + block->slot[k];
-    struct fmb_answer answer = {0};
-    if (!may_decide_single(block, k) ||
-        certified_decide_prepared(pair[0], pair[1], batch->duration, want, batch->open != NULL,
-                                  &answer) != FMB_OK) {
-        put_nothing(batch, i);
-        batch->verdicts[i] = LEFT_OPEN;
+    struct certified certified;
+    struct fmb_answer answer;
+    if (may_decide_single(block, k) && certified_begin(pair[0], pair[1], batch->duration, want,
+                                                       INFINITY, HULL_QUICK, &certified, &answer)) {
+        put_answer(batch, i, &answer);
         return;
     }
-    batch->verdicts[i] = (unsigned char) answer.verdict;
-    if (batch->contacts && answer.has_contact)
-        memcpy(batch->contacts[i], answer.contact, sizeof answer.contact);
-    if (answer.has_box)
-        memcpy(batch->boxes[i], answer.box, sizeof answer.box);
+    put_nothing(batch, i);
+    batch->verdicts[i] = LEFT_OPEN;
 }
 
 static void put_verdict_single(struct batch_block *block, size_t k)
@@ -343,7 +346,7 @@ static void put_verdict_single(struct batch_block *block, size_t k)
     const struct fmb_prepared *const *pair = block->pair[k];
     enum fmb_verdict verdict = 0;
     if (may_decide_single(block, k))
-        verdict = certified_unsure(pair[0], pair[1], batch->duration, 2, batch->open);
+        verdict = certified_unsure(pair[0], pair[1], batch->duration, 2);
     batch->verdicts[block->first + block->slot[k]] = verdict ? (unsigned char) verdict : LEFT_OPEN;
 }
 
@@ -419,8 +422,8 @@ static void put_box_single(struct batch_block *block, size_t k)
     const struct fmb_batch *batch = block->batch;
     const struct fmb_prepared *const *pair = block->pair[k];
     const size_t i = block->first + block->slot[k];
-    if (may_decide_single(block, k) && certified_box_unsure(pair[0], pair[1], batch->duration,
-                                                            batch->open != NULL, batch->boxes[i]))
+    if (may_decide_single(block, k) &&
+        certified_box_unsure(pair[0], pair[1], batch->duration, batch->boxes[i]))
         return;
     put_nothing(batch, i);
     batch->verdicts[i] = LEFT_OPEN;
@@ -537,8 +540,6 @@ static bool bounds_are_separated(const struct batch_block *block, const struct b
 {
     const struct fmb_prepared *const *pair = block->pair[k];
     bool swapped;
-    if (!hull_takes(pair[0]->frame, pair[1]->frame))
-        return false;
     const enum kernel_kind kind =
         kernel_kind_of_bounds(pair[0], pair[1], job->batch->duration, &swapped);
     return kind < KERNEL_KINDS &&
@@ -609,41 +610,18 @@ static void find_far(struct batch_block *block, const struct batch_job *job, enu
     filter_enlarged(block, job, kind, &enlarged);
 }
 
-static enum gap_outcome gap_of_pair(const struct batch_job *job, size_t i, enum fmb_verdict verdict,
-                                    struct fmb_gap *out)
-{
-    const struct fmb_batch *batch = job->batch;
-    const struct fmb_prepared *a = &batch->frames[batch->pairs[i][0]];
-    const struct fmb_prepared *b = &batch->frames[batch->pairs[i][1]];
-    enum gap_outcome known = GAP_UNSURE;
-    if (!hull_takes(a->frame, b->frame))
-        known = gap_of(a, b, batch->duration, verdict, job->farthest, out);
-    if (known != GAP_UNSURE)
-        return known;
-    const struct frame_pair frames = {
-        {a->frame, a->placement}, {b->frame, b->placement}, batch->duration};
-    if (!batch->open)
-        return hull_gap(&frames, verdict, job->farthest, out);
-    struct hull_gap_work *work;
-    const enum gap_outcome outcome = hull_gap_begin(&frames, verdict, job->farthest, out, &work);
-    if (outcome == GAP_UNSURE)
-        hull_gap_end(work);
-    return outcome;
-}
-
 static void put_gap(const struct batch_job *job, const struct batch_block *block, size_t slot)
 {
     const size_t i = block->first + slot;
     const struct fmb_batch *batch = job->batch;
-    struct fmb_gap *gap = &batch->gaps[i];
+    const struct fmb_prepared *a = frame_at(batch, batch->pairs[i][0]);
+    const struct fmb_prepared *b = frame_at(batch, batch->pairs[i][1]);
     unsigned char *verdict = &batch->verdicts[i];
-    enum gap_outcome outcome = GAP_FAR;
-    if (batch_is_contact(*verdict) || (*verdict == FMB_SEPARATED && !block->far[slot]))
-        outcome = gap_of_pair(job, i, (enum fmb_verdict) * verdict, gap);
-    if (outcome == GAP_KNOWN)
+    batch->gaps[i] = gap_none();
+    if (!batch_is_contact(*verdict) && (*verdict != FMB_SEPARATED || block->far[slot]))
         return;
-    *gap = gap_none();
-    if (outcome == GAP_FAR)
+    if (certified_gap(a, b, batch->duration, (enum fmb_verdict) * verdict, job->farthest,
+                      &batch->gaps[i]))
         return;
     put_nothing(batch, i);
     *verdict = LEFT_OPEN;
@@ -669,18 +647,41 @@ static enum fmb_status decide_block(const struct batch_job *job, size_t first)
 
 /* ---- All blocks ---- */
 
-/* Lists the pairs that the blocks left open, in ascending order, and clears their verdicts. */
-static void list_open(const struct fmb_batch *batch)
+/* Decides pair i, which a block left open, by all means. */
+static void decide_open(const struct batch_job *job, size_t i)
 {
+    const struct fmb_batch *batch = job->batch;
+    const unsigned want = (batch->boxes ? FMB_WANT_BOX : 0) |
+                          (batch->contacts ? FMB_WANT_TIMES : 0) | (batch->gaps ? FMB_WANT_GAP : 0);
+    struct fmb_answer answer;
+    certified_decide_prepared(frame_at(batch, batch->pairs[i][0]),
+                              frame_at(batch, batch->pairs[i][1]), batch->duration, want,
+                              job->farthest, &answer);
+    put_answer(batch, i, &answer);
+    if (batch->gaps)
+        batch->gaps[i] = answer.gap;
+}
+
+/* Lists the pairs that the blocks left open, in ascending order, and clears their verdicts; or
+ * decides them. */
+static void end_open(const struct batch_job *job)
+{
+    const struct fmb_batch *batch = job->batch;
     unsigned char *at = batch->verdicts;
     /* verdicts may be NULL if there are no pairs. */
     const unsigned char *const end = batch->pair_count > 0 ? at + batch->pair_count : at;
     size_t count = 0;
-    while (at < end && (at = memchr(at, LEFT_OPEN, (size_t) (end - at)))) {
-        batch->open[count++] = (size_t) (at - batch->verdicts);
-        *at++ = 0;
+    for (; at < end && (at = memchr(at, LEFT_OPEN, (size_t) (end - at))); at++) {
+        const size_t i = (size_t) (at - batch->verdicts);
+        if (batch->open) {
+            batch->open[count++] = i;
+            *at = 0;
+        } else {
+            decide_open(job, i);
+        }
     }
-    *batch->open_count = count;
+    if (batch->open)
+        *batch->open_count = count;
 }
 
 static bool any_moves(const struct fmb_batch *batch)
@@ -714,8 +715,7 @@ enum fmb_status batch_decide(const struct fmb_batch *batch, enum instructions in
         const enum fmb_status of_block = decide_block(&job, first);
         status = status == FMB_OK ? of_block : status;
     }
-    if (batch->open)
-        list_open(batch);
+    end_open(&job);
     return status;
 }
 
@@ -731,7 +731,13 @@ enum fmb_status fmb_decide_prepared(const struct fmb_prepared *a, const struct f
     enum slabs_outcome outcome = SLABS_UNSURE;
     if (kind != KERNEL_UNUSABLE)
         outcome = kernel_set_best()->single[kind](swapped ? b : a, swapped ? a : b, duration);
-    *verdict = outcome == SLABS_UNSURE ? certified_unsure(a, b, duration, 1, false)
-                                       : (enum fmb_verdict) outcome;
+    *verdict = outcome == SLABS_UNSURE && kind != KERNEL_UNUSABLE
+                   ? certified_unsure(a, b, duration, 1)
+                   : (enum fmb_verdict) outcome;
+    if (*verdict == 0) {
+        struct fmb_answer answer;
+        certified_decide_prepared(a, b, duration, 0, INFINITY, &answer);
+        *verdict = answer.verdict;
+    }
     return FMB_OK;
 }

@@ -1,8 +1,7 @@
 /* The method certified, for one pair of frames.
  *
- *   In     two prepared frames, the window, what is wanted; quick: no integers wider than
- *          LIMBS_NARROW
- *   Out    the answer; with quick, FMB_CANNOT_DECIDE if it needs wider integers
+ *   In     two prepared frames, the window, what is wanted
+ *   Out    the answer, in steps
  *
  * The verdict is found on a ladder. climb() takes its rungs in turn, each for pairs that the one
  * before leaves unsure:
@@ -16,42 +15,21 @@
  * verdict is that of their projections, two triangles in 2D: these take the place of the pair, and
  * the ladder is climbed again.
  *
- * Then set_contact(), certified_box() and gap_of() compute what else is wanted: in doubles, and
- * what these do not give within the limits of fmb.h in integers. Each step depends on the numbers
- * of the pair only, so that every caller gets the same bits. The error bounds are derived in
- * slabs.c, slabs_lanes.h, box_clip.h and contact.c. */
+ * Then set_contact(), set_box() and gap_of() compute what else is wanted: in doubles, and what
+ * these do not give within the limits of fmb.h in integers.
+ *
+ * What none of these gives, integers of 512 bits being too short, the programs do
+ * (hull_decision.h), in steps: the verdict, ends of contact and box, the gap; and everything of a
+ * pair with a hull. Which of all these gives a number depends on the numbers of the pair only, so
+ * that every caller gets the same bits. The error bounds are derived in slabs.c, slabs_lanes.h,
+ * box_clip.h and contact.c. */
 #include "certified.h"
 
-#include "exact.h"
-#include "faces.h"
 #include "gap.h"
-#include "hull.h"
-#include "limbs.h"
 #include "kernel.h"
 
 #include <math.h>
 #include <string.h>
-
-/* The state of one decision. */
-struct certified {
-    struct frame_pair pair;
-    const struct fmb_prepared *frame[2];
-    enum kernel_kind kind;
-    bool swapped;            /* kernels of this kind take b as their first frame */
-    bool quick;              /* integers of LIMBS_NARROW are the widest allowed */
-    bool times;              /* contact is wanted if the pair drifts */
-    double contact[2];       /* as in struct kernel_call */
-    double exact_contact[2]; /* set by all_slabs() */
-    enum certified_path path;
-    /* Set by find_slabs(). */
-    enum { SLABS_UNKNOWN, SLABS_GOOD, SLABS_BAD } state; /* good: doubles can bound the slabs */
-    struct slabs_pair slabs;
-    struct dyadic_span span;
-    bool rounds;                        /* operations on these numbers may round */
-    bool flat;                          /* two faces in parallel planes: slabs do not decide them */
-    struct faces_projection projection; /* the pair, of faces that share a plane */
-    struct fmb_prepared projected[2];
-};
 
 /* a, b: the frames of the pair, prepared. */
 static void set_pair(struct certified *certified, const struct frame_pair *pair,
@@ -62,7 +40,7 @@ static void set_pair(struct certified *certified, const struct frame_pair *pair,
     certified->frame[1] = b;
     certified->kind = kernel_kind_of(a, b, pair->duration, &certified->swapped);
     certified->state = SLABS_UNKNOWN;
-    certified->contact[0] = NAN;
+    certified->contact[0] = certified->exact_contact[0] = NAN;
 }
 
 /* Returns whether doubles can bound the slabs of the pair, and sets them. */
@@ -140,32 +118,24 @@ static enum slabs_outcome open_slabs(struct certified *certified)
     if (!find_slabs(certified))
         return SLABS_UNSURE;
     limbs_question_set(&certified->pair, certified->span, LIMBS_SLABS, &question);
-    if (certified->quick && question.limbs > LIMBS_NARROW)
+    if (!limbs_suffice(&question))
         return SLABS_UNSURE;
     const int count = slabs_list(&certified->slabs, true, slab);
     for (int i = 0; i < count; i++)
         if (slab[i].error == 0 ? certified->slabs.inexact : slab_gap(&slab[i]) >= -slab[i].error)
             normal[open++] = slab[i].normal;
-    const int sign = limbs_functions_of(&question)->slabs(&question, normal, NULL, open, NULL);
+    const int sign = limbs_slabs(&question, normal, NULL, open, NULL);
     return sign > 0 ? SLABS_SEPARATED : sign == 0 ? SLABS_TOUCHING : SLABS_OVERLAPPING;
 }
 
-static enum hull_effort effort_of(bool quick)
-{
-    return quick ? HULL_QUICK : HULL_CERTIFIED;
-}
-
-/* The exact method; of a pair with a hull, that of hull.h. */
 static enum slabs_outcome all_slabs(struct certified *certified)
 {
-    struct fmb_answer answer = {0};
-    const bool times = certified->times && !certified->quick && drifts(certified);
-    if (hull_takes(certified->frame[0]->frame, certified->frame[1]->frame))
-        return hull_decide(&certified->pair, 0, effort_of(certified->quick), &answer) == FMB_OK
-                   ? (enum slabs_outcome) answer.verdict
-                   : SLABS_UNSURE;
-    return (enum slabs_outcome) exact_verdict(&certified->pair, certified->quick,
-                                              times ? certified->exact_contact : NULL);
+    const bool times = certified->times && !certified->bounded && drifts(certified);
+    struct limbs_question question;
+    limbs_question_set(&certified->pair, limbs_span_of(&certified->pair), LIMBS_FLAT, &question);
+    if (!limbs_suffice(&question))
+        return SLABS_UNSURE;
+    return (enum slabs_outcome) limbs_verdict(&question, times ? certified->exact_contact : NULL);
 }
 
 /* Inlined, and with no pointers to functions: nearly every pair takes the first rung only. */
@@ -187,7 +157,7 @@ static enum certified_path rung_of_faces(struct certified *certified)
     enum faces_planes planes = FACES_UNDECIDED;
     if (find_slabs(certified))
         planes = faces_planes_of(&certified->pair, &certified->slabs, certified->span,
-                                 certified->quick, &certified->projection);
+                                 &certified->projection);
     if (planes == FACES_SHARED) {
         const struct frame_pair *plane = &certified->projection.pair;
         prepared_set(plane->a, &certified->projected[0]);
@@ -196,18 +166,17 @@ static enum certified_path rung_of_faces(struct certified *certified)
         return CERTIFIED_FILTER;
     }
     certified->flat = planes == FACES_UNDECIDED;
-    return certified->flat ? CERTIFIED_EXACT : CERTIFIED_PATHS;
+    return certified->flat ? CERTIFIED_EXACT : CERTIFIED_PROGRAMS;
 }
 
-/* The verdict of a pair that the rungs below next leave unsure; 0 if it needs integers that a quick
- * decision must not use. */
+/* The verdict of a pair that the rungs below next leave unsure; 0 if it needs wider integers. */
 static enum fmb_verdict climb(struct certified *certified, enum certified_path next)
 {
     enum slabs_outcome outcome = SLABS_UNSURE;
-    while (next < CERTIFIED_PATHS) {
+    while (next < CERTIFIED_PROGRAMS) {
         certified->path = next++;
         outcome = take_rung(certified);
-        if (outcome == SLABS_TOUCHING && are_faces(certified) && next < CERTIFIED_PATHS)
+        if (outcome == SLABS_TOUCHING && are_faces(certified) && next < CERTIFIED_PROGRAMS)
             next = rung_of_faces(certified);
         else if (outcome != SLABS_UNSURE)
             break;
@@ -226,9 +195,8 @@ static bool never_rounds(struct certified *certified)
 }
 
 /* Sets the contact of a pair in contact. A pair that does not drift is in contact over the whole
- * window. Returns false if the decision is quick and needs wider integers. Which step gives the
- * times depends on the numbers of the pair only, so that they are the same bits for every caller.
- */
+ * window. Returns false if it needs wider integers, or integers although the decision is bounded:
+ * their ratios are rounded by GMP. */
 static bool set_contact(struct certified *certified, double contact[2])
 {
     contact[0] = 0;
@@ -240,12 +208,11 @@ static bool set_contact(struct certified *certified, double contact[2])
         return true;
     if (!certified->flat && find_slabs(certified) &&
         contact_of(&certified->pair, &certified->slabs, certified->rounds, certified->span,
-                   !certified->quick, contact))
+                   !certified->bounded, contact))
         return true;
-    if (certified->quick)
+    if (certified->bounded ||
+        (isnan(certified->exact_contact[0]) && all_slabs(certified) == SLABS_UNSURE))
         return false;
-    if (certified->path != CERTIFIED_EXACT)
-        all_slabs(certified);
     memcpy(contact, certified->exact_contact, sizeof certified->exact_contact);
     return true;
 }
@@ -256,6 +223,8 @@ bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, d
     struct kernel_one one;
     bool swapped;
     const enum kernel_kind kind = kernel_box_kind(a, b, duration, &swapped);
+    if (kind >= KERNEL_KINDS)
+        return false;
     kernel_set_one(swapped ? b : a, swapped ? a : b, duration, &one);
     kernel_set_best()->boxes(&one.call, kind);
     memcpy(box, one.box[0], sizeof one.box[0]);
@@ -263,7 +232,7 @@ bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, d
 }
 
 bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
-                          double duration, bool quick, double box[2][FMB_DIM_MAX])
+                          double duration, double box[2][FMB_DIM_MAX])
 {
     bool swapped;
     const enum kernel_kind kind = kernel_box_kind(a, b, duration, &swapped);
@@ -272,24 +241,18 @@ bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepare
         {frame[0]->frame, frame[0]->placement}, {frame[1]->frame, frame[1]->placement}, duration};
     struct limbs_question question;
     limbs_question_set(&pair, limbs_span_of(&pair), LIMBS_FLAT, &question);
-    if (quick && question.limbs > LIMBS_NARROW)
-        return false;
-    if (kind < KERNEL_KINDS && limbs_functions_of(&question)->box(&question, frame, box))
-        return true;
-    if (!quick)
-        exact_box(&pair, box);
-    return !quick;
+    return kind < KERNEL_KINDS && limbs_suffice(&question) && limbs_box(&question, frame, box);
 }
 
 /* ---- Decisions ---- */
 
-/* Begins the decision of a pair. times: contact is wanted. */
+/* Begins the ladder of a pair. */
 static void begin(struct certified *certified, const struct frame_pair *pair,
                   const struct fmb_prepared *a, const struct fmb_prepared *b, bool times,
-                  bool quick)
+                  bool bounded)
 {
     certified->times = times;
-    certified->quick = quick;
+    certified->bounded = bounded;
     certified->flat = false;
     set_pair(certified, pair, a, b);
 }
@@ -300,73 +263,151 @@ static struct frame_pair pair_of(const struct fmb_prepared *a, const struct fmb_
     return (struct frame_pair){{a->frame, a->placement}, {b->frame, b->placement}, duration};
 }
 
-/* Decides a pair without a hull, whose prepared frames are a and b. */
-INLINE enum fmb_status decide(const struct frame_pair *pair, const struct fmb_prepared *a,
-                              const struct fmb_prepared *b, unsigned want, bool quick,
-                              struct fmb_answer *answer)
+/* Begins the programs for what is missing: of a small pair, the tightest ends. */
+static bool begin_program(struct certified *certified, unsigned missing)
 {
-    const double duration = pair->duration;
-    struct certified certified;
-    begin(&certified, pair, a, b, true, quick);
-    answer->verdict = climb(&certified, CERTIFIED_FILTER);
-    if (!answer->verdict)
-        return FMB_CANNOT_DECIDE;
-    answer->has_contact = answer->verdict != FMB_SEPARATED;
-    answer->has_box = answer->has_contact && want & FMB_WANT_BOX;
-    answer->has_gap = want & FMB_WANT_GAP;
-    if (answer->has_contact && !set_contact(&certified, answer->contact))
-        return FMB_CANNOT_DECIDE;
-    if (answer->has_box &&
-        !(certified.kind < KERNEL_KINDS && certified_box(a, b, duration, answer->box)) &&
-        !certified_box_unsure(a, b, duration, quick, answer->box))
-        return FMB_CANNOT_DECIDE;
-    if (answer->has_gap &&
-        gap_of(a, b, duration, answer->verdict, INFINITY, &answer->gap) == GAP_UNSURE) {
-        if (quick)
-            return FMB_CANNOT_DECIDE;
-        hull_gap(pair, answer->verdict, INFINITY, &answer->gap);
-    }
-    return FMB_OK;
+    const struct frame_pair pair =
+        pair_of(certified->given[0], certified->given[1], certified->duration);
+    certified->stage = CERTIFIED_MISSING;
+    return !certified->bounded && hull_decision_begin(&pair, missing, HULL_EXACT, INFINITY,
+                                                      &certified->program, &certified->proven);
 }
 
-enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
-                                          const struct fmb_prepared *b, double duration,
-                                          unsigned want, bool quick, struct fmb_answer *answer)
+/* Sets the gap of a pair with this verdict. Returns false if the program is begun for it, or would
+ * have to be. */
+static bool begin_gap(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                      double farthest, bool bounded, struct hull_decision *program,
+                      struct fmb_answer *answer)
 {
+    answer->has_gap = true;
+    const enum gap_outcome outcome =
+        gap_of(a, b, duration, answer->verdict, farthest, &answer->gap);
+    if (outcome == GAP_UNSURE) {
+        const struct frame_pair pair = pair_of(a, b, duration);
+        return hull_decision_begin_gap(&pair, answer->verdict, farthest, bounded, program, answer);
+    }
+    if (outcome == GAP_FAR)
+        answer->gap = gap_none();
+    return true;
+}
+
+/* Sets what is wanted besides the verdict, which is known; ends that the programs give only if
+ * nothing else does. Returns whether the answer is complete. */
+static bool measure(struct certified *certified, struct fmb_answer *answer)
+{
+    const struct fmb_prepared *a = certified->given[0], *b = certified->given[1];
+    const struct fmb_answer *proven = &certified->proven;
+    unsigned missing = 0;
+    answer->has_contact = answer->verdict != FMB_SEPARATED && certified->want & FMB_WANT_TIMES;
+    answer->has_box = answer->verdict != FMB_SEPARATED && certified->want & FMB_WANT_BOX;
+    if (answer->has_contact && !set_contact(certified, answer->contact)) {
+        missing |= proven->has_contact ? 0 : FMB_WANT_TIMES;
+        memcpy(answer->contact, proven->contact, sizeof answer->contact);
+    }
+    if (answer->has_box && !certified_box(a, b, certified->duration, answer->box) &&
+        !certified_box_unsure(a, b, certified->duration, answer->box)) {
+        missing |= proven->has_box ? 0 : FMB_WANT_BOX;
+        memcpy(answer->box, proven->box, sizeof answer->box);
+    }
+    if (missing)
+        return begin_program(certified, missing);
+    if (!(certified->want & FMB_WANT_GAP))
+        return true;
+    certified->stage = CERTIFIED_GAP;
+    return begin_gap(a, b, certified->duration, certified->farthest, certified->bounded,
+                     &certified->program, answer);
+}
+
+bool certified_gap(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                   enum fmb_verdict verdict, double farthest, struct fmb_gap *gap)
+{
+    struct hull_decision program;
+    struct fmb_answer answer = {.verdict = verdict};
+    const bool known = begin_gap(a, b, duration, farthest, true, &program, &answer);
+    *gap = known ? answer.gap : gap_none();
+    return known;
+}
+
+bool certified_begin(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                     unsigned want, double farthest, enum hull_effort effort, struct certified *out,
+                     struct fmb_answer *answer)
+{
+    static const struct fmb_answer none;
+    const bool bounded = effort == HULL_QUICK;
+    out->given[0] = a;
+    out->given[1] = b;
+    out->duration = duration;
+    out->want = want;
+    out->farthest = farthest;
+    out->proven = *answer = none;
+    hull_decision_none(&out->program);
     const struct frame_pair pair = pair_of(a, b, duration);
-    return hull_takes(a->frame, b->frame) ? hull_decide(&pair, want, effort_of(quick), answer)
-                                          : decide(&pair, a, b, want, quick, answer);
+    if (effort == HULL_EXACT || hull_takes(a->frame, b->frame)) {
+        out->stage = CERTIFIED_ALL;
+        return hull_decision_begin(&pair, want, effort, farthest, &out->program, answer);
+    }
+    begin(out, &pair, a, b, want & FMB_WANT_TIMES, bounded);
+    answer->verdict = climb(out, CERTIFIED_FILTER);
+    return answer->verdict ? measure(out, answer)
+                           : begin_program(out, want & (FMB_WANT_BOX | FMB_WANT_TIMES));
+}
+
+bool certified_step(struct certified *certified, struct fmb_answer *answer)
+{
+    if (certified->stage != CERTIFIED_MISSING)
+        return hull_decision_step(&certified->program, answer);
+    if (!hull_decision_step(&certified->program, &certified->proven))
+        return false;
+    answer->verdict = certified->proven.verdict;
+    return measure(certified, answer);
+}
+
+void certified_end(struct certified *certified)
+{
+    hull_decision_end(&certified->program);
+}
+
+void certified_decide_prepared(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                               double duration, unsigned want, double farthest,
+                               struct fmb_answer *answer)
+{
+    struct certified certified;
+    bool done = certified_begin(a, b, duration, want, farthest, HULL_CERTIFIED, &certified, answer);
+    while (!done)
+        done = certified_step(&certified, answer);
 }
 
 enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
                                  struct fmb_answer *answer)
 {
     struct fmb_prepared a, b;
-    if (hull_takes(pair->a.frame, pair->b.frame))
-        return hull_decide(pair, want | FMB_WANT_TIMES, HULL_CERTIFIED, answer);
     prepared_set(pair->a, &a);
     prepared_set(pair->b, &b);
-    return decide(pair, &a, &b, want | FMB_WANT_TIMES, false, answer);
+    certified_decide_prepared(&a, &b, pair->duration, want | FMB_WANT_TIMES, INFINITY, answer);
+    return FMB_OK;
 }
 
 enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path)
 {
     struct certified certified;
     struct fmb_prepared a, b;
+    struct fmb_answer answer;
     prepared_set(pair->a, &a);
     prepared_set(pair->b, &b);
-    begin(&certified, pair, &a, &b, false, false);
-    const enum fmb_verdict verdict = climb(&certified, CERTIFIED_FILTER);
-    *path = certified.path;
-    return verdict;
+    bool done =
+        certified_begin(&a, &b, pair->duration, 0, INFINITY, HULL_CERTIFIED, &certified, &answer);
+    *path = done ? certified.path : CERTIFIED_PROGRAMS;
+    while (!done)
+        done = certified_step(&certified, &answer);
+    return answer.verdict;
 }
 
 enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
-                                  double duration, int passes, bool quick)
+                                  double duration, int passes)
 {
     const struct frame_pair pair = pair_of(a, b, duration);
     struct certified certified;
-    begin(&certified, &pair, a, b, false, quick);
+    begin(&certified, &pair, a, b, false, true);
     return climb(&certified,
                  passes == 2 && !are_faces(&certified) ? CERTIFIED_LIMBS : CERTIFIED_SECOND);
 }

@@ -9,48 +9,102 @@
  * box: from what is left of the edges and where they cross, in doubles (box_clip.h) or in integers
  *   (limbs_box.h).
  * gap: given the verdict, in steps of its own (gap.h).
+ * Beyond 512 bits, and of pairs with a hull: the programs (hull_decision.h).
  *
  * Contact and box are computed as two enclosures: the outer one surely contains the exact value,
  * the inner one is surely contained in it. The answer is the outer one. It is given only if the two
- * are so close that it is within the limits of fmb.h; otherwise integers or the exact method
- * decide. */
+ * are so close that it is within the limits of fmb.h; otherwise integers or the programs decide. */
 #ifndef FMB_CERTIFIED_H
 #define FMB_CERTIFIED_H
 
-#include "integer.h"
-#include "slabs.h"
-
-/* The decide function of the method. */
-enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
-                                 struct fmb_answer *answer);
-
-/* The same answer from prepared frames; that of a pair with a hull has a contact only if want has
- * FMB_WANT_TIMES. quick: returns FMB_CANNOT_DECIDE, with *answer unspecified, if the answer needs
- * integers wider than LIMBS_NARROW, or GMP. A quick decision takes tens of microseconds at most and
- * allocates nothing: a slab takes at most 1,000 products of limbs (most take 100 to 300), and a
- * pair has at most SLABS_MAX slabs. */
-enum fmb_status certified_decide_prepared(const struct fmb_prepared *a,
-                                          const struct fmb_prepared *b, double duration,
-                                          unsigned want, bool quick, struct fmb_answer *answer);
+#include "faces.h"
+#include "hull_decision.h"
+#include "kernel.h"
+#include "limbs.h"
 
 /* The rungs of the ladder for the verdict: the filter; its second pass; the slabs that these leave
- * open, in integers; all slabs, in integers. */
+ * open, in integers; all slabs, in integers; the programs. */
 enum certified_path {
     CERTIFIED_FILTER,
     CERTIFIED_SECOND,
     CERTIFIED_LIMBS,
     CERTIFIED_EXACT,
-    CERTIFIED_PATHS
+    CERTIFIED_PROGRAMS
 };
+
+/* A decision in progress. It points into itself: not to be copied. */
+struct certified {
+    /* Set by certified_begin(). */
+    const struct fmb_prepared *given[2];
+    double duration, farthest;
+    unsigned want;
+    /* What the program gives: the answer; what is missing besides the gap; the gap. */
+    enum { CERTIFIED_ALL, CERTIFIED_MISSING, CERTIFIED_GAP } stage;
+    struct hull_decision program;
+    struct fmb_answer proven; /* by programs: verdict, contact and box */
+    /* The ladder: the pair, or its projection. */
+    struct frame_pair pair;
+    const struct fmb_prepared *frame[2];
+    enum kernel_kind kind;
+    bool swapped;            /* kernels of this kind take b as their first frame */
+    bool bounded;            /* nothing is allocated, and no program is begun */
+    bool times;              /* contact is wanted if the pair drifts */
+    double contact[2];       /* as in struct kernel_call */
+    double exact_contact[2]; /* set by all_slabs() */
+    enum certified_path path;
+    /* Set by find_slabs(). */
+    enum { SLABS_UNKNOWN, SLABS_GOOD, SLABS_BAD } state; /* good: doubles can bound the slabs */
+    struct slabs_pair slabs;
+    struct dyadic_span span;
+    bool rounds;                        /* operations on these numbers may round */
+    bool flat;                          /* two faces in parallel planes: slabs do not decide them */
+    struct faces_projection projection; /* the pair, of faces that share a plane */
+    struct fmb_prepared projected[2];
+};
+
+/* Begins the decision of a prepared pair. The frames must outlive it.
+ *
+ * In:  want      bits of FMB_WANT_; the contact only with FMB_WANT_TIMES
+ *      farthest  a gap that is surely greater may have bounds of NAN
+ *      effort    HULL_QUICK: bounded, takes tens of microseconds at most and allocates nothing: a
+ *                slab takes at most 1,000 products of limbs (most take 100 to 300), and a pair has
+ *                at most SLABS_MAX slabs. HULL_EXACT: the method exact
+ * Returns whether it is complete, with *answer set. Otherwise a bounded decision needs more than is
+ * allowed, and ends here. Of any other certified_step() is called, with the same answer, until it
+ * returns true, or certified_end() abandons it. */
+bool certified_begin(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                     unsigned want, double farthest, enum hull_effort effort, struct certified *out,
+                     struct fmb_answer *answer);
+
+/* Performs a step of less than a millisecond. Returns whether the decision is complete; its memory
+ * is then freed. */
+bool certified_step(struct certified *certified, struct fmb_answer *answer);
+
+/* Frees the memory of a decision, complete or not. */
+void certified_end(struct certified *certified);
+
+/* All steps of a decision that is not bounded. */
+void certified_decide_prepared(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                               double duration, unsigned want, double farthest,
+                               struct fmb_answer *answer);
+
+/* The decide function of the method. */
+enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
+                                 struct fmb_answer *answer);
 
 /* Returns the verdict of a checked pair, and in *path the rung that decided it. For tests and
  * reports. */
 enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path);
 
-/* Returns the verdict of a prepared pair that passes (1 or 2) passes of the filter leave unsure.
- * quick: returns 0 if it needs GMP or wider integers. */
+/* Returns the verdict of a prepared pair that passes (1 or 2) passes of the filter leave unsure; 0
+ * if it needs the programs. Bounded. */
 enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
-                                  double duration, int passes, bool quick);
+                                  double duration, int passes);
+
+/* Sets the gap of a prepared pair with this verdict; bounds of NAN if it is surely greater than
+ * farthest. Bounded: returns false, and bounds of NAN, if it needs more. */
+bool certified_gap(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                   enum fmb_verdict verdict, double farthest, struct fmb_gap *gap);
 
 /* Computes the contact of a pair in contact that drifts. rounds: operations on these numbers may
  * round. span: of the pair. exact: integers may be used for an end that doubles do not give within
@@ -58,14 +112,13 @@ enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb
 bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs, bool rounds,
                 struct dyadic_span span, bool exact, double contact[2]);
 
-/* Computes the box of a prepared pair in contact. Returns false, and NAN, if doubles do not give it
- * within its limit. */
+/* Computes the box of a prepared pair in contact. Returns false if doubles do not give it within
+ * its limit. */
 bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                    double box[2][FMB_DIM_MAX]);
 
-/* The same where doubles do not give it.
- * quick: returns false if it needs GMP or wider integers. */
+/* The same where doubles do not give it, in integers of 512 bits. */
 bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
-                          double duration, bool quick, double box[2][FMB_DIM_MAX]);
+                          double duration, double box[2][FMB_DIM_MAX]);
 
 #endif

@@ -15,7 +15,7 @@
  *
  * The slabs do not give the times of two faces that stay in one plane: those along its normal are 0
  * at all times. If operations round, their errors are above 0, so that no inner value is good; then
- * doubles give no times, and only integers of fixed width must not be used (faces.h). */
+ * doubles give no times, and only integers must not be used (faces.h). */
 #include "certified.h"
 
 #include "clip.h"
@@ -95,7 +95,7 @@ static void settle(const struct slab_value *slabs, int count, bool inexact,
         normal[opened] = slabs[i].normal;
         opened += open[opened][0] || open[opened][1];
     }
-    limbs_functions_of(question)->slabs(question, normal, open, opened, contact);
+    limbs_slabs(question, normal, open, opened, contact);
 }
 
 bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs_pair, bool rounds,
@@ -116,6 +116,8 @@ bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs_pa
     if (!exact)
         return false;
     limbs_question_set(pair, span, LIMBS_SLABS, &question);
+    if (!limbs_suffice(&question))
+        return false;
     settle(slabs, count, slabs_pair->inexact, &question, &times, contact);
     return true;
 }

@@ -1,26 +1,17 @@
 #include "fmb.h"
 
 #include "certified.h"
-#include "exact.h"
 #include "gap.h"
-#include "hull.h"
 #include "inexact.h"
 #include "memory.h"
 #include "pair_number.h"
 
-#include <math.h>
 #include <string.h>
 
 static enum fmb_status decide_exactly(const struct frame_pair *pair, unsigned want,
                                       struct fmb_answer *answer)
 {
-    if (hull_takes(pair->a.frame, pair->b.frame))
-        return hull_decide(pair, want | FMB_WANT_TIMES, HULL_EXACT, answer);
-    const enum fmb_status status = exact_decide(pair, want, answer);
-    answer->has_gap = want & FMB_WANT_GAP;
-    if (answer->has_gap)
-        hull_gap(pair, answer->verdict, INFINITY, &answer->gap);
-    return status;
+    return hull_decide(pair, want | FMB_WANT_TIMES, HULL_EXACT, answer);
 }
 
 static const struct fmb_method methods[] = {

@@ -9,16 +9,17 @@
  *   2. SEARCHING  finds the pairs of bodies whose boxes overlap (scene_pairs.c)
  *   3. DECIDING   block by block: begin_block() takes pairs of bodies from scene_pairs.c and their
  *                 pairs of frames from scene_frames.c, and decides these by the batch. Later steps
- *                 decide the pairs of frames that the batch left open, one a step. include()
- *                 combines the answers of pairs of frames into those of pairs of bodies.
+ *                 decide the pairs of frames that the batch left open, in one or more steps each
+ *                 (certified.h). include() combines the answers of pairs of frames into those of
+ *                 pairs of bodies.
  *
  * If every body has one frame and all are prepared at once ("direct"), slot i is placement i, and
  * the answers of the batch are those of the bodies. */
 #include "scene_pairs.h"
 
 #include "batch.h"
+#include "certified.h"
 #include "gap.h"
-#include "hull.h"
 
 #include <assert.h>
 #include <limits.h>
@@ -80,12 +81,12 @@ struct fmb_scene_state {
     struct frame_pair_cursor cursor;
     size_t answered; /* in the last step, starting with the pair of bodies first_answer */
     size_t first_answer;
-    struct hull_decision hull; /* of the first open pair of frames, if it has a hull */
-    struct fmb_answer hull_answer;
-    struct hull_gap_work *hull_gap; /* its gap, which comes after the decision; NULL: not begun */
+    bool deciding; /* the first open pair of frames */
     /* Not initialized before they are begun. */
     struct scene_block block;
     struct scene_pairs pairs;
+    struct certified decision;
+    struct fmb_answer decided;
 };
 
 /* ---- Memory ---- */
@@ -501,41 +502,30 @@ static void fill(struct fmb_scene_state *state)
 
 /* ---- Deciding ---- */
 
-/* Decides pairs first to first + count - 1 of the block by the batch. *open: positions, relative to
- * first, of those that need exact arithmetic; NULL: these are decided too. */
-static void decide_batch(struct fmb_scene_state *state, size_t first, size_t count, size_t *open,
-                         size_t *open_count)
+/* Decides the pairs of the block by the batch. */
+static void decide_batch(struct fmb_scene_state *state)
 {
     const struct fmb_scene *scene = &state->scene;
     struct scene_block *block = &state->block;
     const struct fmb_batch batch = {
         .frames = state->frames.slot,
         .frame_count = state->frames.used,
-        .pairs = block->frames + first,
-        .pair_count = count,
+        .pairs = block->frames,
+        .pair_count = block->count,
         .duration = scene->duration,
-        .verdicts = block->outcomes.verdict + first,
-        .contacts = scene->want & FMB_WANT_TIMES ? block->outcomes.contact + first : NULL,
-        .boxes = scene->want & FMB_WANT_BOX ? block->outcomes.box + first : NULL,
-        .gaps = has_gaps(scene) ? block->outcomes.gap + first : NULL,
-        .open = open,
-        .open_count = open_count};
+        .verdicts = block->outcomes.verdict,
+        .contacts = scene->want & FMB_WANT_TIMES ? block->outcomes.contact : NULL,
+        .boxes = scene->want & FMB_WANT_BOX ? block->outcomes.box : NULL,
+        .gaps = has_gaps(scene) ? block->outcomes.gap : NULL,
+        .open = block->open,
+        .open_count = &block->open_count};
     const enum fmb_status status =
         batch_decide(&batch, INSTRUCTIONS_BEST, farthest_of_frames(state));
     assert(status == FMB_OK);
     (void) status;
 }
 
-/* Returns pair of frames k of the block. */
-static struct frame_pair frames_at(const struct fmb_scene_state *state, size_t k)
-{
-    const struct fmb_prepared *a = &state->frames.slot[state->block.frames[k][0]];
-    const struct fmb_prepared *b = &state->frames.slot[state->block.frames[k][1]];
-    return (struct frame_pair){
-        {a->frame, a->placement}, {b->frame, b->placement}, state->scene.duration};
-}
-
-/* Stores the answer of pair of frames k of the block, without its gap. */
+/* Stores the answer of pair of frames k of the block. */
 static void put_outcome(struct fmb_scene_state *state, size_t k, const struct fmb_answer *answer)
 {
     struct scene_outcomes *outcomes = &state->block.outcomes;
@@ -544,19 +534,26 @@ static void put_outcome(struct fmb_scene_state *state, size_t k, const struct fm
         memcpy(outcomes->contact[k], answer->contact, sizeof answer->contact);
     if (answer->has_box)
         memcpy(outcomes->box[k], answer->box, sizeof answer->box);
+    outcomes->gap[k] = answer->has_gap ? answer->gap : gap_none();
 }
 
-/* Decides the only pair of the block, by a method without a batch. */
+static unsigned want_of_frames(const struct fmb_scene *scene)
+{
+    return (scene->want & (FMB_WANT_BOX | FMB_WANT_TIMES)) | (has_gaps(scene) ? FMB_WANT_GAP : 0);
+}
+
+/* Decides the only pair of the block, by a method that is not certain. */
 static void decide_single(struct fmb_scene_state *state)
 {
-    const struct frame_pair pair = frames_at(state, 0);
-    struct fmb_answer answer = {0};
-    const unsigned want =
-        (state->scene.want & FMB_WANT_BOX) | (has_gaps(&state->scene) ? FMB_WANT_GAP : 0);
-    if (state->scene.method->decide(&pair, want, &answer) != FMB_OK)
-        answer = (struct fmb_answer){.gap.bounds = {NAN, NAN}};
+    const struct fmb_prepared *a = &state->frames.slot[state->block.frames[0][0]];
+    const struct fmb_prepared *b = &state->frames.slot[state->block.frames[0][1]];
+    const struct frame_pair pair = {
+        {a->frame, a->placement}, {b->frame, b->placement}, state->scene.duration};
+    static const struct fmb_answer none;
+    struct fmb_answer answer = none;
+    if (state->scene.method->decide(&pair, want_of_frames(&state->scene), &answer) != FMB_OK)
+        answer = none;
     put_outcome(state, 0, &answer);
-    state->block.outcomes.gap[0] = answer.gap;
 }
 
 static void begin_block(struct fmb_scene_state *state)
@@ -570,7 +567,9 @@ static void begin_block(struct fmb_scene_state *state)
     else
         fill(state);
     if (block->count > 0 && state->batched)
-        decide_batch(state, 0, block->count, block->open, &block->open_count);
+        decide_batch(state);
+    else if (block->count > 0 && state->scene.method->certain)
+        block->open[block->open_count++] = 0;
     else if (block->count > 0)
         decide_single(state);
     if (block->open_count > 0)
@@ -735,67 +734,37 @@ static void place_some(struct fmb_scene_state *state)
         state->stage = SEARCHING;
 }
 
-/* Puts the gap of open pair of frames k, which has a hull, unless it needs another step. Returns
- * whether it is complete. */
-static bool put_hull_gap(struct fmb_scene_state *state, size_t k, enum gap_outcome outcome)
+/* Performs a step of the decision of open pair of frames k. Returns whether it is complete. */
+static bool step_open(struct fmb_scene_state *state, size_t k)
 {
-    if (outcome == GAP_UNSURE)
-        return false;
-    state->hull_gap = NULL;
-    if (outcome == GAP_FAR)
-        state->block.outcomes.gap[k] = gap_none();
-    return true;
-}
-
-/* Goes on with the decision of open pair of frames k, which has a hull, and then with its gap.
- * Returns whether they are complete. */
-static bool step_hull(struct fmb_scene_state *state, size_t k)
-{
-    struct scene_outcomes *outcomes = &state->block.outcomes;
-    struct fmb_answer *answer = &state->hull_answer;
-    const struct frame_pair frames = frames_at(state, k);
-    bool done = false;
-    if (state->hull_gap)
-        return put_hull_gap(state, k, hull_gap_step(state->hull_gap, &outcomes->gap[k]));
-    if (state->hull.exact) {
-        done = hull_decision_step(&state->hull, answer);
+    const unsigned *slot = state->block.frames[k];
+    if (state->deciding) {
+        state->deciding = !certified_step(&state->decision, &state->decided);
     } else {
-        *answer = (struct fmb_answer){0};
-        done =
-            hull_decision_begin(&frames, state->scene.want, HULL_CERTIFIED, &state->hull, answer);
+        state->deciding = !certified_begin(
+            &state->frames.slot[slot[0]], &state->frames.slot[slot[1]], state->scene.duration,
+            want_of_frames(&state->scene), farthest_of_frames(state),
+            state->batched ? HULL_CERTIFIED : HULL_EXACT, &state->decision, &state->decided);
     }
-    if (!done)
-        return false;
-    put_outcome(state, k, answer);
-    if (!has_gaps(&state->scene))
-        return true;
-    return put_hull_gap(state, k,
-                        hull_gap_begin(&frames, answer->verdict, farthest_of_frames(state),
-                                       &outcomes->gap[k], &state->hull_gap));
+    if (!state->deciding)
+        put_outcome(state, k, &state->decided);
+    return !state->deciding;
 }
 
 static void decide_some(struct fmb_scene_state *state)
 {
     struct scene_block *block = &state->block;
-    if (block->next_open == block->open_count) {
+    if (block->next_open == block->open_count)
         begin_block(state);
-        return;
-    }
-    const size_t k = block->open[block->next_open];
-    const struct frame_pair frames = frames_at(state, k);
-    if (!hull_takes(frames.a.frame, frames.b.frame))
-        decide_batch(state, k, 1, NULL, NULL);
-    else if (!step_hull(state, k))
-        return;
-    block->next_open++;
+    else if (step_open(state, block->open[block->next_open]))
+        block->next_open++;
 }
 
 void fmb_scene_end(struct fmb_scene_state *state)
 {
-    hull_decision_end(&state->hull);
-    if (state->hull_gap)
-        hull_gap_end(state->hull_gap);
-    state->hull_gap = NULL;
+    if (state->deciding)
+        certified_end(&state->decision);
+    state->deciding = false;
 }
 
 bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *answers)

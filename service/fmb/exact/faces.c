@@ -68,16 +68,15 @@ static bool set_projections(const struct slabs_pair *slabs, struct faces_project
 }
 
 enum faces_planes faces_planes_of(const struct frame_pair *pair, const struct slabs_pair *slabs,
-                                  struct dyadic_span span, bool quick,
-                                  struct faces_projection *projection)
+                                  struct dyadic_span span, struct faces_projection *projection)
 {
     struct limbs_question question;
     if (!slabs->inexact && certainly_cross(&slabs->a, &slabs->b))
         return FACES_CROSSING;
     limbs_question_set(pair, span, LIMBS_SLABS, &question);
-    if (quick && question.limbs > LIMBS_NARROW)
+    if (!limbs_suffice(&question))
         return FACES_UNDECIDED;
-    const struct limbs_planes planes = limbs_functions_of(&question)->planes(&question);
+    const struct limbs_planes planes = limbs_planes(&question);
     if (!planes.parallel)
         return FACES_CROSSING;
     return planes.shared && !slabs->inexact && set_projections(slabs, projection) ? FACES_SHARED

@@ -17,7 +17,7 @@ struct faces_projection {
 enum faces_planes {
     FACES_CROSSING, /* the planes are not parallel */
     FACES_SHARED,   /* both are in one plane at all times: the projection is set */
-    FACES_UNDECIDED /* neither, or unknown: the exact method decides the pair */
+    FACES_UNDECIDED /* neither, or unknown: all slabs decide the pair, or the programs */
 };
 
 /* Returns the relation of the planes of two faces.
@@ -25,11 +25,9 @@ enum faces_planes {
  * In:  pair        two faces with areas, in range
  *      slabs       the same pair, prepared
  *      span        of the pair: limbs_span_of()
- *      quick       no integers wider than LIMBS_NARROW
  * Out: projection  set if FACES_SHARED is returned, otherwise unspecified; contains pointers into
  *                  itself and must not be copied */
 enum faces_planes faces_planes_of(const struct frame_pair *pair, const struct slabs_pair *slabs,
-                                  struct dyadic_span span, bool quick,
-                                  struct faces_projection *projection);
+                                  struct dyadic_span span, struct faces_projection *projection);
 
 #endif

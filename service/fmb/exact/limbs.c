@@ -1,7 +1,7 @@
-/* Questions about pairs in integers: what is the same for numbers of all widths.
+/* Questions about pairs in integers.
  *
  *   In     a pair of frames, and what is needed
- *   Out    struct limbs_question, with the number of limbs
+ *   Out    struct limbs_question, with the number of limbs: the answers are in limbs_answers.c
  *
  * limbs_never_round() is separate: it tells whether doubles are exact. Not here: the numbers
  * (limbs_pair.h) and slabs (limbs_slab.h) of a pair.
@@ -26,17 +26,12 @@
  *
  * Normals of flat frames in the plane of two edges have one edge and one axis of the world as
  * factors. The edge comes from its frame to the world, by n_f, and to the coordinates of both: such
- * products are below 2^(2t+8), times n n_f. (limbs_decide.h)
- *
- * The most limbs. Lengths are multiples of 2^-2148, the smallest unit of v T. With T below 1 they
- * are below 2^1024; otherwise multiples of 2^-1075 below 2^2048. So t <= 3172. Quaternions have at
- * most 253 bits, so that both norms add 1016: in all 3 * 3172 + 8 + 1016 = 10,540 bits. */
+ * products are below 2^(2t+8), times n n_f. (limbs_decide.h) */
 #include "limbs.h"
 
 #include "interval.h"
 #include "slabs.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -184,5 +179,4 @@ void limbs_question_set(const struct frame_pair *pair, struct dyadic_span span, 
     if (flat && bits < 2 * length + 8 + norms + most)
         bits = 2 * length + 8 + norms + most;
     out->limbs = bits < 128 ? 2 : (int) (bits / 64) + 1;
-    assert(out->limbs <= LIMBS_WIDE);
 }

@@ -1,8 +1,7 @@
-/* Slabs in integers: the rungs above doubles.
+/* Slabs in integers of at most 512 bits: the rungs above doubles.
  *
  * A question about a pair is answered in integers of as many limbs of 64 bits as the numbers of the
- * pair need. Nothing rounds. There are two sets of the same functions: of LIMBS_NARROW limbs at
- * most, without allocation, and of LIMBS_WIDE limbs, which suffice for every pair. */
+ * pair need. Nothing rounds, and nothing is allocated except for times. */
 #ifndef FMB_LIMBS_H
 #define FMB_LIMBS_H
 
@@ -12,11 +11,8 @@
 struct slab_normal; /* slabs.h, as are these */
 struct slabs_pair;
 
-enum {
-    LIMBS_NARROW = 8,
-    LIMBS_AS_DOUBLES = 15, /* the most that a double holds without overflow */
-    LIMBS_WIDE = 166
-};
+/* The most limbs. A double holds such a number without overflow. */
+enum { LIMBS_MAX = 8 };
 
 /* A quaternion: the smallest integers proportional to an orientation, times 2^unit. */
 struct limbs_quaternion {
@@ -62,46 +58,36 @@ struct limbs_planes {
     bool shared;   /* they are the same plane at all times of the window */
 };
 
-/* Called for each point: of frame f, from vertex v s / den of the way to vertex w, at the time tau
- * / den of the window. Vertices as in struct clip_wire, at the start of the window. */
-struct limbs_visitor {
-    void (*visit)(void *context, int f, int v, int w, const mpz_t s, const mpz_t tau,
-                  const mpz_t den);
-    void *context;
-};
-
-/* Edges are numbered as in slabs.h. */
-struct limbs_functions {
-    /* Decides a pair by all its slabs, flat frames included. If contact is not NULL and the pair is
-     * in contact, it is set to [first, last], in seconds, rounded outward; GMP then allocates. In:
-     * use LIMBS_FLAT. */
-    enum fmb_verdict (*verdict)(const struct limbs_question *question, double contact[2]);
-    /* Returns the largest sign of the gaps of slabs, up to the first that is 1. A slab whose normal
-     * is zero has the sign -1. If contact is not NULL, the pair is in contact, and each end of it
-     * (0: first, 1: last) that is open to a slab moves to where the offset enters or leaves that,
-     * in seconds, rounded outward, if that is within the contact; GMP then allocates. open:
-     * [slab][end]; NULL: all ends are. */
-    int (*slabs)(const struct limbs_question *question, const struct slab_normal *normal,
-                 const bool open[][2], int count, double contact[2]);
-    /* The planes of two faces with areas. */
-    struct limbs_planes (*planes)(const struct limbs_question *question);
-    /* Computes the box of two prepared frames in contact, the same pair, in the order of
-     * kernel_box_kind(), within the limit of fmb.h. Returns false if doubles do not give the
-     * coordinates of points so closely. In: frames that are not flat, other than faces with an
-     * area; use LIMBS_FLAT. */
-    bool (*box)(const struct limbs_question *question, const struct fmb_prepared *const frame[2],
-                double box[2][FMB_DIM_MAX]);
-    /* Visits the points of points_walk(). In: use LIMBS_FLAT. GMP allocates. */
-    void (*points)(const struct limbs_question *question, const struct limbs_visitor *visitor);
-};
-
-extern const struct limbs_functions limbs_narrow, limbs_wide;
-
-/* The functions for a question. */
-static inline const struct limbs_functions *limbs_functions_of(
-    const struct limbs_question *question)
+/* Whether this question can be answered. */
+static inline bool limbs_suffice(const struct limbs_question *question)
 {
-    return question->limbs <= LIMBS_NARROW ? &limbs_narrow : &limbs_wide;
+    return question->limbs <= LIMBS_MAX;
 }
+
+/* The functions below answer questions for which limbs_suffice(). Edges are numbered as in
+ * slabs.h. */
+
+/* Decides a pair by all its slabs, flat frames included. If contact is not NULL and the pair is in
+ * contact, it is set to [first, last], in seconds, rounded outward; GMP then allocates. In: use
+ * LIMBS_FLAT. */
+enum fmb_verdict limbs_verdict(const struct limbs_question *question, double contact[2]);
+
+/* Returns the largest sign of the gaps of slabs, up to the first that is 1. A slab whose normal is
+ * zero has the sign -1. If contact is not NULL, the pair is in contact, and each end of it (0:
+ * first, 1: last) that is open to a slab moves to where the offset enters or leaves that, in
+ * seconds, rounded outward, if that is within the contact; GMP then allocates. open: [slab][end];
+ * NULL: all ends are. */
+int limbs_slabs(const struct limbs_question *question, const struct slab_normal *normal,
+                const bool open[][2], int count, double contact[2]);
+
+/* The planes of two faces with areas. */
+struct limbs_planes limbs_planes(const struct limbs_question *question);
+
+/* Computes the box of two prepared frames in contact, the same pair, in the order of
+ * kernel_box_kind(), within the limit of fmb.h. Returns false if doubles do not give the
+ * coordinates of points so closely. In: frames that are not flat, other than faces with an area;
+ * use LIMBS_FLAT. */
+bool limbs_box(const struct limbs_question *question, const struct fmb_prepared *const frame[2],
+               double box[2][FMB_DIM_MAX]);
 
 #endif

@@ -270,8 +270,7 @@ LIMBS_FUNCTION bool is_in_range(int n, const struct crossing_parameter *paramete
     const double error = 0x1p-50 * ((fabs(of_a) + fabs(of_b)) + 1);
     limbs_number x, left;
     *out = of_a + of_b;
-    if ((LIMBS_MAX <= LIMBS_AS_DOUBLES || n <= LIMBS_AS_DOUBLES) &&
-        (*out < -error || *out > 1 + error))
+    if (*out < -error || *out > 1 + error)
         return false;
     memcpy(x, parameter->at[0][v], (size_t) n * sizeof *x);
     add(n, x, parameter->at[1][w]);
@@ -301,41 +300,20 @@ struct box_search {
      * above][axis], but for errors of the coordinates. */
     struct clip_points points[2];
     double reach[2][3];
-    /* Exactly: the visitor, or NULL. */
-    const struct limbs_visitor *visitor;
-    mpz_t s, tau, den, other;
 };
 
-/* Adds the crossing of the edge of A along direction i, by index, from vertex v to end, with an
- * edge of B from vertex w. at: its parameters along the edge of A and in time. */
-LIMBS_FUNCTION void add_crossing_point(struct box_search *search, int i, int v, int end, int w,
-                                       const double at[2])
+/* Adds the crossing of the edge of A along direction i, by index, from vertex v with an edge of B.
+ * at: its parameters along the edge of A and in time. */
+LIMBS_FUNCTION void add_crossing_point(struct box_search *search, int i, int v, const double at[2])
 {
-    const int n = search->pair->limbs, path = search->wire[0].directions - 1;
-    const struct crossing_parameter *parameter[2] = {&search->work->s, &search->work->t};
+    const int path = search->wire[0].directions - 1;
     const struct clip_points *a = &search->points[0];
-    for (int axis = 0; axis < 3 && !search->visitor; axis++) {
+    for (int axis = 0; axis < 3; axis++) {
         const double x =
             a->vertex[axis][v] + (at[0] * a->along[axis][i] + at[1] * a->along[axis][path]);
         search->reach[0][axis] = fmax(search->reach[0][axis], -x);
         search->reach[1][axis] = fmax(search->reach[1][axis], x);
     }
-    if (!search->visitor)
-        return;
-    for (int k = 0; k < 2; k++) {
-        limbs_number sum;
-        memcpy(sum, parameter[k]->at[0][v], (size_t) n * sizeof *sum);
-        add(n, sum, parameter[k]->at[1][w]);
-        limbs_to_mpz(n, sum, k ? search->tau : search->s);
-        limbs_to_mpz(n, parameter[k]->all, k ? search->other : search->den);
-    }
-    if (mpz_cmp(search->den, search->other) != 0) {
-        mpz_mul(search->s, search->s, search->other);
-        mpz_mul(search->tau, search->tau, search->den);
-        mpz_mul(search->den, search->den, search->other);
-    }
-    search->visitor->visit(search->visitor->context, 0, v, end, search->s, search->tau,
-                           search->den);
 }
 
 /* The edges of a frame along a direction, by segment, at the start of the window. */
@@ -377,7 +355,7 @@ LIMBS_FUNCTION void add_crossings_of(struct box_search *search, int i, int j)
         if (!work->t.exists)
             set_parameter(pair, traits, &of, 2, 0, &work->t);
         if (work->t.exists && is_in_range(n, &work->t, v, w, &at[1]))
-            add_crossing_point(search, i, v, wire[0].to[edge], w, at);
+            add_crossing_point(search, i, v, at);
     }
 }
 
@@ -432,7 +410,6 @@ LIMBS_FUNCTION void begin_search(const struct limbs_question *question, struct l
 LIMBS_FUNCTION void find_reach(struct box_search *search, const struct box_pair *box)
 {
     const struct kernel_traits traits = search->traits;
-    search->visitor = NULL;
     for (int i = 0; i < 6; i++)
         search->reach[i / 3][i % 3] = -INFINITY;
     for (int f = 0; f < 2; f++) {
@@ -449,9 +426,9 @@ LIMBS_FUNCTION void find_reach(struct box_search *search, const struct box_pair 
         add_all_crossings(search);
 }
 
-LIMBS_FUNCTION bool limbs_box(const struct limbs_question *question,
-                              const struct fmb_prepared *const of[2], struct limbs_pair *limbs,
-                              struct box_work *work, double box[2][FMB_DIM_MAX])
+LIMBS_FUNCTION bool box_of_pair(const struct limbs_question *question,
+                                const struct fmb_prepared *const of[2], struct limbs_pair *limbs,
+                                struct box_work *work, double box[2][FMB_DIM_MAX])
 {
     const double duration = question->pair->duration;
     const struct fmb_prepared *frames[1][2] = {{of[0], of[1]}};
@@ -461,8 +438,6 @@ LIMBS_FUNCTION bool limbs_box(const struct limbs_question *question,
     struct box_places places;
     struct box_pair of_pair;
     struct box_ends ends;
-    if (question->limbs > LIMBS_AS_DOUBLES)
-        return false;
     begin_search(question, limbs, work, &search);
     gather_pairs(search.traits, frames, frame);
     set_places(search.traits, frame, duration, &pair, &places);
@@ -481,63 +456,6 @@ LIMBS_FUNCTION bool limbs_box(const struct limbs_question *question,
     memset(box, 0, 2 * FMB_DIM_MAX * sizeof **box);
     put_box(&pair, search.traits, &places, &of_pair, &ends, box);
     return true;
-}
-
-/* ---- Points ---- */
-
-/* Visits the ends of what is left of the segment of frame f from vertex v to w. Those at the end of
- * the window follow those at its start. */
-LIMBS_FUNCTION void visit_segment(struct box_search *search, int f, int v, int w)
-{
-    const int n = search->pair->limbs, vertices = search->wire[f].vertices;
-    const struct box_slabs *slabs = &search->work->slabs;
-    const bool path = w - v == vertices, late = v >= vertices;
-    struct bound_crossing end[2];
-    if (!clip_exactly(n, slabs, v, w, end))
-        return;
-    const bool point = end[0].slab >= 0 && end[1].slab >= 0 &&
-                       compare_crossings(n, slabs, v, w, end[0], end[1]) == 0;
-    for (int i = 0; i < (point ? 1 : 2); i++) {
-        mpz_set_ui(search->s, (unsigned long) i);
-        mpz_set_ui(search->den, 1);
-        if (end[i].slab >= 0) {
-            limbs_to_mpz(n, slabs->inside[end[i].bound][end[i].slab][v], search->s);
-            limbs_to_mpz(n, slabs->inside[end[i].bound][end[i].slab][w], search->den);
-            mpz_sub(search->den, search->s, search->den);
-            mpz_abs(search->s, search->s);
-            mpz_abs(search->den, search->den);
-        }
-        if (path)
-            mpz_set(search->tau, search->s);
-        else
-            mpz_mul_si(search->tau, search->den, late);
-        search->visitor->visit(search->visitor->context, f, v % vertices, w % vertices, search->s,
-                               search->tau, search->den);
-    }
-}
-
-LIMBS_FUNCTION void limbs_points(const struct limbs_question *question,
-                                 const struct limbs_visitor *visitor, struct limbs_pair *pair,
-                                 struct box_work *work)
-{
-    struct box_search search;
-    begin_search(question, pair, work, &search);
-    const bool drifts = search.traits.drifts;
-    search.visitor = visitor;
-    mpz_inits(search.s, search.tau, search.den, search.other, NULL);
-    for (int f = 0; f < 2; f++) {
-        const int vertices = search.wire[f].vertices;
-        set_limbs_slabs(pair, search.traits, !f, work->at, &work->slabs);
-        for (int v = 0; v < (drifts ? 2 : 1) * vertices; v++)
-            for (int w = v + 1; w < (v / vertices + 1) * vertices; w++)
-                if (search.traits.simplex[f] || ((v ^ w) & ((v ^ w) - 1)) == 0)
-                    visit_segment(&search, f, v, w);
-        for (int v = 0; v < vertices && drifts; v++)
-            visit_segment(&search, f, v, vertices + v);
-    }
-    if (search.traits.dim == 3 && drifts)
-        add_all_crossings(&search);
-    mpz_clears(search.s, search.tau, search.den, search.other, NULL);
 }
 
 #endif

@@ -205,24 +205,14 @@ struct limbs_path {
     bool interior; /* false: the path lies on a bound of a slab that does not pin */
 };
 
-/* A number with the sign of x y - z w. In: none is negative. Wide products are rarely needed: the
- * leading bits decide. */
+/* A number with the sign of x y - z w. In: none is negative. */
 LIMBS_FUNCTION int compare_products(int n, const uint64_t *x, const uint64_t *y, const uint64_t *z,
                                     const uint64_t *w)
 {
-    mp_limb_t product[2][2 * LIMBS_NARROW];
-    mpz_t factor[4], scratch[2];
-    if (n <= LIMBS_NARROW) {
-        mpn_mul_n(product[0], x, y, n);
-        mpn_mul_n(product[1], z, w, n);
-        return mpn_cmp(product[0], product[1], 2 * n);
-    }
-    mpz_inits(scratch[0], scratch[1], NULL);
-    const int sign = integer_compare_products(
-        mpz_roinit_n(factor[0], x, n), mpz_roinit_n(factor[1], y, n), mpz_roinit_n(factor[2], z, n),
-        mpz_roinit_n(factor[3], w, n), scratch);
-    mpz_clears(scratch[0], scratch[1], NULL);
-    return sign;
+    mp_limb_t product[2][2 * LIMBS_MAX];
+    mpn_mul_n(product[0], x, y, n);
+    mpn_mul_n(product[1], z, w, n);
+    return mpn_cmp(product[0], product[1], 2 * n);
 }
 
 LIMBS_FUNCTION int compare_ratios(int n, const struct limbs_ratio *x, const struct limbs_ratio *y)
@@ -388,7 +378,7 @@ LIMBS_FUNCTION enum fmb_verdict verdict_of_flat(struct limbs_pair *pair, const s
     return path_has_interior(n, &path) ? FMB_OVERLAPPING : FMB_TOUCHING;
 }
 
-/* struct limbs_functions, slabs. */
+/* limbs_slabs() */
 LIMBS_FUNCTION int sign_of_slabs(struct limbs_pair *pair, const struct slab_normal normal[],
                                  const bool open[][2], int count, double duration,
                                  double contact[2])

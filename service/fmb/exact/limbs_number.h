@@ -1,6 +1,5 @@
-/* Integers of n limbs, modulo 2^(64 n), in two's complement. A file that includes this header and
- * those that include it sets LIMBS_MAX, the capacity of its numbers: limbs_narrow.c and
- * limbs_wide.c. In inlined functions n is a constant for the usual widths. */
+/* Integers of n limbs, modulo 2^(64 n), in two's complement. In inlined functions n is a constant
+ * for the usual widths. */
 #ifndef FMB_LIMBS_NUMBER_H
 #define FMB_LIMBS_NUMBER_H
 
@@ -9,10 +8,6 @@
 
 #include <stdint.h>
 #include <string.h>
-
-#ifndef LIMBS_MAX
-#define LIMBS_MAX LIMBS_NARROW
-#endif
 
 /* Always inlined: sums and products of a few limbs. */
 #define LIMBS_INLINE static inline __attribute__((always_inline))
@@ -25,30 +20,12 @@
  * pair has, are used. */
 typedef uint64_t limbs_number[LIMBS_MAX];
 
-/* Digits. An integer in two's complement is the sum of its limbs as signed integers, each increased
- * by 1 where the limb below it is negative: limb i is a digit of magnitude at most 2^63, times
- * 2^(64 i). The digit of a limb that only repeats the sign of the limb below it is 0. Since
- * exponents are far apart, most digits of wide numbers are 0. */
-enum {
-    DIGITS_APART = 4,                                            /* so many zeros end a run */
-    DIGIT_RUNS = (LIMBS_MAX + DIGITS_APART) / (1 + DIGITS_APART) /* the most runs of a number */
-};
-
-/* The digits of a number: its runs, which contain few zeros, and how many digits are not 0. */
-struct digit_runs {
-    unsigned char digits, count;
-    struct {
-        unsigned char first, end;
-    } run[DIGIT_RUNS];
-};
-
 /* A vector. limbs: the number of limbs that hold each coordinate with its sign. other_than_0: bit i
- * is set if coordinate i is not 0. digits: set for wide numbers only. */
+ * is set if coordinate i is not 0. */
 struct limbs_vector {
     int limbs;
     unsigned other_than_0;
     limbs_number at[FMB_DIM_MAX];
-    struct digit_runs digits[FMB_DIM_MAX];
 };
 
 /* ---- Inlined ---- */
@@ -71,10 +48,6 @@ LIMBS_INLINE bool is_zero(const int n, const uint64_t *x)
 LIMBS_INLINE void add(const int n, uint64_t *x, const uint64_t *y)
 {
     bool carry = false;
-    if (LIMBS_MAX > LIMBS_NARROW) {
-        mpn_add_n(x, x, y, n);
-        return;
-    }
     LIMBS_UNROLL
     for (int i = 0; i < n; i++) {
         const bool first = __builtin_add_overflow(x[i], y[i], &x[i]);
@@ -85,10 +58,6 @@ LIMBS_INLINE void add(const int n, uint64_t *x, const uint64_t *y)
 LIMBS_INLINE void subtract(const int n, uint64_t *x, const uint64_t *y)
 {
     bool borrow = false;
-    if (LIMBS_MAX > LIMBS_NARROW) {
-        mpn_sub_n(x, x, y, n);
-        return;
-    }
     LIMBS_UNROLL
     for (int i = 0; i < n; i++) {
         const bool first = __builtin_sub_overflow(x[i], y[i], &x[i]);
@@ -99,11 +68,6 @@ LIMBS_INLINE void subtract(const int n, uint64_t *x, const uint64_t *y)
 /* Returns the number of limbs that hold x with a sign; 0 for 0. */
 LIMBS_FUNCTION int limbs_needed(int n, const uint64_t *x)
 {
-    const uint64_t sign = is_negative(n, x) ? UINT64_MAX : 0;
-    while (LIMBS_MAX > LIMBS_NARROW && n > 4 &&
-           ((x[n - 1] ^ sign) | (x[n - 2] ^ sign) | (x[n - 3] ^ sign) | (x[n - 4] ^ sign) |
-            ((x[n - 5] ^ sign) >> 63)) == 0)
-        n -= 4;
     while (n > 0 && x[n - 1] == (n > 1 && is_negative(n - 1, x) ? UINT64_MAX : 0))
         n--;
     return n;
@@ -130,84 +94,11 @@ LIMBS_INLINE void add_row(const int n, uint64_t *out, bool minus, const uint64_t
     }
 }
 
-static inline bool is_negative_below(const uint64_t *x, int i)
-{
-    return i > 0 && x[i - 1] >> 63;
-}
-
-/* Sets the digits of x. Returns the number of limbs that hold x with its sign; 0 for 0. */
-static inline int find_digits(const uint64_t *x, int limbs, struct digit_runs *out)
-{
-    uint64_t sign = 0; /* of the limb below, in all bits */
-    out->digits = out->count = 0;
-    for (int i = 0; i < limbs; i++) {
-        while (i + 4 <= limbs && x[i] == sign && x[i + 1] == sign && x[i + 2] == sign &&
-               x[i + 3] == sign)
-            i += 4;
-        if (i == limbs || x[i] == sign)
-            continue;
-        sign = -(x[i] >> 63);
-        if (out->count == 0 || i - out->run[out->count - 1].end >= DIGITS_APART)
-            out->run[out->count++].first = (unsigned char) i;
-        out->run[out->count - 1].end = (unsigned char) (i + 1);
-        out->digits++;
-    }
-    return out->count > 0 ? out->run[out->count - 1].end : 0;
-}
-
-/* out := out + x 2^(64 i), or out - x 2^(64 i). */
-static inline void add_limb(int n, uint64_t *out, bool minus, uint64_t x, int i)
-{
-    if (x == 0 || i >= n)
-        return;
-    if (minus)
-        mpn_sub_1(out + i, out + i, n - i, x);
-    else
-        mpn_add_1(out + i, out + i, n - i, x);
-}
-
-/* out := out + x y, or out - x y. The value of a run of x is that of its limbs as unsigned
- * integers, minus 2^(64 end) if the last of them is negative, plus 2^(64 first) if the limb below
- * the run is negative. */
-LIMBS_FUNCTION void add_digits(int n, uint64_t *out, bool minus, const uint64_t *x,
-                               const struct digit_runs *of_x, const uint64_t *y,
-                               const struct digit_runs *of_y)
-{
-    if (of_x->digits < of_y->digits) {
-        add_digits(n, out, minus, y, of_y, x, of_x);
-        return;
-    }
-    for (int k = 0; k < of_y->count; k++)
-        for (int j = of_y->run[k].first; j < of_y->run[k].end; j++) {
-            const uint64_t limb = y[j] + is_negative_below(y, j);
-            const bool subtracted = minus != (y[j] >> 63);
-            const uint64_t digit = y[j] >> 63 ? -limb : limb;
-            for (int r = 0; r < of_x->count && digit > 0; r++) {
-                const int from = of_x->run[r].first, to = of_x->run[r].end;
-                const int first = j + from, end = j + to < n ? j + to : n;
-                if (first >= n)
-                    break;
-                const uint64_t high = is_negative_below(x, to) ? digit : 0;
-                const uint64_t rest = (subtracted ? mpn_submul_1 : mpn_addmul_1)(
-                    out + first, x + from, end - first, digit);
-                add_limb(n, out, subtracted != (rest < high),
-                         rest < high ? high - rest : rest - high, end);
-                add_limb(n, out, subtracted, is_negative_below(x, from) ? digit : 0, first);
-            }
-        }
-}
-
-/* out := out + x y, or out - x y. y has ny limbs with its sign. of_x, of_y: the digits; read for
- * wide numbers only. */
+/* out := out + x y, or out - x y. y has ny limbs with its sign. */
 LIMBS_INLINE void add_product(const int n, uint64_t *out, bool minus, const uint64_t *x,
-                              const struct digit_runs *of_x, const int ny, const uint64_t *y,
-                              const struct digit_runs *of_y)
+                              const int ny, const uint64_t *y)
 {
     const bool negative = is_negative(ny, y);
-    if (LIMBS_MAX > LIMBS_NARROW) {
-        add_digits(n, out, minus, x, of_x, y, of_y);
-        return;
-    }
     add_row(n, out, minus != negative, x, negative ? -y[0] : y[0]);
     bool carry = y[0] == 0; /* -y = ~y + 1 */
     for (int j = 1; j < ny; j++) {
@@ -222,7 +113,7 @@ LIMBS_INLINE void add_product_of(const int n, uint64_t *out, bool minus,
                                  const struct limbs_vector *x, int i, const struct limbs_vector *y,
                                  int k)
 {
-    add_product(n, out, minus, x->at[i], &x->digits[i], y->limbs, y->at[k], &y->digits[k]);
+    add_product(n, out, minus, x->at[i], y->limbs, y->at[k]);
 }
 
 /* out := x . y */
@@ -236,13 +127,13 @@ LIMBS_INLINE void dot_limbs(const int n, const struct limbs_vector *x, const str
 }
 
 /* Calls function with n as a constant if it is one of these. */
-#define WITH_LIMBS(n, function, ...)              \
-    switch (LIMBS_MAX > LIMBS_NARROW ? 0 : (n)) { \
-    case 2: function(2, __VA_ARGS__); break;      \
-    case 3: function(3, __VA_ARGS__); break;      \
-    case 4: function(4, __VA_ARGS__); break;      \
-    case 5: function(5, __VA_ARGS__); break;      \
-    default: function(n, __VA_ARGS__); break;     \
+#define WITH_LIMBS(n, function, ...)          \
+    switch (n) {                              \
+    case 2: function(2, __VA_ARGS__); break;  \
+    case 3: function(3, __VA_ARGS__); break;  \
+    case 4: function(4, __VA_ARGS__); break;  \
+    case 5: function(5, __VA_ARGS__); break;  \
+    default: function(n, __VA_ARGS__); break; \
     }
 
 /* -1, 0 or 1 */
@@ -254,8 +145,6 @@ LIMBS_INLINE int sign_of(const int n, const uint64_t *x)
 LIMBS_INLINE bool is_less(const int n, const uint64_t *x, const uint64_t *y)
 {
     limbs_number difference;
-    if (LIMBS_MAX > LIMBS_NARROW)
-        return is_negative(n, x) != is_negative(n, y) ? is_negative(n, x) : mpn_cmp(x, y, n) < 0;
     memcpy(difference, x, (size_t) n * sizeof *x);
     subtract(n, difference, y);
     return is_negative(n, difference);
@@ -263,15 +152,13 @@ LIMBS_INLINE bool is_less(const int n, const uint64_t *x, const uint64_t *y)
 
 /* ---- Not inlined ---- */
 
-/* Sets limbs and other_than_0 of a vector, and digits if numbers are wide. Functions read limbs and
- * other_than_0 of the factors y and v only, digits of all factors. */
+/* Sets limbs and other_than_0 of a vector. Functions read these of the factors y and v only. */
 LIMBS_FUNCTION void limbs_trim(int n, struct limbs_vector *v)
 {
     v->limbs = 0;
     v->other_than_0 = 0;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        const int limbs = LIMBS_MAX > LIMBS_NARROW ? find_digits(v->at[axis], n, &v->digits[axis])
-                                                   : limbs_needed(n, v->at[axis]);
+        const int limbs = limbs_needed(n, v->at[axis]);
         v->limbs = limbs > v->limbs ? limbs : v->limbs;
         v->other_than_0 |= (unsigned) (limbs > 0) << axis;
     }
@@ -303,12 +190,7 @@ LIMBS_FUNCTION void limbs_set_product(int n, uint64_t *out, struct dyadic x, str
 LIMBS_FUNCTION void limbs_add_product(int n, uint64_t *out, bool minus, const uint64_t *x, int ny,
                                       const uint64_t *y)
 {
-    struct digit_runs of_x, of_y;
-    if (LIMBS_MAX > LIMBS_NARROW) {
-        find_digits(x, n, &of_x);
-        find_digits(y, ny, &of_y);
-    }
-    WITH_LIMBS(n, add_product, out, minus, x, &of_x, ny, y, &of_y);
+    WITH_LIMBS(n, add_product, out, minus, x, ny, y);
 }
 
 /* out := x x y, or y x x where swapped. */
@@ -330,8 +212,6 @@ LIMBS_FUNCTION void limbs_cross(int n, const struct limbs_vector *x, const struc
                                 bool swapped, struct limbs_vector *out)
 {
     WITH_LIMBS(n, cross_limbs, x, y, swapped, out);
-    if (LIMBS_MAX > LIMBS_NARROW)
-        limbs_trim(n, out);
 }
 
 LIMBS_INLINE void transform_limbs(const int n, const struct limbs_vector row[FMB_DIM_MAX],
@@ -351,8 +231,6 @@ LIMBS_FUNCTION const struct limbs_vector *limbs_transform(int n, const struct li
     if (!row)
         return v;
     WITH_LIMBS(n, transform_limbs, row, v, out);
-    if (LIMBS_MAX > LIMBS_NARROW)
-        limbs_trim(n, out);
     return out;
 }
 

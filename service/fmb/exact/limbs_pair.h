@@ -92,8 +92,6 @@ LIMBS_FUNCTION void set_lengths(int n, struct limbs_vector *out, const double x[
         out->limbs = limbs > out->limbs ? limbs : out->limbs;
         out->other_than_0 |= (unsigned) (limbs > 0) << axis;
     }
-    if (LIMBS_MAX > LIMBS_NARROW)
-        limbs_trim(n, out);
 }
 
 /* ---- Pairs ---- */

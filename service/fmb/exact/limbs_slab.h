@@ -26,8 +26,6 @@ LIMBS_FUNCTION const struct limbs_vector *edge_in_view(struct limbs_pair *pair, 
         own->limbs = pair->component[f][e].limbs > 0;
         own->at[e][0] = (uint64_t) own->limbs;
         own->other_than_0 = (unsigned) own->limbs << e;
-        if (LIMBS_MAX > LIMBS_NARROW)
-            limbs_trim(pair->limbs, own);
         at[LIMBS_OWN] = own;
     }
     if (!at[LIMBS_OWN] && e < dim)

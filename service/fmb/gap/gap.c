@@ -183,7 +183,7 @@ bool gap_pair_set(const struct fmb_prepared *a, const struct fmb_prepared *b, do
                   struct gap_pair *out)
 {
     const unsigned both = prepared_kind(a) & prepared_kind(b);
-    if (!(both & PREPARED_USABLE))
+    if (!(both & PREPARED_USABLE) || (prepared_kind(a) | prepared_kind(b)) & PREPARED_HULL)
         return false;
     out->frame[0] = a;
     out->frame[1] = b;

@@ -1,9 +1,8 @@
-/* Decides pairs with a hull: in doubles what they prove, the rest in integers. */
-#include "hull.h"
+/* Decides pairs by their vertices: in doubles what they prove, the rest by programs. */
+#include "hull_decision.h"
 
 #include "hull_exact.h"
 #include "hull_gap.h"
-#include "hull_search.h"
 
 #include <math.h>
 
@@ -18,30 +17,69 @@ static unsigned answer_in_doubles(const struct hull_pair *pair, unsigned want,
            ~((answer->has_contact ? FMB_WANT_TIMES : 0u) | (answer->has_box ? FMB_WANT_BOX : 0u));
 }
 
-/* hull_decision_begin(). *nearest := the result of the search in doubles; *searched: whether there
- * was one. */
-static bool begin(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
-                  struct hull_decision *out, struct hull_nearest *nearest, bool *searched,
-                  struct fmb_answer *answer)
+void hull_decision_none(struct hull_decision *out)
+{
+    out->exact = NULL;
+    out->gap = NULL;
+}
+
+static void set_pair(const struct frame_pair *frames, unsigned want, double farthest, bool bounded,
+                     struct hull_decision *out)
+{
+    hull_decision_none(out);
+    out->swapped = hull_order(frames, &out->frames);
+    out->searched = false;
+    out->bounded = bounded;
+    out->want = want;
+    out->farthest = farthest;
+    hull_pair_set(&out->frames, &out->pair);
+}
+
+/* Takes the outcome of a step of the gap. Returns whether it is complete. */
+static bool take_gap(struct hull_decision *decision, enum gap_outcome outcome,
+                     struct fmb_answer *answer)
+{
+    if (outcome == GAP_UNSURE)
+        return false;
+    decision->gap = NULL;
+    answer->has_gap = true;
+    if (outcome == GAP_FAR)
+        answer->gap = gap_none();
+    return true;
+}
+
+/* Begins the gap, if it is wanted. Returns whether the decision is complete. */
+static bool begin_gap(struct hull_decision *decision, struct fmb_answer *answer)
+{
+    if (!(decision->want & FMB_WANT_GAP))
+        return true;
+    const bool all = decision->searched && decision->farthest == INFINITY;
+    return take_gap(
+        decision,
+        hull_gap_of_pair(&decision->pair, decision->swapped, all ? &decision->nearest : NULL,
+                         answer->verdict, decision->farthest, &answer->gap,
+                         decision->bounded ? NULL : &decision->gap),
+        answer);
+}
+
+bool hull_decision_begin(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
+                         double farthest, struct hull_decision *out, struct fmb_answer *answer)
 {
     struct hull_column first[FMB_DIM_MAX + 1];
+    struct hull_nearest *nearest = &out->nearest;
     const struct hull_pair *pair = &out->pair;
+    const bool all = want & FMB_WANT_GAP && farthest == INFINITY;
     unsigned left = want & (FMB_WANT_TIMES | FMB_WANT_BOX);
-    out->swapped = hull_order(frames, &out->frames);
-    hull_pair_set(&out->frames, &out->pair);
-    out->exact = NULL;
-    *searched = effort != HULL_EXACT && pair->usable;
+    set_pair(frames, want, farthest, effort == HULL_QUICK, out);
+    out->searched = effort != HULL_EXACT && pair->usable;
     nearest->simplex.count = 0;
-    answer->has_contact = answer->has_box = false;
-    answer->verdict =
-        *searched
-            ? hull_search(pair, want & FMB_WANT_GAP ? INFINITY : hull_separating_distance(pair),
-                          nearest)
-            : 0;
+    if (out->searched)
+        answer->verdict =
+            hull_search(pair, all ? INFINITY : hull_separating_distance(pair), nearest);
     if (answer->verdict == FMB_OVERLAPPING)
         left = answer_in_doubles(pair, left, &nearest->simplex, answer);
     if (answer->verdict == FMB_SEPARATED || (answer->verdict == FMB_OVERLAPPING && left == 0))
-        return true;
+        return begin_gap(out, answer);
     if (effort != HULL_QUICK) {
         for (unsigned i = 0; i < nearest->simplex.count; i++)
             first[i] = nearest->simplex.vertex[i].column;
@@ -50,50 +88,45 @@ static bool begin(const struct frame_pair *frames, unsigned want, enum hull_effo
     return false;
 }
 
-bool hull_decision_begin(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
-                         struct hull_decision *out, struct fmb_answer *answer)
+bool hull_decision_begin_gap(const struct frame_pair *frames, enum fmb_verdict verdict,
+                             double farthest, bool bounded, struct hull_decision *out,
+                             struct fmb_answer *answer)
 {
-    struct hull_nearest nearest;
-    bool searched;
-    return begin(frames, want & ~(unsigned) FMB_WANT_GAP, effort, out, &nearest, &searched, answer);
+    set_pair(frames, FMB_WANT_GAP, farthest, bounded, out);
+    answer->verdict = verdict;
+    return begin_gap(out, answer);
 }
 
 bool hull_decision_step(struct hull_decision *decision, struct fmb_answer *answer)
 {
+    if (decision->gap)
+        return take_gap(decision, hull_gap_step(decision->gap, &answer->gap), answer);
     if (!hull_exact_step(decision->exact))
         return false;
     hull_exact_end(decision->exact, answer);
     decision->exact = NULL;
-    return true;
+    return begin_gap(decision, answer);
 }
 
 void hull_decision_end(struct hull_decision *decision)
 {
     if (decision->exact)
         hull_exact_end(decision->exact, NULL);
-    decision->exact = NULL;
+    if (decision->gap)
+        hull_gap_end(decision->gap);
+    hull_decision_none(decision);
 }
 
 enum fmb_status hull_decide(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
                             struct fmb_answer *answer)
 {
+    static const struct fmb_answer none;
     struct hull_decision decision;
-    struct hull_nearest nearest;
-    struct hull_gap_work *work;
-    bool searched;
-    if (!begin(frames, want, effort, &decision, &nearest, &searched, answer)) {
-        if (effort == HULL_QUICK)
-            return FMB_CANNOT_DECIDE;
-        while (!hull_decision_step(&decision, answer))
-            ;
-    }
-    answer->has_gap = want & FMB_WANT_GAP;
-    if (!answer->has_gap)
-        return FMB_OK;
-    enum gap_outcome outcome =
-        hull_gap_of_pair(&decision.pair, decision.swapped, searched ? &nearest : NULL,
-                         answer->verdict, INFINITY, &answer->gap, &work);
-    while (outcome == GAP_UNSURE)
-        outcome = hull_gap_step(work, &answer->gap);
+    *answer = none;
+    bool done = hull_decision_begin(frames, want, effort, INFINITY, &decision, answer);
+    if (!done && effort == HULL_QUICK)
+        return FMB_CANNOT_DECIDE;
+    while (!done)
+        done = hull_decision_step(&decision, answer);
     return FMB_OK;
 }

@@ -1,8 +1,8 @@
-/* Pairs of frames with at least one hull.
+/* Pairs of frames by their vertices: those with a hull, and what slabs do not give of others.
  *
- * Such a pair is decided from the vertices of both frames: a box, a cuboid, a tetrahedron or a face
- * is then the hull of its 3 to 8 vertices. With M = { b - a } for points a and b of the frames at
- * time 0 and w the velocity of b relative to a, the set that decides everything is
+ * A box, a cuboid, a tetrahedron or a face is the hull of its 3 to 8 vertices. With M = { b - a }
+ * for points a and b of the frames at time 0 and w the velocity of b relative to a, the set that
+ * decides everything is
  *
  *     D = M + [0, T] w,
  *
@@ -11,11 +11,11 @@
  * stored: D is known by its support function, the greatest n . x, which takes one scan of each
  * frame's vertices.
  *
- *   hull_pair_set()      two placed frames as arrays of vertices, in body coordinates, and bounds
- * on the errors of everything computed below hull_support()       the farthest point of D in a
- * direction hull_point()         a point of D hull_decide()        verdict, contact and box;
- * hull_decision_step(): the same in steps hull_gap()           the gap; hull_gap_step(): the same
- * in steps
+ *   hull_pair_set()        two placed frames as arrays of vertices, in body coordinates, and bounds
+ *                          on the errors of everything computed below
+ *   hull_support()         the farthest point of D in a direction
+ *   hull_point()           a point of D
+ *   hull_decision_begin()  verdict, contact, box and gap, in steps (hull_decision.h)
  *
  * Accuracy of doubles. Let u = 2^-53, r the reach of a frame: the distance of its vertices from
  * the origin of its body is at most r. Rounding a direction n to body coordinates, R^T n, or a
@@ -104,56 +104,5 @@ static inline bool hull_takes(const struct fmb_frame *a, const struct fmb_frame 
  * computed for them in this order has the same bits for the swapped pair. Returns whether they are
  * exchanged (gap_frames_swap()). */
 bool hull_order(const struct frame_pair *frames, struct frame_pair *out);
-
-/* How much a decision may do: doubles alone; doubles, and integers for what they leave open;
- * integers alone. */
-enum hull_effort { HULL_QUICK, HULL_CERTIFIED, HULL_EXACT };
-
-struct hull_exact;
-
-/* A decision that may have to go on in integers, in steps. It points to itself: not to be copied.
- */
-struct hull_decision {
-    struct frame_pair frames; /* in the order of hull_order() */
-    bool swapped;
-    struct hull_pair pair;
-    struct hull_exact *exact; /* NULL: complete */
-};
-
-/* Begins the decision of a checked pair. want: as of fmb_decide(); the contact too only with
- * FMB_WANT_TIMES; the gap is not for this function. Returns whether it is complete, with *answer
- * set. Otherwise, of a quick one, it is for the exact method, and ends here; or
- * hull_decision_step() has to be called until it is complete, with the same *answer, which has what
- * doubles gave. */
-bool hull_decision_begin(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
-                         struct hull_decision *out, struct fmb_answer *answer);
-
-/* Performs a step of a decision that is not complete: some ten microseconds for numbers of similar
- * size, and less than a millisecond for any. Returns whether it is complete, with *answer set; its
- * memory is then freed. */
-bool hull_decision_step(struct hull_decision *decision, struct fmb_answer *answer);
-
-/* Frees the memory of a decision, complete or not. */
-void hull_decision_end(struct hull_decision *decision);
-
-/* Decides a checked pair, with the gap if it is wanted. Returns FMB_CANNOT_DECIDE, with *answer
- * unspecified, if the decision is quick and needs integers. */
-enum fmb_status hull_decide(const struct frame_pair *frames, unsigned want, enum hull_effort effort,
-                            struct fmb_answer *answer);
-
-/* The gap of a checked pair with this verdict. Returns GAP_KNOWN or, if the gap is surely greater
- * than farthest, by more than the width of an enclosure, GAP_FAR. */
-enum gap_outcome hull_gap(const struct frame_pair *frames, enum fmb_verdict verdict,
-                          double farthest, struct fmb_gap *out);
-
-/* The same in steps of less than a millisecond. hull_gap_begin() returns GAP_UNSURE if there are
- * steps to be done, with *work set: hull_gap_step() is then called until it returns something else,
- * or hull_gap_end(), which abandons the work. Both allocate through GMP; nothing is left at the
- * end. */
-struct hull_gap_work;
-enum gap_outcome hull_gap_begin(const struct frame_pair *frames, enum fmb_verdict verdict,
-                                double farthest, struct fmb_gap *out, struct hull_gap_work **work);
-enum gap_outcome hull_gap_step(struct hull_gap_work *work, struct fmb_gap *out);
-void hull_gap_end(struct hull_gap_work *work);
 
 #endif

@@ -211,12 +211,14 @@ static void search(const struct hull_gap *gap, enum fmb_verdict verdict, double 
     hull_search(gap->pair, verdict != FMB_SEPARATED ? INFINITY : fmax(far, near), out);
 }
 
+/* bounded: without the grid, which allocates. */
 static enum gap_outcome solve_distance(const struct hull_gap *gap,
-                                       const struct hull_nearest *nearest, struct fmb_gap *out)
+                                       const struct hull_nearest *nearest, bool bounded,
+                                       struct fmb_gap *out)
 {
     memset(out, 0, sizeof *out);
     const enum gap_outcome outcome = distance(gap, nearest, out);
-    return outcome == GAP_UNSURE ? distance_on_grid(gap, out) : outcome;
+    return outcome == GAP_UNSURE && !bounded ? distance_on_grid(gap, out) : outcome;
 }
 
 static enum gap_outcome end_depth(struct hull_depth *depth, enum fmb_verdict verdict,
@@ -268,11 +270,11 @@ enum { RAISED_AT_ONCE = 128, PLACED_AT_ONCE = 128 };
 /* In doubles, a depth in one step. *late: it takes more. */
 static enum gap_outcome solve_at_once(const struct hull_gap *gap,
                                       const struct hull_nearest *nearest, enum fmb_verdict verdict,
-                                      bool *late, struct fmb_gap *out)
+                                      bool bounded, bool *late, struct fmb_gap *out)
 {
     struct hull_depth depth;
     if (verdict == FMB_SEPARATED)
-        return solve_distance(gap, nearest, out);
+        return solve_distance(gap, nearest, bounded, out);
     *late = hull_depth_begin(&depth, gap, nearest) && !hull_depth_step(&depth, RAISED_AT_ONCE);
     return end_depth(&depth, verdict, out);
 }
@@ -295,10 +297,12 @@ enum gap_outcome hull_gap_of_pair(const struct hull_pair *pair, bool swapped,
         if (!nearest)
             search(&gap, verdict, farthest, &searched);
         nearest = nearest ? nearest : &searched;
-        outcome = solve_at_once(&gap, nearest, verdict, &late, out);
+        outcome = solve_at_once(&gap, nearest, verdict, !work, &late, out);
     }
     if (outcome != GAP_UNSURE)
         return complete(outcome, swapped, out);
+    if (!work)
+        return GAP_UNSURE;
     struct hull_gap_work *begun = memory_allocate(sizeof *begun);
     begun->frames = *pair->frames;
     begun->swapped = swapped;
@@ -315,16 +319,6 @@ enum gap_outcome hull_gap_of_pair(const struct hull_pair *pair, bool swapped,
     }
     *work = begun;
     return GAP_UNSURE;
-}
-
-enum gap_outcome hull_gap_begin(const struct frame_pair *frames, enum fmb_verdict verdict,
-                                double farthest, struct fmb_gap *out, struct hull_gap_work **work)
-{
-    struct frame_pair ordered;
-    struct hull_pair pair;
-    const bool swapped = hull_order(frames, &ordered);
-    hull_pair_set(&ordered, &pair);
-    return hull_gap_of_pair(&pair, swapped, NULL, verdict, farthest, out, work);
 }
 
 /* With vertices that are placed exactly the enclosure is tight. With L the largest coordinate of a
@@ -358,7 +352,7 @@ static enum gap_outcome solve_placed(struct hull_gap_work *work, struct fmb_gap 
         out->direction[0] = 1;
         return GAP_KNOWN;
     }
-    const enum gap_outcome outcome = solve_distance(&work->gap, &work->nearest, out);
+    const enum gap_outcome outcome = solve_distance(&work->gap, &work->nearest, false, out);
     return outcome == GAP_FAR ? GAP_FAR : GAP_KNOWN;
 }
 
@@ -392,15 +386,5 @@ enum gap_outcome hull_gap_step(struct hull_gap_work *work, struct fmb_gap *out)
         scale_lengths(out, (int) work->placed.exponent);
     complete(outcome, work->swapped, out);
     hull_gap_end(work);
-    return outcome;
-}
-
-enum gap_outcome hull_gap(const struct frame_pair *frames, enum fmb_verdict verdict,
-                          double farthest, struct fmb_gap *out)
-{
-    struct hull_gap_work *work;
-    enum gap_outcome outcome = hull_gap_begin(frames, verdict, farthest, out, &work);
-    while (outcome == GAP_UNSURE)
-        outcome = hull_gap_step(work, out);
     return outcome;
 }

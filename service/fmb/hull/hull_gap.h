@@ -68,11 +68,20 @@ void hull_gap_place_begin(const struct hull_pair *pair, struct hull_gap_placed *
 bool hull_gap_place_step(struct hull_gap_placed *placed, int count);
 void hull_gap_place_end(struct hull_gap_placed *placed);
 
-/* The gap of a pair in the order of hull_order(), as hull_gap_begin() gives it. nearest: the result
- * of a search up to INFINITY, or NULL. */
+/* The gap of a pair in the order of hull_order(), with this verdict, in steps of less than a
+ * millisecond. nearest: the result of a search up to INFINITY, or NULL.
+ *
+ * hull_gap_of_pair() returns GAP_KNOWN or, if the gap is surely greater than farthest, by more than
+ * the width of an enclosure, GAP_FAR. It returns GAP_UNSURE if there are steps to be done, with
+ * *work set unless work is NULL: hull_gap_step() is then called until it returns something else, or
+ * hull_gap_end(), which abandons the work. Both allocate through GMP; nothing is left at the end.
+ */
+struct hull_gap_work;
 enum gap_outcome hull_gap_of_pair(const struct hull_pair *pair, bool swapped,
                                   const struct hull_nearest *nearest, enum fmb_verdict verdict,
                                   double farthest, struct fmb_gap *out,
                                   struct hull_gap_work **work);
+enum gap_outcome hull_gap_step(struct hull_gap_work *work, struct fmb_gap *out);
+void hull_gap_end(struct hull_gap_work *work);
 
 #endif

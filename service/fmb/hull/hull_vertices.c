@@ -20,28 +20,91 @@ void hull_integers_each(struct hull_integers *integers, void (*call)(mpz_ptr))
         call(integers->drift[axis]);
 }
 
-static unsigned vertex_count_of(const struct fmb_frame *frame)
+/* ---- Orientations ----
+ *
+ * For a quaternion q of integers, n R(q) is a matrix of integers, n = |q|^2. All lengths of a pair
+ * are multiplied by scale: n_a n_b, or n_a if n_a = n_b. This changes no sign, no time and no
+ * direction. Points are divided by scale at the end. */
+
+static void set_turn(const struct fmb_placement *placement, struct hull_turn *turn)
 {
-    if (frame->shape == FMB_HULL)
-        return frame->vertex_count;
-    return frame_is_simplex(frame) ? (unsigned) frame->count + 1 : 1U << frame->count;
+    struct limbs_quaternion quaternion;
+    limbs_quaternion_set(placement, &quaternion);
+    turn->turned = quaternion.turned;
+    mpz_set_ui(turn->norm, 1);
+    if (!turn->turned)
+        return;
+    mpz_t q[4], product;
+    mpz_inits(q[0], q[1], q[2], q[3], product, NULL);
+    for (int i = 0; i < 4; i++)
+        if (quaternion.at[i].mantissa)
+            integer_set(q[i], quaternion.at[i], quaternion.unit);
+    mpz_set_ui(turn->norm, 0);
+    for (int k = 0; k < 4; k++) {
+        mpz_mul(product, q[k], q[k]);
+        mpz_add(turn->norm, turn->norm, product);
+        for (int i = 0; i < 3; i++) { /* ww is added; v_k v_k in row k too, else subtracted */
+            (k == 0 || k == 1 + i ? mpz_add : mpz_sub)(turn->row[i][i], turn->row[i][i], product);
+        }
+    }
+    for (int i = 0; i < 3; i++) { /* 2 (v_i v_j - w v_k) and 2 (v_i v_j + w v_k), i, j, k cyclic */
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        mpz_mul(product, q[1 + i], q[1 + j]);
+        mpz_mul_2exp(turn->row[i][j], product, 1);
+        mpz_set(turn->row[j][i], turn->row[i][j]);
+        mpz_mul(product, q[0], q[1 + k]);
+        mpz_submul_ui(turn->row[i][j], product, 2);
+        mpz_addmul_ui(turn->row[j][i], product, 2);
+    }
+    mpz_clears(q[0], q[1], q[2], q[3], product, NULL);
 }
 
-/* Sets the vertices of a frame that is not a hull. */
+static void turn_vector(const struct hull_turn *turn, const mpz_t factor, mpz_t v[3])
+{
+    if (turn->turned) {
+        mpz_t out[3];
+        mpz_inits(out[0], out[1], out[2], NULL);
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                mpz_addmul(out[i], turn->row[i][j], v[j]);
+        for (int i = 0; i < 3; i++)
+            mpz_swap(v[i], out[i]);
+        mpz_clears(out[0], out[1], out[2], NULL);
+    }
+    if (mpz_cmp_ui(factor, 1) != 0)
+        for (int i = 0; i < 3; i++)
+            mpz_mul(v[i], v[i], factor);
+}
+
+/* ---- Vertices ---- */
+
+/* Sets the vertices of a frame that is not a hull, from its origin and components. The origin of a
+ * box is its centre less half of each component. */
 static void set_small(struct hull_side *side, long unit)
 {
-    struct exact_frame frame;
-    const unsigned count = vertex_count_of(side->frame);
-    INTEGER_EACH_FROM(component, &frame, mpz_init);
-    exact_frame_set(&frame, side->frame, unit);
-    for (unsigned k = 0; k < count; k++)
-        for (int axis = 0; axis < 3; axis++) {
-            mpz_set(side->small[k][axis], frame.origin[axis]);
-            for (unsigned i = 0; i < (unsigned) frame.count; i++)
-                if (frame.simplex ? k == i + 1 : k >> i & 1)
-                    mpz_add(side->small[k][axis], side->small[k][axis], frame.component[i][axis]);
+    const struct fmb_frame *frame = side->frame;
+    const bool simplex = frame_is_simplex(frame), box = frame->shape == FMB_BOX;
+    const unsigned count = simplex ? (unsigned) frame->count + 1 : 1U << frame->count;
+    const double *origin = box ? frame->centre : frame->origin;
+    mpz_t component;
+    mpz_init(component);
+    for (int axis = 0; axis < frame->dim; axis++) {
+        for (unsigned k = 0; k < count; k++)
+            integer_set(side->small[k][axis], dyadic_of(origin[axis]), unit);
+        for (int i = 0; i < frame->count; i++) {
+            integer_set_sum(component, frame->component[i][axis], frame->remainder[i][axis], unit);
+            if (box)
+                mpz_fdiv_q_2exp(component, component, 1); /* exact: it is even */
+            for (unsigned k = 0; k < count; k++) {
+                mpz_ptr x = side->small[k][axis];
+                if (simplex ? k == (unsigned) i + 1 : k >> i & 1)
+                    mpz_add(x, x, component);
+                else if (box)
+                    mpz_sub(x, x, component);
+            }
         }
-    INTEGER_EACH_FROM(component, &frame, mpz_clear);
+    }
+    mpz_clear(component);
 }
 
 static void set_side(const struct fmb_placement *placement, const struct dyadic window,
@@ -65,7 +128,7 @@ void hull_integers_set(const struct frame_pair *frames, struct hull_integers *ou
     out->unit = limbs_span_of(frames).unit;
     for (int f = 0; f < 2; f++) {
         side[f].frame = placed[f]->frame;
-        exact_turn_set(placed[f]->placement, &side[f].turn);
+        set_turn(placed[f]->placement, &side[f].turn);
     }
     const bool same = mpz_cmp(side[0].turn.norm, side[1].turn.norm) == 0;
     mpz_set(out->scale, side[0].turn.norm);
@@ -96,7 +159,7 @@ void hull_integers_place(const struct hull_integers *integers, int f, unsigned i
                         dyadic_of(frame->vertices[(size_t) axis * frame->vertex_stride + i]),
                         integers->unit);
     }
-    exact_turn_vector(&side->turn, side->factor, out);
+    turn_vector(&side->turn, side->factor, out);
     for (int axis = 0; axis < 3; axis++)
         mpz_add(out[axis], out[axis], side->position[axis]);
 }

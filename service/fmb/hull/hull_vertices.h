@@ -2,13 +2,22 @@
 #ifndef FMB_HULL_VERTICES_H
 #define FMB_HULL_VERTICES_H
 
-#include "exact.h"
 #include "hull.h"
+#include "limbs.h"
+
+#include <gmp.h>
+
+/* The orientation of a placement. For the smallest integers q proportional to it, n = |q|^2 and n
+ * R(q) is a matrix of integers. */
+struct hull_turn {
+    bool turned;
+    mpz_t row[3][3], norm; /* n R(q) and n; if not turned, norm is 1 and row is not used */
+};
 
 /* A placed frame. */
 struct hull_side {
     const struct fmb_frame *frame;
-    struct exact_turn turn;
+    struct hull_turn turn;
     mpz_t factor; /* of vectors that are turned */
     mpz_t position[3];
     mpz_t displacement[3];      /* v T */
