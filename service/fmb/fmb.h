@@ -402,8 +402,8 @@ struct fmb_method {
  *
  * Cost: exact takes tens to hundreds of microseconds for numbers of similar size. Its time is
  * bounded for any numbers, as is that of certified: of the pairs whose exponents span the whole
- * range of doubles, a search found none that takes more than 70 million products of limbs of 64
- * bits with box and gap, about 35 ms. Doubles decide most pairs with a hull by a few scans of all
+ * range of doubles, a search found none that takes more than 72 million products of limbs of 64
+ * bits with box and gap, about 36 ms. Doubles decide most pairs with a hull by a few scans of all
  * vertices. Exact arithmetic takes some milliseconds for the largest hulls, and up to 60 ms with
  * box and gap if their exponents span that range. A scene divides it into steps below one. */
 
