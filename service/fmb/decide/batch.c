@@ -330,7 +330,7 @@ static void decide_single(struct batch_block *block, size_t k, unsigned want)
     const struct fmb_prepared *const *pair = block->pair[k];
     const size_t i = block->first + block->slot[k];
     struct certified certified;
-    struct fmb_answer answer;
+    struct fmb_answer answer = {0};
     if (may_decide_single(block, k) && certified_begin(pair[0], pair[1], batch->duration, want,
                                                        INFINITY, HULL_QUICK, &certified, &answer)) {
         put_answer(batch, i, &answer);
@@ -540,6 +540,8 @@ static bool bounds_are_separated(const struct batch_block *block, const struct b
 {
     const struct fmb_prepared *const *pair = block->pair[k];
     bool swapped;
+    if (!((prepared_kind(pair[0]) | prepared_kind(pair[1])) & PREPARED_HULL))
+        return false;
     const enum kernel_kind kind =
         kernel_kind_of_bounds(pair[0], pair[1], job->batch->duration, &swapped);
     return kind < KERNEL_KINDS &&
@@ -653,7 +655,7 @@ static void decide_open(const struct batch_job *job, size_t i)
     const struct fmb_batch *batch = job->batch;
     const unsigned want = (batch->boxes ? FMB_WANT_BOX : 0) |
                           (batch->contacts ? FMB_WANT_TIMES : 0) | (batch->gaps ? FMB_WANT_GAP : 0);
-    struct fmb_answer answer;
+    struct fmb_answer answer = {0};
     certified_decide_prepared(frame_at(batch, batch->pairs[i][0]),
                               frame_at(batch, batch->pairs[i][1]), batch->duration, want,
                               job->farthest, &answer);
@@ -735,7 +737,7 @@ enum fmb_status fmb_decide_prepared(const struct fmb_prepared *a, const struct f
                    ? certified_unsure(a, b, duration, 1)
                    : (enum fmb_verdict) outcome;
     if (*verdict == 0) {
-        struct fmb_answer answer;
+        struct fmb_answer answer = {0};
         certified_decide_prepared(a, b, duration, 0, INFINITY, &answer);
         *verdict = answer.verdict;
     }

@@ -266,8 +266,10 @@ static struct frame_pair pair_of(const struct fmb_prepared *a, const struct fmb_
 /* Begins the programs for what is missing: of a small pair, the tightest ends. */
 static bool begin_program(struct certified *certified, unsigned missing)
 {
+    static const struct fmb_answer none;
     const struct frame_pair pair =
         pair_of(certified->given[0], certified->given[1], certified->duration);
+    certified->proven = none;
     certified->stage = CERTIFIED_MISSING;
     return !certified->bounded && hull_decision_begin(&pair, missing, HULL_EXACT, INFINITY,
                                                       &certified->program, &certified->proven);
@@ -301,13 +303,17 @@ static bool measure(struct certified *certified, struct fmb_answer *answer)
     answer->has_contact = answer->verdict != FMB_SEPARATED && certified->want & FMB_WANT_TIMES;
     answer->has_box = answer->verdict != FMB_SEPARATED && certified->want & FMB_WANT_BOX;
     if (answer->has_contact && !set_contact(certified, answer->contact)) {
-        missing |= proven->has_contact ? 0 : FMB_WANT_TIMES;
-        memcpy(answer->contact, proven->contact, sizeof answer->contact);
+        if (proven->has_contact)
+            memcpy(answer->contact, proven->contact, sizeof answer->contact);
+        else
+            missing |= FMB_WANT_TIMES;
     }
     if (answer->has_box && !certified_box(a, b, certified->duration, answer->box) &&
         !certified_box_unsure(a, b, certified->duration, answer->box)) {
-        missing |= proven->has_box ? 0 : FMB_WANT_BOX;
-        memcpy(answer->box, proven->box, sizeof answer->box);
+        if (proven->has_box)
+            memcpy(answer->box, proven->box, sizeof answer->box);
+        else
+            missing |= FMB_WANT_BOX;
     }
     if (missing)
         return begin_program(certified, missing);
@@ -328,28 +334,38 @@ bool certified_gap(const struct fmb_prepared *a, const struct fmb_prepared *b, d
     return known;
 }
 
+/* a, b: the frames of the pair, prepared, or NULL. */
+INLINE bool begin_pair(const struct frame_pair *pair, const struct fmb_prepared *a,
+                       const struct fmb_prepared *b, unsigned want, double farthest,
+                       enum hull_effort effort, struct certified *out, struct fmb_answer *answer)
+{
+    hull_decision_none(&out->program);
+    if (effort == HULL_EXACT || hull_takes(pair->a.frame, pair->b.frame)) {
+        out->stage = CERTIFIED_ALL;
+        return hull_decision_begin(pair, want, effort, farthest, &out->program, answer);
+    }
+    if (!a) {
+        prepared_set(pair->a, &out->own[0]);
+        prepared_set(pair->b, &out->own[1]);
+    }
+    out->given[0] = a ? a : &out->own[0];
+    out->given[1] = b ? b : &out->own[1];
+    out->duration = pair->duration;
+    out->want = want;
+    out->farthest = farthest;
+    out->proven.has_contact = out->proven.has_box = false;
+    begin(out, pair, out->given[0], out->given[1], want & FMB_WANT_TIMES, effort == HULL_QUICK);
+    answer->verdict = climb(out, CERTIFIED_FILTER);
+    return answer->verdict ? measure(out, answer)
+                           : begin_program(out, want & (FMB_WANT_BOX | FMB_WANT_TIMES));
+}
+
 bool certified_begin(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                      unsigned want, double farthest, enum hull_effort effort, struct certified *out,
                      struct fmb_answer *answer)
 {
-    static const struct fmb_answer none;
-    const bool bounded = effort == HULL_QUICK;
-    out->given[0] = a;
-    out->given[1] = b;
-    out->duration = duration;
-    out->want = want;
-    out->farthest = farthest;
-    out->proven = *answer = none;
-    hull_decision_none(&out->program);
     const struct frame_pair pair = pair_of(a, b, duration);
-    if (effort == HULL_EXACT || hull_takes(a->frame, b->frame)) {
-        out->stage = CERTIFIED_ALL;
-        return hull_decision_begin(&pair, want, effort, farthest, &out->program, answer);
-    }
-    begin(out, &pair, a, b, want & FMB_WANT_TIMES, bounded);
-    answer->verdict = climb(out, CERTIFIED_FILTER);
-    return answer->verdict ? measure(out, answer)
-                           : begin_program(out, want & (FMB_WANT_BOX | FMB_WANT_TIMES));
+    return begin_pair(&pair, a, b, want, farthest, effort, out, answer);
 }
 
 bool certified_step(struct certified *certified, struct fmb_answer *answer)
@@ -380,10 +396,11 @@ void certified_decide_prepared(const struct fmb_prepared *a, const struct fmb_pr
 enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
                                  struct fmb_answer *answer)
 {
-    struct fmb_prepared a, b;
-    prepared_set(pair->a, &a);
-    prepared_set(pair->b, &b);
-    certified_decide_prepared(&a, &b, pair->duration, want | FMB_WANT_TIMES, INFINITY, answer);
+    struct certified certified;
+    bool done = begin_pair(pair, NULL, NULL, want | FMB_WANT_TIMES, INFINITY, HULL_CERTIFIED,
+                           &certified, answer);
+    while (!done)
+        done = certified_step(&certified, answer);
     return FMB_OK;
 }
 
@@ -391,7 +408,7 @@ enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified
 {
     struct certified certified;
     struct fmb_prepared a, b;
-    struct fmb_answer answer;
+    struct fmb_answer answer = {0};
     prepared_set(pair->a, &a);
     prepared_set(pair->b, &b);
     bool done =

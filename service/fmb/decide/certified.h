@@ -34,8 +34,9 @@ enum certified_path {
 
 /* A decision in progress. It points into itself: not to be copied. */
 struct certified {
-    /* Set by certified_begin(). */
-    const struct fmb_prepared *given[2];
+    /* Set at the beginning. */
+    const struct fmb_prepared *given[2]; /* those of the caller, or own */
+    struct fmb_prepared own[2];
     double duration, farthest;
     unsigned want;
     /* What the program gives: the answer; what is missing besides the gap; the gap. */
@@ -69,6 +70,7 @@ struct certified {
  *      effort    HULL_QUICK: bounded, takes tens of microseconds at most and allocates nothing: a
  *                slab takes at most 1,000 products of limbs (most take 100 to 300), and a pair has
  *                at most SLABS_MAX slabs. HULL_EXACT: the method exact
+ *      *answer   all 0
  * Returns whether it is complete, with *answer set. Otherwise a bounded decision needs more than is
  * allowed, and ends here. Of any other certified_step() is called, with the same answer, until it
  * returns true, or certified_end() abandons it. */

@@ -741,6 +741,8 @@ static bool step_open(struct fmb_scene_state *state, size_t k)
     if (state->deciding) {
         state->deciding = !certified_step(&state->decision, &state->decided);
     } else {
+        static const struct fmb_answer none;
+        state->decided = none;
         state->deciding = !certified_begin(
             &state->frames.slot[slot[0]], &state->frames.slot[slot[1]], state->scene.duration,
             want_of_frames(&state->scene), farthest_of_frames(state),

@@ -81,14 +81,12 @@ static inline enum kernel_kind kernel_kind_of(const struct fmb_prepared *a,
     return kinds.moving && kernel_pair_drifts(a, b) ? kinds.drifting : kinds.at_rest;
 }
 
-/* kernel_kind_of() of a pair with a hull, each hull replaced by the cuboid that contains it. If the
- * kernel separates the cuboids, the frames are separated. KERNEL_UNUSABLE without a hull. */
+/* kernel_kind_of() with each hull replaced by the cuboid that contains it. If the kernel separates
+ * the cuboids, the frames are separated. */
 static inline enum kernel_kind kernel_kind_of_bounds(const struct fmb_prepared *a,
                                                      const struct fmb_prepared *b, double duration,
                                                      bool *swapped)
 {
-    if (!((prepared_kind(a) | prepared_kind(b)) & PREPARED_HULL))
-        return KERNEL_UNUSABLE;
     const unsigned kind_a = prepared_kind(a) & ~(unsigned) PREPARED_HULL;
     const unsigned kind_b = prepared_kind(b) & ~(unsigned) PREPARED_HULL;
     const struct kernel_kinds kinds = kernel_kinds_of(kind_a, kind_b, duration);
