@@ -661,12 +661,14 @@ static void close_world(struct world *world)
     relay_close(world->relay);
 }
 
-/* Queries the scene. On output: what was done for it. */
+/* Queries the scene. On output: what was done for it. A query that was sent again, on a slow
+ * machine, has been processed too: a service that begins later does not see it. */
 static struct fmb_client_counts query_world(struct world *world)
 {
     const struct fmb_client_counts before = fmb_client_get_counts(world->client);
     relay_query(world->client, &world->scene);
     struct fmb_client_counts counts = fmb_client_get_counts(world->client);
+    relay_wait(world->relay, counts.queries + counts.repeated);
     counts.queries -= before.queries;
     counts.bytes -= before.bytes;
     counts.whole -= before.whole;
