@@ -13,7 +13,7 @@
 #                 tests, fast-tests, tested-programs, replay-set: what these build;
 #                 format, format-check; picture: that of README.md
 #   deps-bench    bench, bench-bus, bench-commands; speed-error: the picture of what accuracy measured;
-#                 validate, accuracy, depth, checked, hull-poses, soak: campaigns that take longer
+#                 accuracy, depth, checked, hull-poses, soak: campaigns that take longer
 #   deps-fuzz     fuzz, fuzz-afl, fuzz-merge, fuzzers
 #   deps-deb      deb: packages of Debian, into build/deb; deb-test: tries them in a chroot (root)
 #   deps-aarch64  aarch64: fmb for AArch64, which 'make test' then emulates

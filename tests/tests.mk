@@ -31,7 +31,7 @@ see_tests/unit := $(call fmb,number frame filter article tree exact gap hull cer
 test_programs := plain:system/plain busy:system/busy fake-peer:system/fake_peer events:system/events crash-liblcm:system/crash_liblcm \
 	edit-log:replay/edit_log logs/generate:logs/generate logs/describe-log:logs/describe_log \
 	mesh/make-mesh:mesh/make_mesh $(foreach s,load memory rate blast fair relay families,soak-$s:soak/$s)
-measures := validate:campaign/validate accuracy:campaign/accuracy checked:checked/checked \
+measures := accuracy:campaign/accuracy checked:checked/checked \
 	hull-poses:bench/hull_poses bench/bench:bench/bench bus/bench-bus:bus/bench_bus \
 	bus/echo:bus/echo robot/robot:robot/robot
 mains := $(foreach p,$(test_programs) $(measures),$(lastword $(subst :, ,$p)))
@@ -53,7 +53,7 @@ $(measuring): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in
 $(shared) $(units) $(measuring):
 	@rm -f $@
 	$(call say,AR,$@) $(AR) qcs $@ $^
-looks_inside := validate accuracy checked bench/bench bus/bench-bus logs/generate soak-families
+looks_inside := accuracy checked bench/bench bus/bench-bus logs/generate soak-families
 $(looks_inside:%=$(B)/%) $(B)/accuracy-planted: $(shared) $(client) $(product) $(engine)
 $(filter-out $(looks_inside:%=$(B)/%),$(test_programs) $(measures)): \
 	$(shared) $(client) $(product) $(B)/libfmb.a
@@ -239,16 +239,14 @@ $(B)/depth: $(O)/tests/campaign/depth.o $(shared) $(client) $(product) $(engine)
 	$(link)
 $(B)/depth: libraries += -lmpfr -lstdc++
 
-# On two cores: accuracy takes hours, validate and depth minutes, the others less than a minute.
-.PHONY: validate accuracy depth checked hull-poses soak
+# On two cores: accuracy takes hours, depth minutes, the others less than a minute.
+.PHONY: accuracy depth checked hull-poses soak
 depth: $(B)/depth
 	$<
 checked: $(B)/checked
 	$<
 hull-poses: $(B)/hull-poses
 	$< 10000000
-validate: $(B)/validate
-	$<
 accuracy: $(B)/accuracy
 	$< --json $<.json
 # Some ten minutes, a minute for each trial or SECONDS=.

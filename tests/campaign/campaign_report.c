@@ -1,6 +1,7 @@
 #include "campaign_report.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 enum { REPRODUCERS_MAX = 8 };
@@ -62,7 +63,8 @@ static void print_never_wrong(const struct report *report, int m, FILE *out)
         refused += tally->refused;
         broken += tally->broken;
         gap.unproven += tally->gap.unproven;
-        spread_merge(&gap.width, &tally->gap.width);
+        gap.count += tally->gap.count;
+        gap.width_most = fmax(gap.width_most, tally->gap.width_most);
     }
     fprintf(out,
             "%s: %" PRIu64 " queries, %" PRIu64 " wrong verdicts, %" PRIu64
@@ -70,7 +72,7 @@ static void print_never_wrong(const struct report *report, int m, FILE *out)
             " answers that break a promise (verdict, interval, box, gap)\n"
             "%s: %" PRIu64 " gaps, %" PRIu64 " unproven, the widest %.2g of the limit\n",
             fmb_method_at((size_t) m)->name, queries, wrong, order, refused, broken,
-            fmb_method_at((size_t) m)->name, gap.width.count, gap.unproven, gap.width.max);
+            fmb_method_at((size_t) m)->name, gap.count, gap.unproven, gap.width_most);
 }
 
 static void print_paths(const struct report *report, FILE *out)

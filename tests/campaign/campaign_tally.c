@@ -5,31 +5,6 @@
 
 #include "gap_check.h"
 
-static void merge_ends(struct tally_ends *into, const struct tally_ends *from)
-{
-    into->misses += from->misses;
-    into->in_most = fmax(into->in_most, from->in_most);
-    spread_merge(&into->out, &from->out);
-}
-
-void tally_merge(struct tally *into, const struct tally *from)
-{
-    if (into->broken == 0)
-        into->first = from->first;
-    into->broken += from->broken;
-    into->queries += from->queries;
-    into->refused += from->refused;
-    for (int is = 0; is < TALLY_VERDICTS; is++)
-        for (int said = 0; said < TALLY_VERDICTS; said++)
-            into->count[is][said] += from->count[is][said];
-    into->order_verdict += from->order_verdict;
-    into->order_bits += from->order_bits;
-    merge_ends(&into->contact, &from->contact);
-    merge_ends(&into->box, &from->box);
-    into->gap.unproven += from->gap.unproven;
-    spread_merge(&into->gap.width, &from->gap.width);
-}
-
 uint64_t tally_false_separated(const struct tally *tally)
 {
     return tally->count[FMB_TOUCHING][FMB_SEPARATED] + tally->count[FMB_OVERLAPPING][FMB_SEPARATED];
@@ -57,7 +32,8 @@ static void count_ends(struct tally_ends *ends, const struct oracle_excess *exce
         return;
     ends->misses += excess->misses;
     ends->in_most = fmax(ends->in_most, excess->in);
-    spread_add(&ends->out, excess->out);
+    ends->count++;
+    ends->out_most = fmax(ends->out_most, excess->out);
 }
 
 void tally_reply(struct tally *tally, const struct oracle_answer *truth, const struct pair *pair,
@@ -78,7 +54,6 @@ void tally_reply(struct tally *tally, const struct oracle_answer *truth, const s
 void tally_orders(struct tally *tally, const struct reply *one, const struct reply *other)
 {
     tally->order_verdict += !reply_same_verdict(one, other);
-    tally->order_bits += !reply_same(one, other);
 }
 
 bool tally_gap(struct tally *tally, enum fmb_verdict verdict, const struct pair *pair,
@@ -86,7 +61,8 @@ bool tally_gap(struct tally *tally, enum fmb_verdict verdict, const struct pair 
 {
     const bool proven = gap_check(pair, verdict, gap, why, TALLY_WHY_MAX);
     tally->gap.unproven += !proven;
-    spread_add(&tally->gap.width, gap_check_width(pair, gap));
+    tally->gap.count++;
+    tally->gap.width_most = fmax(tally->gap.width_most, gap_check_width(pair, gap));
     return proven;
 }
 

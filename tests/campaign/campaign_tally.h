@@ -7,22 +7,21 @@
 
 #include "fmb.h"
 #include "oracle.h"
-#include "spread.h"
 #include "trial.h"
 
 enum { TALLY_VERDICTS = FMB_OVERLAPPING + 1, TALLY_WHY_MAX = 120 };
 
 /* Of intervals, or of boxes: those that both the method and the truth have. */
 struct tally_ends {
-    uint64_t misses;   /* that do not contain the true one */
-    double in_most;    /* the farthest that an end lies inside the true one, relative */
-    struct spread out; /* how far out the worst end of each lies, relative */
+    uint64_t count, misses; /* misses: those that do not contain the true one */
+    double in_most,
+        out_most; /* the farthest that an end lies inside of the true one, and outside, relative */
 };
 
 /* Gaps of pairs in one order. A width is that of the enclosure divided by the limit of fmb.h. */
 struct tally_gaps {
-    uint64_t unproven; /* by gap_check.h */
-    struct spread width;
+    uint64_t count, unproven; /* by gap_check.h */
+    double width_most;
 };
 
 /* The first reply of a method that is never wrong, and was. */
@@ -35,15 +34,12 @@ struct tally {
     uint64_t queries, refused;
     uint64_t count[TALLY_VERDICTS][TALLY_VERDICTS]; /* [true verdict][verdict said] */
     uint64_t order_verdict; /* pairs whose two orders differ, in the verdict or in refusing */
-    uint64_t order_bits;    /* and those that differ in anything */
     struct tally_ends contact, box;
     struct tally_gaps gap;
     /* Of methods that are never wrong: queries that break what is promised, in any way. */
     uint64_t broken;
     struct tally_wrong first;
 };
-
-void tally_merge(struct tally *into, const struct tally *from);
 
 /* Wrong verdicts by kind. */
 uint64_t tally_false_separated(const struct tally *tally); /* in contact, called separated */

@@ -106,28 +106,21 @@ static void put_counts(FILE *out, const uint64_t count[TALLY_VERDICTS])
 
 static void put_ends(FILE *out, const char *name, const struct tally_ends *ends)
 {
-    const struct spread *spread = &ends->out;
     fprintf(out,
             ",\n     \"%s\": {\"count\": %" PRIu64 ", \"misses\": %" PRIu64 ", \"in_max\": ", name,
-            spread->count, ends->misses);
+            ends->count, ends->misses);
     put_number(out, ends->in_most);
-    fprintf(out, ", \"out_median\": ");
-    put_number(out, spread_quantile(spread, 0.5));
-    fprintf(out, ", \"out_p99\": ");
-    put_number(out, spread_quantile(spread, 0.99));
     fprintf(out, ", \"out_max\": ");
-    put_number(out, spread->max);
+    put_number(out, ends->out_most);
     fprintf(out, "}");
 }
 
 static void put_gaps(FILE *out, const struct tally_gaps *gaps)
 {
-    fprintf(out, ",\n     \"gap\": {\"count\": %" PRIu64 ", \"unproven\": %" PRIu64,
-            gaps->width.count, gaps->unproven);
-    fprintf(out, ", \"width_median\": ");
-    put_number(out, spread_quantile(&gaps->width, 0.5));
-    fprintf(out, ", \"width_max\": ");
-    put_number(out, gaps->width.max);
+    fprintf(out,
+            ",\n     \"gap\": {\"count\": %" PRIu64 ", \"unproven\": %" PRIu64 ", \"width_max\": ",
+            gaps->count, gaps->unproven);
+    put_number(out, gaps->width_most);
     fprintf(out, "}");
 }
 
@@ -145,8 +138,7 @@ static void put_method(FILE *out, const struct measure_method *method, const cha
             "},\n     \"false_separated\": %" PRIu64 ", \"false_contact\": %" PRIu64
             ", \"false_kind\": %" PRIu64,
             tally_false_separated(tally), tally_false_contact(tally), tally_false_kind(tally));
-    fprintf(out, ", \"order_verdict\": %" PRIu64 ", \"order_bits\": %" PRIu64, tally->order_verdict,
-            tally->order_bits);
+    fprintf(out, ", \"order_verdict\": %" PRIu64, tally->order_verdict);
     put_ends(out, "box", &tally->box);
     put_ends(out, "interval", &tally->contact);
     put_gaps(out, &tally->gap);

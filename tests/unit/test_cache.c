@@ -56,23 +56,6 @@ static struct handle keep_geometry(struct cache *cache, int64_t id,
     return view.handle;
 }
 
-static void a_second_use_is_a_hit(void **state)
-{
-    struct cache *cache = cache_create(4, secret);
-    const struct handle handle = keep(cache, 7, 2);
-    const struct handle again = keep(cache, 7, 2);
-    assert_true(handle_equal(&handle, &again));
-    assert_true(find(cache, handle) == 2);
-    const struct cache_counts counts = cache_counts(cache);
-    assert_int_equal(counts.bodies, 1);
-    assert_int_equal(counts.frames, 1);
-    assert_int_equal(counts.frame_capacity, 4);
-    assert_int_equal(counts.ids, 1);
-    assert_int_equal(counts.misses, 1);
-    assert_int_equal(counts.hits, 2);
-    cache_destroy(cache);
-}
-
 /* As other programs compute it. */
 static void a_body_is_found_by_its_handle(void **state)
 {
@@ -102,63 +85,6 @@ static void unknown_handles_are_not_found(void **state)
     cache_destroy(cache);
 }
 
-/* The ids of bodies do not matter, nor whether there are any. */
-static void ids_share_a_body(void **state)
-{
-    struct cache *cache = cache_create(4, secret);
-    const struct handle handle = keep(cache, 1, 2);
-    for (int64_t id = 0; id <= 3; id++) {
-        const struct handle other = keep(cache, id, 2);
-        assert_true(handle_equal(&handle, &other));
-    }
-    assert_int_equal(cache_counts(cache).bodies, 1);
-    assert_int_equal(cache_counts(cache).misses, 1);
-    assert_int_equal(cache_counts(cache).ids, 3);
-    cache_destroy(cache);
-}
-
-/* As two clients do that number their bodies from 1, or one whose body changes to and fro. */
-static void an_id_may_have_two_bodies(void **state)
-{
-    struct cache *cache = cache_create(20, secret);
-    struct handle handle[2][10];
-    for (int round = 0; round < 5; round++)
-        for (int body = 0; body < 2; body++)
-            for (int id = 0; id < 10; id++) {
-                const struct handle now = keep(cache, 1 + id, 1 + id + 0.5 * body);
-                assert_true(round == 0 || handle_equal(&now, &handle[body][id]));
-                handle[body][id] = now;
-            }
-    assert_int_equal(cache_counts(cache).misses, 20);
-    assert_int_equal(cache_counts(cache).hits, 80);
-    assert_int_equal(cache_counts(cache).ids, 10);
-    for (int id = 0; id < 10; id++)
-        assert_true(find(cache, handle[0][id]) == 1 + id && find(cache, handle[1][id]) == 1.5 + id);
-    cache_destroy(cache);
-}
-
-static void bodies_are_compared_bit_by_bit(void **state)
-{
-    struct cache *cache = cache_create(8, secret);
-    struct plain_frame frame = {.shape = FMB_CUBOID, .components = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-    unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
-    struct handle handle[5];
-    for (int i = 0; i < 5; i++) {
-        frame.components[1] = i == 1 ? -0.0 : 0;
-        frame.components[8] = i == 2 ? 1 + 0x1p-52 : 1;
-        frame.shape = i == 3 ? FMB_TETRAHEDRON : FMB_CUBOID;
-        const struct body_view geometry = geometry_write(i == 4 ? 2 : 3, &frame, bytes);
-        handle[i] = keep_geometry(cache, 1, &geometry);
-        const struct cached *cached = cache_peek(cache, &handle[i]);
-        assert_int_equal(cached->body.dim, i == 4 ? 2 : 3);
-        assert_int_equal(cached->body.one.shape, frame.shape);
-        for (int other = 0; other < i; other++)
-            assert_false(handle_equal(&handle[i], &handle[other]));
-    }
-    assert_int_equal(cache_counts(cache).bodies, 5);
-    cache_destroy(cache);
-}
-
 /* The body of an id is the one it was before only if no bit of any number has changed. */
 static void each_number_of_a_body_counts(void **state)
 {
@@ -176,34 +102,6 @@ static void each_number_of_a_body_counts(void **state)
         assert_false(handle_equal(&before, &after));
     }
     assert_int_equal(cache_counts(cache).bodies, 1 + NUMBERS);
-    cache_destroy(cache);
-}
-
-static void the_least_recently_used_is_evicted(void **state)
-{
-    struct cache *cache = cache_create(3, secret);
-    struct handle handle[5];
-    for (int id = 1; id <= 3; id++)
-        handle[id] = keep(cache, id, id);
-    assert_true(find(cache, handle[1]) == 1);       /* by handle: used */
-    keep(cache, 2, 2);                              /* whole: used */
-    assert_non_null(cache_peek(cache, &handle[3])); /* not a use */
-    handle[4] = keep(cache, 4, 4);
-    assert_true(find(cache, handle[3]) == 0);
-    for (int id = 1; id <= 4; id++)
-        if (id != 3)
-            assert_true(find(cache, handle[id]) == id);
-    assert_int_equal(cache_counts(cache).evictions, 1);
-    assert_int_equal(cache_counts(cache).bodies, 3);
-    cache_destroy(cache);
-}
-
-static void a_cache_of_one_frame_holds_one(void **state)
-{
-    struct cache *cache = cache_create(1, secret);
-    const struct handle one = keep(cache, 1, 1), two = keep(cache, 2, 2);
-    assert_true(find(cache, one) == 0);
-    assert_true(find(cache, two) == 2);
     cache_destroy(cache);
 }
 
@@ -291,32 +189,6 @@ static void pages_have_all_bodies(void **state)
     cache_destroy(cache);
 }
 
-/* Any placement may be prefetched, of which nothing has been checked. */
-static void prefetching_changes_nothing(void **state)
-{
-    struct cache *cache = cache_create(4, secret);
-    struct query_placement placement = {.placed.id = INT64_MIN};
-    cache_prefetch(cache, &placement);
-    placement.placed.id = 1;
-    cache_prefetch(cache, &placement);
-    placement.body.handle = keep(cache, 1, 1);
-    cache_prefetch(cache, &placement);
-    for (placement.body.frame_count = 1; placement.body.frame_count < 3;
-         placement.body.frame_count++)
-        cache_prefetch(cache, &placement);
-    assert_int_equal(cache_counts(cache).hits, 0);
-    cache_destroy(cache);
-}
-
-static void memory_taken_is_as_it_was(void **state)
-{
-    struct cache *cache = cache_create(1000, secret);
-    const struct handle handle = keep(cache, 1, 1);
-    cache_prefault(cache);
-    assert_true(find(cache, handle) == 1);
-    cache_destroy(cache);
-}
-
 /* ---- Bodies of several frames, and in use ---- */
 
 enum { FRAMES_MAX = 40 };
@@ -359,26 +231,6 @@ static bool has_boxes(struct cache *cache, const struct handle *handle, int coun
     assert_int_equal(cached->view.size, geometry.size);
     assert_memory_equal(cached->view.bytes, geometry.bytes, geometry.size);
     return true;
-}
-
-/* A body takes as many frames of the capacity as it has. */
-static void the_capacity_counts_frames(void **state)
-{
-    struct cache *cache = cache_create(40, secret);
-    struct handle handle[5];
-    for (int i = 0; i < 5; i++) {
-        handle[i] = keep_boxes(cache, 1 + i, 10, 1 + i);
-        assert_int_equal(cache_counts(cache).frames, i < 4 ? 10 * (i + 1) : 40);
-    }
-    assert_false(has_boxes(cache, &handle[0], 10, 1));
-    for (int i = 1; i < 5; i++)
-        assert_true(has_boxes(cache, &handle[i], 10, 1 + i));
-    assert_int_equal(cache_counts(cache).bodies, 4);
-    assert_int_equal(cache_counts(cache).evictions, 1);
-    const struct handle again = keep_boxes(cache, 9, 10, 5);
-    assert_true(handle_equal(&again, &handle[4]));
-    assert_int_equal(cache_counts(cache).hits, 1);
-    cache_destroy(cache);
 }
 
 /* A hull takes one frame of the capacity, and one for each 8 vertices. Its vertices move with it:
@@ -481,26 +333,6 @@ static void bodies_in_use_stay(void **state)
     cache_release(cache, used);
     keep_boxes(cache, 4, 30, 1);
     assert_null(cache_peek(cache, &handle));
-    cache_destroy(cache);
-}
-
-/* All frames are in use: nothing can be kept, and the id leads nowhere. */
-static void bodies_in_use_are_not_evicted(void **state)
-{
-    struct cache *cache = cache_create(2, secret);
-    const struct cached *used[2];
-    for (int i = 0; i < 2; i++) {
-        struct body_view geometry = cuboid(1 + i, 1);
-        used[i] = cache_intern(cache, 1 + i, &geometry);
-    }
-    struct body_view geometry = cuboid(3, 1);
-    assert_null(cache_intern(cache, 3, &geometry));
-    assert_int_equal(cache_counts(cache).bodies, 2);
-    assert_int_equal(cache_counts(cache).evictions, 0);
-    cache_release(cache, used[1]);
-    keep_geometry(cache, 3, &geometry);
-    assert_int_equal(cache_counts(cache).evictions, 1);
-    cache_release(cache, used[0]);
     cache_destroy(cache);
 }
 
@@ -615,26 +447,16 @@ static void bodies_chosen_to_collide(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_second_use_is_a_hit),
         cmocka_unit_test(a_body_is_found_by_its_handle),
         cmocka_unit_test(unknown_handles_are_not_found),
-        cmocka_unit_test(ids_share_a_body),
-        cmocka_unit_test(an_id_may_have_two_bodies),
-        cmocka_unit_test(bodies_are_compared_bit_by_bit),
         cmocka_unit_test(each_number_of_a_body_counts),
-        cmocka_unit_test(the_least_recently_used_is_evicted),
-        cmocka_unit_test(a_cache_of_one_frame_holds_one),
         cmocka_unit_test(ids_of_evicted_bodies_are_forgotten),
         cmocka_unit_test(the_cache_matches_a_list),
         cmocka_unit_test(pages_have_all_bodies),
-        cmocka_unit_test(prefetching_changes_nothing),
-        cmocka_unit_test(memory_taken_is_as_it_was),
-        cmocka_unit_test(the_capacity_counts_frames),
         cmocka_unit_test(the_capacity_counts_vertices),
         cmocka_unit_test(a_large_body_among_small_ones),
         cmocka_unit_test(more_frames_than_the_capacity),
         cmocka_unit_test(bodies_in_use_stay),
-        cmocka_unit_test(bodies_in_use_are_not_evicted),
         cmocka_unit_test(bodies_of_all_sizes),
         cmocka_unit_test(ids_chosen_to_collide),
         cmocka_unit_test(bodies_chosen_to_collide),
