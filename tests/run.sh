@@ -14,13 +14,15 @@ log=build/tests.log
 limit=600 # seconds a suite may take before it has failed
 
 # Two builds. Release: every suite. Sanitizers, of clang: unit tests, fuzzers, the goldens, which another
-# compiler must reproduce, and the suites that take the programs furthest.
+# compiler must reproduce, and the suites that take the programs furthest; without the kernels of newer
+# instruction sets, which are the same source and take long to compile.
 release=build
-asan=build/asan-clang
+asan=build/asan-clang-two
 sanitized='system/service.bats system/daemon.bats system/record.bats system/replay_bus.bats'
 sanitized="$sanitized system/soak.bats cli/query.bats cli/record.bats cli/replay.bats cli/mesh.bats"
 
-# Of the release build, those that wait more than they compute: they begin while the other one is compiled.
+# Of the release build, those that wait more than they compute: they begin as soon as the programs are there,
+# while unit tests and the other build are compiled.
 waiting='cli/page.bats system/replay_bus.bats system/daemon.bats system/service.bats system/record.bats'
 waiting="$waiting system/examples.bats"
 
@@ -200,12 +202,15 @@ run_suites() {
 rm -rf "$log"
 mkdir -p "$log"
 rm -rf $release/tests $asan/tests
-build PEERS=none headers layers ${FMB_FAST:+fast-}tests
 if [ -z "${FMB_FAST-}" ]; then
+    build PEERS=none tested-programs examples
     list_release | awk -v those=" $waiting " 'index(those, " " $3 " ")' > "$log/waiting"
     run_suites "$log/waiting" 1 &
     beside=$!
-    build MODE=asan programs unit-tests fuzzers replay-set
+fi
+build PEERS=none headers layers ${FMB_FAST:+fast-}tests
+if [ -z "${FMB_FAST-}" ]; then
+    build MODE=asan INSTRUCTIONS=two programs unit-tests fuzzers replay-set
     [ ! -d build/aarch64/usr ] || build aarch64
 fi
 touch "$log/waiting"

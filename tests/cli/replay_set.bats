@@ -25,6 +25,7 @@ setup() {
     replays_the_set "$FMB_BUILD/capped/fmb-two"
 }
 
+# bats test_tags=release
 @test "the set replays without differences with AVX2" {
     need_set avx2
     replays_the_set "$FMB_BUILD/capped/fmb-avx2"

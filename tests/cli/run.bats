@@ -56,8 +56,8 @@ echo "make $*" >> "$called"
 case $* in
 *MODE=asan*)
     until_called build "$awaited"
-    mkdir -p build/asan-clang/tests
-    cp build/netns build/asan-clang
+    mkdir -p build/asan-clang-two/tests
+    cp build/netns build/asan-clang-two
     echo "made" >> "$called"
     exit "${asan_code:-0}" ;;
 esac
@@ -65,14 +65,14 @@ END
     chmod +x tree/build/netns tools/*
 }
 
-@test "suites that wait run beside the second build, and each runs once in each build that has it" {
+@test "suites that wait run beside the builds, and each runs once in each build that has it" {
     small_tree
     awaited=5 PATH=$PWD/tools:$PATH run env -u FMB_FAST tree/tests/run.sh
     ended 0
     [ "${lines[-1]}" = '22 passed, 0 failed' ]
     [ "$(sed -n '/MODE=asan/,/^made/p' "$called" | grep -c '^build ')" = 5 ]
     [ "$(grep -v -e ^ma "$called" | sort | uniq -d)" = '' ]
-    [ "$(grep -c '^build/asan-clang ' "$called")" = 11 ]
+    [ "$(grep -c '^build/asan-clang-two ' "$called")" = 11 ]
 }
 
 @test "a second build that fails is one failure, and no further suite begins" {
