@@ -1,8 +1,6 @@
 #include "compare.h"
 
-#include "allocate.h"
 #include "big_endian.h"
-#include "geometry.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -43,37 +41,14 @@ static double largest(const double *number, int count, double most)
 
 /* ---- The largest coordinate of a query ---- */
 
-/* The largest distance of a corner from the origin of the body: of a vertex, or at most |origin|
- * and the components together on each axis. */
-static double frame_reach(int dim, const struct geometry_frame *frame, const double *number)
+/* 0: the geometry is not known, or the engine refuses it. */
+static double body_reach(const struct body_view *view)
 {
-    double most = 0, axis[FMB_DIM_MAX] = {0};
-    for (size_t i = 0; i < frame->count; i += (size_t) dim) {
-        double distance = 0;
-        for (int k = 0; k < dim; k++) {
-            axis[k] = frame->by_vertices ? fabs(number[i + (size_t) k])
-                                         : axis[k] + fabs(number[i + (size_t) k]);
-            distance = hypot(distance, axis[k]); /* squares could overflow */
-        }
-        most = fmax(most, distance);
-    }
-    return most;
-}
-
-/* 0: the geometry is not known. */
-static double body_reach(const struct body_view *body)
-{
-    double most = 0, *number = NULL;
-    size_t capacity = 0;
-    struct geometry_frame frame;
-    for (struct geometry_reader reader = geometry_begin(body); geometry_next(&reader, &frame);) {
-        number = allocate_grow(number, &capacity, frame.count, sizeof *number);
-        geometry_numbers(&frame, number);
-        const double reach = frame_reach(body->dim, &frame, number);
-        most = largest(&reach, 1, most);
-    }
-    free(number);
-    return most;
+    struct owned_scene memory = {.dim = 0};
+    const struct fmb_body *body = view->frame_count > 0 ? body_of_view(view, &memory) : NULL;
+    const double reach = body && isfinite(body->reach) ? body->reach : 0;
+    scene_clear(&memory);
+    return reach;
 }
 
 static double largest_coordinate(const struct logged_query *query, double duration)

@@ -64,13 +64,13 @@ static void put_elements(struct json_writer *json, struct text *text)
 
 /* ---- The page -------------------------------------------------------------------------------- */
 
-enum { LIST_NOTES, LIST_LOGS, LIST_SHAPES, LIST_STEPS, LISTS };
-static const char *const list_name[LISTS] = {"notes", "logs", "shapes", "steps"};
+enum { LIST_NOTES, LIST_SHAPES, LIST_STEPS, LISTS };
+static const char *const list_name[LISTS] = {"notes", "shapes", "steps"};
 
 /* The order in which the pairs of a step are kept. */
 enum rank { RANK_DIFFERENT, RANK_NEAR, RANK_FAR, RANK_COUNT };
 
-/* A shape or a log, which many steps have, and which is written once. */
+/* A shape, which many bodies have, and which is written once. */
 struct element {
     size_t index;
     UT_hash_handle hh;
@@ -89,7 +89,7 @@ struct page {
     int64_t pairs_max;
     struct text data; /* an object: kind, title and sides */
     struct text list[LISTS];
-    struct element *element[LISTS]; /* owned: hash tables */
+    struct element *shapes; /* owned: hash table */
     int64_t step_count, left_out, left_out_different;
     double left_out_time[2];
     double end;        /* of the window of the last scene of page_scene_begin() */
@@ -135,13 +135,12 @@ void page_close(struct page *page)
         return;
     text_close(&page->data);
     text_close(&page->shape);
-    for (int list = 0; list < LISTS; list++) {
+    for (int list = 0; list < LISTS; list++)
         text_close(&page->list[list]);
-        HASH_ITER(hh, page->element[list], at, next)
-        {
-            HASH_DEL(page->element[list], at);
-            free(at);
-        }
+    HASH_ITER(hh, page->shapes, at, next)
+    {
+        HASH_DEL(page->shapes, at);
+        free(at);
     }
     for (int rank = 0; rank < RANK_COUNT; rank++)
         text_close(&page->pairs[rank]);
@@ -149,19 +148,19 @@ void page_close(struct page *page)
     free(page);
 }
 
-/* Returns the index in a list of the JSON in page->shape, which is added if it is new. */
-static int64_t index_of(struct page *page, int list)
+/* Returns the index of the JSON in page->shape, which is added if it is new. */
+static int64_t shape_index(struct page *page)
 {
     const size_t size = text_size(&page->shape);
     struct element *found;
-    HASH_FIND(hh, page->element[list], page->shape.bytes, size, found);
+    HASH_FIND(hh, page->shapes, page->shape.bytes, size, found);
     if (found)
         return (int64_t) found->index;
     found = allocate(1, sizeof *found + size);
     memcpy(found->key, page->shape.bytes, size);
-    found->index = HASH_COUNT(page->element[list]);
-    HASH_ADD_KEYPTR(hh, page->element[list], found->key, size, found);
-    put_elements(&page->list[list].json, &page->shape);
+    found->index = HASH_COUNT(page->shapes);
+    HASH_ADD_KEYPTR(hh, page->shapes, found->key, size, found);
+    put_elements(&page->list[LIST_SHAPES].json, &page->shape);
     return (int64_t) found->index;
 }
 
@@ -174,7 +173,7 @@ static int64_t shape_of(struct page *page, const struct fmb_body *body)
     json_integer(&page->shape.json, "dim", body->dim);
     scene_json_frames(&page->shape.json, body);
     json_end(&page->shape.json, '}');
-    return index_of(page, LIST_SHAPES);
+    return shape_index(page);
 }
 
 static void add_body(struct page *page, const struct body *body)
@@ -303,8 +302,9 @@ static bool may_keep(struct page *page, bool differs)
     return page->full_bytes == 0 || (differs && bytes - page->full_bytes < PAGE_DIFFERENT_BYTES);
 }
 
-void page_step_begin(struct page *page, const struct page_step *step)
+struct json_writer *page_step_begin(struct page *page, const struct page_step *step)
 {
+    struct json_writer *json = &page->list[LIST_STEPS].json;
     page->step_count++;
     page->keeps = may_keep(page, step->differs);
     if (!page->keeps) {
@@ -313,7 +313,7 @@ void page_step_begin(struct page *page, const struct page_step *step)
         page->left_out_time[0] = fmin(page->left_out_time[0], step->time);
         page->left_out_time[1] = fmax(page->left_out_time[1], step->time);
         page->left_out_different += step->differs;
-        return;
+        return NULL;
     }
     page->step = *step;
     page->body_count = 0;
@@ -321,6 +321,19 @@ void page_step_begin(struct page *page, const struct page_step *step)
         text_rewind(&page->pairs[rank]);
         page->pair_count[rank] = 0;
     }
+    json_break(json, "\n");
+    json_begin(json, NULL, '{');
+    json->digits = 0;
+    json_number(json, "t", step->time);
+    json_number(json, "duration", step->duration);
+    if (step->margin > 0)
+        json_number(json, "margin", step->margin);
+    json->digits = DIGITS;
+    if (step->label && *step->label)
+        json_string(json, "label", step->label);
+    if (step->differs)
+        json_bool(json, "differs", true);
+    return json;
 }
 
 void page_scene_begin(struct page *page, const struct fmb_scene *scene)
@@ -332,39 +345,6 @@ void page_scene_begin(struct page *page, const struct fmb_scene *scene)
     for (size_t i = 0; i < scene->placement_count; i++)
         page_body(page, &scene->placements[i], NULL);
     page->end += scene->duration;
-}
-
-static void put_result(struct json_writer *json, const struct page_result *result)
-{
-    if (!result->given) {
-        json_null(json, NULL);
-        return;
-    }
-    json_begin(json, NULL, '{');
-    if (result->error)
-        json_string(json, "error", result->error);
-    if (result->method)
-        json_string(json, "method", result->method);
-    json_integer(json, "compute_ns", result->compute_ns);
-    json_integers(json, "counts", &result->count[FMB_SEPARATED], FMB_OVERLAPPING);
-    json_end(json, '}');
-}
-
-static void put_recording(struct page *page, struct json_writer *json)
-{
-    const struct page_step *step = &page->step;
-    text_rewind(&page->shape);
-    json_string(&page->shape.json, NULL, step->log);
-    json_integer(json, "log", index_of(page, LIST_LOGS));
-    json_integer(json, "event", step->event);
-    json_integer(json, "offset", step->offset);
-    json_string(json, "outcome", step->outcome);
-    if (step->differs)
-        json_bool(json, "differs", true);
-    json_begin(json, "result", '[');
-    for (int side = 0; side < 2; side++)
-        put_result(json, &step->result[side]);
-    json_end(json, ']');
 }
 
 /* Returns how many pairs that differ or are near were left out. */
@@ -390,26 +370,9 @@ static int64_t put_pairs(struct page *page, struct json_writer *json)
 
 void page_step_end(struct page *page)
 {
-    const struct page_step *step = &page->step;
     struct json_writer *json = &page->list[LIST_STEPS].json;
     if (!page->keeps)
         return;
-    json_break(json, "\n");
-    json_begin(json, NULL, '{');
-    json->digits = 0;
-    json_number(json, "t", step->time);
-    json_number(json, "duration", step->duration);
-    if (step->margin > 0)
-        json_number(json, "margin", step->margin);
-    json->digits = DIGITS;
-    if (step->label && *step->label)
-        json_string(json, "label", step->label);
-    if (step->all)
-        json_bool(json, "all", true);
-    if (step->note)
-        json_string(json, "note", step->note);
-    if (step->log)
-        put_recording(page, json);
     put_bodies(page, json);
     const int64_t dropped = put_pairs(page, json);
     if (dropped > 0)
@@ -443,7 +406,7 @@ void page_mesh(struct page *page, const struct page_mesh *mesh)
     json_end(json, '}');
     if (mesh->velocity)
         memcpy(body.placed.velocity, mesh->velocity, sizeof body.placed.velocity);
-    body.shape = index_of(page, LIST_SHAPES);
+    body.shape = shape_index(page);
     add_body(page, &body);
 }
 

@@ -53,31 +53,17 @@ void page_close(struct page *page); /* may be NULL */
 
 /* ---- Steps ---- */
 
-/* What was answered to a whole query. */
-struct page_result {
-    bool given;
-    const char *error;  /* NULL: answered */
-    const char *method; /* NULL: not known */
-    int64_t compute_ns;
-    int64_t count[FMB_OVERLAPPING + 1]; /* [verdict] of pairs */
-};
-
 struct page_step {
     double time;       /* of the begin of the window, seconds since the begin of the page */
     double duration;   /* of the window, seconds */
     double margin;     /* 0: none */
     const char *label; /* NULL or "": none */
-    bool all;          /* pairs of these bodies that are not given are separated */
-    const char *note;  /* NULL: none */
-    /* Of a recording: */
-    const char *log; /* path; NULL: none */
-    int64_t event, offset;
-    const char *outcome; /* how the answers then and now compare, shown as it is */
-    bool differs;
-    struct page_result result[2]; /* [then, now] */
+    bool differs;      /* the answers then and now do */
 };
 
-void page_step_begin(struct page *page, const struct page_step *step);
+/* Returns what writes more members of the step, until the first body is added; NULL: the page keeps
+ * no more steps, and the other functions have no effect. */
+struct json_writer *page_step_begin(struct page *page, const struct page_step *step);
 
 /* Adds a body. missing: NULL; or why the body cannot be drawn: then only id and name are read. */
 void page_body(struct page *page, const struct fmb_placement *placement, const char *missing);

@@ -3,6 +3,8 @@
 #include <inttypes.h>
 #include <string.h>
 
+enum { NOTE_MAX = 100 };
+
 /* Logs also contain queries that were refused: their bodies may be none. */
 static void add_body(struct page *page, const struct exchange *exchange, int32_t i)
 {
@@ -25,19 +27,26 @@ static void add_body(struct page *page, const struct exchange *exchange, int32_t
     scene_clear(&memory);
 }
 
-static struct page_result result_of(const struct exchange *exchange)
+static void put_result(struct json_writer *json, const struct exchange *exchange)
 {
-    struct page_result out = {.given = exchange->result};
-    if (!out.given)
-        return out;
-    const struct result_head *head = &exchange->result->head;
-    const struct fmb_method *by = head->method ? fmb_method_by_number(head->method) : NULL;
-    out.error = head->status == FMB_OK ? NULL : fmb_status_text(head->status);
-    out.method = by ? by->name : NULL;
-    out.compute_ns = head->compute_ns;
-    if (exchange->fits && head->status == FMB_OK)
-        memcpy(out.count, exchange_count(exchange).verdict, sizeof out.count);
-    return out;
+    const struct fmb_client_result *of = &exchange->of;
+    if (!exchange->result) {
+        json_null(json, NULL);
+        return;
+    }
+    const int method = exchange->result->head.method;
+    const struct fmb_method *by = method ? fmb_method_by_number(method) : NULL;
+    struct exchange_counts counts = {{0}};
+    if (exchange->fits && of->status == FMB_OK)
+        counts = exchange_count(exchange);
+    json_begin(json, NULL, '{');
+    if (of->status != FMB_OK)
+        json_string(json, "error", fmb_status_text(of->status));
+    if (by)
+        json_string(json, "method", by->name);
+    json_integer(json, "compute_ns", of->compute_ns);
+    json_integers(json, "counts", &counts.verdict[FMB_SEPARATED], FMB_OVERLAPPING);
+    json_end(json, '}');
 }
 
 static bool is_different(const struct exchange_pair *pair)
@@ -54,46 +63,67 @@ static bool certificates_differ(const struct exchange *then, const struct exchan
            (a && b ? strcmp(a, b) != 0 : a != b);
 }
 
-void page_take(struct page *page, const struct page_replayed *replayed, struct exchange *then,
-               struct exchange *now)
+/* What is said about the step as a whole; "": nothing. */
+static void note_of(const struct exchange *then, const struct exchange *now, char out[NOTE_MAX])
+{
+    *out = 0;
+    if (now->query->kind == LOG_PAIR_QUERY) {
+        if (certificates_differ(then, now))
+            strcpy(out, "The certificates differ.");
+        return;
+    }
+    const struct scene_query *scene = &now->query->scene;
+    const int64_t total = query_pair_count(scene), end = now->of.end_pair;
+    if (scene->first_pair > 0 || end < total)
+        snprintf(out, NOTE_MAX, "Pairs %" PRId32 " to %" PRId64 " of %" PRId64 ".",
+                 scene->first_pair, end, total);
+}
+
+static void put_step(struct json_writer *json, const struct page_replayed *replayed,
+                     const struct exchange *then, const struct exchange *now)
 {
     static const char *const outcome[REPLAY_OUTCOMES] = {
         "same",     "different",         "busy", "unknown body", "not defined",
         "not held", "no result recorded"};
     const struct logged_query *query = now->query;
-    const struct scene_query *scene = query->kind == LOG_SCENE_QUERY ? &query->scene : NULL;
+    char note[NOTE_MAX];
+    note_of(then, now, note);
+    if (query->kind == LOG_SCENE_QUERY && query->scene.which != FMB_PAIRS_LISTED &&
+        (*replayed->note || !*note))
+        json_bool(json, "all", true);
+    if (*replayed->note || *note)
+        json_string(json, "note", *replayed->note ? replayed->note : note);
+    json_string(json, "log", replayed->log);
+    json_integer(json, "event", replayed->place.number);
+    json_integer(json, "offset", replayed->place.offset);
+    json_string(json, "outcome", outcome[replayed->outcome]);
+    json_begin(json, "result", '[');
+    put_result(json, then);
+    put_result(json, now);
+    json_end(json, ']');
+}
+
+void page_take(struct page *page, const struct page_replayed *replayed, struct exchange *then,
+               struct exchange *now)
+{
+    const struct logged_query *query = now->query;
+    const bool is_scene = query->kind == LOG_SCENE_QUERY;
+    const struct page_step step = {
+        .time = ((double) replayed->place.utime - (double) replayed->begin) / 1e6,
+        .duration = is_scene ? query->scene.duration : query->pair.duration,
+        .margin = is_scene ? query->scene.margin : 0,
+        .label = is_scene ? query->scene.label : NULL,
+        .differs = replayed->outcome == REPLAY_DIFFERENT};
+    struct json_writer *json = page_step_begin(page, &step);
+    if (!json)
+        return;
     exchange_begin(then);
     exchange_begin(now);
-    struct page_step step = {
-        .time = ((double) replayed->place.utime - (double) replayed->begin) / 1e6,
-        .duration = scene ? scene->duration : query->pair.duration,
-        .margin = scene ? scene->margin : 0,
-        .label = scene ? scene->label : NULL,
-        .all = scene && scene->which != FMB_PAIRS_LISTED,
-        .log = replayed->log,
-        .event = replayed->place.number,
-        .offset = replayed->place.offset,
-        .outcome = outcome[replayed->outcome],
-        .differs = replayed->outcome == REPLAY_DIFFERENT,
-        .result = {result_of(then), result_of(now)}};
-    char note[100];
+    put_step(json, replayed, then, now);
     if (*replayed->note) {
-        step.note = replayed->note;
         *then = (struct exchange){.query = query}; /* its pairs are of another scene */
         exchange_begin(then);
-    } else if (!scene) {
-        if (certificates_differ(then, now))
-            step.note = "The certificates differ.";
-    } else {
-        const int64_t total = query_pair_count(scene), end = now->of.end_pair;
-        if (scene->first_pair > 0 || end < total) {
-            snprintf(note, sizeof note, "Pairs %" PRId32 " to %" PRId64 " of %" PRId64 ".",
-                     scene->first_pair, end, total);
-            step.note = note;
-            step.all = false;
-        }
     }
-    page_step_begin(page, &step);
     for (int32_t i = 0; i < query->placement_count; i++)
         add_body(page, now, i);
     struct exchange *const both[2] = {then, now};

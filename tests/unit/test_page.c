@@ -123,11 +123,10 @@ static const double zero[3];
 
 static void begin_step(struct page *page, double time, bool differs)
 {
-    page_step_begin(page, &(struct page_step){.time = time,
-                                              .duration = 1,
-                                              .log = "a.log",
-                                              .outcome = "compared",
-                                              .differs = differs});
+    struct json_writer *json =
+        page_step_begin(page, &(struct page_step){.time = time, .duration = 1, .differs = differs});
+    if (json)
+        json_string(json, "outcome", "compared");
 }
 
 static void add_pair(struct page *page, unsigned a, unsigned b, enum fmb_verdict verdict)
@@ -153,7 +152,6 @@ static void shapes_are_stored_once(void **state)
     expect_json(member(cJSON_GetArrayItem(member(data, "steps"), 2), "bodies"),
                 "[{\"id\":1,\"name\":\"table\",\"shape\":0,\"position\":[0,0,0]},"
                 "{\"id\":3,\"shape\":0,\"position\":[0,0,0]}]");
-    expect_json(member(data, "logs"), "[\"a.log\"]");
     assert_int_equal(cJSON_GetArraySize(member(data, "steps")), 3);
     cJSON_Delete(data);
 }
@@ -246,11 +244,7 @@ static void hostile_texts_end_neither_script_nor_page(void **state)
     struct page *page = page_open(
         &(struct page_options){.kind = PAGE_REPLAY, .title = hostile, .sides = {hostile, hostile}});
     page_note(page, hostile);
-    page_step_begin(page, &(struct page_step){.label = hostile,
-                                              .note = hostile,
-                                              .log = hostile,
-                                              .outcome = hostile,
-                                              .result = {{.given = true, .error = hostile}}});
+    json_string(page_step_begin(page, &(struct page_step){.label = hostile}), "note", hostile);
     add_box(page, 1, hostile, zero);
     page_body(page, &(struct fmb_placement){.id = 2, .name = hostile}, hostile);
     page_step_end(page);

@@ -174,7 +174,7 @@ function drawDetail() {
         addComparison(list, pair);
     addFact(list, "label", step.label);
     if (step.outcome)
-        addFact(list, "query", `event ${step.event} at byte ${step.offset} of ${data.logs[step.log]}: ${step.outcome}`, step.differs);
+        addFact(list, "query", `event ${step.event} at byte ${step.offset} of ${step.log}: ${step.outcome}`, step.differs);
     step.result?.forEach((result, side) => result && addFact(list, data.sides[side], resultText(result)));
     addFact(list, "note", step.note);
     addFact(list, "left out", step.more && `${step.more} more pairs of this step`);
