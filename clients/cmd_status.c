@@ -9,6 +9,7 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
 static const char usage[] =
     "usage: fmb status [OPTIONS]\n"
@@ -34,19 +35,41 @@ struct status {
 
 /* ---- Printing ---- */
 
+/* The name of a status in the counter of its results, and its number. */
+struct counted_status {
+    const char *name;
+    int number;
+};
+
+/* NULL: the counter is not one of results. */
+static const struct counted_status *status_of(const struct fmb_client_counter *counter)
+{
+    static const char prefix[] = "result_";
+    static const struct counted_status statuses[] = {
+#define X(name, number, text) {#name, number},
+        FMB_STATUS_MAP(X)
+#undef X
+    };
+    for (size_t i = 0; i < FMB_STATUS_COUNT; i++)
+        if (strncmp(counter->name, prefix, strlen(prefix)) == 0 &&
+            strcmp(counter->name + strlen(prefix), statuses[i].name) == 0)
+            return &statuses[i];
+    return NULL;
+}
+
 static void print_json(const struct fmb_client_heartbeat *status)
 {
     struct json_writer json = json_object(stdout);
     json_integer(&json, "utime", status->utime);
     json_integer(&json, "server_id", status->server_id);
     json_string(&json, "version", status->version);
-#define X(name) json_integer(&json, #name, status->name);
-    FMB_COUNTERS(X)
-#undef X
+    for (size_t i = 0; i < status->counter_count; i++)
+        if (!status_of(&status->counters[i]))
+            json_integer(&json, status->counters[i].name, status->counters[i].value);
     json_begin(&json, "results", '{');
-#define X(name, number, text) json_integer(&json, #name, status->results[number]);
-    FMB_STATUS_MAP(X)
-#undef X
+    for (size_t i = 0; i < status->counter_count; i++)
+        if (status_of(&status->counters[i]))
+            json_integer(&json, status_of(&status->counters[i])->name, status->counters[i].value);
     json_end(&json, '}');
     json_object_end(&json);
 }
@@ -65,46 +88,60 @@ static void print_duration(int64_t microseconds)
 
 static void print_refusals(const struct fmb_client_heartbeat *status)
 {
-    for (int i = 0; i < FMB_STATUS_COUNT; i++)
-        if (i != FMB_OK && status->results[i] > 0)
-            printf("  %-16s %15" PRId64 "  %s\n", "  refused", status->results[i],
-                   fmb_status_text(i));
+    for (size_t i = 0; i < status->counter_count; i++) {
+        const struct counted_status *of = status_of(&status->counters[i]);
+        if (of && of->number != FMB_OK && status->counters[i].value > 0)
+            printf("  %-16s %15" PRId64 "  %s\n", "  refused", status->counters[i].value,
+                   fmb_status_text(of->number));
+    }
+}
+
+static void print_counter(const char *label, const struct fmb_client_heartbeat *status,
+                          const char *name)
+{
+    number_print(label, fmb_client_get_counter(status, name));
+}
+
+static void print_time(const char *label, const struct fmb_client_heartbeat *status,
+                       const char *name)
+{
+    printf("  %-16s %15.1f us\n", label, 1e-3 * (double) fmb_client_get_counter(status, name));
 }
 
 static void print_text(const struct fmb_client_heartbeat *status)
 {
     printf("fmbd %s, server %" PRId64 ", up ", status->version, status->server_id);
-    print_duration(status->uptime_us);
+    print_duration(fmb_client_get_counter(status, "uptime_us"));
     puts("\nqueries");
-    number_print("received", status->received);
-    number_print("  scenes", status->scenes);
-    number_print("  definitions", status->definitions);
-    number_print("answered", status->answered);
-    number_print("pairs decided", status->pairs);
+    print_counter("received", status, "received");
+    print_counter("  scenes", status, "scenes");
+    print_counter("  definitions", status, "definitions");
+    print_counter("answered", status, "answered");
+    print_counter("pairs decided", status, "pairs");
     print_refusals(status);
-    number_print("not sent", status->unsent);
-    number_print("  expired", status->expired);
-    number_print("  refusals", status->refusals_unsent);
-    number_print("malformed", status->malformed);
-    number_print("in fragments", status->fragmented);
-    number_print("waiting", status->waiting);
-    number_print("  at most", status->most_waiting);
+    print_counter("not sent", status, "unsent");
+    print_counter("  expired", status, "expired");
+    print_counter("  refusals", status, "refusals_unsent");
+    print_counter("malformed", status, "malformed");
+    print_counter("in fragments", status, "fragmented");
+    print_counter("waiting", status, "waiting");
+    print_counter("  at most", status, "most_waiting");
     puts("bodies");
-    number_print("held", status->bodies);
-    number_print("frames", status->frames);
-    number_print("  at most", status->frame_capacity);
-    number_print("ids", status->ids);
-    number_print("hits", status->hits);
-    number_print("misses", status->misses);
-    number_print("evicted", status->evictions);
+    print_counter("held", status, "bodies");
+    print_counter("frames", status, "frames");
+    print_counter("  at most", status, "frame_capacity");
+    print_counter("ids", status, "ids");
+    print_counter("hits", status, "hits");
+    print_counter("misses", status, "misses");
+    print_counter("evicted", status, "evictions");
     puts("time to decide");
-    printf("  %-16s %15.1f us\n", "p50", 1e-3 * (double) status->compute_p50_ns);
-    printf("  %-16s %15.1f us\n", "p99", 1e-3 * (double) status->compute_p99_ns);
-    printf("  %-16s %15.1f us\n", "longest", 1e-3 * (double) status->compute_max_ns);
+    print_time("p50", status, "compute_p50_ns");
+    print_time("p99", status, "compute_p99_ns");
+    print_time("longest", status, "compute_max_ns");
     puts("bus");
-    number_print("receive buffer", status->receive_buffer);
-    number_print("dropped", status->dropped);
-    number_print("own and foreign", status->foreign);
+    print_counter("receive buffer", status, "receive_buffer");
+    print_counter("dropped", status, "dropped");
+    print_counter("own and foreign", status, "foreign");
 }
 
 /* ---- The command ---- */

@@ -163,15 +163,25 @@ static const char *on_status(struct fmb_client *client, const struct bus_message
     const char *error = wire_read_status(message->bytes, (uint32_t) message->size, &status);
     if (error)
         return error;
-    struct fmb_client_heartbeat out = {
-        .utime = status.utime, .server_id = status.server_id, .version = status.version};
-#define X(name) out.name = status.name;
-    FMB_COUNTERS(X)
-#undef X
-    memcpy(out.results, status.results, sizeof out.results);
+    struct fmb_client_counter counters[WIRE_COUNTERS];
+    for (int i = 0; i < WIRE_COUNTERS; i++)
+        counters[i].name = wire_status_counter(&status, i, &counters[i].value);
+    const struct fmb_client_heartbeat out = {.utime = status.utime,
+                                             .server_id = status.server_id,
+                                             .version = status.version,
+                                             .counters = counters,
+                                             .counter_count = WIRE_COUNTERS};
     if (client->watcher.heartbeat)
         client->watcher.heartbeat(client->watcher.user, &out);
     return NULL;
+}
+
+int64_t fmb_client_get_counter(const struct fmb_client_heartbeat *heartbeat, const char *name)
+{
+    for (size_t i = 0; i < heartbeat->counter_count; i++)
+        if (strcmp(heartbeat->counters[i].name, name) == 0)
+            return heartbeat->counters[i].value;
+    return 0;
 }
 
 /* ---- The bus ---- */

@@ -38,7 +38,6 @@
 #define FMB_CLIENT_H
 
 #include "fmb.h"
-#include "fmb_counters.h"
 
 #include <stdint.h>
 
@@ -201,15 +200,23 @@ struct fmb_client_cursor {
 bool fmb_client_next_answer(const struct fmb_client_result *result,
                             struct fmb_client_cursor *cursor, struct fmb_client_answer *out);
 
-/* The counters are those of fmb_counters.h; status_t.lcm defines them. */
+/* status_t.lcm defines the counters. */
+struct fmb_client_counter {
+    const char *name; /* "received"; static */
+    int64_t value;
+};
+
+/* Pointers are valid during the callback. */
 struct fmb_client_heartbeat {
     int64_t utime, server_id;
     const char *version;
-#define X(name) int64_t name;
-    FMB_COUNTERS(X)
-#undef X
-    int64_t results[FMB_STATUS_COUNT]; /* [status]: results sent */
+    /* [counter_count], those that this version knows; 0 if the service does not send it. */
+    const struct fmb_client_counter *counters;
+    size_t counter_count;
 };
+
+/* Returns the value of the counter of this name; 0: there is none. */
+int64_t fmb_client_get_counter(const struct fmb_client_heartbeat *heartbeat, const char *name);
 
 /* Callbacks. Messages whose callback is NULL are not received. */
 struct fmb_client_watcher {

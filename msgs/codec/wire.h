@@ -54,6 +54,16 @@ struct wire_status {
     int64_t results[FMB_STATUS_COUNT]; /* [status] */
 };
 
+/* The counters of a heartbeat: those of fmb_counters.h, and the results of each status. */
+enum {
+#define X(...) +1
+    WIRE_COUNTERS = FMB_COUNTERS(X) FMB_STATUS_MAP(X)
+#undef X
+};
+
+/* Returns the name of counter i, static, and its value. On input: 0 <= i < WIRE_COUNTERS. */
+const char *wire_status_counter(const struct wire_status *status, int i, int64_t *value);
+
 /* Readers. On input: size bytes of payload.
  * On output: NULL and *out; or a static text of what is wrong, and *out unspecified. Texts longer
  * than the struct holds are truncated; counts of statuses from FMB_STATUS_COUNT on are ignored; if

@@ -6,6 +6,7 @@
 
 #include "fmb_msgs_status_t.h"
 
+#include <assert.h>
 #include <stddef.h>
 
 /* Most counters of a heartbeat that is read, which bounds the time to find their names. */
@@ -23,12 +24,18 @@ static const struct {
 #undef X
 };
 
-enum { COUNTERS = sizeof counters / sizeof *counters };
+static_assert(sizeof counters / sizeof *counters == WIRE_COUNTERS, "a counter without a name");
+
+const char *wire_status_counter(const struct wire_status *status, int i, int64_t *value)
+{
+    memcpy(value, (const char *) status + counters[i].at, sizeof *value);
+    return counters[i].name;
+}
 
 /* Sets the counter of this name, if there is one. */
 static void set_counter(struct wire_status *status, const char *name, int64_t value)
 {
-    for (int i = 0; i < COUNTERS; i++)
+    for (int i = 0; i < WIRE_COUNTERS; i++)
         if (strcmp(counters[i].name, name) == 0)
             memcpy((char *) status + counters[i].at, &value, sizeof value);
 }
@@ -56,12 +63,12 @@ size_t wire_write_status(const struct wire_status *status, unsigned char out[WIR
     writer_int64(&writer, status->utime);
     writer_int64(&writer, status->server_id);
     writer_string(&writer, status->version);
-    writer_int32(&writer, COUNTERS);
-    for (int i = 0; i < COUNTERS; i++)
+    writer_int32(&writer, WIRE_COUNTERS);
+    for (int i = 0; i < WIRE_COUNTERS; i++)
         writer_string(&writer, counters[i].name);
-    for (int i = 0; i < COUNTERS; i++) {
+    for (int i = 0; i < WIRE_COUNTERS; i++) {
         int64_t value;
-        memcpy(&value, (const char *) status + counters[i].at, sizeof value);
+        wire_status_counter(status, i, &value);
         writer_int64(&writer, value);
     }
     return writer_end(&writer, out);

@@ -5,7 +5,7 @@
 set -eu
 
 build=$1
-headers='service/fmb/fmb.h msgs/codec/fmb_counters.h clients/lib/fmb_client.h'
+headers='service/fmb/fmb.h clients/lib/fmb_client.h'
 
 for library in libfmb.so.0 libfmb-client.so.0; do
     nm -D --defined-only "$build/$library" | awk -v library=$library '$2 != "A" { print library, $3 }'

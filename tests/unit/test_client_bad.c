@@ -1309,8 +1309,8 @@ static void on_heartbeat(void *user, const struct fmb_client_heartbeat *heartbea
     struct watching *watching = user;
     assert_string_equal(heartbeat->version, fmb_version());
     watching->heartbeats++;
-    watching->served_scenes = heartbeat->scenes;
-    watching->served = heartbeat->received;
+    watching->served_scenes = fmb_client_get_counter(heartbeat, "scenes");
+    watching->served = fmb_client_get_counter(heartbeat, "received");
 }
 
 static void on_malformed(void *user, const char *what)
