@@ -66,7 +66,8 @@ int main(void)
         fmb_client_close(client);
         return 1;
     }
-    const struct fmb_client_counts counts = fmb_client_get_counts(client);
+    struct fmb_client_counts counts;
+    fmb_client_get_counts(client, &counts);
     printf("%d states: %d queries, %d bodies whole, %d by handle\n", STATES, (int) counts.queries,
            (int) counts.whole, (int) counts.by_handle);
     fmb_client_close(client);

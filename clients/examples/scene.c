@@ -23,7 +23,8 @@ static void print(const struct fmb_scene *scene, const unsigned pair[2], int ver
 /* Returns NULL, or what is wrong. */
 static const char *decide_in_process(const struct fmb_scene *scene)
 {
-    const struct fmb_scene_limits limits = fmb_scene_limits_of(scene);
+    struct fmb_scene_limits limits;
+    fmb_scene_limits_of(scene, &limits);
     void *memory = malloc(fmb_scene_bytes(&limits));
     struct fmb_scene_state *state;
     struct fmb_scene_answers answers;

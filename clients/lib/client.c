@@ -307,9 +307,9 @@ struct bus_counts fmb_client_raw_bus_counts(const struct fmb_client *client)
     return bus_counts(client->bus);
 }
 
-struct fmb_client_counts fmb_client_get_counts(const struct fmb_client *client)
+void fmb_client_get_counts(const struct fmb_client *client, struct fmb_client_counts *out)
 {
-    return client->requests.counts;
+    *out = client->requests.counts;
 }
 
 /* ---- Opening and closing ---- */

@@ -163,7 +163,7 @@ struct fmb_client_counts {
     uint64_t whole, by_handle; /* placements sent with frames, and with a handle */
 };
 
-struct fmb_client_counts fmb_client_get_counts(const struct fmb_client *client);
+void fmb_client_get_counts(const struct fmb_client *client, struct fmb_client_counts *out);
 
 /* ---- Listening ---- */
 

@@ -305,7 +305,8 @@ static int decide_batch(struct fmb_flat_scene *flat, const struct fmb_scene *sce
 
 static int decide_steps(struct fmb_flat_scene *flat, const struct fmb_scene *scene)
 {
-    const struct fmb_scene_limits limits = fmb_scene_limits_of(scene);
+    struct fmb_scene_limits limits;
+    fmb_scene_limits_of(scene, &limits);
     struct fmb_scene_state *state;
     struct fmb_scene_answers answers;
     if (!reserve(&flat->memory, fmb_scene_bytes(&limits), 1))

@@ -84,15 +84,22 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
     run->sink(run->user, answer);
 }
 
+static struct fmb_client_counts counts_of(const struct answers_bus *answers)
+{
+    struct fmb_client_counts counts;
+    fmb_client_get_counts(answers->client, &counts);
+    return counts;
+}
+
 /* Whether a service has answered or sent a heartbeat since the bus was opened. Waits for one. */
 static bool service_seen(struct answers_bus *answers)
 {
     int64_t left_ns;
-    while (!answers->heartbeat && fmb_client_get_counts(answers->client).answered == 0 &&
+    while (!answers->heartbeat && counts_of(answers).answered == 0 &&
            (left_ns = answers->heartbeat_by - clock_ns()) > 0)
         if (fmb_client_handle(answers->client, 1e-9 * (double) left_ns) < 0)
             return false;
-    return answers->heartbeat || fmb_client_get_counts(answers->client).answered > 0;
+    return answers->heartbeat || counts_of(answers).answered > 0;
 }
 
 /* Reports each outage once. kind: of the queries. Returns false if no service has ever been seen.
@@ -100,7 +107,7 @@ static bool service_seen(struct answers_bus *answers)
 static bool advise(struct answers_bus *answers, const char *kind)
 {
     const char *prefix = answers->bus.prefix;
-    const struct fmb_client_counts counts = fmb_client_get_counts(answers->client);
+    const struct fmb_client_counts counts = counts_of(answers);
     if (answers->advised == counts.outages)
         return true;
     answers->advised = counts.outages;

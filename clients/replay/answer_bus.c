@@ -225,7 +225,8 @@ void answer_bus_query(struct answer_bus *bus, struct match_item *item, const uns
 
 struct tally_bus answer_bus_counts(const struct answer_bus *bus)
 {
-    const struct fmb_client_counts client = fmb_client_get_counts(bus->client);
+    struct fmb_client_counts client;
+    fmb_client_get_counts(bus->client, &client);
     struct tally_bus counts = bus->counts;
     counts.resent = (int64_t) client.repeated;
     counts.malformed = (int64_t) client.malformed;

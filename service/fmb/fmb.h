@@ -618,7 +618,8 @@ enum fmb_status fmb_tree_pairs(const struct fmb_tree *a, const struct fmb_tree *
  *
  *     struct fmb_scene scene = {.placements = placements, .placement_count = n,
  *                               .duration = 1, .ignored = neighbours, .ignored_count = m};
- *     const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
+ *     struct fmb_scene_limits limits;
+ *     fmb_scene_limits_of(&scene, &limits);
  *     void *memory = malloc(fmb_scene_bytes(&limits));
  *     struct fmb_scene_state *state;
  *     struct fmb_scene_answers answers;
@@ -688,9 +689,9 @@ struct fmb_scene_limits {
 
 enum { FMB_SCENE_SLOTS_MIN = 32, FMB_SCENE_SLOTS = 8192 };
 
-/* Returns the limits that hold a scene, with a slot for each frame but no more than
+/* Sets the limits that hold a scene, with a slot for each frame but no more than
  * FMB_SCENE_SLOTS. */
-struct fmb_scene_limits fmb_scene_limits_of(const struct fmb_scene *scene);
+void fmb_scene_limits_of(const struct fmb_scene *scene, struct fmb_scene_limits *out);
 
 /* Returns the number of bytes that a scene within these limits needs; SIZE_MAX if the limits are
  * too large. */

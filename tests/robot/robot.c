@@ -197,7 +197,8 @@ int main(void)
     struct robot *robot = or_end(malloc(sizeof *robot));
     robot_draw(robot);
     const struct fmb_scene scene = robot_scene(robot, 0);
-    struct in_process bodies = {robot, fmb_scene_limits_of(&scene), NULL};
+    struct in_process bodies = {.robot = robot};
+    fmb_scene_limits_of(&scene, &bodies.limits);
     bodies.memory = or_end(malloc(fmb_scene_bytes(&bodies.limits)));
     struct corners corners = {.in = {robot, {FRAMES, FRAMES, 0, FRAMES}, NULL}};
     ignore_frames(&corners);

@@ -143,7 +143,8 @@ struct fmb_scene robot_scene(const struct robot *robot, int state)
 static size_t contacts_of(const struct robot *robot, int n)
 {
     const struct fmb_scene scene = robot_scene(robot, n);
-    const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
+    struct fmb_scene_limits limits;
+    fmb_scene_limits_of(&scene, &limits);
     struct fmb_scene_state *state;
     struct fmb_scene_answers answers;
     size_t contacts = 0;

@@ -190,7 +190,8 @@ static int report(const struct worker *worker, const struct plan *plan, double s
     int64_t queries = 0, pairs = 0, unanswered = 0, wrong = 0, longest_ns = 0;
     struct fmb_client_counts sum = {0};
     for (long i = 0; i < plan->clients; i++) {
-        const struct fmb_client_counts counts = fmb_client_get_counts(worker[i].client);
+        struct fmb_client_counts counts;
+        fmb_client_get_counts(worker[i].client, &counts);
         queries += worker[i].queries;
         pairs += worker[i].pairs;
         unanswered += worker[i].unanswered;

@@ -79,6 +79,13 @@ uint64_t relay_dropped(struct relay *relay);
 /* A client on the relay's bus; options as in fmb_client_options. */
 struct fmb_client *relay_client(struct relay *relay, double timeout, int tries);
 
+static inline struct fmb_client_counts relay_counts(const struct fmb_client *client)
+{
+    struct fmb_client_counts counts;
+    fmb_client_get_counts(client, &counts);
+    return counts;
+}
+
 /* ---- Scenes, and what libfmb decides ---- */
 
 /* Bodies of all shapes, of one dimension, some of them moving, turned, or of several frames; ids

@@ -69,9 +69,9 @@ static void what_the_bus_loses_is_sent_again(void **state)
     scene = listed();
     for (int i = 0; i < 10; i++)
         relay_query(client, &scene);
-    assert_true(fmb_client_get_counts(client).repeated > 5);
-    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
-    assert_int_equal(fmb_client_get_counts(client).outages, 0);
+    assert_true(relay_counts(client).repeated > 5);
+    assert_int_equal(relay_counts(client).malformed, 0);
+    assert_int_equal(relay_counts(client).outages, 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -99,7 +99,7 @@ static void messages_that_cannot_be_read_are_counted(void **state)
     const struct fmb_scene scene = listed();
     relay_query(client, &scene);
     assert_true(count > 300);
-    assert_int_equal(fmb_client_get_counts(client).malformed, count);
+    assert_int_equal(relay_counts(client).malformed, count);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -131,7 +131,7 @@ static void results_of_another_kind_are_ignored(void **state)
     deceived = client;
     relay->before = publish_pair_results;
     relay_query(client, &scene);
-    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    assert_int_equal(relay_counts(client).malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -167,7 +167,7 @@ static void results_of_another_client_reach_only_the_watcher(void **state)
     relay->before = publish_results_of_another;
     assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
     assert_true(watched > 20);
-    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    assert_int_equal(relay_counts(client).malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -350,23 +350,23 @@ static void a_service_that_comes_back_is_found(void **state)
     assert_int_equal(query(client, &scene).none[-FMB_CLIENT_NO_SERVICE], 2000);
     assert_true(seconds_since(start) >= tries * timeout);
     for (int i = 0; i < 3; i++) {
-        const uint64_t queries = fmb_client_get_counts(client).queries;
+        const uint64_t queries = relay_counts(client).queries;
         start = clock_ns();
         assert_int_equal(query(client, &scene).none[-FMB_CLIENT_NO_SERVICE], 2000);
         assert_true(seconds_since(start) >= timeout && seconds_since(start) < tries * timeout);
-        assert_int_equal(fmb_client_get_counts(client).queries, queries + 1);
+        assert_int_equal(relay_counts(client).queries, queries + 1);
     }
-    assert_int_equal(fmb_client_get_counts(client).outages, 1);
+    assert_int_equal(relay_counts(client).outages, 1);
     relay->deaf = false;
     relay_query(client, &scene);
-    assert_int_equal(fmb_client_get_counts(client).outages, 1);
+    assert_int_equal(relay_counts(client).outages, 1);
     relay->deaf = true;
     /* Results of queries that were repeated may arrive even now: then a service is there. */
     size_t none = 0;
     for (int i = 0; i < 5 && none < 2000; i++)
         none = query(client, &scene).none[-FMB_CLIENT_NO_SERVICE];
     assert_int_equal(none, 2000);
-    assert_int_equal(fmb_client_get_counts(client).outages, 2);
+    assert_int_equal(relay_counts(client).outages, 2);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -410,7 +410,7 @@ static void no_service_costs_the_time_of_one_query(void **state)
     assert_int_equal(query(client, &scene).none[-FMB_CLIENT_NO_SERVICE],
                      PLACEMENTS * (PLACEMENTS - 1) / 2 - 2);
     assert_true(seconds_since(start) >= 2 * 0.05);
-    assert_int_equal(fmb_client_get_counts(client).queries, 2); /* the window's */
+    assert_int_equal(relay_counts(client).queries, 2); /* the window's */
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -470,7 +470,7 @@ struct slowly {
 static void check_slowly(void *user, const struct fmb_client_answer *answer)
 {
     struct slowly *slowly = user;
-    const struct fmb_client_counts counts = fmb_client_get_counts(slowly->client);
+    const struct fmb_client_counts counts = relay_counts(slowly->client);
     if (slowly->truth.given < 8) {
         relay_wait(slowly->relay, counts.queries + counts.repeated);
         clock_leap(40 * s);
@@ -521,7 +521,7 @@ static void what_is_under_way_is_limited(void **state)
         scene.want = small ? FMB_WANT_CERTIFICATE : 0;
         client->run.within = 60;
         query(client, &scene);
-        const struct fmb_client_counts counts = fmb_client_get_counts(client);
+        const struct fmb_client_counts counts = relay_counts(client);
         assert_true(small ? counts.queries >= 31 && counts.queries <= 64 : counts.queries == 2);
         assert_true(counts.bytes <= (small ? 20000 : 130000) * (1 + counts.repeated));
         fmb_client_close(client);
@@ -731,7 +731,7 @@ static void forged_results_are_ignored(void **state)
             assert_int_equal(tally.good, 0);
             assert_int_equal(tally.none[-FMB_CLIENT_NO_SERVICE] + tally.none[-FMB_CLIENT_NO_ANSWER],
                              of_list ? 2000 : 400 * 399 / 2);
-            assert_in_range(fmb_client_get_counts(client).malformed, 1, relay->turn);
+            assert_in_range(relay_counts(client).malformed, 1, relay->turn);
             fmb_client_close(client);
             relay_close(relay);
         }
@@ -796,7 +796,7 @@ static void forged_gaps_are_ignored(void **state)
         if (tally.good != 0)
             print_error("lie %zu\n", i);
         assert_int_equal(tally.good, 0);
-        assert_in_range(fmb_client_get_counts(client).malformed, 1, relay->turn);
+        assert_in_range(relay_counts(client).malformed, 1, relay->turn);
         fmb_client_close(client);
         relay_close(relay);
     }
@@ -919,7 +919,7 @@ static void the_right_result_after_forged_ones_is_taken(void **state)
     struct fmb_scene scene = all_pairs();
     scene.placement_count = 400;
     relay_query(client, &scene);
-    assert_true(fmb_client_get_counts(client).malformed > 0);
+    assert_true(relay_counts(client).malformed > 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -945,8 +945,8 @@ static void steps_of_one_pair_end(void **state)
     struct fmb_scene scene = listed();
     scene.pair_count = 300;
     relay_query(client, &scene);
-    assert_int_equal(fmb_client_get_counts(client).queries, 300);
-    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    assert_int_equal(relay_counts(client).queries, 300);
+    assert_int_equal(relay_counts(client).malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -971,14 +971,14 @@ static void slow_services_get_fewer_pairs_a_query(void **state)
     struct fmb_client *client = relay_client(relay, 5, 1);
     const struct fmb_scene scene = listed();
     relay_query(client, &scene);
-    uint64_t before = fmb_client_get_counts(client).queries;
+    uint64_t before = relay_counts(client).queries;
     relay_query(client, &scene);
-    assert_int_equal(fmb_client_get_counts(client).queries - before, 2000 / 16);
+    assert_int_equal(relay_counts(client).queries - before, 2000 / 16);
     relay->lie = in_no_time;
     relay_query(client, &scene);
-    before = fmb_client_get_counts(client).queries;
+    before = relay_counts(client).queries;
     relay_query(client, &scene);
-    assert_int_equal(fmb_client_get_counts(client).queries - before, 1);
+    assert_int_equal(relay_counts(client).queries - before, 1);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -1003,9 +1003,9 @@ static uint64_t queries_with(relay_lie *lie)
     scene.pair_count = 100;
     relay_query(client, &scene);
     relay->lie = lie;
-    const uint64_t before = fmb_client_get_counts(client).queries;
+    const uint64_t before = relay_counts(client).queries;
     relay_query(client, &scene);
-    const struct fmb_client_counts counts = fmb_client_get_counts(client);
+    const struct fmb_client_counts counts = relay_counts(client);
     assert_int_equal(counts.malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
@@ -1046,7 +1046,7 @@ static void an_answer_counts_more_than_an_unknown_body(void **state)
     assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
     for (int i = 0; i < 3; i++)
         relay_query(client, &scene);
-    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    assert_int_equal(relay_counts(client).malformed, 0);
     assert_int_equal(relay_dropped(relay), 0);
     fmb_client_close(client);
     relay_close(relay);
@@ -1117,7 +1117,7 @@ static void wrong_handles_of_a_pair_are_malformed(void **state)
         relay_draw(placement, 2, 3, 1, 1, 1);
         assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer),
                          FMB_CLIENT_NO_SERVICE);
-        assert_in_range(fmb_client_get_counts(client).malformed, 1, relay->turn);
+        assert_in_range(relay_counts(client).malformed, 1, relay->turn);
         fmb_client_close(client);
         relay_close(relay);
     }
@@ -1194,7 +1194,7 @@ static void second_results_are_ignored(void **state)
             FMB_OK);
         assert_int_equal(answer.answer.verdict, expected.verdict);
     }
-    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    assert_int_equal(relay_counts(client).malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -1348,8 +1348,7 @@ static void a_watcher_sees_all_results(void **state)
     assert_int_equal(watching.end_pair, 4950);
     assert_int_equal(watching.contacts, watching.scenes * truth.count);
     assert_true(watching.pairs >= 1);
-    assert_true((uint64_t) (watching.scenes + watching.pairs) <=
-                2 + fmb_client_get_counts(other).repeated);
+    assert_true((uint64_t) (watching.scenes + watching.pairs) <= 2 + relay_counts(other).repeated);
     assert_true(watching.heartbeats >= 1);
     assert_int_equal(watching.served, 2);
     assert_int_equal(watching.served_scenes, 1);

@@ -69,7 +69,7 @@ static void small_scenes_of_every_kind_are_answered(void **state)
                 free(frame);
             }
     assert_int_equal(relay_dropped(relay), 0);
-    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    assert_int_equal(relay_counts(client).malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -83,7 +83,7 @@ static void all_pairs_of_many_bodies_are_answered(void **state)
     struct fmb_placement *frame = frames_of(count, 3, cbrt(4.0 * (double) count), 1);
     const struct fmb_scene scene = scene_of(frame, count, FMB_PAIRS_ALL, ALL_WANTS);
     relay_query(client, &scene);
-    assert_true(fmb_client_get_counts(client).queries > 10);
+    assert_true(relay_counts(client).queries > 10);
     assert_int_equal(relay_dropped(relay), 0);
     fmb_client_close(client);
     free(frame);
@@ -100,7 +100,7 @@ static void all_pairs_of_a_crowd_are_answered(void **state)
     struct fmb_placement *frame = frames_of(count, 2, 2, 1);
     struct fmb_scene scene = scene_of(frame, count, FMB_PAIRS_ALL, ALL_WANTS);
     relay_query(client, &scene);
-    assert_true(fmb_client_get_counts(client).queries > 30);
+    assert_true(relay_counts(client).queries > 30);
     scene.which = FMB_PAIRS_ACROSS;
     scene.split = count / 3;
     relay_query(client, &scene);
@@ -249,7 +249,7 @@ static void near_pairs_of_many_bodies_are_answered(void **state)
     struct fmb_scene scene = scene_of(frame, 800, FMB_PAIRS_ALL, 0);
     scene.margin = 0.25;
     relay_query(client, &scene);
-    assert_true(fmb_client_get_counts(client).queries > 3);
+    assert_true(relay_counts(client).queries > 3);
     scene.method = fmb_method_by_name("exact"); /* is answered by lists */
     scene.placement_count = 60;
     for (size_t i = 0; i < 60; i++)
@@ -260,7 +260,7 @@ static void near_pairs_of_many_bodies_are_answered(void **state)
         assert_int_equal(fmb_client_query(client, &scene, check_method, &giving), FMB_OK);
         assert_true(giving.separated > 0 && giving.given > 0);
     }
-    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    assert_int_equal(relay_counts(client).malformed, 0);
     fmb_client_close(client);
     free(frame);
     relay_close(relay);
@@ -388,8 +388,8 @@ static void hulls(void **state)
         }
         free(body);
     }
-    assert_true(fmb_client_get_counts(client).by_handle > 0);
-    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    assert_true(relay_counts(client).by_handle > 0);
+    assert_int_equal(relay_counts(client).malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -431,7 +431,7 @@ static void groups_names_and_vertices(void **state)
         assert_int_equal(fmb_client_query_pair(client, both, 1, 0, &answer), FMB_OK);
         free(body);
     }
-    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    assert_int_equal(relay_counts(client).malformed, 0);
     fmb_client_close(client);
     relay_close(relay);
 }
@@ -450,7 +450,7 @@ static void groups_where_pairs_are_listed(void **state)
     int given = 0;
     assert_int_equal(fmb_client_query(client, &scene, count_answer, &given), FMB_OK);
     assert_int_equal(given, 12 * 11 / 2 - 10 * 9 / 2);
-    assert_int_equal(fmb_client_get_counts(client).queries, given);
+    assert_int_equal(relay_counts(client).queries, given);
     fmb_client_close(client);
     free(body);
     relay_close(relay);
@@ -665,9 +665,9 @@ static void close_world(struct world *world)
  * machine, has been processed too: a service that begins later does not see it. */
 static struct fmb_client_counts query_world(struct world *world)
 {
-    const struct fmb_client_counts before = fmb_client_get_counts(world->client);
+    const struct fmb_client_counts before = relay_counts(world->client);
     relay_query(world->client, &world->scene);
-    struct fmb_client_counts counts = fmb_client_get_counts(world->client);
+    struct fmb_client_counts counts = relay_counts(world->client);
     relay_wait(world->relay, counts.queries + counts.repeated);
     counts.queries -= before.queries;
     counts.bytes -= before.bytes;
@@ -722,7 +722,7 @@ static void equal_ids_of_two_clients_do_not_matter(void **state)
     assert_int_equal(counts.by_handle, 100);
     assert_int_equal(counts.whole, 0);
     relay_query(other, &scene);
-    assert_int_equal(fmb_client_get_counts(other).whole, 10);
+    assert_int_equal(relay_counts(other).whole, 10);
     fmb_client_close(other);
     free(others);
     close_world(&world);
@@ -834,11 +834,11 @@ static void bodies_of_many_frames_are_answered(void **state)
         placement[i].body = relay_body(frame + i * FRAMES, FRAMES);
     const struct fmb_scene scene = scene_of(placement, BODIES, FMB_PAIRS_ALL, ALL_WANTS);
     relay_query(client, &scene);
-    const struct fmb_client_counts first = fmb_client_get_counts(client);
+    const struct fmb_client_counts first = relay_counts(client);
     assert_in_range(first.whole, BODIES, 3 * BODIES); /* queries that are under way at once */
     relay_query(client, &scene);
-    assert_int_equal(fmb_client_get_counts(client).whole, first.whole);
-    assert_int_equal(fmb_client_get_counts(client).queries, first.queries + 1);
+    assert_int_equal(relay_counts(client).whole, first.whole);
+    assert_int_equal(relay_counts(client).queries, first.queries + 1);
     relay_restart(relay, 20000);
     relay_query(client, &scene);
     /* Without ids there is no other way than both in one datagram. */
@@ -848,7 +848,7 @@ static void bodies_of_many_frames_are_answered(void **state)
     placement[0].body = relay_body(frame, 700);
     assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OVER_LIMIT);
     assert_string_equal(fmb_client_why(client), "placements[0].body: over the limit");
-    assert_int_equal(fmb_client_get_counts(client).malformed, 0);
+    assert_int_equal(relay_counts(client).malformed, 0);
     fmb_client_close(client);
     free(placement);
     free(frame);
@@ -905,9 +905,9 @@ static void pairs_that_just_fit_into_a_datagram(void **state)
         struct fmb_scene scene = scene_of(body, 2, FMB_PAIRS_LISTED, 0);
         scene.pairs = pair;
         scene.pair_count = 1;
-        const uint64_t before = fmb_client_get_counts(client).queries;
+        const uint64_t before = relay_counts(client).queries;
         relay_query(client, &scene);
-        const uint64_t queries = fmb_client_get_counts(client).queries - before;
+        const uint64_t queries = relay_counts(client).queries - before;
         assert_true(bytes <= most ? queries == 1 : queries > 1);
     }
     fmb_client_close(client);
@@ -958,8 +958,8 @@ static void two_clients_in_a_process(void **state)
         query_world(&world);
         relay_query(other, &scene);
     }
-    assert_int_equal(fmb_client_get_counts(other).malformed, 0);
-    assert_int_equal(fmb_client_get_counts(world.client).malformed, 0);
+    assert_int_equal(relay_counts(other).malformed, 0);
+    assert_int_equal(relay_counts(world.client).malformed, 0);
     fmb_client_close(other);
     free(others);
     close_world(&world);

@@ -767,7 +767,8 @@ static int near_pairs(const struct fmb_placement *placement, unsigned count, dou
                                     .duration = duration,
                                     .which = FMB_PAIRS_ALL,
                                     .margin = margin};
-    const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
+    struct fmb_scene_limits limits;
+    fmb_scene_limits_of(&scene, &limits);
     void *memory = malloc(fmb_scene_bytes(&limits));
     struct fmb_scene_state *running;
     struct fmb_scene_answers answers;

@@ -292,7 +292,8 @@ static size_t check_steps(const struct fmb_scene *scene, struct fmb_scene_state 
 
 static size_t check_scene(const struct fmb_scene *scene, size_t slots)
 {
-    struct fmb_scene_limits limits = fmb_scene_limits_of(scene);
+    struct fmb_scene_limits limits;
+    fmb_scene_limits_of(scene, &limits);
     limits.slots = slots ? slots : limits.slots;
     const size_t bytes = fmb_scene_bytes(&limits);
     unsigned char *memory = malloc(bytes + GUARDS);
@@ -345,7 +346,8 @@ static void scenes_again(void **state)
             draw_world(&draw, large ? PLACEMENTS_MAX : few, large ? 1 + n / 10 % 2 : frames,
                        &world);
         while (large && world.scene.which == FMB_PAIRS_LISTED);
-        struct fmb_scene_limits limits = fmb_scene_limits_of(&world.scene);
+        struct fmb_scene_limits limits;
+        fmb_scene_limits_of(&world.scene, &limits);
         if (below(&draw, 2))
             limits.slots = FMB_SCENE_SLOTS_MIN + (size_t) below(&draw, 30);
         void *memory = malloc(fmb_scene_bytes(&limits));
@@ -382,7 +384,8 @@ static void refused_moves(void **state)
     do
         draw_world(&draw, SOME, 1, &world);
     while (!world.scene.instant || world.scene.which != FMB_PAIRS_ALL);
-    const struct fmb_scene_limits limits = fmb_scene_limits_of(&world.scene);
+    struct fmb_scene_limits limits;
+    fmb_scene_limits_of(&world.scene, &limits);
     void *memory = malloc(fmb_scene_bytes(&limits));
     struct fmb_scene_state *scene;
     assert_int_equal(fmb_scene_begin(&world.scene, &limits, memory, &scene), FMB_OK);
@@ -484,7 +487,8 @@ static void extremes(void **state)
 
 static enum fmb_status begin(const struct fmb_scene *scene)
 {
-    struct fmb_scene_limits limits = fmb_scene_limits_of(scene);
+    struct fmb_scene_limits limits;
+    fmb_scene_limits_of(scene, &limits);
     struct fmb_scene_state *state;
     void *memory = malloc(fmb_scene_bytes(&limits));
     const enum fmb_status status = fmb_scene_begin(scene, &limits, memory, &state);
@@ -626,7 +630,8 @@ static void limits_hold(void **state)
     static char memory[1 << 20];
     draw_good(FMB_PAIRS_ALL);
     for (int n = 0; n < 4; n++) {
-        struct fmb_scene_limits limits = fmb_scene_limits_of(&world.scene);
+        struct fmb_scene_limits limits;
+        fmb_scene_limits_of(&world.scene, &limits);
         assert_true(fmb_scene_bytes(&limits) < sizeof memory);
         limits.placements -= n == 0;
         limits.frames -= n == 1;

@@ -128,7 +128,8 @@ static void expect_scene(const struct subject *subject, unsigned want, double ma
                                     .which = FMB_PAIRS_LISTED,
                                     .pairs = pair,
                                     .pair_count = 1};
-    const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
+    struct fmb_scene_limits limits;
+    fmb_scene_limits_of(&scene, &limits);
     void *memory = malloc(fmb_scene_bytes(&limits));
     struct fmb_scene_state *state;
     struct fmb_scene_answers answers;

@@ -346,7 +346,8 @@ static void a_scene_may_be_abandoned(void **state)
         rest_in_a_tilt(&draw, cube, at);
         const struct fmb_scene scene = {
             .placements = at, .placement_count = 2, .want = FMB_WANT_BOX | FMB_WANT_TIMES};
-        const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
+        struct fmb_scene_limits limits;
+        fmb_scene_limits_of(&scene, &limits);
         void *memory = malloc(fmb_scene_bytes(&limits));
         assert_int_equal(fmb_scene_begin(&scene, &limits, memory, &scene_state), FMB_OK);
         for (int i = 0; i < steps && !fmb_scene_step(scene_state, &answers); i++)
@@ -381,7 +382,8 @@ static void batch_and_scene_agree_with_single_pairs(void **state)
                                     .placement_count = BODIES,
                                     .duration = 1,
                                     .want = FMB_WANT_BOX | FMB_WANT_TIMES};
-    const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
+    struct fmb_scene_limits limits;
+    fmb_scene_limits_of(&scene, &limits);
     void *memory = malloc(fmb_scene_bytes(&limits));
     struct fmb_scene_state *scene_state;
     struct fmb_scene_answers answers;

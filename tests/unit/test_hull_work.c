@@ -144,7 +144,8 @@ static double steps_of_scene(const struct large large[2], int *steps)
                                     .placement_count = 2,
                                     .duration = 1,
                                     .want = FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP};
-    const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
+    struct fmb_scene_limits limits;
+    fmb_scene_limits_of(&scene, &limits);
     struct fmb_scene_state *state;
     struct fmb_scene_answers answers;
     void *memory = malloc(fmb_scene_bytes(&limits));

@@ -82,7 +82,8 @@ static enum fmb_status decide_scene(const struct fmb_method *method, const struc
     struct fmb_scene scene = pair_scene(method, duration, want);
     placement[0].group = placement[1].group = 0;
     scene.placements = placement;
-    const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
+    struct fmb_scene_limits limits;
+    fmb_scene_limits_of(&scene, &limits);
     const size_t bytes = fmb_scene_bytes(&limits);
     void *memory = memory_allocate(bytes);
     struct fmb_scene_state *state;

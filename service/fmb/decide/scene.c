@@ -147,15 +147,15 @@ static size_t frames_of(const struct fmb_scene *scene)
     return frames;
 }
 
-struct fmb_scene_limits fmb_scene_limits_of(const struct fmb_scene *scene)
+void fmb_scene_limits_of(const struct fmb_scene *scene, struct fmb_scene_limits *out)
 {
-    struct fmb_scene_limits out = {.placements = scene->placement_count,
-                                   .frames = frames_of(scene),
-                                   .ignored = scene->ignored_count};
-    out.slots = out.frames < FMB_SCENE_SLOTS_MIN ? FMB_SCENE_SLOTS_MIN
-                : out.frames < FMB_SCENE_SLOTS   ? out.frames
-                                                 : FMB_SCENE_SLOTS;
-    return out;
+    const size_t frames = frames_of(scene);
+    *out = (struct fmb_scene_limits){.placements = scene->placement_count,
+                                     .frames = frames,
+                                     .ignored = scene->ignored_count,
+                                     .slots = frames < FMB_SCENE_SLOTS_MIN ? FMB_SCENE_SLOTS_MIN
+                                              : frames < FMB_SCENE_SLOTS   ? frames
+                                                                           : FMB_SCENE_SLOTS};
 }
 
 /* ---- Checking ---- */
