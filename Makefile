@@ -422,7 +422,7 @@ install: all
 	for name in $(basename $(notdir $(shared_libraries))); do \
 		ln -sf $$name.0 "$(DESTDIR)$(LIBDIR)/$$name" || exit; done
 	$(if $(DESTDIR),,$(if $(filter /usr/lib% /usr/local/lib%,$(LIBDIR)),[ $$(id -u) != 0 ] || ldconfig))
-	$(INSTALL) -m 644 service/fmb/fmb.h clients/lib/fmb_client.h \
+	$(INSTALL) -m 644 service/fmb/fmb.h service/fmb/fmb_batch.h clients/lib/fmb_client.h \
 		clients/python/fmb_flat.h "$(root)/include"
 	$(INSTALL) -m 644 clients/python/fmb.py "$(DESTDIR)$(PYTHONDIR)"
 	$(INSTALL) -m 644 $(message_files) "$(root)/share/fmb/lcmtypes"
@@ -441,7 +441,7 @@ install-strip: strip_option := -s
 install-strip: install
 
 uninstall:
-	cd "$(root)" && rm -rf bin/fmbd bin/fmb include/fmb.h \
+	cd "$(root)" && rm -rf bin/fmbd bin/fmb include/fmb.h include/fmb_batch.h \
 		include/fmb_client.h include/fmb_flat.h share/fmb share/doc/fmb lib/systemd/system/fmbd.service \
 		share/man/man1/fmb.1 share/man/man1/fmb-*.1 share/man/man8/fmbd.8 \
 		share/bash-completion/completions/fmb share/bash-completion/completions/fmbd

@@ -2,6 +2,7 @@
 
 #include "allocate.h"
 #include "clock.h"
+#include "fmb_batch.h"
 
 #include <stdlib.h>
 #include <string.h>

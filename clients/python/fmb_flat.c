@@ -1,5 +1,6 @@
 #include "fmb_flat.h"
 
+#include "fmb_batch.h"
 #include "fmb_client.h"
 #include "frame_numbers.h"
 #include "geometry.h"

@@ -7,6 +7,7 @@
 
 #include "body.h"
 #include "check.h"
+#include "fmb_batch.h"
 #include "pair_number.h"
 #include "wire.h"
 

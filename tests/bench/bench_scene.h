@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "cell.h"
-#include "fmb.h"
+#include "fmb_batch.h"
 #include "lean_sat.h"
 #include "oriented.h"
 #include "peers.h"

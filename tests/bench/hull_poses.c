@@ -1,7 +1,7 @@
 /* How many random poses of two hulls, of 152 and 102 vertices, doubles leave to integers: at most
  * one in a million. A pair that needs integers is left open by a batch whose time is bounded. */
 #include "draw.h"
-#include "fmb.h"
+#include "fmb_batch.h"
 #include "rings.h"
 
 #include <errno.h>

@@ -46,6 +46,7 @@ setup() {
 # uses_both FILE: writes a program that uses both libraries.
 uses_both() {
     cat > "$1" << 'END'
+#include <fmb_batch.h>
 #include <fmb_client.h>
 #include <string.h>
 int plugin(void);
@@ -55,9 +56,14 @@ int plugin(void)
     const double edges[] = {1, 0, 0, 1};
     char why[FMB_CLIENT_WHY_MAX];
     struct fmb_client_options options;
+    struct fmb_placement placement;
+    struct fmb_prepared frame;
     memset(&options, 0, sizeof options);
     options.prefix = "not a prefix";
+    memset(&placement, 0, sizeof placement);
+    placement.body = &body;
     return fmb_body_make(2, FMB_CUBOID, edges, 4, &body) == FMB_OK &&
+           fmb_prepare(&placement, 0, 1, &frame) == FMB_OK &&
            fmb_client_open(&options, why, sizeof why) == NULL && strlen(why) > 0 &&
            strcmp(fmb_client_status_text(FMB_BUSY), fmb_status_text(FMB_BUSY)) == 0;
 }
@@ -128,8 +134,10 @@ END
         file=$root/lib/lib$name.so
         [ "$(readlink "$file")" = lib$name.so.0 ]
         grep -q "SONAME *lib$name.so.0\$" <<< "$(objdump -p "$file")"
-        headers=$root/include/${name/-/_}.h
-        [ "$name" = fmb ] || headers="$headers $root/include/fmb_flat.h"
+        case $name in
+        fmb) headers="$root/include/fmb.h $root/include/fmb_batch.h" ;;
+        fmb-client) headers="$root/include/fmb_client.h $root/include/fmb_flat.h" ;;
+        esac
         nm -D --defined-only "$file" | awk '$2 != "A" { print $3 }' > "$BATS_TEST_TMPDIR/names"
         grep -qx "${name/-/_}_status_text" "$BATS_TEST_TMPDIR/names"
         for shown in $(cat "$BATS_TEST_TMPDIR/names"); do grep -q "[ *]$shown(" $headers; done

@@ -8,7 +8,7 @@
 #include <math.h>
 
 #include "draw.h"
-#include "fmb.h"
+#include "fmb_batch.h"
 #include "frame_make.h"
 
 #define M DBL_MAX

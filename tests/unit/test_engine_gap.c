@@ -8,6 +8,7 @@
 
 #include "draw.h"
 #include "family.h"
+#include "fmb_batch.h"
 #include "gap_check.h"
 #include "pair_draw.h"
 #include "question.h"

@@ -11,7 +11,7 @@
 #include "allocate.h"
 #include "batch.h"
 #include "draw.h"
-#include "fmb.h"
+#include "fmb_batch.h"
 #include "placed_pair.h"
 #include "triangles.h"
 

@@ -7,6 +7,7 @@
 
 #include "answer_now.h"
 #include "client_scene.h"
+#include "fmb_batch.h"
 #include "hull_draw.h"
 #include "posed.h"
 #include "scene_truth.h"

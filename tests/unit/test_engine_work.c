@@ -71,7 +71,8 @@ static double work_of_step(const struct question *question, unsigned want)
                                     .pairs = pairs,
                                     .pair_count = 1,
                                     .want = want | FMB_WANT_TIMES};
-    const struct fmb_scene_limits limits = fmb_scene_limits_of(&scene);
+    struct fmb_scene_limits limits;
+    fmb_scene_limits_of(&scene, &limits);
     struct fmb_scene_state *state;
     struct fmb_scene_answers answers;
     void *memory = malloc(fmb_scene_bytes(&limits));

@@ -7,7 +7,7 @@
 #include <math.h>
 
 #include "draw.h"
-#include "fmb.h"
+#include "fmb_batch.h"
 #include "hull_frame.h"
 
 enum { MANY = FMB_HULL_VERTICES_MAX };

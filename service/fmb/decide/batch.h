@@ -1,8 +1,8 @@
 /* fmb_decide_batch() with a limit on gaps, for scenes, and with a chosen instruction set. */
-#ifndef FMB_BATCH_H
-#define FMB_BATCH_H
+#ifndef DECIDE_BATCH_H
+#define DECIDE_BATCH_H
 
-#include "fmb.h"
+#include "fmb_batch.h"
 #include "instructions.h"
 
 /* Whether the outcome of a pair, which may be none, is a contact. */

@@ -5,6 +5,7 @@
 #ifndef FMB_LIMBS_H
 #define FMB_LIMBS_H
 
+#include "fmb_batch.h"
 #include "integer.h"
 #include "pair.h"
 

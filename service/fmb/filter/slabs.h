@@ -38,7 +38,7 @@
 #define FMB_SLABS_H
 
 #include "clip.h"
-#include "fmb.h"
+#include "fmb_batch.h"
 #include "relative.h"
 
 /* Bounds on the error of a gap, and of all numbers that it is made of, relative to the scale of the

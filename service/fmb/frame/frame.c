@@ -1,6 +1,6 @@
 /* Frames and bodies: their construction, and the numbers that are derived from them once. Also the
  * checks of placements and durations. */
-#include "fmb.h"
+#include "fmb_batch.h"
 
 #include "integer.h"
 #include "interval.h"

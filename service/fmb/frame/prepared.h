@@ -28,6 +28,7 @@
 #ifndef FMB_PREPARED_H
 #define FMB_PREPARED_H
 
+#include "fmb_batch.h"
 #include "pair.h"
 
 #include <string.h>
