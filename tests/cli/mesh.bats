@@ -124,34 +124,6 @@ $counts"
         high.obj --scale 1,1,1 high.obj
 }
 
-# bats test_tags=release
-@test "faces that share a vertex touch, and an ulp away from it they do not" {
-    # 1e16 + 2 is the next double.
-    obj far.obj '10000000000000000 0.1 0.3' '-0.1 0.7 0.2' '0.3 1e-17 -5' -- '1 2 3'
-    obj shares.obj '-7 -7.3 9' '-0.1 0.7 0.2' '-8 0.1 0.1' -- '1 2 3'
-    answers '{"overlapping": 0, "touching": 1, "faces_a": 1, "faces_b": 1, "pairs": [[0, 0, "touching"]]}' far.obj shares.obj
-    answers '{"overlapping": 0, "touching": 1, "faces_a": 1, "faces_b": 1, "pairs": [[0, 0, "touching"]]}' far.obj shares.obj --method exact
-    obj beside.obj '-7 -7.3 9' '-0.10000000000000002 0.7 0.2' '-8 0.1 0.1' -- '1 2 3'
-    answers "$nothing" far.obj beside.obj
-}
-
-# bats test_tags=release
-@test "--method exact gives the same answer" {
-    "$MAKE_MESH" --faces 200 one.ply
-    for options in '' '--translate 0.1,0.2,0.3' '--as tetrahedra' '--velocity 0.1,0,0.05'; do
-        # shellcheck disable=SC2086
-        mesh one.ply one.ply $options --json
-        ended 0
-        [[ $output == *overlapping\"[],]* ]]
-        expected=$(jq -c 'del(.pairs[][3])' <<< "$output") # its times are the tightest
-        # shellcheck disable=SC2086
-        mesh one.ply one.ply $options --json --method exact
-        ended 0
-        [ "$(jq -c 'del(.pairs[][3])' <<< "$output")" = "$expected" ]
-    done
-    answers "$output" one.ply one.ply --velocity 0.1,0,0.05 --method exact
-}
-
 @test "--as tetrahedra adds a vertex on one side of each face, at the height of a unit normal" {
     obj below.obj '0 0 -1' '1 0 -1' '0 1 -1' -- '1 2 3'
     answers "$nothing" a.obj below.obj
@@ -243,21 +215,6 @@ apart() {
 }
 
 # ---- Files -------------------------------------------------------------------------------------
-
-@test "all formats, and every mixture of them, give the same answer" {
-    for format in ply-ascii ply-le ply-be stl-ascii obj; do
-        "$MAKE_MESH" --faces 800 --format $format one.$format
-        mesh one.$format one.$format --translate 0.1,0.2,0.3 --json
-        ended 0
-        [ "${expected:=$output}" = "$output" ]
-        answers "$expected" one.ply-ascii one.$format --translate 0.1,0.2,0.3
-    done
-    jq -e '.overlapping > 100' <<< "$expected"
-    # Floats: the same mesh, as near as they have it.
-    "$MAKE_MESH" --faces 800 --format stl-binary one.stl
-    mesh one.stl one.stl --translate 0.1,0.2,0.3 --json
-    [ "$(jq -c .overlapping <<< "$output")" = "$(jq -c .overlapping <<< "$expected")" ]
-}
 
 @test "unreadable and broken files are reported with the place" {
     cannot_read 'no.obj: No such file or directory' no.obj b.obj

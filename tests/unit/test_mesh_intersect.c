@@ -60,12 +60,6 @@ static void draw_soup(struct draw *draw, const struct grid *grid, int most, int 
             out->face[n][corner] = out->face[from][(corner + turn) % 3];
 }
 
-static void draw_any_soup(struct draw *draw, struct mesh *out)
-{
-    const struct grid *grid = &grids[draw_int(draw, 0, (int) COUNT(grids) - 1)];
-    draw_soup(draw, grid, draw_int(draw, 1, 3), draw_int(draw, 3, 24), draw_int(draw, 1, 30), out);
-}
-
 /* On the same grid, so that they have much in common. */
 static void draw_soups(struct draw *draw, struct mesh out[2])
 {
@@ -261,92 +255,6 @@ static void closed_meshes_meet_where_every_pair_says(void **state)
         assert_meeting_of_two(&question);
         mesh_free(&mesh[0]);
         mesh_free(&mesh[1]);
-    }
-}
-
-/* ---- A mesh and itself ---- */
-
-/* On a line most faces have no area, and lie upon each other. */
-static void faces_on_a_line_or_in_a_plane(void **state)
-{
-    struct draw draw;
-    draw_begin(&draw, "faces_on_a_line_or_in_a_plane");
-    for (long n = draw_sample(200); n > 0; n--) {
-        struct mesh mesh;
-        draw_any_soup(&draw, &mesh);
-        for (size_t v = 0; v < mesh.vertex_count; v++) {
-            mesh.vertex[v][0] = mesh.vertex[0][0];
-            if (n % 2)
-                mesh.vertex[v][1] = v % 5 ? mesh.vertex[0][1] : mesh.vertex[v][1];
-        }
-        assert_meeting_of_two(&(struct mesh_query){.a = &mesh, .b = &mesh, .duration = 1});
-        mesh_free(&mesh);
-    }
-}
-
-enum { NEAR_VERTICES = 7, NEAR_FACES = 8 };
-
-/* Points of a plane that are nearly on lines through the first: the sign of an area depends on how
- * differences and products round. */
-static void draw_near_lines(struct draw *draw, double point[NEAR_VERTICES][3])
-{
-    const double from = draw_coin(draw) ? 0 : draw_uniform(draw, -8, 8);
-    for (int v = 0; v < NEAR_VERTICES; v++) {
-        const double *p = point[0], *q = point[v > 1 ? draw_int(draw, 1, v - 1) : 0];
-        const double part = v > 1 ? draw_int(draw, -3, 5) / 3.0 : 0;
-        for (int i = 0; i < 2; i++)
-            point[v][i] =
-                part == 0 ? from + draw_uniform(draw, -1, 1) : p[i] + part * (q[i] - p[i]);
-        if (draw_coin(draw))
-            point[v][0] = nextafter(point[v][0], draw_coin(draw) ? HUGE_VAL : -HUGE_VAL);
-        point[v][2] = 0;
-    }
-}
-
-/* Integers of 30 bits, seen from the first point, and times powers of two: products that round, and
- * angles of a few units of their last place. In one plane, level or not, or nearly. */
-static void draw_thin(struct draw *draw, double point[NEAR_VERTICES][3])
-{
-    double u[3] = {1, 0, draw_int(draw, -2, 2)}, v[3] = {0, 1, draw_int(draw, -2, 2)};
-    const bool level = draw_coin(draw), beside = draw_coin(draw);
-    while (u[0] + v[1] < 0x1p30) { /* of area 1 */
-        const bool first = draw_coin(draw);
-        for (int i = 0; i < 2; i++)
-            *(first ? &u[i] : &v[i]) += first ? v[i] : u[i];
-    }
-    for (int n = 0; n < NEAR_VERTICES; n++) {
-        const int of_u = n ? draw_int(draw, -2, 2) : 0, of_v = n ? draw_int(draw, -2, 2) : 0;
-        const int power = draw_coin(draw) ? 0 : draw_int(draw, 0, 60);
-        for (int i = 0; i < 3; i++)
-            point[n][i] = i == 2 && level ? 0 : ldexp(of_u * u[i] + of_v * v[i], power);
-        if (n > 0 && beside && !level)
-            point[n][2] += draw_int(draw, -1, 1);
-    }
-}
-
-/* Faces nearly in a plane that have a vertex in common: whether they overlap depends on the last
- * bits; products underflow, or overflow. */
-static void faces_nearly_on_lines(void **state)
-{
-    static const int scales[][2] = {{0, 0},       {0, 0},     {0, 30},     {-400, 0}, {-480, -480},
-                                    {-545, -545}, {-552, 20}, {480, -900}, {490, 490}};
-    struct draw draw;
-    draw_begin(&draw, "faces_nearly_on_lines");
-    for (long n = draw_sample(500); n > 0; n--) {
-        const int *scale = scales[n % (long) COUNT(scales)], height = draw_int(&draw, 0, 2);
-        double point[NEAR_VERTICES][3];
-        struct mesh mesh;
-        make_mesh(NEAR_VERTICES, NEAR_FACES, &mesh);
-        (draw_coin(&draw) ? draw_near_lines : draw_thin)(&draw, point);
-        for (int v = 0; v < NEAR_VERTICES; v++)
-            for (int i = 0; i < 3; i++)
-                mesh.vertex[v][(height + 1 + i) % 3] = ldexp(point[v][i], scale[i == 2]);
-        for (int f = 0; f < NEAR_FACES; f++)
-            for (int corner = 0; corner < 3; corner++)
-                mesh.face[f][corner] =
-                    corner == f % 3 ? 0 : (unsigned) draw_int(&draw, 1, NEAR_VERTICES - 1);
-        assert_meeting_of_two(&(struct mesh_query){.a = &mesh, .b = &mesh, .duration = 1});
-        mesh_free(&mesh);
     }
 }
 
@@ -629,8 +537,6 @@ int main(void)
         cmocka_unit_test(moving_meshes_meet_where_every_pair_says),
         cmocka_unit_test(soups_of_more_than_a_block),
         cmocka_unit_test(closed_meshes_meet_where_every_pair_says),
-        cmocka_unit_test(faces_on_a_line_or_in_a_plane),
-        cmocka_unit_test(faces_nearly_on_lines),
         cmocka_unit_test(tetrahedra_are_those_of_the_article),
         cmocka_unit_test(normals_beyond_the_doubles_are_reported),
         cmocka_unit_test(progress_goes_on_to_its_end),
