@@ -266,6 +266,32 @@ struct fmb_client *relay_client(struct relay *relay, double timeout, int tries)
     return client;
 }
 
+struct relay_test test;
+
+int relay_set_up(void **state)
+{
+    (void) state;
+    test = (struct relay_test){.relay = relay_new()};
+    return 0;
+}
+
+int relay_tear_down(void **state)
+{
+    (void) state;
+    fmb_client_close(test.client);
+    if (test.relay->bus)
+        relay_close(test.relay);
+    else
+        free(test.relay);
+    return 0;
+}
+
+void relay_start(size_t frames, double timeout, int tries)
+{
+    relay_open(test.relay, frames);
+    test.client = relay_client(test.relay, timeout, tries);
+}
+
 /* On output: the exit code of this program, run again in a network of its own. */
 static int run_in_namespace(char *self)
 {

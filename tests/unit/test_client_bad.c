@@ -55,25 +55,21 @@ static struct fmb_scene listed(void)
 
 static void what_the_bus_loses_is_sent_again(void **state)
 {
-    struct relay *relay = relay_new();
-    relay->lose_query = 7;
-    relay->lose_result = 5;
-    relay->double_result = 3;
-    relay->delay_result = 4;
-    relay->busy = 11;
-    relay_open(relay, 200);
-    struct fmb_client *client = relay_client(relay, 0.05, 1000);
+    test.relay->lose_query = 7;
+    test.relay->lose_result = 5;
+    test.relay->double_result = 3;
+    test.relay->delay_result = 4;
+    test.relay->busy = 11;
+    relay_start(200, 0.05, 1000);
     struct fmb_scene scene = all_pairs();
     for (int i = 0; i < 3; i++)
-        relay_query(client, &scene);
+        relay_query(test.client, &scene);
     scene = listed();
     for (int i = 0; i < 10; i++)
-        relay_query(client, &scene);
-    assert_true(relay_counts(client).repeated > 5);
-    assert_int_equal(relay_counts(client).malformed, 0);
-    assert_int_equal(relay_counts(client).outages, 0);
-    fmb_client_close(client);
-    relay_close(relay);
+        relay_query(test.client, &scene);
+    assert_true(relay_counts(test.client).repeated > 5);
+    assert_int_equal(relay_counts(test.client).malformed, 0);
+    assert_int_equal(relay_counts(test.client).outages, 0);
 }
 
 static void publish(void *context, const char *what, const unsigned char *bytes, size_t size)
@@ -90,18 +86,14 @@ static void ignore_result(void *user, const struct fmb_client_result *result)
 
 static void messages_that_cannot_be_read_are_counted(void **state)
 {
-    struct relay *relay = relay_new();
     const struct fmb_client_watcher watcher = {.result = ignore_result};
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
-    assert_int_equal(fmb_client_watch(client, &watcher), FMB_OK);
-    const size_t count = hostile_each("scene_result", publish, relay);
+    relay_start(2000, 5, 1);
+    assert_int_equal(fmb_client_watch(test.client, &watcher), FMB_OK);
+    const size_t count = hostile_each("scene_result", publish, test.relay);
     const struct fmb_scene scene = listed();
-    relay_query(client, &scene);
+    relay_query(test.client, &scene);
     assert_true(count > 300);
-    assert_int_equal(relay_counts(client).malformed, count);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_int_equal(relay_counts(test.client).malformed, count);
 }
 
 /* ---- Results of another kind, and refusals without end ---- */
@@ -122,18 +114,14 @@ static void publish_pair_results(struct relay *relay)
 
 static void results_of_another_kind_are_ignored(void **state)
 {
-    struct relay *relay = relay_new();
     struct fmb_client_answer answer;
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_start(2000, 5, 1);
     const struct fmb_scene scene = all_pairs();
-    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
-    deceived = client;
-    relay->before = publish_pair_results;
-    relay_query(client, &scene);
-    assert_int_equal(relay_counts(client).malformed, 0);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_int_equal(fmb_client_query_pair(test.client, placement, 1, 0, &answer), FMB_OK);
+    deceived = test.client;
+    test.relay->before = publish_pair_results;
+    relay_query(test.client, &scene);
+    assert_int_equal(relay_counts(test.client).malformed, 0);
 }
 
 /* Before a pair is answered, results for another client come with the same sequence numbers. */
@@ -155,21 +143,17 @@ static void count_pairs(void *user, const struct fmb_client_result *result)
 
 static void results_of_another_client_reach_only_the_watcher(void **state)
 {
-    struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     int watched = 0;
     const struct fmb_client_watcher watcher = {.result = count_pairs, .user = &watched};
     relay_draw(placement, 2, 3, 1, 1, 5);
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
-    assert_int_equal(fmb_client_watch(client, &watcher), FMB_OK);
-    deceived = client;
-    relay->before = publish_results_of_another;
-    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
+    relay_start(2000, 5, 1);
+    assert_int_equal(fmb_client_watch(test.client, &watcher), FMB_OK);
+    deceived = test.client;
+    test.relay->before = publish_results_of_another;
+    assert_int_equal(fmb_client_query_pair(test.client, placement, 1, 0, &answer), FMB_OK);
     assert_true(watched > 20);
-    assert_int_equal(relay_counts(client).malformed, 0);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_int_equal(relay_counts(test.client).malformed, 0);
 }
 
 static bool publish_nothing(void *user, enum fmb_client_kind kind, const unsigned char *query,
@@ -340,35 +324,31 @@ static void a_service_that_comes_back_is_found(void **state)
 {
     const double timeout = 30;
     const int tries = 10;
-    struct relay *relay = relay_new();
-    relay->deaf = true;
-    relay->before = let_time_pass;
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, timeout, tries);
+    test.relay->deaf = true;
+    test.relay->before = let_time_pass;
+    relay_start(2000, timeout, tries);
     const struct fmb_scene scene = listed();
     int64_t start = clock_ns();
-    assert_int_equal(query(client, &scene).none[-FMB_CLIENT_NO_SERVICE], 2000);
+    assert_int_equal(query(test.client, &scene).none[-FMB_CLIENT_NO_SERVICE], 2000);
     assert_true(seconds_since(start) >= tries * timeout);
     for (int i = 0; i < 3; i++) {
-        const uint64_t queries = relay_counts(client).queries;
+        const uint64_t queries = relay_counts(test.client).queries;
         start = clock_ns();
-        assert_int_equal(query(client, &scene).none[-FMB_CLIENT_NO_SERVICE], 2000);
+        assert_int_equal(query(test.client, &scene).none[-FMB_CLIENT_NO_SERVICE], 2000);
         assert_true(seconds_since(start) >= timeout && seconds_since(start) < tries * timeout);
-        assert_int_equal(relay_counts(client).queries, queries + 1);
+        assert_int_equal(relay_counts(test.client).queries, queries + 1);
     }
-    assert_int_equal(relay_counts(client).outages, 1);
-    relay->deaf = false;
-    relay_query(client, &scene);
-    assert_int_equal(relay_counts(client).outages, 1);
-    relay->deaf = true;
+    assert_int_equal(relay_counts(test.client).outages, 1);
+    test.relay->deaf = false;
+    relay_query(test.client, &scene);
+    assert_int_equal(relay_counts(test.client).outages, 1);
+    test.relay->deaf = true;
     /* Results of queries that were repeated may arrive even now: then a service is there. */
     size_t none = 0;
     for (int i = 0; i < 5 && none < 2000; i++)
-        none = query(client, &scene).none[-FMB_CLIENT_NO_SERVICE];
+        none = query(test.client, &scene).none[-FMB_CLIENT_NO_SERVICE];
     assert_int_equal(none, 2000);
-    assert_int_equal(relay_counts(client).outages, 2);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_int_equal(relay_counts(test.client).outages, 2);
 }
 
 /* The service comes back while it is being found out whether it has: the whole scene is answered.
@@ -380,39 +360,32 @@ static void hear_third(struct relay *relay)
 
 static void a_repeat_finds_the_service(void **state)
 {
-    struct relay *relay = relay_new();
-    relay->deaf = true;
-    relay_open(relay, 2000);
-    relay->before = let_time_pass;
-    struct fmb_client *client = relay_client(relay, 30, 1);
+    test.relay->deaf = true;
+    relay_open(test.relay, 2000);
+    test.relay->before = let_time_pass;
+    test.client = relay_client(test.relay, 30, 1);
     const struct fmb_scene scene = listed();
     struct fmb_scene one = scene;
     one.pair_count = 1;
-    assert_int_equal(query(client, &one).none[-FMB_CLIENT_NO_SERVICE], 1);
-    relay->before = hear_third;
-    relay->queries = 0;
-    relay_query(client, &scene);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_int_equal(query(test.client, &one).none[-FMB_CLIENT_NO_SERVICE], 1);
+    test.relay->before = hear_third;
+    test.relay->queries = 0;
+    relay_query(test.client, &scene);
 }
 
 static void no_service_costs_the_time_of_one_query(void **state)
 {
-    struct relay *relay = relay_new();
-    relay->deaf = true;
-    relay_open(relay, 10);
-    struct fmb_client *client = relay_client(relay, 0.05, 2);
+    test.relay->deaf = true;
+    relay_start(10, 0.05, 2);
     static const unsigned ignored[2][2] = {{0, 1}, {PLACEMENTS - 1, 3}};
     struct fmb_scene scene = all_pairs();
     scene.ignored = ignored;
     scene.ignored_count = 2;
     const int64_t start = clock_ns();
-    assert_int_equal(query(client, &scene).none[-FMB_CLIENT_NO_SERVICE],
+    assert_int_equal(query(test.client, &scene).none[-FMB_CLIENT_NO_SERVICE],
                      PLACEMENTS * (PLACEMENTS - 1) / 2 - 2);
     assert_true(seconds_since(start) >= 2 * 0.05);
-    assert_int_equal(relay_counts(client).queries, 2); /* the window's */
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_int_equal(relay_counts(test.client).queries, 2); /* the window's */
 }
 
 /* ---- An end ---- */
@@ -426,37 +399,30 @@ static void die(struct relay *relay)
 
 static void the_others_have_no_answer(void **state)
 {
-    struct relay *relay = relay_new();
-    relay->before = die;
+    test.relay->before = die;
     struct relay_truth truth;
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 30, 1);
+    relay_start(2000, 30, 1);
     struct fmb_scene scene = listed();
     relay_truth_make(&scene, &truth);
-    assert_int_equal(fmb_client_query(client, &scene, relay_check, &truth), FMB_OK);
+    assert_int_equal(fmb_client_query(test.client, &scene, relay_check, &truth), FMB_OK);
     assert_true(truth.given > 0 && truth.failed > 0);
     assert_int_equal(truth.given + truth.failed, 2000);
     relay_truth_clear(&truth);
-    fmb_client_close(client);
-    relay_close(relay);
 }
 
 static void the_time_for_all_ends_it(void **state)
 {
-    struct relay *relay = relay_new();
-    relay->deaf = true;
-    relay_open(relay, 10);
+    test.relay->deaf = true;
+    relay_open(test.relay, 10);
     const struct fmb_client_options options = {
-        .url = relay->url, .timeout = 1000, .tries = 100, .within = 0.05};
-    struct fmb_client *client = fmb_client_open(&options, NULL, 0);
+        .url = test.relay->url, .timeout = 1000, .tries = 100, .within = 0.05};
+    test.client = fmb_client_open(&options, NULL, 0);
     const struct fmb_scene scene = listed();
-    assert_non_null(client);
-    assert_int_equal(query(client, &scene).none[-FMB_CLIENT_LATE], 2000);
-    relay->deaf = false;
-    client->run.within = 1000;
-    relay_query(client, &scene);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_non_null(test.client);
+    assert_int_equal(query(test.client, &scene).none[-FMB_CLIENT_LATE], 2000);
+    test.relay->deaf = false;
+    test.client->run.within = 1000;
+    relay_query(test.client, &scene);
 }
 
 /* Handles the first answers for longer than the timeout of a query, so that the results of all
@@ -912,16 +878,12 @@ static void lies_at_first(struct scene_result *result, int turn)
 
 static void the_right_result_after_forged_ones_is_taken(void **state)
 {
-    struct relay *relay = relay_new();
-    relay->lie = lies_at_first;
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 0.01, 1000);
+    test.relay->lie = lies_at_first;
+    relay_start(2000, 0.01, 1000);
     struct fmb_scene scene = all_pairs();
     scene.placement_count = 400;
-    relay_query(client, &scene);
-    assert_true(relay_counts(client).malformed > 0);
-    fmb_client_close(client);
-    relay_close(relay);
+    relay_query(test.client, &scene);
+    assert_true(relay_counts(test.client).malformed > 0);
 }
 
 /* The smallest steps that are steps: every one is a query, and it ends. A second result of one is
@@ -937,18 +899,14 @@ static void step_by_step(struct scene_result *result, int turn)
 
 static void steps_of_one_pair_end(void **state)
 {
-    struct relay *relay = relay_new();
-    relay->lie = relay->second_lie = step_by_step;
-    relay->double_result = 1;
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    test.relay->lie = test.relay->second_lie = step_by_step;
+    test.relay->double_result = 1;
+    relay_start(2000, 5, 1);
     struct fmb_scene scene = listed();
     scene.pair_count = 300;
-    relay_query(client, &scene);
-    assert_int_equal(relay_counts(client).queries, 300);
-    assert_int_equal(relay_counts(client).malformed, 0);
-    fmb_client_close(client);
-    relay_close(relay);
+    relay_query(test.client, &scene);
+    assert_int_equal(relay_counts(test.client).queries, 300);
+    assert_int_equal(relay_counts(test.client).malformed, 0);
 }
 
 static void for_ever(struct scene_result *result, int turn)
@@ -965,22 +923,18 @@ static void in_no_time(struct scene_result *result, int turn)
 /* A query lists as many pairs as are decided soon. */
 static void slow_services_get_fewer_pairs_a_query(void **state)
 {
-    struct relay *relay = relay_new();
-    relay->lie = for_ever;
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    test.relay->lie = for_ever;
+    relay_start(2000, 5, 1);
     const struct fmb_scene scene = listed();
-    relay_query(client, &scene);
-    uint64_t before = relay_counts(client).queries;
-    relay_query(client, &scene);
-    assert_int_equal(relay_counts(client).queries - before, 2000 / 16);
-    relay->lie = in_no_time;
-    relay_query(client, &scene);
-    before = relay_counts(client).queries;
-    relay_query(client, &scene);
-    assert_int_equal(relay_counts(client).queries - before, 1);
-    fmb_client_close(client);
-    relay_close(relay);
+    relay_query(test.client, &scene);
+    uint64_t before = relay_counts(test.client).queries;
+    relay_query(test.client, &scene);
+    assert_int_equal(relay_counts(test.client).queries - before, 2000 / 16);
+    test.relay->lie = in_no_time;
+    relay_query(test.client, &scene);
+    before = relay_counts(test.client).queries;
+    relay_query(test.client, &scene);
+    assert_int_equal(relay_counts(test.client).queries - before, 1);
 }
 
 /* ---- Handles ---- */
@@ -1034,22 +988,18 @@ static void unknown_bodies_one_by_one_are_sent_whole(void **state)
 /* Of two services on a bus, the one that holds no body answers first. */
 static void an_answer_counts_more_than_an_unknown_body(void **state)
 {
-    struct relay *relay = relay_new();
     struct fmb_client_answer answer;
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_start(2000, 5, 1);
     const struct fmb_scene scene = listed();
-    relay_query(client, &scene);
-    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
-    relay_add_service(relay, 2000);
-    relay_query(client, &scene);
-    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
+    relay_query(test.client, &scene);
+    assert_int_equal(fmb_client_query_pair(test.client, placement, 1, 0, &answer), FMB_OK);
+    relay_add_service(test.relay, 2000);
+    relay_query(test.client, &scene);
+    assert_int_equal(fmb_client_query_pair(test.client, placement, 1, 0, &answer), FMB_OK);
     for (int i = 0; i < 3; i++)
-        relay_query(client, &scene);
-    assert_int_equal(relay_counts(client).malformed, 0);
-    assert_int_equal(relay_dropped(relay), 0);
-    fmb_client_close(client);
-    relay_close(relay);
+        relay_query(test.client, &scene);
+    assert_int_equal(relay_counts(test.client).malformed, 0);
+    assert_int_equal(relay_dropped(test.relay), 0);
 }
 
 /* The second service never holds anything, and its refusal comes first: the answer of the other to
@@ -1074,21 +1024,17 @@ static void hear_two(struct relay *relay)
 
 static void a_late_answer_to_the_query_by_handle_is_taken(void **state)
 {
-    struct relay *relay = relay_new();
     struct fmb_client_answer answer;
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 30, 1);
+    relay_start(2000, 30, 1);
     relay_draw(placement, 2, 3, 1, 1, 1);
-    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
-    relay_add_service(relay, 2000);
-    relay->pair_lie = holds_nothing;
-    relay->queries = 1;
-    relay->before = hear_two;
-    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OK);
+    assert_int_equal(fmb_client_query_pair(test.client, placement, 1, 0, &answer), FMB_OK);
+    relay_add_service(test.relay, 2000);
+    test.relay->pair_lie = holds_nothing;
+    test.relay->queries = 1;
+    test.relay->before = hear_two;
+    assert_int_equal(fmb_client_query_pair(test.client, placement, 1, 0, &answer), FMB_OK);
     assert_int_equal(answer.status, FMB_OK);
-    assert_int_equal(relay_dropped(relay), 0);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_int_equal(relay_dropped(test.relay), 0);
 }
 
 static void another_pair_handle(struct pair_result *result, int turn)
@@ -1176,27 +1122,23 @@ static void other_pair_verdict(struct pair_result *result, int turn)
 /* The answers are those of the first results. */
 static void second_results_are_ignored(void **state)
 {
-    struct relay *relay = relay_new();
     struct fmb_client_answer answer;
     struct fmb_scene scene = listed();
-    relay->double_result = 1;
-    relay->second_lie = other_verdict;
-    relay->second_pair_lie = other_pair_verdict;
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    test.relay->double_result = 1;
+    test.relay->second_lie = other_verdict;
+    test.relay->second_pair_lie = other_pair_verdict;
+    relay_start(2000, 5, 1);
     scene.want = 0;
     for (int i = 0; i < 5; i++) {
-        relay_query(client, &scene);
-        assert_int_equal(fmb_client_query_pair(client, &placement[i], 1, 0, &answer), FMB_OK);
+        relay_query(test.client, &scene);
+        assert_int_equal(fmb_client_query_pair(test.client, &placement[i], 1, 0, &answer), FMB_OK);
         struct fmb_answer expected;
         assert_int_equal(
             fmb_decide(fmb_method_default(), &placement[i], &placement[i + 1], 1, 0, &expected),
             FMB_OK);
         assert_int_equal(answer.answer.verdict, expected.verdict);
     }
-    assert_int_equal(relay_counts(client).malformed, 0);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_int_equal(relay_counts(test.client).malformed, 0);
 }
 
 /* ---- The process ---- */
@@ -1207,22 +1149,19 @@ static void many_open_descriptors_do_not_matter(void **state)
     enum { COUNT = 1100 };
     static int fd[COUNT];
     struct rlimit limit;
-    struct relay *relay = relay_new();
     assert_int_equal(getrlimit(RLIMIT_NOFILE, &limit), 0);
     limit.rlim_cur = limit.rlim_max < 2 * COUNT ? limit.rlim_max : 2 * COUNT;
     if (limit.rlim_cur < 2 * COUNT || setrlimit(RLIMIT_NOFILE, &limit) != 0)
         skip();
-    relay_open(relay, 2000);
+    relay_open(test.relay, 2000);
     for (int i = 0; i < COUNT; i++)
         assert_true((fd[i] = dup(STDERR_FILENO)) >= 0);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    test.client = relay_client(test.relay, 5, 1);
     const struct fmb_scene scene = listed();
-    relay_query(client, &scene);
-    assert_true(fmb_client_fileno(client) > 1024);
-    fmb_client_close(client);
+    relay_query(test.client, &scene);
+    assert_true(fmb_client_fileno(test.client) > 1024);
     for (int i = 0; i < COUNT; i++)
         close(fd[i]);
-    relay_close(relay);
 }
 
 static void a_child_that_closes_harms_nothing(void **state)
@@ -1271,14 +1210,12 @@ static void query_within(void *user, const struct fmb_client_answer *answer)
 
 static void no_call_within_a_callback(void **state)
 {
-    struct relay *relay = relay_new();
-    relay_open(relay, 2000);
+    relay_open(test.relay, 2000);
     const struct fmb_scene scene = listed();
-    struct within within = {.client = relay_client(relay, 5, 1), .scene = &scene};
+    struct within within = {.client = relay_client(test.relay, 5, 1), .scene = &scene};
     assert_int_equal(fmb_client_query(within.client, &scene, query_within, &within), FMB_OK);
     assert_int_equal(within.called, 2000);
     fmb_client_close(within.client);
-    relay_close(relay);
 }
 
 struct watching {
@@ -1322,15 +1259,15 @@ static void on_malformed(void *user, const char *what)
 /* One client listens to what another one is answered. */
 static void a_watcher_sees_all_results(void **state)
 {
-    struct relay *relay = relay_new();
     struct watching watching = {0};
     struct relay_truth truth;
     struct wire_status status = {.received = 2, .scenes = 1};
     unsigned char heartbeat[WIRE_STATUS_BYTES_MAX];
     const struct fmb_client_watcher watcher = {on_result, on_heartbeat, on_malformed, &watching};
     snprintf(status.version, sizeof status.version, "%s", fmb_version());
-    relay_open(relay, 2000);
-    struct fmb_client *other = relay_client(relay, 5, 1), *watch = relay_client(relay, 5, 1);
+    relay_open(test.relay, 2000);
+    struct fmb_client *other = relay_client(test.relay, 5, 1),
+                      *watch = relay_client(test.relay, 5, 1);
     assert_int_equal(fmb_client_watch(watch, &watcher), FMB_OK);
     struct fmb_scene scene = all_pairs();
     struct fmb_client_answer answer;
@@ -1338,8 +1275,8 @@ static void a_watcher_sees_all_results(void **state)
     relay_truth_make(&scene, &truth);
     relay_query(other, &scene);
     assert_int_equal(fmb_client_query_pair(other, placement, 1, 0, &answer), FMB_OK);
-    relay_publish(relay, WIRE_STATUS, heartbeat, wire_write_status(&status, heartbeat));
-    relay_publish(relay, WIRE_STATUS, "no status", 9);
+    relay_publish(test.relay, WIRE_STATUS, heartbeat, wire_write_status(&status, heartbeat));
+    relay_publish(test.relay, WIRE_STATUS, "no status", 9);
     assert_true(fmb_client_fileno(watch) >= 0);
     while (watching.malformed == 0 && fmb_client_handle(watch, 60) > 0)
         continue;
@@ -1356,7 +1293,6 @@ static void a_watcher_sees_all_results(void **state)
     relay_truth_clear(&truth);
     fmb_client_close(other);
     fmb_client_close(watch);
-    relay_close(relay);
 }
 
 /* ---- Opening ---- */
@@ -1387,39 +1323,39 @@ static void wrong_options_are_refused(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_the_bus_loses_is_sent_again),
-        cmocka_unit_test(messages_that_cannot_be_read_are_counted),
-        cmocka_unit_test(results_of_another_kind_are_ignored),
-        cmocka_unit_test(results_of_another_client_reach_only_the_watcher),
+        RELAY_TEST(what_the_bus_loses_is_sent_again),
+        RELAY_TEST(messages_that_cannot_be_read_are_counted),
+        RELAY_TEST(results_of_another_kind_are_ignored),
+        RELAY_TEST(results_of_another_client_reach_only_the_watcher),
         cmocka_unit_test(larger_queries_of_a_request_are_charged),
         cmocka_unit_test(the_window_is_free_when_all_requests_have_ended),
         cmocka_unit_test(a_service_that_stays_busy_is_given_up),
         cmocka_unit_test(results_without_a_query_do_not_prolong_others),
-        cmocka_unit_test(a_service_that_comes_back_is_found),
-        cmocka_unit_test(a_repeat_finds_the_service),
-        cmocka_unit_test(no_service_costs_the_time_of_one_query),
-        cmocka_unit_test(the_others_have_no_answer),
-        cmocka_unit_test(the_time_for_all_ends_it),
+        RELAY_TEST(a_service_that_comes_back_is_found),
+        RELAY_TEST(a_repeat_finds_the_service),
+        RELAY_TEST(no_service_costs_the_time_of_one_query),
+        RELAY_TEST(the_others_have_no_answer),
+        RELAY_TEST(the_time_for_all_ends_it),
         cmocka_unit_test(a_caller_that_takes_long_gets_all_answers),
         cmocka_unit_test(what_is_under_way_is_limited),
         cmocka_unit_test(forged_results_are_ignored),
         cmocka_unit_test(forged_gaps_are_ignored),
         cmocka_unit_test(results_of_a_pair_fit_their_query),
         cmocka_unit_test(frames_of_a_gap_fit_the_bodies),
-        cmocka_unit_test(the_right_result_after_forged_ones_is_taken),
-        cmocka_unit_test(steps_of_one_pair_end),
-        cmocka_unit_test(slow_services_get_fewer_pairs_a_query),
+        RELAY_TEST(the_right_result_after_forged_ones_is_taken),
+        RELAY_TEST(steps_of_one_pair_end),
+        RELAY_TEST(slow_services_get_fewer_pairs_a_query),
         cmocka_unit_test(unknown_bodies_for_ever_are_sent_whole),
         cmocka_unit_test(unknown_bodies_one_by_one_are_sent_whole),
-        cmocka_unit_test(an_answer_counts_more_than_an_unknown_body),
-        cmocka_unit_test(a_late_answer_to_the_query_by_handle_is_taken),
+        RELAY_TEST(an_answer_counts_more_than_an_unknown_body),
+        RELAY_TEST(a_late_answer_to_the_query_by_handle_is_taken),
         cmocka_unit_test(wrong_handles_of_a_pair_are_malformed),
         cmocka_unit_test(bodies_are_kept_until_the_table_is_full),
-        cmocka_unit_test(second_results_are_ignored),
-        cmocka_unit_test(many_open_descriptors_do_not_matter),
+        RELAY_TEST(second_results_are_ignored),
+        RELAY_TEST(many_open_descriptors_do_not_matter),
         cmocka_unit_test(a_child_that_closes_harms_nothing),
-        cmocka_unit_test(no_call_within_a_callback),
-        cmocka_unit_test(a_watcher_sees_all_results),
+        RELAY_TEST(no_call_within_a_callback),
+        RELAY_TEST(a_watcher_sees_all_results),
         cmocka_unit_test(wrong_options_are_refused),
     };
     (void) argc;

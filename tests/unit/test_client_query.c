@@ -44,9 +44,7 @@ static unsigned (*list_of(size_t count, size_t frames))[2]
 
 static void small_scenes_of_every_kind_are_answered(void **state)
 {
-    struct relay *relay = relay_new();
-    relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_start(1000, 5, 1);
     for (size_t count = 0; count < 40; count += count < 4 ? 1 : 9)
         for (int dim = 2; dim <= 3; dim++)
             for (unsigned want = 0; want <= (ALL_WANTS | FMB_WANT_GAP); want++) {
@@ -55,66 +53,54 @@ static void small_scenes_of_every_kind_are_answered(void **state)
                 struct fmb_placement *frame = frames_of(count, dim, 3, 1);
                 struct fmb_scene scene = scene_of(frame, count, FMB_PAIRS_ALL, want);
                 scene.margin = (want + count) % 2 ? 0.5 : 0;
-                relay_query(client, &scene);
+                relay_query(test.client, &scene);
                 scene.which = FMB_PAIRS_ACROSS;
                 for (scene.split = 0; scene.split <= count; scene.split += 1 + count / 3)
-                    relay_query(client, &scene);
+                    relay_query(test.client, &scene);
                 scene.which = FMB_PAIRS_LISTED;
                 scene.split = 0;
                 scene.pair_count = count < 2 ? 0 : 2 * count;
                 unsigned(*pair)[2] = list_of(scene.pair_count, count);
                 scene.pairs = (const unsigned(*)[2]) pair;
-                relay_query(client, &scene);
+                relay_query(test.client, &scene);
                 free(pair);
                 free(frame);
             }
-    assert_int_equal(relay_dropped(relay), 0);
-    assert_int_equal(relay_counts(client).malformed, 0);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_int_equal(relay_dropped(test.relay), 0);
+    assert_int_equal(relay_counts(test.client).malformed, 0);
 }
 
 static void all_pairs_of_many_bodies_are_answered(void **state)
 {
-    struct relay *relay = relay_new();
     const size_t count = relay_size(5000, 1300);
-    relay_open(relay, 65536);
-    struct fmb_client *client = relay_client(relay, 20, 1);
+    relay_start(65536, 20, 1);
     struct fmb_placement *frame = frames_of(count, 3, cbrt(4.0 * (double) count), 1);
     const struct fmb_scene scene = scene_of(frame, count, FMB_PAIRS_ALL, ALL_WANTS);
-    relay_query(client, &scene);
-    assert_true(relay_counts(client).queries > 10);
-    assert_int_equal(relay_dropped(relay), 0);
-    fmb_client_close(client);
+    relay_query(test.client, &scene);
+    assert_true(relay_counts(test.client).queries > 10);
+    assert_int_equal(relay_dropped(test.relay), 0);
     free(frame);
-    relay_close(relay);
 }
 
 /* Results with no room for all answers: nearly all pairs meet. */
 static void all_pairs_of_a_crowd_are_answered(void **state)
 {
-    struct relay *relay = relay_new();
     const size_t count = relay_size(900, 560);
-    relay_open(relay, 65536);
-    struct fmb_client *client = relay_client(relay, 20, 1);
+    relay_start(65536, 20, 1);
     struct fmb_placement *frame = frames_of(count, 2, 2, 1);
     struct fmb_scene scene = scene_of(frame, count, FMB_PAIRS_ALL, ALL_WANTS);
-    relay_query(client, &scene);
-    assert_true(relay_counts(client).queries > 30);
+    relay_query(test.client, &scene);
+    assert_true(relay_counts(test.client).queries > 30);
     scene.which = FMB_PAIRS_ACROSS;
     scene.split = count / 3;
-    relay_query(client, &scene);
-    fmb_client_close(client);
+    relay_query(test.client, &scene);
     free(frame);
-    relay_close(relay);
 }
 
 static void many_listed_pairs_are_answered(void **state)
 {
-    struct relay *relay = relay_new();
     const size_t count = relay_size(100000, 20000), frames = 3000;
-    relay_open(relay, 65536);
-    struct fmb_client *client = relay_client(relay, 20, 1);
+    relay_start(65536, 20, 1);
     struct fmb_placement *frame = frames_of(frames, 3, 8, 1);
     unsigned(*pair)[2] = list_of(count, frames);
     struct fmb_scene scene = scene_of(frame, frames, FMB_PAIRS_LISTED, 0);
@@ -122,13 +108,11 @@ static void many_listed_pairs_are_answered(void **state)
     scene.pair_count = count;
     for (unsigned want = 0; want <= ALL_WANTS; want += ALL_WANTS) {
         scene.want = want;
-        relay_query(client, &scene);
+        relay_query(test.client, &scene);
     }
-    assert_int_equal(relay_dropped(relay), 0);
-    fmb_client_close(client);
+    assert_int_equal(relay_dropped(test.relay), 0);
     free(pair);
     free(frame);
-    relay_close(relay);
 }
 
 static void never(void *user, const struct fmb_client_answer *answer)
@@ -210,9 +194,7 @@ static unsigned (*all_pairs_of(size_t placements))[2]
 /* fmb and sat decide listed pairs only. */
 static void every_method_answers(void **state)
 {
-    struct relay *relay = relay_new();
-    relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_start(1000, 5, 1);
     struct fmb_placement *frame = frames_of(60, 3, 3, 1);
     unsigned(*pair)[2] = all_pairs_of(60);
     for (size_t i = 0; fmb_method_at(i); i++) {
@@ -220,36 +202,32 @@ static void every_method_answers(void **state)
         struct giving giving = {.scene = &scene, .b = 1};
         scene.method = fmb_method_at(i);
         if (!scene.method->certain) {
-            wrong(client, &scene, FMB_CANNOT_DECIDE, "method: listed pairs only");
+            wrong(test.client, &scene, FMB_CANNOT_DECIDE, "method: listed pairs only");
             scene.which = FMB_PAIRS_LISTED;
             scene.pairs = (const unsigned(*)[2]) pair;
             scene.pair_count = 60 * 59 / 2;
             scene.margin = 1;
-            wrong(client, &scene, FMB_CANNOT_DECIDE, "method: gives no gaps");
+            wrong(test.client, &scene, FMB_CANNOT_DECIDE, "method: gives no gaps");
             scene.margin = 0;
         }
-        assert_int_equal(fmb_client_query(client, &scene, check_method, &giving), FMB_OK);
+        assert_int_equal(fmb_client_query(test.client, &scene, check_method, &giving), FMB_OK);
         assert_true(giving.given > 100);
         assert_true(giving.separated > 100);
         assert_true(fmb_method_at(i)->certain == (giving.undecided == 0));
     }
     free(pair);
-    fmb_client_close(client);
     free(frame);
-    relay_close(relay);
 }
 
 /* Near pairs, none missed, in the blocks that a large scene is divided into. */
 static void near_pairs_of_many_bodies_are_answered(void **state)
 {
-    struct relay *relay = relay_new();
-    relay_open(relay, 65536);
-    struct fmb_client *client = relay_client(relay, 20, 1);
+    relay_start(65536, 20, 1);
     struct fmb_placement *frame = frames_of(800, 3, 25, 1);
     struct fmb_scene scene = scene_of(frame, 800, FMB_PAIRS_ALL, 0);
     scene.margin = 0.25;
-    relay_query(client, &scene);
-    assert_true(relay_counts(client).queries > 3);
+    relay_query(test.client, &scene);
+    assert_true(relay_counts(test.client).queries > 3);
     scene.method = fmb_method_by_name("exact"); /* is answered by lists */
     scene.placement_count = 60;
     for (size_t i = 0; i < 60; i++)
@@ -257,13 +235,11 @@ static void near_pairs_of_many_bodies_are_answered(void **state)
             frame[i].position[axis] /= 4;
     for (scene.want = 0; scene.want <= FMB_WANT_GAP; scene.want += FMB_WANT_GAP) {
         struct giving giving = {.scene = &scene, .b = 1};
-        assert_int_equal(fmb_client_query(client, &scene, check_method, &giving), FMB_OK);
+        assert_int_equal(fmb_client_query(test.client, &scene, check_method, &giving), FMB_OK);
         assert_true(giving.separated > 0 && giving.given > 0);
     }
-    assert_int_equal(relay_counts(client).malformed, 0);
-    fmb_client_close(client);
+    assert_int_equal(relay_counts(test.client).malformed, 0);
     free(frame);
-    relay_close(relay);
 }
 
 static void check_certificate(void *user, const struct fmb_client_answer *answer)
@@ -289,21 +265,18 @@ static void check_certificate(void *user, const struct fmb_client_answer *answer
 
 static void all_pairs_have_certificates(void **state)
 {
-    struct relay *relay = relay_new();
-    relay_open(relay, 20); /* fewer than there are */
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_open(test.relay, 20); /* fewer than there are */
+    test.client = relay_client(test.relay, 5, 1);
     struct fmb_placement *frame = frames_of(40, 2, 3, 1);
     relay_use_first_frames(frame, 40); /* certificates are of those */
     struct fmb_scene scene = scene_of(frame, 40, FMB_PAIRS_ALL, ALL_WANTS | FMB_WANT_CERTIFICATE);
     scene.margin = 0.25;
     struct giving giving = {.scene = &scene, .b = 1};
-    assert_int_equal(fmb_client_query(client, &scene, check_certificate, &giving), FMB_OK);
+    assert_int_equal(fmb_client_query(test.client, &scene, check_certificate, &giving), FMB_OK);
     assert_int_equal(giving.given, 780);
     assert_in_range(giving.separated, 1, 779);
-    assert_int_equal(relay_dropped(relay), 0);
-    fmb_client_close(client);
+    assert_int_equal(relay_dropped(test.relay), 0);
     free(frame);
-    relay_close(relay);
 }
 
 static void count_answer(void *user, const struct fmb_client_answer *answer)
@@ -359,9 +332,7 @@ static const struct fmb_body *with_hull(const struct fmb_body *body, int number)
 static void hulls(void **state)
 {
     enum { BODIES = 120 };
-    struct relay *relay = relay_new();
-    relay_open(relay, 4000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_start(4000, 5, 1);
     for (int dim = 2; dim <= 3; dim++) {
         struct fmb_placement *body = frames_of(BODIES, dim, dim == 2 ? 25 : 8, 1);
         for (int i = 0; i < BODIES; i++)
@@ -371,13 +342,14 @@ static void hulls(void **state)
         for (int round = 0; round < 3; round++) { /* whole, by handle, with gaps */
             scene.want |= round == 2 ? FMB_WANT_GAP : 0;
             scene.margin = round == 2 ? 0.25 : 0;
-            relay_query(client, &scene);
+            relay_query(test.client, &scene);
         }
         for (int i = 1; i < BODIES; i++) {
             struct fmb_client_answer got;
             struct fmb_answer expected;
             const unsigned want = FMB_WANT_BOX | FMB_WANT_GAP;
-            assert_int_equal(fmb_client_query_pair(client, &body[i - 1], 1, want, &got), FMB_OK);
+            assert_int_equal(fmb_client_query_pair(test.client, &body[i - 1], 1, want, &got),
+                             FMB_OK);
             assert_int_equal(
                 fmb_decide(fmb_method_default(), &body[i - 1], &body[i], 1, want, &expected),
                 FMB_OK);
@@ -388,19 +360,15 @@ static void hulls(void **state)
         }
         free(body);
     }
-    assert_true(relay_counts(client).by_handle > 0);
-    assert_int_equal(relay_counts(client).malformed, 0);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_true(relay_counts(test.client).by_handle > 0);
+    assert_int_equal(relay_counts(test.client).malformed, 0);
 }
 
 /* Groups, names, a label, and frames by vertices, in queries of every kind. */
 static void groups_names_and_vertices(void **state)
 {
     enum { BODIES = 300 };
-    struct relay *relay = relay_new();
-    relay_open(relay, 4000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_start(4000, 5, 1);
     for (int dim = 2; dim <= 3; dim++) {
         struct fmb_placement *body = frames_of(BODIES, dim, dim == 2 ? 40 : 12, 1);
         for (int i = 0; i < BODIES; i++) {
@@ -413,131 +381,118 @@ static void groups_names_and_vertices(void **state)
         for (int round = 0; round < 2; round++) { /* whole, then by handle */
             scene.margin = round * 0.5;
             scene.which = FMB_PAIRS_ALL;
-            relay_query(client, &scene);
+            relay_query(test.client, &scene);
             scene.which = FMB_PAIRS_ACROSS;
             scene.split = 100;
-            relay_query(client, &scene);
+            relay_query(test.client, &scene);
             scene.split = 0;
         }
         static const unsigned pairs[3][2] = {{1, 2}, {8, 2}, {9, 2}}; /* two of group 1 */
         scene.which = FMB_PAIRS_LISTED;
         scene.pairs = pairs;
         scene.pair_count = 2;
-        relay_query(client, &scene);
+        relay_query(test.client, &scene);
         scene.pair_count = 3;
-        wrong(client, &scene, FMB_BAD_PAIR, "pairs[2]: ");
+        wrong(test.client, &scene, FMB_BAD_PAIR, "pairs[2]: ");
         struct fmb_client_answer answer; /* which does not look at groups */
         const struct fmb_placement both[2] = {body[9], body[2]};
-        assert_int_equal(fmb_client_query_pair(client, both, 1, 0, &answer), FMB_OK);
+        assert_int_equal(fmb_client_query_pair(test.client, both, 1, 0, &answer), FMB_OK);
         free(body);
     }
-    assert_int_equal(relay_counts(client).malformed, 0);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_int_equal(relay_counts(test.client).malformed, 0);
 }
 
 /* Each pair a query of its own: no pair within a group is sent. */
 static void groups_where_pairs_are_listed(void **state)
 {
-    struct relay *relay = relay_new();
-    relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_start(1000, 5, 1);
     struct fmb_placement *body = frames_of(12, 3, 2, 1);
     relay_use_first_frames(body, 12);
     for (int i = 0; i < 10; i++)
         body[i].group = -3;
     struct fmb_scene scene = scene_of(body, 12, FMB_PAIRS_ALL, FMB_WANT_CERTIFICATE);
     int given = 0;
-    assert_int_equal(fmb_client_query(client, &scene, count_answer, &given), FMB_OK);
+    assert_int_equal(fmb_client_query(test.client, &scene, count_answer, &given), FMB_OK);
     assert_int_equal(given, 12 * 11 / 2 - 10 * 9 / 2);
-    assert_int_equal(relay_counts(client).queries, given);
-    fmb_client_close(client);
+    assert_int_equal(relay_counts(test.client).queries, given);
     free(body);
-    relay_close(relay);
 }
 
 static void one_pair_is_answered(void **state)
 {
-    struct relay *relay = relay_new();
-    relay_open(relay, 10);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_start(10, 5, 1);
     struct fmb_client_answer answer;
     struct fmb_placement pair[2];
     relay_draw(pair, 2, 2, 1, 1, 1);
     for (int k = 0; k < 2; k++)
         pair[1] = pair[0], pair[1].id = 2, pair[1].position[0] += 1;
-    assert_int_equal(fmb_client_query_pair(client, pair, 1, 0, &answer), FMB_OK);
+    assert_int_equal(fmb_client_query_pair(test.client, pair, 1, 0, &answer), FMB_OK);
     assert_int_equal(answer.answer.verdict, FMB_TOUCHING);
     assert_null(answer.certificate);
     assert_false(answer.answer.has_gap);
-    assert_int_equal(fmb_client_query_pair(client, pair, 1, FMB_WANT_GAP, &answer), FMB_OK);
+    assert_int_equal(fmb_client_query_pair(test.client, pair, 1, FMB_WANT_GAP, &answer), FMB_OK);
     assert_true(answer.answer.has_gap && !answer.answer.gap.has_witness);
-    assert_int_equal(fmb_client_query_pair(client, pair, 1, FMB_WANT_CERTIFICATE, &answer), FMB_OK);
+    assert_int_equal(fmb_client_query_pair(test.client, pair, 1, FMB_WANT_CERTIFICATE, &answer),
+                     FMB_OK);
     assert_memory_equal(answer.certificate, "touching", 8);
     pair[1].position[1] = INFINITY;
-    assert_int_equal(fmb_client_query_pair(client, pair, 1, 0, &answer), FMB_NOT_FINITE);
+    assert_int_equal(fmb_client_query_pair(test.client, pair, 1, 0, &answer), FMB_NOT_FINITE);
     assert_string_equal(answer.text, "placements[1]: not a finite number");
-    fmb_client_close(client);
-    relay_close(relay);
 }
 
 /* ---- Wrong scenes ---- */
 
 static void wrong_scenes_are_refused(void **state)
 {
-    struct relay *relay = relay_new();
-    relay_open(relay, 10);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_start(10, 5, 1);
     struct fmb_placement frame[3], good[3];
     relay_draw(good, 3, 3, 1, 1, 1);
     memcpy(frame, good, sizeof good);
     struct fmb_scene scene = scene_of(frame, 3, FMB_PAIRS_LISTED, 0);
     frame[2].body = NULL;
-    wrong(client, &scene, FMB_NO_FRAMES, "placements[2]: ");
+    wrong(test.client, &scene, FMB_NO_FRAMES, "placements[2]: ");
     frame[2] = good[2], frame[2].name = "a\n";
-    wrong(client, &scene, FMB_BAD_NAME, "placements[2].name: ");
+    wrong(test.client, &scene, FMB_BAD_NAME, "placements[2].name: ");
     frame[2] = good[2];
     scene.label = "01234567890123456789012345678901234567890123456789012345678901234";
-    wrong(client, &scene, FMB_OVER_LIMIT, "label: ");
+    wrong(test.client, &scene, FMB_OVER_LIMIT, "label: ");
     scene.label = NULL;
     frame[2].orientation_count = 3;
-    wrong(client, &scene, FMB_WRONG_COUNT, "placements[2]: ");
+    wrong(test.client, &scene, FMB_WRONG_COUNT, "placements[2]: ");
     frame[2] = good[2], frame[2].end_count = 3;
-    wrong(client, &scene, FMB_NOT_SUPPORTED, "placements[2]: ");
+    wrong(test.client, &scene, FMB_NOT_SUPPORTED, "placements[2]: ");
     frame[2] = good[2], frame[0].velocity[1] = NAN;
-    wrong(client, &scene, FMB_NOT_FINITE, "placements[0]: ");
+    wrong(test.client, &scene, FMB_NOT_FINITE, "placements[0]: ");
     frame[0] = good[0], frame[0].id = INT64_C(1) << 53;
-    wrong(client, &scene, FMB_BAD_ID, "placements[0].id: ");
+    wrong(test.client, &scene, FMB_BAD_ID, "placements[0].id: ");
     frame[0].id = -1;
-    wrong(client, &scene, FMB_BAD_ID, "placements[0].id: ");
+    wrong(test.client, &scene, FMB_BAD_ID, "placements[0].id: ");
     frame[0] = good[0];
     const unsigned same[][2] = {{0, 1}, {1, 1}}, beyond[][2] = {{0, 3}};
     scene.pairs = same, scene.pair_count = 2;
-    wrong(client, &scene, FMB_BAD_PAIR, "pairs[1]: ");
+    wrong(test.client, &scene, FMB_BAD_PAIR, "pairs[1]: ");
     scene.pairs = beyond, scene.pair_count = 1;
-    wrong(client, &scene, FMB_BAD_PAIR, "pairs[0]: ");
+    wrong(test.client, &scene, FMB_BAD_PAIR, "pairs[0]: ");
     scene.ignored = same, scene.ignored_count = 1, scene.pair_count = 0;
-    wrong(client, &scene, FMB_WRONG_COUNT, "ignored_count: ");
+    wrong(test.client, &scene, FMB_WRONG_COUNT, "ignored_count: ");
     scene.which = FMB_PAIRS_ALL, scene.ignored_count = 2;
-    wrong(client, &scene, FMB_BAD_PAIR, "ignored[1]: ");
+    wrong(test.client, &scene, FMB_BAD_PAIR, "ignored[1]: ");
     scene.ignored_count = 0;
     scene.which = FMB_PAIRS_ACROSS, scene.split = 4;
-    wrong(client, &scene, FMB_BAD_PAIR, "split: ");
+    wrong(test.client, &scene, FMB_BAD_PAIR, "split: ");
     scene.which = (enum fmb_pairs) 3;
-    wrong(client, &scene, FMB_BAD_PAIR, "which: ");
+    wrong(test.client, &scene, FMB_BAD_PAIR, "which: ");
     scene.which = FMB_PAIRS_ALL, scene.want = FMB_WANT_POINT;
-    wrong(client, &scene, FMB_UNKNOWN_WANT, "want: ");
+    wrong(test.client, &scene, FMB_UNKNOWN_WANT, "want: ");
     scene.want = 0, scene.duration = -1;
-    wrong(client, &scene, FMB_BAD_DURATION, "duration: ");
+    wrong(test.client, &scene, FMB_BAD_DURATION, "duration: ");
     const double margins[] = {-0x1p-1074, INFINITY, NAN};
     scene.duration = 0;
     for (int i = 0; i < 3; i++) {
         scene.margin = margins[i];
-        wrong(client, &scene, FMB_BAD_MARGIN, "margin: ");
+        wrong(test.client, &scene, FMB_BAD_MARGIN, "margin: ");
     }
-    assert_int_equal(relay->queries, 0);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_int_equal(test.relay->queries, 0);
 }
 
 /* ---- Fields that are 0 ---- */
@@ -561,28 +516,22 @@ static void a_scene_of_zeros_queries_all_pairs(void **state)
     static const unsigned pair[1][2] = {{0, 1}};
     struct fmb_placement placement[2] = {{.body = cube_of(1)}};
     struct fmb_scene scene = {.placements = placement, .placement_count = 2};
-    struct relay *relay = relay_new();
     int contacts = 0;
     placement[1] = placement[0];
-    relay_open(relay, 10);
-    struct fmb_client *client = relay_client(relay, 5, 1);
-    assert_int_equal(fmb_client_query(client, &scene, count_meeting, &contacts), FMB_OK);
+    relay_start(10, 5, 1);
+    assert_int_equal(fmb_client_query(test.client, &scene, count_meeting, &contacts), FMB_OK);
     assert_int_equal(contacts, 1);
-    assert_int_equal(relay->queries, 1);
+    assert_int_equal(test.relay->queries, 1);
     scene.pairs = pair, scene.pair_count = 1;
-    wrong(client, &scene, FMB_WRONG_COUNT, "pair_count: ");
+    wrong(test.client, &scene, FMB_WRONG_COUNT, "pair_count: ");
     scene.pair_count = 0, scene.split = 1;
-    wrong(client, &scene, FMB_BAD_PAIR, "split: ");
-    fmb_client_close(client);
-    relay_close(relay);
+    wrong(test.client, &scene, FMB_BAD_PAIR, "split: ");
 }
 
 static void bodies_that_move_need_a_window(void **state)
 {
     struct fmb_placement placement[2] = {{.body = cube_of(1)}};
-    struct relay *relay = relay_new();
-    relay_open(relay, 10);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_start(10, 5, 1);
     for (int moving = 0; moving < 2; moving++)
         for (int duration = 0; duration < 2; duration++)
             for (int instant = 0; instant < 2; instant++) {
@@ -594,19 +543,17 @@ static void bodies_that_move_need_a_window(void **state)
                 placement[1] = placement[0];
                 placement[1].velocity[2] = moving;
                 if (duration ? instant : !instant && moving) {
-                    wrong(client, &scene, FMB_BAD_DURATION,
+                    wrong(test.client, &scene, FMB_BAD_DURATION,
                           instant ? "duration: " : "duration: it is 0, but body 1 moves");
                     continue;
                 }
-                assert_int_equal(fmb_client_query(client, &scene, count_meeting, &contacts),
+                assert_int_equal(fmb_client_query(test.client, &scene, count_meeting, &contacts),
                                  FMB_OK);
                 assert_int_equal(contacts, 1);
             }
     struct fmb_client_answer answer; /* of a pair query, whose duration 0 is an instant */
-    assert_int_equal(fmb_client_query_pair(client, placement, 0, 0, &answer), FMB_OK);
+    assert_int_equal(fmb_client_query_pair(test.client, placement, 0, 0, &answer), FMB_OK);
     assert_int_equal(answer.answer.verdict, FMB_OVERLAPPING);
-    fmb_client_close(client);
-    relay_close(relay);
 }
 
 /* A method that the service does not know is refused by it, pair by pair. */
@@ -619,19 +566,15 @@ static void count_refusals(void *user, const struct fmb_client_answer *answer)
 
 static void refusals_of_the_service_are_given(void **state)
 {
-    struct relay *relay = relay_new();
     int count = 0;
-    relay_open(relay, 10);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_start(10, 5, 1);
     struct fmb_placement frame[5];
     relay_draw(frame, 5, 3, 1, 1, 1);
     struct fmb_scene scene = scene_of(frame, 5, FMB_PAIRS_ALL, 0);
     const struct fmb_method unknown = {.number = 77, .certain = true};
     scene.method = &unknown;
-    assert_int_equal(fmb_client_query(client, &scene, count_refusals, &count), FMB_OK);
+    assert_int_equal(fmb_client_query(test.client, &scene, count_refusals, &count), FMB_OK);
     assert_int_equal(count, 10);
-    fmb_client_close(client);
-    relay_close(relay);
 }
 
 /* ---- Handles ---- */
@@ -820,9 +763,7 @@ static void ignored_pairs_are_left_out(void **state)
 static void bodies_of_many_frames_are_answered(void **state)
 {
     enum { FRAMES = 500, BODIES = 5 };
-    struct relay *relay = relay_new();
-    relay_open(relay, 20000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_start(20000, 5, 1);
     struct fmb_placement *placement = frames_of(BODIES * FRAMES, 3, 1, 1);
     struct fmb_frame *frame = malloc((size_t) BODIES * FRAMES * sizeof *frame);
     for (int i = 0; i < BODIES * FRAMES; i++) {
@@ -833,26 +774,24 @@ static void bodies_of_many_frames_are_answered(void **state)
     for (int i = 0; i < BODIES; i++)
         placement[i].body = relay_body(frame + i * FRAMES, FRAMES);
     const struct fmb_scene scene = scene_of(placement, BODIES, FMB_PAIRS_ALL, ALL_WANTS);
-    relay_query(client, &scene);
-    const struct fmb_client_counts first = relay_counts(client);
+    relay_query(test.client, &scene);
+    const struct fmb_client_counts first = relay_counts(test.client);
     assert_in_range(first.whole, BODIES, 3 * BODIES); /* queries that are under way at once */
-    relay_query(client, &scene);
-    assert_int_equal(relay_counts(client).whole, first.whole);
-    assert_int_equal(relay_counts(client).queries, first.queries + 1);
-    relay_restart(relay, 20000);
-    relay_query(client, &scene);
+    relay_query(test.client, &scene);
+    assert_int_equal(relay_counts(test.client).whole, first.whole);
+    assert_int_equal(relay_counts(test.client).queries, first.queries + 1);
+    relay_restart(test.relay, 20000);
+    relay_query(test.client, &scene);
     /* Without ids there is no other way than both in one datagram. */
     placement[0].id = placement[1].id = 0;
     struct fmb_client_answer answer;
-    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OVER_LIMIT);
+    assert_int_equal(fmb_client_query_pair(test.client, placement, 1, 0, &answer), FMB_OVER_LIMIT);
     placement[0].body = relay_body(frame, 700);
-    assert_int_equal(fmb_client_query_pair(client, placement, 1, 0, &answer), FMB_OVER_LIMIT);
-    assert_string_equal(fmb_client_why(client), "placements[0].body: over the limit");
-    assert_int_equal(relay_counts(client).malformed, 0);
-    fmb_client_close(client);
+    assert_int_equal(fmb_client_query_pair(test.client, placement, 1, 0, &answer), FMB_OVER_LIMIT);
+    assert_string_equal(fmb_client_why(test.client), "placements[0].body: over the limit");
+    assert_int_equal(relay_counts(test.client).malformed, 0);
     free(placement);
     free(frame);
-    relay_close(relay);
 }
 
 /* Returns a body of count frames: cuboids of them are cuboids, the others boxes. */
@@ -885,9 +824,7 @@ static void pairs_that_just_fit_into_a_datagram(void **state)
     enum { BOX = 49, MORE = 48 }; /* bytes of a box, and how many more a cuboid has */
     static const unsigned pair[1][2] = {{0, 1}};
     const int most = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES - WIRE_PAIR_BYTES;
-    struct relay *relay = relay_new();
-    relay_open(relay, 20000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_start(20000, 5, 1);
     for (int bytes = most - 1; bytes < most + 6; bytes++) {
         const int frames = bytes - 2 * bytes_of(GEOMETRY_NONE_BYTES);
         int count = frames / (BOX + MORE) + 1;
@@ -905,21 +842,17 @@ static void pairs_that_just_fit_into_a_datagram(void **state)
         struct fmb_scene scene = scene_of(body, 2, FMB_PAIRS_LISTED, 0);
         scene.pairs = pair;
         scene.pair_count = 1;
-        const uint64_t before = relay_counts(client).queries;
-        relay_query(client, &scene);
-        const uint64_t queries = relay_counts(client).queries - before;
+        const uint64_t before = relay_counts(test.client).queries;
+        relay_query(test.client, &scene);
+        const uint64_t queries = relay_counts(test.client).queries - before;
         assert_true(bytes <= most ? queries == 1 : queries > 1);
     }
-    fmb_client_close(client);
-    relay_close(relay);
 }
 
 /* The answers from first_pair on, of lists, of one block and of many. */
 static void scenes_may_begin_with_any_pair(void **state)
 {
-    struct relay *relay = relay_new();
-    relay_open(relay, 4000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
+    relay_start(4000, 5, 1);
     struct fmb_placement *frame = frames_of(800, 3, 16, 1);
     unsigned(*pair)[2] = list_of(500, 800);
     for (int kind = 0; kind < 4; kind++) {
@@ -934,15 +867,13 @@ static void scenes_may_begin_with_any_pair(void **state)
         const unsigned long long count = fmb_scene_pair_count(&scene);
         for (int k = 1; k <= 3; k++) {
             scene.first_pair = count * (unsigned) k / 3;
-            relay_query(client, &scene);
+            relay_query(test.client, &scene);
         }
         scene.first_pair++;
-        wrong(client, &scene, FMB_BAD_PAIR, "first_pair: ");
+        wrong(test.client, &scene, FMB_BAD_PAIR, "first_pair: ");
     }
     free(pair);
     free(frame);
-    fmb_client_close(client);
-    relay_close(relay);
 }
 
 /* ---- Several clients ---- */
@@ -1023,21 +954,21 @@ static void clients_of_several_threads_are_independent(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(small_scenes_of_every_kind_are_answered),
-        cmocka_unit_test(all_pairs_of_many_bodies_are_answered),
-        cmocka_unit_test(all_pairs_of_a_crowd_are_answered),
-        cmocka_unit_test(many_listed_pairs_are_answered),
-        cmocka_unit_test(every_method_answers),
-        cmocka_unit_test(near_pairs_of_many_bodies_are_answered),
-        cmocka_unit_test(all_pairs_have_certificates),
-        cmocka_unit_test(groups_names_and_vertices),
-        cmocka_unit_test(hulls),
-        cmocka_unit_test(groups_where_pairs_are_listed),
-        cmocka_unit_test(one_pair_is_answered),
-        cmocka_unit_test(wrong_scenes_are_refused),
-        cmocka_unit_test(a_scene_of_zeros_queries_all_pairs),
-        cmocka_unit_test(bodies_that_move_need_a_window),
-        cmocka_unit_test(refusals_of_the_service_are_given),
+        RELAY_TEST(small_scenes_of_every_kind_are_answered),
+        RELAY_TEST(all_pairs_of_many_bodies_are_answered),
+        RELAY_TEST(all_pairs_of_a_crowd_are_answered),
+        RELAY_TEST(many_listed_pairs_are_answered),
+        RELAY_TEST(every_method_answers),
+        RELAY_TEST(near_pairs_of_many_bodies_are_answered),
+        RELAY_TEST(all_pairs_have_certificates),
+        RELAY_TEST(groups_names_and_vertices),
+        RELAY_TEST(hulls),
+        RELAY_TEST(groups_where_pairs_are_listed),
+        RELAY_TEST(one_pair_is_answered),
+        RELAY_TEST(wrong_scenes_are_refused),
+        RELAY_TEST(a_scene_of_zeros_queries_all_pairs),
+        RELAY_TEST(bodies_that_move_need_a_window),
+        RELAY_TEST(refusals_of_the_service_are_given),
         cmocka_unit_test(bodies_go_by_handle_the_second_time),
         cmocka_unit_test(equal_ids_of_two_clients_do_not_matter),
         cmocka_unit_test(a_new_service_holds_no_bodies),
@@ -1045,9 +976,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(bodies_that_are_never_held_end),
         cmocka_unit_test(an_id_may_stand_twice),
         cmocka_unit_test(ignored_pairs_are_left_out),
-        cmocka_unit_test(bodies_of_many_frames_are_answered),
-        cmocka_unit_test(pairs_that_just_fit_into_a_datagram),
-        cmocka_unit_test(scenes_may_begin_with_any_pair),
+        RELAY_TEST(bodies_of_many_frames_are_answered),
+        RELAY_TEST(pairs_that_just_fit_into_a_datagram),
+        RELAY_TEST(scenes_may_begin_with_any_pair),
         cmocka_unit_test(two_clients_in_a_process),
         cmocka_unit_test(clients_of_several_threads_are_independent),
     };

@@ -86,16 +86,14 @@ static void many_pairs_are_answered_over_a_bad_bus(void **state)
 {
     enum { COUNT = 300 };
     static struct pair pair[COUNT];
-    struct relay *relay = relay_new();
-    relay->lose_query = 7;
-    relay->lose_result = 5;
-    relay->double_result = 3;
+    test.relay->lose_query = 7;
+    test.relay->lose_result = 5;
+    test.relay->double_result = 3;
     memset(pair, 0, sizeof pair);
-    relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 0.05, 1000);
+    relay_start(1000, 0.05, 1000);
     for (int i = 0; i < COUNT; i++)
-        send_pair(client, 1 + i % BODIES, 1 + (i + 7) % BODIES, &pair[i]);
-    finish(client);
+        send_pair(test.client, 1 + i % BODIES, 1 + (i + 7) % BODIES, &pair[i]);
+    finish(test.client);
     for (int i = 0; i < COUNT; i++) {
         assert_int_equal(pair[i].called, 1);
         assert_int_equal(pair[i].status, FMB_OK);
@@ -105,10 +103,8 @@ static void many_pairs_are_answered_over_a_bad_bus(void **state)
         assert_int_not_equal(pair[i].result.client_id, 5);
         assert_int_equal(pair[i].result.client_id, pair[0].result.client_id);
     }
-    assert_true(relay_counts(client).repeated > 10);
-    assert_int_equal(relay_counts(client).queries, COUNT);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_true(relay_counts(test.client).repeated > 10);
+    assert_int_equal(relay_counts(test.client).queries, COUNT);
 }
 
 static void let_all_time_pass(struct relay *relay)
@@ -120,89 +116,74 @@ static void let_all_time_pass(struct relay *relay)
 static void a_window_of_64_is_under_way(void **state)
 {
     static struct pair pair[FMB_CLIENT_RAW_WINDOW];
-    struct relay *relay = relay_new();
-    relay->deaf = true;
-    relay->before = let_all_time_pass;
+    test.relay->deaf = true;
+    test.relay->before = let_all_time_pass;
     memset(pair, 0, sizeof pair);
-    relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 30, 2);
+    relay_start(1000, 30, 2);
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++) {
-        assert_true(fmb_client_raw_ready(client, 400));
-        send_pair(client, 1, 2, &pair[i]);
+        assert_true(fmb_client_raw_ready(test.client, 400));
+        send_pair(test.client, 1, 2, &pair[i]);
     }
-    assert_false(fmb_client_raw_ready(client, 400));
-    finish(client);
+    assert_false(fmb_client_raw_ready(test.client, 400));
+    finish(test.client);
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++) {
         assert_int_equal(pair[i].called, 1);
         assert_int_equal(pair[i].status, FMB_CLIENT_NO_SERVICE);
     }
     /* Known to be silent, it gets one query at a time. */
-    relay_wait(relay, FMB_CLIENT_RAW_WINDOW);
-    relay->before = NULL;
-    send_pair(client, 1, 2, &pair[0]);
-    assert_false(fmb_client_raw_ready(client, 400));
-    relay->deaf = false;
-    finish(client);
+    relay_wait(test.relay, FMB_CLIENT_RAW_WINDOW);
+    test.relay->before = NULL;
+    send_pair(test.client, 1, 2, &pair[0]);
+    assert_false(fmb_client_raw_ready(test.client, 400));
+    test.relay->deaf = false;
+    finish(test.client);
     assert_int_equal(pair[0].status, FMB_OK);
-    assert_true(fmb_client_raw_ready(client, 400));
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_true(fmb_client_raw_ready(test.client, 400));
 }
 
 /* A query is lost, and its caller comes back only when the time for all its repeats is over. */
 static void a_caller_that_was_away_repeats_its_query(void **state)
 {
     struct pair pair = {0};
-    struct relay *relay = relay_new();
-    relay->lose_query = 1;
-    relay_open(relay, 10);
-    struct fmb_client *client = relay_client(relay, 30, 2);
-    send_pair(client, 1, 2, &pair);
-    relay_wait(relay, 1);
+    test.relay->lose_query = 1;
+    relay_start(10, 30, 2);
+    send_pair(test.client, 1, 2, &pair);
+    relay_wait(test.relay, 1);
     clock_leap(90 * s);
-    relay->lose_query = 0;
-    finish(client);
+    test.relay->lose_query = 0;
+    finish(test.client);
     assert_int_equal(pair.called, 1);
     assert_int_equal(pair.status, FMB_OK);
-    fmb_client_close(client);
-    relay_close(relay);
 }
 
 /* No more bytes than a stock receive buffer holds: two of the largest datagrams. */
 static void large_queries_are_few_at_a_time(void **state)
 {
     static struct pair pair;
-    struct relay *relay = relay_new();
-    relay->deaf = true;
+    test.relay->deaf = true;
     unsigned char message[QUERY_BYTES_MAX];
-    relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 0.02, 1);
+    relay_start(1000, 0.02, 1);
     const size_t size = pair_query(1, 2, message);
     int sent = 0;
-    for (; fmb_client_raw_ready(client, QUERY_BYTES_MAX); sent++)
-        assert_int_equal(fmb_client_raw_send(client, FMB_CLIENT_PAIR, message, size,
+    for (; fmb_client_raw_ready(test.client, QUERY_BYTES_MAX); sent++)
+        assert_int_equal(fmb_client_raw_send(test.client, FMB_CLIENT_PAIR, message, size,
                                              QUERY_BYTES_MAX, take_pair, &pair),
                          FMB_OK);
     assert_int_equal(sent, 2);
-    finish(client);
-    fmb_client_close(client);
-    relay_close(relay);
+    finish(test.client);
 }
 
 static void messages_that_are_none_are_refused(void **state)
 {
     static unsigned char message[QUERY_BYTES_MAX + 1];
-    struct relay *relay = relay_new();
-    relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 1, 1);
-    assert_int_equal(fmb_client_raw_send(client, FMB_CLIENT_PAIR, message, 31, 31, take_pair, NULL),
-                     FMB_WRONG_COUNT);
+    relay_start(1000, 1, 1);
     assert_int_equal(
-        fmb_client_raw_send(client, FMB_CLIENT_PAIR, message, sizeof message, 31, take_pair, NULL),
-        FMB_OVER_LIMIT);
-    assert_int_equal(fmb_client_raw_step(client, -1, 0), 0);
-    fmb_client_close(client);
-    relay_close(relay);
+        fmb_client_raw_send(test.client, FMB_CLIENT_PAIR, message, 31, 31, take_pair, NULL),
+        FMB_WRONG_COUNT);
+    assert_int_equal(fmb_client_raw_send(test.client, FMB_CLIENT_PAIR, message, sizeof message, 31,
+                                         take_pair, NULL),
+                     FMB_OVER_LIMIT);
+    assert_int_equal(fmb_client_raw_step(test.client, -1, 0), 0);
 }
 
 /* Other clients' results fill the buffer of a client that is idle: before a query is sent, all of
@@ -210,24 +191,20 @@ static void messages_that_are_none_are_refused(void **state)
 static void an_idle_client_is_drained_before_a_query(void **state)
 {
     static struct pair pair;
-    struct relay *relay = relay_new();
-    relay->deaf = true;
+    test.relay->deaf = true;
     static const unsigned char other[1000];
     int waiting;
-    relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 0.02, 1);
-    send_pair(client, 1, 2, &pair);
-    finish(client);
+    relay_start(1000, 0.02, 1);
+    send_pair(test.client, 1, 2, &pair);
+    finish(test.client);
     for (int i = 0; i < 100; i++)
-        relay_publish(relay, "OTHER", other, sizeof other);
-    assert_int_equal(ioctl(fmb_client_fileno(client), FIONREAD, &waiting), 0);
+        relay_publish(test.relay, "OTHER", other, sizeof other);
+    assert_int_equal(ioctl(fmb_client_fileno(test.client), FIONREAD, &waiting), 0);
     assert_true(waiting > (int) sizeof other); /* the first datagram */
-    send_pair(client, 1, 2, &pair);
-    assert_int_equal(ioctl(fmb_client_fileno(client), FIONREAD, &waiting), 0);
+    send_pair(test.client, 1, 2, &pair);
+    assert_int_equal(ioctl(fmb_client_fileno(test.client), FIONREAD, &waiting), 0);
     assert_true(waiting < (int) sizeof other); /* its own query, or nothing */
-    finish(client);
-    fmb_client_close(client);
-    relay_close(relay);
+    finish(test.client);
 }
 
 /* ---- Scenes, definitions ---- */
@@ -277,25 +254,21 @@ static void scenes_and_definitions_are_answered(void **state)
 {
     static struct scene_result scene;
     static struct definition definition;
-    struct relay *relay = relay_new();
-    relay->lose_query = 3;
-    relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 0.1, 600);
-    query_scene(client, &scene);
+    test.relay->lose_query = 3;
+    relay_start(1000, 0.1, 600);
+    query_scene(test.client, &scene);
     assert_int_equal(scene.verdict_count, BODIES * (BODIES - 1) / 2);
     assert_int_equal(scene.handle_count, BODIES);
-    query_definition(client, 0, &scene.handle[3], 5, &definition);
+    query_definition(test.client, 0, &scene.handle[3], 5, &definition);
     assert_int_equal(definition.body_count, 5);
     assert_int_equal(definition.next, 0);
     int64_t first = 0, count = 0;
     do { /* all, in pages */
-        query_definition(client, first, NULL, 0, &definition);
+        query_definition(test.client, first, NULL, 0, &definition);
         count += definition.body_count;
         first = definition.next;
     } while (first != 0);
     assert_int_equal(count, BODIES);
-    fmb_client_close(client);
-    relay_close(relay);
 }
 
 /* ---- The loop ---- */
@@ -303,20 +276,16 @@ static void scenes_and_definitions_are_answered(void **state)
 static void a_step_ends_with_another_descriptor(void **state)
 {
     static struct pair pair;
-    struct relay *relay = relay_new();
-    relay->deaf = true;
-    relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 1000, 1);
-    send_pair(client, 1, 2, &pair);
+    test.relay->deaf = true;
+    relay_start(1000, 1000, 1);
+    send_pair(test.client, 1, 2, &pair);
     int fd[2];
     assert_int_equal(pipe(fd), 0);
     assert_int_equal(write(fd[1], "", 1), 1);
-    assert_int_equal(fmb_client_raw_step(client, fd[0], 1e6), 1);
+    assert_int_equal(fmb_client_raw_step(test.client, fd[0], 1e6), 1);
     assert_int_equal(pair.called, 0);
     close(fd[0]);
     close(fd[1]);
-    fmb_client_close(client);
-    relay_close(relay);
 }
 
 static void step_within(void *user, const struct fmb_client_raw_result *result)
@@ -333,17 +302,13 @@ static void step_within(void *user, const struct fmb_client_raw_result *result)
 
 static void no_call_within_a_callback(void **state)
 {
-    struct relay *relay = relay_new();
     unsigned char message[QUERY_BYTES_MAX];
-    relay_open(relay, 1000);
-    struct fmb_client *client = relay_client(relay, 10, 6);
+    relay_start(1000, 10, 6);
     const size_t size = pair_query(1, 2, message);
-    assert_int_equal(
-        fmb_client_raw_send(client, FMB_CLIENT_PAIR, message, size, size, step_within, client),
-        FMB_OK);
-    finish(client);
-    fmb_client_close(client);
-    relay_close(relay);
+    assert_int_equal(fmb_client_raw_send(test.client, FMB_CLIENT_PAIR, message, size, size,
+                                         step_within, test.client),
+                     FMB_OK);
+    finish(test.client);
 }
 
 /* ---- A listener ---- */
@@ -406,15 +371,15 @@ static void a_tap_gets_all_messages_first(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(many_pairs_are_answered_over_a_bad_bus),
-        cmocka_unit_test(a_window_of_64_is_under_way),
-        cmocka_unit_test(a_caller_that_was_away_repeats_its_query),
-        cmocka_unit_test(large_queries_are_few_at_a_time),
-        cmocka_unit_test(messages_that_are_none_are_refused),
-        cmocka_unit_test(an_idle_client_is_drained_before_a_query),
-        cmocka_unit_test(scenes_and_definitions_are_answered),
-        cmocka_unit_test(a_step_ends_with_another_descriptor),
-        cmocka_unit_test(no_call_within_a_callback),
+        RELAY_TEST(many_pairs_are_answered_over_a_bad_bus),
+        RELAY_TEST(a_window_of_64_is_under_way),
+        RELAY_TEST(a_caller_that_was_away_repeats_its_query),
+        RELAY_TEST(large_queries_are_few_at_a_time),
+        RELAY_TEST(messages_that_are_none_are_refused),
+        RELAY_TEST(an_idle_client_is_drained_before_a_query),
+        RELAY_TEST(scenes_and_definitions_are_answered),
+        RELAY_TEST(a_step_ends_with_another_descriptor),
+        RELAY_TEST(no_call_within_a_callback),
         cmocka_unit_test(a_tap_gets_all_messages_first),
     };
     (void) argc;
