@@ -80,18 +80,13 @@ static void read_logs(struct cutter *cut,
 static bool read_item(struct cutter *cut, enum log_kind kind, const struct log_event *event,
                       struct match_item *out)
 {
-    const uint32_t size = (uint32_t) event->kept;
-    *out = (struct match_item){.place = {.log = cut->input.log, .offset = event->offset},
-                               .is_result = log_kind_is_result(kind)};
-    if (match_key_of(kind, event, &out->key))
+    if (match_read(out, kind, event, &cut->result))
         return false;
-    if (out->is_result)
-        return !match_read_status(out, event, &cut->result);
-    if (logged_query_read(&cut->query, kind, event->data, size))
-        return false;
+    out->place.log = cut->input.log;
     out->place.in_range =
         log_choice_has_time(&cut->options->choice, cut->first_utime, event->utime);
-    return true;
+    return out->is_result ||
+           !logged_query_read(&cut->query, kind, event->data, (uint32_t) event->kept);
 }
 
 /* A part of a log has the names of all of it at its beginning. */

@@ -34,20 +34,6 @@ struct query_search {
 
 /* ---- Reading the logs ---- */
 
-/* Reads a query or result. */
-static const char *read_item(struct query_search *search, enum log_kind kind,
-                             const struct log_event *event, struct match_item *out)
-{
-    *out = (struct match_item){
-        .place = {.number = event->number, .offset = event->offset},
-        .is_result = log_kind_is_result(kind),
-    };
-    const char *error = match_key_of(kind, event, &out->key);
-    if (!error && out->is_result)
-        error = match_read_status(out, event, &search->result);
-    return error;
-}
-
 static bool matches(const struct query_search *search, const struct match_item *item,
                     const char *error)
 {
@@ -93,7 +79,7 @@ static void take_event(struct query_search *search, const struct log_event *even
                             (uint32_t) event->kept);
     if (search->input.log + 1 < search->options->log_count)
         return;
-    const char *error = read_item(search, kind, event, &item);
+    const char *error = match_read(&item, kind, event, &search->result);
     if (matches(search, &item, error) && !is_repeated(search, kind, event))
         take_match(search, kind, event, error);
     if (!error)

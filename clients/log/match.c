@@ -26,12 +26,18 @@ const char *match_key_of(enum log_kind kind, const struct log_event *event, stru
     return error;
 }
 
-const char *match_read_status(struct match_item *result, const struct log_event *event,
-                              struct logged_result *memory)
+const char *match_read(struct match_item *out, enum log_kind kind, const struct log_event *event,
+                       struct logged_result *memory)
 {
-    const char *error = logged_result_read(memory, (enum log_kind) result->key.kind, event->data,
-                                           (uint32_t) event->kept);
-    result->transient = !error && logged_status_is_transient(memory->head.status);
+    *out = (struct match_item){
+        .place = {.number = event->number, .offset = event->offset, .utime = event->utime},
+        .is_result = log_kind_is_result(kind)};
+    const char *error = match_key_of(kind, event, &out->key);
+    if (error || !out->is_result || !memory)
+        return error;
+    error = logged_result_read(memory, (enum log_kind) out->key.kind, event->data,
+                               (uint32_t) event->kept);
+    out->transient = !error && logged_status_is_transient(memory->head.status);
     return error;
 }
 

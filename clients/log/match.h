@@ -50,10 +50,11 @@ struct match_item {
     int64_t own_offset; /* there */
 };
 
-/* Reads whether a result is transient. In: its key; memory for the decoded result. Returns NULL; or
- * a static text: why it cannot be decoded. */
-const char *match_read_status(struct match_item *result, const struct log_event *event,
-                              struct logged_result *memory);
+/* Reads a query or a result: its key, its place in the current log, and whether it is transient.
+ * In: memory for a decoded result; NULL: only the key is read. Returns NULL; or a static text: why
+ * it cannot be decoded. Of a query only the header is read. */
+const char *match_read(struct match_item *out, enum log_kind kind, const struct log_event *event,
+                       struct logged_result *memory);
 
 struct match {
     struct match_item *item; /* owned, [count], in the order of match_add() */

@@ -6,31 +6,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct listing_entry {
+struct entry {
     struct difference difference;
+    int64_t number; /* of its arrival */
     char certificate[2][LISTING_CERTIFICATE_MAX];
     char detail[COMPARE_DETAIL_MAX];
 };
 
-enum { RANKS = 2 };
-
 struct listing {
-    GPtrArray *entries[RANKS]; /* of struct listing_entry, sorted; each up to the limit */
-    size_t limit;
-    int64_t put;
+    GPtrArray *entries; /* of struct entry; less than twice the limit */
+    int64_t limit, put;
 };
-
-static int rank_of(enum difference_kind kind)
-{
-    return kind == DIFFERENT_SCENE || kind == DIFFERENT_STATUS || kind == DIFFERENT_VERDICT ? 0 : 1;
-}
 
 struct listing *listing_open(int64_t limit)
 {
     struct listing *list = allocate(1, sizeof *list);
-    for (int rank = 0; rank < RANKS; rank++)
-        list->entries[rank] = g_ptr_array_new_with_free_func(free);
-    list->limit = (size_t) limit;
+    list->entries = g_ptr_array_new_with_free_func(free);
+    list->limit = limit;
     return list;
 }
 
@@ -38,68 +30,68 @@ void listing_close(struct listing *list)
 {
     if (!list)
         return;
-    for (int rank = 0; rank < RANKS; rank++)
-        g_ptr_array_free(list->entries[rank], TRUE);
+    g_ptr_array_free(list->entries, TRUE);
     free(list);
 }
 
-static const struct difference *entry_at(const GPtrArray *entries, size_t at)
+static bool is_number(enum difference_kind kind)
 {
-    const struct listing_entry *entry = entries->pdata[at];
-    return &entry->difference;
+    return kind != DIFFERENT_SCENE && kind != DIFFERENT_STATUS && kind != DIFFERENT_VERDICT;
 }
 
-static bool precedes(const struct difference *a, const struct difference *b)
+static int compare(const void *left, const void *right)
 {
-    return a->place.log < b->place.log ||
-           (a->place.log == b->place.log && a->place.offset < b->place.offset);
+    const struct entry *a = *(struct entry *const *) left, *b = *(struct entry *const *) right;
+    const struct match_place *at = &a->difference.place, *other = &b->difference.place;
+    const int rank = is_number(a->difference.kind) - is_number(b->difference.kind);
+    if (rank != 0)
+        return rank;
+    if (at->log != other->log)
+        return at->log < other->log ? -1 : 1;
+    if (at->offset != other->offset)
+        return at->offset < other->offset ? -1 : 1;
+    return a->number < b->number ? -1 : 1;
 }
 
-static void copy_certificate(struct fmb_client_answer *side, char copy[LISTING_CERTIFICATE_MAX])
+/* Sorts the entries, and drops those beyond the limit. */
+static void sort(const struct listing *list)
 {
-    if (!side->certificate)
-        return;
-    strncpy(copy, side->certificate, LISTING_CERTIFICATE_MAX - 1);
-    side->certificate = copy;
+    g_ptr_array_sort(list->entries, compare);
+    if (list->entries->len > list->limit)
+        g_ptr_array_set_size(list->entries, (int) list->limit);
 }
 
-static struct listing_entry *copy_of(const struct difference *difference)
+static const char *copy_text(const char *text, char *copy, size_t size)
 {
-    struct listing_entry *entry = allocate(1, sizeof *entry);
-    entry->difference = *difference;
-    copy_certificate(&entry->difference.then, entry->certificate[0]);
-    copy_certificate(&entry->difference.now, entry->certificate[1]);
-    if (difference->detail) {
-        strncpy(entry->detail, difference->detail, sizeof entry->detail - 1);
-        entry->difference.detail = entry->detail;
-    }
-    return entry;
+    if (text)
+        g_strlcpy(copy, text, size);
+    return text ? copy : NULL;
 }
 
-/* Differences arrive nearly in order, so the search is short. */
 void listing_put(struct listing *list, const struct difference *difference)
 {
-    GPtrArray *entries = list->entries[rank_of(difference->kind)];
-    size_t at = entries->len;
-    list->put++;
-    while (at > 0 && precedes(difference, entry_at(entries, at - 1)))
-        at--;
-    if (at == list->limit)
-        return;
-    g_ptr_array_insert(entries, (int) at, copy_of(difference));
-    if (entries->len > list->limit)
-        g_ptr_array_set_size(entries, (int) list->limit);
+    struct entry *entry = allocate(1, sizeof *entry);
+    struct difference *own = &entry->difference;
+    *own = *difference;
+    own->then.certificate =
+        copy_text(own->then.certificate, entry->certificate[0], LISTING_CERTIFICATE_MAX);
+    own->now.certificate =
+        copy_text(own->now.certificate, entry->certificate[1], LISTING_CERTIFICATE_MAX);
+    own->detail = copy_text(own->detail, entry->detail, sizeof entry->detail);
+    entry->number = list->put++;
+    g_ptr_array_add(list->entries, entry);
+    if (list->entries->len >= 2 * list->limit)
+        sort(list);
 }
 
 int64_t listing_beyond(const struct listing *list)
 {
-    return list->put > (int64_t) list->limit ? list->put - (int64_t) list->limit : 0;
+    return list->put > list->limit ? list->put - list->limit : 0;
 }
 
 void listing_each(const struct listing *list, difference_sink *sink, void *user)
 {
-    size_t left = list->limit;
-    for (int rank = 0; rank < RANKS; rank++)
-        for (size_t i = 0; i < list->entries[rank]->len && left > 0; i++, left--)
-            sink(user, entry_at(list->entries[rank], i));
+    sort(list);
+    for (size_t i = 0; i < list->entries->len; i++)
+        sink(user, &((struct entry *) list->entries->pdata[i])->difference);
 }

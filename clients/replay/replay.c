@@ -36,12 +36,14 @@ static struct match_place place_of(const struct replay *replay, const struct log
                                 .utime = event->utime};
 }
 
-static const char *read_key(const struct replay *replay, enum log_kind kind,
-                            const struct log_event *event, struct match_item *out)
+/* Reads a query or a result; memory: NULL: only its key. */
+static const char *read_item(struct replay *replay, enum log_kind kind,
+                             const struct log_event *event, struct logged_result *memory,
+                             struct match_item *out)
 {
-    *out = (struct match_item){.place = place_of(replay, event),
-                               .is_result = log_kind_is_result(kind)};
-    return match_key_of(kind, event, &out->key);
+    const char *error = match_read(out, kind, event, memory);
+    out->place = place_of(replay, event);
+    return error;
 }
 
 /* Registers a query or a result. error: why a query cannot be decoded; NULL: it can. */
@@ -49,17 +51,16 @@ static void take_message(struct replay *replay, enum log_kind kind, const struct
                          const char *error)
 {
     struct match_item item;
-    const char *no_key = read_key(replay, kind, event, &item);
+    const bool golden = replay->options->golden;
+    const char *unread = read_item(replay, kind, event, golden ? NULL : &replay->then, &item);
     struct tally_channel *channel = replay_channel(replay, &item);
-    const bool is_compared = item.is_result && !no_key && !replay->options->golden;
-    channel->results += is_compared && item.place.in_range;
-    error = no_key ? no_key : is_compared ? match_read_status(&item, event, &replay->then) : error;
-    item.unreadable = error;
-    if (error && item.place.in_range) {
+    channel->results += item.is_result && !unread && !golden && item.place.in_range;
+    item.unreadable = unread || error;
+    if (item.unreadable && item.place.in_range) {
         channel->unreadable[item.is_result]++;
-        replay_report(replay, &item, error);
+        replay_report(replay, &item, unread ? unread : error);
     }
-    if (item.is_result ? is_compared && !error : !no_key)
+    if (!unread && !(item.is_result && golden))
         match_add(&replay->match, &item);
 }
 
@@ -81,9 +82,7 @@ static void take_golden(struct replay *replay, enum log_kind kind, const struct 
         body_names_take_message(replay->golden_names, kind, event->data, (uint32_t) event->kept);
     if (kind >= LOG_STATUS)
         return;
-    const char *error = read_key(replay, kind, event, &item);
-    if (!error && item.is_result)
-        error = match_read_status(&item, event, &replay->then);
+    const char *error = read_item(replay, kind, event, &replay->then, &item);
     if (error && item.is_result)
         fail_golden(replay, event->offset, error);
     if (error)
