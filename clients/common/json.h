@@ -32,7 +32,7 @@
  * origin of a body that is one frame is its position, unless it has position or orientation too;
  * then, as in frames, it is in body coordinates. In frames, only boxes have a position and an
  * orientation: the pose of the box in its body. A box that is turned there becomes a cuboid, whose
- * numbers are rounded once (turned_box.h).
+ * numbers are rounded (turned_box.h).
  *
  * An input holds one or more such objects, one after the other. */
 #ifndef JSON_H

@@ -18,6 +18,7 @@
 #include "turn.h"
 
 #include <math.h>
+#include <string.h>
 
 /* sin x (first = 1) or cos x (first = 0). */
 static double series(double x, int first)
@@ -63,4 +64,15 @@ void turn_radians(double radians, double turn[2])
     else if (size < 4 && fabs(fabs(x) - EIGHTH) <= near)
         x = copysign(EIGHTH, x);
     turn_reduced(x, (int) quarters, turn);
+}
+
+double turn_matrix(const double q[4], double row[3][3])
+{
+    const double w = q[0], a = q[1], b = q[2], c = q[3];
+    const double matrix[3][3] = {
+        {w * w + a * a - b * b - c * c, 2 * (a * b - w * c), 2 * (a * c + w * b)},
+        {2 * (a * b + w * c), w * w - a * a + b * b - c * c, 2 * (b * c - w * a)},
+        {2 * (a * c - w * b), 2 * (b * c + w * a), w * w - a * a - b * b + c * c}};
+    memcpy(row, matrix, sizeof matrix);
+    return w * w + a * a + b * b + c * c;
 }

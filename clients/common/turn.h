@@ -16,4 +16,8 @@ void turn_degrees(double degrees, double turn[2]);
 #define TURN_RADIANS_MAX 0x1p20
 void turn_radians(double radians, double turn[2]);
 
+/* Returns n = |q|^2, and n times the matrix of the rotation by q = (w, x, y, z). Each entry, and n,
+ * is a sum of at most four products whose magnitudes add up to n: an error of at most 4 u n. */
+double turn_matrix(const double q[4], double row[3][3]);
+
 #endif

@@ -9,19 +9,15 @@ bool pose_is_translation(const struct pose *pose)
     return pose->q[1] == 0 && pose->q[2] == 0 && pose->q[3] == 0;
 }
 
-/* Accuracy, u = 2^-53, n = |q|^2. The entries of n R and n itself are sums of four products, no sum
- * of magnitudes above n: errors of at most 4 u n. A row has three products: 3 u more, and entries
- * of at most n: less than 8 u n |x|_1. The quotient by n adds 5 u |x|_1 and, since a row of R has
- * the length 1, the last sum u (|x|_1 + |p|). Together less than 16 u (|x|_1 + |p|_1); POSE_ERROR
- * is 32 u. Underflow costs some 2^-1074, a part of 2^-1000. Without a turn, R is exact. */
+/* Accuracy, u = 2^-53. The entries of n R and n itself have errors of at most 4 u n. A row has
+ * three products: 3 u more, and entries of at most n: less than 8 u n |x|_1. The quotient by n adds
+ * 5 u |x|_1 and, since a row of R has the length 1, the last sum u (|x|_1 + |p|). Together less
+ * than 16 u (|x|_1 + |p|_1); POSE_ERROR is 32 u. Underflow costs some 2^-1074, a part of 2^-1000.
+ * Without a turn, R is exact. */
 void pose_apply(const struct pose *pose, double x[3])
 {
-    const double w = pose->q[0], a = pose->q[1], b = pose->q[2], c = pose->q[3];
-    const double n = w * w + a * a + b * b + c * c;
-    const double row[3][3] = {
-        {w * w + a * a - b * b - c * c, 2 * (a * b - w * c), 2 * (a * c + w * b)},
-        {2 * (a * b + w * c), w * w - a * a + b * b - c * c, 2 * (b * c - w * a)},
-        {2 * (a * c - w * b), 2 * (b * c + w * a), w * w - a * a - b * b + c * c}};
+    double row[3][3];
+    const double n = turn_matrix(pose->q, row);
     const double from[3] = {x[0], x[1], x[2]};
     for (int i = 0; i < 3; i++)
         x[i] = (row[i][0] * from[0] + row[i][1] * from[1] + row[i][2] * from[2]) / n + pose->p[i];

@@ -266,26 +266,33 @@ static void hulls_have_a_limit(void **state)
     }
 }
 
-/* Against the same sums in long double, which are off by less than half a unit of a double. */
-static void turned_boxes_are_rounded_once(void **state)
+/* Against the same sums in long double; quaternions of any length. */
+static void turned_boxes_are_accurate(void **state)
 {
+    static const int exponents[] = {0, -1060, 1000};
     uint64_t seed = 5;
-    for (int i = 0; i < 2000; i++) {
-        double q[4], size[3], origin[3] = {0}, component[9];
-        for (int k = 0; k < 4; k++)
+    for (int i = 0; i < 6000; i++) {
+        double q[4], given[4], size[3], origin[3] = {1, 2, 3}, component[9];
+        for (int k = 0; k < 4; k++) {
             q[k] = (double) (next_random(&seed) % 2000) - 999.5;
+            given[k] = ldexp(q[k], exponents[i % 3]);
+        }
         for (int k = 0; k < 3; k++)
             size[k] = (double) (next_random(&seed) % 1000);
         memcpy(component, size, sizeof size);
-        turned_box(3, q, origin, component);
+        turned_box(3, given, origin, component);
         const long double norm = (long double) q[0] * q[0] + (long double) q[1] * q[1] +
                                  (long double) q[2] * q[2] + (long double) q[3] * q[3];
         const long double xy = 2 * ((long double) q[1] * q[2] - (long double) q[0] * q[3]);
-        const double should = (double) (xy * size[1] / norm);
-        assert_true(fabs(component[3] - should) <= fabs(should) * 0x1p-52);
-        if (should != component[3])
-            assert_true(component[3] == nextafter(should, INFINITY) ||
-                        component[3] == nextafter(should, -INFINITY));
+        const long double yy = (long double) q[0] * q[0] - (long double) q[1] * q[1] +
+                               (long double) q[2] * q[2] - (long double) q[3] * q[3];
+        assert_true(fabsl(component[3] - xy * size[1] / norm) <= size[1] * 0x1.8p-50);
+        assert_true(fabsl(component[4] - yy * size[1] / norm) <= size[1] * 0x1.8p-50);
+        for (int axis = 0; axis < 3; axis++) {
+            const double centre = origin[axis] + component[axis] / 2 + component[3 + axis] / 2 +
+                                  component[6 + axis] / 2;
+            assert_true(fabs(centre - (axis + 1)) <= 0x1p-49 * (3 + size[0] + size[1] + size[2]));
+        }
     }
 }
 
@@ -861,7 +868,7 @@ int main(void)
         cmocka_unit_test(reads_vertices_groups_and_labels),
         cmocka_unit_test(reads_hulls),
         cmocka_unit_test(hulls_have_a_limit),
-        cmocka_unit_test(turned_boxes_are_rounded_once),
+        cmocka_unit_test(turned_boxes_are_accurate),
         cmocka_unit_test(missing_fields_have_defaults),
         cmocka_unit_test(empty_lists_are_scenes),
         cmocka_unit_test(scenes_follow_each_other),
