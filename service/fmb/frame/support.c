@@ -62,3 +62,34 @@ struct support support_max(const struct support_vertices *vertices, const double
 {
     return vertices->dim == 2 ? scan(vertices, n, 2) : scan(vertices, n, 3);
 }
+
+/* Most blocks have no such vertex. */
+INLINE unsigned list(const struct support_vertices *vertices, const double n[FMB_DIM_MAX],
+                     double least, uint16_t *out, const int dim)
+{
+    const lanes direction[FMB_DIM_MAX] = {lanes_of(n[0]), lanes_of(n[1]),
+                                          lanes_of(dim == 2 ? 0 : n[2])};
+    const size_t stride = vertices->stride;
+    unsigned listed = 0;
+    for (unsigned first = 0; first < vertices->count; first += SUPPORT_BLOCK) {
+        const double *v = vertices->at + first;
+        unsigned less = 0;
+        UNROLL(4)
+        for (int k = 0; k < VECTORS; k++)
+            less |=
+                lanes_mask_bits(values_at(v + k * LANES, stride, direction, dim) < lanes_of(least))
+                << k * LANES;
+        for (unsigned rest = ~less & ((1U << SUPPORT_BLOCK) - 1); rest; rest &= rest - 1) {
+            const unsigned i = first + (unsigned) __builtin_ctz(rest);
+            if (i < vertices->count)
+                out[listed++] = (uint16_t) i;
+        }
+    }
+    return listed;
+}
+
+unsigned support_list(const struct support_vertices *vertices, const double n[FMB_DIM_MAX],
+                      double least, uint16_t *out)
+{
+    return vertices->dim == 2 ? list(vertices, n, least, out, 2) : list(vertices, n, least, out, 3);
+}

@@ -42,4 +42,9 @@ static inline double support_value(const struct support_vertices *vertices,
     return vertices->dim == 2 ? plane : plane + n[2] * v[2 * stride];
 }
 
+/* Lists the vertices whose value is not less than least, ascending. out: [count]. Returns their
+ * number. */
+unsigned support_list(const struct support_vertices *vertices, const double n[FMB_DIM_MAX],
+                      double least, uint16_t *out);
+
 #endif

@@ -81,9 +81,15 @@ bool hull_decision_begin(const struct frame_pair *frames, unsigned want, enum hu
     if (answer->verdict == FMB_SEPARATED || (answer->verdict == FMB_OVERLAPPING && left == 0))
         return begin_gap(out, answer);
     if (effort != HULL_QUICK) {
-        for (unsigned i = 0; i < nearest->simplex.count; i++)
-            first[i] = nearest->simplex.vertex[i].column;
-        out->exact = hull_exact_begin(pair, left, first, nearest->simplex.count);
+        /* A simplex that contains the origin moved in a little has the facet that the ray leaves
+         * through close to it: few steps are left. */
+        struct hull_guess guess;
+        const bool guessed =
+            answer->verdict == 0 && out->searched && hull_guess_begin(pair, &guess);
+        const struct hull_simplex *simplex = guessed ? &guess.simplex : &nearest->simplex;
+        for (unsigned i = 0; i < simplex->count; i++)
+            first[i] = simplex->vertex[i].column;
+        out->exact = hull_exact_begin(pair, left, first, simplex->count);
     }
     return false;
 }

@@ -86,7 +86,7 @@ enum { ROWS = 4, QUARTERS = 4, KEPT = 8 };
 struct point {
     struct hull_column column;
     mpz_t x[3]; /* its coordinates */
-    mpz_t a[3]; /* of the point of A at its time, in the world */
+    mpz_t a[3]; /* of the point of A at its time, in the world; if a box is wanted */
     int end;    /* 4 t / T */
 };
 
@@ -116,6 +116,7 @@ struct hull_exact {
     bool ends[2];           /* of the window, that the face has */
     bool reduced, touching; /* the face is not all of D; it leaves out vertices */
     bool proves;
+    bool ends_wanted;                     /* of the contact of a pair that drifts, or of a box */
     unsigned spanning[2][ROWS], spans[2]; /* vertices that span a frame */
     struct hull_proof proof;
     struct hull_column first[ROWS];
@@ -234,13 +235,15 @@ static void set_point(struct hull_exact *e, struct hull_column column, struct po
     out->end = column.end ? QUARTERS : 0;
     for (int axis = 0; axis < 3; axis++) {
         mpz_sub(out->x[axis], b[axis], a[axis]);
-        if (column.end) {
+        if (column.end)
             mpz_add(out->x[axis], out->x[axis], e->integers.drift[axis]);
-            mpz_add(out->a[axis], a[axis], e->integers.side[0].displacement[axis]);
-        } else {
-            mpz_set(out->a[axis], a[axis]);
-        }
         mpz_mul_2exp(out->x[axis], out->x[axis], 2);
+        if (!(e->want & FMB_WANT_BOX))
+            continue;
+        if (column.end)
+            mpz_add(out->a[axis], a[axis], e->integers.side[0].displacement[axis]);
+        else
+            mpz_set(out->a[axis], a[axis]);
         mpz_mul_2exp(out->a[axis], out->a[axis], 2);
     }
 }
@@ -254,12 +257,6 @@ static void swap_points(struct point *x, struct point *y)
 
 /* ---- Pricing ---- */
 
-/* A direction in body coordinates, exact and rounded. */
-struct direction {
-    double n[FMB_DIM_MAX];
-    double least; /* vertices of a smaller value are not the farthest; -infinity if not known */
-};
-
 /* Rounds e->body, scaled to a largest coordinate in [1/32, 1/16), so that no sum of products
  * overflows. Each coordinate is truncated to 53 bits, off by at most 2^-52 of itself, and by
  * 2^-1074 if it is far smaller than the largest. The product with a vertex v is off by another 3.01
@@ -267,28 +264,43 @@ struct direction {
  * 5.01/9 2^-53 |v| + slack + 2^-1000. |v| is at most the reach, which may be infinite, and less
  * than sqrt(3) 2^1024, since coordinates are finite: 2^972 bounds the first term then. Coordinates
  * of a frame that is not a hull are sums, which may overflow; its slack is then infinite, and no
- * vertex is left out. */
-static void round_direction(struct hull_exact *e, const struct side *side, struct direction *out)
+ * vertex is left out. Returns the bound. */
+static double round_direction(const struct hull_exact *e, const struct side *side,
+                              double n[FMB_DIM_MAX])
 {
     long exponent[3], largest = 0;
     bool any = false;
     for (int axis = 0; axis < 3; axis++) {
-        out->n[axis] = mpz_get_d_2exp(&exponent[axis], e->body[axis]);
-        if (out->n[axis] != 0 && (!any || exponent[axis] > largest)) {
+        n[axis] = mpz_get_d_2exp(&exponent[axis], e->body[axis]);
+        if (n[axis] != 0 && (!any || exponent[axis] > largest)) {
             largest = exponent[axis];
             any = true;
         }
     }
     for (int axis = 0; axis < 3; axis++) {
         const long down = largest - exponent[axis];
-        out->n[axis] = out->n[axis] == 0 || down > 1100 ? 0 : ldexp(out->n[axis], (int) -down - 4);
+        n[axis] = n[axis] == 0 || down > 1100 ? 0 : ldexp(n[axis], (int) -down - 4);
     }
-    const double rounding = fmin(0x1p-53 * side->view->reach, 0x1p972);
-    const double error = rounding + side->view->slack + 0x1p-1000;
-    out->least = -INFINITY;
+    return fmin(0x1p-53 * side->view->reach, 0x1p972) + side->view->slack + 0x1p-1000;
+}
+
+/* Lists the vertices of the face that may have the greatest value along e->body. Returns their
+ * number. */
+static unsigned list_farthest(const struct hull_exact *e, const struct side *side, uint16_t *out)
+{
+    const struct support_vertices *vertices = &side->view->vertices;
+    double n[FMB_DIM_MAX], most = -INFINITY;
+    unsigned listed = 0;
+    const double error = round_direction(e, side, n);
+    if (side->count == vertices->count)
+        return support_list(vertices, n, support_max(vertices, n).value - 2.1 * error, out);
     for (unsigned k = 0; k < side->count; k++)
-        out->least = fmax(out->least, support_value(&side->view->vertices, out->n, side->face[k]));
-    out->least -= 2.1 * error;
+        most = fmax(most, support_value(vertices, n, side->face[k]));
+    for (unsigned k = 0; k < side->count; k++) {
+        out[listed] = side->face[k];
+        listed += !(support_value(vertices, n, side->face[k]) < most - 2.1 * error);
+    }
+    return listed;
 }
 
 /* e->body := n in body coordinates, times a positive factor. */
@@ -305,22 +317,20 @@ static void turn_back(struct hull_exact *e, const struct side *side, mpz_t n[3])
     }
 }
 
-/* Returns the first vertex of the face with the greatest n . v, in world coordinates. reduce: keeps
- * those vertices alone in the face. */
-static unsigned price_side(struct hull_exact *e, int f, mpz_t n[3], bool reduce)
+/* Returns the first vertex of the face with the greatest normal[f] . v, in world coordinates.
+ * reduce: keeps those vertices alone in the face. */
+static unsigned price_side(struct hull_exact *e, int f, bool reduce)
 {
     struct side *side = &e->side[f];
-    struct direction direction;
+    uint16_t listed[FMB_HULL_VERTICES_MAX];
     unsigned kept = 0, best = side->face[0];
     bool known = false; /* e->best is the value of best */
-    turn_back(e, side, n);
+    turn_back(e, side, e->normal[f]);
     if (integer_is_zero(e->body))
         return best;
-    round_direction(e, side, &direction);
-    for (unsigned k = 0; k < side->count; k++) {
-        const unsigned i = side->face[k];
-        if (support_value(&side->view->vertices, direction.n, i) < direction.least)
-            continue;
+    const unsigned count = list_farthest(e, side, listed);
+    for (unsigned k = 0; k < count; k++) {
+        const unsigned i = listed[k];
         int order = 1;
         if (kept > 0) {
             if (!known) {
@@ -354,7 +364,7 @@ static struct hull_column price(struct hull_exact *e, int end_sign, bool reduce)
 {
     struct hull_column out;
     for (int f = 0; f < 2; f++)
-        out.vertex[f] = price_side(e, f, e->normal[f], reduce);
+        out.vertex[f] = price_side(e, f, reduce);
     out.end = e->ends[0] && e->ends[1] ? end_sign > 0 : e->ends[1];
     if (reduce && end_sign != 0 && e->ends[0] && e->ends[1])
         e->ends[end_sign < 0] = false;
@@ -832,7 +842,7 @@ static void reduce(struct hull_exact *e)
     const unsigned all = e->side[0].count + e->side[1].count;
     price_difference(e, true);
     e->touching = e->touching || e->side[0].count + e->side[1].count < all;
-    if (e->touching && !e->want) {
+    if (e->touching && !e->ends_wanted) {
         if (e->proves)
             prove_touching(e);
         finish(e, FMB_TOUCHING);
@@ -1128,6 +1138,7 @@ struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
     each(e, mpz_init);
     e->pair = pair;
     e->want = want & (FMB_WANT_BOX | FMB_WANT_TIMES);
+    e->ends_wanted = want & FMB_WANT_BOX || (want & FMB_WANT_TIMES && pair->drifts);
     e->proves = want & FMB_WANT_CERTIFICATE;
     e->proof.integers = &e->integers;
     hull_integers_set(pair->frames, &e->integers);

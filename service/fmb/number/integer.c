@@ -68,9 +68,17 @@ bool integer_is_zero(mpz_t v[3])
     return mpz_sgn(v[0]) == 0 && mpz_sgn(v[1]) == 0 && mpz_sgn(v[2]) == 0;
 }
 
+/* Up to this total size of factors nothing is gained by stripping zeros, or by comparing leading
+ * bits first. */
+enum { FEW_LIMBS = 6 };
+
 void integer_multiply(mpz_t out, const mpz_t x, const mpz_t y)
 {
     mpz_t u, v;
+    if (mpz_size(x) + mpz_size(y) <= FEW_LIMBS) {
+        mpz_mul(out, x, y);
+        return;
+    }
     if (mpz_sgn(x) == 0 || mpz_sgn(y) == 0) {
         mpz_set_ui(out, 0);
         return;
@@ -83,6 +91,10 @@ void integer_multiply(mpz_t out, const mpz_t x, const mpz_t y)
 
 void integer_add_product(mpz_t out, int sign, const mpz_t x, const mpz_t y, mpz_t scratch)
 {
+    if (mpz_size(x) + mpz_size(y) <= FEW_LIMBS) {
+        (sign > 0 ? mpz_addmul : mpz_submul)(out, x, y);
+        return;
+    }
     integer_multiply(scratch, x, y);
     if (sign > 0)
         mpz_add(out, out, scratch);
@@ -115,9 +127,6 @@ static double leading_product(const mpz_t x, const mpz_t y, long *exponent)
     *exponent = of_x + of_y;
     return mantissa;
 }
-
-/* Up to this total size, computing the products is no slower than comparing their leading bits. */
-enum { FEW_LIMBS = 6 };
 
 /* Mantissas lie in [1/4, 1): a product scaled by 2^-4 or less is certainly the smaller one in
  * magnitude. */
