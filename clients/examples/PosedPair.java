@@ -31,7 +31,7 @@ public final class PosedPair
         out.position = position;
         out.num_orientation = orientation.length;
         out.orientation = orientation;
-        out.velocity = out.end = new double[0];
+        out.velocity = out.end_pose = new double[0];
         return out;
     }
 

@@ -182,7 +182,7 @@ bool check_placement(struct check_context *context, const struct query_placement
             (check_count(context, "num_velocity", dim, placement->velocity_count) &&
              check_finite(context, "velocity", placed->velocity, dim))) &&
            (placed->end_count == 0 ||
-            check_refuse(context, FMB_NOT_SUPPORTED, "num_end", not_supported));
+            check_refuse(context, FMB_NOT_SUPPORTED, "num_end_pose", not_supported));
 }
 
 /* ---- Queries ---- */

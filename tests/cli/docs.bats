@@ -105,3 +105,23 @@ none() {
     [ "$(wc -l < "$BATS_TEST_TMPDIR/targets")" -gt 5 ]
     sed -n 's/^\([a-z][a-z-]*\):.*/\1/p' "$BATS_TEST_TMPDIR/known" | grep -vxFf - "$BATS_TEST_TMPDIR/targets" | none
 }
+
+@test "no field of a message has a name that a language of lcm-gen reserves" {
+    # C, C++, Java, Python, Lua, C# and Go; MATLAB takes the classes of Java.
+    local reserved='abstract alignas alignof and as asm assert async auto await base bool boolean break
+        byte case catch chan char class const constexpr continue decimal decltype def default defer del
+        delegate delete do double elif else elseif end enum event except explicit export extends extern
+        fallthrough false final finally fixed float for foreach friend from func function global go goto
+        if implements implicit import in inline instanceof int interface internal is lambda local lock
+        long map mutable namespace native new nil noexcept nonlocal not null nullptr object operator or
+        out override package params parfor pass persistent private protected public raise range readonly
+        ref register repeat return sbyte sealed select self short signed sizeof spmd static strictfp
+        string struct super switch synchronized template then this throw throws transient true try type
+        typedef typeid typename typeof uint ulong unchecked union unless unsafe unsigned until ushort
+        using var virtual void volatile while with yield'
+    sed -nE 's/^ *[a-z][a-z0-9_]* +([a-z_0-9]+)(\[.*)?;.*/\1/p' msgs/*.lcm | sort -u > "$BATS_TEST_TMPDIR/fields"
+    [ "$(wc -l < "$BATS_TEST_TMPDIR/fields")" -gt 50 ]
+    run grep -xF "$(tr -s ' \n' '\n\n' <<< "$reserved")" "$BATS_TEST_TMPDIR/fields"
+    echo "$output"
+    [ "$status" = 1 ]
+}

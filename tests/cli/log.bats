@@ -6,7 +6,7 @@ setup() {
     FMB=${FMB_BUILD:-build}/fmb
     cd "$BATS_TEST_DIRNAME/../.." || return
     log=$BATS_TEST_TMPDIR/a.log
-    pair_query=0c7f9af6bbc255f4
+    pair_query=07880d0b8ca7b624
     status=15fcba856d637fca
 }
 
@@ -72,7 +72,7 @@ field() {
 
 @test "messages of the service have names, others their fingerprint" {
     for type in 18fc974de94f47b6 e2c4e2ab0ebcd9d9 ef476d61362c5fba $pair_query 44daa0700d3b2b97 \
-        0fc3e384bdf6c6b5 3380ae2a8792693e 437691c0f4a35986 $status c5646e8cb4490b7c 0123456789abcdef 00; do
+        8e860009f2301ec1 3104e734f0051957 437691c0f4a35986 $status c5646e8cb4490b7c 0123456789abcdef 00; do
         event 1 A $type
     done > "$log"
     info --json "$log"

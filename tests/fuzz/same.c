@@ -94,7 +94,8 @@ bool same_placement(const struct query_placement *placement, const fmb_msgs_plac
                                   .counts = message->counts,
                                   .num_numbers = message->num_numbers,
                                   .numbers = message->numbers};
-    const int32_t placed = message->num_end < message->dim ? message->num_end : message->dim;
+    const int32_t placed =
+        message->num_end_pose < message->dim ? message->num_end_pose : message->dim;
     return placement->placed.id == message->body_id &&
            memcmp(placement->body.handle.bytes, message->handle, sizeof message->handle) == 0 &&
            placement->body.dim == message->dim &&
@@ -105,16 +106,16 @@ bool same_placement(const struct query_placement *placement, const fmb_msgs_plac
            placement->placed.group == message->group &&
            placement->placed.orientation_count == message->num_orientation &&
            placement->velocity_count == message->num_velocity &&
-           placement->placed.end_count == message->num_end &&
+           placement->placed.end_count == message->num_end_pose &&
            same_geometry(&placement->body, &body) &&
            same_numbers(placement->placed.position, FMB_DIM_MAX, message->position, message->dim) &&
            same_numbers(placement->placed.orientation, QUERY_ORIENTATION_MAX, message->orientation,
                         message->num_orientation) &&
            same_numbers(placement->placed.velocity, FMB_DIM_MAX, message->velocity,
                         message->num_velocity) &&
-           same_numbers(placement->placed.end_position, FMB_DIM_MAX, message->end, placed) &&
+           same_numbers(placement->placed.end_position, FMB_DIM_MAX, message->end_pose, placed) &&
            same_numbers(placement->placed.end_orientation, QUERY_ORIENTATION_MAX,
-                        message->end + placed, message->num_end - placed);
+                        message->end_pose + placed, message->num_end_pose - placed);
 }
 
 bool same_can_hold(const struct query_placement *placement)

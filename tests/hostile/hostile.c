@@ -69,8 +69,8 @@ static fmb_msgs_placement_t good_placement(void)
                                   .position = position,
                                   .num_velocity = 3,
                                   .velocity = velocity,
-                                  .num_end = 0,
-                                  .end = end};
+                                  .num_end_pose = 0,
+                                  .end_pose = end};
 }
 
 static size_t good_pair_query(unsigned char *out)
@@ -113,7 +113,7 @@ static size_t good_scene_query(unsigned char *out)
     memset(placements[2].handle, 0xa5, sizeof placements[2].handle);
     placements[2].name = none;
     placements[2].num_frames = placements[2].num_numbers = placements[2].num_velocity = 0;
-    placements[2].num_end = 3;
+    placements[2].num_end_pose = 3;
     fmb_msgs_scene_query_t query = {.client_id = 2,
                                     .sequence_number = 3,
                                     .label = label,

@@ -35,7 +35,7 @@ public final class Largest
         cube.counts = new int[0];
         cube.name = "";
         cube.position = new double[] {0.75 * i, 0, 0};
-        cube.orientation = cube.velocity = cube.end = new double[0];
+        cube.orientation = cube.velocity = cube.end_pose = new double[0];
         return cube;
     }
 

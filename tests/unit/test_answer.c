@@ -369,7 +369,7 @@ static void unknown_shapes_and_dimensions_are_refused(void **state)
 static void ends_and_radii_are_not_supported(void **state)
 {
     for (int k = 1; k <= 7; k++) {
-        REFUSED(a->placed.end_count = k, FMB_NOT_SUPPORTED, "a.num_end: not supported yet");
+        REFUSED(a->placed.end_count = k, FMB_NOT_SUPPORTED, "a.num_end_pose: not supported yet");
         REFUSED(set_geometry(&query, 1, 3, 1, FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS + k, 13), FMB_NOT_SUPPORTED,
                 "b.shapes[0]: not supported yet");
     }

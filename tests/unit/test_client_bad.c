@@ -1248,6 +1248,11 @@ static void on_heartbeat(void *user, const struct fmb_client_heartbeat *heartbea
     watching->heartbeats++;
     watching->served_scenes = fmb_client_get_counter(heartbeat, "scenes");
     watching->served = fmb_client_get_counter(heartbeat, "received");
+    assert_int_equal(fmb_client_get_counter(heartbeat, "no such counter"), 0);
+    assert_int_equal(heartbeat->counter_count, WIRE_COUNTERS);
+    for (size_t i = 0; i < heartbeat->counter_count; i++)
+        for (size_t k = 0; k < i; k++)
+            assert_string_not_equal(heartbeat->counters[i].name, heartbeat->counters[k].name);
 }
 
 static void on_malformed(void *user, const char *what)

@@ -31,10 +31,10 @@ static void fingerprints_are_pinned(void **state)
     assert_int_equal(__fmb_msgs_definition_query_t_get_hash(), 0xe2c4e2ab0ebcd9d9u);
     assert_int_equal(__fmb_msgs_definition_t_get_hash(), 0xef476d61362c5fbau);
     assert_int_equal(__fmb_msgs_names_t_get_hash(), 0xc5646e8cb4490b7cu);
-    assert_int_equal(__fmb_msgs_pair_query_t_get_hash(), 0x0c7f9af6bbc255f4u);
+    assert_int_equal(__fmb_msgs_pair_query_t_get_hash(), 0x07880d0b8ca7b624u);
     assert_int_equal(__fmb_msgs_pair_result_t_get_hash(), 0x44daa0700d3b2b97u);
-    assert_int_equal(__fmb_msgs_placement_t_get_hash(), 0x0fc3e384bdf6c6b5u);
-    assert_int_equal(__fmb_msgs_scene_query_t_get_hash(), 0x3380ae2a8792693eu);
+    assert_int_equal(__fmb_msgs_placement_t_get_hash(), 0x8e860009f2301ec1u);
+    assert_int_equal(__fmb_msgs_scene_query_t_get_hash(), 0x3104e734f0051957u);
     assert_int_equal(__fmb_msgs_scene_result_t_get_hash(), 0x437691c0f4a35986u);
     assert_int_equal(__fmb_msgs_status_t_get_hash(), 0x15fcba856d637fcau);
 }
@@ -74,13 +74,13 @@ static void long_lists_are_read(void **state)
                                       .orientation = many,
                                       .num_velocity = 10,
                                       .velocity = many,
-                                      .num_end = 20,
-                                      .end = many};
+                                      .num_end_pose = 20,
+                                      .end_pose = many};
     char none[] = "";
     placement.name = none;
     fmb_msgs_pair_query_t message = {.a = placement, .b.name = none};
-    message.b.num_end = 9;
-    message.b.end = many;
+    message.b.num_end_pose = 9;
+    message.b.end_pose = many;
     int size = fmb_msgs_pair_query_t_encode(bytes, 0, sizeof bytes, &message);
     struct pair_query query;
     assert_true(size > 0);
