@@ -112,3 +112,8 @@ holds() {
         return 1
     }
 }
+
+# generate KIND LOG | --blast ... LOG: a log of the regression set, or one that is made.
+generate() {
+    if [ "$1" = --blast ]; then "$TOOLS/logs/generate" "$@"; else cp "$BATS_TEST_DIRNAME/../logs/$1.log" "$2"; fi
+}

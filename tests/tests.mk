@@ -158,12 +158,9 @@ $(planted_fuzzers): $(B)/planted/%: $(O)/tests/fuzz/planted/%.o \
 		$(O)/tests/fuzz/$$(call fuzz_target,$$*).o $$(filter-out $(fuzz_pieces_event_log), \
 			$$(fuzz_pieces_$$(call fuzz_target,$$*))) $(fuzz_archives)
 	$(link)
-$(B)/fuzz_seeds: $(addprefix $(O)/tests/fuzz/,seeds.o seeds_message.o seeds_service.o seeds_file.o) \
-		$(fuzz_archives)
-	$(link)
 
 .PHONY: fuzzers fuzz fuzz-afl fuzz-merge
-fuzzers: $(fuzzers) $(planted_fuzzers) $(B)/fuzz_seeds
+fuzzers: $(fuzzers) $(planted_fuzzers)
 fuzz fuzz-afl fuzz-merge:
 	tests/fuzz/fuzz.sh $@
 
@@ -253,7 +250,7 @@ accuracy: $(B)/accuracy
 soak: programs $(filter $(B)/soak-% %/fake-peer %/crash-liblcm,$(test_programs))
 	tests/soak/soak.sh $(B) $(SECONDS)
 
-# What the regression set is, made anew: the logs, and the results that they are compared with.
+# What of the regression set is made anew: the hard logs, and the results that all are compared with.
 # tests/cli/logs.bats checks that this changes nothing.
 .PHONY: logs goldens
 logs: $(B)/logs/generate

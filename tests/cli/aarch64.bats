@@ -19,9 +19,9 @@ END
     chmod +x "$EMULATED"
 }
 
-@test "AArch64 makes the same logs" {
+@test "AArch64 makes the same hard logs" {
     emulate logs/generate
-    makes_the_set "$EMULATED"
+    makes_the_hard_logs "$EMULATED"
 }
 
 @test "AArch64 gives the same results, and replays the logs" {

@@ -12,10 +12,6 @@ setup() {
     cut=$T/cut.log
 }
 
-generate() {
-    "$TOOLS/logs/generate" "$@"
-}
-
 # cuts CODE ARGUMENTS: of --json, in $output.
 cuts() {
     local code=$1

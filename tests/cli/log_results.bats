@@ -166,7 +166,7 @@ rows() {
 
 @test "memory does not grow with the log" {
     case $build in *asan*) skip "address sanitizer takes memory of its own" ;; esac
-    "$TOOLS/logs/generate" --blast pairs 30000 --gap "$T/part.log"
+    generate --blast pairs 30000 --gap "$T/part.log"
     for _ in 1 2 3 4; do cat "$T/part.log"; done > "$log"
     [ "$(stat -c %s "$log")" -gt 65536000 ]
     (
@@ -176,7 +176,7 @@ rows() {
 }
 
 @test "a result whose query came too long before it is counted" {
-    "$TOOLS/logs/generate" --blast scenes 300 "$T/whole.log"
+    generate --blast scenes 300 "$T/whole.log"
     "$TOOLS/edit-log" --last "$T/whole.log" "$log"
     "$FMB" log results --json "$T/whole.log" > "$T/expected"
     status=0

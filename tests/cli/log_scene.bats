@@ -11,10 +11,6 @@ setup() {
     log=$T/whole.log
 }
 
-generate() {
-    "$TOOLS/logs/generate" "$@"
-}
-
 # scene CODE ARGUMENTS
 scene() {
     local code=$1

@@ -7,10 +7,10 @@ setup_file() {
     cd "$BATS_FILE_TMPDIR" || return
     local build
     build=$(cd "$BATS_TEST_DIRNAME/../.." && cd "${FMB_BUILD:-build}" && pwd)
-    for kind in arm clients foreign refused stack; do "$TOOLS/logs/generate" $kind $kind.log; done
-    "$TOOLS/logs/generate" --blast pairs 400 --box --certificate blast.log
-    "$TOOLS/logs/generate" --blast pairs 40 --moving --box --whole moving.log
-    "$TOOLS/logs/generate" --blast pairs 20 --dim 3 --static --gap apart.log
+    for kind in arm clients foreign refused stack; do generate $kind $kind.log; done
+    generate --blast pairs 400 --box --certificate blast.log
+    generate --blast pairs 40 --moving --box --whole moving.log
+    generate --blast pairs 20 --dim 3 --static --gap apart.log
 }
 
 setup() {
@@ -764,7 +764,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 
 # Bodies of 1 to 8 frames: a pair of the largest fits into 16, wherever the cache holds other bodies.
 @test "a query whose bodies fit into the cache is answered, and others are left out with exit code 2" {
-    "$TOOLS/logs/generate" --blast pairs 400 --by-handle --compound --bodies 64 compound.log
+    generate --blast pairs 400 --by-handle --compound --bodies 64 compound.log
     for frames in 16 17 20 29 64 100; do
         replay --frames $frames compound.log
         ended 0
@@ -786,7 +786,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 }
 
 @test "a query whose handles the log does not define is left out with exit code 2" {
-    "$TOOLS/logs/generate" --blast pairs 60 --by-handle --bodies 8 handles.log
+    generate --blast pairs 60 --by-handle --bodies 8 handles.log
     "$EDIT" --events 40 1000 handles.log late.log
     replay late.log
     ended 2

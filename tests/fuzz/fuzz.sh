@@ -6,9 +6,9 @@
 #                        times, a hundredth), a tenth of that guided by values too, and a hundredth
 #                        with inputs of a datagram's size. Exit code 1 if anything was found
 #   fuzz.sh fuzz-afl     the same with AFL++, FUZZ_SECONDS of each (60)
-#   fuzz.sh fuzz-merge   rebuilds tests/fuzz/corpus: the seeds, the files there with names of their
-#                        own, and the fewest inputs that reach all other branches which the corpus
-#                        and the inputs of earlier runs reach
+#   fuzz.sh fuzz-merge   rebuilds tests/fuzz/corpus: the files there with names of their own, and the
+#                        fewest inputs that reach all other branches which the corpus and the inputs
+#                        of earlier runs reach
 #
 # New inputs go to build/fuzz/corpus, with which the next run begins too; findings go to
 # build/fuzz/findings. Needs what 'make deps-fuzz' installs.
@@ -182,13 +182,6 @@ afl_one() {
 
 # ---- The corpus ----
 
-write_seeds() {
-    rm -rf "$out/seeds"
-    mkdir -p "$out/seeds/scene_json"
-    build/asan-clang/fuzz_seeds "$out/seeds"
-    cp clients/demo/cube.json tests/cases/*.json "$out/seeds/scene_json"
-}
-
 # Only branches count, not how often each is taken: that would keep hundreds of files.
 merge_one() {
     target=$1 corpus=tests/fuzz/corpus/$1 old=$out/merged/$1
@@ -196,7 +189,7 @@ merge_one() {
     mkdir -p "$out/merged" "$corpus" "$out/corpus/$target" "$out/afl/$target/default/queue"
     cp -r "$corpus" "$old"
     find "$corpus" -type f | grep -E '/[0-9a-f]{40}$' | xargs -r rm
-    cp "$out/seeds/$target"/* "$corpus"
+    [ "$target" != scene_json ] || cp clients/demo/cube.json tests/cases/*.json "$corpus"
     libfuzzer "$target" -merge=1 -use_counters=0 -max_len=$large "$corpus" "$old" \
         "$out/corpus/$target" "$out/afl/$target/default/queue" > "$out/merged/$target.log" 2>&1 || {
         tail -n 20 "$out/merged/$target.log"
@@ -211,7 +204,7 @@ fuzz-afl)
     build_with afl-clang-fast "$(for t in $targets; do echo "$afl/fuzz_$t"; done)" && each --afl
     ;;
 fuzz-merge)
-    build_with clang fuzzers && write_seeds
+    build_with clang fuzzers
     for target in $targets; do merge_one "$target"; done
     ;;
 --fuzz) fuzz_one "$2" ;;

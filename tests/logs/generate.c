@@ -1,4 +1,4 @@
-/* Makes the logs of the regression set, and larger ones for benchmarks:
+/* Makes the hard logs of the regression set, and larger ones for benchmarks:
  *
  *   generate KIND FILE              a log of the kind; the same bytes on every machine
  *   generate --list                 the kinds, one a line
@@ -21,17 +21,9 @@
 enum { MADE = 0, FAILED = 1, USAGE = 2 };
 
 static const struct kind kinds[] = {
-    {"arm", "a robot arm that swings past a table with parts on it", kind_arm},
-    {"stack", "towers that fall and come to rest, all pairs of them", kind_stack},
-    {"crowd", "a crowd in the plane, across, listed and all at once", kind_crowd},
     {"hard-2d", "the campaigns' hard pairs in 2D", kind_hard_plane},
     {"hard-3d", "the campaigns' hard pairs in 3D, at rest", kind_hard_space},
     {"hard-3d-moving", "the campaigns' hard pairs in 3D, moving", kind_hard_moving},
-    {"refused", "queries refused for every reason, and numbers at the ends of the doubles",
-     kind_refused},
-    {"clients", "several clients, and a service that is busy, forgets and is started anew",
-     kind_clients},
-    {"foreign", "a bus with others on it, and a logger that began late", kind_foreign},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 

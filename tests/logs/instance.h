@@ -19,8 +19,6 @@ enum instance_channel {
     INSTANCE_PAIR_RESULT,
     INSTANCE_SCENE_QUERY,
     INSTANCE_SCENE_RESULT,
-    INSTANCE_DEFINITION_QUERY,
-    INSTANCE_DEFINITION,
     INSTANCE_STATUS,
     INSTANCE_CHANNELS
 };
@@ -32,13 +30,6 @@ struct instance {
     struct wire_status status; /* what it counts for its heartbeat */
     struct draw draw;          /* for the times that answers are said to have taken */
     char channel[INSTANCE_CHANNELS][BUS_CHANNEL_MAX];
-    /* On the tape a result stands so long after its query; or before it, as where two threads of a
-     * logger took them in turns. */
-    int64_t result_after_us;
-    /* A scene is stopped after so many more steps once it can be; 0: never. */
-    int stop_after;
-    /* Another service on the same channels, which answers the pair queries too; NULL: none. */
-    struct instance *other;
 };
 
 struct instance_options {
@@ -59,27 +50,6 @@ void instance_query_pair(struct instance *instance, struct pair_query *query,
                          struct pair_result *result);
 void instance_query_scene(struct instance *instance, struct scene_query *query,
                           struct scene_result *result);
-
-/* The same where the result is BUSY. */
-void instance_turn_away_pair(struct instance *instance, struct pair_query *query);
-void instance_turn_away_scene(struct instance *instance, struct scene_query *query);
-
-/* What a recorder requests: the bodies of these handles, or all, page after page. */
-void instance_define(struct instance *instance, int64_t client_id, int64_t sequence_number,
-                     const struct handle *handle, int32_t count);
-
-/* Bytes that come on the channel of pair queries, of scene queries, of definition queries; they
- * need not be any. The service answers what can be read of them, and refuses what is too long. On
- * output: false, there is no result. */
-bool instance_hear_pair(struct instance *instance, const unsigned char *bytes, size_t size,
-                        struct pair_result *result);
-bool instance_hear_scene(struct instance *instance, const unsigned char *bytes, size_t size,
-                         struct scene_result *result);
-bool instance_hear_definition(struct instance *instance, const unsigned char *bytes, size_t size,
-                              struct definition *result);
-
-/* A query that no service receives: it stands on the tape, and has no result. */
-void instance_miss_pair(struct instance *instance, struct pair_query *query);
 
 /* A heartbeat. */
 void instance_beat(struct instance *instance);

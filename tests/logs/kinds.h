@@ -1,4 +1,4 @@
-/* The kinds of logs, each in a file of its own: what is queried in it, from the beginning of a tape
+/* The kinds of logs that are made: what is queried in it, from the beginning of a tape
  * to its end. */
 #ifndef KINDS_H
 #define KINDS_H
@@ -10,8 +10,7 @@
 /* False: out of memory. */
 typedef bool kind_function(struct tape *tape);
 
-kind_function kind_arm, kind_stack, kind_crowd, kind_hard_plane, kind_hard_space, kind_hard_moving;
-kind_function kind_refused, kind_clients, kind_foreign;
+kind_function kind_hard_plane, kind_hard_space, kind_hard_moving;
 
 struct kind {
     const char *name;

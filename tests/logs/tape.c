@@ -50,12 +50,6 @@ void tape_pass(struct tape *tape, int64_t us)
     tape->utime += us;
 }
 
-void tape_reach(struct tape *tape, int64_t us)
-{
-    if (tape->utime < TAPE_BEGIN_UTIME + us)
-        tape->utime = TAPE_BEGIN_UTIME + us;
-}
-
 /* LCM's own function numbers the events, from 0. */
 static void write_event(struct tape *tape, int64_t utime, const char *channel, const void *bytes,
                         size_t size)
@@ -105,18 +99,6 @@ void tape_put(struct tape *tape, int64_t utime, const char *channel, const unsig
         write_event(tape, utime, channel, bytes, size);
     else if (!keep_event(tape, utime, channel, bytes, size))
         tape->failed = true;
-}
-
-void tape_begin_late(struct tape *tape)
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < tape->count; i++) {
-        if (tape->event[i].utime < tape->utime)
-            free(tape->event[i].bytes);
-        else
-            tape->event[kept++] = tape->event[i];
-    }
-    tape->count = kept;
 }
 
 /* No two are equal. */

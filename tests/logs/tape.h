@@ -25,14 +25,9 @@ struct tape *tape_open(const char *path, enum tape_order order);
 /* Frees the tape. False: it could not be written in full, or there was no memory. */
 bool tape_close(struct tape *tape);
 
-/* The tape's clock, microseconds since 1970, which goes on only here: by so much, or to so long
- * after the beginning where it is not there yet. */
+/* The tape's clock, microseconds since 1970, which goes on only here. */
 int64_t tape_utime(const struct tape *tape);
 void tape_pass(struct tape *tape, int64_t us);
-void tape_reach(struct tape *tape, int64_t us);
-
-/* The log begins only now: what was put of before is dropped. Of a tape IN_ORDER. */
-void tape_begin_late(struct tape *tape);
 
 /* Puts an event of this time, which need not be now. Copies what it is given. */
 void tape_put(struct tape *tape, int64_t utime, const char *channel, const unsigned char *bytes,

@@ -11,11 +11,6 @@ setup() {
     cd "$BATS_TEST_TMPDIR" || return
 }
 
-# generate WHAT... LOG
-generate() {
-    "$TOOLS/logs/generate" "$@"
-}
-
 # replay OPTIONS LOG...: as JSON in the file replayed; the exit code in $code.
 replay() {
     code=0
