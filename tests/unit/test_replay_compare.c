@@ -771,6 +771,32 @@ static void results_of_other_queries_differ(void **state)
 }
 
 /* Each byte of a result changed in several ways: what can still be read. */
+/* Of a service that does not follow the rules. */
+static void a_named_pair_that_is_ignored_keeps_its_place(void **state)
+{
+    static const unsigned expected[][2] = {{0, 1}, {0, 2}, {1, 2}};
+    static struct logged_query of = {.kind = LOG_SCENE_QUERY};
+    static struct logged_result result = {.kind = LOG_SCENE_QUERY};
+    struct exchange exchange = {.query = &of, .result = &result};
+    struct fmb_client_answer found;
+    of.scene = (struct scene_query){
+        .which = FMB_PAIRS_ALL, .placement_count = 3, .ignored = {{0, 1}}, .ignored_count = 2};
+    of.placement = of.scene.placement;
+    of.placement_count = 3;
+    result.scene = (struct scene_result){
+        .end_pair = 3, .verdict_count = 1, .names_pairs = true, .pair = {{0, 1}}};
+    result.scene.verdict[0] = FMB_TOUCHING;
+    exchange_begin(&exchange);
+    for (size_t i = 0; i < COUNT(expected); i++) {
+        assert_true(exchange_next(&exchange, true, &found));
+        assert_int_equal(found.a, expected[i][0]);
+        assert_int_equal(found.b, expected[i][1]);
+        assert_int_equal(found.answer.verdict, i == 0 ? FMB_TOUCHING : FMB_SEPARATED);
+    }
+    assert_false(exchange_next(&exchange, true, &found));
+    exchange_end(&exchange);
+}
+
 static void every_changed_byte_is_found(void **state)
 {
     int read = 0;
@@ -965,6 +991,7 @@ int main(void)
         TEST(boxes_of_another_dimension_differ),
         TEST(scenes_compare_as_the_model),
         TEST(results_of_other_queries_differ),
+        TEST(a_named_pair_that_is_ignored_keeps_its_place),
         TEST(every_changed_byte_is_found),
         TEST(the_most_pairs_are_compared),
         TEST(the_most_placements_are_compared),
