@@ -259,28 +259,3 @@ outcomes() {
     [[ "${lines[0]}" == 'kept '*' of 800 events; 0.'*' MB, of 0.'* ]]
     [[ "$output" == *'defined '*' bodies in front of them'* ]]
 }
-
-@test "wrong usage is refused with exit code 2" {
-    for arguments in '' 'LOG' '-o FILE' 'LOG -o FILE --from -1' 'LOG -o FILE --to x' \
-        'LOG -o FILE --channel (' \
-        'LOG -o FILE --from 10 --to 5' 'LOG -o FILE --from 1 --to 1' 'LOG -o FILE --what'; do
-        # shellcheck disable=SC2086
-        run --separate-stderr "$FMB" log cut $arguments
-        [ "$status" = 2 ]
-        [[ "$stderr" == 'fmb log cut: '*"Try 'fmb log cut --help'." ]]
-    done
-    [ ! -e FILE ]
-}
-
-@test "--help prints the usage" {
-    run --separate-stderr "$FMB" log cut --help
-    [ "$status" = 0 ]
-    [[ "$output" == 'usage: fmb log cut '* ]]
-    run --separate-stderr "$FMB" help log
-    [ "$status" = 0 ]
-    [[ "$output" == 'usage: fmb log '*cut*scene* ]]
-    run --separate-stderr "$FMB" log
-    [ "$status" = 2 ]
-    run --separate-stderr "$FMB" log what
-    [ "$status" = 2 ]
-}

@@ -207,17 +207,3 @@ u32() {
     scene 2 "$T/nothing.log" --event 0
     [ "$stderr" = "fmb: $T/nothing.log: No such file or directory" ]
 }
-
-@test "wrong usage is refused with exit code 2" {
-    for arguments in '' '--event 1' 'LOG' 'LOG --event x' 'LOG --event 1 --offset 1' \
-        'LOG --client 1' 'LOG --sequence 1' 'LOG --event 1 --client 1 --sequence 1' \
-        'LOG --event 9223372036854775808' 'LOG --offset -1' 'LOG --what'; do
-        # shellcheck disable=SC2086
-        run --separate-stderr "$FMB" log scene $arguments
-        [ "$status" = 2 ]
-        [[ "$stderr" == 'fmb log scene: '*"Try 'fmb log scene --help'." ]]
-    done
-    run --separate-stderr "$FMB" log scene --help
-    [ "$status" = 0 ]
-    [[ "$output" == 'usage: fmb log scene '* ]]
-}

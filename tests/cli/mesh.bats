@@ -256,46 +256,6 @@ apart() {
 
 # ---- Usage -------------------------------------------------------------------------------------
 
-@test "wrong usage is refused with exit code 2 and a hint" {
-    wrong mesh
-    wrong mesh a.obj
-    wrong mesh a.obj b.obj a.obj
-    wrong mesh a.obj b.obj -- --json a.obj
-    for option in '--scale 1,2' --scale= '--scale inf' '--scale 1,2,3,4' '--scale 1e999' '--translate 1' \
-        '--translate 1,nan,3' '--velocity 1,2,3x' '--rotate 90' '--rotate z' '--rotate w,1' --rotate= \
-        '--mirror xy' --mirror= '--as cubes' '--method sat' '--method guess' '--duration -1' \
-        '--duration nan' -x --json=1; do
-        # shellcheck disable=SC2086
-        wrong mesh a.obj $option b.obj
-    done
-    wrong mesh a.obj b.obj --bogus
-    wrong mesh a.obj b.obj --translate
-    wrong mesh a.obj --rotate 90 b.obj
-    said "fmb mesh: --rotate: expected an axis and degrees, such as z,90, found '90'
-Try 'fmb mesh --help'."
-}
-
-# bats test_tags=release
-@test "--help and fmb help mesh print the usage" {
-    mesh --help
-    ended 0
-    said ''
-    [ "${lines[0]}" = 'usage: fmb mesh [OPTIONS] A B' ]
-    help=$output
-    mesh a.obj no.obj --help
-    ended 0
-    is "$help"
-    run "$FMB" help mesh
-    ended 0
-    is "$help"
-    run "$FMB" help
-    [[ $output == *'mesh'*'which faces of two triangle meshes meet'* ]]
-    # Every option is there, once.
-    for option in scale rotate mirror translate velocity duration as method json list html; do
-        [ "$(grep -c "^  --$option" <<< "$help")" = 1 ]
-    done
-}
-
 # ---- The terminal ------------------------------------------------------------------------------
 
 # bats test_tags=release

@@ -806,40 +806,6 @@ all_pairs() {
 
 # ---- The command -----------------------------------------------------------------------------
 
-@test "--help prints the usage on standard output" {
-    run --separate-stderr "$FMB" --help
-    ended 0
-    said ''
-    [ "${lines[0]}" = 'usage: fmb COMMAND [OPTIONS]' ]
-    for command in query watch status log help; do
-        grep -q "^  $command " <<< "$output"
-    done
-    run --separate-stderr "$FMB" help
-    ended 0
-    for command in query watch status; do
-        run --separate-stderr "$FMB" $command --help
-        ended 0
-        said ''
-        [[ ${lines[0]} == "usage: fmb $command [OPTIONS]"* ]]
-        help=$output
-        run --separate-stderr "$FMB" help $command
-        ended 0
-        is "$help"
-    done
-}
-
-# bats test_tags=release
-@test "help fits 80 columns" {
-    for words in '' query watch record status replay log 'log info' 'log cut' 'log scene' 'log results' mesh scene; do
-        run "$FMB" $words --help
-        ended 0
-        [ "$(wc -L <<< "$output")" -le 80 ]
-    done
-    run "${FMB}d" --help
-    ended 0
-    [ "$(wc -L <<< "$output")" -le 80 ]
-}
-
 # bats test_tags=release
 @test "the example of the help is a scene" {
     "$FMB" query --help | sed -n '/^  {"dim"/,/^Exit/p' | sed '$d' > "$BATS_TEST_TMPDIR/scene.json"
@@ -853,59 +819,6 @@ all_pairs() {
     run "$FMB" --version
     ended 0
     [[ $output =~ ^fmb\ [0-9]+\.[0-9]+\.[0-9]+$ ]]
-}
-
-# bats test_tags=release
-@test "arguments after --help and --version are refused" {
-    for arguments in '--help x' '-h x' '--version x' '-V x' 'help query x'; do
-        run --separate-stderr "$FMB" $arguments
-        ended 2
-        is ''
-        said "fmb: unknown argument 'x'
-Try 'fmb --help'."
-    done
-}
-
-# bats test_tags=release
-@test "all commands have the common options" {
-    for command in query watch status; do
-        wrong $command -p 'a.*'
-        wrong $command --lcm-url
-        run "$FMB" $command -p a -l udpm:// -h
-        ended 0
-        [[ ${lines[0]} == "usage: fmb $command"* ]]
-    done
-}
-
-# bats test_tags=release
-@test "a missing or unknown command is refused with exit code 2" {
-    run --separate-stderr "$FMB"
-    ended 2
-    is ''
-    [[ $stderr == "usage: fmb COMMAND"* ]]
-    run "$FMB" frobnicate
-    ended 2
-    is "fmb: unknown command 'frobnicate'
-Try 'fmb --help'."
-    run "$FMB" help frobnicate
-    ended 2
-}
-
-@test "wrong options are refused with exit code 2 and a hint" {
-    for options in --frobnicate -x --html '--method best' '--timeout 1s' '--timeout nan' '--timeout=' \
-        '--retries -1' '--prefix a.*' '--json=1' '--local a b' --fail-if '--fail-if separated' \
-        '--fail-if near --fail-if near' '--csv --json' '--contacts --all'; do
-        # shellcheck disable=SC2086
-        wrong query $options
-    done
-    wrong watch -l
-    wrong watch --count 0
-    wrong watch a
-    wrong status --timeout ''
-    wrong status a
-    wrong query --timeout 1s
-    said "fmb query: --timeout: expected a number from 0.001 to 3600, found '1s'
-Try 'fmb query --help'."
 }
 
 @test "names with control characters are escaped on the terminal, by every command" {

@@ -741,21 +741,6 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 
 # ---- The command -------------------------------------------------------------------------------
 
-@test "wrong options are refused with exit code 2" {
-    for arguments in '' '--tolerance -1 arm.log' '--tolerance nan arm.log' '--tolerance x arm.log' \
-        '--from -1 arm.log' '--from inf arm.log' '--limit -1 arm.log' '--frames 0 arm.log' '--frm 1 arm.log' \
-        '--from 10 --to 5 arm.log' '--from 0.2 --to 0.2 arm.log' '--golden' '-p a/b arm.log' '--bus --frames 9 arm.log'; do
-        # shellcheck disable=SC2086
-        run --separate-stderr "$FMB" replay $arguments
-        ended 2
-        [ -z "$output" ]
-        [[ $stderr == 'fmb replay: '*"Try 'fmb replay --help'." ]]
-    done
-    run "$FMB" replay --help
-    ended 0
-    [[ $output == 'usage: fmb replay '* ]]
-}
-
 @test "output that cannot be written is a failure" {
     run bash -c '"$0" replay arm.log > /dev/full' "$FMB"
     ended 2
