@@ -42,7 +42,7 @@ extern const char *const difference_name[DIFFERENT_KINDS]; /* for example "verdi
 enum { COMPARE_DETAIL_MAX = SCENE_CHANGE_MAX };
 
 struct difference {
-    /* Of the query, set by the caller of compare_results(). */
+    /* Of the query, set by the sink of the caller of compare_exchanges(). */
     struct match_place place;
     enum log_kind query_kind;
     int64_t client_id, sequence_number;

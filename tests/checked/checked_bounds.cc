@@ -397,7 +397,7 @@ bool check_failed(int index)
 static const char not_checked[] =
     "\n"
     "Not checked here: errors of origins and vertices (prepared.c, frame.c), sums rounded\n"
-    "outward (aabb.h, box_ends.h), boxes of level cuboids (box_clip.h, 7), bounds of normals\n"
+    "outward (aabb.h, box_ends.h), boxes of level cuboids (BOXES.md, 7), bounds of normals\n"
     "(gap_bounds.c), hulls, and what is done in integers. In the filter and in gaps frames count\n"
     "as given, without errors.\n";
 

@@ -84,6 +84,49 @@ none() {
         awk -F '\t' 'NR == FNR { there[$0] = 1; next } !($2 in there)' - "$BATS_TEST_TMPDIR/quoted" | none
 }
 
+# In C, files are those of the tree and headers of the system that it includes, and functions those that its
+# code names, or one of these.
+@test "every source file and function that a comment names exists" {
+    find service msgs clients tests -name '*.[ch]' > "$BATS_TEST_TMPDIR/files"
+    [ "$(wc -l < "$BATS_TEST_TMPDIR/files")" -gt 100 ]
+    # shellcheck disable=SC2046
+    awk '
+        function add(text, pattern, to,   word) {
+            for (; match(text, pattern); text = substr(text, RSTART + RLENGTH)) {
+                word = substr(text, RSTART, RLENGTH)
+                if (to == "code")
+                    there[word]
+                else
+                    named[word] = FILENAME ":" FNR
+            }
+        }
+        BEGIN { add("gmp_printf() setlocale()", "[a-z_]+[(][)]", "code") }
+        FNR == 1 { comment = 0; add(FILENAME, "[A-Za-z0-9_]+[.][ch]$", "code") }
+        {
+            for (rest = $0; rest != ""; ) {
+                at = index(rest, comment ? "*/" : "/*")
+                part = at ? substr(rest, 1, at - 1) : rest
+                rest = at ? substr(rest, at + 2) : ""
+                if (comment)
+                    add(part " ", "[A-Za-z0-9_]+([.][ch][^A-Za-z0-9_]|[(][)])", "comment")
+                else if (part ~ /^ *#include/)
+                    add(part, "[a-z0-9_]+[.]h", "code")
+                else
+                    add(part, "[A-Za-z0-9_]+", "code")
+                comment = at ? !comment : comment
+            }
+        }
+        END {
+            for (word in named) {
+                name = word
+                sub(/[^A-Za-z0-9_]*$/, "", name)
+                if (!(name in there) && !(word in there))
+                    print named[word] ": no " name
+            }
+        }
+    ' $(cat "$BATS_TEST_TMPDIR/files") | none
+}
+
 @test "every suite is in the table of tests/README.md" {
     quoted '.*' | sed -n 's|^./tests/README.md\t||p' | sort -u > "$BATS_TEST_TMPDIR/quoted"
     (cd tests && printf '%s\n' unit/test_*.c cli/*.bats system/*.bats fuzz/*.bats deb/*.bats) |

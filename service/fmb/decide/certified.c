@@ -22,7 +22,7 @@
  * (hull_decision.h), in steps: the verdict, ends of contact and box, the gap; and everything of a
  * pair with a hull. Which of all these gives a number depends on the numbers of the pair only, so
  * that every caller gets the same bits. The error bounds are derived in slabs.c, slabs_lanes.h,
- * box_clip.h and contact.c. */
+ * BOXES.md and contact.c. */
 #include "certified.h"
 
 #include "gap.h"

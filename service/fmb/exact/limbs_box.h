@@ -5,14 +5,15 @@
  * Out: the box, within the limit of fmb.h.
  *
  * The segments of each frame are clipped to the slabs of the other, and edges that move cross, as
- * in box_clip.h. But how far a vertex is inside a bound, and how far a crossing is inside the
- * ranges of its parameters, are integers here: their signs are exact, and as doubles they are off
- * by less than 2.1 u of themselves, u = 2^-53. A segment crosses a bound between vertices on either
- * side, with values f >= 0 > g: at f / (f - g), a sum of two magnitudes, off by less than 6.2 u of
- * itself. Only where a segment enters the other frame within 2^-48 of where it leaves it, the order
- * of both matters, and is that of two products of integers. So points are off by no more than the
- * slack of box_ends.h: also where that is 6.1 u times four times all components, twice what a
- * segment is long. And a point that counts surely is in the intersection. */
+ * in box_clip.h (filter/BOXES.md). But how far a vertex is inside a bound, and how far a crossing
+ * is inside the ranges of its parameters, are integers here: their signs are exact, and as doubles
+ * they are off by less than 2.1 u of themselves, u = 2^-53. A segment crosses a bound between
+ * vertices on either side, with values f >= 0 > g: at f / (f - g), a sum of two magnitudes, off by
+ * less than 6.2 u of itself. Only where a segment enters the other frame within 2^-48 of where it
+ * leaves it, the order of both matters, and is that of two products of integers. So points are off
+ * by no more than the slack of box_ends.h: also where that is 6.1 u times four times all
+ * components, twice what a segment is long. And a point that counts surely is in the intersection.
+ */
 #ifndef FMB_LIMBS_BOX_H
 #define FMB_LIMBS_BOX_H
 

@@ -15,134 +15,15 @@
  *   4. the same for the inner spans and crossings that are certain, in the lanes in which some
  *      outer one is not nearly as certain
  *
- * Not here: what follows from the ends (box_ends.h); the same in integers (exact/limbs_box.h).
- *
- * THE METHOD
- *
- * The intersection is a polytope in space and time, and its box is that of its vertices. At rest, a
- * vertex lies in the planes of three faces. At least two of them belong to the same frame, so the
- * vertex is on an edge of that frame, and in the other frame. Conversely, the part of an edge that
- * is in the other frame belongs to the intersection. So the box is that of all these parts.
- *
- * Where the frames move, a vertex is
- *
- *   - at the start or the end of the window, on an edge as at rest;
- *   - or in three faces of one frame: on the path of one of its vertices, and in the other frame;
- *   - or in two faces of each: where an edge of A crosses an edge of B.
- *
- * In 2D edges take the place of faces: a vertex at rest is on an edge of one frame, and in the
- * other; else it is at the start or the end, or on two edges of one frame, so on the path of one of
- * its vertices. There are no crossings. A face counts as a solid without a thickness
- * (exact_box.c has the proof for flat frames).
- *
- * Segments are the edges at rest; or the edges at the start, those at the end, and the paths.
- *
- * A cuboid is the intersection of three slabs: |n . x| <= |n . c_k| with x seen from its centre
- * and n = c_i x c_j; in 2D of two, with the normals of its edges. A tetrahedron is that of four:
- * with n_k = c_i x c_j and D = n_k . c_k for any k, n_k . x / D is the barycentric coordinate of
- * c_k, from 0 to 1, as is the sum of all three. A triangle is that of three in the same way; so is
- * a face, in its plane, with the normals c_1 x n and n x c_0, n = c_0 x c_1, and D = |n|^2. Its
- * plane is a fourth slab, from 0 to 0.
- *
- * ERRORS
- *
- * 1. Values. Every number of a slab is a sum of monomials: products of a coordinate of a vector
- *    (the offset, half the drift, components) with those of the edges in the normal. W is the
- *    normal with all monomials positive, and reach holds the magnitudes of the vectors: the
- *    offset as it was before the components of cuboids were added, the drift, of a cuboid twice
- *    the sum of all components, of a simplex the largest. E = BOX_ROUNDING W . reach bounds the
- *    error of the value s + t d on a segment less a bound of the slab, for any t in [0, 1]. A
- *    monomial of s is rounded at most 4 times in the offset, 5 in a triple product, 2 where
- *    normals are summed, 4 in the sum of a vertex, 2 with the bound and E: 17 times, or 13
- *    without the offset. One of d is rounded 8 times, or 7 along an edge of a cuboid, and twice
- *    as a quotient. Along an edge of a cuboid d is twice the product with half of it: 13 u + 2 *
- *    9 u = 31 u of its monomials, u = 2^-53. From P to Q of a simplex: 13 u of those of P and 10
- *    u of those of both, 33 u of the larger ones. Half the drift is in the offset, in the swing
- *    and twice in d: 17 u + 15 u + 2 * 11 u, less than twice 33 u. In the plane of a face there
- *    are 3 roundings more, at most 42 u: weights are 1.3 times as large there.
- * 2. A span. A bound is crossed where s + t d, with the computed s and d, is a bound of the slab
- *    moved by E. Where d is 0, the quotient is infinite, and its sign that of what is left to the
- *    bound; on the bound it is NAN, and clips nothing. So the part of the true segment that is in
- *    the true other frame lies in the outer span, and contains the inner one. This holds whether
- *    or not the frames as prepared are in contact.
- * 3. Frames with errors: let e be the sum of the errors of both. Each point of a true segment is
- *    within the error of its frame of the same point of the computed one. A point x is in a true
- *    frame if the frame as prepared contains the ball around x whose radius is the error of the
- *    frame: otherwise m . x > h(m) for some direction m, with the support function h of the true
- *    frame; that of the frame as prepared is at most |m| times the error more, and the ball
- *    reaches that far beyond x. So |n| e is enough for both ends, and |n| is at most its scale. E
- *    includes 1.01 e times the scale, for rounding.
- * 4. The plane of a face has no inner span. With the outer span [f, g] of the plane, all points
- *    of the segment within e of the plane are between f and g. If f > 0 and g < 1, and [f, g] is
- *    within the inner spans of the other slabs of the face, then no end of the segment is within
- *    e of the face, and no point of it within e of an edge of the face. So while both move from
- *    where they are as prepared to where they truly are, the segment keeps crossing the face, at
- *    some parameter in [f, g].
- * 5. Where nothing rounds (slabs_exact.h), all numbers of solids and of the plane of a face are
- *    exact, and E is 0. Only t is rounded, twice, which moves the end of a span by less than the
- *    slack; but a span may be a point, or lost by a rounding. So an outer span is kept unless it
- *    is shorter than -2^-48, and an inner one only if it is longer than 2^-48. Of a span between
- *    these, the exact order of its ends decides, that of products of two numbers
- *    (enters_in_time()): with T from 2^-100 to 2^100, numbers are multiples of 2^-356 and below
- *    2^301.
- * 6. Underflow. E is at least 2^-640 (else the lane is not good). What underflows is less than
- *    100 * 2^-1074 * 2^405 < 2^-662 (slabs.c). Nothing underflows where nothing rounds.
- * 7. Level cuboids. Where both frames have exact coordinates along an axis, and do not drift
- *    along it, a slab whose normal is that axis takes its values from exact differences along it
- *    (exact_difference()): their signs are exact, and they are off by less than 2^-52 of
- *    themselves. The true slab has the same bounds. A vertex of the other cuboid is at one of its
- *    two ends, as one component only extends along the axis. So E is 0 here too, whatever the
- *    errors of the frames across the axis: 3 holds in the cross-sections at each point of the
- *    axis, which are within the errors of their frames of the true ones. Of a cuboid that is
- *    flat, some other slab leaves no inner spans.
- *
- * CROSSINGS
- *
- * Let p + s a be an edge of A and q + r b one of B, each seen from the reference point of its
- * frame. Let o be the offset, H = travel_B - travel_A half the drift, and t the time, from -1 to 1.
- * The edges cross where s a - r b - t H = g, with g = o + q - p. With X = [a b H], the products of
- * this equation with b x H, H x a and a x b are
- *
- *     s X = [o b H] + [q b H] - [p b H]
- *
- *     r X = [o a H] + [q a H] - [p a H]
- *
- *     t X = (q x b) . a + (p x a) . b - [a b o].
- *
- * p x a and q x b are made of the normals of faces (moment_of_edge()).
- *
- * 8. Let N_s be the computed right side of the first equation, X the computed factor on its left,
- *    and W the weight of b x H. Where the true edges cross within the ranges of the parameters,
- *    |N_s - s X| <= E_s, with E_s = BOX_ROUNDING W . reach for rounding. A monomial of X is
- *    rounded at most 9 times: 2 in H, 5 in the triple product, 2 where both edges are
- *    differences. One of N_s is rounded 8 times in that way, 3 in sums and with the range, 4 more
- *    in the offset. From P to Q of a simplex that is 11 u of the monomials of P and 9 u of those
- *    of both, less than 33 u of the larger ones. At the same s, r and t, points of the true edges
- *    are off by at most e together, and N_s - s X by at most e |b x H|: E_s includes 1.01 e times
- *    the scale. E_r and E_t have the same form.
- * 9. A crossing is possible if N_s is within E_s of the range of s times X, and so for r and t.
- *    So no crossing that is a vertex is lost. s is within E_s / |X| of N_s / X, and p + s a + t
- *    travel_A is off along axis k by at most (E_s |a_k| + E_t |travel_A[k]|) / |X|.
- * 10. It is certain if N_s is inside this range by more than E_s, and so for r and t. Then the
- *     true edges cross. First, as prepared: the range of s has the length 2 for a cuboid and 1
- *     for a simplex, so |X| > E_s for a cuboid and |X| > 2 E_s for a simplex, more than the error
- *     of X. So the exact X is not 0, and there is a crossing. If a parameter were out of its
- *     range by x, the bound of 8 would grow by less than |X| x. So the crossing is within the
- *     ranges. Now move all vertices linearly from where they are as prepared to where they truly
- *     are. On the way, by 8, a crossing that is within the ranges is inside them by a margin.
- *     Were the exact X 0 somewhere on the way, the crossing would be one of a line of crossings,
- *     and this line leaves the ranges at a crossing without a margin. So X stays other than 0,
- *     and the crossing moves continuously and never leaves the ranges. So the inner end of each
- *     is no more than a true point.
- * 11. Underflow: E_s, E_r and E_t include 2^-93 T times the scale (T: slabs.c). With sizes of at
- *     least 2^-180 (else the lane is not good) all three are more than 2^-640, as in 6. Where
- *     nothing rounds, they are 0, and all signs exact. */
+ * Not here: why these points span the box, and the derivation of every error bound: BOXES.md, to
+ * which the numbers (1) to (11) below refer; what follows from the ends (box_ends.h); the same in
+ * integers (exact/limbs_box.h). */
 #ifndef FMB_BOX_CLIP_H
 #define FMB_BOX_CLIP_H
 
 #include "box_ends.h"
 
-/* Bounds the error of a value by the sum of the magnitudes of its monomials (1, 8). */
+/* Bounds the error of a value by the sum of the magnitudes of its monomials (BOXES.md, 1 and 8). */
 #define BOX_ROUNDING (33.1 * BOX_UNIT)
 
 /* How much larger weights are in the plane of a face (1). */

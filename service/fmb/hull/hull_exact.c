@@ -1,8 +1,9 @@
 /* Pairs with a hull in integers: verdict, contact and box from linear programs whose columns are
  * the vertices of D, priced by the support function (column generation).
  *
- * Coordinates. All points are integers, in units of 2^unit / scale of the pair (exact.h), so that
- * no step rounds. Points enter as 4 x, because the interior point c below is a mean in quarters.
+ * Coordinates. All points are integers, in units of 2^unit / scale of the pair (hull_vertices.h),
+ * so that no step rounds. Points enter as 4 x, because the interior point c below is a mean in
+ * quarters.
  *
  * 1. Span (span_step()). Finds k + 1 points of D that are affinely independent, k the dimension of
  *    D: starting with the points given, it looks for a point off the flat that is spanned so far,

@@ -9,7 +9,7 @@
 /* The same of a quotient in [-1, 1], (dividend -+ bound) inverse. The true dividend is within bound
  * of dividend - quotient divisor, up to the constant times the divisor. */
 #define CHECK_QUOTIENT(constant, ignored, dividend, divisor, inverse, quotient, bound) ((void) 0)
-/* The same of a segment of a box: what is left to the bounds of a slab (box_clip.h, errors). */
+/* The same of a segment of a box: what is left to the bounds of a slab (filter/BOXES.md, 1). */
 #define CHECK_SEGMENT(constant, values, slab, vertex, direction) ((void) 0)
 /* From here on x counts as given: its error is accounted for elsewhere. */
 #define CHECK_GIVEN(x) (x)
