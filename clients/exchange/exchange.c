@@ -6,6 +6,40 @@
 #include <stdlib.h>
 #include <string.h>
 
+static bool are_below(const unsigned (*pair)[2], int32_t count, unsigned limit)
+{
+    for (int32_t k = 0; k < count; k++)
+        if (pair[k][0] >= limit || pair[k][1] >= limit)
+            return false;
+    return true;
+}
+
+/* Whether the indices of the query are in range, and the result, of status OK, has answers to pairs
+ * of the query only, in their order. */
+static bool result_fits(const struct scene_query *query, const struct scene_result *result)
+{
+    const int32_t n = query_stored_placements(query), first = query->first_pair;
+    const int32_t listed = query->index_count / 2, ignored = query->ignored_count / 2;
+    if (query->placement_count != n || query->split < 0 || query->split > n || first < 0 ||
+        listed > QUERY_PAIRS_MAX || ignored > QUERY_PAIRS_MAX ||
+        !are_below(query->pair, listed, (unsigned) n) ||
+        !are_below(query->ignored, ignored, (unsigned) n) || result->end_pair < first ||
+        result->end_pair > query_pair_count(query))
+        return false;
+    if (query->which == FMB_PAIRS_LISTED)
+        return (!result->names_pairs || result->verdict_count == 0) &&
+               result->verdict_count == result->end_pair - first;
+    int64_t before = first - 1;
+    for (int32_t k = 0; k < result->verdict_count; k++) {
+        const unsigned *pair = result->pair[k];
+        if (!result->names_pairs || !query_has_pair(query, pair[0], pair[1]) ||
+            query_pair_number(query, pair[0], pair[1]) <= before)
+            return false;
+        before = query_pair_number(query, pair[0], pair[1]);
+    }
+    return before < result->end_pair;
+}
+
 static bool lists_pairs(const struct exchange *exchange)
 {
     return exchange->query && exchange->query->kind == LOG_SCENE_QUERY &&
@@ -40,7 +74,7 @@ void exchange_begin(struct exchange *exchange)
     if (result)
         exchange->of = fmb_client_raw_result_of(is_pair, &result->pair);
     exchange->fits = is_pair || (result && query && result->head.status == FMB_OK &&
-                                 logged_result_fits(&query->scene, &result->scene));
+                                 result_fits(&query->scene, &result->scene));
     exchange->cursor = (struct fmb_client_cursor){0};
     exchange->pair = (struct pair_cursor){0};
     read_named(exchange);
@@ -140,8 +174,10 @@ struct exchange_counts exchange_count(const struct exchange *exchange)
     while (exchange_next(&named, false, &answer))
         counts.verdict[answer.answer.verdict]++;
     if (exchange->fits && !exchange->of.is_pair && !lists_pairs(exchange)) {
+        unsigned *memory = allocate_unset(QUERY_IGNORED_CAPACITY * sizeof *memory);
         int64_t others =
-            logged_query_pairs_until(&exchange->query->scene, exchange->result->scene.end_pair);
+            query_pairs_decided(&exchange->query->scene, exchange->result->scene.end_pair, memory);
+        free(memory);
         for (int verdict = 0; verdict <= FMB_OVERLAPPING; verdict++)
             others -= counts.verdict[verdict];
         counts.verdict[FMB_SEPARATED] += others > 0 ? others : 0;

@@ -80,46 +80,6 @@ size_t logged_query_write(const struct logged_query *query, unsigned char out[QU
                                          : wire_write_scene_query(&query->scene, out);
 }
 
-static bool are_below(const unsigned (*pair)[2], int32_t count, unsigned limit)
-{
-    for (int32_t k = 0; k < count; k++)
-        if (pair[k][0] >= limit || pair[k][1] >= limit)
-            return false;
-    return true;
-}
-
-bool logged_result_fits(const struct scene_query *query, const struct scene_result *result)
-{
-    const int32_t n = query_stored_placements(query), first = query->first_pair;
-    const int32_t listed = query->index_count / 2, ignored = query->ignored_count / 2;
-    if (query->placement_count != n || query->split < 0 || query->split > n || first < 0 ||
-        listed > QUERY_PAIRS_MAX || ignored > QUERY_PAIRS_MAX ||
-        !are_below(query->pair, listed, (unsigned) n) ||
-        !are_below(query->ignored, ignored, (unsigned) n) || result->end_pair < first ||
-        result->end_pair > query_pair_count(query))
-        return false;
-    if (query->which == FMB_PAIRS_LISTED)
-        return (!result->names_pairs || result->verdict_count == 0) &&
-               result->verdict_count == result->end_pair - first;
-    int64_t before = first - 1;
-    for (int32_t k = 0; k < result->verdict_count; k++) {
-        const unsigned *pair = result->pair[k];
-        if (!result->names_pairs || !query_has_pair(query, pair[0], pair[1]) ||
-            query_pair_number(query, pair[0], pair[1]) <= before)
-            return false;
-        before = query_pair_number(query, pair[0], pair[1]);
-    }
-    return before < result->end_pair;
-}
-
-int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair)
-{
-    unsigned *memory = allocate_unset(QUERY_IGNORED_CAPACITY * sizeof *memory);
-    const int64_t pairs = query_pairs_decided(query, end_pair, memory);
-    free(memory);
-    return pairs;
-}
-
 /* ---- As a scene: bodies ---- */
 
 const struct fmb_body *body_of_view(const struct body_view *view, struct owned_scene *out)

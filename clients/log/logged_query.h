@@ -42,13 +42,6 @@ const char *logged_result_read(struct logged_result *out, enum log_kind kind, co
  * a body. */
 bool logged_status_is_transient(int32_t status);
 
-/* query_pairs_decided() with memory of its own. */
-int64_t logged_query_pairs_until(const struct scene_query *query, int32_t end_pair);
-
-/* Whether the indices of the query are in range, and the result, of status OK, has answers to pairs
- * of the query only, in their order. */
-bool logged_result_fits(const struct scene_query *query, const struct scene_result *result);
-
 /* Encodes a query that was decoded. Returns its size; 0 if it exceeds a datagram, or the struct
  * does not hold all of it. */
 size_t logged_query_write(const struct logged_query *query, unsigned char out[QUERY_BYTES_MAX]);
