@@ -423,7 +423,7 @@ static void set_matrix(const double axis[3], double angle, double out[3][3])
 }
 
 /* matrix := matrix * turn. */
-static void turn_matrix(double matrix[3][3], const double axis[3], double angle)
+static void turn_by(double matrix[3][3], const double axis[3], double angle)
 {
     double turn[3][3], out[3][3] = {{0}};
     set_matrix(axis, angle, turn);
@@ -474,11 +474,11 @@ static void poses_of_links_agree_with_matrices(void **state)
                 axis[k] /= sqrt(length);
             shift(expected, matrix, xyz, 1);
             for (int k = 2; k >= 0; k--) /* R = Rz(yaw) Ry(pitch) Rx(roll) */
-                turn_matrix(matrix, unit[k], rpy[k]);
+                turn_by(matrix, unit[k], rpy[k]);
             if (type == 2)
                 shift(expected, matrix, axis, value[i]);
             else if (type != 0)
-                turn_matrix(matrix, axis, value[i]);
+                turn_by(matrix, axis, value[i]);
         }
         strcpy(end, "</robot>");
         struct robot robot;
