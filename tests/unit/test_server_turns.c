@@ -191,15 +191,15 @@ static void a_wait_that_the_system_prolongs_is_not_charged(void **state)
 static void scenes_share_time(void **state)
 {
     service.tick_ns = US;
-    service_query_scene(CHEAP, 1, 400);
-    service_query_scene(COSTLY, 1, 400);
+    service_query_scene(CHEAP, 1, 160);
+    service_query_scene(COSTLY, 1, 160);
     service_query_scene(OTHER, 1, 40);
     service_settle();
     expect_all_ok(3);
     assert_int_equal(place_of(OTHER, 1), 0);
     for (int i = 0; i < 3; i++)
         assert_int_equal(service.result[i].end_pair,
-                         service.result[i].client_id == OTHER ? 40 * 39 / 2 : 400 * 399 / 2);
+                         service.result[i].client_id == OTHER ? 40 * 39 / 2 : 160 * 159 / 2);
 }
 
 static void pairs_pass_long_scenes(void **state)
