@@ -28,7 +28,8 @@ const char *measure_path_name(int path)
     static const char *const names[MEASURE_PATHS] = {[CERTIFIED_FILTER] = "filter",
                                                      [CERTIFIED_SECOND] = "second",
                                                      [CERTIFIED_LIMBS] = "limbs",
-                                                     [CERTIFIED_EXACT] = "exact"};
+                                                     [CERTIFIED_EXACT] = "exact",
+                                                     [CERTIFIED_PROGRAMS] = "programs"};
     return names[path];
 }
 
@@ -105,7 +106,7 @@ static enum certified_path path_of(const struct pair *pair)
                 certified_verdict(&frames, &path);
             else
                 path = hull_decide(&frames, 0, HULL_QUICK, &answer) == FMB_OK ? CERTIFIED_FILTER
-                                                                              : CERTIFIED_EXACT;
+                                                                              : CERTIFIED_PROGRAMS;
             most = path > most ? path : most;
         }
     return most;

@@ -10,7 +10,7 @@
 #include "campaign_tally.h"
 
 /* By enum certified_path: which step of the certified method decided the verdict. */
-enum { MEASURE_PATHS = CERTIFIED_EXACT + 1 };
+enum { MEASURE_PATHS = CERTIFIED_PROGRAMS + 1 };
 const char *measure_path_name(int path);
 
 /* Of one method. Times: the median over the batches of pairs of a batch's mean. */
