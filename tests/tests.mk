@@ -270,7 +270,7 @@ abi: $(shared_libraries)
 # Other libraries are measured too where they are installed, unless PEERS=none.
 installed = $(if $(PEERS),,$(shell for p in $1; do pkg-config --exists $$p && echo $$p; done 2> /dev/null))
 bullet := $(firstword $(call installed,bullet-float64 bullet))
-peer_packages := $(call installed,ccd fcl) $(bullet)
+peer_packages := $(strip $(call installed,ccd fcl) $(bullet))
 peer_libraries := $(peer_packages:%-float64=%)
 peers := $(O)/peers/$(or $(subst $() ,_,$(strip $(peer_libraries))),none).o
 $(peers): tests/bench/peers.c $(O)/settings
