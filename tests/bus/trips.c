@@ -49,7 +49,7 @@ static void trips_of_scene(struct bus_bench *bench, int bodies, enum form form)
 /* As many bodies as a query holds whole beside the pairs, and fewer. */
 void trips_scenes(struct bus_bench *bench)
 {
-    static const int bodies[] = {100, 346};
+    static const int bodies[] = {100, 338};
     for (int i = 0; i < 2; i++)
         for (int form = 0; form < FORMS; form++)
             trips_of_scene(bench, bodies[i], (enum form) form);

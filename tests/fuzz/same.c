@@ -115,7 +115,8 @@ bool same_placement(const struct query_placement *placement, const fmb_msgs_plac
                         message->num_velocity) &&
            same_numbers(placement->placed.end_position, FMB_DIM_MAX, message->end_pose, placed) &&
            same_numbers(placement->placed.end_orientation, QUERY_ORIENTATION_MAX,
-                        message->end_pose + placed, message->num_end_pose - placed);
+                        message->num_end_pose > 0 ? message->end_pose + placed : NULL,
+                        message->num_end_pose - placed);
 }
 
 bool same_can_hold(const struct query_placement *placement)

@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BODIES = 500, PARTS = 10, TRIES = 100, TRY_MS = 100 };
+enum { BODIES = 480, PARTS = 10, TRIES = 100, TRY_MS = 100 };
 
 struct soak {
     struct bus *bus;

@@ -46,10 +46,10 @@ all_there() {
     holds "$JSON" "([.pairs[].cores] | max) as \$cores | \$cores == $(($(nproc) < 2 ? 1 : 2))
             and (.pairs | length == 3 * \$cores) and (.scenes | length == 6 * \$cores)" \
         '.machine.receive_buffer > 0' \
-        'all(.pairs[] | select(.form == "by handle"); .query_bytes == 48 + 2 * 85 + 24)' \
-        'all(.pairs[] | select(.form != "by handle"); .query_bytes == 48 + 2 * 182 + 24)' \
+        'all(.pairs[] | select(.form == "by handle"); .query_bytes == 48 + 2 * 89 + 24)' \
+        'all(.pairs[] | select(.form != "by handle"); .query_bytes == 48 + 2 * 186 + 24)' \
         'all(.scenes[]; .pairs == 200 and .query_bytes <= 63900 and
-            .query_bytes == 85 + 4 * .pairs + .bodies * (if .form == "by handle" then 85 else 182 end))' \
+            .query_bytes == 85 + 4 * .pairs + .bodies * (if .form == "by handle" then 89 else 186 end))' \
         'all(.scenes[]; .result_bytes > .pairs + (if .form == "by handle" then 0 else 16 * .bodies end))' \
         'all((.pairs + .scenes)[] | .service, .echo;
             .p50_us.median > 0 and .p50_us.median <= .p99_us.median and

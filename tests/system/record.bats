@@ -484,7 +484,8 @@ END
         event=$("$TOOLS/events" "$file" | awk '$3 == "FMB_SCENE_QUERY" && !found++ { print $1 }')
         "$FMB" log scene --event "$event" "$file" > "$BATS_TEST_TMPDIR/again.json"
         [ "$(jq -c '[.bodies[].name]' "$BATS_TEST_TMPDIR/again.json")" = '["table <top>",null,"näpf"]' ]
-        "$TOOLS/edit-log" --flip 0 "$file" "$BATS_TEST_TMPDIR/flipped"
+        # The query of the first result may be in the file before.
+        "$TOOLS/edit-log" --flip 2 "$file" "$BATS_TEST_TMPDIR/flipped"
         run "$FMB" replay --junit "$BATS_TEST_TMPDIR/junit" "$BATS_TEST_TMPDIR/flipped"
         [ "$status" = 1 ]
         [[ ${lines[0]} == 'event '*'  bodies table <top> 2  verdict: '* ]]
