@@ -203,7 +203,7 @@ left_out := $(if $(x86),$(if $(INSTRUCTIONS),%_avx2.o %_avx512.o),%_avx2.o %_avx
 
 $(O)/service/fmb/filter/instructions.o: flags += $(if $(INSTRUCTIONS),-DINSTRUCTIONS_MOST=2)
 
-# The yardstick of the benchmark meets no NaN: minima and maxima are one instruction each.
+# The method that the benchmark compares with handles no NaN: minima and maxima are one instruction each.
 $(O)/tests/bench/lean_sat.o: flags += -ffinite-math-only -fno-signed-zeros
 
 engine_folders := $(call fmb,number frame filter article tree exact gap hull certificate decide)

@@ -35,13 +35,13 @@ struct status {
 
 /* ---- Printing ---- */
 
-/* The name of a status in the counter of its results, and its number. */
+/* A status whose results a counter counts: its name in that of the counter, and its number. */
 struct counted_status {
     const char *name;
     int number;
 };
 
-/* NULL: the counter is not one of results. */
+/* Returns NULL if the counter does not count results of a status. */
 static const struct counted_status *status_of(const struct fmb_client_counter *counter)
 {
     static const char prefix[] = "result_";

@@ -113,7 +113,7 @@ holds() {
     }
 }
 
-# generate KIND LOG | --blast ... LOG: a log of the regression set, or one that is made.
+# generate KIND LOG | --blast ... LOG: copies a log of the regression set, or generates one.
 generate() {
     if [ "$1" = --blast ]; then "$TOOLS/logs/generate" "$@"; else cp "$BATS_TEST_DIRNAME/../logs/$1.log" "$2"; fi
 }

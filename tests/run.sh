@@ -14,15 +14,15 @@ log=build/tests.log
 limit=600 # seconds a suite may take before it has failed
 
 # Two builds. Release: every suite. Sanitizers, of clang: unit tests, fuzzers, the goldens, which another
-# compiler must reproduce, and the suites that take the programs furthest; without the kernels of newer
+# compiler must reproduce, and the suites that exercise the programs most; without the kernels of newer
 # instruction sets, which are the same source and take long to compile.
 release=build
 asan=build/asan-clang-two
 sanitized='system/service.bats system/daemon.bats system/record.bats system/replay_bus.bats'
 sanitized="$sanitized system/soak.bats cli/query.bats cli/replay.bats cli/mesh.bats"
 
-# Of the release build, those that wait more than they compute: they begin as soon as the programs are there,
-# while unit tests and the other build are compiled.
+# The suites of the release build that wait more than they compute. They begin as soon as the programs are
+# built, while unit tests and the other build are compiled.
 waiting='cli/page.bats system/replay_bus.bats system/daemon.bats system/service.bats system/record.bats'
 waiting="$waiting system/examples.bats"
 

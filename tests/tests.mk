@@ -250,7 +250,7 @@ accuracy: $(B)/accuracy
 soak: programs $(filter $(B)/soak-% %/fake-peer %/crash-liblcm,$(test_programs))
 	tests/soak/soak.sh $(B) $(SECONDS)
 
-# What of the regression set is made anew: the hard logs, and the results that all are compared with.
+# Regenerates the hard logs of the regression set, and the results with which all logs are compared.
 # tests/cli/logs.bats checks that this changes nothing.
 .PHONY: logs goldens
 logs: $(B)/logs/generate
@@ -292,7 +292,7 @@ $(O)/tests/robot/fcl.o: tests/robot/fcl.cc $(O)/settings
 	$(call say,CXX,$<) $(CXX) $$(pkg-config --cflags fcl) -std=c++17 -O2 -MMD -MP $(sees) -c $< -o $@
 $(B)/bus/bench-bus: | $(B)/bus/echo $(B)/fmbd
 
-# Minutes each. What bench and bench-bus measured is in report.json then.
+# Minutes each. bench and bench-bus write what they measured to bench/report.json and bus/report.json.
 .PHONY: bench bench-bus bench-commands speed-error
 bench: $(B)/bench/bench $(B)/robot/robot
 	$< --json $(B)/bench/report.json
@@ -304,7 +304,7 @@ bench-bus: $(B)/bus/bench-bus $(B)/netns
 bench-commands: programs $(B)/logs/generate $(B)/mesh/make-mesh
 	tests/bench/commands.sh $(B) $(MESH)
 
-# The picture of tests/bench/README.md, of what accuracy measured; runs nothing.
+# Draws the picture of tests/bench/README.md from what accuracy measured; runs no campaign.
 speed-error:
 	@[ -f $(B)/accuracy.json ] || { echo "make $@: there is no $(B)/accuracy.json: 'make accuracy' makes it" >&2; exit 1; }
 	jq -r --rawfile css tests/report/picture.css -f tests/report/speed_error.jq $(B)/accuracy.json > tests/report/speed-error.svg

@@ -39,7 +39,7 @@ void json_null(struct json_writer *json, const char *key);
 void json_bool(struct json_writer *json, const char *key, bool value);
 void json_integer(struct json_writer *json, const char *key, int64_t value);
 
-/* null if not finite. */
+/* Writes null if the number is not finite. */
 void json_number(struct json_writer *json, const char *key, double value);
 
 void json_integers(struct json_writer *json, const char *key, const int64_t *integers, int count);

@@ -114,7 +114,7 @@ struct report_rows {
     uint64_t near, left_out;             /* of those separated */
 };
 
-/* In: rows: with the members that the caller sets. Writes the column names of CSV. */
+/* For CSV, writes the column names. In: the members of rows that the caller sets. */
 void report_begin(struct report_rows *rows);
 
 /* For each scene: its begin, each answer in the order of the pairs, and its end. */

@@ -57,8 +57,8 @@ bool scene_leaves_out(struct owned_scene *scene, unsigned a, unsigned b);
 /* As pair_next(), of this scene. */
 bool scene_next_pair(struct owned_scene *scene, struct pair_cursor *cursor, unsigned out[2]);
 
-/* As scene_next_pair(), but returns false at the pair `until` too, after which the iteration then
- * continues. until: any pair of the scene; NULL: none. */
+/* As scene_next_pair(), but also returns false at the pair `until`; the next call continues after
+ * it. until: any pair of the scene, or NULL. */
 bool scene_next_pair_before(struct owned_scene *scene, struct pair_cursor *cursor,
                             const unsigned until[2], unsigned out[2]);
 

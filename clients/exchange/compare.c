@@ -70,7 +70,7 @@ static double largest_coordinate(const struct logged_query *query, double durati
 
 /* ---- Answers ---- */
 
-/* What numbers may differ by. */
+/* The limits within which numbers may differ. */
 struct limits {
     double tolerance; /* 0: not at all */
     double time, length;
@@ -185,7 +185,7 @@ static enum replay_outcome compare_answers(const struct compare_options *options
 }
 
 /* Writes how the scene of a result differs from that of the query. Returns false if it does not, or
- * that is not known. */
+ * if this is not known. */
 static bool scenes_differ(const struct exchange *then, const struct exchange *now,
                           char out[COMPARE_DETAIL_MAX])
 {

@@ -42,7 +42,7 @@ extern const char *const difference_name[DIFFERENT_KINDS]; /* for example "verdi
 enum { COMPARE_DETAIL_MAX = SCENE_CHANGE_MAX };
 
 struct difference {
-    /* Of the query, set by the sink of the caller of compare_exchanges(). */
+    /* Of the query; the caller's sink sets these. */
     struct match_place place;
     enum log_kind query_kind;
     int64_t client_id, sequence_number;
@@ -67,7 +67,7 @@ struct compare_options {
 
 typedef void difference_sink(void *user, const struct difference *difference);
 
-/* Calls the sink for each difference. In: two exchanges with a result. Never returns
+/* Calls the sink for each difference. In: two exchanges that have a result. Does not return
  * REPLAY_UNRECORDED. */
 enum replay_outcome compare_exchanges(const struct compare_options *options, struct exchange *then,
                                       struct exchange *now, difference_sink *sink, void *user);

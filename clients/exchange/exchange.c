@@ -119,7 +119,7 @@ static struct fmb_client_answer separated_answer(unsigned a, unsigned b)
     return (struct fmb_client_answer){.a = a, .b = b, .text = "", .answer.verdict = FMB_SEPARATED};
 }
 
-/* Returns the next pair before the one that the result names next. */
+/* Returns true and the next separated pair that comes before the next named one, or false. */
 static bool next_separated(struct exchange *exchange, struct fmb_client_answer *out)
 {
     const struct scene_query *query = &exchange->query->scene;

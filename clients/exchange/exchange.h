@@ -23,12 +23,12 @@ struct exchange_counts {
 };
 
 struct exchange {
-    /* Set by the caller, not owned. A query may be refused, and a result may be of another query:
-     * it then has no answers. */
-    const struct logged_query *query;   /* NULL: not known, if the result is of a pair */
+    /* Set by the caller, not owned. There are no answers if the query was refused, or if the result
+     * is that of another query. */
+    const struct logged_query *query;   /* may be NULL, not known, if the result is of a pair */
     const struct logged_result *result; /* NULL: none */
     const struct body_names *names;     /* of the bodies of the query; NULL: none */
-    bool by_order; /* paired with the query by its order: it may be the result of another one */
+    bool by_order; /* the result was matched by its order: it may be that of another query */
     /* Set by exchange_begin(). */
     struct fmb_client_result of; /* of the result; all 0 if there is none */
     bool fits;                   /* the result has answers to pairs of the query */
@@ -40,13 +40,13 @@ struct exchange {
     struct owned_scene *all; /* the pairs of the query; NULL until one is needed */
 };
 
-/* Begins the iteration, again too. Call exchange_end() after the last one. */
+/* Begins the iteration, or begins it anew. Call exchange_end() after the last iteration. */
 void exchange_begin(struct exchange *exchange);
 void exchange_end(struct exchange *exchange);
 
 /* Returns true and the next answer, in the order of the pairs, or false after the last one. a and b
  * are indices of placements; certificate and text are valid as long as the result. separated:
- * whether pairs that the result does not name are included. */
+ * whether to include the separated pairs that the result does not name. */
 bool exchange_next(struct exchange *exchange, bool separated, struct fmb_client_answer *out);
 
 /* One pair in two results of one query; answered: whether a result has an answer to it. */
@@ -63,10 +63,11 @@ bool exchange_next_of_both(struct exchange *const both[2], struct exchange_pair 
 /* Counts the answers, separated ones included. */
 struct exchange_counts exchange_count(const struct exchange *exchange);
 
-/* The number of pairs that the result decides. */
+/* Returns the number of pairs that the result decides. */
 int64_t exchange_decided(const struct exchange *exchange);
 
-/* The name of a body of the query, by its last name or that in the query; NULL: none. */
+/* Returns the last name of a body of the query (names), or else its name in the query; NULL: none.
+ */
 const char *exchange_name(const struct exchange *exchange, int32_t placement);
 
 #endif

@@ -210,12 +210,13 @@ struct fmb_client_counter {
 struct fmb_client_heartbeat {
     int64_t utime, server_id;
     const char *version;
-    /* [counter_count], those that this version knows; 0 if the service does not send it. */
+    /* [counter_count]: all that this version knows, with a value of 0 if the service does not send
+     * it. */
     const struct fmb_client_counter *counters;
     size_t counter_count;
 };
 
-/* Returns the value of the counter of this name; 0: there is none. */
+/* Returns the value of the counter with this name, or 0 if there is none. */
 int64_t fmb_client_get_counter(const struct fmb_client_heartbeat *heartbeat, const char *name);
 
 /* Callbacks. Messages whose callback is NULL are not received. */

@@ -211,7 +211,7 @@ static void put_vector(struct json_writer *json, const char *key, const double *
     json->digits = digits;
 }
 
-/* The largest distance from `from`, NULL: from 0, halved, so that it is a double. */
+/* Half of the largest distance from `from` (NULL: from 0), since the whole may overflow. */
 static double largest_of(const double *vector, const double *from, int dim)
 {
     double largest = 0;

@@ -25,7 +25,7 @@
 #include <stdio.h>
 
 /* A page stays below PAGE_BYTES_MAX, its own text of about a megabyte included. All other limits
- * are of bytes before they are compressed, which is to less than half. Steps are kept as a whole up
+ * count bytes before compression, which leaves less than half of them. Steps are kept as a whole up
  * to PAGE_STEPS_BYTES, steps that differ up to PAGE_DIFFERENT_BYTES more. Separated pairs without a
  * gap within the margin are kept up to PAGE_FAR_BYTES in all. Of a step PAGE_PAIRS_MAX pairs that
  * differ are kept, as many in contact or near, and as many others. The page says what was left out.
@@ -58,18 +58,18 @@ struct page_step {
     double duration;   /* of the window, seconds */
     double margin;     /* 0: none */
     const char *label; /* NULL or "": none */
-    bool differs;      /* the answers then and now do */
+    bool differs;      /* the answers then and now differ */
 };
 
-/* Returns what writes more members of the step, until the first body is added; NULL: the page keeps
- * no more steps, and the other functions have no effect. */
+/* Returns a writer for further members of the step, valid until the first body is added. Returns
+ * NULL if the page keeps no more steps; the other functions then have no effect. */
 struct json_writer *page_step_begin(struct page *page, const struct page_step *step);
 
 /* Adds a body. missing: NULL; or why the body cannot be drawn: then only id and name are read. */
 void page_body(struct page *page, const struct fmb_placement *placement, const char *missing);
 
-/* Adds the answer to a pair, whose a and b are indices of bodies; of a mesh, of faces. then: NULL:
- * the same as now. */
+/* Adds the answer to a pair. a and b of the answer are indices of bodies (of faces, for a mesh).
+ * then: the earlier answer, or NULL if it is the same as now. */
 void page_pair(struct page *page, int dim, const struct fmb_client_answer *then,
                const struct fmb_client_answer *now);
 

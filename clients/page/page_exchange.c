@@ -5,7 +5,7 @@
 
 enum { NOTE_MAX = 100 };
 
-/* Logs also contain queries that were refused: their bodies may be none. */
+/* Logs also contain queries that were refused: their bodies may be invalid. */
 static void add_body(struct page *page, const struct exchange *exchange, int32_t i)
 {
     const struct query_placement *placement = &exchange->query->placement[i];
@@ -23,7 +23,7 @@ static void add_body(struct page *page, const struct exchange *exchange, int32_t
     page_body(page, &placed,
               is_named  ? missing
               : is_good ? NULL
-                        : "it is no body that can be drawn");
+                        : "it is not a body that can be drawn");
     scene_clear(&memory);
 }
 

@@ -55,7 +55,7 @@ static bool check_finite(struct check_context *context, const char *list, const 
     return true;
 }
 
-/* Of what messages can say and this version does not do. */
+/* The detail for what messages can express and this version does not support. */
 static const char *const not_supported = "not supported yet";
 
 /* ---- Frames ---- */

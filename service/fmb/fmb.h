@@ -137,8 +137,8 @@ struct fmb_frame {
     bool inverted;        /* the inverse is present: not flat, and all its entries are finite */
     double reach;         /* bounds the distance of each vertex from the origin of the body; may be
                              infinite */
-    /* The frame is the set of points within this distance of the shape. Not supported yet: 0, and a
-     * body or a placement of a frame with another radius is refused with FMB_NOT_SUPPORTED. */
+    /* Not supported yet: always 0; a frame with another value is refused with FMB_NOT_SUPPORTED.
+     * Later: the frame is the set of points within this distance of the shape. */
     double radius;
     /* Of a box it is rounded: the exact origin is centre - size / 2. Of a hull, origin and
      * components are those of its box in body coordinates, sizes rounded up: a cuboid that contains
@@ -269,8 +269,8 @@ struct fmb_placement {
     double velocity[FMB_DIM_MAX]; /* per second */
     double orientation[4];        /* w, x, y, z (2D: w, z); of any length but 0 */
     int orientation_count;        /* 0: not rotated; 4 (2D: 2) */
-    /* The pose at the end of the window, in place of a velocity. Not supported yet: end_count is 0,
-     * and these are not read. */
+    /* The pose at the end of the window, in place of a velocity. Not supported yet: end_count has
+     * to be 0, and these are not read. */
     double end_position[FMB_DIM_MAX], end_orientation[4];
     int end_count; /* 0: none; otherwise the dimension plus orientation_count */
     /* Not 0: in a scene, placements of one group are not tested against each other. */
@@ -401,11 +401,12 @@ struct fmb_method {
  * fmb and sat are inexact and cannot decide flat frames and hulls.
  *
  * Cost: exact takes tens to hundreds of microseconds for numbers of similar size. Its time is
- * bounded for any numbers, as is that of certified: of the pairs whose exponents span the whole
- * range of doubles, a search found none that takes more than 72 million products of limbs of 64
- * bits with box and gap, about 36 ms. Doubles decide most pairs with a hull by a few scans of all
+ * bounded for any numbers, as is that of certified: among pairs whose exponents span the whole
+ * range of doubles, a search found none that takes more than 72 million products of 64-bit limbs
+ * with box and gap, about 36 ms. Doubles decide most pairs with a hull by a few scans of all
  * vertices. Exact arithmetic takes some milliseconds for the largest hulls, and up to 60 ms with
- * box and gap if their exponents span that range. A scene divides it into steps below one. */
+ * box and gap if their exponents span that range. A scene divides exact work into steps of less
+ * than a millisecond. */
 
 /* Return a method from a static table, valid for the life of the program. Thread safe.
  * fmb_method_at() returns NULL if index is past the last method; fmb_method_by_name() and

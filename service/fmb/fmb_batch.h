@@ -1,6 +1,5 @@
-/* libfmb: what scenes (fmb.h) are made of, for programs that choose the pairs themselves. Prepared
- * frames, batches of pairs and trees of boxes: of single frames, with nothing between them and the
- * kernels.
+/* libfmb: what scenes (fmb.h) are built from, for programs that choose the pairs themselves:
+ * prepared frames, batches of pairs of frames, and trees of their boxes.
  *
  * These functions and structs may change in any version, and programs that use them have to be
  * compiled again: fmb.h is stable, this header is not. The answers are those of fmb.h, bit for bit.
@@ -84,12 +83,14 @@ struct fmb_batch {
      *
      * Both NULL: every pair is decided.
      *
-     * Otherwise a pair is left open if its verdict or contact (if wanted) needs integers of more
-     * than 512 bits, if its box needs integers of any width, or if the first search in doubles does
-     * not give its gap. A pair that the filter in doubles does not decide is also left open if 32
-     * of the same 128 pairs have already been decided after the filter. Which pairs are left open
-     * does not depend on the machine. open[0] to open[*open_count - 1] are the positions in pairs
-     * of those left open, ascending.
+     * Otherwise a pair is left open if its verdict or its box needs more than integers of 512 bits,
+     * if its contact needs integers at all, or if the first search in doubles does not give its
+     * gap; of a pair with a hull, if doubles do not give all that is wanted. A pair that the filter
+     * in doubles does not decide is also left open if 32 of the same 128 pairs have already been
+     * decided after the filter; or, if it has a hull, if the hulls among these 128 pairs already
+     * had so many vertices that their scans take some hundred microseconds.
+     * Which pairs are left open does not depend on the machine. open[0] to open[*open_count - 1]
+     * are the positions in pairs of those left open, ascending.
      *
      * A pair that is left open may take as long as fmb_decide() of one pair; any other takes tens
      * of microseconds at most and allocates no memory. A batch of that one pair with both NULL

@@ -1,5 +1,5 @@
-/* The benchmark: what a verdict costs, by kind of pair and by method; what else costs what; and the
- * worst that was found. */
+/* The benchmark: the cost of a verdict, by kind of pair and by method; the cost of other answers;
+ * and the worst pairs that were found. */
 #include "bench.h"
 
 #include <errno.h>

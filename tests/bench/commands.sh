@@ -1,21 +1,22 @@
 #!/bin/bash
-# commands.sh BUILD_DIR [MESH.ply]: CPU time of commands, on one core, from files that have been read once
-# before: replays, 'fmb log info' beside cat, a page of 10,000 scenes, and the article's scene of two meshes: a
-# mesh against its mirror image, MESH with its coordinates times 1000 or one that is made. Medians of nine runs.
+# commands.sh BUILD_DIR [MESH.ply]: measures the CPU time of commands, on one core, medians of nine runs. The
+# files have been read once before. The commands: replays; 'fmb log info' beside cat; a page of 10,000 scenes;
+# and the article's scene of two meshes, a mesh and its mirror image: MESH times 1000, or a generated one.
 set -eu
 here=$(dirname "$0") build=$1 mesh=${2-} folder=$1/commands
 fmb=$build/fmb
 mkdir -p "$folder"
 TIMEFORMAT='%3U %3S'
 
-# seconds COMMAND...: of user and system, the median.
+# seconds COMMAND...: the median of user plus system time.
 seconds() {
     for _ in 1 2 3 4 5 6 7 8 9; do
         { time taskset -c 0 "$@" > "$folder/out" 2> "$folder/said" < "${input:-/dev/null}"; } 2>&1
     done | awk '{ print $1 + $2 }' | sort -n | sed -n 5p
 }
 
-# row WHAT UNITS NAME COMMAND...: how many UNITS a second, of so many.
+# row WHAT UNITS NAME COMMAND...: prints the time of the command, which processes UNITS items called NAME, and
+# the items per second.
 row() {
     local took
     took=$(seconds "${@:4}")

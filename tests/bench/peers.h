@@ -1,5 +1,5 @@
-/* Other libraries that decide whether convex solids meet, or how far apart they are: each where it
- * was found when this was built. */
+/* Other libraries that decide whether convex solids meet, or how far apart they are: those that
+ * were found when this was built. */
 #ifndef PEERS_H
 #define PEERS_H
 
@@ -31,8 +31,8 @@ enum { PEERS_MAX = 16 };
 
 struct peers;
 
-/* The solids are all in 3D, else no library has them, and must outlive the peers. If one is a hull,
- * only libraries that take hulls may be run. */
+/* The solids must outlive the peers. Unless all of them are in 3D, no library is opened. If one is
+ * a hull, only libraries that take hulls may be run. */
 struct peers *peers_open(const struct peer_solid *solid, size_t count);
 void peers_close(struct peers *peers);
 

@@ -1,5 +1,5 @@
-/* What the accuracy campaign has found: of the methods that are never wrong as text, of all as
- * JSON. */
+/* Reports what the accuracy campaign has found: as text for the methods that are never wrong, as
+ * JSON for all methods. */
 #ifndef REPORT_H
 #define REPORT_H
 
@@ -16,8 +16,8 @@ struct report {
     size_t measures;
 };
 
-/* What each method that is never wrong did, and a reproducer of the first reply of it that was
- * wrong in a cell, of some of these cells. */
+/* Prints the counts of each method that is never wrong, and, for some of the cells in which one of
+ * its replies was wrong, a reproducer of the first. */
 void report_print(const struct report *report, FILE *out);
 
 /* Everything, a cell and a method at a time. A number that is infinite is null. False if it could

@@ -1,4 +1,4 @@
-# The benchmark, in small: it runs. Nothing here is about time.
+# The benchmark runs, on small samples. No time is tested.
 
 load ../ran
 

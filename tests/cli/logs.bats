@@ -1,5 +1,5 @@
-# The logs of the regression set: the hard ones are made here again to the byte, whatever compiler and
-# instruction set; they are good event logs of LCM, and hold what they are there for.
+# The logs of the regression set. The generator reproduces the hard logs byte for byte, with any compiler and
+# instruction set. All logs are valid event logs of LCM, and contain the cases that the set has to cover.
 
 load ../ran
 load ../logs/set

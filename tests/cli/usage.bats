@@ -1,4 +1,4 @@
-# The usage of each command of fmb, as 'fmb help' lists them, and of fmbd; and what wrong usage is told.
+# The usage of each command of fmb, as 'fmb help' lists them, and of fmbd; and the messages for wrong usage.
 
 load ../ran
 
@@ -154,7 +154,7 @@ END
     [ "$(echo *)" = '*' ]
 }
 
-# What is typed and what is said.
+# Arguments, and the first line on stderr.
 @test "the message of wrong usage names what was wrong" {
     while IFS='|' read -r arguments message; do
         # shellcheck disable=SC2086

@@ -1,5 +1,5 @@
-/* The kinds of logs that are made: what is queried in it, from the beginning of a tape
- * to its end. */
+/* The kinds of logs that are generated. The function of a kind makes the queries of a tape, from
+ * its beginning to its end. */
 #ifndef KINDS_H
 #define KINDS_H
 

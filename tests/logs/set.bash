@@ -42,7 +42,7 @@ replays_the_set() {
     done
 }
 
-# makes_the_hard_logs GENERATE: what is committed.
+# makes_the_hard_logs GENERATE: the hard logs are the committed ones.
 makes_the_hard_logs() {
     for kind in $("$1" --list | cut -d ' ' -f 1); do
         "$1" "$kind" "$BATS_TEST_TMPDIR/made.log"

@@ -54,7 +54,7 @@ def grouped:
             | join("") end)
     end;
 
-# With so many digits behind the point.
+# With a number of digits after the decimal point.
 def fixed($digits):
     if . < 0 then "-" + (-. | fixed($digits))
     else pow(10; $digits) as $unit
@@ -73,7 +73,7 @@ def ns_text:
 def time_text:
     if . < 1000 then "\(.) ns" elif . < 1e6 then "\(. / 1e3) µs" else "\(. / 1e6) ms" end;
 
-# 0.123 -> 12.3 %; small shares keep a digit; zero is said in words by whoever shows it.
+# 0.123 -> 12.3 %; small shares keep a digit; zero is left to the caller, who shows it in words.
 def share_text:
     (. * 100) as $p
     | if $p == 0 then "0"
@@ -160,7 +160,7 @@ def scale_near($numbers; $a; $b):
     scale($numbers | min | round_below; ($numbers | max | round_above); $a; $b)
     | if .lo == .hi then .hi *= 10 else . end;
 
-# Where a number lies; what is beyond an end lies on it.
+# The position of a number; numbers beyond an end are placed on it.
 def at($scale):
     ([[., $scale.lo] | max, $scale.hi] | min | log10) as $v
     | ($scale.lo | log10) as $lo | ($scale.hi | log10) as $hi

@@ -1,5 +1,5 @@
-/* Counts the exact arithmetic of the code under test in GMP: the link wraps the functions
- * (tests.mk). */
+/* Counts the exact arithmetic that the code under test does by GMP, whose functions the linker
+ * wraps (tests.mk). */
 #ifndef EXACT_WORK_H
 #define EXACT_WORK_H
 

@@ -116,7 +116,8 @@ static double of_every_kind(struct draw *draw)
     }
 }
 
-/* Half of them of one kind, the others of every kind. */
+/* In half of the pairs, origins and components are small multiples of the least positive double.
+ * All other numbers are of every kind. */
 static void numbers_of_every_kind(struct draw *draw, struct question *question)
 {
     const int dim = draw_dim(draw), kind = draw_int(draw, 0, 1);
@@ -148,7 +149,7 @@ static const struct hard_family own[] = {
     {"numbers_of_every_kind", numbers_of_every_kind, -1, 3000},
 };
 
-/* Of the campaigns: those of one frame that is not given by vertices. */
+/* The families of the campaigns whose bodies have one frame, not given by vertices. */
 static const struct family *campaign_at(size_t index)
 {
     const struct family *family;

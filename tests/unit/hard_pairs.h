@@ -12,8 +12,8 @@
 struct hard_family {
     const char *name;
     void (*draw_question)(struct draw *draw, struct question *question);
-    int verdict;                 /* of all pairs; 0: all three come up; -1: any */
-    long usual;                  /* count */
+    int verdict;                 /* of all pairs; 0: all three occur; -1: any */
+    long usual;                  /* number of pairs */
     const struct family *family; /* NULL: draw_question draws */
 };
 

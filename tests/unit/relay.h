@@ -79,7 +79,8 @@ uint64_t relay_dropped(struct relay *relay);
 /* A client on the relay's bus; options as in fmb_client_options. */
 struct fmb_client *relay_client(struct relay *relay, double timeout, int tries);
 
-/* Of a test: both are closed after it; the relay is there, and to be opened. */
+/* The relay and the client of a test, closed after it. At its start the relay exists but is not
+ * open: relay_start(). */
 extern struct relay_test {
     struct relay *relay;
     struct fmb_client *client; /* NULL: none */
@@ -88,7 +89,7 @@ int relay_set_up(void **state);
 int relay_tear_down(void **state);
 #define RELAY_TEST(name) cmocka_unit_test_setup_teardown(name, relay_set_up, relay_tear_down)
 
-/* Opens the test's relay, and a client. */
+/* Opens the relay of the test, and a client. */
 void relay_start(size_t frames, double timeout, int tries);
 
 static inline struct fmb_client_counts relay_counts(const struct fmb_client *client)

@@ -1,5 +1,5 @@
-/* The slabs of a pair in integers, written once more from what slabs.h says that a slab is: what
- * doubles and limbs are held against. */
+/* The slabs of a pair in integers, a second implementation of the definition in slabs.h. Slabs in
+ * doubles and in limbs are compared with these. */
 #ifndef SLAB_TRUTH_H
 #define SLAB_TRUTH_H
 
@@ -40,8 +40,8 @@ void slab_truth_set(struct slab_truth *truth, const struct pair *pair);
 /* On output: low to zero, of this slab of the pair that is set. */
 void slab_truth_compute(struct slab_truth *truth, struct slab_normal normal);
 
-/* The largest |value - exact| / bound, 0 for what is exact, of all numbers of a slab, its gap, and
- * the inequalities that are made of it; its own normal is the one computed. */
+/* Returns the largest |value - exact| / bound, 0 if the value is exact, of all numbers of a slab,
+ * its gap, and the inequalities made from it. Computes the exact slab of the same normal. */
 double slab_truth_worst(struct slab_truth *truth, const struct slab_value *slab);
 
 #endif

@@ -1,5 +1,4 @@
-/* Boxes of frames whose edges all but depend on each other, and boxes in integers, beside exact
- * ones. */
+/* Boxes of frames with nearly dependent edges, and boxes in integers, compared with exact ones. */
 
 #include "unit.h"
 
@@ -193,12 +192,12 @@ static bool prepare_contact(const struct question *question, struct ready *ready
            verdict != FMB_SEPARATED;
 }
 
-static void boxes_of_edges_that_all_but_depend(void **state)
+static void boxes_of_nearly_dependent_edges(void **state)
 {
     struct draw draw;
     long met = 0, known = 0;
     double worst = 0;
-    draw_begin(&draw, "boxes_of_edges_that_all_but_depend");
+    draw_begin(&draw, "boxes_of_nearly_dependent_edges");
     for (long n = draw_sample(20000); n > 0; n--) {
         struct cell cells[CELL_WITH_FACES];
         const struct cell cell = cells[draw_int(&draw, 0, cell_list(true, cells) - 1)];
@@ -269,7 +268,7 @@ static void boxes_in_integers_hold_the_exact_ones(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(boxes_of_edges_that_all_but_depend),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(boxes_of_nearly_dependent_edges),
                                        cmocka_unit_test(boxes_in_integers_hold_the_exact_ones)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -272,11 +272,12 @@ static void case_with_a_name(void **state)
         referee_fail(&named->question, "not the times that it has");
 }
 
-/* ---- Placed ---- */
+/* ---- Placed frames ---- */
 
-/* The edges along x of a box turned by about 2^-61 are parallel to those of the other box as
- * doubles, and not in truth. Their slab cuts an edge off the Minkowski difference, by about 2^-61:
- * where the offset is there, no other slab gives the verdict, or the end of the contact. */
+/* The edges along x of a box turned by about 2^-61 are parallel to those of the other box once they
+ * are rounded to doubles, but not exactly. Their slab cuts about 2^-61 off an edge of the Minkowski
+ * difference. If the offset is there, no other slab gives the verdict, or the end of the contact.
+ */
 static void edges_may_be_parallel_in_doubles_only(void **state)
 {
     for (int signs = 0; signs < 4; signs++) {
@@ -321,7 +322,8 @@ static void boxes_touch_about_centres_that_round(void **state)
             }
 }
 
-/* Boxes that touch as doubles have them, apart or overlapping by what their places lose. */
+/* Boxes that touch once their positions are rounded to doubles. Exactly, they are apart, touch or
+ * overlap, by what rounding loses. */
 static void boxes_are_apart_by_what_rounding_loses(void **state)
 {
     for (int dim = 2; dim <= 3; dim++)
@@ -344,7 +346,8 @@ static void boxes_are_apart_by_what_rounding_loses(void **state)
             }
 }
 
-/* Boxes that travel together, by less than the last bit of an end, or less than any double. */
+/* Boxes that travel together, by less than the last bit of an end of their box, or by less than any
+ * double. */
 static void boxes_hold_travels_that_underflow(void **state)
 {
     static const double travels[][2] = {{0x1p-1000, 0x1p-100},

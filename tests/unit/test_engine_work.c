@@ -55,7 +55,7 @@ static double work_of_certificate(const struct question *question)
     return exact_work - before;
 }
 
-/* The greatest work of one step. */
+/* Returns the greatest work of one step. */
 static double work_of_step(const struct question *question, unsigned want)
 {
     struct ready ready;
@@ -163,7 +163,8 @@ static void only_slabs_that_may_have_an_end_are_computed(void **state)
     assert_true(contacts > 0 && exact_ends < 12 * contacts);
 }
 
-/* Limits: steps of less than a millisecond; what was found, and a half. */
+/* The limits are about one and a half times the work that searches found; a step takes less than a
+ * millisecond. */
 int main(void)
 {
     static struct search searches[] = {

@@ -1065,11 +1065,11 @@ static void a_wall_that_is_not_certain_bends_along_the_vertical(void **state)
     }
 }
 
-/* ---- All that kernels say ---- */
+/* ---- Verdicts, times and boxes ---- */
 
-/* At whatever place in the lanes, no outcome is wrong, of single pairs neither; times and boxes
- * hold the exact ones, where they are known, and are the same everywhere. Random pairs are not left
- * open. */
+/* No outcome is wrong, in any lane or as a single pair. Times and boxes contain the exact ones,
+ * where these are known, and are the same in every lane and on every instruction set. Random pairs
+ * are not left open. */
 static void expect_right(struct draw *draw, int kind, pair_function *pair, struct seen *seen)
 {
     struct subject subject[SUBJECTS_MAX];
@@ -1100,7 +1100,7 @@ static void expect_right(struct draw *draw, int kind, pair_function *pair, struc
     }
 }
 
-static void what_kernels_say_is_right(void **state)
+static void no_kernel_is_wrong(void **state)
 {
     static const struct {
         pair_function *pair;
@@ -1111,7 +1111,7 @@ static void what_kernels_say_is_right(void **state)
                 {draw_with_zeros, 6, 0},
                 {pair_draw_stretched, 10, 0}};
     struct draw draw;
-    draw_begin(&draw, "what_kernels_say_is_right");
+    draw_begin(&draw, "no_kernel_is_wrong");
     for (int kind = 0; kind < KERNEL_KINDS; kind++)
         for (size_t way = 0; is_kind(kind) && way < COUNT(ways); way++) {
             struct seen seen = {0};
@@ -1186,7 +1186,7 @@ static void quick_decisions_need_no_wide_integers(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_kernels_say_is_right),
+        cmocka_unit_test(no_kernel_is_wrong),
         cmocka_unit_test(a_wrong_bound_is_found),
         cmocka_unit_test(the_second_pass_decides_more_and_the_same_everywhere),
         cmocka_unit_test(near_a_bound_the_second_pass_decides_what_any_first_does),

@@ -129,7 +129,8 @@ static void set_numbers(struct limbs_pair *pair, struct slab_normal normal, mpz_
     limbs_to_mpz(pair->limbs, slab.slope, slope);
 }
 
-/* Whether the gap of one slab has this sign. The pair is prepared anew: once a pair. */
+/* Whether the gap of one slab has this sign. Prepares the pair anew, so it is called once a pair.
+ */
 static bool have_sign(const struct limbs_question *question, struct slab_normal normal, int sign)
 {
     return limbs_slabs(question, &normal, NULL, 1, NULL) == sign;

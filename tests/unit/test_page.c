@@ -303,7 +303,7 @@ static void far_pairs_are_bounded(void **state)
     cJSON_Delete(data);
 }
 
-/* Steps of some 100 kB: more than fit, in the end those that differ too. */
+/* Steps of some 100 kB each: more than fit. In the end even steps that differ are left out. */
 static void pages_are_bounded_and_keep_differences_longest(void **state)
 {
     enum { STEPS = 1000, EVERY = 4 };

@@ -649,7 +649,7 @@ static enum fmb_status decide_block(const struct batch_job *job, size_t first)
 
 /* ---- All blocks ---- */
 
-/* Decides pair i, which a block left open, by all means. */
+/* Decides pair i, which a block left open, without a limit on the time. */
 static void decide_open(const struct batch_job *job, size_t i)
 {
     const struct fmb_batch *batch = job->batch;

@@ -3,26 +3,25 @@
  *   In     two prepared frames, the window, what is wanted
  *   Out    the answer, in steps
  *
- * The verdict is found on a ladder. climb() takes its rungs in turn, each for pairs that the one
- * before leaves unsure:
+ * The verdict is decided by the first of several rungs that is sure of it. climb() tries them in
+ * this order:
  *
  *   1. first_pass()     the filter in doubles (kernel.h)
  *   2. second_pass()    its second pass (slabs_exact.h)
  *   3. open_slabs()     each slab that doubles leave open, in integers (limbs.h)
- *   4. all_slabs()      all slabs, in integers: of flat frames, and where doubles do not reach
+ *   4. all_slabs()      all slabs, in integers: flat frames, and numbers out of doubles' range
  *
  * Two faces that no slab separates touch if their planes cross. If they stay in one plane, the
  * verdict is that of their projections, two triangles in 2D: these take the place of the pair, and
- * the ladder is climbed again.
+ * the rungs are tried again from the first.
  *
  * Then set_contact(), set_box() and gap_of() compute what else is wanted: in doubles, and what
  * these do not give within the limits of fmb.h in integers.
  *
- * What none of these gives, integers of 512 bits being too short, the programs do
- * (hull_decision.h), in steps: the verdict, ends of contact and box, the gap; and everything of a
- * pair with a hull. Which of all these gives a number depends on the numbers of the pair only, so
- * that every caller gets the same bits. The error bounds are derived in slabs.c, slabs_lanes.h,
- * BOXES.md and contact.c. */
+ * What needs more than 512 bits is left to the programs (hull_decision.h), which work in steps: the
+ * verdict, ends of contact and box, and the gap; so is everything of a pair with a hull. Which of
+ * these gives a result depends on the numbers of the pair only, so that every caller gets the same
+ * bits. The error bounds are derived in slabs.c, slabs_lanes.h, BOXES.md and contact.c. */
 #include "certified.h"
 
 #include "gap.h"
@@ -169,7 +168,7 @@ static enum certified_path rung_of_faces(struct certified *certified)
     return certified->flat ? CERTIFIED_EXACT : CERTIFIED_PROGRAMS;
 }
 
-/* The verdict of a pair that the rungs below next leave unsure; 0 if it needs wider integers. */
+/* Tries the rungs from next on. Returns the verdict, or 0 if it needs the programs. */
 static enum fmb_verdict climb(struct certified *certified, enum certified_path next)
 {
     enum slabs_outcome outcome = SLABS_UNSURE;
@@ -195,8 +194,8 @@ static bool never_rounds(struct certified *certified)
 }
 
 /* Sets the contact of a pair in contact. A pair that does not drift is in contact over the whole
- * window. Returns false if it needs wider integers, or integers although the decision is bounded:
- * their ratios are rounded by GMP. */
+ * window. Returns false if it needs integers of more than 512 bits, or of any width although the
+ * decision is bounded: GMP, which allocates, rounds their ratios. */
 static bool set_contact(struct certified *certified, double contact[2])
 {
     contact[0] = 0;
@@ -246,7 +245,7 @@ bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepare
 
 /* ---- Decisions ---- */
 
-/* Begins the ladder of a pair. */
+/* Sets up the rungs for a pair. */
 static void begin(struct certified *certified, const struct frame_pair *pair,
                   const struct fmb_prepared *a, const struct fmb_prepared *b, bool times,
                   bool bounded)
@@ -263,7 +262,8 @@ static struct frame_pair pair_of(const struct fmb_prepared *a, const struct fmb_
     return (struct frame_pair){{a->frame, a->placement}, {b->frame, b->placement}, duration};
 }
 
-/* Begins the programs for what is missing: of a small pair, the tightest ends. */
+/* Begins the programs for the parts of an answer that are missing: for a pair without a hull, they
+ * give the tightest ends. Returns whether these parts are complete. */
 static bool begin_program(struct certified *certified, unsigned missing)
 {
     static const struct fmb_answer none;
@@ -275,8 +275,8 @@ static bool begin_program(struct certified *certified, unsigned missing)
                                                       &certified->program, &certified->proven);
 }
 
-/* Sets the gap of a pair with this verdict. Returns false if the program is begun for it, or would
- * have to be. */
+/* Sets the gap of a pair with this verdict. Returns false if that needs more steps of the
+ * programs, which have then begun unless the decision is bounded. */
 static bool begin_gap(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                       double farthest, bool bounded, struct hull_decision *program,
                       struct fmb_answer *answer)
@@ -293,8 +293,8 @@ static bool begin_gap(const struct fmb_prepared *a, const struct fmb_prepared *b
     return true;
 }
 
-/* Sets what is wanted besides the verdict, which is known; ends that the programs give only if
- * nothing else does. Returns whether the answer is complete. */
+/* Sets what is wanted besides the verdict, which is known. Ends that the programs gave are used
+ * only if nothing else gives them. Returns whether the answer is complete. */
 static bool measure(struct certified *certified, struct fmb_answer *answer)
 {
     const struct fmb_prepared *a = certified->given[0], *b = certified->given[1];

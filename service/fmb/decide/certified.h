@@ -9,7 +9,7 @@
  * box: from what is left of the edges and where they cross, in doubles (box_clip.h) or in integers
  *   (limbs_box.h).
  * gap: given the verdict, in steps of its own (gap.h).
- * Beyond 512 bits, and of pairs with a hull: the programs (hull_decision.h).
+ * What needs more than 512 bits, and pairs with a hull: the programs (hull_decision.h).
  *
  * Contact and box are computed as two enclosures: the outer one surely contains the exact value,
  * the inner one is surely contained in it. The answer is the outer one. It is given only if the two
@@ -22,8 +22,8 @@
 #include "kernel.h"
 #include "limbs.h"
 
-/* The rungs of the ladder for the verdict: the filter; its second pass; the slabs that these leave
- * open, in integers; all slabs, in integers; the programs. */
+/* The rungs: what may decide a verdict, in the order in which it is tried. The filter; its second
+ * pass; the slabs that these leave open, in integers; all slabs, in integers; the programs. */
 enum certified_path {
     CERTIFIED_FILTER,
     CERTIFIED_SECOND,
@@ -35,15 +35,16 @@ enum certified_path {
 /* A decision in progress. It points into itself: not to be copied. */
 struct certified {
     /* Set at the beginning. */
-    const struct fmb_prepared *given[2]; /* those of the caller, or own */
+    const struct fmb_prepared *given[2]; /* the caller's frames, or own */
     struct fmb_prepared own[2];
     double duration, farthest;
     unsigned want;
-    /* What the program gives: the answer; what is missing besides the gap; the gap. */
+    /* What the programs compute: the whole answer; what is missing of it, without the gap; the gap.
+     */
     enum { CERTIFIED_ALL, CERTIFIED_MISSING, CERTIFIED_GAP } stage;
     struct hull_decision program;
     struct fmb_answer proven; /* by programs: verdict, contact and box */
-    /* The ladder: the pair, or its projection. */
+    /* The pair that the rungs decide: the given one, or its projection. */
     struct frame_pair pair;
     const struct fmb_prepared *frame[2];
     enum kernel_kind kind;
@@ -71,9 +72,9 @@ struct certified {
  *                slab takes at most 1,000 products of limbs (most take 100 to 300), and a pair has
  *                at most SLABS_MAX slabs. HULL_EXACT: the method exact
  *      *answer   all 0
- * Returns whether it is complete, with *answer set. Otherwise a bounded decision needs more than is
- * allowed, and ends here. Of any other certified_step() is called, with the same answer, until it
- * returns true, or certified_end() abandons it. */
+ * Returns whether it is complete, with *answer set. If not, a bounded decision would need more than
+ * it is allowed, and has ended. For any other decision, call certified_step() with the same answer
+ * until it returns true, or certified_end() to abandon it. */
 bool certified_begin(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                      unsigned want, double farthest, enum hull_effort effort, struct certified *out,
                      struct fmb_answer *answer);
@@ -85,12 +86,12 @@ bool certified_step(struct certified *certified, struct fmb_answer *answer);
 /* Frees the memory of a decision, complete or not. */
 void certified_end(struct certified *certified);
 
-/* All steps of a decision that is not bounded. */
+/* Makes a decision that is not bounded, with all its steps. */
 void certified_decide_prepared(const struct fmb_prepared *a, const struct fmb_prepared *b,
                                double duration, unsigned want, double farthest,
                                struct fmb_answer *answer);
 
-/* The decide function of the method. */
+/* Decides a checked pair: the function of the method certified. */
 enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
                                  struct fmb_answer *answer);
 
@@ -98,8 +99,8 @@ enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
  * reports. */
 enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path);
 
-/* Returns the verdict of a prepared pair that passes (1 or 2) passes of the filter leave unsure; 0
- * if it needs the programs. Bounded. */
+/* Returns the verdict of a prepared pair that the filter leaves unsure, or 0 if it needs the
+ * programs. In: passes: how many passes of the filter were tried, 1 or 2. Bounded. */
 enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
                                   double duration, int passes);
 
@@ -119,7 +120,7 @@ bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs, b
 bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                    double box[2][FMB_DIM_MAX]);
 
-/* The same where doubles do not give it, in integers of 512 bits. */
+/* The same in integers of at most 512 bits, for pairs whose box doubles do not give. */
 bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
                           double duration, double box[2][FMB_DIM_MAX]);
 

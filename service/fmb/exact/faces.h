@@ -17,7 +17,7 @@ struct faces_projection {
 enum faces_planes {
     FACES_CROSSING, /* the planes are not parallel */
     FACES_SHARED,   /* both are in one plane at all times: the projection is set */
-    FACES_UNDECIDED /* neither, or unknown: all slabs decide the pair, or the programs */
+    FACES_UNDECIDED /* neither, or unknown: decided by all slabs, or else by the programs */
 };
 
 /* Returns the relation of the planes of two faces.

@@ -1,7 +1,7 @@
 /* Questions about pairs in integers.
  *
  *   In     a pair of frames, and what is needed
- *   Out    struct limbs_question, with the number of limbs: the answers are in limbs_answers.c
+ *   Out    struct limbs_question, with the number of limbs (limbs_answers.c answers it)
  *
  * limbs_never_round() is separate: it tells whether doubles are exact. Not here: the numbers
  * (limbs_pair.h) and slabs (limbs_slab.h) of a pair.

@@ -1,4 +1,4 @@
-/* Slabs in integers of at most 512 bits: the rungs above doubles.
+/* Slabs in integers of at most 512 bits, for what doubles leave open.
  *
  * A question about a pair is answered in integers of as many limbs of 64 bits as the numbers of the
  * pair need. Nothing rounds, and nothing is allocated except for times. */
@@ -69,25 +69,25 @@ static inline bool limbs_suffice(const struct limbs_question *question)
  * slabs.h. */
 
 /* Decides a pair by all its slabs, flat frames included. If contact is not NULL and the pair is in
- * contact, it is set to [first, last], in seconds, rounded outward; GMP then allocates. In: use
- * LIMBS_FLAT. */
+ * contact, it is set to [first, last], in seconds, rounded outward; GMP then allocates. In: a
+ * question set with LIMBS_FLAT. */
 enum fmb_verdict limbs_verdict(const struct limbs_question *question, double contact[2]);
 
 /* Returns the largest sign of the gaps of slabs, up to the first that is 1. A slab whose normal is
- * zero has the sign -1. If contact is not NULL, the pair is in contact, and each end of it (0:
- * first, 1: last) that is open to a slab moves to where the offset enters or leaves that, in
- * seconds, rounded outward, if that is within the contact; GMP then allocates. open: [slab][end];
- * NULL: all ends are. */
+ * zero has the sign -1. If contact is not NULL, the pair is in contact, and contact is clipped to
+ * each slab: its first time to the time at which the offset enters the slab, its last time to the
+ * time at which the offset leaves it, in seconds, rounded outward; GMP then allocates. open:
+ * [slab][end], whether the slab clips this end (0: first, 1: last); NULL: every slab clips both. */
 int limbs_slabs(const struct limbs_question *question, const struct slab_normal *normal,
                 const bool open[][2], int count, double contact[2]);
 
 /* The planes of two faces with areas. */
 struct limbs_planes limbs_planes(const struct limbs_question *question);
 
-/* Computes the box of two prepared frames in contact, the same pair, in the order of
- * kernel_box_kind(), within the limit of fmb.h. Returns false if doubles do not give the
- * coordinates of points so closely. In: frames that are not flat, other than faces with an area;
- * use LIMBS_FLAT. */
+/* Computes the box of two prepared frames in contact, within the limit of fmb.h. Returns false if
+ * the coordinates of points, which are rounded to doubles, are not that close. In: a question about
+ * the same pair, in the order of kernel_box_kind(), set with LIMBS_FLAT; no frame is flat, except
+ * faces with an area. */
 bool limbs_box(const struct limbs_question *question, const struct fmb_prepared *const frame[2],
                double box[2][FMB_DIM_MAX]);
 

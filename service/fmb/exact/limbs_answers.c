@@ -1,4 +1,4 @@
-/* The answers to questions in integers: limbs.h. */
+/* Answers the questions of limbs.h. */
 #define INLINED_NOT
 #define LANES 1
 #include "limbs_box.h"

@@ -1,4 +1,4 @@
-/* Boxes in integers: the step above doubles (box_clip.h).
+/* Boxes in integers, for pairs whose box doubles (box_clip.h) do not give.
  *
  * In: two prepared frames in contact, solids or faces.
  *
@@ -8,12 +8,12 @@
  * in box_clip.h (filter/BOXES.md). But how far a vertex is inside a bound, and how far a crossing
  * is inside the ranges of its parameters, are integers here: their signs are exact, and as doubles
  * they are off by less than 2.1 u of themselves, u = 2^-53. A segment crosses a bound between
- * vertices on either side, with values f >= 0 > g: at f / (f - g), a sum of two magnitudes, off by
- * less than 6.2 u of itself. Only where a segment enters the other frame within 2^-48 of where it
- * leaves it, the order of both matters, and is that of two products of integers. So points are off
- * by no more than the slack of box_ends.h: also where that is 6.1 u times four times all
- * components, twice what a segment is long. And a point that counts surely is in the intersection.
- */
+ * vertices on either side, with values f >= 0 > g, at f / (f - g). The denominator is a sum of two
+ * magnitudes, so the quotient is off by less than 6.2 u of itself. The order of two crossings
+ * matters only if the segment enters the other frame within 2^-48 of where it leaves it; it is then
+ * that of two products of integers. So points are off by no more than the slack of box_ends.h, also
+ * where that is 6.1 u times four times all components, twice the length of a segment. And every
+ * point that is used is certainly in the intersection. */
 #ifndef FMB_LIMBS_BOX_H
 #define FMB_LIMBS_BOX_H
 

@@ -1,4 +1,4 @@
-/* Decides pairs by their vertices: in doubles what they prove, the rest by programs. */
+/* Decides pairs by their vertices: in doubles if these prove the answer, otherwise by programs. */
 #include "hull_decision.h"
 
 #include "hull_exact.h"
@@ -81,8 +81,8 @@ bool hull_decision_begin(const struct frame_pair *frames, unsigned want, enum hu
     if (answer->verdict == FMB_SEPARATED || (answer->verdict == FMB_OVERLAPPING && left == 0))
         return begin_gap(out, answer);
     if (effort != HULL_QUICK) {
-        /* A simplex that contains the origin moved in a little has the facet that the ray leaves
-         * through close to it: few steps are left. */
+        /* The guess is a simplex that contains the origin after it was moved in a little. The
+         * facet through which the ray leaves is close to it, so few steps are left. */
         struct hull_guess guess;
         const bool guessed =
             answer->verdict == 0 && out->searched && hull_guess_begin(pair, &guess);

@@ -1,4 +1,4 @@
-/* Pairs of frames by their vertices: those with a hull, and what slabs do not give of others.
+/* Pairs of frames by their vertices: pairs with a hull, and what slabs do not give of other pairs.
  *
  * A box, a cuboid, a tetrahedron or a face is the hull of its 3 to 8 vertices. With M = { b - a }
  * for points a and b of the frames at time 0 and w the velocity of b relative to a, the set that

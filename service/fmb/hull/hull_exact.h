@@ -1,4 +1,5 @@
-/* Pairs with a hull in integers.
+/* Linear programs over the vertices of two frames, in integers: with the exact search for the gap
+ * (hull_gap.h), the "programs" of other comments.
  *
  * The state of a decision is advanced in steps, so that a caller can look after other work in
  * between. Each step prices once: it finds the vertex of D that is farthest in one exact direction.

@@ -211,7 +211,7 @@ static void search(const struct hull_gap *gap, enum fmb_verdict verdict, double 
     hull_search(gap->pair, verdict != FMB_SEPARATED ? INFINITY : fmax(far, near), out);
 }
 
-/* bounded: without the grid, which allocates. */
+/* bounded: the grid, which allocates, is not used. */
 static enum gap_outcome solve_distance(const struct hull_gap *gap,
                                        const struct hull_nearest *nearest, bool bounded,
                                        struct fmb_gap *out)
