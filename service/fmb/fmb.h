@@ -129,6 +129,9 @@ int fmb_component_count(int dim, int shape);
  * the caller may read the fields, and copy the frame. Axes beyond dim and components beyond count
  * are 0. */
 struct fmb_frame {
+    /* Not supported yet: always 0; a frame with another value is refused with FMB_NOT_SUPPORTED.
+     * Later: the frame is the set of points within this distance of the shape. */
+    double radius;
     int dim;              /* 2 or 3 */
     enum fmb_shape shape; /* FMB_BOX: components along the axes, component[i][i] the size */
     int count;            /* number of components */
@@ -137,9 +140,6 @@ struct fmb_frame {
     bool inverted;        /* the inverse is present: not flat, and all its entries are finite */
     double reach;         /* bounds the distance of each vertex from the origin of the body; may be
                              infinite */
-    /* Not supported yet: always 0; a frame with another value is refused with FMB_NOT_SUPPORTED.
-     * Later: the frame is the set of points within this distance of the shape. */
-    double radius;
     /* Of a box it is rounded: the exact origin is centre - size / 2. Of a hull, origin and
      * components are those of its box in body coordinates, sizes rounded up: a cuboid that contains
      * it. */

@@ -380,7 +380,7 @@ INLINE enum fmb_status check(const struct fmb_placement *placement)
         return FMB_NO_FRAMES;
     if (!is_finite(placement->position, body->dim) || !is_finite(placement->velocity, body->dim))
         return FMB_NOT_FINITE;
-    if (placement->end_count != 0 || body->one.radius != 0)
+    if (placement->end_count != 0 || (!body->frames && body->one.radius != 0))
         return FMB_NOT_SUPPORTED;
     return check_orientation(placement, body->dim);
 }
