@@ -675,31 +675,40 @@ static const struct {
     {"separated is named", separated_is_named, true, true},
 };
 
-/* A forged result is ignored: it gives no answer, and counts as malformed. If it arrives after its
- * query was given up, it shows at least that there is a service. */
+/* Expects that forged results are ignored: they give no answer, and count as malformed. One that
+ * arrives after its query was given up shows at least that there is a service; if all do, on a slow
+ * machine, the scene is queried again. pairs: of the scene. */
+static void expect_ignored(relay_lie *lie, const struct fmb_scene *scene, size_t pairs)
+{
+    uint64_t malformed = 0;
+    for (int again = 0; again < 20 && malformed == 0; again++) {
+        struct relay *relay = relay_new();
+        relay->lie = lie;
+        relay->before = let_time_pass;
+        relay_open(relay, 2000);
+        struct fmb_client *client = relay_client(relay, 30, 1);
+        const struct tally tally = query(client, scene);
+        assert_int_equal(tally.good, 0);
+        assert_int_equal(tally.none[-FMB_CLIENT_NO_SERVICE] + tally.none[-FMB_CLIENT_NO_ANSWER],
+                         pairs);
+        malformed = relay_counts(client).malformed;
+        assert_in_range(malformed, 0, relay->turn);
+        fmb_client_close(client);
+        relay_close(relay);
+    }
+    assert_true(malformed > 0);
+}
+
 static void forged_results_are_ignored(void **state)
 {
     for (size_t i = 0; i < COUNT(lies); i++)
         for (int of_list = 0; of_list < 2; of_list++) {
             struct fmb_scene scene = of_list ? listed() : all_pairs();
-            if (!(of_list ? lies[i].list : lies[i].named))
-                continue;
-            struct relay *relay = relay_new();
-            relay->lie = lies[i].lie;
-            relay->before = let_time_pass;
             scene.placement_count = of_list ? 100 : 400;
             scene.want = lies[i].list ? ALL_WANTS : 0; /* of names alone: nothing else shows them */
-            relay_open(relay, 2000);
-            struct fmb_client *client = relay_client(relay, 30, 1);
-            const struct tally tally = query(client, &scene);
-            if (tally.good != 0)
-                print_error("lie: %s, %s\n", lies[i].name, of_list ? "listed" : "all");
-            assert_int_equal(tally.good, 0);
-            assert_int_equal(tally.none[-FMB_CLIENT_NO_SERVICE] + tally.none[-FMB_CLIENT_NO_ANSWER],
-                             of_list ? 2000 : 400 * 399 / 2);
-            assert_in_range(relay_counts(client).malformed, 1, relay->turn);
-            fmb_client_close(client);
-            relay_close(relay);
+            print_message("# %s, %s\n", lies[i].name, of_list ? "listed" : "all");
+            if (of_list ? lies[i].list : lies[i].named)
+                expect_ignored(lies[i].lie, &scene, of_list ? 2000 : 400 * 399 / 2);
         }
 }
 
@@ -749,22 +758,12 @@ static void forged_gaps_are_ignored(void **state)
     static relay_lie *const gap_lies[] = {no_gaps, too_far_apart, no_gap, gaps_of_2d,
                                           gaps_unwanted};
     for (size_t i = 0; i < COUNT(gap_lies); i++) {
-        struct relay *relay = relay_new();
         struct fmb_scene scene = all_pairs();
         scene.placement_count = 200;
         scene.want = 0;
         scene.margin = gap_lies[i] == gaps_unwanted ? 0 : 0.5;
-        relay->lie = gap_lies[i];
-        relay->before = let_time_pass;
-        relay_open(relay, 2000);
-        struct fmb_client *client = relay_client(relay, 30, 1);
-        const struct tally tally = query(client, &scene);
-        if (tally.good != 0)
-            print_error("lie %zu\n", i);
-        assert_int_equal(tally.good, 0);
-        assert_in_range(relay_counts(client).malformed, 1, relay->turn);
-        fmb_client_close(client);
-        relay_close(relay);
+        print_message("# lie %zu\n", i);
+        expect_ignored(gap_lies[i], &scene, 200 * 199 / 2);
     }
 }
 
