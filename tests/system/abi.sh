@@ -9,7 +9,7 @@ headers='service/fmb/fmb.h clients/lib/fmb_client.h'
 
 for library in libfmb.so.0 libfmb-client.so.0; do
     nm -D --defined-only "$build/$library" | awk -v library=$library '$2 != "A" { print library, $3 }'
-done | grep -vwF "$(sed -n 's/^[a-z].*[ *]\(fmb_[a-z_]*\)(.*/\1/p' service/fmb/fmb_batch.h)"
+done | { grep -vwF "$(sed -n 's/^[a-z].*[ *]\(fmb_[a-z_]*\)(.*/\1/p' service/fmb/fmb_batch.h)" || [ $? = 1 ]; } # 1: no line
 
 {
     echo '#include <stdio.h>'
