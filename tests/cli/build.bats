@@ -125,6 +125,7 @@ included() {
 suffices() {
     local target
     [ "$(packages_of "$1")" ]
+    [ "$1" = deps-bench ] || export PEERS=none # which may be installed here
     # What earlier targets leave, and 'make deps-aarch64'.
     mkdir -p "$tree/build"
     touch "$tree/build/accuracy.json"
