@@ -7,6 +7,7 @@
 #include "exact_work.h"
 #include "family.h"
 #include "referee.h"
+#include "work_steps.h"
 
 enum { TEXT_SIZE = FMB_CERTIFICATE_MAX, EVERYTHING = FMB_WANT_BOX | FMB_WANT_GAP };
 
@@ -55,60 +56,28 @@ static double work_of_certificate(const struct question *question)
     return exact_work - before;
 }
 
-/* Returns the greatest work of one step. */
-static double work_of_step(const struct question *question, unsigned want)
+static double work(void)
 {
-    struct ready ready;
-    referee_ready(question, &ready);
-    const struct fmb_placement placements[2] = {ready.pair.a, ready.pair.b};
-    const unsigned pairs[1][2] = {{0, 1}};
-    const struct fmb_scene scene = {.placements = placements,
-                                    .placement_count = 2,
-                                    .duration = ready.pair.duration,
-                                    .instant = ready.pair.duration == 0,
-                                    .method = fmb_method_by_name("certified"),
-                                    .which = FMB_PAIRS_LISTED,
-                                    .pairs = pairs,
-                                    .pair_count = 1,
-                                    .want = want | FMB_WANT_TIMES};
-    struct fmb_scene_limits limits;
-    fmb_scene_limits_of(&scene, &limits);
-    struct fmb_scene_state *state;
-    struct fmb_scene_answers answers;
-    void *memory = malloc(fmb_scene_bytes(&limits));
-    double most = 0;
-    assert_int_equal(fmb_scene_begin(&scene, &limits, memory, &state), FMB_OK);
-    for (bool done = false; !done;) {
-        const double before = exact_work;
-        done = fmb_scene_step(state, &answers);
-        most = exact_work - before > most ? exact_work - before : most;
-    }
-    free(memory);
-    return most;
+    return exact_work;
 }
 
 static double step_of_all(const struct question *question)
 {
-    return work_of_step(question, EVERYTHING);
+    struct ready ready;
+    int steps = 0;
+    referee_ready(question, &ready);
+    const struct fmb_placement placements[2] = {ready.pair.a, ready.pair.b};
+    return work_of_scene_step(placements, ready.pair.duration, work, &steps);
 }
 
 static double step_of_certificate(const struct question *question)
 {
-    struct fmb_certificate_state *state;
     struct ready ready;
-    const char *text = NULL;
+    int steps = 0;
+    bool made;
     referee_ready(question, &ready);
-    double before = exact_work, most;
-    assert_int_equal(
-        fmb_certificate_begin(&ready.pair.a, &ready.pair.b, ready.pair.duration, &state), FMB_OK);
-    most = exact_work - before;
-    while (!text) {
-        before = exact_work;
-        text = fmb_certificate_step(state);
-        most = exact_work - before > most ? exact_work - before : most;
-    }
-    fmb_certificate_end(state);
-    return most;
+    const struct fmb_placement placements[2] = {ready.pair.a, ready.pair.b};
+    return work_of_certificate_step(placements, ready.pair.duration, work, &steps, &made);
 }
 
 struct search {

@@ -25,6 +25,7 @@
 #include "exact_work.h"
 #include "hull_vertices.h"
 #include "support.h"
+#include "work_steps.h"
 
 enum { VERTICES = FMB_HULL_VERTICES_MAX, NUMBERS = FMB_DIM_MAX * VERTICES };
 
@@ -62,6 +63,17 @@ void __wrap_certificate_write_number(struct certificate_writer *writer, const mp
 {
     written += (double) (mpz_size(mpq_numref(number)) + mpz_size(mpq_denref(number)));
     __real_certificate_write_number(writer, number);
+}
+
+unsigned __real_support_list(const struct support_vertices *vertices, const double n[FMB_DIM_MAX],
+                             double least, uint16_t *out);
+unsigned __wrap_support_list(const struct support_vertices *vertices, const double n[FMB_DIM_MAX],
+                             double least, uint16_t *out);
+unsigned __wrap_support_list(const struct support_vertices *vertices, const double n[FMB_DIM_MAX],
+                             double least, uint16_t *out)
+{
+    scanned += vertices->count;
+    return __real_support_list(vertices, n, least, out);
 }
 
 static double work(void)
@@ -133,51 +145,25 @@ static void put(struct draw *draw, enum place place, double unit, struct large l
 
 /* ---- Steps ---- */
 
-/* A work in steps. Out: *steps: how many more. Returns the greatest work of a step, in nanoseconds.
- */
-typedef double steps_of(const struct large large[2], int *steps);
+/* Returns the greatest work of a step, in nanoseconds. */
+typedef double work_of_step(const struct large large[2], int *steps);
 
-static double steps_of_scene(const struct large large[2], int *steps)
+static double work_of_scene(const struct large large[2], int *steps)
 {
     const struct fmb_placement placements[2] = {large[0].at, large[1].at};
-    const struct fmb_scene scene = {.placements = placements,
-                                    .placement_count = 2,
-                                    .duration = 1,
-                                    .want = FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP};
-    struct fmb_scene_limits limits;
-    fmb_scene_limits_of(&scene, &limits);
-    struct fmb_scene_state *state;
-    struct fmb_scene_answers answers;
-    void *memory = malloc(fmb_scene_bytes(&limits));
-    double most = 0;
-    assert_int_equal(fmb_scene_begin(&scene, &limits, memory, &state), FMB_OK);
-    for (bool done = false; !done; ++*steps) {
-        const double before = work();
-        done = fmb_scene_step(state, &answers);
-        most = fmax(most, work() - before);
-    }
-    free(memory);
-    return most;
+    return work_of_scene_step(placements, 1, work, steps);
 }
 
-static double steps_of_certificate(const struct large large[2], int *steps)
+static double work_of_certificate(const struct large large[2], int *steps)
 {
-    struct fmb_certificate_state *state;
-    const char *text = NULL;
-    double most = 0, before = work();
-    assert_int_equal(fmb_certificate_begin(&large[0].at, &large[1].at, 1, &state), FMB_OK);
-    most = work() - before;
-    for (; !text; ++*steps) {
-        before = work();
-        text = fmb_certificate_step(state);
-        most = fmax(most, work() - before);
-    }
-    assert_true(text[0]);
-    fmb_certificate_end(state);
+    const struct fmb_placement placements[2] = {large[0].at, large[1].at};
+    bool made;
+    const double most = work_of_certificate_step(placements, 1, work, steps, &made);
+    assert_true(made);
     return most;
 }
 
-static void assert_short(const char *name, const int range[2], steps_of *run)
+static void assert_short(const char *name, const int range[2], work_of_step *step)
 {
     static struct large large[2];
     struct draw draw;
@@ -189,7 +175,7 @@ static void assert_short(const char *name, const int range[2], steps_of *run)
         make_large(&draw, shape, range, &large[0]);
         make_large(&draw, shape, range, &large[1]);
         put(&draw, place, shape < HUGE_BALL ? 1 : huge_unit, large);
-        const double before = work(), of_turn = run(large, &steps);
+        const double before = work(), of_turn = step(large, &steps);
         most_of_pair = fmax(most_of_pair, work() - before);
         if (turn < SHAPES * PLACES)
             printf("# shape %d, place %d: at most %.0f ns in a step\n", shape, place, of_turn);
@@ -203,14 +189,14 @@ static void assert_short(const char *name, const int range[2], steps_of *run)
 static void steps_are_short(void **state)
 {
     static const int whole[2] = {-1000, 900};
-    assert_short("steps_are_short", whole, steps_of_scene);
+    assert_short("steps_are_short", whole, work_of_scene);
 }
 
 /* Exponents that together with the orientations span nearly the bits that a certificate may. */
 static void steps_of_certificates_are_short(void **state)
 {
     static const int range[2] = {-110, 100};
-    assert_short("steps_of_certificates_are_short", range, steps_of_certificate);
+    assert_short("steps_of_certificates_are_short", range, work_of_certificate);
     assert_true(written > 0);
 }
 
@@ -229,7 +215,7 @@ static void few_vertices_of_huge_hulls_get_a_value_in_integers(void **state)
             make_large(&draw, turn % 2 ? HUGE_BALL : HUGE_PRISM, range, &large[f]);
         put(&draw, turn % 4 ? ANYWHERE : CONCENTRIC, huge_unit, large);
         assert_true(isinf(large[0].body.reach));
-        steps_of_scene(large, &steps);
+        work_of_scene(large, &steps);
         printf("# %ld coordinates in %d steps\n", exact_terms - before, steps);
         assert_true(exact_terms - before <= (long) steps * 128 * FMB_DIM_MAX);
     }
