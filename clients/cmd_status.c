@@ -35,7 +35,7 @@ struct status {
 
 /* ---- Printing ---- */
 
-/* A status whose results a counter counts: its name in that of the counter, and its number. */
+/* A status, as a counter of results names it after "result_". */
 struct counted_status {
     const char *name;
     int number;
@@ -57,19 +57,26 @@ static const struct counted_status *status_of(const struct fmb_client_counter *c
     return NULL;
 }
 
+/* results: the counters of results, by the names of their statuses; else the others. */
+static void write_counters(struct json_writer *json, const struct fmb_client_heartbeat *status,
+                           bool results)
+{
+    for (size_t i = 0; i < status->counter_count; i++) {
+        const struct counted_status *of = status_of(&status->counters[i]);
+        if ((of != NULL) == results)
+            json_integer(json, of ? of->name : status->counters[i].name, status->counters[i].value);
+    }
+}
+
 static void print_json(const struct fmb_client_heartbeat *status)
 {
     struct json_writer json = json_object(stdout);
     json_integer(&json, "utime", status->utime);
     json_integer(&json, "server_id", status->server_id);
     json_string(&json, "version", status->version);
-    for (size_t i = 0; i < status->counter_count; i++)
-        if (!status_of(&status->counters[i]))
-            json_integer(&json, status->counters[i].name, status->counters[i].value);
+    write_counters(&json, status, false);
     json_begin(&json, "results", '{');
-    for (size_t i = 0; i < status->counter_count; i++)
-        if (status_of(&status->counters[i]))
-            json_integer(&json, status_of(&status->counters[i])->name, status->counters[i].value);
+    write_counters(&json, status, true);
     json_end(&json, '}');
     json_object_end(&json);
 }
