@@ -1,5 +1,5 @@
-/* Converts a box that is turned within its body to a cuboid, whose numbers are rounded:
- * those of a component are off by at most 12 2^-53 of its length, and exact for quarter turns. */
+/* Converts a box that is turned within its body to a cuboid, whose numbers are rounded.
+ * Each component is off by at most 12 2^-53 of its length, and is exact for quarter turns. */
 #ifndef TURNED_BOX_H
 #define TURNED_BOX_H
 

@@ -184,8 +184,8 @@ static enum replay_outcome compare_answers(const struct compare_options *options
     return outcome;
 }
 
-/* Writes how the scene of a result differs from that of the query. Returns false if it does not, or
- * if this is not known. */
+/* Writes how the scene of a result differs from the scene of the query. Returns false if it does
+ * not, or if this is not known. */
 static bool scenes_differ(const struct exchange *then, const struct exchange *now,
                           char out[COMPARE_DETAIL_MAX])
 {

@@ -1,4 +1,4 @@
-/* Compares two exchanges: that of a recording (then) and a new one (now).
+/* Compares a recorded exchange (then) with a new one (now).
  *
  * They are the same if their statuses are, and the verdicts, intervals, boxes, gaps and
  * certificates of all pairs that both answer: bit for bit, or within a tolerance. The service,

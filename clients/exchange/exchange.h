@@ -1,5 +1,5 @@
 /* A query and its answers, as a log or the bus holds them: the scene, the answers to its pairs in
- * order, the status, when and by whom.
+ * order, the status, the time, and the ids of client and service.
  *
  *     struct exchange exchange = {.query = &query, .result = &result};
  *     exchange_begin(&exchange);
@@ -24,11 +24,11 @@ struct exchange_counts {
 
 struct exchange {
     /* Set by the caller, not owned. There are no answers if the query was refused, or if the result
-     * is that of another query. */
+     * belongs to another query. */
     const struct logged_query *query;   /* may be NULL, not known, if the result is of a pair */
     const struct logged_result *result; /* NULL: none */
     const struct body_names *names;     /* of the bodies of the query; NULL: none */
-    bool by_order; /* the result was matched by its order: it may be that of another query */
+    bool by_order; /* the result was matched by its order: it may belong to another query */
     /* Set by exchange_begin(). */
     struct fmb_client_result of; /* of the result; all 0 if there is none */
     bool fits;                   /* the result has answers to pairs of the query */

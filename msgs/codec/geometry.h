@@ -16,8 +16,8 @@ struct geometry_shape {
 struct geometry_shape geometry_shape(int code);
 int geometry_code(int shape, bool by_vertices);
 
-/* Whether the code is that of a known shape with a radius, which is not supported yet:
- * geometry_shape() knows no such shape. */
+/* Whether the code is a known shape with a radius. These are not supported yet: geometry_shape()
+ * does not know them. */
 bool geometry_with_radius(int code);
 
 /* Number of numbers of a frame in a body: of origin or centre, and components; or of its vertices.

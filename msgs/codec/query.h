@@ -79,8 +79,8 @@ enum {
 };
 
 /* A placement, and the body that it places. If there are more numbers than an array holds, the
- * first are stored; the counts of orientation, velocity and end are those of the message, 0 or more
- * and not checked. */
+ * first are stored; the counts of orientation, velocity and end are copied from the message; they
+ * are at least 0, and otherwise not checked. */
 struct query_placement {
     /* Its body is NULL: the code that decides the pair sets it in a copy. The name, any bytes, is
      * in the message or in memory of the writer; NULL is the same as "". */

@@ -54,7 +54,7 @@ struct wire_status {
     int64_t results[FMB_STATUS_COUNT]; /* [status] */
 };
 
-/* The counters of a heartbeat: those of fmb_counters.h, and the results of each status. */
+/* The counters of a heartbeat: the list in fmb_counters.h, and one of results for each status. */
 enum {
 #define X(...) +1
     WIRE_COUNTERS = FMB_COUNTERS(X) FMB_STATUS_MAP(X)

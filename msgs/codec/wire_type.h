@@ -4,8 +4,8 @@
 
 #include <stdint.h>
 
-/* Returns a static text such as "fmb_msgs.pair_query_t"; NULL: the fingerprint is that of no type.
- */
+/* Returns a static text such as "fmb_msgs.pair_query_t"; NULL if no type has this
+ * fingerprint. */
 const char *wire_type_name(int64_t fingerprint);
 
 #endif

@@ -401,7 +401,7 @@ struct fmb_method {
  * fmb and sat are inexact and cannot decide flat frames and hulls.
  *
  * Cost: exact takes tens to hundreds of microseconds for numbers of similar size. Its time is
- * bounded for any numbers, as is that of certified: among pairs whose exponents span the whole
+ * bounded for any numbers, as the time of certified is: among pairs whose exponents span the whole
  * range of doubles, a search found none that takes more than 72 million products of 64-bit limbs
  * with box and gap, about 36 ms. Doubles decide most pairs with a hull by a few scans of all
  * vertices. Exact arithmetic takes some milliseconds for the largest hulls, and up to 60 ms with

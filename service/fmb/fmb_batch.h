@@ -2,7 +2,8 @@
  * prepared frames, batches of pairs of frames, and trees of their boxes.
  *
  * These functions and structs may change in any version, and programs that use them have to be
- * compiled again: fmb.h is stable, this header is not. The answers are those of fmb.h, bit for bit.
+ * compiled again: fmb.h is stable, this header is not. The answers have the same bits as with
+ * fmb.h.
  */
 #ifndef FMB_BATCH_H
 #define FMB_BATCH_H
@@ -25,7 +26,7 @@ extern "C" {
  *                               .pair_count = n, .duration = 1, .verdicts = verdicts};
  *     fmb_decide_batch(&batch);
  *
- * The answers are those of the method certified, bit for bit. */
+ * The answers have the same bits as those of the method certified. */
 
 /* A frame of a placed body: its rounded world coordinates and a bound on their error (prepared.h).
  * Filled by fmb_prepare() only. It points to the frame and the placement, which must stay valid and

@@ -1,5 +1,5 @@
 /* The benchmark of the bus: pairs and scenes beside a bare LCM echo of as many bytes, with the time
- * to decide apart from that of the bus. */
+ * to decide and the time on the bus listed separately. */
 #include "bus_bench.h"
 
 #include <errno.h>

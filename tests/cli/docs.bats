@@ -84,8 +84,8 @@ none() {
         awk -F '\t' 'NR == FNR { there[$0] = 1; next } !($2 in there)' - "$BATS_TEST_TMPDIR/quoted" | none
 }
 
-# In C, files are those of the tree and headers of the system that it includes, and functions those that its
-# code names, or one of these.
+# A comment in C may name files of the tree, headers of the system that the tree includes, functions that its
+# code names, and the functions listed here.
 @test "every source file and function that a comment names exists" {
     find service msgs clients tests -name '*.[ch]' > "$BATS_TEST_TMPDIR/files"
     [ "$(wc -l < "$BATS_TEST_TMPDIR/files")" -gt 100 ]

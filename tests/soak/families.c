@@ -1,5 +1,5 @@
 /* The pairs of the campaigns, hulls and posed bodies among them, through the service: in both
- * orders, first with whole bodies, then by handle. The bus is that of LCM_DEFAULT_URL; the
+ * orders, first with whole bodies, then by handle. The bus is given by LCM_DEFAULT_URL; the
  * program waits for a slow recorder on it.
  *
  * soak-families [PREFIX]: one pair of each cell of the families whose names begin so; of each

@@ -1,5 +1,5 @@
-/* Families of pairs that are hard for a reason: those of the campaigns, and windows and numbers
- * that these do not have. */
+/* Families of pairs that are hard for a reason: the families of the campaigns, and windows and
+ * numbers that the campaigns do not have. */
 #ifndef HARD_PAIRS_H
 #define HARD_PAIRS_H
 

@@ -58,7 +58,7 @@ static const struct known plane[] = {
      FMB_TOUCHING, {1, 1}, {{1, 0}, {1, 1}}},
     {"square slides along an edge", {{SQUARE, {0}, STILL}, {SQUARE, {1, -3}, {0, 1}, true}, 8},
      FMB_TOUCHING, {2, 4}, {{1, 0}, {1, 1}}},
-    {"both move alike: the box is swept", {{SQUARE, {0}, {2, 0}, true}, {SQUARE, {0.5, 0}, {2, 0}, true}, 3},
+    {"both move with equal velocities: the box is swept", {{SQUARE, {0}, {2, 0}, true}, {SQUARE, {0.5, 0}, {2, 0}, true}, 3},
      FMB_OVERLAPPING, {0, 3}, {{0.5, 0}, {7, 1}}},
     {"T = 0: the start is all there is", {{SQUARE, {0}, {0}, true}, {SQUARE, {1, 0}, {-1, 0}, true}, 0},
      FMB_TOUCHING, {0, 0}, {{1, 0}, {1, 1}}},

@@ -10,8 +10,8 @@
  *   3. DECIDING   block by block: begin_block() takes pairs of bodies from scene_pairs.c and their
  *                 pairs of frames from scene_frames.c, and decides these by the batch. Later steps
  *                 decide the pairs of frames that the batch left open, in one or more steps each
- *                 (certified.h). include() combines the answers of pairs of frames into those of
- *                 pairs of bodies.
+ *                 (certified.h). include() combines the answers of pairs of frames into answers
+ *                 of pairs of bodies.
  *
  * If every body has one frame and all are prepared at once ("direct"), slot i is placement i, and
  * the answers of the batch are those of the bodies. */

@@ -11,9 +11,9 @@
  * vertices on either side, with values f >= 0 > g, at f / (f - g). The denominator is a sum of two
  * magnitudes, so the quotient is off by less than 6.2 u of itself. The order of two crossings
  * matters only if the segment enters the other frame within 2^-48 of where it leaves it; it is then
- * that of two products of integers. So points are off by no more than the slack of box_ends.h, also
- * where that is 6.1 u times four times all components, twice the length of a segment. And every
- * point that is used is certainly in the intersection. */
+ * decided by comparing two products of integers. So points are off by no more than the slack of
+ * box_ends.h, also where that is 6.1 u times four times all components, twice the length of a
+ * segment. And every point that is used is certainly in the intersection. */
 #ifndef FMB_LIMBS_BOX_H
 #define FMB_LIMBS_BOX_H
 
