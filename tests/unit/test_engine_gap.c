@@ -14,6 +14,48 @@
 #include "question.h"
 #include "referee.h"
 
+/* ---- Margins ---- */
+
+/* The pairs of placements that a scene with a margin reports; gaps: capacity for all pairs. */
+static int near_pairs(const struct fmb_placement *placement, unsigned count, double duration,
+                      double margin, struct fmb_gap *gaps)
+{
+    const struct fmb_scene scene = {.placements = placement,
+                                    .placement_count = count,
+                                    .duration = duration,
+                                    .instant = duration == 0,
+                                    .which = FMB_PAIRS_ALL,
+                                    .margin = margin};
+    struct fmb_scene_limits limits;
+    fmb_scene_limits_of(&scene, &limits);
+    void *memory = malloc(fmb_scene_bytes(&limits));
+    struct fmb_scene_state *running;
+    struct fmb_scene_answers answers;
+    int found = 0;
+    assert_int_equal(fmb_scene_begin(&scene, &limits, memory, &running), FMB_OK);
+    for (bool done = false; !done;) {
+        done = fmb_scene_step(running, &answers);
+        for (size_t k = 0; k < answers.count; k++)
+            gaps[found++] = answers.gaps[k];
+    }
+    free(memory);
+    return found;
+}
+
+/* A scene whose margin is the lower bound of a distance reports the pair, with the same gap; one
+ * whose margin is less does not. */
+static void check_margin(const struct pair *pair, const struct fmb_answer *answer)
+{
+    const struct fmb_placement placement[2] = {pair->a, pair->b};
+    const double bound = answer->gap.bounds[0];
+    struct fmb_gap near;
+    if (answer->verdict != FMB_SEPARATED || !(bound > 0 && bound <= DBL_MAX))
+        return;
+    assert_int_equal(near_pairs(placement, 2, pair->duration, bound, &near), 1);
+    assert_memory_equal(near.bounds, answer->gap.bounds, sizeof near.bounds);
+    assert_int_equal(near_pairs(placement, 2, pair->duration, nextafter(bound, 0), &near), 0);
+}
+
 /* ---- Queries ---- */
 
 static struct fmb_answer decide(const struct question *question, const char *method)
@@ -49,8 +91,11 @@ static struct fmb_answer check_by(const struct question *question, const char *m
 
 static struct fmb_answer check(const struct question *question)
 {
+    struct ready ready;
     const struct fmb_answer answer = check_by(question, "certified");
     check_by(question, "exact");
+    referee_ready(question, &ready);
+    check_margin(&ready.pair, &answer);
     return answer;
 }
 
@@ -577,6 +622,7 @@ static void check_bodies(const struct pair *pair)
     const struct pair swapped = {pair->b, pair->a, pair->duration};
     assert_int_equal(pair_decide(fmb_method_default(), &swapped, FMB_WANT_GAP, &other), FMB_OK);
     assert_true(gap_check_swapped(false, &answer.gap, &other.gap));
+    check_margin(pair, &answer);
     assert_int_equal(answer.gap.frame[0], other.gap.frame[1]);
     assert_int_equal(answer.gap.frame[1], other.gap.frame[0]);
     bool lower = false, upper = false;
@@ -759,31 +805,6 @@ static void bounds_of_boxes_are_proven(void **state)
 
 /* ---- Margins ---- */
 
-/* The pairs of placements that a scene with a margin reports; gaps: capacity for all pairs. */
-static int near_pairs(const struct fmb_placement *placement, unsigned count, double duration,
-                      double margin, struct fmb_gap *gaps)
-{
-    const struct fmb_scene scene = {.placements = placement,
-                                    .placement_count = count,
-                                    .duration = duration,
-                                    .which = FMB_PAIRS_ALL,
-                                    .margin = margin};
-    struct fmb_scene_limits limits;
-    fmb_scene_limits_of(&scene, &limits);
-    void *memory = malloc(fmb_scene_bytes(&limits));
-    struct fmb_scene_state *running;
-    struct fmb_scene_answers answers;
-    int found = 0;
-    assert_int_equal(fmb_scene_begin(&scene, &limits, memory, &running), FMB_OK);
-    for (bool done = false; !done;) {
-        done = fmb_scene_step(running, &answers);
-        for (size_t k = 0; k < answers.count; k++)
-            gaps[found++] = answers.gaps[k];
-    }
-    free(memory);
-    return found;
-}
-
 /* Tetrahedra that face each other along an axis at a small distance. Their boxes give it more
  * accurately than the gap, but the margin is compared with the lower bound of the gap. */
 static void a_margin_is_compared_with_the_lower_bound(void **state)
@@ -794,7 +815,6 @@ static void a_margin_is_compared_with_the_lower_bound(void **state)
         struct fmb_frame frame[2];
         struct fmb_body body[2];
         struct fmb_placement placement[2] = {{.body = &body[0]}, {.body = &body[1]}};
-        struct fmb_gap near;
         const int axis = draw_int(&draw, 0, 2);
         for (int s = 0; s < 2; s++) {
             const double out = s ? 1 : -1;
@@ -809,10 +829,38 @@ static void a_margin_is_compared_with_the_lower_bound(void **state)
             body[s] = body_of(&frame[s], 1);
         }
         const struct pair pair = {placement[0], placement[1], 0};
-        const double bound = gap_of_pair(&pair).gap.bounds[0];
-        assert_true(bound > 0);
-        assert_int_equal(near_pairs(placement, 2, 0, bound, &near), 1);
-        assert_int_equal(near_pairs(placement, 2, 0, nextafter(bound, 0), &near), 0);
+        const struct fmb_answer answer = gap_of_pair(&pair);
+        assert_true(answer.gap.bounds[0] > 0);
+        check_margin(&pair, &answer);
+    }
+}
+
+/* A body beside itself: frames near the origin of the body have the gap more accurately than those
+ * far from it, whose enclosure alone reaches the margin. */
+static void frames_within_the_width_of_others_count(void **state)
+{
+    struct draw draw;
+    draw_begin(&draw, "frames_within_the_width_of_others_count");
+    for (long n = draw_sample(100); n > 0; n--) {
+        struct fmb_frame frame[2];
+        for (int i = 0; i < 2; i++) {
+            const double number[6] = {i * 0x1p20, 0, 0, 1, 1, 1};
+            frame[i] = frame_of(FMB_BOX, number);
+        }
+        const struct fmb_body body = body_of(frame, 2);
+        struct fmb_placement placement[2] = {{.body = &body, .orientation_count = 4}};
+        for (int k = 0; k < 4; k++)
+            placement[0].orientation[k] = draw_uniform(&draw, 0.1, 1);
+        placement[1] = placement[0];
+        for (int axis = 0; axis < 3; axis++)
+            placement[1].position[axis] = draw_uniform(&draw, 2, 3);
+        const struct pair pair = {placement[0], placement[1], 0};
+        const struct fmb_gap gap = gap_of_pair(&pair).gap;
+        const double margin = gap.bounds[1] - 0x1p-31;
+        struct fmb_gap near;
+        assert_true(gap.bounds[0] < margin);
+        assert_int_equal(near_pairs(placement, 2, 0, margin, &near), 1);
+        assert_memory_equal(near.bounds, gap.bounds, sizeof gap.bounds);
     }
 }
 
@@ -1069,6 +1117,7 @@ int main(void)
         cmocka_unit_test(bounds_of_boxes_are_proven),
         cmocka_unit_test(a_margin_is_compared_with_the_lower_bound),
         cmocka_unit_test(equal_gaps_name_one_pair_of_frames),
+        cmocka_unit_test(frames_within_the_width_of_others_count),
         cmocka_unit_test(cubes_rolled_by_libm),
         cmocka_unit_test(inexact_methods_have_none),
         cmocka_unit_test(infinite_gaps),

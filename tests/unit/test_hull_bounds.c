@@ -30,10 +30,13 @@ static void draw_number(struct draw *draw, int kind, double *out)
 
 static void draw_hull(struct draw *draw, int dim, struct hull *out)
 {
-    const int kind = draw_int(draw, 0, 3), far = draw_int(draw, 0, 2);
+    const int kind = draw_int(draw, 0, 3), far = draw_int(draw, 0, 3);
     out->count = (size_t) draw_int(draw, 1, VERTICES);
     for (size_t i = 0; i < out->count * (size_t) dim; i++)
         draw_number(draw, kind, &out->vertices[i]);
+    if (draw_coin(draw)) /* the origin of the body is a corner of the bounding box */
+        for (size_t i = 0; i < out->count * (size_t) dim; i++)
+            out->vertices[i] = i < (size_t) dim ? 0 : fabs(out->vertices[i]);
     assert_int_equal(
         fmb_body_make_hull(dim, out->vertices, out->count * (size_t) dim, out->memory, &out->body),
         FMB_OK);
@@ -200,7 +203,35 @@ static void check_pair(struct draw *draw, const struct hull hull[2], double dura
     mpq_clears(most, x, y, NULL);
 }
 
-static void support_and_points_are_within_their_bounds(void **state)
+static void check_box(const struct hull *hull, double duration)
+{
+    struct fmb_prepared prepared;
+    double box[2][AXES];
+    mpq_t r[AXES][AXES], point[AXES];
+    assert_int_equal(fmb_prepare(&hull->at, 0, 1, &prepared), FMB_OK);
+    fmb_box_of(&prepared, duration, box);
+    each(point, mpq_init);
+    for (int i = 0; i < AXES; i++)
+        each(r[i], mpq_init);
+    set_rotation(&hull->at, r);
+    for (unsigned i = 0; i < 2 * hull->body.one.vertex_count; i++) {
+        for (int axis = 0; axis < AXES; axis++)
+            mpq_set_ui(point[axis], 0, 1);
+        add_vertex(hull, r, i / 2, i % 2 ? duration : 0, 1, point);
+        for (int k = 0; k < 2 * hull->body.one.dim; k++) {
+            mpq_t end;
+            mpq_init(end);
+            mpq_set_d(end, box[k % 2][k / 2]);
+            assert_true(k % 2 ? mpq_cmp(point[k / 2], end) <= 0 : mpq_cmp(point[k / 2], end) >= 0);
+            mpq_clear(end);
+        }
+    }
+    each(point, mpq_clear);
+    for (int i = 0; i < AXES; i++)
+        each(r[i], mpq_clear);
+}
+
+static void boxes_support_and_points_are_within_their_bounds(void **state)
 {
     struct draw draw;
     draw_begin(&draw, "bounds of hulls");
@@ -209,7 +240,9 @@ static void support_and_points_are_within_their_bounds(void **state)
         const int dim = draw_int(&draw, 2, 3);
         draw_hull(&draw, dim, &hull[0]);
         draw_hull(&draw, dim, &hull[1]);
-        check_pair(&draw, hull, draw_coin(&draw) ? 0 : draw_uniform(&draw, 0, 3));
+        const double duration = draw_coin(&draw) ? 0 : draw_uniform(&draw, 0, 3);
+        check_pair(&draw, hull, duration);
+        check_box(&hull[0], duration);
     }
 }
 
@@ -259,7 +292,7 @@ static void bounds_are_needed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(support_and_points_are_within_their_bounds),
+        cmocka_unit_test(boxes_support_and_points_are_within_their_bounds),
         cmocka_unit_test(bounds_are_needed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -460,6 +460,22 @@ static void polygon_on_itself(void **state)
     assert_true(fabs(answer.gap.bounds[1] + depth) < 1e-10);
 }
 
+/* Any direction is that of two points at the origin of the world; it is the same in every build. */
+static void points_at_the_origin_have_the_direction_of_x(void **state)
+{
+    static const double x[FMB_DIM_MAX] = {1};
+    for (int dim = 2; dim <= 3; dim++) {
+        double zero[FMB_DIM_MAX] = {0}, memory[5 + 16];
+        struct fmb_body body;
+        struct fmb_answer answer;
+        assert_int_equal(fmb_body_make_hull(dim, zero, (size_t) dim, memory, &body), FMB_OK);
+        const struct fmb_placement at = {.body = &body};
+        fmb_decide(fmb_method_default(), &at, &at, 0, FMB_WANT_GAP, &answer);
+        assert_true(answer.gap.bounds[0] == 0 && answer.gap.bounds[1] == 0);
+        assert_memory_equal(answer.gap.direction, x, sizeof x);
+    }
+}
+
 /* ---- Steps ---- */
 
 static long live; /* blocks that GMP has allocated */
@@ -552,6 +568,7 @@ int main(void)
         cmocka_unit_test(small_hulls),
         cmocka_unit_test(large_hulls),
         cmocka_unit_test(polygon_on_itself),
+        cmocka_unit_test(points_at_the_origin_have_the_direction_of_x),
         cmocka_unit_test(steps_leave_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

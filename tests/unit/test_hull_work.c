@@ -222,10 +222,28 @@ static void few_vertices_of_huge_hulls_get_a_value_in_integers(void **state)
     assert_true(exact_terms > 0);
 }
 
+static void overlaps_in_general_position_need_no_integers(void **state)
+{
+    static struct large large[2];
+    struct draw draw;
+    const long before = exact_terms;
+    draw_begin(&draw, "overlaps_in_general_position_need_no_integers");
+    for (long turn = draw_sample(8); turn > 0; turn--) {
+        struct fmb_answer answer;
+        for (int f = 0; f < 2; f++)
+            make_large(&draw, turn % 2 ? BALL : PRISM, NULL, &large[f]);
+        put(&draw, turn % 4 < 2 ? ANYWHERE : CONCENTRIC, 1, large);
+        fmb_decide(fmb_method_default(), &large[0].at, &large[1].at, 1, 0, &answer);
+        assert_int_equal(answer.verdict, FMB_OVERLAPPING);
+    }
+    assert_int_equal(exact_terms, before);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_are_short), cmocka_unit_test(steps_of_certificates_are_short),
-        cmocka_unit_test(few_vertices_of_huge_hulls_get_a_value_in_integers)};
+        cmocka_unit_test(few_vertices_of_huge_hulls_get_a_value_in_integers),
+        cmocka_unit_test(overlaps_in_general_position_need_no_integers)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

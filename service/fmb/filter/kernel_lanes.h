@@ -177,21 +177,6 @@ INLINE void set_frame_lanes(const struct kernel_traits traits, const lanes words
     out->error = words[traits.dim == 2 ? PREPARED_ERROR_2D : PREPARED_ERROR_3D];
 }
 
-/* A single word of each frame. */
-INLINE lanes gather_one(const double *const frame[LANES], int word)
-{
-#if LANES == 1
-    return frame[0][word];
-#elif LANES == 2
-    return (lanes){frame[0][word], frame[1][word]};
-#elif LANES == 4
-    return (lanes){frame[0][word], frame[1][word], frame[2][word], frame[3][word]};
-#else
-    return (lanes){frame[0][word], frame[1][word], frame[2][word], frame[3][word],
-                   frame[4][word], frame[5][word], frame[6][word], frame[7][word]};
-#endif
-}
-
 /* The number of words of summary, origin, components and error. */
 INLINE int word_count(const struct kernel_traits traits)
 {
@@ -216,18 +201,14 @@ INLINE void gather_velocity(const struct kernel_traits traits, const double *con
         out->velocity[axis] = words[axis];
 }
 
-/* Loads the frame of each lane: words four at a time, and a single last word by itself. */
+/* Loads the frame of each lane, words four at a time. */
 INLINE void gather(const struct kernel_traits traits, const double *const frame[LANES],
                    struct frame_lanes *out)
 {
     lanes words[WORDS];
-    const int used = word_count(traits);
-    const int in_fours = used - used % 4 + (used % 4 > 1 ? 4 : 0);
     UNROLL(4)
-    for (int w = 0; w < in_fours; w += 4)
+    for (int w = 0; w < word_count(traits); w += 4)
         gather_four(frame, w, &words[w]);
-    if (in_fours < used)
-        words[used - 1] = gather_one(frame, used - 1);
     set_frame_lanes(traits, words, out);
     if (traits.exact || traits.box)
         memcpy(out->prepared, frame, sizeof out->prepared);

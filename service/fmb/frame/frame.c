@@ -201,7 +201,8 @@ static double reach_of(const struct fmb_frame *frame)
 
 /* Returns the slack of a frame. The origin of a box, centre - size / 2, is off by at most half a
  * unit in the last place on each axis; a whole unit is counted. A vertex of a simplex is off by at
- * most the remainder of its own component. */
+ * most the remainder of its own component. The factor covers 4 roundings here and as many where it
+ * is added to other errors. */
 static double slack_of(const struct fmb_frame *frame)
 {
     double slack = 0;
@@ -241,9 +242,9 @@ static void complete(struct fmb_frame *frame)
 {
     invert(frame);
     measure(frame);
+    frame->slack = slack_of(frame);
     frame->summary = prepared_summary_of(frame);
     frame->reach = reach_of(frame);
-    frame->slack = slack_of(frame);
     frame->turn_error = turn_error_of(frame);
 }
 
@@ -263,9 +264,9 @@ void frame_set_bounds(const double bounds[2][FMB_DIM_MAX], struct fmb_frame *out
         out->flat = out->flat || size == 0;
     }
     measure(out);
-    out->summary = prepared_summary_of(out);
     out->reach = reach_of(out);
     out->slack = out->reach < 0x1p1000 ? 0 : INFINITY;
+    out->summary = prepared_summary_of(out);
     out->turn_error = turn_error_of(out);
 }
 
@@ -445,7 +446,7 @@ INLINE struct aabb box_at_origin(const struct fmb_frame *frame, const int dim,
         for (int i = 0; i < dim; i++)
             number[(1 + i) * dim + axis] = frame->component[i][axis];
     }
-    number[(1 + dim) * dim] = frame->slack * PREPARED_MARGIN;
+    number[(1 + dim) * dim] = frame->slack;
     return aabb_of(&prepared, 0);
 }
 

@@ -57,7 +57,7 @@ static const unsigned all_components_exact = PREPARED_COMPONENTS_EXACT_X * 7;
 
 unsigned long long prepared_summary_of(const struct fmb_frame *frame)
 {
-    const bool plain = !frame->rounded && frame->bits[1] - frame->bits[0] <= 24;
+    const bool plain = frame->slack == 0 && frame->bits[1] - frame->bits[0] <= 24;
     unsigned kind = PREPARED_VALID;
     kind |= frame->shape == FMB_TETRAHEDRON ? PREPARED_TETRAHEDRON : 0;
     kind |= frame->shape == FMB_FACE ? PREPARED_FACE : 0;
@@ -170,7 +170,8 @@ static unsigned centred_of(const struct fmb_frame *frame, const struct rotation_
     return rounded && same ? PREPARED_CENTRED : 0;
 }
 
-/* Sets the world coordinates of a frame and their error. Returns which of them are exact, as flags:
+/* Sets the world coordinates of a frame and their error, of which each term has a margin that
+ * covers the rounding of their sum too. Returns which coordinates are exact, as flags:
  * PREPARED_EXACT_X and so on. */
 INLINE unsigned set_numbers(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
                             const double *position, struct world_numbers *out)
@@ -194,7 +195,6 @@ INLINE unsigned set_numbers(const struct fmb_frame *frame, const struct rotation
     out->origin[2] = frame->dim == 2 ? 0 : position[2];
     if (!is_zero(frame->origin))
         set_origin(frame, rotation, position, out, &exact);
-    out->error *= PREPARED_MARGIN; /* for its own rounding */
     return frame->shape == FMB_BOX ? exact | centred_of(frame, rotation, exact) : exact;
 }
 
@@ -245,7 +245,6 @@ INLINE void set_in_general_orientation(const struct fmb_frame *frame,
     rotate_components(frame, rotation, numbers->component);
     numbers->error = frame->slack + frame->turn_error;
     numbers->error += sum_rounding * vec3_sum(o);
-    numbers->error *= PREPARED_MARGIN; /* for its own rounding */
     out->summary = (frame->summary &
                     ~in_summary(PREPARED_AXIS_ALIGNED | PREPARED_PLAIN | all_components_exact)) |
                    (placement_moves(placement, FMB_DIM_MAX) ? in_summary(PREPARED_MOVING) : 0);
@@ -274,22 +273,19 @@ static void set_unrotated(const struct fmb_frame *frame, const struct fmb_placem
                           struct fmb_prepared *out)
 {
     const unsigned axes = (frame->dim == 3 ? 7u : 3u) * PREPARED_EXACT_X;
-    const double error = frame->slack * PREPARED_MARGIN;
     out->summary = frame->summary | (frame->slack == 0 ? in_summary(axes) : 0) |
                    (placement_moves(placement, frame->dim) ? in_summary(PREPARED_MOVING) : 0);
-    if (error != 0)
-        out->summary &= ~in_summary(PREPARED_PLAIN);
     out->frame = frame;
     out->placement = placement;
     if (frame->dim == 2) {
-        set_numbers_2d(placement->position, frame->component, error, placement->velocity,
+        set_numbers_2d(placement->position, frame->component, frame->slack, placement->velocity,
                        out->number);
         return;
     }
     struct world_numbers *numbers = (struct world_numbers *) out->number;
     memcpy(numbers->origin, placement->position, sizeof numbers->origin);
     memcpy(numbers->component, frame->component, sizeof numbers->component);
-    numbers->error = error;
+    numbers->error = frame->slack;
 }
 
 INLINE bool is_unrotated(const struct fmb_frame *frame, const struct fmb_placement *placement)

@@ -138,7 +138,7 @@ void frame_set_bounds(const double bounds[2][FMB_DIM_MAX], struct fmb_frame *out
 bool prepared_is_duration(double duration);
 
 /* Returns the summary of a frame, not rotated and at rest. In: its shape, dimensions, components,
- * rounded, bits and in_range are set. */
+ * rounded, slack, bits and in_range are set. */
 unsigned long long prepared_summary_of(const struct fmb_frame *frame);
 
 /* As fmb_prepare() of one frame, without its checks. */

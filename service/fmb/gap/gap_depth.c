@@ -242,7 +242,7 @@ static void add_space(struct depth *depth)
     if (first >= 0)
         add_number(depth, first);
     const double most = (GAP_BOUNDS_MARGIN * reach - depth->greatest) * PREPARED_MARGIN;
-    const lanes limit = lanes_of(most > 0 ? most * most : 0);
+    const lanes limit = lanes_of(most * most);
     for (int i = 0; i < bounds.count; i++) {
         const unsigned bits = lanes_mask_bits(bounds.square[i] <= limit);
         for (int lane = 0; bits && lane < 2; lane++)
