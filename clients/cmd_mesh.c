@@ -39,12 +39,9 @@ static const char usage[] =
     "  --as tetrahedra      a face is the tetrahedron of its edges and its unit\n"
     "                       normal, as in the article; --as faces: a triangle (the\n"
     "                       default)\n"
-    "  --method NAME        how to decide: certified (the default), or exact, which\n"
-    "                       takes longer and gives the same verdicts\n"
     "\n"
     "Output:\n"
     "  --json               one line of JSON: counts, and all pairs\n"
-    "  --list               all pairs, a line each\n"
     "  --html FILE          write a page that shows them, and the pairs: for any\n"
     "                       browser, with nothing to install or to fetch\n"
     "  --force              overwrite FILE even if it is of another kind\n"
@@ -71,9 +68,8 @@ struct placed {
 struct mesh_options {
     struct placed placed[2];
     double duration;
-    bool json, list;
+    bool json;
     enum mesh_as as;
-    const struct fmb_method *method;
     struct output_options html;
 };
 
@@ -180,15 +176,6 @@ static bool take_as(const struct args *args, void *out)
            args_error(args, "--as: there are faces and tetrahedra, not '%s'", optarg);
 }
 
-static bool take_method(const struct args *args, void *out)
-{
-    const struct fmb_method *method = fmb_method_by_name(optarg), **chosen = out;
-    if (!method || !method->certain)
-        return args_error(args, "--method: there are certified and exact, not '%s'", optarg);
-    *chosen = method == fmb_method_default() ? NULL : method;
-    return true;
-}
-
 /* ---- Reading --------------------------------------------------------------------------------- */
 
 static bool read_mesh(const char *path, const struct placed *placed, struct mesh *out)
@@ -228,7 +215,7 @@ static int print_answer(const struct mesh_options *options, const struct mesh_re
     if (options->json)
         mesh_report_json(stdout, report);
     else
-        mesh_report_text(stdout, report, options->list);
+        mesh_report_text(stdout, report);
     const bool written = write_page(&options->html, report);
     const bool good = output_flush() && written;
     return good ? ARGS_ANSWERED : ARGS_FAILED;
@@ -244,7 +231,6 @@ static int intersect(const struct mesh_options *options, const struct mesh mesh[
         .velocity = {options->placed[0].moving ? options->placed[0].velocity : NULL,
                      options->placed[1].moving ? options->placed[1].velocity : NULL},
         .duration = options->duration,
-        .method = options->method,
         .report = progress_to,
         .context = &progress};
     struct mesh_intersection intersection;
@@ -277,9 +263,7 @@ int cmd_mesh(int argc, char **argv)
         {"velocity", ARGS_OTHER, options.placed, .take = take_velocity},
         {"duration", ARGS_NUMBER, &options.duration, .high = DBL_MAX},
         {"as", ARGS_OTHER, &options.as, .take = take_as},
-        {"method", ARGS_OTHER, &options.method, .take = take_method},
         {"json", ARGS_FLAG, .out = &options.json},
-        {"list", ARGS_FLAG, .out = &options.list},
         {"html", ARGS_TEXT, .out = &options.html.path},
         {"force", ARGS_FLAG, .out = &rules.force},
         {.name = NULL},

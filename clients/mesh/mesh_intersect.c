@@ -18,11 +18,11 @@ struct mesh_search {
 
     /* The block: candidates and their frames. */
     unsigned face[BLOCK][2], pair[BLOCK][2]; /* indices of faces, and of frames */
-    size_t count, frame_count;
+    size_t count;
     struct mesh_placed_face *placed; /* [FRAMES] */
     struct fmb_prepared *frame;      /* [FRAMES], prepared from placed */
     unsigned char verdict[BLOCK];
-    double contact[BLOCK][2];
+    double contact[BLOCK][2]; /* 0 at rest */
 };
 
 static const struct mesh *mesh_of(const struct mesh_query *query, int which)
@@ -65,22 +65,22 @@ static void *build_tree(const struct mesh_query *query, int which, struct fmb_tr
 
 /* ---- The block ---- */
 
-/* Adds the frame of a face. Returns its index. */
-static unsigned add_frame(struct mesh_search *search, int which, unsigned face)
+/* Prepares the frame of a face of a candidate. */
+static void prepare(struct mesh_search *search, size_t candidate, int which)
 {
     const struct mesh_query *query = search->query;
-    struct mesh_placed_face *placed = &search->placed[search->frame_count];
-    struct fmb_prepared *out = &search->frame[search->frame_count];
-    memset(out, 0, sizeof *out); /* fmb_decide_batch() refuses a frame of zeros */
-    if (mesh_face_place(mesh_of(query, which), query->as, face, query->velocity[which], placed))
-        fmb_prepare(&placed->placement, 0, 1, out);
-    return (unsigned) search->frame_count++;
+    const size_t i = 2 * candidate + (size_t) which;
+    struct mesh_placed_face *placed = &search->placed[i];
+    memset(&search->frame[i], 0, sizeof search->frame[i]); /* fmb_decide_batch() refuses zeros */
+    if (mesh_face_place(mesh_of(query, which), query->as, search->face[candidate][which],
+                        query->velocity[which], placed))
+        fmb_prepare(&placed->placement, 0, 1, &search->frame[i]);
+    search->pair[candidate][which] = (unsigned) i;
 }
 
-static void add_pair(struct mesh_search *search, const unsigned face[2], enum fmb_verdict verdict,
-                     const double contact[2])
+static void add_pair(struct mesh_intersection *intersection, const unsigned face[2],
+                     enum fmb_verdict verdict, const double contact[2])
 {
-    struct mesh_intersection *intersection = search->intersection;
     if (verdict == FMB_SEPARATED)
         return;
     intersection->pair = allocate_grow(intersection->pair, &intersection->capacity,
@@ -89,53 +89,25 @@ static void add_pair(struct mesh_search *search, const unsigned face[2], enum fm
         (struct mesh_pair){face[0], face[1], verdict, {contact[0], contact[1]}};
 }
 
-/* Decides one pair by the method of the query. */
-static void decide_pair(struct mesh_search *search, const unsigned face[2])
-{
-    const struct mesh_query *query = search->query;
-    struct mesh_placed_face a, b;
-    struct fmb_answer answer;
-    const bool frames = mesh_face_place(query->a, query->as, face[0], query->velocity[0], &a) &&
-                        mesh_face_place(query->b, query->as, face[1], query->velocity[1], &b);
-    const enum fmb_status status =
-        frames ? fmb_decide(query->method, &a.placement, &b.placement, query->duration, 0, &answer)
-               : FMB_NOT_FINITE;
-    if (status == FMB_OK)
-        add_pair(search, face, answer.verdict, answer.contact);
-    else
-        search->status = status;
-}
-
 static void decide_block(struct mesh_search *search)
 {
-    static const double none[2] = {0, 0};
-    const bool moving = search->intersection->moving;
+    search->intersection->candidates += search->count;
     for (size_t i = 0; i < search->count; i++)
         for (int which = 0; which < 2; which++)
-            search->pair[i][which] = add_frame(search, which, search->face[i][which]);
-    const struct fmb_batch batch = {.frames = search->frame,
-                                    .frame_count = search->frame_count,
-                                    .pairs = (const unsigned(*)[2]) search->pair,
-                                    .pair_count = search->count,
-                                    .duration = search->query->duration,
-                                    .instant = search->query->duration == 0,
-                                    .verdicts = search->verdict,
-                                    .contacts = moving ? search->contact : NULL};
-    const enum fmb_status status = fmb_decide_batch(&batch);
-    if (status != FMB_OK)
-        search->status = status;
-    for (size_t i = 0; i < search->count && status == FMB_OK; i++)
-        add_pair(search, search->face[i], (enum fmb_verdict) search->verdict[i],
-                 moving ? search->contact[i] : none);
-}
-
-static void decide_candidates(struct mesh_search *search)
-{
-    search->intersection->candidates += search->count;
-    if (!search->query->method && search->count > 0)
-        decide_block(search);
-    for (size_t i = 0; search->query->method && i < search->count; i++)
-        decide_pair(search, search->face[i]);
+            prepare(search, i, which);
+    const struct fmb_batch batch = {
+        .frames = search->frame,
+        .frame_count = 2 * search->count,
+        .pairs = (const unsigned(*)[2]) search->pair,
+        .pair_count = search->count,
+        .duration = search->query->duration,
+        .instant = search->query->duration == 0,
+        .verdicts = search->verdict,
+        .contacts = search->intersection->moving ? search->contact : NULL};
+    search->status = fmb_decide_batch(&batch);
+    for (size_t i = 0; i < search->count && search->status == FMB_OK; i++)
+        add_pair(search->intersection, search->face[i], (enum fmb_verdict) search->verdict[i],
+                 search->contact[i]);
 }
 
 /* Converts a number of nodes of the first tree to about as many faces. */
@@ -155,8 +127,7 @@ static void decide_all(struct mesh_search *search)
            fmb_tree_pairs(&search->tree[0], &search->tree[1], &cursor, search->face, BLOCK,
                           &search->count) == FMB_OK &&
            search->count > 0) {
-        search->frame_count = 0;
-        decide_candidates(search);
+        decide_block(search);
         if (query->report)
             report_progress(search, cursor.leaf);
     }

@@ -8,9 +8,8 @@
 struct mesh_query {
     const struct mesh *a, *b;
     enum mesh_as as;
-    const double *velocity[2];       /* [3] of a and of b, finite; NULL: at rest */
-    double duration;                 /* of the window, seconds; finite, from 0 */
-    const struct fmb_method *method; /* NULL: certified, in batches */
+    const double *velocity[2]; /* [3] of a and of b, finite; NULL: at rest */
+    double duration;           /* of the window, seconds; finite, from 0 */
     /* Progress, as an approximate number of faces of a. May be NULL. */
     void (*report)(void *context, int64_t done, int64_t total);
     void *context;
@@ -37,8 +36,8 @@ struct mesh_intersection {
 
 /* In: meshes on which mesh_transform() succeeded. Returns FMB_OK and an intersection, which the
  * caller frees with mesh_intersection_free(). On error nothing needs to be freed: FMB_NOT_FINITE if
- * the normal of a face overflows (TETRAHEDRA); FMB_CANNOT_DECIDE if the method cannot decide a
- * pair. Exits with status 1 if memory is exhausted. No shared state. */
+ * the normal of a face overflows (TETRAHEDRA). Exits with status 1 if memory is exhausted. No
+ * shared state. */
 enum fmb_status mesh_intersect(const struct mesh_query *query, struct mesh_intersection *out);
 void mesh_intersection_free(struct mesh_intersection *intersection);
 

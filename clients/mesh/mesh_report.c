@@ -4,8 +4,6 @@
 #include "json_write.h"
 #include "number.h"
 
-#include <math.h>
-
 /* ---- For people ------------------------------------------------------------------------------ */
 
 static void put_count(FILE *out, uint64_t count, const char *what)
@@ -14,55 +12,14 @@ static void put_count(FILE *out, uint64_t count, const char *what)
     fprintf(out, "%14s  %s\n", number_grouped((int64_t) count, text), what);
 }
 
-static void put_name(FILE *out, const struct mesh_report *report, int which)
-{
-    escape_text(out, report->name[which]);
-}
-
 static void put_faces(FILE *out, const struct mesh_report *report, int which)
 {
     char in_pairs[NUMBER_TEXT_MAX], all[NUMBER_TEXT_MAX];
     fprintf(out, "%14s  of %s faces of ",
             number_grouped((int64_t) report->intersection->faces[which], in_pairs),
             number_grouped((int64_t) report->mesh[which]->face_count, all));
-    put_name(out, report, which);
+    escape_text(out, report->name[which]);
     putc('\n', out);
-}
-
-/* The AABB of the faces: [lower, upper][axis]. */
-static void find_bounds(const struct mesh *mesh, double out[2][3])
-{
-    for (int axis = 0; axis < 3; axis++) {
-        out[0][axis] = INFINITY;
-        out[1][axis] = -INFINITY;
-        for (size_t i = 0; i < 3 * mesh->face_count; i++) {
-            const double x = mesh->vertex[mesh->face[i / 3][i % 3]][axis];
-            out[0][axis] = fmin(out[0][axis], x);
-            out[1][axis] = fmax(out[1][axis], x);
-        }
-    }
-}
-
-/* Surfaces that do not intersect may enclose one another, if the AABB of one lies inside the
- * other's. This holds for moving meshes too: without an intersection, a surface inside the other
- * stays there. */
-static void put_hint(FILE *out, const struct mesh_report *report)
-{
-    double bounds[2][2][3];
-    for (int which = 0; which < 2; which++)
-        find_bounds(report->mesh[which], bounds[which]);
-    for (int inner = 0; inner < 2; inner++) {
-        bool within = report->mesh[inner]->face_count > 0;
-        for (int axis = 0; axis < 3; axis++)
-            within = within && bounds[inner][0][axis] > bounds[!inner][0][axis] &&
-                     bounds[inner][1][axis] < bounds[!inner][1][axis];
-        if (!within)
-            continue;
-        put_name(out, report, inner);
-        fputs(" may lie inside ", out);
-        put_name(out, report, !inner);
-        fputs(", within whose bounds it is: only surfaces are compared\n", out);
-    }
 }
 
 /* The first and the last time at which any two faces are in contact. */
@@ -79,21 +36,9 @@ static void put_times(FILE *out, const struct mesh_intersection *intersection)
     fprintf(out, "faces meet first at %s s, and last at %s s\n", first_text, last_text);
 }
 
-static void put_pair(FILE *out, const struct mesh_pair *pair, bool moving)
-{
-    char first[NUMBER_TEXT_MAX], last[NUMBER_TEXT_MAX];
-    fprintf(out, "%u %u %s", pair->a, pair->b, fmb_verdict_name((int) pair->verdict));
-    if (moving)
-        fprintf(out, " %s %s", number_exact(pair->contact[0], first),
-                number_exact(pair->contact[1], last));
-    putc('\n', out);
-}
-
-void mesh_report_text(FILE *out, const struct mesh_report *report, bool list)
+void mesh_report_text(FILE *out, const struct mesh_report *report)
 {
     const struct mesh_intersection *intersection = report->intersection;
-    for (size_t i = 0; i < intersection->count && list; i++)
-        put_pair(out, &intersection->pair[i], intersection->moving);
     put_count(out, intersection->count,
               intersection->count == 1 ? "pair of faces meets:" : "pairs of faces meet:");
     put_count(out, intersection->overlapping, "overlap");
@@ -104,7 +49,7 @@ void mesh_report_text(FILE *out, const struct mesh_report *report, bool list)
     if (intersection->moving && intersection->count > 0)
         put_times(out, intersection);
     if (intersection->count == 0)
-        put_hint(out, report);
+        fputs("only surfaces are compared: one mesh may lie inside the other\n", out);
 }
 
 /* ---- JSON ------------------------------------------------------------------------------------ */

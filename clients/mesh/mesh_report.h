@@ -14,8 +14,8 @@ struct mesh_report {
     const struct mesh_intersection *intersection;
 };
 
-/* Prints the counts as text. list: prints every pair too. */
-void mesh_report_text(FILE *out, const struct mesh_report *report, bool list);
+/* Prints the counts as text. */
+void mesh_report_text(FILE *out, const struct mesh_report *report);
 
 /* Prints one line with one JSON object:
  *

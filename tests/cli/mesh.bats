@@ -53,24 +53,6 @@ nothing='{"overlapping": 0, "touching": 0, "faces_a": 0, "faces_b": 0, "pairs": 
 # ---- Answers ---------------------------------------------------------------------------------
 
 # bats test_tags=release
-@test "a mesh inside the bounds of another one that it does not intersect gets a hint in text only" {
-    obj out.obj '-1 -1 -1' '3 -1 -1' '-1 3 -1' '-1 -1 3' -- '1 3 2' '1 2 4' '1 4 3' '2 3 4'
-    obj in.obj '0 0 0' '0.1 0 0' '0 0.1 0' '0 0 0.1' -- '1 3 2' '1 2 4' '1 4 3' '2 3 4'
-    hint='in.obj may lie inside out.obj, within whose bounds it is: only surfaces are compared'
-    for meshes in 'in.obj out.obj' 'out.obj in.obj'; do
-        mesh $meshes
-        ended 0
-        [ "${lines[-1]}" = "$hint" ]
-    done
-    mesh in.obj --translate 9,0,0 out.obj
-    [[ $output != *inside* ]]
-    mesh in.obj --translate 0,0,-1 out.obj # they meet
-    [[ $output != *inside* ]]
-    mesh --json in.obj out.obj
-    [[ $output != *inside* ]]
-}
-
-# bats test_tags=release
 @test "JSON is one line with the counts and the pairs in order" {
     answers '{"overlapping": 1, "touching": 1, "faces_a": 1, "faces_b": 2, "pairs": [[0, 0, "overlapping"], [0, 1, "touching"]]}' a.obj b.obj
     answers '{"overlapping": 1, "touching": 1, "faces_a": 2, "faces_b": 1, "pairs": [[0, 0, "overlapping"], [1, 0, "touching"]]}' b.obj a.obj
@@ -79,7 +61,7 @@ nothing='{"overlapping": 0, "touching": 0, "faces_a": 0, "faces_b": 0, "pairs": 
 }
 
 # bats test_tags=release
-@test "text is a summary, and with --list every pair before it" {
+@test "text is a summary" {
     mesh a.obj b.obj
     ended 0
     said ''
@@ -89,21 +71,14 @@ nothing='{"overlapping": 0, "touching": 0, "faces_a": 0, "faces_b": 0, "pairs": 
 in them are
              1  of 1 faces of a.obj
              2  of 2 faces of b.obj'
-    counts=$output
-    mesh a.obj --list b.obj
-    is "0 0 overlapping
-0 1 touching
-$counts"
 }
 
 # bats test_tags=release
 @test "moving meshes have the contact interval of each pair, and the first and the last time" {
     answers '{"overlapping": 1, "touching": 1, "faces_a": 1, "faces_b": 2, "pairs": [[0, 0, "overlapping", [0.5, 2]], [0, 1, "touching", [1.5, 2]]]}' \
         a.obj --translate 0,0,1.5 --velocity 0,0,-1 b.obj --duration 2
-    mesh a.obj --translate 0,0,1.5 --velocity 0,0,-1 b.obj --duration 2 --list
+    mesh a.obj --translate 0,0,1.5 --velocity 0,0,-1 b.obj --duration 2
     ended 0
-    [ "${lines[0]}" = '0 0 overlapping 0.5 2' ]
-    [ "${lines[1]}" = '0 1 touching 1.5 2' ]
     [ "${lines[-1]}" = 'faces meet first at 0.5 s, and last at 2 s' ]
     # A window of no length; a velocity of 0; nothing meets, and there are no times.
     answers '{"overlapping": 1, "touching": 1, "faces_a": 1, "faces_b": 2, "pairs": [[0, 0, "overlapping", [0, 0]], [0, 1, "touching", [0, 0]]]}' \
@@ -141,14 +116,15 @@ $counts"
         answers "$nothing" $empty b.obj
         answers "$nothing" b.obj $empty
         answers "$nothing" $empty $empty --velocity 1,0,0
-        mesh $empty b.obj --list
+        mesh $empty b.obj
         ended 0
         is "             0  pairs of faces meet:
              0  overlap
              0  touch
 in them are
              0  of 0 faces of $empty
-             0  of 2 faces of b.obj"
+             0  of 2 faces of b.obj
+only surfaces are compared: one mesh may lie inside the other"
     done
 }
 
@@ -262,12 +238,12 @@ apart() {
 @test "progress is shown on a terminal only" {
     script -qfc true /dev/null < /dev/null > /dev/null 2>&1 3>&- || skip 'there is no pseudo-terminal'
     "$MAKE_MESH" --faces 100000 large.ply
-    script -qfc "'$FMB' mesh --method exact large.ply large.ply" screen < /dev/null > /dev/null 3>&- &
+    script -qfc "'$FMB' mesh large.ply large.ply" screen < /dev/null > /dev/null 3>&- &
     script=$!
     wait_until grep -q 'fmb: [0-9,]* of 100,352 faces' screen
     kill "$script"
     wait "$script" || true
-    run --separate-stderr timeout 2 "$FMB" mesh --method exact large.ply large.ply
+    run --separate-stderr timeout 2 "$FMB" mesh large.ply large.ply
     ended 124
     said ''
 }

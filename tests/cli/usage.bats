@@ -100,8 +100,6 @@ mesh:a.obj --rotate= b.obj
 mesh:a.obj --mirror xy b.obj
 mesh:a.obj --mirror= b.obj
 mesh:a.obj --as cubes b.obj
-mesh:a.obj --method sat b.obj
-mesh:a.obj --method guess b.obj
 mesh:a.obj --duration -1 b.obj
 mesh:a.obj --duration nan b.obj
 mesh:a.obj -x b.obj

@@ -190,10 +190,7 @@ static void meshes_meet_where_every_pair_says(void **state)
     for (long n = draw_sample(150); n > 0; n--) {
         struct mesh mesh[2];
         draw_soups(&draw, mesh);
-        const struct mesh_query question = {.a = &mesh[0],
-                                            .b = &mesh[1],
-                                            .duration = 1,
-                                            .method = n % 8 ? NULL : fmb_method_by_name("exact")};
+        const struct mesh_query question = {.a = &mesh[0], .b = &mesh[1], .duration = 1};
         assert_meeting_of_two(&question);
         mesh_free(&mesh[0]);
         mesh_free(&mesh[1]);
@@ -218,8 +215,7 @@ static void moving_meshes_meet_where_every_pair_says(void **state)
             .a = &mesh[0],
             .b = &mesh[1],
             .velocity = {who & 1 ? velocity[0] : NULL, who & 2 ? velocity[1] : NULL},
-            .duration = n % 4 ? 1 : draw_int(&draw, 0, 3) * 0.7,
-            .method = n % 8 ? NULL : fmb_method_by_name("exact")};
+            .duration = n % 4 ? 1 : draw_int(&draw, 0, 3) * 0.7};
         assert_meeting_of_two(&question);
         mesh_free(&mesh[0]);
         mesh_free(&mesh[1]);
@@ -330,8 +326,7 @@ static void tetrahedra_are_those_of_the_article(void **state)
             .b = &mesh[1],
             .as = MESH_TETRAHEDRA,
             .velocity = {n % 3 == 0 ? velocity : NULL, n % 4 == 0 ? velocity : NULL},
-            .duration = 2,
-            .method = n % 8 ? NULL : fmb_method_by_name("exact")};
+            .duration = 2};
         assert_tetrahedra(&question);
         mesh_free(&mesh[0]);
         mesh_free(&mesh[1]);
