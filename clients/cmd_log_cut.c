@@ -23,9 +23,8 @@ static const char usage[] =
     "  --force              FILE may exist already\n"
     "  --from S, --to S     events logged from S on and before S, in seconds since\n"
     "                       the first event, as in 'fmb replay'\n"
-    "  --channel NAME       events on this channel; or NAME is a POSIX extended\n"
-    "                       regular expression that matches the whole name. May be\n"
-    "                       repeated\n"
+    "  --channel REGEX      events on channels whose whole name matches the POSIX\n"
+    "                       extended regular expression\n"
     "  --json               one line of JSON in place of the text\n"
     "  -p, --prefix P       the service's channels begin with P\n"
     "  -h, --help\n"
@@ -46,13 +45,6 @@ struct log_cut_arguments {
     bool json;
 };
 
-static bool take_channel(const struct args *args, void *choice)
-{
-    char why[LOG_CHOICE_WHY_MAX];
-    return log_choice_add_channel(choice, optarg, why) ||
-           args_error(args, "--channel: '%s' is no regular expression: %s", optarg, why);
-}
-
 /* ---- Reports ---- */
 
 /* Most damaged places that are printed; the others are counted. */
@@ -60,23 +52,15 @@ enum { COMPLAINTS_MAX = 20 };
 
 struct cut_run {
     const struct log_cut_arguments *options;
-    struct progress progress;
     int64_t complaints;
 };
 
 static void on_damage(void *user, int log, const struct log_damage *damage)
 {
     struct cut_run *run = user;
-    progress_end(&run->progress);
     if (run->complaints++ < COMPLAINTS_MAX)
         complain("%s: offset %" PRId64 ": %" PRId64 " bytes: %s; left out",
                  run->options->cut.log[log], damage->offset, damage->length, damage->what);
-}
-
-static void on_progress(void *user, int64_t bytes, int64_t of)
-{
-    struct cut_run *run = user;
-    progress_to(&run->progress, bytes, of);
 }
 
 static const struct {
@@ -148,11 +132,12 @@ static int code_of(const struct cut_run *run, const struct log_cut_counts *count
 
 static int run_cut(const struct log_cut_arguments *options)
 {
-    struct cut_run run = {.options = options, .progress = progress_begin("bytes", 0)};
-    const struct log_cut_sink sink = {on_damage, on_progress, &run};
+    struct cut_run run = {.options = options};
+    const struct log_cut_sink sink = {on_damage, &run};
     struct log_cut_counts counts;
+    progress_begin("bytes");
     const bool good = log_cut(&options->cut, &sink, &counts);
-    progress_end(&run.progress);
+    progress_end();
     const int code = good ? code_of(&run, &counts) : ARGS_USAGE;
     if (good && options->json)
         print_json(&counts, code);
@@ -172,7 +157,7 @@ int cmd_log_cut(int argc, char **argv)
         {"force", ARGS_FLAG, .out = &rules.force},
         {"from", ARGS_NUMBER, &choice->from, .high = 1e12},
         {"to", ARGS_NUMBER, &choice->to, .high = 1e12},
-        {"channel", ARGS_OTHER, choice, .take = take_channel},
+        {"channel", ARGS_OTHER, choice, .take = log_choice_take_channel},
         {"json", ARGS_FLAG, .out = &options.json},
         {.name = NULL},
     };

@@ -29,19 +29,19 @@ static const char usage[] =
 /* Reads a log. Returns NULL, or why it could not be read to its end. */
 static const char *read_all(struct log_reader *reader, struct log_info *info)
 {
-    struct progress progress = progress_begin("bytes", log_size(reader));
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
+    progress_begin("bytes");
     while ((outcome = log_next(reader, &event, &damage)) < LOG_END) {
         if (outcome == LOG_EVENT)
             log_info_event(info, &event);
         else
             log_info_damage(info, &damage);
-        progress_to(&progress, outcome == LOG_EVENT ? event.offset : damage.offset, progress.total);
+        progress_to(outcome == LOG_EVENT ? event.offset : damage.offset, log_size(reader));
     }
     const int error = errno;
-    progress_end(&progress);
+    progress_end();
     log_info_end(info);
     if (outcome == LOG_END)
         return NULL;

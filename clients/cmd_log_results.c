@@ -73,11 +73,11 @@ static void take_event(struct printing *printing, const struct log_event *event)
 /* Damage ends the run, with the rows before it. */
 static void take_all(struct printing *printing)
 {
-    struct progress progress = progress_begin("bytes", input_size(&printing->input));
     struct log_event event;
     struct log_damage damage;
     enum log_outcome outcome;
     bool more = true;
+    progress_begin("bytes");
     while (more && !ferror(stdout) &&
            (outcome = input_next(&printing->input, &event, &damage)) != LOG_END) {
         more = outcome == LOG_EVENT;
@@ -87,9 +87,9 @@ static void take_all(struct printing *printing)
             note(&printing->unreadable, printing->input.log,
                  outcome == LOG_DAMAGE ? damage.offset : printing->input.passed,
                  outcome == LOG_DAMAGE ? damage.what : strerror(errno));
-        progress_to(&progress, printing->input.passed, progress.total);
+        progress_to(printing->input.passed, input_size(&printing->input));
     }
-    progress_end(&progress);
+    progress_end();
 }
 
 /* Returns whether there are none. */

@@ -144,11 +144,9 @@ static int run_scene(struct log_query_options *options)
                                   [LOG_QUERY_NONE] = ARGS_FAILED,
                                   [LOG_QUERY_FAILED] = ARGS_USAGE};
     struct log_query *query = allocate(1, sizeof *query);
-    struct progress progress = progress_begin("bytes", 0);
-    options->progress = progress_to;
-    options->user = &progress;
+    progress_begin("bytes");
     const enum log_query_outcome outcome = log_query(options, query);
-    progress_end(&progress);
+    progress_end();
     int code = code_of[outcome];
     if (outcome == LOG_QUERY_FOUND)
         code = check_query(query) ? print_scene(query) : ARGS_FAILED;

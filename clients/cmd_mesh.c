@@ -181,10 +181,9 @@ static bool take_as(const struct args *args, void *out)
 static bool read_mesh(const char *path, const struct placed *placed, struct mesh *out)
 {
     char error[MESH_ERROR_MAX];
-    struct progress progress = progress_begin("bytes", 0);
-    const struct mesh_progress watch = {progress_to, &progress};
-    const bool good = mesh_read(path, MESH_TRIANGLES, &watch, out, error);
-    progress_end(&progress);
+    progress_begin("bytes");
+    const bool good = mesh_read(path, MESH_TRIANGLES, out, error);
+    progress_end();
     if (!good) {
         complain("%s: %s", path, error);
         return false;
@@ -223,19 +222,17 @@ static int print_answer(const struct mesh_options *options, const struct mesh_re
 
 static int intersect(const struct mesh_options *options, const struct mesh mesh[2], char **names)
 {
-    struct progress progress = progress_begin("faces", 0);
     const struct mesh_query query = {
         .a = &mesh[0],
         .b = &mesh[1],
         .as = options->as,
         .velocity = {options->placed[0].moving ? options->placed[0].velocity : NULL,
                      options->placed[1].moving ? options->placed[1].velocity : NULL},
-        .duration = options->duration,
-        .report = progress_to,
-        .context = &progress};
+        .duration = options->duration};
     struct mesh_intersection intersection;
+    progress_begin("faces");
     const enum fmb_status status = mesh_intersect(&query, &intersection);
-    progress_end(&progress);
+    progress_end();
     if (status != FMB_OK) {
         complain("%s", status == FMB_NOT_FINITE
                            ? "the normal of a face is beyond the doubles: scale the meshes"

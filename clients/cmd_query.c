@@ -97,14 +97,14 @@ struct query {
     struct page *page;           /* NULL: none */
     struct answers_bus *answers; /* NULL: not opened yet */
     const struct fmb_scene *scene;
-    struct progress progress;
-    bool undecided;        /* a pair has no verdict */
-    uint64_t unproven;     /* pairs without a certificate because a body has several frames */
-    bool has_margin;       /* a scene has a margin */
-    int64_t scenes, empty; /* empty: scenes without a pair to decide */
-    bool moves;            /* a body moves in a scene whose duration is not 0 */
-    int64_t still_body;    /* first body that would move if the duration were not 0; 0: none */
-    int worst;             /* severity of all pairs */
+    int64_t pairs, answered; /* of the scene */
+    bool undecided;          /* a pair has no verdict */
+    uint64_t unproven;       /* pairs without a certificate because a body has several frames */
+    bool has_margin;         /* a scene has a margin */
+    int64_t scenes, empty;   /* empty: scenes without a pair to decide */
+    bool moves;              /* a body moves in a scene whose duration is not 0 */
+    int64_t still_body;      /* first body that would move if the duration were not 0; 0: none */
+    int worst;               /* severity of all pairs */
 };
 
 static bool take_method(const struct args *args, void *out)
@@ -155,7 +155,7 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
     query->undecided = query->undecided || checked.status != FMB_OK;
     const int found = severity(query->scene->margin, &checked.answer);
     query->worst = found > query->worst ? found : query->worst;
-    progress_to(&query->progress, query->progress.done + 1, query->progress.total);
+    progress_to(++query->answered, query->pairs);
 }
 
 /* Records what report_limits() reports of a scene. */
@@ -190,16 +190,17 @@ static bool answer_scene(struct query *query, struct owned_scene *owner)
     report_begin_scene(&query->rows, owner);
     if (query->page)
         page_scene_begin(query->page, scene);
-    query->progress = progress_begin("pairs", (int64_t) pairs);
-    if (isatty(STDOUT_FILENO)) /* the answers themselves show the progress */
-        query->progress.enabled = false;
+    query->pairs = (int64_t) pairs;
+    query->answered = 0;
+    if (!isatty(STDOUT_FILENO)) /* there the answers themselves show the progress */
+        progress_begin("pairs");
     if (!query->local && !query->answers)
         query->answers = answers_bus_open(&query->bus, query->timeout, (int) query->retries);
     if (query->local)
         answers_local(owner, take_answer, query);
     else
         more = answers_bus_scene(query->answers, owner, take_answer, query);
-    progress_end(&query->progress);
+    progress_end();
     report_end_scene(&query->rows);
     if (query->page)
         page_step_end(query->page);

@@ -53,10 +53,10 @@ static const char usage[] =
 
 struct record_options {
     bool json, all;
-    double duration; /* seconds; 0: no end */
-    long count;      /* 0: no end */
-    const char *channel;
-    double split_mb; /* 0: one file */
+    double duration;          /* seconds; 0: no end */
+    long count;               /* 0: no end */
+    struct log_choice others; /* channels that are recorded too */
+    double split_mb;          /* 0: one file */
     struct log_parts_options parts;
 };
 
@@ -65,7 +65,6 @@ struct recording {
     struct args_bus bus;
     struct fmb_client *client;
     struct log_channels channels;
-    struct log_choice others; /* other channels that are recorded too */
     struct log_parts parts;
     struct record_bodies *bodies;
     struct recorded recorded;
@@ -85,7 +84,7 @@ static int complete(const struct args *args, struct record_options *options)
         args_error(args, "expected a FILE to write");
     else if (options->parts.keep > 0 && options->split_mb == 0)
         args_error(args, "--max-files: there is one file only without --split-mb");
-    else if (options->all && options->channel)
+    else if (options->all && options->others.has_channel)
         args_error(args, "--channel: --all records all channels");
     else {
         options->parts.path = args->operands[0];
@@ -142,7 +141,8 @@ static void on_message(void *user, const struct bus_message *message)
                                     .channel_length = strlen(message->channel)};
     const enum log_kind kind = log_kind_of(&recording->channels, &event);
     if (recording->enough || recording->error ||
-        (kind == LOG_OTHER && !log_choice_has_channel(&recording->others, &event)))
+        (kind == LOG_OTHER &&
+         !log_choice_has_channel(&recording->options->others, message->channel)))
         return;
     const char *wrong = record_bodies_read(recording->bodies, kind, message->bytes, message->size);
     const enum record_bodies_owner owner = record_bodies_owner(recording->bodies);
@@ -315,7 +315,7 @@ static int record_from_bus(struct recording *recording)
 
 static bool open_bus(struct recording *recording, const struct args_bus *args)
 {
-    const bool others = recording->options->all || recording->options->channel;
+    const bool others = recording->options->all || recording->options->others.has_channel;
     recording->bus = *args;
     recording->channels = log_channels(args->prefix);
     recording->client = args_open_client(args, (struct fmb_client_options){0});
@@ -327,19 +327,10 @@ static bool open_bus(struct recording *recording, const struct args_bus *args)
     return good;
 }
 
-static bool choose_others(const struct args *args, struct recording *recording)
-{
-    const char *channel = recording->options->channel;
-    char why[LOG_CHOICE_WHY_MAX];
-    recording->others = log_choice_all();
-    return !channel || log_choice_add_channel(&recording->others, channel, why) ||
-           args_error(args, "--channel: '%s' is no regular expression: %s", channel, why);
-}
-
 int cmd_record(int argc, char **argv)
 {
     static struct recording recording;
-    struct record_options options = {.json = false};
+    struct record_options options = {.others = log_choice_all()};
     const struct args_option own[] = {
         {"force", ARGS_FLAG, .out = &options.parts.force},
         {"json", ARGS_FLAG, .out = &options.json},
@@ -347,7 +338,7 @@ int cmd_record(int argc, char **argv)
         {"count", ARGS_INTEGER, &options.count, .low = 1, .high = 1e12},
         {"split-mb", ARGS_NUMBER, &options.split_mb, .low = 0.001, .high = 1e6},
         {"max-files", ARGS_INTEGER, &options.parts.keep, .low = 1, .high = 1e6},
-        {"channel", ARGS_TEXT, .out = &options.channel},
+        {"channel", ARGS_OTHER, &options.others, .take = log_choice_take_channel},
         {"all", ARGS_FLAG, .out = &options.all},
         {.name = NULL},
     };
@@ -356,11 +347,9 @@ int cmd_record(int argc, char **argv)
     int code = args_parse(&args, argc, argv);
     if (code == ARGS_RUN)
         code = complete(&args, &options);
-    if (code == ARGS_RUN && !choose_others(&args, &recording))
-        code = ARGS_USAGE;
     if (code == ARGS_RUN)
         code = open_bus(&recording, &args.bus) ? record_from_bus(&recording) : ARGS_FAILED;
     fmb_client_close(recording.client);
-    log_choice_clear(&recording.others);
+    log_choice_clear(&options.others);
     return code;
 }

@@ -114,7 +114,6 @@ enum { COMPLAINTS_MAX = 20 };
 
 struct replay_run {
     const struct replay_arguments *options;
-    struct progress progress;
     bool begun; /* the logs were opened, */
     bool good;  /* and read to their end */
     int64_t first_utime;
@@ -139,7 +138,6 @@ static void on_found(void *user, const struct difference *found)
 /* Counts a complaint. Returns whether it may be printed. */
 static bool complains(struct replay_run *run)
 {
-    progress_end(&run->progress);
     return run->complaints++ < COMPLAINTS_MAX;
 }
 
@@ -162,8 +160,8 @@ static void on_damage(void *user, int log, const struct log_damage *damage)
 
 static void on_progress(void *user, int64_t bytes, int64_t of)
 {
-    struct replay_run *run = user;
-    progress_to(&run->progress, bytes, of);
+    (void) user;
+    progress_to(bytes, of);
 }
 
 /* ---- Files and outcome ---- */
@@ -321,9 +319,9 @@ static int replay(struct replay_run *run, struct tally *tally)
     const struct replay_arguments *options = run->options;
     const struct replay_sink sink = {on_found, on_unreadable, on_damage, on_progress, run};
     struct tally all = {.events = 0};
-    run->progress = progress_begin("bytes", 0);
+    progress_begin("bytes");
     bool good = replay_run(&options->replay, &sink, tally);
-    progress_end(&run->progress);
+    progress_end();
     for (int log = 0; log < options->replay.log_count; log++)
         tally_add(&all, &tally[log]);
     run->begun = good || all.events + all.damages > 0;

@@ -1,6 +1,7 @@
 #include "complain.h"
 
 #include "escape.h"
+#include "progress.h"
 
 #include <errno.h>
 #include <string.h>
@@ -11,6 +12,7 @@ static void print_line(const char *who, const char *place, const char *format, v
 {
     char text[COMPLAIN_MAX];
     vsnprintf(text, sizeof text, format, list);
+    progress_clear();
     fputs(who, stderr);
     escape_text(stderr, place);
     fputs(": ", stderr);

@@ -3,6 +3,7 @@
 #include "clock.h"
 #include "number.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -11,33 +12,40 @@ static const int64_t first_after_ns = 1000000000, every_ns = 200000000;
 /* Calls of progress_to() for each reading of the clock. */
 enum { STEPS = 64 };
 
-struct progress progress_begin(const char *unit, int64_t total)
+static struct {
+    const char *unit; /* NULL: there is no count, or no terminal */
+    unsigned steps;
+    int64_t next_at; /* when the line is shown; clock_ns() */
+    bool shown;      /* the line has text on it */
+} line;
+
+void progress_begin(const char *unit)
 {
-    return (struct progress){
-        .enabled = isatty(STDERR_FILENO), .unit = unit, .total = total, .started_at = clock_ns()};
+    line.unit = isatty(STDERR_FILENO) ? unit : NULL;
+    line.next_at = clock_ns() + first_after_ns;
 }
 
-void progress_to(void *of, int64_t done, int64_t total)
+void progress_to(int64_t done, int64_t total)
 {
-    struct progress *progress = of;
     char done_text[NUMBER_TEXT_MAX], total_text[NUMBER_TEXT_MAX];
-    progress->done = done;
-    progress->total = total;
-    if (!progress->enabled || ++progress->steps % STEPS != 0)
+    if (!line.unit || ++line.steps % STEPS != 0 || clock_ns() < line.next_at)
         return;
-    int64_t time = clock_ns();
-    if (time - progress->started_at < first_after_ns || time - progress->shown_at < every_ns)
-        return;
-    progress->shown_at = time;
-    progress->shown = true;
+    line.next_at = clock_ns() + every_ns;
+    line.shown = true;
     fprintf(stderr, "\rfmb: %s of %s %s", number_grouped(done, done_text),
-            number_grouped(total, total_text), progress->unit);
+            number_grouped(total, total_text), line.unit);
     fflush(stderr);
 }
 
-void progress_end(struct progress *progress)
+void progress_clear(void)
 {
-    if (progress->shown)
+    if (line.shown)
         fputs("\r\033[K", stderr);
-    progress->shown = false;
+    line.shown = false;
+}
+
+void progress_end(void)
+{
+    progress_clear();
+    line.unit = NULL;
 }

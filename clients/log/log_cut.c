@@ -8,6 +8,7 @@
 #include "log_write.h"
 #include "logged_query.h"
 #include "match.h"
+#include "progress.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -29,7 +30,6 @@ struct cutter {
 
     struct match match;
     struct logged_result result;
-    bool has[LOG_STATUS]; /* [kind]: whether the channel is chosen */
     bool started;
     int64_t first_utime; /* of the first event */
 
@@ -67,7 +67,7 @@ static void read_logs(struct cutter *cut,
             take_event(cut, &event);
         else if (take_damage)
             take_damage(cut, &damage);
-        cut->sink->progress(cut->sink->user, cut->input.passed / 2, input_size(&cut->input));
+        progress_to(cut->input.passed / 2, input_size(&cut->input));
     }
     if (outcome == LOG_FAILED)
         fail_input(cut, errno);
@@ -101,16 +101,6 @@ static void survey_event(struct cutter *cut, const struct log_event *event)
         match_add(&cut->match, &item);
     definitions_add_message(cut->definitions, cut->names, kind, event->data,
                             (uint32_t) event->kept);
-}
-
-static void choose_channels(struct cutter *cut)
-{
-    const struct log_channels *channels = &cut->channels;
-    for (int kind = 0; kind < LOG_STATUS; kind++) {
-        const struct log_event event = {.channel = channels->name[kind],
-                                        .channel_length = channels->length[kind]};
-        cut->has[kind] = log_choice_has_channel(&cut->options->choice, &event);
-    }
 }
 
 /* ---- Writing ---- */
@@ -198,7 +188,7 @@ static bool is_chosen(struct cutter *cut, enum log_kind kind, const struct log_e
     const struct log_choice *choice = &cut->options->choice;
     const struct match_item *item = next_item(cut, event);
     const struct match_item *query = item && item->is_result ? item->other : item;
-    if (kind < LOG_STATUS ? !cut->has[kind] : !log_choice_has_channel(choice, event))
+    if (!log_choice_has_channel(choice, event->channel))
         return false;
     if (query)
         return query->place.in_range;
@@ -247,7 +237,6 @@ static void run(struct cutter *cut)
 {
     cut->definitions = definitions_open();
     cut->names = body_names_open();
-    choose_channels(cut);
     read_logs(cut, survey_event, NULL);
     match_all(&cut->match);
     input_begin(&cut->input, 0);

@@ -41,8 +41,6 @@ struct log_cut_counts {
 /* Callbacks during the cut. None may be NULL. */
 struct log_cut_sink {
     void (*damage)(void *user, int log, const struct log_damage *damage);
-    /* So many bytes out of so many have been read. */
-    void (*progress)(void *user, int64_t bytes, int64_t of);
     void *user;
 };
 

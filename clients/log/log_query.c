@@ -4,6 +4,7 @@
 #include "complain.h"
 #include "input.h"
 #include "log_kind.h"
+#include "progress.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -96,7 +97,7 @@ static void read_logs(struct query_search *search)
     while ((outcome = input_next(input, &event, &damage)) < LOG_END) {
         if (outcome == LOG_EVENT)
             take_event(search, &event);
-        options->progress(options->user, input->passed, input_size(input));
+        progress_to(input->passed, input_size(input));
     }
     if (outcome == LOG_FAILED) {
         complain("%s: %s", options->log[input->log], strerror(errno));

@@ -17,9 +17,6 @@ struct log_query_options {
     enum { LOG_QUERY_NUMBER, LOG_QUERY_OFFSET, LOG_QUERY_IDS } by;
     int64_t number, offset;
     int64_t client_id, sequence_number;
-    /* So many bytes out of so many have been read. */
-    void (*progress)(void *user, int64_t bytes, int64_t of);
-    void *user;
 };
 
 struct log_query {

@@ -89,10 +89,10 @@ static bool read_any(struct mesh_source *source, const char *name, struct mesh *
 }
 
 bool mesh_parse(const void *bytes, size_t size, const char *name, enum mesh_faces faces,
-                const struct mesh_progress *watch, struct mesh *out, char error[MESH_ERROR_MAX])
+                struct mesh *out, char error[MESH_ERROR_MAX])
 {
-    struct mesh_source source = {.begin = bytes, .faces = faces, .watch = watch, .error = error};
-    source.at = source.reported = source.begin;
+    struct mesh_source source = {.begin = bytes, .faces = faces, .error = error};
+    source.at = source.begin;
     source.end = source.begin + size;
     error[0] = '\0';
     *out = (struct mesh){0};
@@ -161,8 +161,8 @@ static unsigned char *read_file(const char *path, size_t *size, char error[MESH_
     return bytes;
 }
 
-bool mesh_read(const char *path, enum mesh_faces faces, const struct mesh_progress *watch,
-               struct mesh *out, char error[MESH_ERROR_MAX])
+bool mesh_read(const char *path, enum mesh_faces faces, struct mesh *out,
+               char error[MESH_ERROR_MAX])
 {
     size_t size = 0;
     *out = (struct mesh){0};
@@ -170,9 +170,7 @@ bool mesh_read(const char *path, enum mesh_faces faces, const struct mesh_progre
     if (why)
         snprintf(error, MESH_ERROR_MAX, "%s", why);
     unsigned char *bytes = why ? NULL : read_file(path, &size, error);
-    const bool good = bytes && mesh_parse(bytes, size, path, faces, watch, out, error);
-    if (good && watch)
-        watch->report(watch->context, (int64_t) size, (int64_t) size);
+    const bool good = bytes && mesh_parse(bytes, size, path, faces, out, error);
     free(bytes);
     return good;
 }

@@ -44,13 +44,6 @@ struct mesh {
  * vertices and faces count from 0. */
 enum { MESH_ERROR_MAX = 256 };
 
-/* A progress callback. It is called from time to time with the number of bytes processed and the
- * size of the file. */
-struct mesh_progress {
-    void (*report)(void *context, int64_t done, int64_t total);
-    void *context;
-};
-
 /* What is read of an OBJ besides triangles. */
 enum mesh_faces {
     MESH_TRIANGLES, /* nothing: the mesh is refused */
@@ -60,16 +53,17 @@ enum mesh_faces {
 /* Returns why a file with the extension of this name is refused; NULL: it may be a mesh. */
 const char *mesh_unsupported(const char *name);
 
-/* Reads a mesh from a regular file. The whole file is in memory during the call. watch: may be
- * NULL. Returns true and a mesh, which the caller passes to mesh_free(); or false, an empty mesh
- * and the error. A path that is not a regular file is an error, and never blocks. */
-bool mesh_read(const char *path, enum mesh_faces faces, const struct mesh_progress *watch,
-               struct mesh *out, char error[MESH_ERROR_MAX]);
+/* Reads a mesh from a regular file. The whole file is in memory during the call. Progress
+ * is counted in bytes (progress.h). Returns true and a mesh, which the caller passes to
+ * mesh_free(); or false, an empty mesh and the error. A path that is not a regular file is an
+ * error, and never blocks. */
+bool mesh_read(const char *path, enum mesh_faces faces, struct mesh *out,
+               char error[MESH_ERROR_MAX]);
 
 /* As mesh_read(), from a file in memory. In: bytes[size] must be readable and 0; name: of the file,
  * may be ""; only its extension is used. */
 bool mesh_parse(const void *bytes, size_t size, const char *name, enum mesh_faces faces,
-                const struct mesh_progress *watch, struct mesh *out, char error[MESH_ERROR_MAX]);
+                struct mesh *out, char error[MESH_ERROR_MAX]);
 
 /* Frees the arrays. On output: an empty mesh. */
 void mesh_free(struct mesh *mesh);

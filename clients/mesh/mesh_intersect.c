@@ -3,6 +3,7 @@
 #include "allocate.h"
 #include "clock.h"
 #include "fmb_batch.h"
+#include "progress.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -110,26 +111,17 @@ static void decide_block(struct mesh_search *search)
                  search->contact[i]);
 }
 
-/* Converts a number of nodes of the first tree to about as many faces. */
-static void report_progress(const struct mesh_search *search, uint64_t nodes)
-{
-    const struct mesh_query *query = search->query;
-    const uint64_t faces = query->a->face_count;
-    query->report(query->context, (int64_t) (faces * nodes / search->tree[0].node_count),
-                  (int64_t) faces);
-}
-
+/* Progress: the nodes of the first tree are converted to about as many faces. */
 static void decide_all(struct mesh_search *search)
 {
-    const struct mesh_query *query = search->query;
+    const uint64_t faces = search->query->a->face_count;
     struct fmb_tree_cursor cursor = {0};
     while (search->status == FMB_OK &&
            fmb_tree_pairs(&search->tree[0], &search->tree[1], &cursor, search->face, BLOCK,
                           &search->count) == FMB_OK &&
            search->count > 0) {
         decide_block(search);
-        if (query->report)
-            report_progress(search, cursor.leaf);
+        progress_to((int64_t) (faces * cursor.leaf / search->tree[0].node_count), (int64_t) faces);
     }
 }
 

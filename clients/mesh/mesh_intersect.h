@@ -10,9 +10,6 @@ struct mesh_query {
     enum mesh_as as;
     const double *velocity[2]; /* [3] of a and of b, finite; NULL: at rest */
     double duration;           /* of the window, seconds; finite, from 0 */
-    /* Progress, as an approximate number of faces of a. May be NULL. */
-    void (*report)(void *context, int64_t done, int64_t total);
-    void *context;
 };
 
 struct mesh_pair {
@@ -35,9 +32,9 @@ struct mesh_intersection {
 };
 
 /* In: meshes on which mesh_transform() succeeded. Returns FMB_OK and an intersection, which the
- * caller frees with mesh_intersection_free(). On error nothing needs to be freed: FMB_NOT_FINITE if
- * the normal of a face overflows (TETRAHEDRA). Exits with status 1 if memory is exhausted. No
- * shared state. */
+ * caller frees with mesh_intersection_free(). Progress is an approximate number of faces of a. On
+ * error nothing needs to be freed: FMB_NOT_FINITE if the normal of a face overflows (TETRAHEDRA).
+ * Exits with status 1 if memory is exhausted. No shared state. */
 enum fmb_status mesh_intersect(const struct mesh_query *query, struct mesh_intersection *out);
 void mesh_intersection_free(struct mesh_intersection *intersection);
 

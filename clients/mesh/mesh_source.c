@@ -59,14 +59,6 @@ void mesh_skip_line(struct mesh_source *source)
     source->at = end ? end : source->end;
 }
 
-void mesh_report_progress_now(struct mesh_source *source)
-{
-    const struct mesh_progress *watch = source->watch;
-    source->reported = source->at;
-    if (watch)
-        watch->report(watch->context, source->at - source->begin, source->end - source->begin);
-}
-
 /* strtod() also accepts hexadecimal numbers and nan(...). Here a number ends before the x and
  * before the parenthesis. */
 const unsigned char *mesh_number(const unsigned char *at, double *value)

@@ -4,16 +4,15 @@
 #define MESH_SOURCE_H
 
 #include "mesh.h"
+#include "progress.h"
 
 #include <string.h>
 
 struct mesh_source {
     const unsigned char *begin, *end; /* *end is readable, and 0 */
     const unsigned char *at;          /* position of the parser */
-    const unsigned char *reported;    /* position at the last progress report */
     enum mesh_faces faces;
-    const struct mesh_progress *watch; /* may be NULL */
-    char *error;                       /* capacity: MESH_ERROR_MAX */
+    char *error; /* capacity: MESH_ERROR_MAX */
     /* How errors name a place: in text by its line, else by its byte and the element that contains
      * it. within: kind of that element, such as "face"; NULL: none. index: of that element. */
     bool text;
@@ -49,14 +48,10 @@ const char *mesh_word(const struct mesh_source *source, const unsigned char *at,
 /* Advances to the end of the line, which is not consumed, or to the end of the file. */
 void mesh_skip_line(struct mesh_source *source);
 
-void mesh_report_progress_now(struct mesh_source *source);
-
-/* Reports progress about once a megabyte. Call it every few bytes. */
-static inline void mesh_report_progress(struct mesh_source *source)
+/* Counts progress in bytes. */
+static inline void mesh_report_progress(const struct mesh_source *source)
 {
-    enum { STEP = 1 << 20 };
-    if (source->at - source->reported >= STEP)
-        mesh_report_progress_now(source);
+    progress_to(source->at - source->begin, source->end - source->begin);
 }
 
 /* ---- Text. Inline: called for each character ---- */

@@ -21,7 +21,7 @@ struct growing {
     double *point_memory;         /* of the hull of a point */
     struct fmb_body hull;
     enum fmb_status status;
-    struct progress progress; /* of the points, by index */
+    int64_t done; /* points that have been looked at */
 };
 
 /* Makes the hull of the points that are used. Returns false on error. */
@@ -76,7 +76,7 @@ static bool prune(struct growing *growing)
     for (size_t i = 0; i < growing->count && growing->selected > 1; i++) {
         if (!growing->used[i])
             continue;
-        progress_to(&growing->progress, growing->progress.done, (int64_t) growing->count);
+        progress_to(growing->done, (int64_t) growing->count);
         growing->used[i] = false;
         growing->selected--;
         if (!make_hull(growing))
@@ -107,7 +107,7 @@ static bool grow(struct growing *growing)
     if (!select_point(growing, 0))
         return false;
     for (size_t i = 0; growing->status == FMB_OK && i < growing->count; i++) {
-        progress_to(&growing->progress, (int64_t) i, (int64_t) growing->count);
+        progress_to(growing->done = (int64_t) i, (int64_t) growing->count);
         while (!growing->used[i] && is_outside(growing, i, direction)) {
             const size_t best = farthest(growing, direction);
             if (!select_point(growing, growing->used[best] ? i : best))
@@ -123,13 +123,13 @@ enum fmb_status mesh_hull(const double (*point)[3], size_t count, double (*verte
     struct growing growing = {
         .point = point,
         .count = count,
-        .progress = progress_begin("vertices of a hull", (int64_t) count),
         .vertex = vertex,
         .used = allocate(count, sizeof *growing.used),
         .memory = allocate(fmb_hull_doubles(3, FMB_HULL_VERTICES_MAX), sizeof *growing.memory),
         .point_memory = allocate(fmb_hull_doubles(3, 1), sizeof *growing.point_memory)};
+    progress_begin("vertices of a hull");
     *found = grow(&growing) ? growing.selected : 0;
-    progress_end(&growing.progress);
+    progress_end();
     free(growing.used);
     free(growing.memory);
     free(growing.point_memory);

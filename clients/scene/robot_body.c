@@ -317,7 +317,7 @@ static bool add_mesh(struct frames *frames, const struct robot_element *element)
     char *path = find_mesh(frames, element);
     if (!path)
         return false;
-    const bool good = mesh_read(path, MESH_POLYGONS, NULL, &mesh, error)
+    const bool good = mesh_read(path, MESH_POLYGONS, &mesh, error)
                           ? add_objects(frames, element, path, &mesh)
                           : refuse(frames, element, "%s: %s", path, error);
     mesh_free(&mesh);

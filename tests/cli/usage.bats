@@ -122,6 +122,7 @@ log cut:-o FILE
 log cut:LOG -o FILE --from -1
 log cut:LOG -o FILE --to x
 log cut:LOG -o FILE --channel (
+log cut:LOG -o FILE --channel A --channel B
 log cut:LOG -o FILE --from 10 --to 5
 log cut:LOG -o FILE --from 1 --to 1
 log cut:LOG -o FILE --what

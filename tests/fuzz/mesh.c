@@ -119,7 +119,7 @@ static void check_file(const uint8_t *bytes, size_t size, const char *name)
 {
     struct mesh mesh;
     char error[MESH_ERROR_MAX];
-    if (mesh_parse(bytes, size, name, MESH_TRIANGLES, NULL, &mesh, error)) {
+    if (mesh_parse(bytes, size, name, MESH_TRIANGLES, &mesh, error)) {
         check_mesh(&mesh, size);
         if (is_stl(bytes, size))
             check_stl(&mesh, bytes);

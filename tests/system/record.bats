@@ -401,7 +401,7 @@ hulls() {
     stop_fmbd
     "$FMB" replay --json "$log" > "$BATS_TEST_TMPDIR/replay"
     jq -e '.same >= 1 and .different == 0' "$BATS_TEST_TMPDIR/replay"
-    "$FMB" log cut -o "$BATS_TEST_TMPDIR/cut" --channel FMB_SCENE_QUERY --channel FMB_SCENE_RESULT "$log"
+    "$FMB" log cut -o "$BATS_TEST_TMPDIR/cut" --channel 'FMB_SCENE_.*' "$log"
     "$FMB" replay "$BATS_TEST_TMPDIR/cut"
     "$FMB" log scene --event 1 "$BATS_TEST_TMPDIR/cut" 2> "$messages" |
         "$FMB" query --json --box --local | cmp - "$BATS_TEST_TMPDIR/local"
@@ -476,7 +476,7 @@ END
     second=$log.001
     client=$("$FMB" log info --json "$second" | jq .names[0].client_id)
     cut=$BATS_TEST_TMPDIR/cut
-    "$FMB" log cut --json --from 0.0001 --channel 'FMB_SCENE.*' --channel FMB_DEFINITION "$second" -o "$cut" > "$report"
+    "$FMB" log cut --json --from 0.0001 --channel 'FMB_SCENE.*|FMB_DEFINITION' "$second" -o "$cut" > "$report"
     is '.added_names == 2 and .names == 0 and .unknown_handles == 0 and .scene_queries > 0'
     for file in "$second" "$cut"; do
         [ "$("$FMB" log info --json "$file" | jq -c '[.names[] | [.body_id, .name]]')" = '[[1,"table <top>"],[3,"näpf"]]' ]

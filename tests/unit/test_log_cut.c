@@ -197,7 +197,7 @@ static bool is_added(const struct log_event *event)
 static bool is_chosen(const struct log_choice *choice, const struct log_event *event)
 {
     return log_choice_has_time(choice, LOG_WORLD_BEGIN, event->utime) &&
-           log_choice_has_channel(choice, event);
+           log_choice_has_channel(choice, event->channel);
 }
 
 /* The next event that the cut has not added. */
@@ -238,12 +238,6 @@ static void on_cut_damage(void *user, int log, const struct log_damage *damage)
     on_damage(user, log, damage);
 }
 
-static void on_cut_progress(void *user, int64_t bytes, int64_t of)
-{
-    (void) user;
-    assert_in_range(bytes, 0, of);
-}
-
 static struct log_cut_counts cut_logs(char *const *log, int count, const char *output,
                                       const struct log_choice *choice)
 {
@@ -253,7 +247,7 @@ static struct log_cut_counts cut_logs(char *const *log, int count, const char *o
                                             .prefix = "",
                                             .output = {output, OUTPUT_LOG, &rules, NULL},
                                             .choice = *choice};
-    const struct log_cut_sink sink = {on_cut_damage, on_cut_progress, NULL};
+    const struct log_cut_sink sink = {on_cut_damage, NULL};
     struct log_cut_counts counts;
     unlink(output);
     assert_true(log_cut(&options, &sink, &counts));
@@ -309,13 +303,14 @@ static struct log_choice draw_choice(struct log_world *world)
     static const char *const channel[] = {"FMB_(PAIR|SCENE)_.*|CAMERA", "FMB_SCENE_.*|.*RESULT",
                                           "FMB_.*_RESULT"};
     struct log_choice choice = log_choice_all();
-    char why[LOG_CHOICE_WHY_MAX];
     if (world_draw(world, 4) > 0)
         choice.from = draw_time(world);
     if (world_draw(world, 4) > 1)
         choice.to = choice.from == -INFINITY ? draw_time(world) : choice.from + draw_time(world);
-    if (world_draw(world, 4) == 0)
-        assert_true(log_choice_add_channel(&choice, channel[world_draw(world, 3)], why));
+    if (world_draw(world, 4) == 0) {
+        optarg = (char *) (uintptr_t) channel[world_draw(world, 3)];
+        assert_true(log_choice_take_channel(NULL, &choice));
+    }
     return choice;
 }
 

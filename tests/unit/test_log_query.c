@@ -38,12 +38,6 @@ static int remove_path(void **state)
 
 /* ---- Taking out ---- */
 
-static void on_progress(void *user, int64_t bytes, int64_t of)
-{
-    (void) user;
-    assert_in_range(bytes, 0, of);
-}
-
 /* What it says is for people. */
 static enum log_query_outcome look_for(struct log_query_options options)
 {
@@ -52,7 +46,6 @@ static enum log_query_outcome look_for(struct log_query_options options)
     options.log = &log;
     options.log_count = 1;
     options.prefix = "";
-    options.progress = on_progress;
     log_query_clear(&found);
     fflush(stderr);
     dup2(nowhere, STDERR_FILENO);

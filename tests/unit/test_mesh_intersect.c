@@ -12,7 +12,6 @@
 #include "mesh_face.h"
 #include "mesh_intersect.h"
 #include "mesh_transform.h"
-#include "progress_seen.h"
 #include "triangles.h"
 
 /* ---- Meshes ---- */
@@ -365,26 +364,6 @@ static void normals_beyond_the_doubles_are_reported(void **state)
     assert_int_equal(intersect_of_size(0x1p-1074, MESH_FACES), FMB_OK);
 }
 
-/* ---- Progress ---- */
-
-static void progress_goes_on_to_its_end(void **state)
-{
-    struct draw draw;
-    struct mesh mesh[2];
-    struct progress_seen seen = {0};
-    struct mesh_intersection meeting;
-    draw_begin(&draw, "progress_goes_on_to_its_end");
-    for (int m = 0; m < 2; m++)
-        draw_soup(&draw, &grids[0], 3, 100, 200, &mesh[m]);
-    const struct mesh_query question = {
-        .a = &mesh[0], .b = &mesh[1], .duration = 1, .report = progress_seen, .context = &seen};
-    assert_int_equal(mesh_intersect(&question, &meeting), FMB_OK);
-    assert_true(seen.times > 10 && seen.done > 0);
-    mesh_intersection_free(&meeting);
-    mesh_free(&mesh[0]);
-    mesh_free(&mesh[1]);
-}
-
 static void empty_meshes_meet_nothing(void **state)
 {
     struct mesh mesh[3] = {{0}};
@@ -534,7 +513,6 @@ int main(void)
         cmocka_unit_test(closed_meshes_meet_where_every_pair_says),
         cmocka_unit_test(tetrahedra_are_those_of_the_article),
         cmocka_unit_test(normals_beyond_the_doubles_are_reported),
-        cmocka_unit_test(progress_goes_on_to_its_end),
         cmocka_unit_test(empty_meshes_meet_nothing),
         cmocka_unit_test(right_angles_are_exact),
         cmocka_unit_test(other_angles_are_near),

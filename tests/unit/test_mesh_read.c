@@ -13,8 +13,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "progress_seen.h"
-
 /* ---- Bytes that a file has ------------------------------------------------------------------- */
 
 enum { FILE_MAX = 1 << 16 };
@@ -60,7 +58,7 @@ static bool parse(const void *bytes, size_t size, const char *name, struct mesh 
     if (size > 0)
         memcpy(copy, bytes, size);
     copy[size] = '\0';
-    const bool good = mesh_parse(copy, size, name, MESH_TRIANGLES, NULL, out, error);
+    const bool good = mesh_parse(copy, size, name, MESH_TRIANGLES, out, error);
     free(copy);
     return good;
 }
@@ -624,7 +622,7 @@ static void expect_unread(const char *path, const char *expected)
 {
     struct mesh mesh;
     char error[MESH_ERROR_MAX];
-    assert_false(mesh_read(path, MESH_TRIANGLES, NULL, &mesh, error));
+    assert_false(mesh_read(path, MESH_TRIANGLES, &mesh, error));
     assert_string_equal(error, expected);
     assert_true(!mesh.vertex && !mesh.face);
 }
@@ -639,8 +637,6 @@ static void only_regular_files_are_read(void **state)
 {
     static const char lfs[] = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n";
     char folder[] = "/tmp/fmb-test-XXXXXX", path[64], error[MESH_ERROR_MAX];
-    struct progress_seen seen = {0};
-    const struct mesh_progress watch = {.report = progress_seen, .context = &seen};
     struct mesh mesh;
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/mesh.obj", folder);
@@ -655,9 +651,8 @@ static void only_regular_files_are_read(void **state)
     write_file(path, lfs, sizeof lfs - 1);
     expect_unread(path, "byte 0: a Git LFS pointer, not the mesh: run 'git lfs pull'");
     write_file(path, obj, sizeof obj - 1);
-    assert_true(mesh_read(path, MESH_TRIANGLES, &watch, &mesh, error));
+    assert_true(mesh_read(path, MESH_TRIANGLES, &mesh, error));
     expect_mesh(mesh, 4, square, 2, halves);
-    assert_true(seen.times > 0 && seen.total == sizeof obj - 1 && seen.done == seen.total);
     unlink(path);
     rmdir(folder);
 }
@@ -674,7 +669,7 @@ static struct mesh read_back(const struct mesh *mesh,
     assert_non_null(file);
     write(file, mesh);
     assert_int_equal(fclose(file), 0);
-    if (!mesh_parse(bytes, size, "", MESH_TRIANGLES, NULL, &again, error))
+    if (!mesh_parse(bytes, size, "", MESH_TRIANGLES, &again, error))
         fail_msg("%s", error);
     free(bytes);
     return again;
