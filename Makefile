@@ -289,7 +289,7 @@ libraries := -lcjson -lexpat -llcm -lglib-2.0 -lseccomp -lz -lgmp -lm
 
 # fmb queries the bus through the library alone.
 programs := $(B)/fmbd $(B)/fmb
-demo_programs := $(B)/netns $(B)/arm
+demo_programs := $(B)/netns
 .PHONY: programs
 programs: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(shared_libraries) $(demo_programs)
 $(programs): linking = $(link_whole)

@@ -7,6 +7,7 @@ build=${1:?usage: run.sh BUILD_DIR}
 inside=${2-}
 out=$build/demo
 page=$out/scene.html
+arm=$(dirname "$0")/arm.json
 fmbd=
 
 say() {
@@ -33,7 +34,7 @@ explain() {
 
 # query [OPTIONS]: what meets in the scenes of the arm.
 query() {
-    "$build/arm" | "$build/fmb" query --contacts --html "$page" "$@"
+    "$build/fmb" query --contacts --html "$page" "$@" "$arm"
 }
 
 stop_fmbd() {
@@ -63,7 +64,7 @@ on_the_bus() {
     "$build/fmbd" 2> "$out/fmbd.log" &
     fmbd=$!
     wait_for_fmbd || return 1
-    say "$build/arm | $build/fmb query --contacts --html $page"
+    say "$build/fmb query --contacts --html $page $arm"
     query || return 1
     say "$build/fmb status"
     "$build/fmb" status
@@ -72,7 +73,7 @@ on_the_bus() {
 in_process() {
     say "network namespaces are forbidden here, and there is no route for multicast:" \
         "the same scene without the bus"
-    say "$build/arm | $build/fmb query --contacts --local --html $page"
+    say "$build/fmb query --contacts --local --html $page $arm"
     query --local
 }
 

@@ -183,33 +183,33 @@ suffices() {
     [ -f "$tree/build/deb"/fmb-*/debian/changelog ]
 }
 
-# make_arm OPTIONS: one program of one file, elsewhere, anew.
-make_arm() {
+# make_netns OPTIONS: one program of one file, elsewhere, anew.
+make_netns() {
     rm -rf "$BATS_TEST_TMPDIR"/[bo]
-    run env -u MAKEFLAGS -u MAKELEVEL make O="$BATS_TEST_TMPDIR/o" B="$BATS_TEST_TMPDIR/b" "$@" "$BATS_TEST_TMPDIR/b/arm"
+    run env -u MAKEFLAGS -u MAKELEVEL make O="$BATS_TEST_TMPDIR/o" B="$BATS_TEST_TMPDIR/b" "$@" "$BATS_TEST_TMPDIR/b/netns"
     [ "$status" = 0 ]
-    [ -x "$BATS_TEST_TMPDIR/b/arm" ]
+    [ -x "$BATS_TEST_TMPDIR/b/netns" ]
 }
 
 @test "make prints a line a file, with V=1 the commands, and with -s nothing" {
-    make_arm
-    [ "$output" = "  CC    clients/demo/arm.c"$'\n'"  LD    $BATS_TEST_TMPDIR/b/arm" ]
-    make_arm V=1
-    [[ ${lines[-2]} == *' -c clients/demo/arm.c '* && ${lines[-1]} == *" -o $BATS_TEST_TMPDIR/b/arm "* ]]
+    make_netns
+    [ "$output" = "  CC    clients/demo/netns.c"$'\n'"  LD    $BATS_TEST_TMPDIR/b/netns" ]
+    make_netns V=1
+    [[ ${lines[-2]} == *' -c clients/demo/netns.c '* && ${lines[-1]} == *" -o $BATS_TEST_TMPDIR/b/netns "* ]]
     [[ $output != *'  CC  '* ]]
-    make_arm -s
+    make_netns -s
     [ -z "$output" ]
 }
 
 @test "a user's flags come last, and those that change numbers are left out, with a warning" {
-    make_arm V=1 CC='gcc -Ofast' CPPFLAGS=-DX=1 CFLAGS='-O0 -funsafe-math-optimizations -ffp-contract=fast -Wno-shadow' \
+    make_netns V=1 CC='gcc -Ofast' CPPFLAGS=-DX=1 CFLAGS='-O0 -funsafe-math-optimizations -ffp-contract=fast -Wno-shadow' \
         LDFLAGS='-ffast-math -Wl,-O1'
     [[ ${lines[0]} == *': left out, as answers would change: -Ofast -ffast-math -ffp-contract=fast -funsafe-math-optimizations' ]]
     [[ ${lines[-2]} == 'gcc -std='*' -O2 '*' -DX=1 -O0 -Wno-shadow '* && ${lines[-1]} == 'gcc '*' -Wl,-O1 '* ]]
     [[ ${lines[*]:1} != *-math* && ${lines[*]:1} != *-contract=fast* && ${lines[*]:1} != *-Ofast* ]]
     # What flushes subnormals at the start of a program.
-    ! grep -q set_fast_math "$BATS_TEST_TMPDIR/b/arm" || false
-    make_arm CFLAGS='-ffp-contract=off -O1'
+    ! grep -q set_fast_math "$BATS_TEST_TMPDIR/b/netns" || false
+    make_netns CFLAGS='-ffp-contract=off -O1'
     [[ $output != *'left out'* ]]
     # What a file cannot do without follows, with its own contraction.
     kernel=$BATS_TEST_TMPDIR/o/service/fmb/filter/verdicts_avx2.o

@@ -33,7 +33,7 @@ setup_file() {
     cp "$top/clients/demo/table.json" "$BATS_FILE_TMPDIR/table.json"
     cd "$BATS_FILE_TMPDIR" || return
     "$fmb" query --local --gap --html table.html table.json > table.said
-    "${fmb%fmb}arm" | "$fmb" query --local --json --html arm.html > arm.json
+    "$fmb" query --local --json --html arm.html < "$top/clients/demo/arm.json" > arm.json
     # Every shape, side by side.
     "$fmb" query --local --html shapes.html > shapes.said << 'SCENE'
 {"dim": 3, "bodies": [

@@ -64,7 +64,7 @@ prints_what_it_shows() {
 @test "the lines of Python in the README draw the clearance of its path" {
     python=/usr/bin/python3
     mkdir "$BATS_TEST_TMPDIR/build"
-    "$FMB_BUILD/arm" | "$FMB" query --local --gap --csv > "$BATS_TEST_TMPDIR/build/path.csv"
+    "$FMB" query --local --gap --csv clients/demo/arm.json > "$BATS_TEST_TMPDIR/build/path.csv"
     sed -n '/^import pandas$/,/^```$/p' README.md | grep -v '^```' > "$BATS_TEST_TMPDIR/plot.py"
     (
         cd "$BATS_TEST_TMPDIR"
@@ -75,7 +75,7 @@ prints_what_it_shows() {
     (
         cd "$BATS_TEST_TMPDIR"
         $python -c "$(head -n 2 plot.py); print([float(gap) for gap in steps.gap_low.min()])"
-    ) | jq -e --slurpfile json <("$FMB_BUILD/arm" | "$FMB" query --local --gap --json) \
+    ) | jq -e --slurpfile json <("$FMB" query --local --gap --json clients/demo/arm.json) \
         '[., [$json[] | [.pairs[].gap[0]] | min]] | transpose | length == 6 and
             all(.[]; .[0] - .[1] | fabs < 1e-15)'
 }
