@@ -19,8 +19,9 @@ struct difference {
 void difference_end(const struct difference *difference, rational_vector n, int sign, mpq_t end,
                     mpq_t *point);
 
-/* square := the square of the distance of its nearest point from the origin (nearest.c). */
-void difference_nearest(const struct difference *difference, mpq_t square);
+/* square := the square of the distance of its nearest point from the origin; point := that point,
+ * may be NULL (nearest.c). */
+void difference_nearest(const struct difference *difference, mpq_t square, mpq_t *point);
 
 /* The sign of x - y |n|. */
 int difference_compare(const mpq_t x, const mpq_t y, rational_vector n);

@@ -3,6 +3,9 @@
  * Lower bound: n . (b - a) is least in vertices, at an end of the window. It is compared with
  * lo |n| by their squares.
  *
+ * Radius: the gap of frames with radii is that of their cores minus both radii, in every case. So a
+ * bound on the one is a bound on the other, and nothing else changes.
+ *
  * Distance of a point from a frame, and of two frames: nearest.c; depth: facets.c. Sums of roots
  * are compared in floating point of 512 bits: what that rounds is far below a double's rounding. */
 #include "gap_check.h"
@@ -12,91 +15,14 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "difference.h"
-#include "rational_solid.h"
+#include "world.h"
 
 enum { PRECISION = 512 };
-
-/* All lengths times scale, which makes those at the start of the window integers: rational numbers
- * without denominators are fast. */
-struct world {
-    int dim;
-    mpq_t scale;
-    struct rational_solid solid[2];
-    mpq_t duration;
-    rational_vector offset, drift; /* of b against a, at the start and over the window */
-    struct difference difference;
-};
-
-/* Multiplies the denominators of the numbers into the scale, so far as it lacks them. */
-static void include_denominators(const mpq_t number[FMB_DIM_MAX], mpq_t scale)
-{
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        mpz_lcm(mpq_numref(scale), mpq_numref(scale), mpq_denref(number[axis]));
-}
-
-static void multiply(rational_vector v, const mpq_t factor)
-{
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        mpq_mul(v[axis], v[axis], factor);
-}
-
-static void set_scale(struct world *world)
-{
-    mpq_set_ui(world->scale, 1, 1);
-    for (int s = 0; s < 2; s++) {
-        include_denominators(world->solid[s].origin, world->scale);
-        include_denominators(world->solid[s].velocity, world->scale);
-        for (int i = 0; i < world->solid[s].count; i++)
-            include_denominators(world->solid[s].column[i], world->scale);
-    }
-    for (int s = 0; s < 2; s++) {
-        multiply(world->solid[s].origin, world->scale);
-        multiply(world->solid[s].velocity, world->scale);
-        for (int i = 0; i < world->solid[s].count; i++)
-            multiply(world->solid[s].column[i], world->scale);
-    }
-}
-
-static void world_init(struct world *world, const struct pair *pair, unsigned i, unsigned j)
-{
-    world->dim = pair->a.body->dim;
-    rational_solid_init(fmb_body_frame(pair->a.body, i), &pair->a, &world->solid[0]);
-    rational_solid_init(fmb_body_frame(pair->b.body, j), &pair->b, &world->solid[1]);
-    mpq_inits(world->duration, world->scale, NULL);
-    set_scale(world);
-    mpq_set_d(world->duration, pair->duration);
-    rational_vector_init(world->offset);
-    rational_vector_init(world->drift);
-    for (int axis = 0; axis < 3; axis++) {
-        mpq_sub(world->offset[axis], world->solid[1].origin[axis], world->solid[0].origin[axis]);
-        mpq_sub(world->drift[axis], world->solid[1].velocity[axis], world->solid[0].velocity[axis]);
-        mpq_mul(world->drift[axis], world->drift[axis], world->duration);
-    }
-    world->difference = (struct difference){world->dim, &world->solid[0], &world->solid[1],
-                                            world->offset, world->drift};
-}
-
-static void world_clear(struct world *world)
-{
-    for (int side = 0; side < 2; side++)
-        rational_solid_clear(&world->solid[side]);
-    mpq_clears(world->duration, world->scale, NULL);
-    rational_vector_clear(world->offset);
-    rational_vector_clear(world->drift);
-}
 
 /* Bounds beyond the largest double are infinite. */
 static double clamped(double bound)
 {
     return fmax(-DBL_MAX, fmin(bound, DBL_MAX));
-}
-
-/* A length, or a coordinate, of finite doubles. */
-static void set_length(const struct world *world, double length, mpq_t out)
-{
-    mpq_set_d(out, length);
-    mpq_mul(out, out, world->scale);
 }
 
 /* ---- Along a direction ---- */
@@ -120,66 +46,62 @@ static bool proves(struct world *world, const struct fmb_gap *gap, double bound)
     rational_vector_init(n);
     set_direction(gap, n);
     difference_end(&world->difference, n, -1, least, NULL);
-    set_length(world, bound, limit);
+    world_length(world, bound, limit);
+    mpq_add(limit, limit, world->radius);
     const bool holds = difference_compare(least, limit, n) >= 0;
     rational_vector_clear(n);
     mpq_clears(least, limit, NULL);
     return holds;
 }
 
-/* ---- The distance of a point from a frame ---- */
-
-/* The square of the distance of the point from the frame of that side at a time. */
-static void point_distance(struct world *world, int side, const mpq_t time, const double *point,
-                           mpq_t square)
-{
-    struct rational_solid *solid = &world->solid[side];
-    rational_vector offset;
-    mpq_t at;
-    rational_vector_init(offset);
-    mpq_init(at);
-    for (int axis = 0; axis < 3; axis++) {
-        set_length(world, point[axis], at);
-        mpq_sub(offset[axis], solid->origin[axis], at);
-        rational_add_product(offset[axis], 1, time, solid->velocity[axis]);
-    }
-    difference_nearest(&(struct difference){.second = solid, .offset = offset}, square);
-    rational_vector_clear(offset);
-    mpq_clear(at);
-}
+/* ---- Distance ---- */
 
 void gap_check_distance(const struct pair *pair, mpq_t square)
 {
     struct world world;
     world_init(&world, pair, 0, 0);
-    difference_nearest(&world.difference, square);
+    difference_nearest(&world.difference, square, NULL);
     mpq_div(square, square, world.scale);
     mpq_div(square, square, world.scale);
     world_clear(&world);
 }
 
-/* The sign of the distance of the frames minus the bound, which is at least 0. */
+/* limit := what the gap of the cores is where that of the frames is the bound. */
+static void limit_of_cores(const struct world *world, double bound, mpq_t limit)
+{
+    world_length(world, clamped(bound), limit);
+    mpq_add(limit, limit, world->radius);
+}
+
+/* The sign of the distance of the frames minus the bound, where the cores are apart; -1 where they
+ * are not. */
 static int compare_distance(struct world *world, double bound)
 {
     mpq_t square, limit;
     mpq_inits(square, limit, NULL);
-    difference_nearest(&world->difference, square);
-    set_length(world, clamped(bound), limit);
+    difference_nearest(&world->difference, square, NULL);
+    limit_of_cores(world, bound, limit);
+    const bool apart = mpq_sgn(square) != 0, positive = mpq_sgn(limit) >= 0;
     mpq_mul(limit, limit, limit);
-    const int order = mpq_cmp(square, limit);
+    const int order = !apart ? -1 : positive ? mpq_cmp(square, limit) : 1;
     mpq_clears(square, limit, NULL);
     return order;
 }
 
-/* sum += root of square */
-static void add_root(mpf_t sum, const mpq_t square)
+/* sum += root of square - radius, where that is positive. */
+static void add_root(mpf_t sum, const mpq_t square, const mpq_t radius)
 {
-    mpf_t root;
+    mpf_t root, less;
     mpf_init2(root, PRECISION);
+    mpf_init2(less, PRECISION);
     mpf_set_q(root, square);
     mpf_sqrt(root, root);
-    mpf_add(sum, sum, root);
+    mpf_set_q(less, radius);
+    mpf_sub(root, root, less);
+    if (mpf_sgn(root) > 0)
+        mpf_add(sum, sum, root);
     mpf_clear(root);
+    mpf_clear(less);
 }
 
 /* Whether the sum is at most the bound, but for what floating point rounds here. */
@@ -190,7 +112,7 @@ static bool at_most(const struct world *world, const mpf_t sum, double bound)
     if (bound == INFINITY)
         return true;
     mpq_init(exact);
-    set_length(world, bound, exact);
+    world_length(world, bound, exact);
     mpf_init2(limit, PRECISION);
     mpf_init2(slack, PRECISION);
     mpf_set_q(limit, exact);
@@ -211,41 +133,79 @@ static bool has_finite_witness(const struct fmb_gap *gap)
     return true;
 }
 
+/* The witness points, scaled; square := that of the length of b - a + push times the direction. */
+static void set_points(const struct world *world, const struct fmb_gap *gap, double push,
+                       rational_vector point[2], mpq_t square)
+{
+    mpq_t way, length, part;
+    mpq_inits(way, length, part, NULL);
+    world_length(world, push, length);
+    mpq_set_ui(square, 0, 1);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        for (int side = 0; side < 2; side++)
+            world_length(world, gap->witness[side][axis], point[side][axis]);
+        mpq_sub(way, point[1][axis], point[0][axis]);
+        mpq_set_d(part, gap->direction[axis]);
+        rational_add_product(way, 1, part, length);
+        rational_add_product(square, 1, way, way);
+    }
+    mpq_clears(way, length, part, NULL);
+}
+
+/* sum := the length of b - a + push times the direction, plus the distances of both points from
+ * their frames. */
+static void sum_of_ways(struct world *world, const struct fmb_gap *gap, double push, mpf_t sum)
+{
+    rational_vector point[2];
+    mpq_t time, square, none;
+    mpq_inits(time, square, none, NULL);
+    mpf_set_ui(sum, 0);
+    mpq_set_d(time, gap->time);
+    for (int side = 0; side < 2; side++)
+        rational_vector_init(point[side]);
+    set_points(world, gap, push, point, square);
+    add_root(sum, square, none);
+    for (int side = 0; side < 2; side++) {
+        world_from_core(world, side, time, point[side], square, NULL);
+        add_root(sum, square, world->solid[side].radius);
+        rational_vector_clear(point[side]);
+    }
+    mpq_clears(time, square, none, NULL);
+}
+
 static bool points_prove(struct world *world, const struct fmb_gap *gap)
 {
-    mpq_t time, square, x, y;
     mpf_t sum;
-    mpq_inits(time, square, x, y, NULL);
     mpf_init2(sum, PRECISION);
-    mpq_set_d(time, gap->time);
-    for (int axis = 0; axis < 3; axis++) {
-        set_length(world, gap->witness[0][axis], x);
-        set_length(world, gap->witness[1][axis], y);
-        mpq_sub(x, x, y);
-        rational_add_product(square, 1, x, x);
-    }
-    add_root(sum, square);
-    for (int side = 0; side < 2; side++) {
-        point_distance(world, side, time, gap->witness[side], square);
-        add_root(sum, square);
-    }
+    sum_of_ways(world, gap, 0, sum);
     const bool holds = at_most(world, sum, gap->bounds[1]);
-    mpq_clears(time, square, x, y, NULL);
     mpf_clear(sum);
     return holds;
 }
 
 /* ---- Depth ---- */
 
-/* The sign of minus the depth, minus the bound. */
+/* The sign of minus the depth, minus the bound. Of cores that are apart, a distance is not seen. */
 static int compare_depth(struct world *world, double bound)
 {
     mpq_t limit;
     mpq_init(limit);
-    set_length(world, clamped(bound), limit);
+    limit_of_cores(world, bound, limit);
     const int order = difference_compare_facets(&world->difference, limit);
     mpq_clear(limit);
     return order;
+}
+
+/* The sign of the gap of frames that overlap, minus the bound. */
+static int compare_overlap(struct world *world, double bound)
+{
+    mpq_t square;
+    mpq_init(square);
+    if (mpq_sgn(world->radius) != 0)
+        difference_nearest(&world->difference, square, NULL);
+    const bool apart = mpq_sgn(square) != 0;
+    mpq_clear(square);
+    return apart ? compare_distance(world, bound) : compare_depth(world, bound);
 }
 
 /* Whether the gap of the frames is at least the bound. */
@@ -253,55 +213,31 @@ static bool is_at_least(struct world *world, double bound)
 {
     if (compare_depth(world, bound) >= 0)
         return true;
-    return bound > 0 && compare_distance(world, bound) >= 0;
+    return (bound > 0 || mpq_sgn(world->radius) != 0) && compare_distance(world, bound) >= 0;
 }
 
 static bool upper_holds(struct world *world, const struct fmb_gap *gap)
 {
-    if (!gap->has_witness)
-        return compare_depth(world, gap->bounds[1]) <= 0;
+    if (!gap->has_witness || gap->bounds[1] <= 0)
+        return compare_overlap(world, gap->bounds[1]) <= 0;
     if (has_finite_witness(gap))
         return points_prove(world, gap);
     return gap->bounds[1] == INFINITY || compare_distance(world, gap->bounds[1]) <= 0;
 }
 
+/* Whether the witness points of frames that overlap are a deepest pair: a - b is the depth along
+ * the direction, and each is in its frame, all together up to the limit. */
+static bool points_are_deepest(struct world *world, const struct fmb_gap *gap, const mpq_t limit)
+{
+    mpf_t sum;
+    mpf_init2(sum, PRECISION);
+    sum_of_ways(world, gap, -clamped(gap->bounds[1]), sum);
+    const bool holds = at_most(world, sum, mpq_get_d(limit));
+    mpf_clear(sum);
+    return holds;
+}
+
 /* ---- All of it ---- */
-
-/* The limit: 1e-12 of the largest coordinate of a vertex over the window, and 32 of the least
- * doubles. */
-static void add_limit(const struct fmb_placement *placement, const mpq_t duration, mpq_t out)
-{
-    struct rational_solid solid;
-    mpq_t at;
-    mpq_init(at);
-    for (unsigned i = 0; i < placement->body->frame_count; i++) {
-        rational_solid_init(fmb_body_frame(placement->body, i), placement, &solid);
-        for (int axis = 0; axis < 3; axis++)
-            for (int sign = -1; sign <= 1; sign += 2) {
-                rational_solid_farthest(&solid, duration, axis, sign, at);
-                if (mpq_cmp(at, out) > 0)
-                    mpq_set(out, at);
-            }
-        rational_solid_clear(&solid);
-    }
-    mpq_clear(at);
-}
-
-static void set_limit(const struct pair *pair, mpq_t out)
-{
-    mpq_t at, share;
-    mpq_inits(at, share, NULL);
-    mpq_set_ui(out, 0, 1);
-    mpq_set_d(at, pair->duration);
-    add_limit(&pair->a, at, out);
-    add_limit(&pair->b, at, out);
-    mpq_set_str(share, "1/1000000000000", 10);
-    mpq_mul(out, out, share);
-    mpq_set_d(at, 0x1p-1074);
-    mpq_set_ui(share, 32, 1);
-    rational_add_product(out, 1, at, share);
-    mpq_clears(at, share, NULL);
-}
 
 /* The width of the enclosure divided by the limit. */
 static void set_width(const struct pair *pair, const struct fmb_gap *gap, mpq_t out)
@@ -311,7 +247,7 @@ static void set_width(const struct pair *pair, const struct fmb_gap *gap, mpq_t 
     mpq_set_d(low, clamped(gap->bounds[0]));
     mpq_set_d(out, clamped(gap->bounds[1]));
     mpq_sub(out, out, low);
-    set_limit(pair, limit);
+    world_limit(pair, limit);
     mpq_div(out, out, limit);
     mpq_clears(low, limit, NULL);
 }
@@ -372,6 +308,18 @@ static bool fail(char *why, size_t size, const char *what)
     return false;
 }
 
+/* Separated pairs have witness points. Those that overlap without relative motion may. */
+static bool witness_is_due(const struct pair *pair, enum fmb_verdict verdict,
+                           const struct fmb_gap *gap)
+{
+    bool moving = false;
+    for (int axis = 0; axis < pair->a.body->dim; axis++)
+        moving = moving || pair->a.velocity[axis] != pair->b.velocity[axis];
+    if (verdict == FMB_OVERLAPPING && !(moving && pair->duration > 0))
+        return true;
+    return gap->has_witness == (verdict == FMB_SEPARATED);
+}
+
 /* What does not depend on the frames. */
 static bool check_form(const struct pair *pair, enum fmb_verdict verdict, const struct fmb_gap *gap,
                        char *why, size_t size)
@@ -382,7 +330,7 @@ static bool check_form(const struct pair *pair, enum fmb_verdict verdict, const 
         return fail(why, size, "the direction leaves the plane");
     if (has_negative_zero(gap))
         return fail(why, size, "a number is -0");
-    if (gap->has_witness != (verdict == FMB_SEPARATED))
+    if (!witness_is_due(pair, verdict, gap))
         return fail(why, size, "witness points, or none");
     if (!(gap->time >= 0 && gap->time <= pair->duration))
         return fail(why, size, "the time is not within the window");
@@ -393,6 +341,19 @@ static bool check_form(const struct pair *pair, enum fmb_verdict verdict, const 
     return is_narrow(pair, gap) || fail(why, size, "too wide");
 }
 
+/* Whether no points of an overlap are given, or they are a deepest pair of these frames. */
+static bool deepest_holds(struct world *world, const struct pair *pair, const struct fmb_gap *gap)
+{
+    mpq_t limit;
+    if (!gap->has_witness || gap->bounds[1] > 0 || !has_finite_witness(gap))
+        return true;
+    mpq_init(limit);
+    world_limit(pair, limit);
+    const bool holds = points_are_deepest(world, gap, limit);
+    mpq_clear(limit);
+    return holds;
+}
+
 /* The lower bound that the direction has to prove. */
 static double bound_of_direction(const struct pair *pair, enum fmb_verdict verdict,
                                  const struct fmb_gap *gap)
@@ -401,7 +362,7 @@ static double bound_of_direction(const struct pair *pair, enum fmb_verdict verdi
         return gap->bounds[0];
     mpq_t limit;
     mpq_init(limit);
-    set_limit(pair, limit);
+    world_limit(pair, limit);
     const double bound = -mpq_get_d(limit);
     mpq_clear(limit);
     return bound;
@@ -412,7 +373,7 @@ bool gap_check(const struct pair *pair, enum fmb_verdict verdict, const struct f
 {
     const unsigned count[2] = {pair->a.body->frame_count, pair->b.body->frame_count};
     const bool several = count[0] * count[1] > 1;
-    bool lower = false, upper = verdict == FMB_TOUCHING, nearer = false;
+    bool lower = false, upper = verdict == FMB_TOUCHING, nearer = false, deepest = false;
     if (!check_form(pair, verdict, gap, why, size))
         return false;
     const double bound = bound_of_direction(pair, verdict, gap);
@@ -422,6 +383,7 @@ bool gap_check(const struct pair *pair, enum fmb_verdict verdict, const struct f
         const bool proven = proves(&world, gap, bound);
         lower = lower || proven;
         upper = upper || upper_holds(&world, gap);
+        deepest = deepest || deepest_holds(&world, pair, gap);
         nearer = several && !proven && !is_at_least(&world, gap->bounds[0]);
         world_clear(&world);
     }
@@ -431,9 +393,9 @@ bool gap_check(const struct pair *pair, enum fmb_verdict verdict, const struct f
         return fail(why, size, "the direction does not prove the lower bound");
     if (!upper)
         return fail(why, size,
-                    gap->has_witness ? "the points do not prove the upper bound"
-                                     : "a facet is nearer than the upper bound says");
-    return true;
+                    gap->bounds[1] > 0 ? "the points do not prove the upper bound"
+                                       : "the overlap is less deep than the upper bound says");
+    return deepest || fail(why, size, "the points are not a deepest pair");
 }
 
 bool gap_check_lower(const struct pair *pair, unsigned i, unsigned j, const struct fmb_gap *gap)

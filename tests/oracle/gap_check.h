@@ -18,9 +18,11 @@
  *     are beyond the doubles, the square of the distance itself is compared with it;
  *     overlapping: for some frames, no normal of a facet of the swept difference has a smaller
  *     depth than the upper bound says;
+ *     overlapping: witness points, if there are any, are a deepest pair, and there is no relative
+ *     motion;
  *     touching: both are 0, and the direction proves 0 within the limit;
- *     the bounds are no farther apart than 1e-12 of the largest coordinate of a vertex over the
- *     window, or than a few of the least doubles; no number is -0.
+ *     the bounds are no farther apart than 1e-12 of the largest coordinate of a vertex, plus
+ *     its radius, over the window, or than a few of the least doubles; no number is -0.
  *
  * Every direction bounds the gap from below. Every pair of points bounds the distance from above,
  * and the depth is the least over all facets. So a gap that passes encloses the true one, and no

@@ -14,8 +14,9 @@
 #include <gmp.h>
 #include <stdbool.h>
 
-/* Three axes and two sums of weights are the equations of two hulls. */
-enum { LP_ROWS_MAX = 5, LP_SCRATCH = 6 };
+/* Three axes and two sums of weights are the equations of two hulls; three more those of a box
+ * about their point. */
+enum { LP_ROWS_MAX = 8, LP_SCRATCH = 6 };
 
 /* The tableau. Row i says, for the variables outside of the basis,
  *

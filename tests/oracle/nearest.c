@@ -125,7 +125,7 @@ static void settle(struct corral *corral)
         mpq_clear(to[i]);
 }
 
-void difference_nearest(const struct difference *difference, mpq_t square)
+void difference_nearest(const struct difference *difference, mpq_t square, mpq_t *point)
 {
     struct corral corral = {.count = 0};
     mpq_t at;
@@ -147,6 +147,8 @@ void difference_nearest(const struct difference *difference, mpq_t square)
             break;
         mpq_set_ui(corral.weight[corral.count++], 0, 1);
     }
+    for (int axis = 0; axis < FMB_DIM_MAX && point; axis++)
+        mpq_set(point[axis], corral.x[axis]);
     rational_vector_clear(corral.x);
     for (int i = 0; i < CORRAL_MAX; i++) {
         rational_vector_clear(corral.point[i]);

@@ -23,12 +23,17 @@
  * The box of the union over the window needs no more than that, as t is one of the variables.
  *
  * Bodies of several frames: every frame of one with every frame of the other; the strongest verdict
- * and the hulls. */
+ * and the hulls.
+ *
+ * Radius: the sum of a frame and a ball has an interior, whatever the frame is. So frames with
+ * radii overlap, touch or are apart as the distance of their cores over the window is less than the
+ * sum of the radii, equal or greater. The squares of both are rational. */
 #include "oracle.h"
 
+#include "frames.h"
 #include "lp.h"
 #include "memory.h"
-#include "rational_solid.h"
+#include "world.h"
 
 enum { NONE = -1, GOALS_MAX = 4 * FMB_DIM_MAX };
 
@@ -49,6 +54,7 @@ struct model {
     int first[2]; /* parameter 0 of A, of B */
     int least[2]; /* s of A, of B; NONE for a cuboid */
     int tau;      /* NONE for a pair at rest */
+    int near;     /* where within its box A's point is, in x; NONE without one */
     int variables;
     struct goal goal[GOALS_MAX]; /* of an overlap */
     int goals;
@@ -78,8 +84,19 @@ static void add_goals(struct model *model, int side)
                 (struct goal){model->first[side] + i, end == 0 ? LP_AT_ZERO : LP_AT_ONE};
 }
 
+/* The window of a part near a point: the cores as they are at its first time. */
+static void begin_at(struct model *model, const mpq_t time[2])
+{
+    for (int side = 0; side < 2; side++)
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            rational_add_product(model->solid[side].origin[axis], 1, time[0],
+                                 model->solid[side].velocity[axis]);
+    mpq_sub(model->duration, time[1], time[0]);
+}
+
 /* Frame i of a, and frame j of b. */
-static void model_init(struct model *model, const struct pair *pair, unsigned i, unsigned j)
+static void model_init(struct model *model, const struct pair *pair, unsigned i, unsigned j,
+                       struct frames_part *part)
 {
     int next = 0;
     model->goals = 0;
@@ -87,12 +104,17 @@ static void model_init(struct model *model, const struct pair *pair, unsigned i,
     rational_solid_init(fmb_body_frame(pair->a.body, i), &pair->a, &model->solid[0]);
     rational_solid_init(fmb_body_frame(pair->b.body, j), &pair->b, &model->solid[1]);
     for (int side = 0; side < 2; side++) {
+        for (int axis = 0; axis < model->dim; axis++)
+            mpq_add(model->solid[side].origin[axis], model->solid[side].origin[axis],
+                    part->shift[side][axis]);
         model->first[side] = next;
         next += model->solid[side].count;
         model->least[side] = model->solid[side].hull ? next++ : NONE;
         add_goals(model, side);
     }
     model->tau = is_moving(model->solid) ? next++ : NONE;
+    model->near = part->near ? next : NONE;
+    next += part->near ? model->dim : 0;
     model->variables = next;
     lp_init(&model->lp, next);
     model->row = memory_get((size_t) next * sizeof *model->row);
@@ -100,6 +122,8 @@ static void model_init(struct model *model, const struct pair *pair, unsigned i,
         mpq_init(model->row[v]);
     mpq_inits(model->duration, model->right, model->scratch, NULL);
     mpq_set_d(model->duration, pair->duration);
+    if (part->near)
+        begin_at(model, part->time);
 }
 
 static void model_clear(struct model *model)
@@ -143,6 +167,17 @@ static void add_axis(struct model *model, int axis)
     add_frame(model, 0, axis, +1);
     add_frame(model, 1, axis, -1);
     mpq_sub(model->right, model->solid[1].origin[axis], model->solid[0].origin[axis]);
+    lp_add_row(&model->lp, model->row, model->right);
+}
+
+/* The equation of an axis near a point: A's point is the lower end of the box and x times its size.
+ */
+static void add_near(struct model *model, int axis, struct frames_part *part)
+{
+    zero_row(model);
+    add_frame(model, 0, axis, +1);
+    mpq_sub(model->row[model->near + axis], part->box[0][axis], part->box[1][axis]);
+    mpq_sub(model->right, part->box[0][axis], model->solid[0].origin[axis]);
     lp_add_row(&model->lp, model->row, model->right);
 }
 
@@ -248,17 +283,82 @@ void oracle_clear(struct oracle_answer *truth)
     }
 }
 
+/* Begins, and returns whether the cores meet. */
+static bool model_meets(struct model *model, const struct pair *pair, unsigned i, unsigned j,
+                        struct frames_part *part)
+{
+    model_init(model, pair, i, j, part);
+    for (int axis = 0; axis < model->dim; axis++) {
+        add_axis(model, axis);
+        if (part->near)
+            add_near(model, axis, part);
+    }
+    for (int side = 0; side < 2; side++)
+        add_sum(model, side);
+    return lp_make_feasible(&model->lp);
+}
+
+void frames_part_init(struct frames_part *part)
+{
+    part->near = false;
+    for (int side = 0; side < 2; side++) {
+        rational_vector_init(part->shift[side]);
+        rational_vector_init(part->box[side]);
+        mpq_init(part->time[side]);
+    }
+}
+
+void frames_part_clear(struct frames_part *part)
+{
+    for (int side = 0; side < 2; side++) {
+        rational_vector_clear(part->shift[side]);
+        rational_vector_clear(part->box[side]);
+        mpq_clear(part->time[side]);
+    }
+}
+
+bool frames_meet(const struct pair *pair, unsigned i, unsigned j, struct frames_part *part,
+                 mpq_t contact[2], mpq_t box[2][FMB_DIM_MAX])
+{
+    struct model model;
+    const bool meet = model_meets(&model, pair, i, j, part);
+    if (meet && contact)
+        find_contact(&model, contact);
+    if (meet && box)
+        find_box(&model, box);
+    model_clear(&model);
+    return meet;
+}
+
+static bool has_radius(const struct pair *pair, unsigned i, unsigned j)
+{
+    return fmb_body_frame(pair->a.body, i)->radius != 0 ||
+           fmb_body_frame(pair->b.body, j)->radius != 0;
+}
+
+static enum fmb_verdict rounded_verdict(const struct pair *pair, unsigned i, unsigned j)
+{
+    struct world world;
+    world_init(&world, pair, i, j);
+    const int order = world_compare(&world, NULL);
+    world_clear(&world);
+    return order > 0 ? FMB_SEPARATED : order == 0 ? FMB_TOUCHING : FMB_OVERLAPPING;
+}
+
 static void decide_frames(const struct pair *pair, unsigned i, unsigned j, unsigned want,
                           struct oracle_answer *truth)
 {
     struct model model;
-    model_init(&model, pair, i, j);
-    for (int axis = 0; axis < model.dim; axis++)
-        add_axis(&model, axis);
-    for (int side = 0; side < 2; side++)
-        add_sum(&model, side);
-
-    const bool in_contact = lp_make_feasible(&model.lp);
+    struct frames_part whole;
+    truth->rounded = has_radius(pair, i, j);
+    if (truth->rounded) {
+        truth->verdict = rounded_verdict(pair, i, j);
+        truth->has_contact = truth->verdict != FMB_SEPARATED;
+        truth->has_box = truth->has_contact && (want & FMB_WANT_BOX) != 0;
+        return;
+    }
+    frames_part_init(&whole);
+    const bool in_contact = model_meets(&model, pair, i, j, &whole);
     truth->has_contact = in_contact;
     truth->has_box = in_contact && (want & FMB_WANT_BOX) != 0;
     truth->verdict = FMB_SEPARATED;
@@ -269,6 +369,16 @@ static void decide_frames(const struct pair *pair, unsigned i, unsigned j, unsig
     if (truth->has_box)
         find_box(&model, truth->box);
     model_clear(&model);
+    frames_part_clear(&whole);
+}
+
+enum fmb_verdict frames_verdict(const struct pair *pair, unsigned i, unsigned j)
+{
+    struct oracle_answer one;
+    oracle_init(&one);
+    decide_frames(pair, i, j, 0, &one);
+    oracle_clear(&one);
+    return one.verdict;
 }
 
 /* Makes end the hull of both: sign -1 the lower one, +1 the upper one. */
@@ -295,6 +405,7 @@ static void add_answer(struct oracle_answer *sum, const struct oracle_answer *on
         }
     }
     sum->has_contact = true;
+    sum->rounded = sum->rounded || one->rounded;
     sum->has_box = one->has_box;
 }
 
@@ -303,7 +414,7 @@ void oracle_decide(const struct pair *pair, unsigned want, struct oracle_answer 
     struct oracle_answer one;
     oracle_init(&one);
     truth->verdict = FMB_SEPARATED;
-    truth->has_contact = truth->has_box = false;
+    truth->has_contact = truth->has_box = truth->rounded = false;
     for (unsigned i = 0; i < pair->a.body->frame_count; i++)
         for (unsigned j = 0; j < pair->b.body->frame_count; j++) {
             decide_frames(pair, i, j, want, &one);

@@ -8,7 +8,7 @@
  *
  * Every finite double is read exactly; flat frames, T = 0, quaternions of any length and subnormals
  * are nothing special to it. A pair is taken to have passed pair_check(). Of a frame only dim,
- * shape, count, origin, component and rest are read, and centre of a box. */
+ * shape, count, radius, origin, component and rest are read, and centre of a box. */
 #ifndef ORACLE_H
 #define ORACLE_H
 
@@ -24,6 +24,9 @@ struct oracle_answer {
     enum fmb_verdict verdict;
     bool has_contact; /* in contact */
     bool has_box;     /* wanted, and in contact */
+    /* Frames that have a radius are in contact: its times are roots of quadratics, and ends of its
+     * box of worse. The numbers here are unspecified; oracle_agrees() decides without them. */
+    bool rounded;
     mpq_t contact[2];
     mpq_t box[2][FMB_DIM_MAX];
 };
@@ -41,7 +44,8 @@ void oracle_decide(const struct pair *pair, unsigned want, struct oracle_answer 
  *             absolute coordinate of any vertex of either body over the window. Where doubles
  *             are too coarse for that, the next double is good enough.
  *   TIGHTEST  each end is the double next to the true one, on its outer side, or the true
- *             one. What fmb.h promises of the exact method. */
+ *             one. What fmb.h promises of the exact method.
+ * Where frames with a radius meet, both are what rounded.h says. */
 enum oracle_limit { ORACLE_DESIGN, ORACLE_TIGHTEST };
 
 /* Whether an answer to the pair is right: verdict, what is there, limits, no end of an interval
@@ -60,7 +64,7 @@ bool oracle_check_tightest(const struct pair *pair, unsigned want, const struct 
 /* How far the interval and the box of an answer lie from the true ones: for statistics, of answers
  * of any method. */
 struct oracle_excess {
-    bool has;    /* both the truth and the answer have one; the rest is 0 where not */
+    bool has;    /* both the truth, not rounded, and the answer have one; else the rest is 0 */
     bool misses; /* does not contain the true one: some end is too far in, or not a number */
     /* How far out its worst end is, and how far in; 0: none is. Relative to T, of an interval, and
      * to the largest absolute coordinate of any vertex of either body over the window, of a box.

@@ -5,7 +5,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-#include "rational_solid.h"
+#include "rounded.h"
+#include "world.h"
 
 /* ---- Is an answer right? ---- */
 
@@ -61,37 +62,6 @@ static bool is_close(double end, const mpq_t exact, const mpq_t size)
     return close;
 }
 
-/* Raises out to the largest absolute coordinate of any vertex of the body over the window. */
-static void raise_to_size(const struct fmb_placement *placement, const mpq_t duration, mpq_t out)
-{
-    mpq_t one;
-    mpq_init(one);
-    for (unsigned i = 0; i < placement->body->frame_count; i++) {
-        struct rational_solid solid;
-        rational_solid_init(fmb_body_frame(placement->body, i), placement, &solid);
-        for (int axis = 0; axis < placement->body->dim; axis++)
-            for (int sign = -1; sign <= 1; sign += 2) {
-                rational_solid_farthest(&solid, duration, axis, sign, one);
-                if (mpq_cmp(one, out) > 0)
-                    mpq_set(out, one);
-            }
-        rational_solid_clear(&solid);
-    }
-    mpq_clear(one);
-}
-
-/* The largest absolute coordinate of any vertex of either body over the window. */
-static void size_of_pair(const struct pair *pair, mpq_t out)
-{
-    mpq_t duration;
-    mpq_init(duration);
-    mpq_set_d(duration, pair->duration);
-    mpq_set_ui(out, 0, 1);
-    raise_to_size(&pair->a, duration, out);
-    raise_to_size(&pair->b, duration, out);
-    mpq_clear(duration);
-}
-
 /* +1, -1: beyond the largest double, on that side; 0: not beyond. */
 static int beyond_doubles(const mpq_t exact)
 {
@@ -104,13 +74,8 @@ static int beyond_doubles(const mpq_t exact)
 static bool end_agrees(const char *name, double end, int sign, const mpq_t exact, char *why,
                        size_t size)
 {
-    if (isnan(end))
-        return wrong(why, size, "%s: not a number", name);
-    if (end == 0 && signbit(end))
-        return wrong(why, size, "%s: -0", name);
-    if (!contains(end, sign, exact))
-        return wrong(why, size, "%s: %a cuts the true %.17g off", name, end, mpq_get_d(exact));
-    return true;
+    return contains(end, sign, exact) ||
+           wrong(why, size, "%s: %a cuts the true %.17g off", name, end, mpq_get_d(exact));
 }
 
 static bool contact_agrees(const struct oracle_answer *truth, const struct pair *pair,
@@ -125,16 +90,20 @@ static bool contact_agrees(const struct oracle_answer *truth, const struct pair 
     for (int e = 0; e < 2 && good; e++) {
         const double end = answer->contact[e];
         const int sign = e == 0 ? -1 : +1;
-        good = end_agrees(names[e], end, sign, truth->contact[e], why, size);
-        if (good && !(end >= 0 && end <= pair->duration))
+        if (!(end >= 0 && end <= pair->duration) || (end == 0 && signbit(end)))
             good = wrong(why, size, "%s: %a is out of the window", names[e], end);
+        if (!good || truth->rounded)
+            continue;
+        good = end_agrees(names[e], end, sign, truth->contact[e], why, size);
         if (good && !is_tightest(end, sign, truth->contact[e]) &&
             (limit == ORACLE_TIGHTEST || !is_close(end, truth->contact[e], duration)))
             good = wrong(why, size, "%s: %a is too far out from %.17g", names[e], end,
                          mpq_get_d(truth->contact[e]));
     }
+    const char *fault =
+        good && truth->rounded ? rounded_contact_fault(pair, answer->contact) : NULL;
     mpq_clear(duration);
-    return good;
+    return fault ? wrong(why, size, "%s", fault) : good;
 }
 
 /* scale: the size of the pair. */
@@ -163,20 +132,24 @@ static bool box_agrees(const struct oracle_answer *truth, const struct pair *pai
     const int dim = pair->a.body->dim;
     mpq_t scale;
     mpq_init(scale);
-    size_of_pair(pair, scale);
+    world_size(pair, scale);
     bool good = true;
     for (int e = 0; e < 2 && good; e++)
         for (int axis = 0; axis < FMB_DIM_MAX && good; axis++) {
             const double end = answer->box[e][axis];
             const char *name = names[e][axis];
-            if (axis < dim)
+            if (isnan(end) || (end == 0 && signbit(end)))
+                good = wrong(why, size, "%s: -0, or not a number", name);
+            else if (axis < dim && !truth->rounded)
                 good = box_end_agrees(name, end, e == 0 ? -1 : +1, truth->box[e][axis], scale,
                                       limit, why, size);
-            else if (end != 0 || signbit(end))
+            else if (axis >= dim && end != 0)
                 good = wrong(why, size, "%s: %a, and there is no such axis", name, end);
         }
+    const char *fault =
+        good && truth->rounded ? rounded_box_fault(pair, answer->contact, answer->box) : NULL;
     mpq_clear(scale);
-    return good;
+    return fault ? wrong(why, size, "%s", fault) : good;
 }
 
 bool oracle_agrees(const struct oracle_answer *truth, const struct pair *pair,
@@ -264,13 +237,13 @@ void oracle_measure(const struct oracle_answer *truth, const struct pair *pair,
     mpq_t scale;
     mpq_init(scale);
     *contact = *box = (struct oracle_excess){0};
-    if (truth->has_contact && answer->has_contact) {
+    if (truth->has_contact && answer->has_contact && !truth->rounded) {
         mpq_set_d(scale, pair->duration);
         for (int e = 0; e < 2; e++)
             measure_end(answer->contact[e], e == 0 ? -1 : +1, truth->contact[e], scale, contact);
     }
-    if (truth->has_box && answer->has_box) {
-        size_of_pair(pair, scale);
+    if (truth->has_box && answer->has_box && !truth->rounded) {
+        world_size(pair, scale);
         for (int e = 0; e < 2; e++)
             for (int axis = 0; axis < pair->a.body->dim; axis++)
                 measure_end(answer->box[e][axis], e == 0 ? -1 : +1, truth->box[e][axis], scale,

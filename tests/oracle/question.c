@@ -147,6 +147,7 @@ static void fill_body(const struct solid *solid, struct fmb_body *body)
     body->frame_count = 1;
     body->one.shape = solid->shape;
     body->one.count = solid_count(solid);
+    body->one.radius = solid->radius;
     memcpy(body->one.component, solid->component, sizeof body->one.component);
     memcpy(solid->shape == FMB_BOX ? body->one.centre : body->one.origin, solid->local,
            sizeof solid->local);
@@ -183,7 +184,7 @@ bool question_is_symmetric(const struct question *question)
     const struct solid *a = &question->a, *b = &question->b;
     return a->shape == b->shape && solid_frames(a) == solid_frames(b) &&
            a->by_vertices == b->by_vertices && a->orientation_count == b->orientation_count &&
-           a->as_hull == b->as_hull && same_vertices(a, b) &&
+           a->as_hull == b->as_hull && a->radius == b->radius && same_vertices(a, b) &&
            ((solid_is_hull(a) && solid_frames(a) == 1) ||
             (same_numbers(a->component[0], b->component[0], FMB_COMPONENTS_MAX) &&
              same_numbers(a->local, b->local, a->dim))) &&
@@ -239,7 +240,7 @@ static void print_solid(const char *name, const struct solid *solid)
         printf("%s", v ? ", " : "");
         print_vector(solid->vertex[v]);
     }
-    printf("}, 0x%llx},\n", (unsigned long long) solid->cloud_seed);
+    printf("}, 0x%llx, %a},\n", (unsigned long long) solid->cloud_seed, solid->radius);
 }
 
 int question_numbers(struct question *question, double *out[QUESTION_NUMBERS_MAX])

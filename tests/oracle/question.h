@@ -34,6 +34,7 @@ struct solid {
     int vertex_count, cloud;
     double vertex[SOLID_LISTED_MAX][FMB_DIM_MAX];
     uint64_t cloud_seed;
+    double radius; /* of each of its frames */
 };
 
 enum { SOLID_FRAMES_MAX = 8 };

@@ -6,6 +6,7 @@ static void allocate(struct rational_solid *solid, int count, bool hull)
 {
     solid->count = count;
     solid->hull = hull;
+    mpq_init(solid->radius);
     solid->column = memory_get((size_t) count * sizeof *solid->column);
     rational_vector_init(solid->origin);
     rational_vector_init(solid->velocity);
@@ -17,6 +18,7 @@ void rational_solid_clear(struct rational_solid *solid)
 {
     rational_vector_clear(solid->origin);
     rational_vector_clear(solid->velocity);
+    mpq_clear(solid->radius);
     for (int i = 0; i < solid->count; i++)
         rational_vector_clear(solid->column[i]);
     free(solid->column);
@@ -127,6 +129,7 @@ void rational_solid_init(const struct fmb_frame *frame, const struct fmb_placeme
     set_local(frame, &local);
     set_rotation(placement, matrix);
     allocate(out, local.count, local.hull);
+    mpq_set_d(out->radius, frame->radius);
     for (int axis = 0; axis < frame->dim; axis++) {
         mpq_set_d(out->origin[axis], placement->position[axis]);
         mpq_set_d(out->velocity[axis], placement->velocity[axis]);
@@ -177,6 +180,7 @@ void rational_solid_farthest(struct rational_solid *solid, const mpq_t duration,
     mpq_mul(term, term, duration);
     if (mpq_sgn(term) > 0)
         mpq_add(out, out, term);
+    mpq_add(out, out, solid->radius);
     rational_vector_clear(direction);
     mpq_clear(term);
 }

@@ -14,10 +14,12 @@ typedef mpq_t rational_vector[FMB_DIM_MAX];
  *
  *     origin + sum_i x_i column_i,   0 <= x_i <= 1,
  *
- * and of a hull (a tetrahedron, a face) also sum_i x_i = 1: its columns are its vertices. */
+ * and of a hull (a tetrahedron, a face) also sum_i x_i = 1: its columns are its vertices. These are
+ * the points of the core: the frame has all points within its radius of them. */
 struct rational_solid {
     int count; /* of columns */
     bool hull;
+    mpq_t radius;
     rational_vector origin, velocity;
     rational_vector *column; /* [count] */
 };
@@ -26,12 +28,12 @@ void rational_solid_init(const struct fmb_frame *frame, const struct fmb_placeme
                          struct rational_solid *out);
 void rational_solid_clear(struct rational_solid *solid);
 
-/* The greatest of sign * (coordinate of a vertex over the window). */
+/* The greatest of sign * (coordinate of a vertex over the window), plus the radius. */
 void rational_solid_farthest(struct rational_solid *solid, const mpq_t duration, int axis, int sign,
                              mpq_t out);
 
-/* extent := the greatest of n . (a point - the origin). Where point is not NULL, adds such a point
- * minus the origin, a vertex, to it. */
+/* extent := the greatest of n . (a point of the core - the origin). Where point is not NULL, adds
+ * such a point minus the origin, a vertex, to it. */
 void rational_solid_support(struct rational_solid *solid, rational_vector n, mpq_t extent,
                             mpq_t *point);
 
