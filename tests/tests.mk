@@ -91,7 +91,7 @@ wraps_test_hull_work := $(wraps_test_engine_work) $(call wraps,support_max suppo
 	certificate_write_number)
 wraps_test_log_read := $(call wraps,pread64)
 wraps_test_log_write := $(call wraps,fsync)
-wraps_test_log_cut := $(call wraps,page_take)
+wraps_test_log_cut := $(call wraps,page_take pread64)
 wraps_test_answer_scene := $(call wraps,malloc calloc realloc aligned_alloc)
 wraps_test_bus := $(call wraps,bus_socket_drops sched_yield)
 

@@ -553,6 +553,15 @@ fmb: robot.urdf: line 8: joint 'ea': its parent 'e' is not a link of the file"
     joint revolute "$ends$limit<mimic joint='k' multiplier='x'/>" "joint 'j': <mimic>: multiplier"
     joint revolute "$ends$limit<mimic joint='k'/>" "joint 'j': <mimic>: 'k' is not a joint of the file"
     joint revolute "$ends$limit<mimic joint='j'/>" "joint 'j': <mimic>: 'j' is itself a mimic joint"
+    # A fixed joint has no value: it follows none, and none follows it.
+    links="<link name='a'>$box</link><link name='b'/><link name='c'/>
+<joint name='f' type='fixed'>$ends<mimic joint='k'/></joint>
+<joint name='j' type='revolute'><parent link='b'/><child link='c'/>$limit"
+    robot "$links</joint>"
+    scene robot.urdf
+    ended 0
+    robot "$links<mimic joint='f'/></joint>"
+    refused "robot.urdf: line 5: joint 'j': <mimic>: 'f' is a fixed joint" robot.urdf
     robot "<link name='a'/>
 <link name='a'/>"
     refused "robot.urdf: line 4: there is already a link 'a', in line 3" robot.urdf

@@ -97,22 +97,34 @@ static void all_pairs_of_a_crowd_are_answered(void **state)
     free(frame);
 }
 
-static void many_listed_pairs_are_answered(void **state)
+static void query_list(size_t count, size_t frames, unsigned want)
 {
-    const size_t count = relay_size(100000, 20000), frames = 3000;
-    relay_start(65536, 20, 1);
     struct fmb_placement *frame = frames_of(frames, 3, 8, 1);
     unsigned(*pair)[2] = list_of(count, frames);
-    struct fmb_scene scene = scene_of(frame, frames, FMB_PAIRS_LISTED, 0);
+    struct fmb_scene scene = scene_of(frame, frames, FMB_PAIRS_LISTED, want);
     scene.pairs = (const unsigned(*)[2]) pair;
     scene.pair_count = count;
-    for (unsigned want = 0; want <= ALL_WANTS; want += ALL_WANTS) {
-        scene.want = want;
-        relay_query(test.client, &scene);
-    }
+    relay_query(test.client, &scene);
     assert_int_equal(relay_dropped(test.relay), 0);
     free(pair);
     free(frame);
+}
+
+static void many_listed_pairs_are_answered(void **state)
+{
+    const size_t count = relay_size(100000, 20000);
+    relay_start(65536, 20, 1);
+    query_list(count, 3000, 0);
+    query_list(count, 3000, ALL_WANTS);
+}
+
+/* Bodies take no space beside their pairs. Queries become longer, up to a datagram, once it is
+ * known how long the first ones take. */
+static void pairs_of_few_bodies_fill_datagrams(void **state)
+{
+    relay_start(65536, 20, 1);
+    query_list(80000, 3, 0);
+    assert_in_range(relay_counts(test.client).queries, 80000 / QUERY_PAIRS_MAX, 80000 / 512);
 }
 
 static void never(void *user, const struct fmb_client_answer *answer)
@@ -958,6 +970,7 @@ int main(int argc, char **argv)
         RELAY_TEST(all_pairs_of_many_bodies_are_answered),
         RELAY_TEST(all_pairs_of_a_crowd_are_answered),
         RELAY_TEST(many_listed_pairs_are_answered),
+        RELAY_TEST(pairs_of_few_bodies_fill_datagrams),
         RELAY_TEST(every_method_answers),
         RELAY_TEST(near_pairs_of_many_bodies_are_answered),
         RELAY_TEST(all_pairs_have_certificates),

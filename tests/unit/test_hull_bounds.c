@@ -25,7 +25,7 @@ static void draw_number(struct draw *draw, int kind, double *out)
     else if (kind == 1)
         *out = draw_uniform(draw, -1, 1);
     else
-        *out = draw_log(draw, kind == 2 ? -150 : -1070, kind == 2 ? 150 : -1040);
+        *out = draw_log(draw, kind == 2 ? -150 : -1070, kind == 2 ? 150 : -900);
 }
 
 static void draw_hull(struct draw *draw, int dim, struct hull *out)

@@ -10,6 +10,7 @@
 #include "replay.h"
 #include "wire.h"
 
+#include <errno.h>
 #include <math.h>
 #include <unistd.h>
 
@@ -41,6 +42,19 @@ static int remove_folder(void **state)
     for (size_t i = 0; i < COUNT(names); i++)
         unlink(path_of(names[i], path));
     return rmdir(folder);
+}
+
+/* ---- Reading ---- */
+
+static int reads, fails_at; /* the number of a read, from 1; 0: none fails */
+
+ssize_t __real_pread64(int fd, void *out, size_t count, off_t offset);
+ssize_t __wrap_pread64(int fd, void *out, size_t count, off_t offset);
+
+ssize_t __wrap_pread64(int fd, void *out, size_t count, off_t offset)
+{
+    errno = EIO;
+    return ++reads == fails_at ? -1 : __real_pread64(fd, out, count, offset);
 }
 
 /* ---- What a replay says of each query ---- */
@@ -250,8 +264,10 @@ static struct log_cut_counts cut_logs(char *const *log, int count, const char *o
     const struct log_cut_sink sink = {on_cut_damage, NULL};
     struct log_cut_counts counts;
     unlink(output);
-    assert_true(log_cut(&options, &sink, &counts));
-    if (counts.kept_events == 0) {
+    reads = 0;
+    const bool good = log_cut(&options, &sink, &counts);
+    assert_int_equal(good, fails_at == 0 || reads < fails_at);
+    if (!good || counts.kept_events == 0) {
         assert_int_equal(access(output, F_OK), -1);
         close(output_open_in_place(output, false));
     }
@@ -506,6 +522,23 @@ static void undefined_handles_are_counted(void **state)
     world_clear(&world);
 }
 
+/* In either pass: there is no cut then. */
+static void a_read_error_is_one_of_the_cut(void **state)
+{
+    char whole[PATH_MAX_OF_TESTS], cut[PATH_MAX_OF_TESTS];
+    const struct log_choice choice = log_choice_all();
+    struct log_world world;
+    world_make_large(LARGE_BODIES, LARGE_SCENES, &world);
+    world_write(&world, path_of("whole", whole));
+    do {
+        fails_at++;
+        cut_logs(&(char *){whole}, 1, path_of("cut", cut), &choice);
+    } while (reads >= fails_at);
+    assert_true(fails_at > 4);
+    fails_at = 0;
+    world_clear(&world);
+}
+
 /* ---- Large logs ---- */
 
 /* Results that stand megabytes after their queries. */
@@ -570,6 +603,7 @@ int main(void)
         cmocka_unit_test(several_logs_are_one),
         cmocka_unit_test(many_bodies_are_defined),
         cmocka_unit_test(undefined_handles_are_counted),
+        cmocka_unit_test(a_read_error_is_one_of_the_cut),
         cmocka_unit_test(results_come_from_far),
         cmocka_unit_test(long_events_are_copied_in_full),
     };

@@ -291,10 +291,14 @@ static void fill(const char *name, rlim_t limit, bool flush)
 
 static void a_full_disk_leaves_whole_events(void **state)
 {
+    rlim_t whole = 0;
     for (rlim_t limit = 1000003; limit < 1000003 + 200000; limit += 7919) {
         fill("limited", limit, false);
         fill("limited", limit, true);
     }
+    for (int count = 0; whole < 1000003; count++)
+        whole += (rlim_t) bytes_of_event(count);
+    fill("limited", whole, false);
 }
 
 /* Larger than the buffer. */

@@ -103,6 +103,23 @@ static void the_heartbeat_counts_the_work(void **state)
     assert_true(status->utime > 1600000000000000);
 }
 
+/* Times of refusals are not counted. */
+static void quantiles_are_of_answered_queries(void **state)
+{
+    struct pair_query query = service_pair(21, 0);
+    for (int i = 1; i <= 22; i++) {
+        service.tick_ns = i == 22 ? 100000 : i == 21 ? 1000 : 10;
+        query.sequence_number = i;
+        query.want = i == 22 ? 1 << 20 : 0;
+        service_send_pair(&query);
+        service_settle();
+    }
+    const struct wire_status *status = service_status();
+    assert_int_equal(status->results[FMB_UNKNOWN_WANT], 1);
+    assert_true(status->compute_p50_ns < 1000 && status->compute_p99_ns >= 1000);
+    assert_true(status->compute_max_ns < 100000);
+}
+
 /* Of pairs that a method cannot decide. */
 static void undecided_pairs_are_not_counted(void **state)
 {
@@ -320,6 +337,7 @@ int main(void)
         TEST(certificates_are_given_where_wanted),
         TEST(definitions_are_given),
         TEST(the_heartbeat_counts_the_work),
+        TEST(quantiles_are_of_answered_queries),
         TEST(undecided_pairs_are_not_counted),
         TEST(ignored_pairs_are_not_counted),
         TEST(pairs_before_the_first_are_not_counted),
