@@ -400,7 +400,7 @@ fmb: t.csv: line 1: no column for joint 'turn': add one, or give its value by --
     shows '[.duration, .margin, [.bodies[].id], .bodies[3].name, .bodies[4].group, .ignore]'
     is '[2,0.5,[1,2,3,8,7,9],"x",4,[[1,2],[2,3],[7,9]]]'
     # With times, its bodies move on from row to row.
-    printf 'turn,slide,time\n0,0,10\n0,0,10.5\n' > t.csv
+    printf 'turn,slide,time\n0,0,-10.5\n0,0,-10\n' > t.csv
     scene robot.urdf --with world.json --joints-csv t.csv --margin 0
     shows '[.duration, has("margin"), .bodies[5].position]'
     is '[0.5,false,null]

@@ -26,6 +26,12 @@ setup() {
     [ "$(stat -c %a "$root")" = 755 ]
     [ -z "$(find "$root" ! -type l ! -perm -444 -o -type d ! -perm -755)" ]
     [ "$(find "$root" -type f -perm /111 -printf '%f %m\n' | sort | xargs)" = 'fmb 755 fmbd 755' ]
+    cp "$FMB_BUILD"/man/*.[18] msgs/*.lcm "$BATS_TEST_TMPDIR"
+    (cd "$BATS_TEST_TMPDIR" && for name in *.*; do echo "$name"; done
+    for name in LICENSE fmb fmb fmb-client.pc fmb-config-version.cmake fmb-config.cmake fmb.h fmb.pc \
+        fmb.py fmb_batch.h fmb_client.h fmb_flat.h fmbd fmbd fmbd.service libfmb-client.a \
+        libfmb-client.so libfmb-client.so.0 libfmb.a libfmb.so libfmb.so.0; do echo $name; done) |
+        sort | diff - <(find "$root" ! -type d -printf '%f\n' | sort)
 }
 
 @test "the examples build against the installed library, and query scenes" {
