@@ -8,7 +8,6 @@
 #include "number.h"
 #include "progress.h"
 
-#include <inttypes.h>
 #include <stdio.h>
 
 static const char usage[] =
@@ -40,49 +39,11 @@ static const char usage[] =
     "was chosen; 2 wrong usage, or a file cannot be read or written. FILE is not\n"
     "written with 2, or if nothing was chosen.\n";
 
-struct log_cut_arguments {
-    struct log_cut_options cut;
-    bool json;
-};
-
-/* ---- Reports ---- */
-
-/* Most damaged places that are printed; the others are counted. */
-enum { COMPLAINTS_MAX = 20 };
-
-struct cut_run {
-    const struct log_cut_arguments *options;
-    int64_t complaints;
-};
-
-static void on_damage(void *user, int log, const struct log_damage *damage)
+/* Prints the rows that are not 0. */
+static void print_count(const char *name, int64_t count)
 {
-    struct cut_run *run = user;
-    if (run->complaints++ < COMPLAINTS_MAX)
-        complain("%s: offset %" PRId64 ": %" PRId64 " bytes: %s; left out",
-                 run->options->cut.log[log], damage->offset, damage->length, damage->what);
-}
-
-static const struct {
-    const char *json, *one, *more;
-} kinds[LOG_KINDS] = {
-    [LOG_PAIR_QUERY] = {"pair_queries", "query of a pair", "queries of pairs"},
-    [LOG_PAIR_RESULT] = {"pair_results", "result of a pair", "results of pairs"},
-    [LOG_SCENE_QUERY] = {"scene_queries", "query of a scene", "queries of scenes"},
-    [LOG_SCENE_RESULT] = {"scene_results", "result of a scene", "results of scenes"},
-    [LOG_STATUS] = {"statuses", "heartbeat", "heartbeats"},
-    [LOG_DEFINITION_QUERY] = {"definition_queries", "query of definitions",
-                              "queries of definitions"},
-    [LOG_DEFINITION] = {"definitions", "definition", "definitions"},
-    [LOG_NAMES] = {"names", "list of names", "lists of names"},
-    [LOG_OTHER] = {"other_events", "on other channels", "on other channels"},
-};
-
-static void print_count(const char *name, int64_t count, const char *one, const char *more)
-{
-    char text[NUMBER_TEXT_MAX];
     if (count > 0)
-        printf("%-13s %12s %s\n", name, number_grouped(count, text), count == 1 ? one : more);
+        number_print(name, count);
 }
 
 static void print_text(const struct log_cut_counts *counts)
@@ -92,12 +53,11 @@ static void print_text(const struct log_cut_counts *counts)
            number_grouped(counts->events, events), 1e-6 * (double) counts->kept_bytes,
            1e-6 * (double) counts->bytes);
     for (int kind = 0; kind < LOG_KINDS; kind++)
-        print_count("", counts->kept[kind], kinds[kind].one, kinds[kind].more);
-    print_count("defined", counts->defined, "body in front of them", "bodies in front of them");
-    print_count("named", counts->names, "body in front of them", "bodies in front of them");
-    print_count("unknown", counts->unknown, "handle that the logs do not define",
-                "handles that the logs do not define");
-    print_count("left out", counts->damaged_bytes, "damaged byte", "damaged bytes");
+        print_count(log_kind_name[kind].text, counts->kept[kind]);
+    print_count("bodies defined", counts->defined);
+    print_count("bodies named", counts->names);
+    print_count("unknown handles", counts->unknown);
+    print_count("damaged bytes", counts->damaged_bytes);
 }
 
 static void print_json(const struct log_cut_counts *counts, int code)
@@ -109,7 +69,7 @@ static void print_json(const struct log_cut_counts *counts, int code)
     json_integer(&json, "kept_events", counts->kept_events);
     json_integer(&json, "kept_bytes", counts->kept_bytes);
     for (int kind = 0; kind < LOG_KINDS; kind++)
-        json_integer(&json, kinds[kind].json, counts->kept[kind]);
+        json_integer(&json, log_kind_name[kind].json, counts->kept[kind]);
     json_integer(&json, "added_definitions", counts->definitions);
     json_integer(&json, "added_bodies", counts->defined);
     json_integer(&json, "added_names", counts->names);
@@ -119,27 +79,18 @@ static void print_json(const struct log_cut_counts *counts, int code)
     json_object_end(&json);
 }
 
-static int code_of(const struct cut_run *run, const struct log_cut_counts *counts)
+static int run_cut(const struct log_cut_options *options, bool json)
 {
-    if (run->complaints > COMPLAINTS_MAX)
-        complain("and %" PRId64 " more damaged places", run->complaints - COMPLAINTS_MAX);
-    if (counts->kept_events == 0)
-        complain("nothing was chosen: %s is not written", run->options->cut.output.path);
-    return counts->damages > 0 || counts->kept_events == 0 ? ARGS_FAILED : ARGS_ANSWERED;
-}
-
-/* ---- The command ---- */
-
-static int run_cut(const struct log_cut_arguments *options)
-{
-    struct cut_run run = {.options = options};
-    const struct log_cut_sink sink = {on_damage, &run};
     struct log_cut_counts counts;
+    int code = ARGS_USAGE;
     progress_begin("bytes");
-    const bool good = log_cut(&options->cut, &sink, &counts);
+    const bool good = log_cut(options, &counts);
     progress_end();
-    const int code = good ? code_of(&run, &counts) : ARGS_USAGE;
-    if (good && options->json)
+    if (good && counts.kept_events == 0)
+        complain("nothing was chosen: %s is not written", options->output.path);
+    if (good)
+        code = counts.damages > 0 || counts.kept_events == 0 ? ARGS_FAILED : ARGS_ANSWERED;
+    if (good && json)
         print_json(&counts, code);
     else if (good)
         print_text(&counts);
@@ -149,30 +100,31 @@ static int run_cut(const struct log_cut_arguments *options)
 int cmd_log_cut(int argc, char **argv)
 {
     struct output_rules rules = {.force = false};
-    struct log_cut_arguments options = {
-        .cut = {.choice = log_choice_all(), .output = {.kind = OUTPUT_LOG, .rules = &rules}}};
-    struct log_choice *choice = &options.cut.choice;
+    struct log_cut_options options = {.choice = log_choice_all(),
+                                      .output = {.kind = OUTPUT_LOG, .rules = &rules}};
+    struct log_choice *choice = &options.choice;
+    bool json = false;
     const struct args_option own[] = {
-        {"output", ARGS_TEXT, &options.cut.output.path, .letter = 'o'},
+        {"output", ARGS_TEXT, &options.output.path, .letter = 'o'},
         {"force", ARGS_FLAG, .out = &rules.force},
         {"from", ARGS_NUMBER, &choice->from, .high = 1e12},
         {"to", ARGS_NUMBER, &choice->to, .high = 1e12},
         {"channel", ARGS_OTHER, choice, .take = log_choice_take_channel},
-        {"json", ARGS_FLAG, .out = &options.json},
+        {"json", ARGS_FLAG, .out = &json},
         {.name = NULL},
     };
     struct args args = {"log cut",           usage, own, .operand = "LOG", .operands_min = 1,
                         .operands_max = 4096};
     int code = args_parse(&args, argc, argv);
-    if (code == ARGS_RUN && ((!options.cut.output.path && !args_error(&args, "expected -o FILE")) ||
+    if (code == ARGS_RUN && ((!options.output.path && !args_error(&args, "expected -o FILE")) ||
                              !args_check_span(&args, choice->from, choice->to)))
         code = ARGS_USAGE;
     if (code == ARGS_RUN) {
-        options.cut.log = rules.input = args.operands;
-        options.cut.log_count = rules.input_count = args.operand_count;
-        options.cut.prefix = args.bus.prefix;
-        code = run_cut(&options);
+        options.log = rules.input = args.operands;
+        options.log_count = rules.input_count = args.operand_count;
+        options.prefix = args.bus.prefix;
+        code = run_cut(&options, json);
     }
-    log_choice_clear(&options.cut.choice);
+    log_choice_clear(&options.choice);
     return code;
 }

@@ -11,12 +11,15 @@
 #include "progress.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* Most damaged places that are reported; the others are counted. */
+enum { COMPLAINTS_MAX = 20 };
+
 struct cutter {
     const struct log_cut_options *options;
-    const struct log_cut_sink *sink;
     struct log_cut_counts *counts;
     struct log_channels channels;
     struct input input;
@@ -217,7 +220,9 @@ static void take_damage(struct cutter *cut, const struct log_damage *damage)
     cut->counts->damages++;
     cut->counts->damaged_bytes += damage->length;
     cut->counts->bytes += damage->length;
-    cut->sink->damage(cut->sink->user, cut->input.log, damage);
+    if (cut->counts->damages <= COMPLAINTS_MAX)
+        complain("%s: offset %" PRId64 ": %" PRId64 " bytes: %s; left out",
+                 cut->options->log[cut->input.log], damage->offset, damage->length, damage->what);
 }
 
 /* ---- The cut ---- */
@@ -249,19 +254,19 @@ static void run(struct cutter *cut)
     body_names_close(cut->names);
 }
 
-bool log_cut(const struct log_cut_options *options, const struct log_cut_sink *sink,
-             struct log_cut_counts *counts)
+bool log_cut(const struct log_cut_options *options, struct log_cut_counts *counts)
 {
     struct cutter *cut = allocate(1, sizeof *cut);
     *counts = (struct log_cut_counts){.events = 0};
     cut->options = options;
-    cut->sink = sink;
     cut->counts = counts;
     if (open_cut(cut))
         run(cut);
     else
         cut->failed = true;
     input_close(&cut->input);
+    if (counts->damages > COMPLAINTS_MAX)
+        complain("and %" PRId64 " more damaged places", counts->damages - COMPLAINTS_MAX);
     const int error = log_finish(cut->output);
     if (error)
         fail_output(cut, error);

@@ -38,15 +38,10 @@ struct log_cut_counts {
     int64_t damages, damaged_bytes;
 };
 
-/* Callbacks during the cut. None may be NULL. */
-struct log_cut_sink {
-    void (*damage)(void *user, int log, const struct log_damage *damage);
-    void *user;
-};
-
-/* False: a file cannot be opened, read or written, which was reported on stderr; the output was
- * then not written. Nor is it if no event was chosen: kept_events is 0. */
-bool log_cut(const struct log_cut_options *options, const struct log_cut_sink *sink,
-             struct log_cut_counts *counts);
+/* Reports damage on stderr. Returns false if a file cannot be opened, read or written, which was
+ * reported too; the output was then not written. Nor is it if no event was chosen: kept_events is
+ * 0.
+ */
+bool log_cut(const struct log_cut_options *options, struct log_cut_counts *counts);
 
 #endif

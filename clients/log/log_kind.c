@@ -7,6 +7,18 @@
 
 _Static_assert(sizeof((struct log_channels *) 0)->name[0] == BUS_CHANNEL_MAX, "LCM's limit");
 
+const struct log_kind_name log_kind_name[LOG_KINDS] = {
+    [LOG_PAIR_QUERY] = {"pair_queries", "pair queries"},
+    [LOG_PAIR_RESULT] = {"pair_results", "pair results"},
+    [LOG_SCENE_QUERY] = {"scene_queries", "scene queries"},
+    [LOG_SCENE_RESULT] = {"scene_results", "scene results"},
+    [LOG_STATUS] = {"heartbeats", "heartbeats"},
+    [LOG_DEFINITION_QUERY] = {"definition_queries", "definition queries"},
+    [LOG_DEFINITION] = {"definitions", "definitions"},
+    [LOG_NAMES] = {"names", "names"},
+    [LOG_OTHER] = {"others", "others"},
+};
+
 struct log_channels log_channels(const char *prefix)
 {
     static const char *const name[LOG_OTHER] = {

@@ -19,6 +19,12 @@ enum log_kind {
     LOG_KINDS
 };
 
+/* The names of the kinds in reports: in JSON, and for people. */
+struct log_kind_name {
+    const char *json, *text;
+};
+extern const struct log_kind_name log_kind_name[LOG_KINDS];
+
 /* The channels of a service. */
 struct log_channels {
     char name[LOG_OTHER][64]; /* [kind] */

@@ -12,20 +12,6 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-static const struct {
-    const char *json, *text;
-} names[LOG_KINDS] = {
-    [LOG_PAIR_QUERY] = {"pair_queries", "pair queries"},
-    [LOG_PAIR_RESULT] = {"pair_results", "pair results"},
-    [LOG_SCENE_QUERY] = {"scene_queries", "scene queries"},
-    [LOG_SCENE_RESULT] = {"scene_results", "scene results"},
-    [LOG_STATUS] = {"heartbeats", "heartbeats"},
-    [LOG_DEFINITION_QUERY] = {"definition_queries", "definition queries"},
-    [LOG_DEFINITION] = {"definitions", "definitions"},
-    [LOG_NAMES] = {"names", "names"},
-    [LOG_OTHER] = {"others", "others"},
-};
-
 /* ---- For programs ---------------------------------------------------------------------------- */
 
 static void write_files(struct json_writer *json, const struct log_parts *parts)
@@ -51,7 +37,7 @@ void record_report_json(const struct recorded *recorded, const struct log_parts 
     json_number(&json, "seconds", round(recorded->seconds * 1e3) / 1e3);
     json_begin(&json, "received", '{');
     for (int kind = 0; kind < LOG_KINDS; kind++)
-        json_integer(&json, names[kind].json, recorded->received[kind]);
+        json_integer(&json, log_kind_name[kind].json, recorded->received[kind]);
     json_end(&json, '}');
     json_integer(&json, "malformed", recorded->malformed);
     json_integer(&json, "lost", (int64_t) recorded->bus.dropped);
@@ -85,7 +71,7 @@ void record_report_text(const struct recorded *recorded, const struct log_parts 
            recorded->seconds, number_grouped(recorded->bytes, bytes));
     for (int kind = 0; kind < LOG_KINDS; kind++)
         if (recorded->received[kind] > 0 || kind <= LOG_STATUS)
-            number_print(names[kind].text, recorded->received[kind]);
+            number_print(log_kind_name[kind].text, recorded->received[kind]);
     if (recorded->malformed > 0)
         number_print("malformed", recorded->malformed);
     if (recorded->bodies.defined > 0)
