@@ -6,7 +6,6 @@
 #include "mesh_intersect.h"
 #include "mesh_report.h"
 #include "mesh_transform.h"
-#include "output.h"
 #include "progress.h"
 
 #include <float.h>
@@ -42,9 +41,6 @@ static const char usage[] =
     "\n"
     "Output:\n"
     "  --json               one line of JSON: counts, and all pairs\n"
-    "  --html FILE          write a page that shows them, and the pairs: for any\n"
-    "                       browser, with nothing to install or to fetch\n"
-    "  --force              overwrite FILE even if it is of another kind\n"
     "  -h, --help\n"
     "\n"
     "Two faces overlap if they have an inner point in common, and touch if they only\n"
@@ -70,7 +66,6 @@ struct mesh_options {
     double duration;
     bool json;
     enum mesh_as as;
-    struct output_options html;
 };
 
 /* ---- Options --------------------------------------------------------------------------------- */
@@ -198,28 +193,6 @@ static bool read_mesh(const char *path, const struct placed *placed, struct mesh
 
 /* ---- Answers --------------------------------------------------------------------------------- */
 
-/* Writes the page if it is wanted. */
-static bool write_page(const struct output_options *options, const struct mesh_report *report)
-{
-    struct output *output;
-    if (!output_open(options, &output))
-        return false;
-    if (output)
-        mesh_page_write(output->file, report);
-    return output_close(output, true);
-}
-
-static int print_answer(const struct mesh_options *options, const struct mesh_report *report)
-{
-    if (options->json)
-        mesh_report_json(stdout, report);
-    else
-        mesh_report_text(stdout, report);
-    const bool written = write_page(&options->html, report);
-    const bool good = output_flush() && written;
-    return good ? ARGS_ANSWERED : ARGS_FAILED;
-}
-
 static int intersect(const struct mesh_options *options, const struct mesh mesh[2], char **names)
 {
     const struct mesh_query query = {
@@ -243,15 +216,17 @@ static int intersect(const struct mesh_options *options, const struct mesh mesh[
                                        .mesh = {&mesh[0], &mesh[1]},
                                        .name = {names[0], names[1]},
                                        .intersection = &intersection};
-    const int code = print_answer(options, &report);
+    if (options->json)
+        mesh_report_json(stdout, &report);
+    else
+        mesh_report_text(stdout, &report);
     mesh_intersection_free(&intersection);
-    return code;
+    return output_flush() ? ARGS_ANSWERED : ARGS_FAILED;
 }
 
 int cmd_mesh(int argc, char **argv)
 {
-    struct output_rules rules = {.force = false};
-    struct mesh_options options = {.duration = 1, .html = {.kind = OUTPUT_PAGE, .rules = &rules}};
+    struct mesh_options options = {.duration = 1};
     const struct args_option own[] = {
         {"scale", ARGS_OTHER, options.placed, .take = take_scale},
         {"rotate", ARGS_OTHER, options.placed, .take = take_rotate},
@@ -261,8 +236,6 @@ int cmd_mesh(int argc, char **argv)
         {"duration", ARGS_NUMBER, &options.duration, .high = DBL_MAX},
         {"as", ARGS_OTHER, &options.as, .take = take_as},
         {"json", ARGS_FLAG, .out = &options.json},
-        {"html", ARGS_TEXT, .out = &options.html.path},
-        {"force", ARGS_FLAG, .out = &rules.force},
         {.name = NULL},
     };
     struct args args = {.command = "mesh",
@@ -274,14 +247,10 @@ int cmd_mesh(int argc, char **argv)
     int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    rules.input = args.operands;
-    rules.input_count = args.operand_count;
     if (args.operand_count != 2) {
         args_error(&args, "expected two meshes, found %d", args.operand_count);
         return ARGS_USAGE;
     }
-    if (!output_check(&options.html))
-        return ARGS_USAGE;
     code = ARGS_USAGE;
     if (read_mesh(args.operands[0], &options.placed[0], &mesh[0]) &&
         read_mesh(args.operands[1], &options.placed[1], &mesh[1]))

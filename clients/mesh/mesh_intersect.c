@@ -135,34 +135,20 @@ static int compare(const void *x, const void *y)
     return (p->b > q->b) - (p->b < q->b);
 }
 
-static void mark(unsigned char *worst, enum fmb_verdict verdict)
+/* Counts the pairs of each verdict, and the faces in them. */
+static void count(const struct mesh_query *query, struct mesh_intersection *intersection)
 {
-    if (*worst < verdict)
-        *worst = (unsigned char) verdict;
-}
-
-static size_t count_marked(const unsigned char *worst, size_t count)
-{
-    size_t sum = 0;
-    for (size_t i = 0; i < count; i++)
-        sum += worst[i] > 0;
-    return sum;
-}
-
-static void mark_faces(const struct mesh_query *query, struct mesh_intersection *intersection)
-{
-    intersection->worst[0] = allocate(query->a->face_count, 1);
-    intersection->worst[1] = allocate(query->b->face_count, 1);
+    bool *in_pair[2] = {allocate(query->a->face_count, 1), allocate(query->b->face_count, 1)};
     for (size_t i = 0; i < intersection->count; i++) {
         const struct mesh_pair *pair = &intersection->pair[i];
-        mark(&intersection->worst[0][pair->a], pair->verdict);
-        mark(&intersection->worst[1][pair->b], pair->verdict);
         intersection->overlapping += pair->verdict == FMB_OVERLAPPING;
         intersection->touching += pair->verdict == FMB_TOUCHING;
+        intersection->faces[0] += !in_pair[0][pair->a];
+        intersection->faces[1] += !in_pair[1][pair->b];
+        in_pair[0][pair->a] = in_pair[1][pair->b] = true;
     }
-    for (int which = 0; which < 2; which++)
-        intersection->faces[which] =
-            count_marked(intersection->worst[which], mesh_of(query, which)->face_count);
+    free(in_pair[0]);
+    free(in_pair[1]);
 }
 
 enum fmb_status mesh_intersect(const struct mesh_query *query, struct mesh_intersection *out)
@@ -193,14 +179,12 @@ enum fmb_status mesh_intersect(const struct mesh_query *query, struct mesh_inter
     }
     if (out->count > 0)
         qsort(out->pair, out->count, sizeof *out->pair, compare);
-    mark_faces(query, out);
+    count(query, out);
     return FMB_OK;
 }
 
 void mesh_intersection_free(struct mesh_intersection *intersection)
 {
     free(intersection->pair);
-    free(intersection->worst[0]);
-    free(intersection->worst[1]);
     memset(intersection, 0, sizeof *intersection);
 }

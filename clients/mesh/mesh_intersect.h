@@ -23,10 +23,7 @@ struct mesh_intersection {
     size_t count, capacity;
     size_t overlapping, touching; /* of the pairs, by verdict */
     size_t faces[2];              /* faces of a and of b in at least one pair */
-    /* Owned; [face] of a and of b: the worst verdict of its pairs (OVERLAPPING before TOUCHING), or
-     * 0 without a pair. */
-    unsigned char *worst[2];
-    uint64_t candidates; /* candidate pairs decided */
+    uint64_t candidates;          /* candidate pairs decided */
     bool moving;
     int64_t build_ns, query_ns; /* time to build the trees, and the remaining time */
 };

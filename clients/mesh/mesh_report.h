@@ -1,4 +1,4 @@
-/* Reports of an intersection of meshes: text, JSON and HTML. On output: ferror(out) is set if
+/* Reports of an intersection of meshes: text and JSON. On output: ferror(out) is set if
  * writing failed; the caller also checks fclose(). */
 #ifndef MESH_REPORT_H
 #define MESH_REPORT_H
@@ -24,10 +24,5 @@ void mesh_report_text(FILE *out, const struct mesh_report *report);
  *
  * If a mesh moves, the interval of contact follows the verdict. */
 void mesh_report_json(FILE *out, const struct mesh_report *report);
-
-/* Writes an HTML page (page.h) of both meshes, with the pairs, MESH_PAGE_PAIRS_MAX at most. It
- * takes some 26 bytes for each face. */
-enum { MESH_PAGE_PAIRS_MAX = 20000 };
-void mesh_page_write(FILE *out, const struct mesh_report *report);
 
 #endif

@@ -86,7 +86,6 @@ struct body {
 };
 
 struct page {
-    int64_t pairs_max;
     struct text data; /* an object: kind, title and sides */
     struct text list[LISTS];
     struct element *shapes; /* owned: hash table */
@@ -107,11 +106,9 @@ struct page {
 
 struct page *page_open(const struct page_options *options)
 {
-    static const char *const kind[] = {
-        [PAGE_SCENES] = "scenes", [PAGE_REPLAY] = "replay", [PAGE_MESH] = "mesh"};
+    static const char *const kind[] = {[PAGE_SCENES] = "scenes", [PAGE_REPLAY] = "replay"};
     struct page *page = allocate(1, sizeof *page);
     struct json_writer *json = &page->data.json;
-    page->pairs_max = options->pairs_max ? options->pairs_max : PAGE_PAIRS_MAX;
     text_open(&page->data);
     text_open(&page->shape);
     for (int list = 0; list < LISTS; list++)
@@ -148,11 +145,19 @@ void page_close(struct page *page)
     free(page);
 }
 
-/* Returns the index of the JSON in page->shape, which is added if it is new. */
-static int64_t shape_index(struct page *page)
+/* ---- Bodies ---------------------------------------------------------------------------------- */
+
+/* Returns the index of the shape, which is added if it is new. */
+static int64_t shape_of(struct page *page, const struct fmb_body *body)
 {
-    const size_t size = text_size(&page->shape);
+    struct json_writer *json = &page->shape.json;
     struct element *found;
+    text_rewind(&page->shape);
+    json_begin(json, NULL, '{');
+    json_integer(json, "dim", body->dim);
+    scene_json_frames(json, body);
+    json_end(json, '}');
+    const size_t size = text_size(&page->shape);
     HASH_FIND(hh, page->shapes, page->shape.bytes, size, found);
     if (found)
         return (int64_t) found->index;
@@ -164,35 +169,18 @@ static int64_t shape_index(struct page *page)
     return (int64_t) found->index;
 }
 
-/* ---- Bodies ---------------------------------------------------------------------------------- */
-
-static int64_t shape_of(struct page *page, const struct fmb_body *body)
-{
-    text_rewind(&page->shape);
-    json_begin(&page->shape.json, NULL, '{');
-    json_integer(&page->shape.json, "dim", body->dim);
-    scene_json_frames(&page->shape.json, body);
-    json_end(&page->shape.json, '}');
-    return shape_index(page);
-}
-
-static void add_body(struct page *page, const struct body *body)
-{
-    page->body =
-        allocate_grow(page->body, &page->body_capacity, page->body_count + 1, sizeof *page->body);
-    page->body[page->body_count++] = *body;
-}
-
 void page_body(struct page *page, const struct fmb_placement *placement, const char *missing)
 {
-    struct body body = {.placed = *placement, .dim = missing ? 0 : placement->body->dim};
     if (!page->keeps)
         return;
+    page->body =
+        allocate_grow(page->body, &page->body_capacity, page->body_count + 1, sizeof *page->body);
+    struct body *body = &page->body[page->body_count++];
+    *body = (struct body){.placed = *placement, .dim = missing ? 0 : placement->body->dim};
     if (missing)
-        g_strlcpy(body.missing, missing, sizeof body.missing);
+        g_strlcpy(body->missing, missing, sizeof body->missing);
     else
-        body.shape = shape_of(page, placement->body);
-    add_body(page, &body);
+        body->shape = shape_of(page, placement->body);
 }
 
 /* Writes numbers with their digits down to 1e-6 of the extent; 0: all digits. */
@@ -280,7 +268,7 @@ void page_pair(struct page *page, int dim, const struct fmb_client_answer *then,
     const bool is_near = now->status != FMB_OK || now->answer.verdict != FMB_SEPARATED ||
                          report_is_near(page->step.margin, &now->answer);
     const enum rank rank = then ? RANK_DIFFERENT : is_near ? RANK_NEAR : RANK_FAR;
-    if (page->pair_count[rank]++ >= page->pairs_max)
+    if (page->pair_count[rank]++ >= PAGE_PAIRS_MAX)
         return;
     struct json_writer *json = &page->pairs[rank].json;
     json->digits = then ? 0 : DIGITS;
@@ -355,10 +343,10 @@ static int64_t put_pairs(struct page *page, struct json_writer *json)
     for (int rank = 0; rank < RANK_FAR; rank++) {
         const int64_t count = page->pair_count[rank];
         put_elements(json, &page->pairs[rank]);
-        dropped += count > page->pairs_max ? count - page->pairs_max : 0;
+        dropped += count > PAGE_PAIRS_MAX ? count - PAGE_PAIRS_MAX : 0;
     }
     const size_t far = text_size(&page->pairs[RANK_FAR]);
-    if (page->pair_count[RANK_FAR] > page->pairs_max || page->far_bytes + far > PAGE_FAR_BYTES) {
+    if (page->pair_count[RANK_FAR] > PAGE_PAIRS_MAX || page->far_bytes + far > PAGE_FAR_BYTES) {
         page->far_left_out += page->pair_count[RANK_FAR];
     } else {
         page->far_bytes += far;
@@ -380,39 +368,9 @@ void page_step_end(struct page *page)
     json_end(json, '}');
 }
 
-/* ---- Meshes ---------------------------------------------------------------------------------- */
-
-void page_mesh(struct page *page, const struct page_mesh *mesh)
-{
-    struct body body = {.placed = {.name = mesh->name}, .dim = 3};
-    struct json_writer *json = &page->shape.json;
-    double extent = 0;
-    for (size_t i = 0; i < mesh->vertex_count; i++)
-        extent = fmax(extent, largest_of(mesh->vertex[i], mesh->vertex[0], 3));
-    text_rewind(&page->shape);
-    json_begin(json, NULL, '{');
-    json_integer(json, "dim", 3);
-    put_vector(json, "vertices", (const double *) mesh->vertex, 3 * (int) mesh->vertex_count,
-               extent);
-    json_begin(json, "faces", '[');
-    for (size_t i = 0; i < 3 * mesh->face_count; i++)
-        json_integer(json, NULL, mesh->face[i / 3][i % 3]);
-    json_end(json, ']');
-    json_begin(json, "verdicts", '[');
-    for (size_t i = 0; i < mesh->face_count; i++)
-        json_integer(json, NULL, mesh->verdict[i]);
-    json_end(json, ']');
-    json_integer(json, "number", (int64_t) page->body_count); /* two equal meshes are two shapes */
-    json_end(json, '}');
-    if (mesh->velocity)
-        memcpy(body.placed.velocity, mesh->velocity, sizeof body.placed.velocity);
-    body.shape = shape_index(page);
-    add_body(page, &body);
-}
-
 /* ---- Writing --------------------------------------------------------------------------------- */
 
-void page_note(struct page *page, const char *note)
+static void page_note(struct page *page, const char *note)
 {
     json_string(&page->list[LIST_NOTES].json, NULL, note);
 }

@@ -38,13 +38,12 @@ enum {
     PAGE_PAIRS_MAX = 1000
 };
 
-enum page_kind { PAGE_SCENES, PAGE_REPLAY, PAGE_MESH };
+enum page_kind { PAGE_SCENES, PAGE_REPLAY };
 
 struct page_options {
     enum page_kind kind;
     const char *title;
     const char *sides[2]; /* what the answers then and now are; NULL: there is one side */
-    int pairs_max;        /* in place of PAGE_PAIRS_MAX; 0: that */
 };
 
 /* Copies what options point to. Returns a page, never NULL. */
@@ -68,7 +67,7 @@ struct json_writer *page_step_begin(struct page *page, const struct page_step *s
 /* Adds a body. missing: NULL; or why the body cannot be drawn: then only id and name are read. */
 void page_body(struct page *page, const struct fmb_placement *placement, const char *missing);
 
-/* Adds the answer to a pair. a and b of the answer are indices of bodies (of faces, for a mesh).
+/* Adds the answer to a pair. a and b of the answer are indices of bodies.
  * then: the earlier answer, or NULL if it is the same as now. */
 void page_pair(struct page *page, int dim, const struct fmb_client_answer *then,
                const struct fmb_client_answer *now);
@@ -78,23 +77,7 @@ void page_step_end(struct page *page);
 /* Begins a step with the bodies of a scene. The windows of the scenes follow each other. */
 void page_scene_begin(struct page *page, const struct fmb_scene *scene);
 
-/* ---- Meshes: a page of one step, whose bodies are meshes ---- */
-
-struct page_mesh {
-    const char *name;
-    size_t vertex_count, face_count;
-    double (*vertex)[3];
-    unsigned (*face)[3];
-    const unsigned char *verdict; /* [face]: the strongest of its pairs */
-    const double *velocity;       /* NULL: at rest */
-};
-
-void page_mesh(struct page *page, const struct page_mesh *mesh);
-
 /* ---- Writing ---- */
-
-/* Adds a line about the page as a whole. */
-void page_note(struct page *page, const char *note);
 
 /* Call it once. On output: ferror(out) is set if writing failed. */
 void page_write(struct page *page, FILE *out);

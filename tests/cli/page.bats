@@ -1,4 +1,4 @@
-# The page of --html: its contents, and what a browser shows of scenes, recordings and meshes. Chromium
+# The page of --html: its contents, and what a browser shows of scenes and recordings. Chromium
 # opens the pages, clicks and presses keys in them (tests/page/drive.js); without Chromium those tests
 # are skipped.
 
@@ -66,9 +66,6 @@ SCENE
     "${fmb%fmb}edit-log" --nudge 2 1e-13 "$logs/stack.log" nudged.log
     "$fmb" replay --html nudged.html nudged.log > replay.said || true
     "$fmb" replay --golden "$logs/stack.log" --html other.html "$logs/arm.log" > replay.said 2>&1 || true
-    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' > b.obj
-    "$fmb" mesh --html mesh.html --json b.obj b.obj --translate 1.5,0.1,0.1 --velocity=-1,0,0 > mesh.json
-    "$fmb" mesh --html apart.html b.obj b.obj --translate 5,0,0 > apart.said
     sed 's/^start();$/start(); start;/' arm.html > changed.html
     sed '/id="data">$/{n;s/^./!/;}' arm.html > cut.html
     ! command -v chromium > /dev/null ||
@@ -82,7 +79,7 @@ setup() {
 # ---- Contents --------------------------------------------------------------------------------
 
 @test "the page is one file that refers to nothing else, with its policy and the licence of three.js" {
-    for page in table arm stack mesh; do
+    for page in table arm stack; do
         data $page.html | jq -e '.steps | type == "array"' > /dev/null
         is_self_contained $page.html
         has_policy $page.html
@@ -95,12 +92,6 @@ setup() {
     [ "$(grep -c '<!--' hostile.html)" = 0 ]
     data hostile.html | jq -e --arg name "$hostile" '.steps[0].bodies[0].name == $name and .steps[0].label == $name'
     found '.hostile | .bold == 0 and (.labels | any(startswith("<b>x</b></script>")))'
-}
-
-@test "the pairs of a mesh's page are those of the program" {
-    jq -c '[.pairs[] | .[:3]]' mesh.json > expected
-    data mesh.html | jq -c '[.steps[0].pairs[] | .bodies + [.verdict]]' > held
-    diff expected held
 }
 
 # ---- In a browser ----------------------------------------------------------------------------
@@ -232,13 +223,6 @@ setup() {
 @test "numbers of all sizes are drawn" {
     # Bodies may be smaller than a pixel beside each other: then their names show where they are.
     found '.sizes | length > 100 and all(.bad == 0 and (.drawn > 100 or .labels > 0)) and (map(select(.drawn > 100)) | length) > 0.7 * length'
-}
-
-@test "faces of meshes that meet are red, and a pair is shown from near" {
-    pairs=$(jq '.pairs | length' mesh.json)
-    found ".mesh | (.rows | length) == $pairs and (.notes | contains(\"$pairs pairs of faces meet\")) and .red > 1000" \
-        '(.face.facts.pair | test("^A [0-3] – B [0-3]$")) and .face.violet > 50 and .moved.sum != .mesh.sum and .moved.text == "1.000 s"' \
-        '.apart | .drawn > 10000 and .red == 0 and .rows == 0 and .hidden and (.notes | contains("0 pairs of faces meet"))'
 }
 
 @test "without WebGL table and timeline remain, and one line says so" {

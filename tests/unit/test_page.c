@@ -213,29 +213,6 @@ static void positions_are_rounded_to_parts_of_the_extent(void **state)
     }
 }
 
-static void meshes_have_vertices_faces_and_verdicts(void **state)
-{
-    static double vertex[3][3] = {{1, 0, 0}, {3, 0, 0}, {1, 1, 0}};
-    static unsigned face[1][3] = {{0, 1, 2}};
-    static const unsigned char verdict[1] = {FMB_TOUCHING};
-    const struct page_mesh mesh = {.name = "m",
-                                   .vertex_count = 3,
-                                   .face_count = 1,
-                                   .vertex = vertex,
-                                   .face = face,
-                                   .verdict = verdict};
-    struct page *page = open_page(PAGE_MESH);
-    begin_step(page, 0, false);
-    page_mesh(page, &mesh);
-    page_mesh(page, &mesh);
-    page_step_end(page);
-    cJSON *data = data_of(page);
-    expect_json(cJSON_GetArrayItem(member(data, "shapes"), 1),
-                "{\"dim\":3,\"vertices\":[1,0,0,3,0,0,1,1,0],\"faces\":[0,1,2],\"verdicts\":[2],"
-                "\"number\":1}");
-    cJSON_Delete(data);
-}
-
 /* ---- Hostile texts --------------------------------------------------------------------------- */
 
 static void hostile_texts_end_neither_script_nor_page(void **state)
@@ -243,7 +220,6 @@ static void hostile_texts_end_neither_script_nor_page(void **state)
     static const char hostile[] = "</script><script>alert(1)</script><!-- \"\\\n\xff\x01";
     struct page *page = page_open(
         &(struct page_options){.kind = PAGE_REPLAY, .title = hostile, .sides = {hostile, hostile}});
-    page_note(page, hostile);
     json_string(page_step_begin(page, &(struct page_step){.label = hostile}), "note", hostile);
     add_box(page, 1, hostile, zero);
     page_body(page, &(struct fmb_placement){.id = 2, .name = hostile}, hostile);
@@ -344,7 +320,6 @@ int main(void)
         cmocka_unit_test(shapes_are_stored_once),
         cmocka_unit_test(answers_that_differ_have_all_digits),
         cmocka_unit_test(positions_are_rounded_to_parts_of_the_extent),
-        cmocka_unit_test(meshes_have_vertices_faces_and_verdicts),
         cmocka_unit_test(hostile_texts_end_neither_script_nor_page),
         cmocka_unit_test(large_steps_keep_pairs_in_contact),
         cmocka_unit_test(far_pairs_are_bounded),

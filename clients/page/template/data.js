@@ -16,7 +16,7 @@ if (!globalThis.DecompressionStream)
 const data = await unpack("data").json();
 const SEPARATED = 1, TOUCHING = 2, OVERLAPPING = 3;
 const verdictNames = ["not decided", "separated", "touching", "overlapping"];
-const { steps } = data, isMesh = data.kind === "mesh", isReplay = data.kind === "replay";
+const { steps } = data, isReplay = data.kind === "replay";
 
 /* ---- Scenes and answers as JSON ---- */
 
@@ -74,8 +74,6 @@ const isNear = (step, answer) => answer.verdict >= TOUCHING
 /* ---- Bodies and rows ---- */
 
 function bodyName(step, index) {
-    if (isMesh)
-        return `${index === 0 ? "A" : "B"} ${step.bodies[index][2]}`;
     const [id, , name] = step.bodies[index] ?? [0];
     return name || (id === 0 ? `#${index}` : String(id));
 }
@@ -91,10 +89,9 @@ function bodyKey(step, index) {
 const rows = [], rowByKey = new Map();
 
 function addPair(step, i, pair) {
-    const names = isMesh ? [`A ${pair[0]}`, `${data.shapes.length > 1 ? "B" : "A"} ${pair[1]}`]
-        : [bodyName(step, pair[0]), bodyName(step, pair[1])];
-    const keys = isMesh ? names : [bodyKey(step, pair[0]), bodyKey(step, pair[1])];
-    if (!isMesh && Number(keys[0]) > Number(keys[1])) {
+    const names = [bodyName(step, pair[0]), bodyName(step, pair[1])];
+    const keys = [bodyKey(step, pair[0]), bodyKey(step, pair[1])];
+    if (Number(keys[0]) > Number(keys[1])) {
         keys.reverse();
         names.reverse();
     }

@@ -6,7 +6,7 @@ function showHead() {
     one("title").textContent = document.title = isReplay ? `${data.title}, ${data.sides[1]}, compared with ${data.sides[0]}` : data.title;
     one("counts").textContent = [
         steps.length > 1 ? `${steps.length} ${isReplay ? "queries" : "scenes"}` : "",
-        isMesh ? "" : `${rows.length} pairs: ${counts.join(", ")}`,
+        `${rows.length} pairs: ${counts.join(", ")}`,
         isReplay ? `${differences.length} different` : "",
     ].filter(Boolean).join(" · ");
     one("counts").classList.toggle("different", differences.length > 0);
@@ -89,7 +89,7 @@ function start() {
     chooseRows();
     watch();
     drawOverview();
-    if (rows.length > 0 && !isMesh)
+    if (rows.length > 0)
         choose(table.shown[0]);
     show();
     readHash(location.href);

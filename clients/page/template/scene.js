@@ -101,12 +101,12 @@ function buildBodies() {
 function placeBodies() {
     const { position, color } = faces.geometry.attributes, point = new THREE.Vector3();
     for (const item of stage.items) {
-        const { surface: { corners, centre, verdicts }, source: { stream: { step, part }, k }, first } = item;
-        const turn = orientationOf(step, k), at = positionOf(step, k, part).sub(stage.centre), colours = coloursOf(item);
+        const { surface: { corners, centre }, source: { stream: { step, part }, k }, first } = item;
+        const turn = orientationOf(step, k), at = positionOf(step, k, part).sub(stage.centre), colour = colourOf(item);
         [item.centre] = placed([centre], step, k, part);
         corners.forEach((corner, i) => {
             point.copy(corner).applyQuaternion(turn).add(at).toArray(position.array, 3 * (first + i));
-            colours[verdicts ? verdicts[Math.floor(i / 3)] : 0].toArray(color.array, 3 * (first + i));
+            colour.toArray(color.array, 3 * (first + i));
         });
     }
     position.needsUpdate = color.needsUpdate = true;
@@ -133,7 +133,7 @@ function onTop(colour, object) {
     return object;
 }
 
-const [boxes, boxesThen, gapLine, picked] = ["box", "diff", "gap", "box"].map((colour) => onTop(colour, new THREE.LineSegments()));
+const [boxes, boxesThen, gapLine] = ["box", "diff", "gap"].map((colour) => onTop(colour, new THREE.LineSegments()));
 const gapEnds = onTop("gap", new THREE.Points(undefined, new THREE.PointsMaterial({ size: 7, sizeAttenuation: false })));
 
 function setLines(object, points) {
@@ -210,9 +210,7 @@ function fit(row = null, direction = null) {
         return;
     const pair = row && pairAt(row, stage.step);
     const to = direction ?? camera.position.clone().sub(controls.target).toArray();
-    if (isMesh && pair)
-        setExtent(pairTriangles(pair, 0).flat());
-    else if (pair && pair[0] >= 0)
+    if (pair && pair[0] >= 0)
         setExtent(cornersOf(steps[stage.step], pair.slice(0, 2)));
     else
         setExtent(likeSteps(stage.step).flatMap((step) => cornersOf(step)));
@@ -263,8 +261,6 @@ function followPace(moves, ms) {
  * moment of the window. */
 function statesOf(step, offset) {
     const states = step.bodies.map(() => ({ verdict: 0, now: false }));
-    if (isMesh)
-        return states;
     for (const pair of step.pairs) {
         const answer = nowOf(pair), verdict = verdictOf(answer);
         const [first, last] = answer.contact ?? [0, Infinity];
@@ -278,16 +274,14 @@ function statesOf(step, offset) {
     return states;
 }
 
-/* The colours of an item; of a mesh by the verdict of a face. */
-function coloursOf({ state, surface, source: { stream: { step }, k } }) {
-    const { none, separated, touching, overlapping } = stage.colours, at = new THREE.Color(none), full = state.verdict === OVERLAPPING ? overlapping : touching;
-    if (surface.verdicts)
-        return [k === 1 ? "#5b7fb4" : none, separated, touching, overlapping].map((colour) => new THREE.Color(colour));
+/* The colour of an item. */
+function colourOf({ state, source: { stream: { step }, k } }) {
+    const { none, touching, overlapping } = stage.colours, at = new THREE.Color(none), full = state.verdict === OVERLAPPING ? overlapping : touching;
     if (one("colour").value === "body")
         at.set(bodyColours[(Number(step.bodies[k][0]) || k) % bodyColours.length]);
     else if (state.verdict >= TOUCHING)
         at.lerp(new THREE.Color(full), state.now ? 1 : 0.3);
-    return [at];
+    return at;
 }
 
 /* The edges of a box of an answer, as pairs of points; infinite ends are out of view. */
@@ -302,30 +296,20 @@ function boxPoints(box) {
     return edges.flat().map((k) => corners[k]);
 }
 
-/* The two triangles of a pair of faces, at a part of the window. */
-function pairTriangles(pair, part) {
-    return pair.slice(0, 2).map((face, side) => {
-        const { surface, source: { stream, k } } = stage.items[Math.min(side, stage.items.length - 1)];
-        const at = positionOf(stream.step, k, part);
-        return (surface.triangles[face] ?? []).map((corner) => sum(surface.corners[corner], at));
-    });
-}
-
-/* New buffers take a browser without a GPU long: only a mesh needs them in each frame. */
+/* New buffers take a browser without a GPU long: so not in each frame. */
 function drawAnswers() {
     const key = `${stage.step} ${stage.row?.index}`;
-    if (!isMesh && key === stage.answers)
+    if (key === stage.answers)
         return;
     stage.answers = key;
     const shown = stage.streams.flatMap(({ step }) => step.pairs).slice(0, 300);
     setLines(boxes, shown.map((pair) => nowOf(pair).box).filter(Boolean).flatMap(boxPoints));
     setLines(boxesThen, shown.filter(isDifferent).map((pair) => pair[2].box).filter(Boolean).flatMap(boxPoints));
     const pair = stage.row && pairNow(stage.row, stage.step);
-    const [, , , ...points] = (pair && !isMesh && nowOf(pair).gap) || [];
+    const [, , , ...points] = (pair && nowOf(pair).gap) || [];
     const ends = points.length > 0 ? [points.slice(0, points.length / 2), points.slice(points.length / 2)].map(pointOf) : [];
     setLines(gapLine, ends);
     setLines(gapEnds, ends);
-    setLines(picked, isMesh && pair ? pairTriangles(pair, stage.streams[0].part).flatMap(([a, b, c]) => [a, b, b, c, c, a]) : []);
 }
 
 /* Shows the moment s, which is in step i. */
@@ -358,7 +342,7 @@ function beginStep(i) {
     const sources = new Map();
     for (const stream of stage.streams)
         stream.step.bodies.forEach((body, k) => {
-            const key = isMesh ? String(k) : bodyKey(stream.step, k);
+            const key = bodyKey(stream.step, k);
             if (isDrawn(body) && data.shapes[body[1]].dim === stage.dim && !sources.has(key))
                 sources.set(key, { stream, k });
         });
@@ -420,9 +404,8 @@ function drawPointed(event) {
     one("pointed").hidden = !hit;
     if (!hit)
         return;
-    const { surface, state, first, source: { stream, k } } = stage.items[lastUpTo(stage.items.map((item) => item.first), hit.face.a)];
-    const face = Math.floor((hit.face.a - first) / 3), verdict = isMesh ? surface.verdicts[face] : state.verdict;
-    one("pointed").textContent = `${isMesh ? `${k ? "B" : "A"} ${face}` : bodyName(stream.step, k)}${verdict ? `: ${verdictNames[verdict]}` : ""}`;
+    const { state: { verdict }, source: { stream, k } } = stage.items[lastUpTo(stage.items.map((item) => item.first), hit.face.a)];
+    one("pointed").textContent = `${bodyName(stream.step, k)}${verdict ? `: ${verdictNames[verdict]}` : ""}`;
 }
 
 /* ---- Colours, and the loop ---- */

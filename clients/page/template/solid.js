@@ -80,18 +80,8 @@ function frameOf({ shape, origin, position, size, components = [], vertices }, d
     return shape === "cuboid" ? cuboidOf(at, edges) : simplexOf([at, ...edges.map((edge) => sum(at, edge))]);
 }
 
-/* A mesh: three corners for each triangle, so that each has the colour of its verdict; no edges. */
-function meshOf({ vertices, faces, verdicts }, unit) {
-    return {
-        corners: faces.map((k) => vectorOf(vertices.slice(3 * k, 3 * k + 3), unit)),
-        triangles: verdicts.map((_, i) => [3 * i, 3 * i + 1, 3 * i + 2]), edges: [], verdicts,
-    };
-}
-
 /* The surface of a shape, in units of 2^unit. */
 function solidOf(shape, unit) {
-    if (shape.faces)
-        return meshOf(shape, unit);
     const solid = { corners: [], triangles: [], edges: [] };
     for (const given of shape.frames) {
         const frame = frameOf(given, shape.dim, unit), first = solid.corners.length;
@@ -110,7 +100,7 @@ function exponentOfAll(numbers) {
 
 /* An exponent that bounds the coordinates of a shape. */
 function exponentOf(shape) {
-    shape.exponent ??= 2 + exponentOfAll(shape.vertices ?? shape.frames
+    shape.exponent ??= 2 + exponentOfAll(shape.frames
         .flatMap(({ origin, position, size, components, vertices }) => [origin ?? position ?? [], size ?? [], components ?? [], vertices ?? []].flat(2)));
     return shape.exponent;
 }
