@@ -1,22 +1,32 @@
-/* fmb log info: prints the contents of event logs. */
+/* fmb log info: prints the contents of event logs. Memory grows with the number of channels. */
 #include "commands.h"
 
 #include "args.h"
+#include "big_endian.h"
+#include "body_names.h"
 #include "complain.h"
-#include "log_info.h"
+#include "escape.h"
+#include "json_write.h"
+#include "keyed_hash.h"
+#include "number.h"
 #include "progress.h"
+#include "wire_type.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 static const char usage[] =
     "usage: fmb log info [OPTIONS] LOG...\n"
     "\n"
     "Reads event logs and prints for each: its size, the time it covers, its channels\n"
     "with their message types, counts and sizes, the last name of each body that has\n"
-    "one, and each place that is damaged. A type that does not belong to the service\n"
+    "one, and the places that are damaged. A type that does not belong to the service\n"
     "is printed as the fingerprint of its messages.\n"
     "\n"
     "  --json               one line of JSON for each log, with all times in\n"
@@ -26,8 +36,128 @@ static const char usage[] =
     "Exit codes: 0 all logs are intact; 1 one is damaged, and what could be read is\n"
     "printed; 2 wrong usage, or a file that cannot be read or is not a log.\n";
 
-/* Reads a log. Returns NULL, or why it could not be read to its end. */
-static const char *read_all(struct log_reader *reader, struct log_info *info)
+enum { MICROSECONDS = 1000000, NAME_LINES = 100, DAMAGES_LISTED = 20 };
+
+struct tally {
+    int64_t events;
+    int64_t bytes;       /* data of all events */
+    int64_t least, most; /* data of one event, bytes */
+    int64_t begin, end;  /* earliest and latest time, in any order in the log, microseconds */
+};
+
+/* The events of one channel and type. */
+struct row {
+    UT_hash_handle hh;
+    struct tally tally;
+    const char *type; /* its name, or `text`; NULL: messages of fewer than 8 bytes */
+    char text[24];    /* of the fingerprint */
+    enum log_kind kind;
+    size_t length;       /* of the channel */
+    unsigned char key[]; /* the first 8 bytes of its messages, or fewer; then the channel */
+};
+
+/* Bytes of a key before the channel: those of the data, and how many these are. */
+enum { TYPE_BYTES = 8 + 1 };
+
+struct info {
+    const char *path;
+    int64_t size;
+    const char *error; /* why it could not be read to its end; NULL: no error */
+    struct tally all;
+    int64_t backward; /* events with an earlier time than the event before them */
+    int64_t utime;    /* of the last event */
+    int64_t damages, damaged;
+    struct log_damage damage[DAMAGES_LISTED]; /* the first ones */
+    struct body_names *names;
+    struct row *rows; /* owned */
+};
+
+/* ---- Events ---- */
+
+static void add_event(struct tally *tally, const struct log_event *event)
+{
+    const int64_t size = (int64_t) event->size;
+    if (tally->events++ == 0)
+        *tally = (struct tally){1, 0, size, size, event->utime, event->utime};
+    tally->bytes += size;
+    tally->least = size < tally->least ? size : tally->least;
+    tally->most = size > tally->most ? size : tally->most;
+    tally->begin = event->utime < tally->begin ? event->utime : tally->begin;
+    tally->end = event->utime > tally->end ? event->utime : tally->end;
+}
+
+/* Sets the type of the messages, and their kind if they may name bodies. */
+static void set_type(struct row *row, int64_t fingerprint)
+{
+    static const struct {
+        const char *name;
+        enum log_kind kind;
+    } kinds[] = {{"fmb_msgs.pair_query_t", LOG_PAIR_QUERY},
+                 {"fmb_msgs.scene_query_t", LOG_SCENE_QUERY},
+                 {"fmb_msgs.names_t", LOG_NAMES}};
+    row->type = wire_type_name(fingerprint);
+    if (!row->type) {
+        snprintf(row->text, sizeof row->text, "0x%016" PRIx64, (uint64_t) fingerprint);
+        row->type = row->text;
+    }
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        if (strcmp(row->type, kinds[i].name) == 0)
+            row->kind = kinds[i].kind;
+}
+
+static struct row *row_of(struct info *info, const struct log_event *event)
+{
+    unsigned char key[TYPE_BYTES + LOG_CHANNEL_MAX] = {0};
+    const size_t size = TYPE_BYTES + event->channel_length;
+    struct row *row;
+    if (event->kept >= 8) {
+        memcpy(key, event->data, 8);
+        key[8] = 8;
+    }
+    memcpy(key + TYPE_BYTES, event->channel, event->channel_length);
+    HASH_FIND(hh, info->rows, key, size, row);
+    if (row)
+        return row;
+    row = allocate(1, sizeof *row + size);
+    memcpy(row->key, key, size);
+    row->length = event->channel_length;
+    row->kind = LOG_OTHER;
+    if (event->kept >= 8)
+        set_type(row, (int64_t) big_endian_64(event->data));
+    HASH_ADD_KEYPTR(hh, info->rows, row->key, size, row);
+    return row;
+}
+
+static void take_event(struct info *info, const struct log_event *event)
+{
+    struct row *row = row_of(info, event);
+    info->backward += info->all.events > 0 && event->utime < info->utime;
+    info->utime = event->utime;
+    add_event(&info->all, event);
+    add_event(&row->tally, event);
+    if (row->kind != LOG_OTHER)
+        body_names_take_message(info->names, row->kind, event->data, (uint32_t) event->kept);
+}
+
+static void take_damage(struct info *info, const struct log_damage *damage)
+{
+    if (info->damages < DAMAGES_LISTED)
+        info->damage[info->damages] = *damage;
+    info->damages++;
+    info->damaged += damage->length;
+}
+
+/* By channel, then by type. */
+static int compare(const struct row *a, const struct row *b)
+{
+    const size_t both = a->length < b->length ? a->length : b->length;
+    const int order = memcmp(a->key + TYPE_BYTES, b->key + TYPE_BYTES, both);
+    if (order != 0 || a->length != b->length)
+        return order ? order : a->length < b->length ? -1 : 1;
+    return memcmp(a->key, b->key, TYPE_BYTES);
+}
+
+static void read_all(struct log_reader *reader, struct info *info)
 {
     struct log_event event;
     struct log_damage damage;
@@ -35,50 +165,236 @@ static const char *read_all(struct log_reader *reader, struct log_info *info)
     progress_begin("bytes");
     while ((outcome = log_next(reader, &event, &damage)) < LOG_END) {
         if (outcome == LOG_EVENT)
-            log_info_event(info, &event);
+            take_event(info, &event);
         else
-            log_info_damage(info, &damage);
-        progress_to(outcome == LOG_EVENT ? event.offset : damage.offset, log_size(reader));
+            take_damage(info, &damage);
+        progress_to(outcome == LOG_EVENT ? event.offset : damage.offset, info->size);
     }
-    const int error = errno;
+    if (outcome == LOG_FAILED)
+        info->error = errno == ENODATA ? "it has become shorter" : strerror(errno);
     progress_end();
-    log_info_end(info);
-    if (outcome == LOG_END)
-        return NULL;
-    return error == ENODATA ? "it has become shorter" : strerror(error);
+    HASH_SORT(info->rows, compare);
 }
 
-static int complain_of(const char *path, const char *why)
+/* ---- For people ---- */
+
+/* From the first to the last event, microseconds; does not overflow. */
+static uint64_t span_of(const struct tally *tally)
+{
+    return (uint64_t) tally->end - (uint64_t) tally->begin;
+}
+
+/* Events a second. The first event does not count: time begins with it. */
+static double rate_of(const struct tally *tally)
+{
+    return (double) (tally->events - 1) / (1e-6 * (double) span_of(tally));
+}
+
+static void print_channels(const struct info *info)
+{
+    printf("  %10s %14s %8s %8s %12s %12s  %-27s %s\n", "events", "bytes", "least", "most",
+           "first s", "last s", "type", "channel");
+    for (const struct row *row = info->rows; row; row = row->hh.next) {
+        const struct tally *tally = &row->tally;
+        char events[NUMBER_TEXT_MAX], bytes[NUMBER_TEXT_MAX];
+        const uint64_t begin = (uint64_t) info->all.begin;
+        printf("  %10s %14s %8" PRId64 " %8" PRId64 " %12.3f %12.3f  %-27s ",
+               number_grouped(tally->events, events), number_grouped(tally->bytes, bytes),
+               tally->least, tally->most, 1e-6 * (double) ((uint64_t) tally->begin - begin),
+               1e-6 * (double) ((uint64_t) tally->end - begin),
+               row->type ? row->type : "(too short)");
+        escape(stdout, ESCAPE_TERMINAL, (const char *) row->key + TYPE_BYTES, row->length);
+        putchar('\n');
+    }
+}
+
+static void print_names(struct body_names *names)
+{
+    char text[NUMBER_TEXT_MAX];
+    const int32_t count = body_names_count(names);
+    const struct body_name *name = body_names_sorted(names);
+    if (count > 0)
+        puts("  names:");
+    for (int i = 0; name && i < NAME_LINES; i++, name = name->hh.next) {
+        printf("    client %" PRId64 ", body %" PRId64 ": ", name->key.client_id,
+               name->key.body_id);
+        escape_text(stdout, name->name);
+        putchar('\n');
+    }
+    if (count > NAME_LINES)
+        printf("    and %s more\n", number_grouped(count - NAME_LINES, text));
+}
+
+static void print_time(const char *name, int64_t utime)
+{
+    char text[64];
+    struct tm parts;
+    const time_t seconds = (time_t) (utime / MICROSECONDS - (utime % MICROSECONDS < 0));
+    const int64_t part = utime % MICROSECONDS + (utime % MICROSECONDS < 0 ? MICROSECONDS : 0);
+    if (!gmtime_r(&seconds, &parts) || strftime(text, sizeof text, "%F %T", &parts) == 0)
+        snprintf(text, sizeof text, "%" PRId64 " s since 1970", (int64_t) seconds);
+    printf("  %-5s %s.%06" PRId64 " UTC\n", name, text, part);
+}
+
+static void print_span(const struct info *info)
+{
+    const uint64_t span = span_of(&info->all);
+    char text[NUMBER_TEXT_MAX];
+    print_time("from", info->all.begin);
+    print_time("to", info->all.end);
+    printf("  %" PRIu64 ".%06" PRIu64 " s", span / MICROSECONDS, span % MICROSECONDS);
+    if (span > 0)
+        printf(", %s events a second", number_short(rate_of(&info->all), text));
+    if (info->backward > 0) {
+        fputs("; time goes back ", stdout);
+        number_count(stdout, info->backward, "time", "times");
+    }
+    putchar('\n');
+}
+
+static void print_damage(const struct info *info)
+{
+    char text[NUMBER_TEXT_MAX];
+    fputs("  damage: ", stdout);
+    number_count(stdout, info->damages, "place, ", "places, ");
+    number_count(stdout, info->damaged, "byte\n", "bytes\n");
+    for (int64_t i = 0; i < info->damages && i < DAMAGES_LISTED; i++) {
+        printf("    at %s, ", number_grouped(info->damage[i].offset, text));
+        number_count(stdout, info->damage[i].length, "byte", "bytes");
+        printf(": %s\n", info->damage[i].what);
+    }
+    if (info->damages > DAMAGES_LISTED)
+        printf("    and %s more\n", number_grouped(info->damages - DAMAGES_LISTED, text));
+}
+
+static void print_text(const struct info *info)
+{
+    escape_text(stdout, info->path);
+    fputs(": ", stdout);
+    if (info->size == 0) {
+        puts("empty, a log of no events");
+        return;
+    }
+    number_count(stdout, info->size, "byte, ", "bytes, ");
+    number_count(stdout, info->all.events, "event\n", "events\n");
+    if (info->all.events > 0) {
+        print_span(info);
+        print_channels(info);
+        print_names(info->names);
+    }
+    if (info->damages > 0)
+        print_damage(info);
+    if (info->error)
+        printf("  not read to its end: %s\n", info->error);
+    else if (info->damages == 0)
+        puts("  no damage");
+}
+
+/* ---- For programs ---- */
+
+/* There are no times without events. */
+static void write_tally(struct json_writer *json, const struct tally *tally)
+{
+    json_integer(json, "events", tally->events);
+    json_integer(json, "bytes", tally->bytes);
+    json_integer(json, "least", tally->least);
+    json_integer(json, "most", tally->most);
+    if (tally->events > 0) {
+        json_integer(json, "begin", tally->begin);
+        json_integer(json, "end", tally->end);
+    }
+}
+
+static void write_names(struct json_writer *json, struct body_names *names)
+{
+    json_begin(json, "names", '[');
+    for (const struct body_name *name = body_names_sorted(names); name; name = name->hh.next) {
+        json_begin(json, NULL, '{');
+        json_integer(json, "client_id", name->key.client_id);
+        json_integer(json, "body_id", name->key.body_id);
+        json_string(json, "name", name->name);
+        json_end(json, '}');
+    }
+    json_end(json, ']');
+}
+
+static void write_damage(struct json_writer *json, const struct info *info)
+{
+    json_begin(json, "damage", '{');
+    json_integer(json, "places", info->damages);
+    json_integer(json, "bytes", info->damaged);
+    json_begin(json, "first", '[');
+    for (int64_t i = 0; i < info->damages && i < DAMAGES_LISTED; i++) {
+        json_begin(json, NULL, '{');
+        json_integer(json, "offset", info->damage[i].offset);
+        json_integer(json, "length", info->damage[i].length);
+        json_string(json, "what", info->damage[i].what);
+        json_end(json, '}');
+    }
+    json_end(json, ']');
+    json_end(json, '}');
+}
+
+static void print_json(const struct info *info)
+{
+    const struct tally *all = &info->all;
+    struct json_writer json = json_object(stdout);
+    json_string(&json, "log", info->path);
+    json_integer(&json, "size", info->size);
+    write_tally(&json, all);
+    json_number(&json, "rate", span_of(all) > 0 ? rate_of(all) : NAN);
+    json_integer(&json, "backward", info->backward);
+    json_begin(&json, "channels", '[');
+    for (const struct row *row = info->rows; row; row = row->hh.next) {
+        json_begin(&json, NULL, '{');
+        json_bytes(&json, "channel", (const char *) row->key + TYPE_BYTES, row->length);
+        json_string(&json, "type", row->type);
+        write_tally(&json, &row->tally);
+        json_end(&json, '}');
+    }
+    json_end(&json, ']');
+    write_names(&json, info->names);
+    write_damage(&json, info);
+    if (info->error)
+        json_string(&json, "error", info->error);
+    json_object_end(&json);
+}
+
+/* ---- The command ---- */
+
+static int refuse(const char *path, const char *why)
 {
     fflush(stdout);
     complain("%s: %s", path, why);
     return ARGS_USAGE;
 }
 
-static int report_log(bool json, const char *path, struct log_reader *reader, struct log_info *info)
+static int report(bool json, const struct info *info)
 {
-    struct log_report report = {.path = path, .size = log_size(reader), .info = info};
-    report.error = read_all(reader, info);
-    if (!report.error && info->all.events == 0 && report.size > 0)
-        return complain_of(path, "no event log: there is no event in it");
-    if (json)
-        log_report_json(stdout, &report);
-    else
-        log_report_text(stdout, &report);
-    if (report.error)
-        return complain_of(path, report.error);
+    if (!info->error && info->all.events == 0 && info->size > 0)
+        return refuse(info->path, "no event log: there is no event in it");
+    (json ? print_json : print_text)(info);
+    if (info->error)
+        return refuse(info->path, info->error);
     return info->damages > 0 ? ARGS_FAILED : ARGS_ANSWERED;
 }
 
-static int open_and_report(bool json, const char *path)
+static int run_info(bool json, const char *path)
 {
     char why[LOG_WHY_MAX];
+    struct row *row, *next;
     struct log_reader *reader = log_open(path, why);
     if (!reader)
-        return complain_of(path, why);
-    struct log_info *info = log_info_open();
-    const int code = report_log(json, path, reader, info);
-    log_info_close(info);
+        return refuse(path, why);
+    struct info info = {.path = path, .size = log_size(reader), .names = body_names_open()};
+    read_all(reader, &info);
+    const int code = report(json, &info);
+    HASH_ITER(hh, info.rows, row, next)
+    {
+        HASH_DELETE(hh, info.rows, row);
+        free(row);
+    }
+    body_names_close(info.names);
     log_close(reader);
     return code;
 }
@@ -96,7 +412,7 @@ int cmd_log_info(int argc, char **argv)
     for (int i = 0; i < args.operand_count; i++) {
         if (i > 0 && !json)
             putchar('\n');
-        const int one = open_and_report(json, args.operands[i]);
+        const int one = run_info(json, args.operands[i]);
         code = one > code ? one : code;
     }
     return output_flush() || code != ARGS_ANSWERED ? code : ARGS_FAILED;
