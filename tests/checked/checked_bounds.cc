@@ -17,6 +17,7 @@
 #include "checked_bounds.h"
 
 #include "checked_gaps.h"
+#include "checked_hulls.h"
 #include "checked_rotations.h"
 #include "kernel_box.h"
 
@@ -35,6 +36,7 @@ struct constant {
     long double value;        /* 0: from the hook */
     long double sizes, later; /* as above; sizes is 0: nothing is counted */
     enum kind kind;
+    int last;                /* roundings of a vector that `later` counts */
     long double lowered = 1; /* less where a test lowers the constant */
     /* The most of each. */
     long double error = 0, derived = 0, argued = 0, counted = 0;
@@ -55,8 +57,10 @@ static struct constant constants[] = {
     {"EXACT_SUM_ROUNDING", EXACT_SUM_ROUNDING, 0, 0, UNDERIVED},
     {"TIMES_ROUNDING", TIMES_ROUNDING, 1, 0},
     {"NORM_ERROR", 0, 1, 0},
-    {"MATRIX_ERROR"},
-    {"PRODUCT_ERROR"},
+    /* All entries have one factor, whose product is rounded last, by 1.01 u each; of a product with
+     * a vector, coordinates below 2^-60 are left out. */
+    {"MATRIX_ERROR", 0, 1, 1.01L * 1.732050808L, OF_SIZES, 1},
+    {"PRODUCT_ERROR", 0, 1, 0.02L},
     {"BOX_ROUNDING", BOX_ROUNDING},
     {"BOX_PLACE_ROUNDING", BOX_PLACE_ROUNDING, 1, 1},
     /* f, and the direction of unit length. */
@@ -65,6 +69,10 @@ static struct constant constants[] = {
     {"GAP_WITNESS_ROUNDING", 0, 1, 4},
     {"GAP_SLIP", 1},
     {"BOX_PLACE_ROUNDING_EXACT", BOX_PLACE_ROUNDING_EXACT, 0, 0, AT_HAND},
+    {"HULL_ROUNDING", 0, 0, 0, AT_HAND},
+    {"HULL_DETERMINANT", 0, 0, 0, AT_HAND},
+    {"HULL_HEIGHT", 0, 0, 0, AT_HAND},
+    {"MESH_ERROR", 0, 0, 0, AT_HAND},
 };
 
 /* ---- Checking ---- */
@@ -197,11 +205,18 @@ void check_quotient(const char *name, number dividend, number divisor, number in
         expect(constant, "sizes", q + t, constant->sizes * (1 + 0x1p-40L), &constant->argued);
 }
 
-void check_vector(const char *name, const number *vector, int count, number bound)
+void check_vector(const char *name, double own, const number *vector, int count, number bound)
 {
     struct constant *constant = constant_of(name);
-    long double derived = 0, error = 0, sum = 0;
+    constant->value = own;
+    const long double u = unit_roundoff, length = bound.value / constant->value;
+    long double derived = 0, error = 0, sum = 0, counted = 0;
     for (int i = 0; i < count; i++) {
+        const long double k = roundings_of(vector[i]) - constant->last;
+        counted = hypotl(k > 0 ? k * u / (1 - k * u) : 0, counted);
+        if (constant->sizes > 0)
+            expect(constant, "sizes", size_of(vector[i]), length * (1 + 0x1p-40L),
+                   &constant->argued);
         derived = hypotl(running_of(vector[i]), derived);
         error = hypotl(error_of(vector[i]), error);
         sum += fabsl(vector[i].value);
@@ -211,6 +226,9 @@ void check_vector(const char *name, const number *vector, int count, number boun
         expect(constant, "error", error, bound.value * constant->lowered, &constant->error);
         expect(constant, "derived", derived, bound.value * constant->lowered, &constant->derived);
     }
+    if (constant->sizes > 0)
+        expect(constant, "counted", counted * constant->sizes + constant->later * u,
+               constant->value * constant->lowered, &constant->counted);
 }
 
 /* From here on the normal is what it is. */
@@ -219,6 +237,19 @@ void give_normal(const number normal[3], number &square)
     for (int axis = 0; axis < 3; axis++)
         const_cast<number &>(normal[axis]) = given(normal[axis]);
     square = (normal[0] * normal[0] + normal[1] * normal[1]) + normal[2] * normal[2];
+}
+
+/* By the roundings of n. Where the monomials have products p_i and q_i, sum (|p_i| + |q_i|)^2 is at
+ * most 4 / 3 of the square of the lengths of the edges (slabs.c). */
+void check_slip(const char *name, const number n[3], number longer, number factor, number slip)
+{
+    struct constant *constant = constant_of(name);
+    int k = 0;
+    for (int axis = 0; axis < 3; axis++)
+        k = roundings_of(n[axis]) > k ? roundings_of(n[axis]) : k;
+    const long double u = unit_roundoff, off = k * u / (1 - k * u) * 1.154700539L * longer.value;
+    expect(constant, "counted", factor.value * off, slip.value * constant->lowered,
+           &constant->counted);
 }
 
 /* Vectors that differ by x, one of length n, have directions that differ by at most 2 x / n, and by
@@ -339,6 +370,33 @@ static void check_rotations(const struct fmb_prepared *frame)
                        frame->frame->component[i]);
 }
 
+static void check_vertices(const struct fmb_prepared *const both[2], double duration)
+{
+    struct checked_vertices out[2] = {};
+    at.traits = {};
+    for (int f = 0; f < 2; f++) {
+        const struct fmb_frame *frame = both[f]->frame;
+        const struct fmb_placement *placement = both[f]->placement;
+        out[f].shape = frame->shape;
+        out[f].dim = frame->dim;
+        out[f].count = frame->count;
+        out[f].flat = frame->flat;
+        out[f].orientation_count = placement->orientation_count;
+        out[f].vertices = frame->vertices;
+        out[f].vertex_count = frame->vertex_count;
+        out[f].vertex_stride = frame->vertex_stride;
+        out[f].slack = frame->slack;
+        out[f].reach = frame->reach;
+        memcpy(out[f].spanning, frame->spanning, sizeof frame->spanning);
+        memcpy(out[f].origin, frame->origin, sizeof frame->origin);
+        memcpy(out[f].component, frame->component, sizeof frame->component);
+        memcpy(out[f].position, placement->position, sizeof placement->position);
+        memcpy(out[f].velocity, placement->velocity, sizeof placement->velocity);
+        memcpy(out[f].orientation, placement->orientation, sizeof placement->orientation);
+    }
+    check_hulls(out, duration);
+}
+
 void check_pair(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration)
 {
     bool swapped;
@@ -353,6 +411,7 @@ void check_pair(const struct fmb_prepared *a, const struct fmb_prepared *b, doub
     check_rotations(a);
     check_rotations(b);
     check_gaps(pair, duration);
+    check_vertices(pair, duration);
     check_box(traits, pair, duration);
     traits.box = false;
     traits.axis_aligned = traits.dim == 3;
@@ -376,7 +435,8 @@ void check_begin(void)
                 .value = each.value,
                 .sizes = each.sizes,
                 .later = each.later,
-                .kind = each.kind};
+                .kind = each.kind,
+                .last = each.last};
 }
 
 const char *check_constant(int index)
@@ -398,8 +458,8 @@ static const char not_checked[] =
     "\n"
     "Not checked here: errors of origins and vertices (prepared.c, frame.c), sums rounded\n"
     "outward (aabb.h, box_ends.h), boxes of level cuboids (BOXES.md, 7), bounds of normals\n"
-    "(gap_bounds.c), hulls, and what is done in integers. In the filter and in gaps frames count\n"
-    "as given, without errors.\n";
+    "(gap_bounds.c), witness points and depths of hulls (hull_gap.c, hull_gap_depth.c), and what\n"
+    "is done in integers. In the filter and in gaps frames count as given, without errors.\n";
 
 /* A fraction of a constant. */
 static void print_share(FILE *out, long double share)

@@ -35,7 +35,8 @@ void check_rotation(const double *orientation, int count, int dim, const double 
     rotation_of(&placement, dim, &rotation);
     for (int i = 0; i < 9; i++)
         matrix[i] = rotation_entry(&rotation, i / 3, i % 3);
-    check_vector("MATRIX_ERROR", matrix, 9, MATRIX_ERROR - NORM_ERROR);
+    const number of_entries = MATRIX_ERROR - NORM_ERROR;
+    check_vector("MATRIX_ERROR", of_entries.value, matrix, 9, of_entries);
     for (int i = 0; i < 3; i++) {
         rotation.xy[i] = given(rotation.xy[i]);
         rotation.z[i] = given(rotation.z[i]);
@@ -43,6 +44,6 @@ void check_rotation(const double *orientation, int count, int dim, const double 
     }
     rotation_apply(&rotation, v, product);
     const number length = sqrt((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
-    check_vector("PRODUCT_ERROR", product, 3, PRODUCT_ERROR * length);
+    check_vector("PRODUCT_ERROR", PRODUCT_ERROR, product, 3, PRODUCT_ERROR * length);
     arena_clear();
 }

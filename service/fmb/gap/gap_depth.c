@@ -193,6 +193,8 @@ static void add_edges(struct depth *depth, const struct gap_edge *u, const struc
     double n[3];
     vec3_cross(u->at, v->at, n);
     const double square = vec3_dot(n, n);
+    CHECK_SLIP(GAP_SLIP, n, 1 / sqrt(WIDE_SINE_SQUARE), 1.01, SLIP_WIDE);
+    CHECK_SLIP(GAP_SLIP, n, 1, 2, SLIP); /* each times 1 / s */
     if (square > WIDE_SINE_SQUARE * most)
         add_normal(depth, n, square, SLIP_WIDE);
     else if (u->exact && v->exact)

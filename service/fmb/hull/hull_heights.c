@@ -38,6 +38,9 @@ static const double unit_roundoff = 0x1p-53;
 /* Limits of fmb.h, with a margin for the rounding of their comparison. */
 static const double limit = 1e-12 * (1 - 0x1p-10);
 
+/* Of the outer bound, relative to error (|n| + 1). */
+#define HULL_HEIGHT 1.25
+
 enum { PIVOTS_MAX = 100 };
 
 /* A point of the basis. */
@@ -130,7 +133,8 @@ static void set_plane(struct program *program)
 static double find_highest(const struct program *program, struct hull_vertex *out)
 {
     const struct hull_pair *pair = program->pair;
-    const double *n = program->normal;
+    const double n[FMB_DIM_MAX] = {CHECK_GIVEN(program->normal[0]), CHECK_GIVEN(program->normal[1]),
+                                   CHECK_GIVEN(program->normal[2])};
     double of_a[FMB_DIM_MAX] = {n[0], n[1], n[2]};
     const double of_b[FMB_DIM_MAX] = {-n[0], -n[1], -n[2]};
     double later = pair->drifts ? -vec3_dot(n, pair->drift) : 0, still = -vec3_dot(n, pair->offset);
@@ -197,7 +201,8 @@ static bool maximise(struct program *program, bool prove, double *outer)
         set_plane(program);
         const double length = sqrt(vec3_dot(program->normal, program->normal)) * (1 + 0x1p-40);
         const double found = find_highest(program, &highest);
-        const double out = 1.25 * (length + box) * pair->error + program->extra;
+        const double out = HULL_HEIGHT * (length + box) * pair->error + program->extra;
+        CHECK_BOUND(HULL_HEIGHT, false, found, out);
         const double in = out + (length * pair->error + program->residual);
         const double scale = box ? largest_coordinate(program) : 1;
         *outer = found + out;

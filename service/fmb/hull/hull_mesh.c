@@ -8,6 +8,7 @@
  * MESH_ERROR = 18. */
 #include "hull_mesh.h"
 
+#include "checked.h"
 #include "memory.h"
 
 #include <math.h>
@@ -180,6 +181,7 @@ int hull_mesh_side(const struct hull_mesh *mesh, int facet, const int64_t at[FMB
     subtract(at, mesh->point[f->corner[0]].at, d);
     const double above = (f->normal[0] * (double) d[0] + f->normal[1] * (double) d[1]) +
                          f->normal[2] * (double) d[2];
+    CHECK_BOUND(MESH_ERROR, false, above, MESH_ERROR);
     if (fabs(above) > MESH_ERROR)
         return above > 0 ? 1 : -1;
     return side_of(mesh, f->corner, at);

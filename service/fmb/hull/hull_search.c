@@ -63,6 +63,8 @@ void hull_centre(const struct hull_pair *pair, double out[FMB_DIM_MAX])
         out[axis] = (b[axis] - a[axis]) + (pair->offset[axis] + 0.5 * pair->drift[axis]);
 }
 
+#define HULL_DETERMINANT 1.2 /* as above */
+
 /* Returns the sign of the determinant of dim points, 0 if it is not certain. */
 static int sign_of(const struct hull_pair *pair, const struct hull_vertex *const p[FMB_DIM_MAX])
 {
@@ -79,7 +81,8 @@ static int sign_of(const struct hull_pair *pair, const struct hull_vertex *const
         value = vec3_dot(p[0]->at, normal);
         bound = length[1] * length[2] + length[0] * (length[1] + length[2]);
     }
-    bound = 1.2 * e * bound + 0x1p-900;
+    bound = HULL_DETERMINANT * e * bound + 0x1p-900;
+    CHECK_BOUND(HULL_DETERMINANT, false, value, bound);
     return value > bound ? 1 : value < -bound ? -1 : 0;
 }
 

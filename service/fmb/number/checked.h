@@ -13,6 +13,9 @@
 #define CHECK_SEGMENT(constant, values, slab, vertex, direction) ((void) 0)
 /* From here on x counts as given: its error is accounted for elsewhere. */
 #define CHECK_GIVEN(x) (x)
+/* The direction of n, the cross product of two edges, is off by at most slip where the product of
+ * their lengths is `longer` times that of n: factor times the error of n relative to its length. */
+#define CHECK_SLIP(constant, n, longer, factor, slip) ((void) 0)
 /* The direction of a normal is off by at most slip. From here on the normal counts as given, and
  * square, of its length, is computed from it. */
 #define CHECK_NORMAL(constant, normal, square, slip) ((void) 0)

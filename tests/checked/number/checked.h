@@ -17,6 +17,7 @@
 #define CHECK_SEGMENT(constant, values, slab, vertex, direction) \
     check_segment(#constant, values, slab, vertex, direction)
 #define CHECK_GIVEN(x) given(x)
+#define CHECK_SLIP(constant, n, longer, factor, slip) check_slip(#constant, n, longer, factor, slip)
 #define CHECK_NORMAL(constant, normal, square, slip) check_normal(#constant, normal, square, slip)
 #define CHECK_GIVEN_NORMAL(normal, square) give_normal(normal, square)
 
@@ -29,8 +30,10 @@ inline number given(number x)
 
 /* Where the macros of the engine lead (checked_bounds.cc). */
 void check_bound(const char *name, plain_double constant, number value, number bound);
-/* The length of the errors of a vector, against a bound on it. */
-void check_vector(const char *constant, const number *vector, int count, number bound);
+/* The length of the errors of a vector, against a bound on it: the constant times a length. */
+void check_vector(const char *name, plain_double constant, const number *vector, int count,
+                  number bound);
+void check_slip(const char *constant, const number n[3], number longer, number factor, number slip);
 void check_normal(const char *constant, const number normal[3], number &square, number slip);
 void give_normal(const number normal[3], number &square);
 void check_quotient(const char *constant, number dividend, number divisor, number inverse,

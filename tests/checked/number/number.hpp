@@ -113,6 +113,15 @@ inline number rounded(double value, derivation *from, bool exact)
     return derived(value, from);
 }
 
+/* A number that may be off by anything. */
+inline number unknown(double value)
+{
+    derivation *from = arena_take();
+    mpf_set_d(from->exact, std::isfinite(value) ? value : 0);
+    from->size = from->worst = from->running = INFINITY;
+    return derived(value, from);
+}
+
 /* ---- Operations ---- */
 
 inline bool is_zero(number x)
@@ -203,13 +212,15 @@ inline number operator*(number x, number y)
                  : rounded(value, from, is_exact_product(x.value, y.value, value));
 }
 
-/* A quotient has the monomials of the dividend. The divisor has to be farther from 0 than its
- * error. */
+/* A quotient has the monomials of the dividend. It is unknown unless the divisor is farther from 0
+ * than its error. */
 inline number operator/(number x, number y)
 {
     const double value = x.value / y.value;
     const long double least = std::fabs((long double) y.value) - running_of(y);
-    if (is_zero(x) || !(least > 0) || !std::isfinite(value) || !std::isfinite(y.value))
+    if (!(least > 0))
+        return y.from ? unknown(value) : value;
+    if (is_zero(x) || !std::isfinite(value) || !std::isfinite(y.value))
         return value;
     derivation *from = arena_take();
     mpf_div(from->exact, exact_of(x, scratch[0]), exact_of(y, scratch[1]));
@@ -233,6 +244,11 @@ inline number &operator-=(number &x, number y)
 inline number &operator*=(number &x, number y)
 {
     return x = x * y;
+}
+
+inline number &operator/=(number &x, number y)
+{
+    return x = x / y;
 }
 
 #define NUMBER_COMPARISON(op)                   \
@@ -263,6 +279,16 @@ inline number extreme(number x, number y, bool less)
     from->running = std::fmax(running_of(x), running_of(y));
     from->roundings = roundings_of(x) > roundings_of(y) ? roundings_of(x) : roundings_of(y);
     return derived(first ? x.value : y.value, from);
+}
+
+inline number fmax(number x, number y)
+{
+    return extreme(x, y, false);
+}
+
+inline number fmin(number x, number y)
+{
+    return extreme(x, y, true);
 }
 
 inline bool signbit(number x)
@@ -302,13 +328,13 @@ inline number fma(number x, number y, number z)
     return rounded(value, from, false);
 }
 
-/* |sqrt(x) - sqrt(y)| = |x - y| / (sqrt(x) + sqrt(y)). x has to be farther from 0 than its error.
- */
+/* |sqrt(x) - sqrt(y)| = |x - y| / (sqrt(x) + sqrt(y)). Unknown unless x is farther from 0 than its
+ * error. */
 inline number sqrt(number x)
 {
     const double value = std::sqrt(x.value);
     if (!(x.value - running_of(x) > 0) || !std::isfinite(value))
-        return value;
+        return x.from ? unknown(value) : value;
     derivation *from = arena_take();
     mpf_sqrt(from->exact, exact_of(x, scratch[0]));
     from->size = std::sqrt(size_of(x));

@@ -1,0 +1,166 @@
+/* Pairs by their vertices, compiled with `double` as a number that carries a bound on its error. */
+#define INLINED_NOT
+#undef __SSE2__ /* vectors are structs here */
+#define LANES 2
+
+#include "checked_hulls.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "lanes.h"
+
+/* In place of memory.h, whose name is that of a header of the system too. */
+static void *memory_allocate(size_t bytes)
+{
+    return malloc(bytes);
+}
+
+static void memory_release(void *memory, size_t)
+{
+    free(memory);
+}
+
+typedef number number_in_place_of_double; /* no variable has this name */
+#define double number_in_place_of_double
+#define _Static_assert static_assert
+#define ROTATION_TWO
+typedef lanes rotation_two;
+
+#define unit_roundoff unit_roundoff_of_pairs
+#include "hull_pair.c"
+#undef unit_roundoff
+#define unit_roundoff unit_roundoff_of_heights
+#include "hull_heights.c"
+#undef unit_roundoff
+#include "hull_mesh.c"
+#include "hull_search.c"
+
+#undef double
+
+struct checked_frame {
+    struct fmb_frame frame;
+    struct fmb_placement placement;
+    number at[FMB_DIM_MAX * FMB_HULL_VERTICES_MAX];
+};
+
+/* Without derivations of the values of the other vertices. */
+struct support support_max(const struct support_vertices *vertices, const number n[FMB_DIM_MAX])
+{
+    struct support out = {0, -INFINITY};
+    for (unsigned i = 0; i < vertices->count; i++) {
+        double value = 0;
+        for (int axis = 0; axis < vertices->dim; axis++)
+            value += n[axis].value * vertices->at[axis * vertices->stride + i].value;
+        if (value > out.value.value)
+            out = {i, value};
+    }
+    return {out.index, support_value(vertices, n, out.index)};
+}
+
+support_vertices hull_frame_vertices(const struct fmb_frame *frame)
+{
+    return {frame->vertices, frame->vertex_count, frame->vertex_stride, frame->dim};
+}
+
+static void set_frame(const struct checked_vertices *from, struct checked_frame *out)
+{
+    memset(out, 0, sizeof *out);
+    fmb_frame &frame = out->frame;
+    frame.shape = (enum fmb_shape) from->shape;
+    frame.dim = from->dim;
+    frame.count = from->count;
+    frame.flat = from->flat;
+    frame.slack = from->slack;
+    frame.reach = from->reach;
+    frame.vertices = out->at;
+    frame.vertex_stride = FMB_HULL_VERTICES_MAX;
+    frame.vertex_count = from->vertex_count;
+    out->placement.orientation_count = from->orientation_count;
+    for (int i = 0; i < 4; i++) {
+        frame.spanning[i] = from->spanning[i];
+        out->placement.orientation[i] = from->orientation[i];
+    }
+    for (int axis = 0; axis < from->dim; axis++) {
+        frame.origin[axis] = from->origin[axis];
+        out->placement.position[axis] = from->position[axis];
+        out->placement.velocity[axis] = from->velocity[axis];
+        for (int i = 0; i < from->dim; i++)
+            frame.component[i][axis] = from->component[i][axis];
+        for (unsigned i = 0; i < FMB_HULL_VERTICES_MAX && from->vertex_count; i++)
+            out->at[axis * FMB_HULL_VERTICES_MAX + i] =
+                from->vertices[axis * from->vertex_stride + i % from->vertex_count];
+    }
+}
+
+/* The support in a direction, and the point that has it. */
+static void check_support(const struct hull_pair *pair, const number n[FMB_DIM_MAX],
+                          struct hull_vertex *out)
+{
+    const number value = hull_support(pair, n, &out->column);
+    const number length = sqrt(vec3_dot(n, n)).value, error = pair->error.value;
+    check_bound("HULL_ROUNDING", 32 * 0x1p-53, value, error * length);
+    hull_point(pair, out->column, out->at);
+    check_vector("HULL_ROUNDING", 32 * 0x1p-53, out->at, FMB_DIM_MAX, error);
+}
+
+/* A mesh of the points, on a grid of nearly 2^52 units. */
+static void check_mesh(const struct hull_pair *pair, const struct hull_vertex *vertex, int count)
+{
+    struct hull_mesh mesh;
+    double largest = 0;
+    for (int k = 0; k < count; k++)
+        largest = std::fmax(largest, vec3_largest(vertex[k].at).value);
+    hull_mesh_begin(&mesh, pair->dim);
+    for (int k = 0; k < count && largest > 0; k++) {
+        int64_t at[FMB_DIM_MAX];
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            at[axis] = (int64_t) (vertex[k].at[axis].value / largest * 0x1.fp51);
+        if (k <= pair->dim)
+            hull_mesh_add_point(&mesh, at);
+        if (k == pair->dim && !hull_mesh_close(&mesh))
+            break;
+        for (int f = 0; k > pair->dim && f < mesh.facets; f++)
+            hull_mesh_side(&mesh, f, at);
+    }
+    hull_mesh_end(&mesh);
+}
+
+static struct checked_frame frame[2];
+
+void check_hulls(const struct checked_vertices from[2], plain_double duration)
+{
+    enum { POINTS = 8 };
+    struct hull_pair pair;
+    struct hull_vertex vertex[POINTS];
+    struct hull_nearest nearest;
+    number bounds[2], box[2][FMB_DIM_MAX];
+    for (int f = 0; f < 2; f++)
+        set_frame(&from[f], &frame[f]);
+    const struct frame_pair frames = {
+        {&frame[0].frame, &frame[0].placement}, {&frame[1].frame, &frame[1].placement}, duration};
+    hull_pair_set(&frames, &pair);
+    for (int k = 0; k < POINTS && pair.usable; k++) {
+        const number n[FMB_DIM_MAX] = {k & 1 ? 0.6 : -0.7, k & 2 ? 0.3 : -0.4,
+                                       pair.dim == 2 ? 0
+                                       : k & 4       ? 0.5
+                                                     : -0.2};
+        check_support(&pair, n, &vertex[k]);
+    }
+    if (pair.usable) {
+        check_mesh(&pair, vertex, POINTS);
+        /* Less than half is derived for points: the constants beside it would have to be several
+         * times too small to be found. */
+        pair.error = 0.5 * pair.error.value;
+        if (hull_search(&pair, INFINITY, &nearest) == FMB_OVERLAPPING) {
+            hull_contact(&pair, &nearest.simplex, bounds);
+            hull_box(&pair, &nearest.simplex, box);
+        }
+    }
+    arena_clear();
+}
