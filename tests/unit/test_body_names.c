@@ -5,6 +5,8 @@
 #include "body_names.h"
 
 #include "allocate.h"
+#include "result_rows.h"
+#include "service.h"
 #include "wire.h"
 
 static struct body_names *names;
@@ -126,15 +128,57 @@ static void names_are_limited(void **state)
     assert_null(body_names_find(names, BODY_NAMES_MAX, 1));
 }
 
+/* ---- Results ---- */
+
+static void take_query(struct result_rows *rows, int64_t number, const char *name)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    struct pair_query query = service_pair(7, number);
+    query.placement[0].placed.id = 1;
+    query.placement[0].placed.name = name;
+    query.placement[1].placed.id = 2;
+    assert_null(result_rows_take(rows, LOG_PAIR_QUERY, number, bytes,
+                                 (uint32_t) wire_write_pair_query(&query, bytes)));
+}
+
+/* Of all queries so far, also of those without a name and those after the one that is answered. */
+static void rows_have_the_last_name(void **state)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    static const char *const expected[] = {"[\"table\"", "[\"table\"", "[\"desk\"", "[\"desk\""};
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    struct result_rows *rows = result_rows_open(out, REPORT_JSON, RESULT_ROWS_ALL);
+    take_query(rows, 1, "table");
+    take_query(rows, 2, NULL);
+    take_query(rows, 3, "table");
+    for (int64_t i = 0; i < 4; i++) {
+        const struct pair_result result = {
+            .client_id = 7, .sequence_number = i + 1, .body_id = {1, 2}, .answer.verdict = 1};
+        if (i == 2)
+            take_query(rows, 4, "desk");
+        assert_null(result_rows_take(rows, LOG_PAIR_RESULT, i, bytes,
+                                     (uint32_t) wire_write_pair_result(&result, bytes)));
+    }
+    result_rows_close(rows);
+    fclose(out);
+    const char *at = text;
+    for (int i = 0; i < 4; i++) {
+        at = strstr(at + 1, "\"names\": ");
+        assert_non_null(at);
+        assert_memory_equal(at + strlen("\"names\": "), expected[i], strlen(expected[i]));
+    }
+    free(text);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        TEST(the_last_name_counts),
-        TEST(what_is_no_name_is_ignored),
-        TEST(written_names_are_read_again),
-        TEST(messages_that_cannot_be_read),
-        TEST(names_are_limited),
+        TEST(the_last_name_counts),         TEST(what_is_no_name_is_ignored),
+        TEST(written_names_are_read_again), TEST(messages_that_cannot_be_read),
+        TEST(rows_have_the_last_name),      TEST(names_are_limited),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
