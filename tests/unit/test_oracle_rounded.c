@@ -10,73 +10,8 @@
 #include "oracle.h"
 #include "question.h"
 #include "rounded.h"
+#include "rounded_cases.h"
 #include "world.h"
-
-/* clang-format off */
-#define UNIT2 {{1, 0}, {0, 1}}
-#define UNIT3 {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}
-#define DISC 2, FMB_CUBOID, {{0}}
-#define SQUARE 2, FMB_CUBOID, UNIT2
-#define BALL 3, FMB_CUBOID, {{0}}
-#define CUBE 3, FMB_CUBOID, UNIT3
-#define ALONG_X 3, FMB_TETRAHEDRON, {{4, 0, 0}, {0}, {0}}
-#define ALONG_Y 3, FMB_CUBOID, {{0}, {0, 4, 0}, {0}}
-#define STILL {0}, false
-
-struct known {
-    const char *what;
-    struct question question;
-    enum fmb_verdict verdict;
-    double contact[2]; /* where a body moves */
-};
-
-static const struct known cases[] = {
-    {"balls, 3 4 5", {{BALL, {1, 0, 0}, STILL, .radius = 2}, {BALL, {4, 4, 0}, STILL, .radius = 3}, 1}, FMB_TOUCHING},
-    {"a point and a ball, 2 3 6", {{BALL, {1, 1, 1}, STILL}, {BALL, {3, 4, 7}, STILL, .radius = 7}, 1}, FMB_TOUCHING},
-    {"a point and a smaller ball", {{BALL, {1, 1, 1}, STILL}, {BALL, {3, 4, 7}, STILL, .radius = 7 - 0x1p-50}, 1}, FMB_SEPARATED},
-    {"a point and a larger ball", {{BALL, {1, 1, 1}, STILL}, {BALL, {3, 4, 7}, STILL, .radius = 7 + 0x1p-50}, 1}, FMB_OVERLAPPING},
-    {"radii whose sum is no double", {{BALL, {0}, STILL, .radius = 0x1p-60}, {BALL, {1, 4, 8}, STILL, .radius = 9}, 1}, FMB_OVERLAPPING},
-    {"a ball at a vertex", {{CUBE, {0}, STILL}, {BALL, {3, 4, 7}, STILL, .radius = 7}, 1}, FMB_TOUCHING},
-    {"a ball at an edge", {{CUBE, {0}, STILL}, {BALL, {-3, 0.5, 5}, STILL, .radius = 5}, 1}, FMB_TOUCHING},
-    {"a ball on a face", {{CUBE, {0}, STILL}, {BALL, {0.5, 0.25, 1 + 0x1p-20}, STILL, .radius = 0x1p-20}, 1}, FMB_TOUCHING},
-    {"a ball that the box of a cube would meet", {{CUBE, {0}, STILL}, {BALL, {3, 4, 7}, STILL, .radius = 6.5}, 1}, FMB_SEPARATED},
-    {"a ball in a cube", {{CUBE, {0}, STILL}, {BALL, {0.5, 0.5, 0.5}, STILL, .radius = 0x1p-1074}, 1}, FMB_OVERLAPPING},
-    {"a point in a ball", {{BALL, {0}, STILL}, {BALL, {0, 0, 1}, STILL, .radius = 2}, 1}, FMB_OVERLAPPING},
-    {"equal centres", {{BALL, {1, 2, 3}, STILL, .radius = 1}, {BALL, {1, 2, 3}, STILL, .radius = 1}, 1}, FMB_OVERLAPPING},
-    {"subnormal radii", {{BALL, {0}, STILL, .radius = 0x1p-1074}, {BALL, {0, 0, 3 * 0x1p-1074}, STILL, .radius = 0x1p-1073}, 1}, FMB_TOUCHING},
-    {"the largest radius", {{BALL, {0}, STILL, .radius = DBL_MAX}, {BALL, {DBL_MAX, 0, 0}, STILL}, 1}, FMB_TOUCHING},
-    {"cubes whose faces touch, with a radius", {{CUBE, {0}, STILL, .radius = 0x1p-1074}, {CUBE, {1, 0, 0}, STILL}, 1}, FMB_OVERLAPPING},
-    {"rounded cubes, vertex at vertex", {{CUBE, {0}, STILL, .radius = 2}, {CUBE, {3, 4, 7}, STILL, .radius = 5}, 1}, FMB_TOUCHING},
-    {"capsules across each other", {{ALONG_X, {-1, 0, 0}, STILL, .radius = 2}, {ALONG_Y, {1, -1, 5}, STILL, .radius = 3}, 1}, FMB_TOUCHING},
-    {"capsules side by side", {{ALONG_X, {0}, STILL, .radius = 2}, {ALONG_X, {2, 3, 4}, STILL, .radius = 3}, 1}, FMB_TOUCHING},
-    {"the end of a capsule at a face", {{CUBE, {0}, STILL, .radius = 1}, {ALONG_X, {4, 0.5, 0.5}, STILL, .radius = 2}, 1}, FMB_TOUCHING},
-    {"a turned cuboid and a ball at its corner (3, 4, 0)",
-     {{3, FMB_CUBOID, {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}}, {0}, STILL, {0}, {2, 0, 0, 1}, 4}, {BALL, {6, 6, -6}, STILL, .radius = 7}, 1},
-     FMB_TOUCHING},
-    {"a rounded face and a point beside its edge",
-     {{3, FMB_FACE, {{4, 0, 0}, {0, 4, 0}}, {0}, STILL, .radius = 13}, {BALL, {1, -5, 12}, STILL}, 1}, FMB_TOUCHING},
-    {"a disc at a corner", {{SQUARE, {0}, STILL}, {DISC, {4, 5}, STILL, .radius = 5}, 1}, FMB_TOUCHING},
-    {"a disc at an edge", {{SQUARE, {0}, STILL, .radius = 0.5}, {DISC, {0.5, 2.5}, STILL, .radius = 1}, 1}, FMB_TOUCHING},
-    {"stadiums", {{2, FMB_CUBOID, {{4, 0}, {0}}, {0}, STILL, .radius = 1}, {2, FMB_CUBOID, {{0}, {0, 4}}, {7, 4}, STILL, .radius = 4}, 1}, FMB_TOUCHING},
-
-    {"a ball grazes a point", {{BALL, {0}, STILL}, {BALL, {-6, 5, 0}, {3, 0, 0}, true, .radius = 5}, 4}, FMB_TOUCHING, {2, 2}},
-    {"a ball grazes a point a third of a second later", {{BALL, {1, 0, 0}, STILL}, {BALL, {-5, 5, 0}, {3, 0, 0}, true, .radius = 5}, 4}, FMB_TOUCHING, {2, 2}},
-    {"a ball passes a point by", {{BALL, {0}, STILL}, {BALL, {-6, 5, 0}, {3, 0, 0}, true, .radius = 5 - 0x1p-50}, 4}, FMB_SEPARATED},
-    {"a ball slides on a cube", {{CUBE, {0}, STILL}, {BALL, {-3, 0.5, 2}, {1, 0, 0}, true, .radius = 1}, 8}, FMB_TOUCHING, {3, 4}},
-    {"a ball slides on a cube as the window begins", {{CUBE, {0}, STILL}, {BALL, {0.5, 0.5, 2}, {0.25, 0, 0}, true, .radius = 1}, 8}, FMB_TOUCHING, {0, 2}},
-    {"a capsule slides along a rounded edge",
-     {{CUBE, {0}, STILL, .radius = 2}, {ALONG_X, {-8, 4, 5}, {2, 0, 0}, true, .radius = 3}, 8}, FMB_TOUCHING, {2, 4.5}},
-    {"a ball flies through a point", {{BALL, {0}, STILL}, {BALL, {-13, 3, 0}, {2, 0, 0}, true, .radius = 5}, 16}, FMB_OVERLAPPING, {4.5, 8.5}},
-    {"both fly", {{BALL, {-13, 0, 0}, {3, 1, 0}, true, .radius = 1}, {BALL, {0, 0, 3}, {1, 1, 0}, true, .radius = 4}, 16}, FMB_OVERLAPPING, {4.5, 8.5}},
-    {"a ball flies in", {{CUBE, {0}, STILL}, {BALL, {9, 0.5, 0.5}, {-2, 0, 0}, true, .radius = 2}, 4}, FMB_OVERLAPPING, {3, 4}},
-    {"a ball arrives", {{CUBE, {0}, STILL}, {BALL, {9, 0.5, 0.5}, {-2, 0, 0}, true, .radius = 2}, 3}, FMB_TOUCHING, {3, 3}},
-    {"a ball leaves", {{CUBE, {0}, STILL}, {BALL, {4, 5, 0.5}, {3, 4, 0}, true, .radius = 5}, 3}, FMB_TOUCHING, {0, 0}},
-    {"a ball leaves as fast as it can", {{CUBE, {0}, STILL}, {BALL, {4, 5, 0.5}, {4, -3, 0}, true, .radius = 5}, 3}, FMB_TOUCHING, {0, 0}},
-    {"equal velocities", {{BALL, {0}, {1, 2, 3}, true, .radius = 2}, {BALL, {2, 3, 6}, {1, 2, 3}, true, .radius = 5}, 3}, FMB_TOUCHING, {0, 3}},
-    {"no time", {{BALL, {0}, {1, 2, 3}, true, .radius = 2}, {BALL, {2, 3, 6}, STILL, .radius = 5}, 0}, FMB_TOUCHING, {0, 0}},
-    {"a disc slides along a square", {{SQUARE, {0}, STILL}, {DISC, {-3, 2}, {1, 0}, true, .radius = 1}, 8}, FMB_TOUCHING, {3, 4}},
-};
-/* clang-format on */
 
 struct posed {
     struct fmb_body body[2];
@@ -104,7 +39,7 @@ static bool accepts(const struct pair *pair, double first, double last)
 }
 
 /* The contact that is expected, and no other. */
-static void assert_contact(const struct known *known, const struct pair *pair)
+static void assert_contact(const struct rounded_case *known, const struct pair *pair)
 {
     const double T = pair->duration;
     const bool moving = pair->a.velocity[0] != pair->b.velocity[0];
@@ -125,8 +60,8 @@ static void assert_contact(const struct known *known, const struct pair *pair)
 
 static void by_hand(void **state)
 {
-    for (size_t i = 0; i < 2 * COUNT(cases); i++) {
-        const struct known *known = &cases[i / 2];
+    for (size_t i = 0; i < 2 * COUNT(rounded_cases); i++) {
+        const struct rounded_case *known = &rounded_cases[i / 2];
         const struct question swapped = question_swapped(&known->question);
         struct posed posed;
         place(i % 2 ? &swapped : &known->question, &posed);
@@ -332,7 +267,7 @@ static void balls_meet_at_roots(void **state)
         struct posed posed;
         place(&question, &posed);
         assert_int_equal(verdict_of(&posed.pair), FMB_OVERLAPPING);
-        assert_contact(&(struct known){"balls", question, FMB_OVERLAPPING, {first, last}},
+        assert_contact(&(struct rounded_case){"balls", question, FMB_OVERLAPPING, {first, last}},
                        &posed.pair);
         count++;
     }
@@ -414,6 +349,18 @@ static void gaps_of_what_overlaps(void **state)
         for (size_t i = 0; i < COUNT(wrong); i++)
             assert_false(holds(&posed.pair, FMB_OVERLAPPING, &wrong[i]));
     }
+    /* At a vertex no facet has the distance of the cores. */
+    const struct question corner = {
+        {CUBE, {0}, STILL, .radius = 3}, {BALL, {3, 4, 7}, STILL, .radius = 5}, 1};
+    const struct fmb_gap right = {.bounds = {-1 - 0x1p-44, -1 + 0x1p-44},
+                                  .direction = {2. / 7, 3. / 7, 6. / 7}};
+    const struct fmb_gap low = WITH(gap.bounds[0] -= 0x1p-42; gap.bounds[1] -= 0x1p-42);
+    const struct fmb_gap high = WITH(gap.bounds[0] += 0x1p-42; gap.bounds[1] += 0x1p-42);
+    place(&corner, &posed);
+    assert_true(holds(&posed.pair, FMB_OVERLAPPING, &right));
+    assert_false(holds(&posed.pair, FMB_OVERLAPPING, &low));
+    assert_false(holds(&posed.pair, FMB_OVERLAPPING, &high));
+
     question.b.moving = true;
     question.b.velocity[0] = 0x1p-40;
     place(&question, &posed);
@@ -505,6 +452,11 @@ static void points_are_common(void **state)
     assert_false(point_holds(&deep, 0, 5 + 7e-12, 0, 0));
     assert_false(point_holds(&deep, 0, 2 - 7e-12, 0, 0));
 
+    const struct question beside = {deep.a, {BALL, {6, 0, 0}, STILL, .radius = 2}, 0};
+    assert_true(point_holds(&beside, 0, 5 + 5e-12, 0, 0));
+    assert_true(point_holds(&beside, 0, 4 - 5e-12, 0, 0));
+    assert_false(point_holds(&beside, 0, 5 + 9e-12, 0, 0));
+
     /* Without radii: plates of which one falls through the other, past its corner. */
     const struct question plates = {
         {3, FMB_FACE, {{3, 0, 0}, {0, 3, 0}}, {0}, STILL},
@@ -513,6 +465,21 @@ static void points_are_common(void **state)
     assert_true(point_holds(&plates, 2, 1, 1, 0));
     assert_false(point_holds(&plates, 2, 2, 2, 0));
     assert_false(point_holds(&plates, 2.5, 1, 1, 0));
+}
+
+/* A window of four subnormals, in which each double is more than 1e-12 of it: the next one will do,
+ * and no other. The contact begins at 4/3 of them. */
+static void times_are_as_close_as_doubles(void **state)
+{
+    const struct question question = {{DISC, {0}, STILL, .radius = 0x1p-1074},
+                                      {DISC, {-0x1p-1073, 0}, {0.75, 0}, true},
+                                      0x1p-1072};
+    struct posed posed;
+    place(&question, &posed);
+    assert_int_equal(verdict_of(&posed.pair), FMB_OVERLAPPING);
+    assert_true(accepts(&posed.pair, 0x1p-1074, 0x1p-1072));
+    assert_false(accepts(&posed.pair, 0, 0x1p-1072));
+    assert_false(accepts(&posed.pair, 0x1p-1073, 0x1p-1072));
 }
 
 /* Two balls, one on each side, and a cube between that touches the one on the right. */
@@ -535,11 +502,37 @@ static void bodies_of_frames(void **state)
     assert_int_equal(verdict_of(&pair), FMB_OVERLAPPING);
     assert_true(accepts(&pair, 0, 4));
     assert_false(accepts(&pair, 2, 4));
+    assert_null(rounded_point_fault(&pair, FMB_OVERLAPPING, (const double[4]){3, 0.5, 0, 0}));
+    assert_non_null(rounded_point_fault(&pair, FMB_OVERLAPPING, (const double[4]){0, 1, 0, 0}));
+    const double box[2][FMB_DIM_MAX] = {{0, 0, 0}, {1, 1, 1}};
+    assert_null(rounded_box_fault(&pair, (const double[2]){0, 4}, box));
     pair.b.position[0] = 0.5;
     assert_true(accepts(&pair, 1.75, 4));
     assert_false(accepts(&pair, 1.5, 4));
     assert_null(rounded_point_fault(&pair, FMB_OVERLAPPING, (const double[4]){3, 0.5, 0, 0}));
     assert_non_null(rounded_point_fault(&pair, FMB_OVERLAPPING, (const double[4]){1, 0.5, 0, 0}));
+
+    /* One overlaps the core of the cube; the other, without a radius, only touches it. */
+    char why[200];
+    frames[0].origin[0] = 0.5;
+    frames[1].radius = 0;
+    frames[1].origin[0] = 1;
+    pair = (struct pair){{.body = &cube}, {.body = &balls}, 1};
+    struct fmb_answer answer = {.verdict = FMB_OVERLAPPING,
+                                .has_contact = true,
+                                .has_box = true,
+                                .contact = {0, 1},
+                                .box = {{0, 0, 0}, {1, 1, 1}}};
+    assert_true(oracle_check(&pair, FMB_WANT_BOX, &answer, why, sizeof why));
+    answer.box[0][0] = 0x1p-53;
+    assert_false(oracle_check(&pair, FMB_WANT_BOX, &answer, why, sizeof why));
+    /* The ball's centre in the middle of the cube: a gap of -5.5. That of the other frame is 0. */
+    for (int axis = 0; axis < 3; axis++)
+        frames[0].origin[axis] = 0.5;
+    const struct fmb_gap least = {.bounds = {-5.5, -5.5}, .direction = {0, -1, 0}};
+    const struct fmb_gap other = {.bounds = {-5.25, -5.25}, .direction = {1, 0, 0}};
+    assert_true(holds(&pair, FMB_OVERLAPPING, &least));
+    assert_false(holds(&pair, FMB_OVERLAPPING, &other));
 }
 
 int main(void)
@@ -552,6 +545,7 @@ int main(void)
         cmocka_unit_test(gaps_of_what_overlaps),
         cmocka_unit_test(boxes_contain_what_is_common),
         cmocka_unit_test(points_are_common),
+        cmocka_unit_test(times_are_as_close_as_doubles),
         cmocka_unit_test(bodies_of_frames),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
