@@ -135,9 +135,9 @@ static struct fmb_client_answer compared(const struct exchange *exchange,
                                          const struct fmb_client_answer *answer, int dim)
 {
     struct fmb_client_answer out = *answer;
-    out.answer.has_box = answer->answer.has_box && exchange->of.dim == dim;
-    out.answer.has_gap = answer->answer.has_gap && exchange->of.dim == dim;
-    if (!exchange->of.is_pair)
+    out.answer.has_box = answer->answer.has_box && exchange->head->dim == dim;
+    out.answer.has_gap = answer->answer.has_gap && exchange->head->dim == dim;
+    if (!exchange->is_pair)
         out.status = FMB_OK;
     return out;
 }
@@ -150,7 +150,7 @@ static struct difference difference_of(struct exchange *const both[2],
     struct difference difference = {
         .dim = dim,
         .placement = {pair->a, pair->b},
-        .names_frames = {both[0]->of.names_frames, both[1]->of.names_frames},
+        .names_frames = {both[0]->head->names_frames, both[1]->head->names_frames},
         .then = compared(both[0], &pair->answer[0], dim),
         .now = compared(both[1], &pair->answer[1], dim)};
     for (int i = 0; i < 2; i++)
@@ -189,22 +189,23 @@ static enum replay_outcome compare_answers(const struct compare_options *options
 static bool scenes_differ(const struct exchange *then, const struct exchange *now,
                           char out[COMPARE_DETAIL_MAX])
 {
-    const struct fmb_client_result *a = &then->of, *b = &now->of;
     if (then->query != now->query && scene_change(then, now, out))
         return true;
     *out = 0;
-    if (b->is_pair) {
-        if (then->by_order && (a->body_id[0] != b->body_id[0] || a->body_id[1] != b->body_id[1]))
+    if (now->is_pair) {
+        const int64_t *a = then->result->pair.body_id, *b = now->result->pair.body_id;
+        if (then->by_order && (a[0] != b[0] || a[1] != b[1]))
             snprintf(out, COMPARE_DETAIL_MAX,
                      "the recording has the bodies %" PRId64 " and %" PRId64 ", the query %" PRId64
                      " and %" PRId64,
-                     a->body_id[0], a->body_id[1], b->body_id[0], b->body_id[1]);
-    } else if (a->status == FMB_OK && b->status == FMB_OK) {
+                     a[0], a[1], b[0], b[1]);
+    } else if (then->head->status == FMB_OK && now->head->status == FMB_OK) {
         const struct scene_query *query = &now->query->scene;
-        if (then->by_order && a->end_pair != b->end_pair)
+        if (then->by_order && then->end_pair != now->end_pair)
             snprintf(out, COMPARE_DETAIL_MAX,
-                     "the recording answers %" PRId64 " pairs, the query has %" PRId64,
-                     a->end_pair - query->first_pair, query_pair_count(query) - query->first_pair);
+                     "the recording answers %" PRId32 " pairs, the query has %" PRId64,
+                     then->end_pair - query->first_pair,
+                     query_pair_count(query) - query->first_pair);
         else if (!then->fits || !now->fits)
             snprintf(out, COMPARE_DETAIL_MAX, "a result is of other pairs than its query");
     }
@@ -219,16 +220,17 @@ enum replay_outcome compare_exchanges(const struct compare_options *options, str
     struct difference whole = {.whole = true, .dim = 3};
     exchange_begin(then);
     exchange_begin(now);
-    whole.then.status = then->of.status;
-    whole.now.status = now->of.status;
-    if (logged_status_is_transient(then->of.status) || logged_status_is_transient(now->of.status))
-        return transient_outcome(then->of.status, now->of.status);
+    whole.then.status = then->head->status;
+    whole.now.status = now->head->status;
+    if (logged_status_is_transient(then->head->status) ||
+        logged_status_is_transient(now->head->status))
+        return transient_outcome(then->head->status, now->head->status);
     if (scenes_differ(then, now, detail)) {
         whole.kind = DIFFERENT_SCENE;
         whole.detail = detail;
-    } else if (now->of.is_pair || (then->of.status == FMB_OK && now->of.status == FMB_OK)) {
+    } else if (now->is_pair || (then->head->status == FMB_OK && now->head->status == FMB_OK)) {
         return compare_answers(options, both, sink, user);
-    } else if (then->of.status == now->of.status) {
+    } else if (then->head->status == now->head->status) {
         return REPLAY_SAME;
     } else {
         whole.kind = DIFFERENT_STATUS;

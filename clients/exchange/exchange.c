@@ -1,7 +1,7 @@
 #include "exchange.h"
 
 #include "allocate.h"
-#include "fmb_client_raw.h"
+#include "wire.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -51,31 +51,48 @@ static void read_named(struct exchange *exchange)
 {
     struct fmb_client_answer *named = &exchange->named;
     exchange->number = INT64_MAX;
-    if (!exchange->fits || !fmb_client_next_answer(&exchange->of, &exchange->cursor, named))
+    if (!exchange->fits)
         return;
-    if (exchange->of.is_pair) {
+    const struct pair_result *pair = &exchange->result->pair;
+    const struct scene_result *scene = &exchange->result->scene;
+    const int32_t k = exchange->answers++;
+    if (k >= (exchange->is_pair ? 1 : scene->verdict_count))
+        return;
+    if (exchange->is_pair) {
+        *named = (struct fmb_client_answer){.b = 1,
+                                            .status = pair->status,
+                                            .text = exchange->text,
+                                            .answer = pair->answer,
+                                            .certificate = pair->certificate};
         exchange->number = 0;
-    } else if (lists_pairs(exchange)) {
-        const unsigned *pair = exchange->query->scene.pair[named->a];
-        exchange->number = named->a;
-        named->a = pair[0];
-        named->b = pair[1];
-    } else {
-        exchange->number = query_pair_number(&exchange->query->scene, named->a, named->b);
+        return;
     }
+    const struct scene_query *query = &exchange->query->scene;
+    const bool listed = lists_pairs(exchange), decided = scene->verdict[k] != 0;
+    const int32_t number = scene->end_pair - scene->verdict_count + k; /* in a list */
+    const unsigned *of = listed ? query->pair[number] : scene->pair[k];
+    *named = (struct fmb_client_answer){.a = of[0],
+                                        .b = of[1],
+                                        .status = decided ? FMB_OK : FMB_CANNOT_DECIDE,
+                                        .text = decided ? "" : fmb_status_text(FMB_CANNOT_DECIDE)};
+    wire_scene_answer(scene, k, &exchange->contacts, &named->answer);
+    exchange->number = listed ? number : query_pair_number(query, of[0], of[1]);
 }
 
 void exchange_begin(struct exchange *exchange)
 {
     const struct logged_query *query = exchange->query;
     const struct logged_result *result = exchange->result;
-    const bool is_pair = result && result->kind == LOG_PAIR_QUERY;
-    exchange->of = (struct fmb_client_result){.status = FMB_OK};
-    if (result)
-        exchange->of = fmb_client_raw_result_of(is_pair, &result->pair);
-    exchange->fits = is_pair || (result && query && result->head.status == FMB_OK &&
-                                 result_fits(&query->scene, &result->scene));
-    exchange->cursor = (struct fmb_client_cursor){0};
+    static const struct result_head none;
+    exchange->head = result ? &result->head : &none;
+    exchange->is_pair = result && result->kind == LOG_PAIR_QUERY;
+    exchange->end_pair = result && !exchange->is_pair ? result->scene.end_pair : 0;
+    exchange->text = exchange->head->status == FMB_OK ? ""
+                     : exchange->head->detail[0]      ? exchange->head->detail
+                                                      : fmb_status_text(exchange->head->status);
+    exchange->fits = exchange->is_pair || (result && query && result->head.status == FMB_OK &&
+                                           result_fits(&query->scene, &result->scene));
+    exchange->answers = exchange->contacts = 0;
     exchange->pair = (struct pair_cursor){0};
     read_named(exchange);
 }
@@ -110,8 +127,8 @@ static void make_pairs(struct exchange *exchange)
 /* Whether the result, which does not name the pair with this number, separates it. */
 static bool separates(const struct exchange *exchange, int64_t number)
 {
-    return exchange->fits && !exchange->of.is_pair && !lists_pairs(exchange) &&
-           number >= exchange->query->scene.first_pair && number < exchange->of.end_pair;
+    return exchange->fits && !exchange->is_pair && !lists_pairs(exchange) &&
+           number >= exchange->query->scene.first_pair && number < exchange->end_pair;
 }
 
 static struct fmb_client_answer separated_answer(unsigned a, unsigned b)
@@ -138,7 +155,7 @@ static bool next_separated(struct exchange *exchange, struct fmb_client_answer *
 
 bool exchange_next(struct exchange *exchange, bool separated, struct fmb_client_answer *out)
 {
-    if (separated && exchange->fits && !exchange->of.is_pair && !lists_pairs(exchange) &&
+    if (separated && exchange->fits && !exchange->is_pair && !lists_pairs(exchange) &&
         next_separated(exchange, out))
         return true;
     if (exchange->number == INT64_MAX)
@@ -173,7 +190,7 @@ struct exchange_counts exchange_count(const struct exchange *exchange)
     exchange_begin(&named);
     while (exchange_next(&named, false, &answer))
         counts.verdict[answer.answer.verdict]++;
-    if (exchange->fits && !exchange->of.is_pair && !lists_pairs(exchange)) {
+    if (exchange->fits && !exchange->is_pair && !lists_pairs(exchange)) {
         unsigned *memory = allocate_unset(QUERY_IGNORED_CAPACITY * sizeof *memory);
         int64_t others =
             query_pairs_decided(&exchange->query->scene, exchange->result->scene.end_pair, memory);

@@ -30,10 +30,13 @@ struct exchange {
     const struct body_names *names;     /* of the bodies of the query; NULL: none */
     bool by_order; /* the result was matched by its order: it may belong to another query */
     /* Set by exchange_begin(). */
-    struct fmb_client_result of; /* of the result; all 0 if there is none */
-    bool fits;                   /* the result has answers to pairs of the query */
+    const struct result_head *head; /* of the result; all 0 if there is none */
+    const char *text;               /* of its status; "": OK */
+    bool is_pair;                   /* the result is of a pair */
+    int32_t end_pair;               /* of a scene: the answers end before this pair of the query */
+    bool fits;                      /* the result has answers to pairs of the query */
     /* Private. */
-    struct fmb_client_cursor cursor;
+    int32_t answers, contacts;      /* read of the result */
     struct fmb_client_answer named; /* the next pair that the result names */
     int64_t number;                 /* of this pair in the query; INT64_MAX: there is none */
     struct pair_cursor pair;

@@ -122,8 +122,9 @@ static const char *take_query(struct result_rows *results, enum log_kind kind, i
 /* ---- Rows ---- */
 
 /* The columns of a line of a table before the bodies of a pair. */
-static void print_start(const struct result_rows *results, const struct fmb_client_result *of)
+static void print_start(const struct result_rows *results)
 {
+    const struct result_head *of = &results->result.head;
     fprintf(results->printer.out, "%16" PRId64 " #%-6" PRId64 " %6.1f us", of->client_id,
             of->sequence_number, 1e-3 * (double) of->compute_ns);
 }
@@ -132,8 +133,7 @@ static void print_start(const struct result_rows *results, const struct fmb_clie
 static void print_row(struct result_rows *results, const struct exchange *exchange,
                       struct report_row *row)
 {
-    const struct fmb_client_result *of = &exchange->of;
-    const double margin = of->is_pair ? 0 : exchange->query->scene.margin;
+    const double margin = exchange->is_pair ? 0 : exchange->query->scene.margin;
     if (results->pairs == RESULT_ROWS_CONTACTS && row->of->answer.verdict == FMB_SEPARATED &&
         !report_is_near(margin, &row->of->answer))
         return;
@@ -141,12 +141,13 @@ static void print_row(struct result_rows *results, const struct exchange *exchan
         const int32_t placement = (int32_t) (i ? row->of->b : row->of->a);
         const struct query_placement *of_query =
             exchange->query ? &exchange->query->placement[placement] : NULL;
-        row->id[i] = of->is_pair ? of->body_id[i] : of_query->placed.id;
-        row->name[i] = of_query ? exchange_name(exchange, placement)
-                                : body_names_find(results->names, of->client_id, row->id[i]);
+        row->id[i] = exchange->is_pair ? results->result.pair.body_id[i] : of_query->placed.id;
+        row->name[i] = of_query
+                           ? exchange_name(exchange, placement)
+                           : body_names_find(results->names, exchange->head->client_id, row->id[i]);
     }
-    if (results->printer.form == REPORT_TABLE && of->is_pair)
-        print_start(results, of);
+    if (results->printer.form == REPORT_TABLE && exchange->is_pair)
+        print_start(results);
     else if (results->printer.form == REPORT_TABLE)
         fprintf(results->printer.out, "%*s", INDENT, "");
     report_row_print(&results->printer, INDENT, row);
@@ -154,9 +155,10 @@ static void print_row(struct result_rows *results, const struct exchange *exchan
 
 /* ---- Results ---- */
 
-static void begin_json(struct json_writer *json, const struct fmb_client_result *of,
+static void begin_json(struct json_writer *json, const struct exchange *exchange,
                        const struct report_row *row)
 {
+    const struct result_head *of = exchange->head;
     json_begin(json, NULL, '{');
     json_integer(json, "utime", of->utime);
     json_integer(json, "client_id", of->client_id);
@@ -169,35 +171,35 @@ static void begin_json(struct json_writer *json, const struct fmb_client_result 
         json_string(json, "label", row->label);
     if (of->status != FMB_OK)
         json_integer(json, "status", of->status);
-    else if (!of->is_pair)
-        json_integer(json, "end_pair", of->end_pair);
+    else if (!exchange->is_pair)
+        json_integer(json, "end_pair", exchange->end_pair);
 }
 
 /* What a result names and is separated is near, unless the query lists its pairs. */
-static void print_counts(const struct result_rows *results, const struct fmb_client_result *of,
-                         const char *label)
+static void print_counts(const struct result_rows *results, const char *label)
 {
+    const struct scene_result *scene = &results->result.scene;
     int64_t count[FMB_OVERLAPPING + 1] = {0};
     FILE *out = results->printer.out;
-    for (int32_t k = 0; k < results->result.scene.verdict_count; k++)
-        count[results->result.scene.verdict[k]]++;
-    fprintf(out, "  up to pair %" PRId64, of->end_pair);
+    for (int32_t k = 0; k < scene->verdict_count; k++)
+        count[scene->verdict[k]]++;
+    fprintf(out, "  up to pair %" PRId32, scene->end_pair);
     if (label && *label) {
         fputs(" of ", out);
         escape_text(out, label);
     }
     fprintf(out, ": %" PRId64 " overlapping, %" PRId64 " touching, %" PRId64 " %s",
             count[FMB_OVERLAPPING], count[FMB_TOUCHING], count[FMB_SEPARATED],
-            of->names_pairs ? "near" : "separated");
+            scene->names_pairs || scene->verdict_count == 0 ? "near" : "separated");
     if (count[0] > 0)
         fprintf(out, ", %" PRId64 " not decided", count[0]);
     putc('\n', out);
 }
 
-static void print_refused(struct result_rows *results, const struct fmb_client_result *of,
+static void print_refused(struct result_rows *results, const struct exchange *of,
                           struct report_row *row)
 {
-    const struct fmb_client_answer refused = {.status = of->status, .text = of->text};
+    const struct fmb_client_answer refused = {.status = of->head->status, .text = of->text};
     row->of = &refused;
     if (results->printer.form == REPORT_JSON)
         json_string(&results->printer.json, "error", of->text);
@@ -209,19 +211,18 @@ static void print_refused(struct result_rows *results, const struct fmb_client_r
 
 static void print(struct result_rows *results, struct exchange *exchange, struct report_row *row)
 {
-    const struct fmb_client_result *of = &exchange->of;
     struct json_writer *json = results->printer.form == REPORT_JSON ? &results->printer.json : NULL;
-    const bool refused = !of->is_pair && of->status != FMB_OK;
+    const bool refused = !exchange->is_pair && exchange->head->status != FMB_OK;
     struct fmb_client_answer answer;
     if (json)
-        begin_json(json, of, row);
-    if (!of->is_pair && results->printer.form == REPORT_TABLE)
-        print_start(results, of);
+        begin_json(json, exchange, row);
+    if (!exchange->is_pair && results->printer.form == REPORT_TABLE)
+        print_start(results);
     if (refused)
-        print_refused(results, of, row);
-    else if (!of->is_pair && results->printer.form == REPORT_TABLE)
-        print_counts(results, of, row->label);
-    if (!refused && (of->is_pair || exchange->query)) {
+        print_refused(results, exchange, row);
+    else if (!exchange->is_pair && results->printer.form == REPORT_TABLE)
+        print_counts(results, row->label);
+    if (!refused && (exchange->is_pair || exchange->query)) {
         if (json)
             json_begin(json, "pairs", '[');
         row->of = &answer;
@@ -247,7 +248,7 @@ static const char *print_result(struct result_rows *results)
     if (kept && !decode(results, kept))
         exchange.query = &results->query;
     exchange_begin(&exchange);
-    const bool is_scene = !exchange.of.is_pair, is_good = head->status == FMB_OK;
+    const bool is_scene = !exchange.is_pair, is_good = head->status == FMB_OK;
     if (exchange.query && is_good && !exchange.fits)
         return "does not match its query";
     if (kept)

@@ -31,72 +31,7 @@ bool fmb_client_prefix_ok(const char *prefix)
 
 /* ---- Messages ---- */
 
-static const char *text_of(int32_t status, const char *detail)
-{
-    if (status == FMB_OK)
-        return "";
-    return detail[0] ? detail : fmb_client_status_text(status);
-}
-
-struct fmb_client_result fmb_client_raw_result_of(bool is_pair, const void *result)
-{
-    const struct result_head *head = result;
-    const struct pair_result *pair = result;
-    const struct scene_result *scene = result;
-    struct fmb_client_result out = {.utime = head->utime,
-                                    .client_id = head->client_id,
-                                    .sequence_number = head->sequence_number,
-                                    .server_id = head->server_id,
-                                    .compute_ns = head->compute_ns,
-                                    .status = head->status,
-                                    .text = text_of(head->status, head->detail),
-                                    .dim = head->dim,
-                                    .names_frames = head->names_frames,
-                                    .is_pair = is_pair,
-                                    .internal = result};
-    if (is_pair) {
-        memcpy(out.body_id, pair->body_id, sizeof out.body_id);
-    } else {
-        out.names_pairs = scene->names_pairs || scene->verdict_count == 0;
-        out.end_pair = scene->end_pair;
-    }
-    return out;
-}
-
-/* Passes the result in client->received to the watcher. */
-static void show(const struct fmb_client *client, bool is_pair)
-{
-    const struct fmb_client_result out = fmb_client_raw_result_of(is_pair, &client->received);
-    client->watcher.result(client->watcher.user, &out);
-}
-
-bool fmb_client_next_answer(const struct fmb_client_result *result,
-                            struct fmb_client_cursor *cursor, struct fmb_client_answer *out)
-{
-    const struct pair_result *pair = result->internal;
-    const struct scene_result *scene = result->internal;
-    const int32_t k = cursor->answers++;
-    if (result->is_pair) {
-        *out = (struct fmb_client_answer){.b = 1,
-                                          .status = result->status,
-                                          .text = result->text,
-                                          .answer = pair->answer,
-                                          .certificate = pair->certificate};
-        return k == 0;
-    }
-    if (k >= scene->verdict_count)
-        return false;
-    const bool decided = scene->verdict[k] != 0;
-    const unsigned number = (unsigned) (scene->end_pair - scene->verdict_count + k);
-    *out = (struct fmb_client_answer){.a = scene->names_pairs ? scene->pair[k][0] : number,
-                                      .b = scene->names_pairs ? scene->pair[k][1] : number,
-                                      .status = decided ? FMB_OK : FMB_CANNOT_DECIDE,
-                                      .text = decided ? "" : fmb_status_text(FMB_CANNOT_DECIDE)};
-    wire_scene_answer(scene, k, &cursor->contacts, &out->answer);
-    return true;
-}
-
-/* Passes the result in client->received to the request engine if it is for this client. */
+/* Passes the result in client->received to the request engine. */
 static void take(struct fmb_client *client, const struct bus_message *message,
                  enum fmb_client_kind kind)
 {
@@ -109,14 +44,7 @@ static void take(struct fmb_client *client, const struct bus_message *message,
                                           .bytes = message->bytes,
                                           .size = message->size,
                                           .number = head->sequence_number};
-    if (head->client_id == client->requests.client_id)
-        requests_take(&client->requests, &result);
-}
-
-/* Whether a result is read: results of other clients only for the watcher. */
-static bool is_for(const struct fmb_client *client, const struct query_header *header)
-{
-    return client->watcher.result || header->client_id == client->requests.client_id;
+    requests_take(&client->requests, &result);
 }
 
 static const char *on_result(struct fmb_client *client, const struct bus_message *message,
@@ -126,16 +54,13 @@ static const char *on_result(struct fmb_client *client, const struct bus_message
     const uint32_t size = (uint32_t) message->size;
     const char *error = (is_pair ? wire_read_pair_result_header : wire_read_scene_result_header)(
         message->bytes, size, &header);
-    if (error || !is_for(client, &header))
+    if (error || header.client_id != client->requests.client_id)
         return error;
     error = is_pair ? wire_read_pair_result(message->bytes, size, &client->received.pair)
                     : wire_read_scene_result(message->bytes, size, &client->received.scene);
-    if (error)
-        return error;
-    if (client->watcher.result)
-        show(client, is_pair);
-    take(client, message, is_pair ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE);
-    return NULL;
+    if (!error)
+        take(client, message, is_pair ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE);
+    return error;
 }
 
 static const char *on_pair(struct fmb_client *client, const struct bus_message *message)
@@ -152,7 +77,7 @@ static const char *on_definition(struct fmb_client *client, const struct bus_mes
 {
     const char *error = wire_read_definition(message->bytes, (uint32_t) message->size,
                                              client->hasher, &client->received.definition);
-    if (!error)
+    if (!error && client->received.definition.client_id == client->requests.client_id)
         take(client, message, FMB_CLIENT_DEFINITION);
     return error;
 }
@@ -274,10 +199,7 @@ int fmb_client_watch(struct fmb_client *client, const struct fmb_client_watcher 
     if (client->inside)
         return FMB_CLIENT_INSIDE;
     client->watcher = *watcher;
-    const bool good = (!watcher->result || (client_listen(client, FMB_CLIENT_PAIR) &&
-                                            client_listen(client, FMB_CLIENT_SCENE))) &&
-                      (!watcher->heartbeat || client_listen(client, CLIENT_STATUS));
-    return good ? FMB_OK : FMB_CLIENT_NO_BUS;
+    return client_listen(client, CLIENT_STATUS) ? FMB_OK : FMB_CLIENT_NO_BUS;
 }
 
 int fmb_client_fileno(const struct fmb_client *client)

@@ -167,39 +167,6 @@ void fmb_client_get_counts(const struct fmb_client *client, struct fmb_client_co
 
 /* ---- Listening ---- */
 
-/* A result on the bus, for any client: of a pair or of a scene. Pointers are valid during the
- * callback. */
-struct fmb_client_result {
-    int64_t utime; /* of the query, microseconds since 1970 */
-    int64_t client_id, sequence_number, server_id, compute_ns;
-    int status;
-    const char *text;  /* as in fmb_client_answer */
-    int dim;           /* of boxes and gaps; 0: there is neither */
-    bool names_frames; /* there are gaps, and a body has several frames */
-    bool is_pair;
-    int64_t body_id[2]; /* of a pair; of a scene 0 */
-    /* Of a scene. A result of ALL or ACROSS names contacts and near pairs only; all others are
-     * separated. A result without any verdict could be of either kind: this is then true. */
-    bool names_pairs;
-    int64_t end_pair;     /* the answers end before this pair of the query */
-    const void *internal; /* for fmb_client_next_answer() */
-};
-
-/* Position of fmb_client_next_answer() in a result; {0} at first. */
-struct fmb_client_cursor {
-    int32_t answers, contacts;
-};
-
-/* Reads the answers in a result, one per call, in the order of the pairs. To be called during the
- * callback that receives the result.
- * On input: *cursor is {0} before the first call.
- * On output: true and *out; or false, after the last answer. A result of a pair has one, with the
- * status of the result, where a is 0 and b is 1. Of a scene, a and b are the indices of the
- * placements in the query where names_pairs; otherwise both are the number of the pair in the
- * query's list. The status is then FMB_OK, or CANNOT_DECIDE for a pair without verdict. */
-bool fmb_client_next_answer(const struct fmb_client_result *result,
-                            struct fmb_client_cursor *cursor, struct fmb_client_answer *out);
-
 /* status_t.lcm defines the counters. */
 struct fmb_client_counter {
     const char *name; /* "received"; static */
@@ -219,11 +186,9 @@ struct fmb_client_heartbeat {
 /* Returns the value of the counter with this name, or 0 if there is none. */
 int64_t fmb_client_get_counter(const struct fmb_client_heartbeat *heartbeat, const char *name);
 
-/* Callbacks. Messages whose callback is NULL are not received. */
 struct fmb_client_watcher {
-    void (*result)(void *user, const struct fmb_client_result *result);
     void (*heartbeat)(void *user, const struct fmb_client_heartbeat *heartbeat);
-    /* A message on one of these channels could not be decoded. what: the reason. */
+    /* NULL: none. A heartbeat or a result could not be decoded. what: the reason. */
     void (*malformed)(void *user, const char *what);
     void *user;
 };

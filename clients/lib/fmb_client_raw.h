@@ -55,10 +55,6 @@ int fmb_client_raw_step(struct fmb_client *client, int other_fd, double timeout)
  * fmb_client_why(). */
 bool fmb_client_raw_listen(struct fmb_client *client, bool every, bus_handler *tap, void *user);
 
-/* The result that a watcher gets of a decoded one: struct pair_result or struct scene_result
- * (query.h), to which it points. */
-struct fmb_client_result fmb_client_raw_result_of(bool is_pair, const void *result);
-
 /* The id that the engine writes into queries. */
 int64_t fmb_client_raw_id(const struct fmb_client *client);
 

@@ -29,22 +29,22 @@ static void add_body(struct page *page, const struct exchange *exchange, int32_t
 
 static void put_result(struct json_writer *json, const struct exchange *exchange)
 {
-    const struct fmb_client_result *of = &exchange->of;
+    const struct result_head *head = exchange->head;
     if (!exchange->result) {
         json_null(json, NULL);
         return;
     }
-    const int method = exchange->result->head.method;
+    const int method = head->method;
     const struct fmb_method *by = method ? fmb_method_by_number(method) : NULL;
     struct exchange_counts counts = {{0}};
-    if (exchange->fits && of->status == FMB_OK)
+    if (exchange->fits && head->status == FMB_OK)
         counts = exchange_count(exchange);
     json_begin(json, NULL, '{');
-    if (of->status != FMB_OK)
-        json_string(json, "error", fmb_status_text(of->status));
+    if (head->status != FMB_OK)
+        json_string(json, "error", fmb_status_text(head->status));
     if (by)
         json_string(json, "method", by->name);
-    json_integer(json, "compute_ns", of->compute_ns);
+    json_integer(json, "compute_ns", head->compute_ns);
     json_integers(json, "counts", &counts.verdict[FMB_SEPARATED], FMB_OVERLAPPING);
     json_end(json, '}');
 }
@@ -59,7 +59,7 @@ static bool is_different(const struct exchange_pair *pair)
 static bool certificates_differ(const struct exchange *then, const struct exchange *now)
 {
     const char *a = then->named.certificate, *b = now->named.certificate;
-    return then->fits && now->fits && then->of.status == FMB_OK && now->of.status == FMB_OK &&
+    return then->fits && now->fits && then->head->status == FMB_OK && now->head->status == FMB_OK &&
            (a && b ? strcmp(a, b) != 0 : a != b);
 }
 
@@ -73,7 +73,7 @@ static void note_of(const struct exchange *then, const struct exchange *now, cha
         return;
     }
     const struct scene_query *scene = &now->query->scene;
-    const int64_t total = query_pair_count(scene), end = now->of.end_pair;
+    const int64_t total = query_pair_count(scene), end = now->end_pair;
     if (scene->first_pair > 0 || end < total)
         snprintf(out, NOTE_MAX, "Pairs %" PRId32 " to %" PRId64 " of %" PRId64 ".",
                  scene->first_pair, end, total);
@@ -129,7 +129,7 @@ void page_take(struct page *page, const struct page_replayed *replayed, struct e
     struct exchange *const both[2] = {then, now};
     for (struct exchange_pair pair; exchange_next_of_both(both, &pair);) {
         const int last = pair.answered[1];
-        page_pair(page, both[last]->of.dim ? both[last]->of.dim : both[1 - last]->of.dim,
+        page_pair(page, both[last]->head->dim ? both[last]->head->dim : both[1 - last]->head->dim,
                   is_different(&pair) ? &pair.answer[0] : NULL, &pair.answer[last]);
     }
     page_step_end(page);
