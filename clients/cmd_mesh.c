@@ -3,9 +3,11 @@
 
 #include "args.h"
 #include "complain.h"
+#include "escape.h"
+#include "json_write.h"
 #include "mesh_intersect.h"
-#include "mesh_report.h"
 #include "mesh_transform.h"
+#include "number.h"
 #include "progress.h"
 
 #include <float.h>
@@ -193,6 +195,82 @@ static bool read_mesh(const char *path, const struct placed *placed, struct mesh
 
 /* ---- Answers --------------------------------------------------------------------------------- */
 
+static void print_count(size_t count, const char *what)
+{
+    char text[NUMBER_TEXT_MAX];
+    printf("%14s  %s\n", number_grouped((int64_t) count, text), what);
+}
+
+static void print_faces(size_t count, size_t all, const char *name)
+{
+    char text[2][NUMBER_TEXT_MAX];
+    printf("%14s  of %s faces of ", number_grouped((int64_t) count, text[0]),
+           number_grouped((int64_t) all, text[1]));
+    escape_text(stdout, name);
+    putchar('\n');
+}
+
+/* The first and the last time at which any two faces are in contact. */
+static void print_times(const struct mesh_intersection *intersection)
+{
+    double first = intersection->pair[0].contact[0], last = intersection->pair[0].contact[1];
+    char text[2][NUMBER_TEXT_MAX];
+    for (size_t i = 1; i < intersection->count; i++) {
+        const double *contact = intersection->pair[i].contact;
+        first = contact[0] < first ? contact[0] : first;
+        last = contact[1] > last ? contact[1] : last;
+    }
+    number_ends(first, last, text[0], text[1]);
+    printf("faces meet first at %s s, and last at %s s\n", text[0], text[1]);
+}
+
+static void print_text(const struct mesh_intersection *found, const struct mesh mesh[2],
+                       char **names)
+{
+    print_count(found->count, found->count == 1 ? "pair of faces meets:" : "pairs of faces meet:");
+    print_count(found->overlapping, "overlap");
+    print_count(found->touching, "touch");
+    puts("in them are");
+    for (int which = 0; which < 2; which++)
+        print_faces(found->faces[which], mesh[which].face_count, names[which]);
+    if (found->moving && found->count > 0)
+        print_times(found);
+    if (found->count == 0)
+        puts("only surfaces are compared: one mesh may lie inside the other");
+}
+
+/* One line:
+ *
+ *     {"overlapping": N, "touching": N, "faces_a": N, "faces_b": N,
+ *      "pairs": [[i, j, "overlapping"], ...]}
+ *
+ * If a mesh moves, the interval of contact follows the verdict. */
+static void print_json(const struct mesh_intersection *found)
+{
+    struct json_writer json = json_object(stdout);
+    json_integer(&json, "overlapping", (int64_t) found->overlapping);
+    json_integer(&json, "touching", (int64_t) found->touching);
+    json_integer(&json, "faces_a", (int64_t) found->faces[0]);
+    json_integer(&json, "faces_b", (int64_t) found->faces[1]);
+    json_begin(&json, "pairs", '[');
+    for (size_t i = 0; i < found->count; i++) {
+        const struct mesh_pair *pair = &found->pair[i];
+        json_begin(&json, NULL, '[');
+        json_integer(&json, NULL, pair->a);
+        json_integer(&json, NULL, pair->b);
+        json_string(&json, NULL, fmb_verdict_name((int) pair->verdict));
+        if (found->moving) {
+            json_begin(&json, NULL, '[');
+            json_number(&json, NULL, pair->contact[0]);
+            json_number(&json, NULL, pair->contact[1]);
+            json_end(&json, ']');
+        }
+        json_end(&json, ']');
+    }
+    json_end(&json, ']');
+    json_object_end(&json);
+}
+
 static int intersect(const struct mesh_options *options, const struct mesh mesh[2], char **names)
 {
     const struct mesh_query query = {
@@ -212,14 +290,10 @@ static int intersect(const struct mesh_options *options, const struct mesh mesh[
                            : fmb_status_text((int) status));
         return ARGS_FAILED;
     }
-    const struct mesh_report report = {.query = &query,
-                                       .mesh = {&mesh[0], &mesh[1]},
-                                       .name = {names[0], names[1]},
-                                       .intersection = &intersection};
     if (options->json)
-        mesh_report_json(stdout, &report);
+        print_json(&intersection);
     else
-        mesh_report_text(stdout, &report);
+        print_text(&intersection, mesh, names);
     mesh_intersection_free(&intersection);
     return output_flush() ? ARGS_ANSWERED : ARGS_FAILED;
 }
