@@ -99,8 +99,7 @@ static const char usage[] =
 
 struct replay_arguments {
     struct replay_options replay;
-    struct answer_bus_options bus;
-    struct args_bus where;
+    struct fmb_client_options bus;
     const char *log_prefix; /* NULL: that of the bus */
     long frames, limit, retries;
     bool json, live;
@@ -275,10 +274,10 @@ static void report_all(struct replay_run *run, const struct tally *all, int code
 /* ---- The end of a replay through a live service ---- */
 
 /* No service has answered at all, or none does any more. */
-static void report_no_service(const struct tally_bus *bus, const struct answer_bus_options *options,
+static void report_no_service(const struct tally_bus *bus, const struct fmb_client_options *options,
                               char *const *log)
 {
-    const double patience = options->timeout * (options->retries + 1);
+    const double patience = options->timeout * options->tries;
     const struct args_bus where = {options->url, options->prefix};
     char answered[NUMBER_TEXT_MAX];
     if (bus->services == 0)
@@ -292,12 +291,11 @@ static void report_no_service(const struct tally_bus *bus, const struct answer_b
             log[bus->log]);
     if (bus->malformed > 0)
         complain("%" PRId64 " results could not be read: another version of fmbd?", bus->malformed);
-    complain("start one with 'fmbd%s%s &', or replay in this process: leave out --bus",
-             *options->prefix ? " --prefix " : "", options->prefix);
+    args_advise_service(&where, ", or replay in this process: leave out --bus");
 }
 
 /* Reports why not all queries were answered, if so, and what to do. */
-static void report_end(const struct tally_bus *bus, const struct answer_bus_options *options,
+static void report_end(const struct tally_bus *bus, const struct fmb_client_options *options,
                        char *const *log)
 {
     char answered[NUMBER_TEXT_MAX];
@@ -370,17 +368,16 @@ static bool check_bus(const struct args *args, const struct replay_arguments *op
 }
 
 /* Sets the options that were not given. */
-static void complete(struct replay_arguments *options)
+static void complete(struct replay_arguments *options, const struct args_bus *where)
 {
-    struct answer_bus_options *bus = &options->bus;
+    struct fmb_client_options *bus = &options->bus;
     options->frames = options->frames > 0 ? options->frames : 65536;
-    options->retries = options->retries >= 0 ? options->retries : 9;
-    bus->url = options->where.url;
-    bus->prefix = options->where.prefix;
+    bus->url = where->url;
+    bus->prefix = where->prefix;
     bus->timeout = bus->timeout > 0 ? bus->timeout : 0.5;
-    bus->retries = (int) options->retries;
+    bus->tries = options->retries >= 0 ? (int) options->retries + 1 : 10;
     options->replay.bus = options->live ? bus : NULL;
-    options->replay.prefix = options->log_prefix ? options->log_prefix : options->where.prefix;
+    options->replay.prefix = options->log_prefix ? options->log_prefix : where->prefix;
     options->replay.frames = (size_t) options->frames;
 }
 
@@ -424,10 +421,9 @@ int cmd_replay(int argc, char **argv)
         return ARGS_USAGE;
     options.replay.log = args.operands;
     options.replay.log_count = args.operand_count;
-    options.where = args.bus;
     rules.input = args.operands;
     rules.input_count = args.operand_count;
     rules.other_input = replay->golden;
-    complete(&options);
+    complete(&options, &args.bus);
     return run_replay(&options);
 }

@@ -48,7 +48,6 @@ struct slot {
 };
 
 struct answer_bus {
-    struct answer_bus_options options;
     answer_bus_sink *sink;
     void *user;
     struct fmb_client *client;
@@ -235,18 +234,14 @@ struct tally_bus answer_bus_counts(const struct answer_bus *bus)
 
 /* ---- Opening and closing ---- */
 
-struct answer_bus *answer_bus_open(const struct answer_bus_options *options, answer_bus_sink *sink,
+struct answer_bus *answer_bus_open(const struct fmb_client_options *options, answer_bus_sink *sink,
                                    void *user)
 {
-    const struct fmb_client_options client = {.url = options->url,
-                                              .prefix = options->prefix,
-                                              .timeout = options->timeout,
-                                              .tries = options->retries + 1};
     char why[FMB_CLIENT_WHY_MAX];
     struct answer_bus *bus = allocate(1, sizeof *bus);
-    *bus = (struct answer_bus){.options = *options, .sink = sink, .user = user, .signals = -1};
+    *bus = (struct answer_bus){.sink = sink, .user = user, .signals = -1};
     bus->counts.used = 1;
-    bus->client = fmb_client_open(&client, why, sizeof why);
+    bus->client = fmb_client_open(options, why, sizeof why);
     if (!bus->client)
         complain("%s", why);
     else if ((bus->signals = signals_open()) < 0)

@@ -5,16 +5,10 @@
 #ifndef ANSWER_BUS_H
 #define ANSWER_BUS_H
 
+#include "fmb_client.h"
 #include "local_answerer.h"
 #include "match.h"
 #include "tally.h"
-
-struct answer_bus_options {
-    const char *url;    /* NULL: LCM_DEFAULT_URL, or this host */
-    const char *prefix; /* of the channels; "": none */
-    double timeout;     /* seconds; as in fmb_client_options */
-    int retries;        /* a query fails after retries + 1 timeouts */
-};
 
 /* Called when a query was answered. item: as passed to answer_bus_query(). Returns whether the
  * answer is final; false: the query will be passed again. */
@@ -25,7 +19,7 @@ struct answer_bus;
 
 /* Returns NULL if the bus cannot be opened, which was reported on stderr. From then on SIGINT and
  * SIGTERM are blocked and end the replay. Exits with status 1 if memory is exhausted. */
-struct answer_bus *answer_bus_open(const struct answer_bus_options *options, answer_bus_sink *sink,
+struct answer_bus *answer_bus_open(const struct fmb_client_options *options, answer_bus_sink *sink,
                                    void *user);
 void answer_bus_close(struct answer_bus *bus); /* may be NULL */
 

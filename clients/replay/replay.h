@@ -33,7 +33,7 @@ struct replay_options {
     size_t frames;   /* capacity of the cache in this process */
     struct body_names *names;             /* receives the names of bodies; NULL: none */
     struct page *page;                    /* receives what was replayed; NULL: none */
-    const struct answer_bus_options *bus; /* the service that answers; NULL: this process */
+    const struct fmb_client_options *bus; /* the service that answers; NULL: this process */
 };
 
 /* Replays, and adds to tally[log_count]. Returns false if a file cannot be opened, read or written,
