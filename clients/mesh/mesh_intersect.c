@@ -5,6 +5,7 @@
 #include "fmb_batch.h"
 #include "progress.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,8 +21,11 @@ struct mesh_search {
     /* The block: candidates and their frames. */
     unsigned face[BLOCK][2], pair[BLOCK][2]; /* indices of faces, and of frames */
     size_t count;
-    struct mesh_placed_face *placed; /* [FRAMES] */
-    struct fmb_prepared *frame;      /* [FRAMES], prepared from placed */
+    struct placed_face {
+        struct fmb_body body;
+        struct fmb_placement placement; /* of the body */
+    } * placed;                         /* [FRAMES] */
+    struct fmb_prepared *frame;         /* [FRAMES], prepared from placed */
     unsigned char verdict[BLOCK];
     double contact[BLOCK][2]; /* 0 at rest */
 };
@@ -29,6 +33,37 @@ struct mesh_search {
 static const struct mesh *mesh_of(const struct mesh_query *query, int which)
 {
     return which ? query->b : query->a;
+}
+
+/* ---- Faces ---- */
+
+/* c1 x c0, divided by its length; 0 if that is 0. */
+static void unit_normal(const double c0[3], const double c1[3], double out[3])
+{
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = c1[j] * c0[k] - c1[k] * c0[j];
+    }
+    const double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+    for (int i = 0; i < 3; i++)
+        out[i] = length > 0 ? out[i] / length : 0;
+}
+
+/* Makes the body of a face. Returns false if an edge or the normal is longer than the largest
+ * double. */
+static bool make_face(const struct mesh *mesh, enum mesh_as as, unsigned face, struct fmb_body *out)
+{
+    double number[4][3]; /* the vertices; or the origin, then the components */
+    for (int corner = 0; corner < 3; corner++)
+        memcpy(number[corner], mesh->vertex[mesh->face[face][corner]], sizeof number[corner]);
+    if (as == MESH_FACES)
+        return fmb_body_make_vertices(3, FMB_FACE, number[0], 9, out) == FMB_OK;
+    for (int axis = 0; axis < 3; axis++) {
+        number[1][axis] -= number[0][axis];
+        number[2][axis] -= number[0][axis];
+    }
+    unit_normal(number[1], number[2], number[3]);
+    return fmb_body_make(3, FMB_TETRAHEDRON, number[0], 12, out) == FMB_OK;
 }
 
 /* ---- Trees ---- */
@@ -48,9 +83,16 @@ static void face_box(const void *context, unsigned index, double box[2][FMB_DIM_
     }
 }
 
+/* A face that is no body has an unbounded box, so that it becomes a candidate and is then refused.
+ */
 static void tetrahedron_box(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
 {
-    mesh_face_tetrahedron_box(context, index, box);
+    struct fmb_body body;
+    const bool good = make_face(context, MESH_TETRAHEDRA, index, &body);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        box[0][axis] = good ? body.box[0][axis] : -INFINITY;
+        box[1][axis] = good ? body.box[1][axis] : INFINITY;
+    }
 }
 
 /* Returns the memory of the tree, which the caller frees. */
@@ -71,10 +113,13 @@ static void prepare(struct mesh_search *search, size_t candidate, int which)
 {
     const struct mesh_query *query = search->query;
     const size_t i = 2 * candidate + (size_t) which;
-    struct mesh_placed_face *placed = &search->placed[i];
+    struct placed_face *placed = &search->placed[i];
     memset(&search->frame[i], 0, sizeof search->frame[i]); /* fmb_decide_batch() refuses zeros */
-    if (mesh_face_place(mesh_of(query, which), query->as, search->face[candidate][which],
-                        query->velocity[which], placed))
+    placed->placement = (struct fmb_placement){.body = &placed->body};
+    if (query->velocity[which])
+        memcpy(placed->placement.velocity, query->velocity[which],
+               sizeof placed->placement.velocity);
+    if (make_face(mesh_of(query, which), query->as, search->face[candidate][which], &placed->body))
         fmb_prepare(&placed->placement, 0, 1, &search->frame[i]);
     search->pair[candidate][which] = (unsigned) i;
 }

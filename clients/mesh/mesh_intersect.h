@@ -3,7 +3,17 @@
 #ifndef MESH_INTERSECT_H
 #define MESH_INTERSECT_H
 
-#include "mesh_face.h"
+#include "fmb.h"
+#include "mesh.h"
+
+/* How a face is represented as a body. */
+enum mesh_as {
+    /* The triangle of its vertices, exactly: no edge is rounded. */
+    MESH_FACES,
+    /* The article's tetrahedron with its origin in the first vertex: the edges c0 and c1 to the
+     * other two, rounded, and c2 = c1 x c0 divided by its length, or 0 if that length is 0. */
+    MESH_TETRAHEDRA
+};
 
 struct mesh_query {
     const struct mesh *a, *b;

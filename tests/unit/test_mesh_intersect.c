@@ -9,7 +9,6 @@
 #include "allocate.h"
 #include "bumpy.h"
 #include "draw.h"
-#include "mesh_face.h"
 #include "mesh_intersect.h"
 #include "mesh_transform.h"
 #include "triangles.h"
