@@ -6,7 +6,7 @@
 #include <time.h>
 
 #include "gap_check.h"
-#include "hull_decision.h"
+#include "support_decision.h"
 #include "memory.h"
 
 /* Pairs of a batch: the methods are timed over all of them, one after the other, each decided once,
@@ -28,7 +28,7 @@ const char *measure_path_name(int path)
     static const char *const names[MEASURE_PATHS] = {[CERTIFIED_FILTER] = "filter",
                                                      [CERTIFIED_SECOND] = "second",
                                                      [CERTIFIED_LIMBS] = "limbs",
-                                                     [CERTIFIED_EXACT] = "exact",
+                                                     [CERTIFIED_ALL_SLABS] = "exact",
                                                      [CERTIFIED_PROGRAMS] = "programs"};
     return names[path];
 }
@@ -102,11 +102,12 @@ static enum certified_path path_of(const struct pair *pair)
                                               pair->duration};
             enum certified_path path;
             struct fmb_answer answer;
-            if (!hull_takes(frames.a.frame, frames.b.frame))
+            if (!support_takes(frames.a.frame, frames.b.frame))
                 certified_verdict(&frames, &path);
             else
-                path = hull_decide(&frames, 0, HULL_QUICK, &answer) == FMB_OK ? CERTIFIED_FILTER
-                                                                              : CERTIFIED_PROGRAMS;
+                path = support_decide(&frames, 0, SUPPORT_QUICK, &answer) == FMB_OK
+                           ? CERTIFIED_FILTER
+                           : CERTIFIED_PROGRAMS;
             most = path > most ? path : most;
         }
     return most;

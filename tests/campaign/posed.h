@@ -35,6 +35,7 @@ void posed_draw_whole_shape(struct draw *draw, int most, double unit, struct sol
 void posed_meet_nearly(struct draw *draw, double size, struct question *question);
 
 /* hulls.c */
-family_function hull_of_shape, hull_equal, hull_in_plane, hull_parting, hull_cloud, hull_exponents;
+family_function hull_of_shape, support_equal, hull_in_plane, support_parting, hull_cloud,
+    support_exponents;
 
 #endif

@@ -315,8 +315,8 @@ static void check_job(struct kernel_traits traits, const struct fmb_prepared *co
     at.traits = traits;
     gather_without_errors(traits, both, frame);
     set_pair(traits, &frame[0], &frame[1], duration, &pair);
-    if (pair.in_range && traits.exact)
-        exact_outcomes(traits, &frame[0], &frame[1], duration, &pair);
+    if (pair.in_range && traits.second)
+        second_outcomes(traits, &frame[0], &frame[1], duration, &pair);
     else if (pair.in_range)
         evaluate_pair(traits, &pair, &result);
     if (pair.in_range && traits.times && result.gap_low <= 0)
@@ -422,7 +422,7 @@ void check_pair(const struct fmb_prepared *a, const struct fmb_prepared *b, doub
     traits.times = traits.drifts;
     check_job(traits, pair, duration);
     traits.times = false;
-    traits.exact = true;
+    traits.second = true;
     check_job(traits, pair, duration);
 }
 
@@ -458,7 +458,7 @@ static const char not_checked[] =
     "\n"
     "Not checked here: errors of origins and vertices (prepared.c, frame.c), sums rounded\n"
     "outward (aabb.h, box_ends.h), boxes of level cuboids (BOXES.md, 7), bounds of normals\n"
-    "(gap_bounds.c), witness points and depths of hulls (hull_gap.c, hull_gap_depth.c), and what\n"
+    "(gap_bounds.c), witness points and depths of hulls (support_gap.c, support_depth.c), and what\n"
     "is done in integers. In the filter and in gaps frames count as given, without errors.\n";
 
 /* A fraction of a constant. */

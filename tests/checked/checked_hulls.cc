@@ -33,13 +33,13 @@ typedef number number_in_place_of_double; /* no variable has this name */
 typedef lanes rotation_two;
 
 #define unit_roundoff unit_roundoff_of_pairs
-#include "hull_pair.c"
+#include "support_pair.c"
 #undef unit_roundoff
 #define unit_roundoff unit_roundoff_of_heights
-#include "hull_heights.c"
+#include "support_heights.c"
 #undef unit_roundoff
-#include "hull_mesh.c"
-#include "hull_search.c"
+#include "mesh.c"
+#include "support_search.c"
 
 #undef double
 
@@ -99,36 +99,36 @@ static void set_frame(const struct checked_vertices *from, struct checked_frame 
 }
 
 /* The support in a direction, and the point that has it. */
-static void check_support(const struct hull_pair *pair, const number n[FMB_DIM_MAX],
-                          struct hull_vertex *out)
+static void check_support(const struct support_pair *pair, const number n[FMB_DIM_MAX],
+                          struct support_vertex *out)
 {
-    const number value = hull_support(pair, n, &out->column);
+    const number value = support_farthest(pair, n, &out->column);
     const number length = sqrt(vec3_dot(n, n)).value, error = pair->error.value;
     check_bound("HULL_ROUNDING", 32 * 0x1p-53, value, error * length);
-    hull_point(pair, out->column, out->at);
+    support_point(pair, out->column, out->at);
     check_vector("HULL_ROUNDING", 32 * 0x1p-53, out->at, FMB_DIM_MAX, error);
 }
 
 /* A mesh of the points, on a grid of nearly 2^52 units. */
-static void check_mesh(const struct hull_pair *pair, const struct hull_vertex *vertex, int count)
+static void check_mesh(const struct support_pair *pair, const struct support_vertex *vertex, int count)
 {
-    struct hull_mesh mesh;
+    struct mesh mesh;
     double largest = 0;
     for (int k = 0; k < count; k++)
         largest = std::fmax(largest, vec3_largest(vertex[k].at).value);
-    hull_mesh_begin(&mesh, pair->dim);
+    mesh_begin(&mesh, pair->dim);
     for (int k = 0; k < count && largest > 0; k++) {
         int64_t at[FMB_DIM_MAX];
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             at[axis] = (int64_t) (vertex[k].at[axis].value / largest * 0x1.fp51);
         if (k <= pair->dim)
-            hull_mesh_add_point(&mesh, at);
-        if (k == pair->dim && !hull_mesh_close(&mesh))
+            mesh_add_point(&mesh, at);
+        if (k == pair->dim && !mesh_close(&mesh))
             break;
         for (int f = 0; k > pair->dim && f < mesh.facets; f++)
-            hull_mesh_side(&mesh, f, at);
+            mesh_side(&mesh, f, at);
     }
-    hull_mesh_end(&mesh);
+    mesh_end(&mesh);
 }
 
 static struct checked_frame frame[2];
@@ -136,15 +136,15 @@ static struct checked_frame frame[2];
 void check_hulls(const struct checked_vertices from[2], plain_double duration)
 {
     enum { POINTS = 8 };
-    struct hull_pair pair;
-    struct hull_vertex vertex[POINTS];
-    struct hull_nearest nearest;
+    struct support_pair pair;
+    struct support_vertex vertex[POINTS];
+    struct support_nearest nearest;
     number bounds[2], box[2][FMB_DIM_MAX];
     for (int f = 0; f < 2; f++)
         set_frame(&from[f], &frame[f]);
     const struct frame_pair frames = {
         {&frame[0].frame, &frame[0].placement}, {&frame[1].frame, &frame[1].placement}, duration};
-    hull_pair_set(&frames, &pair);
+    support_pair_set(&frames, &pair);
     for (int k = 0; k < POINTS && pair.usable; k++) {
         const number n[FMB_DIM_MAX] = {k & 1 ? 0.6 : -0.7, k & 2 ? 0.3 : -0.4,
                                        pair.dim == 2 ? 0
@@ -157,9 +157,9 @@ void check_hulls(const struct checked_vertices from[2], plain_double duration)
         /* Less than half is derived for points: the constants beside it would have to be several
          * times too small to be found. */
         pair.error = 0.5 * pair.error.value;
-        if (hull_search(&pair, INFINITY, &nearest) == FMB_OVERLAPPING) {
-            hull_contact(&pair, &nearest.simplex, bounds);
-            hull_box(&pair, &nearest.simplex, box);
+        if (support_search(&pair, INFINITY, &nearest) == FMB_OVERLAPPING) {
+            support_contact(&pair, &nearest.simplex, bounds);
+            support_box(&pair, &nearest.simplex, box);
         }
     }
     arena_clear();

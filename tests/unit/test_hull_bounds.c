@@ -1,4 +1,4 @@
-/* The error bounds of pairs with a hull in doubles, against rational numbers (hull.h). */
+/* The error bounds of pairs with a hull in doubles, against rational numbers (support_pair.h). */
 
 #include "unit.h"
 
@@ -6,8 +6,8 @@
 #include <math.h>
 
 #include "draw.h"
-#include "hull.h"
-#include "hull_search.h"
+#include "support_pair.h"
+#include "support_search.h"
 
 enum { VERTICES = 12, AXES = FMB_DIM_MAX };
 
@@ -143,16 +143,16 @@ static void check_pair(struct draw *draw, const struct hull hull[2], double dura
 {
     const struct frame_pair frames = {
         {&hull[0].body.one, &hull[0].at}, {&hull[1].body.one, &hull[1].at}, duration};
-    struct hull_pair pair;
-    hull_pair_set(&frames, &pair);
+    struct support_pair pair;
+    support_pair_set(&frames, &pair);
     if (!pair.usable)
         return;
     double n[AXES] = {0};
     for (int axis = 0; axis < pair.dim; axis++)
         n[axis] = draw_coin(draw) ? draw_uniform(draw, -1, 1) : draw_log(draw, -80, 0) / 2;
     const double square = (n[0] * n[0] + n[1] * n[1]) + n[2] * n[2];
-    struct hull_column column;
-    const double value = hull_support(&pair, n, &column);
+    struct support_column column;
+    const double value = support_farthest(&pair, n, &column);
     mpq_t r[2][AXES][AXES], point[AXES], most, x, y;
     mpq_inits(most, x, y, NULL);
     each(point, mpq_init);
@@ -166,14 +166,14 @@ static void check_pair(struct draw *draw, const struct hull hull[2], double dura
         for (unsigned j = 0; j < hull[1].body.one.vertex_count; j++)
             for (unsigned end = 0; end < 2; end++) {
                 const double t = end ? duration : 0;
-                const struct hull_column other = {{i, j}, end};
+                const struct support_column other = {{i, j}, end};
                 for (int axis = 0; axis < AXES; axis++)
                     mpq_set_ui(point[axis], 0, 1);
                 add_vertex(&hull[1], r[1], j, t, 1, point);
                 add_vertex(&hull[0], r[0], i, t, -1, point);
                 mpq_set_ui(x, 0, 1);
                 double computed[AXES];
-                hull_point(&pair, other, computed);
+                support_point(&pair, other, computed);
                 mpq_t distance;
                 mpq_init(distance);
                 for (int axis = 0; axis < pair.dim; axis++) {
@@ -267,10 +267,10 @@ static void bounds_are_needed(void **state)
             hull[0].at.orientation[k] = draw_uniform(&draw, 0.1, 1);
         const struct frame_pair frames = {
             {&hull[0].body.one, &hull[0].at}, {&hull[1].body.one, &hull[1].at}, 0};
-        struct hull_pair pair;
-        hull_pair_set(&frames, &pair);
+        struct support_pair pair;
+        support_pair_set(&frames, &pair);
         double computed[AXES];
-        hull_point(&pair, (struct hull_column){{0, 0}, 0}, computed);
+        support_point(&pair, (struct support_column){{0, 0}, 0}, computed);
         mpq_t r[AXES][AXES], point[AXES], distance;
         for (int i = 0; i < AXES; i++)
             each(r[i], mpq_init);

@@ -9,7 +9,7 @@
 
 #include "draw.h"
 #include "gap_check.h"
-#include "hull_decision.h"
+#include "support_decision.h"
 #include "hull_draw.h"
 #include "question.h"
 #include "referee.h"
@@ -17,11 +17,11 @@
 /* The gap of a pair with this verdict, from its vertices. */
 static struct fmb_gap gap_of_vertices(const struct frame_pair *frames, enum fmb_verdict verdict)
 {
-    struct hull_decision decision;
+    struct support_decision decision;
     struct fmb_answer answer = {0};
-    bool done = hull_decision_begin_gap(frames, verdict, INFINITY, false, &decision, &answer);
+    bool done = support_decision_begin_gap(frames, verdict, INFINITY, false, &decision, &answer);
     while (!done)
-        done = hull_decision_step(&decision, &answer);
+        done = support_decision_step(&decision, &answer);
     assert_true(answer.has_gap);
     return answer.gap;
 }
@@ -34,7 +34,7 @@ static struct fmb_gap gap_of_hulls(const struct question *question, unsigned whi
     struct ready ready;
     struct shape_hull hull[2];
     referee_ready(question, &ready);
-    hull_replace(question, which, hull, &ready.pair);
+    support_replace(question, which, hull, &ready.pair);
     const struct frame_pair frames = pair_frames(&ready.pair);
     return gap_of_vertices(&frames, verdict);
 }
@@ -518,14 +518,14 @@ static void make_ball(double turn_by, double far, struct large *out)
 /* Performs at most so many steps. Returns how many were made, and sets *gap if that is all. */
 static int step_gap(const struct frame_pair *frames, int most, struct fmb_gap *gap)
 {
-    struct hull_decision decision;
+    struct support_decision decision;
     struct fmb_answer answer = {0};
     int steps = 1;
     bool done =
-        hull_decision_begin_gap(frames, FMB_OVERLAPPING, INFINITY, false, &decision, &answer);
+        support_decision_begin_gap(frames, FMB_OVERLAPPING, INFINITY, false, &decision, &answer);
     for (; !done && steps < most; steps++)
-        done = hull_decision_step(&decision, &answer);
-    hull_decision_end(&decision);
+        done = support_decision_step(&decision, &answer);
+    support_decision_end(&decision);
     *gap = answer.gap;
     return steps;
 }

@@ -7,8 +7,8 @@
 #include <math.h>
 
 #include "family.h"
-#include "hull_decision.h"
-#include "hull_exact.h"
+#include "support_decision.h"
+#include "programs.h"
 #include "oracle.h"
 #include "referee.h"
 
@@ -26,13 +26,13 @@ static bool make_body(const struct solid *solid, struct fmb_body *out)
 
 static void decide_in_integers(const struct frame_pair *frames, struct fmb_answer *out)
 {
-    struct hull_pair pair;
-    hull_pair_set(frames, &pair);
-    struct hull_exact *exact = hull_exact_begin(&pair, FMB_WANT_BOX | FMB_WANT_TIMES, NULL, 0);
+    struct support_pair pair;
+    support_pair_set(frames, &pair);
+    struct programs *programs = programs_begin(&pair, FMB_WANT_BOX | FMB_WANT_TIMES, NULL, 0);
     int steps = 0;
-    while (!hull_exact_step(exact))
+    while (!programs_step(exact))
         assert_true(++steps < 2000);
-    hull_exact_end(exact, out);
+    programs_end(exact, out);
 }
 
 static double largest_coordinate(const struct frame_pair *frames)
@@ -76,12 +76,13 @@ static void check_within_limits(const struct frame_pair *frames, const struct fm
 
 static void check_search(const struct frame_pair *frames, enum fmb_verdict verdict)
 {
-    struct hull_pair pair;
-    struct hull_nearest nearest;
-    hull_pair_set(frames, &pair);
+    struct support_pair pair;
+    struct support_nearest nearest;
+    support_pair_set(frames, &pair);
     if (!pair.usable)
         return;
-    const enum fmb_verdict found = hull_search(&pair, hull_separating_distance(&pair), &nearest);
+    const enum fmb_verdict found =
+        support_search(&pair, support_separating_distance(&pair), &nearest);
     assert_true(found == 0 || found == verdict);
 }
 
@@ -107,8 +108,8 @@ static void check(const struct question *question, bool with_oracle)
     assert_int_equal(certified.verdict, exact.verdict);
     check_search(&frames, exact.verdict);
     const unsigned want = FMB_WANT_BOX | FMB_WANT_TIMES;
-    assert_int_equal(hull_decide(&frames, want, HULL_CERTIFIED, &answer), FMB_OK);
-    assert_int_equal(hull_decide(&swapped, want, HULL_CERTIFIED, &other), FMB_OK);
+    assert_int_equal(support_decide(&frames, want, SUPPORT_CERTIFIED, &answer), FMB_OK);
+    assert_int_equal(support_decide(&swapped, want, SUPPORT_CERTIFIED, &other), FMB_OK);
     assert_memory_equal(&answer, &other, sizeof answer);
     check_within_limits(&frames, &exact, &answer);
 }

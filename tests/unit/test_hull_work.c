@@ -23,7 +23,7 @@
 #include "certificate_text.h"
 #include "draw.h"
 #include "exact_work.h"
-#include "hull_vertices.h"
+#include "support_integers.h"
 #include "support.h"
 #include "work_steps.h"
 
@@ -46,11 +46,11 @@ struct support __wrap_support_max(const struct support_vertices *vertices,
     return __real_support_max(vertices, n);
 }
 
-void __real_hull_integers_place(const struct hull_integers *integers, int f, unsigned i,
+void __real_hull_integers_place(const struct support_integers *integers, int f, unsigned i,
                                 mpz_t out[3]);
-void __wrap_hull_integers_place(const struct hull_integers *integers, int f, unsigned i,
+void __wrap_hull_integers_place(const struct support_integers *integers, int f, unsigned i,
                                 mpz_t out[3]);
-void __wrap_hull_integers_place(const struct hull_integers *integers, int f, unsigned i,
+void __wrap_hull_integers_place(const struct support_integers *integers, int f, unsigned i,
                                 mpz_t out[3])
 {
     placed++;

@@ -1152,7 +1152,7 @@ static bool expect_quick(const struct question *question, unsigned want)
     const long before = gmp_allocations;
     struct certified certified;
     const bool known = certified_begin(&a, &b, question->duration, want | FMB_WANT_TIMES, INFINITY,
-                                       HULL_QUICK, &certified, &quick);
+                                       SUPPORT_QUICK, &certified, &quick);
     if (gmp_allocations != before)
         referee_fail(question, "a quick decision allocates");
     assert_int_equal(certified_decide(&frames, want, &answer), FMB_OK);

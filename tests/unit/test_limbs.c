@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "draw.h"
-#include "hull_vertices.h"
+#include "support_integers.h"
 #include "limbs_decide.h"
 #include "question.h"
 #include "referee.h"
@@ -303,14 +303,14 @@ static void share_orientation(struct draw *draw, struct question *question)
         question->b.orientation[i] = sign * question->a.orientation[i];
 }
 
-/* The vertices of a pair in integers (hull_vertices.h). */
-static void set_vertex(struct hull_integers *integers, int f, int vertex, mpz_t out[3])
+/* The vertices of a pair in integers (support_integers.h). */
+static void set_vertex(struct support_integers *integers, int f, int vertex, mpz_t out[3])
 {
-    hull_integers_place(integers, f, (unsigned) vertex, out);
+    support_integers_place(integers, f, (unsigned) vertex, out);
 }
 
 /* out := component i of frame f; i < 0: 0. */
-static void set_component(struct hull_integers *integers, int f, int i, mpz_t out[3])
+static void set_component(struct support_integers *integers, int f, int i, mpz_t out[3])
 {
     const bool simplex = frame_is_simplex(integers->side[f].frame);
     mpz_t origin[3];
@@ -322,7 +322,7 @@ static void set_component(struct hull_integers *integers, int f, int i, mpz_t ou
     mpz_clears(origin[0], origin[1], origin[2], NULL);
 }
 
-static void set_edge(struct hull_integers *integers, int edge, int dim, mpz_t out[3])
+static void set_edge(struct support_integers *integers, int edge, int dim, mpz_t out[3])
 {
     const int e = edge % SLABS_EDGES, f = edge >= SLABS_EDGE_OF_B;
     const int p = dim == 2 ? 0 : (e + 1) % 3, q = dim == 2 ? 1 : (e + 2) % 3;
@@ -341,7 +341,7 @@ static void set_edge(struct hull_integers *integers, int edge, int dim, mpz_t ou
 }
 
 /* range := the least and the greatest normal . x over a frame. */
-static void set_range(struct hull_integers *integers, int f, mpz_t normal[3], mpz_t range[2])
+static void set_range(struct support_integers *integers, int f, mpz_t normal[3], mpz_t range[2])
 {
     const struct fmb_frame *frame = integers->side[f].frame;
     const int count = frame_is_simplex(frame) ? frame->count + 1 : 1 << frame->count;
@@ -359,7 +359,7 @@ static void set_range(struct hull_integers *integers, int f, mpz_t normal[3], mp
 }
 
 /* start - low, high - start, slope of the same slab. */
-static void set_expected(struct hull_integers *integers, struct slab_normal edges, int dim,
+static void set_expected(struct support_integers *integers, struct slab_normal edges, int dim,
                          mpz_t out[3])
 {
     mpz_t u[3], v[3], normal[3], range[2][2], scratch;
@@ -417,7 +417,7 @@ static int expected_sign(mpz_t number[3], mpz_t scratch)
 
 /* Returns the sign of the gap. */
 static int compare_posed(const struct question *question, struct limbs_pair *limbs,
-                         struct hull_integers *exact, struct slab_normal edges)
+                         struct support_integers *exact, struct slab_normal edges)
 {
     mpz_t low, high, start, found[3], expected[3], scratch[2];
     mpz_inits(low, high, start, scratch[0], scratch[1], NULL);
@@ -455,7 +455,7 @@ static void turned_slabs_are_gmp(void **state)
         struct ready ready;
         struct limbs_question integers;
         static struct limbs_pair limbs;
-        static struct hull_integers exact;
+        static struct support_integers exact;
         referee_ready(&question, &ready);
         const struct frame_pair frames = pair_frames(&ready.pair);
         limbs_question_set(&frames, limbs_span_of(&frames), LIMBS_SLABS, &integers);
@@ -463,8 +463,8 @@ static void turned_slabs_are_gmp(void **state)
             continue;
         limbs_prepare(&integers, &limbs);
         memset(&exact, 0, sizeof exact);
-        hull_integers_each(&exact, mpz_init);
-        hull_integers_set(&frames, &exact);
+        support_integers_each(&exact, mpz_init);
+        support_integers_set(&frames, &exact);
         for (int k = 0; k < 6; k++) {
             const struct slab_normal edges = draw_normal(&draw, &question);
             const int sign = compare_posed(&question, &limbs, &exact, edges);
@@ -472,7 +472,7 @@ static void turned_slabs_are_gmp(void **state)
                 referee_fail(&question, "another sign by itself");
             seen[sign + 1]++;
         }
-        hull_integers_each(&exact, mpz_clear);
+        support_integers_each(&exact, mpz_clear);
         same += limbs.common != NULL;
         limbs_of_pair[limbs.limbs]++;
     }

@@ -1,9 +1,9 @@
 /* Writes certificates, in steps: proofs of a verdict that do not rely on the engine. A direction in
- * doubles proves most separated pairs; hull_exact.c proves the others, and certificate_weights.c
+ * doubles proves most separated pairs; programs.c proves the others, and certificate_weights.c
  * shortens the weights of the common point. */
 #include "certificate_text.h"
 #include "certificate_weights.h"
-#include "hull_search.h"
+#include "support_search.h"
 #include "integer.h"
 #include "memory.h"
 
@@ -12,8 +12,8 @@
 
 struct fmb_certificate_state {
     struct frame_pair frames;
-    struct hull_pair pair;
-    struct hull_exact *exact; /* NULL: none, or complete */
+    struct support_pair pair;
+    struct programs *programs; /* NULL: none, or complete */
     struct certificate_weights weights;
     enum { DECIDING, WEIGHING, WRITING, COMPLETE } stage; /* the next stage */
     int side;                                             /* whose weights are written next */
@@ -83,16 +83,17 @@ static void write_weights(struct certificate_writer *writer,
 
 /* Writes a normal of few bits, near the direction of the point of D nearest to the origin, if its
  * values in doubles prove that the frames are separated. Returns whether they do. */
-static bool write_separated(struct certificate_writer *writer, const struct hull_pair *pair,
+static bool write_separated(struct certificate_writer *writer, const struct support_pair *pair,
                             const double direction[FMB_DIM_MAX])
 {
     for (int bits = 3; bits <= 48; bits *= 2) {
         double outward[FMB_DIM_MAX];
-        struct hull_column column;
+        struct support_column column;
         mpz_t n[3];
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             outward[axis] = -ldexp(trunc(ldexp(direction[axis], bits)), -bits);
-        if (!(hull_support(pair, outward, &column) < -1.01 * pair->error)) /* its length: < 1.01 */
+        if (!(support_farthest(pair, outward, &column) <
+              -1.01 * pair->error)) /* its length: < 1.01 */
             continue;
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             mpz_init_set_d(n[axis], -ldexp(outward[axis], bits));
@@ -110,7 +111,7 @@ static bool write_separated(struct certificate_writer *writer, const struct hull
  */
 enum { SPAN_MAX = 512 };
 
-static bool is_wide(const struct frame_pair *frames, const struct hull_integers *integers)
+static bool is_wide(const struct frame_pair *frames, const struct support_integers *integers)
 {
     const struct dyadic_span span = limbs_span_of(frames);
     return span.top - span.unit + (long) mpz_sizeinbase(integers->scale, 2) > SPAN_MAX;
@@ -130,9 +131,9 @@ static void end(struct fmb_certificate_state *state)
 {
     if (state->stage == WEIGHING || state->stage == WRITING)
         certificate_weights_end(&state->weights);
-    if (state->exact)
-        hull_exact_end(state->exact, NULL);
-    state->exact = NULL;
+    if (state->programs)
+        programs_end(state->programs, NULL);
+    state->programs = NULL;
     state->stage = COMPLETE;
 }
 
@@ -144,21 +145,21 @@ enum fmb_status fmb_certificate_begin(const struct fmb_placement *a, const struc
     if (status != FMB_OK)
         return status;
     struct fmb_certificate_state *begun = memory_allocate(sizeof *begun);
-    struct hull_nearest nearest = {.simplex = {.count = 0}};
-    struct hull_column first[FMB_DIM_MAX + 1];
+    struct support_nearest nearest = {.simplex = {.count = 0}};
+    struct support_column first[FMB_DIM_MAX + 1];
     enum fmb_verdict verdict = 0;
     begun->frames = (struct frame_pair){
         {fmb_body_frame(a->body, 0), a}, {fmb_body_frame(b->body, 0), b}, duration};
     begun->stage = DECIDING;
     begun->writer.length = 0;
-    hull_pair_set(&begun->frames, &begun->pair);
+    support_pair_set(&begun->frames, &begun->pair);
     if (begun->pair.usable)
-        verdict = hull_search(&begun->pair, INFINITY, &nearest);
+        verdict = support_search(&begun->pair, INFINITY, &nearest);
     for (unsigned i = 0; i < nearest.simplex.count; i++)
         first[i] = nearest.simplex.vertex[i].column;
-    begun->exact =
-        hull_exact_begin(&begun->pair, FMB_WANT_CERTIFICATE, first, nearest.simplex.count);
-    if (is_wide(&begun->frames, hull_exact_proof(begun->exact)->integers) ||
+    begun->programs =
+        programs_begin(&begun->pair, FMB_WANT_CERTIFICATE, first, nearest.simplex.count);
+    if (is_wide(&begun->frames, programs_proof(begun->programs)->integers) ||
         (verdict == FMB_SEPARATED &&
          write_separated(&begun->writer, &begun->pair, nearest.direction)))
         end(begun);
@@ -169,7 +170,7 @@ enum fmb_status fmb_certificate_begin(const struct fmb_placement *a, const struc
 /* Writes verdict and normal of a proof. */
 static void decided(struct fmb_certificate_state *state)
 {
-    struct hull_proof *proof = hull_exact_proof(state->exact);
+    struct programs_proof *proof = programs_proof(state->programs);
     certificate_write_text(&state->writer, fmb_verdict_name(proof->verdict));
     if (proof->verdict != FMB_OVERLAPPING)
         write_normal(&state->writer, state->pair.dim, proof->normal);
@@ -186,7 +187,7 @@ const char *fmb_certificate_step(struct fmb_certificate_state *state)
     struct certificate_writer *writer = &state->writer;
     switch (state->stage) {
     case DECIDING:
-        if (hull_exact_step(state->exact))
+        if (programs_step(state->programs))
             decided(state);
         break;
     case WEIGHING:

@@ -65,12 +65,12 @@ static void sort(struct certificate_weights *w)
 
 static void set_rows(struct certificate_weights *w)
 {
-    const struct hull_integers *integers = w->proof->integers;
+    const struct support_integers *integers = w->proof->integers;
     mpz_t at[3];
     mpz_inits(at[0], at[1], at[2], NULL);
     for (unsigned j = 0; j < w->count; j++) {
         const int f = w->weight[j].f;
-        hull_integers_place(integers, f, w->weight[j].vertex, at);
+        support_integers_place(integers, f, w->weight[j].vertex, at);
         mpz_set_ui(w->row[f][j], 1);
         for (int i = 2; i < w->rows; i++)
             (f ? mpz_neg : mpz_set)(w->row[i][j], at[i - 2]);
@@ -98,7 +98,7 @@ static void set_time(struct certificate_weights *w)
     mpq_clear(window);
 }
 
-void certificate_weights_begin(const struct hull_proof *proof, int dim, double duration,
+void certificate_weights_begin(const struct programs_proof *proof, int dim, double duration,
                                struct certificate_weights *out)
 {
     out->proof = proof;

@@ -1,11 +1,11 @@
-/* Weights of few digits for the common point of a proof (hull_exact.h). */
+/* Weights of few digits for the common point of a proof (programs.h). */
 #ifndef FMB_CERTIFICATE_WEIGHTS_H
 #define FMB_CERTIFICATE_WEIGHTS_H
 
-#include "hull_exact.h"
+#include "programs.h"
 
 enum {
-    WEIGHTS_MAX = 2 * HULL_PROOF_MAX, /* vertices with a weight, of both frames */
+    WEIGHTS_MAX = 2 * PROGRAMS_PROOF_MAX, /* vertices with a weight, of both frames */
     WEIGHTS_ROWS = 2 + FMB_DIM_MAX,
     WEIGHTS_COLUMNS = WEIGHTS_MAX + 2
 };
@@ -20,7 +20,7 @@ struct certificate_weight {
 
 /* Weights in progress. Not to be copied. */
 struct certificate_weights {
-    const struct hull_proof *proof;
+    const struct programs_proof *proof;
     double duration;
     unsigned count, next;
     int rows, rank;
@@ -33,7 +33,7 @@ struct certificate_weights {
 
 /* Begins with a complete proof of a pair that meets. certificate_weights_end() frees what is
  * allocated. */
-void certificate_weights_begin(const struct hull_proof *proof, int dim, double duration,
+void certificate_weights_begin(const struct programs_proof *proof, int dim, double duration,
                                struct certificate_weights *out);
 
 /* Performs a step. Returns whether it was the last: bits, time and the stated weights are set. */

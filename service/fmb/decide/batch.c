@@ -331,8 +331,9 @@ static void decide_single(struct batch_block *block, size_t k, unsigned want)
     const size_t i = block->first + block->slot[k];
     struct certified certified;
     struct fmb_answer answer = {0};
-    if (may_decide_single(block, k) && certified_begin(pair[0], pair[1], batch->duration, want,
-                                                       INFINITY, HULL_QUICK, &certified, &answer)) {
+    if (may_decide_single(block, k) &&
+        certified_begin(pair[0], pair[1], batch->duration, want, INFINITY, SUPPORT_QUICK,
+                        &certified, &answer)) {
         put_answer(batch, i, &answer);
         return;
     }
@@ -514,7 +515,7 @@ static void filter_kind(struct batch_block *block, const struct batch_job *job,
                                      .contacts = &block->contact[start]};
     const bool times = batch->contacts && kind & KERNEL_DRIFTS;
     (times ? job->kernels.times : job->kernels.verdicts)[kind](&call);
-    next_pass(job->kernels.exact[kind], kind & KERNEL_FACE && kind & KERNEL_SAME_SHAPE, &call);
+    next_pass(job->kernels.second[kind], kind & KERNEL_FACE && kind & KERNEL_SAME_SHAPE, &call);
     if (batch->contacts)
         put_contacts(block, kind, start, end);
     else

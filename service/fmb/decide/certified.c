@@ -7,7 +7,7 @@
  * this order:
  *
  *   1. first_pass()     the filter in doubles (kernel.h)
- *   2. second_pass()    its second pass (slabs_exact.h)
+ *   2. second_pass()    its second pass (slabs_second.h)
  *   3. open_slabs()     each slab that doubles leave open, in integers (limbs.h)
  *   4. all_slabs()      all slabs, in integers: flat frames, and numbers out of doubles' range
  *
@@ -18,10 +18,10 @@
  * Then set_contact(), set_box() and gap_of() compute what else is wanted: in doubles, and what
  * these do not give within the limits of fmb.h in integers.
  *
- * What needs more than 512 bits is left to the programs (hull_decision.h), which work in steps: the
- * verdict, ends of contact and box, and the gap; so is everything of a pair with a hull. Which of
- * these gives a result depends on the numbers of the pair only, so that every caller gets the same
- * bits. The error bounds are derived in slabs.c, slabs_lanes.h, BOXES.md and contact.c. */
+ * What needs more than 512 bits is left to the programs (support_decision.h), which work in steps:
+ * the verdict, ends of contact and box, and the gap; so is everything of a pair with a hull. Which
+ * of these gives a result depends on the numbers of the pair only, so that every caller gets the
+ * same bits. The error bounds are derived in slabs.c, slabs_lanes.h, BOXES.md and contact.c. */
 #include "certified.h"
 
 #include "gap.h"
@@ -102,7 +102,7 @@ INLINE enum slabs_outcome first_pass(struct certified *certified)
 static enum slabs_outcome second_pass(struct certified *certified)
 {
     struct kernel_one one;
-    return certified->kind < KERNEL_KINDS ? call_kernel(certified, kernel_set_best()->exact, &one)
+    return certified->kind < KERNEL_KINDS ? call_kernel(certified, kernel_set_best()->second, &one)
                                           : SLABS_UNSURE;
 }
 
@@ -165,7 +165,7 @@ static enum certified_path rung_of_faces(struct certified *certified)
         return CERTIFIED_FILTER;
     }
     certified->flat = planes == FACES_UNDECIDED;
-    return certified->flat ? CERTIFIED_EXACT : CERTIFIED_PROGRAMS;
+    return certified->flat ? CERTIFIED_ALL_SLABS : CERTIFIED_PROGRAMS;
 }
 
 /* Tries the rungs from next on. Returns the verdict, or 0 if it needs the programs. */
@@ -271,14 +271,14 @@ static bool begin_program(struct certified *certified, unsigned missing)
         pair_of(certified->given[0], certified->given[1], certified->duration);
     certified->proven = none;
     certified->stage = CERTIFIED_MISSING;
-    return !certified->bounded && hull_decision_begin(&pair, missing, HULL_EXACT, INFINITY,
-                                                      &certified->program, &certified->proven);
+    return !certified->bounded && support_decision_begin(&pair, missing, SUPPORT_PROGRAMS, INFINITY,
+                                                         &certified->program, &certified->proven);
 }
 
 /* Sets the gap of a pair with this verdict. Returns false if that needs more steps of the
  * programs, which have then begun unless the decision is bounded. */
 static bool begin_gap(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                      double farthest, bool bounded, struct hull_decision *program,
+                      double farthest, bool bounded, struct support_decision *program,
                       struct fmb_answer *answer)
 {
     answer->has_gap = true;
@@ -286,7 +286,8 @@ static bool begin_gap(const struct fmb_prepared *a, const struct fmb_prepared *b
         gap_of(a, b, duration, answer->verdict, farthest, &answer->gap);
     if (outcome == GAP_UNSURE) {
         const struct frame_pair pair = pair_of(a, b, duration);
-        return hull_decision_begin_gap(&pair, answer->verdict, farthest, bounded, program, answer);
+        return support_decision_begin_gap(&pair, answer->verdict, farthest, bounded, program,
+                                          answer);
     }
     if (outcome == GAP_FAR)
         answer->gap = gap_none();
@@ -327,7 +328,7 @@ static bool measure(struct certified *certified, struct fmb_answer *answer)
 bool certified_gap(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                    enum fmb_verdict verdict, double farthest, struct fmb_gap *gap)
 {
-    struct hull_decision program;
+    struct support_decision program;
     struct fmb_answer answer = {.verdict = verdict};
     const bool known = begin_gap(a, b, duration, farthest, true, &program, &answer);
     *gap = known ? answer.gap : gap_none();
@@ -337,12 +338,12 @@ bool certified_gap(const struct fmb_prepared *a, const struct fmb_prepared *b, d
 /* a, b: the frames of the pair, prepared, or NULL. */
 INLINE bool begin_pair(const struct frame_pair *pair, const struct fmb_prepared *a,
                        const struct fmb_prepared *b, unsigned want, double farthest,
-                       enum hull_effort effort, struct certified *out, struct fmb_answer *answer)
+                       enum support_effort effort, struct certified *out, struct fmb_answer *answer)
 {
-    hull_decision_none(&out->program);
-    if (effort == HULL_EXACT || hull_takes(pair->a.frame, pair->b.frame)) {
+    support_decision_none(&out->program);
+    if (effort == SUPPORT_PROGRAMS || support_takes(pair->a.frame, pair->b.frame)) {
         out->stage = CERTIFIED_ALL;
-        return hull_decision_begin(pair, want, effort, farthest, &out->program, answer);
+        return support_decision_begin(pair, want, effort, farthest, &out->program, answer);
     }
     if (!a) {
         prepared_set(pair->a, &out->own[0]);
@@ -354,15 +355,15 @@ INLINE bool begin_pair(const struct frame_pair *pair, const struct fmb_prepared 
     out->want = want;
     out->farthest = farthest;
     out->proven.has_contact = out->proven.has_box = false;
-    begin(out, pair, out->given[0], out->given[1], want & FMB_WANT_TIMES, effort == HULL_QUICK);
+    begin(out, pair, out->given[0], out->given[1], want & FMB_WANT_TIMES, effort == SUPPORT_QUICK);
     answer->verdict = climb(out, CERTIFIED_FILTER);
     return answer->verdict ? measure(out, answer)
                            : begin_program(out, want & (FMB_WANT_BOX | FMB_WANT_TIMES));
 }
 
 bool certified_begin(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                     unsigned want, double farthest, enum hull_effort effort, struct certified *out,
-                     struct fmb_answer *answer)
+                     unsigned want, double farthest, enum support_effort effort,
+                     struct certified *out, struct fmb_answer *answer)
 {
     const struct frame_pair pair = pair_of(a, b, duration);
     return begin_pair(&pair, a, b, want, farthest, effort, out, answer);
@@ -371,8 +372,8 @@ bool certified_begin(const struct fmb_prepared *a, const struct fmb_prepared *b,
 bool certified_step(struct certified *certified, struct fmb_answer *answer)
 {
     if (certified->stage != CERTIFIED_MISSING)
-        return hull_decision_step(&certified->program, answer);
-    if (!hull_decision_step(&certified->program, &certified->proven))
+        return support_decision_step(&certified->program, answer);
+    if (!support_decision_step(&certified->program, &certified->proven))
         return false;
     answer->verdict = certified->proven.verdict;
     return measure(certified, answer);
@@ -380,7 +381,7 @@ bool certified_step(struct certified *certified, struct fmb_answer *answer)
 
 void certified_end(struct certified *certified)
 {
-    hull_decision_end(&certified->program);
+    support_decision_end(&certified->program);
 }
 
 void certified_decide_prepared(const struct fmb_prepared *a, const struct fmb_prepared *b,
@@ -388,7 +389,8 @@ void certified_decide_prepared(const struct fmb_prepared *a, const struct fmb_pr
                                struct fmb_answer *answer)
 {
     struct certified certified;
-    bool done = certified_begin(a, b, duration, want, farthest, HULL_CERTIFIED, &certified, answer);
+    bool done =
+        certified_begin(a, b, duration, want, farthest, SUPPORT_CERTIFIED, &certified, answer);
     while (!done)
         done = certified_step(&certified, answer);
 }
@@ -397,7 +399,7 @@ enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
                                  struct fmb_answer *answer)
 {
     struct certified certified;
-    bool done = begin_pair(pair, NULL, NULL, want | FMB_WANT_TIMES, INFINITY, HULL_CERTIFIED,
+    bool done = begin_pair(pair, NULL, NULL, want | FMB_WANT_TIMES, INFINITY, SUPPORT_CERTIFIED,
                            &certified, answer);
     while (!done)
         done = certified_step(&certified, answer);
@@ -411,8 +413,8 @@ enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified
     struct fmb_answer answer = {0};
     prepared_set(pair->a, &a);
     prepared_set(pair->b, &b);
-    bool done =
-        certified_begin(&a, &b, pair->duration, 0, INFINITY, HULL_CERTIFIED, &certified, &answer);
+    bool done = certified_begin(&a, &b, pair->duration, 0, INFINITY, SUPPORT_CERTIFIED, &certified,
+                                &answer);
     *path = done ? certified.path : CERTIFIED_PROGRAMS;
     while (!done)
         done = certified_step(&certified, &answer);

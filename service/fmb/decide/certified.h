@@ -2,14 +2,14 @@
  * leave open.
  *
  * verdict: the filter, axes and slabs in doubles (kernel.h, slabs.c); if it is unsure, its second
- *   pass (slabs_exact.h), the open slabs in integers (limbs.h), or all slabs; of two faces in one
+ *   pass (slabs_second.h), the open slabs in integers (limbs.h), or all slabs; of two faces in one
  *   plane, the verdict of two triangles in 2D (faces.c).
  * contact: the filter bounds the times in the same pass (slabs_lanes.h); if a bound is not tight
  *   enough, or nothing rounds, the slabs one by one (contact.c).
  * box: from what is left of the edges and where they cross, in doubles (box_clip.h) or in integers
  *   (limbs_box.h).
  * gap: given the verdict, in steps of its own (gap.h).
- * What needs more than 512 bits, and pairs with a hull: the programs (hull_decision.h).
+ * What needs more than 512 bits, and pairs with a hull: the programs (support_decision.h).
  *
  * Contact and box are computed as two enclosures: the outer one surely contains the exact value,
  * the inner one is surely contained in it. The answer is the outer one. It is given only if the two
@@ -18,7 +18,7 @@
 #define FMB_CERTIFIED_H
 
 #include "faces.h"
-#include "hull_decision.h"
+#include "support_decision.h"
 #include "kernel.h"
 #include "limbs.h"
 
@@ -28,7 +28,7 @@ enum certified_path {
     CERTIFIED_FILTER,
     CERTIFIED_SECOND,
     CERTIFIED_LIMBS,
-    CERTIFIED_EXACT,
+    CERTIFIED_ALL_SLABS,
     CERTIFIED_PROGRAMS
 };
 
@@ -42,7 +42,7 @@ struct certified {
     /* What the programs compute: the whole answer; what is missing of it, without the gap; the gap.
      */
     enum { CERTIFIED_ALL, CERTIFIED_MISSING, CERTIFIED_GAP } stage;
-    struct hull_decision program;
+    struct support_decision program;
     struct fmb_answer proven; /* by programs: verdict, contact and box */
     /* The pair that the rungs decide: the given one, or its projection. */
     struct frame_pair pair;
@@ -68,16 +68,15 @@ struct certified {
  *
  * In:  want      bits of FMB_WANT_; the contact only with FMB_WANT_TIMES
  *      farthest  a gap that is surely greater may have bounds of NAN
- *      effort    HULL_QUICK: bounded, takes tens of microseconds at most and allocates nothing: a
- *                slab takes at most 1,000 products of limbs (most take 100 to 300), and a pair has
- *                at most SLABS_MAX slabs. HULL_EXACT: the method exact
- *      *answer   all 0
- * Returns whether it is complete, with *answer set. If not, a bounded decision would need more than
- * it is allowed, and has ended. For any other decision, call certified_step() with the same answer
- * until it returns true, or certified_end() to abandon it. */
+ *      effort    SUPPORT_QUICK: bounded, takes tens of microseconds at most and allocates nothing:
+ * a slab takes at most 1,000 products of limbs (most take 100 to 300), and a pair has at most
+ * SLABS_MAX slabs. SUPPORT_PROGRAMS: the method exact *answer   all 0 Returns whether it is
+ * complete, with *answer set. If not, a bounded decision would need more than it is allowed, and
+ * has ended. For any other decision, call certified_step() with the same answer until it returns
+ * true, or certified_end() to abandon it. */
 bool certified_begin(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                     unsigned want, double farthest, enum hull_effort effort, struct certified *out,
-                     struct fmb_answer *answer);
+                     unsigned want, double farthest, enum support_effort effort,
+                     struct certified *out, struct fmb_answer *answer);
 
 /* Performs a step of less than a millisecond. Returns whether the decision is complete; its memory
  * is then freed. */

@@ -11,7 +11,7 @@
 static enum fmb_status decide_exactly(const struct frame_pair *pair, unsigned want,
                                       struct fmb_answer *answer)
 {
-    return hull_decide(pair, want | FMB_WANT_TIMES, HULL_EXACT, answer);
+    return support_decide(pair, want | FMB_WANT_TIMES, SUPPORT_PROGRAMS, answer);
 }
 
 static const struct fmb_method methods[] = {

@@ -743,10 +743,11 @@ static bool step_open(struct fmb_scene_state *state, size_t k)
     } else {
         static const struct fmb_answer none;
         state->decided = none;
-        state->deciding = !certified_begin(
-            &state->frames.slot[slot[0]], &state->frames.slot[slot[1]], state->scene.duration,
-            want_of_frames(&state->scene), farthest_of_frames(state),
-            state->batched ? HULL_CERTIFIED : HULL_EXACT, &state->decision, &state->decided);
+        state->deciding = !certified_begin(&state->frames.slot[slot[0]],
+                                           &state->frames.slot[slot[1]], state->scene.duration,
+                                           want_of_frames(&state->scene), farthest_of_frames(state),
+                                           state->batched ? SUPPORT_CERTIFIED : SUPPORT_PROGRAMS,
+                                           &state->decision, &state->decided);
     }
     if (!state->deciding)
         put_outcome(state, k, &state->decided);

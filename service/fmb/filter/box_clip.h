@@ -17,7 +17,7 @@
  *
  * Not here: why these points span the box, and the derivation of every error bound: BOXES.md, to
  * which the numbers (1) to (11) below refer; what follows from the ends (box_ends.h); the same in
- * integers (exact/limbs_box.h). */
+ * integers (limbs/limbs_box.h). */
 #ifndef FMB_BOX_CLIP_H
 #define FMB_BOX_CLIP_H
 

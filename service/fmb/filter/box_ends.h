@@ -20,7 +20,7 @@
 #define FMB_BOX_ENDS_H
 
 #include "slabs_evaluate.h"
-#include "slabs_exact.h"
+#include "slabs_second.h"
 
 /* u. */
 #define BOX_UNIT 0x1p-53
@@ -48,7 +48,7 @@ struct box_places {
     lanes_bits summary[2];
     lanes origin[2][3], velocity[2][3]; /* velocities are read where the kind drifts */
     lanes error[2];
-    lanes_mask exact; /* nothing rounds (slabs_exact.h) */
+    lanes_mask exact; /* nothing rounds (slabs_second.h) */
     double duration;
     /* Two cuboids, [axis]: the lanes in which both have exact coordinates along an axis along which
      * they do not drift, with [end of A][end of B] from one to the other (exact_difference()). */

@@ -19,9 +19,9 @@
 static_assert(INSTRUCTIONS_PLAIN == 1 && INSTRUCTIONS_TWO == 2 && INSTRUCTIONS_AVX512 == 4,
               "INSTRUCTIONS_MOST is a number of the enum");
 
-#define KERNEL_DECLARE(name)                                                                \
-    extern kernel_function *const kernel_verdicts_##name[KERNEL_KINDS],                     \
-        *const kernel_exact_##name[KERNEL_KINDS], *const kernel_times_##name[KERNEL_KINDS]; \
+#define KERNEL_DECLARE(name)                                                                 \
+    extern kernel_function *const kernel_verdicts_##name[KERNEL_KINDS],                      \
+        *const kernel_second_##name[KERNEL_KINDS], *const kernel_times_##name[KERNEL_KINDS]; \
     extern kernel_single_function *const kernel_single_##name[KERNEL_KINDS];
 KERNEL_DECLARE(plain)
 KERNEL_DECLARE(two)
@@ -31,16 +31,16 @@ kernel_box_function kernel_boxes_plain, kernel_boxes_two, kernel_boxes_avx2;
 
 /* AVX-512 is worth its kernels for verdicts alone. */
 static const struct kernel_set sets[] = {
-    [INSTRUCTIONS_PLAIN] = {kernel_verdicts_plain, kernel_exact_plain, kernel_times_plain,
+    [INSTRUCTIONS_PLAIN] = {kernel_verdicts_plain, kernel_second_plain, kernel_times_plain,
                             kernel_boxes_plain, kernel_single_plain},
 #if INSTRUCTIONS_MOST >= 2
-    [INSTRUCTIONS_TWO] = {kernel_verdicts_two, kernel_exact_two, kernel_times_two, kernel_boxes_two,
-                          kernel_single_two},
+    [INSTRUCTIONS_TWO] = {kernel_verdicts_two, kernel_second_two, kernel_times_two,
+                          kernel_boxes_two, kernel_single_two},
 #endif
 #if INSTRUCTIONS_MOST > 2
-    [INSTRUCTIONS_AVX2] = {kernel_verdicts_avx2, kernel_exact_avx2, kernel_times_avx2,
+    [INSTRUCTIONS_AVX2] = {kernel_verdicts_avx2, kernel_second_avx2, kernel_times_avx2,
                            kernel_boxes_avx2, kernel_single_avx2},
-    [INSTRUCTIONS_AVX512] = {kernel_verdicts_avx512, kernel_exact_avx2, kernel_times_avx2,
+    [INSTRUCTIONS_AVX512] = {kernel_verdicts_avx512, kernel_second_avx2, kernel_times_avx2,
                              kernel_boxes_avx2, kernel_single_avx2},
 #endif
 };

@@ -158,17 +158,17 @@ typedef enum slabs_outcome kernel_single_function(const struct fmb_prepared *a,
 /* Tables of kernels, [KERNEL_KINDS], NULL for combinations of bits that do not exist.
  *
  *     verdicts  the first pass, of all kinds: writes outcomes
- *     exact     the second pass, of all kinds: writes outcomes
+ *     second    the second pass, of all kinds: writes outcomes
  *     times     of the kinds that drift: writes outcomes and contacts
  *     single    the first pass for a single pair, of all kinds
  *
  * The second pass is for pairs that another kernel leaves unsure. It decides all that verdicts
  * decides, and in addition pairs that touch along coordinate axes, and pairs whose numbers do not
- * round (slabs_exact.h). The pairs that it leaves unsure are the same on every instruction set.
+ * round (slabs_second.h). The pairs that it leaves unsure are the same on every instruction set.
  * TOUCHING of two faces means only that they are not separated, and do not overlap unless their
  * planes are parallel. */
 struct kernel_set {
-    kernel_function *const *verdicts, *const *exact, *const *times;
+    kernel_function *const *verdicts, *const *second, *const *times;
     kernel_box_function *boxes;
     kernel_single_function *const *single;
 };

@@ -6,7 +6,7 @@
 #define KERNEL_BOX
 
 #include "box_clip.h"
-#include "kernel_exact.h"
+#include "kernel_second.h"
 
 /* Sets what is exact: exact, level and apart. */
 INLINE void set_exact(const struct kernel_traits traits, const struct frame_lanes frame[2],

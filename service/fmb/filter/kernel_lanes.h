@@ -12,16 +12,16 @@
  *   5. outcomes_of()      separated, touching, overlapping, or unsure; times_of(): seconds
  *
  * Macros that the includer of many.h defines select the job. None: the first pass, verdicts.
- * KERNEL_EXACT: the second pass (kernel_exact.h). KERNEL_TIMES: verdicts and times. The bits of the
- * last two are promised, and so are those of boxes (KERNEL_BOX), which boxes.h computes from steps
- * 1 to 3. The includer defines one function for each kind of pair (dimension, shapes, motion:
+ * KERNEL_SECOND: the second pass (kernel_second.h). KERNEL_TIMES: verdicts and times. The bits of
+ * the last two are promised, and so are those of boxes (KERNEL_BOX), which boxes.h computes from
+ * steps 1 to 3. The includer defines one function for each kind of pair (dimension, shapes, motion:
  * kernel.h), with the traits as a constant, by KERNEL_ALL at the end of this file. KERNEL_TABLE
  * lists these functions in the order of the kinds, in a table whose name ends in KERNEL_NAME. A
  * file that defines INLINED_NOT is neither inlined nor unrolled (inlined.h).
  *
  * Order of the headers; each includes only headers before it: slabs.h, pair_lanes.h (a pair in
  * lanes), slabs_lanes.h (one slab), slabs_2d.h and slabs_3d.h (all slabs), slabs_evaluate.h, this
- * file, kernel_exact.h. slabs_exact.h holds the mathematics of the last one.
+ * file, kernel_second.h. slabs_second.h holds the mathematics of the last one.
  *
  * Proofs: the bounds of slabs in slabs.c, of times in slabs_lanes.h, of frames in prepared.h. */
 #ifndef FMB_KERNEL_LANES_H
@@ -35,10 +35,10 @@ enum { TIMES = 1 };
 #else
 enum { TIMES = 0 };
 #endif
-#ifdef KERNEL_EXACT
-enum { EXACT = 1 };
+#ifdef KERNEL_SECOND
+enum { SECOND = 1 };
 #else
-enum { EXACT = 0 };
+enum { SECOND = 0 };
 #endif
 #ifdef KERNEL_BOX
 enum { BOX = 1 };
@@ -57,11 +57,11 @@ INLINE struct kernel_traits traits_of(enum kernel_kind kind)
                                   .face = {face && same, face},
                                   .drifts = (kind & KERNEL_DRIFTS) != 0,
                                   .axis_aligned = !BOX && kind & KERNEL_AXIS_ALIGNED,
-                                  .swap_invariant = TIMES || EXACT,
+                                  .swap_invariant = TIMES || SECOND,
                                   .times = TIMES,
                                   .box = BOX,
-                                  .rough = !TIMES && !EXACT && !BOX,
-                                  .exact = EXACT};
+                                  .rough = !TIMES && !SECOND && !BOX,
+                                  .second = SECOND};
 }
 
 /* ---- The gather ----
@@ -210,7 +210,7 @@ INLINE void gather(const struct kernel_traits traits, const double *const frame[
     for (int w = 0; w < word_count(traits); w += 4)
         gather_four(frame, w, &words[w]);
     set_frame_lanes(traits, words, out);
-    if (traits.exact || traits.box)
+    if (traits.second || traits.box)
         memcpy(out->prepared, frame, sizeof out->prepared);
     if (traits.drifts)
         gather_velocity(traits, frame, out);
@@ -358,17 +358,17 @@ INLINE void times_of(const struct pair_lanes *pair, const struct slabs_result *r
     KERNEL_SOLIDS(X, space##name, KERNEL_3D + (drifts))                               \
     KERNEL_SOLIDS(X, space_aligned##name, KERNEL_3D + KERNEL_AXIS_ALIGNED + (drifts)) \
     KERNEL_FACES(Y, space##name, KERNEL_3D + KERNEL_AXIS_ALIGNED + (drifts))
-#define KERNEL_EXACT_MOTION(X, Y, name, drifts)                               \
+#define KERNEL_SECOND_MOTION(X, Y, name, drifts)                              \
     KERNEL_SOLIDS(X, plane##name, drifts)                                     \
     KERNEL_SOLIDS(Y, space##name, KERNEL_3D + KERNEL_AXIS_ALIGNED + (drifts)) \
     KERNEL_FACES(Y, space##name, KERNEL_3D + KERNEL_AXIS_ALIGNED + (drifts))
 
 #if defined(KERNEL_TIMES)
 #define KERNEL_ALL(X, Y) KERNEL_MOTION(X, Y, _drifts, KERNEL_DRIFTS)
-#elif defined(KERNEL_EXACT)
-#define KERNEL_ALL(X, Y)           \
-    KERNEL_EXACT_MOTION(X, Y, , 0) \
-    KERNEL_EXACT_MOTION(X, Y, _drifts, KERNEL_DRIFTS)
+#elif defined(KERNEL_SECOND)
+#define KERNEL_ALL(X, Y)            \
+    KERNEL_SECOND_MOTION(X, Y, , 0) \
+    KERNEL_SECOND_MOTION(X, Y, _drifts, KERNEL_DRIFTS)
 #else
 #define KERNEL_ALL(X, Y)     \
     KERNEL_MOTION(X, Y, , 0) \

@@ -1,6 +1,6 @@
 /* Kernels of many pairs, LANES of them at a time. The includer defines LANES, KERNEL_NAME and the
  * job (kernel_lanes.h). */
-#include "kernel_exact.h"
+#include "kernel_second.h"
 
 #ifdef KERNEL_TIMES
 
@@ -16,7 +16,7 @@ INLINE void scatter(lanes x, double *out, int stride)
 
 #endif
 
-#ifdef KERNEL_EXACT
+#ifdef KERNEL_SECOND
 
 INLINE void evaluate_lanes(const struct kernel_traits traits, const struct kernel_call *call,
                            size_t first)
@@ -25,7 +25,7 @@ INLINE void evaluate_lanes(const struct kernel_traits traits, const struct kerne
     struct pair_lanes pair;
     gather_pairs(traits, &call->pairs[first], frame);
     set_pair(traits, &frame[0], &frame[1], call->duration, &pair);
-    put_outcomes(exact_outcomes(traits, &frame[0], &frame[1], call->duration, &pair),
+    put_outcomes(second_outcomes(traits, &frame[0], &frame[1], call->duration, &pair),
                  &call->outcomes[first]);
 }
 

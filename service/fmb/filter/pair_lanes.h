@@ -18,10 +18,10 @@ struct kernel_traits {
      * swapped. The slabs of b in one lane are those of a in the other, and those of edges i of a
      * and j of b are those of j and i. */
     bool mirrored;
-    bool times; /* times of contact are computed; requires swap_invariant */
-    bool box;   /* the box is computed, also of frames that move with equal velocities */
-    bool rough; /* the first of two passes: bounds are SLABS_ROUGH times as wide */
-    bool exact; /* the second pass: in some lanes nothing rounds, and signs along axes are known */
+    bool times;  /* times of contact are computed; requires swap_invariant */
+    bool box;    /* the box is computed, also of frames that move with equal velocities */
+    bool rough;  /* the first of two passes: bounds are SLABS_ROUGH times as wide */
+    bool second; /* the second pass: in some lanes nothing rounds, and signs along axes are known */
 };
 
 /* A pair, seen from the reference point of a: the centre of a cuboid, the origin of a simplex. If a
@@ -39,7 +39,7 @@ struct pair_lanes {
     lanes error;         /* sum of the errors of both frames (prepared.h) */
     lanes_mask in_range; /* doubles can decide the pair */
     lanes_mask tiny;     /* products with the drift may underflow to 0 */
-    /* traits.exact only (slabs_exact.h). signed_axes, bit i: the sign of the gap along axis i is
+    /* traits.second only (slabs_second.h). signed_axes, bit i: the sign of the gap along axis i is
      * known exactly. across[frame][edge], bit i: in addition, the edge has no extent along axis i.
      */
     lanes_bits signed_axes, across[2][6];

@@ -77,7 +77,7 @@
  * error of the frames that is larger by 2^-1072: all other slabs hold the offset farther inside
  * than that, since the unused part of the bound is more than 2^-53 T > 2^-260 of a distance. Such a
  * pair spans too many bits for integers (limbs_prepare), so that its slabs are never decided one by
- * one. Along axes with known signs (slabs_exact.h) the velocities are equal, and nothing
+ * one. Along axes with known signs (slabs_second.h) the velocities are equal, and nothing
  * underflows. */
 #define INLINED_NOT
 #define SLABS_LIST
@@ -189,7 +189,7 @@ static struct slabs_result evaluate_list(const struct slabs_pair *pair, bool rou
                                             .drifts = drift,                                   \
                                             .axis_aligned = (dimension) == 3,                  \
                                             .swap_invariant = true,                            \
-                                            .exact = true},                                    \
+                                            .second = true},                                   \
                      rounds, next, &result);
 #define WALK_MOTIONS(dimension, x, y) WALK(dimension, x, y, false) WALK(dimension, x, y, true)
 #define WALK_PAIR(x, y) WALK_MOTIONS(2, x, y) WALK_MOTIONS(3, x, y)

@@ -210,13 +210,13 @@ INLINE lanes_mask cross_is_zero(const lanes u[3], const lanes v[3])
     return (x + y) + z == 0;
 }
 
-/* traits.exact: the lanes in which nothing rounds (unit = 0) and the normal of two edges is zero:
+/* traits.second: the lanes in which nothing rounds (unit = 0) and the normal of two edges is zero:
  * neither frame has an extent along it. Two faces in parallel planes have no extent along the
  * normal of the planes either, but that normal is the one of a face, which has its own slab. */
 INLINE lanes_mask extent_is_zero(const struct kernel_traits traits, lanes unit,
                                  struct slab_extent d)
 {
-    if (traits.exact)
+    if (traits.second)
         return (lanes_mask) ((unit == 0) & (d.low == d.high) & (d.radius == 0));
     return (lanes_mask){0};
 }

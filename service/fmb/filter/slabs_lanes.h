@@ -168,13 +168,13 @@ INLINE void bound_times(const struct kernel_traits traits, struct slab_extent d,
     result->leave[1] = lanes_min(leave - slack, result->leave[1]);
 }
 
-/* traits.exact: the lanes in which the normal of two edges is parallel to an axis along which the
+/* traits.second: the lanes in which the normal of two edges is parallel to an axis along which the
  * sign of the gap is known. That sign decides their slab. Arguments: bits as in pair_lanes.across.
  */
 INLINE lanes_mask is_known_axis(const struct kernel_traits traits, lanes_bits across_u,
                                 lanes_bits across_v)
 {
-    if (traits.exact)
+    if (traits.second)
         return (lanes_mask) ((across_u & across_v) != 0);
     return (lanes_mask){0};
 }
@@ -190,7 +190,7 @@ INLINE void add_slab(const struct kernel_traits traits, struct slab_normal norma
     CHECK_BOUND(SLABS_ROUNDING, ignored, gap, scale * unit);
     const lanes above = gap + scale * unit;
     result->gap_low = lanes_max(gap - scale * unit, result->gap_low);
-    result->gap_high = lanes_max(traits.axis_aligned || traits.exact
+    result->gap_high = lanes_max(traits.axis_aligned || traits.second
                                      ? lanes_select(ignored, lanes_of(-INFINITY), above)
                                      : above,
                                  result->gap_high);

@@ -2,7 +2,7 @@
  *
  *   In     two prepared frames, the window, their verdict
  *   Out    struct fmb_gap; GAP_FAR if the gap is surely greater than farthest; GAP_UNSURE if
- *          doubles do not suffice: hull_gap.h then computes it from the vertices of both frames
+ *          doubles do not suffice: support_gap.h then computes it from the vertices of both frames
  *
  * Steps (gap_of()):
  *

@@ -14,7 +14,7 @@
  * Doubles give the gap of nearly all pairs: gap_axis_aligned.c that of axis-aligned cuboids;
  * gap_distance.c that of separated pairs, by the point of P closest to the origin; gap_depth.c that
  * of the others, by the normals of facets. If the enclosure is wider than the limit,
- * hull_gap.h computes the gap from the vertices of both frames.
+ * support_gap.h computes the gap from the vertices of both frames.
  *
  * The pair is put into an order that depends on its numbers only, so that the swapped pair has the
  * same bits. */

@@ -1,4 +1,4 @@
-#include "gap_exact_simplex.h"
+#include "integer_simplex.h"
 
 #include "integer.h"
 
@@ -7,9 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-void exact_simplex_each(struct exact_simplex *simplex, void (*call)(mpz_ptr))
+void integer_simplex_each(struct integer_simplex *simplex, void (*call)(mpz_ptr))
 {
-    for (int i = 0; i <= EXACT_CORNERS; i++)
+    for (int i = 0; i <= INTEGER_CORNERS; i++)
         integer_each(simplex->pool[i].at, sizeof simplex->pool[i].at, call);
     INTEGER_EACH_FROM(normal, simplex, call);
 }
@@ -21,7 +21,7 @@ static void subtract(mpz_t out[3], mpz_t x[3], mpz_t y[3])
 }
 
 /* weight[0] := total - all others. False if one of them is not positive. */
-static bool complete_weights(struct exact_simplex *simplex, int count)
+static bool complete_weights(struct integer_simplex *simplex, int count)
 {
     mpz_set(simplex->weight[0], simplex->total);
     for (int i = 1; i < count; i++)
@@ -33,7 +33,7 @@ static bool complete_weights(struct exact_simplex *simplex, int count)
 }
 
 /* w - (w . e / e . e) e, times e . e; the weight of w + e is -w . e. */
-static bool set_of_two(struct exact_simplex *simplex, mpz_t w[3])
+static bool set_of_two(struct integer_simplex *simplex, mpz_t w[3])
 {
     mpz_t *e = simplex->edge[0];
     integer_dot(simplex->total, e, e, simplex->t[0]);
@@ -49,7 +49,7 @@ static bool set_of_two(struct exact_simplex *simplex, mpz_t w[3])
 }
 
 /* With n = d x e: the weights of w + d and w + e are (-w x e) . n and (d x -w) . n over n . n. */
-static bool set_of_three(struct exact_simplex *simplex, mpz_t w[3])
+static bool set_of_three(struct integer_simplex *simplex, mpz_t w[3])
 {
     mpz_t *d = simplex->edge[0], *e = simplex->edge[1], *n = simplex->normal;
     integer_cross(n, d, e, simplex->t[0]);
@@ -69,7 +69,7 @@ static bool set_of_three(struct exact_simplex *simplex, mpz_t w[3])
 }
 
 /* The origin in a tetrahedron: Cramer's rule. */
-static bool set_of_four(struct exact_simplex *simplex, mpz_t w[3])
+static bool set_of_four(struct integer_simplex *simplex, mpz_t w[3])
 {
     for (int i = 0; i < 3; i++) {
         mpz_t *e = simplex->edge[(i + 1) % 3], *f = simplex->edge[(i + 2) % 3];
@@ -86,7 +86,7 @@ static bool set_of_four(struct exact_simplex *simplex, mpz_t w[3])
 }
 
 /* Whether the point next to the origin is that of the corners [member[0], ...]. */
-static bool try_subset(struct exact_simplex *simplex, const int member[], int count)
+static bool try_subset(struct integer_simplex *simplex, const int member[], int count)
 {
     mpz_t *w = simplex->corner[member[0]]->at;
     for (int i = 1; i < count; i++)
@@ -112,12 +112,12 @@ static bool try_subset(struct exact_simplex *simplex, const int member[], int co
 
 /* Reduces the simplex to the corners that the point next to the origin needs; the last one is
  * always among them. */
-static void reduce(struct exact_simplex *simplex)
+static void reduce(struct integer_simplex *simplex)
 {
     const int last = simplex->count - 1;
     for (unsigned mask = 0; mask < 1U << last; mask++) {
-        struct exact_corner *corner[EXACT_CORNERS + 1];
-        int member[EXACT_CORNERS] = {last}, count = 1;
+        struct integer_corner *corner[INTEGER_CORNERS + 1];
+        int member[INTEGER_CORNERS] = {last}, count = 1;
         for (int i = 0; i < last; i++)
             if (mask >> i & 1)
                 member[count++] = i;
@@ -127,7 +127,7 @@ static void reduce(struct exact_simplex *simplex)
         simplex->count = count;
         for (int i = 0; i < count; i++)
             simplex->corner[i] = corner[member[i]];
-        for (int i = 0; i <= EXACT_CORNERS; i++)
+        for (int i = 0; i <= INTEGER_CORNERS; i++)
             if (i != last && !(i < last && mask >> i & 1))
                 simplex->corner[count++] = corner[i];
         return;
@@ -135,10 +135,10 @@ static void reduce(struct exact_simplex *simplex)
     assert(!"one subset holds the point");
 }
 
-void exact_simplex_solve(struct exact_simplex *simplex, mpz_t toward[3], exact_support *support,
-                         void *context)
+void integer_simplex_solve(struct integer_simplex *simplex, mpz_t toward[3],
+                           integer_support *support, void *context)
 {
-    for (int i = 0; i <= EXACT_CORNERS; i++)
+    for (int i = 0; i <= INTEGER_CORNERS; i++)
         simplex->corner[i] = &simplex->pool[i];
     support(context, toward, simplex->corner[0]);
     for (simplex->count = 1;; simplex->count++) {
@@ -146,7 +146,7 @@ void exact_simplex_solve(struct exact_simplex *simplex, mpz_t toward[3], exact_s
         simplex->zero = integer_is_zero(simplex->normal);
         if (simplex->zero)
             return;
-        struct exact_corner *next = simplex->corner[simplex->count];
+        struct integer_corner *next = simplex->corner[simplex->count];
         support(context, simplex->normal, next);
         subtract(simplex->other, next->at, simplex->corner[0]->at);
         integer_dot(simplex->t[1], simplex->normal, simplex->other, simplex->t[0]);
@@ -155,7 +155,7 @@ void exact_simplex_solve(struct exact_simplex *simplex, mpz_t toward[3], exact_s
     }
 }
 
-void exact_direction(mpz_t n[3], double out[3])
+void integer_direction(mpz_t n[3], double out[3])
 {
     long exponent[3], top = LONG_MIN;
     for (int axis = 0; axis < 3; axis++) {

@@ -7,42 +7,42 @@
  * that it ends. The next simplex is found by Johnson's conditions: of all subsets of the vertices
  * at hand the one, affinely independent, whose affine hull has its point next to the origin
  * strictly inside of the subset, with no other vertex nearer along that direction. */
-#ifndef FMB_GAP_EXACT_SIMPLEX_H
-#define FMB_GAP_EXACT_SIMPLEX_H
+#ifndef FMB_INTEGER_SIMPLEX_H
+#define FMB_INTEGER_SIMPLEX_H
 
 #include <gmp.h>
 #include <stdbool.h>
 
-enum { EXACT_CORNERS = 4 };
+enum { INTEGER_CORNERS = 4 };
 
 /* A vertex of P. */
-struct exact_corner {
+struct integer_corner {
     unsigned bits[2]; /* which one: defined by the caller */
     bool late;        /* at the end of the window */
     mpz_t at[3];
 };
 
-struct exact_simplex {
+struct integer_simplex {
     int count;
     bool zero; /* the point is the origin */
-    struct exact_corner pool[EXACT_CORNERS + 1];
-    struct exact_corner *corner[EXACT_CORNERS + 1]; /* the first are those of the simplex */
-    mpz_t normal[3];                                /* a multiple of the point */
+    struct integer_corner pool[INTEGER_CORNERS + 1];
+    struct integer_corner *corner[INTEGER_CORNERS + 1]; /* the first are those of the simplex */
+    mpz_t normal[3];                                    /* a multiple of the point */
     mpz_t edge[3][3], other[3];
-    mpz_t weight[EXACT_CORNERS], total, t[2]; /* the weights of the point are over total */
+    mpz_t weight[INTEGER_CORNERS], total, t[2]; /* the weights of the point are over total */
 };
 
 /* Calls one of mpz_init and mpz_clear for every number. */
-void exact_simplex_each(struct exact_simplex *simplex, void (*call)(mpz_ptr));
+void integer_simplex_each(struct integer_simplex *simplex, void (*call)(mpz_ptr));
 
 /* Sets the corner of P with the least n . p. */
-typedef void exact_support(void *context, mpz_t n[3], struct exact_corner *out);
+typedef void integer_support(void *context, mpz_t n[3], struct integer_corner *out);
 
 /* Finds the point of P next to the origin. toward: any direction: the vertex in it is the first. */
-void exact_simplex_solve(struct exact_simplex *simplex, mpz_t toward[3], exact_support *support,
-                         void *context);
+void integer_simplex_solve(struct integer_simplex *simplex, mpz_t toward[3],
+                           integer_support *support, void *context);
 
 /* out := n / |n|, rounded; numbers 2^100 times smaller than the largest become 0. In: not 0. */
-void exact_direction(mpz_t n[3], double out[3]);
+void integer_direction(mpz_t n[3], double out[3]);
 
 #endif

@@ -6,7 +6,7 @@
  * d is off by 3.01 u |d| more. So the height of a facet, |d| < sqrt(3) 2^52, is off by less
  * than 8.7 sqrt(3) / 2 < 9, and that of a point over a facet, |d| < sqrt(3) 2^53, by less than
  * MESH_ERROR = 18. */
-#include "hull_mesh.h"
+#include "mesh.h"
 
 #include "checked.h"
 #include "memory.h"
@@ -19,7 +19,7 @@ __extension__ typedef unsigned __int128 unsigned_wide;
 
 /* ---- Memory ---- */
 
-void hull_mesh_begin(struct hull_mesh *mesh, int dim)
+void mesh_begin(struct mesh *mesh, int dim)
 {
     mesh->dim = dim;
     mesh->facets = mesh->points = mesh->waiting = 0;
@@ -40,7 +40,7 @@ static void *doubled(void *array, const void *own, int capacity, size_t size)
     return out;
 }
 
-static void reserve_facet(struct hull_mesh *mesh)
+static void reserve_facet(struct mesh *mesh)
 {
     const int capacity = mesh->facet_capacity;
     if (mesh->facets < capacity)
@@ -50,7 +50,7 @@ static void reserve_facet(struct hull_mesh *mesh)
     mesh->facet_capacity *= 2;
 }
 
-static void reserve_point(struct hull_mesh *mesh)
+static void reserve_point(struct mesh *mesh)
 {
     if (mesh->points < mesh->point_capacity)
         return;
@@ -58,7 +58,7 @@ static void reserve_point(struct hull_mesh *mesh)
     mesh->point_capacity *= 2;
 }
 
-void hull_mesh_end(struct hull_mesh *mesh)
+void mesh_end(struct mesh *mesh)
 {
     const size_t facets = (size_t) mesh->facet_capacity;
     if (mesh->facet != mesh->own_facet) {
@@ -67,18 +67,18 @@ void hull_mesh_end(struct hull_mesh *mesh)
     }
     if (mesh->point != mesh->own_point)
         memory_release(mesh->point, (size_t) mesh->point_capacity * sizeof *mesh->point);
-    hull_mesh_begin(mesh, mesh->dim);
+    mesh_begin(mesh, mesh->dim);
 }
 
 /* ---- The heap ---- */
 
-static bool is_lower(const struct hull_mesh *mesh, int x, int y)
+static bool is_lower(const struct mesh *mesh, int x, int y)
 {
     const double of_x = mesh->facet[x].height, of_y = mesh->facet[y].height;
     return of_x < of_y || (of_x == of_y && x < y);
 }
 
-static void heap_add(struct hull_mesh *mesh, int facet)
+static void heap_add(struct mesh *mesh, int facet)
 {
     int at = mesh->waiting++;
     for (; at > 0 && is_lower(mesh, facet, mesh->heap[(at - 1) / 2]); at = (at - 1) / 2)
@@ -86,7 +86,7 @@ static void heap_add(struct hull_mesh *mesh, int facet)
     mesh->heap[at] = facet;
 }
 
-static int heap_take(struct hull_mesh *mesh)
+static int heap_take(struct mesh *mesh)
 {
     const int lowest = mesh->heap[0], last = mesh->heap[--mesh->waiting];
     int at = 0;
@@ -102,7 +102,7 @@ static int heap_take(struct hull_mesh *mesh)
     return lowest;
 }
 
-int hull_mesh_lowest(struct hull_mesh *mesh)
+int mesh_lowest(struct mesh *mesh)
 {
     while (mesh->waiting > 0) {
         const int facet = heap_take(mesh);
@@ -112,7 +112,7 @@ int hull_mesh_lowest(struct hull_mesh *mesh)
     return -1;
 }
 
-double hull_mesh_least_height(const struct hull_mesh *mesh)
+double mesh_least_height(const struct mesh *mesh)
 {
     double least = INFINITY;
     for (int f = 0; f < mesh->facets; f++)
@@ -123,7 +123,7 @@ double hull_mesh_least_height(const struct hull_mesh *mesh)
 
 /* ---- Points and planes ---- */
 
-int hull_mesh_add_point(struct hull_mesh *mesh, const int64_t at[FMB_DIM_MAX])
+int mesh_add_point(struct mesh *mesh, const int64_t at[FMB_DIM_MAX])
 {
     reserve_point(mesh);
     memcpy(mesh->point[mesh->points].at, at, sizeof mesh->point->at);
@@ -138,7 +138,7 @@ static void subtract(const int64_t x[FMB_DIM_MAX], const int64_t y[FMB_DIM_MAX],
 }
 
 /* out := the exact normal of the plane of these points; of the line in 2D. */
-static void set_normal(const struct hull_mesh *mesh, const int corner[FMB_DIM_MAX],
+static void set_normal(const struct mesh *mesh, const int corner[FMB_DIM_MAX],
                        wide out[FMB_DIM_MAX])
 {
     const int64_t *origin = mesh->point[corner[0]].at;
@@ -164,7 +164,7 @@ static int sign_of_dot(const wide n[FMB_DIM_MAX], const int64_t d[FMB_DIM_MAX])
     return high != 0 ? (high > 0 ? 1 : -1) : (uint64_t) low != 0;
 }
 
-static int side_of(const struct hull_mesh *mesh, const int corner[FMB_DIM_MAX],
+static int side_of(const struct mesh *mesh, const int corner[FMB_DIM_MAX],
                    const int64_t at[FMB_DIM_MAX])
 {
     wide n[FMB_DIM_MAX];
@@ -174,7 +174,7 @@ static int side_of(const struct hull_mesh *mesh, const int corner[FMB_DIM_MAX],
     return sign_of_dot(n, d);
 }
 
-int hull_mesh_side(const struct hull_mesh *mesh, int facet, const int64_t at[FMB_DIM_MAX])
+int mesh_side(const struct mesh *mesh, int facet, const int64_t at[FMB_DIM_MAX])
 {
     const struct mesh_facet *f = &mesh->facet[facet];
     int64_t d[FMB_DIM_MAX];
@@ -199,7 +199,7 @@ static double to_double(wide x)
     return copysign(out, (double) (int64_t) sign);
 }
 
-static void set_unit_normal(const struct hull_mesh *mesh, const int corner[FMB_DIM_MAX],
+static void set_unit_normal(const struct mesh *mesh, const int corner[FMB_DIM_MAX],
                             double out[FMB_DIM_MAX])
 {
     wide n[FMB_DIM_MAX];
@@ -213,13 +213,13 @@ static void set_unit_normal(const struct hull_mesh *mesh, const int corner[FMB_D
 
 static const int first_corners[FMB_DIM_MAX] = {0, 1, 2};
 
-void hull_mesh_first_normal(const struct hull_mesh *mesh, double out[FMB_DIM_MAX])
+void mesh_first_normal(const struct mesh *mesh, double out[FMB_DIM_MAX])
 {
     set_unit_normal(mesh, first_corners, out);
 }
 
 /* Adds a facet without neighbours. Returns its number. */
-static int add_facet(struct hull_mesh *mesh, int x, int y, int z)
+static int add_facet(struct mesh *mesh, int x, int y, int z)
 {
     reserve_facet(mesh);
     struct mesh_facet *out = &mesh->facet[mesh->facets];
@@ -238,7 +238,7 @@ static int add_facet(struct hull_mesh *mesh, int x, int y, int z)
 /* ---- The mesh ---- */
 
 /* The triangle 0 1 2, or the tetrahedron 0 1 2 3 with point 3 below the triangle 0 1 2. */
-bool hull_mesh_close(struct hull_mesh *mesh)
+bool mesh_close(struct mesh *mesh)
 {
     static const int corner[4][3] = {{0, 1, 2}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}};
     static const int next[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
@@ -262,7 +262,7 @@ bool hull_mesh_close(struct hull_mesh *mesh)
 
 /* Adds the triangle of point and the edge from corner i of a facet that it sees, whose neighbour
  * across that edge it does not see. */
-static int add_across(struct hull_mesh *mesh, int facet, int i, int point)
+static int add_across(struct mesh *mesh, int facet, int i, int point)
 {
     const int x = mesh->facet[facet].corner[i], y = mesh->facet[facet].corner[(i + 1) % 3];
     const int neighbour = mesh->facet[facet].next[i], added = add_facet(mesh, x, y, point);
@@ -276,7 +276,7 @@ static int add_across(struct hull_mesh *mesh, int facet, int i, int point)
 }
 
 /* Removes the facets that are seen, beginning with one of them, and adds those of the ridges. */
-static void extend_space(struct hull_mesh *mesh, int first, int point)
+static void extend_space(struct mesh *mesh, int first, int point)
 {
     const int begin = mesh->facets;
     int last = first;
@@ -287,7 +287,7 @@ static void extend_space(struct hull_mesh *mesh, int first, int point)
             const int neighbour = mesh->facet[f].next[i];
             if (mesh->facet[neighbour].gone)
                 continue;
-            if (hull_mesh_side(mesh, neighbour, mesh->point[point].at) <= 0) {
+            if (mesh_side(mesh, neighbour, mesh->point[point].at) <= 0) {
                 add_across(mesh, f, i, point);
                 continue;
             }
@@ -303,9 +303,9 @@ static void extend_space(struct hull_mesh *mesh, int first, int point)
     }
 }
 
-void hull_mesh_extend(struct hull_mesh *mesh, int facet, const int64_t at[FMB_DIM_MAX])
+void mesh_extend(struct mesh *mesh, int facet, const int64_t at[FMB_DIM_MAX])
 {
-    const int point = hull_mesh_add_point(mesh, at);
+    const int point = mesh_add_point(mesh, at);
     if (mesh->dim == 3) {
         extend_space(mesh, facet, point);
         return;

@@ -11,11 +11,10 @@
  * stored: D is known by its support function, the greatest n . x, which takes one scan of each
  * frame's vertices.
  *
- *   hull_pair_set()        two placed frames as arrays of vertices, in body coordinates, and bounds
- *                          on the errors of everything computed below
- *   hull_support()         the farthest point of D in a direction
- *   hull_point()           a point of D
- *   hull_decision_begin()  verdict, contact, box and gap, in steps (hull_decision.h)
+ *   support_pair_set()        two placed frames as arrays of vertices, in body coordinates, and
+ * bounds on the errors of everything computed below support_farthest()         the farthest point
+ * of D in a direction support_point()           a point of D support_decision_begin()  verdict,
+ * contact, box and gap, in steps (support_decision.h)
  *
  * Accuracy of doubles. Let u = 2^-53, r the reach of a frame: the distance of its vertices from
  * the origin of its body is at most r. Rounding a direction n to body coordinates, R^T n, or a
@@ -31,23 +30,23 @@
  *     error = 32 u reach + slack_A + slack_B + 2^-1000,
  *
  * where the lengths of offset and drift are bounded by their sums of magnitudes: a value computed
- * by hull_support() is off by at most error |n|, and a point by at most error (2-norm). 2^-1000
+ * by support_farthest() is off by at most error |n|, and a point by at most error (2-norm). 2^-1000
  * covers underflow for |n| <= 2. The factor between 32 and 22 + 3.1 covers the rounding of the
  * bounds.
  *
  * A pair is usable if its reach is within (2^-200, 2^200): no product of four lengths overflows,
  * nor underflows to less than the bounds count. No shared state. */
-#ifndef FMB_HULL_H
-#define FMB_HULL_H
+#ifndef FMB_SUPPORT_PAIR_H
+#define FMB_SUPPORT_PAIR_H
 
 #include "gap.h"
 #include "rotation.h"
 #include "support.h"
 
-enum { HULL_SMALL = 8 }; /* the most vertices of a frame that is not a hull */
+enum { SUPPORT_SMALL = 8 }; /* the most vertices of a frame that is not a hull */
 
 /* A placed frame as vertices. It points into itself: not to be copied. */
-struct hull_view {
+struct support_view {
     struct placed_frame placed;
     struct support_vertices vertices; /* body coordinates, rounded unless slack is 0 */
     struct rotation_matrix rotation;
@@ -55,12 +54,12 @@ struct hull_view {
     double slack; /* bounds the distance of a stored vertex from the exact one */
     bool solid;   /* certainly not flat */
     double centre[FMB_DIM_MAX]; /* a point of the frame, rounded, body coordinates */
-    double small[FMB_DIM_MAX * HULL_SMALL];
+    double small[FMB_DIM_MAX * SUPPORT_SMALL];
 };
 
-struct hull_pair {
+struct support_pair {
     const struct frame_pair *frames;
-    struct hull_view view[2];
+    struct support_view view[2];
     int dim;
     bool drifts;                /* the velocities differ, and the window is not empty */
     bool usable;                /* no double overflows */
@@ -70,32 +69,33 @@ struct hull_pair {
 };
 
 /* Sets a checked pair. It points to frames and into itself: not to be copied. */
-void hull_pair_set(const struct frame_pair *frames, struct hull_pair *out);
+void support_pair_set(const struct frame_pair *frames, struct support_pair *out);
 
 /* A point of D by number: vertex of A, vertex of B, and the end of the window, 0 or 1. The end is 0
  * if the pair does not drift. */
-struct hull_column {
+struct support_column {
     unsigned vertex[2], end;
 };
 
 /* Sets *column to the point of D with the greatest n . x as computed; returns n . x, within
  * error |n| of the greatest of all. Ties: the lowest indices, end 0. In: a usable pair; |n| <= 2,
  * in world coordinates, 0 beyond dim. */
-double hull_support(const struct hull_pair *pair, const double n[FMB_DIM_MAX],
-                    struct hull_column *column);
+double support_farthest(const struct support_pair *pair, const double n[FMB_DIM_MAX],
+                        struct support_column *column);
 
 /* out := a point of D, within error of the exact one. Coordinates beyond dim are 0. */
-void hull_point(const struct hull_pair *pair, struct hull_column column, double out[FMB_DIM_MAX]);
+void support_point(const struct support_pair *pair, struct support_column column,
+                   double out[FMB_DIM_MAX]);
 
 /* Returns the vertex of a view with the greatest n . R v as computed, and that value. It is off by
  * at most |n| (22 u reach + slack). */
-struct support hull_view_support(const struct hull_view *view, const double n[FMB_DIM_MAX]);
+struct support support_view_farthest(const struct support_view *view, const double n[FMB_DIM_MAX]);
 
 /* out := R v, a vertex without its position, in world coordinates. */
-void hull_place(const struct hull_view *view, unsigned vertex, double out[FMB_DIM_MAX]);
+void support_place(const struct support_view *view, unsigned vertex, double out[FMB_DIM_MAX]);
 
 /* Whether a pair is decided here. */
-static inline bool hull_takes(const struct fmb_frame *a, const struct fmb_frame *b)
+static inline bool support_takes(const struct fmb_frame *a, const struct fmb_frame *b)
 {
     return a->shape == FMB_HULL || b->shape == FMB_HULL;
 }
@@ -103,6 +103,6 @@ static inline bool hull_takes(const struct fmb_frame *a, const struct fmb_frame 
 /* out := the frames in an order that depends on the numbers of both placed frames only. What is
  * computed for them in this order has the same bits for the swapped pair. Returns whether they are
  * exchanged (gap_frames_swap()). */
-bool hull_order(const struct frame_pair *frames, struct frame_pair *out);
+bool support_order(const struct frame_pair *frames, struct frame_pair *out);
 
 #endif

@@ -1,9 +1,9 @@
 /* Pairs with a hull in integers: verdict, contact and box from linear programs whose columns are
  * the vertices of D, priced by the support function (column generation).
  *
- * Coordinates. All points are integers, in units of 2^unit / scale of the pair (hull_vertices.h),
- * so that no step rounds. Points enter as 4 x, because the interior point c below is a mean in
- * quarters.
+ * Coordinates. All points are integers, in units of 2^unit / scale of the pair
+ * (support_integers.h), so that no step rounds. Points enter as 4 x, because the interior point c
+ * below is a mean in quarters.
  *
  * 1. Span (span_step()). Finds k + 1 points of D that are affinely independent, k the dimension of
  *    D: starting with the points given, it looks for a point off the flat that is spanned so far,
@@ -44,7 +44,7 @@
  *    one end of the window. If N is not constant on M, no point of M + t w with N . x = 0, the
  *    greatest value, is in its relative interior: TOUCHING.
  *
- * 5. Proof (hull_exact.h), on request, instead of heights. A normal that separates is known from
+ * 5. Proof (programs.h), on request, instead of heights. A normal that separates is known from
  *    step 1 or 2. It is replaced by the shortest of its truncations to a few bits that separates
  *    (shorten_step()).
  *    If the frames touch, the solution of step 2 is the origin as a combination of vertices, and N
@@ -72,10 +72,10 @@
  * Pricing. The direction is turned into body coordinates exactly and then rounded. One scan in
  * doubles leaves the vertices within the bound of the greatest value; only these are evaluated
  * exactly. */
-#include "hull_exact.h"
+#include "programs.h"
 
-#include "hull_search.h"
-#include "hull_vertices.h"
+#include "support_search.h"
+#include "support_integers.h"
 #include "integer.h"
 #include "memory.h"
 
@@ -85,7 +85,7 @@ enum { ROWS = 4, QUARTERS = 4, KEPT = 8 };
 
 /* A point of D, or a mean of points, times QUARTERS. */
 struct point {
-    struct hull_column column;
+    struct support_column column;
     mpz_t x[3]; /* its coordinates */
     mpz_t a[3]; /* of the point of A at its time, in the world; if a box is wanted */
     int end;    /* 4 t / T */
@@ -93,8 +93,8 @@ struct point {
 
 /* One placed frame. */
 struct side {
-    const struct hull_view *view;
-    const struct hull_side *exact;
+    const struct support_view *view;
+    const struct support_side *integers;
     unsigned count; /* of vertices of the face, [0, count) of face */
     uint16_t face[FMB_HULL_VERTICES_MAX];
 };
@@ -107,11 +107,11 @@ struct kept {
 
 enum stage { SPANNING_A, SPANNING_B, SPANNING, SHOOTING, RAISING, SHORTENING, COMPLETE };
 
-struct hull_exact {
-    const struct hull_pair *pair;
+struct programs {
+    const struct support_pair *pair;
     unsigned want;
     enum stage stage;
-    struct hull_integers integers;
+    struct support_integers integers;
     struct side side[2];
     struct kept kept[2][KEPT];
     bool ends[2];           /* of the window, that the face has */
@@ -119,8 +119,8 @@ struct hull_exact {
     bool proves;
     bool ends_wanted;                     /* of the contact of a pair that drifts, or of a box */
     unsigned spanning[2][ROWS], spans[2]; /* vertices that span a frame */
-    struct hull_proof proof;
-    struct hull_column first[ROWS];
+    struct programs_proof proof;
+    struct support_column first[ROWS];
     unsigned first_count, next_first;
 
     /* Span: rank + 1 points; the vectors from the first to the others; the direction to be tried.
@@ -139,7 +139,7 @@ struct hull_exact {
     int target; /* the height: an end of the contact, 0 and 1, or of the box, 2 + 2 axis + end */
 
     enum { GUESS_UNKNOWN, GUESS_GIVEN, GUESS_NONE } guesses;
-    struct hull_guess guess;
+    struct support_guess guess;
 
     double contact[2], box[2][FMB_DIM_MAX];
     mpz_t normal[2][3], body[3], sum, best, scratch[2], denominator, minor[6], vector[3];
@@ -159,9 +159,9 @@ static void point_each(struct point *point, void (*call)(mpz_ptr))
     vector_each(point->a, call);
 }
 
-static void each(struct hull_exact *e, void (*call)(mpz_ptr))
+static void each(struct programs *e, void (*call)(mpz_ptr))
 {
-    hull_integers_each(&e->integers, call);
+    support_integers_each(&e->integers, call);
     for (int f = 0; f < 2; f++) {
         for (int i = 0; i < KEPT; i++)
             vector_each(e->kept[f][i].at, call);
@@ -186,7 +186,7 @@ static void each(struct hull_exact *e, void (*call)(mpz_ptr))
     vector_each(e->body, call);
     vector_each(e->vector, call);
     vector_each(e->proof.normal, call);
-    for (int i = 0; i < HULL_PROOF_MAX; i++)
+    for (int i = 0; i < PROGRAMS_PROOF_MAX; i++)
         call(e->proof.weight[i]);
     call(e->proof.total);
     for (int i = 0; i < 6; i++)
@@ -200,13 +200,13 @@ static void each(struct hull_exact *e, void (*call)(mpz_ptr))
 /* ---- Points ---- */
 
 /* sum := n . vertex i, in body coordinates. */
-static void set_value(struct hull_exact *e, const struct side *side, unsigned i, mpz_t n[3])
+static void set_value(struct programs *e, const struct side *side, unsigned i, mpz_t n[3])
 {
     const struct support_vertices *vertices = &side->view->vertices;
     mpz_set_ui(e->sum, 0);
     for (int axis = 0; axis < vertices->dim; axis++) {
-        if (side->exact->frame->shape != FMB_HULL) {
-            mpz_addmul(e->sum, n[axis], side->exact->small[i][axis]);
+        if (side->integers->frame->shape != FMB_HULL) {
+            mpz_addmul(e->sum, n[axis], side->integers->small[i][axis]);
             continue;
         }
         const struct dyadic x = dyadic_of(vertices->at[(size_t) axis * vertices->stride + i]);
@@ -220,16 +220,16 @@ static void set_value(struct hull_exact *e, const struct side *side, unsigned i,
 
 /* Returns vertex i of frame f in the world at time 0. The ends of a box, other than a verdict, come
  * back to the same vertices: they are kept. */
-static mpz_t *place(struct hull_exact *e, int f, unsigned i)
+static mpz_t *place(struct programs *e, int f, unsigned i)
 {
     struct kept *kept = &e->kept[f][e->stage == RAISING ? i % KEPT : 0];
     if (kept->number != i + 1)
-        hull_integers_place(&e->integers, f, i, kept->at);
+        support_integers_place(&e->integers, f, i, kept->at);
     kept->number = i + 1;
     return kept->at;
 }
 
-static void set_point(struct hull_exact *e, struct hull_column column, struct point *out)
+static void set_point(struct programs *e, struct support_column column, struct point *out)
 {
     mpz_t *a = place(e, 0, column.vertex[0]), *b = place(e, 1, column.vertex[1]);
     out->column = column;
@@ -266,7 +266,7 @@ static void swap_points(struct point *x, struct point *y)
  * than sqrt(3) 2^1024, since coordinates are finite: 2^972 bounds the first term then. Coordinates
  * of a frame that is not a hull are sums, which may overflow; its slack is then infinite, and no
  * vertex is left out. Returns the bound. */
-static double round_direction(const struct hull_exact *e, const struct side *side,
+static double round_direction(const struct programs *e, const struct side *side,
                               double n[FMB_DIM_MAX])
 {
     long exponent[3], largest = 0;
@@ -287,7 +287,7 @@ static double round_direction(const struct hull_exact *e, const struct side *sid
 
 /* Lists the vertices of the face that may have the greatest value along e->body. Returns their
  * number. */
-static unsigned list_farthest(const struct hull_exact *e, const struct side *side, uint16_t *out)
+static unsigned list_farthest(const struct programs *e, const struct side *side, uint16_t *out)
 {
     const struct support_vertices *vertices = &side->view->vertices;
     double n[FMB_DIM_MAX], most = -INFINITY;
@@ -305,22 +305,22 @@ static unsigned list_farthest(const struct hull_exact *e, const struct side *sid
 }
 
 /* e->body := n in body coordinates, times a positive factor. */
-static void turn_back(struct hull_exact *e, const struct side *side, mpz_t n[3])
+static void turn_back(struct programs *e, const struct side *side, mpz_t n[3])
 {
     for (int j = 0; j < 3; j++) {
-        if (!side->exact->turn.turned) {
+        if (!side->integers->turn.turned) {
             mpz_set(e->body[j], n[j]);
             continue;
         }
         mpz_set_ui(e->body[j], 0);
         for (int i = 0; i < 3; i++)
-            mpz_addmul(e->body[j], side->exact->turn.row[i][j], n[i]);
+            mpz_addmul(e->body[j], side->integers->turn.row[i][j], n[i]);
     }
 }
 
 /* Returns the first vertex of the face with the greatest normal[f] . v, in world coordinates.
  * reduce: keeps those vertices alone in the face. */
-static unsigned price_side(struct hull_exact *e, int f, bool reduce)
+static unsigned price_side(struct programs *e, int f, bool reduce)
 {
     struct side *side = &e->side[f];
     uint16_t listed[FMB_HULL_VERTICES_MAX];
@@ -361,9 +361,9 @@ static unsigned price_side(struct hull_exact *e, int f, bool reduce)
 
 /* Prices the vertices of the face: normal[0] for A, normal[1] for B, and the sign of what the end
  * of the window adds. */
-static struct hull_column price(struct hull_exact *e, int end_sign, bool reduce)
+static struct support_column price(struct programs *e, int end_sign, bool reduce)
 {
-    struct hull_column out;
+    struct support_column out;
     for (int f = 0; f < 2; f++)
         out.vertex[f] = price_side(e, f, reduce);
     out.end = e->ends[0] && e->ends[1] ? end_sign > 0 : e->ends[1];
@@ -381,7 +381,7 @@ static void dot(mpz_t n[3], mpz_t v[3], mpz_t out)
 }
 
 /* Prices n . x, n = normal[1]. */
-static struct hull_column price_difference(struct hull_exact *e, bool reduce)
+static struct support_column price_difference(struct programs *e, bool reduce)
 {
     for (int axis = 0; axis < 3; axis++)
         mpz_neg(e->normal[0][axis], e->normal[1][axis]);
@@ -391,7 +391,7 @@ static struct hull_column price_difference(struct hull_exact *e, bool reduce)
 
 /* ---- Span ---- */
 
-static void begin_span(struct hull_exact *e, enum stage stage)
+static void begin_span(struct programs *e, enum stage stage)
 {
     e->stage = stage;
     e->rank = -1;
@@ -400,7 +400,7 @@ static void begin_span(struct hull_exact *e, enum stage stage)
 
 /* Sets normal[1] to direction number attempt orthogonal to the flat spanned so far; returns false
  * if there is none of this number. Together these directions span the orthogonal complement. */
-static bool set_orthogonal(struct hull_exact *e)
+static bool set_orthogonal(struct programs *e)
 {
     mpz_t *n = e->normal[1], *u = e->edge[0], *v = e->edge[1];
     const int dim = e->pair->dim, attempt = e->attempt;
@@ -425,7 +425,7 @@ static bool set_orthogonal(struct hull_exact *e)
 }
 
 /* Whether point is off the flat spanned so far. If so, it is added. e->entering: the point. */
-static bool extend_span(struct hull_exact *e)
+static bool extend_span(struct programs *e)
 {
     mpz_t *edge = e->vector;
     if (e->rank >= 0)
@@ -451,7 +451,7 @@ static bool extend_span(struct hull_exact *e)
 
 /* Whether all points of D have the same n . x as the first: the farthest ones in both directions.
  * If not, adds one that does not. n: normal[1]. */
-static bool is_constant(struct hull_exact *e)
+static bool is_constant(struct programs *e)
 {
     for (int sign = 0; sign < 2; sign++) {
         set_point(e, price_difference(e, false), &e->entering);
@@ -466,7 +466,7 @@ static bool is_constant(struct hull_exact *e)
 }
 
 /* Returns the vertex of the face nearest to a column that may have left it. */
-static struct hull_column column_in_face(const struct hull_exact *e, struct hull_column column)
+static struct support_column column_in_face(const struct programs *e, struct support_column column)
 {
     for (int f = 0; f < 2; f++) {
         const struct side *side = &e->side[f];
@@ -480,14 +480,14 @@ static struct hull_column column_in_face(const struct hull_exact *e, struct hull
 }
 
 /* One step; returns whether the span is complete. */
-static bool span_step(struct hull_exact *e)
+static bool span_step(struct programs *e)
 {
     while (e->next_first < e->first_count && e->rank < e->pair->dim) {
         set_point(e, column_in_face(e, e->first[e->next_first++]), &e->entering);
         extend_span(e);
     }
     if (e->rank < 0) {
-        static const struct hull_column some = {{0, 0}, 0};
+        static const struct support_column some = {{0, 0}, 0};
         set_point(e, column_in_face(e, some), &e->entering);
         extend_span(e);
     }
@@ -500,7 +500,7 @@ static bool span_step(struct hull_exact *e)
 
 /* Chooses the coordinates of the projection. Returns whether the flat contains the origin; if not,
  * normal[1] separates. */
-static bool project(struct hull_exact *e)
+static bool project(struct programs *e)
 {
     mpz_t *x = e->span[0].x, *u = e->edge[0], *n = e->normal[1], *across = e->normal[0];
     int axes = 0, dropped = -1;
@@ -564,7 +564,7 @@ static void expand(mpz_t row[ROWS], mpz_t minor[6], int sign, mpz_t out[ROWS])
 }
 
 /* out := the sum of the products of two vectors of rows numbers. */
-static void dot_rows(const struct hull_exact *e, mpz_t x[ROWS], mpz_t y[ROWS], mpz_t out)
+static void dot_rows(const struct programs *e, mpz_t x[ROWS], mpz_t y[ROWS], mpz_t out)
 {
     mpz_mul(out, x[0], y[0]);
     for (int i = 1; i < e->rows; i++)
@@ -572,7 +572,7 @@ static void dot_rows(const struct hull_exact *e, mpz_t x[ROWS], mpz_t y[ROWS], m
 }
 
 /* Sets cofactor and det of the rows, det > 0. */
-static void set_cofactors(struct hull_exact *e)
+static void set_cofactors(struct programs *e)
 {
     mpz_t(*h)[ROWS] = e->row, (*c)[ROWS] = e->cofactor;
     if (e->rows == 1) {
@@ -603,7 +603,7 @@ static void set_cofactors(struct hull_exact *e)
 }
 
 /* out := the column of a point: relative to the centre, or with a 1. */
-static void set_row(const struct hull_exact *e, const struct point *point, mpz_t out[ROWS])
+static void set_row(const struct programs *e, const struct point *point, mpz_t out[ROWS])
 {
     for (int i = 0; i < e->rank; i++) {
         mpz_set(out[i], point->x[e->axis[i]]);
@@ -615,7 +615,7 @@ static void set_row(const struct hull_exact *e, const struct point *point, mpz_t
 }
 
 /* out := coordinate j of q. */
-static void set_goal(const struct hull_exact *e, mpz_t out[ROWS])
+static void set_goal(const struct programs *e, mpz_t out[ROWS])
 {
     for (int i = 0; i < e->rank; i++) {
         if (e->stage == SHOOTING)
@@ -630,7 +630,7 @@ static void set_goal(const struct hull_exact *e, mpz_t out[ROWS])
 /* Compares C_i . q / C_i . s with C_j . q / C_j . s, ties broken by the coordinates of the
  * cofactors. coordinate: C_i . q; enters: C_i . s, both > 0 for i and j. Returns whether i is
  * before j. */
-static bool leaves_before(struct hull_exact *e, int i, int j)
+static bool leaves_before(struct programs *e, int i, int j)
 {
     int order = integer_compare_products(e->coordinate[i], e->enters[j], e->coordinate[j],
                                          e->enters[i], e->scratch);
@@ -641,7 +641,7 @@ static bool leaves_before(struct hull_exact *e, int i, int j)
 }
 
 /* Sets the rows and their cofactors, and coordinate. */
-static void set_basis(struct hull_exact *e)
+static void set_basis(struct programs *e)
 {
     mpz_t *goal = e->enters;
     for (int i = 0; i < e->rows; i++)
@@ -653,7 +653,7 @@ static void set_basis(struct hull_exact *e)
 }
 
 /* Replaces a column of the basis by the entering one. */
-static void pivot(struct hull_exact *e)
+static void pivot(struct programs *e)
 {
     int leaving = -1;
     set_row(e, &e->entering, e->dual); /* dual is not needed any more */
@@ -670,7 +670,7 @@ static void pivot(struct hull_exact *e)
 /* ---- Shoot ---- */
 
 /* Sets the centre: the mean of the points of the span, with weights in quarters. */
-static void set_centre(struct hull_exact *e)
+static void set_centre(struct programs *e)
 {
     static const int weights[4][4] = {{4, 0, 0, 0}, {2, 2, 0, 0}, {1, 1, 2, 0}, {1, 1, 1, 1}};
     struct point *c = &e->centre;
@@ -697,7 +697,7 @@ static void set_centre(struct hull_exact *e)
 
 /* Whether the ray passes through the portal of the basis: no C_i . q < 0, ties broken as in a
  * pivot. */
-static bool passes(const struct hull_exact *e)
+static bool passes(const struct programs *e)
 {
     for (int i = 0; i < e->rows; i++) {
         int sign = mpz_sgn(e->coordinate[i]);
@@ -709,11 +709,11 @@ static bool passes(const struct hull_exact *e)
     return true;
 }
 
-static void begin_heights(struct hull_exact *e);
+static void begin_heights(struct programs *e);
 
 /* Sets the signs of the coordinates of the origin in the simplex of a span of rank 3, which are
  * ratios of determinants of three of its points. Returns whether all are positive. */
-static bool set_signs(struct hull_exact *e, int sign[ROWS])
+static bool set_signs(struct programs *e, int sign[ROWS])
 {
     /* Coordinate i is the determinant of point other[i] and the pair without i and other[i]. */
     static const int other[ROWS] = {1, 0, 3, 2};
@@ -739,7 +739,7 @@ static bool set_signs(struct hull_exact *e, int sign[ROWS])
 /* The ray leaves the simplex of the span through exactly one facet, the first basis; the coordinate
  * of the origin that is 0 there is not positive. If all are, the origin is inside,
  * and no ray is shot. */
-static void begin_shoot(struct hull_exact *e)
+static void begin_shoot(struct programs *e)
 {
     int sign[ROWS] = {0};
     e->rows = e->rank;
@@ -767,7 +767,7 @@ static void begin_shoot(struct hull_exact *e)
     }
 }
 
-static void finish(struct hull_exact *e, enum fmb_verdict verdict)
+static void finish(struct programs *e, enum fmb_verdict verdict)
 {
     e->proof.verdict = verdict;
     e->stage = COMPLETE;
@@ -778,7 +778,7 @@ static void finish(struct hull_exact *e, enum fmb_verdict verdict)
 enum { BITS_LEAST = 3 };
 
 /* normal[1] separates. */
-static void finish_separated(struct hull_exact *e)
+static void finish_separated(struct programs *e)
 {
     for (int axis = 0; axis < 3; axis++)
         mpz_neg(e->proof.normal[axis], e->normal[1][axis]);
@@ -789,7 +789,7 @@ static void finish_separated(struct hull_exact *e)
 }
 
 /* Tries the normal of the proof truncated to this many bits. */
-static void shorten_step(struct hull_exact *e)
+static void shorten_step(struct programs *e)
 {
     size_t bits = 0;
     for (int axis = 0; axis < 3; axis++)
@@ -815,9 +815,9 @@ static void shorten_step(struct hull_exact *e)
 
 /* The basis contains the origin, and the normal leaves out vertices. If a face was taken before, it
  * is that of the normal in proof. */
-static void prove_touching(struct hull_exact *e)
+static void prove_touching(struct programs *e)
 {
-    struct hull_proof *proof = &e->proof;
+    struct programs_proof *proof = &e->proof;
     mpz_t *n = e->normal[1];
     dot(n, e->integers.drift, e->sum);
     dot(proof->normal, e->integers.drift, e->best);
@@ -838,7 +838,7 @@ static void prove_touching(struct hull_exact *e)
 }
 
 /* The face of D with N . x = 0, the greatest, becomes D. */
-static void reduce(struct hull_exact *e)
+static void reduce(struct programs *e)
 {
     const unsigned all = e->side[0].count + e->side[1].count;
     price_difference(e, true);
@@ -856,7 +856,7 @@ static void reduce(struct hull_exact *e)
     begin_span(e, SPANNING);
 }
 
-static void shoot_step(struct hull_exact *e)
+static void shoot_step(struct programs *e)
 {
     /* N = sum C_i, N . H_i = det: the sum of the solution is N . q / det. */
     mpz_set_ui(e->sum, 0);
@@ -882,7 +882,7 @@ static void shoot_step(struct hull_exact *e)
         pivot(e);
 }
 
-static void span_done(struct hull_exact *e)
+static void span_done(struct programs *e)
 {
     if (!project(e))
         finish_separated(e);
@@ -894,13 +894,13 @@ static void span_done(struct hull_exact *e)
 
 /* The origin is in the cone of the basis and before its plane; or, without a basis, inside the
  * simplex of the span. */
-static void prove_overlapping(struct hull_exact *e)
+static void prove_overlapping(struct programs *e)
 {
-    struct hull_proof *proof = &e->proof;
+    struct programs_proof *proof = &e->proof;
     const int rank = e->rank, shot = e->stage == SHOOTING ? rank : 0;
     const unsigned spans = e->spans[0] > e->spans[1] ? e->spans[0] : e->spans[1];
     mpz_t *others = e->vector, *goal = e->enters; /* others: the sum of the points that span */
-    struct hull_column *column = proof->column;
+    struct support_column *column = proof->column;
     for (int i = 0; i < rank + 1; i++)
         *column++ = e->span[i].column;
     for (int i = 0; i < shot; i++)
@@ -956,19 +956,19 @@ static void prove_overlapping(struct hull_exact *e)
 
 enum { TARGET_BOX = 2 };
 
-static int target_axis(const struct hull_exact *e)
+static int target_axis(const struct programs *e)
 {
     return (e->target - TARGET_BOX) / 2;
 }
 
 /* The sign of the height: lower ends are maximised negated. */
-static int target_sign(const struct hull_exact *e)
+static int target_sign(const struct programs *e)
 {
     return e->target % 2 ? 1 : -1;
 }
 
 /* out := the height of a point. */
-static void set_height(const struct hull_exact *e, const struct point *point, mpz_t out)
+static void set_height(const struct programs *e, const struct point *point, mpz_t out)
 {
     if (e->target < TARGET_BOX)
         mpz_set_si(out, point->end);
@@ -981,17 +981,17 @@ static void set_height(const struct hull_exact *e, const struct point *point, mp
 /* Replaces the basis by a guess in doubles of the optimal one, if its simplex contains the origin.
  * Saves steps, and changes no answer. The points of the span are not needed any more. Returns
  * whether it is replaced. */
-static bool guess_basis(struct hull_exact *e)
+static bool guess_basis(struct programs *e)
 {
-    struct hull_column column[ROWS];
+    struct support_column column[ROWS];
     if (e->guesses == GUESS_UNKNOWN)
         e->guesses = !e->reduced && e->rank == e->pair->dim && e->pair->usable &&
-                             hull_guess_begin(e->pair, &e->guess)
+                             support_guess_begin(e->pair, &e->guess)
                          ? GUESS_GIVEN
                          : GUESS_NONE;
     if (e->guesses == GUESS_NONE ||
-        !hull_guess_basis(&e->guess, e->target < TARGET_BOX ? -1 : target_axis(e), target_sign(e),
-                          column))
+        !support_guess_basis(&e->guess, e->target < TARGET_BOX ? -1 : target_axis(e),
+                             target_sign(e), column))
         return false;
     for (int i = 0; i < e->rows; i++) {
         set_point(e, column[i], &e->span[i]);
@@ -1006,7 +1006,7 @@ static bool guess_basis(struct hull_exact *e)
     return false;
 }
 
-static void begin_target(struct hull_exact *e)
+static void begin_target(struct programs *e)
 {
     if (!guess_basis(e) && !e->basis_set)
         set_basis(e);
@@ -1016,7 +1016,7 @@ static void begin_target(struct hull_exact *e)
 }
 
 /* Begins the next target from target on that is wanted. */
-static void next_target(struct hull_exact *e)
+static void next_target(struct programs *e)
 {
     if (e->target < TARGET_BOX && !(e->want & FMB_WANT_TIMES && e->pair->drifts))
         e->target = TARGET_BOX;
@@ -1027,7 +1027,7 @@ static void next_target(struct hull_exact *e)
 }
 
 /* Columns: the basis of the last program, and the centre; the span, if there was none. */
-static void begin_heights(struct hull_exact *e)
+static void begin_heights(struct programs *e)
 {
     if (e->proves) {
         prove_overlapping(e);
@@ -1046,7 +1046,7 @@ static void begin_heights(struct hull_exact *e)
 }
 
 /* The optimum is dual[rank] / det, in quarters. */
-static void end_target(struct hull_exact *e)
+static void end_target(struct programs *e)
 {
     const int end = e->target % 2;
     const enum round_direction direction = end ? ROUND_UP : ROUND_DOWN;
@@ -1068,7 +1068,7 @@ static void end_target(struct hull_exact *e)
 }
 
 /* Maximises. The dual N = sum h_i C_i; a column is better if det h - N . H > 0. */
-static void height_step(struct hull_exact *e)
+static void height_step(struct programs *e)
 {
     for (int j = 0; j < e->rows; j++) {
         mpz_set_ui(e->dual[j], 0);
@@ -1107,7 +1107,7 @@ static void height_step(struct hull_exact *e)
 
 /* ---- Begin and end ---- */
 
-static void set_all_vertices(struct hull_exact *e)
+static void set_all_vertices(struct programs *e)
 {
     for (int f = 0; f < 2; f++) {
         e->side[f].count = e->side[f].view->vertices.count;
@@ -1117,24 +1117,24 @@ static void set_all_vertices(struct hull_exact *e)
 }
 
 /* Begins the span of a frame: that of D if the other frame is one of its points, without drift. */
-static void begin_span_of(struct hull_exact *e, int f)
+static void begin_span_of(struct programs *e, int f)
 {
     e->side[!f].count = 1;
     e->next_first = 0;
     begin_span(e, f ? SPANNING_B : SPANNING_A);
 }
 
-static void begin_difference(struct hull_exact *e)
+static void begin_difference(struct programs *e)
 {
     e->ends[1] = pair_moves(e->pair->frames) && e->pair->frames->duration > 0;
     e->next_first = 0;
     begin_span(e, SPANNING);
 }
 
-struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
-                                    const struct hull_column *first, unsigned count)
+struct programs *programs_begin(const struct support_pair *pair, unsigned want,
+                                const struct support_column *first, unsigned count)
 {
-    struct hull_exact *e = memory_allocate(sizeof *e);
+    struct programs *e = memory_allocate(sizeof *e);
     memset(e, 0, sizeof *e);
     each(e, mpz_init);
     e->pair = pair;
@@ -1142,10 +1142,10 @@ struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
     e->ends_wanted = want & FMB_WANT_BOX || (want & FMB_WANT_TIMES && pair->drifts);
     e->proves = want & FMB_WANT_CERTIFICATE;
     e->proof.integers = &e->integers;
-    hull_integers_set(pair->frames, &e->integers);
+    support_integers_set(pair->frames, &e->integers);
     for (int f = 0; f < 2; f++) {
         e->side[f].view = &pair->view[f];
-        e->side[f].exact = &e->integers.side[f];
+        e->side[f].integers = &e->integers.side[f];
     }
     for (unsigned i = 0; i < count; i++)
         e->first[i] = first[i];
@@ -1161,7 +1161,7 @@ struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
 }
 
 /* Takes the vertices that span a frame. */
-static void span_of_frame_done(struct hull_exact *e, int f)
+static void span_of_frame_done(struct programs *e, int f)
 {
     e->spans[f] = (unsigned) e->rank + 1;
     for (int i = 0; i <= e->rank; i++)
@@ -1173,7 +1173,7 @@ static void span_of_frame_done(struct hull_exact *e, int f)
         begin_difference(e);
 }
 
-bool hull_exact_step(struct hull_exact *e)
+bool programs_step(struct programs *e)
 {
     switch (e->stage) {
     case SPANNING_A:
@@ -1193,12 +1193,12 @@ bool hull_exact_step(struct hull_exact *e)
     return e->stage == COMPLETE;
 }
 
-struct hull_proof *hull_exact_proof(struct hull_exact *e)
+struct programs_proof *programs_proof(struct programs *e)
 {
     return &e->proof;
 }
 
-void hull_exact_end(struct hull_exact *e, struct fmb_answer *answer)
+void programs_end(struct programs *e, struct fmb_answer *answer)
 {
     if (answer) {
         const unsigned given = e->proof.verdict != FMB_SEPARATED ? e->want : 0;

@@ -3,15 +3,13 @@
  * Method: gap_simplex.h. The search itself may be wrong in any way; what it claims is proven:
  *
  *   SEPARATED    by a direction n of unit length up to 6 u. The least n . x over D is minus the
- *                greatest of hull_support() for -n, which is off by error |n|; the length moves it
- *                by 6 u reach, less than another error. It is taken from the point p that was
- *                found, as n . p: the point and the value of its vertices are each off by one more
- *                error. So all of D has n . x >= n . p - 4 error.
- *   OVERLAPPING  by a simplex with vertices p_0 to p_dim in D: the origin is inside if all
- *                coordinates of the origin, ratios of determinants of dim of the points, certainly
- *                are of one sign. Then it is in the interior of D, and that is the union of the
- *                interiors of M + t w if M has a volume: if a frame is solid, or the points are all
- *                of one time.
+ *                greatest of support_farthest() for -n, which is off by error |n|; the length moves
+ * it by 6 u reach, less than another error. It is taken from the point p that was found, as n . p:
+ * the point and the value of its vertices are each off by one more error. So all of D has n . x >=
+ * n . p - 4 error. OVERLAPPING  by a simplex with vertices p_0 to p_dim in D: the origin is inside
+ * if all coordinates of the origin, ratios of determinants of dim of the points, certainly are of
+ * one sign. Then it is in the interior of D, and that is the union of the interiors of M + t w if M
+ * has a volume: if a frame is solid, or the points are all of one time.
  *
  * The error of a determinant of points p, q, r, each within e = error of an exact point of D. With
  * L_p = |p| + e and so on, moving the points by e changes it by at most
@@ -21,7 +19,7 @@
  * Computing it, as p . (q x r), is off by at most 6 u |p| |q| |r| sqrt(3), less than a ninth of
  * this sum, since e >= 32 u |p|, and so for q and r. The factor 1.2 covers this, and the rounding
  * of the bound. 2^-900 covers underflow. In 2D: e (L_p + L_q). */
-#include "hull_search.h"
+#include "support_search.h"
 
 #include "gap_simplex.h"
 
@@ -30,31 +28,33 @@
 enum { VERTEX_BITS = 10 };
 _Static_assert(FMB_HULL_VERTICES_MAX <= 1 << VERTEX_BITS, "bits of a corner");
 
-static struct hull_column column_of(unsigned bits)
+static struct support_column column_of(unsigned bits)
 {
     const unsigned mask = (1U << VERTEX_BITS) - 1;
-    return (struct hull_column){{bits & mask, bits >> VERTEX_BITS & mask}, bits >> 2 * VERTEX_BITS};
+    return (struct support_column){{bits & mask, bits >> VERTEX_BITS & mask},
+                                   bits >> 2 * VERTEX_BITS};
 }
 
-void hull_lowest(const struct hull_pair *pair, const double n[FMB_DIM_MAX], struct hull_vertex *out)
+void support_lowest(const struct support_pair *pair, const double n[FMB_DIM_MAX],
+                    struct support_vertex *out)
 {
     const double inverse = -1 / (fabs(n[0]) + fabs(n[1]) + fabs(n[2]) + 0x1p-1000);
     const double outward[FMB_DIM_MAX] = {inverse * n[0], inverse * n[1], inverse * n[2]};
-    hull_support(pair, outward, &out->column);
-    hull_point(pair, out->column, out->at);
+    support_farthest(pair, outward, &out->column);
+    support_point(pair, out->column, out->at);
 }
 
 static void support(const void *context, const double n[FMB_DIM_MAX], struct gap_corner *out)
 {
-    struct hull_vertex vertex;
-    hull_lowest(context, n, &vertex);
-    const struct hull_column *column = &vertex.column;
+    struct support_vertex vertex;
+    support_lowest(context, n, &vertex);
+    const struct support_column *column = &vertex.column;
     memcpy(out->at, vertex.at, sizeof out->at);
     out->bits =
         column->vertex[0] | column->vertex[1] << VERTEX_BITS | column->end << 2 * VERTEX_BITS;
 }
 
-void hull_centre(const struct hull_pair *pair, double out[FMB_DIM_MAX])
+void support_centre(const struct support_pair *pair, double out[FMB_DIM_MAX])
 {
     double a[FMB_DIM_MAX], b[FMB_DIM_MAX];
     rotation_apply(&pair->view[0].rotation, pair->view[0].centre, a);
@@ -66,7 +66,8 @@ void hull_centre(const struct hull_pair *pair, double out[FMB_DIM_MAX])
 #define HULL_DETERMINANT 1.2 /* as above */
 
 /* Returns the sign of the determinant of dim points, 0 if it is not certain. */
-static int sign_of(const struct hull_pair *pair, const struct hull_vertex *const p[FMB_DIM_MAX])
+static int sign_of(const struct support_pair *pair,
+                   const struct support_vertex *const p[FMB_DIM_MAX])
 {
     const double e = pair->error;
     double length[FMB_DIM_MAX], value, bound;
@@ -88,11 +89,12 @@ static int sign_of(const struct hull_pair *pair, const struct hull_vertex *const
 
 /* Whether the origin is certainly inside the simplex. Without vertex i, the determinants of the
  * others in order have signs that alternate with i. */
-bool hull_simplex_contains_origin(const struct hull_pair *pair, const struct hull_simplex *simplex)
+bool support_simplex_contains_origin(const struct support_pair *pair,
+                                     const struct support_simplex *simplex)
 {
     int all = 0;
     for (int omitted = 0; omitted <= pair->dim; omitted++) {
-        const struct hull_vertex *p[FMB_DIM_MAX] = {NULL};
+        const struct support_vertex *p[FMB_DIM_MAX] = {NULL};
         for (int i = 0; i < pair->dim; i++)
             p[i] = &simplex->vertex[i < omitted ? i : i + 1];
         const int sign = (omitted % 2 ? -1 : 1) * sign_of(pair, p);
@@ -104,16 +106,17 @@ bool hull_simplex_contains_origin(const struct hull_pair *pair, const struct hul
 }
 
 /* Whether the interior of D is known to be the union of the interiors of M + t w. */
-static bool is_swept_open(const struct hull_pair *pair)
+static bool is_swept_open(const struct support_pair *pair)
 {
     return !pair->drifts || pair->view[0].solid || pair->view[1].solid;
 }
 
-enum fmb_verdict hull_search(const struct hull_pair *pair, double far, struct hull_nearest *out)
+enum fmb_verdict support_search(const struct support_pair *pair, double far,
+                                struct support_nearest *out)
 {
     struct gap_simplex simplex;
     double centre[FMB_DIM_MAX];
-    hull_centre(pair, centre);
+    support_centre(pair, centre);
     if (!(vec3_dot(centre, centre) > 0x1p-100 * pair->reach * pair->reach))
         centre[0] = pair->reach; /* any direction */
     memset(out, 0, sizeof *out);
@@ -123,15 +126,15 @@ enum fmb_verdict hull_search(const struct hull_pair *pair, double far, struct hu
         return FMB_SEPARATED;
     out->simplex.count = (unsigned) simplex.count;
     for (int c = 0; c < simplex.count; c++) {
-        struct hull_vertex *vertex = &out->simplex.vertex[c];
+        struct support_vertex *vertex = &out->simplex.vertex[c];
         vertex->column = column_of(simplex.corner[c].bits);
         memcpy(vertex->at, simplex.corner[c].at, sizeof vertex->at);
         out->weight[c] = simplex.weight[c];
     }
-    if (out->outcome == GAP_KNOWN && out->least > hull_separating_distance(pair))
+    if (out->outcome == GAP_KNOWN && out->least > support_separating_distance(pair))
         return FMB_SEPARATED;
     return simplex.count == pair->dim + 1 && is_swept_open(pair) &&
-                   hull_simplex_contains_origin(pair, &out->simplex)
+                   support_simplex_contains_origin(pair, &out->simplex)
                ? FMB_OVERLAPPING
                : 0;
 }

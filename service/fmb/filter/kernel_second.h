@@ -1,10 +1,10 @@
 /* The second pass of the filter: prepared frames in lanes to outcomes, by what is exact about them.
- * The proof is in slabs_exact.h. */
-#ifndef FMB_KERNEL_EXACT_H
-#define FMB_KERNEL_EXACT_H
+ * The proof is in slabs_second.h. */
+#ifndef FMB_KERNEL_SECOND_H
+#define FMB_KERNEL_SECOND_H
 
 #include "kernel_lanes.h"
-#include "slabs_exact.h"
+#include "slabs_second.h"
 
 INLINE lanes_bits bits_of(uint64_t bits)
 {
@@ -124,9 +124,9 @@ INLINE void set_across(const struct kernel_traits traits, struct pair_lanes *pai
  * axis-aligned, and have no other slabs: each extends along an axis with one edge. Two faces are
  * TOUCHING here if nothing rounds, no slab separates them, and some slab does not hold the offset
  * strictly. */
-INLINE struct outcomes exact_outcomes(const struct kernel_traits traits,
-                                      const struct frame_lanes *a, const struct frame_lanes *b,
-                                      double duration, struct pair_lanes *pair)
+INLINE struct outcomes second_outcomes(const struct kernel_traits traits,
+                                       const struct frame_lanes *a, const struct frame_lanes *b,
+                                       double duration, struct pair_lanes *pair)
 {
     const bool cuboids = !traits.simplex[0] && !traits.simplex[1];
     const bool faces = traits.face[0] && traits.face[1];

@@ -1,19 +1,19 @@
-/* The gap of a pair with a hull: its order, its bounds, and the choice of step (hull_gap.h).
+/* The gap of a pair with a hull: its order, its bounds, and the choice of step (support_gap.h).
  *
  * Accuracy, with u = 2^-53.
  *
- * Lower bound of a distance: hull_search.c. On the grid it is taken from hull_support().
+ * Lower bound of a distance: support_search.c. On the grid it is taken from support_farthest().
  *
  * Upper bound. A witness point is a sum of weights times vertices R v, of the position and of the
  * displacement times a fraction of the window. Each R v is off by at most 18.3 u r, and by the
- * slack (hull.h); weights sum to 1 within 8 u, negative ones of rounding included; each term passes
- * at most 8 roundings. So the point is within 35 u of the sum of its lengths, and the slack, of a
- * point of the frame: less than 2^-47 far for both frames. The fraction of the window is off by 2 u
- * or, in the shortest windows, by 2^-1074 over the duration: "late" bounds how far that moves the
- * frames. */
-#include "hull_gap.h"
+ * slack (support_pair.h); weights sum to 1 within 8 u, negative ones of rounding included; each
+ * term passes at most 8 roundings. So the point is within 35 u of the sum of its lengths, and the
+ * slack, of a point of the frame: less than 2^-47 far for both frames. The fraction of the window
+ * is off by 2 u or, in the shortest windows, by 2^-1074 over the duration: "late" bounds how far
+ * that moves the frames. */
+#include "support_gap.h"
 
-#include "gap_exact_simplex.h"
+#include "integer_simplex.h"
 #include "memory.h"
 
 #include <math.h>
@@ -24,14 +24,14 @@
 /* Returns a lower bound of the largest coordinate of a vertex of a frame over the window, up to
  * rounding: that of its vertices, two of a hull, and, since the displacement is the difference of
  * two points, half of that. */
-static double least_of(const struct hull_gap *gap, int f)
+static double least_of(const struct support_gap *gap, int f)
 {
-    const struct hull_view *view = &gap->pair->view[f];
+    const struct support_view *view = &gap->pair->view[f];
     const bool hull = view->placed.frame->shape == FMB_HULL;
     double least = 0.5 * vec3_largest(gap->displacement[f]);
     for (unsigned i = 0; i < (hull ? 2 : view->vertices.count); i++) {
         double at[FMB_DIM_MAX];
-        hull_place(view, hull && i == 1 ? view->placed.frame->spanning[1] : i, at);
+        support_place(view, hull && i == 1 ? view->placed.frame->spanning[1] : i, at);
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             at[axis] += gap->position[f][axis];
         least = fmax(least, vec3_largest(at));
@@ -44,9 +44,9 @@ static const double limit = 0.9e-12;
 
 /* Completes what position, displacement and duration determine. least: a lower bound of the largest
  * coordinate of a vertex over the window. */
-static void set_bounds(struct hull_gap *gap, double least)
+static void set_bounds(struct support_gap *gap, double least)
 {
-    const struct hull_pair *pair = gap->pair;
+    const struct support_pair *pair = gap->pair;
     int exponent;
     gap->far = gap->late = 0;
     for (int f = 0; f < 2; f++) {
@@ -61,7 +61,7 @@ static void set_bounds(struct hull_gap *gap, double least)
     gap->scale = ldexp(1, MESH_BITS - (exponent > -200 ? exponent : -200));
 }
 
-static bool is_tight(const struct hull_gap *gap, const struct fmb_gap *out)
+static bool is_tight(const struct support_gap *gap, const struct fmb_gap *out)
 {
     return out->bounds[1] - out->bounds[0] <= gap->tight;
 }
@@ -69,7 +69,7 @@ static bool is_tight(const struct hull_gap *gap, const struct fmb_gap *out)
 /* ---- Distance ---- */
 
 /* Sets the time, the witness points and the upper bound. */
-static void set_witness(const struct hull_gap *gap, const struct hull_nearest *nearest,
+static void set_witness(const struct support_gap *gap, const struct support_nearest *nearest,
                         struct fmb_gap *out)
 {
     double apart[FMB_DIM_MAX], late = 0;
@@ -77,10 +77,10 @@ static void set_witness(const struct hull_gap *gap, const struct hull_nearest *n
         double at[FMB_DIM_MAX] = {0};
         late = 0;
         for (unsigned c = 0; c < nearest->simplex.count; c++) {
-            const struct hull_column column = nearest->simplex.vertex[c].column;
+            const struct support_column column = nearest->simplex.vertex[c].column;
             const double weight = nearest->weight[c];
             double vertex[FMB_DIM_MAX];
-            hull_place(&gap->pair->view[f], column.vertex[f], vertex);
+            support_place(&gap->pair->view[f], column.vertex[f], vertex);
             late += column.end ? weight : 0;
             for (int axis = 0; axis < FMB_DIM_MAX; axis++)
                 at[axis] += weight * vertex[axis];
@@ -100,16 +100,16 @@ static void set_witness(const struct hull_gap *gap, const struct hull_nearest *n
 }
 
 /* Sets the lower bound that the direction proves. */
-static void set_lower(const struct hull_gap *gap, struct fmb_gap *out)
+static void set_lower(const struct support_gap *gap, struct fmb_gap *out)
 {
     const double outward[FMB_DIM_MAX] = {-out->direction[0], -out->direction[1],
                                          -out->direction[2]};
-    struct hull_column column;
-    out->bounds[0] = -(hull_support(gap->pair, outward, &column) + 2 * gap->pair->error);
+    struct support_column column;
+    out->bounds[0] = -(support_farthest(gap->pair, outward, &column) + 2 * gap->pair->error);
 }
 
-static enum gap_outcome distance(const struct hull_gap *gap, const struct hull_nearest *nearest,
-                                 struct fmb_gap *out)
+static enum gap_outcome distance(const struct support_gap *gap,
+                                 const struct support_nearest *nearest, struct fmb_gap *out)
 {
     if (nearest->outcome != GAP_KNOWN)
         return nearest->outcome;
@@ -121,13 +121,13 @@ static enum gap_outcome distance(const struct hull_gap *gap, const struct hull_n
 
 /* ---- Distance on the grid ---- */
 
-static void grid_support(void *context, mpz_t n[3], struct exact_corner *out)
+static void grid_support(void *context, mpz_t n[3], struct integer_corner *out)
 {
-    const struct hull_gap *gap = context;
+    const struct support_gap *gap = context;
     double direction[FMB_DIM_MAX];
-    struct hull_vertex vertex;
-    exact_direction(n, direction);
-    hull_lowest(gap->pair, direction, &vertex);
+    struct support_vertex vertex;
+    integer_direction(n, direction);
+    support_lowest(gap->pair, direction, &vertex);
     memcpy(out->bits, vertex.column.vertex, sizeof out->bits);
     out->late = vertex.column.end;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
@@ -135,63 +135,63 @@ static void grid_support(void *context, mpz_t n[3], struct exact_corner *out)
 }
 
 /* Finds a direction in which the distance is 0, up to the width of an enclosure. */
-static void set_direction(const struct hull_gap *gap, struct fmb_gap *out)
+static void set_direction(const struct support_gap *gap, struct fmb_gap *out)
 {
-    struct hull_depth depth;
-    if (hull_depth_begin(&depth, gap, NULL))
-        while (!hull_depth_step(&depth, 1))
+    struct support_depth depth;
+    if (support_depth_begin(&depth, gap, NULL))
+        while (!support_depth_step(&depth, 1))
             ;
-    hull_depth_end(&depth, out);
+    support_depth_end(&depth, out);
 }
 
 /* The point of D next to the origin, with every vertex rounded to the grid. If that is the origin,
  * the depth gives the direction. */
-static enum gap_outcome distance_on_grid(const struct hull_gap *gap, struct fmb_gap *out)
+static enum gap_outcome distance_on_grid(const struct support_gap *gap, struct fmb_gap *out)
 {
-    struct exact_simplex simplex;
-    struct hull_nearest nearest;
-    exact_simplex_each(&simplex, mpz_init);
+    struct integer_simplex simplex;
+    struct support_nearest nearest;
+    integer_simplex_each(&simplex, mpz_init);
     mpz_set_ui(simplex.other[0], 1);
-    exact_simplex_solve(&simplex, simplex.other, grid_support, (void *) gap);
+    integer_simplex_solve(&simplex, simplex.other, grid_support, (void *) gap);
     nearest.simplex.count = (unsigned) simplex.count;
     for (int c = 0; c < simplex.count; c++) {
-        const struct exact_corner *corner = simplex.corner[c];
+        const struct integer_corner *corner = simplex.corner[c];
         nearest.simplex.vertex[c].column =
-            (struct hull_column){{corner->bits[0], corner->bits[1]}, corner->late};
+            (struct support_column){{corner->bits[0], corner->bits[1]}, corner->late};
         nearest.weight[c] = mpz_get_d(simplex.weight[c]) / mpz_get_d(simplex.total);
     }
     if (simplex.zero)
         set_direction(gap, out);
     else
-        exact_direction(simplex.normal, out->direction);
+        integer_direction(simplex.normal, out->direction);
     set_lower(gap, out);
     set_witness(gap, &nearest, out);
-    exact_simplex_each(&simplex, mpz_clear);
+    integer_simplex_each(&simplex, mpz_clear);
     return is_tight(gap, out) ? GAP_KNOWN : GAP_UNSURE;
 }
 
 /* ---- Pairs ---- */
 
-/* A pair in the order of hull_order(). It points into itself. */
-struct hull_gap_work {
+/* A pair in the order of support_order(). It points into itself. */
+struct support_gap_work {
     struct frame_pair frames;
-    struct hull_pair pair;
+    struct support_pair pair;
     bool swapped;
     enum fmb_verdict verdict;
     double farthest;
     enum { GAP_DEPTH, GAP_PLACING, GAP_PLACED_DEPTH } stage; /* what comes next */
     bool flat;                                               /* the depth needs no step */
-    struct hull_gap gap;
-    struct hull_gap_placed placed;
-    struct hull_nearest nearest;
-    struct hull_depth depth;
+    struct support_gap gap;
+    struct support_placed placed;
+    struct support_nearest nearest;
+    struct support_depth depth;
 };
 
 /* Sets the gap in doubles. Returns false if doubles cannot bound it. */
-static bool set_gap(const struct hull_pair *pair, struct hull_gap *out)
+static bool set_gap(const struct support_pair *pair, struct support_gap *out)
 {
     const struct placed_frame frames[2] = {pair->frames->a, pair->frames->b};
-    *out = (struct hull_gap){.pair = pair, .duration = pair->frames->duration};
+    *out = (struct support_gap){.pair = pair, .duration = pair->frames->duration};
     if (!(pair->reach >= 0x1p-200 && pair->reach <= 0x1p200))
         return false;
     for (int f = 0; f < 2; f++)
@@ -204,16 +204,16 @@ static bool set_gap(const struct hull_pair *pair, struct hull_gap *out)
 }
 
 /* Searches for the point of D nearest to the origin, of a separated pair up to farthest. */
-static void search(const struct hull_gap *gap, enum fmb_verdict verdict, double farthest,
-                   struct hull_nearest *out)
+static void search(const struct support_gap *gap, enum fmb_verdict verdict, double farthest,
+                   struct support_nearest *out)
 {
-    const double near = hull_separating_distance(gap->pair), far = farthest + near + gap->tight;
-    hull_search(gap->pair, verdict != FMB_SEPARATED ? INFINITY : fmax(far, near), out);
+    const double near = support_separating_distance(gap->pair), far = farthest + near + gap->tight;
+    support_search(gap->pair, verdict != FMB_SEPARATED ? INFINITY : fmax(far, near), out);
 }
 
 /* bounded: the grid, which allocates, is not used. */
-static enum gap_outcome solve_distance(const struct hull_gap *gap,
-                                       const struct hull_nearest *nearest, bool bounded,
+static enum gap_outcome solve_distance(const struct support_gap *gap,
+                                       const struct support_nearest *nearest, bool bounded,
                                        struct fmb_gap *out)
 {
     memset(out, 0, sizeof *out);
@@ -221,11 +221,11 @@ static enum gap_outcome solve_distance(const struct hull_gap *gap,
     return outcome == GAP_UNSURE && !bounded ? distance_on_grid(gap, out) : outcome;
 }
 
-static enum gap_outcome end_depth(struct hull_depth *depth, enum fmb_verdict verdict,
+static enum gap_outcome end_depth(struct support_depth *depth, enum fmb_verdict verdict,
                                   struct fmb_gap *out)
 {
     memset(out, 0, sizeof *out);
-    const bool known = hull_depth_end(depth, out);
+    const bool known = support_depth_end(depth, out);
     if (verdict == FMB_TOUCHING)
         out->bounds[0] = out->bounds[1] = 0;
     return known ? GAP_KNOWN : GAP_UNSURE;
@@ -268,29 +268,32 @@ static void scale_lengths(struct fmb_gap *gap, int exponent)
 enum { RAISED_AT_ONCE = 128, PLACED_AT_ONCE = 128 };
 
 /* In doubles, a depth in one step. *late: it takes more. */
-static enum gap_outcome solve_at_once(const struct hull_gap *gap,
-                                      const struct hull_nearest *nearest, enum fmb_verdict verdict,
-                                      bool bounded, bool *late, struct fmb_gap *out)
+static enum gap_outcome solve_at_once(const struct support_gap *gap,
+                                      const struct support_nearest *nearest,
+                                      enum fmb_verdict verdict, bool bounded, bool *late,
+                                      struct fmb_gap *out)
 {
-    struct hull_depth depth;
+    struct support_depth depth;
     if (verdict == FMB_SEPARATED)
         return solve_distance(gap, nearest, bounded, out);
-    *late = hull_depth_begin(&depth, gap, nearest) && !hull_depth_step(&depth, RAISED_AT_ONCE);
+    *late =
+        support_depth_begin(&depth, gap, nearest) && !support_depth_step(&depth, RAISED_AT_ONCE);
     return end_depth(&depth, verdict, out);
 }
 
-static void begin_placing(struct hull_gap_work *work)
+static void begin_placing(struct support_gap_work *work)
 {
     work->stage = GAP_PLACING;
-    hull_gap_place_begin(&work->pair, &work->placed);
+    support_placed_begin(&work->pair, &work->placed);
 }
 
-enum gap_outcome hull_gap_of_pair(const struct hull_pair *pair, bool swapped,
-                                  const struct hull_nearest *nearest, enum fmb_verdict verdict,
-                                  double farthest, struct fmb_gap *out, struct hull_gap_work **work)
+enum gap_outcome support_gap_of_pair(const struct support_pair *pair, bool swapped,
+                                     const struct support_nearest *nearest,
+                                     enum fmb_verdict verdict, double farthest, struct fmb_gap *out,
+                                     struct support_gap_work **work)
 {
-    struct hull_nearest searched;
-    struct hull_gap gap;
+    struct support_nearest searched;
+    struct support_gap gap;
     bool late = false;
     enum gap_outcome outcome = GAP_UNSURE;
     if (set_gap(pair, &gap)) {
@@ -303,17 +306,17 @@ enum gap_outcome hull_gap_of_pair(const struct hull_pair *pair, bool swapped,
         return complete(outcome, swapped, out);
     if (!work)
         return GAP_UNSURE;
-    struct hull_gap_work *begun = memory_allocate(sizeof *begun);
+    struct support_gap_work *begun = memory_allocate(sizeof *begun);
     begun->frames = *pair->frames;
     begun->swapped = swapped;
     begun->verdict = verdict;
     begun->farthest = farthest;
     begun->flat = false;
-    hull_pair_set(&begun->frames, &begun->pair);
+    support_pair_set(&begun->frames, &begun->pair);
     if (late) {
         begun->stage = GAP_DEPTH;
         set_gap(&begun->pair, &begun->gap);
-        hull_depth_begin(&begun->depth, &begun->gap, nearest);
+        support_depth_begin(&begun->depth, &begun->gap, nearest);
     } else {
         begin_placing(begun);
     }
@@ -329,11 +332,11 @@ enum gap_outcome hull_gap_of_pair(const struct hull_pair *pair, bool swapped,
  *
  * where error is below 36 u reach, and a unit of the grid below 4 u reach. The limit is 8100 u L.
  */
-static void begin_placed(struct hull_gap_work *work)
+static void begin_placed(struct support_gap_work *work)
 {
     /* scale_lengths() lowers the bound by at most 1.5 * 2^-1074. */
     const double farthest = ldexp(work->farthest + 2 * 0x1p-1074, (int) -work->placed.exponent);
-    work->gap = (struct hull_gap){.pair = &work->placed.pair, .duration = work->frames.duration};
+    work->gap = (struct support_gap){.pair = &work->placed.pair, .duration = work->frames.duration};
     memcpy(work->gap.displacement, work->placed.displacement, sizeof work->gap.displacement);
     set_bounds(&work->gap, work->placed.least);
     if (work->placed.least == 0)
@@ -342,10 +345,10 @@ static void begin_placed(struct hull_gap_work *work)
     if (work->verdict == FMB_SEPARATED)
         return;
     work->stage = GAP_PLACED_DEPTH;
-    work->flat = !hull_depth_begin(&work->depth, &work->gap, &work->nearest);
+    work->flat = !support_depth_begin(&work->depth, &work->gap, &work->nearest);
 }
 
-static enum gap_outcome solve_placed(struct hull_gap_work *work, struct fmb_gap *out)
+static enum gap_outcome solve_placed(struct support_gap_work *work, struct fmb_gap *out)
 {
     if (work->placed.least == 0) { /* two points at the origin of the world */
         memset(out, 0, sizeof *out);
@@ -356,24 +359,24 @@ static enum gap_outcome solve_placed(struct hull_gap_work *work, struct fmb_gap 
     return outcome == GAP_FAR ? GAP_FAR : GAP_KNOWN;
 }
 
-void hull_gap_end(struct hull_gap_work *work)
+void support_gap_end(struct support_gap_work *work)
 {
     if (work->stage != GAP_PLACING)
-        hull_mesh_end(&work->depth.mesh);
+        mesh_end(&work->depth.mesh);
     if (work->stage != GAP_DEPTH)
-        hull_gap_place_end(&work->placed);
+        support_placed_end(&work->placed);
     memory_release(work, sizeof *work);
 }
 
-enum gap_outcome hull_gap_step(struct hull_gap_work *work, struct fmb_gap *out)
+enum gap_outcome support_gap_step(struct support_gap_work *work, struct fmb_gap *out)
 {
     enum gap_outcome outcome = GAP_UNSURE;
-    if (work->stage == GAP_PLACING && hull_gap_place_step(&work->placed, PLACED_AT_ONCE)) {
+    if (work->stage == GAP_PLACING && support_placed_step(&work->placed, PLACED_AT_ONCE)) {
         begin_placed(work);
         if (work->verdict == FMB_SEPARATED || work->placed.least == 0)
             outcome = solve_placed(work, out);
     } else if (work->stage != GAP_PLACING &&
-               (work->flat || hull_depth_step(&work->depth, RAISED_AT_ONCE))) {
+               (work->flat || support_depth_step(&work->depth, RAISED_AT_ONCE))) {
         outcome = end_depth(&work->depth, work->verdict, out);
         if (outcome == GAP_UNSURE && work->stage == GAP_DEPTH)
             begin_placing(work);
@@ -385,6 +388,6 @@ enum gap_outcome hull_gap_step(struct hull_gap_work *work, struct fmb_gap *out)
     if (outcome == GAP_KNOWN && work->stage != GAP_DEPTH && work->placed.least > 0)
         scale_lengths(out, (int) work->placed.exponent);
     complete(outcome, work->swapped, out);
-    hull_gap_end(work);
+    support_gap_end(work);
     return outcome;
 }

@@ -15,7 +15,7 @@
  *
  * Accuracy. The greatest n . x is off by error |n|, where |n| is 1 up to 6 u; that is 6 u reach,
  * less than another error. A height is off by less than MESH_ERROR units. */
-#include "hull_gap.h"
+#include "support_gap.h"
 
 #include <math.h>
 #include <string.h>
@@ -24,7 +24,7 @@
  * ROUNDING: of heights, and of points. */
 static const double TOLERANCE = 2 * MESH_ERROR, ROUNDING = MESH_ERROR + 2;
 
-static void set_on_grid(const struct hull_depth *depth, const double point[FMB_DIM_MAX],
+static void set_on_grid(const struct support_depth *depth, const double point[FMB_DIM_MAX],
                         int64_t out[FMB_DIM_MAX])
 {
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
@@ -33,13 +33,13 @@ static void set_on_grid(const struct hull_depth *depth, const double point[FMB_D
 
 /* Finds the point of D that is farthest in a direction of unit length. Returns whether the depth is
  * now known to be 0. */
-static bool scan(struct hull_depth *depth, const double n[FMB_DIM_MAX], int64_t at[FMB_DIM_MAX])
+static bool scan(struct support_depth *depth, const double n[FMB_DIM_MAX], int64_t at[FMB_DIM_MAX])
 {
-    const struct hull_gap *gap = depth->gap;
-    struct hull_column column;
+    const struct support_gap *gap = depth->gap;
+    struct support_column column;
     double point[FMB_DIM_MAX];
-    const double value = hull_support(gap->pair, n, &column);
-    hull_point(gap->pair, column, point);
+    const double value = support_farthest(gap->pair, n, &column);
+    support_point(gap->pair, column, point);
     set_on_grid(depth, point, at);
     if (value < depth->least) {
         depth->least = value;
@@ -74,7 +74,7 @@ static double height_of(const double n[FMB_DIM_MAX], const int64_t p[FMB_DIM_MAX
 
 /* Adds the point farthest along n or, if that is not off the points so far, along -n. Returns false
  * if D is thin along n. *known: the depth is 0. */
-static bool add_off(struct hull_depth *depth, double n[FMB_DIM_MAX], bool *known)
+static bool add_off(struct support_depth *depth, double n[FMB_DIM_MAX], bool *known)
 {
     for (int side = 0; side < 2; side++, negate(n)) {
         int64_t at[FMB_DIM_MAX];
@@ -82,7 +82,7 @@ static bool add_off(struct hull_depth *depth, double n[FMB_DIM_MAX], bool *known
         if (*known)
             return false;
         if (height_of(n, at, depth->mesh.point[0].at) > TOLERANCE) {
-            hull_mesh_add_point(&depth->mesh, at);
+            mesh_add_point(&depth->mesh, at);
             return true;
         }
     }
@@ -90,9 +90,9 @@ static bool add_off(struct hull_depth *depth, double n[FMB_DIM_MAX], bool *known
 }
 
 /* The direction from the middle of D to the origin. */
-static void set_first(const struct hull_pair *pair, double n[FMB_DIM_MAX])
+static void set_first(const struct support_pair *pair, double n[FMB_DIM_MAX])
 {
-    hull_centre(pair, n);
+    support_centre(pair, n);
     negate(n);
     if (normalise(n, 0x1p-40 * pair->reach))
         return;
@@ -102,7 +102,7 @@ static void set_first(const struct hull_pair *pair, double n[FMB_DIM_MAX])
 
 /* The direction from the line of the first two points to the origin or, if that is on it, any
  * direction across. */
-static void set_second(const struct hull_mesh *mesh, double n[FMB_DIM_MAX])
+static void set_second(const struct mesh *mesh, double n[FMB_DIM_MAX])
 {
     const int64_t *p = mesh->point[0].at, *q = mesh->point[1].at;
     double e[FMB_DIM_MAX] = {(double) (q[0] - p[0]), (double) (q[1] - p[1]),
@@ -129,23 +129,23 @@ static void set_second(const struct hull_mesh *mesh, double n[FMB_DIM_MAX])
 
 /* Finds dim + 1 points of D that span a volume; false if D is thin, or if *known: the depth is 0.
  */
-static bool find_first(struct hull_depth *depth, bool *known)
+static bool find_first(struct support_depth *depth, bool *known)
 {
-    struct hull_mesh *mesh = &depth->mesh;
+    struct mesh *mesh = &depth->mesh;
     double n[FMB_DIM_MAX];
     int64_t at[FMB_DIM_MAX];
     set_first(depth->gap->pair, n);
     *known = scan(depth, n, at);
     if (*known)
         return false;
-    hull_mesh_add_point(mesh, at);
+    mesh_add_point(mesh, at);
     negate(n);
     if (!add_off(depth, n, known))
         return false;
     set_second(mesh, n);
     if (!add_off(depth, n, known) || mesh->dim == 2)
         return mesh->points == 3;
-    hull_mesh_first_normal(mesh, n);
+    mesh_first_normal(mesh, n);
     if (height_of(n, (int64_t[FMB_DIM_MAX]){0, 0, 0}, mesh->point[0].at) < 0)
         negate(n);
     return add_off(depth, n, known);
@@ -153,51 +153,50 @@ static bool find_first(struct hull_depth *depth, bool *known)
 
 /* Raises the lowest facet. Returns false if it is as far out as D, or the depth is known to be 0.
  */
-static bool raise_lowest(struct hull_depth *depth)
+static bool raise_lowest(struct support_depth *depth)
 {
     const double scale = depth->gap->scale;
-    struct hull_mesh *mesh = &depth->mesh;
-    const int f = hull_mesh_lowest(mesh);
+    struct mesh *mesh = &depth->mesh;
+    const int f = mesh_lowest(mesh);
     const double height = mesh->facet[f].height;
     int64_t at[FMB_DIM_MAX];
     if (depth->least * scale - height <= TOLERANCE)
         return false;
     depth->zero = scan(depth, mesh->facet[f].normal, at);
-    if (depth->zero || depth->least * scale - height <= TOLERANCE ||
-        hull_mesh_side(mesh, f, at) <= 0)
+    if (depth->zero || depth->least * scale - height <= TOLERANCE || mesh_side(mesh, f, at) <= 0)
         return false;
-    hull_mesh_extend(mesh, f, at);
+    mesh_extend(mesh, f, at);
     return true;
 }
 
 /* Begins the mesh with a simplex in 3D; false if its points lie in one plane of the grid. */
-static bool take_simplex(struct hull_depth *depth, const struct hull_simplex *simplex)
+static bool take_simplex(struct support_depth *depth, const struct support_simplex *simplex)
 {
     for (unsigned i = 0; i < simplex->count; i++) {
         int64_t at[FMB_DIM_MAX];
         set_on_grid(depth, simplex->vertex[i].at, at);
-        hull_mesh_add_point(&depth->mesh, at);
+        mesh_add_point(&depth->mesh, at);
     }
-    return hull_mesh_close(&depth->mesh);
+    return mesh_close(&depth->mesh);
 }
 
-bool hull_depth_begin(struct hull_depth *depth, const struct hull_gap *gap,
-                      const struct hull_nearest *nearest)
+bool support_depth_begin(struct support_depth *depth, const struct support_gap *gap,
+                         const struct support_nearest *nearest)
 {
     depth->gap = gap;
     depth->least = INFINITY;
     depth->zero = false;
-    hull_mesh_begin(&depth->mesh, gap->pair->dim);
+    mesh_begin(&depth->mesh, gap->pair->dim);
     depth->closed =
         nearest && nearest->simplex.count == 4 && take_simplex(depth, &nearest->simplex);
     if (depth->closed)
         return true;
-    hull_mesh_begin(&depth->mesh, gap->pair->dim);
-    depth->closed = find_first(depth, &depth->zero) && hull_mesh_close(&depth->mesh);
+    mesh_begin(&depth->mesh, gap->pair->dim);
+    depth->closed = find_first(depth, &depth->zero) && mesh_close(&depth->mesh);
     return depth->closed;
 }
 
-bool hull_depth_step(struct hull_depth *depth, int count)
+bool support_depth_step(struct support_depth *depth, int count)
 {
     for (; count > 0; count--)
         if (!raise_lowest(depth))
@@ -205,14 +204,14 @@ bool hull_depth_step(struct hull_depth *depth, int count)
     return false;
 }
 
-bool hull_depth_end(struct hull_depth *depth, struct fmb_gap *out)
+bool support_depth_end(struct support_depth *depth, struct fmb_gap *out)
 {
-    const struct hull_gap *gap = depth->gap;
+    const struct support_gap *gap = depth->gap;
     const double error = gap->pair->error;
     double upper = 0;
     if (depth->closed && !depth->zero)
-        upper = error - (hull_mesh_least_height(&depth->mesh) - ROUNDING) / gap->scale;
-    hull_mesh_end(&depth->mesh);
+        upper = error - (mesh_least_height(&depth->mesh) - ROUNDING) / gap->scale;
+    mesh_end(&depth->mesh);
     out->bounds[0] = -(depth->least + 2 * error);
     out->bounds[1] = upper < 0 ? upper : 0;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)

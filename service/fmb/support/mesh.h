@@ -11,8 +11,8 @@
  *
  * Memory: a mesh of up to MESH_FACETS facets, those that were removed included, needs no memory of
  * its own; a larger one is allocated through GMP. */
-#ifndef FMB_HULL_MESH_H
-#define FMB_HULL_MESH_H
+#ifndef FMB_MESH_H
+#define FMB_MESH_H
 
 #include "fmb.h"
 
@@ -24,7 +24,7 @@ enum {
     MESH_POINTS = MESH_FACETS / 2
 };
 
-/* The heights and normals of facets in doubles: bounds, in units of the grid (hull_mesh.c). */
+/* The heights and normals of facets in doubles: bounds, in units of the grid (mesh.c). */
 #define MESH_ERROR 18.0
 
 struct mesh_facet {
@@ -41,7 +41,7 @@ struct mesh_point {
     int facet;               /* scratch: a new facet that begins here */
 };
 
-struct hull_mesh {
+struct mesh {
     int dim, facets, points, waiting; /* of the heap */
     int facet_capacity, point_capacity;
     struct mesh_facet *facet;
@@ -52,32 +52,32 @@ struct hull_mesh {
     int own_heap[MESH_FACETS];
 };
 
-/* Begins an empty mesh; hull_mesh_end() frees what it allocates, and leaves it empty. Points are
- * added to it by hull_mesh_add_point() until there are dim + 1. */
-void hull_mesh_begin(struct hull_mesh *mesh, int dim);
-void hull_mesh_end(struct hull_mesh *mesh);
+/* Begins an empty mesh; mesh_end() frees what it allocates, and leaves it empty. Points are
+ * added to it by mesh_add_point() until there are dim + 1. */
+void mesh_begin(struct mesh *mesh, int dim);
+void mesh_end(struct mesh *mesh);
 
 /* Returns the number of the point. */
-int hull_mesh_add_point(struct hull_mesh *mesh, const int64_t at[FMB_DIM_MAX]);
+int mesh_add_point(struct mesh *mesh, const int64_t at[FMB_DIM_MAX]);
 
 /* Makes the first facets, of points 0 to dim; returns false if these lie in one plane (2D: line).
  */
-bool hull_mesh_close(struct hull_mesh *mesh);
+bool mesh_close(struct mesh *mesh);
 
 /* Removes the facet of least height from the heap, and returns its number; -1 if there is none. */
-int hull_mesh_lowest(struct hull_mesh *mesh);
+int mesh_lowest(struct mesh *mesh);
 
 /* Returns the sign of the height of a point over the plane of a facet, exactly. */
-int hull_mesh_side(const struct hull_mesh *mesh, int facet, const int64_t at[FMB_DIM_MAX]);
+int mesh_side(const struct mesh *mesh, int facet, const int64_t at[FMB_DIM_MAX]);
 
 /* out := the normal of the plane of points 0 to 2 (2D: of the line of points 0 and 1), of unit
  * length up to rounding. In: they are not collinear (2D: not equal). */
-void hull_mesh_first_normal(const struct hull_mesh *mesh, double out[FMB_DIM_MAX]);
+void mesh_first_normal(const struct mesh *mesh, double out[FMB_DIM_MAX]);
 
 /* Adds a point that lies above the given facet. */
-void hull_mesh_extend(struct hull_mesh *mesh, int facet, const int64_t at[FMB_DIM_MAX]);
+void mesh_extend(struct mesh *mesh, int facet, const int64_t at[FMB_DIM_MAX]);
 
 /* Returns the least height of all facets. In: a closed mesh. */
-double hull_mesh_least_height(const struct hull_mesh *mesh);
+double mesh_least_height(const struct mesh *mesh);
 
 #endif

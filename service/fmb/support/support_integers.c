@@ -1,18 +1,18 @@
-#include "hull_vertices.h"
+#include "support_integers.h"
 
 #include "integer.h"
 
-void hull_integers_each(struct hull_integers *integers, void (*call)(mpz_ptr))
+void support_integers_each(struct support_integers *integers, void (*call)(mpz_ptr))
 {
     call(integers->scale);
     for (int f = 0; f < 2; f++) {
-        struct hull_side *side = &integers->side[f];
+        struct support_side *side = &integers->side[f];
         INTEGER_EACH_FROM(row, &side->turn, call);
         call(side->factor);
         for (int axis = 0; axis < 3; axis++) {
             call(side->position[axis]);
             call(side->displacement[axis]);
-            for (int i = 0; i < HULL_SMALL; i++)
+            for (int i = 0; i < SUPPORT_SMALL; i++)
                 call(side->small[i][axis]);
         }
     }
@@ -26,7 +26,7 @@ void hull_integers_each(struct hull_integers *integers, void (*call)(mpz_ptr))
  * are multiplied by scale: n_a n_b, or n_a if n_a = n_b. This changes no sign, no time and no
  * direction. Points are divided by scale at the end. */
 
-static void set_turn(const struct fmb_placement *placement, struct hull_turn *turn)
+static void set_turn(const struct fmb_placement *placement, struct support_turn *turn)
 {
     struct limbs_quaternion quaternion;
     limbs_quaternion_set(placement, &quaternion);
@@ -59,7 +59,7 @@ static void set_turn(const struct fmb_placement *placement, struct hull_turn *tu
     mpz_clears(q[0], q[1], q[2], q[3], product, NULL);
 }
 
-static void turn_vector(const struct hull_turn *turn, const mpz_t factor, mpz_t v[3])
+static void turn_vector(const struct support_turn *turn, const mpz_t factor, mpz_t v[3])
 {
     if (turn->turned) {
         mpz_t out[3];
@@ -80,7 +80,7 @@ static void turn_vector(const struct hull_turn *turn, const mpz_t factor, mpz_t 
 
 /* Sets the vertices of a frame that is not a hull, from its origin and components. The origin of a
  * box is its centre less half of each component. */
-static void set_small(struct hull_side *side, long unit)
+static void set_small(struct support_side *side, long unit)
 {
     const struct fmb_frame *frame = side->frame;
     const bool simplex = frame_is_simplex(frame), box = frame->shape == FMB_BOX;
@@ -108,7 +108,7 @@ static void set_small(struct hull_side *side, long unit)
 }
 
 static void set_side(const struct fmb_placement *placement, const struct dyadic window,
-                     const struct hull_integers *integers, struct hull_side *side)
+                     const struct support_integers *integers, struct support_side *side)
 {
     for (int axis = 0; axis < side->frame->dim; axis++) {
         integer_set(side->position[axis], dyadic_of(placement->position[axis]), integers->unit);
@@ -121,10 +121,10 @@ static void set_side(const struct fmb_placement *placement, const struct dyadic 
         set_small(side, integers->unit);
 }
 
-void hull_integers_set(const struct frame_pair *frames, struct hull_integers *out)
+void support_integers_set(const struct frame_pair *frames, struct support_integers *out)
 {
     const struct placed_frame *placed[2] = {&frames->a, &frames->b};
-    struct hull_side *side = out->side;
+    struct support_side *side = out->side;
     out->unit = limbs_span_of(frames).unit;
     for (int f = 0; f < 2; f++) {
         side[f].frame = placed[f]->frame;
@@ -145,9 +145,10 @@ void hull_integers_set(const struct frame_pair *frames, struct hull_integers *ou
         mpz_sub(out->drift[axis], side[1].displacement[axis], side[0].displacement[axis]);
 }
 
-void hull_integers_place(const struct hull_integers *integers, int f, unsigned i, mpz_t out[3])
+void support_integers_place(const struct support_integers *integers, int f, unsigned i,
+                            mpz_t out[3])
 {
-    const struct hull_side *side = &integers->side[f];
+    const struct support_side *side = &integers->side[f];
     const struct fmb_frame *frame = side->frame;
     for (int axis = 0; axis < 3; axis++) {
         if (frame->shape != FMB_HULL)

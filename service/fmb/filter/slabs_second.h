@@ -45,8 +45,8 @@
  * Otherwise w lies on its boundary.
  *
  * TOUCHING is only given if S has an interior: never for two faces. */
-#ifndef FMB_SLABS_EXACT_H
-#define FMB_SLABS_EXACT_H
+#ifndef FMB_SLABS_SECOND_H
+#define FMB_SLABS_SECOND_H
 
 #include "pair_lanes.h"
 

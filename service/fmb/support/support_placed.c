@@ -1,13 +1,13 @@
 /* Vertices placed exactly, then rounded: for pairs whose positions cancel, or whose numbers are too
  * large or too small for doubles.
  *
- * Method. Each vertex is placed in integers (hull_vertices.h). Lengths are divided by a power of
+ * Method. Each vertex is placed in integers (support_integers.h). Lengths are divided by a power of
  * two, such that the largest coordinate, or displacement over the window, is near 1: a first pass
  * measures it, a second one rounds.
  *
  * Accuracy, with u = 2^-53: each coordinate is rounded down, so that it is off by 2 u of itself,
  * and a vertex by 2 u of its length. */
-#include "hull_gap.h"
+#include "support_gap.h"
 
 #include "integer.h"
 #include "memory.h"
@@ -19,9 +19,9 @@
 static const long no_exponent = LONG_MIN / 2;
 
 /* Returns x / scale in units of 2^exponent, or 0 while that is measured. */
-static double rounded(struct hull_gap_placed *placed, const mpz_t x)
+static double rounded(struct support_placed *placed, const mpz_t x)
 {
-    const struct hull_integers *integers = &placed->integers;
+    const struct support_integers *integers = &placed->integers;
     if (!placed->measures)
         return integer_ratio_round(x, integers->scale, integers->unit - placed->exponent,
                                    ROUND_DOWN, placed->scratch);
@@ -32,15 +32,15 @@ static double rounded(struct hull_gap_placed *placed, const mpz_t x)
     return 0;
 }
 
-static void place_vertex(struct hull_gap_placed *placed, int f, unsigned i)
+static void place_vertex(struct support_placed *placed, int f, unsigned i)
 {
     const size_t stride = placed->pair.view[f].vertices.stride;
-    hull_integers_place(&placed->integers, f, i, placed->at);
+    support_integers_place(&placed->integers, f, i, placed->at);
     for (int axis = 0; axis < placed->pair.dim; axis++)
         placed->memory[f][(size_t) axis * stride + i] = rounded(placed, placed->at[axis]);
 }
 
-static void place_path(struct hull_gap_placed *placed)
+static void place_path(struct support_placed *placed)
 {
     for (int axis = 0; axis < placed->pair.dim; axis++) {
         for (int f = 0; f < 2; f++)
@@ -51,7 +51,7 @@ static void place_path(struct hull_gap_placed *placed)
 }
 
 /* Sets the padding, the middle and the bounds of a view. Returns its largest coordinate. */
-static double complete(struct hull_view *view, double *at)
+static double complete(struct support_view *view, double *at)
 {
     const struct support_vertices *vertices = &view->vertices;
     double largest = 0, square = 0;
@@ -77,16 +77,16 @@ static size_t bytes_of(const struct support_vertices *vertices)
     return (size_t) vertices->stride * FMB_DIM_MAX * sizeof(double);
 }
 
-static void numbers_each(struct hull_gap_placed *placed, void (*call)(mpz_ptr))
+static void numbers_each(struct support_placed *placed, void (*call)(mpz_ptr))
 {
-    hull_integers_each(&placed->integers, call);
+    support_integers_each(&placed->integers, call);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         call(placed->at[axis]);
     call(placed->scratch[0]);
     call(placed->scratch[1]);
 }
 
-void hull_gap_place_begin(const struct hull_pair *pair, struct hull_gap_placed *out)
+void support_placed_begin(const struct support_pair *pair, struct support_placed *out)
 {
     memset(out, 0, sizeof *out);
     out->measures = true;
@@ -95,7 +95,7 @@ void hull_gap_place_begin(const struct hull_pair *pair, struct hull_gap_placed *
     out->pair.dim = pair->dim;
     out->pair.drifts = pair->drifts;
     for (int f = 0; f < 2; f++) {
-        struct hull_view *view = &out->pair.view[f];
+        struct support_view *view = &out->pair.view[f];
         view->placed = pair->view[f].placed;
         view->vertices = pair->view[f].vertices;
         out->memory[f] = memory_allocate(bytes_of(&view->vertices));
@@ -104,14 +104,14 @@ void hull_gap_place_begin(const struct hull_pair *pair, struct hull_gap_placed *
         rotation_set_planar(1, 0, true, &view->rotation);
     }
     numbers_each(out, mpz_init);
-    hull_integers_set(pair->frames, &out->integers);
+    support_integers_set(pair->frames, &out->integers);
 }
 
-static void set_pair(struct hull_gap_placed *placed)
+static void set_pair(struct support_placed *placed)
 {
     double reach = 0, error = 0x1p-1000;
     for (int f = 0; f < 2; f++) {
-        struct hull_view *view = &placed->pair.view[f];
+        struct support_view *view = &placed->pair.view[f];
         placed->least = fmax(placed->least, complete(view, placed->memory[f]));
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             placed->least = fmax(placed->least, 0.5 * fabs(placed->displacement[f][axis]));
@@ -124,7 +124,7 @@ static void set_pair(struct hull_gap_placed *placed)
     placed->pair.error = 32 * 0x1p-53 * reach + error;
 }
 
-bool hull_gap_place_step(struct hull_gap_placed *placed, int count)
+bool support_placed_step(struct support_placed *placed, int count)
 {
     const unsigned of_a = placed->pair.view[0].vertices.count;
     const unsigned all = of_a + placed->pair.view[1].vertices.count;
@@ -145,7 +145,7 @@ bool hull_gap_place_step(struct hull_gap_placed *placed, int count)
     return false;
 }
 
-void hull_gap_place_end(struct hull_gap_placed *placed)
+void support_placed_end(struct support_placed *placed)
 {
     for (int f = 0; f < 2; f++)
         memory_release(placed->memory[f], bytes_of(&placed->pair.view[f].vertices));

@@ -1,27 +1,28 @@
 /* Linear programs over the vertices of two frames, in integers: with the exact search for the gap
- * (hull_gap.h), the "programs" of other comments.
+ * (support_gap.h), the "programs" of other comments.
  *
  * The state of a decision is advanced in steps, so that a caller can look after other work in
- * between. Each step prices once: it finds the vertex of D that is farthest in one exact direction.
+ * between. Each step prices once: it finds the vertex of D that is farthest in one direction,
+ * exactly.
  *
- *     struct hull_exact *exact = hull_exact_begin(pair, want, first, count);
- *     while (!hull_exact_step(exact))
+ *     struct programs *programs = programs_begin(pair, want, first, count);
+ *     while (!programs_step(programs))
  *         ...
- *     hull_exact_end(exact, answer);
+ *     programs_end(programs, answer);
  *
  * No shared state. */
-#ifndef FMB_HULL_EXACT_H
-#define FMB_HULL_EXACT_H
+#ifndef FMB_PROGRAMS_H
+#define FMB_PROGRAMS_H
 
-#include "hull.h"
-#include "hull_vertices.h"
+#include "support_pair.h"
+#include "support_integers.h"
 
-struct hull_exact;
+struct programs;
 
-/* What proves a verdict. D: hull.h. */
-enum { HULL_PROOF_MAX = 2 * (FMB_DIM_MAX + 1) + FMB_DIM_MAX };
+/* What proves a verdict. D: support_pair.h. */
+enum { PROGRAMS_PROOF_MAX = 2 * (FMB_DIM_MAX + 1) + FMB_DIM_MAX };
 
-struct hull_proof {
+struct programs_proof {
     enum fmb_verdict verdict;
     /* SEPARATED: normal . x > 0 for all x of D. TOUCHING: normal . x >= 0, and normal . x is not
      * constant on both frames. */
@@ -30,31 +31,31 @@ struct hull_proof {
      * least 0, and their sum is total. OVERLAPPING: the vertices of positive weights span both
      * frames. */
     unsigned count;
-    struct hull_column column[HULL_PROOF_MAX];
-    mpz_t weight[HULL_PROOF_MAX], total;
-    struct hull_integers *integers; /* of the pair */
+    struct support_column column[PROGRAMS_PROOF_MAX];
+    mpz_t weight[PROGRAMS_PROOF_MAX], total;
+    struct support_integers *integers; /* of the pair */
 };
 
-/* Begins a decision. It allocates through GMP; hull_exact_end() frees all of it.
+/* Begins a decision. It allocates through GMP; programs_end() frees all of it.
  *
  * In:  pair    set; must outlive the decision
  *      want    FMB_WANT_BOX, FMB_WANT_TIMES, or 0 for the verdict alone; or FMB_WANT_CERTIFICATE
  *              alone for the verdict and its proof
  *      first   [count], count at most 4: points of D near which the origin is expected, such as the
  *              last simplex of a search in doubles. They save steps, and change no answer */
-struct hull_exact *hull_exact_begin(const struct hull_pair *pair, unsigned want,
-                                    const struct hull_column *first, unsigned count);
+struct programs *programs_begin(const struct support_pair *pair, unsigned want,
+                                const struct support_column *first, unsigned count);
 
 /* Performs one step. Returns whether the decision is complete. */
-bool hull_exact_step(struct hull_exact *exact);
+bool programs_step(struct programs *programs);
 
-/* Returns the proof, valid until hull_exact_end(). It is set once the decision is complete; its
+/* Returns the proof, valid until programs_end(). It is set once the decision is complete; its
  * member integers is set from the beginning. */
-struct hull_proof *hull_exact_proof(struct hull_exact *exact);
+struct programs_proof *programs_proof(struct programs *programs);
 
 /* Sets the answer of a complete decision: the verdict, and if the frames meet, the contact and the
  * box that are wanted, with ends rounded outward; the rest is unchanged. Ends the decision,
  * complete or not; answer may be NULL. */
-void hull_exact_end(struct hull_exact *exact, struct fmb_answer *answer);
+void programs_end(struct programs *programs, struct fmb_answer *answer);
 
 #endif

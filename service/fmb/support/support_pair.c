@@ -1,5 +1,5 @@
 /* Placed frames as arrays of vertices, and the support function of their swept difference. */
-#include "hull.h"
+#include "support_pair.h"
 
 #include "hull_frame.h"
 
@@ -12,15 +12,15 @@ static const double unit_roundoff = 0x1p-53;
 /* Sets the vertices of a frame that is not a hull: o plus each sum of components, or o and o plus
  * each component. A coordinate passes at most 3 roundings, each of half a unit in the last place of
  * a number of magnitude at most |o| + sum |c_i|. */
-static void set_small(const struct fmb_frame *frame, struct hull_view *out)
+static void set_small(const struct fmb_frame *frame, struct support_view *out)
 {
     const bool simplex = frame_is_simplex(frame);
     const unsigned count = simplex ? 1u + (unsigned) frame->count : 1u << frame->count;
     double sum = 0;
     for (int axis = 0; axis < frame->dim; axis++) {
-        double *to = out->small + axis * HULL_SMALL;
+        double *to = out->small + axis * SUPPORT_SMALL;
         sum += fabs(frame->origin[axis]);
-        for (unsigned k = 0; k < HULL_SMALL; k++) {
+        for (unsigned k = 0; k < SUPPORT_SMALL; k++) {
             to[k] = frame->origin[axis];
             for (unsigned i = 0; i < (unsigned) frame->count && k < count; i++)
                 if (simplex ? k == i + 1 : k >> i & 1)
@@ -29,7 +29,7 @@ static void set_small(const struct fmb_frame *frame, struct hull_view *out)
         for (int i = 0; i < frame->count; i++)
             sum += fabs(frame->component[i][axis]);
     }
-    out->vertices = (struct support_vertices){out->small, count, HULL_SMALL, frame->dim};
+    out->vertices = (struct support_vertices){out->small, count, SUPPORT_SMALL, frame->dim};
     out->slack = frame->slack + 3.1 * unit_roundoff * sum;
     for (int axis = 0; axis < frame->dim; axis++) {
         double all = 0;
@@ -40,7 +40,7 @@ static void set_small(const struct fmb_frame *frame, struct hull_view *out)
 }
 
 /* The centre is the mean of the vertices that span the hull. Quarters do not overflow. */
-static void set_hull(const struct fmb_frame *frame, struct hull_view *out)
+static void set_hull(const struct fmb_frame *frame, struct support_view *out)
 {
     out->vertices = hull_frame_vertices(frame);
     out->slack = 0;
@@ -53,7 +53,7 @@ static void set_hull(const struct fmb_frame *frame, struct hull_view *out)
     }
 }
 
-static void set_view(struct placed_frame placed, struct hull_view *out)
+static void set_view(struct placed_frame placed, struct support_view *out)
 {
     const struct fmb_frame *frame = placed.frame;
     out->placed = placed;
@@ -67,7 +67,7 @@ static void set_view(struct placed_frame placed, struct hull_view *out)
     rotation_of(placed.placement, frame->dim, &out->rotation);
 }
 
-void hull_place(const struct hull_view *view, unsigned vertex, double out[FMB_DIM_MAX])
+void support_place(const struct support_view *view, unsigned vertex, double out[FMB_DIM_MAX])
 {
     const struct support_vertices *vertices = &view->vertices;
     double v[FMB_DIM_MAX] = {0};
@@ -79,7 +79,7 @@ void hull_place(const struct hull_view *view, unsigned vertex, double out[FMB_DI
 /* The direction in body coordinates is the transposed matrix times n: its rows are the columns of
  * R.
  */
-struct support hull_view_support(const struct hull_view *view, const double n[FMB_DIM_MAX])
+struct support support_view_farthest(const struct support_view *view, const double n[FMB_DIM_MAX])
 {
     const struct rotation_matrix *rotation = &view->rotation;
     double direction[FMB_DIM_MAX];
@@ -95,7 +95,7 @@ struct support hull_view_support(const struct hull_view *view, const double n[FM
 
 /* ---- Pairs ---- */
 
-bool hull_order(const struct frame_pair *frames, struct frame_pair *out)
+bool support_order(const struct frame_pair *frames, struct frame_pair *out)
 {
     const bool swapped = gap_frames_swap(&frames->a, &frames->b);
     *out = (struct frame_pair){swapped ? frames->b : frames->a, swapped ? frames->a : frames->b,
@@ -103,7 +103,7 @@ bool hull_order(const struct frame_pair *frames, struct frame_pair *out)
     return swapped;
 }
 
-void hull_pair_set(const struct frame_pair *frames, struct hull_pair *out)
+void support_pair_set(const struct frame_pair *frames, struct support_pair *out)
 {
     const struct fmb_placement *a = frames->a.placement, *b = frames->b.placement;
     out->frames = frames;
@@ -125,12 +125,12 @@ void hull_pair_set(const struct frame_pair *frames, struct hull_pair *out)
     out->usable = out->reach < 0x1p200 && out->reach > 0x1p-200;
 }
 
-double hull_support(const struct hull_pair *pair, const double n[FMB_DIM_MAX],
-                    struct hull_column *column)
+double support_farthest(const struct support_pair *pair, const double n[FMB_DIM_MAX],
+                        struct support_column *column)
 {
     const double against[FMB_DIM_MAX] = {-n[0], -n[1], -n[2]};
-    const struct support a = hull_view_support(&pair->view[0], against);
-    const struct support b = hull_view_support(&pair->view[1], n);
+    const struct support a = support_view_farthest(&pair->view[0], against);
+    const struct support b = support_view_farthest(&pair->view[1], n);
     const double drift = pair->drifts ? vec3_dot(n, pair->drift) : 0;
     column->vertex[0] = a.index;
     column->vertex[1] = b.index;
@@ -138,11 +138,12 @@ double hull_support(const struct hull_pair *pair, const double n[FMB_DIM_MAX],
     return (a.value + b.value) + (vec3_dot(n, pair->offset) + (drift > 0 ? drift : 0));
 }
 
-void hull_point(const struct hull_pair *pair, struct hull_column column, double out[FMB_DIM_MAX])
+void support_point(const struct support_pair *pair, struct support_column column,
+                   double out[FMB_DIM_MAX])
 {
     double a[FMB_DIM_MAX], b[FMB_DIM_MAX];
-    hull_place(&pair->view[0], column.vertex[0], a);
-    hull_place(&pair->view[1], column.vertex[1], b);
+    support_place(&pair->view[0], column.vertex[0], a);
+    support_place(&pair->view[1], column.vertex[1], b);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         out[axis] =
             (b[axis] - a[axis]) + (pair->offset[axis] + (column.end ? pair->drift[axis] : 0));

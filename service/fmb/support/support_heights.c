@@ -1,6 +1,6 @@
 /* Contact and box of a pair with a hull that overlaps, in doubles.
  *
- * Each end is the optimum of the linear program of hull_exact.c: the greatest h over the origin,
+ * Each end is the optimum of the linear program of programs.c: the greatest h over the origin,
  * where h is linear in the vertices of A and B and in the time, with h = +-t / T for the contact
  * and +- a coordinate of a + t v_a for the box.
  *
@@ -13,9 +13,9 @@
  *
  *   Outer: h <= n0 over the origin if no vertex of D is above the plane. For any n, the greatest
  *   h - n . x over the vertices of D is an upper bound. It is one support of A in the direction
- *   n + e, one of B in -n, and sums: off by at most error (|n| + 1), where error (hull.h) is
- *   32 u reach for 28 u reach that hull.h derives; a quarter more covers the five sums. The height
- *   adds a position and a path, each off by at most 4 u of itself.
+ *   n + e, one of B in -n, and sums: off by at most error (|n| + 1), where error (support_pair.h)
+ * is 32 u reach for 28 u reach that support_pair.h derives; a quarter more covers the five sums.
+ * The height adds a position and a path, each off by at most 4 u of itself.
  *
  *   Inner: let the exact points be p_i + d_i, |d_i| <= error, their exact heights h_i + g_i, and
  *   b_i the coordinates of the origin in their simplex, all >= 0. The exact height over the origin
@@ -25,10 +25,10 @@
  *
  *   with r_i = h_i - n . p_i - n0 as computed or nearly: at least
  *   n0 - max |r_i| - max |g_i| - |n| error. That the origin is inside is certain
- *   (hull_simplex_contains_origin()); if not, the end stays open.
+ *   (support_simplex_contains_origin()); if not, the end stays open.
  *
  * So the outer bound is given if it is within the limit of the inner one. */
-#include "hull_search.h"
+#include "support_search.h"
 
 #include <math.h>
 #include <string.h>
@@ -45,7 +45,7 @@ enum { PIVOTS_MAX = 100 };
 
 /* A point of the basis. */
 struct high_point {
-    struct hull_vertex vertex;
+    struct support_vertex vertex;
     double a[FMB_DIM_MAX]; /* world coordinates of the point of A at its time */
     double tau;            /* its time / T */
     double h;
@@ -53,7 +53,7 @@ struct high_point {
 
 /* One linear program. */
 struct program {
-    const struct hull_pair *pair;
+    const struct support_pair *pair;
     int axis;                                        /* of the box; -1: the contact */
     double sign;                                     /* of the height */
     double path[FMB_DIM_MAX], position[FMB_DIM_MAX]; /* of A */
@@ -66,13 +66,13 @@ struct program {
 
 /* ---- Points ---- */
 
-static void set_high_point(const struct program *program, const struct hull_vertex *vertex,
+static void set_high_point(const struct program *program, const struct support_vertex *vertex,
                            struct high_point *out)
 {
-    const struct hull_view *a = &program->pair->view[0];
+    const struct support_view *a = &program->pair->view[0];
     out->vertex = *vertex;
     out->tau = vertex->column.end;
-    hull_place(a, vertex->column.vertex[0], out->a);
+    support_place(a, vertex->column.vertex[0], out->a);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         out->a[axis] += program->position[axis] + out->tau * program->path[axis];
 }
@@ -85,7 +85,7 @@ static void set_height(const struct program *program, struct high_point *point)
 /* Returns a lower bound of the largest magnitude of a coordinate of a vertex over the window. */
 static double largest_coordinate(const struct program *program)
 {
-    const struct hull_pair *pair = program->pair;
+    const struct support_pair *pair = program->pair;
     double largest = 0, sum = 0;
     for (int i = 0; i <= pair->dim; i++) {
         const struct high_point *point = &program->basis[i];
@@ -130,9 +130,9 @@ static void set_plane(struct program *program)
 }
 
 /* Returns the greatest h - normal . x of a vertex of D, which is *out. */
-static double find_highest(const struct program *program, struct hull_vertex *out)
+static double find_highest(const struct program *program, struct support_vertex *out)
 {
-    const struct hull_pair *pair = program->pair;
+    const struct support_pair *pair = program->pair;
     const double n[FMB_DIM_MAX] = {CHECK_GIVEN(program->normal[0]), CHECK_GIVEN(program->normal[1]),
                                    CHECK_GIVEN(program->normal[2])};
     double of_a[FMB_DIM_MAX] = {n[0], n[1], n[2]};
@@ -145,16 +145,16 @@ static double find_highest(const struct program *program, struct hull_vertex *ou
         later += program->sign * program->path[program->axis];
         still += program->sign * program->position[program->axis];
     }
-    const struct support a = hull_view_support(&pair->view[0], of_a);
-    const struct support b = hull_view_support(&pair->view[1], of_b);
-    out->column = (struct hull_column){{a.index, b.index}, later > 0};
+    const struct support a = support_view_farthest(&pair->view[0], of_a);
+    const struct support b = support_view_farthest(&pair->view[1], of_b);
+    out->column = (struct support_column){{a.index, b.index}, later > 0};
     return (a.value + b.value) + (still + (later > 0 ? later : 0));
 }
 
 /* Puts a vertex into the basis, for the point without which the origin stays inside: of the points
  * that the ray from the origin away from the vertex leaves, the first. Returns false if there is
  * none. */
-static bool pivot(struct program *program, const struct hull_vertex *vertex)
+static bool pivot(struct program *program, const struct support_vertex *vertex)
 {
     const int dim = program->pair->dim;
     const double *first = program->basis[0].vertex.at;
@@ -181,10 +181,10 @@ static bool pivot(struct program *program, const struct hull_vertex *vertex)
 
 static bool is_inside(const struct program *program)
 {
-    struct hull_simplex simplex = {.count = (unsigned) program->pair->dim + 1};
+    struct support_simplex simplex = {.count = (unsigned) program->pair->dim + 1};
     for (unsigned i = 0; i < simplex.count; i++)
         simplex.vertex[i] = program->basis[i].vertex;
-    return hull_simplex_contains_origin(program->pair, &simplex);
+    return support_simplex_contains_origin(program->pair, &simplex);
 }
 
 /* Maximises the height. prove: returns whether the upper bound *outer is within the limit, relative
@@ -192,12 +192,12 @@ static bool is_inside(const struct program *program)
  * errors. */
 static bool maximise(struct program *program, bool prove, double *outer)
 {
-    const struct hull_pair *pair = program->pair;
+    const struct support_pair *pair = program->pair;
     const bool box = program->axis >= 0;
     for (int i = 0; i <= pair->dim; i++)
         set_height(program, &program->basis[i]);
     for (int pivots = 0; pivots < PIVOTS_MAX; pivots++) {
-        struct hull_vertex highest;
+        struct support_vertex highest;
         set_plane(program);
         const double length = sqrt(vec3_dot(program->normal, program->normal)) * (1 + 0x1p-40);
         const double found = find_highest(program, &highest);
@@ -210,14 +210,14 @@ static bool maximise(struct program *program, bool prove, double *outer)
             return is_inside(program);
         if (!(found - program->level > 2 * (out + in)))
             return !prove;
-        hull_point(pair, highest.column, highest.at);
+        support_point(pair, highest.column, highest.at);
         if (!pivot(program, &highest))
             return false;
     }
     return false;
 }
 
-static void begin(const struct hull_pair *pair, const struct hull_simplex *simplex,
+static void begin(const struct support_pair *pair, const struct support_simplex *simplex,
                   struct program *out)
 {
     const struct fmb_placement *a = pair->view[0].placed.placement;
@@ -230,8 +230,8 @@ static void begin(const struct hull_pair *pair, const struct hull_simplex *simpl
         set_high_point(out, &simplex->vertex[i], &out->basis[i]);
 }
 
-bool hull_contact(const struct hull_pair *pair, const struct hull_simplex *simplex,
-                  double contact[2])
+bool support_contact(const struct support_pair *pair, const struct support_simplex *simplex,
+                     double contact[2])
 {
     const double duration = pair->frames->duration;
     struct program program = {.axis = -1, .extra = 4 * unit_roundoff};
@@ -254,8 +254,8 @@ bool hull_contact(const struct hull_pair *pair, const struct hull_simplex *simpl
     return true;
 }
 
-bool hull_box(const struct hull_pair *pair, const struct hull_simplex *simplex,
-              double box[2][FMB_DIM_MAX])
+bool support_box(const struct support_pair *pair, const struct support_simplex *simplex,
+                 double box[2][FMB_DIM_MAX])
 {
     struct program program = {.axis = 0};
     memset(box, 0, sizeof(double[2][FMB_DIM_MAX]));
@@ -276,22 +276,22 @@ bool hull_box(const struct hull_pair *pair, const struct hull_simplex *simplex,
 
 /* ---- Guesses ---- */
 
-bool hull_guess_begin(const struct hull_pair *pair, struct hull_guess *out)
+bool support_guess_begin(const struct support_pair *pair, struct support_guess *out)
 {
-    struct hull_nearest nearest;
+    struct support_nearest nearest;
     double centre[FMB_DIM_MAX];
-    hull_pair_set(pair->frames, &out->pair);
-    hull_centre(pair, centre);
+    support_pair_set(pair->frames, &out->pair);
+    support_centre(pair, centre);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         out->pair.offset[axis] -= 0x1p-30 * centre[axis];
-    if (hull_search(&out->pair, hull_separating_distance(pair), &nearest) != FMB_OVERLAPPING)
+    if (support_search(&out->pair, support_separating_distance(pair), &nearest) != FMB_OVERLAPPING)
         return false;
     out->simplex = nearest.simplex;
     return true;
 }
 
-bool hull_guess_basis(const struct hull_guess *guess, int axis, double sign,
-                      struct hull_column out[FMB_DIM_MAX + 1])
+bool support_guess_basis(const struct support_guess *guess, int axis, double sign,
+                         struct support_column out[FMB_DIM_MAX + 1])
 {
     struct program program = {.axis = axis, .sign = sign};
     double outer;

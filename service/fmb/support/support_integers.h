@@ -1,43 +1,45 @@
 /* The vertices of a pair in integers: every length is an integer times 2^unit / scale. */
-#ifndef FMB_HULL_VERTICES_H
-#define FMB_HULL_VERTICES_H
+#ifndef FMB_SUPPORT_INTEGERS_H
+#define FMB_SUPPORT_INTEGERS_H
 
-#include "hull.h"
+#include "support_pair.h"
 #include "limbs.h"
 
 #include <gmp.h>
 
 /* The orientation of a placement. For the smallest integers q proportional to it, n = |q|^2 and n
  * R(q) is a matrix of integers. */
-struct hull_turn {
+struct support_turn {
     bool turned;
     mpz_t row[3][3], norm; /* n R(q) and n; if not turned, norm is 1 and row is not used */
 };
 
 /* A placed frame. */
-struct hull_side {
+struct support_side {
     const struct fmb_frame *frame;
-    struct hull_turn turn;
+    struct support_turn turn;
     mpz_t factor; /* of vectors that are turned */
     mpz_t position[3];
-    mpz_t displacement[3];      /* v T */
-    mpz_t small[HULL_SMALL][3]; /* vertices in body coordinates, over 2^unit, unless it is a hull */
+    mpz_t displacement[3]; /* v T */
+    mpz_t small[SUPPORT_SMALL]
+               [3]; /* vertices in body coordinates, over 2^unit, unless it is a hull */
 };
 
-struct hull_integers {
+struct support_integers {
     long unit;
     mpz_t scale;
-    struct hull_side side[2];
+    struct support_side side[2];
     mpz_t drift[3]; /* over the window */
 };
 
 /* Calls one of mpz_init and mpz_clear for every number. */
-void hull_integers_each(struct hull_integers *integers, void (*call)(mpz_ptr));
+void support_integers_each(struct support_integers *integers, void (*call)(mpz_ptr));
 
 /* Sets the integers of a checked pair, whose frames must outlive them. In: all numbers are 0. */
-void hull_integers_set(const struct frame_pair *frames, struct hull_integers *out);
+void support_integers_set(const struct frame_pair *frames, struct support_integers *out);
 
 /* out := vertex i of frame f in the world at time 0. */
-void hull_integers_place(const struct hull_integers *integers, int f, unsigned i, mpz_t out[3]);
+void support_integers_place(const struct support_integers *integers, int f, unsigned i,
+                            mpz_t out[3]);
 
 #endif

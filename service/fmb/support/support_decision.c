@@ -1,0 +1,139 @@
+/* Decides pairs by their vertices: in doubles if these prove the answer, otherwise by programs. */
+#include "support_decision.h"
+
+#include "programs.h"
+#include "support_gap.h"
+
+#include <math.h>
+
+/* Sets contact and box of an overlap that doubles prove, each if it is wanted and tight enough.
+ * Neither depends on whether the other is wanted. Returns the parts that are left to integers. */
+static unsigned answer_in_doubles(const struct support_pair *pair, unsigned want,
+                                  const struct support_simplex *simplex, struct fmb_answer *answer)
+{
+    answer->has_contact = want & FMB_WANT_TIMES && support_contact(pair, simplex, answer->contact);
+    answer->has_box = want & FMB_WANT_BOX && support_box(pair, simplex, answer->box);
+    return want &
+           ~((answer->has_contact ? FMB_WANT_TIMES : 0u) | (answer->has_box ? FMB_WANT_BOX : 0u));
+}
+
+void support_decision_none(struct support_decision *out)
+{
+    out->programs = NULL;
+    out->gap = NULL;
+}
+
+static void set_pair(const struct frame_pair *frames, unsigned want, double farthest, bool bounded,
+                     struct support_decision *out)
+{
+    support_decision_none(out);
+    out->swapped = support_order(frames, &out->frames);
+    out->searched = false;
+    out->bounded = bounded;
+    out->want = want;
+    out->farthest = farthest;
+    support_pair_set(&out->frames, &out->pair);
+}
+
+/* Takes the outcome of a step of the gap. Returns whether it is complete. */
+static bool take_gap(struct support_decision *decision, enum gap_outcome outcome,
+                     struct fmb_answer *answer)
+{
+    if (outcome == GAP_UNSURE)
+        return false;
+    decision->gap = NULL;
+    answer->has_gap = true;
+    if (outcome == GAP_FAR)
+        answer->gap = gap_none();
+    return true;
+}
+
+/* Begins the gap, if it is wanted. Returns whether the decision is complete. */
+static bool begin_gap(struct support_decision *decision, struct fmb_answer *answer)
+{
+    if (!(decision->want & FMB_WANT_GAP))
+        return true;
+    const bool all = decision->searched && decision->farthest == INFINITY;
+    return take_gap(
+        decision,
+        support_gap_of_pair(&decision->pair, decision->swapped, all ? &decision->nearest : NULL,
+                            answer->verdict, decision->farthest, &answer->gap,
+                            decision->bounded ? NULL : &decision->gap),
+        answer);
+}
+
+bool support_decision_begin(const struct frame_pair *frames, unsigned want,
+                            enum support_effort effort, double farthest,
+                            struct support_decision *out, struct fmb_answer *answer)
+{
+    struct support_column first[FMB_DIM_MAX + 1];
+    struct support_nearest *nearest = &out->nearest;
+    const struct support_pair *pair = &out->pair;
+    const bool all = want & FMB_WANT_GAP && farthest == INFINITY;
+    unsigned left = want & (FMB_WANT_TIMES | FMB_WANT_BOX);
+    set_pair(frames, want, farthest, effort == SUPPORT_QUICK, out);
+    out->searched = effort != SUPPORT_PROGRAMS && pair->usable;
+    nearest->simplex.count = 0;
+    if (out->searched)
+        answer->verdict =
+            support_search(pair, all ? INFINITY : support_separating_distance(pair), nearest);
+    if (answer->verdict == FMB_OVERLAPPING)
+        left = answer_in_doubles(pair, left, &nearest->simplex, answer);
+    if (answer->verdict == FMB_SEPARATED || (answer->verdict == FMB_OVERLAPPING && left == 0))
+        return begin_gap(out, answer);
+    if (effort != SUPPORT_QUICK) {
+        /* The guess is a simplex that contains the origin after it was moved in a little. The
+         * facet through which the ray leaves is close to it, so few steps are left. */
+        struct support_guess guess;
+        const bool guessed =
+            answer->verdict == 0 && out->searched && support_guess_begin(pair, &guess);
+        const struct support_simplex *simplex = guessed ? &guess.simplex : &nearest->simplex;
+        for (unsigned i = 0; i < simplex->count; i++)
+            first[i] = simplex->vertex[i].column;
+        out->programs = programs_begin(pair, left, first, simplex->count);
+    }
+    return false;
+}
+
+bool support_decision_begin_gap(const struct frame_pair *frames, enum fmb_verdict verdict,
+                                double farthest, bool bounded, struct support_decision *out,
+                                struct fmb_answer *answer)
+{
+    set_pair(frames, FMB_WANT_GAP, farthest, bounded, out);
+    answer->verdict = verdict;
+    return begin_gap(out, answer);
+}
+
+bool support_decision_step(struct support_decision *decision, struct fmb_answer *answer)
+{
+    if (decision->gap)
+        return take_gap(decision, support_gap_step(decision->gap, &answer->gap), answer);
+    if (!programs_step(decision->programs))
+        return false;
+    programs_end(decision->programs, answer);
+    decision->programs = NULL;
+    return begin_gap(decision, answer);
+}
+
+void support_decision_end(struct support_decision *decision)
+{
+    if (decision->programs)
+        programs_end(decision->programs, NULL);
+    if (decision->gap)
+        support_gap_end(decision->gap);
+    support_decision_none(decision);
+}
+
+enum fmb_status support_decide(const struct frame_pair *frames, unsigned want,
+                               enum support_effort effort, struct fmb_answer *answer)
+{
+    static const struct fmb_answer none;
+    struct support_decision decision;
+    *answer = none;
+    bool done = support_decision_begin(frames, want, effort, INFINITY, &decision, answer);
+    if (!done && effort == SUPPORT_QUICK)
+        return FMB_CANNOT_DECIDE;
+    while (!done)
+        done = support_decision_step(&decision, answer);
+    return FMB_OK;
+}
