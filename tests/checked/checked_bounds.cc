@@ -458,7 +458,8 @@ static const char not_checked[] =
     "\n"
     "Not checked here: errors of origins and vertices (prepared.c, frame.c), sums rounded\n"
     "outward (aabb.h, box_ends.h), boxes of level cuboids (BOXES.md, 7), bounds of normals\n"
-    "(gap_bounds.c), witness points and depths of hulls (support_gap.c, support_depth.c), and what\n"
+    "(gap_bounds.c), witness points and depths of hulls (support_gap.c, support_depth.c), and "
+    "what\n"
     "is done in integers. In the filter and in gaps frames count as given, without errors.\n";
 
 /* A fraction of a constant. */

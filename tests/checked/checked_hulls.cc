@@ -110,7 +110,8 @@ static void check_support(const struct support_pair *pair, const number n[FMB_DI
 }
 
 /* A mesh of the points, on a grid of nearly 2^52 units. */
-static void check_mesh(const struct support_pair *pair, const struct support_vertex *vertex, int count)
+static void check_mesh(const struct support_pair *pair, const struct support_vertex *vertex,
+                       int count)
 {
     struct mesh mesh;
     double largest = 0;

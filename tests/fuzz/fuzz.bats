@@ -72,9 +72,8 @@ finds() {
 }
 
 @test "scene_json finds a number that is not finite" {
-    # Of a body, of the window, or as GMP meets it, which takes no infinity.
     finds scene_json "is_placement(&scene->placements[i], owner->dim)" "is_finite(scene->duration)" \
-        " in turned_box "
+        "is_finite(scene->margin)"
 }
 
 @test "event_log finds an event that is overlooked" {

@@ -134,6 +134,7 @@ static void check_scene(struct owned_scene *owner)
     const struct fmb_scene *scene = &owner->scene;
     FUZZ_CHECK(owner->dim == 2 || owner->dim == 3);
     FUZZ_CHECK(is_finite(scene->duration) && scene->duration >= 0);
+    FUZZ_CHECK(is_finite(scene->margin) && scene->margin >= 0);
     for (size_t i = 0; i < scene->placement_count; i++)
         FUZZ_CHECK(is_placement(&scene->placements[i], owner->dim));
     FUZZ_CHECK(unique_ids(scene));
