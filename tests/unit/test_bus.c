@@ -863,7 +863,7 @@ static void liblcm_starts_no_thread(void **state)
     bus_close(bus);
 }
 
-/* LCM's own select() ends the process there. */
+/* LCM's own select(2) ends the process there. */
 static void many_descriptors_are_open(void **state)
 {
     enum { OPEN = 1100 };

@@ -1134,7 +1134,7 @@ static void second_results_are_ignored(void **state)
 
 /* ---- The process ---- */
 
-/* LCM's own receiver, which uses select(), aborts there. */
+/* LCM's own receiver, which uses select(2), aborts there. */
 static void many_open_descriptors_do_not_matter(void **state)
 {
     enum { COUNT = 1100 };
