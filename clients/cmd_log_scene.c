@@ -30,7 +30,6 @@ static const char usage[] =
     "                       query, or the result of one\n"
     "  --offset BYTES       the event at this offset in the file, where numbers\n"
     "                       repeat\n"
-    "  --client C, --sequence S  the query with these ids\n"
     "  -p, --prefix P       the service's channels begin with P\n"
     "  -h, --help\n"
     "\n"
@@ -43,26 +42,8 @@ static const char usage[] =
     "Exit codes: 0 printed; 1 there is no such query, the service refuses it, or a\n"
     "handle is not defined; 2 wrong usage, or a log cannot be read.\n";
 
-/* The options that take a number, and the value of one that is not given. */
-enum { EVENT, OFFSET, CLIENT, SEQUENCE, NUMBERS };
+/* The value of an option that is not given. */
 static const long not_given = LONG_MIN;
-
-static bool take_numbers(const struct args *args, const long number[NUMBERS],
-                         struct log_query_options *out)
-{
-    const bool event = number[EVENT] != not_given, offset = number[OFFSET] != not_given;
-    const bool client = number[CLIENT] != not_given, ids = client || number[SEQUENCE] != not_given;
-    if (client != (number[SEQUENCE] != not_given))
-        return args_error(args, "--client goes with --sequence");
-    if (event + offset + ids != 1)
-        return args_error(args, "expected --event, --offset, or --client with --sequence");
-    out->by = ids ? LOG_QUERY_IDS : event ? LOG_QUERY_NUMBER : LOG_QUERY_OFFSET;
-    out->number = number[EVENT];
-    out->offset = number[OFFSET];
-    out->client_id = number[CLIENT];
-    out->sequence_number = number[SEQUENCE];
-    return true;
-}
 
 /* Reports the detail of the result of a query that the service refuses. */
 static void report_refusal(const struct log_query *query, const struct new_result *refused)
@@ -138,7 +119,7 @@ static int print_scene(struct log_query *query)
     return output_flush() ? ARGS_ANSWERED : ARGS_USAGE;
 }
 
-static int run_scene(struct log_query_options *options)
+static int run_scene(const struct log_query_options *options)
 {
     static const int code_of[] = {[LOG_QUERY_FOUND] = ARGS_ANSWERED,
                                   [LOG_QUERY_NONE] = ARGS_FAILED,
@@ -157,12 +138,10 @@ static int run_scene(struct log_query_options *options)
 
 int cmd_log_scene(int argc, char **argv)
 {
-    long number[NUMBERS] = {not_given, not_given, not_given, not_given};
+    long event = not_given, offset = not_given;
     const struct args_option own[] = {
-        {"event", ARGS_INTEGER, &number[EVENT], .low = LONG_MIN, .high = 0x1p63 - 1024},
-        {"offset", ARGS_INTEGER, &number[OFFSET], .high = 0x1p63 - 1024},
-        {"client", ARGS_INTEGER, &number[CLIENT], .low = LONG_MIN, .high = 0x1p63 - 1024},
-        {"sequence", ARGS_INTEGER, &number[SEQUENCE], .low = LONG_MIN, .high = 0x1p63 - 1024},
+        {"event", ARGS_INTEGER, &event, .low = LONG_MIN, .high = 0x1p63 - 1024},
+        {"offset", ARGS_INTEGER, &offset, .high = 0x1p63 - 1024},
         {.name = NULL},
     };
     struct args args = {"log scene",         usage, own, .operand = "LOG", .operands_min = 1,
@@ -170,7 +149,14 @@ int cmd_log_scene(int argc, char **argv)
     const int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    struct log_query_options options = {
-        .log = args.operands, .log_count = args.operand_count, .prefix = args.bus.prefix};
-    return take_numbers(&args, number, &options) ? run_scene(&options) : ARGS_USAGE;
+    if ((event != not_given) == (offset != not_given)) {
+        args_error(&args, "expected --event or --offset");
+        return ARGS_USAGE;
+    }
+    const bool by_offset = offset != not_given;
+    return run_scene(&(struct log_query_options){.log = args.operands,
+                                                 .log_count = args.operand_count,
+                                                 .prefix = args.bus.prefix,
+                                                 .at = by_offset ? offset : event,
+                                                 .by_offset = by_offset});
 }

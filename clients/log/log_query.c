@@ -35,29 +35,6 @@ struct query_search {
 
 /* ---- Reading the logs ---- */
 
-static bool matches(const struct query_search *search, const struct match_item *item,
-                    const char *error)
-{
-    const struct log_query_options *options = search->options;
-    switch (options->by) {
-    case LOG_QUERY_NUMBER: return item->place.number == options->number;
-    case LOG_QUERY_OFFSET: return item->place.offset == options->offset;
-    default:
-        return !error && !item->is_result && item->key.client_id == options->client_id &&
-               item->key.sequence_number == options->sequence_number;
-    }
-}
-
-/* A client without a result repeats its query. The first of identical queries represents all of
- * them. */
-static bool is_repeated(const struct query_search *search, enum log_kind kind,
-                        const struct log_event *event)
-{
-    const struct log_query *out = search->out;
-    return search->count > 0 && search->options->by == LOG_QUERY_IDS && kind == search->kind &&
-           event->kept == out->size && memcmp(event->data, out->bytes, event->kept) == 0;
-}
-
 static void take_match(struct query_search *search, enum log_kind kind,
                        const struct log_event *event, const char *error)
 {
@@ -81,7 +58,7 @@ static void take_event(struct query_search *search, const struct log_event *even
     if (search->input.log + 1 < search->options->log_count)
         return;
     const char *error = match_read(&item, kind, event, &search->result);
-    if (matches(search, &item, error) && !is_repeated(search, kind, event))
+    if ((search->options->by_offset ? event->offset : event->number) == search->options->at)
         take_match(search, kind, event, error);
     if (!error)
         match_add(&search->match, &item);
@@ -112,19 +89,13 @@ __attribute__((format(printf, 2, 3))) static void refuse(struct query_search *se
                                                          const char *format, ...)
 {
     const struct log_query_options *options = search->options;
-    char what[100], why[LOG_WHY_MAX];
+    char why[LOG_WHY_MAX];
     va_list list;
     va_start(list, format);
     vsnprintf(why, sizeof why, format, list);
     va_end(list);
-    if (options->by == LOG_QUERY_IDS)
-        snprintf(what, sizeof what, "client %" PRId64 ", sequence number %" PRId64,
-                 options->client_id, options->sequence_number);
-    else if (options->by == LOG_QUERY_NUMBER)
-        snprintf(what, sizeof what, "event %" PRId64, options->number);
-    else
-        snprintf(what, sizeof what, "offset %" PRId64, options->offset);
-    complain("%s: %s%s", options->log[options->log_count - 1], what, why);
+    complain("%s: %s %" PRId64 "%s", options->log[options->log_count - 1],
+             options->by_offset ? "offset" : "event", options->at, why);
     search->outcome = LOG_QUERY_NONE;
 }
 

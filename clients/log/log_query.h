@@ -12,11 +12,9 @@ struct log_query_options {
     char *const *log; /* [log_count] */
     int log_count;
     const char *prefix; /* of the channels; "": none */
-    /* Which query: that of the event with this number in the log, that of the event at this offset,
-     * or that with these ids. The event may be the query or its result. */
-    enum { LOG_QUERY_NUMBER, LOG_QUERY_OFFSET, LOG_QUERY_IDS } by;
-    int64_t number, offset;
-    int64_t client_id, sequence_number;
+    /* Which event, a query or its result: that with this number in the log, or at this offset. */
+    int64_t at;
+    bool by_offset;
 };
 
 struct log_query {

@@ -73,14 +73,10 @@ u32() {
     scene 0 "$log" --event 40
     said 'sequence number '
     query=$output
-    client=$(sed 's/.*client \([0-9]*\),.*/\1/' <<< "$stderr")
-    number=$(sed 's/.*sequence number \([0-9]*\);.*/\1/' <<< "$stderr")
     offset=$(sed 's/.*offset \([0-9]*\)).*/\1/' <<< "$stderr")
     scene 0 "$log" --event 41
     [ "$output" = "$query" ]
     scene 0 "$log" --offset "$offset"
-    [ "$output" = "$query" ]
-    scene 0 "$log" --client "$client" --sequence "$number"
     [ "$output" = "$query" ]
     scene 1 "$log" --offset $((offset + 1))
     said "offset $((offset + 1)): there is none"
@@ -128,7 +124,8 @@ u32() {
     query=$output
     number=$(sed 's/.*sequence number \([0-9]*\);.*/\1/' <<< "$stderr")
     client=$(sed 's/.*client \([0-9]*\),.*/\1/' <<< "$stderr")
-    scene 0 "$T/cut.log" --client "$client" --sequence "$number"
+    event=$("$FMB" log results --json "$T/cut.log" | jq "select(.client_id == $client and .sequence_number == $number).scene" | head -n 1)
+    scene 0 "$T/cut.log" --event "$event"
     [ "$output" = "$query" ]
 }
 

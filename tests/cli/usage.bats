@@ -132,9 +132,6 @@ log scene:--event 1
 log scene:LOG
 log scene:LOG --event x
 log scene:LOG --event 1 --offset 1
-log scene:LOG --client 1
-log scene:LOG --sequence 1
-log scene:LOG --event 1 --client 1 --sequence 1
 log scene:LOG --event 9223372036854775808
 log scene:LOG --offset -1
 log scene:LOG --what

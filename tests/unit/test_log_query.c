@@ -205,7 +205,7 @@ static bool read_recorded(const struct world_event *event, enum log_kind kind)
 /* The query that a result has, by the number of its event. */
 static int64_t query_by_result(size_t event, const struct match_key *ids)
 {
-    const struct log_query_options by_number = {.by = LOG_QUERY_NUMBER, .number = (int64_t) event};
+    const struct log_query_options by_number = {.at = (int64_t) event};
     if (look_for(by_number) != LOG_QUERY_FOUND)
         return 0;
     assert_int_equal(found.key.client_id, ids->client_id);
@@ -215,13 +215,12 @@ static int64_t query_by_result(size_t event, const struct match_key *ids)
     /* The same query, however it is selected. */
     const int64_t offset = found.offset, number = found.number;
     const struct log_query_options ways[] = {
-        {.by = LOG_QUERY_NUMBER, .number = number},
-        {.by = LOG_QUERY_OFFSET, .offset = offset},
-        {.by = LOG_QUERY_IDS, .client_id = ids->client_id, .sequence_number = ids->sequence_number},
+        {.at = number},
+        {.at = offset, .by_offset = true},
     };
     for (size_t i = 0; i < COUNT(ways); i++) {
         assert_int_equal(look_for(ways[i]), LOG_QUERY_FOUND);
-        assert_true(found.offset == offset || ways[i].by == LOG_QUERY_IDS);
+        assert_int_equal(found.offset, offset);
         assert_int_equal(decide_found(), compared);
     }
     return compared;
@@ -265,10 +264,10 @@ static void undefined_handles_are_reported(void **state)
     world_make_large(300, 1, &world);
     const struct log_world late = {.event = world.event + 2, .count = 2};
     world_write(&late, path);
-    const struct log_query_options first = {.by = LOG_QUERY_NUMBER, .number = 0};
+    const struct log_query_options first = {.at = 0};
     assert_int_equal(look_for(first), LOG_QUERY_NONE);
     world_write(&world, path);
-    const struct log_query_options third = {.by = LOG_QUERY_NUMBER, .number = 2};
+    const struct log_query_options third = {.at = 2};
     assert_int_equal(look_for(third), LOG_QUERY_FOUND);
     world_clear(&world);
 }
@@ -289,9 +288,11 @@ static void what_is_not_there_is_not_found(void **state)
     world_add(&world, WIRE_PAIR_QUERY, "no query", 8);
     world_write(&world, path);
     const struct log_query_options ways[] = {
-        {.by = LOG_QUERY_NUMBER, .number = 1},     {.by = LOG_QUERY_NUMBER, .number = 2},
-        {.by = LOG_QUERY_NUMBER, .number = 3},     {.by = LOG_QUERY_OFFSET, .offset = 1},
-        {.by = LOG_QUERY_OFFSET, .offset = 99999}, {.by = LOG_QUERY_IDS, .client_id = 3},
+        {.at = 1},
+        {.at = 2},
+        {.at = 3},
+        {.at = 1, .by_offset = true},
+        {.at = 99999, .by_offset = true},
     };
     for (size_t i = 0; i < COUNT(ways); i++)
         assert_int_equal(look_for(ways[i]), LOG_QUERY_NONE);
@@ -323,26 +324,17 @@ static void add_result(struct log_world *world, int64_t utime)
     world_add(world, WIRE_PAIR_RESULT, bytes, wire_write_pair_result(&result, bytes));
 }
 
-/* A query that is repeated to the byte is one query; others are several. A result has the query of
- * its time. */
-static void equal_ids(void **state)
+static void a_result_has_the_query_of_its_time(void **state)
 {
-    const struct log_query_options by_ids = {
-        .by = LOG_QUERY_IDS, .client_id = 3, .sequence_number = 4};
-    const struct log_query_options by_result = {.by = LOG_QUERY_NUMBER, .number = 4};
+    const struct log_query_options by_result = {.at = 3};
     struct log_world world = {.state = 1};
     add_query(&world, 1000, 1);
-    add_query(&world, 1000, 1);
-    world_write(&world, path);
-    assert_int_equal(look_for(by_ids), LOG_QUERY_FOUND);
     add_query(&world, 1000, 2);
-    world_write(&world, path);
-    assert_int_equal(look_for(by_ids), LOG_QUERY_NONE);
     add_query(&world, 2000, 3);
     add_result(&world, 2000);
     world_write(&world, path);
     assert_int_equal(look_for(by_result), LOG_QUERY_FOUND);
-    assert_int_equal(found.number, 3);
+    assert_int_equal(found.number, 2);
     world_clear(&world);
 }
 
@@ -490,7 +482,7 @@ int main(void)
         cmocka_unit_test(large_scenes_have_the_same_answers),
         cmocka_unit_test(undefined_handles_are_reported),
         cmocka_unit_test(what_is_not_there_is_not_found),
-        cmocka_unit_test(equal_ids),
+        cmocka_unit_test(a_result_has_the_query_of_its_time),
         cmocka_unit_test(bodies_get_ids_that_are_free),
         cmocka_unit_test(pairs_are_those_of_the_query),
         cmocka_unit_test(numbers_read_back_as_the_same_bits),
