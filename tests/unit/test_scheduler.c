@@ -216,6 +216,10 @@ static void think_times_are_estimated_from_bounds(void **state)
     deactivate(a);
     scheduler_charge(turns, b, 1000000000);
     const int64_t first_ns = scheduler_patience(turns, a);
+    const int late = scheduler_client(turns, 3);
+    scheduler_activate(turns, late, 1000000000, 1000000000); /* it has not been idle before */
+    deactivate(late);
+    assert_int_equal(scheduler_patience(turns, late), first_ns);
     return_between(a, 0, 1000000000);
     assert_int_equal(scheduler_patience(turns, a), first_ns);
     return_between(a, first_ns, 1000000000);
