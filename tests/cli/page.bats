@@ -33,6 +33,7 @@ setup_file() {
     cp "$top/clients/demo/table.json" "$BATS_FILE_TMPDIR/table.json"
     cd "$BATS_FILE_TMPDIR" || return
     "$fmb" query --local --gap --html table.html table.json > table.said
+    edited table.html jq -c '.steps[].pairs |= map(.bodies |= reverse)' > reversed.html
     "$fmb" query --local --json --html arm.html < "$top/clients/demo/arm.json" > arm.json
     # Every shape, side by side.
     "$fmb" query --local --html shapes.html > shapes.said << 'SCENE'
@@ -123,7 +124,13 @@ setup() {
     found '.opened | .drawn > 40000 and .yellow > 10000 and .red == 0 and .violet > 100' \
         '.opened.widths | length == 5 and all(. >= 90)' \
         '.opened | .lanes == [["none", "overlapping"], ["touching"], ["separated"]]' \
-        '.opened.labels | sort == ["cube", "gripper", "table"]'
+        '.opened.named == ["table", "cube", "gripper"] and .opened.over[:2] == ["table: touching", "cube: touching"]'
+}
+
+@test "each column sorts the pairs, up and down; a pair is named in the order of its ids" {
+    found '.reversed == .opened.table' '[.sorts[] | split(",")] as $all | [range(0; 10; 2) | $all[.], ($all[. + 1] | reverse)]
+        | map(map({"cube – gripper": 1, "table – cube": 2, "table – gripper": 3}[.]))
+        == ([[1, 2, 3], [1, 2, 3], [2, 1, 3], [1, 2, 3], [2, 1, 3]] | map(., .))'
 }
 
 @test "the next contact is red, and has the numbers of the answer" {
@@ -162,6 +169,12 @@ setup() {
 @test "every shape is drawn, hulls too" {
     found '.shapes | .kinds == [12, 12, 4, 1, 4] and .drawn > 2000 and .bad == 0 and (.table | length) == 10' \
         '.hulls | .kinds == [[12, 12], [2, 4], [4, 6], [0, 1], [0, 0]] and .drawn > 2000'
+    # Area, length of the edges, and ends on each axis.
+    found '.shapes.surfaces == [[6, 12, [-0.5, 0.5], [-0.5, 0.5], [-0.5, 0.5]], [6.088, 12.176, [0, 1.3], [0, 1], [0, 1]],
+            [2.366, 7.243, [0, 1], [0, 1], [0, 1]], [0.604, 3.622, [0, 1], [0, 1], [0, 0.7]], [2.243, 7.457, [0, 1], [0, 1], [0, 1.3]]]' \
+        '.hulls.surfaces == [[6, 12, [0, 1], [0, 1], [0, 1]], [1, 4, [0, 1], [0, 1], [0, 0]], .shapes.surfaces[2],
+            [0, 1.732, [0, 1], [0, 1], [0, 1]], [0, 0, [0, 0], [0, 0], [0, 0]]]' \
+        '.plane.surfaces == [[1, 4, [-0.5, 0.5], [-0.5, 0.5], [0, 0]], [0.5, 3.414, [0, 1], [0, 1], [0, 0]]]'
 }
 
 @test "two dimensions are seen from above" {

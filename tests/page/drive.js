@@ -50,6 +50,51 @@ function places() {
     return stage.items.map((item) => item.centre.toArray().map((x) => Math.round(x * 2 ** stage.exponent * 1e4) / 1e4));
 }
 
+/* Of each body: the area of its triangles, the length of its edges, and the ends of its corners on each axis, in
+ * units of the page. */
+function surfaces() {
+    const { stage } = view.fmb, rounded = (x) => Math.round(x * 2 ** stage.exponent * 1e3) / 1e3;
+    return stage.items.map(({ surface: { corners, triangles, edges } }) => {
+        const side = (a, b) => corners[b].clone().sub(corners[a]);
+        const area = triangles.reduce((sum, [a, b, c]) => sum + side(a, b).cross(side(a, c)).length() / 2, 0);
+        const ends = ["x", "y", "z"].map((axis) => [Math.min, Math.max].map((end) => rounded(end(...corners.map((corner) => corner[axis])))));
+        return [rounded(area * 2 ** stage.exponent), rounded(edges.reduce((sum, [a, b]) => sum + side(a, b).length(), 0)), ...ends];
+    });
+}
+
+/* The middle of body n in the window of the page. */
+function middleOf(n) {
+    const { stage, camera } = view.fmb, box = one("#scene").getBoundingClientRect(), at = stage.items[n].centre.clone().project(camera);
+    return { x: box.left + (at.x + 1) / 2 * box.width, y: box.top + (1 - at.y) / 2 * box.height };
+}
+
+/* The names of the bodies, in the order of their ids: of each the one whose middle is nearest. */
+function named() {
+    const out = [];
+    for (const span of labels()) {
+        const box = span.getBoundingClientRect(), x = (box.left + box.right) / 2, y = (box.top + box.bottom) / 2;
+        const far = view.fmb.stage.items.map((_, n) => Math.hypot(middleOf(n).x - x, middleOf(n).y - y));
+        out[far.indexOf(Math.min(...far))] = span.textContent;
+    }
+    return out;
+}
+
+/* What is said of a point of the window. */
+function pointed({ x, y }) {
+    one("#scene").dispatchEvent(new view.PointerEvent("pointermove", { clientX: x, clientY: y }));
+    return text("#pointed");
+}
+
+/* The names of the pairs, sorted by each column, up and down. */
+async function sorted() {
+    const out = [];
+    for (let k = 0; k < 2 * all("#heads th").length; k++) {
+        await mouse(all("#heads th")[k >> 1]);
+        out.push(texts("#pairs td:first-child").join());
+    }
+    return out;
+}
+
 /* Where the camera looks. */
 function direction() {
     const { camera } = view.fmb;
@@ -104,7 +149,7 @@ async function scene() {
     found.opened = {
         ...moment(), ...picture(), title: page.title, counts: text("#counts"), table: table(), labels: labels().map((span) => span.textContent),
         scripts: page.scripts.length, resources: view.performance.getEntriesByType("resource").length, places: places(),
-        lanes: [lane(0), lane(1), lane(2)], widths: all("#heads th").map((th) => th.offsetWidth), boxes: view.fmb.stage.items.length, camera: view.fmb.camera.zoom,
+        named: named(), over: [0, 1, 2].map((n) => pointed(middleOf(n))), lanes: [lane(0), lane(1), lane(2)], widths: all("#heads th").map((th) => th.offsetWidth), boxes: view.fmb.stage.items.length, camera: view.fmb.camera.zoom,
     };
     await mouse(all("#pairs tr")[2].cells[0]);
     found.gap = { ...picture(), ...moment() };
@@ -143,23 +188,25 @@ async function scene() {
     for (const [kind, target, x] of [["mousedown", one("#scene"), 300], ["mousemove", page, 340], ["mouseup", page, 340]])
         target.dispatchEvent(new view.MouseEvent(kind, { bubbles: true, clientX: box.left + x, clientY: box.top + 300, button: 0 }));
     found.turned = picture();
-    one("#scene").dispatchEvent(new view.PointerEvent("pointermove", { clientX: box.left + box.width / 2, clientY: box.top + box.height / 2 }));
-    found.pointed = text("#pointed");
+    found.pointed = pointed({ x: box.left + box.width / 2, y: box.top + box.height / 2 });
     await press("1");
     const before = direction();
     for (const [kind, target, x] of [["mousedown", one("#scene"), 300], ["mousemove", page, 340], ["mouseup", page, 340]])
         target.dispatchEvent(new view.MouseEvent(kind, { bubbles: true, clientX: box.left + x, clientY: box.top + 300, button: 0 }));
     found.orbit = { before, after: direction() };
+    found.sorts = await sorted();
+    await open("reversed.html");
+    found.reversed = table();
 }
 
 async function shapes() {
     await open("shapes.html");
-    found.shapes = { ...picture(), table: table(), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length), bad: badTexts() };
+    found.shapes = { ...picture(), surfaces: surfaces(), table: table(), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length), bad: badTexts() };
     await open("hulls.html");
-    found.hulls = { ...picture(), kinds: view.fmb.stage.items.map((item) => [item.surface.triangles.length, item.surface.edges.length]) };
+    found.hulls = { ...picture(), surfaces: surfaces(), kinds: view.fmb.stage.items.map((item) => [item.surface.triangles.length, item.surface.edges.length]) };
     await open("plane.html");
     await press("n");
-    found.plane = { ...picture(), direction: direction().map(Math.round), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length) };
+    found.plane = { ...picture(), surfaces: surfaces(), direction: direction().map(Math.round), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length) };
     await open("hostile.html");
     found.hostile = { title: page.title, table: table(), bold: all("#pairs b, #labels b").length, labels: texts("#labels span") };
     await open("empty.html");

@@ -10,6 +10,7 @@
 #include "family.h"
 #include "fmb_batch.h"
 #include "gap_check.h"
+#include "gmp_allocations.h"
 #include "pair_draw.h"
 #include "question.h"
 #include "referee.h"
@@ -228,6 +229,24 @@ static void random_pairs(void **state)
     print_message("%d separated, %d touching, %d overlapping\n", verdicts[1], verdicts[2],
                   verdicts[3]);
     assert_true(verdicts[1] > 0 && verdicts[2] > 0 && verdicts[3] > 0);
+}
+
+/* Nearly all: integers take a hundred times longer. */
+static void random_pairs_need_no_integers(void **state)
+{
+    struct draw draw;
+    long integers = 0, count = draw_sample(2000);
+    draw_begin(&draw, "random_pairs_need_no_integers");
+    for (long i = 0; i < count; i++) {
+        struct question question = {draw_solid(&draw, 3, any), draw_solid(&draw, 3, any), 1};
+        question_draw_movers(&draw, &question);
+        question.b.origin[0] += i % 3;
+        const long before = gmp_allocations;
+        decide(&question, "certified");
+        integers += gmp_allocations != before;
+    }
+    print_message("%ld of %ld by integers\n", integers, count);
+    assert_true(100 * integers <= count);
 }
 
 /* Pairs in 3D brought to a depth of 1e-3 by shifts along the direction of the gap, so that every
@@ -1100,6 +1119,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_pairs),
+        cmocka_unit_test(random_pairs_need_no_integers),
         cmocka_unit_test(widths_near_the_least_doubles),
         cmocka_unit_test(shallow_pairs),
         cmocka_unit_test(hard_families),
@@ -1130,5 +1150,6 @@ int main(void)
         cmocka_unit_test(long_edges),
         cmocka_unit_test(extreme_places),
     };
+    gmp_count_allocations();
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -172,8 +172,10 @@ LIMBS_FUNCTION int compare_crossings(int n, const struct box_slabs *slabs, int v
     return compare_products(n, factor[0], factor[1], factor[2], factor[3]);
 }
 
-/* Clips the segment from vertex v to w. Returns false if nothing is left of it; otherwise sets the
- * bounds where that begins and ends, unless it does so at a vertex. */
+/* Clips the segment from vertex v to w, which are not both beyond one bound. Returns false if
+ * nothing is left of it; otherwise sets the bounds where that begins and ends, unless it does so at
+ * a vertex.
+ */
 LIMBS_FUNCTION bool clip_exactly(int n, const struct box_slabs *slabs, int v, int w,
                                  struct bound_crossing end[2])
 {
@@ -182,8 +184,6 @@ LIMBS_FUNCTION bool clip_exactly(int n, const struct box_slabs *slabs, int v, in
         const struct bound_crossing at = {i % BOUNDS, i / BOUNDS};
         const bool enters = is_negative(n, slabs->inside[at.bound][at.slab][v]);
         const bool leaves = is_negative(n, slabs->inside[at.bound][at.slab][w]);
-        if (enters && leaves)
-            return false;
         if (enters && (end[0].slab < 0 || compare_crossings(n, slabs, v, w, at, end[0]) > 0))
             end[0] = at;
         if (leaves && (end[1].slab < 0 || compare_crossings(n, slabs, v, w, at, end[1]) < 0))
