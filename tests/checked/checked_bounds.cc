@@ -72,7 +72,7 @@ static struct constant constants[] = {
     {"HULL_ROUNDING", 0, 0, 0, AT_HAND},
     {"HULL_DETERMINANT", 0, 0, 0, AT_HAND},
     {"HULL_HEIGHT", 0, 0, 0, AT_HAND},
-    {"MESH_ERROR", 0, 0, 0, AT_HAND},
+    {"POLYTOPE_ERROR", 0, 0, 0, AT_HAND},
 };
 
 /* ---- Checking ---- */

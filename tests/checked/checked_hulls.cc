@@ -38,7 +38,7 @@ typedef lanes rotation_two;
 #define unit_roundoff unit_roundoff_of_heights
 #include "support_heights.c"
 #undef unit_roundoff
-#include "mesh.c"
+#include "polytope.c"
 #include "support_search.c"
 
 #undef double
@@ -113,23 +113,23 @@ static void check_support(const struct support_pair *pair, const number n[FMB_DI
 static void check_mesh(const struct support_pair *pair, const struct support_vertex *vertex,
                        int count)
 {
-    struct mesh mesh;
+    struct polytope mesh;
     double largest = 0;
     for (int k = 0; k < count; k++)
         largest = std::fmax(largest, vec3_largest(vertex[k].at).value);
-    mesh_begin(&mesh, pair->dim);
+    polytope_begin(&mesh, pair->dim);
     for (int k = 0; k < count && largest > 0; k++) {
         int64_t at[FMB_DIM_MAX];
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             at[axis] = (int64_t) (vertex[k].at[axis].value / largest * 0x1.fp51);
         if (k <= pair->dim)
-            mesh_add_point(&mesh, at);
-        if (k == pair->dim && !mesh_close(&mesh))
+            polytope_add_point(&mesh, at);
+        if (k == pair->dim && !polytope_close(&mesh))
             break;
         for (int f = 0; k > pair->dim && f < mesh.facets; f++)
-            mesh_side(&mesh, f, at);
+            polytope_side(&mesh, f, at);
     }
-    mesh_end(&mesh);
+    polytope_end(&mesh);
 }
 
 static struct checked_frame frame[2];

@@ -30,9 +30,9 @@ static void decide_in_integers(const struct frame_pair *frames, struct fmb_answe
     support_pair_set(frames, &pair);
     struct programs *programs = programs_begin(&pair, FMB_WANT_BOX | FMB_WANT_TIMES, NULL, 0);
     int steps = 0;
-    while (!programs_step(exact))
+    while (!programs_step(programs))
         assert_true(++steps < 2000);
-    programs_end(exact, out);
+    programs_end(programs, out);
 }
 
 static double largest_coordinate(const struct frame_pair *frames)

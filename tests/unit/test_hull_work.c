@@ -46,15 +46,15 @@ struct support __wrap_support_max(const struct support_vertices *vertices,
     return __real_support_max(vertices, n);
 }
 
-void __real_hull_integers_place(const struct support_integers *integers, int f, unsigned i,
-                                mpz_t out[3]);
-void __wrap_hull_integers_place(const struct support_integers *integers, int f, unsigned i,
-                                mpz_t out[3]);
-void __wrap_hull_integers_place(const struct support_integers *integers, int f, unsigned i,
-                                mpz_t out[3])
+void __real_support_integers_place(const struct support_integers *integers, int f, unsigned i,
+                                   mpz_t out[3]);
+void __wrap_support_integers_place(const struct support_integers *integers, int f, unsigned i,
+                                   mpz_t out[3]);
+void __wrap_support_integers_place(const struct support_integers *integers, int f, unsigned i,
+                                   mpz_t out[3])
 {
     placed++;
-    __real_hull_integers_place(integers, f, i, out);
+    __real_support_integers_place(integers, f, i, out);
 }
 
 void __real_certificate_write_number(struct certificate_writer *writer, const mpq_t number);

@@ -351,9 +351,9 @@ static void expect_same_second_pass(struct draw *draw, const struct pool *pool,
 {
     struct left left;
     for (int s = 0; s < subjects; s++) {
-        run_all(subject[s].set.exact[pool->kind], pool, &left);
+        run_all(subject[s].set.second[pool->kind], pool, &left);
         assert_memory_equal(left.outcome, whole->outcome, (size_t) pool->count);
-        expect_same_in_parts(draw, subject[s].set.exact[pool->kind], pool, whole);
+        expect_same_in_parts(draw, subject[s].set.second[pool->kind], pool, whole);
         run_all(subject[s].set.verdicts[pool->kind], pool, &left);
         expect_decided(subject[s].name, pool, &left, whole);
         run_single(subject[s].set.single[pool->kind], pool, &left);
@@ -376,7 +376,7 @@ static bool is_separated(const struct question *question, bool exact)
     const enum kernel_kind kind = kernel_kind_of(&a, &b, question->duration, &swapped);
     const struct fmb_prepared *pairs[KERNEL_LANES][2] = {{swapped ? &b : &a, swapped ? &a : &b}};
     const struct kernel_call run = {pairs, 1, question->duration, outcome, NULL, NULL};
-    (exact ? set.exact : set.verdicts)[kind](&run);
+    (exact ? set.second : set.verdicts)[kind](&run);
     return outcome[0] == SLABS_SEPARATED;
 }
 
@@ -419,7 +419,7 @@ static void near_a_bound_the_second_pass_decides_what_any_first_does(void **stat
             struct pool pool;
             struct left whole;
             draw_pool(&draw, draw_near_bound, kind, 1, &pool);
-            run_all(subject[0].set.exact[kind], &pool, &whole);
+            run_all(subject[0].set.second[kind], &pool, &whole);
             expect_exact_outcomes(&subject[0], &pool, &whole);
             expect_same_second_pass(&draw, &pool, subject, subjects, &whole);
             unsure += unsure_among(&pool, &whole);
@@ -445,7 +445,7 @@ static void the_second_pass_decides_more_and_the_same_everywhere(void **state)
             const bool stretched = draw_int(&draw, 0, 3) == 0;
             draw_pool(&draw, stretched ? pair_draw_stretched : pair_draw, kind,
                       stretched ? draw_duration(&draw) : 1, &pool);
-            run_all(subject[0].set.exact[kind], &pool, &whole);
+            run_all(subject[0].set.second[kind], &pool, &whole);
             expect_exact_outcomes(&subject[0], &pool, &whole);
             expect_same_second_pass(&draw, &pool, subject, subjects, &whole);
             for (int i = 0; i < pool.count && !stretched; i++) {
@@ -872,7 +872,7 @@ static void the_second_pass_and_boxes_do_not_depend_on_the_order(void **state)
                 pairs[i][1] = &frame[!f];
             }
             const struct kernel_call call = {.pairs = pairs, .count = 1, .outcomes = outcome[f]};
-            subject[s].set.exact[kernel_kind_of(&frame[0], &frame[1], 0, &swapped)](&call);
+            subject[s].set.second[kernel_kind_of(&frame[0], &frame[1], 0, &swapped)](&call);
         }
         assert_int_equal(outcome[0][0], outcome[1][0]);
     }
@@ -1092,7 +1092,7 @@ static void expect_right(struct draw *draw, int kind, pair_function *pair, struc
         count_times(&pool, &whole, seen);
         expect_same_for_all(draw, &pool, subject, subjects, &whole);
     }
-    if (subject[0].set.exact[kind]) {
+    if (subject[0].set.second[kind]) {
         draw_box_pool(draw, pair, kind, &pool);
         run_boxes(subject[0].set.boxes, &pool, 0, pool.count, &whole);
         count_boxes(&pool, &whole, seen);

@@ -14,7 +14,7 @@
  * reaches to rho less both in every direction.
  *
  * Accuracy. The greatest n . x is off by error |n|, where |n| is 1 up to 6 u; that is 6 u reach,
- * less than another error. A height is off by less than MESH_ERROR units. */
+ * less than another error. A height is off by less than POLYTOPE_ERROR units. */
 #include "support_gap.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@
 
 /* In units of the grid. A facet whose height is less than TOLERANCE below the depth is not raised.
  * ROUNDING: of heights, and of points. */
-static const double TOLERANCE = 2 * MESH_ERROR, ROUNDING = MESH_ERROR + 2;
+static const double TOLERANCE = 2 * POLYTOPE_ERROR, ROUNDING = POLYTOPE_ERROR + 2;
 
 static void set_on_grid(const struct support_depth *depth, const double point[FMB_DIM_MAX],
                         int64_t out[FMB_DIM_MAX])
@@ -82,7 +82,7 @@ static bool add_off(struct support_depth *depth, double n[FMB_DIM_MAX], bool *kn
         if (*known)
             return false;
         if (height_of(n, at, depth->mesh.point[0].at) > TOLERANCE) {
-            mesh_add_point(&depth->mesh, at);
+            polytope_add_point(&depth->mesh, at);
             return true;
         }
     }
@@ -102,7 +102,7 @@ static void set_first(const struct support_pair *pair, double n[FMB_DIM_MAX])
 
 /* The direction from the line of the first two points to the origin or, if that is on it, any
  * direction across. */
-static void set_second(const struct mesh *mesh, double n[FMB_DIM_MAX])
+static void set_second(const struct polytope *mesh, double n[FMB_DIM_MAX])
 {
     const int64_t *p = mesh->point[0].at, *q = mesh->point[1].at;
     double e[FMB_DIM_MAX] = {(double) (q[0] - p[0]), (double) (q[1] - p[1]),
@@ -131,21 +131,21 @@ static void set_second(const struct mesh *mesh, double n[FMB_DIM_MAX])
  */
 static bool find_first(struct support_depth *depth, bool *known)
 {
-    struct mesh *mesh = &depth->mesh;
+    struct polytope *mesh = &depth->mesh;
     double n[FMB_DIM_MAX];
     int64_t at[FMB_DIM_MAX];
     set_first(depth->gap->pair, n);
     *known = scan(depth, n, at);
     if (*known)
         return false;
-    mesh_add_point(mesh, at);
+    polytope_add_point(mesh, at);
     negate(n);
     if (!add_off(depth, n, known))
         return false;
     set_second(mesh, n);
     if (!add_off(depth, n, known) || mesh->dim == 2)
         return mesh->points == 3;
-    mesh_first_normal(mesh, n);
+    polytope_first_normal(mesh, n);
     if (height_of(n, (int64_t[FMB_DIM_MAX]){0, 0, 0}, mesh->point[0].at) < 0)
         negate(n);
     return add_off(depth, n, known);
@@ -156,16 +156,17 @@ static bool find_first(struct support_depth *depth, bool *known)
 static bool raise_lowest(struct support_depth *depth)
 {
     const double scale = depth->gap->scale;
-    struct mesh *mesh = &depth->mesh;
-    const int f = mesh_lowest(mesh);
+    struct polytope *mesh = &depth->mesh;
+    const int f = polytope_lowest(mesh);
     const double height = mesh->facet[f].height;
     int64_t at[FMB_DIM_MAX];
     if (depth->least * scale - height <= TOLERANCE)
         return false;
     depth->zero = scan(depth, mesh->facet[f].normal, at);
-    if (depth->zero || depth->least * scale - height <= TOLERANCE || mesh_side(mesh, f, at) <= 0)
+    if (depth->zero || depth->least * scale - height <= TOLERANCE ||
+        polytope_side(mesh, f, at) <= 0)
         return false;
-    mesh_extend(mesh, f, at);
+    polytope_extend(mesh, f, at);
     return true;
 }
 
@@ -175,9 +176,9 @@ static bool take_simplex(struct support_depth *depth, const struct support_simpl
     for (unsigned i = 0; i < simplex->count; i++) {
         int64_t at[FMB_DIM_MAX];
         set_on_grid(depth, simplex->vertex[i].at, at);
-        mesh_add_point(&depth->mesh, at);
+        polytope_add_point(&depth->mesh, at);
     }
-    return mesh_close(&depth->mesh);
+    return polytope_close(&depth->mesh);
 }
 
 bool support_depth_begin(struct support_depth *depth, const struct support_gap *gap,
@@ -186,13 +187,13 @@ bool support_depth_begin(struct support_depth *depth, const struct support_gap *
     depth->gap = gap;
     depth->least = INFINITY;
     depth->zero = false;
-    mesh_begin(&depth->mesh, gap->pair->dim);
+    polytope_begin(&depth->mesh, gap->pair->dim);
     depth->closed =
         nearest && nearest->simplex.count == 4 && take_simplex(depth, &nearest->simplex);
     if (depth->closed)
         return true;
-    mesh_begin(&depth->mesh, gap->pair->dim);
-    depth->closed = find_first(depth, &depth->zero) && mesh_close(&depth->mesh);
+    polytope_begin(&depth->mesh, gap->pair->dim);
+    depth->closed = find_first(depth, &depth->zero) && polytope_close(&depth->mesh);
     return depth->closed;
 }
 
@@ -210,8 +211,8 @@ bool support_depth_end(struct support_depth *depth, struct fmb_gap *out)
     const double error = gap->pair->error;
     double upper = 0;
     if (depth->closed && !depth->zero)
-        upper = error - (mesh_least_height(&depth->mesh) - ROUNDING) / gap->scale;
-    mesh_end(&depth->mesh);
+        upper = error - (polytope_least_height(&depth->mesh) - ROUNDING) / gap->scale;
+    polytope_end(&depth->mesh);
     out->bounds[0] = -(depth->least + 2 * error);
     out->bounds[1] = upper < 0 ? upper : 0;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)

@@ -58,7 +58,7 @@ static void set_bounds(struct support_gap *gap, double least)
         gap->duration < 0x1p-900 && gap->duration > 0 ? fmin(0x1p-1073 / gap->duration, 1) : 0;
     gap->tight = limit * (least * (1 - 0x1p-40) - 0x1p-47 * gap->far - pair->error);
     frexp(pair->reach * (1 + 0x1p-40), &exponent);
-    gap->scale = ldexp(1, MESH_BITS - (exponent > -200 ? exponent : -200));
+    gap->scale = ldexp(1, POLYTOPE_BITS - (exponent > -200 ? exponent : -200));
 }
 
 static bool is_tight(const struct support_gap *gap, const struct fmb_gap *out)
@@ -362,7 +362,7 @@ static enum gap_outcome solve_placed(struct support_gap_work *work, struct fmb_g
 void support_gap_end(struct support_gap_work *work)
 {
     if (work->stage != GAP_PLACING)
-        mesh_end(&work->depth.mesh);
+        polytope_end(&work->depth.mesh);
     if (work->stage != GAP_DEPTH)
         support_placed_end(&work->placed);
     memory_release(work, sizeof *work);

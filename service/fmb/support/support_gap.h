@@ -2,14 +2,14 @@
  *
  * A separated pair: the point of D next to the origin, first in doubles (gap_simplex.h), then on a
  * grid (integer_simplex.h). A pair in contact: the depth, from a polytope inside of D
- * (mesh.h) and the direction in which D reaches least far. What is not tight because the
+ * (polytope.h) and the direction in which D reaches least far. What is not tight because the
  * positions cancel, or because numbers are too large or too small, is done again with vertices that
  * are placed exactly and then rounded (support_placed.c). */
 #ifndef FMB_SUPPORT_GAP_H
 #define FMB_SUPPORT_GAP_H
 
 #include "support_pair.h"
-#include "mesh.h"
+#include "polytope.h"
 #include "support_search.h"
 #include "support_integers.h"
 
@@ -33,7 +33,7 @@ struct support_depth {
     double direction[FMB_DIM_MAX];
     bool closed; /* the mesh is */
     bool zero;   /* the depth is 0, up to the width of an enclosure */
-    struct mesh mesh;
+    struct polytope mesh;
 };
 
 /* nearest: the result of a search, or NULL. A tetrahedron of it begins the mesh; not so a triangle

@@ -5,8 +5,8 @@
  * own), each quotient by u more: the unit normal is off by less than 5.6 u. A product with a vector
  * d is off by 3.01 u |d| more. So the height of a facet, |d| < sqrt(3) 2^52, is off by less
  * than 8.7 sqrt(3) / 2 < 9, and that of a point over a facet, |d| < sqrt(3) 2^53, by less than
- * MESH_ERROR = 18. */
-#include "mesh.h"
+ * POLYTOPE_ERROR = 18. */
+#include "polytope.h"
 
 #include "checked.h"
 #include "memory.h"
@@ -19,12 +19,12 @@ __extension__ typedef unsigned __int128 unsigned_wide;
 
 /* ---- Memory ---- */
 
-void mesh_begin(struct mesh *mesh, int dim)
+void polytope_begin(struct polytope *mesh, int dim)
 {
     mesh->dim = dim;
     mesh->facets = mesh->points = mesh->waiting = 0;
-    mesh->facet_capacity = MESH_FACETS;
-    mesh->point_capacity = MESH_POINTS;
+    mesh->facet_capacity = POLYTOPE_FACETS;
+    mesh->point_capacity = POLYTOPE_POINTS;
     mesh->facet = mesh->own_facet;
     mesh->point = mesh->own_point;
     mesh->heap = mesh->own_heap;
@@ -40,7 +40,7 @@ static void *doubled(void *array, const void *own, int capacity, size_t size)
     return out;
 }
 
-static void reserve_facet(struct mesh *mesh)
+static void reserve_facet(struct polytope *mesh)
 {
     const int capacity = mesh->facet_capacity;
     if (mesh->facets < capacity)
@@ -50,7 +50,7 @@ static void reserve_facet(struct mesh *mesh)
     mesh->facet_capacity *= 2;
 }
 
-static void reserve_point(struct mesh *mesh)
+static void reserve_point(struct polytope *mesh)
 {
     if (mesh->points < mesh->point_capacity)
         return;
@@ -58,7 +58,7 @@ static void reserve_point(struct mesh *mesh)
     mesh->point_capacity *= 2;
 }
 
-void mesh_end(struct mesh *mesh)
+void polytope_end(struct polytope *mesh)
 {
     const size_t facets = (size_t) mesh->facet_capacity;
     if (mesh->facet != mesh->own_facet) {
@@ -67,18 +67,18 @@ void mesh_end(struct mesh *mesh)
     }
     if (mesh->point != mesh->own_point)
         memory_release(mesh->point, (size_t) mesh->point_capacity * sizeof *mesh->point);
-    mesh_begin(mesh, mesh->dim);
+    polytope_begin(mesh, mesh->dim);
 }
 
 /* ---- The heap ---- */
 
-static bool is_lower(const struct mesh *mesh, int x, int y)
+static bool is_lower(const struct polytope *mesh, int x, int y)
 {
     const double of_x = mesh->facet[x].height, of_y = mesh->facet[y].height;
     return of_x < of_y || (of_x == of_y && x < y);
 }
 
-static void heap_add(struct mesh *mesh, int facet)
+static void heap_add(struct polytope *mesh, int facet)
 {
     int at = mesh->waiting++;
     for (; at > 0 && is_lower(mesh, facet, mesh->heap[(at - 1) / 2]); at = (at - 1) / 2)
@@ -86,7 +86,7 @@ static void heap_add(struct mesh *mesh, int facet)
     mesh->heap[at] = facet;
 }
 
-static int heap_take(struct mesh *mesh)
+static int heap_take(struct polytope *mesh)
 {
     const int lowest = mesh->heap[0], last = mesh->heap[--mesh->waiting];
     int at = 0;
@@ -102,7 +102,7 @@ static int heap_take(struct mesh *mesh)
     return lowest;
 }
 
-int mesh_lowest(struct mesh *mesh)
+int polytope_lowest(struct polytope *mesh)
 {
     while (mesh->waiting > 0) {
         const int facet = heap_take(mesh);
@@ -112,7 +112,7 @@ int mesh_lowest(struct mesh *mesh)
     return -1;
 }
 
-double mesh_least_height(const struct mesh *mesh)
+double polytope_least_height(const struct polytope *mesh)
 {
     double least = INFINITY;
     for (int f = 0; f < mesh->facets; f++)
@@ -123,7 +123,7 @@ double mesh_least_height(const struct mesh *mesh)
 
 /* ---- Points and planes ---- */
 
-int mesh_add_point(struct mesh *mesh, const int64_t at[FMB_DIM_MAX])
+int polytope_add_point(struct polytope *mesh, const int64_t at[FMB_DIM_MAX])
 {
     reserve_point(mesh);
     memcpy(mesh->point[mesh->points].at, at, sizeof mesh->point->at);
@@ -138,7 +138,7 @@ static void subtract(const int64_t x[FMB_DIM_MAX], const int64_t y[FMB_DIM_MAX],
 }
 
 /* out := the exact normal of the plane of these points; of the line in 2D. */
-static void set_normal(const struct mesh *mesh, const int corner[FMB_DIM_MAX],
+static void set_normal(const struct polytope *mesh, const int corner[FMB_DIM_MAX],
                        wide out[FMB_DIM_MAX])
 {
     const int64_t *origin = mesh->point[corner[0]].at;
@@ -164,7 +164,7 @@ static int sign_of_dot(const wide n[FMB_DIM_MAX], const int64_t d[FMB_DIM_MAX])
     return high != 0 ? (high > 0 ? 1 : -1) : (uint64_t) low != 0;
 }
 
-static int side_of(const struct mesh *mesh, const int corner[FMB_DIM_MAX],
+static int side_of(const struct polytope *mesh, const int corner[FMB_DIM_MAX],
                    const int64_t at[FMB_DIM_MAX])
 {
     wide n[FMB_DIM_MAX];
@@ -174,15 +174,15 @@ static int side_of(const struct mesh *mesh, const int corner[FMB_DIM_MAX],
     return sign_of_dot(n, d);
 }
 
-int mesh_side(const struct mesh *mesh, int facet, const int64_t at[FMB_DIM_MAX])
+int polytope_side(const struct polytope *mesh, int facet, const int64_t at[FMB_DIM_MAX])
 {
-    const struct mesh_facet *f = &mesh->facet[facet];
+    const struct polytope_facet *f = &mesh->facet[facet];
     int64_t d[FMB_DIM_MAX];
     subtract(at, mesh->point[f->corner[0]].at, d);
     const double above = (f->normal[0] * (double) d[0] + f->normal[1] * (double) d[1]) +
                          f->normal[2] * (double) d[2];
-    CHECK_BOUND(MESH_ERROR, false, above, MESH_ERROR);
-    if (fabs(above) > MESH_ERROR)
+    CHECK_BOUND(POLYTOPE_ERROR, false, above, POLYTOPE_ERROR);
+    if (fabs(above) > POLYTOPE_ERROR)
         return above > 0 ? 1 : -1;
     return side_of(mesh, f->corner, at);
 }
@@ -199,7 +199,7 @@ static double to_double(wide x)
     return copysign(out, (double) (int64_t) sign);
 }
 
-static void set_unit_normal(const struct mesh *mesh, const int corner[FMB_DIM_MAX],
+static void set_unit_normal(const struct polytope *mesh, const int corner[FMB_DIM_MAX],
                             double out[FMB_DIM_MAX])
 {
     wide n[FMB_DIM_MAX];
@@ -213,16 +213,16 @@ static void set_unit_normal(const struct mesh *mesh, const int corner[FMB_DIM_MA
 
 static const int first_corners[FMB_DIM_MAX] = {0, 1, 2};
 
-void mesh_first_normal(const struct mesh *mesh, double out[FMB_DIM_MAX])
+void polytope_first_normal(const struct polytope *mesh, double out[FMB_DIM_MAX])
 {
     set_unit_normal(mesh, first_corners, out);
 }
 
 /* Adds a facet without neighbours. Returns its number. */
-static int add_facet(struct mesh *mesh, int x, int y, int z)
+static int add_facet(struct polytope *mesh, int x, int y, int z)
 {
     reserve_facet(mesh);
-    struct mesh_facet *out = &mesh->facet[mesh->facets];
+    struct polytope_facet *out = &mesh->facet[mesh->facets];
     out->corner[0] = x;
     out->corner[1] = y;
     out->corner[2] = z;
@@ -238,7 +238,7 @@ static int add_facet(struct mesh *mesh, int x, int y, int z)
 /* ---- The mesh ---- */
 
 /* The triangle 0 1 2, or the tetrahedron 0 1 2 3 with point 3 below the triangle 0 1 2. */
-bool mesh_close(struct mesh *mesh)
+bool polytope_close(struct polytope *mesh)
 {
     static const int corner[4][3] = {{0, 1, 2}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}};
     static const int next[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
@@ -246,7 +246,7 @@ bool mesh_close(struct mesh *mesh)
     if (side == 0)
         return false;
     if (side > 0) {
-        const struct mesh_point first = mesh->point[0];
+        const struct polytope_point first = mesh->point[0];
         mesh->point[0] = mesh->point[1];
         mesh->point[1] = first;
     }
@@ -262,11 +262,11 @@ bool mesh_close(struct mesh *mesh)
 
 /* Adds the triangle of point and the edge from corner i of a facet that it sees, whose neighbour
  * across that edge it does not see. */
-static int add_across(struct mesh *mesh, int facet, int i, int point)
+static int add_across(struct polytope *mesh, int facet, int i, int point)
 {
     const int x = mesh->facet[facet].corner[i], y = mesh->facet[facet].corner[(i + 1) % 3];
     const int neighbour = mesh->facet[facet].next[i], added = add_facet(mesh, x, y, point);
-    struct mesh_facet *outside = &mesh->facet[neighbour];
+    struct polytope_facet *outside = &mesh->facet[neighbour];
     mesh->facet[added].next[0] = neighbour;
     for (int k = 0; k < 3; k++)
         if (outside->corner[k] == y)
@@ -276,7 +276,7 @@ static int add_across(struct mesh *mesh, int facet, int i, int point)
 }
 
 /* Removes the facets that are seen, beginning with one of them, and adds those of the ridges. */
-static void extend_space(struct mesh *mesh, int first, int point)
+static void extend_space(struct polytope *mesh, int first, int point)
 {
     const int begin = mesh->facets;
     int last = first;
@@ -287,7 +287,7 @@ static void extend_space(struct mesh *mesh, int first, int point)
             const int neighbour = mesh->facet[f].next[i];
             if (mesh->facet[neighbour].gone)
                 continue;
-            if (mesh_side(mesh, neighbour, mesh->point[point].at) <= 0) {
+            if (polytope_side(mesh, neighbour, mesh->point[point].at) <= 0) {
                 add_across(mesh, f, i, point);
                 continue;
             }
@@ -303,9 +303,9 @@ static void extend_space(struct mesh *mesh, int first, int point)
     }
 }
 
-void mesh_extend(struct mesh *mesh, int facet, const int64_t at[FMB_DIM_MAX])
+void polytope_extend(struct polytope *mesh, int facet, const int64_t at[FMB_DIM_MAX])
 {
-    const int point = mesh_add_point(mesh, at);
+    const int point = polytope_add_point(mesh, at);
     if (mesh->dim == 3) {
         extend_space(mesh, facet, point);
         return;

@@ -9,25 +9,25 @@
  * Facets are kept in a heap by their height, that of their plane over the origin, which is negative
  * if the origin is outside.
  *
- * Memory: a mesh of up to MESH_FACETS facets, those that were removed included, needs no memory of
- * its own; a larger one is allocated through GMP. */
-#ifndef FMB_MESH_H
-#define FMB_MESH_H
+ * Memory: a mesh of up to POLYTOPE_FACETS facets, those that were removed included, needs no memory
+ * of its own; a larger one is allocated through GMP. */
+#ifndef FMB_POLYTOPE_H
+#define FMB_POLYTOPE_H
 
 #include "fmb.h"
 
 #include <stdint.h>
 
 enum {
-    MESH_BITS = 52, /* coordinates are less than 2^MESH_BITS in magnitude */
-    MESH_FACETS = 512,
-    MESH_POINTS = MESH_FACETS / 2
+    POLYTOPE_BITS = 52, /* coordinates are less than 2^POLYTOPE_BITS in magnitude */
+    POLYTOPE_FACETS = 512,
+    POLYTOPE_POINTS = POLYTOPE_FACETS / 2
 };
 
-/* The heights and normals of facets in doubles: bounds, in units of the grid (mesh.c). */
-#define MESH_ERROR 18.0
+/* The heights and normals of facets in doubles: bounds, in units of the grid (polytope.c). */
+#define POLYTOPE_ERROR 18.0
 
-struct mesh_facet {
+struct polytope_facet {
     double normal[FMB_DIM_MAX]; /* of unit length, up to rounding */
     double height;              /* n . p of its points */
     int corner[FMB_DIM_MAX];    /* points */
@@ -36,48 +36,48 @@ struct mesh_facet {
     bool gone;
 };
 
-struct mesh_point {
+struct polytope_point {
     int64_t at[FMB_DIM_MAX]; /* in 2D [2] is 0 */
     int facet;               /* scratch: a new facet that begins here */
 };
 
-struct mesh {
+struct polytope {
     int dim, facets, points, waiting; /* of the heap */
     int facet_capacity, point_capacity;
-    struct mesh_facet *facet;
-    struct mesh_point *point;
+    struct polytope_facet *facet;
+    struct polytope_point *point;
     int *heap;
-    struct mesh_facet own_facet[MESH_FACETS];
-    struct mesh_point own_point[MESH_POINTS];
-    int own_heap[MESH_FACETS];
+    struct polytope_facet own_facet[POLYTOPE_FACETS];
+    struct polytope_point own_point[POLYTOPE_POINTS];
+    int own_heap[POLYTOPE_FACETS];
 };
 
-/* Begins an empty mesh; mesh_end() frees what it allocates, and leaves it empty. Points are
- * added to it by mesh_add_point() until there are dim + 1. */
-void mesh_begin(struct mesh *mesh, int dim);
-void mesh_end(struct mesh *mesh);
+/* Begins an empty mesh; polytope_end() frees what it allocates, and leaves it empty. Points are
+ * added to it by polytope_add_point() until there are dim + 1. */
+void polytope_begin(struct polytope *mesh, int dim);
+void polytope_end(struct polytope *mesh);
 
 /* Returns the number of the point. */
-int mesh_add_point(struct mesh *mesh, const int64_t at[FMB_DIM_MAX]);
+int polytope_add_point(struct polytope *mesh, const int64_t at[FMB_DIM_MAX]);
 
 /* Makes the first facets, of points 0 to dim; returns false if these lie in one plane (2D: line).
  */
-bool mesh_close(struct mesh *mesh);
+bool polytope_close(struct polytope *mesh);
 
 /* Removes the facet of least height from the heap, and returns its number; -1 if there is none. */
-int mesh_lowest(struct mesh *mesh);
+int polytope_lowest(struct polytope *mesh);
 
 /* Returns the sign of the height of a point over the plane of a facet, exactly. */
-int mesh_side(const struct mesh *mesh, int facet, const int64_t at[FMB_DIM_MAX]);
+int polytope_side(const struct polytope *mesh, int facet, const int64_t at[FMB_DIM_MAX]);
 
 /* out := the normal of the plane of points 0 to 2 (2D: of the line of points 0 and 1), of unit
  * length up to rounding. In: they are not collinear (2D: not equal). */
-void mesh_first_normal(const struct mesh *mesh, double out[FMB_DIM_MAX]);
+void polytope_first_normal(const struct polytope *mesh, double out[FMB_DIM_MAX]);
 
 /* Adds a point that lies above the given facet. */
-void mesh_extend(struct mesh *mesh, int facet, const int64_t at[FMB_DIM_MAX]);
+void polytope_extend(struct polytope *mesh, int facet, const int64_t at[FMB_DIM_MAX]);
 
 /* Returns the least height of all facets. In: a closed mesh. */
-double mesh_least_height(const struct mesh *mesh);
+double polytope_least_height(const struct polytope *mesh);
 
 #endif
