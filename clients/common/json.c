@@ -26,8 +26,6 @@
 enum { ERROR_MAX = 320, QUOTED_MAX = 32 };
 
 static const double id_max = 9007199254740991.0; /* 2^53 - 1 */
-#define EXPECTED_ID "an integer from 1 to 9007199254740991"
-#define EXPECTED_GROUP "an integer other than 0, of magnitude up to 9007199254740991"
 
 /* A body in the table by id. */
 struct body_id {
@@ -268,28 +266,29 @@ static bool read_dim(const struct place *at, void *out)
     return dim == 2 || dim == 3 || refuse_value(at, dim, "2 or 3");
 }
 
+/* Reads an integer other than 0, of magnitude up to id_max: beyond that its digits are lost. */
+static bool read_integer(const struct place *at, double low, const char *expected, int64_t *out)
+{
+    const double value = at->item->valuedouble;
+    if (!cJSON_IsNumber(at->item))
+        return refuse_kind(at, expected);
+    if (fabs(value) > id_max)
+        return refuse(at, "expected %s, found a larger number", expected);
+    if (!(value >= low && value != 0 && value == floor(value)))
+        return refuse_value(at, value, expected);
+    *out = (int64_t) value;
+    return true;
+}
+
 static bool read_id(const struct place *at, void *out)
 {
-    const double id = at->item->valuedouble;
-    if (!cJSON_IsNumber(at->item))
-        return refuse_kind(at, EXPECTED_ID);
-    if (id > id_max) /* its digits are lost */
-        return refuse(at, "expected " EXPECTED_ID ", found a larger number");
-    if (!(id >= 1 && id == floor(id)))
-        return refuse_value(at, id, EXPECTED_ID);
-    *(int64_t *) out = (int64_t) id;
-    return true;
+    return read_integer(at, 1, "an integer from 1 to 9007199254740991", out);
 }
 
 static bool read_group(const struct place *at, void *out)
 {
-    const double group = at->item->valuedouble;
-    if (!cJSON_IsNumber(at->item))
-        return refuse_kind(at, EXPECTED_GROUP);
-    if (!(group != 0 && group == floor(group) && fabs(group) <= id_max))
-        return refuse(at, "expected " EXPECTED_GROUP);
-    *(int64_t *) out = (int64_t) group;
-    return true;
+    return read_integer(at, -id_max, "an integer other than 0, of magnitude up to 9007199254740991",
+                        out);
 }
 
 /* Reads a name or a label. */
