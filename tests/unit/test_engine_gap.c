@@ -85,6 +85,8 @@ static struct fmb_answer check_by(const struct question *question, const char *m
                       answer.gap.direction[0], answer.gap.direction[1], answer.gap.direction[2]);
         referee_fail(question, why);
     }
+    for (int f = 0; f < 2 && question->a.dim == 2; f++)
+        assert_true(answer.gap.direction[2] == 0 && answer.gap.witness[f][2] == 0);
     if (!gap_check_swapped(question_is_symmetric(question), &answer.gap, &other.gap))
         referee_fail(question, "the other way round");
     return answer;

@@ -100,20 +100,19 @@ bool limbs_never_round(const struct slabs_pair *pair, struct dyadic_span span)
 
 /* ---- Orientations ---- */
 
-/* Returns the greatest common divisor, by the binary algorithm; of 0 and y, y. */
+/* Returns the greatest common divisor, by the binary algorithm; of 0 and y, y. In: x is 0 or odd.
+ */
 static uint64_t common_divisor_of(uint64_t x, uint64_t y)
 {
     if (x == 0 || y == 0)
         return x | y;
-    const int twos = __builtin_ctzll(x | y);
-    x >>= __builtin_ctzll(x);
     while (y) {
         y >>= __builtin_ctzll(y);
         const uint64_t least = x < y ? x : y;
         y = x < y ? y - x : x - y;
         x = least;
     }
-    return x << twos;
+    return x;
 }
 
 /* The mantissas of dyadic numbers are odd: a common

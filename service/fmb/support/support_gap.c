@@ -216,7 +216,6 @@ static enum gap_outcome solve_distance(const struct support_gap *gap,
                                        const struct support_nearest *nearest, bool bounded,
                                        struct fmb_gap *out)
 {
-    memset(out, 0, sizeof *out);
     const enum gap_outcome outcome = distance(gap, nearest, out);
     return outcome == GAP_UNSURE && !bounded ? distance_on_grid(gap, out) : outcome;
 }
