@@ -172,13 +172,43 @@ static void rows_have_the_last_name(void **state)
     free(text);
 }
 
+static void an_undecided_pair_has_an_error(void **state)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    static const struct scene_result result = {.client_id = 7, .end_pair = 1, .verdict_count = 1};
+    static struct scene_query query = {.client_id = 7,
+                                       .which = FMB_PAIRS_LISTED,
+                                       .placement_count = 2,
+                                       .index_count = 2,
+                                       .pair = {{0, 1}}};
+    const struct pair_query pair = service_pair(7, 0);
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    struct result_rows *rows = result_rows_open(out, REPORT_JSON, RESULT_ROWS_ALL);
+    for (int i = 0; i < 2; i++)
+        query.placement[i] = pair.placement[i];
+    assert_null(result_rows_take(rows, LOG_SCENE_QUERY, 0, bytes,
+                                 (uint32_t) wire_write_scene_query(&query, bytes)));
+    assert_null(result_rows_take(rows, LOG_SCENE_RESULT, 1, bytes,
+                                 (uint32_t) wire_write_scene_result(&result, bytes)));
+    result_rows_close(rows);
+    fclose(out);
+    assert_non_null(strstr(text, fmb_status_text(FMB_CANNOT_DECIDE)));
+    free(text);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        TEST(the_last_name_counts),         TEST(what_is_no_name_is_ignored),
-        TEST(written_names_are_read_again), TEST(messages_that_cannot_be_read),
-        TEST(rows_have_the_last_name),      TEST(names_are_limited),
+        TEST(the_last_name_counts),
+        TEST(what_is_no_name_is_ignored),
+        TEST(written_names_are_read_again),
+        TEST(messages_that_cannot_be_read),
+        TEST(rows_have_the_last_name),
+        TEST(an_undecided_pair_has_an_error),
+        TEST(names_are_limited),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
