@@ -242,8 +242,10 @@ const char *rounded_box_fault(const struct pair *pair, const double contact[2],
         }
         world_clear(&world);
     }
+    world_size(pair, limit);
+    const bool limited = compare(DBL_MAX, limit) >= 0;
     world_limit(pair, limit);
-    for (int k = 0; k < 2 * pair->a.body->dim && !fault; k++) {
+    for (int k = 0; k < 2 * pair->a.body->dim && limited && !fault; k++) {
         const int axis = k % pair->a.body->dim, end = k / pair->a.body->dim;
         mpq_add(loosest[end][axis], loosest[end][axis], limit);
         if (compare(end ? box[end][axis] : -box[end][axis], loosest[end][axis]) > 0)
