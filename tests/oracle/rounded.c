@@ -167,16 +167,22 @@ static bool holds_farthest(struct world *world, int side, int axis, int sign, co
     return holds;
 }
 
-/* Raises loosest, outwards, to what the boxes of both frames have in common. */
-static void raise_loosest(struct world *world, mpq_t loosest[2][FMB_DIM_MAX], bool first)
+/* Raises loosest, outwards, to what the boxes of both frames over the contact have in common. */
+static void raise_loosest(struct world *world, const double contact[2],
+                          mpq_t loosest[2][FMB_DIM_MAX], bool first)
 {
-    mpq_t least, one;
-    mpq_inits(least, one, NULL);
+    mpq_t least, one, start, length;
+    mpq_inits(least, one, start, length, NULL);
+    mpq_set_d(start, contact[0]);
+    mpq_set_d(length, contact[1]);
+    mpq_sub(length, length, start);
     for (int k = 0; k < 2 * world->dim; k++) {
-        mpq_t *const out = &loosest[k / world->dim][k % world->dim];
+        const int axis = k % world->dim, sign = k / world->dim ? +1 : -1;
+        mpq_t *const out = &loosest[k / world->dim][axis];
         for (int side = 0; side < 2; side++) {
-            rational_solid_farthest(&world->solid[side], world->duration, k % world->dim,
-                                    k / world->dim ? +1 : -1, one);
+            struct rational_solid *solid = &world->solid[side];
+            rational_solid_farthest(solid, length, axis, sign, one);
+            rational_add_product(one, sign, start, solid->velocity[axis]);
             if (side == 0 || mpq_cmp(one, least) < 0)
                 mpq_set(least, one);
         }
@@ -184,7 +190,7 @@ static void raise_loosest(struct world *world, mpq_t loosest[2][FMB_DIM_MAX], bo
         if (first || mpq_cmp(least, *out) > 0)
             mpq_set(*out, least);
     }
-    mpq_clears(least, one, NULL);
+    mpq_clears(least, one, start, length, NULL);
 }
 
 /* Whether the box contains a sample of what these frames have in common. */
@@ -235,7 +241,7 @@ const char *rounded_box_fault(const struct pair *pair, const double contact[2],
         struct world world;
         world_init(&world, pair, k / count[1], k % count[1]);
         if (world_compare(&world, nearest) <= 0) {
-            raise_loosest(&world, loosest, first);
+            raise_loosest(&world, contact, loosest, first);
             first = false;
             if (!holds_sample(&world, pair, k / count[1], k % count[1], nearest, contact, box))
                 fault = "the box cuts a point off";
@@ -243,7 +249,7 @@ const char *rounded_box_fault(const struct pair *pair, const double contact[2],
         world_clear(&world);
     }
     world_size(pair, limit);
-    const bool limited = compare(DBL_MAX, limit) >= 0;
+    const bool limited = compare(0x1p1020, limit) >= 0;
     world_limit(pair, limit);
     for (int k = 0; k < 2 * pair->a.body->dim && limited && !fault; k++) {
         const int axis = k % pair->a.body->dim, end = k / pair->a.body->dim;

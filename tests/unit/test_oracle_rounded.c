@@ -397,6 +397,18 @@ static void boxes_contain_what_is_common(void **state)
     assert_false(box_holds(&posed.pair, -5, 5 + 40e-12, 3));
     assert_false(box_holds(&posed.pair, -HUGE_VAL, 5, 3));
 
+    /* A ball that flies through a plate: over their contact only. */
+    const struct question through = {
+        {3, FMB_BOX, {{0}, {0, 64, 0}, {0, 0, 64}}, {0}, STILL, .radius = 1},
+        {BALL, {-10, -10, 0}, {1, 1, 0}, true, .radius = 1},
+        20};
+    const double over_contact[2][FMB_DIM_MAX] = {{-1, -3, -1}, {1, 3, 1}};
+    const double over_window[2][FMB_DIM_MAX] = {{-1, -3, -1}, {1, 11, 1}};
+    place(&through, &posed);
+    assert_true(accepts(&posed.pair, 8, 12));
+    assert_null(rounded_box_fault(&posed.pair, (const double[2]){8, 12}, over_contact));
+    assert_non_null(rounded_box_fault(&posed.pair, (const double[2]){8, 12}, over_window));
+
     /* Where bodies touch, all that they have in common is known. */
     const struct question touching = {{BALL, {-2, 0, 0}, {1, 1, 1}, true, .radius = 2},
                                       {BALL, {3, 0, 0}, {1, 1, 1}, true, .radius = 3},
