@@ -43,8 +43,9 @@ enum { CLIENT_AT = 16, SEQUENCE_AT = 24 };
 
 /* A query under way. */
 struct slot {
-    struct answer_bus *bus;  /* NULL: the slot is free */
-    struct match_item *item; /* NULL: a query of answer_bus_supply() */
+    struct answer_bus *bus; /* NULL: the slot is free */
+    struct match_item *item;
+    bool supplies; /* a query of answer_bus_supply() */
 };
 
 struct answer_bus {
@@ -68,17 +69,19 @@ static bool is_running(const struct answer_bus *bus)
     return bus->counts.end == ANSWER_BUS_NO_END;
 }
 
-/* Ends the replay; only the first call counts. place: of the query without an answer; NULL: of some
- * query under way. */
-static void stop(struct answer_bus *bus, enum answer_bus_end end, const struct match_place *place)
+/* Ends the replay; only the first call counts. */
+static void stop(struct answer_bus *bus, enum answer_bus_end end)
+{
+    if (is_running(bus))
+        bus->counts.end = end;
+}
+
+/* A query got no answer, with this status of the library. */
+static void stop_at(struct answer_bus *bus, int status, const struct match_place *place)
 {
     if (!is_running(bus))
         return;
-    bus->counts.end = end;
-    for (int i = 0; i < FMB_CLIENT_RAW_WINDOW && !place; i++)
-        place = bus->slot[i].bus && bus->slot[i].item ? &bus->slot[i].item->place : NULL;
-    if (!place)
-        return;
+    stop(bus, status == FMB_CLIENT_NO_BUS ? ANSWER_BUS_FAILED : ANSWER_BUS_NO_SERVICE);
     bus->counts.log = place->log;
     bus->counts.number = place->number;
     bus->counts.offset = place->offset;
@@ -118,9 +121,8 @@ static void on_result(void *user, const struct fmb_client_raw_result *result)
     bus->under_way--;
     slot->bus = NULL;
     if (result->status < 0)
-        stop(bus, result->status == FMB_CLIENT_NO_BUS ? ANSWER_BUS_FAILED : ANSWER_BUS_NO_SERVICE,
-             item ? &item->place : NULL);
-    if (!is_running(bus) || !item)
+        stop_at(bus, result->status, &item->place);
+    if (!is_running(bus) || slot->supplies)
         return;
     memcpy(bus->bytes, result->bytes, result->size);
     decode_result(bus, (enum log_kind) item->key.kind, result, &answered);
@@ -138,7 +140,7 @@ static void step(struct answer_bus *bus, int64_t until)
 {
     const double seconds = 1e-9 * (double) (until - clock_ns());
     if (fmb_client_raw_step(bus->client, bus->signals, seconds > 0 ? seconds : 0) < 0)
-        stop(bus, ANSWER_BUS_FAILED, NULL);
+        stop(bus, ANSWER_BUS_FAILED);
     bus->polls = POLL_EVERY - 1;
     answer_bus_is_running(bus);
 }
@@ -153,7 +155,7 @@ bool answer_bus_is_running(struct answer_bus *bus)
 {
     struct pollfd source = {.fd = bus->signals, .events = POLLIN};
     if (++bus->polls % POLL_EVERY == 0 && poll(&source, 1, 0) > 0)
-        stop(bus, ANSWER_BUS_SIGNAL, NULL);
+        stop(bus, ANSWER_BUS_SIGNAL);
     return is_running(bus);
 }
 
@@ -181,13 +183,13 @@ static size_t bytes_of(const struct answer_bus *bus, uint32_t size)
     return bytes > size ? bytes : size;
 }
 
-static void send(struct answer_bus *bus, struct match_item *item, const unsigned char *bytes,
-                 uint32_t size, size_t largest)
+static void send(struct answer_bus *bus, struct match_item *item, bool supplies,
+                 const unsigned char *bytes, uint32_t size, size_t largest)
 {
     struct slot *slot = bus->slot;
     while (slot->bus)
         slot++; /* there are as many slots as the engine has requests */
-    *slot = (struct slot){bus, item};
+    *slot = (struct slot){bus, item, supplies};
     const int status = fmb_client_raw_send(
         bus->client, bus->query.kind == LOG_PAIR_QUERY ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE, bytes,
         size, largest, on_result, slot);
@@ -196,16 +198,17 @@ static void send(struct answer_bus *bus, struct match_item *item, const unsigned
         return;
     }
     slot->bus = NULL;
-    stop(bus, ANSWER_BUS_FAILED, item ? &item->place : NULL);
+    stop(bus, ANSWER_BUS_FAILED);
 }
 
-void answer_bus_supply(struct answer_bus *bus, const unsigned char *bytes, uint32_t size)
+void answer_bus_supply(struct answer_bus *bus, struct match_item *item, const unsigned char *bytes,
+                       uint32_t size)
 {
     logged_query_read(&bus->query, LOG_SCENE_QUERY, bytes, size);
     if (!wait_for_capacity(bus, size))
         return;
     bus->counts.supplied++;
-    send(bus, NULL, bytes, size, size);
+    send(bus, item, true, bytes, size, size);
     answer_bus_finish(bus);
 }
 
@@ -219,7 +222,7 @@ void answer_bus_query(struct answer_bus *bus, struct match_item *item, const uns
     if (!wait_for_capacity(bus, largest))
         return;
     bus->counts.whole += item->sent_whole;
-    send(bus, item, bytes, size, largest);
+    send(bus, item, false, bytes, size, largest);
 }
 
 struct tally_bus answer_bus_counts(const struct answer_bus *bus)

@@ -30,9 +30,10 @@ void answer_bus_close(struct answer_bus *bus); /* may be NULL */
 void answer_bus_query(struct answer_bus *bus, struct match_item *item, const unsigned char *bytes,
                       uint32_t size);
 
-/* Sends a scene query without pairs, so that the service caches its bodies, and waits until all
- * queries under way are answered. */
-void answer_bus_supply(struct answer_bus *bus, const unsigned char *bytes, uint32_t size);
+/* Sends a scene query without pairs, so that the service caches bodies of the query `item`, and
+ * waits until all queries under way are answered. */
+void answer_bus_supply(struct answer_bus *bus, struct match_item *item, const unsigned char *bytes,
+                       uint32_t size);
 
 /* Waits until all queries are answered. */
 void answer_bus_finish(struct answer_bus *bus);

@@ -60,7 +60,7 @@ bool replay_on_answered(void *user, struct match_item *query, const struct new_r
 /* Sends the bodies of a query that has no space for their frames ahead of it, as many in one scene
  * query as fit. The query itself then names them by handle. A service caches bodies with an id
  * only. */
-static void supply_service(struct replay *replay)
+static void supply_service(struct replay *replay, struct match_item *query)
 {
     const struct query_placement *placement = replay->query.placement;
     const int32_t count = replay->query.placement_count;
@@ -80,7 +80,7 @@ static void supply_service(struct replay *replay)
         }
         if (supply->placement_count == 0)
             return; /* no body is left, or a single one is too long */
-        answer_bus_supply(replay->bus, replay->whole,
+        answer_bus_supply(replay->bus, query, replay->whole,
                           (uint32_t) wire_write_scene_query(supply, replay->whole));
     }
 }
@@ -100,7 +100,7 @@ static void send_again(struct replay *replay)
         if (size > 0) {
             answer_bus_query(replay->bus, query, replay->whole, (uint32_t) size);
         } else {
-            supply_service(replay);
+            supply_service(replay, query);
             answer_bus_query(replay->bus, query, replay->query_bytes, query_size);
         }
     }

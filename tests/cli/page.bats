@@ -102,6 +102,7 @@ setup() {
     data other.html | jq -e '.steps[0] | (.note | startswith("the recording has 16 bodies, the query 10: "))
         and (.result[0].counts | add) == 120 and (.result[1].counts | add) == 17 and .differs' > /dev/null
     data other.html | jq -e '[.steps[].pairs[].bodies[]] | max < 10' > /dev/null
+    data other.html | jq -e '[.steps[] | select(.outcome == "no result recorded") | .result | .[0] == null and .[1].counts != null] | length > 0 and all' > /dev/null
 }
 
 @test "the pages open without errors" {
