@@ -266,9 +266,27 @@ static void boxes_in_integers_hold_the_exact_ones(void **state)
     assert_true(10 * known > 9 * met);
 }
 
+/* An edge that passes beside another one enters the other frame beyond where it leaves it, but in
+ * doubles at the same point. The intersection begins far from there. */
+static void an_edge_that_misses_is_not_in_the_box(void **state)
+{
+    const double above = 0x1p-60, down = 0x1p-40;
+    const struct question question = {{.dim = 3,
+                                       .shape = FMB_FACE,
+                                       .component = {{2, 0, 0}, {1, 1, -down - above}},
+                                       .local = {-1, 0, above}},
+                                      {.dim = 3,
+                                       .shape = FMB_TETRAHEDRON,
+                                       .component = {{0, 2, 0}, {1, 1, -1}, {-1, 1, -1}},
+                                       .local = {0, -1, 0}},
+                                      0};
+    assert_int_equal(referee_assert(&question), FMB_OVERLAPPING);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(boxes_of_nearly_dependent_edges),
+                                       cmocka_unit_test(an_edge_that_misses_is_not_in_the_box),
                                        cmocka_unit_test(boxes_in_integers_hold_the_exact_ones)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

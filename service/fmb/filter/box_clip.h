@@ -805,12 +805,12 @@ INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_tr
     for (int axis = 0; axis < traits.dim; axis++)
         for (int end = 0; end < 2; end++) {
             /* Where not uncertain, the outer reach is within box->whole of the true one. */
-            const lanes inner =
+            lanes *inner = &ends->inner[end][axis];
+            ends->outer[end][axis] = reach[CLIP_OUTER][end][axis];
+            *inner =
                 lanes_select(uncertain, reach[CLIP_INNER][end][axis], reach[CLIP_OUTER][end][axis]);
-            ends->outer[end][axis] = reach[CLIP_OUTER][end][axis] + box->slack[axis];
-            ends->inner[end][axis] = inner - box->slack[axis];
-            CHECK_BOUND(BOX_PLACE_ROUNDING, box->exact, inner, box->slack[axis]);
-            CHECK_BOUND(BOX_PLACE_ROUNDING_EXACT, is_not(box->exact), inner, box->slack[axis]);
+            CHECK_BOUND(BOX_PLACE_ROUNDING, box->exact, *inner, box->slack[axis]);
+            CHECK_BOUND(BOX_PLACE_ROUNDING_EXACT, is_not(box->exact), *inner, box->slack[axis]);
         }
     return are_near(traits, box, ends) & good;
 }

@@ -402,19 +402,26 @@ INLINE lanes snapped(lanes outer, lanes inner, lanes unit)
     return lanes_select(is_end, snap, outer);
 }
 
-/* Completes the inner ends: a box that is not empty reaches as far to one side as its other end is
- * from there. Returns the lanes in which all outer ends are within the limit. */
+/* Widens ends that are those of computed points by the slack. Completes the inner ends: a box that
+ * is not empty reaches as far to one side as its other end is from there. Returns the lanes in
+ * which all outer ends are within the limit. */
 INLINE lanes_mask are_near(const struct kernel_traits traits, const struct box_pair *box,
                            struct box_ends *ends)
 {
     lanes_mask good = box->usable;
     UNROLL(3)
-    for (int axis = 0; axis < traits.dim; axis++)
+    for (int axis = 0; axis < traits.dim; axis++) {
         UNROLL(2)
-    for (int end = 0; end < 2; end++) {
-        lanes *inner = &ends->inner[end][axis];
-        *inner = lanes_max(-ends->outer[!end][axis], *inner);
-        good &= ends->outer[end][axis] - *inner <= BOX_LIMIT * box->largest;
+        for (int end = 0; end < 2; end++) {
+            ends->outer[end][axis] += box->slack[axis];
+            ends->inner[end][axis] -= box->slack[axis];
+        }
+        UNROLL(2)
+        for (int end = 0; end < 2; end++) {
+            lanes *inner = &ends->inner[end][axis];
+            *inner = lanes_max(-ends->outer[!end][axis], *inner);
+            good &= ends->outer[end][axis] - *inner <= BOX_LIMIT * box->largest;
+        }
     }
     return good;
 }

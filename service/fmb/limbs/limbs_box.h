@@ -223,8 +223,8 @@ LIMBS_FUNCTION struct clip_span clip_in_limbs(int n, const struct box_slabs *sla
 /* A parameter of the crossings of edges from any vertex of A and of B: all times its value is the
  * sum of a number of each vertex. */
 struct crossing_parameter {
-    limbs_number at[2][CLIP_VERTICES], all;  /* [frame][vertex] */
-    double value[2][CLIP_VERTICES], inverse; /* the same; 1 / all */
+    limbs_number at[2][CLIP_VERTICES], all; /* [frame][vertex] */
+    double inverse;                         /* 1 / all */
     bool exists;
 };
 
@@ -253,32 +253,25 @@ LIMBS_FUNCTION void set_parameter(const struct limbs_pair *pair, const struct ke
     for (int f = 0; f < 2; f++) {
         const limbs_number none = {0};
         set_limbs_at_vertices(pair, of, f, f ? sign : -sign, 0, f ? offset : none, out->at[f]);
-        for (int v = 0; v < vertex_count(traits, f); v++)
-            out->value[f][v] = to_double(n, out->at[f][v]);
     }
     set_magnitude(n, all, out->all);
     out->inverse = 1 / to_double(n, out->all);
 }
 
 /* Returns whether the parameter of the edges from vertices v of A and w of B is from 0 to 1, and
- * sets it. In doubles, the sum and its distance from 1 are off by less than 2^-50 of the
- * magnitudes; if that does not decide, in integers. */
+ * sets it if so. */
 LIMBS_FUNCTION bool is_in_range(int n, const struct crossing_parameter *parameter, int v, int w,
                                 double *out)
 {
-    const double of_a = parameter->value[0][v] * parameter->inverse;
-    const double of_b = parameter->value[1][w] * parameter->inverse;
-    const double error = 0x1p-50 * ((fabs(of_a) + fabs(of_b)) + 1);
     limbs_number x, left;
-    *out = of_a + of_b;
-    if (*out < -error || *out > 1 + error)
-        return false;
     memcpy(x, parameter->at[0][v], (size_t) n * sizeof *x);
     add(n, x, parameter->at[1][w]);
     memcpy(left, parameter->all, (size_t) n * sizeof *left);
     subtract(n, left, x);
+    if (is_negative(n, x) || is_negative(n, left))
+        return false;
     *out = to_double(n, x) * parameter->inverse;
-    return !is_negative(n, x) && !is_negative(n, left);
+    return true;
 }
 
 /* Memory for one box. */
@@ -447,11 +440,8 @@ LIMBS_FUNCTION bool box_of_pair(const struct limbs_question *question,
     if (!pair.in_range)
         return false;
     find_reach(&search, &of_pair);
-    for (int i = 0; i < 6; i++) {
-        const int end = i / 3, axis = i % 3;
-        ends.outer[end][axis] = search.reach[end][axis] + of_pair.slack[axis];
-        ends.inner[end][axis] = search.reach[end][axis] - of_pair.slack[axis];
-    }
+    memcpy(ends.outer, search.reach, sizeof ends.outer);
+    memcpy(ends.inner, search.reach, sizeof ends.inner);
     if (!are_near(search.traits, &of_pair, &ends))
         return false;
     memset(box, 0, 2 * FMB_DIM_MAX * sizeof **box);
