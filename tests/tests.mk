@@ -86,10 +86,11 @@ internal_tests := $(addprefix $(B)/tests/,test_box_bounds test_engine_batch \
 	test_hull_gap test_hull_work test_hull_certificate test_checked)
 comma := ,
 wraps = $(addprefix -Wl$(comma)--wrap=,$1)
-wraps_test_engine_work := $(call wraps,$(addprefix __gmp,z_mul z_mul_si z_mul_2exp z_addmul z_submul \
+wraps_of_work := $(call wraps,$(addprefix __gmp,z_mul z_mul_si z_mul_2exp z_addmul z_submul \
 	z_add z_sub z_fdiv_q z_tdiv_q z_tdiv_qr q_mul q_div q_add q_sub q_canonicalize) \
 	integer_ratio_round)
-wraps_test_hull_work := $(wraps_test_engine_work) $(call wraps,support_max support_list support_integers_place \
+wraps_test_engine_work := $(wraps_of_work) $(call wraps,limbs_span_of)
+wraps_test_hull_work := $(wraps_of_work) $(call wraps,support_max support_list support_integers_place \
 	certificate_write_number)
 wraps_test_log_read := $(call wraps,pread64)
 wraps_test_log_write := $(call wraps,fsync)
