@@ -833,7 +833,8 @@ static void a_margin_is_compared_with_the_lower_bound(void **state)
     struct draw draw;
     draw_begin(&draw, "a_margin_is_compared_with_the_lower_bound");
     for (long n = draw_sample(300); n > 0; n--) {
-        struct fmb_frame frame[2];
+        const double unit = draw_coin(&draw) ? 1 : 0x1p-1055;
+        struct fmb_frame frame[2][2];
         struct fmb_body body[2];
         struct fmb_placement placement[2] = {{.body = &body[0]}, {.body = &body[1]}};
         const int axis = draw_int(&draw, 0, 2);
@@ -846,8 +847,10 @@ static void a_margin_is_compared_with_the_lower_bound(void **state)
                 number[3 * i + axis] = x;
             }
             number[axis] = draw_uniform(&draw, 0, 0x1p-10) + s * 0x1p-10;
-            frame[s] = frame_of(FMB_TETRAHEDRON, number);
-            body[s] = body_of(&frame[s], 1);
+            for (int i = 0; i < 12; i++)
+                number[i] *= unit;
+            frame[s][0] = frame[s][1] = frame_of(FMB_TETRAHEDRON, number);
+            body[s] = body_of(frame[s], draw_int(&draw, 1, 2));
         }
         const struct pair pair = {placement[0], placement[1], 0};
         const struct fmb_answer answer = gap_of_pair(&pair);

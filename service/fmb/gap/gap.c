@@ -306,8 +306,11 @@ void gap_end(enum fmb_verdict verdict, struct fmb_gap *gap)
         gap->bounds[0] = 0;
 }
 
+/* The lower bound of frames is raised to the distance of their boxes, so that only the rounding of
+ * that matters. Where a product with the margin underflows, coordinates are multiples of 2^-1074
+ * below 2^-1035, and the distance is exact. */
 double gap_reach(double upper, const struct aabb *a, const struct aabb *b)
 {
     const double least = isnan(upper) ? INFINITY : upper > 0 ? upper : 0;
-    return least + GAP_FAR_MARGIN * (aabb_max_coordinate(a) + aabb_max_coordinate(b)) + 0x1p-1070;
+    return least + GAP_FAR_MARGIN * (aabb_max_coordinate(a) + aabb_max_coordinate(b));
 }
