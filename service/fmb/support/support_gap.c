@@ -39,7 +39,10 @@ static double least_of(const struct support_gap *gap, int f)
     return least;
 }
 
-/* The limit on the width, relative to the largest coordinate; fmb.h states 1e-12. */
+/* The limit on the width, relative to the largest coordinate; fmb.h states 1e-12. The tenth that is
+ * left covers the rounding of that coordinate: a width is at least error, 32 u reach. Where it is
+ * within the limit, numbers that cancel in the coordinate are therefore less than 2^12 times as
+ * large, and their roundings less than 2^-36 of it. */
 static const double limit = 0.9e-12;
 
 /* Completes what position, displacement and duration determine. least: a lower bound of the largest
@@ -56,7 +59,7 @@ static void set_bounds(struct support_gap *gap, double least)
     }
     gap->late *=
         gap->duration < 0x1p-900 && gap->duration > 0 ? fmin(0x1p-1073 / gap->duration, 1) : 0;
-    gap->tight = limit * (least * (1 - 0x1p-40) - 0x1p-47 * gap->far - pair->error);
+    gap->tight = limit * least;
     frexp(pair->reach * (1 + 0x1p-40), &exponent);
     gap->scale = ldexp(1, POLYTOPE_BITS - (exponent > -200 ? exponent : -200));
 }
