@@ -92,7 +92,7 @@ enum { FMB_DIM_MAX = 3, FMB_COMPONENTS_MAX = FMB_DIM_MAX * FMB_DIM_MAX };
     X(NOT_SUPPORTED, 14, "not supported yet; hulls are made by fmb_body_make_hull()")      \
     X(BAD_PAIR, 15, "indices that name no two frames")                                     \
     X(BAD_ORIENTATION, 16, "an orientation that is no rotation")                           \
-    X(BAD_SIZE, 17, "a box of negative size")                                              \
+    X(BAD_SIZE, 17, "a negative size or radius")                                           \
     X(NO_FRAMES, 18, "a body without frames")                                              \
     X(BAD_MARGIN, 19, "the margin is negative or not finite")                              \
     X(BAD_NAME, 20, "a name that is not UTF-8 of at most 64 bytes without controls")
@@ -129,8 +129,8 @@ int fmb_component_count(int dim, int shape);
  * the caller may read the fields, and copy the frame. Axes beyond dim and components beyond count
  * are 0. */
 struct fmb_frame {
-    /* Not supported yet: always 0; a frame with another value is refused with FMB_NOT_SUPPORTED.
-     * Later: the frame is the set of points within this distance of the shape. */
+    /* The frame is the set of points within this distance of its core, the shape described by the
+     * other fields. 0 unless fmb_frame_inflate() set it. */
     double radius;
     int dim;              /* 2 or 3 */
     enum fmb_shape shape; /* FMB_BOX: components along the axes, component[i][i] the size */
@@ -138,7 +138,7 @@ struct fmb_frame {
     bool flat;            /* the volume is exactly zero, as of every face; no inverse. Of a hull:
                              unless doubles prove that it is not */
     bool inverted;        /* the inverse is present: not flat, and all its entries are finite */
-    double reach;         /* bounds the distance of each vertex from the origin of the body; may be
+    double reach;         /* bounds the distance of each point from the origin of the body; may be
                              infinite */
     /* Of a box it is rounded: the exact origin is centre - size / 2. Of a hull, origin and
      * components are those of its box in body coordinates, sizes rounded up: a cuboid that contains
@@ -162,7 +162,7 @@ struct fmb_frame {
     int bits[2];
     unsigned spanning[FMB_DIM_MAX + 1];
     unsigned long long summary;
-    double slack, turn_error, size[FMB_DIM_MAX];
+    double slack, spread, turn_error, core_reach, size[FMB_DIM_MAX];
 };
 
 /* Makes a frame of numbers.
@@ -211,7 +211,14 @@ size_t fmb_hull_doubles(int dim, size_t vertex_count);
 enum fmb_status fmb_frame_make_hull(int dim, const double *vertices, size_t count, double *memory,
                                     struct fmb_frame *out);
 
-/* Returns the numbers that a frame was made of.
+/* Sets the radius of a frame: a sphere is a hull of one vertex with a radius, a capsule a hull of
+ * two. A frame of radius 0 is the frame without one, bit for bit.
+ *
+ * In:  radius  finite, not negative; replaces the one that the frame has
+ * Returns FMB_OK; or FMB_NOT_FINITE or FMB_BAD_SIZE, with the frame unchanged. */
+enum fmb_status fmb_frame_inflate(struct fmb_frame *frame, double radius);
+
+/* Returns the numbers that a frame was made of, without its radius.
  *
  * Out: *by_vertices  whether they are its vertices, as fmb_frame_make_vertices() takes them; else
  *                    they are those of fmb_frame_make(), the first dim included. A frame that was
@@ -227,7 +234,7 @@ size_t fmb_frame_numbers(const struct fmb_frame *frame, bool *by_vertices, doubl
 /* A rigid body: one or more frames in body coordinates. Filled by one of the functions below only;
  * it may be copied. A body of one frame may contain it; other frames belong to the caller. */
 struct fmb_body {
-    double reach; /* bounds the distance of each vertex from the origin; may be infinite */
+    double reach; /* bounds the distance of each point from the origin; may be infinite */
     double box[2][FMB_DIM_MAX]; /* [lower, upper][axis]: contains all frames */
     int dim;
     unsigned frame_count;
@@ -250,13 +257,17 @@ enum fmb_status fmb_body_make_vertices(int dim, int shape, const double *vertice
 enum fmb_status fmb_body_make_hull(int dim, const double *vertices, size_t count, double *memory,
                                    struct fmb_body *out);
 
+/* Sets the radius of a body of one frame, as fmb_frame_inflate() does. Returns FMB_WRONG_COUNT for
+ * a body of several frames. */
+enum fmb_status fmb_body_inflate(struct fmb_body *body, double radius);
+
 /* Makes a body of several frames. They may overlap: frames of one body are never tested against
  * each other.
  *
  * In:  frames  [count], of one dimension; not copied: they must outlive the body and all its copies
  * Out: *out    unspecified if the status is not FMB_OK
- * Returns FMB_OK, FMB_NO_FRAMES, FMB_DIMENSIONS_DIFFER, FMB_OVER_LIMIT (more than FMB_FRAMES_MAX),
- * or FMB_NOT_SUPPORTED (a frame whose radius is not 0). */
+ * Returns FMB_OK, FMB_NO_FRAMES, FMB_DIMENSIONS_DIFFER, or FMB_OVER_LIMIT (more than
+ * FMB_FRAMES_MAX). */
 enum { FMB_FRAMES_MAX = 65536 };
 enum fmb_status fmb_body_make_frames(const struct fmb_frame *frames, size_t count,
                                      struct fmb_body *out);
@@ -288,7 +299,7 @@ struct fmb_placement {
  *   FMB_NOT_FINITE       position or velocity
  *   FMB_WRONG_COUNT      orientation_count is neither 0 nor that of the dimension; or it is 0 and
  *                        orientation is not all 0
- *   FMB_NOT_SUPPORTED    end_count is not 0, or the body has a frame whose radius is not 0
+ *   FMB_NOT_SUPPORTED    end_count is not 0
  *   FMB_BAD_ORIENTATION  the orientation is all 0, is not finite, or has a component other than 0
  *                        whose magnitude is less than 2^-200 of the largest */
 enum fmb_status fmb_placement_check(const struct fmb_placement *placement);

@@ -306,7 +306,7 @@ static bool may_decide_single(struct batch_block *block, size_t k)
     const struct fmb_prepared *const *pair = block->pair[k];
     if (!batch->open)
         return true;
-    if (pair[0]->frame->vertex_count + pair[1]->frame->vertex_count == 0)
+    if (!((prepared_kind(pair[0]) | prepared_kind(pair[1])) & PREPARED_VERTICES))
         return block->singles++ < SINGLE_MAX;
     const bool may = block->scanned < SCANNED_MAX;
     block->scanned += cost_of(batch, pair);
@@ -541,7 +541,7 @@ static bool bounds_are_separated(const struct batch_block *block, const struct b
 {
     const struct fmb_prepared *const *pair = block->pair[k];
     bool swapped;
-    if (!((prepared_kind(pair[0]) | prepared_kind(pair[1])) & PREPARED_HULL))
+    if (!((prepared_kind(pair[0]) | prepared_kind(pair[1])) & PREPARED_VERTICES))
         return false;
     const enum kernel_kind kind =
         kernel_kind_of_bounds(pair[0], pair[1], job->batch->duration, &swapped);

@@ -43,7 +43,7 @@ static inline struct kernel_kinds kernel_kinds_of(unsigned kind_a, unsigned kind
     const unsigned both = kind_a & kind_b, any = kind_a | kind_b;
     if (!(both & PREPARED_VALID) || ((kind_a ^ kind_b) & PREPARED_3D))
         return (struct kernel_kinds){KERNEL_REFUSED, KERNEL_REFUSED, false, false};
-    if (!(both & PREPARED_USABLE) || any & PREPARED_HULL)
+    if (!(both & PREPARED_USABLE) || any & PREPARED_VERTICES)
         return (struct kernel_kinds){KERNEL_UNUSABLE, KERNEL_UNUSABLE, false, false};
     const unsigned shapes = PREPARED_TETRAHEDRON | PREPARED_FACE, space = both & PREPARED_3D;
     const unsigned same_shape = (both & PREPARED_TETRAHEDRON) << 1 | (both & PREPARED_FACE);
@@ -81,14 +81,14 @@ static inline enum kernel_kind kernel_kind_of(const struct fmb_prepared *a,
     return kinds.moving && kernel_pair_drifts(a, b) ? kinds.drifting : kinds.at_rest;
 }
 
-/* kernel_kind_of() with each hull replaced by the cuboid that contains it. If the kernel separates
- * the cuboids, the frames are separated. */
+/* kernel_kind_of() with each hull replaced by the cuboid that contains it, and a radius taken for
+ * an error. If the kernel separates these, the frames are separated. */
 static inline enum kernel_kind kernel_kind_of_bounds(const struct fmb_prepared *a,
                                                      const struct fmb_prepared *b, double duration,
                                                      bool *swapped)
 {
-    const unsigned kind_a = prepared_kind(a) & ~(unsigned) PREPARED_HULL;
-    const unsigned kind_b = prepared_kind(b) & ~(unsigned) PREPARED_HULL;
+    const unsigned kind_a = prepared_kind(a) & ~(unsigned) PREPARED_VERTICES;
+    const unsigned kind_b = prepared_kind(b) & ~(unsigned) PREPARED_VERTICES;
     const struct kernel_kinds kinds = kernel_kinds_of(kind_a, kind_b, duration);
     *swapped = kinds.swapped;
     return kinds.moving && kernel_pair_drifts(a, b) ? kinds.drifting : kinds.at_rest;

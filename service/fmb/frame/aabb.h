@@ -170,7 +170,8 @@ INLINE struct aabb aabb_of(const struct fmb_prepared *frame, double duration)
     struct aabb out = {{{0}}};
     if (aabb_needs_ball(frame))
         aabb_of_ball(frame, &out);
-    else if (kind & PREPARED_HULL && prepared_error(frame) != 0)
+    else if (kind & PREPARED_VERTICES && !(kind & (PREPARED_TETRAHEDRON | PREPARED_FACE)) &&
+             prepared_error(frame) != 0)
         dim == 3 ? aabb_of_turned_hull(frame, 3, &out) : aabb_of_turned_hull(frame, 2, &out);
     else if (dim == 3)
         aabb_of_axes(frame, 3, &out);

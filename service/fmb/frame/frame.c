@@ -237,14 +237,20 @@ static double turn_error_of(const struct fmb_frame *frame)
     return PREPARED_MARGIN * (of_origin + of_components) + 0x1p-1060; /* where products underflow */
 }
 
+/* The reach of a frame without a radius. */
+static void set_core_reach(struct fmb_frame *frame, double reach)
+{
+    frame->reach = frame->core_reach = reach;
+}
+
 /* Derives all other fields from shape, origin, centre, component and remainder. */
 static void complete(struct fmb_frame *frame)
 {
     invert(frame);
     measure(frame);
-    frame->slack = slack_of(frame);
+    frame->slack = frame->spread = slack_of(frame);
     frame->summary = prepared_summary_of(frame);
-    frame->reach = reach_of(frame);
+    set_core_reach(frame, reach_of(frame));
     frame->turn_error = turn_error_of(frame);
 }
 
@@ -264,8 +270,8 @@ void frame_set_bounds(const double bounds[2][FMB_DIM_MAX], struct fmb_frame *out
         out->flat = out->flat || size == 0;
     }
     measure(out);
-    out->reach = reach_of(out);
-    out->slack = out->reach < 0x1p1000 ? 0 : INFINITY;
+    set_core_reach(out, reach_of(out));
+    out->slack = out->spread = out->reach < 0x1p1000 ? 0 : INFINITY;
     out->summary = prepared_summary_of(out);
     out->turn_error = turn_error_of(out);
 }
@@ -446,7 +452,7 @@ INLINE struct aabb box_at_origin(const struct fmb_frame *frame, const int dim,
         for (int i = 0; i < dim; i++)
             number[(1 + i) * dim + axis] = frame->component[i][axis];
     }
-    number[(1 + dim) * dim] = frame->slack;
+    number[(1 + dim) * dim] = frame->spread;
     return aabb_of(&prepared, 0);
 }
 
@@ -477,6 +483,31 @@ static enum fmb_status complete_body(enum fmb_status status, struct fmb_body *ou
     return FMB_OK;
 }
 
+/* The sums are rounded up. */
+enum fmb_status fmb_frame_inflate(struct fmb_frame *frame, double radius)
+{
+    if (!(radius <= DBL_MAX && radius >= -DBL_MAX))
+        return FMB_NOT_FINITE;
+    if (radius < 0)
+        return FMB_BAD_SIZE;
+    frame->radius = radius + 0.0; /* never -0 */
+    frame->reach = frame->core_reach;
+    frame->spread = frame->slack;
+    if (radius > 0) {
+        frame->reach = (frame->core_reach + radius) * PREPARED_MARGIN;
+        frame->spread = (frame->slack + radius) * PREPARED_MARGIN + 0x1p-1074;
+    }
+    frame->summary = prepared_summary_of(frame);
+    return FMB_OK;
+}
+
+enum fmb_status fmb_body_inflate(struct fmb_body *body, double radius)
+{
+    if (body->frames)
+        return FMB_WRONG_COUNT;
+    return complete_body(fmb_frame_inflate(&body->one, radius), body);
+}
+
 enum fmb_status fmb_body_make(int dim, int shape, const double *numbers, size_t count,
                               struct fmb_body *out)
 {
@@ -504,8 +535,6 @@ enum fmb_status fmb_body_make_frames(const struct fmb_frame *frames, size_t coun
     for (size_t i = 0; i < count; i++) {
         if (frames[i].dim != frames[0].dim)
             return FMB_DIMENSIONS_DIFFER;
-        if (frames[i].radius != 0)
-            return FMB_NOT_SUPPORTED;
         out->reach = fmax(out->reach, frames[i].reach);
     }
     out->dim = frames[0].dim;

@@ -273,7 +273,7 @@ enum fmb_status fmb_frame_make_hull(int dim, const double *vertices, size_t coun
     store(vertices, count / (size_t) dim, memory, out);
     set_box(out);
     set_bits(out);
-    out->reach = reach_of(out);
+    out->reach = out->core_reach = reach_of(out);
     choose_spanning(out);
     return FMB_OK;
 }

@@ -31,6 +31,12 @@ static inline bool frame_is_simplex(const struct fmb_frame *frame)
     return frame->shape == FMB_TETRAHEDRON || frame->shape == FMB_FACE;
 }
 
+/* Returns whether the vertices of both frames decide the pair (support_pair.h). */
+static inline bool support_takes(const struct fmb_frame *a, const struct fmb_frame *b)
+{
+    return a->shape == FMB_HULL || b->shape == FMB_HULL || a->radius != 0 || b->radius != 0;
+}
+
 /* Returns whether the velocity is not 0. */
 static inline bool placement_moves(const struct fmb_placement *placement, int dim)
 {

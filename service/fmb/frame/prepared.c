@@ -57,11 +57,11 @@ static const unsigned all_components_exact = PREPARED_COMPONENTS_EXACT_X * 7;
 
 unsigned long long prepared_summary_of(const struct fmb_frame *frame)
 {
-    const bool plain = frame->slack == 0 && frame->bits[1] - frame->bits[0] <= 24;
+    const bool plain = frame->spread == 0 && frame->bits[1] - frame->bits[0] <= 24;
     unsigned kind = PREPARED_VALID;
     kind |= frame->shape == FMB_TETRAHEDRON ? PREPARED_TETRAHEDRON : 0;
     kind |= frame->shape == FMB_FACE ? PREPARED_FACE : 0;
-    kind |= frame->shape == FMB_HULL ? PREPARED_HULL : 0;
+    kind |= frame->shape == FMB_HULL || frame->radius != 0 ? PREPARED_VERTICES : 0;
     kind |= frame->dim == 3 ? PREPARED_3D : 0;
     kind |= frame->in_range ? PREPARED_USABLE : 0;
     kind |= plain ? PREPARED_PLAIN : 0;
@@ -177,9 +177,9 @@ INLINE unsigned set_numbers(const struct fmb_frame *frame, const struct rotation
                             const double *position, struct world_numbers *out)
 {
     unsigned exact = 0;
-    for (int axis = 0; axis < FMB_DIM_MAX && frame->slack == 0; axis++)
+    for (int axis = 0; axis < FMB_DIM_MAX && frame->spread == 0; axis++)
         exact |= rotation->axis_exact[axis] ? (unsigned) PREPARED_EXACT_X << axis : 0;
-    out->error = frame->slack + (rotation->exact ? 0 : frame->turn_error);
+    out->error = frame->spread + (rotation->exact ? 0 : frame->turn_error);
     if (!rotation->turned) {
         memcpy(out->component, frame->component, sizeof out->component);
     } else if (rotates_in_range(frame, rotation)) {
@@ -243,7 +243,7 @@ INLINE void set_in_general_orientation(const struct fmb_frame *frame,
             o[axis] += turned[axis];
     }
     rotate_components(frame, rotation, numbers->component);
-    numbers->error = frame->slack + frame->turn_error;
+    numbers->error = frame->spread + frame->turn_error;
     numbers->error += sum_rounding * vec3_sum(o);
     out->summary = (frame->summary &
                     ~in_summary(PREPARED_AXIS_ALIGNED | PREPARED_PLAIN | all_components_exact)) |
@@ -273,19 +273,19 @@ static void set_unrotated(const struct fmb_frame *frame, const struct fmb_placem
                           struct fmb_prepared *out)
 {
     const unsigned axes = (frame->dim == 3 ? 7u : 3u) * PREPARED_EXACT_X;
-    out->summary = frame->summary | (frame->slack == 0 ? in_summary(axes) : 0) |
+    out->summary = frame->summary | (frame->spread == 0 ? in_summary(axes) : 0) |
                    (placement_moves(placement, frame->dim) ? in_summary(PREPARED_MOVING) : 0);
     out->frame = frame;
     out->placement = placement;
     if (frame->dim == 2) {
-        set_numbers_2d(placement->position, frame->component, frame->slack, placement->velocity,
+        set_numbers_2d(placement->position, frame->component, frame->spread, placement->velocity,
                        out->number);
         return;
     }
     struct world_numbers *numbers = (struct world_numbers *) out->number;
     memcpy(numbers->origin, placement->position, sizeof numbers->origin);
     memcpy(numbers->component, frame->component, sizeof numbers->component);
-    numbers->error = frame->slack;
+    numbers->error = frame->spread;
 }
 
 INLINE bool is_unrotated(const struct fmb_frame *frame, const struct fmb_placement *placement)
@@ -376,7 +376,7 @@ INLINE enum fmb_status check(const struct fmb_placement *placement)
         return FMB_NO_FRAMES;
     if (!is_finite(placement->position, body->dim) || !is_finite(placement->velocity, body->dim))
         return FMB_NOT_FINITE;
-    if (placement->end_count != 0 || (!body->frames && body->one.radius != 0))
+    if (placement->end_count != 0)
         return FMB_NOT_SUPPORTED;
     return check_orientation(placement, body->dim);
 }

@@ -6,7 +6,8 @@
  * numbers are exact; slabs.h derives bounds for the true one.
  *
  * The numbers of a hull are those of a cuboid that contains it: its box in body coordinates,
- * placed.
+ * placed. Those of a frame with a radius are those of its core, and the radius is part of the
+ * error: what is certainly separate with this error is separate.
  *
  * The summary holds, from its least significant bit: the sizes of components 0, 1 and 2, 16 bits
  * each, then the flags below. A size is the 16 most significant bits of a double, rounded up.
@@ -23,7 +24,9 @@
  *   summary     as above, of this frame unrotated and at rest
  *   slack       bounds the distance of each vertex from the rounded one of origin and component; 0:
  *               those are exact
- *   turn_error  what a rotation that rounds adds to slack
+ *   spread      slack and radius: bounds the distance of each point from that rounded core
+ *   turn_error  what a rotation that rounds adds to either
+ *   core_reach  the reach without the radius
  *   size        largest magnitude in each component */
 #ifndef FMB_PREPARED_H
 #define FMB_PREPARED_H
@@ -54,7 +57,9 @@ enum {
      * components it extends from position + centre, which are those of its placement and of its
      * frame, by half of a component to either side. */
     PREPARED_CENTRED = 1 << 14,
-    PREPARED_HULL = 1 << 15 /* a hull: its numbers describe a cuboid that contains it */
+    /* Decided by its vertices (support_pair.h): a hull, whose numbers describe a cuboid that
+     * contains it, or a frame with a radius, whose numbers describe its core. */
+    PREPARED_VERTICES = 1 << 15
 };
 
 /* The range of the filter. For sizes within these bounds, products of four, sums of a few dozen

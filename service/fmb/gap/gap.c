@@ -57,7 +57,9 @@ static int compare_frames(const struct fmb_frame *x, const struct fmb_frame *y)
         order = compare(x->centre, y->centre, FMB_DIM_MAX);
     if (order == 0)
         order = compare(x->component[0], y->component[0], FMB_COMPONENTS_MAX);
-    return order ? order : compare(x->remainder[0], y->remainder[0], FMB_COMPONENTS_MAX);
+    if (order == 0)
+        order = compare(x->remainder[0], y->remainder[0], FMB_COMPONENTS_MAX);
+    return order ? order : compare(&x->radius, &y->radius, 1);
 }
 
 bool gap_swaps(const struct fmb_placement *a, const struct fmb_placement *b)
@@ -183,7 +185,7 @@ bool gap_pair_set(const struct fmb_prepared *a, const struct fmb_prepared *b, do
                   struct gap_pair *out)
 {
     const unsigned both = prepared_kind(a) & prepared_kind(b);
-    if (!(both & PREPARED_USABLE) || (prepared_kind(a) | prepared_kind(b)) & PREPARED_HULL)
+    if (!(both & PREPARED_USABLE) || (prepared_kind(a) | prepared_kind(b)) & PREPARED_VERTICES)
         return false;
     out->frame[0] = a;
     out->frame[1] = b;

@@ -67,6 +67,7 @@ struct dyadic_span limbs_span_of(const struct frame_pair *pair)
         const struct fmb_frame *frame = placed[f]->frame;
         const struct fmb_placement *placement = placed[f]->placement;
         dyadic_span_extend(&span, frame->bits[0], frame->bits[1]);
+        dyadic_span_add(&span, dyadic_of(frame->radius));
         for (int axis = 0; axis < frame->dim; axis++) {
             add_origin(&span, frame, axis);
             dyadic_span_add(&span, dyadic_of(placement->position[axis]));

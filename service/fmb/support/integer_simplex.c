@@ -135,24 +135,29 @@ static void reduce(struct integer_simplex *simplex)
     assert(!"one subset holds the point");
 }
 
-void integer_simplex_solve(struct integer_simplex *simplex, mpz_t toward[3],
+void integer_simplex_begin(struct integer_simplex *simplex, mpz_t toward[3],
                            integer_support *support, void *context)
 {
     for (int i = 0; i <= INTEGER_CORNERS; i++)
         simplex->corner[i] = &simplex->pool[i];
     support(context, toward, simplex->corner[0]);
-    for (simplex->count = 1;; simplex->count++) {
-        reduce(simplex);
-        simplex->zero = integer_is_zero(simplex->normal);
-        if (simplex->zero)
-            return;
-        struct integer_corner *next = simplex->corner[simplex->count];
-        support(context, simplex->normal, next);
-        subtract(simplex->other, next->at, simplex->corner[0]->at);
-        integer_dot(simplex->t[1], simplex->normal, simplex->other, simplex->t[0]);
-        if (mpz_sgn(simplex->t[1]) >= 0)
-            return;
-    }
+    simplex->count = 1;
+}
+
+bool integer_simplex_step(struct integer_simplex *simplex, integer_support *support, void *context)
+{
+    reduce(simplex);
+    simplex->zero = integer_is_zero(simplex->normal);
+    if (simplex->zero)
+        return true;
+    struct integer_corner *next = simplex->corner[simplex->count];
+    support(context, simplex->normal, next);
+    subtract(simplex->other, next->at, simplex->corner[0]->at);
+    integer_dot(simplex->t[1], simplex->normal, simplex->other, simplex->t[0]);
+    if (mpz_sgn(simplex->t[1]) >= 0)
+        return true;
+    simplex->count++;
+    return false;
 }
 
 void integer_direction(mpz_t n[3], double out[3])

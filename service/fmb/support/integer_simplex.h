@@ -38,9 +38,13 @@ void integer_simplex_each(struct integer_simplex *simplex, void (*call)(mpz_ptr)
 /* Sets the corner of P with the least n . p. */
 typedef void integer_support(void *context, mpz_t n[3], struct integer_corner *out);
 
-/* Finds the point of P next to the origin. toward: any direction: the vertex in it is the first. */
-void integer_simplex_solve(struct integer_simplex *simplex, mpz_t toward[3],
+/* Begin a search for the point of P next to the origin, and perform one step of it, with one call
+ * of support. toward: any direction: the vertex in it is the first. Returns whether the point is
+ * found.
+ */
+void integer_simplex_begin(struct integer_simplex *simplex, mpz_t toward[3],
                            integer_support *support, void *context);
+bool integer_simplex_step(struct integer_simplex *simplex, integer_support *support, void *context);
 
 /* out := n / |n|, rounded; numbers 2^100 times smaller than the largest become 0. In: not 0. */
 void integer_direction(mpz_t n[3], double out[3]);

@@ -77,6 +77,7 @@
 #include "support_search.h"
 #include "support_integers.h"
 #include "integer.h"
+#include "integer_simplex.h"
 #include "memory.h"
 
 #include <math.h>
@@ -105,7 +106,7 @@ struct kept {
     mpz_t at[3];
 };
 
-enum stage { SPANNING_A, SPANNING_B, SPANNING, SHOOTING, RAISING, SHORTENING, COMPLETE };
+enum stage { SPANNING_A, SPANNING_B, SPANNING, SHOOTING, RAISING, SHORTENING, NEARING, COMPLETE };
 
 struct programs {
     const struct support_pair *pair;
@@ -140,6 +141,9 @@ struct programs {
 
     enum { GUESS_UNKNOWN, GUESS_GIVEN, GUESS_NONE } guesses;
     struct support_guess guess;
+
+    struct integer_simplex simplex; /* of the nearest point */
+    bool simplex_set;
 
     double contact[2], box[2][FMB_DIM_MAX];
     mpz_t normal[2][3], body[3], sum, best, scratch[2], denominator, minor[6], vector[3];
@@ -183,6 +187,8 @@ static void each(struct programs *e, void (*call)(mpz_ptr))
     }
     point_each(&e->centre, call);
     point_each(&e->entering, call);
+    if (e->simplex_set)
+        integer_simplex_each(&e->simplex, call);
     vector_each(e->body, call);
     vector_each(e->vector, call);
     vector_each(e->proof.normal, call);
@@ -1105,6 +1111,61 @@ static void height_step(struct programs *e)
         end_target(e);
 }
 
+/* ---- Nearest point ----
+ *
+ * The point of D nearest to the origin is sum w_i x_i / total, with the weights of
+ * integer_simplex.h, whose corners are points of D, not multiplied by QUARTERS. */
+
+static void nearest_corner(void *context, mpz_t n[3], struct integer_corner *out)
+{
+    struct programs *e = context;
+    for (int axis = 0; axis < 3; axis++)
+        mpz_neg(e->normal[1][axis], n[axis]);
+    const struct support_column column = price_difference(e, false);
+    mpz_t *a = place(e, 0, column.vertex[0]), *b = place(e, 1, column.vertex[1]);
+    memcpy(out->bits, column.vertex, sizeof out->bits);
+    out->late = column.end;
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_sub(out->at[axis], b[axis], a[axis]);
+        if (column.end)
+            mpz_add(out->at[axis], out->at[axis], e->integers.drift[axis]);
+    }
+}
+
+static void set_nearest(struct programs *e)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_set_ui(e->vector[axis], 0);
+        for (int i = 0; i < e->simplex.count; i++)
+            mpz_addmul(e->vector[axis], e->simplex.weight[i], e->simplex.corner[i]->at[axis]);
+    }
+}
+
+int programs_compare_radius(struct programs *e)
+{
+    const struct frame_pair *frames = e->pair->frames;
+    set_nearest(e);
+    dot(e->vector, e->vector, e->best);
+    integer_set_sum(e->sum, frames->a.frame->radius, frames->b.frame->radius, e->integers.unit);
+    mpz_mul(e->sum, e->sum, e->integers.scale);
+    mpz_mul(e->sum, e->sum, e->simplex.total);
+    mpz_mul(e->sum, e->sum, e->sum);
+    return mpz_cmp(e->best, e->sum);
+}
+
+void programs_nearest_time(struct programs *e, double time[2])
+{
+    const struct dyadic window = dyadic_of(e->pair->frames->duration);
+    mpz_set_ui(e->best, 0);
+    for (int i = 0; i < e->simplex.count; i++)
+        if (e->simplex.corner[i]->late)
+            mpz_add(e->best, e->best, e->simplex.weight[i]);
+    mpz_mul_si(e->best, e->best, window.mantissa);
+    for (int end = 0; end < 2; end++)
+        time[end] = integer_ratio_round(e->best, e->simplex.total, window.exponent,
+                                        end ? ROUND_UP : ROUND_DOWN, e->minor);
+}
+
 /* ---- Begin and end ---- */
 
 static void set_all_vertices(struct programs *e)
@@ -1131,27 +1192,49 @@ static void begin_difference(struct programs *e)
     begin_span(e, SPANNING);
 }
 
-struct programs *programs_begin(const struct support_pair *pair, unsigned want,
-                                const struct support_column *first, unsigned count)
+static struct programs *begin(const struct support_pair *pair, bool nearest)
 {
     struct programs *e = memory_allocate(sizeof *e);
     memset(e, 0, sizeof *e);
+    e->simplex_set = nearest;
     each(e, mpz_init);
     e->pair = pair;
-    e->want = want & (FMB_WANT_BOX | FMB_WANT_TIMES);
-    e->ends_wanted = want & FMB_WANT_BOX || (want & FMB_WANT_TIMES && pair->drifts);
-    e->proves = want & FMB_WANT_CERTIFICATE;
     e->proof.integers = &e->integers;
     support_integers_set(pair->frames, &e->integers);
     for (int f = 0; f < 2; f++) {
         e->side[f].view = &pair->view[f];
         e->side[f].integers = &e->integers.side[f];
     }
+    set_all_vertices(e);
+    return e;
+}
+
+struct programs *programs_begin_nearest(const struct support_pair *pair, bool late,
+                                        const double toward[FMB_DIM_MAX])
+{
+    struct programs *e = begin(pair, true);
+    e->ends[0] = !late;
+    e->ends[1] = late || (pair->drifts && pair->frames->duration > 0);
+    int exponent;
+    frexp(vec3_largest(toward), &exponent);
+    for (int axis = 0; axis < 3; axis++)
+        mpz_set_d(e->vector[axis], ldexp(toward[axis], 53 - exponent));
+    e->stage = NEARING;
+    integer_simplex_begin(&e->simplex, e->vector, nearest_corner, e);
+    return e;
+}
+
+struct programs *programs_begin(const struct support_pair *pair, unsigned want,
+                                const struct support_column *first, unsigned count)
+{
+    struct programs *e = begin(pair, false);
+    e->want = want & (FMB_WANT_BOX | FMB_WANT_TIMES);
+    e->ends_wanted = want & FMB_WANT_BOX || (want & FMB_WANT_TIMES && pair->drifts);
+    e->proves = want & FMB_WANT_CERTIFICATE;
     for (unsigned i = 0; i < count; i++)
         e->first[i] = first[i];
     e->first_count = count;
     e->contact[1] = pair->frames->duration + 0.0; /* never -0 */
-    set_all_vertices(e);
     e->ends[0] = true;
     if (e->proves)
         begin_span_of(e, 0);
@@ -1188,6 +1271,10 @@ bool programs_step(struct programs *e)
     case SHOOTING: shoot_step(e); break;
     case RAISING: height_step(e); break;
     case SHORTENING: shorten_step(e); break;
+    case NEARING:
+        if (integer_simplex_step(&e->simplex, nearest_corner, e))
+            e->stage = COMPLETE;
+        break;
     case COMPLETE: break;
     }
     return e->stage == COMPLETE;

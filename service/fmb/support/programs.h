@@ -46,12 +46,24 @@ struct programs_proof {
 struct programs *programs_begin(const struct support_pair *pair, unsigned want,
                                 const struct support_column *first, unsigned count);
 
+/* Begins a search for the point of D nearest to the origin, in the same steps, of a pair whose
+ * frames may have radii. late: of D at the end of the window alone.
+ *
+ * In:  toward  a direction, not 0: near that of the point, which saves steps; [2] is 0 in 2D */
+struct programs *programs_begin_nearest(const struct support_pair *pair, bool late,
+                                        const double toward[FMB_DIM_MAX]);
+
 /* Performs one step. Returns whether the decision is complete. */
 bool programs_step(struct programs *programs);
 
 /* Returns the proof, valid until programs_end(). It is set once the decision is complete; its
  * member integers is set from the beginning. */
 struct programs_proof *programs_proof(struct programs *programs);
+
+/* Of a complete search for the nearest point: returns the sign of its distance less the sum of the
+ * radii; and the time of the point, in seconds, rounded down and up. */
+int programs_compare_radius(struct programs *programs);
+void programs_nearest_time(struct programs *programs, double time[2]);
 
 /* Sets the answer of a complete decision: the verdict, and if the frames meet, the contact and the
  * box that are wanted, with ends rounded outward; the rest is unchanged. Ends the decision,

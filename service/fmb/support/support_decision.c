@@ -5,6 +5,7 @@
 #include "support_gap.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Sets contact and box of an overlap that doubles prove, each if it is wanted and tight enough.
  * Neither depends on whether the other is wanted. Returns the parts that are left to integers. */
@@ -19,7 +20,7 @@ static unsigned answer_in_doubles(const struct support_pair *pair, unsigned want
 
 void support_decision_none(struct support_decision *out)
 {
-    out->programs = NULL;
+    out->programs = out->times.programs = NULL;
     out->gap = NULL;
 }
 
@@ -28,11 +29,22 @@ static void set_pair(const struct frame_pair *frames, unsigned want, double fart
 {
     support_decision_none(out);
     out->swapped = support_order(frames, &out->frames);
-    out->searched = false;
+    out->searched = out->nears = false;
+    out->cores = 0;
     out->bounded = bounded;
     out->want = want;
     out->farthest = farthest;
     support_pair_set(&out->frames, &out->pair);
+}
+
+/* The gap of the answer is that of the swapped pair if the frames were exchanged. */
+static void round_gap(const struct support_decision *decision, struct fmb_answer *answer)
+{
+    if (decision->swapped)
+        gap_turn_round(&answer->gap);
+    support_round_gap(&decision->pair, answer->verdict, &answer->gap);
+    if (decision->swapped)
+        gap_turn_round(&answer->gap);
 }
 
 /* Takes the outcome of a step of the gap. Returns whether it is complete. */
@@ -45,21 +57,122 @@ static bool take_gap(struct support_decision *decision, enum gap_outcome outcome
     answer->has_gap = true;
     if (outcome == GAP_FAR)
         answer->gap = gap_none();
+    else if (decision->pair.rounded)
+        round_gap(decision, answer);
     return true;
 }
 
-/* Begins the gap, if it is wanted. Returns whether the decision is complete. */
-static bool begin_gap(struct support_decision *decision, struct fmb_answer *answer)
+/* Begins the gap, if it is wanted, of a pair, or of cores, with this verdict. Returns whether the
+ * decision is complete. */
+static bool begin_gap_of(struct support_decision *decision, enum fmb_verdict verdict,
+                         struct fmb_answer *answer)
 {
-    if (!(decision->want & FMB_WANT_GAP))
-        return true;
     const bool all = decision->searched && decision->farthest == INFINITY;
     return take_gap(
         decision,
         support_gap_of_pair(&decision->pair, decision->swapped, all ? &decision->nearest : NULL,
-                            answer->verdict, decision->farthest, &answer->gap,
+                            verdict, decision->farthest + decision->pair.radius[1], &answer->gap,
                             decision->bounded ? NULL : &decision->gap),
         answer);
+}
+
+/* The same of a pair. Radii: the gap is that of the cores, whose verdict may have to be decided. */
+static bool begin_gap(struct support_decision *decision, struct fmb_answer *answer)
+{
+    if (!(decision->want & FMB_WANT_GAP))
+        return true;
+    if (!decision->pair.rounded)
+        return begin_gap_of(decision, answer->verdict, answer);
+    if (decision->cores)
+        return begin_gap_of(decision, decision->cores, answer);
+    if (!decision->bounded)
+        decision->programs = programs_begin(&decision->pair, 0, NULL, 0);
+    return false;
+}
+
+/* ---- Radii ---- */
+
+/* Sets box and contact of a pair in contact. */
+static void set_contact(const struct support_decision *decision, const double contact[2],
+                        struct fmb_answer *answer)
+{
+    answer->has_contact = decision->want & FMB_WANT_TIMES;
+    answer->has_box = decision->want & FMB_WANT_BOX;
+    if (answer->has_contact)
+        memcpy(answer->contact, contact, sizeof answer->contact);
+    if (answer->has_box)
+        support_round_box(&decision->pair, contact, answer->box);
+}
+
+/* Completes the answer of a pair in contact as far as doubles do. Returns whether its contact is
+ * known. */
+static bool measure(const struct support_decision *decision, struct fmb_answer *answer)
+{
+    const struct support_pair *pair = &decision->pair;
+    double contact[2] = {0, pair->frames->duration + 0.0};
+    if (answer->verdict == FMB_SEPARATED || !(decision->want & (FMB_WANT_TIMES | FMB_WANT_BOX)))
+        return true;
+    if (pair->drifts && !(decision->searched && support_round_contact(pair, contact)))
+        return false;
+    set_contact(decision, contact, answer);
+    return true;
+}
+
+static void begin_nearest(struct support_decision *decision)
+{
+    double toward[FMB_DIM_MAX];
+    support_toward(&decision->pair, toward);
+    decision->nears = true;
+    decision->programs = programs_begin_nearest(&decision->pair, false, toward);
+}
+
+/* Begins a decision in doubles. Returns whether it is complete. */
+static bool round_begin(struct support_decision *decision, struct fmb_answer *answer)
+{
+    const struct support_pair *pair = &decision->pair;
+    const bool all = decision->want & FMB_WANT_GAP && decision->farthest == INFINITY;
+    if (decision->searched) {
+        const enum fmb_verdict cores =
+            support_search(pair, all ? INFINITY : support_round_far(pair), &decision->nearest);
+        answer->verdict = support_round_verdict(pair, cores, &decision->nearest);
+        decision->cores = cores;
+    }
+    if (answer->verdict && measure(decision, answer))
+        return begin_gap(decision, answer);
+    if (!decision->bounded)
+        begin_nearest(decision);
+    return false;
+}
+
+/* Takes what the programs gave. Returns whether the decision is complete. */
+static bool round_step(struct support_decision *decision, struct fmb_answer *answer)
+{
+    if (decision->times.programs) {
+        if (!support_round_times_step(&decision->times))
+            return false;
+        set_contact(decision, decision->times.contact, answer);
+        return begin_gap(decision, answer);
+    }
+    if (!programs_step(decision->programs))
+        return false;
+    struct programs *programs = decision->programs;
+    decision->programs = NULL;
+    if (!decision->nears) {
+        struct fmb_answer cores;
+        programs_end(programs, &cores);
+        decision->cores = cores.verdict;
+        return begin_gap(decision, answer);
+    }
+    double inside[2];
+    const int sign = programs_compare_radius(programs);
+    programs_nearest_time(programs, inside);
+    programs_end(programs, NULL);
+    decision->nears = false;
+    answer->verdict = sign > 0 ? FMB_SEPARATED : sign == 0 ? FMB_TOUCHING : FMB_OVERLAPPING;
+    if (measure(decision, answer))
+        return begin_gap(decision, answer);
+    support_round_times_begin(&decision->pair, inside, &decision->times);
+    return false;
 }
 
 bool support_decision_begin(const struct frame_pair *frames, unsigned want,
@@ -74,6 +187,8 @@ bool support_decision_begin(const struct frame_pair *frames, unsigned want,
     set_pair(frames, want, farthest, effort == SUPPORT_QUICK, out);
     out->searched = effort != SUPPORT_PROGRAMS && pair->usable;
     nearest->simplex.count = 0;
+    if (pair->rounded)
+        return round_begin(out, answer);
     if (out->searched)
         answer->verdict =
             support_search(pair, all ? INFINITY : support_separating_distance(pair), nearest);
@@ -101,6 +216,10 @@ bool support_decision_begin_gap(const struct frame_pair *frames, enum fmb_verdic
 {
     set_pair(frames, FMB_WANT_GAP, farthest, bounded, out);
     answer->verdict = verdict;
+    if (out->pair.rounded && verdict == FMB_SEPARATED)
+        out->cores = FMB_SEPARATED;
+    else if (out->pair.rounded && out->pair.usable)
+        out->cores = support_search(&out->pair, INFINITY, &out->nearest);
     return begin_gap(out, answer);
 }
 
@@ -108,6 +227,8 @@ bool support_decision_step(struct support_decision *decision, struct fmb_answer 
 {
     if (decision->gap)
         return take_gap(decision, support_gap_step(decision->gap, &answer->gap), answer);
+    if (decision->pair.rounded)
+        return round_step(decision, answer);
     if (!programs_step(decision->programs))
         return false;
     programs_end(decision->programs, answer);
@@ -121,6 +242,7 @@ void support_decision_end(struct support_decision *decision)
         programs_end(decision->programs, NULL);
     if (decision->gap)
         support_gap_end(decision->gap);
+    support_round_times_end(&decision->times);
     support_decision_none(decision);
 }
 

@@ -4,7 +4,7 @@
 #ifndef FMB_SUPPORT_DECISION_H
 #define FMB_SUPPORT_DECISION_H
 
-#include "support_search.h"
+#include "support_round.h"
 
 /* What a decision may use: only doubles, in which case it is bounded (it takes no further steps and
  * allocates nothing); doubles, and programs for what they leave open; only programs. */
@@ -22,9 +22,15 @@ struct support_decision {
     double farthest;
     struct support_pair pair;
     struct support_nearest nearest;
-    /* What the next step advances: at most one is not NULL; both NULL: complete. */
+    /* What the next step advances: at most one is not NULL; all NULL: complete. */
     struct programs *programs;
     struct support_gap_work *gap;
+    /* Of frames with radii: whether programs looks for the nearest point of the cores, or else for
+     * their verdict, which the gap needs; that verdict, 0 if it is not known; and the search for
+     * the contact. */
+    bool nears;
+    enum fmb_verdict cores;
+    struct support_round_times times;
 };
 
 /* Sets a decision that is complete. */

@@ -36,7 +36,7 @@ static double least_of(const struct support_gap *gap, int f)
             at[axis] += gap->position[f][axis];
         least = fmax(least, vec3_largest(at));
     }
-    return least;
+    return least + view->placed.frame->radius;
 }
 
 /* The limit on the width, relative to the largest coordinate; fmb.h states 1e-12. The tenth that is
@@ -155,7 +155,9 @@ static enum gap_outcome distance_on_grid(const struct support_gap *gap, struct f
     struct support_nearest nearest;
     integer_simplex_each(&simplex, mpz_init);
     mpz_set_ui(simplex.other[0], 1);
-    integer_simplex_solve(&simplex, simplex.other, grid_support, (void *) gap);
+    integer_simplex_begin(&simplex, simplex.other, grid_support, (void *) gap);
+    while (!integer_simplex_step(&simplex, grid_support, (void *) gap))
+        ;
     nearest.simplex.count = (unsigned) simplex.count;
     for (int c = 0; c < simplex.count; c++) {
         const struct integer_corner *corner = simplex.corner[c];

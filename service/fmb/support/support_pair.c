@@ -63,7 +63,7 @@ static void set_view(struct placed_frame placed, struct support_view *out)
         set_hull(frame, out);
     else
         set_small(frame, out);
-    out->reach = frame->reach + out->slack;
+    out->reach = frame->core_reach + out->slack;
     rotation_of(placed.placement, frame->dim, &out->rotation);
 }
 
@@ -123,6 +123,10 @@ void support_pair_set(const struct frame_pair *frames, struct support_pair *out)
     out->error =
         32 * unit_roundoff * out->reach + (out->view[0].slack + out->view[1].slack) + 0x1p-1000;
     out->usable = out->reach < 0x1p200 && out->reach > 0x1p-200;
+    const double sum = frames->a.frame->radius + frames->b.frame->radius;
+    out->rounded = sum != 0;
+    out->radius[0] = sum * (1 - 0x1p-52);
+    out->radius[1] = sum * (1 + 0x1p-52);
 }
 
 double support_farthest(const struct support_pair *pair, const double n[FMB_DIM_MAX],

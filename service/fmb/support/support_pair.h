@@ -34,6 +34,9 @@
  * covers underflow for |n| <= 2. The factor between 32 and 22 + 3.1 covers the rounding of the
  * bounds.
  *
+ * Radii. All of this is about the cores of frames with a radius: the pair meets if and only if D
+ * has a point at most the sum of the radii away from the origin (support_round.h).
+ *
  * A pair is usable if its reach is within (2^-200, 2^200): no product of four lengths overflows,
  * nor underflows to less than the bounds count. No shared state. */
 #ifndef FMB_SUPPORT_PAIR_H
@@ -66,6 +69,8 @@ struct support_pair {
     double offset[FMB_DIM_MAX]; /* position of b - position of a, rounded; beyond dim: 0 */
     double drift[FMB_DIM_MAX];  /* (velocity of b - velocity of a) T, rounded */
     double reach, error;        /* as above */
+    bool rounded;               /* a frame has a radius */
+    double radius[2];           /* bounds of the sum of both radii: lower and upper */
 };
 
 /* Sets a checked pair. It points to frames and into itself: not to be copied. */
@@ -93,12 +98,6 @@ struct support support_view_farthest(const struct support_view *view, const doub
 
 /* out := R v, a vertex without its position, in world coordinates. */
 void support_place(const struct support_view *view, unsigned vertex, double out[FMB_DIM_MAX]);
-
-/* Whether a pair is decided here. */
-static inline bool support_takes(const struct fmb_frame *a, const struct fmb_frame *b)
-{
-    return a->shape == FMB_HULL || b->shape == FMB_HULL;
-}
 
 /* out := the frames in an order that depends on the numbers of both placed frames only. What is
  * computed for them in this order has the same bits for the swapped pair. Returns whether they are

@@ -105,6 +105,14 @@ bool support_simplex_contains_origin(const struct support_pair *pair,
     return true;
 }
 
+void support_toward(const struct support_pair *pair, double out[FMB_DIM_MAX])
+{
+    support_centre(pair, out);
+    if (!pair->usable || vec3_largest(out) == 0)
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            out[axis] = axis == 0;
+}
+
 /* Whether the interior of D is known to be the union of the interiors of M + t w. */
 static bool is_swept_open(const struct support_pair *pair)
 {

@@ -32,6 +32,9 @@ void support_lowest(const struct support_pair *pair, const double n[FMB_DIM_MAX]
 /* out := a point of D near its middle, rounded. */
 void support_centre(const struct support_pair *pair, double out[FMB_DIM_MAX]);
 
+/* out := a direction that is not 0, of a point near the middle of D if that is known. */
+void support_toward(const struct support_pair *pair, double out[FMB_DIM_MAX]);
+
 /* Searches for the point of D nearest to the origin; ends with GAP_FAR if it is surely farther away
  * than far - 4 error. Returns SEPARATED if a direction proves it, OVERLAPPING if a simplex proves
  * it, and 0 if doubles do not decide. In: a usable pair; far at least

@@ -1,0 +1,267 @@
+#include "support_round.h"
+
+#include "aabb.h"
+#include "interval.h"
+#include "programs.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- Distance ----
+ *
+ * Lower bound: the direction n of the search has n . x >= least - 4 error for all x of D
+ * (support_search.c); its length is 1 up to 6 u, which moves the value by less than another error.
+ *
+ * Upper bound: the weights of the search, none of them below 0 and divided by their sum, give a
+ * point of D. Each of its at most 4 terms is off by error, and computing the sum by 10 u reach,
+ * less than a third of another error. */
+
+static double lower_distance(const struct support_pair *pair, const struct support_nearest *nearest)
+{
+    return nearest->least - 5 * pair->error;
+}
+
+static double upper_distance(const struct support_pair *pair, const struct support_nearest *nearest)
+{
+    double at[FMB_DIM_MAX] = {0}, total = 0;
+    for (unsigned i = 0; i < nearest->simplex.count; i++) {
+        const double weight = fmax(nearest->weight[i], 0);
+        total += weight;
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            at[axis] += weight * nearest->simplex.vertex[i].at[axis];
+    }
+    const double distance = sqrt(vec3_dot(at, at)) / total * (1 + 0x1p-49) + 2 * pair->error;
+    return total > 0.5 && total < 2 ? distance : INFINITY;
+}
+
+double support_round_far(const struct support_pair *pair)
+{
+    return pair->radius[1] + 2 * support_separating_distance(pair);
+}
+
+/* GAP_FAR: farther than far less 4 error. */
+enum fmb_verdict support_round_verdict(const struct support_pair *pair, enum fmb_verdict cores,
+                                       const struct support_nearest *nearest)
+{
+    if (nearest->outcome == GAP_FAR)
+        return FMB_SEPARATED;
+    if (cores == FMB_OVERLAPPING || upper_distance(pair, nearest) < pair->radius[0])
+        return FMB_OVERLAPPING;
+    return nearest->outcome == GAP_KNOWN && lower_distance(pair, nearest) > pair->radius[1]
+               ? FMB_SEPARATED
+               : 0;
+}
+
+/* ---- Contact in doubles ----
+ *
+ * Times are fractions tau of the window, seen from the edge at which the search begins. The offset
+ * at tau is the one at the edge plus tau times a drift: two more roundings, which the error of the
+ * pair covers (support_pair.h counts 4.1 u |offset| and 5.1 u |drift| of its 32 u).
+ *
+ * A direction n with n . x >= b for all x of D at tau has n . x >= b + (s - tau) n . drift at s. So
+ * the frames are apart at all times before tau + (b - R) / -(n . drift). */
+
+/* Of the window, less than fmb.h allows, for the roundings of seconds. */
+static const double contact_limit = 0.9e-12;
+
+enum { NEWTON_STEPS = 20 };
+
+struct slice {
+    struct support_pair pair;
+    double edge[FMB_DIM_MAX], drift[FMB_DIM_MAX]; /* offset at the edge; into the window */
+    struct support_nearest nearest;
+};
+
+/* Searches at one time. Returns the verdict that is proved, or 0. */
+static enum fmb_verdict look(struct slice *slice, double tau)
+{
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        slice->pair.offset[axis] = slice->edge[axis] + tau * slice->drift[axis];
+    const enum fmb_verdict cores = support_search(&slice->pair, INFINITY, &slice->nearest);
+    return support_round_verdict(&slice->pair, cores, &slice->nearest);
+}
+
+/* Returns a time up to which the frames are apart, at most contact_limit before they meet; NAN if
+ * doubles do not give it. */
+static double find_end(struct slice *slice)
+{
+    double tau = 0;
+    enum fmb_verdict verdict = look(slice, tau);
+    if (verdict == FMB_OVERLAPPING)
+        return 0;
+    for (int step = 0; step < NEWTON_STEPS && verdict == FMB_SEPARATED; step++) {
+        const double apart = lower_distance(&slice->pair, &slice->nearest) - slice->pair.radius[1];
+        const double speed =
+            -vec3_dot(slice->nearest.direction, slice->drift) + 0x1p-48 * vec3_sum(slice->drift);
+        const double next = tau + apart / speed * (1 - 0x1p-40);
+        if (!(speed > 0 && next <= 1))
+            return NAN;
+        const bool slow = next - tau < 0.25 * contact_limit;
+        tau = next;
+        verdict = look(slice, slow ? tau + contact_limit : tau);
+        if (slow || verdict == FMB_OVERLAPPING)
+            break;
+    }
+    if (verdict == 0)
+        verdict = look(slice, tau + contact_limit);
+    return verdict == FMB_OVERLAPPING ? tau : NAN;
+}
+
+bool support_round_contact(const struct support_pair *pair, double contact[2])
+{
+    const double duration = pair->frames->duration;
+    struct slice slice;
+    if (!pair->usable)
+        return false;
+    support_pair_set(pair->frames, &slice.pair);
+    slice.pair.drifts = false;
+    for (int end = 0; end < 2; end++) {
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+            const double drift = pair->drift[axis];
+            slice.edge[axis] = pair->offset[axis] + (end ? drift : 0);
+            slice.drift[axis] = end ? -drift : drift;
+        }
+        const double tau = find_end(&slice);
+        if (isnan(tau))
+            return false;
+        contact[end] = end ? fmin(duration * (1 - tau) * (1 + 0x1p-50), duration)
+                           : duration * tau * (1 - 0x1p-50);
+    }
+    return contact[0] <= contact[1];
+}
+
+/* ---- Contact in exact numbers ---- */
+
+/* Begins to compare the distance at a time with the radii. */
+static void begin_slice(struct support_round_times *times, double time)
+{
+    times->frames.duration = time;
+    support_pair_set(&times->frames, &times->sliced);
+    double toward[FMB_DIM_MAX];
+    support_toward(&times->sliced, toward);
+    times->programs = programs_begin_nearest(&times->sliced, true, toward);
+}
+
+static void begin_end(struct support_round_times *times, int end)
+{
+    times->end = end;
+    times->at_edge = true;
+    times->out = end ? times->pair->frames->duration + 0.0 : 0;
+    times->in = times->inside[!end];
+    begin_slice(times, times->out);
+}
+
+void support_round_times_begin(const struct support_pair *pair, const double inside[2],
+                               struct support_round_times *out)
+{
+    out->pair = pair;
+    out->frames = *pair->frames;
+    memcpy(out->inside, inside, sizeof out->inside);
+    begin_end(out, 0);
+}
+
+/* The time in the middle is between the ends by a quarter of the limit at least, which is far more
+ * than rounding moved the end that is inside. */
+bool support_round_times_step(struct support_round_times *times)
+{
+    if (!programs_step(times->programs))
+        return false;
+    const bool meets = programs_compare_radius(times->programs) <= 0;
+    const double tried = times->frames.duration;
+    support_round_times_end(times);
+    if (times->at_edge && meets)
+        times->in = times->out;
+    else if (!times->at_edge)
+        *(meets ? &times->in : &times->out) = tried;
+    times->at_edge = false;
+    const double middle = times->out + 0.5 * (times->in - times->out);
+    if (fabs(times->in - times->out) > contact_limit * times->pair->frames->duration &&
+        middle != times->in && middle != times->out) {
+        begin_slice(times, middle);
+        return false;
+    }
+    times->contact[times->end] = times->out;
+    if (times->end == 0)
+        begin_end(times, 1);
+    return times->programs == NULL;
+}
+
+void support_round_times_end(struct support_round_times *times)
+{
+    if (times->programs)
+        programs_end(times->programs, NULL);
+    times->programs = NULL;
+}
+
+/* ---- Box ---- */
+
+/* Sums and products are rounded to nearest, and stepped outward. */
+void support_round_box(const struct support_pair *pair, const double contact[2],
+                       double box[2][FMB_DIM_MAX])
+{
+    memset(box, 0, 2 * sizeof *box);
+    for (int f = 0; f < 2; f++) {
+        struct fmb_prepared prepared;
+        double own[2][FMB_DIM_MAX];
+        prepared_set(pair->view[f].placed, &prepared);
+        const struct aabb at_rest = aabb_of(&prepared, 0);
+        aabb_get_ends(&at_rest, own);
+        for (int axis = 0; axis < pair->dim; axis++) {
+            const double v = pair->view[f].placed.placement->velocity[axis];
+            const double early = v * contact[0], late = v * contact[1];
+            double low = fmin(early, late), high = fmax(early, late);
+            if (low != 0)
+                low = low - fabs(low) * 0x1p-52 - 0x1p-1074;
+            if (high != 0)
+                high = high + fabs(high) * 0x1p-52 + 0x1p-1074;
+            low = low != 0 ? interval_step_down(own[0][axis] + low) : own[0][axis];
+            high = high != 0 ? interval_step_up(own[1][axis] + high) : own[1][axis];
+            box[0][axis] = f ? fmax(box[0][axis], low) : low;
+            box[1][axis] = f ? fmin(box[1][axis], high) : high;
+        }
+    }
+    for (int axis = 0; axis < pair->dim; axis++) {
+        box[0][axis] += 0.0;
+        box[1][axis] += 0.0;
+    }
+}
+
+/* ---- Gap ----
+ *
+ * The witness points move by the radii along the line between them, of length d. Its direction m is
+ * off by 2 u times their coordinates over d, and so the points by that times a radius; as d >= R
+ * for separated frames, by less than 4 u of the coordinates. With the roundings of their own
+ * coordinates, the upper bound grows by at most 8 u of the sum of coordinates and radii. Where that
+ * is not small beside the limit on the width, the limit that the cores' gap was held to (0.9 of
+ * fmb.h's) leaves more room than this. */
+void support_round_gap(const struct support_pair *pair, enum fmb_verdict verdict,
+                       struct fmb_gap *gap)
+{
+    const double radius[2] = {pair->frames->a.frame->radius, pair->frames->b.frame->radius};
+    double apart[FMB_DIM_MAX], far = radius[0] + radius[1];
+    if (isnan(gap->bounds[0]))
+        return;
+    const bool separated = verdict == FMB_SEPARATED;
+    for (int axis = 0; axis < FMB_DIM_MAX && gap->has_witness; axis++) {
+        apart[axis] = gap->witness[1][axis] - gap->witness[0][axis];
+        far += fabs(gap->witness[0][axis]) + fabs(gap->witness[1][axis]);
+    }
+    gap->bounds[0] = interval_sum(interval_of(gap->bounds[0]), interval_of(-pair->radius[1])).low;
+    gap->bounds[1] = interval_sum(interval_of(gap->bounds[1]), interval_of(-pair->radius[0])).high;
+    gap->has_witness = gap->has_witness && separated;
+    if (gap->has_witness) {
+        const double length = sqrt(vec3_dot(apart, apart));
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+            const double m = length > 0 ? apart[axis] / length : 0;
+            gap->witness[0][axis] += radius[0] * m;
+            gap->witness[1][axis] -= radius[1] * m;
+        }
+        gap->bounds[1] += 0x1p-50 * far;
+    } else {
+        memset(gap->witness, 0, sizeof gap->witness);
+        gap->time = 0;
+        gap->bounds[1] = fmin(gap->bounds[1], 0);
+    }
+    if (verdict == FMB_TOUCHING)
+        gap->bounds[0] = gap->bounds[1] = 0;
+}
