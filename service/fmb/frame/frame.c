@@ -495,7 +495,7 @@ enum fmb_status fmb_frame_inflate(struct fmb_frame *frame, double radius)
     frame->spread = frame->slack;
     if (radius > 0) {
         frame->reach = (frame->core_reach + radius) * PREPARED_MARGIN;
-        frame->spread = (frame->slack + radius) * PREPARED_MARGIN + 0x1p-1074;
+        frame->spread = (frame->slack + radius) * (1 + 0x1p-50) + 0x1p-1074;
     }
     frame->summary = prepared_summary_of(frame);
     return FMB_OK;

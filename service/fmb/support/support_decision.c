@@ -37,16 +37,6 @@ static void set_pair(const struct frame_pair *frames, unsigned want, double fart
     support_pair_set(&out->frames, &out->pair);
 }
 
-/* The gap of the answer is that of the swapped pair if the frames were exchanged. */
-static void round_gap(const struct support_decision *decision, struct fmb_answer *answer)
-{
-    if (decision->swapped)
-        gap_turn_round(&answer->gap);
-    support_round_gap(&decision->pair, answer->verdict, &answer->gap);
-    if (decision->swapped)
-        gap_turn_round(&answer->gap);
-}
-
 /* Takes the outcome of a step of the gap. Returns whether it is complete. */
 static bool take_gap(struct support_decision *decision, enum gap_outcome outcome,
                      struct fmb_answer *answer)
@@ -57,22 +47,20 @@ static bool take_gap(struct support_decision *decision, enum gap_outcome outcome
     answer->has_gap = true;
     if (outcome == GAP_FAR)
         answer->gap = gap_none();
-    else if (decision->pair.rounded)
-        round_gap(decision, answer);
     return true;
 }
 
-/* Begins the gap, if it is wanted, of a pair, or of cores, with this verdict. Returns whether the
- * decision is complete. */
-static bool begin_gap_of(struct support_decision *decision, enum fmb_verdict verdict,
+/* Begins the gap of a pair whose cores have this verdict. Returns whether the decision is complete.
+ */
+static bool begin_gap_of(struct support_decision *decision, enum fmb_verdict cores,
                          struct fmb_answer *answer)
 {
     const bool all = decision->searched && decision->farthest == INFINITY;
     return take_gap(
         decision,
         support_gap_of_pair(&decision->pair, decision->swapped, all ? &decision->nearest : NULL,
-                            verdict, decision->farthest + decision->pair.radius[1], &answer->gap,
-                            decision->bounded ? NULL : &decision->gap),
+                            cores, answer->verdict, decision->farthest + decision->pair.radius[1],
+                            &answer->gap, decision->bounded ? NULL : &decision->gap),
         answer);
 }
 
@@ -83,8 +71,9 @@ static bool begin_gap(struct support_decision *decision, struct fmb_answer *answ
         return true;
     if (!decision->pair.rounded)
         return begin_gap_of(decision, answer->verdict, answer);
-    if (decision->cores)
-        return begin_gap_of(decision, decision->cores, answer);
+    if (decision->cores) /* of cores that touch, too, the direction has to prove the bound */
+        return begin_gap_of(
+            decision, decision->cores == FMB_SEPARATED ? FMB_SEPARATED : FMB_OVERLAPPING, answer);
     if (!decision->bounded)
         decision->programs = programs_begin(&decision->pair, 0, NULL, 0);
     return false;

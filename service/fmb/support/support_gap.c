@@ -15,6 +15,7 @@
 
 #include "integer_simplex.h"
 #include "memory.h"
+#include "support_round.h"
 
 #include <math.h>
 #include <string.h>
@@ -182,7 +183,7 @@ struct support_gap_work {
     struct frame_pair frames;
     struct support_pair pair;
     bool swapped;
-    enum fmb_verdict verdict;
+    enum fmb_verdict verdict, of_pair; /* of the cores, and of the pair */
     double farthest;
     enum { GAP_DEPTH, GAP_PLACING, GAP_PLACED_DEPTH } stage; /* what comes next */
     bool flat;                                               /* the depth needs no step */
@@ -292,7 +293,7 @@ static void begin_placing(struct support_gap_work *work)
 }
 
 enum gap_outcome support_gap_of_pair(const struct support_pair *pair, bool swapped,
-                                     const struct support_nearest *nearest,
+                                     const struct support_nearest *nearest, enum fmb_verdict cores,
                                      enum fmb_verdict verdict, double farthest, struct fmb_gap *out,
                                      struct support_gap_work **work)
 {
@@ -302,10 +303,12 @@ enum gap_outcome support_gap_of_pair(const struct support_pair *pair, bool swapp
     enum gap_outcome outcome = GAP_UNSURE;
     if (set_gap(pair, &gap)) {
         if (!nearest)
-            search(&gap, verdict, farthest, &searched);
+            search(&gap, cores, farthest, &searched);
         nearest = nearest ? nearest : &searched;
-        outcome = solve_at_once(&gap, nearest, verdict, !work, &late, out);
+        outcome = solve_at_once(&gap, nearest, cores, !work, &late, out);
     }
+    if (outcome == GAP_KNOWN && pair->rounded)
+        support_round_gap(pair->frames, 0, verdict, out);
     if (outcome != GAP_UNSURE)
         return complete(outcome, swapped, out);
     if (!work)
@@ -313,7 +316,8 @@ enum gap_outcome support_gap_of_pair(const struct support_pair *pair, bool swapp
     struct support_gap_work *begun = memory_allocate(sizeof *begun);
     begun->frames = *pair->frames;
     begun->swapped = swapped;
-    begun->verdict = verdict;
+    begun->verdict = cores;
+    begun->of_pair = verdict;
     begun->farthest = farthest;
     begun->flat = false;
     support_pair_set(&begun->frames, &begun->pair);
@@ -389,8 +393,12 @@ enum gap_outcome support_gap_step(struct support_gap_work *work, struct fmb_gap 
     }
     if (outcome == GAP_UNSURE)
         return GAP_UNSURE;
-    if (outcome == GAP_KNOWN && work->stage != GAP_DEPTH && work->placed.least > 0)
-        scale_lengths(out, (int) work->placed.exponent);
+    const bool scaled = work->stage != GAP_DEPTH && work->placed.least > 0;
+    const int exponent = scaled ? (int) work->placed.exponent : 0;
+    if (outcome == GAP_KNOWN && work->pair.rounded)
+        support_round_gap(&work->frames, exponent, work->of_pair, out);
+    if (outcome == GAP_KNOWN && scaled)
+        scale_lengths(out, exponent);
     complete(outcome, work->swapped, out);
     support_gap_end(work);
     return outcome;

@@ -68,8 +68,13 @@ void support_placed_begin(const struct support_pair *pair, struct support_placed
 bool support_placed_step(struct support_placed *placed, int count);
 void support_placed_end(struct support_placed *placed);
 
-/* The gap of a pair in the order of support_order(), with this verdict, in steps of less than a
- * millisecond. nearest: the result of a search up to INFINITY, or NULL.
+/* The gap of a pair in the order of support_order(), in steps of less than a millisecond.
+ *
+ * In:  nearest   the result of a search up to INFINITY, or NULL
+ *      cores     the verdict of the frames without their radii. OVERLAPPING will do for cores that
+ *                touch: the direction then proves the lower bound
+ *      verdict   of the pair
+ *      farthest  a gap of the cores
  *
  * support_gap_of_pair() returns GAP_KNOWN or, if the gap is surely greater than farthest, by more
  * than the width of an enclosure, GAP_FAR. It returns GAP_UNSURE if there are steps to be done,
@@ -79,7 +84,7 @@ void support_placed_end(struct support_placed *placed);
  */
 struct support_gap_work;
 enum gap_outcome support_gap_of_pair(const struct support_pair *pair, bool swapped,
-                                     const struct support_nearest *nearest,
+                                     const struct support_nearest *nearest, enum fmb_verdict cores,
                                      enum fmb_verdict verdict, double farthest, struct fmb_gap *out,
                                      struct support_gap_work **work);
 enum gap_outcome support_gap_step(struct support_gap_work *work, struct fmb_gap *out);

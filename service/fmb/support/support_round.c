@@ -1,6 +1,5 @@
 #include "support_round.h"
 
-#include "aabb.h"
 #include "interval.h"
 #include "programs.h"
 
@@ -193,37 +192,57 @@ void support_round_times_end(struct support_round_times *times)
     times->programs = NULL;
 }
 
-/* ---- Box ---- */
+/* ---- Box ----
+ *
+ * A coordinate of the farthest vertex along an axis is that of a vertex without rounding if the
+ * frame is not turned and its vertices are exact; else it is off by support_view_farthest()'s
+ * bound. Sums are rounded outward. */
 
-/* Sums and products are rounded to nearest, and stepped outward. */
+static double sum_up(double x, double y)
+{
+    return interval_sum(interval_of(x), interval_of(y)).high;
+}
+
+/* An upper bound of velocity t over the contact. */
+static double path_up(double velocity, const double contact[2])
+{
+    const double path = fmax(velocity * contact[0], velocity * contact[1]);
+    return path == 0 || velocity == 0 ? path : path + fabs(path) * 0x1p-52 + 0x1p-1074;
+}
+
+/* The greatest coordinate of a frame over the contact along an axis, or its negative. Numbers near
+ * the largest double are scaled, so that no sum overflows. */
+static double end_of(const struct support_view *view, int axis, double sign,
+                     const double contact[2])
+{
+    const struct fmb_placement *placement = view->placed.placement;
+    const bool exact = !view->rotation.turned && view->slack == 0;
+    const double path = path_up(sign * placement->velocity[axis], contact);
+    const double position = sign * placement->position[axis];
+    const double most = fmax(fmax(view->reach, fabs(position)), fabs(path));
+    const double scale = most < 0x1p1000 ? 1 : 0x1p-4;
+    double along[FMB_DIM_MAX] = {0};
+    along[axis] = sign * scale;
+    double end = support_view_farthest(view, along).value;
+    if (!exact)
+        end = sum_up(end, scale * (0x1p-48 * view->reach + view->slack));
+    end = sum_up(end, scale * position);
+    end = sum_up(end, scale * path);
+    end = sum_up(end, scale * view->placed.frame->radius);
+    return isnan(end) ? INFINITY : end / scale;
+}
+
 void support_round_box(const struct support_pair *pair, const double contact[2],
                        double box[2][FMB_DIM_MAX])
 {
     memset(box, 0, 2 * sizeof *box);
-    for (int f = 0; f < 2; f++) {
-        struct fmb_prepared prepared;
-        double own[2][FMB_DIM_MAX];
-        prepared_set(pair->view[f].placed, &prepared);
-        const struct aabb at_rest = aabb_of(&prepared, 0);
-        aabb_get_ends(&at_rest, own);
-        for (int axis = 0; axis < pair->dim; axis++) {
-            const double v = pair->view[f].placed.placement->velocity[axis];
-            const double early = v * contact[0], late = v * contact[1];
-            double low = fmin(early, late), high = fmax(early, late);
-            if (low != 0)
-                low = low - fabs(low) * 0x1p-52 - 0x1p-1074;
-            if (high != 0)
-                high = high + fabs(high) * 0x1p-52 + 0x1p-1074;
-            low = low != 0 ? interval_step_down(own[0][axis] + low) : own[0][axis];
-            high = high != 0 ? interval_step_up(own[1][axis] + high) : own[1][axis];
-            box[0][axis] = f ? fmax(box[0][axis], low) : low;
-            box[1][axis] = f ? fmin(box[1][axis], high) : high;
+    for (int axis = 0; axis < pair->dim; axis++)
+        for (int side = 0; side < 2; side++) {
+            const double sign = side ? 1 : -1;
+            const double end = fmin(end_of(&pair->view[0], axis, sign, contact),
+                                    end_of(&pair->view[1], axis, sign, contact));
+            box[side][axis] = sign * end + 0.0; /* never -0 */
         }
-    }
-    for (int axis = 0; axis < pair->dim; axis++) {
-        box[0][axis] += 0.0;
-        box[1][axis] += 0.0;
-    }
 }
 
 /* ---- Gap ----
@@ -234,30 +253,37 @@ void support_round_box(const struct support_pair *pair, const double contact[2],
  * coordinates, the upper bound grows by at most 8 u of the sum of coordinates and radii. Where that
  * is not small beside the limit on the width, the limit that the cores' gap was held to (0.9 of
  * fmb.h's) leaves more room than this. */
-void support_round_gap(const struct support_pair *pair, enum fmb_verdict verdict,
+void support_round_gap(const struct frame_pair *frames, int exponent, enum fmb_verdict verdict,
                        struct fmb_gap *gap)
 {
-    const double radius[2] = {pair->frames->a.frame->radius, pair->frames->b.frame->radius};
-    double apart[FMB_DIM_MAX], far = radius[0] + radius[1];
-    if (isnan(gap->bounds[0]))
-        return;
+    const double radius[2] = {ldexp(frames->a.frame->radius, -exponent),
+                              ldexp(frames->b.frame->radius, -exponent)};
+    const double underflow = exponent == 0 ? 0 : 4 * 0x1p-1074;
     const bool separated = verdict == FMB_SEPARATED;
-    for (int axis = 0; axis < FMB_DIM_MAX && gap->has_witness; axis++) {
-        apart[axis] = gap->witness[1][axis] - gap->witness[0][axis];
-        far += fabs(gap->witness[0][axis]) + fabs(gap->witness[1][axis]);
+    gap->bounds[0] -= underflow;
+    gap->bounds[1] += underflow;
+    for (int f = 0; f < 2; f++) { /* one after the other: their sum may overflow */
+        gap->bounds[0] = -sum_up(-gap->bounds[0], radius[f]);
+        gap->bounds[1] = sum_up(gap->bounds[1], -radius[f]);
     }
-    gap->bounds[0] = interval_sum(interval_of(gap->bounds[0]), interval_of(-pair->radius[1])).low;
-    gap->bounds[1] = interval_sum(interval_of(gap->bounds[1]), interval_of(-pair->radius[0])).high;
-    gap->has_witness = gap->has_witness && separated;
-    if (gap->has_witness) {
-        const double length = sqrt(vec3_dot(apart, apart));
+    if (gap->has_witness && separated) {
+        double toward[FMB_DIM_MAX], error = 0x1p-50 * radius[0] + 0x1p-50 * radius[1];
         for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-            const double m = length > 0 ? apart[axis] / length : 0;
-            gap->witness[0][axis] += radius[0] * m;
-            gap->witness[1][axis] -= radius[1] * m;
+            const double a = gap->witness[0][axis], b = gap->witness[1][axis];
+            toward[axis] = fabs(a) > 1 || fabs(b) > 1 ? 0.25 * b - 0.25 * a : 0.25 * (b - a);
+            error += 0x1p-50 * fabs(a) + 0x1p-50 * fabs(b);
         }
-        gap->bounds[1] += 0x1p-50 * far;
+        const double largest = vec3_largest(toward);
+        for (int axis = 0; axis < FMB_DIM_MAX && largest > 0; axis++)
+            toward[axis] /= largest;
+        const double length = sqrt(vec3_dot(toward, toward));
+        for (int axis = 0; axis < FMB_DIM_MAX && length > 0; axis++) {
+            gap->witness[0][axis] += radius[0] * (toward[axis] / length);
+            gap->witness[1][axis] -= radius[1] * (toward[axis] / length);
+        }
+        gap->bounds[1] += error;
     } else {
+        gap->has_witness = false;
         memset(gap->witness, 0, sizeof gap->witness);
         gap->time = 0;
         gap->bounds[1] = fmin(gap->bounds[1], 0);

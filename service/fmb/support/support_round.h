@@ -70,8 +70,9 @@ void support_round_times_end(struct support_round_times *times);
 void support_round_box(const struct support_pair *pair, const double contact[2],
                        double box[2][FMB_DIM_MAX]);
 
-/* Turns the gap of the cores into that of the pair. In: bounds that are tight (support_gap.h) */
-void support_round_gap(const struct support_pair *pair, enum fmb_verdict verdict,
+/* Turns the gap of the cores, lengths divided by 2^exponent, into that of the pair. In: frames in
+ * the order of the gap; bounds that are tight (support_gap.h) */
+void support_round_gap(const struct frame_pair *frames, int exponent, enum fmb_verdict verdict,
                        struct fmb_gap *gap);
 
 #endif
