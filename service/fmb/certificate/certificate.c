@@ -71,8 +71,14 @@ static void write_weights(struct certificate_writer *writer,
         certificate_write_text(writer, " %u", of->vertex);
         if (of->row >= 0)
             continue;
-        mpq_set_z(number, of->stated);
-        mpq_div_2exp(number, number, weights->bits);
+        if (weights->exact) {
+            mpz_set(mpq_numref(number), of->proven);
+            mpz_set(mpq_denref(number), weights->proof->total);
+            mpq_canonicalize(number);
+        } else {
+            mpq_set_z(number, of->stated);
+            mpq_div_2exp(number, number, weights->bits);
+        }
         certificate_write_text(writer, ":");
         certificate_write_number(writer, number);
     }
@@ -92,8 +98,9 @@ static bool write_separated(struct certificate_writer *writer, const struct supp
         mpz_t n[3];
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             outward[axis] = -ldexp(trunc(ldexp(direction[axis], bits)), -bits);
-        if (!(support_farthest(pair, outward, &column) <
-              -1.01 * pair->error)) /* its length: < 1.01 */
+        const double length = sqrt(vec3_dot(outward, outward)) * (1 + 0x1p-50); /* < 1.01 */
+        const double apart = 1.01 * pair->error + length * pair->radius[1] * (1 + 0x1p-50);
+        if (!(support_farthest(pair, outward, &column) < -apart))
             continue;
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             mpz_init_set_d(n[axis], -ldexp(outward[axis], bits));
@@ -157,8 +164,14 @@ enum fmb_status fmb_certificate_begin(const struct fmb_placement *a, const struc
         verdict = support_search(&begun->pair, INFINITY, &nearest);
     for (unsigned i = 0; i < nearest.simplex.count; i++)
         first[i] = nearest.simplex.vertex[i].column;
-    begun->programs =
-        programs_begin(&begun->pair, FMB_WANT_CERTIFICATE, first, nearest.simplex.count);
+    if (begun->pair.rounded) {
+        double toward[FMB_DIM_MAX];
+        support_toward(&begun->pair, toward);
+        begun->programs = programs_begin_nearest(&begun->pair, false, toward);
+    } else {
+        begun->programs =
+            programs_begin(&begun->pair, FMB_WANT_CERTIFICATE, first, nearest.simplex.count);
+    }
     if (is_wide(&begun->frames, programs_proof(begun->programs)->integers) ||
         (verdict == FMB_SEPARATED &&
          write_separated(&begun->writer, &begun->pair, nearest.direction)))
@@ -178,7 +191,8 @@ static void decided(struct fmb_certificate_state *state)
         end(state);
         return;
     }
-    certificate_weights_begin(proof, state->pair.dim, state->frames.duration, &state->weights);
+    certificate_weights_begin(proof, state->pair.dim, state->pair.rounded, state->frames.duration,
+                              &state->weights);
     state->stage = WEIGHING;
 }
 
@@ -187,8 +201,11 @@ const char *fmb_certificate_step(struct fmb_certificate_state *state)
     struct certificate_writer *writer = &state->writer;
     switch (state->stage) {
     case DECIDING:
-        if (programs_step(state->programs))
-            decided(state);
+        if (!programs_step(state->programs))
+            break;
+        if (state->pair.rounded)
+            programs_compare_radius(state->programs);
+        decided(state);
         break;
     case WEIGHING:
         if (!certificate_weights_step(&state->weights))

@@ -14,6 +14,11 @@
  *   in common at a time of the window: TOUCHING.
  *
  * A common point comes as weights of vertices: certificate_check_weights.c.
+ *
+ * Frames with radii, R their sum. All of this is about their cores: N . (b - a) >= g > 0 at all
+ * times, so that their distance is at least g / |N|. g > R |N|: SEPARATED. g >= R |N|, and points
+ * of both cores that are R or less apart at some time: TOUCHING. Points that are less than R apart:
+ * OVERLAPPING.
  */
 #include "certificate_check.h"
 
@@ -193,6 +198,13 @@ static void set_pair(struct check_proof *proof, const struct fmb_placement *a,
     proof->moving =
         !is_zero_vector(proof->side[0].velocity) || !is_zero_vector(proof->side[1].velocity);
     check_subtract(proof->v, proof->side[1].velocity, proof->side[0].velocity);
+    mpq_t other;
+    mpq_init(other);
+    mpq_set_d(proof->radius, proof->side[0].frame->radius);
+    mpq_set_d(other, proof->side[1].frame->radius);
+    mpq_add(proof->radius, proof->radius, other);
+    mpq_clear(other);
+    proof->rounded = mpq_sgn(proof->radius) != 0;
 }
 
 unsigned check_vertex_count(const struct check_side *side)
@@ -378,14 +390,23 @@ static const char *flaw_of_normal(struct check_proof *proof, enum fmb_verdict ve
     mpq_mul(growth, growth, proof->duration);
     if (mpq_sgn(growth) < 0)
         mpq_add(gap, gap, growth);
-    const int sign = mpq_sgn(gap);
+    int sign = mpq_sgn(gap);
+    if (proof->rounded && sign > 0) { /* g^2 against |N|^2 R^2 */
+        dot(growth, proof->normal, proof->normal);
+        mpq_mul(growth, growth, proof->radius);
+        mpq_mul(growth, growth, proof->radius);
+        mpq_mul(gap, gap, gap);
+        sign = mpq_cmp(gap, growth);
+    } else if (proof->rounded) {
+        sign = -1;
+    }
     mpq_clears(gap, growth, NULL);
 
     if (verdict == FMB_SEPARATED)
         return sign > 0 ? NULL : "the normal does not hold the frames apart all the time";
     if (sign < 0)
         return "the normal does not keep the frames on its two sides all the time";
-    return mpq_equal(a->low, a->high) && mpq_equal(b->low, b->high)
+    return !proof->rounded && mpq_equal(a->low, a->high) && mpq_equal(b->low, b->high)
                ? "the normal is constant on both frames"
                : NULL;
 }

@@ -38,10 +38,12 @@ enum { EQUATIONS = 2 + AXES, FOLLOWING_MAX = EQUATIONS };
 struct check_proof {
     int dim;
     bool moving;   /* a velocity is not 0 */
+    bool rounded;  /* the sum of the radii is not 0 */
     int following; /* weights that are not stated */
     struct check_side side[2];
     mpq_t duration;
     mpq_t v[AXES]; /* velocity of the second frame relative to the first */
+    mpq_t radius;  /* the sum of both radii */
     mpq_t normal[AXES];
     mpq_t time;
     mpq_t equation[EQUATIONS][FOLLOWING_MAX + 1]; /* coefficients, and the sum */

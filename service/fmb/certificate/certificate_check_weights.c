@@ -6,6 +6,9 @@
  * vertices (Rockafellar, Convex Analysis, theorem 6.9), which is part of that of the frame if both
  * have the same affine hull.
  *
+ * Of frames with radii, the points of both cores may be different: |b - a| is compared with the sum
+ * of the radii. A weight of each frame that is not stated then follows from the others.
+ *
  * Weights that are not stated are unknowns of linear equations: the weights of each frame sum to 1,
  * and both frames have the same point. Gaussian elimination has to leave exactly one solution. */
 #include "certificate_check.h"
@@ -122,13 +125,13 @@ static void substitute(struct check_proof *proof, int k, int e)
     mpq_clear(factor);
 }
 
-/* Solves equation k for unknown k. Returns false if no equation contains it. */
-static bool eliminate(struct check_proof *proof, int k)
+/* Solves equation k, one of the first count, for unknown k. Returns false if none contains it. */
+static bool eliminate(struct check_proof *proof, int k, int count)
 {
     int from = k;
-    while (from < EQUATIONS && mpq_sgn(proof->equation[from][k]) == 0)
+    while (from < count && mpq_sgn(proof->equation[from][k]) == 0)
         from++;
-    if (from == EQUATIONS)
+    if (from >= count)
         return false;
     for (int i = 0; i <= proof->following && from > k; i++)
         mpq_swap(proof->equation[k][i], proof->equation[from][i]);
@@ -138,14 +141,31 @@ static bool eliminate(struct check_proof *proof, int k)
     return true;
 }
 
+/* Returns the sign of |b - a| less the sum of the radii: what is left of the equations of the axes
+ * is b - a. */
+static int compare_radius(struct check_proof *proof)
+{
+    mpq_t square, of_axis;
+    mpq_inits(square, of_axis, NULL);
+    for (int axis = 0; axis < AXES; axis++) {
+        const mpq_ptr apart = proof->equation[2 + axis][proof->following];
+        mpq_mul(of_axis, apart, apart);
+        mpq_add(square, square, of_axis);
+    }
+    mpq_mul(of_axis, proof->radius, proof->radius);
+    const int order = mpq_cmp(square, of_axis);
+    mpq_clears(square, of_axis, NULL);
+    return order;
+}
+
 static const char *flaw_of_equations(struct check_proof *proof)
 {
-    const int sum = proof->following;
+    const int sum = proof->following, equations = proof->rounded ? 2 : EQUATIONS;
     set_sums(proof);
     for (int k = 0; k < proof->following; k++)
-        if (!eliminate(proof, k))
+        if (!eliminate(proof, k, equations))
             return "the weights that are not stated do not follow from the others";
-    for (int e = proof->following; e < EQUATIONS; e++)
+    for (int e = proof->following; e < equations; e++)
         if (mpq_sgn(proof->equation[e][sum]) != 0)
             return "with these weights the frames have no common point";
     for (int k = 0; k < proof->following; k++)
@@ -176,7 +196,9 @@ static bool is_spanned(struct check_side *side)
 const char *check_flaw_of_weights(struct check_proof *proof, enum fmb_verdict verdict)
 {
     const char *flaw = flaw_of_equations(proof);
-    if (flaw || verdict != FMB_OVERLAPPING)
+    if (!flaw && proof->rounded && compare_radius(proof) >= (verdict == FMB_OVERLAPPING ? 0 : 1))
+        return "with these weights the points are too far apart";
+    if (flaw || proof->rounded || verdict != FMB_OVERLAPPING)
         return flaw;
     return !is_spanned(&proof->side[0])   ? "the named vertices do not span the first frame"
            : !is_spanned(&proof->side[1]) ? "the named vertices do not span the second frame"

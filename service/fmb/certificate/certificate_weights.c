@@ -16,6 +16,11 @@
  * If the equations leave a row without vertices in which the drift is not 0, tau follows from this
  * row, for example if two plates pass through each other's plane. The time is then not rounded.
  *
+ * Of frames with radii, the weights of each frame sum to 1, and the two points are at most the sum
+ * of the radii apart. If they are nearer, the weights are rounded as long as they stay so; one of
+ * each frame follows from its sum. Otherwise the frames touch, and the weights are those of the
+ * proof.
+ *
  * The elimination is that of Bareiss (Mathematics of Computation 22, 1968): the numbers remain
  * integers, minors of the matrix, and each step divides by the previous pivot without remainder. */
 #include "certificate_weights.h"
@@ -72,10 +77,10 @@ static void set_rows(struct certificate_weights *w)
         const int f = w->weight[j].f;
         support_integers_place(integers, f, w->weight[j].vertex, at);
         mpz_set_ui(w->row[f][j], 1);
-        for (int i = 2; i < w->rows; i++)
+        for (int i = 2; i < 2 + w->dim; i++)
             (f ? mpz_neg : mpz_set)(w->row[i][j], at[i - 2]);
     }
-    for (int i = 0; i < w->rows; i++) {
+    for (int i = 0; i < 2 + w->dim; i++) {
         mpz_set_ui(w->row[i][w->count], i < 2);
         if (i >= 2)
             mpz_set(w->row[i][w->count + 1], integers->drift[i - 2]);
@@ -98,13 +103,16 @@ static void set_time(struct certificate_weights *w)
     mpq_clear(window);
 }
 
-void certificate_weights_begin(const struct programs_proof *proof, int dim, double duration,
-                               struct certificate_weights *out)
+void certificate_weights_begin(const struct programs_proof *proof, int dim, bool rounded,
+                               double duration, struct certificate_weights *out)
 {
     out->proof = proof;
     out->duration = duration;
     out->count = out->next = 0;
-    out->rows = 2 + dim;
+    out->rounded = rounded;
+    out->exact = rounded && proof->verdict == FMB_TOUCHING;
+    out->dim = dim;
+    out->rows = rounded ? 2 : 2 + dim;
     out->rank = 0;
     each(out, mpz_init);
     mpq_init(out->time);
@@ -203,6 +211,41 @@ static bool follow_positive(struct certificate_weights *w, const mpq_t tau)
     return true;
 }
 
+/* Whether the points of frames with radii, with these weights and at this fraction of the window,
+ * are nearer than the sum of the radii. The weights that follow are set. */
+static bool are_near(struct certificate_weights *w, const mpq_t tau)
+{
+    const struct support_integers *integers = w->proof->integers;
+    mpz_t square;
+    for (unsigned j = 0; j < w->count; j++) {
+        struct certificate_weight *of = &w->weight[j];
+        if (of->row < 0)
+            continue;
+        mpz_set_ui(of->stated, 1);
+        mpz_mul_2exp(of->stated, of->stated, w->bits);
+        for (unsigned k = 0; k < w->count; k++)
+            if (k != j && w->weight[k].f == of->f)
+                mpz_sub(of->stated, of->stated, w->weight[k].stated);
+    }
+    mpz_init(square);
+    for (int i = 2; i < 2 + w->dim; i++) {
+        mpz_set_ui(w->sum, 0);
+        for (unsigned j = 0; j < w->count; j++)
+            mpz_submul(w->sum, w->row[i][j], w->weight[j].stated);
+        mpz_mul(w->sum, w->sum, mpq_denref(tau));
+        mpz_mul_2exp(w->scratch, integers->drift[i - 2], w->bits);
+        mpz_addmul(w->sum, w->scratch, mpq_numref(tau));
+        mpz_addmul(square, w->sum, w->sum);
+    }
+    mpz_set(w->sum, integers->radius);
+    mpz_mul(w->sum, w->sum, mpq_denref(tau));
+    mpz_mul_2exp(w->sum, w->sum, w->bits);
+    mpz_mul(w->sum, w->sum, w->sum);
+    const bool near = mpz_cmp(square, w->sum) < 0;
+    mpz_clear(square);
+    return near;
+}
+
 static void choose(struct certificate_weights *w)
 {
     const bool rounds_time = time_is_free(w) && mpq_sgn(w->time) > 0;
@@ -219,7 +262,7 @@ static void choose(struct certificate_weights *w)
         if (mpq_sgn(time) > 0)
             mpq_div(tau, time, window);
         round_weights(w);
-        good = follow_positive(w, tau);
+        good = follow_positive(w, tau) && (!w->rounded || are_near(w, tau));
     }
     mpq_swap(w->time, time);
     mpq_clears(window, tau, time, NULL);
@@ -230,6 +273,7 @@ bool certificate_weights_step(struct certificate_weights *w)
     while (w->next < w->count && w->rank < w->rows)
         if (eliminate(w, w->next++))
             return false;
-    choose(w);
+    if (!w->exact)
+        choose(w);
     return true;
 }

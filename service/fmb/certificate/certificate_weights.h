@@ -23,7 +23,9 @@ struct certificate_weights {
     const struct programs_proof *proof;
     double duration;
     unsigned count, next;
-    int rows, rank;
+    bool rounded; /* frames with radii */
+    bool exact;   /* the stated weights are those of the proof: proven over its total */
+    int dim, rows, rank;
     struct certificate_weight weight[WEIGHTS_MAX]; /* the greatest first */
     mpz_t row[WEIGHTS_ROWS][WEIGHTS_COLUMNS];      /* last two: sum, and the term of the drift */
     mpz_t det, scratch, sum;
@@ -31,10 +33,10 @@ struct certificate_weights {
     mpq_t time; /* of the point, seconds */
 };
 
-/* Begins with a complete proof of a pair that meets. certificate_weights_end() frees what is
- * allocated. */
-void certificate_weights_begin(const struct programs_proof *proof, int dim, double duration,
-                               struct certificate_weights *out);
+/* Begins with a complete proof of a pair that meets. rounded: of frames with radii.
+ * certificate_weights_end() frees what is allocated. */
+void certificate_weights_begin(const struct programs_proof *proof, int dim, bool rounded,
+                               double duration, struct certificate_weights *out);
 
 /* Performs a step. Returns whether it was the last: bits, time and the stated weights are set. */
 bool certificate_weights_step(struct certificate_weights *weights);

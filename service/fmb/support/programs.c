@@ -1141,16 +1141,26 @@ static void set_nearest(struct programs *e)
     }
 }
 
-int programs_compare_radius(struct programs *e)
+enum fmb_verdict programs_compare_radius(struct programs *e)
 {
-    const struct frame_pair *frames = e->pair->frames;
+    struct programs_proof *proof = &e->proof;
     set_nearest(e);
     dot(e->vector, e->vector, e->best);
-    integer_set_sum(e->sum, frames->a.frame->radius, frames->b.frame->radius, e->integers.unit);
-    mpz_mul(e->sum, e->sum, e->integers.scale);
-    mpz_mul(e->sum, e->sum, e->simplex.total);
+    mpz_mul(e->sum, e->integers.radius, e->simplex.total);
     mpz_mul(e->sum, e->sum, e->sum);
-    return mpz_cmp(e->best, e->sum);
+    const int order = mpz_cmp(e->best, e->sum);
+    proof->verdict = order > 0 ? FMB_SEPARATED : order == 0 ? FMB_TOUCHING : FMB_OVERLAPPING;
+    proof->count = (unsigned) e->simplex.count;
+    mpz_set(proof->total, e->simplex.total);
+    for (int i = 0; i < e->simplex.count; i++) {
+        const struct integer_corner *corner = e->simplex.corner[i];
+        proof->column[i] =
+            (struct support_column){{corner->bits[0], corner->bits[1]}, corner->late};
+        mpz_set(proof->weight[i], e->simplex.weight[i]);
+    }
+    for (int axis = 0; axis < 3; axis++)
+        mpz_set(proof->normal[axis], e->simplex.normal[axis]);
+    return proof->verdict;
 }
 
 void programs_nearest_time(struct programs *e, double time[2])

@@ -19,7 +19,9 @@
 
 struct programs;
 
-/* What proves a verdict. D: support_pair.h. */
+/* What proves a verdict. D: support_pair.h. Of frames with radii: the weights give the point x of D
+ * nearest to the origin, and normal is a multiple of x, the values above at least |normal| R, more
+ * if they are SEPARATED. */
 enum { PROGRAMS_PROOF_MAX = 2 * (FMB_DIM_MAX + 1) + FMB_DIM_MAX };
 
 struct programs_proof {
@@ -60,9 +62,10 @@ bool programs_step(struct programs *programs);
  * member integers is set from the beginning. */
 struct programs_proof *programs_proof(struct programs *programs);
 
-/* Of a complete search for the nearest point: returns the sign of its distance less the sum of the
- * radii; and the time of the point, in seconds, rounded down and up. */
-int programs_compare_radius(struct programs *programs);
+/* Of a complete search for the nearest point: returns the verdict that its distance and the sum of
+ * the radii give, and sets the proof; and the time of the point, in seconds, rounded down and up.
+ */
+enum fmb_verdict programs_compare_radius(struct programs *programs);
 void programs_nearest_time(struct programs *programs, double time[2]);
 
 /* Sets the answer of a complete decision: the verdict, and if the frames meet, the contact and the

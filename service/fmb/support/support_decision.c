@@ -153,11 +153,10 @@ static bool round_step(struct support_decision *decision, struct fmb_answer *ans
         return begin_gap(decision, answer);
     }
     double inside[2];
-    const int sign = programs_compare_radius(programs);
+    answer->verdict = programs_compare_radius(programs);
     programs_nearest_time(programs, inside);
     programs_end(programs, NULL);
     decision->nears = false;
-    answer->verdict = sign > 0 ? FMB_SEPARATED : sign == 0 ? FMB_TOUCHING : FMB_OVERLAPPING;
     if (measure(decision, answer))
         return begin_gap(decision, answer);
     support_round_times_begin(&decision->pair, inside, &decision->times);

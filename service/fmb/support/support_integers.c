@@ -5,6 +5,7 @@
 void support_integers_each(struct support_integers *integers, void (*call)(mpz_ptr))
 {
     call(integers->scale);
+    call(integers->radius);
     for (int f = 0; f < 2; f++) {
         struct support_side *side = &integers->side[f];
         INTEGER_EACH_FROM(row, &side->turn, call);
@@ -141,6 +142,8 @@ void support_integers_set(const struct frame_pair *frames, struct support_intege
             mpz_set(side[f].factor, side[!f].turn.norm);
         set_side(placed[f]->placement, dyadic_of(frames->duration), out, &side[f]);
     }
+    integer_set_sum(out->radius, frames->a.frame->radius, frames->b.frame->radius, out->unit);
+    mpz_mul(out->radius, out->radius, out->scale);
     for (int axis = 0; axis < 3; axis++)
         mpz_sub(out->drift[axis], side[1].displacement[axis], side[0].displacement[axis]);
 }

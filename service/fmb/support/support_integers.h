@@ -30,6 +30,7 @@ struct support_integers {
     mpz_t scale;
     struct support_side side[2];
     mpz_t drift[3]; /* over the window */
+    mpz_t radius;   /* the sum of both radii */
 };
 
 /* Calls one of mpz_init and mpz_clear for every number. */

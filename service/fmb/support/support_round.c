@@ -165,7 +165,7 @@ bool support_round_times_step(struct support_round_times *times)
 {
     if (!programs_step(times->programs))
         return false;
-    const bool meets = programs_compare_radius(times->programs) <= 0;
+    const bool meets = programs_compare_radius(times->programs) != FMB_SEPARATED;
     const double tried = times->frames.duration;
     support_round_times_end(times);
     if (times->at_edge && meets)
@@ -225,7 +225,7 @@ static double end_of(const struct support_view *view, int axis, double sign,
     along[axis] = sign * scale;
     double end = support_view_farthest(view, along).value;
     if (!exact)
-        end = sum_up(end, scale * (0x1p-48 * view->reach + view->slack));
+        end = sum_up(end, scale * (fmin(0x1p-48 * view->reach, 0x1p977) + view->slack));
     end = sum_up(end, scale * position);
     end = sum_up(end, scale * path);
     end = sum_up(end, scale * view->placed.frame->radius);
