@@ -110,29 +110,28 @@ static bool try_subset(struct integer_simplex *simplex, const int member[], int 
     return true;
 }
 
-/* Reduces the simplex to the corners that the point next to the origin needs; the last one is
- * always among them. */
-static void reduce(struct integer_simplex *simplex)
+/* Tries one subset of the corners; the last one is always among them. If the point next to the
+ * origin needs these, and no others, the simplex is reduced to them. */
+static bool reduce(struct integer_simplex *simplex)
 {
     const int last = simplex->count - 1;
-    for (unsigned mask = 0; mask < 1U << last; mask++) {
-        struct integer_corner *corner[INTEGER_CORNERS + 1];
-        int member[INTEGER_CORNERS] = {last}, count = 1;
-        for (int i = 0; i < last; i++)
-            if (mask >> i & 1)
-                member[count++] = i;
-        if (!try_subset(simplex, member, count))
-            continue;
-        memcpy(corner, simplex->corner, sizeof corner);
-        simplex->count = count;
-        for (int i = 0; i < count; i++)
-            simplex->corner[i] = corner[member[i]];
-        for (int i = 0; i <= INTEGER_CORNERS; i++)
-            if (i != last && !(i < last && mask >> i & 1))
-                simplex->corner[count++] = corner[i];
-        return;
-    }
-    assert(!"one subset holds the point");
+    const unsigned mask = simplex->subset++;
+    struct integer_corner *corner[INTEGER_CORNERS + 1];
+    int member[INTEGER_CORNERS] = {last}, count = 1;
+    assert(mask < 1U << last);
+    for (int i = 0; i < last; i++)
+        if (mask >> i & 1)
+            member[count++] = i;
+    if (!try_subset(simplex, member, count))
+        return false;
+    memcpy(corner, simplex->corner, sizeof corner);
+    simplex->count = count;
+    for (int i = 0; i < count; i++)
+        simplex->corner[i] = corner[member[i]];
+    for (int i = 0; i <= INTEGER_CORNERS; i++)
+        if (i != last && !(i < last && mask >> i & 1))
+            simplex->corner[count++] = corner[i];
+    return true;
 }
 
 void integer_simplex_begin(struct integer_simplex *simplex, mpz_t toward[3],
@@ -142,11 +141,13 @@ void integer_simplex_begin(struct integer_simplex *simplex, mpz_t toward[3],
         simplex->corner[i] = &simplex->pool[i];
     support(context, toward, simplex->corner[0]);
     simplex->count = 1;
+    simplex->subset = 0;
 }
 
 bool integer_simplex_step(struct integer_simplex *simplex, integer_support *support, void *context)
 {
-    reduce(simplex);
+    if (!reduce(simplex))
+        return false;
     simplex->zero = integer_is_zero(simplex->normal);
     if (simplex->zero)
         return true;
@@ -157,6 +158,7 @@ bool integer_simplex_step(struct integer_simplex *simplex, integer_support *supp
     if (mpz_sgn(simplex->t[1]) >= 0)
         return true;
     simplex->count++;
+    simplex->subset = 0;
     return false;
 }
 

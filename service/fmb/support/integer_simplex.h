@@ -24,7 +24,8 @@ struct integer_corner {
 
 struct integer_simplex {
     int count;
-    bool zero; /* the point is the origin */
+    unsigned subset; /* of the corners, that is tried next */
+    bool zero;       /* the point is the origin */
     struct integer_corner pool[INTEGER_CORNERS + 1];
     struct integer_corner *corner[INTEGER_CORNERS + 1]; /* the first are those of the simplex */
     mpz_t normal[3];                                    /* a multiple of the point */
@@ -38,10 +39,9 @@ void integer_simplex_each(struct integer_simplex *simplex, void (*call)(mpz_ptr)
 /* Sets the corner of P with the least n . p. */
 typedef void integer_support(void *context, mpz_t n[3], struct integer_corner *out);
 
-/* Begin a search for the point of P next to the origin, and perform one step of it, with one call
- * of support. toward: any direction: the vertex in it is the first. Returns whether the point is
- * found.
- */
+/* Begin a search for the point of P next to the origin, and perform a step of it, with one call of
+ * support at most. toward: any direction: the vertex in it is the first. Returns whether the point
+ * is found. */
 void integer_simplex_begin(struct integer_simplex *simplex, mpz_t toward[3],
                            integer_support *support, void *context);
 bool integer_simplex_step(struct integer_simplex *simplex, integer_support *support, void *context);
