@@ -168,6 +168,11 @@ void family_draw(const struct family *family, const struct cell *cell, struct dr
                  struct question *out)
 {
     family->draw(draw, family, cell, out);
+    family_pull_back(out);
+}
+
+void family_pull_back(struct question *out)
+{
     for (int side = 0; side < 2; side++) {
         struct solid *solid = question_solid(out, side);
         for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
@@ -178,6 +183,7 @@ void family_draw(const struct family *family, const struct cell *cell, struct dr
             for (int v = 0; v < solid->vertex_count; v++)
                 solid->vertex[v][axis] = pull_back(solid->vertex[v][axis]);
         }
+        solid->radius = pull_back(solid->radius);
     }
 }
 

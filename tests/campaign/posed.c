@@ -271,6 +271,17 @@ static double draw_time(struct draw *draw, bool whole, const struct question *qu
     return away > 0 ? 0 : question->duration;
 }
 
+/* Gives B the position in which its points a and b, farthest along a direction, meet. whole:
+ * nothing rounds. */
+static void put_together(struct draw *draw, bool whole, const double *a, const double *b,
+                         const double *direction, struct question *question)
+{
+    const double time = draw_time(draw, whole, question, direction);
+    for (int axis = 0; axis < question->a.dim; axis++)
+        question->b.origin[axis] = question->a.origin[axis] + (a[axis] - b[axis]) +
+                                   time * (question->a.velocity[axis] - question->b.velocity[axis]);
+}
+
 /* Gives B its position. direction: from A to B, of the plane between them. whole: nothing rounds,
  * and they touch. Returns whether one of the bodies is not all in that plane: two points, and
  * segments on one line, are whatever is tried. */
@@ -287,10 +298,7 @@ static bool bring_together(struct draw *draw, bool whole, struct question *quest
         const bool thick_a = farthest(draw, &of_a, direction, +1, a);
         thick = farthest(draw, &of_b, direction, -1, b) || thick_a;
     }
-    const double time = draw_time(draw, whole, question, direction);
-    for (int axis = 0; axis < question->a.dim; axis++)
-        question->b.origin[axis] = question->a.origin[axis] + (a[axis] - b[axis]) +
-                                   time * (question->a.velocity[axis] - question->b.velocity[axis]);
+    put_together(draw, whole, a, b, direction, question);
     return thick;
 }
 
@@ -328,6 +336,30 @@ void posed_meet_nearly(struct draw *draw, double size, struct question *question
     double direction[FMB_DIM_MAX];
     bring_together(draw, false, question, direction);
     disturb(draw, direction, size, question);
+}
+
+void posed_draw_direction(struct draw *draw, const struct question *question, double *direction)
+{
+    struct points of_a, of_b;
+    points_of(&question->a, &of_a);
+    points_of(&question->b, &of_b);
+    draw_direction(draw, question, true, fmax(size_of(&of_a), size_of(&of_b)), direction);
+}
+
+void posed_meet_exactly(struct draw *draw, const double *direction, struct question *question)
+{
+    struct points points;
+    double a[FMB_DIM_MAX], b[FMB_DIM_MAX];
+    points_of(&question->a, &points);
+    farthest(draw, &points, direction, +1, a);
+    points_of(&question->b, &points);
+    farthest(draw, &points, direction, -1, b);
+    put_together(draw, true, a, b, direction, question);
+}
+
+double posed_norm(const struct solid *solid)
+{
+    return norm_of(solid);
 }
 
 /* Solids that have their orientation get all else, and meet but for rounding and a little. */

@@ -34,6 +34,15 @@ void posed_draw_whole_shape(struct draw *draw, int most, double unit, struct sol
  * it by next to nothing. size: of the solids. */
 void posed_meet_nearly(struct draw *draw, double size, struct question *question);
 
+/* The squared length of its orientation; 1 without one. */
+double posed_norm(const struct solid *solid);
+
+/* Of solids of whole shapes and orientations: a whole normal of two edges, or any small vector; and
+ * gives B a position in which a plane across the direction, from A to B, separates them, and both
+ * touch it in one point, at a time of the window. Nothing rounds. */
+void posed_draw_direction(struct draw *draw, const struct question *question, double *direction);
+void posed_meet_exactly(struct draw *draw, const double *direction, struct question *question);
+
 /* hulls.c */
 family_function hull_of_shape, support_equal, hull_in_plane, support_parting, hull_cloud,
     support_exponents;

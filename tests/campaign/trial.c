@@ -44,16 +44,18 @@ static void make_body(const struct question *question, const struct solid *solid
         const struct solid one = solid_frame(solid, i);
         const size_t numbers = (size_t) solid_numbers(&one, number);
         const size_t doubles = fmb_hull_doubles(one.dim, numbers / (size_t) one.dim);
-        if (!solid_is_hull(&one)) {
+        if (solid_is_hull(&one)) {
+            if (i == 0)
+                next = *memory = memory_get((size_t) count * doubles * sizeof *next);
+            expect_ok(fmb_frame_make_hull(one.dim, number, numbers, next, &frame[i]), question);
+            next += doubles;
+        } else {
             expect_ok((one.by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
                           one.dim, one.shape, number, numbers, &frame[i]),
                       question);
-            continue;
         }
-        if (i == 0)
-            next = *memory = memory_get((size_t) count * doubles * sizeof *next);
-        expect_ok(fmb_frame_make_hull(one.dim, number, numbers, next, &frame[i]), question);
-        next += doubles;
+        if (one.radius != 0)
+            expect_ok(fmb_frame_inflate(&frame[i], one.radius), question);
     }
     expect_ok(fmb_body_make_frames(frame, (size_t) count, out), question);
 }

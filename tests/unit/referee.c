@@ -21,6 +21,8 @@ static void make_body(const struct question *question, const struct solid *solid
     double number[SOLID_NUMBERS_MAX];
     const int count = solid_numbers(solid, number);
     enum fmb_status status = fmb_body_make(solid->dim, solid->shape, number, (size_t) count, body);
+    if (status == FMB_OK && solid->radius != 0)
+        status = fmb_body_inflate(body, solid->radius);
     if (status != FMB_OK)
         referee_fail(question, fmb_status_text(status));
 }

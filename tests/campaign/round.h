@@ -1,0 +1,11 @@
+/* Families of shapes with a radius: balls, capsules and padded shapes. */
+#ifndef ROUND_H
+#define ROUND_H
+
+#include "family.h"
+
+/* One table holds them all; NULL past the last. Each has all cells of its flags; family_draw()
+ * draws. */
+const struct family *family_round_at(size_t index);
+
+#endif
