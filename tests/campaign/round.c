@@ -340,3 +340,11 @@ const struct family *family_round_at(size_t index)
 {
     return index < sizeof families / sizeof *families ? &families[index] : NULL;
 }
+
+const struct family *family_all_at(size_t index)
+{
+    size_t others = 0;
+    while (family_any_at(others))
+        others++;
+    return index < others ? family_any_at(index) : family_round_at(index - others);
+}

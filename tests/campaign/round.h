@@ -8,4 +8,7 @@
  * draws. */
 const struct family *family_round_at(size_t index);
 
+/* The families of all tables, these last; NULL past the last. */
+const struct family *family_all_at(size_t index);
+
 #endif

@@ -9,7 +9,7 @@
 #include "client_scene.h"
 #include "fmb_batch.h"
 #include "hull_draw.h"
-#include "posed.h"
+#include "round.h"
 #include "scene_truth.h"
 #include "trial.h"
 #include "wire.h"
@@ -231,8 +231,8 @@ static void parts_of_all_shapes(void **state)
 {
     const long sample = draw_sample(4); /* of eight cells */
     long pairs = 0;
-    for (size_t f = 0; family_any_at(f); f++) {
-        const struct family *family = family_any_at(f);
+    for (size_t f = 0; family_all_at(f); f++) {
+        const struct family *family = family_all_at(f);
         struct cell cells[CELL_OF_ALL_SHAPES];
         const int count = family_cells(family, cells);
         for (int c = (int) (f % 8); c < count; c++) {
