@@ -9,8 +9,9 @@
 #include "family.h"
 #include "measure.h"
 #include "campaign_options.h"
-#include "posed.h"
 #include "campaign_report.h"
+#include "posed.h"
+#include "round.h"
 #include "workers.h"
 
 static const long usual_pairs = 20000;
@@ -33,7 +34,7 @@ static void help(void)
         "\n"
         "  --pairs N      of each family and cell: dimension, motion, shapes (%ld)\n"
         "  --family NAME  this family, or those whose names begin so up to a dash; may be\n"
-        "                 repeated (all)\n"
+        "                 repeated (all but round-)\n"
         "  --seed S       what to draw from\n"
         "  --workers N    threads (one a processor); the counts do not depend on it\n"
         "  --json FILE    write the counts and times of all methods there\n"
@@ -43,8 +44,8 @@ static void help(void)
         "\n"
         "Families:\n",
         usual_pairs);
-    for (size_t i = 0; family_any_at(i); i++)
-        printf("  %-20s  %s\n", family_any_at(i)->name, family_any_at(i)->summary);
+    for (size_t i = 0; family_all_at(i); i++)
+        printf("  %-20s  %s\n", family_all_at(i)->name, family_all_at(i)->summary);
 }
 
 struct campaign {

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "posed.h"
+#include "round.h"
 #include "workers.h"
 
 /* The seed of the oracle's tests. */
@@ -59,12 +59,12 @@ static bool is_named(const struct family *family)
 static bool take_family(const struct options_program *program, struct options *out)
 {
     const int before = out->families;
-    for (size_t i = 0; family_any_at(i); i++) {
-        if (!is_named(family_any_at(i)))
+    for (size_t i = 0; family_all_at(i); i++) {
+        if (!is_named(family_all_at(i)))
             continue;
         if (out->families == OPTIONS_FAMILIES_MAX)
             return refuse(program, "--family: at most %d", OPTIONS_FAMILIES_MAX);
-        out->family[out->families++] = family_any_at(i);
+        out->family[out->families++] = family_all_at(i);
     }
     return out->families > before || refuse(program, "--family: there is no '%s'", optarg);
 }
