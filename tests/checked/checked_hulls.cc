@@ -77,7 +77,7 @@ static void set_frame(const struct checked_vertices *from, struct checked_frame 
     frame.count = from->count;
     frame.flat = from->flat;
     frame.slack = from->slack;
-    frame.reach = from->reach;
+    frame.core_reach = from->reach;
     frame.vertices = out->at;
     frame.vertex_stride = FMB_HULL_VERTICES_MAX;
     frame.vertex_count = from->vertex_count;

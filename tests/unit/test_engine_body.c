@@ -433,21 +433,33 @@ static void placements_without_a_body_are_refused(void **state)
 }
 
 /* What the structs can say, but this version does not do. */
-static void ends_and_radii_are_not_supported(void **state)
+static void ends_are_not_supported(void **state)
 {
-    static const double radii[] = {0x1p-1074, -1, INFINITY, NAN};
     plane_body = make_body(2, unit2);
     for (int count = -1; count <= 7; count++)
         expect_status(&(struct fmb_placement){.body = &plane_body, .end_count = count},
                       count == 0 ? FMB_OK : FMB_NOT_SUPPORTED);
-    for (size_t i = 0; i < COUNT(radii); i++) {
-        struct fmb_body rounded = plane_body, made;
-        rounded.one.radius = radii[i];
-        expect_status(&(struct fmb_placement){.body = &rounded}, FMB_NOT_SUPPORTED);
-        const struct fmb_frame frames[2] = {plane_body.one, rounded.one};
-        assert_int_equal(fmb_body_make_frames(&frames[1], 1, &made), FMB_NOT_SUPPORTED);
-        assert_int_equal(fmb_body_make_frames(frames, 2, &made), FMB_NOT_SUPPORTED);
+}
+
+/* A radius that is refused changes nothing. */
+static void radii_are_finite_and_not_negative(void **state)
+{
+    static const double bad[] = {-0x1p-1074, -1, -DBL_MAX, -INFINITY, INFINITY, NAN};
+    struct fmb_body body = make_body(3, unit3), several;
+    assert_int_equal(fmb_body_inflate(&body, 0.25), FMB_OK);
+    const struct fmb_body before = body;
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        const enum fmb_status status = isfinite(bad[i]) ? FMB_BAD_SIZE : FMB_NOT_FINITE;
+        assert_int_equal(fmb_frame_inflate(&body.one, bad[i]), status);
+        assert_int_equal(fmb_body_inflate(&body, bad[i]), status);
+        assert_memory_equal(&body, &before, sizeof body);
     }
+    assert_int_equal(fmb_body_inflate(&body, -0.0), FMB_OK);
+    assert_false(signbit(body.one.radius));
+    const struct fmb_frame frames[2] = {before.one, body.one};
+    assert_int_equal(fmb_body_make_frames(frames, 2, &several), FMB_OK);
+    assert_true(several.box[0][0] <= -0.25 && several.box[1][0] >= 1.25);
+    assert_int_equal(fmb_body_inflate(&several, 1), FMB_WRONG_COUNT);
 }
 
 static void placements_that_are_not_finite_are_refused(void **state)
@@ -606,7 +618,8 @@ int main(void)
         cmocka_unit_test(radii_of_large_frames_are_rounded_up),
         cmocka_unit_test(bodies_that_are_refused),
         cmocka_unit_test(placements_without_a_body_are_refused),
-        cmocka_unit_test(ends_and_radii_are_not_supported),
+        cmocka_unit_test(ends_are_not_supported),
+        cmocka_unit_test(radii_are_finite_and_not_negative),
         cmocka_unit_test(placements_that_are_not_finite_are_refused),
         cmocka_unit_test(counts_of_orientations),
         cmocka_unit_test(orientations_by_hand),

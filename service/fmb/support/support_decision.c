@@ -31,6 +31,7 @@ static void set_pair(const struct frame_pair *frames, unsigned want, double fart
     out->swapped = support_order(frames, &out->frames);
     out->searched = out->nears = false;
     out->cores = 0;
+    out->ends = (struct support_round_ends){.time = {NAN, NAN}, .guess = {NAN, NAN}};
     out->bounded = bounded;
     out->want = want;
     out->farthest = farthest;
@@ -95,14 +96,17 @@ static void set_contact(const struct support_decision *decision, const double co
 
 /* Completes the answer of a pair in contact as far as doubles do. Returns whether its contact is
  * known. */
-static bool measure(const struct support_decision *decision, struct fmb_answer *answer)
+static bool measure(struct support_decision *decision, struct fmb_answer *answer)
 {
     const struct support_pair *pair = &decision->pair;
     double contact[2] = {0, pair->frames->duration + 0.0};
     if (answer->verdict == FMB_SEPARATED || !(decision->want & (FMB_WANT_TIMES | FMB_WANT_BOX)))
         return true;
-    if (pair->drifts && !(decision->searched && support_round_contact(pair, contact)))
-        return false;
+    if (pair->drifts) {
+        if (!decision->searched || !support_round_contact(pair, &decision->ends))
+            return false;
+        memcpy(contact, decision->ends.time, sizeof contact);
+    }
     set_contact(decision, contact, answer);
     return true;
 }
@@ -139,7 +143,7 @@ static bool round_step(struct support_decision *decision, struct fmb_answer *ans
     if (decision->times.programs) {
         if (!support_round_times_step(&decision->times))
             return false;
-        set_contact(decision, decision->times.contact, answer);
+        set_contact(decision, decision->times.ends.time, answer);
         return begin_gap(decision, answer);
     }
     if (!programs_step(decision->programs))
@@ -159,7 +163,7 @@ static bool round_step(struct support_decision *decision, struct fmb_answer *ans
     decision->nears = false;
     if (measure(decision, answer))
         return begin_gap(decision, answer);
-    support_round_times_begin(&decision->pair, inside, &decision->times);
+    support_round_times_begin(&decision->pair, inside, &decision->ends, &decision->times);
     return false;
 }
 

@@ -30,6 +30,7 @@ struct support_decision {
      * the contact. */
     bool nears;
     enum fmb_verdict cores;
+    struct support_round_ends ends;
     struct support_round_times times;
 };
 

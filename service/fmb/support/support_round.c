@@ -8,8 +8,9 @@
 
 /* ---- Distance ----
  *
- * Lower bound: the direction n of the search has n . x >= least - 4 error for all x of D
+ * Lower bound: n . x >= least - 4 error for all x of D and the direction n of the search
  * (support_search.c); its length is 1 up to 6 u, which moves the value by less than another error.
+ * The sharper bound takes the least n . x from support_farthest(), which is off by one error |n|.
  *
  * Upper bound: the weights of the search, none of them below 0 and divided by their sum, give a
  * point of D. Each of its at most 4 terms is off by error, and computing the sum by 10 u reach,
@@ -18,6 +19,14 @@
 static double lower_distance(const struct support_pair *pair, const struct support_nearest *nearest)
 {
     return nearest->least - 5 * pair->error;
+}
+
+static double sharper_distance(const struct support_pair *pair,
+                               const struct support_nearest *nearest)
+{
+    const double *n = nearest->direction, outward[FMB_DIM_MAX] = {-n[0], -n[1], -n[2]};
+    struct support_column column;
+    return -support_farthest(pair, outward, &column) - 1.25 * pair->error;
 }
 
 static double upper_distance(const struct support_pair *pair, const struct support_nearest *nearest)
@@ -29,7 +38,7 @@ static double upper_distance(const struct support_pair *pair, const struct suppo
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             at[axis] += weight * nearest->simplex.vertex[i].at[axis];
     }
-    const double distance = sqrt(vec3_dot(at, at)) / total * (1 + 0x1p-49) + 2 * pair->error;
+    const double distance = sqrt(vec3_dot(at, at)) / total * (1 + 0x1p-49) + 1.4 * pair->error;
     return total > 0.5 && total < 2 ? distance : INFINITY;
 }
 
@@ -46,24 +55,31 @@ enum fmb_verdict support_round_verdict(const struct support_pair *pair, enum fmb
         return FMB_SEPARATED;
     if (cores == FMB_OVERLAPPING || upper_distance(pair, nearest) < pair->radius[0])
         return FMB_OVERLAPPING;
-    return nearest->outcome == GAP_KNOWN && lower_distance(pair, nearest) > pair->radius[1]
+    if (nearest->outcome != GAP_KNOWN || nearest->least < pair->radius[1])
+        return 0;
+    return lower_distance(pair, nearest) > pair->radius[1] ||
+                   sharper_distance(pair, nearest) > pair->radius[1]
                ? FMB_SEPARATED
                : 0;
 }
 
 /* ---- Contact in doubles ----
  *
- * Times are fractions tau of the window, seen from the edge at which the search begins. The offset
- * at tau is the one at the edge plus tau times a drift: two more roundings, which the error of the
- * pair covers (support_pair.h counts 4.1 u |offset| and 5.1 u |drift| of its 32 u).
+ * Times are fractions tau of the window, counted from the edge at which the search begins. The
+ * offset at tau is the one at the edge plus tau times a drift: two more roundings, which the error
+ * of the pair covers (support_pair.h counts 4.1 u |offset| and 5.1 u |drift| of its 32 u).
  *
- * A direction n with n . x >= b for all x of D at tau has n . x >= b + (s - tau) n . drift at s. So
- * the frames are apart at all times before tau + (b - R) / -(n . drift). */
+ * Method. While the nearest point p of D stays on the same face, the distance of the cores changes
+ * as that of p, moved by the part of the drift that is orthogonal to the face: the time at which it
+ * is R is the root of a quadratic equation. The face at that time is looked for again.
+ *
+ * Proof. The times of contact are an interval. So if the frames are apart at one time and meet at a
+ * later one, within the limit, the first time of contact is between these. */
 
 /* Of the window, less than fmb.h allows, for the roundings of seconds. */
 static const double contact_limit = 0.9e-12;
 
-enum { NEWTON_STEPS = 20 };
+enum { LOOKS_MAX = 16 };
 
 struct slice {
     struct support_pair pair;
@@ -71,45 +87,87 @@ struct slice {
     struct support_nearest nearest;
 };
 
-/* Searches at one time. Returns the verdict that is proved, or 0. */
+/* Searches at one time, first near the direction found last. Returns the verdict that is proved, or
+ * 0. */
 static enum fmb_verdict look(struct slice *slice, double tau)
 {
+    const struct support_pair *pair = &slice->pair;
+    double toward[FMB_DIM_MAX];
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         slice->pair.offset[axis] = slice->edge[axis] + tau * slice->drift[axis];
-    const enum fmb_verdict cores = support_search(&slice->pair, INFINITY, &slice->nearest);
-    return support_round_verdict(&slice->pair, cores, &slice->nearest);
+    memcpy(toward, slice->nearest.direction, sizeof toward);
+    if (vec3_dot(toward, toward) == 0)
+        support_toward(pair, toward);
+    const enum fmb_verdict cores = support_search_from(pair, toward, INFINITY, &slice->nearest);
+    return support_round_verdict(pair, cores, &slice->nearest);
 }
 
-/* Returns a time up to which the frames are apart, at most contact_limit before they meet; NAN if
- * doubles do not give it. */
-static double find_end(struct slice *slice)
+/* Returns how much later the distance is R, if the nearest point stays on its face; INFINITY if
+ * there is no face. */
+static double time_to_contact(const struct slice *slice)
+{
+    const struct support_nearest *nearest = &slice->nearest;
+    const unsigned count = nearest->simplex.count;
+    const double *w = slice->drift, *n = nearest->direction;
+    double p[FMB_DIM_MAX] = {0}, across[FMB_DIM_MAX], radius = slice->pair.radius[0];
+    if (nearest->outcome != GAP_KNOWN || count > 3)
+        return INFINITY;
+    for (unsigned i = 0; i < count; i++)
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            p[axis] += nearest->weight[i] * nearest->simplex.vertex[i].at[axis];
+    memcpy(across, w, sizeof across);
+    if (count == 3)
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            across[axis] = vec3_dot(n, w) * n[axis];
+    if (count == 2) {
+        double e[FMB_DIM_MAX];
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            e[axis] = nearest->simplex.vertex[1].at[axis] - nearest->simplex.vertex[0].at[axis];
+        const double along = vec3_dot(w, e) / vec3_dot(e, e);
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            across[axis] -= along * e[axis];
+    }
+    const double a = vec3_dot(across, across), b = vec3_dot(p, across);
+    const double distance = sqrt(vec3_dot(p, p));
+    const double square = (distance - radius) * (distance + radius), root = b * b - a * square;
+    return root > 0 ? square / (sqrt(root) - b) : -b / a;
+}
+
+/* Sets *guess to a time near the one at which the frames meet, or to NAN, and *apart to whether
+ * they are apart at the edge. Returns a time at which they are apart, at most contact_limit before
+ * they meet; 0 if they meet at the edge; NAN if doubles do not give it. */
+static double find_end(struct slice *slice, double *guess, bool *apart)
 {
     double tau = 0;
     enum fmb_verdict verdict = look(slice, tau);
+    *guess = NAN;
+    *apart = verdict == FMB_SEPARATED;
     if (verdict == FMB_OVERLAPPING)
         return 0;
-    for (int step = 0; step < NEWTON_STEPS && verdict == FMB_SEPARATED; step++) {
-        const double apart = lower_distance(&slice->pair, &slice->nearest) - slice->pair.radius[1];
-        const double speed =
-            -vec3_dot(slice->nearest.direction, slice->drift) + 0x1p-48 * vec3_sum(slice->drift);
-        const double next = tau + apart / speed * (1 - 0x1p-40);
-        if (!(speed > 0 && next <= 1))
+    for (int n = 0; n < LOOKS_MAX; n++) {
+        const double step = time_to_contact(slice);
+        const double next = fmax(tau + step - 0.5 * contact_limit, 0);
+        if (!(fabs(step) <= 1 && next <= 1))
             return NAN;
-        const bool slow = next - tau < 0.25 * contact_limit;
+        if (verdict == FMB_SEPARATED && step > 0 && step < contact_limit) {
+            *guess = tau + step;
+            return look(slice, tau + contact_limit) == FMB_OVERLAPPING ? tau : NAN;
+        }
+        if (n > 0 && fabs(step) < contact_limit) {
+            *guess = tau + step;
+            return NAN;
+        }
         tau = next;
-        verdict = look(slice, slow ? tau + contact_limit : tau);
-        if (slow || verdict == FMB_OVERLAPPING)
-            break;
+        verdict = look(slice, tau);
     }
-    if (verdict == 0)
-        verdict = look(slice, tau + contact_limit);
-    return verdict == FMB_OVERLAPPING ? tau : NAN;
+    return NAN;
 }
 
-bool support_round_contact(const struct support_pair *pair, double contact[2])
+bool support_round_contact(const struct support_pair *pair, struct support_round_ends *out)
 {
     const double duration = pair->frames->duration;
     struct slice slice;
+    *out = (struct support_round_ends){.time = {NAN, NAN}, .guess = {NAN, NAN}};
     if (!pair->usable)
         return false;
     support_pair_set(pair->frames, &slice.pair);
@@ -119,14 +177,17 @@ bool support_round_contact(const struct support_pair *pair, double contact[2])
             const double drift = pair->drift[axis];
             slice.edge[axis] = pair->offset[axis] + (end ? drift : 0);
             slice.drift[axis] = end ? -drift : drift;
+            slice.nearest.direction[axis] = 0;
         }
-        const double tau = find_end(&slice);
-        if (isnan(tau))
-            return false;
-        contact[end] = end ? fmin(duration * (1 - tau) * (1 + 0x1p-50), duration)
-                           : duration * tau * (1 - 0x1p-50);
+        double guess;
+        const double tau = find_end(&slice, &guess, &out->apart[end]);
+        out->time[end] =
+            end ? duration * (1 - tau) * (1 + 0x1p-50) : duration * tau * (1 - 0x1p-50);
+        if (out->time[end] > duration)
+            out->time[end] = duration;
+        out->guess[end] = duration * (end ? 1 - guess : guess);
     }
-    return contact[0] <= contact[1];
+    return out->time[0] <= out->time[1];
 }
 
 /* ---- Contact in exact numbers ---- */
@@ -141,26 +202,71 @@ static void begin_slice(struct support_round_times *times, double time)
     times->programs = programs_begin_nearest(&times->sliced, true, toward);
 }
 
+/* Begins the search for an end, whose time is not known. */
 static void begin_end(struct support_round_times *times, int end)
 {
+    const double duration = times->pair->frames->duration;
     times->end = end;
-    times->at_edge = true;
-    times->out = end ? times->pair->frames->duration + 0.0 : 0;
+    times->at_edge = !times->ends.apart[end];
+    times->out = end ? duration + 0.0 : 0;
     times->in = times->inside[!end];
-    begin_slice(times, times->out);
+    times->near = 0.45 * contact_limit * duration;
+}
+
+/* Returns the time to be tried next: just outside of the guess, just inside, or in the middle. */
+static double next_time(const struct support_round_times *times)
+{
+    const double sign = times->end ? -1 : 1, guess = times->ends.guess[times->end];
+    const double before = guess - sign * times->near, after = guess + sign * times->near;
+    if (sign * before > sign * times->out && sign * before < sign * times->in)
+        return before;
+    if (sign * after > sign * times->out && sign * after < sign * times->in)
+        return after;
+    return times->out + 0.5 * (times->in - times->out);
+}
+
+/* A guess that a time tried contradicts moves to the other side of that time. */
+static void move_guess(struct support_round_times *times, double tried, bool meets)
+{
+    const double sign = times->end ? -1 : 1;
+    double *guess = &times->ends.guess[times->end];
+    if ((sign * tried < sign * *guess) != meets)
+        return;
+    times->near *= 4;
+    *guess = tried + (meets ? -sign : sign) * times->near;
+}
+
+/* Goes on until a time has to be tried. Returns false if both ends are known. What is bisected is
+ * not shorter than the limit, far more than rounding moved the end that is inside. */
+static bool try_next(struct support_round_times *times)
+{
+    const double duration = times->pair->frames->duration;
+    for (;;) {
+        const double next = times->at_edge ? times->out : next_time(times);
+        if (times->at_edge || (fabs(times->in - times->out) > contact_limit * duration &&
+                               next != times->in && next != times->out)) {
+            begin_slice(times, next);
+            return true;
+        }
+        times->ends.time[times->end] = times->out;
+        if (times->end == 1 || !isnan(times->ends.time[1]))
+            return false;
+        begin_end(times, 1);
+    }
 }
 
 void support_round_times_begin(const struct support_pair *pair, const double inside[2],
+                               const struct support_round_ends *ends,
                                struct support_round_times *out)
 {
     out->pair = pair;
     out->frames = *pair->frames;
+    out->ends = *ends;
     memcpy(out->inside, inside, sizeof out->inside);
-    begin_end(out, 0);
+    begin_end(out, isnan(ends->time[0]) ? 0 : 1);
+    try_next(out);
 }
 
-/* The time in the middle is between the ends by a quarter of the limit at least, which is far more
- * than rounding moved the end that is inside. */
 bool support_round_times_step(struct support_round_times *times)
 {
     if (!programs_step(times->programs))
@@ -170,19 +276,12 @@ bool support_round_times_step(struct support_round_times *times)
     support_round_times_end(times);
     if (times->at_edge && meets)
         times->in = times->out;
-    else if (!times->at_edge)
+    if (!times->at_edge) {
+        move_guess(times, tried, meets);
         *(meets ? &times->in : &times->out) = tried;
-    times->at_edge = false;
-    const double middle = times->out + 0.5 * (times->in - times->out);
-    if (fabs(times->in - times->out) > contact_limit * times->pair->frames->duration &&
-        middle != times->in && middle != times->out) {
-        begin_slice(times, middle);
-        return false;
     }
-    times->contact[times->end] = times->out;
-    if (times->end == 0)
-        begin_end(times, 1);
-    return times->programs == NULL;
+    times->at_edge = false;
+    return !try_next(times);
 }
 
 void support_round_times_end(struct support_round_times *times)

@@ -18,11 +18,11 @@
  *   verdict  in doubles from bounds on d; else from the nearest point of D in integers: its squared
  *            distance is rational (programs_compare_radius())
  *   contact  the distance d(t) of the cores at one time is convex in t, so that the times of
- * contact are an interval. In doubles Newton's method approaches an end from outside. What it does
- *            not give is bisected, with the exact sign of d(t) - R at doubles t. Both give an end
- *            within the limit of fmb.h; the method exact does the same
- *   box      the intersection of both frames' boxes over the contact: contains, and is not tight
- *   gap      that of the cores, less R */
+ * contact are an interval. In doubles an end is the root of a quadratic equation, proved by two
+ *            verdicts, on both sides of it. What these leave open is bisected, with the exact sign
+ * of d(t) - R at doubles t; so is everything by the method exact. Both give an end within the limit
+ * of fmb.h box      the intersection of both frames' boxes over the contact: contains, and is not
+ * tight gap      that of the cores, less R */
 #ifndef FMB_SUPPORT_ROUND_H
 #define FMB_SUPPORT_ROUND_H
 
@@ -38,26 +38,36 @@ enum fmb_verdict support_round_verdict(const struct support_pair *pair, enum fmb
 /* Returns a distance: cores that are certainly farther apart are separated. */
 double support_round_far(const struct support_pair *pair);
 
-/* The contact of a pair that drifts, in steps. It points into itself: not to be copied. */
+/* The ends of a contact, [first, last], in seconds. */
+struct support_round_ends {
+    double time[2];  /* NAN: not known */
+    double guess[2]; /* near the end, if it is not known; or NAN */
+    bool apart[2];   /* the frames are apart at this edge of the window */
+};
+
+/* Sets the ends of the contact of a pair that drifts, within the limit of fmb.h, that doubles give.
+ * Returns whether they give both. */
+bool support_round_contact(const struct support_pair *pair, struct support_round_ends *out);
+
+/* A search for the other ends in exact numbers, in steps. It points into itself: not to be copied.
+ */
 struct support_round_times {
     const struct support_pair *pair;
-    int end;           /* that is sought: 0 the first time, 1 the last */
-    bool at_edge;      /* the edge of the window is tried */
-    double out, in;    /* seconds: the end is between them */
-    double inside[2];  /* the end is not beyond these: a time of contact, rounded down and up */
-    double contact[2]; /* the result */
+    int end;          /* that is sought: 0 the first time, 1 the last */
+    bool at_edge;     /* the edge of the window is tried */
+    double out, in;   /* seconds: the end is between them */
+    double near;      /* how near to the guess times are tried */
+    double inside[2]; /* the end is not beyond these: a time of contact, rounded down and up */
+    struct support_round_ends ends;
     struct frame_pair frames; /* over a window that ends at a time tried */
     struct support_pair sliced;
     struct programs *programs;
 };
 
-/* Sets the contact from doubles, each end within the limit of fmb.h. Returns whether they give
- * both.
+/* Begins a search for the ends that are not known. inside: a time of contact, rounded down and up.
  */
-bool support_round_contact(const struct support_pair *pair, double contact[2]);
-
-/* Begins the search in exact numbers. inside: a time of contact, rounded down and up. */
 void support_round_times_begin(const struct support_pair *pair, const double inside[2],
+                               const struct support_round_ends *ends,
                                struct support_round_times *out);
 
 /* Performs a step. Returns whether the contact is known. */

@@ -122,13 +122,20 @@ static bool is_swept_open(const struct support_pair *pair)
 enum fmb_verdict support_search(const struct support_pair *pair, double far,
                                 struct support_nearest *out)
 {
-    struct gap_simplex simplex;
     double centre[FMB_DIM_MAX];
     support_centre(pair, centre);
     if (!(vec3_dot(centre, centre) > 0x1p-100 * pair->reach * pair->reach))
         centre[0] = pair->reach; /* any direction */
+    return support_search_from(pair, centre, far, out);
+}
+
+enum fmb_verdict support_search_from(const struct support_pair *pair,
+                                     const double toward[FMB_DIM_MAX], double far,
+                                     struct support_nearest *out)
+{
+    struct gap_simplex simplex;
     memset(out, 0, sizeof *out);
-    out->outcome = gap_nearest(pair, support, pair->dim, centre, pair->error, far, &simplex,
+    out->outcome = gap_nearest(pair, support, pair->dim, toward, pair->error, far, &simplex,
                                out->direction, &out->least);
     if (out->outcome == GAP_FAR)
         return FMB_SEPARATED;

@@ -43,6 +43,11 @@ void support_toward(const struct support_pair *pair, double out[FMB_DIM_MAX]);
 enum fmb_verdict support_search(const struct support_pair *pair, double far,
                                 struct support_nearest *out);
 
+/* The same, beginning with the vertex farthest against a direction that is not 0. */
+enum fmb_verdict support_search_from(const struct support_pair *pair,
+                                     const double toward[FMB_DIM_MAX], double far,
+                                     struct support_nearest *out);
+
 /* A computed distance above this proves that D does not contain the origin. The factor covers the
  * rounding of a comparison. */
 static inline double support_separating_distance(const struct support_pair *pair)
