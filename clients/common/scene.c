@@ -38,15 +38,15 @@ static enum fmb_status make_frame(struct owned_scene *scene, const struct given_
         memory =
             scene_alloc(scene, fmb_hull_doubles(scene->dim, given->count / (size_t) scene->dim),
                         sizeof *memory);
-    return frame_of_numbers(scene->dim, given->shape, given->by_vertices, given->numbers,
-                            given->count, &memory, out);
+    return frame_of_numbers(scene->dim, given->shape, given->by_vertices, given->radius,
+                            given->numbers, given->count, &memory, out);
 }
 
 size_t scene_body_bytes(const struct given_frame *given, size_t count)
 {
     size_t bytes = 0;
     for (size_t i = 0; i < count; i++)
-        bytes += 1 + (given[i].by_vertices ? 4 : 0) + 8 * given[i].count;
+        bytes += 1 + (given[i].by_vertices ? 4 : 0) + 8 * (given[i].count + (given[i].radius != 0));
     return bytes;
 }
 

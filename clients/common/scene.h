@@ -25,12 +25,13 @@ void *scene_alloc(struct owned_scene *scene, size_t count, size_t size);
 const char *scene_text(struct owned_scene *scene, const char *text);
 
 /* A frame as it is given: what fmb_frame_make(), fmb_frame_make_vertices() or fmb_frame_make_hull()
- * takes. */
+ * takes, and fmb_frame_inflate(). */
 struct given_frame {
     int shape; /* enum fmb_shape */
     bool by_vertices;
     size_t count;
     const double *numbers; /* [count] */
+    double radius;         /* 0: none */
 };
 
 /* Returns an upper bound of the bytes of a body of these frames in a message: 1 for a shape, 4 for

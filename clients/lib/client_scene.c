@@ -48,9 +48,10 @@ static struct body_view view_of(const struct fmb_body *body)
 {
     struct body_view out = {.dim = body->dim, .frame_count = (int32_t) body->frame_count};
     for (unsigned i = 0; i < body->frame_count; i++) {
+        const struct fmb_frame *frame = fmb_body_frame(body, i);
         bool by_vertices;
         out.number_count +=
-            (int32_t) fmb_frame_numbers(fmb_body_frame(body, i), &by_vertices, NULL);
+            (int32_t) fmb_frame_numbers(frame, &by_vertices, NULL) + (frame->radius != 0);
         out.count_count += by_vertices;
     }
     out.size = GEOMETRY_NONE_BYTES + body->frame_count + 4 * (size_t) out.count_count +
@@ -80,9 +81,13 @@ static void write_body(const struct fmb_body *body, struct body_view *out, unsig
         double number[FMB_DIM_MAX * FMB_HULL_VERTICES_MAX];
         bool by_vertices;
         const size_t count = fmb_frame_numbers(frame, &by_vertices, number);
-        *writer_take(&shapes, 1) = (unsigned char) geometry_code((int) frame->shape, by_vertices);
+        const bool has_radius = frame->radius != 0;
+        *writer_take(&shapes, 1) = (unsigned char) geometry_code(
+            (struct geometry_shape){(int) frame->shape, by_vertices, has_radius});
         if (by_vertices)
             writer_int32(&counts, (int32_t) count / out->dim);
+        if (has_radius)
+            writer_double(&numbers, frame->radius);
         for (size_t k = 0; k < count; k++)
             writer_double(&numbers, number[k]);
     }

@@ -92,7 +92,8 @@ const struct fmb_body *body_of_view(const struct body_view *view, struct owned_s
     for (; geometry_next(&reader, &frame); count++) {
         double *numbers = scene_alloc(out, frame.count, sizeof *numbers);
         geometry_numbers(&frame, numbers);
-        given[count] = (struct given_frame){frame.shape, frame.by_vertices, frame.count, numbers};
+        given[count] = (struct given_frame){frame.shape, frame.by_vertices, frame.count, numbers,
+                                            frame.radius};
     }
     out->dim = view->dim;
     return reader.frames_left == 0 && reader.counts_left == 0 && reader.numbers_left == 0 &&

@@ -33,8 +33,10 @@ static int make_body(int dim, size_t count, const int32_t *shapes, const int64_t
     for (size_t i = 0; i < count; i++) {
         const struct geometry_shape shape = geometry_shape(shapes[i]);
         const size_t n = (size_t) counts[i];
-        const enum fmb_status status = frame_of_numbers(dim, (int) shape.shape, shape.by_vertices,
-                                                        numbers, n, &vertices, &out->frames[i]);
+        const size_t before = shape.has_radius && n > 0; /* the radius comes first */
+        const enum fmb_status status =
+            frame_of_numbers(dim, shape.shape, shape.by_vertices, before ? numbers[0] : 0,
+                             numbers + before, n - before, &vertices, &out->frames[i]);
         if (status != FMB_OK)
             return (int) status;
         numbers += n;
@@ -49,7 +51,7 @@ int fmb_flat_body_make(int dim, size_t count, const int32_t *shapes, const int64
         return FMB_OVER_LIMIT;
     size_t doubles = 0;
     for (size_t i = 0; i < count && dim > 0; i++)
-        if (shapes[i] == FMB_HULL)
+        if (geometry_shape(shapes[i]).shape == FMB_HULL)
             doubles += fmb_hull_doubles(dim, (size_t) counts[i] / (size_t) dim);
     struct fmb_flat_body *body = calloc(1, sizeof *body);
     int status = FMB_CLIENT_NO_MEMORY;

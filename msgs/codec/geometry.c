@@ -20,34 +20,42 @@ static_assert((int) FMB_CUBOID == FMB_MSGS_PLACEMENT_T_SHAPE_CUBOID &&
 
 struct geometry_shape geometry_shape(int code)
 {
-    switch (code) {
+    const bool has_radius = code >= FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS;
+    const int core = has_radius ? code - FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS : code;
+    switch (core) {
     case FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON_VERTICES:
-        return (struct geometry_shape){FMB_TETRAHEDRON, true};
-    case FMB_MSGS_PLACEMENT_T_SHAPE_FACE_VERTICES: return (struct geometry_shape){FMB_FACE, true};
-    default: return (struct geometry_shape){fmb_shape_name(code) ? code : 0, code == FMB_HULL};
+        return (struct geometry_shape){FMB_TETRAHEDRON, true, has_radius};
+    case FMB_MSGS_PLACEMENT_T_SHAPE_FACE_VERTICES:
+        return (struct geometry_shape){FMB_FACE, true, has_radius};
+    default:
+        return (struct geometry_shape){fmb_shape_name(core) ? core : 0, core == FMB_HULL,
+                                       has_radius};
     }
 }
 
-int geometry_code(int shape, bool by_vertices)
+int geometry_code(struct geometry_shape shape)
 {
-    if (!by_vertices || shape == FMB_HULL)
-        return shape;
-    return shape == FMB_FACE ? FMB_MSGS_PLACEMENT_T_SHAPE_FACE_VERTICES
-                             : FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON_VERTICES;
+    const int vertices = shape.shape == FMB_FACE ? FMB_MSGS_PLACEMENT_T_SHAPE_FACE_VERTICES
+                                                 : FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON_VERTICES;
+    return (shape.by_vertices && shape.shape != FMB_HULL ? vertices : shape.shape) +
+           (shape.has_radius ? FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS : 0);
 }
 
-bool geometry_with_radius(int code)
+/* The numbers of a frame without its radius. */
+static int64_t core_numbers(int dim, int shape, int32_t vertices)
 {
-    return geometry_shape(code - FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS).shape != 0;
-}
-
-int64_t geometry_number_count(int dim, int code, int32_t vertices)
-{
-    const int shape = geometry_shape(code).shape, components = fmb_component_count(dim, shape);
+    const int components = fmb_component_count(dim, shape);
     if (shape == FMB_HULL)
         return (dim == 2 || dim == 3) && vertices > 0 ? (int64_t) dim * vertices : 0;
     const int count = shape == FMB_BOX ? components : dim * components;
     return count > 0 ? dim + count : 0;
+}
+
+int64_t geometry_number_count(int dim, int code, int32_t vertices)
+{
+    const struct geometry_shape shape = geometry_shape(code);
+    const int64_t count = core_numbers(dim, shape.shape, vertices);
+    return count > 0 ? count + shape.has_radius : 0;
 }
 
 struct body_view geometry_named(int dim, const struct handle *handle)
@@ -88,11 +96,13 @@ bool geometry_next(struct geometry_reader *reader, struct geometry_frame *out)
     if (shape.by_vertices && reader->counts_left == 0)
         return false;
     const int32_t vertices = shape.by_vertices ? (int32_t) big_endian_32(reader->count) : 0;
-    const int64_t count = geometry_number_count(dim, *reader->shape, vertices);
-    if (count == 0 || reader->numbers_left < count ||
-        (shape.by_vertices && count != (int64_t) dim * vertices))
+    const int64_t core = core_numbers(dim, shape.shape, vertices), count = core + shape.has_radius;
+    if (core == 0 || reader->numbers_left < count ||
+        (shape.by_vertices && core != (int64_t) dim * vertices))
         return false;
-    *out = (struct geometry_frame){shape.shape, shape.by_vertices, (size_t) count, reader->number};
+    *out = (struct geometry_frame){shape.shape, shape.by_vertices,
+                                   shape.has_radius ? cursor_double_at(reader->number) : 0,
+                                   (size_t) core, reader->number + (shape.has_radius ? 8 : 0)};
     reader->shape++;
     reader->frames_left--;
     reader->count += shape.by_vertices ? 4 : 0;

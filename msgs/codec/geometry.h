@@ -8,21 +8,18 @@
  * vertices. */
 struct geometry_shape {
     int shape; /* enum fmb_shape; 0: there is no such shape */
-    bool by_vertices;
+    bool by_vertices, has_radius;
 };
 
 /* Convert to and from a value of placement_t.shapes. In: geometry_code(): a known shape that may
  * be given in this way. */
 struct geometry_shape geometry_shape(int code);
-int geometry_code(int shape, bool by_vertices);
+int geometry_code(struct geometry_shape shape);
 
-/* Whether the code is a known shape with a radius. These are not supported yet: geometry_shape()
- * does not know them. */
-bool geometry_with_radius(int code);
-
-/* Number of numbers of a frame in a body: of origin or centre, and components; or of its vertices.
- * code: a value of placement_t.shapes. vertices: the number of them; read for hulls only, since
- * that of other shapes is fixed. 0: there is no such shape in this dimension. */
+/* Number of numbers of a frame in a body: of its radius, if it has one; of origin or centre, and
+ * components; or of its vertices. code: a value of placement_t.shapes. vertices: the number of
+ * them; read for hulls only, since that of other shapes is fixed. 0: there is no such shape in this
+ * dimension. */
 int64_t geometry_number_count(int dim, int code, int32_t vertices);
 
 /* A body that is given by its handle. In: dim from 0 to 3. */
@@ -32,7 +29,8 @@ struct body_view geometry_named(int dim, const struct handle *handle);
 struct geometry_frame {
     int shape; /* enum fmb_shape */
     bool by_vertices;
-    size_t count;                /* of its numbers */
+    double radius;               /* 0: none; not checked */
+    size_t count;                /* of its numbers, without the radius */
     const unsigned char *number; /* [count], encoded, not checked */
 };
 

@@ -72,7 +72,7 @@ enum {
     /* Bytes of a body without frames: dim, counts of frames, of counts, and of numbers. */
     GEOMETRY_NONE_BYTES = 16,
     /* Most bytes of a body of one frame that is no hull. */
-    GEOMETRY_FRAME_BYTES_MAX = GEOMETRY_NONE_BYTES + 1 + 4 + 8 * FMB_FRAME_NUMBERS_MAX,
+    GEOMETRY_FRAME_BYTES_MAX = GEOMETRY_NONE_BYTES + 1 + 4 + 8 * (1 + FMB_FRAME_NUMBERS_MAX),
     /* Least bytes of a frame, a hull of one vertex in 2D; and hence most frames of a message. */
     GEOMETRY_FRAME_BYTES_MIN = 1 + 4 + 8 * 2,
     QUERY_FRAMES_MAX = QUERY_BYTES_MAX / GEOMETRY_FRAME_BYTES_MIN

@@ -1,8 +1,8 @@
 /* Answers pair and scene queries in stages: CHECKING the fields, FINDING bodies by handle, ADDING
  * bodies that have frames, DECIDING, CERTIFYING, COMPLETE. answer_job_step() does a part of one
- * stage; a refused query is COMPLETE at once. A pair of bodies of several frames, or with a hull,
- * or whose numbers span too many bits, is a scene of one listed pair; any other pair of frames is
- * decided at once. */
+ * stage; a refused query is COMPLETE at once. A pair of bodies of several frames, or with a hull or
+ * a radius, or whose numbers span too many bits, is a scene of one listed pair; any other pair of
+ * frames is decided at once. */
 #include "answerer.h"
 
 #include "body.h"
@@ -40,7 +40,7 @@ struct answer_job {
     int32_t next;        /* the next placement in FINDING and ADDING */
     int64_t frames;      /* of the placements before next in FINDING, then of all */
     bool several_frames; /* of a body */
-    bool in_steps;       /* a pair that may take long: a body has several frames or is a hull */
+    bool in_steps;       /* a pair that may take long: a body is large (see is_large()) */
     long capacity;       /* bytes of the result of a scene that are left for answers */
     struct fmb_scene scene;
     struct fmb_scene_state *state; /* in memory */
@@ -331,10 +331,10 @@ static enum answer_stage check(struct answer_job *job, struct answerer *answerer
 
 /* ---- Bodies ---- */
 
-/* Whether a body has several frames, or is a hull. */
+/* Whether a body has several frames, is a hull, or has a radius. */
 static bool is_large(const struct fmb_body *body)
 {
-    return body->frame_count > 1 || body->one.shape == FMB_HULL;
+    return body->frame_count > 1 || body->one.shape == FMB_HULL || body->one.radius != 0;
 }
 
 bool answer_job_is_short(const struct answer_job *job, const struct answerer *answerer)
@@ -347,7 +347,7 @@ bool answer_job_is_short(const struct answer_job *job, const struct answerer *an
         struct geometry_reader reader = geometry_begin(body);
         struct geometry_frame first;
         if (body->frame_count > 1 || (cached && is_large(&cached->body)) ||
-            (geometry_next(&reader, &first) && first.shape == FMB_HULL))
+            (geometry_next(&reader, &first) && (first.shape == FMB_HULL || first.radius != 0)))
             return false;
     }
     return job->is_pair;

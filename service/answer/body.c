@@ -13,8 +13,8 @@ static void make_frame(int dim, const struct geometry_frame *frame, double **ver
 {
     double number[FMB_DIM_MAX * FMB_HULL_VERTICES_MAX];
     geometry_numbers(frame, number);
-    const enum fmb_status status = frame_of_numbers(dim, frame->shape, frame->by_vertices, number,
-                                                    frame->count, vertices, out);
+    const enum fmb_status status = frame_of_numbers(
+        dim, frame->shape, frame->by_vertices, frame->radius, number, frame->count, vertices, out);
     assert(status == FMB_OK);
     (void) status;
 }

@@ -41,8 +41,8 @@ static_assert(sizeof(struct cache_record) ==
               "the frames of a body follow each other");
 
 /* Bytes of a slot: enough for a body of one frame. A body of n frames that are no hulls fits into n
- * slots. A hull of up to 8 k vertices takes at most 8 (24 k + 4 k) bytes of memory, and 5 + 8 * 24
- * k encoded: its k further slots hold all of them but the 5, for which its frame has space. */
+ * slots. A hull of up to 8 k vertices takes at most 8 (24 k + 4 k) bytes of memory, and 13 + 8 *
+ * 24 k encoded: its k further slots hold all of them but the 13, for which its frame has space. */
 enum {
     SLOT_BYTES = (sizeof(struct cache_record) + GEOMETRY_FRAME_BYTES_MAX + LINE - 1) / LINE * LINE,
 };

@@ -55,9 +55,6 @@ static bool check_finite(struct check_context *context, const char *list, const 
     return true;
 }
 
-/* The detail for what messages can express and this version does not support. */
-static const char *const not_supported = "not supported yet";
-
 /* ---- Frames ---- */
 
 static double number_at(const struct geometry_reader *reader, int32_t i)
@@ -82,12 +79,10 @@ static bool check_shapes(struct check_context *context, const struct body_view *
         const int32_t vertices = counted ? vertices_at(&reader, counts) : 1;
         const int64_t count = geometry_number_count(body->dim, code, vertices);
         if (shape.shape == 0)
-            return geometry_with_radius(code)
-                       ? check_refuse_at(context, FMB_NOT_SUPPORTED, "shapes", i, not_supported)
-                       : check_refuse_at(context, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
+            return check_refuse_at(context, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
         if (count == 0 && shape.shape != FMB_HULL)
             return check_refuse(context, FMB_WRONG_DIMENSION, "dim", "a face is in 3D");
-        if (counted && (count == 0 || count != (int64_t) body->dim * vertices))
+        if (counted && (count == 0 || count - shape.has_radius != (int64_t) body->dim * vertices))
             return check_refuse_at(context, FMB_WRONG_COUNT, "counts", counts,
                                    "not a number of vertices of this shape");
         if (vertices > FMB_HULL_VERTICES_MAX)
@@ -110,16 +105,23 @@ static bool check_numbers(struct check_context *context, const struct body_view 
     return true;
 }
 
-/* Boxes must not have negative sizes. On input: shapes and numbers have been checked. */
+/* No radius and no size of a box may be negative. On input: shapes and numbers have been checked.
+ */
 static bool check_sizes(struct check_context *context, const struct body_view *body)
 {
     struct geometry_reader reader = geometry_begin(body);
     struct geometry_frame frame;
-    for (int32_t number = 0; geometry_next(&reader, &frame); number += (int32_t) frame.count)
+    while (geometry_next(&reader, &frame)) {
+        const int32_t end = body->number_count - reader.numbers_left;
+        const int32_t first = end - (int32_t) frame.count;
+        if (frame.radius < 0)
+            return check_refuse_at(context, FMB_BAD_SIZE, "numbers", first - 1,
+                                   "a negative radius");
         for (int i = body->dim; frame.shape == FMB_BOX && i < 2 * body->dim; i++)
             if (cursor_double_at(frame.number + 8 * i) < 0)
-                return check_refuse_at(context, FMB_BAD_SIZE, "numbers", number + i,
+                return check_refuse_at(context, FMB_BAD_SIZE, "numbers", first + i,
                                        "a negative size");
+    }
     return true;
 }
 
@@ -182,7 +184,7 @@ bool check_placement(struct check_context *context, const struct query_placement
             (check_count(context, "num_velocity", dim, placement->velocity_count) &&
              check_finite(context, "velocity", placed->velocity, dim))) &&
            (placed->end_count == 0 ||
-            check_refuse(context, FMB_NOT_SUPPORTED, "num_end_pose", not_supported));
+            check_refuse(context, FMB_NOT_SUPPORTED, "num_end_pose", "not supported yet"));
 }
 
 /* ---- Queries ---- */

@@ -19,7 +19,10 @@ bool geometry_read(struct geometry_reader *reader, struct plain_frame *out)
     if (!geometry_next(reader, &frame) || frame.count > FMB_FRAME_NUMBERS_MAX)
         return false;
     geometry_numbers(&frame, number);
-    *out = (struct plain_frame){.shape = frame.shape, .by_vertices = frame.by_vertices};
+    *out = (struct plain_frame){.shape = frame.shape,
+                                .by_vertices = frame.by_vertices,
+                                .has_radius = frame.radius != 0,
+                                .radius = frame.radius};
     memcpy(out->origin, number, dim * sizeof *number);
     memcpy(out->components, number + dim, (frame.count - dim) * sizeof *number);
     return true;
@@ -29,7 +32,8 @@ static struct body_view view_of(int dim, const struct plain_frame *frames, int c
 {
     struct body_view out = {.dim = dim, .frame_count = count};
     for (int i = 0; i < count; i++) {
-        out.number_count += (int32_t) geometry_number_count(dim, frames[i].shape, 0);
+        out.number_count +=
+            (int32_t) geometry_number_count(dim, frames[i].shape, 0) + frames[i].has_radius;
         out.count_count += frames[i].by_vertices;
     }
     out.size = GEOMETRY_NONE_BYTES + (size_t) count + 4 * (size_t) out.count_count +
@@ -51,8 +55,8 @@ struct body_view geometry_write_frames(int dim, const struct plain_frame *frames
     writer_int32(&writer, dim);
     writer_int32(&writer, count);
     for (int i = 0; i < count; i++)
-        *writer_take(&writer, 1) =
-            (unsigned char) geometry_code(frames[i].shape, frames[i].by_vertices);
+        *writer_take(&writer, 1) = (unsigned char) geometry_code(
+            (struct geometry_shape){frames[i].shape, frames[i].by_vertices, frames[i].has_radius});
     writer_int32(&writer, body.count_count);
     for (int i = 0; i < count; i++)
         if (frames[i].by_vertices)
@@ -61,6 +65,8 @@ struct body_view geometry_write_frames(int dim, const struct plain_frame *frames
     for (int i = 0; i < count; i++) {
         double number[FMB_FRAME_NUMBERS_MAX];
         const size_t numbers = geometry_frame_numbers(dim, &frames[i], number);
+        if (frames[i].has_radius)
+            writer_double(&writer, frames[i].radius);
         for (size_t k = 0; k < numbers; k++)
             writer_double(&writer, number[k]);
     }

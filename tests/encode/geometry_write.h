@@ -8,7 +8,8 @@
 /* A frame that is no hull, in body coordinates. */
 struct plain_frame {
     int shape; /* enum fmb_shape */
-    bool by_vertices;
+    bool by_vertices, has_radius;
+    double radius;              /* if it has one */
     double origin[FMB_DIM_MAX]; /* for a box, its centre; by vertices, the first one */
     /* [component * dim + axis]; for a box [axis], its full size; by vertices, the others */
     double components[FMB_COMPONENTS_MAX];

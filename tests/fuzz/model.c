@@ -37,6 +37,7 @@ static void make(const struct body_view *view, struct model_made *out)
             FUZZ_CHECK((frame.by_vertices ? fmb_frame_make_vertices : fmb_frame_make)(
                            reader.dim, frame.shape, number, frame.count, to) == FMB_OK);
         }
+        FUZZ_CHECK(fmb_frame_inflate(to, frame.radius) == FMB_OK);
     }
     FUZZ_CHECK(reader.frames_left == 0 && reader.numbers_left == 0);
     FUZZ_CHECK(fmb_body_make_frames(out->frame, count, &out->body) == FMB_OK);
@@ -146,13 +147,18 @@ static bool good_frames(const struct query_placement *placement)
     int64_t numbers = 0;
     int counts = 0;
     for (int f = 0; good && f < placement->body.frame_count; f++) {
-        const int shape = placement->body.bytes[8 + f];
+        const int code = placement->body.bytes[8 + f], radius = code >= 16;
+        const int shape = radius ? code - 16 : code;
         const bool counted = shape == FMB_HULL || shape >= 6;
         const bool missing = counted && counts == placement->body.count_count;
         const int64_t vertices = counted && !missing ? count_at(placement, counts++) : 0;
         const int64_t count = numbers_of(dim, shape, vertices);
-        good = count > 0 && numbers + count <= placement->body.number_count && !missing &&
+        good = count > 0 && numbers + radius + count <= placement->body.number_count && !missing &&
                (!counted || vertices * dim == count);
+        if (good && radius) {
+            const double number = model_number(placement, (int) numbers++);
+            good = is_finite(number) && number >= 0;
+        }
         for (int i = 0; good && i < count; i++) {
             const double number = model_number(placement, (int) numbers + i);
             good = is_finite(number) && !(shape == FMB_BOX && i >= dim && number < 0);

@@ -39,12 +39,13 @@ static bool same_frames(const struct body_view *geometry, const fmb_msgs_body_t 
     struct geometry_frame frame;
     int32_t number = 0, f = 0, c = 0;
     for (; f < message->num_frames; f++) {
-        const int shape = message->shapes[f];
+        const bool has_radius = message->shapes[f] >= FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS;
+        const int shape = message->shapes[f] - (has_radius ? FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS : 0);
         const bool vertices = shape == FMB_MSGS_PLACEMENT_T_SHAPE_HULL ||
                               shape >= FMB_MSGS_PLACEMENT_T_SHAPE_TETRAHEDRON_VERTICES;
         const int32_t given = vertices && c < message->num_counts ? message->counts[c++] : 0;
         const int64_t count = numbers_of(dim, shape, given);
-        const bool fits = count > 0 && count <= message->num_numbers - number &&
+        const bool fits = count > 0 && count + has_radius <= message->num_numbers - number &&
                           (!vertices || (int64_t) dim * given == count);
         if (geometry_next(&reader, &frame) != fits)
             return false;
@@ -52,8 +53,9 @@ static bool same_frames(const struct body_view *geometry, const fmb_msgs_body_t 
             return true;
         const int by_components = shape < 6 ? shape : shape == 7 ? FMB_FACE : FMB_TETRAHEDRON;
         geometry_numbers(&frame, read);
+        const double radius = has_radius ? message->numbers[number++] : 0;
         if (reader.dim != dim || frame.shape != by_components || frame.by_vertices != vertices ||
-            frame.count != (size_t) count ||
+            frame.count != (size_t) count || !same_doubles(&frame.radius, &radius, 1) ||
             !same_doubles(read, message->numbers + number, frame.count))
             return false;
         number += (int32_t) count;

@@ -9,7 +9,7 @@ static bool same_frame(const struct fmb_frame *a, const struct fmb_frame *b)
 {
     bool vertices[2];
     const size_t count = fmb_frame_numbers(a, &vertices[0], NULL);
-    if (a->dim != b->dim || a->shape != b->shape ||
+    if (a->dim != b->dim || a->shape != b->shape || !same_doubles(&a->radius, &b->radius, 1) ||
         fmb_frame_numbers(b, &vertices[1], NULL) != count || vertices[0] != vertices[1])
         return false;
     double *numbers[2];

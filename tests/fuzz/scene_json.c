@@ -50,6 +50,8 @@ static bool is_hull(const struct fmb_frame *frame)
 static bool is_frame(const struct fmb_frame *frame, int dim)
 {
     const int shape = (int) frame->shape;
+    if (!is_finite(frame->radius) || frame->radius < 0)
+        return false;
     if (shape == FMB_HULL)
         return frame->dim == dim && is_hull(frame);
     bool good = frame->dim == dim && shape >= FMB_CUBOID && shape <= FMB_BOX &&

@@ -36,9 +36,9 @@ static inline void sample_pose(int i, struct query_placement *out)
 }
 
 /* Number i: 2D and 3D, all shapes, whole and by handle, of one frame (0, 6 and others) and of
- * several, by components and by vertices, at rest and moving, with and without orientation, end,
- * name and group. bytes: SAMPLE_BYTES_MAX, or
- * GEOMETRY_FRAME_BYTES_MAX for one frame; they must live as long as the placement. */
+ * several, by components and by vertices, with and without radius, at rest and moving, with and
+ * without orientation, end, name and group. bytes: SAMPLE_BYTES_MAX, or GEOMETRY_FRAME_BYTES_MAX
+ * for one frame; they must live as long as the placement. */
 static inline struct query_placement sample_placement(int i, unsigned char *bytes)
 {
     const int dim = 2 + i % 2;
@@ -57,13 +57,16 @@ static inline struct query_placement sample_placement(int i, unsigned char *byte
     for (int f = 0; f < SAMPLE_FRAMES; f++)
         frames[f].by_vertices =
             i % 5 < 2 && (frames[f].shape == FMB_TETRAHEDRON || frames[f].shape == FMB_FACE);
+    frames[0].has_radius = i % 4 == 1;
+    frames[0].radius = 1.0 / i;
     if (i % 3 == 1)
         memset(out.body.handle.bytes, i, sizeof out.body.handle.bytes);
     else
         out.body.frame_count = i % 7 == 3 ? SAMPLE_FRAMES : 1;
     for (int f = 0; f < out.body.frame_count; f++) {
         out.body.count_count += frames[f].by_vertices;
-        out.body.number_count += geometry_number_count(dim, frames[f].shape, 0);
+        out.body.number_count +=
+            geometry_number_count(dim, frames[f].shape, 0) + frames[f].has_radius;
     }
     out.body = geometry_write_frames(dim, frames, out.body.frame_count, bytes);
     return out;

@@ -366,13 +366,40 @@ static void unknown_shapes_and_dimensions_are_refused(void **state)
 }
 
 /* What messages can say, but this version does not do. */
-static void ends_and_radii_are_not_supported(void **state)
+static void ends_are_not_supported(void **state)
 {
-    for (int k = 1; k <= 7; k++) {
+    for (int k = 1; k <= 7; k++)
         REFUSED(a->placed.end_count = k, FMB_NOT_SUPPORTED, "a.num_end_pose: not supported yet");
-        REFUSED(set_geometry(&query, 1, 3, 1, FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS + k, 13), FMB_NOT_SUPPORTED,
-                "b.shapes[0]: not supported yet");
-    }
+}
+
+/* The second body is a rounded cube of which number k is this one. */
+static struct pair_query with_number(int k, double value)
+{
+    struct pair_query query = cubes();
+    set_geometry(&query, 1, 3, 1, FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS + FMB_CUBOID, 13);
+    put_number(1, k, value);
+    return query;
+}
+
+static void bad_radii_are_refused(void **state)
+{
+    for (int k = 1; k <= 7; k++)
+        if (k != FMB_HULL && k < 6)
+            REFUSED(set_geometry(&query, 1, 3, 1, FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS + k, 11), FMB_WRONG_COUNT,
+                    k == FMB_FACE  ? "b.num_numbers: expected 10 numbers, found 11"
+                    : k == FMB_BOX ? "b.num_numbers: expected 7 numbers, found 11"
+                                   : "b.num_numbers: expected 13 numbers, found 11");
+    REFUSED(query = with_number(0, NAN), FMB_NOT_FINITE, "b.numbers[0]: not a finite number");
+    REFUSED(query = with_number(0, INFINITY), FMB_NOT_FINITE, "b.numbers[0]: not a finite number");
+    REFUSED(query = with_number(0, -1), FMB_BAD_SIZE, "b.numbers[0]: a negative radius");
+    REFUSED(query = with_number(0, -0x1p-1074), FMB_BAD_SIZE, "b.numbers[0]: a negative radius");
+    REFUSED(query = with_number(12, -INFINITY), FMB_NOT_FINITE, "b.numbers[12]: not a finite number");
+    REFUSED(set_geometry(&query, 1, 3, 2, FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS + FMB_BOX, 14);
+            big_endian_put_64(bytes[1] + GEOMETRY_NONE_BYTES + 2 + 8 * 13, 0xbff0000000000000),
+            FMB_BAD_SIZE, "b.numbers[13]: a negative size");
+    REFUSED(set_geometry(&query, 1, 3, 2, FMB_MSGS_PLACEMENT_T_SHAPE_RADIUS + FMB_BOX, 14);
+            big_endian_put_64(bytes[1] + GEOMETRY_NONE_BYTES + 2 + 8 * 7, 0xbff0000000000000),
+            FMB_BAD_SIZE, "b.numbers[7]: a negative radius");
 }
 
 static void bad_orientations_are_refused(void **state)
@@ -688,6 +715,48 @@ static void bodies_of_several_frames_are_answered(void **state)
     assert_int_equal(counts().frames, 7);
 }
 
+/* A cube with a radius, above one without: of body coordinates and numbers, in body and by handle.
+ */
+static void a_radius_is_part_of_the_shape(void **state)
+{
+    static const double radii[] = {0, -0.0, 0.25, 0.5, 0.75};
+    static const enum fmb_verdict verdicts[] = {FMB_SEPARATED, FMB_SEPARATED, FMB_SEPARATED,
+                                                FMB_TOUCHING, FMB_OVERLAPPING};
+    for (size_t i = 0; i < COUNT(radii); i++) {
+        struct plain_frame rounded = unit_cube;
+        rounded.has_radius = true;
+        rounded.radius = radii[i];
+        struct pair_query query = cubes();
+        query.want = FMB_WANT_GAP | FMB_WANT_BOX;
+        query.placement[1].placed.position[2] = 1.5;
+        const struct pair_result plain = answer_to(&query);
+        set_frames(&query, 1, 3, &rounded, 1);
+        query.placement[1].placed.position[0] = 0.5;
+        query.placement[1].placed.position[2] = 1.5;
+        for (int by_handle = 0; by_handle < 2; by_handle++) {
+            static unsigned char message[QUERY_BYTES_MAX];
+            assert_null(answer_job_begin(job, ANSWER_PAIR, message,
+                                         wire_write_pair_query(&query, message)));
+            assert_int_equal(answer_job_is_short(job, answerer), radii[i] == 0);
+            while (!answer_job_step(job, answerer))
+                ;
+            const struct pair_result result = *answer_job_pair_result(job);
+            assert_int_equal(result.status, FMB_OK);
+            assert_int_equal(result.answer.verdict, verdicts[i]);
+            if (radii[i] == 0)
+                assert_memory_equal(&result.answer, &plain.answer, sizeof result.answer);
+            assert_true(result.answer.gap.bounds[0] <= 0.5 - radii[i] &&
+                        result.answer.gap.bounds[1] >= 0.5 - radii[i]);
+            if (by_handle)
+                continue;
+            assert_false(handle_equal(&result.handle[1], &plain.handle[1]));
+            name(&query.placement[1], &result.handle[1]);
+        }
+    }
+    assert_int_equal(counts().bodies, 2);
+    assert_int_equal(counts().frames, 2);
+}
+
 /* A turned body is the same body. */
 static void turning_bodies_hit(void **state)
 {
@@ -908,13 +977,15 @@ int main(void)
         TEST(bad_sizes_are_refused),
         cmocka_unit_test_setup_teardown(bodies_of_several_frames_are_answered, set_up_many,
                                         tear_down),
+        TEST(a_radius_is_part_of_the_shape),
         TEST(turning_bodies_hit),
         cmocka_unit_test_setup_teardown(many_frames_take_many_steps, set_up_many, tear_down),
         TEST(a_job_that_is_stopped),
         cmocka_unit_test_setup_teardown(bodies_of_several_frames_have_no_certificate, set_up_many,
                                         tear_down),
         TEST(a_body_larger_than_the_cache_is_answered),
-        TEST(ends_and_radii_are_not_supported),
+        TEST(ends_are_not_supported),
+        TEST(bad_radii_are_refused),
         TEST(bad_requests_are_refused),
         TEST(refused_without_being_read),
         TEST(certificates_are_given_on_request),

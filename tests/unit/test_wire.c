@@ -102,7 +102,7 @@ static void long_lists_are_read(void **state)
 static void geometries_are_read_back(void **state)
 {
     for (int dim = 2; dim <= 3; dim++)
-        for (int code = 1; code <= 7; code++) {
+        for (int code = 1; code <= 23; code = code == 7 ? 17 : code + 1) {
             const int shape = geometry_shape(code).shape;
             unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
             struct plain_frame read;
@@ -110,8 +110,12 @@ static void geometries_are_read_back(void **state)
                 continue;
             struct plain_frame frame = sample_frame(dim, shape);
             frame.by_vertices = geometry_shape(code).by_vertices;
+            frame.has_radius = geometry_shape(code).has_radius;
+            frame.radius = frame.has_radius ? 0.1 : 0;
             const struct body_view geometry = geometry_write(dim, &frame, bytes);
             assert_int_equal(geometry.size, geometry_size(dim, &frame, 1));
+            assert_int_equal(bytes[8], code);
+            assert_int_equal(geometry.number_count, geometry_number_count(dim, code, 0));
             struct geometry_reader reader = geometry_begin(&geometry);
             assert_int_equal(reader.dim, dim);
             assert_true(geometry_read(&reader, &read));
