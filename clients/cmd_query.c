@@ -4,6 +4,7 @@
 #include "answers.h"
 #include "args.h"
 #include "complain.h"
+#include "enclosure.h"
 #include "json.h"
 #include "number.h"
 #include "output.h"
@@ -14,6 +15,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -58,10 +60,14 @@ static const char usage[] =
     "  --retries N          give a query up after N + 1 timeouts (5)\n" ARGS_COMMON_USAGE
     "\n"
     "A scene. A body has frames, or is itself one: a box of full size, components\n"
-    "from an origin, or a \"hull\" of \"vertices\": [[0,0,0],[1,0,0]]. Pairs are all but\n"
-    "those to ignore, unless \"pairs\": [[1,2]] lists them. name, orientation [w,x,y,z]\n"
-    "(of any length), velocity, duration (default 1) and margin are optional. With a\n"
-    "margin, pairs that touch or overlap, or are no farther apart, have gaps:\n"
+    "from an origin, a \"hull\" of \"vertices\": [[0,0,0],[1,0,0]], a \"sphere\" of\n"
+    "\"radius\", or a \"capsule\" of \"radius\" and \"length\" (of its core, along z; in 2D\n"
+    "y). With a \"radius\", any other shape is larger by it on every side. A \"cylinder\"\n"
+    "of \"radius\" and \"length\" (along z) is a hull of \"sides\" (16) that contains it.\n"
+    "Pairs are all but those to ignore, unless \"pairs\": [[1,2]] lists them; names may\n"
+    "stand for ids there. name, orientation [w,x,y,z] (of any length; or\n"
+    "\"orientation_xyzw\"), velocity, duration (default 1) and margin are optional.\n"
+    "With a margin, pairs that touch or overlap, or are no farther apart, have gaps:\n"
     "  {\"dim\": 3, \"duration\": 1.0, \"margin\": 0.001,\n"
     "   \"bodies\": [{\"id\": 1, \"name\": \"table\", \"shape\": \"box\", \"size\": [2,1,0.25],\n"
     "               \"position\": [0,0,0.125]},\n"
@@ -105,6 +111,7 @@ struct query {
     bool moves;              /* a body moves in a scene whose duration is not 0 */
     int64_t still_body;      /* first body that would move if the duration were not 0; 0: none */
     int worst;               /* severity of all pairs */
+    double outside;          /* of all scenes */
 };
 
 static bool take_method(const struct args *args, void *out)
@@ -215,6 +222,7 @@ static int answer_scenes(struct query *query, int fd)
     bool more = true;
     while (more && (outcome = json_next(reader, &scene)) == JSON_SCENE) {
         more = answer_scene(query, &scene);
+        query->outside = fmax(query->outside, scene.outside);
         scene_clear(&scene);
     }
     const bool wrong = more && outcome != JSON_END;
@@ -232,6 +240,7 @@ static int answer_scenes(struct query *query, int fd)
 static void report_limits(const struct query *query)
 {
     char text[NUMBER_TEXT_MAX];
+    enclosure_report(query->input, query->outside);
     if (query->unproven > 0)
         complain("no certificate for %s of the pairs: a body has several frames",
                  number_grouped((int64_t) query->unproven, text));

@@ -4,6 +4,7 @@
 #include "allocate.h"
 #include "args.h"
 #include "complain.h"
+#include "enclosure.h"
 #include "joints.h"
 #include "robot_scene.h"
 #include "scene_json.h"
@@ -18,8 +19,9 @@ static const char usage[] =
     "usage: fmb scene [OPTIONS] ROBOT.urdf\n"
     "\n"
     "Prints a robot as a scene for 'fmb query': a body for each link, with its name,\n"
-    "made of its <collision> elements. A link without any has no body. Boxes stay\n"
-    "boxes. A mesh (STL, OBJ, PLY) becomes its convex hull, of at most 1024 vertices;\n"
+    "made of its <collision> elements. A link without any has no body. Boxes, spheres\n"
+    "and capsules are exact. A mesh (STL, OBJ, PLY) becomes its convex hull, of at most 1024 "
+    "vertices;\n"
     "vertices of the mesh inside the hull do not count. With a table of joint values,\n"
     "prints a scene for each row:\n"
     "\n"
@@ -42,11 +44,9 @@ static const char usage[] =
     "                       inf: any). They are used as they are, and reported\n"
     "\n"
     "Shapes:\n"
-    "  --sides N            sides of the hulls that enclose cylinders and spheres, a\n"
-    "                       multiple of 4 up to 44 (16). A hull extends beyond a\n"
-    "                       cylinder of radius r by at most r (1 / cos(pi/N) - 1),\n"
-    "                       beyond a sphere by at most r tan(pi/N)^2: with 16 sides,\n"
-    "                       0.02 r and 0.04 r\n"
+    "  --sides N            sides of the hulls that enclose cylinders, a multiple of 4\n"
+    "                       up to 512 (16). A hull extends beyond a cylinder of radius\n"
+    "                       r by at most r (1 / cos(pi/N) - 1): with 16 sides, 0.02 r\n"
     "  --objects            a hull for each object (o) of an OBJ file, for convex\n"
     "                       decompositions\n"
     "  --package-path DIRS  folders to search for packages, separated by colons: a\n"
@@ -65,9 +65,9 @@ static const char usage[] =
     "A link is not tested against its parent, or, if that has no body, against the\n"
     "nearest link above that has one.\n"
     "\n"
-    "Joints are revolute, continuous, prismatic or fixed. Capsules, COLLADA (.dae),\n"
-    "xacro, SRDF and SDF are not supported. Poses are rounded to doubles: give a\n"
-    "margin where that matters.\n"
+    "Joints are revolute, continuous, prismatic or fixed. COLLADA (.dae), xacro, SRDF\n"
+    "and SDF are not supported. Poses are rounded to doubles: give a margin where\n"
+    "that matters.\n"
     "\n"
     "Exit codes: 0 printed; 2 wrong usage, or a file that cannot be read or is not\n"
     "valid: no scene is printed.\n";
@@ -140,7 +140,7 @@ static bool print_table(const struct scene_options *options, struct joints *join
                 print_rows(scene, &table, false) && joints_report(joints) &&
                 joint_table_rewind(&table);
     if (good) {
-        robot_scene_report(scene, options->body.sides);
+        robot_scene_report(scene, options->world);
         good = print_rows(scene, &table, true);
     }
     joint_table_close(&table);
@@ -164,7 +164,7 @@ static bool print_robot(const struct scene_options *options, const struct robot 
         joints_follow(&joints, robot->path, 0);
         good = joints_report(&joints) && robot_scene_place(scene, joints.value, 0, robot->path);
         if (good) {
-            robot_scene_report(scene, options->body.sides);
+            robot_scene_report(scene, options->world);
             scene_json_write(stdout, &scene->owner);
         }
     }
@@ -185,12 +185,12 @@ static int print_file(const struct scene_options *options, const char *path)
 
 int cmd_scene(int argc, char **argv)
 {
-    struct scene_options options = {.sides = ROBOT_SIDES, .margin = -1, .slack = 0.001};
+    struct scene_options options = {.sides = ENCLOSURE_SIDES, .margin = -1, .slack = 0.001};
     const struct args_option own[] = {
         {"joints", ARGS_OTHER, &options.joints, .take = take_once},
         {"joints-csv", ARGS_OTHER, &options.table, .take = take_once},
         {"limit-slack", ARGS_NUMBER, &options.slack, .high = INFINITY},
-        {"sides", ARGS_INTEGER, &options.sides, .low = 4, .high = ROBOT_SIDES_MAX},
+        {"sides", ARGS_INTEGER, &options.sides, .low = 4, .high = ENCLOSURE_SIDES_MAX},
         {"objects", ARGS_FLAG, .out = &options.body.objects},
         {"package-path", ARGS_OTHER, &options.body.package_path, .take = take_once},
         {"with", ARGS_OTHER, &options.world, .take = take_once},

@@ -8,11 +8,13 @@
 #include "json.h"
 
 #include "allocate.h"
+#include "enclosure.h"
 #include "fmb_client.h"
 #include "keyed_hash.h"
 #include "number.h"
 #include "text.h"
 #include "query.h"
+#include "turn.h"
 #include "turned_box.h"
 #include "utf8.h"
 
@@ -27,11 +29,12 @@ enum { ERROR_MAX = 320, QUOTED_MAX = 32 };
 
 static const double id_max = 9007199254740991.0; /* 2^53 - 1 */
 
-/* A body in the table by id. */
+/* A body in the tables by id and, if it is the first one with its name, by name. */
 struct body_id {
-    UT_hash_handle hh;
+    UT_hash_handle hh, by_name;
     int64_t id;
     unsigned index;
+    unsigned namesake; /* index of another body with this name; 0: there is none */
 };
 
 struct json_reader {
@@ -39,6 +42,7 @@ struct json_reader {
     size_t scene_number;       /* of the object that is being read, from 1 */
     struct owned_scene *scene; /* what has been read of it */
     struct body_id *ids;       /* table of its bodies; the entries are those of entry */
+    struct body_id *names;     /* the same by name */
     struct body_id *entry;     /* owned, [body] */
     char error[ERROR_MAX];
 };
@@ -143,24 +147,13 @@ static bool check_present(const struct place *member)
     return member->item || refuse(member->parent, "missing key \"%s\"", member->key);
 }
 
-/* Returns a note on what other libraries have; or "". */
-static const char *not_yet(const char *word)
-{
-    static const char *const curved[] = {"radius", "sphere", "capsule", "cylinder"};
-    for (size_t i = 0; i < sizeof curved / sizeof *curved; i++)
-        if (strcmp(word, curved[i]) == 0)
-            return "curved shapes are not supported yet; ";
-    return "";
-}
-
 static bool refuse_key(const struct place *at, const char *found, const struct key *keys, int count)
 {
     char text[QUOTED_MAX + 4], list[ERROR_MAX / 2] = "";
     for (int i = 0; i < count; i++)
         snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", i > 0 ? ", " : "",
                  keys[i].name);
-    return refuse(at, "unknown key \"%s\" (%sthere are %s)", quoted(found, text), not_yet(found),
-                  list);
+    return refuse(at, "unknown key \"%s\" (there are %s)", quoted(found, text), list);
 }
 
 /* On output: member[i] is the value of keys[i]; its item is NULL if it is missing. */
@@ -313,28 +306,36 @@ static bool read_name(const struct place *at, void *out)
 struct body {
     struct fmb_placement placement;
     /* The frame, unless there are several. */
-    int shape;
+    int shape; /* enum fmb_shape, or one of the text */
+    double radius, length, sides;
     double origin[FMB_DIM_MAX];            /* or centre */
     double components[FMB_COMPONENTS_MAX]; /* [component * dim + axis]; of a box its size */
     double *vertices;                      /* [vertex_count * dim]; NULL: by components */
     size_t vertex_count;
 };
 
+/* Shapes that the text has besides; all of them become hulls. */
+enum { SPHERE = FMB_HULL + 1, CAPSULE, CYLINDER, SHAPES };
+
 static bool read_shape(const struct place *at, void *out)
 {
+    static const char *const more[] = {"sphere", "capsule", "cylinder"};
     const int dim = dim_of(at);
     char text[QUOTED_MAX + 4];
     if (!cJSON_IsString(at->item))
         return refuse_kind(at, "a string");
-    for (int shape = FMB_CUBOID; fmb_shape_name(shape); shape++) {
-        if (strcmp(at->item->valuestring, fmb_shape_name(shape)) != 0)
+    for (int shape = FMB_CUBOID; shape < SHAPES; shape++) {
+        const char *name = shape < SPHERE ? fmb_shape_name(shape) : more[shape - SPHERE];
+        if (strcmp(at->item->valuestring, name) != 0)
             continue;
         *(int *) out = shape;
-        return shape == FMB_HULL || fmb_component_count(dim, shape) > 0 ||
-               refuse(at, "there is no %s in %dD", fmb_shape_name(shape), dim);
+        return (dim == 2 ? shape != FMB_FACE && shape != CYLINDER : true) ||
+               refuse(at, "there is no %s in %dD", name, dim);
     }
-    return refuse(at, "unknown shape \"%s\" (%sthere are cuboid, tetrahedron, face, box, hull)",
-                  quoted(at->item->valuestring, text), not_yet(at->item->valuestring));
+    return refuse(at,
+                  "unknown shape \"%s\" (there are cuboid, tetrahedron, face, box, hull, sphere, "
+                  "capsule, cylinder)",
+                  quoted(at->item->valuestring, text));
 }
 
 static bool read_components(const struct place *at, void *out)
@@ -368,6 +369,14 @@ static bool read_size(const struct place *at, void *out)
     return read_each(at, (size_t) dim_of(at), "numbers", read_from_0, out, sizeof(double));
 }
 
+static bool read_sides(const struct place *at, void *out)
+{
+    const double *sides = out;
+    return read_number(at, out) &&
+           ((*sides >= 4 && *sides <= ENCLOSURE_SIDES_MAX && fmod(*sides, 4) == 0) ||
+            refuse_value(at, *sides, "a multiple of 4 up to 512"));
+}
+
 /* Whether any number of a quaternion beyond the first is not 0. */
 static bool turns(const struct fmb_placement *placement)
 {
@@ -382,10 +391,13 @@ static bool read_orientation(const struct place *at, void *out)
     struct fmb_placement *placement = out, checked;
     struct fmb_body any;
     const int dim = dim_of(at);
+    double *q = placement->orientation;
     placement->orientation_count = dim == 2 ? 2 : 4;
-    if (!read_each(at, (size_t) placement->orientation_count, "numbers", read_number,
-                   placement->orientation, sizeof(double)))
+    if (!read_each(at, (size_t) placement->orientation_count, "numbers", read_number, q,
+                   sizeof(double)))
         return false;
+    if (strcmp(at->key, "orientation_xyzw") == 0)
+        memcpy(q, (const double[]){q[3], q[0], q[1], q[2]}, sizeof placement->orientation);
     if (placement->orientation[0] == 0 && !turns(placement))
         return refuse(at, "a quaternion of zeros is no rotation");
     fmb_body_make(dim, FMB_BOX, (const double[FMB_DIM_MAX]){1, 1, 1}, (size_t) dim, &any);
@@ -397,9 +409,9 @@ static bool read_orientation(const struct place *at, void *out)
 
 static read_function read_frames;
 
-/* In the order of reading. A frame has those from SHAPE to ORIENTATION. */
-enum { ID, NAME, GROUP, VELOCITY, SHAPE, ORIGIN, COMPONENTS, VERTICES, SIZE, POSITION };
-enum { ORIENTATION = POSITION + 1, FRAMES, BODY_KEYS };
+/* In the order of reading. A frame has those from SHAPE to ORIENTATION_XYZW. */
+enum { ID, NAME, GROUP, VELOCITY, SHAPE, ORIGIN, COMPONENTS, VERTICES, SIZE, RADIUS, LENGTH };
+enum { SIDES = LENGTH + 1, POSITION, ORIENTATION, ORIENTATION_XYZW, FRAMES, BODY_KEYS };
 
 static const struct key body_keys[BODY_KEYS] = {
     [ID] = {"id", true, read_id, offsetof(struct body, placement.id)},
@@ -411,8 +423,13 @@ static const struct key body_keys[BODY_KEYS] = {
     [COMPONENTS] = {"components", false, read_components, 0},
     [VERTICES] = {"vertices", false, read_vertices, 0},
     [SIZE] = {"size", false, read_size, offsetof(struct body, components)},
+    [RADIUS] = {"radius", false, read_from_0, offsetof(struct body, radius)},
+    [LENGTH] = {"length", false, read_from_0, offsetof(struct body, length)},
+    [SIDES] = {"sides", false, read_sides, offsetof(struct body, sides)},
     [POSITION] = {"position", false, read_vector, offsetof(struct body, placement.position)},
     [ORIENTATION] = {"orientation", false, read_orientation, offsetof(struct body, placement)},
+    [ORIENTATION_XYZW] = {"orientation_xyzw", false, read_orientation,
+                          offsetof(struct body, placement)},
     [FRAMES] = {"frames", false, read_frames, offsetof(struct body, placement.body)},
 };
 
@@ -426,28 +443,46 @@ static bool check_absent(const struct place *member, unsigned keys, const char *
     return true;
 }
 
+/* The keys of the frames of a kind, besides "shape": sums of 1 << key. */
+struct kind {
+    const char *what;
+    unsigned required, optional;
+};
+
 /* Checks which keys a body or a frame of this shape has. */
 static bool check_keys(const struct place *member, int shape, bool within_frames)
 {
-    const unsigned pose = within_frames ? 1 << POSITION | 1 << ORIENTATION : 0;
-    const unsigned parts = 1 << ORIGIN | 1 << COMPONENTS;
+    enum { POSE = 1 << POSITION | 1 << ORIENTATION, ROUND = 1 << RADIUS };
+    static const struct kind kinds[SHAPES] =
+        {
+            {"a frame of components", 1 << COMPONENTS, 1 << ORIGIN | ROUND},
+            [FMB_BOX] = {"a box", 1 << SIZE, POSE | ROUND},
+            [FMB_HULL] = {"a hull", 1 << VERTICES, ROUND},
+            [SPHERE] = {"a sphere", ROUND, 1 << POSITION},
+            [CAPSULE] = {"a capsule", ROUND | 1 << LENGTH, POSE},
+            [CYLINDER] = {"a cylinder", ROUND | 1 << LENGTH, POSE | 1 << SIDES},
+        },
+                             of_vertices = {"a frame of vertices", 1 << VERTICES, ROUND},
+                             of_frames = {"a body of \"frames\"", 0, POSE};
+    const struct kind *kind = &kinds[shape >= FMB_BOX ? shape : 0];
+    const bool components = kind == kinds;
     if (member[FRAMES].item)
-        return check_absent(member, 1 << SHAPE | parts | 1 << VERTICES | 1 << SIZE,
-                            "a body of \"frames\"");
-    if (!check_present(&member[SHAPE]))
+        kind = &of_frames;
+    else if (!check_present(&member[SHAPE]) ||
+             (shape == FMB_CUBOID && !check_absent(member, 1 << VERTICES, "a cuboid")))
         return false;
-    if (shape == FMB_BOX)
-        return check_absent(member, parts | 1 << VERTICES, "a box") && check_present(&member[SIZE]);
-    if (shape == FMB_HULL)
-        return check_absent(member, parts | 1 << SIZE | pose, "a hull") &&
-               check_present(&member[VERTICES]);
-    if (member[VERTICES].item)
-        return check_absent(member, shape == FMB_CUBOID ? 1 << VERTICES : 0, "a cuboid") &&
-               check_absent(member, parts | 1 << SIZE | pose, "a frame of vertices");
-    return check_absent(member, 1 << SIZE | pose, "a frame of components") &&
-           check_present(&member[COMPONENTS]) &&
-           (within_frames || member[POSITION].item || member[ORIENTATION].item ||
-            check_present(&member[ORIGIN]));
+    else if (components && member[VERTICES].item)
+        kind = &of_vertices;
+    unsigned others = ~(kind->required | kind->optional) & ((1u << FRAMES) - (1u << ORIGIN));
+    if (!within_frames) /* it is that of the body */
+        others &= ~(unsigned) POSE;
+    if (!check_absent(member, others | (kind == &of_frames ? 1 << SHAPE : 0), kind->what))
+        return false;
+    for (int i = 0; i < BODY_KEYS; i++)
+        if ((kind->required >> i & 1) != 0 && !check_present(&member[i]))
+            return false;
+    return kind != kinds || within_frames || member[POSITION].item || member[ORIENTATION].item ||
+           check_present(&member[ORIGIN]);
 }
 
 /* Reads the keys from `first` to before `end`, which include those of a frame. */
@@ -456,10 +491,68 @@ static bool read_keys(const struct place *at, int first, int end, struct place m
 {
     memset(out, 0, sizeof *out);
     memset(member, 0, BODY_KEYS * sizeof *member);
-    return find_members(at, body_keys + first, end - first, member + first) &&
-           read_members(member + first, body_keys + first, SHAPE + 1 - first, out) &&
+    if (!find_members(at, body_keys + first, end - first, member + first))
+        return false;
+    if (member[ORIENTATION_XYZW].item) {
+        if (member[ORIENTATION].item)
+            return refuse(at, "both \"orientation\" and \"orientation_xyzw\"");
+        if (dim_of(at) == 2)
+            return refuse(&member[ORIENTATION_XYZW], "in 2D use \"orientation\"");
+        member[ORIENTATION] = member[ORIENTATION_XYZW];
+        member[ORIENTATION_XYZW].item = NULL;
+    }
+    return read_members(member + first, body_keys + first, SHAPE + 1 - first, out) &&
            check_keys(member, out->shape, first == SHAPE) &&
            read_members(member + ORIGIN, body_keys + ORIGIN, end - ORIGIN, out);
+}
+
+/* Sets the vertices of the core of a sphere, which has no length, or of a capsule. */
+static void set_core(int dim, const struct fmb_placement *placed, struct body *body)
+{
+    double origin[FMB_DIM_MAX] = {0}, axis[FMB_COMPONENTS_MAX] = {[0] = 0};
+    axis[dim - 1] = body->length;
+    const bool turned = turns(placed);
+    if (turned)
+        turned_box(dim, placed->orientation, origin, axis);
+    body->vertex_count = body->length > 0 ? 2 : 1;
+    for (int i = 0; i < dim; i++) {
+        const double half = axis[(turned ? dim * (dim - 1) : 0) + i] / 2;
+        body->vertices[i] = placed->position[i] - half;
+        if (body->length > 0)
+            body->vertices[dim + i] = placed->position[i] + half;
+    }
+}
+
+static void set_cylinder(struct owned_scene *scene, const struct fmb_placement *placed,
+                         struct body *body)
+{
+    struct pose pose = POSE_IDENTITY;
+    struct cylinder cylinder = {body->radius, body->length, &pose};
+    memcpy(pose.p, placed->position, sizeof pose.p);
+    if (turns(placed)) {
+        memcpy(pose.q, placed->orientation, sizeof pose.q);
+        turn_scale(pose.q);
+    }
+    const double outside =
+        enclose_cylinder(&cylinder, (int) body->sides, (double(*)[FMB_DIM_MAX]) body->vertices);
+    scene->outside = fmax(scene->outside, outside);
+    body->radius = 0;
+}
+
+/* Makes a sphere, a capsule or a cylinder the hull that it is. placed: its pose in the body. */
+static void make_hull(const struct place *at, const struct fmb_placement *placed, struct body *body)
+{
+    struct owned_scene *scene = at->reader->scene;
+    if (body->shape < SPHERE)
+        return;
+    body->sides = body->sides > 0 ? body->sides : ENCLOSURE_SIDES;
+    body->vertex_count = 2 * (size_t) body->sides;
+    body->vertices = scene_alloc(scene, FMB_DIM_MAX * body->vertex_count, sizeof(double));
+    if (body->shape == CYLINDER)
+        set_cylinder(scene, placed, body);
+    else
+        set_core(dim_of(at), placed, body);
+    body->shape = FMB_HULL;
 }
 
 static struct given_frame frame_of(const struct place *at, const struct body *body)
@@ -467,12 +560,13 @@ static struct given_frame frame_of(const struct place *at, const struct body *bo
     const size_t dim = (size_t) dim_of(at);
     const size_t components = (size_t) fmb_component_count((int) dim, body->shape);
     if (body->vertices)
-        return (struct given_frame){body->shape, true, dim * body->vertex_count, body->vertices};
+        return (struct given_frame){body->shape, true, dim * body->vertex_count, body->vertices,
+                                    body->radius};
     const size_t count = body->shape == FMB_BOX ? dim : dim * components;
     double *numbers = scene_alloc(at->reader->scene, dim + count, sizeof *numbers);
     memcpy(numbers, body->origin, dim * sizeof *numbers);
     memcpy(numbers + dim, body->components, count * sizeof *numbers);
-    return (struct given_frame){body->shape, false, dim + count, numbers};
+    return (struct given_frame){body->shape, false, dim + count, numbers, body->radius};
 }
 
 /* Reads an element of "frames". */
@@ -484,7 +578,8 @@ static bool read_frame(const struct place *at, struct given_frame *out)
         return false;
     if (body.shape == FMB_BOX)
         memcpy(body.origin, body.placement.position, sizeof body.origin);
-    if (turns(&body.placement)) {
+    make_hull(at, &body.placement, &body);
+    if (body.shape == FMB_BOX && turns(&body.placement)) {
         turned_box(dim_of(at), body.placement.orientation, body.origin, body.components);
         body.shape = FMB_CUBOID;
     }
@@ -530,16 +625,23 @@ static const struct body_id *find_id(const struct json_reader *reader, int64_t i
     return found;
 }
 
-/* Adds body `index` to the table. at: its id. */
-static bool add_id(const struct place *at, int64_t id, size_t index)
+/* Adds body `index` to the tables. at: its id. */
+static bool add_id(const struct place *at, int64_t id, const char *name, size_t index)
 {
     struct json_reader *reader = at->reader;
     const struct body_id *first = find_id(reader, id);
-    struct body_id *entry = &reader->entry[index];
+    struct body_id *entry = &reader->entry[index], *named = NULL;
     if (first)
         return refuse(at, "%lld is the id of bodies[%u] already", (long long) id, first->index);
     *entry = (struct body_id){.id = id, .index = (unsigned) index};
     HASH_ADD(hh, reader->ids, id, sizeof entry->id, entry);
+    if (!name)
+        return true;
+    HASH_FIND(by_name, reader->names, name, strlen(name), named);
+    if (named)
+        named->namesake = (unsigned) index;
+    else
+        HASH_ADD_KEYPTR(by_name, reader->names, name, strlen(name), entry);
     return true;
 }
 
@@ -551,13 +653,15 @@ static bool read_body(const struct place *at, void *out)
     struct body body;
     struct fmb_placement *placement = &body.placement;
     if (!read_keys(at, ID, BODY_KEYS, member, &body) ||
-        !add_id(&member[ID], placement->id, at->index))
+        !add_id(&member[ID], placement->id, placement->name, at->index))
         return false;
     if (!member[FRAMES].item) {
         if (member[COMPONENTS].item && !member[POSITION].item && !member[ORIENTATION].item) {
             memcpy(placement->position, body.origin, sizeof placement->position);
             memset(body.origin, 0, sizeof body.origin);
         }
+        static const struct fmb_placement unmoved;
+        make_hull(at, &unmoved, &body);
         const struct given_frame given = frame_of(at, &body);
         if (!make_body(at, &given, 1, &placement->body))
             return false;
@@ -581,10 +685,30 @@ static bool read_bodies(const struct place *array, void *out)
 
 /* ---- Pairs ----------------------------------------------------------------------------------- */
 
-/* Reads an id as the index of its body. */
+/* Finds the body with a name. Returns NULL if it is refused: there is none, or there are two. */
+static const struct body_id *find_named(const struct place *at)
+{
+    const char *name = at->item->valuestring;
+    const struct body_id *found;
+    char text[QUOTED_MAX + 4];
+    HASH_FIND(by_name, at->reader->names, name, strlen(name), found);
+    if (!found)
+        refuse(at, "no body has the name \"%s\"", quoted(name, text));
+    else if (found->namesake)
+        refuse(at, "bodies[%u] and bodies[%u] both have the name \"%s\": use ids", found->index,
+               found->namesake, quoted(name, text));
+    return found && !found->namesake ? found : NULL;
+}
+
+/* Reads an id or a name as the index of its body. */
 static bool read_index(const struct place *at, void *out)
 {
     int64_t id;
+    if (cJSON_IsString(at->item)) {
+        const struct body_id *named = find_named(at);
+        *(unsigned *) out = named ? named->index : 0;
+        return named;
+    }
     if (!read_id(at, &id))
         return false;
     const struct body_id *body = find_id(at->reader, id);
@@ -789,6 +913,7 @@ static enum json_outcome read_object_text(struct json_reader *reader, const char
     const bool good = parsed && read_scene(reader, root);
     cJSON_Delete(root);
     HASH_CLEAR(hh, reader->ids);
+    HASH_CLEAR(by_name, reader->names);
     free(reader->entry);
     reader->entry = NULL;
     if (good) {

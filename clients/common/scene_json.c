@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Writes count vectors of dim numbers. */
 static void write_vectors(struct json_writer *json, const char *key, const double *numbers, int dim,
@@ -45,13 +46,36 @@ static struct frame_numbers numbers_of(const struct fmb_frame *frame)
     return out;
 }
 
-/* Writes the members of a frame that do not depend on where its origin is. */
+/* Returns "sphere" for a hull of one vertex with a radius, "capsule" for one of two at opposite
+ * ends of the last axis, as they are read; else the name of the shape. */
+static const char *name_of(const struct fmb_frame *frame, const struct frame_numbers *given)
+{
+    const size_t dim = (size_t) frame->dim, last = dim - 1;
+    const double *x = given->number, half = x[dim + last];
+    if (frame->shape == FMB_HULL && frame->radius > 0 && given->count == dim)
+        return "sphere";
+    if (frame->shape == FMB_HULL && frame->radius > 0 && given->count == 2 * dim && half > 0 &&
+        x[last] == -half && isfinite(2 * half) && is_zero(x, (int) last) &&
+        is_zero(x + dim, (int) last))
+        return "capsule";
+    return fmb_shape_name((int) frame->shape);
+}
+
+/* Writes the members of a frame that do not depend on where its origin, or the centre of a sphere,
+ * is. */
 static void write_shape(struct json_writer *json, const struct fmb_frame *frame,
                         const struct frame_numbers *given)
 {
     const int dim = frame->dim;
-    json_string(json, "shape", fmb_shape_name((int) frame->shape));
-    if (frame->shape == FMB_BOX)
+    const char *name = name_of(frame, given);
+    json_string(json, "shape", name);
+    if (frame->radius > 0)
+        json_number(json, "radius", frame->radius);
+    if (strcmp(name, "capsule") == 0)
+        json_number(json, "length", 2 * given->number[2 * dim - 1]);
+    else if (strcmp(name, "sphere") == 0)
+        return;
+    else if (frame->shape == FMB_BOX)
         json_numbers(json, "size", given->number + dim, dim);
     else if (given->by_vertices)
         write_vectors(json, "vertices", given->number, dim, (int) given->count / dim);
@@ -67,15 +91,17 @@ void scene_json_frames(struct json_writer *json, const struct fmb_body *body)
         const struct frame_numbers given = numbers_of(frame);
         json_begin(json, NULL, '{');
         write_shape(json, frame, &given);
-        if (!given.by_vertices)
-            write_vector(json, frame->shape == FMB_BOX ? "position" : "origin", given.number,
-                         body->dim);
+        const bool sphere = strcmp(name_of(frame, &given), "sphere") == 0;
+        if (!given.by_vertices || sphere)
+            write_vector(json, sphere || frame->shape == FMB_BOX ? "position" : "origin",
+                         given.number, body->dim);
         json_end(json, '}');
     }
     json_end(json, ']');
 }
 
-/* A body of one frame by vertices, or whose origin or centre is 0, is written as that frame. A
+/* A body of one frame by vertices, but not a sphere elsewhere, or whose origin or centre is 0, is
+ * written as that frame. A
  * frame of components then has the position of the body as its origin, unless the body is turned.
  */
 static void write_body(struct json_writer *json, const struct fmb_placement *placement)
@@ -83,8 +109,9 @@ static void write_body(struct json_writer *json, const struct fmb_placement *pla
     const int dim = placement->body->dim;
     const struct fmb_frame *first = fmb_body_frame(placement->body, 0);
     const struct frame_numbers given = numbers_of(first);
-    const bool only =
-        placement->body->frame_count == 1 && (given.by_vertices || is_zero(given.number, dim));
+    const bool only = placement->body->frame_count == 1 &&
+                      ((given.by_vertices && strcmp(name_of(first, &given), "sphere") != 0) ||
+                       is_zero(given.number, dim));
     const bool components = only && first->shape != FMB_BOX && !given.by_vertices;
     json_begin(json, NULL, '{');
     json_integer(json, "id", placement->id);

@@ -66,6 +66,17 @@ void turn_radians(double radians, double turn[2])
     turn_reduced(x, (int) quarters, turn);
 }
 
+void turn_scale(double q[4])
+{
+    double largest = 0;
+    int exponent;
+    for (int i = 0; i < 4; i++)
+        largest = fmax(largest, fabs(q[i]));
+    frexp(largest, &exponent);
+    for (int i = 0; i < 4; i++)
+        q[i] = ldexp(q[i], -exponent);
+}
+
 double turn_matrix(const double q[4], double row[3][3])
 {
     const double w = q[0], a = q[1], b = q[2], c = q[3];

@@ -16,6 +16,10 @@ void turn_degrees(double degrees, double turn[2]);
 #define TURN_RADIANS_MAX 0x1p20
 void turn_radians(double radians, double turn[2]);
 
+/* Scales q, not all 0, by a power of two, so that its largest number is from 1/2 to 1: no square
+ * overflows. */
+void turn_scale(double q[4]);
+
 /* Returns n = |q|^2, and n times the matrix of the rotation by q = (w, x, y, z). Each entry, and n,
  * is a sum of at most four products whose magnitudes add up to n: an error of at most 4 u n. */
 double turn_matrix(const double q[4], double row[3][3]);

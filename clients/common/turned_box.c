@@ -6,22 +6,16 @@
 
 #include "turn.h"
 
-#include <math.h>
 #include <string.h>
 
 void turned_box(int dim, const double *orientation, double *origin, double *components)
 {
     double q[4] = {orientation[0], 0, 0, orientation[1]}; /* in 2D about z */
-    double size[FMB_DIM_MAX], row[3][3], largest = 0;
-    int exponent;
+    double size[FMB_DIM_MAX], row[3][3];
     memcpy(size, components, (size_t) dim * sizeof *size);
     if (dim == 3)
         memcpy(q, orientation, sizeof q);
-    for (int i = 0; i < 4; i++)
-        largest = fmax(largest, fabs(q[i]));
-    frexp(largest, &exponent);
-    for (int i = 0; i < 4; i++)
-        q[i] = ldexp(q[i], -exponent); /* so that no square overflows */
+    turn_scale(q);
     const double n = turn_matrix(q, row);
     for (int axis = 0; axis < dim; axis++)
         for (int i = 0; i < dim; i++) {

@@ -11,15 +11,15 @@
 #include "pose.h"
 #include "scene.h"
 
-enum robot_shape { ROBOT_BOX, ROBOT_CYLINDER, ROBOT_SPHERE, ROBOT_MESH };
+enum robot_shape { ROBOT_BOX, ROBOT_CYLINDER, ROBOT_CAPSULE, ROBOT_MESH };
 
 /* A <collision>. */
 struct robot_element {
     unsigned long line;
     struct pose origin; /* in its link */
     enum robot_shape shape;
-    /* Of a box its full sizes; of a cylinder about z radius and length; of a sphere its radius; of
-     * a mesh a factor for each axis. */
+    /* Of a box its full sizes; of a cylinder about z radius and length; of a capsule radius and the
+     * length of its core along z, 0 for a sphere; of a mesh a factor for each axis. */
     double size[3];
     const char *file; /* of a mesh, as the URDF names it */
 };

@@ -1,15 +1,13 @@
-/* Links of a robot as bodies of the engine. Boxes are boxes; spheres and cylinders are hulls that
- * enclose them; a mesh is the hull of the vertices of its faces, or a hull for each object. */
+/* Links of a robot as bodies of the engine. Boxes, spheres and capsules are what they are;
+ * cylinders are hulls that enclose them; a mesh is the hull of the vertices of its faces, or a hull
+ * for each object. */
 #ifndef ROBOT_BODY_H
 #define ROBOT_BODY_H
 
 #include "robot.h"
 
-/* The sides of the hulls of cylinders and spheres: a multiple of 4. */
-enum { ROBOT_SIDES = 16, ROBOT_SIDES_MAX = 44 };
-
 struct robot_body_options {
-    int sides;
+    int sides;                /* of the hulls of cylinders: a multiple of 4 (enclosure.h) */
     bool objects;             /* of an OBJ: a hull for each */
     const char *package_path; /* folders of packages, separated by colons; NULL: none */
 };
@@ -18,18 +16,11 @@ struct robot_body_options {
  * of the body is that of the element, and its numbers are those of the file. If it has several, the
  * origin is that of the link, and the numbers of elements with an origin are rounded.
  *
- * Hulls contain their cylinders and spheres, exactly, in body coordinates. They extend beyond them
- * by at most the distance *outside, apart from rounding:
- *
- *     r (1 / cos(pi / sides) - 1)  of a cylinder of radius r
- *     r tan(pi / sides)^2          of a sphere
- *
- * In:     scene     of dim 3; owns the body
- * In/out: *outside  raised to that distance, if it is less
- * Out:    *origin   of the body, in the link
+ * In/out: scene    of dim 3; owns the body; its `outside` is raised
+ * Out:    *origin  of the body, in the link
  * Returns NULL after an error, which was reported on stderr. */
 const struct fmb_body *robot_body(const struct robot *robot, const struct robot_link *link,
                                   const struct robot_body_options *options,
-                                  struct owned_scene *scene, struct pose *origin, double *outside);
+                                  struct owned_scene *scene, struct pose *origin);
 
 #endif

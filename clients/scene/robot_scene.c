@@ -2,8 +2,8 @@
 
 #include "allocate.h"
 #include "complain.h"
+#include "enclosure.h"
 #include "json.h"
-#include "number.h"
 #include "query.h"
 
 #include <errno.h>
@@ -34,15 +34,11 @@ static void report_empty(const struct robot *robot)
         complain("%s: links without <collision> have no body: %s%s", robot->path, names, more);
 }
 
-void robot_scene_report(const struct robot_scene *scene, int sides)
+void robot_scene_report(const struct robot_scene *scene, const char *world)
 {
-    char text[NUMBER_TEXT_MAX];
     report_empty(scene->robot);
-    if (scene->outside > 0) /* rounded up */
-        complain(
-            "%s: hulls of %d sides enclose its cylinders and spheres, and extend beyond them by at "
-            "most %s",
-            scene->robot->path, sides, number_short(scene->outside * (1 + 1e-5), text));
+    enclosure_report(scene->robot->path, scene->owner.outside);
+    enclosure_report(world, scene->world.outside);
 }
 
 /* Ignores each pair of a link's body and the body of the nearest link above it that has one. */
@@ -86,10 +82,10 @@ bool robot_scene_make(const struct robot *robot, const struct robot_body_options
         if (link->element_count == 0)
             continue;
         out->link[n] = i;
-        out->placements[n] = (struct fmb_placement){
-            .body = robot_body(robot, link, options, owner, &out->origin[n], &out->outside),
-            .name = link->name->name,
-            .id = (int64_t) n + 1};
+        out->placements[n] =
+            (struct fmb_placement){.body = robot_body(robot, link, options, owner, &out->origin[n]),
+                                   .name = link->name->name,
+                                   .id = (int64_t) n + 1};
         good = out->placements[n].body && good;
         out->robot_bodies++;
     }
@@ -133,7 +129,7 @@ static bool read_world(const char *path, struct owned_scene *out)
     } else if (outcome != JSON_END) {
         const char *error = json_error(reader);
         complain("%s: %s%s", path, error,
-                 strstr(error, ": no body has the id ") ? " (--ignore takes names of links)" : "");
+                 strstr(error, ": no body has the ") ? " (--ignore takes names of links)" : "");
         good = false;
     }
     json_close(reader);

@@ -9,7 +9,6 @@ struct robot_scene {
      * are ignored: a link with a body, and the nearest one above it that has a body. */
     struct owned_scene owner;
     /* Private. */
-    double outside; /* as of robot_body() */
     const struct robot *robot;
     struct fmb_placement *placements; /* of the scene */
     unsigned *link;                   /* [robot_bodies] */
@@ -26,9 +25,9 @@ bool robot_scene_make(const struct robot *robot, const struct robot_body_options
                       struct robot_scene *out);
 void robot_scene_clear(struct robot_scene *scene);
 
-/* Reports the links without a body, and how far the hulls of cylinders and spheres extend beyond
- * them, each in one line. In: sides: of these hulls. */
-void robot_scene_report(const struct robot_scene *scene, int sides);
+/* Reports the links without a body, and how far hulls extend beyond the cylinders of the robot and
+ * of the world, each in one line. In: world: its file, or NULL. */
+void robot_scene_report(const struct robot_scene *scene, const char *world);
 
 /* Adds the bodies, ignored pairs, duration and margin of a file of one scene in 3D. A body whose
  * id is that of a link gets another one, which is reported. To be called once at most. */

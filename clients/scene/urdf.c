@@ -249,12 +249,12 @@ static void read_shape(struct reader *reader, const struct node *node, struct ro
     if (is(node, "box")) {
         out->shape = ROBOT_BOX;
         read_sizes(reader, node, "size", 3, out->size);
-    } else if (is(node, "cylinder")) {
-        out->shape = ROBOT_CYLINDER;
+    } else if (is(node, "cylinder") || is(node, "capsule")) {
+        out->shape = is(node, "cylinder") ? ROBOT_CYLINDER : ROBOT_CAPSULE;
         read_sizes(reader, node, "radius", 1, &out->size[0]);
         read_sizes(reader, node, "length", 1, &out->size[1]);
     } else if (is(node, "sphere")) {
-        out->shape = ROBOT_SPHERE;
+        out->shape = ROBOT_CAPSULE;
         read_sizes(reader, node, "radius", 1, out->size);
     } else if (is(node, "mesh")) {
         out->shape = ROBOT_MESH;
@@ -262,11 +262,8 @@ static void read_shape(struct reader *reader, const struct node *node, struct ro
         out->size[0] = out->size[1] = out->size[2] = 1;
         read_numbers(reader, node, "scale", false, 3, out->size);
     } else {
-        refuse(reader, node->line, "<%.64s>: expected a box, cylinder, sphere or mesh%s",
-               node->name,
-               is(node, "capsule")
-                   ? "; give a capsule as a cylinder and two spheres, each a <collision>"
-                   : "");
+        refuse(reader, node->line, "<%.64s>: expected a box, cylinder, sphere, capsule or mesh",
+               node->name);
     }
 }
 

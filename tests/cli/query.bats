@@ -704,11 +704,11 @@ refused() {
 }
 
 @test "an unknown key or shape lists what there is" {
-    query '{"dim": 3, "bodies": [{"id": 1, "radius": 1}]}'
+    query '{"dim": 3, "bodies": [{"id": 1, "radii": 1}]}'
     ended 2
-    said 'fmb: standard input: bodies[0]: unknown key "radius" (curved shapes are not supported yet; there are id, name, group, velocity, shape, origin, components, vertices, size, position, orientation, frames)'
-    query '{"dim": 3, "bodies": [{"id": 1, "shape": "sphere"}]}'
-    said 'fmb: standard input: bodies[0].shape: unknown shape "sphere" (curved shapes are not supported yet; there are cuboid, tetrahedron, face, box, hull)'
+    said 'fmb: standard input: bodies[0]: unknown key "radii" (there are id, name, group, velocity, shape, origin, components, vertices, size, radius, length, sides, position, orientation, orientation_xyzw, frames)'
+    query '{"dim": 3, "bodies": [{"id": 1, "shape": "ball"}]}'
+    said 'fmb: standard input: bodies[0].shape: unknown shape "ball" (there are cuboid, tetrahedron, face, box, hull, sphere, capsule, cylinder)'
     query '{"dim": 3, "bodys": []}'
     said 'fmb: standard input: unknown key "bodys" (there are label, dim, duration, margin, bodies, pairs, ignore)'
 }

@@ -100,22 +100,47 @@ triangle() {
     is '[false,["cuboid",null,"box",null,"box",[5,0,0]]]'
 }
 
-@test "cylinders and spheres are hulls, tight along the axes, and how far they extend beyond them is reported" {
+@test "cylinders are hulls, tight along the axes, and how far they extend beyond them is reported" {
     link '<collision><geometry><cylinder radius="1" length="3"/></geometry></collision>'
     scene robot.urdf
-    said 'fmb: robot.urdf: hulls of 16 sides enclose its cylinders and spheres, and extend beyond them by at most 0.0195914'
+    said 'fmb: robot.urdf: hulls enclose its cylinders, and extend beyond them by at most 0.0195914'
     shows '.bodies[0] | [.shape, (.vertices | length, ([0, 1, 2][] as $axis | map(.[$axis]) | min, max))]'
     is '["hull",32,-1,1,-1,1,-1.5,1.5]'
-    link '<collision><geometry><sphere radius="1"/></geometry></collision>'
-    scene robot.urdf --sides 8
-    said 'fmb: robot.urdf: hulls of 8 sides enclose its cylinders and spheres, and extend beyond them by at most 0.171575'
-    shows '.bodies[0].vertices | [length, ([0,1,2][] as $axis | (map(.[$axis]) | max) - 1 | . > 0 and . < 1e-12)]'
-    is '[32,true,true,true]'
-    link '<collision><geometry><sphere radius="5e-324"/></geometry></collision>'
+    scene robot.urdf --sides 512
+    said 'fmb: robot.urdf: hulls enclose its cylinders, and extend beyond them by at most 1.88253e-05'
+    shows '.bodies[0].vertices | length'
+    is 1024
+    link '<collision><geometry><cylinder radius="5e-324" length="0"/></geometry></collision>'
     scene robot.urdf --sides 4
-    said 'fmb: robot.urdf: hulls of 4 sides enclose its cylinders and spheres, and extend beyond them by at most 1.35152e-298'
-    shows '.bodies[0].vertices | map(.[0]) | max < 1.36e-298'
-    is true
+    said 'fmb: robot.urdf: hulls enclose its cylinders, and extend beyond them by at most 9.55672e-299'
+    echo '{"dim": 3, "bodies": [{"id": 1, "shape": "cylinder", "radius": 1, "length": 3, "sides": 8}]}' > world.json
+    link "$box"
+    scene robot.urdf --with world.json
+    said 'fmb: world.json: hulls enclose its cylinders, and extend beyond them by at most 0.0823930'
+}
+
+@test "spheres and capsules are exact" {
+    ball='<geometry><sphere radius="0.1"/></geometry></collision>'
+    capsule='<geometry><capsule radius="0.25" length="1.5"/></geometry></collision>'
+    link "<collision><origin xyz='1 2 3'/>$ball"
+    scene robot.urdf
+    ended 0
+    [ ! -s err ]
+    shows '.bodies[0] | [.shape, .radius, .position]'
+    is '["sphere",0.1,[1,2,3]]'
+    link "<collision><origin xyz='1 2 3'/>$ball<collision>$capsule<collision><origin xyz='0 1 0' rpy='3.1415926535897931 0 0'/>$capsule"
+    scene robot.urdf
+    shows '.bodies[0].frames'
+    is '[{"shape":"sphere","radius":0.1,"position":[1,2,3]},{"shape":"capsule","radius":0.25,"length":1.5},{"shape":"hull","radius":0.25,"vertices":[[0,1,0.75],[0,1,-0.75]]}]'
+    # A ball of radius 1/4 on the floor, one that is turned, and capsules that stand and lie there.
+    echo '{"dim": 3, "bodies": [{"id": 1, "name": "floor", "shape": "box", "size": [8,8,1], "position": [0,0,-0.75]}]}' > floor.json
+    for element in "<collision><geometry><sphere radius='0.25'/></geometry></collision>" \
+        "<collision><origin rpy='1 2 3'/><geometry><sphere radius='0.25'/></geometry></collision>" \
+        "<collision><origin rpy='1.5707963267948966 0 0'/>$capsule" "<collision><origin xyz='0 0 0.75'/>$capsule"; do
+        link "$element"
+        "$FMB" scene robot.urdf --with floor.json | "$FMB" query --local --csv > answer.csv
+        grep -q ',touching,' answer.csv
+    done
 }
 
 @test "wheels and cylinders rest on the floor, beside other elements and turned by a quarter too" {
@@ -516,7 +541,9 @@ fmb: robot.urdf: line 8: joint 'ea': its parent 'e' is not a link of the file"
     shape '<geometry><box size="1 -2 3"/></geometry>' '<box>: size is negative'
     shape '<geometry><box size="1 ${w} 3"/></geometry>' "<box>: size is '1 \${w} 3': expand the file with xacro first"
     shape '<geometry><mesh filename="$(find pkg)/a.stl"/></geometry>' "<mesh>: filename is '\$(find pkg)/a.stl': expand the file with xacro first"
-    shape '<geometry><capsule radius="1"/></geometry>' '<capsule>: expected a box, cylinder, sphere or mesh; give a capsule as a cylinder and two spheres'
+    shape '<geometry><capsule radius="1"/></geometry>' '<capsule> has no length'
+    shape '<geometry><capsule radius="-1" length="1"/></geometry>' '<capsule>: radius is negative'
+    shape '<geometry><cone/></geometry>' '<cone>: expected a box, cylinder, sphere, capsule or mesh'
     shape '<geometry><sphere radius="1"/><sphere radius="1"/></geometry>' '<sphere>: there is already a shape'
     # Elements of other namespaces may stand beside a shape, but are not shapes.
     foreign='<drake:declare_convex/>'
@@ -526,9 +553,10 @@ fmb: robot.urdf: line 8: joint 'ea': its parent 'e' is not a link of the file"
         ended 0
     done
     shape "<geometry xmlns:drake='urn:drake'>$foreign<sphere radius='1'/>$foreign<box size='1 1 1'/></geometry>" '<box>: there is already a shape'
-    shape "<geometry xmlns:drake='urn:drake'>$foreign</geometry>" '<drake:declare_convex>: expected a box, cylinder, sphere or mesh'
+    shape "<geometry xmlns:drake='urn:drake'>$foreign</geometry>" '<drake:declare_convex>: expected a box, cylinder, sphere, capsule or mesh'
     shape '<geometry><cylinder radius="1"/></geometry>' '<cylinder> has no length'
-    shape '<geometry><sphere radius="1.79e308"/></geometry>' 'not a finite number'
+    shape '<geometry><sphere radius="inf"/></geometry>' "<sphere>: radius is 'inf', expected 1 finite number"
+    shape '<geometry><cylinder radius="1.79e308" length="1"/></geometry>' 'not a finite number'
     shape '<origin rpy="1e9 0 0"/><geometry><sphere radius="1"/></geometry>' '<origin>: rpy is beyond 1048576 radians'
     shape '<geometry><mesh/></geometry>' '<mesh> has no filename'
     shape '<geometry><mesh filename=""/></geometry>' '<mesh>: filename is empty'
@@ -663,7 +691,7 @@ fmb: robot.urdf: line 5: link 'b': c.dae: COLLADA is not supported: convert it t
     wrong scene a b
     wrong scene a --sides 3
     wrong scene a --sides 18
-    wrong scene a --sides 48
+    wrong scene a --sides 516
     wrong scene a --margin -1
     wrong scene a --limit-slack -0.1
     wrong scene a --limit-slack nan

@@ -460,6 +460,16 @@ static void assert_same_scenes(const struct owned_scene *a, const struct owned_s
             assert_same_bits(frame->centre, same->centre, 3);
             for (int c = 0; c < frame->count; c++)
                 assert_same_bits(frame->component[c], same->component[c], 3);
+            double numbers[2][FMB_FRAME_NUMBERS_MAX];
+            bool by_vertices;
+            const size_t count = fmb_frame_numbers(frame, &by_vertices, NULL);
+            assert_int_equal(fmb_frame_numbers(same, &by_vertices, NULL), count);
+            assert_same_bits(&frame->radius, &same->radius, 1);
+            if (count > FMB_FRAME_NUMBERS_MAX)
+                continue;
+            fmb_frame_numbers(frame, &by_vertices, numbers[0]);
+            fmb_frame_numbers(same, &by_vertices, numbers[1]);
+            assert_same_bits(numbers[0], numbers[1], count);
         }
     }
 }
@@ -505,6 +515,172 @@ static void the_sign_of_zero_is_kept(void **state)
     free(written);
 }
 
+/* What is read of a body, after it was written: a radius and the vertices of one hull. */
+static void round_shapes_are_read_back(void **state)
+{
+    static const struct {
+        const char *body, *written;
+        double radius;
+        int count;
+        double numbers[6];
+    } cases[] = {
+        {"\"shape\": \"sphere\", \"radius\": 0.1, \"position\": [1,2,3]",
+         "\"shape\": \"sphere\"",
+         0.1,
+         3,
+         {0}},
+        {"\"shape\": \"sphere\", \"radius\": 0", "\"shape\": \"hull\"", 0, 3, {0}},
+        {"\"shape\": \"sphere\", \"radius\": -0.0", "\"shape\": \"hull\"", 0, 3, {0}},
+        {"\"frames\": [{\"shape\": \"sphere\", \"radius\": 2, \"position\": [-0,2,3]}]",
+         "\"sphere\"",
+         2,
+         3,
+         {0, 2, 3}},
+        {"\"shape\": \"capsule\", \"radius\": 2, \"length\": 3",
+         "\"length\": 3",
+         2,
+         6,
+         {0, 0, -1.5, 0, 0, 1.5}},
+        {"\"shape\": \"capsule\", \"radius\": 2, \"length\": 0",
+         "\"shape\": \"sphere\"",
+         2,
+         3,
+         {0}},
+        {"\"shape\": \"capsule\", \"radius\": 0, \"length\": 2",
+         "\"shape\": \"hull\"",
+         0,
+         6,
+         {0, 0, -1, 0, 0, 1}},
+        {"\"shape\": \"capsule\", \"radius\": 2, \"length\": 1.7e308",
+         "\"length\": 1.7e+308",
+         2,
+         6,
+         {0, 0, -8.5e307, 0, 0, 8.5e307}},
+        {"\"frames\": [{\"shape\": \"capsule\", \"radius\": 1, \"length\": 4, \"position\": "
+         "[1,2,3]}]",
+         "\"vertices\"",
+         1,
+         6,
+         {1, 2, 1, 1, 2, 5}},
+        {"\"frames\": [{\"shape\": \"capsule\", \"radius\": 1, \"length\": 4, \"position\": "
+         "[1,2,3], \"orientation\": [1,0,1,0]}]",
+         "\"vertices\"",
+         1,
+         6,
+         {-1, 2, 3, 3, 2, 3}},
+        {"\"frames\": [{\"shape\": \"capsule\", \"radius\": 1, \"length\": 4, "
+         "\"orientation_xyzw\": [0,3,0,3]}]",
+         "\"vertices\"",
+         1,
+         6,
+         {-2, 0, 0, 2, 0, 0}},
+        {"\"shape\": \"hull\", \"radius\": 7, \"vertices\": [[0,0,1],[0,0,-1]]",
+         "\"vertices\"",
+         7,
+         6,
+         {0, 0, 1, 0, 0, -1}},
+        {"\"shape\": \"hull\", \"radius\": 7, \"vertices\": [[0,0,-1],[0,0,1]]",
+         "\"capsule\"",
+         7,
+         6,
+         {0, 0, -1, 0, 0, 1}},
+        {"\"shape\": \"hull\", \"radius\": 7, \"vertices\": [[0,0,-1],[0,0,2]]",
+         "\"vertices\"",
+         7,
+         6,
+         {0, 0, -1, 0, 0, 2}},
+        {"\"shape\": \"hull\", \"radius\": 7, \"vertices\": [[0,0,-1e308],[0,0,1e308]]",
+         "\"vertices\"",
+         7,
+         6,
+         {0, 0, -1e308, 0, 0, 1e308}},
+        {"\"shape\": \"hull\", \"radius\": 7, \"vertices\": [[4,0,0]]",
+         "\"sphere\"",
+         7,
+         3,
+         {4, 0, 0}},
+        {"\"shape\": \"box\", \"radius\": 7, \"size\": [1,2,3]",
+         "\"radius\": 7, \"size\"",
+         7,
+         6,
+         {0, 0, 0, 1, 2, 3}},
+        {"\"frames\": [{\"shape\": \"box\", \"radius\": 5e-324, \"size\": [1,2,3], \"position\": "
+         "[1,1,1]}]",
+         "\"radius\": 4.94065645841247e-324",
+         5e-324,
+         6,
+         {1, 1, 1, 1, 2, 3}},
+    };
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        char text[512], *written;
+        size_t size;
+        double numbers[FMB_FRAME_NUMBERS_MAX];
+        bool by_vertices;
+        snprintf(text, sizeof text, "{\"dim\": 3, \"bodies\": [{\"id\": 1, %s}]}", cases[i].body);
+        struct owned_scene scene = read_one(text);
+        const struct fmb_frame *frame = fmb_body_frame(scene.scene.placements[0].body, 0);
+        assert_true(frame->radius == cases[i].radius);
+        assert_int_equal(fmb_frame_numbers(frame, &by_vertices, numbers), cases[i].count);
+        assert_same_bits(numbers, cases[i].numbers, (size_t) cases[i].count);
+        FILE *out = open_memstream(&written, &size);
+        assert_non_null(out);
+        scene_json_write(out, &scene);
+        fclose(out);
+        if (!strstr(written, cases[i].written))
+            fail_msg("%s: expected %s", written, cases[i].written);
+        struct owned_scene again = read_one(written);
+        assert_same_scenes(&scene, &again);
+        scene_clear(&again);
+        scene_clear(&scene);
+        free(written);
+    }
+}
+
+/* In frames too, moved and turned, and of numbers beyond the usual: by the hull's extents. */
+static void cylinders_are_enclosed(void **state)
+{
+    struct owned_scene scene = read_one(
+        "{\"dim\": 3, \"bodies\": [{\"id\": 1, \"shape\": \"cylinder\", \"radius\": 2, \"length\": "
+        "3},"
+        "{\"id\": 2, \"frames\": [{\"shape\": \"cylinder\", \"radius\": 2, \"length\": 3, "
+        "\"sides\": 8,"
+        " \"position\": [1,2,3], \"orientation\": [1e200,0,1e200,0]}]}]}");
+    static const double expected[2][2][3] = {{{-2, -2, -1.5}, {2, 2, 1.5}},
+                                             {{-0.5, 0, 1}, {2.5, 4, 5}}};
+    for (int body = 0; body < 2; body++) {
+        const struct fmb_frame *hull = fmb_body_frame(scene.scene.placements[body].body, 0);
+        double numbers[3 * 32];
+        bool by_vertices;
+        const size_t count = fmb_frame_numbers(hull, &by_vertices, numbers);
+        assert_int_equal(count, body ? 3 * 16 : 3 * 32);
+        assert_true(hull->radius == 0);
+        for (int axis = 0; axis < 3; axis++) {
+            double low = INFINITY, high = -INFINITY;
+            for (size_t i = 0; i < count; i += 3) {
+                low = fmin(low, numbers[i + axis]);
+                high = fmax(high, numbers[i + axis]);
+            }
+            assert_true(low <= expected[body][0][axis] && low >= expected[body][0][axis] - 1e-12);
+            assert_true(high >= expected[body][1][axis] && high <= expected[body][1][axis] + 1e-12);
+        }
+    }
+    assert_true(fabs(scene.outside - 2 * (1 / cos(acos(-1) / 8) - 1)) < 1e-12);
+    scene_clear(&scene);
+}
+
+/* A name stands for the id of the only body that has it. */
+static void pairs_may_have_names(void **state)
+{
+    struct owned_scene scene = read_one(
+        "{\"dim\":3,\"bodies\":[{\"id\":7,\"name\":\"a\"," CUBE "},{\"id\":8,\"name\":\"b\"," CUBE
+        "},{\"id\":9,\"name\":\"b\"," CUBE "},{\"id\":1,\"name\":\"8\"," CUBE
+        "}],"
+        "\"ignore\":[[\"a\",9],[8,\"8\"]]}");
+    assert_true(scene_leaves_out(&scene, 0, 2) && scene_leaves_out(&scene, 1, 3));
+    assert_int_equal(scene_count_pairs(&scene), 4);
+    scene_clear(&scene);
+}
+
 /* cJSON up to 1.7.15-1+deb12u2 refuses numbers of more than 63 characters. */
 static void long_numbers_are_read_in_full(void **state)
 {
@@ -522,6 +698,8 @@ static void long_numbers_are_read_in_full(void **state)
 }
 
 /* ---- What is refused ------------------------------------------------------------------------- */
+
+#define ROUND(shape, more) "{\"id\":1,\"radius\":1,\"shape\":\"" shape "\"," more "}"
 
 #define VERTICES(x) "{\"shape\":\"face\",\"vertices\":[[-" x ",0,0],[" x ",1,0],[0,1,1]]}"
 
@@ -565,8 +743,46 @@ static const struct {
     {SCENE(BODY(1e999)), "bodies[0].id"},
     {SCENE(BODY("1")), "bodies[0].id"},
     {SCENE(BODY(1) "," BODY(2) "," BODY(1)), "bodies[2].id"},
-    {SCENE("{\"id\":1,\"shape\":\"sphere\",\"origin\":[0,0,0],\"components\":[]}"),
-     "bodies[0].shape"},
+    {SCENE(ROUND("sphere", "\"origin\":[0,0,0]")), "bodies[0]: a sphere has no \"origin\""},
+    {SCENE(ROUND("sphere", "\"vertices\":[[0,0,0]]")), "bodies[0]: a sphere has no \"vertices\""},
+    {SCENE(ROUND("sphere", "\"length\":1")), "bodies[0]: a sphere has no \"length\""},
+    {SCENE(ROUND("capsule", "\"size\":[1,1,1]")), "bodies[0]: a capsule has no \"size\""},
+    {SCENE(ROUND("capsule", "\"id\":2")), "bodies[0]: repeated key \"id\""},
+    {SCENE(ROUND("capsule", "\"group\":2")), "bodies[0]: missing key \"length\""},
+    {SCENE(ROUND("capsule", "\"length\":-1")),
+     "bodies[0].length: expected a number of at least 0, found -1"},
+    {SCENE(ROUND("capsule", "\"length\":1,\"sides\":4")), "bodies[0]: a capsule has no \"sides\""},
+    {SCENE(ROUND("capsule", "\"length\":1e999")), "bodies[0].length"},
+    {SCENE(ROUND("cylinder", "\"length\":1,\"sides\":6")),
+     "bodies[0].sides: expected a multiple of 4 up to 512, found 6"},
+    {SCENE(ROUND("cylinder", "\"length\":1,\"sides\":0")), "bodies[0].sides"},
+    {SCENE(ROUND("cylinder", "\"length\":1,\"sides\":516")), "bodies[0].sides"},
+    {SCENE(ROUND("cylinder", "\"length\":1,\"sides\":\"4\"")), "bodies[0].sides"},
+    {"{\"dim\":2,\"bodies\":[" ROUND("cylinder", "\"length\":1") "]}",
+     "bodies[0].shape: there is no cylinder in 2D"},
+    {SCENE("{\"id\":1,\"shape\":\"sphere\"}"), "bodies[0]: missing key \"radius\""},
+    {SCENE("{\"id\":1,\"shape\":\"sphere\",\"radius\":null}"), "bodies[0].radius"},
+    {SCENE("{\"id\":1,\"shape\":\"sphere\",\"radius\":1e999}"), "bodies[0].radius"},
+    {SCENE("{\"id\":1,\"radius\":-5e-324," CUBE "}"), "bodies[0].radius"},
+    {SCENE("{\"id\":1,\"radius\":NaN," CUBE "}"), "line 1, column"},
+    {SCENE("{\"id\":1,\"radius\":1,\"frames\":[]}"),
+     "bodies[0]: a body of \"frames\" has no \"radius\""},
+    {SCENE("{\"id\":1,\"length\":1," CUBE "}"),
+     "bodies[0]: a frame of components has no \"length\""},
+    {SCENE("{\"id\":1,\"frames\":[{\"shape\":\"sphere\",\"radius\":1,"
+           "\"orientation\":[1,0,0,0]}]}"),
+     "bodies[0].frames[0]: a sphere has no \"orientation\""},
+    {SCENE("{\"id\":1,\"frames\":[{\"shape\":\"capsule\",\"radius\":1,\"length\":1.7e308,"
+           "\"position\":[0,0,1.7e308]}]}"),
+     "bodies[0].frames: not a finite number"},
+    {SCENE(ROUND("cylinder",
+                 "\"length\":1,\"orientation\":[1,0,0,0],"
+                 "\"orientation_xyzw\":[0,0,0,1]")),
+     "bodies[0]: both \"orientation\" and \"orientation_xyzw\""},
+    {SCENE(ROUND("sphere", "\"orientation_xyzw\":[0,0,0,0]")), "bodies[0].orientation_xyzw"},
+    {SCENE(ROUND("sphere", "\"orientation_xyzw\":[0,0,1]")), "bodies[0].orientation_xyzw"},
+    {"{\"dim\":2,\"bodies\":[" ROUND("sphere", "\"orientation_xyzw\":[0,1]") "]}",
+     "bodies[0].orientation_xyzw: in 2D use \"orientation\""},
     {SCENE("{\"id\":1,\"shape\":\"cuboids\",\"origin\":[0,0,0],\"components\":[]}"),
      "bodies[0].shape"},
     {SCENE("{\"id\":1,\"shape\":\"cub\",\"origin\":[0,0,0],\"components\":[]}"), "bodies[0].shape"},
@@ -632,7 +848,12 @@ static const struct {
     {SCENE_PAIRS("[[1,2],[2,3]]"), "pairs[1][1]"},
     {SCENE_PAIRS("[[1,2],[1,1]]"), "pairs[1]"},
     {SCENE_PAIRS("[[1,2.5]]"), "pairs[0][1]"},
-    {SCENE_PAIRS("[[1,\"2\"]]"), "pairs[0][1]"},
+    {SCENE_PAIRS("[[1,\"2\"]]"), "pairs[0][1]: no body has the name \"2\""},
+    {"{\"dim\":3,\"bodies\":[{\"id\":1,\"name\":\"a\"," CUBE "},{\"id\":2,\"name\":\"b\"," CUBE
+     "},{\"id\":3,\"name\":\"a\"," CUBE "}],\"ignore\":[[\"b\",1],[3,\"a\"]]}",
+     "ignore[1][1]: bodies[0] and bodies[2] both have the name \"a\": use ids"},
+    {"{\"dim\":3,\"bodies\":[{\"id\":1,\"name\":\"a\"," CUBE "}],\"pairs\":[[1,\"a\"]]}",
+     "pairs[0]: a body is no pair with itself"},
 };
 
 static void bad_scenes_are_refused(void **state)
@@ -877,6 +1098,9 @@ int main(void)
         cmocka_unit_test(numbers_are_written_short),
         cmocka_unit_test(ends_that_differ_look_different),
         cmocka_unit_test(the_sign_of_zero_is_kept),
+        cmocka_unit_test(round_shapes_are_read_back),
+        cmocka_unit_test(cylinders_are_enclosed),
+        cmocka_unit_test(pairs_may_have_names),
         cmocka_unit_test(long_numbers_are_read_in_full),
         cmocka_unit_test(bad_scenes_are_refused),
         cmocka_unit_test(bad_texts_are_refused),

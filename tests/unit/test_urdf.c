@@ -4,6 +4,7 @@
 #include "unit.h"
 
 #include "draw.h"
+#include "enclosure.h"
 #include "mesh_hull.h"
 #include "rational_solid.h"
 #include "robot_body.h"
@@ -85,8 +86,7 @@ static void set_normal(mpq_t *a, mpq_t *b, mpq_t *c, rational_vector n)
 }
 
 /* Whether a solid is on the inner side of the plane of three points, which faces away from the
- * centre: n.a >= radius |n| for a sphere (length < 0), n.a >= radius |n_xy| + length / 2 |n_z| for
- * a cylinder. */
+ * centre: n.a >= radius |n_xy| + length / 2 |n_z|. */
 static bool is_inside(mpq_t *a, mpq_t *b, mpq_t *c, double radius, double length)
 {
     rational_vector n;
@@ -95,13 +95,11 @@ static bool is_inside(mpq_t *a, mpq_t *b, mpq_t *c, double radius, double length
     mpq_inits(square, left, factor, NULL);
     set_normal(a, b, c, n);
     rational_dot(left, n, a);
-    if (length >= 0) {
-        mpq_set_d(factor, length);
-        mpq_div_2exp(factor, factor, 1);
-        mpq_abs(n[2], n[2]);
-        rational_add_product(left, -1, factor, n[2]);
-        mpq_set_ui(n[2], 0, 1);
-    }
+    mpq_set_d(factor, length);
+    mpq_div_2exp(factor, factor, 1);
+    mpq_abs(n[2], n[2]);
+    rational_add_product(left, -1, factor, n[2]);
+    mpq_set_ui(n[2], 0, 1);
     bool good = mpq_sgn(left) >= 0;
     mpq_mul(left, left, left);
     rational_dot(square, n, n);
@@ -145,11 +143,8 @@ static double distance_outside(struct rings *rings, double radius, double length
         double x[3];
         for (int axis = 0; axis < 3; axis++)
             x[axis] = mpq_get_d(rings->solid.column[i][axis]);
-        const double beyond = length < 0 ? sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) - radius
-                                         : sqrt(x[0] * x[0] + x[1] * x[1]) - radius;
-        most = fmax(most, beyond);
-        if (length >= 0)
-            assert_true(fabs(x[2]) <= length / 2 + rounding);
+        most = fmax(most, sqrt(x[0] * x[0] + x[1] * x[1]) - radius);
+        assert_true(fabs(x[2]) <= length / 2 + rounding);
     }
     return most;
 }
@@ -159,7 +154,7 @@ static double distance_outside(struct rings *rings, double radius, double length
 static void check_resting(const struct fmb_frame *hull, const double half[3],
                           const double centre[3], bool alone)
 {
-    double numbers[6 * ROBOT_SIDES_MAX];
+    double numbers[6 * ENCLOSURE_SIDES_MAX];
     bool by_vertices;
     const size_t count = fmb_frame_numbers(hull, &by_vertices, numbers);
     for (int axis = 0; axis < 3; axis++)
@@ -180,7 +175,7 @@ static void check_resting(const struct fmb_frame *hull, const double half[3],
         }
 }
 
-/* A cylinder, or a sphere (length < 0), alone in its link or beside a box. */
+/* A cylinder, alone in its link or beside a box. */
 static void check_enclosure(int sides, double radius, double length, const double origin[6],
                             bool alone)
 {
@@ -188,18 +183,15 @@ static void check_enclosure(int sides, double radius, double length, const doubl
     struct robot robot;
     struct pose pose, placed = POSE_IDENTITY;
     struct owned_scene scene = {.dim = 3};
-    double outside = 0;
     const struct robot_body_options options = {.sides = sides};
     snprintf(text, sizeof text,
              "<robot><link name='a'><collision><origin xyz='%.17g %.17g %.17g' rpy='%.17g %.17g "
-             "%.17g'/><geometry><%s radius='%.17g' length='%.17g'/></geometry></collision>"
+             "%.17g'/><geometry><cylinder radius='%.17g' length='%.17g'/></geometry></collision>"
              "%s</link></robot>",
-             origin[0], origin[1], origin[2], origin[3], origin[4], origin[5],
-             length < 0 ? "sphere" : "cylinder", radius, length,
+             origin[0], origin[1], origin[2], origin[3], origin[4], origin[5], radius, length,
              alone ? "" : "<collision><geometry><box size='1 1 1'/></geometry></collision>");
     read_text(text, &robot);
-    const struct fmb_body *body =
-        robot_body(&robot, &robot.links[0], &options, &scene, &pose, &outside);
+    const struct fmb_body *body = robot_body(&robot, &robot.links[0], &options, &scene, &pose);
     assert_non_null(body);
     if (!alone) {
         assert_memory_equal(&pose, &placed, sizeof pose);
@@ -213,29 +205,28 @@ static void check_enclosure(int sides, double radius, double length, const doubl
     if (length >= DBL_MIN && radius > 0x1p-900 && upright)
         check_resting(fmb_body_frame(body, 0), (const double[]){radius, radius, length / 2}, origin,
                       alone);
-    double rounding = radius + fabs(length);
+    double rounding = radius + length;
     for (int i = 0; i < 3; i++)
         rounding += fabs(origin[i]);
     rounding = 1e-12 * rounding + 0x1p-980;
     const double found = distance_outside(&rings, radius, length, rounding);
-    assert_true(found <= outside + rounding);
-    assert_true(length < 0 || found >= outside - rounding); /* a bound that is reached */
+    assert_true(fabs(found - scene.outside) <= rounding); /* a bound that is reached */
     rational_solid_clear(&rings.solid);
     scene_clear(&scene);
     robot_clear(&robot);
 }
 
-static void hulls_enclose_cylinders_and_spheres(void **state)
+static void hulls_enclose_cylinders(void **state)
 {
     struct draw draw;
     draw_begin(&draw, "enclosures");
     const long count = draw_sample(120);
     for (long i = 0; i < count; i++) {
         const int large = i % 16 == 0;
-        const int sides = 4 * draw_int(&draw, 1, large ? ROBOT_SIDES_MAX / 4 : 4);
+        const int sides = 4 * draw_int(&draw, 1, large ? 12 : 4);
         const int size = draw_coin(&draw) ? 300 : 3;
         const double radius = fabs(draw_log(&draw, -size, size));
-        const double length = draw_coin(&draw) ? fabs(draw_log(&draw, -size, size)) : -1;
+        const double length = fabs(draw_log(&draw, -size, size));
         double origin[6];
         for (int k = 0; k < 3; k++) {
             const bool turned = i % 2 == 0;
@@ -252,10 +243,8 @@ static void the_smallest_shapes_are_enclosed(void **state)
     static const double tiny[] = {DBL_TRUE_MIN, 3 * DBL_TRUE_MIN, DBL_MIN, 0x1p-1000};
     const double origin[6] = {DBL_TRUE_MIN, 0, -DBL_MIN, 0.1, 0.2, 0.3};
     for (size_t i = 0; i < COUNT(tiny); i++)
-        for (int alone = 0; alone < 2; alone++) {
+        for (int alone = 0; alone < 2; alone++)
             check_enclosure(16, tiny[i], tiny[(i + 1) % COUNT(tiny)], origin, alone);
-            check_enclosure(16, tiny[i], -1, origin, alone);
-        }
 }
 
 /* ---- Hulls ----------------------------------------------------------------------------------- */
@@ -501,7 +490,7 @@ static void poses_of_links_agree_with_matrices(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hulls_enclose_cylinders_and_spheres),
+        cmocka_unit_test(hulls_enclose_cylinders),
         cmocka_unit_test(the_smallest_shapes_are_enclosed),
         cmocka_unit_test(hulls_of_grids_keep_only_their_corners),
         cmocka_unit_test(hulls_of_random_points_contain_them_all),
