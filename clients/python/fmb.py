@@ -10,8 +10,8 @@ box, and how far apart they are. Decided in process, or by the service fmbd on a
     for answer in scene.decide(duration=0):
         print(answer.names, answer.verdict)    # ('table', 'cube') touching
 
-Bodies are made by box(), cuboid(), tetrahedron(), face(), hull() and compound(), and queried by the
-methods of Scene. "pydoc3 fmb.hull" or "pydoc3 fmb.Scene" describes one of them.
+Bodies are made by box(), cuboid(), tetrahedron(), face(), hull(), sphere(), capsule() and
+compound(), and queried by the methods of Scene. "pydoc3 fmb.hull" or "pydoc3 fmb.Scene" describes one of them.
 
 fmb.h of libfmb defines shapes, verdicts, and the accuracy of numbers. Lengths may have any unit;
 times are in seconds, velocities per second; orientations are quaternions (w, x, y, z), in 2D (w, z),
@@ -53,8 +53,8 @@ if TYPE_CHECKING:
     Array = Union["numpy.ndarray", memoryview, Sequence[Any]]
 
 __all__ = ["Answer", "Answers", "Body", "BusError", "Client", "Error", "OVERLAPPING", "SEPARATED",
-           "Rows", "Scene", "TOUCHING", "Verdict", "box", "compound", "cuboid", "face", "hull",
-           "status_text", "tetrahedron", "version"]
+           "Rows", "Scene", "TOUCHING", "Verdict", "box", "capsule", "compound", "cuboid", "face", "hull",
+           "sphere", "status_text", "tetrahedron", "version"]
 
 # ---- The library: fmb_flat.h ----
 
@@ -286,7 +286,8 @@ def _pointer(buffer: Any) -> Any:
 
 class Body(_Handle):
     """A rigid body of one or more frames, in body coordinates. It may be placed any number of times, in
-    any scene. Made by box(), cuboid(), tetrahedron(), face(), hull() and compound().
+    any scene. Made by box(), cuboid(), tetrahedron(), face(), hull(), sphere(), capsule() and
+    compound().
 
     dim: 2 or 3
     """
@@ -311,6 +312,7 @@ class Body(_Handle):
 
 # Values of placement_t.shapes.
 _CUBOID, _TETRAHEDRON, _FACE, _BOX, _HULL, _TETRAHEDRON_VERTICES, _FACE_VERTICES = range(1, 8)
+_RADIUS = 16
 
 
 def _numbers(name: str, value: Any, shape: tuple) -> tuple[array, int]:
@@ -326,73 +328,118 @@ def _numbers(name: str, value: Any, shape: tuple) -> tuple[array, int]:
     return numbers, found[-1]
 
 
-def _frame(code: int, name: str, value: Any, shape: tuple, origin_name: str, origin: Any) -> Body:
-    numbers, dim = _numbers(name, value, shape)
-    if origin is not None:
-        numbers = _numbers(origin_name, origin, (dim,))[0] + numbers
+def _from_0(name: str, value: Any) -> float:
+    number = _float(name, value)
+    if not math.isfinite(number) or number < 0:
+        status = 17 if math.isfinite(number) else 7
+        raise Error(f"{name}: {status_text(status)}", status)
+    return number
+
+
+def _body(code: int, name: str, numbers: array, dim: int, radius: Any) -> Body:
+    if _from_0("radius", radius):
+        code, numbers = code + _RADIUS, array("d", [radius]) + numbers
     return Body(name, dim, [(code, numbers)])
 
 
-def box(size: Array, centre: Optional[Array] = None) -> Body:
+def _frame(code: int, name: str, value: Any, shape: tuple, origin_name: str, origin: Any,
+           radius: Any) -> Body:
+    numbers, dim = _numbers(name, value, shape)
+    if origin is not None:
+        numbers = _numbers(origin_name, origin, (dim,))[0] + numbers
+    return _body(code, name, numbers, dim, radius)
+
+
+def box(size: Array, centre: Optional[Array] = None, *, radius: float = 0) -> Body:
     """A box aligned with the axes of the body.
 
     size: (dim,), lengths of the edges, 0 or more
     centre: (dim,); None: 0
+    radius: of this shape and of each other one, 0 or more: the body is the set of points within this
+        distance of the shape. So a box is larger than its size by the radius on every side.
     """
-    return _frame(_BOX, "size", size, ("dim",), "centre", centre)
+    return _frame(_BOX, "size", size, ("dim",), "centre", centre, radius)
 
 
-def cuboid(components: Array, origin: Optional[Array] = None) -> Body:
+def sphere(radius: float, centre: Optional[Array] = None, *, dim: int = 3) -> Body:
+    """A sphere, in 2D a disc.
+
+    centre: (dim,); None: 0
+    """
+    return _frame(_HULL, "centre", [0] * _dim(dim) if centre is None else centre, ("dim",), "", None, radius)
+
+
+def capsule(radius: float, length: float, *, dim: int = 3) -> Body:
+    """The set of points within a radius of its core, a segment along the last axis, centred at 0.
+
+    length: of the core; the capsule is longer by twice the radius
+    """
+    before, half = [0] * (_dim(dim) - 1), _from_0("length", length) / 2
+    return hull([[*before, -half], [*before, half]], radius=radius)
+
+
+def _dim(dim: Any) -> int:
+    if _int("dim", dim) not in (2, 3):
+        raise ValueError(f"dim: expected 2 or 3, found {dim}")
+    return dim
+
+
+def cuboid(components: Array, origin: Optional[Array] = None, *, radius: float = 0) -> Body:
     """A cuboid, the set origin + sum x_i components[i] with all x_i in [0, 1].
 
     components: (dim, dim), [component][axis]
     origin: (dim,); None: 0
+    radius: see box()
     """
-    return _frame(_CUBOID, "components", components, ("n", "dim"), "origin", origin)
+    return _frame(_CUBOID, "components", components, ("n", "dim"), "origin", origin, radius)
 
 
 def tetrahedron(components: Optional[Array] = None, origin: Optional[Array] = None, *,
-                vertices: Optional[Array] = None) -> Body:
+                vertices: Optional[Array] = None, radius: float = 0) -> Body:
     """A tetrahedron, in 2D a triangle: the set origin + sum x_i components[i] with x_i >= 0 and
     sum x_i <= 1; or given by its vertices, which are exact.
 
     components: (dim, dim), [component][axis]
     origin: (dim,); None: 0
     vertices: (dim + 1, dim), in place of both
+    radius: see box()
     """
-    return _simplex(_TETRAHEDRON, _TETRAHEDRON_VERTICES, components, origin, vertices)
+    return _simplex(_TETRAHEDRON, _TETRAHEDRON_VERTICES, components, origin, vertices, radius)
 
 
 def face(components: Optional[Array] = None, origin: Optional[Array] = None, *,
-         vertices: Optional[Array] = None) -> Body:
+         vertices: Optional[Array] = None, radius: float = 0) -> Body:
     """A triangle in 3D, given by its origin and two components, or by its vertices.
 
     components: (2, 3), [component][axis]
     origin: (3,); None: 0
     vertices: (3, 3), in place of both
+    radius: see box()
     """
-    return _simplex(_FACE, _FACE_VERTICES, components, origin, vertices)
+    return _simplex(_FACE, _FACE_VERTICES, components, origin, vertices, radius)
 
 
-def _simplex(code: int, code_vertices: int, components: Any, origin: Any, vertices: Any) -> Body:
+def _simplex(code: int, code_vertices: int, components: Any, origin: Any, vertices: Any,
+             radius: Any) -> Body:
     if (components is None) == (vertices is None):
         raise TypeError("components: expected either components or vertices")
     if vertices is None:
-        return _frame(code, "components", components, ("n", "dim"), "origin", origin)
+        return _frame(code, "components", components, ("n", "dim"), "origin", origin, radius)
     if origin is not None:
         raise TypeError("origin: not with vertices")
-    return _frame(code_vertices, "vertices", vertices, ("n", "dim"), "", None)
+    return _frame(code_vertices, "vertices", vertices, ("n", "dim"), "", None, radius)
 
 
-def hull(vertices: Array) -> Body:
+def hull(vertices: Array, *, radius: float = 0) -> Body:
     """The convex hull of 1 to 1,024 vertices, in any order; it may be flat.
 
     vertices: (n, dim)
+    radius: see box()
     """
     numbers, dim = _numbers("vertices", vertices, ("n", "dim"))
     if len(numbers) > dim * _HULL_VERTICES_MAX:
         raise Error(f"vertices: {len(numbers) // dim}, at most {_HULL_VERTICES_MAX}", 3)
-    return Body("vertices", dim, [(_HULL, numbers)])
+    return _body(_HULL, "vertices", numbers, dim, radius)
 
 
 def compound(bodies: Iterable[Body]) -> Body:
@@ -410,8 +457,8 @@ def _maker(make: Any) -> Any:
     return checked
 
 
-box, cuboid, tetrahedron, face, hull, compound = map(
-    _maker, (box, cuboid, tetrahedron, face, hull, compound))
+box, cuboid, tetrahedron, face, hull, sphere, capsule, compound = map(
+    _maker, (box, cuboid, tetrahedron, face, hull, sphere, capsule, compound))
 
 
 def _bodies(bodies: Iterable[Body]) -> tuple[Body, ...]:

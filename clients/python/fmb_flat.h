@@ -35,8 +35,8 @@ struct fmb_flat_body;
  *      counts   [count]: how many of the numbers each frame has
  *      numbers  frame after frame, in the order of placement_t.numbers
  * Out: *out     set only if the status is FMB_OK; to be freed after the scenes that use it
- * Returns a status of fmb_frame_make(), fmb_frame_make_vertices(), fmb_frame_make_hull() or
- * fmb_body_make_frames(); or NO_MEMORY. */
+ * Returns a status of fmb_frame_make(), fmb_frame_make_vertices(), fmb_frame_make_hull(),
+ * fmb_frame_inflate() or fmb_body_make_frames(); or NO_MEMORY. */
 int fmb_flat_body_make(int dim, size_t count, const int32_t *shapes, const int64_t *counts,
                        const double *numbers, struct fmb_flat_body **out);
 void fmb_flat_body_free(struct fmb_flat_body *body); /* may be NULL */

@@ -22,10 +22,13 @@ import fmb
 BUS = os.environ.get("BUS")
 
 
-def body_of(json_body):
+def body_of(json_body, dim):
     made = []
     for frame in json_body.get("frames", [json_body]):
-        given = {key: frame[key] for key in ("components", "origin", "vertices", "size") if key in frame}
+        given = {key: frame[key] for key in ("components", "origin", "vertices", "size", "radius", "length")
+                 if key in frame}
+        if frame["shape"] in ("sphere", "capsule"):
+            given["dim"] = dim
         if "frames" in json_body and "position" in frame:
             given["centre"] = frame["position"]
         made.append(getattr(fmb, frame["shape"])(**given))
@@ -36,7 +39,7 @@ def scene_of(json_scene):
     """A scene, and its listed pairs."""
     bodies = json_scene["bodies"]
     dim = json_scene["dim"]
-    scene = fmb.Scene([body_of(body) for body in bodies],
+    scene = fmb.Scene([body_of(body, dim) for body in bodies],
                       positions=[body.get("position", [0] * dim) for body in bodies],
                       velocities=[body.get("velocity", [0] * dim) for body in bodies],
                       names=[body.get("name") for body in bodies],
@@ -57,7 +60,17 @@ def random_scene(dim, count, seed):
         return [size * (draw.random() - 0.5) for _ in range(n)]
 
     def frame():
-        shape = draw.choice(["box", "cuboid", "tetrahedron", "hull"] + ["face"] * (dim == 3))
+        out = core()
+        if "radius" not in out and draw.random() < 0.3:
+            out["radius"] = draw.choice([0, draw.random()])
+        return out
+
+    def core():
+        shape = draw.choice(["box", "cuboid", "tetrahedron", "hull", "sphere", "capsule"] + ["face"] * (dim == 3))
+        if shape == "sphere":
+            return {"shape": shape, "radius": draw.random(), "position": vector(2)}
+        if shape == "capsule":
+            return {"shape": shape, "radius": draw.random(), "length": draw.random()}
         if shape == "box":
             return {"shape": shape, "size": [0.5 + draw.random() for _ in range(dim)]}
         if shape == "hull":
@@ -194,6 +207,19 @@ class Answers(unittest.TestCase):
                     left_out.update(("direction", "witness", "frames"))
                 self.assertEqual([as_json(a) for a in answers],
                                  [{k: v for k, v in a.items() if k not in left_out} for a in whole])
+
+    def test_shapes_with_a_radius_touch_exactly(self):
+        ball, cube = fmb.sphere(3), fmb.box([2, 2, 2])
+        for other, place in ((fmb.sphere(4), [2, 3, 6]), (cube, [4, 0, 0]), (cube, [2, 3, 3]),
+                             (fmb.capsule(1, 6), [0, 4, -3]), (fmb.box([2, 2, 2], radius=1), [0, 0, 5]),
+                             (fmb.capsule(0, 2), [0, 0, 4]), (fmb.sphere(0), [1, 2, 2])):
+            for scale, verdict in ((1 - 2**-40, fmb.OVERLAPPING), (1, fmb.TOUCHING), (1 + 2**-40, fmb.SEPARATED)):
+                scene = fmb.Scene([ball, other], positions=[[0, 0, 0], [x * scale for x in place]])
+                self.assertEqual(scene.pair(0, 1, 0, client=self.client).verdict, verdict)
+        moved = fmb.Scene([ball, fmb.sphere(4, [1, 3, 5])], positions=[[0, 0, 0], [1, 0, 1]])
+        self.assertEqual(moved.pair(0, 1, 0, client=self.client).verdict, fmb.TOUCHING)
+        discs = fmb.Scene([fmb.sphere(2, dim=2), fmb.sphere(3, dim=2)], positions=[[0, 0], [3, 4]])
+        self.assertEqual(discs.pair(0, 1, 0, client=self.client).verdict, fmb.TOUCHING)
 
     def test_ways_to_name_pairs_agree(self):
         scene, pairs = scene_of(random_scene(3, 20, 9))
@@ -539,6 +565,19 @@ class Arrays(unittest.TestCase):
                 (fmb.Error, "size", lambda: fmb.box([1, math.inf, 1])),
                 (ValueError, "size", lambda: fmb.box([1])),
                 (ValueError, "centre", lambda: fmb.box([1, 1, 1], [0, 0])),
+                (fmb.Error, "radius: a negative size or radius", lambda: fmb.box([1, 1, 1], radius=-1)),
+                (fmb.Error, "radius: not a finite number", lambda: fmb.hull([[1, 1, 1]], radius=math.nan)),
+                (fmb.Error, "radius: not a finite number", lambda: fmb.sphere(math.inf)),
+                (fmb.Error, "radius", lambda: fmb.sphere(-5e-324, dim=2)),
+                (TypeError, "radius", lambda: fmb.sphere(None)),
+                (ValueError, "centre", lambda: fmb.sphere(1, [0])),
+                (ValueError, "dim", lambda: fmb.sphere(1, dim=4)),
+                (ValueError, "dim", lambda: fmb.capsule(1, 1, dim=1)),
+                (fmb.Error, "length: a negative size or radius", lambda: fmb.capsule(1, -1)),
+                (fmb.Error, "radius: a negative size or radius", lambda: fmb.capsule(-1, 1)),
+                (fmb.Error, "length", lambda: fmb.capsule(1, math.inf)),
+                (TypeError, "radius", lambda: fmb.compound([box], radius=1)),
+                (TypeError, "hull() takes 1 positional argument but 2 were given", lambda: fmb.hull([[1, 1, 1]], 1)),
                 (fmb.Error, "components", lambda: fmb.cuboid([[1, 0, 0]])),
                 (TypeError, "components", fmb.tetrahedron),
                 (TypeError, "origin", lambda: fmb.face(vertices=[[0, 0, 0]] * 3, origin=[0, 0, 0])),
