@@ -45,6 +45,20 @@ setup_file() {
   {"id": 5, "shape": "tetrahedron", "position": [8,0,0], "vertices": [[0,0,0],[1,0,0.1],[0.3,1,0.7],[0.1,0.7,1.3]]}]}
 SCENE
     edited shapes.html jq -c "$hulls" > hulls.html
+    "$fmb" query --local --html round.html > round.said << 'SCENE'
+{"dim": 3, "bodies": [
+  {"id": 1, "shape": "sphere", "radius": 1},
+  {"id": 2, "shape": "capsule", "radius": 0.5, "length": 1, "position": [3,0,0]},
+  {"id": 3, "shape": "box", "size": [1,1,1], "radius": 0.125, "position": [6,0,0]},
+  {"id": 4, "position": [9,0,0], "velocity": [0,1,0], "frames": [{"shape": "sphere", "radius": 0.25, "position": [0,0,1]},
+    {"shape": "tetrahedron", "radius": 0.25, "vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}]}]}
+SCENE
+    "$fmb" query --local --html disc.html > disc.said << 'SCENE'
+{"dim": 2, "bodies": [
+  {"id": 1, "shape": "sphere", "radius": 1},
+  {"id": 2, "shape": "capsule", "radius": 0.5, "length": 1, "position": [1.5,0]},
+  {"id": 3, "shape": "box", "size": [1,1], "radius": 0.125, "position": [0,2.5], "orientation": [2,1]}]}
+SCENE
     "$fmb" query --local --html plane.html > plane.said << 'SCENE'
 {"dim": 2, "bodies": [
   {"id": 1, "shape": "box", "size": [1,1], "orientation": [2,1], "velocity": [0.5,0]},
@@ -176,6 +190,17 @@ setup() {
         '.hulls.surfaces == [[6, 12, [0, 1], [0, 1], [0, 1]], [1, 4, [0, 1], [0, 1], [0, 0]], .shapes.surfaces[2],
             [0, 1.732, [0, 1], [0, 1], [0, 1]], [0, 0, [0, 0], [0, 0], [0, 0]]]' \
         '.plane.surfaces == [[1, 4, [-0.5, 0.5], [-0.5, 0.5], [0, 0]], [0.5, 3.414, [0, 1], [0, 1], [0, 0]]]'
+}
+
+# Areas are a little less than those of the round shapes: 4 pi, 2 pi, 6 + 12 edges * pi / 16 + pi / 16; in 2D pi,
+# 1 + pi / 4, 1.5 + pi / 64.
+@test "shapes with a radius are drawn round" {
+    found '.round.surfaces | map(.[2:]) == [[[-1, 1], [-1, 1], [-1, 1]], [[-0.5, 0.5], [-0.5, 0.5], [-1, 1]],
+            [[-0.625, 0.625], [-0.625, 0.625], [-0.625, 0.625]], [[-0.25, 1.25], [-0.25, 1.25], [-0.25, 1.25]]]' \
+        '.round.surfaces | map(.[0]) | .[0] > 12.4 and .[0] < 12.567 and .[1] > 6.2 and .[1] < 6.284 and .[2] > 8.4 and .[2] < 8.552' \
+        '.disc.surfaces | map(.[2:4]) == [[[-1, 1], [-1, 1]], [[-0.5, 0.5], [-1, 1]], [[-0.625, 0.625], [-0.625, 0.625]]]' \
+        '.disc.surfaces | map(.[0]) | .[0] > 3.13 and .[0] < 3.142 and .[1] > 1.78 and .[1] < 1.786 and .[2] > 1.53 and .[2] < 1.55' \
+        '[.round, .disc] | all(.bad == 0 and .drawn > 2000) and .[1].yellow > 100'
 }
 
 @test "two dimensions are seen from above" {

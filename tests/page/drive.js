@@ -204,6 +204,10 @@ async function shapes() {
     found.shapes = { ...picture(), surfaces: surfaces(), table: table(), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length), bad: badTexts() };
     await open("hulls.html");
     found.hulls = { ...picture(), surfaces: surfaces(), kinds: view.fmb.stage.items.map((item) => [item.surface.triangles.length, item.surface.edges.length]) };
+    await open("round.html");
+    found.round = { ...picture(), surfaces: surfaces(), bad: badTexts() };
+    await open("disc.html");
+    found.disc = { ...picture(), surfaces: surfaces(), bad: badTexts() };
     await open("plane.html");
     await press("n");
     found.plane = { ...picture(), surfaces: surfaces(), direction: direction().map(Math.round), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length) };

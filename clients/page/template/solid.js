@@ -63,21 +63,55 @@ function hullOf(corners) {
     return { corners, triangles: triangles.filter((ends) => !ends.includes(undefined)), edges };
 }
 
+/* What lies within a radius of the convex hull of corners. Its surface is that of a sphere, in 2D a circle, of
+ * which each point is moved to the corner that is farthest in its direction; a little beside it, so that none is
+ * as far as another one. */
+function roundOf(corners, radius, dim) {
+    const turns = dim === 2 ? 64 : 32, rows = dim === 2 ? 0 : turns / 2, out = { corners: [], triangles: [], edges: [] };
+    const normalOf = (row, turn) => {
+        const up = rows ? Math.cos(Math.PI * row / rows) : 0, flat = Math.sqrt(1 - up * up), angle = 2 * Math.PI * turn / turns;
+        return new THREE.Vector3(flat * Math.cos(angle), flat * Math.sin(angle), up);
+    };
+    for (let k = 0; k < (rows + 1) * turns; k++) {
+        const row = Math.floor(k / turns), turn = k % turns, next = k - turn + (turn + 1) % turns;
+        const beside = normalOf(Math.min(row + 0.01, rows - 0.01), turn + 0.01);
+        out.corners.push(sum(corners.reduce((a, b) => b.dot(beside) > a.dot(beside) ? b : a), normalOf(row, turn), radius));
+        if (2 * row === rows)
+            out.edges.push([k, next]);
+        if (row === 0 || row === rows)
+            out.triangles.push([k - turn, k, next]);
+        if (row < rows)
+            out.triangles.push([k, next, k + turns], [next, next + turns, k + turns]);
+        if (row < rows && turn % (turns / 4) === 0)
+            out.edges.push([k, k + turns]);
+    }
+    return out;
+}
+
 /* ---- Shapes ---- */
 
 /* A point of up to three coordinates, in units of 2^unit. */
 const vectorOf = (numbers, unit) => new THREE.Vector3(...[0, 1, 2].map((axis) => scaled(numbers[axis] ?? 0, -unit)));
 
-/* A frame of scenes, in units of 2^unit. */
-function frameOf({ shape, origin, position, size, components = [], vertices }, dim, unit) {
+/* A frame of scenes without its radius, in units of 2^unit. */
+function coreOf({ shape, origin, position, size, components = [], vertices, length }, dim, unit) {
     const at = vectorOf(origin ?? position ?? [], unit), edges = components.map((component) => vectorOf(component, unit));
     if (shape === "box") {
         const half = vectorOf(size, unit + 1);
         return boxOf(sum(at, half, -1), half.multiplyScalar(2), dim);
     }
+    if (shape === "sphere")
+        return { corners: [at] };
+    if (shape === "capsule")
+        return { corners: [-1, 1].map((side) => units[dim - 1].clone().multiplyScalar(scaled(side * length, -unit - 1))) };
     if (vertices)
         return (shape === "hull" ? hullOf : simplexOf)(vertices.map((vertex) => vectorOf(vertex, unit)));
     return shape === "cuboid" ? cuboidOf(at, edges) : simplexOf([at, ...edges.map((edge) => sum(at, edge))]);
+}
+
+function frameOf(frame, dim, unit) {
+    const core = coreOf(frame, dim, unit);
+    return frame.radius ? roundOf(core.corners, scaled(frame.radius, -unit), dim) : core;
 }
 
 /* The surface of a shape, in units of 2^unit. */
@@ -101,6 +135,7 @@ function exponentOfAll(numbers) {
 /* An exponent that bounds the coordinates of a shape. */
 function exponentOf(shape) {
     shape.exponent ??= 2 + exponentOfAll(shape.frames
-        .flatMap(({ origin, position, size, components, vertices }) => [origin ?? position ?? [], size ?? [], components ?? [], vertices ?? []].flat(2)));
+        .flatMap(({ origin, position, size, components, vertices, radius, length }) =>
+            [origin ?? position ?? [], size ?? [], components ?? [], vertices ?? [], radius ?? 0, length ?? 0].flat(2)));
     return shape.exponent;
 }
