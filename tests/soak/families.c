@@ -1,14 +1,14 @@
-/* The pairs of the campaigns, hulls and posed bodies among them, through the service: in both
- * orders, first with whole bodies, then by handle. The bus is given by LCM_DEFAULT_URL; the
- * program waits for a slow recorder on it.
+/* The pairs of the campaigns, hulls, posed bodies and shapes with a radius among them, through the
+ * service: in both orders, first with whole bodies, then by handle. The bus is given by
+ * LCM_DEFAULT_URL; the program waits for a slow recorder on it.
  *
  * soak-families [PREFIX]: one pair of each cell of the families whose names begin so; of each
  * seventh cell with FMB_FAST. Prints a line of JSON. Exit code 0: each answer was that of
  * fmb_decide(), bit for bit. */
-#include "posed.h"
 #include "fmb_client.h"
 #include "query.h"
 #include "receivers.h"
+#include "round.h"
 #include "trial.h"
 
 #include <inttypes.h>
@@ -73,9 +73,9 @@ int main(int argc, char **argv)
         fprintf(stderr, "soak-families: %s\n", why);
         return 2;
     }
-    for (size_t i = 0; family_any_at(i); i++)
-        if (strncmp(family_any_at(i)->name, prefix, strlen(prefix)) == 0)
-            query_family(&soak, family_any_at(i));
+    for (size_t i = 0; family_all_at(i); i++)
+        if (strncmp(family_all_at(i)->name, prefix, strlen(prefix)) == 0)
+            query_family(&soak, family_all_at(i));
     fmb_client_close(soak.client);
     printf("{\"pairs\": %" PRId64 ", \"failed\": %" PRId64 ", \"different\": %" PRId64 "}\n",
            soak.pairs, soak.failed, soak.different);

@@ -406,6 +406,8 @@ void relay_draw(struct fmb_placement *out, size_t count, int dim, double size, i
             if (dim == 3 && i % 20 == 7) /* few: they are slow to decide */
                 shape = FMB_FACE;
             draw_frame(&frame[k], dim, shape, whole, &seed);
+            if (i % 10 == 1 && k == 1)
+                assert_int_equal(fmb_frame_inflate(&frame[k], whole ? 0.25 : 0.1), FMB_OK);
         }
         out[i] = (struct fmb_placement){.body = relay_body(frame, frames),
                                         .id = first_id ? first_id + (int64_t) i : 0};
