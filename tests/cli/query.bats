@@ -703,6 +703,25 @@ refused() {
     said 'fmb: standard input: bodies[0].orientation: expected 2 numbers, found 4'
 }
 
+@test "shapes with a radius, named in pairs, and how far hulls extend beyond cylinders" {
+    query '{"dim": 3, "duration": 8, "bodies": [
+      {"id": 1, "name": "ball", "shape": "sphere", "radius": 3},
+      {"id": 2, "name": "other", "shape": "sphere", "radius": 4, "position": [2,3,6]},
+      {"id": 3, "name": "capsule", "shape": "capsule", "radius": 1, "length": 6, "position": [0,-4,-3]},
+      {"id": 4, "name": "padded", "shape": "box", "size": [2,2,2], "radius": 1, "position": [0,0,-5]},
+      {"id": 5, "name": "flying", "shape": "sphere", "radius": 2, "position": [-13,3,0], "velocity": [2,0,0]},
+      {"id": 6, "name": "turned", "position": [0,9,0], "orientation_xyzw": [0,0,3,3],
+       "frames": [{"shape": "capsule", "radius": 2, "length": 4, "orientation_xyzw": [0,1,0,1]}, {"shape": "cylinder", "radius": 4, "length": 1, "sides": 8, "position": [0,0,9]}]}],
+      "pairs": [["ball","other"], [1,"capsule"], ["padded",1], [1,"flying"], ["flying","other"], ["ball","turned"], ["flying","turned"]]}' --gap --certificate
+    ended 0
+    [ "$(jq -c '[.pairs[].verdict]' <<< "$output")" = '["touching","touching","touching","overlapping","touching","separated","touching"]' ]
+    jq -e '.pairs | (.[3] | (.contact[0] - 4.5 | fabs) < 1e-11 and .gap[0] <= -2 and .gap[1] >= -2) and (.[5].gap | .[0] <= 2 and .[1] >= 2)
+        and (.[4].contact | .[0] <= 7.5 and .[1] >= 7.5 and .[1] - .[0] <= 1.6e-11)' <<< "$output"
+    [[ $stderr == *'fmb: standard input: hulls enclose its cylinders, and extend beyond them by at most 0.329572'* ]]
+    query '{"dim": 2, "bodies": [{"id": 1, "shape": "sphere", "radius": 2}, {"id": 2, "shape": "capsule", "radius": 3, "length": 1, "position": [4,3.5]}]}' --box
+    [[ $output == *touching* ]]
+}
+
 @test "an unknown key or shape lists what there is" {
     query '{"dim": 3, "bodies": [{"id": 1, "radii": 1}]}'
     ended 2

@@ -116,7 +116,7 @@ triangle() {
     echo '{"dim": 3, "bodies": [{"id": 1, "shape": "cylinder", "radius": 1, "length": 3, "sides": 8}]}' > world.json
     link "$box"
     scene robot.urdf --with world.json
-    said 'fmb: world.json: hulls enclose its cylinders, and extend beyond them by at most 0.0823930'
+    [[ $stderr == *'fmb: world.json: hulls enclose its cylinders, and extend beyond them by at most 0.082393' ]]
 }
 
 @test "spheres and capsules are exact" {
