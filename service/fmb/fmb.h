@@ -335,8 +335,8 @@ enum fmb_want {
  * bounds[1] is minus the smallest depth over all facets of the Minkowski difference of the two,
  * swept over the window; of a pair with a hull, of a polytope inside of it.
  *
- * Frames with a radius: the gap is that of their cores less both radii. Where coordinates of vertices
- * are mentioned, here and below, they are those of the cores plus and minus the radius.
+ * Frames with a radius: the gap is that of their cores less both radii. Where coordinates of
+ * vertices are mentioned, here and below, they are those of the cores plus and minus the radius.
  *
  * Width. bounds[1] - bounds[0] is at most 1e-12 of the largest magnitude of a coordinate of any
  * vertex of either body over the window, plus 32 * 2^-1074. (In a window shorter than 2^-1000 s the
@@ -375,8 +375,8 @@ struct fmb_gap {
  *              at most one double too far out.
  *
  * Frames with a radius: an end of a contact is at most 1e-12 T too far out by the method exact too.
- * The box is not tight: it is the intersection of the boxes of both frames over the contact, each at
- * most 1e-12 of the largest coordinate too large, and may be infinite where a vertex is a sum of
+ * The box is not tight: it is the intersection of the boxes of both frames over the contact, each
+ * at most 1e-12 of the largest coordinate too large, and may be infinite where a vertex is a sum of
  * components that exceeds the largest double.
  *
  * Both give the same bits for the swapped pair and on every machine; another version of the library
@@ -422,10 +422,10 @@ struct fmb_method {
  * Cost: exact takes tens to hundreds of microseconds for numbers of similar size. Its time is
  * bounded for any numbers, as the time of certified is: among pairs whose exponents span the whole
  * range of doubles, a search found none that takes more than 72 million products of 64-bit limbs
- * with box and gap, about 36 ms. Doubles decide most pairs with a hull or a radius by a few scans of
- * all vertices. Exact arithmetic takes some milliseconds for the largest hulls, and up to 60 ms with
- * box and gap if their exponents span that range; for frames with a radius that move, too. A scene divides exact work into steps of less
- * than a millisecond. */
+ * with box and gap, about 36 ms. Doubles decide most pairs with a hull or a radius by a few scans
+ * of all vertices. Exact arithmetic takes some milliseconds for the largest hulls, and up to 60 ms
+ * with box and gap if their exponents span that range; for frames with a radius that move, too. A
+ * scene divides exact work into steps of less than a millisecond. */
 
 /* Return a method from a static table, valid for the life of the program. Thread safe.
  * fmb_method_at() returns NULL if index is past the last method; fmb_method_by_name() and
@@ -645,8 +645,8 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  * 0. The vertices of a frame at TIME times their weights sum to a point. The weights of each frame
  * sum to 1, and the points are equal. Weights that these equations determine are left out.
  *
- * Of frames with radii the vertices are those of the cores, and the two points may be apart. R is the
- * sum of the radii.
+ * Of frames with radii the vertices are those of the cores, and the two points may be apart. R is
+ * the sum of the radii.
  *
  * The certificate states:
  *   separated    N . (b - a) > 0 for all points a of the first frame and b of the second, at all
@@ -656,8 +656,8 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  *                the frames have a point in common.
  *   overlapping  At TIME the frames have a point in common, and the vertices named of each have the
  *                same affine hull as the frame: so the point is in both relative interiors.
- * Of frames with radii, N . (b - a) > R |N| and N . (b - a) >= R |N| take the place of the first two
- * inequalities; and the points are at most R apart if the frames touch, less if they overlap.
+ * Of frames with radii, N . (b - a) > R |N| and N . (b - a) >= R |N| take the place of the first
+ * two inequalities; and the points are at most R apart if the frames touch, less if they overlap.
  *
  * "overlapping at 0 a 0 1 2:1/16 4 b 0 1:1/16 2 4:1/16" of two cubes: three weights are stated, and
  * five follow from five equations.
