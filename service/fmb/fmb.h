@@ -375,9 +375,9 @@ struct fmb_gap {
  *              at most one double too far out.
  *
  * Frames with a radius: an end of a contact is at most 1e-12 T too far out by the method exact too.
- * The box is not tight: it is the intersection of the boxes of both frames over the contact, each
- * at most 1e-12 of the largest coordinate too large, and may be infinite where a vertex is a sum of
- * components that exceeds the largest double.
+ * The box is not tight: it is the intersection of the boxes of both frames over the contact. Each
+ * is too large by at most 1e-12 of the largest coordinate, or of the reach of its body if that is
+ * larger; it may be infinite where a vertex is a sum of components that exceeds the largest double.
  *
  * Both give the same bits for the swapped pair and on every machine; another version of the library
  * may give different bits within these limits. An end of a box whose magnitude exceeds the largest

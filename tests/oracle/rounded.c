@@ -225,6 +225,18 @@ static bool holds_sample(struct world *world, const struct pair *pair, unsigned 
     return holds;
 }
 
+/* limit := limit + 1e-12 of the reach of the body */
+static void add_share_of_reach(const struct fmb_placement *placement, mpq_t limit)
+{
+    mpq_t share;
+    if (!(placement->body->reach < INFINITY))
+        return;
+    mpq_init(share);
+    mpq_set_d(share, 1e-12 * placement->body->reach);
+    mpq_add(limit, limit, share);
+    mpq_clear(share);
+}
+
 const char *rounded_box_fault(const struct pair *pair, const double contact[2],
                               const double box[2][FMB_DIM_MAX])
 {
@@ -251,6 +263,8 @@ const char *rounded_box_fault(const struct pair *pair, const double contact[2],
     world_size(pair, limit);
     const bool limited = compare(0x1p1020, limit) >= 0;
     world_limit(pair, limit);
+    add_share_of_reach(&pair->a, limit);
+    add_share_of_reach(&pair->b, limit);
     for (int k = 0; k < 2 * pair->a.body->dim && limited && !fault; k++) {
         const int axis = k % pair->a.body->dim, end = k / pair->a.body->dim;
         mpq_add(loosest[end][axis], loosest[end][axis], limit);

@@ -13,8 +13,9 @@ const char *rounded_contact_fault(const struct pair *pair, const double contact[
 /* What is wrong with a box of numbers; NULL: it contains a sample of the points that the bodies
  * have in common, the cores' own and the extreme ones of a frame that are in the other among them;
  * and it is within the intersection of the boxes of both frames over the contact, for each pair of
- * frames that meet, up to 1e-12 of the largest coordinate, where that is at most 2^1020: sums of
- * larger components may exceed the doubles. The contact is one without a fault. */
+ * frames that meet, up to 1e-12 of the largest coordinate and of both reaches, where that is at
+ * most 2^1020: sums of larger components may exceed the doubles. The contact is one without a
+ * fault. */
 const char *rounded_box_fault(const struct pair *pair, const double contact[2],
                               const double box[2][FMB_DIM_MAX]);
 
