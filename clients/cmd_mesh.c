@@ -6,6 +6,7 @@
 #include "escape.h"
 #include "json_write.h"
 #include "mesh_intersect.h"
+#include "mesh_page.h"
 #include "mesh_transform.h"
 #include "number.h"
 #include "progress.h"
@@ -43,6 +44,8 @@ static const char usage[] =
     "\n"
     "Output:\n"
     "  --json               one line of JSON: counts, and all pairs\n"
+    "  --html FILE          write a page that shows them, and the pairs\n"
+    "  --force              overwrite FILE even if it is no page\n"
     "  -h, --help\n"
     "\n"
     "Two faces overlap if they have an inner point in common, and touch if they only\n"
@@ -68,6 +71,7 @@ struct mesh_options {
     double duration;
     bool json;
     enum mesh_as as;
+    struct output_options html;
 };
 
 /* ---- Options --------------------------------------------------------------------------------- */
@@ -294,13 +298,17 @@ static int intersect(const struct mesh_options *options, const struct mesh mesh[
         print_json(&intersection);
     else
         print_text(&intersection, mesh, names);
+    char title[1024];
+    snprintf(title, sizeof title, "%.500s and %.500s", names[0], names[1]);
+    const bool saved = mesh_page_save(&query, &intersection, title, &options->html);
     mesh_intersection_free(&intersection);
-    return output_flush() ? ARGS_ANSWERED : ARGS_FAILED;
+    return output_flush() && saved ? ARGS_ANSWERED : ARGS_FAILED;
 }
 
 int cmd_mesh(int argc, char **argv)
 {
-    struct mesh_options options = {.duration = 1};
+    struct output_rules rules = {.force = false};
+    struct mesh_options options = {.duration = 1, .html = {.kind = OUTPUT_PAGE, .rules = &rules}};
     const struct args_option own[] = {
         {"scale", ARGS_OTHER, options.placed, .take = take_scale},
         {"rotate", ARGS_OTHER, options.placed, .take = take_rotate},
@@ -310,6 +318,8 @@ int cmd_mesh(int argc, char **argv)
         {"duration", ARGS_NUMBER, &options.duration, .high = DBL_MAX},
         {"as", ARGS_OTHER, &options.as, .take = take_as},
         {"json", ARGS_FLAG, .out = &options.json},
+        {"html", ARGS_TEXT, .out = &options.html.path},
+        {"force", ARGS_FLAG, .out = &rules.force},
         {.name = NULL},
     };
     struct args args = {.command = "mesh",
@@ -325,6 +335,10 @@ int cmd_mesh(int argc, char **argv)
         args_error(&args, "expected two meshes, found %d", args.operand_count);
         return ARGS_USAGE;
     }
+    rules.input = args.operands;
+    rules.input_count = args.operand_count;
+    if (!output_check(&options.html))
+        return ARGS_USAGE;
     code = ARGS_USAGE;
     if (read_mesh(args.operands[0], &options.placed[0], &mesh[0]) &&
         read_mesh(args.operands[1], &options.placed[1], &mesh[1]))

@@ -49,8 +49,7 @@ static void unit_normal(const double c0[3], const double c1[3], double out[3])
         out[i] = length > 0 ? out[i] / length : 0;
 }
 
-/* Makes the body of a face. Returns false if an edge or the normal is longer than the largest
- * double. */
+/* As mesh_face_body(). */
 static bool make_face(const struct mesh *mesh, enum mesh_as as, unsigned face, struct fmb_body *out)
 {
     double number[4][3]; /* the vertices; or the origin, then the components */
@@ -64,6 +63,11 @@ static bool make_face(const struct mesh *mesh, enum mesh_as as, unsigned face, s
     }
     unit_normal(number[1], number[2], number[3]);
     return fmb_body_make(3, FMB_TETRAHEDRON, number[0], 12, out) == FMB_OK;
+}
+
+bool mesh_face_body(const struct mesh_query *query, int which, unsigned face, struct fmb_body *out)
+{
+    return make_face(mesh_of(query, which), query->as, face, out);
 }
 
 /* ---- Trees ---- */
@@ -119,7 +123,7 @@ static void prepare(struct mesh_search *search, size_t candidate, int which)
     if (query->velocity[which])
         memcpy(placed->placement.velocity, query->velocity[which],
                sizeof placed->placement.velocity);
-    if (make_face(mesh_of(query, which), query->as, search->face[candidate][which], &placed->body))
+    if (mesh_face_body(query, which, search->face[candidate][which], &placed->body))
         fmb_prepare(&placed->placement, 0, 1, &search->frame[i]);
     search->pair[candidate][which] = (unsigned) i;
 }

@@ -38,6 +38,10 @@ struct mesh_intersection {
     int64_t build_ns, query_ns; /* time to build the trees, and the remaining time */
 };
 
+/* Makes the body of a face of a (which 0) or b (1), without its velocity. Returns false if an edge
+ * or the normal is longer than the largest double. */
+bool mesh_face_body(const struct mesh_query *query, int which, unsigned face, struct fmb_body *out);
+
 /* In: meshes on which mesh_transform() succeeded. Returns FMB_OK and an intersection, which the
  * caller frees with mesh_intersection_free(). Progress is an approximate number of faces of a. On
  * error nothing needs to be freed: FMB_NOT_FINITE if the normal of a face overflows (TETRAHEDRA).

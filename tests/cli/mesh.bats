@@ -218,6 +218,13 @@ apart() {
 
 # bats test_tags=release
 @test "output that cannot be written is reported" {
+    mesh a.obj b.obj --json --html "$BATS_TEST_TMPDIR/no/out.html"
+    ended 1
+    said "fmb: $BATS_TEST_TMPDIR/no/out.html: No such file or directory"
+    jq -e .overlapping <<< "$output"
+    mesh a.obj b.obj --html /dev/full
+    ended 1
+    said 'fmb: /dev/full: No space left on device; free space there, or write elsewhere'
     run bash -c "'$FMB' mesh a.obj b.obj --json 2>&1 > /dev/full"
     ended 1
     is 'fmb: standard output: No space left on device'

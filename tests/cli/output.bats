@@ -10,13 +10,15 @@ setup() {
     cd "$BATS_TEST_TMPDIR" || return
     cp "$BATS_TEST_DIRNAME/../logs/arm.log" a.log
     cp a.log b.log
+    printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'f 1 2 3' > a.obj
+    cp a.obj b.obj
     cat > scene.json <<< '{"dim": 2, "bodies": [{"id": 1, "shape": "box", "size": [1,1]}, {"id": 2, "shape": "box", "size": [2,2]}]}'
     mkdir kept
     cp -- *.* kept
 }
 
 # Each option that writes a file, in a command that reads these files.
-commands=('query --local scene.json --html' 'replay a.log b.log --html'
+commands=('query --local scene.json --html' 'mesh a.obj b.obj --html' 'replay a.log b.log --html'
     'replay a.log b.log --junit' 'replay a.log b.log --write-golden' 'log cut a.log b.log -o')
 
 # unchanged: the files are those of the beginning.
@@ -26,7 +28,7 @@ unchanged() {
 
 @test "no option overwrites a file that the command reads, not even with --force" {
     for command in "${commands[@]}"; do
-        for file in $(grep -oE '[a-z]+\.(json|log)' <<< "$command"); do
+        for file in $(grep -oE '[a-z]+\.(json|obj|log)' <<< "$command"); do
             ln -s "$file" link
             ln "$file" hard
             # All names of the first; of the others, that no command forgets a file.

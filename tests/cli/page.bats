@@ -1,4 +1,4 @@
-# The page of --html: its contents, and what a browser shows of scenes and recordings. Chromium
+# The page of --html: its contents, and what a browser shows of scenes, recordings and meshes. Chromium
 # opens the pages, clicks and presses keys in them (tests/page/drive.js); without Chromium those tests
 # are skipped.
 
@@ -81,6 +81,13 @@ SCENE
     "${fmb%fmb}edit-log" --nudge 2 1e-13 "$logs/stack.log" nudged.log
     "$fmb" replay --html nudged.html nudged.log > replay.said || true
     "$fmb" replay --golden "$logs/stack.log" --html other.html "$logs/arm.log" > replay.said 2>&1 || true
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' > b.obj
+    "$fmb" mesh --html mesh.html --json b.obj b.obj --translate 1.5,0.1,0.1 --velocity=-1,0,0 > mesh.json
+    "$fmb" mesh --html apart.html b.obj b.obj --translate 5,0,0 > apart.said
+    # 35 faces through 35 others, of which one pair of a thousand bodies has the last 226.
+    awk 'BEGIN { for (i = 0; i < 35; i++) printf "v %g -1 -1\nv %g 40 -1\nv %g -1 40\n", i, i, i
+        for (i = 0; i < 35; i++) print "f " 3 * i + 1, 3 * i + 2, 3 * i + 3 }' > plates.obj
+    "$fmb" mesh --html plates.html plates.obj plates.obj --rotate z,-90 --scale 1,0.5,1 --translate=-1.5,17.75,0 --json > plates.json
     sed 's/^start();$/start(); start;/' arm.html > changed.html
     sed '/id="data">$/{n;s/^./!/;}' arm.html > cut.html
     ! command -v chromium > /dev/null ||
@@ -94,7 +101,7 @@ setup() {
 # ---- Contents --------------------------------------------------------------------------------
 
 @test "the page is one file that refers to nothing else, with its policy and the licence of three.js" {
-    for page in table arm stack; do
+    for page in table arm stack mesh; do
         data $page.html | jq -e '.steps | type == "array"' > /dev/null
         is_self_contained $page.html
         has_policy $page.html
@@ -107,6 +114,16 @@ setup() {
     [ "$(grep -c '<!--' hostile.html)" = 0 ]
     data hostile.html | jq -e --arg name "$hostile" '.steps[0].bodies[0].name == $name and .steps[0].label == $name'
     found '.hostile | .bold == 0 and (.labels | any(startswith("<b>x</b></script>")))'
+}
+
+# Names of bodies stand for the faces of the pairs.
+@test "the pairs of a mesh's page are those of the program" {
+    jq -c '.pairs[] | ["A \(.[0])", "B \(.[1])", .[2]]' mesh.json | sort > expected
+    data mesh.html | jq -c '.steps[0] | .bodies as $bodies | .pairs[] | [$bodies[.bodies[]].name, .verdict]' | sort > held
+    diff expected held
+    data plates.html | jq -e --slurpfile said plates.json '.steps[0] | ($said[0].pairs | length) > 1000 and (.pairs | length) == 1000
+        and ([.bodies[.pairs[999].bodies[]].name] == ["A, others that meet", "B, others that meet"]) and (.more | not)' > /dev/null
+    data plates.html | jq -e --slurpfile said plates.json '[.shapes[.steps[0].bodies[].shape].frames | length] | add == 70' > /dev/null
 }
 
 # ---- In a browser ----------------------------------------------------------------------------
@@ -262,6 +279,13 @@ setup() {
 @test "numbers of all sizes are drawn" {
     # Bodies may be smaller than a pixel beside each other: then their names show where they are.
     found '.sizes | length > 100 and all(.bad == 0 and (.drawn > 100 or .labels > 0)) and (map(select(.drawn > 100)) | length) > 0.7 * length'
+}
+
+@test "faces of meshes that meet are red, and a pair is shown from near" {
+    pairs=$(jq '.pairs | length' mesh.json)
+    found ".mesh | (.rows | length) == $pairs and .moving.red + .moving.yellow > 1000" \
+        '(.face.facts.pair | test("^A [0-3] – B [0-3]$")) and .moved.sum != .mesh.sum and .moved.text == "1.000 s"' \
+        '.apart | .drawn > 10000 and .red == 0 and .rows == 0'
 }
 
 @test "without WebGL table and timeline remain, and one line says so" {

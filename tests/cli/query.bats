@@ -848,7 +848,7 @@ all_pairs() {
     printf '%s' "$scene" > "$name.json"
     cp "$BATS_TEST_DIRNAME/../logs/stack.log" "$name.log"
     for arguments in "query --local @" "query @/none" "query --local --html @/none @.json" "mesh @.obj @" \
-        "mesh @.obj @.obj" "log info @" "log info @.log" "log cut --output @/none @.log" \
+        "mesh @.obj @.obj" "mesh @.obj @.obj --html @/none" "log info @" "log info @.log" "log cut --output @/none @.log" \
         "log scene --event 99999 @.log" "log scene --event 1 @" "replay @" "replay @/none" "replay --golden @ @.log" \
         "replay --junit /dev/stderr @.log" "scene @" "scene --joints @ @" "record @/none" "record --@" "watch @" "log @" "@" \
         "help @" "status --lcm-url @" "status --timeout @" "mesh --as @" "mesh --scale @"; do

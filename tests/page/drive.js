@@ -381,6 +381,21 @@ async function sizes() {
     }
 }
 
+async function meshes() {
+    await open("mesh.html");
+    found.mesh = { ...picture(), title: page.title, rows: table(), counts: text("#counts") };
+    await mouse(all("#pairs tr")[1].cells[0]);
+    await press("c");
+    found.face = { ...picture(), ...moment() };
+    await press("f");
+    await press("n");
+    found.mesh.moving = picture();
+    await press("End");
+    found.moved = { ...picture(), ...moment() };
+    await open("apart.html");
+    found.apart = { ...picture(), rows: table().length };
+}
+
 /* ---- Protection ---- */
 
 /* Attempts to fetch, from within the page, are refused. */
@@ -424,4 +439,4 @@ async function noScene() {
     });
 }
 
-drive([screenshots, restored, scene, shapes, arm, slow, recording, sizes, network, broken, dark, noScene]);
+drive([screenshots, restored, scene, shapes, arm, slow, recording, sizes, meshes, network, broken, dark, noScene]);

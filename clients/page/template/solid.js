@@ -121,7 +121,8 @@ function solidOf(shape, unit) {
         const frame = frameOf(given, shape.dim, unit), first = solid.corners.length;
         frame.corners.forEach((corner) => solid.corners.push(corner));
         frame.triangles.forEach((triangle) => solid.triangles.push(triangle.map((k) => k + first)));
-        frame.edges.forEach((edge) => solid.edges.push(edge.map((k) => k + first)));
+        if (shape.frames.length <= 1000) /* of more, edges would hide the faces */
+            frame.edges.forEach((edge) => solid.edges.push(edge.map((k) => k + first)));
     }
     return solid;
 }

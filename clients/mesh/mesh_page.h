@@ -1,0 +1,14 @@
+/* A page that shows two meshes and the pairs of faces that meet. */
+#ifndef MESH_PAGE_H
+#define MESH_PAGE_H
+
+#include "mesh_intersect.h"
+#include "output.h"
+
+/* Writes the page, if a file is wanted. Each face in one of the first PAGE_PAIRS_MAX - 1 pairs is a
+ * body of its own. Of each mesh the other faces that meet are another body, and so are those that
+ * do not. Returns false after an error, which was reported. */
+bool mesh_page_save(const struct mesh_query *query, const struct mesh_intersection *found,
+                    const char *title, const struct output_options *options);
+
+#endif
