@@ -224,7 +224,8 @@ $(O)/msgs/%.o: $(GEN)/%.c $(O)/settings | $(message_headers)
 wire_objects := $(call objects_in,$(filter-out service/fmb,$(wire))) $(message_objects)
 client_objects := $(call objects_in,clients/lib clients/python)
 product_objects := $(filter-out %/main.o %/fmb.o,$(wire_objects) $(call objects_in,service service/answer clients \
-	$(addprefix clients/,common query log exchange page record mesh scene replay)))
+	$(addprefix clients/,common query log exchange page record mesh scene replay))) \
+	$(addprefix $(O)/clients/lib/,enclosure.o pose.o turn.o) # the library shows them to nobody
 
 # Of unmerged archives the linker takes what a program needs; what stands before them on its command
 # line replaces the member of that name. Members of two folders may have one name.

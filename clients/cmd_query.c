@@ -4,7 +4,6 @@
 #include "answers.h"
 #include "args.h"
 #include "complain.h"
-#include "enclosure.h"
 #include "json.h"
 #include "number.h"
 #include "output.h"
@@ -240,7 +239,7 @@ static int answer_scenes(struct query *query, int fd)
 static void report_limits(const struct query *query)
 {
     char text[NUMBER_TEXT_MAX];
-    enclosure_report(query->input, query->outside);
+    scene_report_outside(query->input, query->outside);
     if (query->unproven > 0)
         complain("no certificate for %s of the pairs: a body has several frames",
                  number_grouped((int64_t) query->unproven, text));

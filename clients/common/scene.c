@@ -1,7 +1,9 @@
 #include "scene.h"
 
 #include "allocate.h"
+#include "complain.h"
 #include "frame_numbers.h"
+#include "number.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +20,14 @@ void *scene_alloc(struct owned_scene *scene, size_t count, size_t size)
 const char *scene_text(struct owned_scene *scene, const char *text)
 {
     return text && *text ? strcpy(scene_alloc(scene, strlen(text) + 1, 1), text) : NULL;
+}
+
+void scene_report_outside(const char *file, double outside)
+{
+    char text[NUMBER_TEXT_MAX];
+    if (outside > 0) /* rounded up */
+        complain("%s: hulls enclose its cylinders, and extend beyond them by at most %s", file,
+                 number_short(outside * (1 + 1e-5), text));
 }
 
 void scene_clear(struct owned_scene *scene)

@@ -10,8 +10,8 @@ box, and how far apart they are. Decided in process, or by the service fmbd on a
     for answer in scene.decide(duration=0):
         print(answer.names, answer.verdict)    # ('table', 'cube') touching
 
-Bodies are made by box(), cuboid(), tetrahedron(), face(), hull(), sphere(), capsule() and
-compound(), and queried by the methods of Scene. "pydoc3 fmb.hull" or "pydoc3 fmb.Scene" describes one of them.
+Bodies are made by box(), cuboid(), tetrahedron(), face(), hull(), sphere(), capsule(),
+cylinder() and compound(), and queried by the methods of Scene. "pydoc3 fmb.hull" or "pydoc3 fmb.Scene" describes one of them.
 
 fmb.h of libfmb defines shapes, verdicts, and the accuracy of numbers. Lengths may have any unit;
 times are in seconds, velocities per second; orientations are quaternions (w, x, y, z), in 2D (w, z),
@@ -53,8 +53,8 @@ if TYPE_CHECKING:
     Array = Union["numpy.ndarray", memoryview, Sequence[Any]]
 
 __all__ = ["Answer", "Answers", "Body", "BusError", "Client", "Error", "OVERLAPPING", "SEPARATED",
-           "Rows", "Scene", "TOUCHING", "Verdict", "box", "capsule", "compound", "cuboid", "face", "hull",
-           "sphere", "status_text", "tetrahedron", "version"]
+           "Rows", "Scene", "TOUCHING", "Verdict", "box", "capsule", "compound", "cuboid", "cylinder", "face",
+           "hull", "sphere", "status_text", "tetrahedron", "version"]
 
 # ---- The library: fmb_flat.h ----
 
@@ -87,6 +87,7 @@ def _load() -> ctypes.CDLL:
             ("fmb_flat_open", pointer, (text, text, real, integer, real, text, size)),
             ("fmb_flat_body_make", integer, (integer, size) + 4 * (pointer,)),
             ("fmb_flat_body_free", None, (pointer,)),
+            ("fmb_flat_cylinder", real, (real, real, integer, pointer)),
             ("fmb_flat_scene_make", integer, (size,) + 5 * (pointer,)),
             ("fmb_flat_scene_free", None, (pointer,)),
             ("fmb_flat_scene_forked", None, (pointer,)),
@@ -286,8 +287,8 @@ def _pointer(buffer: Any) -> Any:
 
 class Body(_Handle):
     """A rigid body of one or more frames, in body coordinates. It may be placed any number of times, in
-    any scene. Made by box(), cuboid(), tetrahedron(), face(), hull(), sphere(), capsule() and
-    compound().
+    any scene. Made by box(), cuboid(), tetrahedron(), face(), hull(), sphere(), capsule(),
+    cylinder() and compound().
 
     dim: 2 or 3
     """
@@ -378,6 +379,19 @@ def capsule(radius: float, length: float, *, dim: int = 3) -> Body:
     return hull([[*before, -half], [*before, half]], radius=radius)
 
 
+def cylinder(radius: float, length: float, *, sides: int = 16) -> Body:
+    """A hull of 2 * sides vertices that contains a cylinder about z, centred at 0. It extends beyond the
+    cylinder by at most radius * (1 / cos(pi / sides) - 1).
+
+    sides: a multiple of 4, up to 512
+    """
+    if _int("sides", sides) not in range(4, _HULL_VERTICES_MAX // 2 + 1, 4):
+        raise ValueError(f"sides: expected a multiple of 4 up to {_HULL_VERTICES_MAX // 2}, found {sides}")
+    vertices = array("d", bytes(48 * sides))
+    _lib.fmb_flat_cylinder(_from_0("radius", radius), _from_0("length", length), sides, _pointer(vertices))
+    return Body("radius", 3, [(_HULL, vertices)])
+
+
 def _dim(dim: Any) -> int:
     if _int("dim", dim) not in (2, 3):
         raise ValueError(f"dim: expected 2 or 3, found {dim}")
@@ -457,8 +471,8 @@ def _maker(make: Any) -> Any:
     return checked
 
 
-box, cuboid, tetrahedron, face, hull, sphere, capsule, compound = map(
-    _maker, (box, cuboid, tetrahedron, face, hull, sphere, capsule, compound))
+box, cuboid, tetrahedron, face, hull, sphere, capsule, cylinder, compound = map(
+    _maker, (box, cuboid, tetrahedron, face, hull, sphere, capsule, cylinder, compound))
 
 
 def _bodies(bodies: Iterable[Body]) -> tuple[Body, ...]:

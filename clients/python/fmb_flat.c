@@ -1,5 +1,6 @@
 #include "fmb_flat.h"
 
+#include "enclosure.h"
 #include "fmb_batch.h"
 #include "fmb_client.h"
 #include "frame_numbers.h"
@@ -75,6 +76,12 @@ void fmb_flat_body_free(struct fmb_flat_body *body)
     free(body->frames);
     free(body->vertices);
     free(body);
+}
+
+double fmb_flat_cylinder(double radius, double length, int sides, double *vertices)
+{
+    const struct cylinder cylinder = {.radius = radius, .length = length};
+    return enclose_cylinder(&cylinder, sides, (double(*)[3]) vertices);
 }
 
 /* ---- Scenes ---- */

@@ -2,7 +2,6 @@
 
 #include "allocate.h"
 #include "complain.h"
-#include "enclosure.h"
 #include "json.h"
 #include "query.h"
 
@@ -37,8 +36,8 @@ static void report_empty(const struct robot *robot)
 void robot_scene_report(const struct robot_scene *scene, const char *world)
 {
     report_empty(scene->robot);
-    enclosure_report(scene->robot->path, scene->owner.outside);
-    enclosure_report(world, scene->world.outside);
+    scene_report_outside(scene->robot->path, scene->owner.outside);
+    scene_report_outside(world, scene->world.outside);
 }
 
 /* Ignores each pair of a link's body and the body of the nearest link above it that has one. */

@@ -29,6 +29,8 @@ def body_of(json_body, dim):
                  if key in frame}
         if frame["shape"] in ("sphere", "capsule"):
             given["dim"] = dim
+        if "sides" in frame:
+            given["sides"] = frame["sides"]
         if "frames" in json_body and "position" in frame:
             given["centre"] = frame["position"]
         made.append(getattr(fmb, frame["shape"])(**given))
@@ -66,9 +68,11 @@ def random_scene(dim, count, seed):
         return out
 
     def core():
-        shape = draw.choice(["box", "cuboid", "tetrahedron", "hull", "sphere", "capsule"] + ["face"] * (dim == 3))
+        shape = draw.choice(["box", "cuboid", "tetrahedron", "hull", "sphere", "capsule"] + ["face", "cylinder"] * (dim == 3))
         if shape == "sphere":
             return {"shape": shape, "radius": draw.random(), "position": vector(2)}
+        if shape == "cylinder":
+            return {"shape": shape, "radius": draw.random(), "length": draw.random(), "sides": draw.choice([4, 20])}
         if shape == "capsule":
             return {"shape": shape, "radius": draw.random(), "length": draw.random()}
         if shape == "box":
@@ -576,6 +580,11 @@ class Arrays(unittest.TestCase):
                 (fmb.Error, "length: a negative size or radius", lambda: fmb.capsule(1, -1)),
                 (fmb.Error, "radius: a negative size or radius", lambda: fmb.capsule(-1, 1)),
                 (fmb.Error, "length", lambda: fmb.capsule(1, math.inf)),
+                (ValueError, "sides", lambda: fmb.cylinder(1, 1, sides=6)),
+                (ValueError, "sides", lambda: fmb.cylinder(1, 1, sides=516)),
+                (TypeError, "sides", lambda: fmb.cylinder(1, 1, sides=4.0)),
+                (fmb.Error, "length: a negative size or radius", lambda: fmb.cylinder(1, -1)),
+                (fmb.Error, "radius", lambda: fmb.cylinder(1.79e308, 1)),
                 (TypeError, "radius", lambda: fmb.compound([box], radius=1)),
                 (TypeError, "hull() takes 1 positional argument but 2 were given", lambda: fmb.hull([[1, 1, 1]], 1)),
                 (fmb.Error, "components", lambda: fmb.cuboid([[1, 0, 0]])),

@@ -20,8 +20,4 @@ struct cylinder {
  * r, r (1 / cos(pi / sides) - 1). */
 double enclose_cylinder(const struct cylinder *cylinder, int sides, double (*vertex)[3]);
 
-/* Prints by how much the hulls of a file extend beyond its cylinders at most. outside: 0: it has
- * none. */
-void enclosure_report(const char *file, double outside);
-
 #endif

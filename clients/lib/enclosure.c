@@ -1,7 +1,5 @@
 #include "enclosure.h"
 
-#include "complain.h"
-#include "number.h"
 #include "turn.h"
 
 #include <float.h>
@@ -91,12 +89,4 @@ double enclose_cylinder(const struct cylinder *cylinder, int sides, double (*ver
     for (int i = 0; i < 2 * sides && placed; i++)
         place(placed, rests, vertex[i]);
     return radius - cylinder->radius;
-}
-
-void enclosure_report(const char *file, double outside)
-{
-    char text[NUMBER_TEXT_MAX];
-    if (outside > 0) /* rounded up */
-        complain("%s: hulls enclose its cylinders, and extend beyond them by at most %s", file,
-                 number_short(outside * (1 + 1e-5), text));
 }
