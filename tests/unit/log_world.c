@@ -86,7 +86,7 @@ static void put_in_order(struct log_world *world)
         world->event[i].utime = utime_of(i);
 }
 
-void world_clear(struct log_world *world)
+void log_world_clear(struct log_world *world)
 {
     for (size_t i = 0; i < world->count; i++)
         free(world->event[i].bytes);

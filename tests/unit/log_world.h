@@ -34,7 +34,7 @@ struct world_options {
     bool once; /* no client repeats a query */
 };
 
-/* To be cleared with world_clear(). */
+/* To be cleared with log_world_clear(). */
 void world_make(const struct world_options *options, struct log_world *out);
 
 /* A world in which so many bodies come whole, in scenes of 300, of which the first has those that
@@ -44,7 +44,7 @@ void world_make_large(int bodies, int scenes, struct log_world *out);
 /* Pairs of whole bodies: first all queries, then all results. */
 void world_make_apart(int pairs, struct log_world *out);
 
-void world_clear(struct log_world *world);
+void log_world_clear(struct log_world *world);
 
 /* Adds an event after the last one. */
 void world_add(struct log_world *world, const char *channel, const void *bytes, size_t size);

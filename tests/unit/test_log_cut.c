@@ -366,7 +366,7 @@ static void cut_worlds(struct world_options options, int count)
         replay(whole, &whole_outcomes);
         for (int i = 0; i < 12; i++)
             cut_twice(&world, whole);
-        world_clear(&world);
+        log_world_clear(&world);
     }
 }
 
@@ -405,7 +405,7 @@ static void all_is_copied_where_nothing_is_left_out(void **state)
         cut_and_check(whole, path_of("cut", cut), &choice, &whole_outcomes, &cut_outcomes);
     assert_int_equal(counts.kept_events, world.count);
     assert_true(counts.definitions > 0 || counts.kept_bytes == counts.bytes);
-    world_clear(&world);
+    log_world_clear(&world);
 }
 
 /* Of the parts of a log each has what the others have not: results go with their queries. */
@@ -426,7 +426,7 @@ static void parts_are_the_whole(void **state)
                       .kept_events;
     }
     assert_int_equal(events, world.count);
-    world_clear(&world);
+    log_world_clear(&world);
 }
 
 /* ---- Several logs ---- */
@@ -454,7 +454,7 @@ static void several_logs_are_one(void **state)
     assert_true(counts.defined > 0);
     assert_memory_equal(&counts, &same, sizeof counts);
     assert_holds(again, cut, &(struct log_choice){.from = -INFINITY, .to = INFINITY});
-    world_clear(&world);
+    log_world_clear(&world);
 }
 
 /* ---- Many bodies ---- */
@@ -496,7 +496,7 @@ static void many_bodies_are_defined(void **state)
     counts = cut_logs(&(char *){cut}, 1, again, &choice);
     assert_int_equal(counts.definitions, 0);
     assert_int_equal(counts.kept_bytes, counts.bytes);
-    world_clear(&world);
+    log_world_clear(&world);
 }
 
 /* Of a log that begins late: two of the three scenes that define bodies are not in it. */
@@ -514,7 +514,7 @@ static void undefined_handles_are_counted(void **state)
     assert_int_equal(counts.unknown, LARGE_BODIES - 300);
     assert_int_equal(counts.defined, 0);
     assert_int_equal(counts.kept_events, late.count);
-    world_clear(&world);
+    log_world_clear(&world);
 }
 
 /* In either pass: there is no cut then. */
@@ -531,7 +531,7 @@ static void a_read_error_is_one_of_the_cut(void **state)
     } while (reads >= fails_at);
     assert_true(fails_at > 4);
     fails_at = 0;
-    world_clear(&world);
+    log_world_clear(&world);
 }
 
 /* ---- Large logs ---- */
@@ -545,7 +545,7 @@ static void results_come_from_far(void **state)
     channels = log_channels("");
     world_make_apart(PAIRS, &world);
     world_write(&world, path_of("whole", whole));
-    world_clear(&world);
+    log_world_clear(&world);
     struct log_choice choice = between(1e-3 * BEGIN, 1e-3 * (BEGIN + COUNT));
     const struct log_cut_counts counts =
         cut_logs(&(char *){whole}, 1, path_of("cut", cut), &choice);
@@ -585,7 +585,7 @@ static void long_events_are_copied_in_full(void **state)
     }
     assert_false(read_next(&reading));
     input_close(&reading.input);
-    world_clear(&world);
+    log_world_clear(&world);
 }
 
 int main(void)

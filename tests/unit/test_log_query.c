@@ -245,7 +245,7 @@ static void single_queries_have_the_same_answers(void **state)
     world_make(&options, &world);
     world_write(&world, path);
     assert_true(query_world(&world) > 50);
-    world_clear(&world);
+    log_world_clear(&world);
 }
 
 static void large_scenes_have_the_same_answers(void **state)
@@ -254,7 +254,7 @@ static void large_scenes_have_the_same_answers(void **state)
     world_make_large(700, 1, &world);
     world_write(&world, path);
     assert_true(query_world(&world) >= 700 * 699 / 2);
-    world_clear(&world);
+    log_world_clear(&world);
 }
 
 /* Where the scenes that have the bodies whole are not in the log. */
@@ -269,7 +269,7 @@ static void undefined_handles_are_reported(void **state)
     world_write(&world, path);
     const struct log_query_options third = {.at = 2};
     assert_int_equal(look_for(third), LOG_QUERY_FOUND);
-    world_clear(&world);
+    log_world_clear(&world);
 }
 
 /* ---- What is not there ---- */
@@ -296,7 +296,7 @@ static void what_is_not_there_is_not_found(void **state)
     };
     for (size_t i = 0; i < COUNT(ways); i++)
         assert_int_equal(look_for(ways[i]), LOG_QUERY_NONE);
-    world_clear(&world);
+    log_world_clear(&world);
     assert_int_equal(truncate(path, 0), 0);
     assert_int_equal(look_for(ways[0]), LOG_QUERY_NONE);
 }
@@ -335,7 +335,7 @@ static void a_result_has_the_query_of_its_time(void **state)
     world_write(&world, path);
     assert_int_equal(look_for(by_result), LOG_QUERY_FOUND);
     assert_int_equal(found.number, 2);
-    world_clear(&world);
+    log_world_clear(&world);
 }
 
 /* ---- Scenes ---- */
