@@ -329,7 +329,7 @@ static bool read_shape(const struct place *at, void *out)
         if (strcmp(at->item->valuestring, name) != 0)
             continue;
         *(int *) out = shape;
-        return (dim == 2 ? shape != FMB_FACE && shape != CYLINDER : true) ||
+        return dim == 3 || (shape != FMB_FACE && shape != CYLINDER) ||
                refuse(at, "there is no %s in %dD", name, dim);
     }
     return refuse(at,
@@ -453,25 +453,23 @@ struct kind {
 static bool check_keys(const struct place *member, int shape, bool within_frames)
 {
     enum { POSE = 1 << POSITION | 1 << ORIENTATION, ROUND = 1 << RADIUS };
-    static const struct kind kinds[SHAPES] =
-        {
-            {"a frame of components", 1 << COMPONENTS, 1 << ORIGIN | ROUND},
-            [FMB_BOX] = {"a box", 1 << SIZE, POSE | ROUND},
-            [FMB_HULL] = {"a hull", 1 << VERTICES, ROUND},
-            [SPHERE] = {"a sphere", ROUND, 1 << POSITION},
-            [CAPSULE] = {"a capsule", ROUND | 1 << LENGTH, POSE},
-            [CYLINDER] = {"a cylinder", ROUND | 1 << LENGTH, POSE | 1 << SIDES},
-        },
-                             of_vertices = {"a frame of vertices", 1 << VERTICES, ROUND},
-                             of_frames = {"a body of \"frames\"", 0, POSE};
+    static const struct kind kinds[SHAPES] = {
+        {"a frame of components", 1 << COMPONENTS, 1 << ORIGIN | ROUND},
+        [FMB_BOX] = {"a box", 1 << SIZE, POSE | ROUND},
+        [FMB_HULL] = {"a hull", 1 << VERTICES, ROUND},
+        [SPHERE] = {"a sphere", ROUND, 1 << POSITION},
+        [CAPSULE] = {"a capsule", ROUND | 1 << LENGTH, POSE},
+        [CYLINDER] = {"a cylinder", ROUND | 1 << LENGTH, POSE | 1 << SIDES},
+    };
+    static const struct kind of_vertices = {"a frame of vertices", 1 << VERTICES, ROUND};
+    static const struct kind of_frames = {"a body of \"frames\"", 0, POSE};
     const struct kind *kind = &kinds[shape >= FMB_BOX ? shape : 0];
-    const bool components = kind == kinds;
     if (member[FRAMES].item)
         kind = &of_frames;
     else if (!check_present(&member[SHAPE]) ||
              (shape == FMB_CUBOID && !check_absent(member, 1 << VERTICES, "a cuboid")))
         return false;
-    else if (components && member[VERTICES].item)
+    else if (kind == kinds && member[VERTICES].item)
         kind = &of_vertices;
     unsigned others = ~(kind->required | kind->optional) & ((1u << FRAMES) - (1u << ORIGIN));
     if (!within_frames) /* it is that of the body */

@@ -50,15 +50,16 @@ static struct frame_numbers numbers_of(const struct fmb_frame *frame)
  * ends of the last axis, as they are read; else the name of the shape. */
 static const char *name_of(const struct fmb_frame *frame, const struct frame_numbers *given)
 {
-    const size_t dim = (size_t) frame->dim, last = dim - 1;
-    const double *x = given->number, half = x[dim + last];
-    if (frame->shape == FMB_HULL && frame->radius > 0 && given->count == dim)
+    const int dim = frame->dim, last = dim - 1, count = (int) given->count;
+    const double *a = given->number, *b = a + dim;
+    if (frame->shape != FMB_HULL || frame->radius == 0 || count > 2 * dim)
+        return fmb_shape_name((int) frame->shape);
+    if (count == dim)
         return "sphere";
-    if (frame->shape == FMB_HULL && frame->radius > 0 && given->count == 2 * dim && half > 0 &&
-        x[last] == -half && isfinite(2 * half) && is_zero(x, (int) last) &&
-        is_zero(x + dim, (int) last))
-        return "capsule";
-    return fmb_shape_name((int) frame->shape);
+    return b[last] > 0 && a[last] == -b[last] && isfinite(2 * b[last]) && is_zero(a, last) &&
+                   is_zero(b, last)
+               ? "capsule"
+               : "hull";
 }
 
 /* Writes the members of a frame that do not depend on where its origin, or the centre of a sphere,
@@ -100,9 +101,9 @@ void scene_json_frames(struct json_writer *json, const struct fmb_body *body)
     json_end(json, ']');
 }
 
-/* A body of one frame by vertices, but not a sphere elsewhere, or whose origin or centre is 0, is
- * written as that frame. A
- * frame of components then has the position of the body as its origin, unless the body is turned.
+/* A body of one frame by vertices (not a sphere), or whose origin or centre is 0, is written as
+ * that frame. A frame of components then has the position of the body as its origin, unless the
+ * body is turned.
  */
 static void write_body(struct json_writer *json, const struct fmb_placement *placement)
 {
