@@ -73,8 +73,8 @@ enum fmb_verdict support_round_verdict(const struct support_pair *pair, enum fmb
  * as that of p, moved by the part of the drift that is orthogonal to the face: the time at which it
  * is R is the root of a quadratic equation. The face at that time is looked for again.
  *
- * Proof. The times of contact are an interval. So if the frames are apart at one time and meet at a
- * later one, within the limit, the first time of contact is between these. */
+ * Proof. The end is between a time up to which the frames are apart and one at which they meet, or
+ * from which on they are apart; both are within the limit. */
 
 /* Of the window, less than fmb.h allows, for the roundings of seconds. */
 static const double contact_limit = 0.9e-12;
@@ -133,32 +133,48 @@ static double time_to_contact(const struct slice *slice)
     return root > 0 ? square / (sqrt(root) - b) : -b / a;
 }
 
+/* Returns whether the frames, which are apart at the time of the last look, are certainly apart at
+ * all times before (1) or after (-1): as the direction n of the search says, since n . x changes by
+ * n . drift. 0: not certain. */
+static int side_of(const struct slice *slice)
+{
+    const double speed = vec3_dot(slice->nearest.direction, slice->drift);
+    const double error = 0x1p-48 * vec3_sum(slice->drift);
+    return speed < -error ? 1 : speed > error ? -1 : 0;
+}
+
 /* Sets *guess to a time near the one at which the frames meet, or to NAN, and *apart to whether
- * they are apart at the edge. Returns a time at which they are apart, at most contact_limit before
- * they meet; 0 if they meet at the edge; NAN if doubles do not give it. */
+ * they are apart at the edge. Returns a time up to which they are apart, at most contact_limit
+ * before they meet; 0 if they meet at the edge; NAN if doubles do not give it. In: they meet at
+ * some time. */
 static double find_end(struct slice *slice, double *guess, bool *apart)
 {
-    double tau = 0;
+    double tau = 0, out = 0, in = 1, root = 0;
     enum fmb_verdict verdict = look(slice, tau);
     *guess = NAN;
     *apart = verdict == FMB_SEPARATED;
     if (verdict == FMB_OVERLAPPING)
         return 0;
-    for (int n = 0; n < LOOKS_MAX; n++) {
-        const double step = time_to_contact(slice);
-        const double next = fmax(tau + step - 0.5 * contact_limit, 0);
-        if (!(fabs(step) <= 1 && next <= 1))
-            return NAN;
-        if (verdict == FMB_SEPARATED && step > 0 && step < contact_limit) {
-            *guess = tau + step;
-            return look(slice, tau + contact_limit) == FMB_OVERLAPPING ? tau : NAN;
-        }
-        if (n > 0 && fabs(step) < contact_limit) {
-            *guess = tau + step;
-            return NAN;
-        }
-        tau = next;
+    for (int n = 0; n < LOOKS_MAX && *apart; n++) {
+        const double before = root;
+        root = tau + time_to_contact(slice);
+        if (!(root > out && root < in))
+            root = out + 0.5 * (in - out);
+        if (fabs(root - before) < 0.2 * contact_limit)
+            *guess = root;
+        tau = fmax(root - 0.45 * contact_limit, out);
+        if (tau <= out || (!isnan(*guess) && out > root - 0.6 * contact_limit))
+            tau = root + 0.45 * contact_limit;
         verdict = look(slice, tau);
+        const int side = verdict == FMB_SEPARATED ? side_of(slice) : 0;
+        if (side > 0)
+            out = tau;
+        else if (side < 0 || verdict == FMB_OVERLAPPING)
+            in = tau;
+        else if (!isnan(*guess))
+            return NAN;
+        if (in - out <= contact_limit)
+            return out;
     }
     return NAN;
 }
