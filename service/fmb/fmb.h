@@ -4,8 +4,10 @@
  * (article, equations 1 and 2), in body coordinates. The parameters x_i run over [0,1] for a
  * cuboid and a box; over x_i >= 0, sum x_i <= 1 for a tetrahedron and a face. A hull is the convex
  * hull of 1 to FMB_HULL_VERTICES_MAX vertices; in 2D it is a convex polygon. Vertices inside it and
- * repeated ones are legal, and it may be flat, a segment or a point. A body is one or more frames
- * of one dimension. A placement puts it into the world: its set is exactly
+ * repeated ones are legal, and it may be flat, a segment or a point. A frame may have a radius: it
+ * is then the set of all points within that distance of this set, its core. A body is one or more
+ * frames of one dimension. A placement puts it into the world: its set, or that of its cores, is
+ * exactly
  *
  *     { p + R(q) (o + sum_i x_i c_i) + t v }
  *
@@ -50,9 +52,9 @@
  *     certificates and their check, and in fmb_frame_make() for a frame that is nearly flat;
  *   - fmb_decide() of bodies of several frames: that of a scene of two placements, 60 kB for up to
  *     32 frames;
- *   - the gap of a pair with a hull that is rounded by more than the limit, or whose depth takes
- *     more than a hundred vertices of the Minkowski difference, as of concentric balls: 50 kB, 24
- *     bytes for each vertex, and 200 bytes for each facet that is found.
+ *   - the gap of a pair with a hull or a radius that is rounded by more than the limit, or whose
+ *     depth takes more than a hundred vertices of the Minkowski difference, as of concentric balls:
+ *     50 kB, 24 bytes for each vertex, and 200 bytes for each facet that is found.
  * All is allocated through GMP, which ends the process if memory is exhausted. It is freed before
  * the function, or the scene, returns its last answer; that of a certificate in steps by
  * fmb_certificate_end(). Functions use up to 100 kB of stack.
@@ -125,9 +127,9 @@ int fmb_component_count(int dim, int shape);
 /* ---- Bodies ---- */
 
 /* A frame in body coordinates, and what is computed from it once, such as the inverse of its
- * components. Filled by fmb_frame_make(), fmb_frame_make_vertices() or fmb_frame_make_hull() only;
- * the caller may read the fields, and copy the frame. Axes beyond dim and components beyond count
- * are 0. */
+ * components. Filled by fmb_frame_make(), fmb_frame_make_vertices() or fmb_frame_make_hull() only,
+ * and changed by fmb_frame_inflate() only; the caller may read the fields, and copy the frame. Axes
+ * beyond dim and components beyond count are 0. */
 struct fmb_frame {
     /* The frame is the set of points within this distance of its core, the shape described by the
      * other fields. 0 unless fmb_frame_inflate() set it. */
@@ -135,8 +137,8 @@ struct fmb_frame {
     int dim;              /* 2 or 3 */
     enum fmb_shape shape; /* FMB_BOX: components along the axes, component[i][i] the size */
     int count;            /* number of components */
-    bool flat;            /* the volume is exactly zero, as of every face; no inverse. Of a hull:
-                             unless doubles prove that it is not */
+    bool flat;            /* the volume of the core is exactly zero, as of every face; no inverse.
+                             Of a hull: unless doubles prove that it is not */
     bool inverted;        /* the inverse is present: not flat, and all its entries are finite */
     double reach;         /* bounds the distance of each point from the origin of the body; may be
                              infinite */
@@ -211,10 +213,12 @@ size_t fmb_hull_doubles(int dim, size_t vertex_count);
 enum fmb_status fmb_frame_make_hull(int dim, const double *vertices, size_t count, double *memory,
                                     struct fmb_frame *out);
 
-/* Sets the radius of a frame: a sphere is a hull of one vertex with a radius, a capsule a hull of
- * two. A frame of radius 0 is the frame without one, bit for bit.
+/* Sets the radius of a frame of any shape. A sphere is a hull of one vertex with a radius, a
+ * capsule a hull of two. A frame of radius 0 is the frame without one, bit for bit.
  *
- * In:  radius  finite, not negative; replaces the one that the frame has
+ * In:  *frame  made by one of the functions above, with or without a radius
+ *      radius  finite, not negative; replaces the radius that the frame has
+ * Out: *frame  with this radius, and the fields that depend on it
  * Returns FMB_OK; or FMB_NOT_FINITE or FMB_BAD_SIZE, with the frame unchanged. */
 enum fmb_status fmb_frame_inflate(struct fmb_frame *frame, double radius);
 
@@ -257,8 +261,8 @@ enum fmb_status fmb_body_make_vertices(int dim, int shape, const double *vertice
 enum fmb_status fmb_body_make_hull(int dim, const double *vertices, size_t count, double *memory,
                                    struct fmb_body *out);
 
-/* Sets the radius of a body of one frame, as fmb_frame_inflate() does. Returns FMB_WRONG_COUNT for
- * a body of several frames. */
+/* Sets the radius of a body of one frame. In, Out, Returns: as fmb_frame_inflate(); or
+ * FMB_WRONG_COUNT for a body of several frames, which have radii of their own. */
 enum fmb_status fmb_body_inflate(struct fmb_body *body, double radius);
 
 /* Makes a body of several frames. They may overlap: frames of one body are never tested against
@@ -324,8 +328,8 @@ enum fmb_want {
  *                not overlap at any time of the window
  *
  * Of bodies of several frames it is the least gap of a pair of their frames, with its direction and
- * points; frame names that pair. Of several pairs that doubles do not tell apart, one is named: its
- * gap is the least up to the width.
+ * points; frame names that pair. If doubles cannot distinguish the gaps of several pairs, one of
+ * these pairs is named. Its gap exceeds the least one by at most the width.
  *
  * Lower bound. The direction n proves it: n . (b - a) >= bounds[0] |n| for all points a of the
  * first frame and b of the second at the same time of the window.
@@ -335,8 +339,8 @@ enum fmb_want {
  * bounds[1] is minus the smallest depth over all facets of the Minkowski difference of the two,
  * swept over the window; of a pair with a hull, of a polytope inside of it.
  *
- * Frames with a radius: the gap is that of their cores less both radii. Where coordinates of
- * vertices are mentioned, here and below, they are those of the cores plus and minus the radius.
+ * Frames with a radius: the gap is that of their cores less both radii. The largest coordinate of a
+ * vertex, here and in struct fmb_answer, is then that of the cores plus the radius of the frame.
  *
  * Width. bounds[1] - bounds[0] is at most 1e-12 of the largest magnitude of a coordinate of any
  * vertex of either body over the window, plus 32 * 2^-1074. (In a window shorter than 2^-1000 s the
@@ -368,21 +372,22 @@ struct fmb_gap {
  *
  * Contacts and boxes of the methods certified and exact contain the exact ones.
  *
- *   exact      They are the smallest with ends that are doubles.
+ *   exact      They are the smallest with ends that are doubles, unless a frame has a radius.
  *   certified  An end of a contact is at most 1e-12 T too far out. An end of a box is too far out
  *              by at most 1e-12 of the largest magnitude of a coordinate of any vertex of either
  *              body over the window. Where that is less than 2^-1074, the least double, an end is
  *              at most one double too far out.
  *
- * Frames with a radius: an end of a contact is at most 1e-12 T too far out by the method exact too.
- * The box is not tight: it is the intersection of the boxes of both frames over the contact. Each
- * is too large by at most 1e-12 of the largest coordinate, or of the reach of its body if that is
- * larger; it may be infinite where a vertex is a sum of components that exceeds the largest double.
+ * Frames with a radius: of both methods, an end of a contact is at most 1e-12 T too far out. The
+ * box is not tight: it is the intersection of the boxes of both frames over the contact. An end of
+ * either of these is too far out by at most 1e-12 of the largest coordinate, or of the reach of its
+ * body if that is larger. It may be infinite if a vertex is a sum of components that exceeds the
+ * largest double.
  *
- * Both give the same bits for the swapped pair and on every machine; another version of the library
- * may give different bits within these limits. An end of a box whose magnitude exceeds the largest
- * double is infinite, with its sign. No number is -0. The methods fmb and sat round without such
- * guarantees. */
+ * Both methods give the same bits for the swapped pair and on every machine; another version of the
+ * library may give different bits within these limits. An end of a box whose magnitude exceeds the
+ * largest double is infinite, with its sign. No number is -0. The methods fmb and sat round without
+ * such guarantees. */
 struct fmb_answer {
     enum fmb_verdict verdict;
     bool has_contact;           /* touching or overlapping */
@@ -417,15 +422,15 @@ struct fmb_method {
  *   fmb        The article's elimination in doubles: verdict, interval, the article's loose box.
  *   sat        The separating axis theorem in doubles: verdict and interval, no box.
  *
- * fmb and sat are inexact and cannot decide flat frames, hulls and frames with a radius.
+ * fmb and sat are inexact and cannot decide flat frames, hulls, or frames with a radius.
  *
  * Cost: exact takes tens to hundreds of microseconds for numbers of similar size. Its time is
  * bounded for any numbers, as the time of certified is: among pairs whose exponents span the whole
  * range of doubles, a search found none that takes more than 72 million products of 64-bit limbs
  * with box and gap, about 36 ms. Doubles decide most pairs with a hull or a radius by a few scans
  * of all vertices. Exact arithmetic takes some milliseconds for the largest hulls, and up to 60 ms
- * with box and gap if their exponents span that range; for frames with a radius that move, too. A
- * scene divides exact work into steps of less than a millisecond. */
+ * with box and gap if their exponents span that range. The same holds for moving frames with a
+ * radius. A scene divides exact work into steps of less than a millisecond. */
 
 /* Return a method from a static table, valid for the life of the program. Thread safe.
  * fmb_method_at() returns NULL if index is past the last method; fmb_method_by_name() and
@@ -468,9 +473,9 @@ enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pla
  *     }
  *
  * The answers are those of fmb_decide() for each pair, bit for bit. Frames of one body are never
- * tested against each other, nor are placements of one group. Memory is allocated only by
- * exact arithmetic and for gaps of hulls, as stated at the top. After the last step none is left;
- * fmb_scene_end() frees that of a scene that is abandoned before.
+ * tested against each other, nor are placements of one group. Memory is allocated only by exact
+ * arithmetic and for gaps of pairs with a hull or a radius, as stated at the top. After the last
+ * step none is left; fmb_scene_end() frees that of a scene that is abandoned before.
  *
  * Thread safety: one state must not be used by two threads at the same time. Different states share
  * nothing. */
@@ -590,7 +595,7 @@ enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
  * Returns whether the scene is complete.
  * Cost: tens of microseconds, except for a step that decides one pair of frames in exact
  * arithmetic, and for the step that finds which placements may meet. The exact decision of a pair
- * with a hull is divided into several steps. */
+ * with a hull or a radius is divided into several steps. */
 bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *answers);
 
 /* Begins a scene again in which only the first placements have other poses: of a robot, then, among
@@ -645,9 +650,6 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  * 0. The vertices of a frame at TIME times their weights sum to a point. The weights of each frame
  * sum to 1, and the points are equal. Weights that these equations determine are left out.
  *
- * Of frames with radii the vertices are those of the cores, and the two points may be apart. R is
- * the sum of the radii.
- *
  * The certificate states:
  *   separated    N . (b - a) > 0 for all points a of the first frame and b of the second, at all
  *                times of the window.
@@ -656,8 +658,14 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  *                the frames have a point in common.
  *   overlapping  At TIME the frames have a point in common, and the vertices named of each have the
  *                same affine hull as the frame: so the point is in both relative interiors.
- * Of frames with radii, N . (b - a) > R |N| and N . (b - a) >= R |N| take the place of the first
- * two inequalities; and the points are at most R apart if the frames touch, less if they overlap.
+ *
+ * Of frames with radii, R > 0 their sum, the points and vertices are those of the cores. The two
+ * sums need not be the same point, so that only one weight of each frame is left out. The
+ * certificate then states:
+ *   separated    N . (b - a) > R |N| for all those points and times.
+ *   touching     N . (b - a) >= R |N| for all those points and times. At TIME the two points are at
+ *                most R apart.
+ *   overlapping  At TIME the two points are less than R apart.
  *
  * "overlapping at 0 a 0 1 2:1/16 4 b 0 1:1/16 2 4:1/16" of two cubes: three weights are stated, and
  * five follow from five equations.
@@ -680,12 +688,12 @@ enum { FMB_CERTIFICATE_MAX = 16384 };
  *
  * A pair whose numbers span more than 512 bits has no certificate: the status is FMB_OK and the
  * text is empty. The span is measured as follows. Let 2^e be the largest power of two that divides
- * every coordinate of every component, origin, vertex of a hull, position and v T of the pair, and
- * half of every size of a box. Let 2^f be the least power of two above the magnitudes of all these,
- * where the product of such a power for the coordinates of v and one for T stands for v T. Let n be
- * |q|^2 for the smallest integers q that are proportional to the orientation, or 1 without an
- * orientation. Let m be the product of both n, or n itself if they are equal. The pair spans f - e
- * bits plus the number of bits of m.
+ * every coordinate of every component, origin, vertex of a hull, position and v T of the pair,
+ * every radius, and half of every size of a box. Let 2^f be the least power of two above the
+ * magnitudes of all these, where the product of such a power for the coordinates of v and one for T
+ * stands for v T. Let n be |q|^2 for the smallest integers q that are proportional to the
+ * orientation, or 1 without an orientation. Let m be the product of both n, or n itself if they are
+ * equal. The pair spans f - e bits plus the number of bits of m.
  *
  * Half of all certificates are shorter than 100 bytes. Those with times in windows of
  * extreme length, and those with normals of touching pairs, are longer. The text is also empty if

@@ -86,12 +86,12 @@ struct fmb_batch {
      *
      * Otherwise a pair is left open if its verdict or its box needs more than integers of 512 bits,
      * if its contact needs integers at all, or if the first search in doubles does not give its
-     * gap; of a pair with a hull, if doubles do not give all that is wanted. A pair that the filter
-     * in doubles does not decide is also left open if 32 of the same 128 pairs have already been
-     * decided after the filter; or, if it has a hull, if the hulls among these 128 pairs already
-     * had so many vertices that their scans take some hundred microseconds.
-     * Which pairs are left open does not depend on the machine. open[0] to open[*open_count - 1]
-     * are the positions in pairs of those left open, ascending.
+     * gap; of a pair with a hull or a radius, if doubles do not give all that is wanted. A pair
+     * that the filter in doubles does not decide is also left open if 32 of the same 128 pairs have
+     * already been decided after the filter; or, if it has a hull or a radius, if the pairs of this
+     * kind among these 128 already had so many vertices that their scans take some hundred
+     * microseconds. Which pairs are left open does not depend on the machine. open[0] to
+     * open[*open_count - 1] are the positions in pairs of those left open, ascending.
      *
      * A pair that is left open may take as long as fmb_decide() of one pair; any other takes tens
      * of microseconds at most and allocates no memory. A batch of that one pair with both NULL
