@@ -85,7 +85,7 @@ static bool set_of_four(struct integer_simplex *simplex, mpz_t w[3])
     return mpz_sgn(simplex->total) != 0 && complete_weights(simplex, 4);
 }
 
-/* Whether the point next to the origin is that of the corners [member[0], ...]. */
+/* Returns whether the nearest point is that of the corners member[0], ..., member[count - 1]. */
 static bool try_subset(struct integer_simplex *simplex, const int member[], int count)
 {
     mpz_t *w = simplex->corner[member[0]]->at;
@@ -110,8 +110,8 @@ static bool try_subset(struct integer_simplex *simplex, const int member[], int 
     return true;
 }
 
-/* Tries one subset of the corners; the last one is always among them. If the point next to the
- * origin needs these, and no others, the simplex is reduced to them. */
+/* Tries the next subset of the corners; the last corner is in all of them. If the nearest point is
+ * inside this subset, reduces the simplex to it. Returns whether it is. */
 static bool reduce(struct integer_simplex *simplex)
 {
     const int last = simplex->count - 1;

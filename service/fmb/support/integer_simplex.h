@@ -1,12 +1,12 @@
-/* The point of a polytope P next to the origin, in integers, for a P that is given by its vertex
- * with the least n . p for any n.
+/* The point of a polytope P nearest to the origin, in integers. P is given by a function that
+ * returns its vertex with the least n . p for any n.
  *
  * Method. The algorithm of Gilbert, Johnson and Keerthi. It holds a simplex of at most 4 vertices
- * of P, the point of P next to the origin being that of the simplex so far, and adds the vertex
- * that lies farthest in the direction of the origin. The distance decreases strictly with each, so
- * that it ends. The next simplex is found by Johnson's conditions: of all subsets of the vertices
- * at hand the one, affinely independent, whose affine hull has its point next to the origin
- * strictly inside of the subset, with no other vertex nearer along that direction. */
+ * of P and the point of this simplex nearest to the origin. A step adds the vertex that is farthest
+ * from this point in the direction of the origin. The distance decreases strictly with each vertex
+ * added, so the search ends. The next simplex is found by Johnson's conditions: it is the affinely
+ * independent subset of the vertices whose affine hull has its nearest point strictly inside the
+ * subset, with no other vertex nearer along that direction. */
 #ifndef FMB_INTEGER_SIMPLEX_H
 #define FMB_INTEGER_SIMPLEX_H
 
@@ -24,11 +24,11 @@ struct integer_corner {
 
 struct integer_simplex {
     int count;
-    unsigned subset; /* of the corners, that is tried next */
+    unsigned subset; /* bits: the subset of the corners to be tried next */
     bool zero;       /* the point is the origin */
     struct integer_corner pool[INTEGER_CORNERS + 1];
-    struct integer_corner *corner[INTEGER_CORNERS + 1]; /* the first are those of the simplex */
-    mpz_t normal[3];                                    /* a multiple of the point */
+    struct integer_corner *corner[INTEGER_CORNERS + 1]; /* the first count: the simplex */
+    mpz_t normal[3];                                    /* a positive multiple of the point */
     mpz_t edge[3][3], other[3];
     mpz_t weight[INTEGER_CORNERS], total, t[2]; /* the weights of the point are over total */
 };
@@ -36,12 +36,14 @@ struct integer_simplex {
 /* Calls one of mpz_init and mpz_clear for every number. */
 void integer_simplex_each(struct integer_simplex *simplex, void (*call)(mpz_ptr));
 
-/* Sets the corner of P with the least n . p. */
+/* Sets *out to the corner of P with the least n . p. */
 typedef void integer_support(void *context, mpz_t n[3], struct integer_corner *out);
 
-/* Begin a search for the point of P next to the origin, and perform a step of it, with one call of
- * support at most. toward: any direction: the vertex in it is the first. Returns whether the point
- * is found. */
+/* Begin a search for the point of P nearest to the origin, and perform a step of it. Each calls
+ * support at most once. integer_simplex_step() returns whether the point is found.
+ *
+ * In:  toward   any direction: the search starts from the corner with the least toward . p
+ *      context  passed to support */
 void integer_simplex_begin(struct integer_simplex *simplex, mpz_t toward[3],
                            integer_support *support, void *context);
 bool integer_simplex_step(struct integer_simplex *simplex, integer_support *support, void *context);

@@ -1,5 +1,6 @@
-/* Pairs with a hull in integers: verdict, contact and box from linear programs whose columns are
- * the vertices of D, priced by the support function (column generation).
+/* Pairs by their vertices, in integers: verdict, contact and box from linear programs whose columns
+ * are the vertices of D, priced by the support function (column generation). For frames with radii:
+ * the point of D nearest to the origin, at the end of this file.
  *
  * Coordinates. All points are integers, in units of 2^unit / scale of the pair
  * (support_integers.h), so that no step rounds. Points enter as 4 x, because the interior point c

@@ -1,5 +1,6 @@
-/* Linear programs over the vertices of two frames, in integers: with the exact search for the gap
- * (support_gap.h), the "programs" of other comments.
+/* Linear programs over the vertices of two frames, in integers, and the point of D nearest to the
+ * origin. Other comments call these, and the search for the gap in integers (support_gap.h), "the
+ * programs".
  *
  * The state of a decision is advanced in steps, so that a caller can look after other work in
  * between. Each step prices once: it finds the vertex of D that is farthest in one direction,
@@ -19,9 +20,10 @@
 
 struct programs;
 
-/* What proves a verdict. D: support_pair.h. Of frames with radii: the weights give the point x of D
- * nearest to the origin, and normal is a multiple of x, the values above at least |normal| R, more
- * if they are SEPARATED. */
+/* What proves a verdict. D: support_pair.h. The members are documented for frames without radii. Of
+ * frames with radii, R their sum, the weights give the point x of D nearest to the origin instead
+ * of the origin itself, and normal is a multiple of x: normal . y > |normal| R for all y of D if
+ * the frames are SEPARATED, >= if they are TOUCHING. */
 enum { PROGRAMS_PROOF_MAX = 2 * (FMB_DIM_MAX + 1) + FMB_DIM_MAX };
 
 struct programs_proof {
@@ -48,10 +50,13 @@ struct programs_proof {
 struct programs *programs_begin(const struct support_pair *pair, unsigned want,
                                 const struct support_column *first, unsigned count);
 
-/* Begins a search for the point of D nearest to the origin, in the same steps, of a pair whose
- * frames may have radii. late: of D at the end of the window alone.
+/* Begins a search for the point of D nearest to the origin, in the same kind of steps. The frames
+ * may have radii.
  *
- * In:  toward  a direction, not 0: near that of the point, which saves steps; [2] is 0 in 2D */
+ * In:  pair    set; must outlive the search
+ *      late    D is restricted to the end of the window
+ *      toward  a direction, not 0; [2] is 0 in 2D. A direction near that of the point saves steps
+ */
 struct programs *programs_begin_nearest(const struct support_pair *pair, bool late,
                                         const double toward[FMB_DIM_MAX]);
 
@@ -62,9 +67,9 @@ bool programs_step(struct programs *programs);
  * member integers is set from the beginning. */
 struct programs_proof *programs_proof(struct programs *programs);
 
-/* Of a complete search for the nearest point: returns the verdict that its distance and the sum of
- * the radii give, and sets the proof; and the time of the point, in seconds, rounded down and up.
- */
+/* Functions of a complete search for the nearest point. programs_compare_radius() returns the
+ * verdict, from the distance of the point and the sum of the radii, and sets the proof.
+ * programs_nearest_time() sets the time of the point in seconds, rounded down and up. */
 enum fmb_verdict programs_compare_radius(struct programs *programs);
 void programs_nearest_time(struct programs *programs, double time[2]);
 

@@ -65,14 +65,16 @@ static bool begin_gap_of(struct support_decision *decision, enum fmb_verdict cor
         answer);
 }
 
-/* The same of a pair. Radii: the gap is that of the cores, whose verdict may have to be decided. */
+/* Begins the gap of a pair whose verdict is known, if it is wanted. Frames with radii: the gap is
+ * that of the cores, whose verdict may have to be decided first. Returns whether the decision is
+ * complete. */
 static bool begin_gap(struct support_decision *decision, struct fmb_answer *answer)
 {
     if (!(decision->want & FMB_WANT_GAP))
         return true;
     if (!decision->pair.rounded)
         return begin_gap_of(decision, answer->verdict, answer);
-    if (decision->cores) /* of cores that touch, too, the direction has to prove the bound */
+    if (decision->cores) /* if the cores touch, the direction has to prove the bound too */
         return begin_gap_of(
             decision, decision->cores == FMB_SEPARATED ? FMB_SEPARATED : FMB_OVERLAPPING, answer);
     if (!decision->bounded)
@@ -82,7 +84,7 @@ static bool begin_gap(struct support_decision *decision, struct fmb_answer *answ
 
 /* ---- Radii ---- */
 
-/* Sets box and contact of a pair in contact. */
+/* Sets contact and box of a pair in contact, as far as they are wanted. */
 static void set_contact(const struct support_decision *decision, const double contact[2],
                         struct fmb_answer *answer)
 {
@@ -137,7 +139,8 @@ static bool round_begin(struct support_decision *decision, struct fmb_answer *an
     return false;
 }
 
-/* Takes what the programs gave. Returns whether the decision is complete. */
+/* Performs a step of the programs, and uses their result if that was the last. Returns whether the
+ * decision is complete. */
 static bool round_step(struct support_decision *decision, struct fmb_answer *answer)
 {
     if (decision->times.programs) {

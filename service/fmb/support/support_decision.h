@@ -1,13 +1,17 @@
 /* Decides a pair by its vertices, in steps: in doubles if these prove the answer, otherwise by the
- * programs: linear programs in exact numbers (programs.h), and the search for the gap
- * (support_gap.h). No shared state. */
+ * programs: linear programs and the nearest point in integers (programs.h), and the search for the
+ * gap (support_gap.h). No shared state. */
 #ifndef FMB_SUPPORT_DECISION_H
 #define FMB_SUPPORT_DECISION_H
 
 #include "support_round.h"
 
-/* What a decision may use: only doubles, in which case it is bounded (it takes no further steps and
- * allocates nothing); doubles, and programs for what they leave open; only programs. */
+/* What a decision may use:
+ *
+ *   SUPPORT_QUICK      doubles only. The decision is bounded: it has no further steps and allocates
+ *                      nothing
+ *   SUPPORT_CERTIFIED  doubles, and the programs for what doubles leave open
+ *   SUPPORT_PROGRAMS   the programs only */
 enum support_effort { SUPPORT_QUICK, SUPPORT_CERTIFIED, SUPPORT_PROGRAMS };
 
 struct programs;
@@ -25,11 +29,9 @@ struct support_decision {
     /* What the next step advances: at most one is not NULL; all NULL: complete. */
     struct programs *programs;
     struct support_gap_work *gap;
-    /* Of frames with radii: whether programs looks for the nearest point of the cores, or else for
-     * their verdict, which the gap needs; that verdict, 0 if it is not known; and the search for
-     * the contact. */
-    bool nears;
-    enum fmb_verdict cores;
+    /* Of frames with radii. */
+    bool nears;             /* programs finds the nearest point of the cores, not their verdict */
+    enum fmb_verdict cores; /* the verdict of the cores, which the gap needs; 0: not known */
     struct support_round_ends ends;
     struct support_round_times times;
 };
@@ -50,7 +52,7 @@ bool support_decision_begin(const struct frame_pair *frames, unsigned want,
                             enum support_effort effort, double farthest,
                             struct support_decision *out, struct fmb_answer *answer);
 
-/* The same for the gap alone, of a pair with this verdict. bounded: as with SUPPORT_QUICK. */
+/* The same for the gap alone. In: verdict, of the pair; bounded: as with SUPPORT_QUICK. */
 bool support_decision_begin_gap(const struct frame_pair *frames, enum fmb_verdict verdict,
                                 double farthest, bool bounded, struct support_decision *out,
                                 struct fmb_answer *answer);

@@ -1,4 +1,4 @@
-/* The gap of a pair with a hull: its order, its bounds, and the choice of step (support_gap.h).
+/* The gap of a pair by its vertices: its order, its bounds, and the choice of step (support_gap.h).
  *
  * Accuracy, with u = 2^-53.
  *
@@ -22,9 +22,9 @@
 
 /* ---- Scale ---- */
 
-/* Returns a lower bound of the largest coordinate of a vertex of a frame over the window, up to
- * rounding: that of its vertices, two of a hull, and, since the displacement is the difference of
- * two points, half of that. */
+/* Returns a lower bound, up to rounding, of the largest coordinate of a vertex of a frame over the
+ * window, plus its radius: the largest coordinate of its vertices (of a hull, of two of them), or
+ * half of the displacement, which is the difference of two points, if that is larger. */
 static double least_of(const struct support_gap *gap, int f)
 {
     const struct support_view *view = &gap->pair->view[f];
@@ -148,8 +148,8 @@ static void set_direction(const struct support_gap *gap, struct fmb_gap *out)
     support_depth_end(&depth, out);
 }
 
-/* The point of D next to the origin, with every vertex rounded to the grid. If that is the origin,
- * the depth gives the direction. */
+/* The point of D nearest to the origin, with every vertex rounded to the grid. If that is the
+ * origin, the depth gives the direction. */
 static enum gap_outcome distance_on_grid(const struct support_gap *gap, struct fmb_gap *out)
 {
     struct integer_simplex simplex;

@@ -1,10 +1,11 @@
-/* The gap of a pair with a hull, in steps. D, reach and error: support_pair.h.
+/* The gap of a pair by its vertices, in steps. D, reach and error: support_pair.h.
  *
- * A separated pair: the point of D next to the origin, first in doubles (gap_simplex.h), then on a
- * grid (integer_simplex.h). A pair in contact: the depth, from a polytope inside of D
- * (polytope.h) and the direction in which D reaches least far. What is not tight because the
- * positions cancel, or because numbers are too large or too small, is done again with vertices that
- * are placed exactly and then rounded (support_placed.c). */
+ * Cores that are apart: the point of D nearest to the origin, first in doubles (gap_simplex.h),
+ * then on a grid (integer_simplex.h). Cores that meet: the depth, from a polytope inside D
+ * (polytope.h) and the direction in which D extends least. A gap that is not tight because the
+ * positions cancel, or because numbers are too large or too small, is computed again with vertices
+ * that are placed exactly and then rounded (support_placed.c). Radii are subtracted at the end
+ * (support_round_gap()). */
 #ifndef FMB_SUPPORT_GAP_H
 #define FMB_SUPPORT_GAP_H
 
@@ -31,7 +32,7 @@ struct support_depth {
     const struct support_gap *gap;
     double least; /* value of a direction */
     double direction[FMB_DIM_MAX];
-    bool closed; /* the mesh is */
+    bool closed; /* the mesh has a closed boundary */
     bool zero;   /* the depth is 0, up to the width of an enclosure */
     struct polytope mesh;
 };
@@ -70,11 +71,12 @@ void support_placed_end(struct support_placed *placed);
 
 /* The gap of a pair in the order of support_order(), in steps of less than a millisecond.
  *
- * In:  nearest   the result of a search up to INFINITY, or NULL
- *      cores     the verdict of the frames without their radii. OVERLAPPING will do for cores that
- *                touch: the direction then proves the lower bound
+ * In:  swapped   what support_order() returned
+ *      nearest   the result of a search up to INFINITY, or NULL
+ *      cores     the verdict of the frames without their radii; may be OVERLAPPING for cores that
+ *                touch, if the frames have radii: the direction then proves the lower bound
  *      verdict   of the pair
- *      farthest  a gap of the cores
+ *      farthest  a gap of the cores: a greater one need not be computed
  *
  * support_gap_of_pair() returns GAP_KNOWN or, if the gap is surely greater than farthest, by more
  * than the width of an enclosure, GAP_FAR. It returns GAP_UNSURE if there are steps to be done,

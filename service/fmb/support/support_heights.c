@@ -1,4 +1,4 @@
-/* Contact and box of a pair with a hull that overlaps, in doubles.
+/* Contact and box of an overlapping pair by its vertices, in doubles; of frames without a radius.
  *
  * Each end is the optimum of the linear program of programs.c: the greatest h over the origin,
  * where h is linear in the vertices of A and B and in the time, with h = +-t / T for the contact
@@ -13,9 +13,9 @@
  *
  *   Outer: h <= n0 over the origin if no vertex of D is above the plane. For any n, the greatest
  *   h - n . x over the vertices of D is an upper bound. It is one support of A in the direction
- *   n + e, one of B in -n, and sums: off by at most error (|n| + 1), where error (support_pair.h)
- * is 32 u reach for 28 u reach that support_pair.h derives; a quarter more covers the five sums.
- * The height adds a position and a path, each off by at most 4 u of itself.
+ *   n + e, one of B in -n, and sums: off by at most error (|n| + 1), where error is 32 u reach, and
+ *   support_pair.h derives 28 u reach; a quarter more covers the five sums. The height adds a
+ *   position and a path, each off by at most 4 u of itself.
  *
  *   Inner: let the exact points be p_i + d_i, |d_i| <= error, their exact heights h_i + g_i, and
  *   b_i the coordinates of the origin in their simplex, all >= 0. The exact height over the origin

@@ -1,4 +1,5 @@
-/* Pairs of frames by their vertices: pairs with a hull, and what slabs do not give of other pairs.
+/* Pairs of frames by their vertices: pairs with a hull or a radius, and what slabs do not give of
+ * other pairs.
  *
  * A box, a cuboid, a tetrahedron or a face is the hull of its 3 to 8 vertices. With M = { b - a }
  * for points a and b of the frames at time 0 and w the velocity of b relative to a, the set that
@@ -12,9 +13,10 @@
  * frame's vertices.
  *
  *   support_pair_set()        two placed frames as arrays of vertices, in body coordinates, and
- * bounds on the errors of everything computed below support_farthest()         the farthest point
- * of D in a direction support_point()           a point of D support_decision_begin()  verdict,
- * contact, box and gap, in steps (support_decision.h)
+ *                             bounds on the errors of everything computed below
+ *   support_farthest()        the farthest point of D in a direction
+ *   support_point()           a point of D
+ *   support_decision_begin()  verdict, contact, box and gap, in steps (support_decision.h)
  *
  * Accuracy of doubles. Let u = 2^-53, r the reach of a frame: the distance of its vertices from
  * the origin of its body is at most r. Rounding a direction n to body coordinates, R^T n, or a
@@ -34,8 +36,8 @@
  * covers underflow for |n| <= 2. The factor between 32 and 22 + 3.1 covers the rounding of the
  * bounds.
  *
- * Radii. All of this is about the cores of frames with a radius: the pair meets if and only if D
- * has a point at most the sum of the radii away from the origin (support_round.h).
+ * Radii. Of frames with a radius, all of this is about their cores. Such a pair meets if and only
+ * if the distance of D from the origin is at most the sum of the radii (support_round.h).
  *
  * A pair is usable if its reach is within (2^-200, 2^200): no product of four lengths overflows,
  * nor underflows to less than the bounds count. No shared state. */
@@ -70,7 +72,7 @@ struct support_pair {
     double drift[FMB_DIM_MAX];  /* (velocity of b - velocity of a) T, rounded */
     double reach, error;        /* as above */
     bool rounded;               /* a frame has a radius */
-    double radius[2];           /* bounds of the sum of both radii: lower and upper */
+    double radius[2];           /* lower and upper bound of the sum of both radii */
 };
 
 /* Sets a checked pair. It points to frames and into itself: not to be copied. */

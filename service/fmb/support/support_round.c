@@ -8,9 +8,10 @@
 
 /* ---- Distance ----
  *
- * Lower bound: n . x >= least - 4 error for all x of D and the direction n of the search
- * (support_search.c); its length is 1 up to 6 u, which moves the value by less than another error.
- * The sharper bound takes the least n . x from support_farthest(), which is off by one error |n|.
+ * Lower bound: n . x >= least - 4 error for all x of D, n the direction of the search
+ * (support_search.c). The length of n is 1 up to 6 u, which changes the bound by less than another
+ * error. The sharper bound takes the least n . x from support_farthest(), which is off by one error
+ * |n|.
  *
  * Upper bound: the weights of the search, none of them below 0 and divided by their sum, give a
  * point of D. Each of its at most 4 terms is off by error, and computing the sum by 10 u reach,
@@ -47,7 +48,7 @@ double support_round_far(const struct support_pair *pair)
     return pair->radius[1] + 2 * support_separating_distance(pair);
 }
 
-/* GAP_FAR: farther than far less 4 error. */
+/* GAP_FAR: the distance is greater than far - 4 error. */
 enum fmb_verdict support_round_verdict(const struct support_pair *pair, enum fmb_verdict cores,
                                        const struct support_nearest *nearest)
 {
@@ -65,18 +66,20 @@ enum fmb_verdict support_round_verdict(const struct support_pair *pair, enum fmb
 
 /* ---- Contact in doubles ----
  *
- * Times are fractions tau of the window, counted from the edge at which the search begins. The
- * offset at tau is the one at the edge plus tau times a drift: two more roundings, which the error
- * of the pair covers (support_pair.h counts 4.1 u |offset| and 5.1 u |drift| of its 32 u).
+ * Times are fractions tau of the window, counted from the end of the window at which the search
+ * begins, its edge. The offset at tau is that at the edge plus tau times a drift: two more
+ * roundings, which the error of the pair covers (support_pair.h counts 4.1 u |offset| and 5.1 u
+ * |drift| of its 32 u).
  *
- * Method. While the nearest point p of D stays on the same face, the distance of the cores changes
- * as that of p, moved by the part of the drift that is orthogonal to the face: the time at which it
- * is R is the root of a quadratic equation. The face at that time is looked for again.
+ * Method. While the nearest point p of D stays on the same face, the distance of the cores is |p +
+ * tau w|, w the component of the drift orthogonal to the face. It equals R at a root of a quadratic
+ * equation. A search at that time finds the face there, and the step is repeated.
  *
- * Proof. The end is between a time up to which the frames are apart and one at which they meet, or
- * from which on they are apart; both are within the limit. */
+ * Proof. The end of the contact is between a time up to which the frames are apart, and a time at
+ * which they meet or from which on they are apart. The two times differ by at most the limit. */
 
-/* Of the window, less than fmb.h allows, for the roundings of seconds. */
+/* The limit on an end, relative to the window. fmb.h allows 1e-12; the remainder covers the
+ * rounding of seconds. */
 static const double contact_limit = 0.9e-12;
 
 enum { LOOKS_MAX = 16 };
@@ -87,8 +90,8 @@ struct slice {
     struct support_nearest nearest;
 };
 
-/* Searches at one time, first near the direction found last. Returns the verdict that is proved, or
- * 0. */
+/* Searches for the nearest point at one time, starting from the direction found last. Returns the
+ * verdict that is proved, or 0. */
 static enum fmb_verdict look(struct slice *slice, double tau)
 {
     const struct support_pair *pair = &slice->pair;
@@ -102,8 +105,8 @@ static enum fmb_verdict look(struct slice *slice, double tau)
     return support_round_verdict(pair, cores, &slice->nearest);
 }
 
-/* Returns how much later the distance is R, if the nearest point stays on its face; INFINITY if
- * there is no face. */
+/* Returns the fraction of the window after which the distance is R if the nearest point stays on
+ * its face; INFINITY if there is no face. */
 static double time_to_contact(const struct slice *slice)
 {
     const struct support_nearest *nearest = &slice->nearest;
@@ -133,9 +136,9 @@ static double time_to_contact(const struct slice *slice)
     return root > 0 ? square / (sqrt(root) - b) : -b / a;
 }
 
-/* Returns whether the frames, which are apart at the time of the last look, are certainly apart at
- * all times before (1) or after (-1): as the direction n of the search says, since n . x changes by
- * n . drift. 0: not certain. */
+/* Returns 1 if the frames are certainly apart at all times before the last one searched, -1 if at
+ * all times after it, 0 if neither is certain. The direction n of the search proves it, since n . x
+ * changes by n . drift. In: the frames are apart at that time. */
 static int side_of(const struct slice *slice)
 {
     const double speed = vec3_dot(slice->nearest.direction, slice->drift);
@@ -143,10 +146,10 @@ static int side_of(const struct slice *slice)
     return speed < -error ? 1 : speed > error ? -1 : 0;
 }
 
-/* Sets *guess to a time near the one at which the frames meet, or to NAN, and *apart to whether
- * they are apart at the edge. Returns a time up to which they are apart, at most contact_limit
- * before they meet; 0 if they meet at the edge; NAN if doubles do not give it. In: they meet at
- * some time. */
+/* Sets *guess to a time near the first one at which the frames meet, or to NAN, and *apart to
+ * whether they are certainly apart at the edge. Returns a time up to which they are apart, at most
+ * contact_limit before they meet; 0 if they meet at the edge; NAN if doubles do not give it. In: a
+ * pair that meets at some time. */
 static double find_end(struct slice *slice, double *guess, bool *apart)
 {
     double tau = 0, out = 0, in = 1, root = 0;
@@ -208,7 +211,7 @@ bool support_round_contact(const struct support_pair *pair, struct support_round
 
 /* ---- Contact in exact numbers ---- */
 
-/* Begins to compare the distance at a time with the radii. */
+/* Begins to compare the distance at a time with the sum of the radii. */
 static void begin_slice(struct support_round_times *times, double time)
 {
     times->frames.duration = time;
@@ -218,7 +221,7 @@ static void begin_slice(struct support_round_times *times, double time)
     times->programs = programs_begin_nearest(&times->sliced, true, toward);
 }
 
-/* Begins the search for an end, whose time is not known. */
+/* Begins the search for an end whose time is not known. */
 static void begin_end(struct support_round_times *times, int end)
 {
     const double duration = times->pair->frames->duration;
@@ -241,7 +244,8 @@ static double next_time(const struct support_round_times *times)
     return times->out + 0.5 * (times->in - times->out);
 }
 
-/* A guess that a time tried contradicts moves to the other side of that time. */
+/* If the result at a time tried contradicts the guess, moves the guess to the other side of that
+ * time. */
 static void move_guess(struct support_round_times *times, double tried, bool meets)
 {
     const double sign = times->end ? -1 : 1;
@@ -252,8 +256,8 @@ static void move_guess(struct support_round_times *times, double tried, bool mee
     *guess = tried + (meets ? -sign : sign) * times->near;
 }
 
-/* Goes on until a time has to be tried. Returns false if both ends are known. What is bisected is
- * not shorter than the limit, far more than rounding moved the end that is inside. */
+/* Begins the next time to be tried. Returns false if both ends are known. An interval is bisected
+ * only while it is longer than the limit, which is far more than the rounding of `inside`. */
 static bool try_next(struct support_round_times *times)
 {
     const double duration = times->pair->frames->duration;
@@ -309,24 +313,24 @@ void support_round_times_end(struct support_round_times *times)
 
 /* ---- Box ----
  *
- * A coordinate of the farthest vertex along an axis is that of a vertex without rounding if the
- * frame is not turned and its vertices are exact; else it is off by support_view_farthest()'s
- * bound. Sums are rounded outward. */
+ * The coordinate of the farthest vertex along an axis is exact if the frame is not turned and its
+ * stored vertices are exact; otherwise it is off by the bound of support_view_farthest(). Sums are
+ * rounded outward. */
 
 static double sum_up(double x, double y)
 {
     return interval_sum(interval_of(x), interval_of(y)).high;
 }
 
-/* An upper bound of velocity t over the contact. */
+/* Returns an upper bound of velocity times t over the contact. */
 static double path_up(double velocity, const double contact[2])
 {
     const double path = fmax(velocity * contact[0], velocity * contact[1]);
     return path == 0 || velocity == 0 ? path : path + fabs(path) * 0x1p-52 + 0x1p-1074;
 }
 
-/* The greatest coordinate of a frame over the contact along an axis, or its negative. Numbers near
- * the largest double are scaled, so that no sum overflows. */
+/* Returns the greatest sign times coordinate of a frame along an axis over the contact. Numbers
+ * near the largest double are scaled, so that no sum overflows. */
 static double end_of(const struct support_view *view, int axis, double sign,
                      const double contact[2])
 {
@@ -362,12 +366,12 @@ void support_round_box(const struct support_pair *pair, const double contact[2],
 
 /* ---- Gap ----
  *
- * The witness points move by the radii along the line between them, of length d. Its direction m is
- * off by 2 u times their coordinates over d, and so the points by that times a radius; as d >= R
- * for separated frames, by less than 4 u of the coordinates. With the roundings of their own
- * coordinates, the upper bound grows by at most 8 u of the sum of coordinates and radii. Where that
- * is not small beside the limit on the width, the limit that the cores' gap was held to (0.9 of
- * fmb.h's) leaves more room than this. */
+ * The witness points move towards each other by the radii, along the line between them, of length
+ * d. The direction of the line is off by 2 u times their coordinates over d, so a point is off by
+ * that times its radius: by less than 4 u of the coordinates, since d >= R for separated frames.
+ * With the rounding of their own coordinates, the upper bound grows by at most 8 u of the sum of
+ * coordinates and radii. The gap of the cores was held to 0.9 of the limit of fmb.h on the width;
+ * the remaining tenth is more than this. */
 void support_round_gap(const struct frame_pair *frames, int exponent, enum fmb_verdict verdict,
                        struct fmb_gap *gap)
 {

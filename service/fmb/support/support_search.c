@@ -1,15 +1,18 @@
-/* The verdict of a pair with a hull in doubles, and the point of D next to the origin.
+/* The verdict of a pair by its vertices, in doubles, and the point of D nearest to the origin.
  *
  * Method: gap_simplex.h. The search itself may be wrong in any way; what it claims is proven:
  *
- *   SEPARATED    by a direction n of unit length up to 6 u. The least n . x over D is minus the
- *                greatest of support_farthest() for -n, which is off by error |n|; the length moves
- * it by 6 u reach, less than another error. It is taken from the point p that was found, as n . p:
- * the point and the value of its vertices are each off by one more error. So all of D has n . x >=
- * n . p - 4 error. OVERLAPPING  by a simplex with vertices p_0 to p_dim in D: the origin is inside
- * if all coordinates of the origin, ratios of determinants of dim of the points, certainly are of
- * one sign. Then it is in the interior of D, and that is the union of the interiors of M + t w if M
- * has a volume: if a frame is solid, or the points are all of one time.
+ *   SEPARATED
+ *       by a direction n of unit length up to 6 u. The least n . x over D is minus the greatest of
+ *       support_farthest() for -n, which is off by error |n|; the length moves it by 6 u reach,
+ *       less than another error. It is taken from the point p that was found, as n . p: the point
+ *       and the value of its vertices are each off by one more error. So all of D has n . x >=
+ *       n . p - 4 error.
+ *   OVERLAPPING
+ *       by a simplex with vertices p_0 to p_dim in D: the origin is inside if all coordinates of
+ *       the origin, ratios of determinants of dim of the points, certainly are of one sign. Then it
+ *       is in the interior of D, and that is the union of the interiors of M + t w if M has a
+ *       volume: if a frame is solid, or the points are all of one time.
  *
  * The error of a determinant of points p, q, r, each within e = error of an exact point of D. With
  * L_p = |p| + e and so on, moving the points by e changes it by at most

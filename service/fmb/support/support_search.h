@@ -1,4 +1,5 @@
-/* Pairs with a hull in doubles. What their bounds do not prove stays open. No shared state. */
+/* Pairs by their vertices, in doubles. What the bounds do not prove is left open. Of frames with a
+ * radius, verdicts, contacts and boxes are those of the cores. No shared state. */
 #ifndef FMB_SUPPORT_SEARCH_H
 #define FMB_SUPPORT_SEARCH_H
 
