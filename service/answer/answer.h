@@ -69,16 +69,16 @@ const char *answer_job_begin(struct answer_job *job, enum answer_kind kind,
 
 /* Checks the query; or finds a few bodies; or makes a few frames; or decides one block of pairs in
  * doubles, or one pair of frames in exact arithmetic, or performs one step of a pair with a hull or
- * of a certificate. Usually takes microseconds, a millisecond for the worst block, and milliseconds
- * for the worst pair (fmb.h). A query that is refused gets a status and a detail that names the
- * field, such as "b.numbers[4]: not a finite number"; it adds no body to the cache. On input: a job
- * that was begun; the same answerer in each step of a query, which must exist until the query is
- * complete or abandoned. Returns whether the result is complete. */
+ * a radius, or of a certificate. Usually takes microseconds, a millisecond for the worst block, and
+ * milliseconds for the worst pair (fmb.h). A query that is refused gets a status and a detail that
+ * names the field, such as "b.numbers[4]: not a finite number"; it adds no body to the cache. On
+ * input: a job that was begun; the same answerer in each step of a query, which must exist until
+ * the query is complete or abandoned. Returns whether the result is complete. */
 bool answer_job_step(struct answer_job *job, struct answerer *answerer);
 
-/* Whether a pair query decides at most one pair of frames that are no hulls, as all queries of
- * handles that are not held. The remaining steps then take as long as that pair. On input: as for
- * answer_job_step(). */
+/* Whether a pair query decides at most one pair of frames without hulls and radii, as all queries
+ * of handles that are not held. The remaining steps then take as long as that pair. On input: as
+ * for answer_job_step(). */
 bool answer_job_is_short(const struct answer_job *job, const struct answerer *answerer);
 
 /* Whether at least one pair of a scene has been answered. */

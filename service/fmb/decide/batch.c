@@ -11,8 +11,8 @@
  *   3. put_verdicts()   writes the results; pairs that are still unsure, and contacts that the
  *      put_contacts()   filter does not give, are decided one by one (certified.h) or left open
  *   4. put_all_boxes()  runs the filter for boxes on the pairs in contact
- *   5. put_unfiltered() decides or refuses the pairs that the filter does not take; for hulls it
- *                       first applies the filter to the cuboids that contain them
+ *   5. put_unfiltered() decides or refuses the pairs that the filter does not take; for hulls and
+ *                       radii it first applies the filter to what contains them (kernel.h)
  *   6. find_far()       skips gaps that are surely greater than wanted; put_gap() computes the
  *      put_gap()        others
  *
@@ -61,7 +61,7 @@ struct batch_block {
     double contact[BLOCK + KERNEL_LANES][2];
     bool far[BLOCK];  /* by position relative to first: the gap is surely greater than wanted */
     int singles;      /* pairs decided one by one so far */
-    unsigned scanned; /* the cost of pairs with a hull so far, in vertices */
+    unsigned scanned; /* the cost of pairs with a hull or a radius so far, in vertices */
     enum fmb_status status; /* of the first pair refused */
 };
 
@@ -286,12 +286,12 @@ static void put_nothing(const struct fmb_batch *batch, size_t i)
     put_no_box(batch, i);
 }
 
-/* The largest cost of the pairs with a hull of a block, if the time of a call is bounded: of some
- * hundred microseconds. */
+/* The largest cost of the pairs with a hull or a radius of a block, if the time of a call is
+ * bounded: some hundred microseconds. */
 enum { SCANNED_MAX = 1 << 15 };
 
-/* Returns the cost of a pair with a hull in doubles, in vertices: a verdict takes a few scans of
- * all, an end of its contact or box as many. */
+/* Returns the cost of a pair with a hull or a radius in doubles, in vertices: a verdict takes a few
+ * scans of all vertices, and so does each end of contact and box. */
 static unsigned cost_of(const struct fmb_batch *batch, const struct fmb_prepared *const pair[2])
 {
     return (pair[0]->frame->vertex_count + pair[1]->frame->vertex_count + 16) *
@@ -534,8 +534,8 @@ static enum fmb_status refusal(const struct fmb_prepared *const pair[2])
                                                                             : FMB_NOT_FINITE;
 }
 
-/* Returns whether pair k has a hull, and the cuboids that contain its hulls are certainly
- * separated. */
+/* Returns whether pair k has a hull or a radius, and what contains its frames in the filter
+ * (kernel_kind_of_bounds()) is certainly separated. */
 static bool bounds_are_separated(const struct batch_block *block, const struct batch_job *job,
                                  size_t k)
 {

@@ -19,9 +19,10 @@
  * these do not give within the limits of fmb.h in integers.
  *
  * What needs more than 512 bits is left to the programs (support_decision.h), which work in steps:
- * the verdict, ends of contact and box, and the gap; so is everything of a pair with a hull. Which
- * of these gives a result depends on the numbers of the pair only, so that every caller gets the
- * same bits. The error bounds are derived in slabs.c, slabs_lanes.h, BOXES.md and contact.c. */
+ * the verdict, ends of contact and box, and the gap. Pairs with a hull or a radius are decided
+ * there from the beginning. Which of these gives a result depends on the numbers of the pair only,
+ * so that every caller gets the same bits. The error bounds are derived in slabs.c, slabs_lanes.h,
+ * BOXES.md and contact.c. */
 #include "certified.h"
 
 #include "gap.h"
@@ -262,8 +263,8 @@ static struct frame_pair pair_of(const struct fmb_prepared *a, const struct fmb_
     return (struct frame_pair){{a->frame, a->placement}, {b->frame, b->placement}, duration};
 }
 
-/* Begins the programs for the parts of an answer that are missing: for a pair without a hull, they
- * give the tightest ends. Returns whether these parts are complete. */
+/* Begins the programs for the parts of an answer that are missing. Neither frame is a hull or has a
+ * radius, so the programs give the tightest ends. Returns whether these parts are complete. */
 static bool begin_program(struct certified *certified, unsigned missing)
 {
     static const struct fmb_answer none;

@@ -9,7 +9,7 @@
  * box: from what is left of the edges and where they cross, in doubles (box_clip.h) or in integers
  *   (limbs_box.h).
  * gap: given the verdict, in steps of its own (gap.h).
- * What needs more than 512 bits, and pairs with a hull: the programs (support_decision.h).
+ * What needs more than 512 bits, and pairs with a hull or a radius: support_decision.h.
  *
  * Contact and box are computed as two enclosures: the outer one surely contains the exact value,
  * the inner one is surely contained in it. The answer is the outer one. It is given only if the two
@@ -69,11 +69,13 @@ struct certified {
  * In:  want      bits of FMB_WANT_; the contact only with FMB_WANT_TIMES
  *      farthest  a gap that is surely greater may have bounds of NAN
  *      effort    SUPPORT_QUICK: bounded, takes tens of microseconds at most and allocates nothing:
- * a slab takes at most 1,000 products of limbs (most take 100 to 300), and a pair has at most
- * SLABS_MAX slabs. SUPPORT_PROGRAMS: the method exact *answer   all 0 Returns whether it is
- * complete, with *answer set. If not, a bounded decision would need more than it is allowed, and
- * has ended. For any other decision, call certified_step() with the same answer until it returns
- * true, or certified_end() to abandon it. */
+ *                a slab takes at most 1,000 products of limbs (most take 100 to 300), and a pair
+ *                has at most SLABS_MAX slabs. SUPPORT_PROGRAMS: the method exact
+ *      *answer   all 0
+ *
+ * Returns whether it is complete, with *answer set. If not, a bounded decision would need more than
+ * it is allowed, and has ended. For any other decision, call certified_step() with the same answer
+ * until it returns true, or certified_end() to abandon it. */
 bool certified_begin(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                      unsigned want, double farthest, enum support_effort effort,
                      struct certified *out, struct fmb_answer *answer);

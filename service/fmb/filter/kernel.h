@@ -81,8 +81,8 @@ static inline enum kernel_kind kernel_kind_of(const struct fmb_prepared *a,
     return kinds.moving && kernel_pair_drifts(a, b) ? kinds.drifting : kinds.at_rest;
 }
 
-/* kernel_kind_of() with each hull replaced by the cuboid that contains it, and a radius taken for
- * an error. If the kernel separates these, the frames are separated. */
+/* kernel_kind_of() with each hull replaced by the cuboid that contains it, and each radius added to
+ * the error of its frame. If the kernel separates these, the frames are separated. */
 static inline enum kernel_kind kernel_kind_of_bounds(const struct fmb_prepared *a,
                                                      const struct fmb_prepared *b, double duration,
                                                      bool *swapped)

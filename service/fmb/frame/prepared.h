@@ -7,7 +7,7 @@
  *
  * The numbers of a hull are those of a cuboid that contains it: its box in body coordinates,
  * placed. Those of a frame with a radius are those of its core, and the radius is part of the
- * error: what is certainly separate with this error is separate.
+ * error: frames that are certainly separated with this error are separated.
  *
  * The summary holds, from its least significant bit: the sizes of components 0, 1 and 2, 16 bits
  * each, then the flags below. A size is the 16 most significant bits of a double, rounded up.
@@ -25,7 +25,7 @@
  *   slack       bounds the distance of each vertex from the rounded one of origin and component; 0:
  *               those are exact
  *   spread      slack and radius: bounds the distance of each point from that rounded core
- *   turn_error  what a rotation that rounds adds to either
+ *   turn_error  what a rotation that rounds adds to slack and to spread
  *   core_reach  the reach without the radius
  *   size        largest magnitude in each component */
 #ifndef FMB_PREPARED_H
