@@ -15,10 +15,10 @@
  *
  * A common point comes as weights of vertices: certificate_check_weights.c.
  *
- * Frames with radii, R their sum. All of this is about their cores: N . (b - a) >= g > 0 at all
- * times, so that their distance is at least g / |N|. g > R |N|: SEPARATED. g >= R |N|, and points
- * of both cores that are R or less apart at some time: TOUCHING. Points that are less than R apart:
- * OVERLAPPING.
+ * Frames with radii, R > 0 their sum. For points a and b of the cores, let N . (b - a) >= g > 0 at
+ * all times of the window; then the distance of the cores is at least g / |N|. SEPARATED: g > R
+ * |N|. TOUCHING: g >= R |N|, and two points of the cores are at most R apart at some time.
+ * OVERLAPPING: two points of the cores are less than R apart at some time.
  */
 #include "certificate_check.h"
 

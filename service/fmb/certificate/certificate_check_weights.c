@@ -6,8 +6,9 @@
  * vertices (Rockafellar, Convex Analysis, theorem 6.9), which is part of that of the frame if both
  * have the same affine hull.
  *
- * Of frames with radii, the points of both cores may be different: |b - a| is compared with the sum
- * of the radii. A weight of each frame that is not stated then follows from the others.
+ * Of frames with radii, the points a and b of the two cores may differ: |b - a| is compared with
+ * the sum of the radii. Then at most one weight of each frame may be left out, and follows from the
+ * others.
  *
  * Weights that are not stated are unknowns of linear equations: the weights of each frame sum to 1,
  * and both frames have the same point. Gaussian elimination has to leave exactly one solution. */
@@ -125,7 +126,8 @@ static void substitute(struct check_proof *proof, int k, int e)
     mpq_clear(factor);
 }
 
-/* Solves equation k, one of the first count, for unknown k. Returns false if none contains it. */
+/* Finds an equation among k, ..., count - 1 that contains unknown k, moves it to position k and
+ * solves it for this unknown. Returns false if there is none. */
 static bool eliminate(struct check_proof *proof, int k, int count)
 {
     int from = k;
@@ -141,8 +143,8 @@ static bool eliminate(struct check_proof *proof, int k, int count)
     return true;
 }
 
-/* Returns the sign of |b - a| less the sum of the radii: what is left of the equations of the axes
- * is b - a. */
+/* Returns the sign of |b - a| minus the sum of the radii. After the elimination, the right-hand
+ * sides of the equations of the axes are b - a, up to a common sign. */
 static int compare_radius(struct check_proof *proof)
 {
     mpq_t square, of_axis;

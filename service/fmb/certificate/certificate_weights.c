@@ -16,10 +16,11 @@
  * If the equations leave a row without vertices in which the drift is not 0, tau follows from this
  * row, for example if two plates pass through each other's plane. The time is then not rounded.
  *
- * Of frames with radii, the weights of each frame sum to 1, and the two points are at most the sum
- * of the radii apart. If they are nearer, the weights are rounded as long as they stay so; one of
- * each frame follows from its sum. Otherwise the frames touch, and the weights are those of the
- * proof.
+ * Frames with radii. The equations are only that the weights of each frame sum to 1, so that one
+ * weight of each frame follows from the others. The two points are at most the sum of the radii
+ * apart. If they are nearer than that, the frames overlap, and the weights are rounded to the least
+ * number of bits tried that keeps the points that near. Otherwise the frames touch, and the weights
+ * are stated as in the proof, unrounded.
  *
  * The elimination is that of Bareiss (Mathematics of Computation 22, 1968): the numbers remain
  * integers, minors of the matrix, and each step divides by the previous pivot without remainder. */
@@ -211,8 +212,8 @@ static bool follow_positive(struct certificate_weights *w, const mpq_t tau)
     return true;
 }
 
-/* Whether the points of frames with radii, with these weights and at this fraction of the window,
- * are nearer than the sum of the radii. The weights that follow are set. */
+/* Sets the weights that follow from the others. Returns whether the points of frames with radii,
+ * with these weights and at this fraction of the window, are nearer than the sum of the radii. */
 static bool are_near(struct certificate_weights *w, const mpq_t tau)
 {
     const struct support_integers *integers = w->proof->integers;

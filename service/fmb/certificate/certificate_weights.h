@@ -23,8 +23,8 @@ struct certificate_weights {
     const struct programs_proof *proof;
     double duration;
     unsigned count, next;
-    bool rounded; /* frames with radii */
-    bool exact;   /* the stated weights are those of the proof: proven over its total */
+    bool rounded; /* a frame has a radius */
+    bool exact;   /* the weights are stated unrounded: proven over the total of the proof */
     int dim, rows, rank;
     struct certificate_weight weight[WEIGHTS_MAX]; /* the greatest first */
     mpz_t row[WEIGHTS_ROWS][WEIGHTS_COLUMNS];      /* last two: sum, and the term of the drift */
@@ -33,8 +33,12 @@ struct certificate_weights {
     mpq_t time; /* of the point, seconds */
 };
 
-/* Begins with a complete proof of a pair that meets. rounded: of frames with radii.
- * certificate_weights_end() frees what is allocated. */
+/* Begins to shorten the weights of a complete proof of a pair that meets.
+ * certificate_weights_end() frees what is allocated.
+ *
+ * In:  proof     must outlive the weights
+ *      rounded   a frame has a radius
+ *      duration  of the window, seconds */
 void certificate_weights_begin(const struct programs_proof *proof, int dim, bool rounded,
                                double duration, struct certificate_weights *out);
 
