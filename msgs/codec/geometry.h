@@ -16,10 +16,12 @@ struct geometry_shape {
 struct geometry_shape geometry_shape(int code);
 int geometry_code(struct geometry_shape shape);
 
-/* Number of numbers of a frame in a body: of its radius, if it has one; of origin or centre, and
- * components; or of its vertices. code: a value of placement_t.shapes. vertices: the number of
- * them; read for hulls only, since that of other shapes is fixed. 0: there is no such shape in this
- * dimension. */
+/* Returns how many numbers a frame has in a body: the radius, if it has one, and either origin or
+ * centre and components, or the vertices. 0: there is no such shape in this dimension.
+ *
+ * In:  code      a value of placement_t.shapes
+ *      vertices  the number of vertices; read for hulls only, since that of other shapes is fixed
+ */
 int64_t geometry_number_count(int dim, int code, int32_t vertices);
 
 /* A body that is given by its handle. In: dim from 0 to 3. */
