@@ -18,11 +18,11 @@
  * magnitude up to 2^53 - 1; bodies of one group are never tested against each other. A scene may
  * have "label", which is for people, like the names of bodies.
  *
- * Each frame may have "radius", 0 or more: it is the set of points within that distance of the
- * shape, so that a box is larger than its size by the radius on every side. There are three more
- * shapes, centred at 0: a sphere, of a radius; a capsule, of a radius and of the length of its core
- * along the last axis; and a cylinder about z, of a radius and a length, in 3D. A cylinder is a
- * hull of so many "sides" (16) that contains it (enclosure.h).
+ * Each frame may have "radius", 0 or more: it is then the set of points within that distance of the
+ * shape. A box, for example, extends beyond its size by the radius on every side. There are three
+ * more shapes, centred at 0: a sphere, with "radius"; a capsule, with "radius" and the "length" of
+ * its core along the last axis; and in 3D a cylinder about z, with "radius" and "length". A
+ * cylinder is read as a hull that contains it (enclosure.h), with "sides" (default 16).
  *
  * dim (2 or 3) and bodies are required, and each body's id. A body has frames, or is one frame
  * itself. A frame is a box of full size, or has components. All numbers are read as doubles, ids
@@ -39,9 +39,9 @@
  * then, as in frames, it is in body coordinates. In frames, only boxes, capsules and cylinders have
  * a position and an orientation, spheres a position: the pose of the shape in its body. A box that
  * is turned there becomes a cuboid, whose numbers are rounded (turned_box.h), as are those of a
- * capsule that is moved or turned. "orientation_xyzw": [x,y,z,w] may stand in place of orientation
- * in 3D; in pairs and ignore, the name of a body in place of its id, unless another body has it
- * too.
+ * capsule that is moved or turned. In 3D, "orientation_xyzw": [x,y,z,w] may stand in place of
+ * orientation. In pairs and ignore, the name of a body may stand in place of its id, unless another
+ * body has the same name.
  *
  * An input holds one or more such objects, one after the other. */
 #ifndef JSON_H

@@ -45,8 +45,8 @@ size_t scene_body_bytes(const struct given_frame *given, size_t count);
 enum fmb_status scene_make_body(struct owned_scene *scene, const struct given_frame *given,
                                 size_t count, const struct fmb_body **out, size_t *bad);
 
-/* Prints how far the hulls of a file extend beyond its cylinders at most. outside: 0: it has none.
- */
+/* Prints how far the hulls of a file extend beyond its cylinders at most. outside: that length, or
+ * 0 if there are no cylinders. */
 void scene_report_outside(const char *file, double outside);
 
 /* Frees what the scene owns, and sets it to {0}, an empty scene. */

@@ -38,10 +38,9 @@ struct log_cut_counts {
     int64_t damages, damaged_bytes;
 };
 
-/* Reports damage on stderr. Returns false if a file cannot be opened, read or written, which was
- * reported too; the output was then not written. Nor is it if no event was chosen: kept_events is
- * 0.
- */
+/* Writes the chosen events, and reports damage on stderr. Returns false if a file cannot be opened,
+ * read or written, which is reported too; no output is then written. Nor is it if no event is
+ * chosen: kept_events is 0. */
 bool log_cut(const struct log_cut_options *options, struct log_cut_counts *counts);
 
 #endif

@@ -10,8 +10,9 @@ box, and how far apart they are. Decided in process, or by the service fmbd on a
     for answer in scene.decide(duration=0):
         print(answer.names, answer.verdict)    # ('table', 'cube') touching
 
-Bodies are made by box(), cuboid(), tetrahedron(), face(), hull(), sphere(), capsule(),
-cylinder() and compound(), and queried by the methods of Scene. "pydoc3 fmb.hull" or "pydoc3 fmb.Scene" describes one of them.
+Bodies are made by box(), cuboid(), tetrahedron(), face(), hull(), sphere(), capsule(), cylinder() and
+compound(), and queried by the methods of Scene. "pydoc3 fmb.hull" or "pydoc3 fmb.Scene" describes one
+of them.
 
 fmb.h of libfmb defines shapes, verdicts, and the accuracy of numbers. Lengths may have any unit;
 times are in seconds, velocities per second; orientations are quaternions (w, x, y, z), in 2D (w, z),
@@ -356,8 +357,8 @@ def box(size: Array, centre: Optional[Array] = None, *, radius: float = 0) -> Bo
 
     size: (dim,), lengths of the edges, 0 or more
     centre: (dim,); None: 0
-    radius: of this shape and of each other one, 0 or more: the body is the set of points within this
-        distance of the shape. So a box is larger than its size by the radius on every side.
+    radius: 0 or more: the body is the set of points within this distance of the shape. A box extends
+        beyond its size by the radius on every side. Every other shape may have a radius too.
     """
     return _frame(_BOX, "size", size, ("dim",), "centre", centre, radius)
 
@@ -365,15 +366,19 @@ def box(size: Array, centre: Optional[Array] = None, *, radius: float = 0) -> Bo
 def sphere(radius: float, centre: Optional[Array] = None, *, dim: int = 3) -> Body:
     """A sphere, in 2D a disc.
 
+    radius: 0 or more
     centre: (dim,); None: 0
+    dim: 2 or 3; not used if there is a centre
     """
     return _frame(_HULL, "centre", [0] * _dim(dim) if centre is None else centre, ("dim",), "", None, radius)
 
 
 def capsule(radius: float, length: float, *, dim: int = 3) -> Body:
-    """The set of points within a radius of its core, a segment along the last axis, centred at 0.
+    """The set of points within a radius of a segment, its core, along the last axis and centred at 0.
 
-    length: of the core; the capsule is longer by twice the radius
+    radius: 0 or more
+    length: of the core, 0 or more; the capsule is longer by twice the radius
+    dim: 2 or 3
     """
     before, half = [0] * (_dim(dim) - 1), _from_0("length", length) / 2
     return hull([[*before, -half], [*before, half]], radius=radius)
@@ -383,7 +388,8 @@ def cylinder(radius: float, length: float, *, sides: int = 16) -> Body:
     """A hull of 2 * sides vertices that contains a cylinder about z, centred at 0. It extends beyond the
     cylinder by at most radius * (1 / cos(pi / sides) - 1).
 
-    sides: a multiple of 4, up to 512
+    radius, length: 0 or more
+    sides: a multiple of 4, from 4 to 512
     """
     if _int("sides", sides) not in range(4, _HULL_VERTICES_MAX // 2 + 1, 4):
         raise ValueError(f"sides: expected a multiple of 4 up to {_HULL_VERTICES_MAX // 2}, found {sides}")

@@ -43,7 +43,7 @@ void fmb_flat_body_free(struct fmb_flat_body *body); /* may be NULL */
 
 /* Makes a hull that contains a cylinder about z, centred at 0.
  * In:  radius, length  finite, 0 or more
- *      sides           a multiple of 4, to 512
+ *      sides           a multiple of 4, from 4 to 512
  * Out: vertices        [2 * sides][3]
  * Returns how far it extends beyond the cylinder at most: radius (1 / cos(pi / sides) - 1). */
 double fmb_flat_cylinder(double radius, double length, int sides, double *vertices);

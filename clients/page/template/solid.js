@@ -63,9 +63,9 @@ function hullOf(corners) {
     return { corners, triangles: triangles.filter((ends) => !ends.includes(undefined)), edges };
 }
 
-/* What lies within a radius of the convex hull of corners. Its surface is that of a sphere, in 2D a circle, of
- * which each point is moved to the corner that is farthest in its direction; a little beside it, so that none is
- * as far as another one. */
+/* The set of points within a radius of the convex hull of corners. Its surface is made of the points of a sphere,
+ * in 2D of a circle: each is moved by the corner that is farthest in its direction. The directions are shifted a
+ * little, so that no two corners are equally far. */
 function roundOf(corners, radius, dim) {
     const turns = dim === 2 ? 64 : 32, rows = dim === 2 ? 0 : turns / 2, out = { corners: [], triangles: [], edges: [] };
     const normalOf = (row, turn) => {
