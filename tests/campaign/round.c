@@ -1,7 +1,7 @@
-/* Families of shapes with a radius. Two ways to make them: two cores of whole numbers are put on
- * both sides of a plane whose normal has a whole length, then apart along it by the sum of the
- * radii, so that they touch; or the distance of any two cores is found in rational numbers, and the
- * radii are that but for rounding. */
+/* Families of shapes with a radius. They are made in two ways. Either two cores of integers are put
+ * on both sides of a plane whose normal has an integer length, then moved apart along the normal by
+ * the sum of the radii, so that they touch. Or the distance of any two cores is computed in
+ * rational numbers, and the sum of the radii is that distance up to rounding. */
 #include "round.h"
 
 #include <float.h>
@@ -18,7 +18,8 @@
 
 /* ---- Cores ---- */
 
-/* Makes a core a point, a segment or, of more than two components, a plate; or leaves it. */
+/* Reduces a core to a point, a segment or, if it has more than two components, a plate; or leaves
+ * it unchanged. */
 static void flatten(struct draw *draw, struct solid *solid)
 {
     const int left = draw_int(draw, 0, solid_count(solid) + 2);
@@ -32,7 +33,7 @@ static void flatten(struct draw *draw, struct solid *solid)
 
 /* ---- Exactly touching ---- */
 
-/* A whole vector whose length is whole. Returns that. */
+/* Draws a vector of integers whose length is an integer. Returns the length. */
 static double draw_whole_normal(struct draw *draw, const struct question *question, double *out)
 {
     static const double known[][3] = {{1, 0, 0}, {3, 4, 0}, {5, 12, 0}, {1, 2, 2}, {2, 3, 6},
@@ -53,7 +54,7 @@ static double draw_whole_normal(struct draw *draw, const struct question *questi
     return vector_length(known[which]);
 }
 
-/* Whole parts of a whole number, or all of it for one of both. */
+/* Divides an integer sum between both radii, in integers; or gives all of it to one. */
 static void share_radius(struct draw *draw, double radius, struct question *question)
 {
     const int how = draw_int(draw, 0, 3);
@@ -62,7 +63,7 @@ static void share_radius(struct draw *draw, double radius, struct question *ques
     question->b.radius = radius - part;
 }
 
-/* Numbers of a question that has no others are scaled exactly. */
+/* Multiplies all lengths of a question by a factor. */
 static void scale(double factor, struct question *question)
 {
     for (int side = 0; side < 2; side++) {
@@ -152,7 +153,7 @@ static bool has(const struct family *family, const struct cell *cell)
     return false;
 }
 
-/* Of any family of the amount that has the cell; 0: of any. */
+/* Draws a question of a family of this amount that has the cell; amount 0: of any amount. */
 static void draw_other(struct draw *draw, double amount, const struct cell *cell,
                        struct question *out)
 {

@@ -4,8 +4,8 @@
 
 #include "family.h"
 
-/* One table holds them all; NULL past the last. Each has all cells of its flags; family_draw()
- * draws. */
+/* Returns a family of the table of shapes with a radius; NULL past the last. Each has all cells of
+ * its flags; family_draw() draws. */
 const struct family *family_round_at(size_t index);
 
 /* The families of all tables, these last; NULL past the last. */

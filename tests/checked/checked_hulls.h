@@ -1,5 +1,5 @@
 /* Computes pairs by their vertices in numbers that carry bounds on their errors, and compares these
- * with the bounds of service/fmb/hull: what check_gap() does for gaps. */
+ * with the bounds of service/fmb/support: what check_gap() does for gaps. */
 #ifndef CHECKED_HULLS_H
 #define CHECKED_HULLS_H
 

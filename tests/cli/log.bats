@@ -83,7 +83,7 @@ field() {
     grep -Eqx ' +1 +1 +1 +1 +0.000 +0.000  \(too short\) +A' <<< "$output"
 }
 
-@test "each channel and type is counted by itself, in the order of the channels" {
+@test "each channel and type is counted separately, in the order of the channels" {
     zeros=000000000000
     for i in $(seq 0 199); do
         printf -v type '%016x' $((i % 2))

@@ -61,7 +61,7 @@ nothing='{"overlapping": 0, "touching": 0, "faces_a": 0, "faces_b": 0, "pairs": 
 }
 
 # bats test_tags=release
-@test "text is a summary" {
+@test "the output as text is a summary" {
     mesh a.obj b.obj
     ended 0
     said ''

@@ -703,7 +703,7 @@ refused() {
     said 'fmb: standard input: bodies[0].orientation: expected 2 numbers, found 4'
 }
 
-@test "shapes with a radius, named in pairs, and how far hulls extend beyond cylinders" {
+@test "scenes with radii, and pairs given by name, are answered; how far hulls extend beyond cylinders is reported" {
     query '{"dim": 3, "duration": 8, "bodies": [
       {"id": 1, "name": "ball", "shape": "sphere", "radius": 3},
       {"id": 2, "name": "other", "shape": "sphere", "radius": 4, "position": [2,3,6]},

@@ -100,7 +100,7 @@ triangle() {
     is '[false,["cuboid",null,"box",null,"box",[5,0,0]]]'
 }
 
-@test "cylinders are hulls, tight along the axes, and how far they extend beyond them is reported" {
+@test "cylinders become hulls, tight along the axes; how far these extend beyond them is reported" {
     link '<collision><geometry><cylinder radius="1" length="3"/></geometry></collision>'
     scene robot.urdf
     said 'fmb: robot.urdf: hulls enclose its cylinders, and extend beyond them by at most 0.0195914'

@@ -1,10 +1,10 @@
 /* Method. The squared distance of two cores is convex in time. Frames meet before a time if they
- * overlap over the window up to it; or if they touch over it, and did so before. Let x be the
- * nearest b - a of the cores over a part of the window, and no longer than the sum R of the radii r
- * and s. The core of a moved by x r / R and that of b by -x s / R meet just in points that both
- * frames have at a time of the least distance. Where the frames touch, these are all that they have
- * in common: each a + x r / R, as only x is so short. A linear programme (frames.h) finds their
- * times and their box. */
+ * overlap over the window up to it; or if they touch over that window, and did so before its end.
+ * Let x be the shortest b - a of the cores over a part of the window, no longer than the sum R of
+ * the radii r and s. The core of a moved by x r / R and that of b moved by -x s / R meet only in
+ * points that both frames contain at a time of the least distance. If the frames touch, these are
+ * all their common points: each is an a + x r / R, since no other b - a is as short as x. A linear
+ * program (frames.h) finds the times and the box of these points. */
 #include "rounded.h"
 
 #include <float.h>
@@ -13,7 +13,8 @@
 #include "frames.h"
 #include "world.h"
 
-/* Moves the cores by their shares of the nearest b - a, so that they meet. */
+/* Sets the shift that moves each core by its share of the shortest b - a, so that the cores meet.
+ */
 static void set_shift(const struct world *world, rational_vector nearest, struct frames_part *part)
 {
     mpq_t share;
