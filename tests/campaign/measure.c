@@ -6,8 +6,8 @@
 #include <time.h>
 
 #include "gap_check.h"
-#include "support_decision.h"
 #include "memory.h"
+#include "support_decision.h"
 
 /* Pairs of a batch: the methods are timed over all of them, one after the other, each decided once,
  * so that no branch is predicted from having seen the pair before. */

@@ -9,10 +9,10 @@
 
 #include "draw.h"
 #include "gap_check.h"
-#include "support_decision.h"
 #include "hull_draw.h"
 #include "question.h"
 #include "referee.h"
+#include "support_decision.h"
 
 /* The gap of a pair with this verdict, from its vertices. */
 static struct fmb_gap gap_of_vertices(const struct frame_pair *frames, enum fmb_verdict verdict)

@@ -7,10 +7,10 @@
 #include <math.h>
 
 #include "family.h"
-#include "support_decision.h"
-#include "programs.h"
 #include "oracle.h"
+#include "programs.h"
 #include "referee.h"
+#include "support_decision.h"
 
 /* Makes the body of a solid of one frame. Returns false if there are more, or numbers too large. */
 static bool make_body(const struct solid *solid, struct fmb_body *out)

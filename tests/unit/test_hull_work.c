@@ -23,8 +23,8 @@
 #include "certificate_text.h"
 #include "draw.h"
 #include "exact_work.h"
-#include "support_integers.h"
 #include "support.h"
+#include "support_integers.h"
 #include "work_steps.h"
 
 enum { VERTICES = FMB_HULL_VERTICES_MAX, NUMBERS = FMB_DIM_MAX * VERTICES };

@@ -6,12 +6,12 @@
 #include <math.h>
 
 #include "draw.h"
-#include "support_integers.h"
 #include "limbs_decide.h"
 #include "question.h"
 #include "referee.h"
 #include "slab_truth.h"
 #include "slabs.h"
+#include "support_integers.h"
 
 /* ---- Numbers of a span ---- */
 

@@ -3,9 +3,9 @@
  * shortens the weights of the common point. */
 #include "certificate_text.h"
 #include "certificate_weights.h"
-#include "support_search.h"
 #include "integer.h"
 #include "memory.h"
+#include "support_search.h"
 
 #include <math.h>
 #include <string.h>

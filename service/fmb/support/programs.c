@@ -75,11 +75,11 @@
  * exactly. */
 #include "programs.h"
 
-#include "support_search.h"
-#include "support_integers.h"
 #include "integer.h"
 #include "integer_simplex.h"
 #include "memory.h"
+#include "support_integers.h"
+#include "support_search.h"
 
 #include <math.h>
 

@@ -15,8 +15,8 @@
 #ifndef FMB_PROGRAMS_H
 #define FMB_PROGRAMS_H
 
-#include "support_pair.h"
 #include "support_integers.h"
+#include "support_pair.h"
 
 struct programs;
 

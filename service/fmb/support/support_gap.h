@@ -9,10 +9,10 @@
 #ifndef FMB_SUPPORT_GAP_H
 #define FMB_SUPPORT_GAP_H
 
-#include "support_pair.h"
 #include "polytope.h"
-#include "support_search.h"
 #include "support_integers.h"
+#include "support_pair.h"
+#include "support_search.h"
 
 /* A pair in doubles, and what its bounds need. */
 struct support_gap {

@@ -2,8 +2,8 @@
 #ifndef FMB_SUPPORT_INTEGERS_H
 #define FMB_SUPPORT_INTEGERS_H
 
-#include "support_pair.h"
 #include "limbs.h"
+#include "support_pair.h"
 
 #include <gmp.h>
 
