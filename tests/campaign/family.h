@@ -47,7 +47,7 @@ bool family_has_cell(const struct family *family, const struct cell *cell);
 void family_draw(const struct family *family, const struct cell *cell, struct draw *draw,
                  struct question *out);
 
-/* The same of a question. */
+/* The same for a question. */
 void family_pull_back(struct question *question);
 
 /* The article's distribution: all numbers uniform in [-100,100], T = 1, and no determinant of
