@@ -46,8 +46,9 @@ static struct frame_numbers numbers_of(const struct fmb_frame *frame)
     return out;
 }
 
-/* Returns "sphere" for a hull of one vertex with a radius, "capsule" for one of two at opposite
- * ends of the last axis, as they are read; else the name of the shape. */
+/* Returns "sphere" for a hull of one vertex with a radius; "capsule" for a hull of two opposite
+ * vertices on the last axis with a radius, in the order in which capsules are read; otherwise the
+ * name of the shape. */
 static const char *name_of(const struct fmb_frame *frame, const struct frame_numbers *given)
 {
     const int dim = frame->dim, last = dim - 1, count = (int) given->count;

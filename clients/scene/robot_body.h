@@ -1,5 +1,5 @@
-/* Links of a robot as bodies of the engine. Boxes, spheres and capsules are what they are;
- * cylinders are hulls that enclose them; a mesh is the hull of the vertices of its faces, or a hull
+/* Links of a robot as bodies of the engine. Boxes, spheres and capsules are exact. A cylinder
+ * becomes a hull that encloses it; a mesh becomes the hull of the vertices of its faces, or a hull
  * for each object. */
 #ifndef ROBOT_BODY_H
 #define ROBOT_BODY_H
