@@ -71,9 +71,10 @@ enum fmb_verdict support_round_verdict(const struct support_pair *pair, enum fmb
  * roundings, which the error of the pair covers (support_pair.h counts 4.1 u |offset| and 5.1 u
  * |drift| of its 32 u).
  *
- * Method. While the nearest point p of D stays on the same face, the distance of the cores is |p +
- * tau w|, w the component of the drift orthogonal to the face. It equals R at a root of a quadratic
- * equation. A search at that time finds the face there, and the step is repeated.
+ * Method. While the nearest point p of D stays on the same face, the distance of the cores after
+ * another time tau is |p + tau w|, w the component of the drift orthogonal to the face. It equals R
+ * at a root of a quadratic equation. A search near that time finds the face there, and the step is
+ * repeated. If the root is not between the bounds known so far, their middle takes its place.
  *
  * Proof. The end of the contact is between a time up to which the frames are apart, and a time at
  * which they meet or from which on they are apart. The two times differ by at most the limit. */
@@ -86,7 +87,7 @@ enum { LOOKS_MAX = 16 };
 
 struct slice {
     struct support_pair pair;
-    double edge[FMB_DIM_MAX], drift[FMB_DIM_MAX]; /* offset at the edge; into the window */
+    double edge[FMB_DIM_MAX], drift[FMB_DIM_MAX]; /* offset at the edge; its change from there */
     struct support_nearest nearest;
 };
 

@@ -22,10 +22,10 @@
  *       integers: its squared distance is rational (programs_compare_radius()).
  *   contact
  *       The distance d(t) of the cores at one time is convex in t, so the times of contact are an
- *       interval. In doubles, an end is the root of a quadratic equation, and a verdict on either
- *       side of it proves it. If doubles do not give an end, and always in the method exact, it is
- *       bisected by the exact sign of d(t) - R at times t that are doubles. Both give an end within
- *       the limit of fmb.h.
+ *       interval. In doubles, an end is the root of a quadratic equation, and searches at a time
+ *       on each side of it prove it. If doubles do not give an end, and always in the method
+ *       exact, it is bisected by the exact sign of d(t) - R at times t that are doubles. Both give
+ *       an end within the limit of fmb.h.
  *   box
  *       The intersection of the boxes of both frames over the contact. It contains the exact box
  *       and is not tight.
