@@ -299,7 +299,7 @@ static enum fmb_status set_box(const double *centre, const double *size, struct 
             return FMB_BAD_SIZE;
         out->component[axis][axis] = size[axis] + 0.0; /* never -0 */
         out->centre[axis] = centre ? centre[axis] : 0;
-        out->origin[axis] = out->centre[axis] - 0.5 * size[axis];
+        out->origin[axis] = out->centre[axis] - 0.5 * out->component[axis][axis];
     }
     return FMB_OK;
 }
