@@ -63,7 +63,7 @@ static void all_pairs_fail_where_certificates_are_wanted_and_nothing_answers(voi
                                           .placement_count = 3,
                                           .duration = 1,
                                           .want = FMB_WANT_CERTIFICATE}};
-    int queries[2];
+    size_t queries[2], bytes[2];
     for (int both = 0; both < 2; both++) {
         struct relay *relay = relay_new();
         relay->deaf = true;
@@ -74,11 +74,14 @@ static void all_pairs_fail_where_certificates_are_wanted_and_nothing_answers(voi
         pairs = 0;
         assert_false(answers_bus_scene(answers, &scene, count, &pairs));
         assert_int_equal(pairs, both ? 3 : 1);
-        queries[both] = relay->queries;
+        queries[both] = (size_t) relay->queries;
+        bytes[both] = relay->bytes;
         answers_bus_close(answers);
         relay_close(relay);
     }
-    assert_int_equal(queries[0], queries[1]);
+    /* However often it was repeated, it is one query. */
+    assert_true(queries[0] > 0 && queries[1] > 0);
+    assert_int_equal(bytes[0] * queries[1], bytes[1] * queries[0]);
 }
 
 int main(int argc, char **argv)
