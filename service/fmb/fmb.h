@@ -339,8 +339,10 @@ enum fmb_want {
  * bounds[1] is minus the smallest depth over all facets of the Minkowski difference of the two,
  * swept over the window; of a pair with a hull, of a polytope inside of it.
  *
- * Frames with a radius: the gap is that of their cores less both radii. The largest coordinate of a
- * vertex, here and in struct fmb_answer, is then that of the cores plus the radius of the frame.
+ * Frames with a radius: the gap is that of their cores less both radii, and each bound is proven as
+ * that of the cores is. An overlapping pair has no witness points, even if its cores are apart. The
+ * largest coordinate of a vertex, here and in struct fmb_answer, is then that of the cores plus the
+ * radius of the frame.
  *
  * Width. bounds[1] - bounds[0] is at most 1e-12 of the largest magnitude of a coordinate of any
  * vertex of either body over the window, plus 32 * 2^-1074. (In a window shorter than 2^-1000 s the
