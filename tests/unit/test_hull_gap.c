@@ -465,9 +465,10 @@ static void points_at_the_origin_have_the_direction_of_x(void **state)
 {
     static const double x[FMB_DIM_MAX] = {1};
     for (int dim = 2; dim <= 3; dim++) {
-        double zero[FMB_DIM_MAX] = {0}, memory[5 + 16];
+        double zero[FMB_DIM_MAX] = {0}, memory[64];
         struct fmb_body body;
         struct fmb_answer answer;
+        assert_true(fmb_hull_doubles(dim, 1) <= COUNT(memory));
         assert_int_equal(fmb_body_make_hull(dim, zero, (size_t) dim, memory, &body), FMB_OK);
         const struct fmb_placement at = {.body = &body};
         fmb_decide(fmb_method_default(), &at, &at, 0, FMB_WANT_GAP, &answer);
