@@ -46,8 +46,8 @@ void hull_of_shape(struct draw *draw, const struct family *family, const struct 
 /* ---- Equal ---- */
 
 /* The hull of a pair is drawn; the other solid is its copy, or any other shape. */
-void support_equal(struct draw *draw, const struct family *family, const struct cell *cell,
-                   struct question *out)
+void hull_equal(struct draw *draw, const struct family *family, const struct cell *cell,
+                struct question *out)
 {
     (void) family;
     posed_begin(cell, out);
@@ -123,8 +123,8 @@ void hull_in_plane(struct draw *draw, const struct family *family, const struct 
 }
 
 /* In one plane at the start, in the middle or at the end of the window only. */
-void support_parting(struct draw *draw, const struct family *family, const struct cell *cell,
-                     struct question *out)
+void hull_parting(struct draw *draw, const struct family *family, const struct cell *cell,
+                  struct question *out)
 {
     (void) family;
     const double when = draw_int(draw, 0, 2) / 2.0;
@@ -166,8 +166,8 @@ void hull_cloud(struct draw *draw, const struct family *family, const struct cel
 
 /* ---- Numbers of every size ---- */
 
-void support_exponents(struct draw *draw, const struct family *family, const struct cell *cell,
-                       struct question *out)
+void hull_exponents(struct draw *draw, const struct family *family, const struct cell *cell,
+                    struct question *out)
 {
     const int most = (int) family->amount;
     posed_begin(cell, out);

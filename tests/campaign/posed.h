@@ -44,7 +44,6 @@ void posed_draw_direction(struct draw *draw, const struct question *question, do
 void posed_meet_exactly(struct draw *draw, const double *direction, struct question *question);
 
 /* hulls.c */
-family_function hull_of_shape, support_equal, hull_in_plane, support_parting, hull_cloud,
-    support_exponents;
+family_function hull_of_shape, hull_equal, hull_in_plane, hull_parting, hull_cloud, hull_exponents;
 
 #endif

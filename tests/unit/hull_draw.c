@@ -32,8 +32,8 @@ static void make_hull(const struct solid *solid, struct shape_hull *out)
                      FMB_OK);
 }
 
-void support_replace(const struct question *question, unsigned which, struct shape_hull hull[2],
-                     struct pair *pair)
+void hull_replace(const struct question *question, unsigned which, struct shape_hull hull[2],
+                  struct pair *pair)
 {
     make_hull(&question->a, &hull[0]);
     make_hull(&question->b, &hull[1]);

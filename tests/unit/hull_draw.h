@@ -19,8 +19,8 @@ struct question hull_draw_question(struct draw *draw);
 
 /* Replaces bodies of a pair of the question by hulls of their vertices: bit 0, the first; bit 1,
  * the second. */
-void support_replace(const struct question *question, unsigned which, struct shape_hull hull[2],
-                     struct pair *pair);
+void hull_replace(const struct question *question, unsigned which, struct shape_hull hull[2],
+                  struct pair *pair);
 
 /* A pair of hulls of 1 to SMALL_VERTICES vertices, of small whole numbers, some moving. */
 struct hull_pair_draw {

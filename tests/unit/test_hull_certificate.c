@@ -47,7 +47,7 @@ static void shapes_by_their_vertices(void **state)
         char text[TEXT_SIZE];
         referee_ready(&question, &ready);
         assert_int_equal(pair_decide(fmb_method_default(), &ready.pair, 0, &answer), FMB_OK);
-        support_replace(&question, (unsigned) draw_int(&draw, 1, 3), hull, &ready.pair);
+        hull_replace(&question, (unsigned) draw_int(&draw, 1, 3), hull, &ready.pair);
         const enum fmb_verdict verdict = prove(&ready.pair, text);
         longest = strlen(text) > longest ? strlen(text) : longest;
         if (verdict != answer.verdict)

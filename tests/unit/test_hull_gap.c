@@ -34,7 +34,7 @@ static struct fmb_gap gap_of_hulls(const struct question *question, unsigned whi
     struct ready ready;
     struct shape_hull hull[2];
     referee_ready(question, &ready);
-    support_replace(question, which, hull, &ready.pair);
+    hull_replace(question, which, hull, &ready.pair);
     const struct frame_pair frames = pair_frames(&ready.pair);
     return gap_of_vertices(&frames, verdict);
 }
