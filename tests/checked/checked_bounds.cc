@@ -69,9 +69,9 @@ static struct constant constants[] = {
     {"GAP_WITNESS_ROUNDING", 0, 1, 4},
     {"GAP_SLIP", 1},
     {"BOX_PLACE_ROUNDING_EXACT", BOX_PLACE_ROUNDING_EXACT, 0, 0, AT_HAND},
-    {"HULL_ROUNDING", 0, 0, 0, AT_HAND},
-    {"HULL_DETERMINANT", 0, 0, 0, AT_HAND},
-    {"HULL_HEIGHT", 0, 0, 0, AT_HAND},
+    {"SUPPORT_ROUNDING", 0, 0, 0, AT_HAND},
+    {"SUPPORT_DETERMINANT", 0, 0, 0, AT_HAND},
+    {"SUPPORT_HEIGHT", 0, 0, 0, AT_HAND},
     {"POLYTOPE_ERROR", 0, 0, 0, AT_HAND},
 };
 

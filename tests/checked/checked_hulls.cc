@@ -104,9 +104,9 @@ static void check_support(const struct support_pair *pair, const number n[FMB_DI
 {
     const number value = support_farthest(pair, n, &out->column);
     const number length = sqrt(vec3_dot(n, n)).value, error = pair->error.value;
-    check_bound("HULL_ROUNDING", 32 * 0x1p-53, value, error * length);
+    check_bound("SUPPORT_ROUNDING", 32 * 0x1p-53, value, error * length);
     support_point(pair, out->column, out->at);
-    check_vector("HULL_ROUNDING", 32 * 0x1p-53, out->at, FMB_DIM_MAX, error);
+    check_vector("SUPPORT_ROUNDING", 32 * 0x1p-53, out->at, FMB_DIM_MAX, error);
 }
 
 /* A mesh of the points, on a grid of nearly 2^52 units. */

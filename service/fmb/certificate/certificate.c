@@ -71,7 +71,7 @@ static void write_weights(struct certificate_writer *writer,
         certificate_write_text(writer, " %u", of->vertex);
         if (of->row >= 0)
             continue;
-        if (weights->exact) {
+        if (weights->unrounded) {
             mpz_set(mpq_numref(number), of->proven);
             mpz_set(mpq_denref(number), weights->proof->total);
             mpq_canonicalize(number);
@@ -164,14 +164,9 @@ enum fmb_status fmb_certificate_begin(const struct fmb_placement *a, const struc
         verdict = support_search(&begun->pair, INFINITY, &nearest);
     for (unsigned i = 0; i < nearest.simplex.count; i++)
         first[i] = nearest.simplex.vertex[i].column;
-    if (begun->pair.rounded) {
-        double toward[FMB_DIM_MAX];
-        support_toward(&begun->pair, toward);
-        begun->programs = programs_begin_nearest(&begun->pair, false, toward);
-    } else {
-        begun->programs =
-            programs_begin(&begun->pair, FMB_WANT_CERTIFICATE, first, nearest.simplex.count);
-    }
+    begun->programs = begun->pair.rounded ? programs_begin_nearest(&begun->pair, false)
+                                          : programs_begin(&begun->pair, FMB_WANT_CERTIFICATE,
+                                                           first, nearest.simplex.count);
     if (is_wide(&begun->frames, programs_proof(begun->programs)->integers) ||
         (verdict == FMB_SEPARATED &&
          write_separated(&begun->writer, &begun->pair, nearest.direction)))
@@ -191,8 +186,7 @@ static void decided(struct fmb_certificate_state *state)
         end(state);
         return;
     }
-    certificate_weights_begin(proof, state->pair.dim, state->pair.rounded, state->frames.duration,
-                              &state->weights);
+    certificate_weights_begin(proof, state->pair.dim, state->frames.duration, &state->weights);
     state->stage = WEIGHING;
 }
 
@@ -201,11 +195,8 @@ const char *fmb_certificate_step(struct fmb_certificate_state *state)
     struct certificate_writer *writer = &state->writer;
     switch (state->stage) {
     case DECIDING:
-        if (!programs_step(state->programs))
-            break;
-        if (state->pair.rounded)
-            programs_compare_radius(state->programs);
-        decided(state);
+        if (programs_step(state->programs))
+            decided(state);
         break;
     case WEIGHING:
         if (!certificate_weights_step(&state->weights))

@@ -104,16 +104,16 @@ static void set_time(struct certificate_weights *w)
     mpq_clear(window);
 }
 
-void certificate_weights_begin(const struct programs_proof *proof, int dim, bool rounded,
-                               double duration, struct certificate_weights *out)
+void certificate_weights_begin(const struct programs_proof *proof, int dim, double duration,
+                               struct certificate_weights *out)
 {
     out->proof = proof;
     out->duration = duration;
     out->count = out->next = 0;
-    out->rounded = rounded;
-    out->exact = rounded && proof->verdict == FMB_TOUCHING;
+    out->rounded = mpz_sgn(proof->integers->radius) != 0;
+    out->unrounded = out->rounded && proof->verdict == FMB_TOUCHING;
     out->dim = dim;
-    out->rows = rounded ? 2 : 2 + dim;
+    out->rows = out->rounded ? 2 : 2 + dim;
     out->rank = 0;
     each(out, mpz_init);
     mpq_init(out->time);
@@ -274,7 +274,7 @@ bool certificate_weights_step(struct certificate_weights *w)
     while (w->next < w->count && w->rank < w->rows)
         if (eliminate(w, w->next++))
             return false;
-    if (!w->exact)
+    if (!w->unrounded)
         choose(w);
     return true;
 }

@@ -23,8 +23,8 @@ struct certificate_weights {
     const struct programs_proof *proof;
     double duration;
     unsigned count, next;
-    bool rounded; /* a frame has a radius */
-    bool exact;   /* the weights are stated unrounded: proven over the total of the proof */
+    bool rounded;   /* a frame has a radius */
+    bool unrounded; /* the weights are stated as proven, over the total of the proof */
     int dim, rows, rank;
     struct certificate_weight weight[WEIGHTS_MAX]; /* the greatest first */
     mpz_t row[WEIGHTS_ROWS][WEIGHTS_COLUMNS];      /* last two: sum, and the term of the drift */
@@ -37,10 +37,9 @@ struct certificate_weights {
  * certificate_weights_end() frees what is allocated.
  *
  * In:  proof     must outlive the weights
- *      rounded   a frame has a radius
  *      duration  of the window, seconds */
-void certificate_weights_begin(const struct programs_proof *proof, int dim, bool rounded,
-                               double duration, struct certificate_weights *out);
+void certificate_weights_begin(const struct programs_proof *proof, int dim, double duration,
+                               struct certificate_weights *out);
 
 /* Performs a step. Returns whether it was the last: bits, time and the stated weights are set. */
 bool certificate_weights_step(struct certificate_weights *weights);

@@ -1133,35 +1133,32 @@ static void nearest_corner(void *context, mpz_t n[3], struct integer_corner *out
     }
 }
 
-static void set_nearest(struct programs *e)
-{
-    for (int axis = 0; axis < 3; axis++) {
-        mpz_set_ui(e->vector[axis], 0);
-        for (int i = 0; i < e->simplex.count; i++)
-            mpz_addmul(e->vector[axis], e->simplex.weight[i], e->simplex.corner[i]->at[axis]);
-    }
-}
-
-enum fmb_verdict programs_compare_radius(struct programs *e)
+/* Sets the proof from the nearest point, and the verdict from its distance and the sum of the
+ * radii.
+ */
+static void prove_by_nearest(struct programs *e)
 {
     struct programs_proof *proof = &e->proof;
-    set_nearest(e);
+    const struct integer_simplex *simplex = &e->simplex;
+    proof->count = (unsigned) simplex->count;
+    mpz_set(proof->total, simplex->total);
+    for (int i = 0; i < simplex->count; i++) {
+        const struct integer_corner *corner = simplex->corner[i];
+        proof->column[i] =
+            (struct support_column){{corner->bits[0], corner->bits[1]}, corner->late};
+        mpz_set(proof->weight[i], simplex->weight[i]);
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_set(proof->normal[axis], simplex->normal[axis]);
+        mpz_set_ui(e->vector[axis], 0);
+        for (int i = 0; i < simplex->count; i++)
+            mpz_addmul(e->vector[axis], simplex->weight[i], simplex->corner[i]->at[axis]);
+    }
     dot(e->vector, e->vector, e->best);
-    mpz_mul(e->sum, e->integers.radius, e->simplex.total);
+    mpz_mul(e->sum, e->integers.radius, simplex->total);
     mpz_mul(e->sum, e->sum, e->sum);
     const int order = mpz_cmp(e->best, e->sum);
     proof->verdict = order > 0 ? FMB_SEPARATED : order == 0 ? FMB_TOUCHING : FMB_OVERLAPPING;
-    proof->count = (unsigned) e->simplex.count;
-    mpz_set(proof->total, e->simplex.total);
-    for (int i = 0; i < e->simplex.count; i++) {
-        const struct integer_corner *corner = e->simplex.corner[i];
-        proof->column[i] =
-            (struct support_column){{corner->bits[0], corner->bits[1]}, corner->late};
-        mpz_set(proof->weight[i], e->simplex.weight[i]);
-    }
-    for (int axis = 0; axis < 3; axis++)
-        mpz_set(proof->normal[axis], e->simplex.normal[axis]);
-    return proof->verdict;
 }
 
 void programs_nearest_time(struct programs *e, double time[2])
@@ -1220,13 +1217,14 @@ static struct programs *begin(const struct support_pair *pair, bool nearest)
     return e;
 }
 
-struct programs *programs_begin_nearest(const struct support_pair *pair, bool late,
-                                        const double toward[FMB_DIM_MAX])
+struct programs *programs_begin_nearest(const struct support_pair *pair, bool late)
 {
     struct programs *e = begin(pair, true);
+    double toward[FMB_DIM_MAX];
+    int exponent;
     e->ends[0] = !late;
     e->ends[1] = late || (pair->drifts && pair->frames->duration > 0);
-    int exponent;
+    support_toward(pair, toward);
     frexp(vec3_largest(toward), &exponent);
     for (int axis = 0; axis < 3; axis++)
         mpz_set_d(e->vector[axis], ldexp(toward[axis], 53 - exponent));
@@ -1283,8 +1281,10 @@ bool programs_step(struct programs *e)
     case RAISING: height_step(e); break;
     case SHORTENING: shorten_step(e); break;
     case NEARING:
-        if (integer_simplex_step(&e->simplex, nearest_corner, e))
+        if (integer_simplex_step(&e->simplex, nearest_corner, e)) {
+            prove_by_nearest(e);
             e->stage = COMPLETE;
+        }
         break;
     case COMPLETE: break;
     }

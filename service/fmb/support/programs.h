@@ -50,15 +50,12 @@ struct programs_proof {
 struct programs *programs_begin(const struct support_pair *pair, unsigned want,
                                 const struct support_column *first, unsigned count);
 
-/* Begins a search for the point of D nearest to the origin, in the same kind of steps. The frames
- * may have radii.
+/* Begins a decision of frames with radii, by the point of D nearest to the origin, in the same kind
+ * of steps. It gives no contact and no box.
  *
- * In:  pair    set; must outlive the search
- *      late    D is restricted to the end of the window
- *      toward  a direction, not 0; [2] is 0 in 2D. A direction near that of the point saves steps
- */
-struct programs *programs_begin_nearest(const struct support_pair *pair, bool late,
-                                        const double toward[FMB_DIM_MAX]);
+ * In:  pair  set; must outlive the decision
+ *      late  D is restricted to the end of the window */
+struct programs *programs_begin_nearest(const struct support_pair *pair, bool late);
 
 /* Performs one step. Returns whether the decision is complete. */
 bool programs_step(struct programs *programs);
@@ -67,10 +64,8 @@ bool programs_step(struct programs *programs);
  * member integers is set from the beginning. */
 struct programs_proof *programs_proof(struct programs *programs);
 
-/* Functions of a complete search for the nearest point. programs_compare_radius() returns the
- * verdict, from the distance of the point and the sum of the radii, and sets the proof.
- * programs_nearest_time() sets the time of the point in seconds, rounded down and up. */
-enum fmb_verdict programs_compare_radius(struct programs *programs);
+/* Sets the time of the nearest point of a complete decision by it, in seconds, rounded down and up.
+ */
 void programs_nearest_time(struct programs *programs, double time[2]);
 
 /* Sets the answer of a complete decision: the verdict, and if the frames meet, the contact and the

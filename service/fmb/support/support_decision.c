@@ -29,7 +29,7 @@ static void set_pair(const struct frame_pair *frames, unsigned want, double fart
 {
     support_decision_none(out);
     out->swapped = support_order(frames, &out->frames);
-    out->searched = out->nears = false;
+    out->searched = out->by_nearest = false;
     out->cores = 0;
     out->ends = (struct support_round_ends){.time = {NAN, NAN}, .guess = {NAN, NAN}};
     out->bounded = bounded;
@@ -65,9 +65,9 @@ static bool begin_gap_of(struct support_decision *decision, enum fmb_verdict cor
         answer);
 }
 
-/* Begins the gap of a pair whose verdict is known, if it is wanted. Frames with radii: the gap is
- * that of the cores, whose verdict may have to be decided first. Returns whether the decision is
- * complete. */
+/* Begins the gap of a pair whose verdict is known, if it is wanted. The gap of frames with radii
+ * follows from the gap of their cores, so the verdict of the cores may have to be decided first.
+ * Returns whether the decision is complete. */
 static bool begin_gap(struct support_decision *decision, struct fmb_answer *answer)
 {
     if (!(decision->want & FMB_WANT_GAP))
@@ -113,29 +113,19 @@ static bool measure(struct support_decision *decision, struct fmb_answer *answer
     return true;
 }
 
-static void begin_nearest(struct support_decision *decision)
+/* Begins a decision after the search for the cores. Returns whether it is complete. */
+static bool round_begin(struct support_decision *decision, enum fmb_verdict cores,
+                        struct fmb_answer *answer)
 {
-    double toward[FMB_DIM_MAX];
-    support_toward(&decision->pair, toward);
-    decision->nears = true;
-    decision->programs = programs_begin_nearest(&decision->pair, false, toward);
-}
-
-/* Begins a decision in doubles. Returns whether it is complete. */
-static bool round_begin(struct support_decision *decision, struct fmb_answer *answer)
-{
-    const struct support_pair *pair = &decision->pair;
-    const bool all = decision->want & FMB_WANT_GAP && decision->farthest == INFINITY;
-    if (decision->searched) {
-        const enum fmb_verdict cores =
-            support_search(pair, all ? INFINITY : support_round_far(pair), &decision->nearest);
-        answer->verdict = support_round_verdict(pair, cores, &decision->nearest);
-        decision->cores = cores;
-    }
+    decision->cores = cores;
+    if (decision->searched)
+        answer->verdict = support_round_verdict(&decision->pair, cores, &decision->nearest);
     if (answer->verdict && measure(decision, answer))
         return begin_gap(decision, answer);
-    if (!decision->bounded)
-        begin_nearest(decision);
+    if (!decision->bounded) {
+        decision->by_nearest = true;
+        decision->programs = programs_begin_nearest(&decision->pair, false);
+    }
     return false;
 }
 
@@ -153,17 +143,17 @@ static bool round_step(struct support_decision *decision, struct fmb_answer *ans
         return false;
     struct programs *programs = decision->programs;
     decision->programs = NULL;
-    if (!decision->nears) {
+    if (!decision->by_nearest) {
         struct fmb_answer cores;
         programs_end(programs, &cores);
         decision->cores = cores.verdict;
         return begin_gap(decision, answer);
     }
     double inside[2];
-    answer->verdict = programs_compare_radius(programs);
+    answer->verdict = programs_proof(programs)->verdict;
     programs_nearest_time(programs, inside);
     programs_end(programs, NULL);
-    decision->nears = false;
+    decision->by_nearest = false;
     if (measure(decision, answer))
         return begin_gap(decision, answer);
     support_round_times_begin(&decision->pair, inside, &decision->ends, &decision->times);
@@ -179,14 +169,16 @@ bool support_decision_begin(const struct frame_pair *frames, unsigned want,
     const struct support_pair *pair = &out->pair;
     const bool all = want & FMB_WANT_GAP && farthest == INFINITY;
     unsigned left = want & (FMB_WANT_TIMES | FMB_WANT_BOX);
+    enum fmb_verdict cores = 0;
     set_pair(frames, want, farthest, effort == SUPPORT_QUICK, out);
     out->searched = effort != SUPPORT_PROGRAMS && pair->usable;
     nearest->simplex.count = 0;
-    if (pair->rounded)
-        return round_begin(out, answer);
+    const double far = pair->rounded ? support_round_far(pair) : support_separating_distance(pair);
     if (out->searched)
-        answer->verdict =
-            support_search(pair, all ? INFINITY : support_separating_distance(pair), nearest);
+        cores = support_search(pair, all ? INFINITY : far, nearest);
+    if (pair->rounded)
+        return round_begin(out, cores, answer);
+    answer->verdict = cores;
     if (answer->verdict == FMB_OVERLAPPING)
         left = answer_in_doubles(pair, left, &nearest->simplex, answer);
     if (answer->verdict == FMB_SEPARATED || (answer->verdict == FMB_OVERLAPPING && left == 0))

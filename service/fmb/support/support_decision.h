@@ -30,7 +30,7 @@ struct support_decision {
     struct programs *programs;
     struct support_gap_work *gap;
     /* Of frames with radii. */
-    bool nears;             /* programs finds the nearest point of the cores, not their verdict */
+    bool by_nearest; /* programs decides by the nearest point, else the verdict of the cores */
     enum fmb_verdict cores; /* the verdict of the cores, which the gap needs; 0: not known */
     struct support_round_ends ends;
     struct support_round_times times;

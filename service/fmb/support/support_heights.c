@@ -39,7 +39,7 @@ static const double unit_roundoff = 0x1p-53;
 static const double limit = 1e-12 * (1 - 0x1p-10);
 
 /* Of the outer bound, relative to error (|n| + 1). */
-#define HULL_HEIGHT 1.25
+#define SUPPORT_HEIGHT 1.25
 
 enum { PIVOTS_MAX = 100 };
 
@@ -201,8 +201,8 @@ static bool maximise(struct program *program, bool prove, double *outer)
         set_plane(program);
         const double length = sqrt(vec3_dot(program->normal, program->normal)) * (1 + 0x1p-40);
         const double found = find_highest(program, &highest);
-        const double out = HULL_HEIGHT * (length + box) * pair->error + program->extra;
-        CHECK_BOUND(HULL_HEIGHT, false, found, out);
+        const double out = SUPPORT_HEIGHT * (length + box) * pair->error + program->extra;
+        CHECK_BOUND(SUPPORT_HEIGHT, false, found, out);
         const double in = out + (length * pair->error + program->residual);
         const double scale = box ? largest_coordinate(program) : 1;
         *outer = found + out;

@@ -122,6 +122,7 @@ static void set_pair(struct support_placed *placed)
         reach += fabs(placed->pair.drift[axis]);
     placed->pair.reach = reach;
     placed->pair.error = 32 * 0x1p-53 * reach + error;
+    placed->pair.usable = true;
 }
 
 bool support_placed_step(struct support_placed *placed, int count)

@@ -30,15 +30,24 @@ static double sharper_distance(const struct support_pair *pair,
     return -support_farthest(pair, outward, &column) - 1.25 * pair->error;
 }
 
-static double upper_distance(const struct support_pair *pair, const struct support_nearest *nearest)
+/* Sets the point of D that a search found, as its weights say. Returns their sum. */
+static double point_of(const struct support_nearest *nearest, double out[FMB_DIM_MAX])
 {
-    double at[FMB_DIM_MAX] = {0}, total = 0;
+    double total = 0;
+    memset(out, 0, FMB_DIM_MAX * sizeof *out);
     for (unsigned i = 0; i < nearest->simplex.count; i++) {
         const double weight = fmax(nearest->weight[i], 0);
         total += weight;
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-            at[axis] += weight * nearest->simplex.vertex[i].at[axis];
+            out[axis] += weight * nearest->simplex.vertex[i].at[axis];
     }
+    return total;
+}
+
+static double upper_distance(const struct support_pair *pair, const struct support_nearest *nearest)
+{
+    double at[FMB_DIM_MAX];
+    const double total = point_of(nearest, at);
     const double distance = sqrt(vec3_dot(at, at)) / total * (1 + 0x1p-49) + 1.4 * pair->error;
     return total > 0.5 && total < 2 ? distance : INFINITY;
 }
@@ -113,12 +122,10 @@ static double time_to_contact(const struct slice *slice)
     const struct support_nearest *nearest = &slice->nearest;
     const unsigned count = nearest->simplex.count;
     const double *w = slice->drift, *n = nearest->direction;
-    double p[FMB_DIM_MAX] = {0}, across[FMB_DIM_MAX], radius = slice->pair.radius[0];
+    double p[FMB_DIM_MAX], across[FMB_DIM_MAX], radius = slice->pair.radius[0];
     if (nearest->outcome != GAP_KNOWN || count > 3)
         return INFINITY;
-    for (unsigned i = 0; i < count; i++)
-        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-            p[axis] += nearest->weight[i] * nearest->simplex.vertex[i].at[axis];
+    point_of(nearest, p);
     memcpy(across, w, sizeof across);
     if (count == 3)
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
@@ -166,9 +173,8 @@ static double find_end(struct slice *slice, double *guess, bool *apart)
             root = out + 0.5 * (in - out);
         if (fabs(root - before) < 0.2 * contact_limit)
             *guess = root;
-        tau = fmax(root - 0.45 * contact_limit, out);
-        if (tau <= out || (!isnan(*guess) && out > root - 0.6 * contact_limit))
-            tau = root + 0.45 * contact_limit;
+        /* Just before the root; or just after it, if the frames are apart until just before it. */
+        tau = root + (out > root - 0.6 * contact_limit ? 0.45 : -0.45) * contact_limit;
         verdict = look(slice, tau);
         const int side = verdict == FMB_SEPARATED ? side_of(slice) : 0;
         if (side > 0)
@@ -217,9 +223,7 @@ static void begin_slice(struct support_round_times *times, double time)
 {
     times->frames.duration = time;
     support_pair_set(&times->frames, &times->sliced);
-    double toward[FMB_DIM_MAX];
-    support_toward(&times->sliced, toward);
-    times->programs = programs_begin_nearest(&times->sliced, true, toward);
+    times->programs = programs_begin_nearest(&times->sliced, true);
 }
 
 /* Begins the search for an end whose time is not known. */
@@ -292,7 +296,7 @@ bool support_round_times_step(struct support_round_times *times)
 {
     if (!programs_step(times->programs))
         return false;
-    const bool meets = programs_compare_radius(times->programs) != FMB_SEPARATED;
+    const bool meets = programs_proof(times->programs)->verdict != FMB_SEPARATED;
     const double tried = times->frames.duration;
     support_round_times_end(times);
     if (times->at_edge && meets)

@@ -19,7 +19,7 @@
  *
  *   verdict
  *       In doubles from bounds on d. If these do not decide, from the nearest point of D in
- *       integers: its squared distance is rational (programs_compare_radius()).
+ *       integers: its squared distance is rational (programs_begin_nearest()).
  *   contact
  *       The distance d(t) of the cores at one time is convex in t, so the times of contact are an
  *       interval. In doubles, an end is the root of a quadratic equation, and searches at a time

@@ -66,7 +66,7 @@ void support_centre(const struct support_pair *pair, double out[FMB_DIM_MAX])
         out[axis] = (b[axis] - a[axis]) + (pair->offset[axis] + 0.5 * pair->drift[axis]);
 }
 
-#define HULL_DETERMINANT 1.2 /* as above */
+#define SUPPORT_DETERMINANT 1.2 /* as above */
 
 /* Returns the sign of the determinant of dim points, 0 if it is not certain. */
 static int sign_of(const struct support_pair *pair,
@@ -85,8 +85,8 @@ static int sign_of(const struct support_pair *pair,
         value = vec3_dot(p[0]->at, normal);
         bound = length[1] * length[2] + length[0] * (length[1] + length[2]);
     }
-    bound = HULL_DETERMINANT * e * bound + 0x1p-900;
-    CHECK_BOUND(HULL_DETERMINANT, false, value, bound);
+    bound = SUPPORT_DETERMINANT * e * bound + 0x1p-900;
+    CHECK_BOUND(SUPPORT_DETERMINANT, false, value, bound);
     return value > bound ? 1 : value < -bound ? -1 : 0;
 }
 
@@ -111,9 +111,10 @@ bool support_simplex_contains_origin(const struct support_pair *pair,
 void support_toward(const struct support_pair *pair, double out[FMB_DIM_MAX])
 {
     support_centre(pair, out);
-    if (!pair->usable || vec3_largest(out) == 0)
-        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-            out[axis] = axis == 0;
+    if (!pair->usable)
+        memset(out, 0, FMB_DIM_MAX * sizeof *out);
+    if (!(vec3_dot(out, out) > 0x1p-100 * pair->reach * pair->reach))
+        out[0] = pair->usable ? pair->reach : 1; /* any direction */
 }
 
 /* Whether the interior of D is known to be the union of the interiors of M + t w. */
@@ -125,11 +126,9 @@ static bool is_swept_open(const struct support_pair *pair)
 enum fmb_verdict support_search(const struct support_pair *pair, double far,
                                 struct support_nearest *out)
 {
-    double centre[FMB_DIM_MAX];
-    support_centre(pair, centre);
-    if (!(vec3_dot(centre, centre) > 0x1p-100 * pair->reach * pair->reach))
-        centre[0] = pair->reach; /* any direction */
-    return support_search_from(pair, centre, far, out);
+    double toward[FMB_DIM_MAX];
+    support_toward(pair, toward);
+    return support_search_from(pair, toward, far, out);
 }
 
 enum fmb_verdict support_search_from(const struct support_pair *pair,
