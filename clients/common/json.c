@@ -472,7 +472,7 @@ static bool check_keys(const struct place *member, int shape, bool within_frames
     else if (kind == kinds && member[VERTICES].item)
         kind = &of_vertices;
     unsigned others = ~(kind->required | kind->optional) & ((1u << FRAMES) - (1u << ORIGIN));
-    if (!within_frames) /* it is that of the body */
+    if (!within_frames) /* the body has a pose anyway */
         others &= ~(unsigned) POSE;
     if (!check_absent(member, others | (kind == &of_frames ? 1 << SHAPE : 0), kind->what))
         return false;

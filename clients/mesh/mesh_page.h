@@ -6,8 +6,8 @@
 #include "output.h"
 
 /* Writes the page, if a file is wanted. Each face in one of the first PAGE_PAIRS_MAX - 1 pairs is a
- * body of its own. Of each mesh the other faces that meet are another body, and so are those that
- * do not. Returns false after an error, which was reported. */
+ * body of its own. The other faces of a mesh are two bodies: one of the faces that meet the other
+ * mesh, one of the faces that do not. Returns false after an error, which was reported. */
 bool mesh_page_save(const struct mesh_query *query, const struct mesh_intersection *found,
                     const char *title, const struct output_options *options);
 

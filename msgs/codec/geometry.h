@@ -20,7 +20,7 @@ int geometry_code(struct geometry_shape shape);
  * centre and components, or the vertices. 0: there is no such shape in this dimension.
  *
  * In:  code      a value of placement_t.shapes
- *      vertices  the number of vertices; read for hulls only, since that of other shapes is fixed
+ *      vertices  the number of vertices; read for hulls only: other shapes have a fixed number
  */
 int64_t geometry_number_count(int dim, int code, int32_t vertices);
 

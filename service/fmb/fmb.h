@@ -6,8 +6,7 @@
  * hull of 1 to FMB_HULL_VERTICES_MAX vertices; in 2D it is a convex polygon. Vertices inside it and
  * repeated ones are legal, and it may be flat, a segment or a point. A frame may have a radius: it
  * is then the set of all points within that distance of this set, its core. A body is one or more
- * frames of one dimension. A placement puts it into the world: its set, or that of its cores, is
- * exactly
+ * frames of one dimension. A placement puts it into the world: without radii, its set is exactly
  *
  *     { p + R(q) (o + sum_i x_i c_i) + t v }
  *
@@ -476,8 +475,8 @@ enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pla
  *
  * The answers are those of fmb_decide() for each pair, bit for bit. Frames of one body are never
  * tested against each other, nor are placements of one group. Memory is allocated only by exact
- * arithmetic and for gaps of pairs with a hull or a radius, as stated at the top. After the last
- * step none is left; fmb_scene_end() frees that of a scene that is abandoned before.
+ * arithmetic and for gaps of pairs with a hull or a radius, as stated at the top. The last step
+ * leaves none; fmb_scene_end() frees it if a scene is abandoned before that.
  *
  * Thread safety: one state must not be used by two threads at the same time. Different states share
  * nothing. */

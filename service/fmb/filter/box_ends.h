@@ -402,7 +402,7 @@ INLINE lanes snapped(lanes outer, lanes inner, lanes unit)
     return lanes_select(is_end, snap, outer);
 }
 
-/* Widens ends that are those of computed points by the slack. Completes the inner ends: a box that
+/* Widens the ends, which computed points gave, by the slack. Completes the inner ends: a box that
  * is not empty reaches as far to one side as its other end is from there. Returns the lanes in
  * which all outer ends are within the limit. */
 INLINE lanes_mask are_near(const struct kernel_traits traits, const struct box_pair *box,

@@ -12,9 +12,9 @@
  *   5. outcomes_of()      separated, touching, overlapping, or unsure; times_of(): seconds
  *
  * Macros that the includer of many.h defines select the job. None: the first pass, verdicts.
- * KERNEL_SECOND: the second pass (kernel_second.h). KERNEL_TIMES: verdicts and times. The bits of
- * the last two are promised, and so are those of boxes (KERNEL_BOX), which boxes.h computes from
- * steps 1 to 3. The includer defines one function for each kind of pair (dimension, shapes, motion:
+ * KERNEL_SECOND: the second pass (kernel_second.h). KERNEL_TIMES: verdicts and times. The
+ * last two promise their bits, and so do boxes (KERNEL_BOX), which boxes.h computes from steps 1 to
+ * 3. The includer defines one function for each kind of pair (dimension, shapes, motion:
  * kernel.h), with the traits as a constant, by KERNEL_ALL at the end of this file. KERNEL_TABLE
  * lists these functions in the order of the kinds, in a table whose name ends in KERNEL_NAME. A
  * file that defines INLINED_NOT is neither inlined nor unrolled (inlined.h).

@@ -170,8 +170,8 @@ static unsigned centred_of(const struct fmb_frame *frame, const struct rotation_
     return rounded && same ? PREPARED_CENTRED : 0;
 }
 
-/* Sets the world coordinates of a frame and their error, of which each term has a margin that
- * covers the rounding of their sum too. Returns which coordinates are exact, as flags:
+/* Sets the world coordinates of a frame and their error. Each term of the error has a margin, which
+ * covers the rounding of the sum too. Returns which coordinates are exact, as flags:
  * PREPARED_EXACT_X and so on. */
 INLINE unsigned set_numbers(const struct fmb_frame *frame, const struct rotation_matrix *rotation,
                             const double *position, struct world_numbers *out)

@@ -5,9 +5,10 @@
  * If error is 0, the two are the same. The bounds of the filter hold for the rounded frame, whose
  * numbers are exact; slabs.h derives bounds for the true one.
  *
- * The numbers of a hull are those of a cuboid that contains it: its box in body coordinates,
- * placed. Those of a frame with a radius are those of its core, and the radius is part of the
- * error: frames that are certainly separated with this error are separated.
+ * The numbers of a hull describe a cuboid that contains it: its box in body coordinates, placed.
+ * The numbers of a frame with a radius describe its core, and the radius is part of the error: no
+ * point of the frame is farther than error from the rounded core. So what the filter separates with
+ * this error is separated.
  *
  * The summary holds, from its least significant bit: the sizes of components 0, 1 and 2, 16 bits
  * each, then the flags below. A size is the 16 most significant bits of a double, rounded up.
