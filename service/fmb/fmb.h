@@ -316,7 +316,7 @@ enum fmb_want {
     FMB_WANT_CERTIFICATE = 2,
     FMB_WANT_TIMES = 4, /* contact intervals; fmb_decide() always gives them */
     FMB_WANT_GAP = 8,   /* only of methods that are certain */
-    FMB_WANT_POINT = 16 /* not supported yet: FMB_UNKNOWN_WANT */
+    FMB_WANT_POINT = 16 /* of methods that are certain */
 };
 
 /* An enclosure of the gap, the signed distance of two bodies over the window:
@@ -394,7 +394,7 @@ struct fmb_answer {
     bool has_contact;           /* touching or overlapping */
     bool has_box;               /* wanted, touching or overlapping, and the method gives boxes */
     bool has_gap;               /* wanted, and the method is certain */
-    bool has_point;             /* wanted, touching or overlapping; not supported yet */
+    bool has_point;             /* wanted, touching or overlapping, and the method is certain */
     double contact[2];          /* first and last time of contact, seconds, within [0, T] */
     double box[2][FMB_DIM_MAX]; /* [lower, upper][axis], world coordinates; axes beyond dim are 0 */
     double point[1 + FMB_DIM_MAX]; /* a time, seconds, and a point of both bodies at that time */
@@ -549,6 +549,7 @@ struct fmb_scene_answers {
     const unsigned char *verdicts;         /* [count], enum fmb_verdict; 0: FMB_CANNOT_DECIDE */
     const double (*contacts)[2];           /* [count][first, last], NAN: separated, or no verdict */
     const double (*boxes)[2][FMB_DIM_MAX]; /* [count][lower, upper][axis], NAN: the same pairs */
+    const double (*points)[1 + FMB_DIM_MAX]; /* [count][time, coordinates], NAN: the same pairs */
     /* [count], if gaps are wanted or the margin is not 0. Bounds of NAN: no verdict; or, with
      * FMB_PAIRS_LISTED and gaps not wanted, separated and farther apart than the margin. */
     const struct fmb_gap *gaps;

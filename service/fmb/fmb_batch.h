@@ -78,6 +78,8 @@ struct fmb_batch {
     double (*contacts)[2];
     /* [pair_count][lower, upper][axis], or NULL; as fmb_answer.box. NAN for the same pairs. */
     double (*boxes)[2][FMB_DIM_MAX];
+    /* [pair_count][time, coordinates], or NULL; as fmb_answer.point. NAN for the same pairs. */
+    double (*points)[1 + FMB_DIM_MAX];
     /* [pair_count], or NULL; as fmb_answer.gap. Bounds of NAN for pairs without a verdict. */
     struct fmb_gap *gaps;
     /* Both NULL; or [pair_count] positions and their count, which bound the time of a call.
@@ -86,12 +88,12 @@ struct fmb_batch {
      *
      * Otherwise a pair is left open if its verdict or its box needs more than integers of 512 bits,
      * if its contact needs integers at all, or if the first search in doubles does not give its
-     * gap; of a pair with a hull or a radius, if doubles do not give all that is wanted. A pair
-     * that the filter in doubles does not decide is also left open if 32 of the same 128 pairs have
-     * already been decided after the filter; or, if it has a hull or a radius, if the pairs of this
-     * kind among these 128 already had so many vertices that their scans take some hundred
-     * microseconds. Which pairs are left open does not depend on the machine. open[0] to
-     * open[*open_count - 1] are the positions in pairs of those left open, ascending.
+     * gap or its point; of a pair with a hull or a radius, if doubles do not give all that is
+     * wanted. A pair that the filter in doubles does not decide is also left open if 32 of the same
+     * 128 pairs have already been decided after the filter; or, if it has a hull or a radius, if
+     * the pairs of this kind among these 128 already had so many vertices that their scans take
+     * some hundred microseconds. Which pairs are left open does not depend on the machine. open[0]
+     * to open[*open_count - 1] are the positions in pairs of those left open, ascending.
      *
      * A pair that is left open may take as long as fmb_decide() of one pair; any other takes tens
      * of microseconds at most and allocates no memory. A batch of that one pair with both NULL

@@ -10,7 +10,7 @@
  *                       second pass on those that are unsure (next_pass())
  *   3. put_verdicts()   writes the results; pairs that are still unsure, and contacts that the
  *      put_contacts()   filter does not give, are decided one by one (certified.h) or left open
- *   4. put_all_boxes()  runs the filter for boxes on the pairs in contact
+ *   4. put_all_boxes()  runs the filter for boxes and points on the pairs in contact
  *   5. put_unfiltered() decides or refuses the pairs that the filter does not take; for hulls and
  *                       radii it first applies the filter to what contains them (kernel.h)
  *   6. find_far()       skips gaps that are surely greater than wanted; put_gap() computes the
@@ -279,11 +279,25 @@ static void put_no_box(const struct fmb_batch *batch, size_t i)
         batch->boxes[i][k / FMB_DIM_MAX][k % FMB_DIM_MAX] = NAN;
 }
 
+static void put_no_point(const struct fmb_batch *batch, size_t i)
+{
+    for (int k = 0; k <= FMB_DIM_MAX && batch->points; k++)
+        batch->points[i][k] = NAN;
+}
+
 static void put_nothing(const struct fmb_batch *batch, size_t i)
 {
     if (batch->contacts)
         batch->contacts[i][0] = batch->contacts[i][1] = NAN;
     put_no_box(batch, i);
+    put_no_point(batch, i);
+}
+
+/* Leaves pair i open. */
+static void leave_open(const struct fmb_batch *batch, size_t i)
+{
+    put_nothing(batch, i);
+    batch->verdicts[i] = LEFT_OPEN;
 }
 
 /* The largest cost of the pairs with a hull or a radius of a block, if the time of a call is
@@ -320,10 +334,19 @@ static void put_answer(const struct fmb_batch *batch, size_t i, const struct fmb
         memcpy(batch->contacts[i], answer->contact, sizeof answer->contact);
     if (answer->has_box)
         memcpy(batch->boxes[i], answer->box, sizeof answer->box);
+    if (answer->has_point)
+        memcpy(batch->points[i], answer->point, sizeof answer->point);
 }
 
-/* Decides pair k by itself, or leaves it open. want: FMB_WANT_BOX and FMB_WANT_TIMES. In: its
- * contact is NAN or final, and its box NAN. */
+/* What is wanted of pairs in contact, besides gaps. */
+static unsigned want_of_contacts(const struct fmb_batch *batch)
+{
+    return (batch->boxes ? FMB_WANT_BOX : 0) | (batch->contacts ? FMB_WANT_TIMES : 0) |
+           (batch->points ? FMB_WANT_POINT : 0);
+}
+
+/* Decides pair k by itself, or leaves it open. want: of want_of_contacts(). In: its contact is NAN
+ * or final, its box and its point NAN. */
 static void decide_single(struct batch_block *block, size_t k, unsigned want)
 {
     const struct fmb_batch *batch = block->batch;
@@ -337,8 +360,7 @@ static void decide_single(struct batch_block *block, size_t k, unsigned want)
         put_answer(batch, i, &answer);
         return;
     }
-    put_nothing(batch, i);
-    batch->verdicts[i] = LEFT_OPEN;
+    leave_open(batch, i);
 }
 
 static void put_verdict_single(struct batch_block *block, size_t k)
@@ -417,27 +439,33 @@ static struct kernel_call call_of(struct selection *selection, double duration)
         .pairs = selection->pair, .count = selection->count, .duration = duration};
 }
 
-/* A box that the filter does not give: computed by itself, or left open. */
-static void put_box_single(struct batch_block *block, size_t k)
+/* Puts what the filter does not give of pair k, its box, its point or both: each computed by
+ * itself, or the pair is left open. */
+static void put_missing(struct batch_block *block, size_t k, bool box, bool point)
 {
     const struct fmb_batch *batch = block->batch;
     const struct fmb_prepared *const *pair = block->pair[k];
     const size_t i = block->first + block->slot[k];
-    if (may_decide_single(block, k) &&
-        certified_box_unsure(pair[0], pair[1], batch->duration, batch->boxes[i]))
-        return;
-    put_nothing(batch, i);
-    batch->verdicts[i] = LEFT_OPEN;
+    struct fmb_answer answer = {.verdict = (enum fmb_verdict) batch->verdicts[i]};
+    const bool done =
+        may_decide_single(block, k) &&
+        (!box || certified_box_unsure(pair[0], pair[1], batch->duration, batch->boxes[i])) &&
+        (!point ||
+         certified_rest(pair[0], pair[1], batch->duration, FMB_WANT_POINT, INFINITY, &answer));
+    if (!done)
+        leave_open(batch, i);
+    else if (point)
+        memcpy(batch->points[i], answer.point, sizeof answer.point);
 }
 
-/* Computes the boxes of the pairs in contact in which a frame moves, or of those in which none
- * does. Returns how many are of the other kind. */
+/* Computes boxes and points of the pairs in contact in which a frame moves, or of those in which
+ * none does. Returns how many are of the other kind. */
 static size_t put_group(struct batch_block *block, const struct batch_job *job, bool moving,
                         size_t start, size_t end)
 {
     const struct fmb_batch *batch = block->batch;
     struct selection selection;
-    double box[BLOCK + KERNEL_LANES][2][FMB_DIM_MAX];
+    double box[BLOCK + KERNEL_LANES][2][FMB_DIM_MAX], point[BLOCK + KERNEL_LANES][1 + FMB_DIM_MAX];
     enum kernel_kind kind = 0;
     size_t others = 0;
     selection.count = 0;
@@ -456,26 +484,33 @@ static size_t put_group(struct batch_block *block, const struct batch_job *job, 
     }
     struct kernel_call call = call_of(&selection, batch->duration);
     call.boxes = box;
+    call.points = batch->points ? point : NULL;
     if (call.count > 0)
         job->kernels.boxes(&call, kind);
     for (size_t n = 0; n < call.count; n++) {
-        const size_t k = selection.index[n];
-        if (isnan(box[n][0][0]))
-            put_box_single(block, k);
-        else
-            memcpy(batch->boxes[block->first + block->slot[k]], box[n], sizeof box[n]);
+        const size_t k = selection.index[n], i = block->first + block->slot[k];
+        const bool no_box = batch->boxes && isnan(box[n][0][0]);
+        const bool no_point = batch->points && isnan(point[n][0]);
+        if (batch->boxes)
+            memcpy(batch->boxes[i], box[n], sizeof box[n]);
+        if (batch->points)
+            memcpy(batch->points[i], point[n], sizeof point[n]);
+        if (no_box || no_point)
+            put_missing(block, k, no_box, no_point);
     }
     return others;
 }
 
-/* Computes the boxes of all pairs in contact, whose verdicts are known. */
+/* Computes boxes and points of all pairs in contact, whose verdicts are known. */
 static void put_all_boxes(struct batch_block *block, const struct batch_job *job,
                           enum kernel_kind kind, size_t start, size_t end)
 {
     const bool moving = kind & KERNEL_DRIFTS;
     for (size_t k = start; k < end; k++)
-        if (!batch_is_contact(block->batch->verdicts[block->first + block->slot[k]]))
+        if (!batch_is_contact(block->batch->verdicts[block->first + block->slot[k]])) {
             put_no_box(block->batch, block->first + block->slot[k]);
+            put_no_point(block->batch, block->first + block->slot[k]);
+        }
     if (put_group(block, job, moving, start, end) > 0)
         put_group(block, job, !moving, start, end);
 }
@@ -520,7 +555,7 @@ static void filter_kind(struct batch_block *block, const struct batch_job *job,
         put_contacts(block, kind, start, end);
     else
         put_verdicts(block, start, end);
-    if (batch->boxes)
+    if (batch->boxes || batch->points)
         put_all_boxes(block, job, kind, start, end);
 }
 
@@ -553,8 +588,7 @@ static bool bounds_are_separated(const struct batch_block *block, const struct b
 static void put_unfiltered(struct batch_block *block, const struct batch_job *job)
 {
     const struct fmb_batch *batch = block->batch;
-    const unsigned want =
-        (batch->boxes ? FMB_WANT_BOX : 0) | (batch->contacts ? FMB_WANT_TIMES : 0);
+    const unsigned want = want_of_contacts(batch);
     for (size_t k = block->start[KERNEL_UNUSABLE]; k < block->count; k++) {
         const size_t i = block->first + block->slot[k];
         put_nothing(batch, i);
@@ -620,14 +654,15 @@ static void put_gap(const struct batch_job *job, const struct batch_block *block
     const struct fmb_prepared *a = frame_at(batch, batch->pairs[i][0]);
     const struct fmb_prepared *b = frame_at(batch, batch->pairs[i][1]);
     unsigned char *verdict = &batch->verdicts[i];
+    struct fmb_answer answer = {.verdict = (enum fmb_verdict) * verdict};
     batch->gaps[i] = gap_none();
     if (!batch_is_contact(*verdict) && (*verdict != FMB_SEPARATED || block->far[slot]))
         return;
-    if (certified_gap(a, b, batch->duration, (enum fmb_verdict) * verdict, job->farthest,
-                      &batch->gaps[i]))
+    if (certified_rest(a, b, batch->duration, FMB_WANT_GAP, job->farthest, &answer)) {
+        batch->gaps[i] = answer.gap;
         return;
-    put_nothing(batch, i);
-    *verdict = LEFT_OPEN;
+    }
+    leave_open(batch, i);
 }
 
 static enum fmb_status decide_block(const struct batch_job *job, size_t first)
@@ -654,8 +689,7 @@ static enum fmb_status decide_block(const struct batch_job *job, size_t first)
 static void decide_open(const struct batch_job *job, size_t i)
 {
     const struct fmb_batch *batch = job->batch;
-    const unsigned want = (batch->boxes ? FMB_WANT_BOX : 0) |
-                          (batch->contacts ? FMB_WANT_TIMES : 0) | (batch->gaps ? FMB_WANT_GAP : 0);
+    const unsigned want = want_of_contacts(batch) | (batch->gaps ? FMB_WANT_GAP : 0);
     struct fmb_answer answer = {0};
     certified_decide_prepared(frame_at(batch, batch->pairs[i][0]),
                               frame_at(batch, batch->pairs[i][1]), batch->duration, want,

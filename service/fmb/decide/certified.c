@@ -217,18 +217,26 @@ static bool set_contact(struct certified *certified, double contact[2])
     return true;
 }
 
-bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                   double box[2][FMB_DIM_MAX])
+unsigned certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                       unsigned want, struct fmb_answer *answer)
 {
     struct kernel_one one;
     bool swapped;
     const enum kernel_kind kind = kernel_box_kind(a, b, duration, &swapped);
-    if (kind >= KERNEL_KINDS)
-        return false;
+    if (kind >= KERNEL_KINDS || !want)
+        return want;
     kernel_set_one(swapped ? b : a, swapped ? a : b, duration, &one);
+    one.call.points = want & FMB_WANT_POINT ? one.point : NULL;
     kernel_set_best()->boxes(&one.call, kind);
-    memcpy(box, one.box[0], sizeof one.box[0]);
-    return !isnan(box[0][0]);
+    if (want & FMB_WANT_BOX && !isnan(one.box[0][0][0])) {
+        memcpy(answer->box, one.box[0], sizeof answer->box);
+        want &= ~(unsigned) FMB_WANT_BOX;
+    }
+    if (want & FMB_WANT_POINT && !isnan(one.point[0][0])) {
+        memcpy(answer->point, one.point[0], sizeof answer->point);
+        want &= ~(unsigned) FMB_WANT_POINT;
+    }
+    return want;
 }
 
 bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
@@ -276,23 +284,25 @@ static bool begin_program(struct certified *certified, unsigned missing)
                                                          &certified->program, &certified->proven);
 }
 
-/* Sets the gap of a pair with this verdict. Returns false if that needs more steps of the
- * programs, which have then begun unless the decision is bounded. */
-static bool begin_gap(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                      double farthest, bool bounded, struct support_decision *program,
-                      struct fmb_answer *answer)
+/* Sets the gap and the point, as far as they are wanted, of a pair with this verdict. Returns false
+ * if that needs more steps of the programs, which have then begun unless the decision is bounded.
+ */
+static bool begin_rest(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                       unsigned want, double farthest, bool bounded,
+                       struct support_decision *program, struct fmb_answer *answer)
 {
-    answer->has_gap = true;
-    const enum gap_outcome outcome =
-        gap_of(a, b, duration, answer->verdict, farthest, &answer->gap);
-    if (outcome == GAP_UNSURE) {
-        const struct frame_pair pair = pair_of(a, b, duration);
-        return support_decision_begin_gap(&pair, answer->verdict, farthest, bounded, program,
-                                          answer);
+    if (want & FMB_WANT_GAP) {
+        const enum gap_outcome outcome =
+            gap_of(a, b, duration, answer->verdict, farthest, &answer->gap);
+        answer->has_gap = true;
+        if (outcome == GAP_FAR)
+            answer->gap = gap_none();
+        if (outcome != GAP_UNSURE)
+            want &= ~(unsigned) FMB_WANT_GAP;
     }
-    if (outcome == GAP_FAR)
-        answer->gap = gap_none();
-    return true;
+    const struct frame_pair pair = pair_of(a, b, duration);
+    return !want || support_decision_begin_rest(&pair, want, answer->verdict, farthest, bounded,
+                                                program, answer);
 }
 
 /* Sets what is wanted besides the verdict, which is known. Ends that the programs gave are used
@@ -301,17 +311,21 @@ static bool measure(struct certified *certified, struct fmb_answer *answer)
 {
     const struct fmb_prepared *a = certified->given[0], *b = certified->given[1];
     const struct fmb_answer *proven = &certified->proven;
-    unsigned missing = 0;
-    answer->has_contact = answer->verdict != FMB_SEPARATED && certified->want & FMB_WANT_TIMES;
-    answer->has_box = answer->verdict != FMB_SEPARATED && certified->want & FMB_WANT_BOX;
+    const bool meets = answer->verdict != FMB_SEPARATED;
+    unsigned missing = 0, rest = certified->want & FMB_WANT_GAP;
+    answer->has_contact = meets && certified->want & FMB_WANT_TIMES;
+    answer->has_box = meets && certified->want & FMB_WANT_BOX;
+    answer->has_point = meets && certified->want & FMB_WANT_POINT;
     if (answer->has_contact && !set_contact(certified, answer->contact)) {
         if (proven->has_contact)
             memcpy(answer->contact, proven->contact, sizeof answer->contact);
         else
             missing |= FMB_WANT_TIMES;
     }
-    if (answer->has_box && !certified_box(a, b, certified->duration, answer->box) &&
-        !certified_box_unsure(a, b, certified->duration, answer->box)) {
+    if (meets)
+        rest |= certified_box(a, b, certified->duration,
+                              certified->want & (FMB_WANT_BOX | FMB_WANT_POINT), answer);
+    if (rest & FMB_WANT_BOX && !certified_box_unsure(a, b, certified->duration, answer->box)) {
         if (proven->has_box)
             memcpy(answer->box, proven->box, sizeof answer->box);
         else
@@ -319,21 +333,17 @@ static bool measure(struct certified *certified, struct fmb_answer *answer)
     }
     if (missing)
         return begin_program(certified, missing);
-    if (!(certified->want & FMB_WANT_GAP))
-        return true;
-    certified->stage = CERTIFIED_GAP;
-    return begin_gap(a, b, certified->duration, certified->farthest, certified->bounded,
-                     &certified->program, answer);
+    rest &= ~(unsigned) FMB_WANT_BOX;
+    certified->stage = CERTIFIED_REST;
+    return begin_rest(a, b, certified->duration, rest, certified->farthest, certified->bounded,
+                      &certified->program, answer);
 }
 
-bool certified_gap(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                   enum fmb_verdict verdict, double farthest, struct fmb_gap *gap)
+bool certified_rest(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                    unsigned want, double farthest, struct fmb_answer *answer)
 {
     struct support_decision program;
-    struct fmb_answer answer = {.verdict = verdict};
-    const bool known = begin_gap(a, b, duration, farthest, true, &program, &answer);
-    *gap = known ? answer.gap : gap_none();
-    return known;
+    return begin_rest(a, b, duration, want, farthest, true, &program, answer);
 }
 
 /* a, b: the frames of the pair, prepared, or NULL. */

@@ -39,9 +39,9 @@ struct certified {
     struct fmb_prepared own[2];
     double duration, farthest;
     unsigned want;
-    /* What the programs compute: the whole answer; what is missing of it, without the gap; the gap.
-     */
-    enum { CERTIFIED_ALL, CERTIFIED_MISSING, CERTIFIED_GAP } stage;
+    /* What the programs compute: the whole answer; what is missing of contact and box; gap and
+     * point. */
+    enum { CERTIFIED_ALL, CERTIFIED_MISSING, CERTIFIED_REST } stage;
     struct support_decision program;
     struct fmb_answer proven; /* by programs: verdict, contact and box */
     /* The pair that the rungs decide: the given one, or its projection. */
@@ -105,10 +105,11 @@ enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified
 enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
                                   double duration, int passes);
 
-/* Sets the gap of a prepared pair with this verdict; bounds of NAN if it is surely greater than
- * farthest. Bounded: returns false, and bounds of NAN, if it needs more. */
-bool certified_gap(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                   enum fmb_verdict verdict, double farthest, struct fmb_gap *gap);
+/* Sets the gap and the point, as far as they are wanted, of a prepared pair with answer->verdict; a
+ * gap that is surely greater than farthest has bounds of NAN. Bounded: returns false if one of them
+ * needs more. */
+bool certified_rest(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                    unsigned want, double farthest, struct fmb_answer *answer);
 
 /* Computes the contact of a pair in contact that drifts. rounds: operations on these numbers may
  * round. span: of the pair. exact: integers may be used for an end that doubles do not give within
@@ -116,12 +117,14 @@ bool certified_gap(const struct fmb_prepared *a, const struct fmb_prepared *b, d
 bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs, bool rounds,
                 struct dyadic_span span, bool exact, double contact[2]);
 
-/* Computes the box of a prepared pair in contact. Returns false if doubles do not give it within
- * its limit. */
-bool certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                   double box[2][FMB_DIM_MAX]);
+/* Sets box and point of a prepared pair in contact, as far as they are wanted and doubles give them
+ * within their limits. In: want, bits of FMB_WANT_BOX and FMB_WANT_POINT. Returns those of what
+ * doubles do not give. */
+unsigned certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
+                       unsigned want, struct fmb_answer *answer);
 
-/* The same in integers of at most 512 bits, for pairs whose box doubles do not give. */
+/* Sets the box in integers of at most 512 bits, if doubles do not give it. Returns false if it
+ * needs more. */
 bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
                           double duration, double box[2][FMB_DIM_MAX]);
 

@@ -64,11 +64,14 @@ void fmb_scene_answer(const struct fmb_scene_answers *answers, size_t k, struct 
     out->verdict = (enum fmb_verdict) answers->verdicts[k];
     out->has_contact = answers->contacts && out->verdict >= FMB_TOUCHING;
     out->has_box = answers->boxes && out->verdict >= FMB_TOUCHING;
+    out->has_point = answers->points && out->verdict >= FMB_TOUCHING;
     out->has_gap = answers->gaps && gap_is_known(&answers->gaps[k]);
     if (out->has_contact)
         memcpy(out->contact, answers->contacts[k], sizeof out->contact);
     if (out->has_box)
         memcpy(out->box, answers->boxes[k], sizeof out->box);
+    if (out->has_point)
+        memcpy(out->point, answers->points[k], sizeof out->point);
     if (out->has_gap)
         out->gap = answers->gaps[k];
 }
@@ -107,7 +110,7 @@ enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pla
     enum fmb_status status = placements_check(a, b, duration);
     if (status != FMB_OK)
         return status;
-    if (want & ~(unsigned) (FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP))
+    if (want & ~(unsigned) (FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP | FMB_WANT_POINT))
         return FMB_UNKNOWN_WANT;
     if (want & FMB_WANT_GAP && !method->certain)
         return FMB_CANNOT_DECIDE;

@@ -49,6 +49,8 @@ struct scene_outcomes {
     unsigned char verdict[BLOCK];
     double contact[BLOCK][2];
     double box[BLOCK][2][FMB_DIM_MAX];
+    double point[BLOCK][1 + FMB_DIM_MAX];
+    unsigned point_frames[BLOCK][2]; /* of the answer of two bodies: the frames with that point */
     struct fmb_gap gap[BLOCK];
 };
 
@@ -276,7 +278,7 @@ enum fmb_status fmb_scene_check(const struct fmb_scene *scene, char *text, size_
         return refuse(why, FMB_BAD_DURATION, "duration", NULL);
     if (!(scene->margin >= 0) || !isfinite(scene->margin))
         return refuse(why, FMB_BAD_MARGIN, "margin", NULL);
-    if (scene->want & ~(unsigned) (FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP))
+    if (scene->want & ~(unsigned) (FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP | FMB_WANT_POINT))
         return refuse(why, FMB_UNKNOWN_WANT, "want", NULL);
     const enum fmb_status status = check_placements(scene, scene->placement_count, why);
     return status == FMB_OK ? check_pairs(scene, why) : status;
@@ -320,7 +322,7 @@ static void restart(struct fmb_scene_state *state, size_t moved)
     state->stage = PLACING;
     state->next = 0;
     state->moved = moved;
-    state->slow = state->scene.want & (FMB_WANT_BOX | FMB_WANT_GAP);
+    state->slow = state->scene.want & (FMB_WANT_BOX | FMB_WANT_GAP | FMB_WANT_POINT);
     state->halfway = false;
     block->count = block->done = block->open_count = block->next_open = 0;
     block->body_count = block->given = 0;
@@ -346,6 +348,8 @@ enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
     state->batched = state->scene.method == fmb_method_default();
     if (!state->scene.method->boxes)
         state->scene.want &= ~(unsigned) FMB_WANT_BOX;
+    if (!state->scene.method->certain)
+        state->scene.want &= ~(unsigned) FMB_WANT_POINT;
     lay_out(limits, base, state);
     begin_frames(state, limits);
     restart(state, scene->placement_count);
@@ -431,6 +435,8 @@ static void begin_answer(struct fmb_scene_state *state, size_t n)
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             answers->box[n][end][axis] = NAN;
     }
+    for (int k = 0; k <= FMB_DIM_MAX; k++)
+        answers->point[n][k] = NAN;
 }
 
 static void copy_answer(struct scene_outcomes *answers, size_t to, const struct scene_outcomes *of,
@@ -439,6 +445,8 @@ static void copy_answer(struct scene_outcomes *answers, size_t to, const struct 
     answers->verdict[to] = of->verdict[from];
     memcpy(answers->contact[to], of->contact[from], sizeof of->contact[from]);
     memcpy(answers->box[to], of->box[from], sizeof of->box[from]);
+    memcpy(answers->point[to], of->point[from], sizeof of->point[from]);
+    memcpy(answers->point_frames[to], of->point_frames[from], sizeof of->point_frames[from]);
     answers->gap[to] = of->gap[from];
 }
 
@@ -516,6 +524,7 @@ static void decide_batch(struct fmb_scene_state *state)
         .verdicts = block->outcomes.verdict,
         .contacts = scene->want & FMB_WANT_TIMES ? block->outcomes.contact : NULL,
         .boxes = scene->want & FMB_WANT_BOX ? block->outcomes.box : NULL,
+        .points = scene->want & FMB_WANT_POINT ? block->outcomes.point : NULL,
         .gaps = has_gaps(scene) ? block->outcomes.gap : NULL,
         .open = block->open,
         .open_count = &block->open_count};
@@ -534,12 +543,14 @@ static void put_outcome(struct fmb_scene_state *state, size_t k, const struct fm
         memcpy(outcomes->contact[k], answer->contact, sizeof answer->contact);
     if (answer->has_box)
         memcpy(outcomes->box[k], answer->box, sizeof answer->box);
+    if (answer->has_point)
+        memcpy(outcomes->point[k], answer->point, sizeof answer->point);
     outcomes->gap[k] = answer->has_gap ? answer->gap : gap_none();
 }
 
 static unsigned want_of_frames(const struct fmb_scene *scene)
 {
-    return (scene->want & (FMB_WANT_BOX | FMB_WANT_TIMES)) | (has_gaps(scene) ? FMB_WANT_GAP : 0);
+    return scene->want | (has_gaps(scene) ? FMB_WANT_GAP : 0);
 }
 
 /* Decides the only pair of the block, by a method that is not certain. */
@@ -578,6 +589,38 @@ static void begin_block(struct fmb_scene_state *state)
 
 /* ---- Answers ---- */
 
+/* out := the numbers of pair of frames k in its bodies. */
+static void set_frames(const struct fmb_scene_state *state, size_t k, size_t n, unsigned out[2])
+{
+    for (int side = 0; side < 2; side++) {
+        const struct fmb_prepared *frame = &state->frames.slot[state->block.frames[k][side]];
+        const unsigned body = state->block.bodies[n][side];
+        out[side] =
+            (unsigned) (frame->frame - fmb_body_frame(state->scene.placements[body].body, 0));
+    }
+}
+
+/* Includes the point of pair of frames k, which meet, in that of its bodies: that of the strongest
+ * verdict, then of the lowest numbers of frames, those of the first body in the order of
+ * gap_swaps() first. */
+static void include_point(struct fmb_scene_state *state, size_t k, size_t n)
+{
+    struct scene_block *block = &state->block;
+    struct scene_outcomes *answers = &block->answers;
+    const unsigned char verdict = block->outcomes.verdict[k], so_far = answers->verdict[n];
+    const unsigned *body = block->bodies[n], *old = answers->point_frames[n];
+    const bool swaps =
+        gap_swaps(&state->scene.placements[body[0]], &state->scene.placements[body[1]]);
+    unsigned frames[2];
+    set_frames(state, k, n, frames);
+    const bool lower =
+        frames[swaps] != old[swaps] ? frames[swaps] < old[swaps] : frames[!swaps] < old[!swaps];
+    if (verdict < so_far || (verdict == so_far && !lower))
+        return;
+    memcpy(answers->point[n], block->outcomes.point[k], sizeof answers->point[n]);
+    memcpy(answers->point_frames[n], frames, sizeof frames);
+}
+
 /* Includes the gap of pair of frames k, if it is known, in that of its bodies. If both have one
  * frame, it is the gap of the bodies. */
 static void include_gap(struct fmb_scene_state *state, size_t k, size_t n)
@@ -594,8 +637,7 @@ static void include_gap(struct fmb_scene_state *state, size_t k, size_t n)
         block->answers.gap[n] = *one;
         return;
     }
-    one->frame[0] = (unsigned) (state->frames.slot[slot[0]].frame - fmb_body_frame(a->body, 0));
-    one->frame[1] = (unsigned) (state->frames.slot[slot[1]].frame - fmb_body_frame(b->body, 0));
+    set_frames(state, k, n, one->frame);
     gap_include(&block->answers.gap[n], one, &box[slot[0]], &box[slot[1]], gap_swaps(a, b));
 }
 
@@ -616,6 +658,8 @@ static void include(struct fmb_scene_state *state, size_t k)
         answers->verdict[n] = 0;
         return;
     }
+    if (state->scene.want & FMB_WANT_POINT)
+        include_point(state, k, n);
     if (verdict > answers->verdict[n])
         answers->verdict[n] = verdict;
     /* fmin() and fmax() return the other operand if one is NAN. */
@@ -698,6 +742,9 @@ static void hand_out(struct fmb_scene_state *state, struct fmb_scene_answers *ou
     out->boxes = state->scene.want & FMB_WANT_BOX
                      ? (const double(*)[2][FMB_DIM_MAX]) answers->box + first
                      : NULL;
+    out->points = state->scene.want & FMB_WANT_POINT
+                      ? (const double(*)[1 + FMB_DIM_MAX]) answers->point + first
+                      : NULL;
 }
 
 static unsigned long long number_of(const struct fmb_scene_state *state, size_t n)

@@ -14,9 +14,11 @@
  *      add_crossings()        crossings of edges that are possible
  *   4. the same for the inner spans and crossings that are certain, in the lanes in which some
  *      outer one is not nearly as certain
+ *   5. add_middles()         on request, the mean of the middles of all outer spans and of all
+ *                             crossings: a point that both frames contain, and its time
  *
  * Not here: why these points span the box, and the derivation of every error bound: BOXES.md, to
- * which the numbers (1) to (11) below refer; what follows from the ends (box_ends.h); the same in
+ * which the numbers (1) to (12) below refer; what follows from the ends (box_ends.h); the same in
  * integers (limbs/limbs_box.h). */
 #ifndef FMB_BOX_CLIP_H
 #define FMB_BOX_CLIP_H
@@ -46,6 +48,9 @@
 
 /* T, or its inverse, up to which products of two numbers do not overflow or underflow (5). */
 #define CLIP_EXACT_RANGE 0x1p100
+
+/* The largest error of a time, as a fraction of the window; fmb.h allows 1e-12 of it (12). */
+#define CLIP_TIME 0.9e-12
 
 enum { CLIP_OUTER, CLIP_INNER, CLIP_BOUNDS };
 enum { CLIP_SLABS = 4, CLIP_VERTICES = 16, CLIP_SEGMENTS = 32, CLIP_DIRECTIONS = 7 };
@@ -492,6 +497,52 @@ INLINE void add_reach(const struct kernel_traits traits, const struct clip_wire 
     }
 }
 
+/* ---- Mean ---- */
+
+/* A frame, and what is left of its segments. */
+struct clip_side {
+    struct clip_points points;
+    struct clip_spans spans;
+};
+
+/* Points of the intersection with their times, from -1 to 1: their sum, [time, coordinates], and
+ * how many they are. */
+struct clip_mean {
+    lanes sum[1 + FMB_DIM_MAX], count;
+    lanes_mask good;
+};
+
+INLINE void add_to_mean(lanes_mask counts, lanes x, lanes *sum)
+{
+    *sum += lanes_select(counts, CHECK_GIVEN(x), lanes_of(0));
+}
+
+/* Adds the middles of the outer spans of a frame. */
+INLINE void add_middles(const struct kernel_traits traits, const struct clip_wire *wire,
+                        const struct clip_side *side, struct clip_mean *out)
+{
+    const struct clip_points *points = &side->points;
+    for (int n = 0; n < wire->segments; n++) {
+        const struct clip_span *outer = &side->spans.part[CLIP_OUTER][n];
+        const struct clip_span *inner = &side->spans.part[CLIP_INNER][n];
+        const int v = wire->from[n], d = wire->direction[n];
+        const lanes_mask counts = outer->from == outer->from;
+        const lanes twice = outer->from + outer->to;
+        for (int axis = 0; axis < traits.dim; axis++)
+            add_to_mean(counts, points->vertex[axis][v] + twice * (0.5 * points->along[axis][d]),
+                        &out->sum[1 + axis]);
+        add_to_mean(counts, lanes_of(1), &out->count);
+        if (!traits.drifts)
+            continue;
+        const bool is_path = d == wire->directions - 1;
+        const lanes edge = lanes_of(v < wire->vertices ? -1 : 1);
+        add_to_mean(counts, is_path ? edge + twice : edge, &out->sum[0]);
+        const lanes lost = (outer->to - outer->from) - (inner->to - inner->from);
+        if (is_path)
+            out->good &= is_not(counts) | (lost <= CLIP_TIME);
+    }
+}
+
 /* ---- Crossings ---- */
 
 /* How many edges of a frame have the same direction. */
@@ -595,11 +646,11 @@ INLINE lanes inside_range(bool simplex, lanes x, lanes all)
 
 /* The crossings of edges along i of A and j of B. Where X may be 0, the radius is infinite. */
 struct clip_crossing {
-    const lanes (*base)[3], *a_r, *b_s;           /* [edge]: from struct clip_crossings */
-    lanes a_s[4], a_t[4], b_r[4], b_t[4];         /* [edge]: parts of s X, r X and t X */
-    lanes det, turned, error_s, error_r, error_t; /* |X|, X, bounds */
-    lanes along[3], travel[3], radius[3];         /* of s X, t X; of the error of a position */
-    lanes_mask known, crosses;
+    const lanes (*base)[3], *a_r, *b_s;                    /* [edge]: from struct clip_crossings */
+    lanes a_s[4], a_t[4], b_r[4], b_t[4];                  /* [edge]: parts of s X, r X and t X */
+    lanes det, turned, inverse, error_s, error_r, error_t; /* |X|, X, 1 / |X|, bounds */
+    lanes along[3], travel[3], radius[3]; /* of s X, t X; of the error of a position */
+    lanes_mask known, timed, crosses;     /* the position, the time of a crossing is known */
 };
 
 INLINE void set_parts(const struct kernel_traits traits, const struct clip_crossings *all,
@@ -654,6 +705,8 @@ INLINE void set_crossing(const struct pair_lanes *pair, const struct kernel_trai
         out->crosses &= is_not(places->level[axis] & (a->edge[i][axis] == 0) &
                                (box->frame[1].edge[j][axis] == 0));
     out->known = wide <= 0.5 * box->whole;
+    out->inverse = inverse;
+    out->timed = some & (out->error_t <= CLIP_TIME * out->det);
 }
 
 /* The crossing of two edges: s X and t X, and how far s, r and t are inside their ranges, times X.
@@ -681,10 +734,11 @@ INLINE lanes_mask is_possible(const struct kernel_traits traits, const struct cl
 }
 
 /* Adds the crossing to the reach of A: to the outer one where it is possible, to the inner one
- * where it is certain. Returns the lanes in which it is possible, but not certain, or has a
- * position that is not known to within box->whole. */
+ * where it is certain; and to the mean where it is certain, if mean is not NULL. Returns the lanes
+ * in which it is possible, but not certain, or has a position that is not known to within
+ * box->whole. */
 INLINE lanes_mask add_crossing(const struct kernel_traits traits, const struct clip_crossing *from,
-                               int m, int n, lanes reach[CLIP_BOUNDS][2][3])
+                               int m, int n, lanes reach[CLIP_BOUNDS][2][3], struct clip_mean *mean)
 {
     struct clip_parameters at;
     const lanes none = lanes_of(-INFINITY);
@@ -703,6 +757,13 @@ INLINE lanes_mask add_crossing(const struct kernel_traits traits, const struct c
             *below = lanes_max(lanes_select(counts, half - middle, none), *below);
             *above = lanes_max(lanes_select(counts, half + middle, none), *above);
         }
+        if (mean)
+            add_to_mean(certain, middle, &mean->sum[1 + axis]);
+    }
+    if (mean) {
+        add_to_mean(certain, at.t * from->inverse, &mean->sum[0]);
+        add_to_mean(certain, lanes_of(1), &mean->count);
+        mean->good &= is_not(certain) | from->timed;
     }
     return possible & is_not(certain);
 }
@@ -711,7 +772,7 @@ INLINE lanes_mask add_crossing(const struct kernel_traits traits, const struct c
  * found, without branches; few are. Returns the lanes of add_crossing(). */
 INLINE lanes_mask add_parallel_crossings(const struct kernel_traits traits,
                                          const struct clip_crossing *from,
-                                         lanes reach[CLIP_BOUNDS][2][3])
+                                         lanes reach[CLIP_BOUNDS][2][3], struct clip_mean *mean)
 {
     unsigned any = 0;
     lanes_mask uncertain = {0};
@@ -723,18 +784,12 @@ INLINE lanes_mask add_parallel_crossings(const struct kernel_traits traits,
         }
     for (; any != 0; any &= any - 1) {
         const int index = __builtin_ctz(any);
-        uncertain |= add_crossing(traits, from, index / 4, index % 4, reach);
+        uncertain |= add_crossing(traits, from, index / 4, index % 4, reach, mean);
     }
     return uncertain;
 }
 
 /* ---- All of it ---- */
-
-/* A frame, and what is left of its segments. */
-struct clip_side {
-    struct clip_points points;
-    struct clip_spans spans;
-};
 
 /* Clips a frame to the other one. Out: side; other, the face products of the other. Returns the
  * lanes of clip_segments(). */
@@ -762,11 +817,11 @@ INLINE lanes_mask clip_frame(const struct pair_lanes *pair, const struct kernel_
                          &side->spans);
 }
 
-/* Adds all crossings to the reach of A. Returns the lanes of add_crossing(). */
+/* Adds all crossings to the reach of A and to the mean. Returns the lanes of add_crossing(). */
 INLINE lanes_mask add_crossings(const struct pair_lanes *pair, const struct kernel_traits traits,
                                 const struct box_places *places, const struct box_pair *box,
                                 const struct face_products side[2], lanes_mask *good,
-                                lanes reach[CLIP_BOUNDS][2][3])
+                                lanes reach[CLIP_BOUNDS][2][3], struct clip_mean *mean)
 {
     struct clip_crossings all;
     lanes_mask uncertain = {0};
@@ -777,15 +832,17 @@ INLINE lanes_mask add_crossings(const struct pair_lanes *pair, const struct kern
             struct clip_crossing crossing;
             set_crossing(pair, traits, places, box, side, &all, edge_at(traits, 0, i),
                          edge_at(traits, 1, j), &crossing);
-            uncertain |= add_parallel_crossings(traits, &crossing, reach);
+            uncertain |= add_parallel_crossings(traits, &crossing, reach, mean);
         }
     return uncertain;
 }
 
-/* Finds the ends of the box. Returns the lanes in which they are good. */
+/* Finds the ends of the box, and the mean unless it is NULL. Returns the lanes in which the ends
+ * are good. */
 INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_traits traits,
                            const struct clip_wire wire[2], const struct box_places *places,
-                           const struct box_pair *box, struct box_ends *ends)
+                           const struct box_pair *box, struct box_ends *ends,
+                           struct clip_mean *mean)
 {
     struct face_products products[2];
     struct clip_side side[2];
@@ -797,7 +854,9 @@ INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_tr
         uncertain |= clip_frame(pair, traits, places, which, &wire[which], box, &products[!which],
                                 &good, &side[which]);
     if (traits.dim == 3 && traits.drifts)
-        uncertain |= add_crossings(pair, traits, places, box, products, &good, reach);
+        uncertain |= add_crossings(pair, traits, places, box, products, &good, reach, mean);
+    for (int which = 0; which < 2 && mean; which++)
+        add_middles(traits, &wire[which], &side[which], mean);
     for (int bound = 0; bound < (lanes_mask_bits(uncertain & good) ? 2 : 1); bound++)
         for (int which = 0; which < 2; which++)
             add_reach(traits, &wire[which], &side[which].points, side[which].spans.part[bound],
@@ -812,7 +871,10 @@ INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_tr
             CHECK_BOUND(BOX_PLACE_ROUNDING, box->exact, *inner, box->slack[axis]);
             CHECK_BOUND(BOX_PLACE_ROUNDING_EXACT, is_not(box->exact), *inner, box->slack[axis]);
         }
-    return are_near(traits, box, ends) & good;
+    good &= are_near(traits, box, ends);
+    if (mean)
+        mean->good &= good & is_not(uncertain);
+    return good;
 }
 
 #endif

@@ -142,13 +142,17 @@ struct kernel_call {
     /* [count][lower, upper][axis], of pairs in contact; NAN where doubles do not prove the limit
      * of fmb.h. */
     double (*boxes)[2][FMB_DIM_MAX];
+    /* [count][time, coordinates], of pairs in contact; NULL, or NAN where doubles do not prove the
+     * limit of fmb.h. */
+    double (*points)[1 + FMB_DIM_MAX];
 };
 
 enum { KERNEL_LANES = 8 };
 
 typedef void kernel_function(const struct kernel_call *call);
 
-/* Writes the boxes of pairs in contact of a kind of kernel_box_kind(). */
+/* Writes the boxes, and unless points is NULL the points, of pairs in contact of a kind of
+ * kernel_box_kind(). */
 typedef void kernel_box_function(const struct kernel_call *call, enum kernel_kind kind);
 
 /* Kernels of a single pair, for its verdict. */
@@ -186,6 +190,7 @@ struct kernel_one {
     const struct fmb_prepared *pairs[KERNEL_LANES][2];
     unsigned char outcome[KERNEL_LANES];
     double contact[KERNEL_LANES][2], box[KERNEL_LANES][2][FMB_DIM_MAX];
+    double point[KERNEL_LANES][1 + FMB_DIM_MAX];
 };
 
 /* Sets a call for one pair. In: a and b in the order that the kernel takes. */

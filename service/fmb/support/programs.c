@@ -1174,6 +1174,40 @@ void programs_nearest_time(struct programs *e, double time[2])
                                         end ? ROUND_UP : ROUND_DOWN, e->minor);
 }
 
+/* The point is a + (b - a) r_A / R, for the points a of A and b of B that the weights give, R the
+ * sum of the radii r_A and r_B. If it is 0, the nearest point b - a is 0 too. */
+void programs_nearest_point(struct programs *e, double point[1 + FMB_DIM_MAX])
+{
+    const struct integer_simplex *simplex = &e->simplex;
+    const struct frame_pair *frames = e->pair->frames;
+    mpz_t *radius = e->dual;
+    double time[2];
+    programs_nearest_time(e, time);
+    point[0] = time[0];
+    integer_set(radius[0], dyadic_of(frames->a.frame->radius), e->integers.unit);
+    integer_set_sum(radius[1], frames->a.frame->radius, frames->b.frame->radius, e->integers.unit);
+    if (mpz_sgn(radius[1]) == 0)
+        mpz_set_ui(radius[1], 1);
+    mpz_mul(e->denominator, simplex->total, radius[1]);
+    mpz_mul(e->denominator, e->denominator, e->integers.scale);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        mpz_set_ui(e->sum, 0);
+        mpz_set_ui(e->best, 0);
+        for (int i = 0; i < simplex->count; i++) {
+            const struct integer_corner *corner = simplex->corner[i];
+            mpz_set(e->scratch[0], place(e, 0, corner->bits[0])[axis]);
+            if (corner->late)
+                mpz_add(e->scratch[0], e->scratch[0], e->integers.side[0].displacement[axis]);
+            mpz_addmul(e->sum, simplex->weight[i], e->scratch[0]);
+            mpz_addmul(e->best, simplex->weight[i], corner->at[axis]);
+        }
+        mpz_mul(e->sum, e->sum, radius[1]);
+        mpz_addmul(e->sum, e->best, radius[0]);
+        point[1 + axis] =
+            integer_ratio_round(e->sum, e->denominator, e->integers.unit, ROUND_DOWN, e->minor);
+    }
+}
+
 /* ---- Begin and end ---- */
 
 static void set_all_vertices(struct programs *e)

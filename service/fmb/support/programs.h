@@ -50,8 +50,8 @@ struct programs_proof {
 struct programs *programs_begin(const struct support_pair *pair, unsigned want,
                                 const struct support_column *first, unsigned count);
 
-/* Begins a decision of frames with radii, by the point of D nearest to the origin, in the same kind
- * of steps. It gives no contact and no box.
+/* Begins a decision by the point of D nearest to the origin, in the same kind of steps. It gives no
+ * contact and no box; its verdict is that of the pair if a frame has a radius.
  *
  * In:  pair  set; must outlive the decision
  *      late  D is restricted to the end of the window */
@@ -67,6 +67,11 @@ struct programs_proof *programs_proof(struct programs *programs);
 /* Sets the time of the nearest point of a complete decision by it, in seconds, rounded down and up.
  */
 void programs_nearest_time(struct programs *programs, double time[2]);
+
+/* Sets point to a time and a point that both frames contain then, as fmb_answer.point: of a
+ * complete decision by the nearest point, of frames that meet. It is rounded down from the exact
+ * one. */
+void programs_nearest_point(struct programs *programs, double point[1 + FMB_DIM_MAX]);
 
 /* Sets the answer of a complete decision: the verdict, and if the frames meet, the contact and the
  * box that are wanted, with ends rounded outward; the rest is unchanged. Ends the decision,

@@ -29,13 +29,26 @@ static void set_pair(const struct frame_pair *frames, unsigned want, double fart
 {
     support_decision_none(out);
     out->swapped = support_order(frames, &out->frames);
-    out->searched = out->by_nearest = false;
+    out->searched = out->by_nearest = out->pointing = false;
     out->cores = 0;
     out->ends = (struct support_round_ends){.time = {NAN, NAN}, .guess = {NAN, NAN}};
     out->bounded = bounded;
     out->want = want;
     out->farthest = farthest;
     support_pair_set(&out->frames, &out->pair);
+}
+
+/* Sets the point of a pair in contact, if it is wanted: by doubles if these prove it, else by the
+ * programs, which it begins. Returns whether the decision is complete. */
+static bool begin_point(struct support_decision *decision, struct fmb_answer *answer)
+{
+    answer->has_point = decision->want & FMB_WANT_POINT && answer->verdict != FMB_SEPARATED;
+    if (!answer->has_point)
+        return true;
+    decision->pointing = true;
+    if (!decision->bounded)
+        decision->programs = programs_begin_nearest(&decision->pair, false);
+    return false;
 }
 
 /* Takes the outcome of a step of the gap. Returns whether it is complete. */
@@ -48,7 +61,7 @@ static bool take_gap(struct support_decision *decision, enum gap_outcome outcome
     answer->has_gap = true;
     if (outcome == GAP_FAR)
         answer->gap = gap_none();
-    return true;
+    return begin_point(decision, answer);
 }
 
 /* Begins the gap of a pair whose cores have this verdict. Returns whether the decision is complete.
@@ -65,13 +78,13 @@ static bool begin_gap_of(struct support_decision *decision, enum fmb_verdict cor
         answer);
 }
 
-/* Begins the gap of a pair whose verdict is known, if it is wanted. The gap of frames with radii
- * follows from the gap of their cores, so the verdict of the cores may have to be decided first.
- * Returns whether the decision is complete. */
-static bool begin_gap(struct support_decision *decision, struct fmb_answer *answer)
+/* Begins the gap of a pair whose verdict is known, if it is wanted, then the point. The gap of
+ * frames with radii follows from the gap of their cores, so the verdict of the cores may have to be
+ * decided first. Returns whether the decision is complete. */
+static bool begin_rest(struct support_decision *decision, struct fmb_answer *answer)
 {
     if (!(decision->want & FMB_WANT_GAP))
-        return true;
+        return begin_point(decision, answer);
     if (!decision->pair.rounded)
         return begin_gap_of(decision, answer->verdict, answer);
     if (decision->cores) /* if the cores touch, the direction has to prove the bound too */
@@ -121,7 +134,7 @@ static bool round_begin(struct support_decision *decision, enum fmb_verdict core
     if (decision->searched)
         answer->verdict = support_round_verdict(&decision->pair, cores, &decision->nearest);
     if (answer->verdict && measure(decision, answer))
-        return begin_gap(decision, answer);
+        return begin_rest(decision, answer);
     if (!decision->bounded) {
         decision->by_nearest = true;
         decision->programs = programs_begin_nearest(&decision->pair, false);
@@ -137,7 +150,7 @@ static bool round_step(struct support_decision *decision, struct fmb_answer *ans
         if (!support_round_times_step(&decision->times))
             return false;
         set_contact(decision, decision->times.ends.time, answer);
-        return begin_gap(decision, answer);
+        return begin_rest(decision, answer);
     }
     if (!programs_step(decision->programs))
         return false;
@@ -147,7 +160,7 @@ static bool round_step(struct support_decision *decision, struct fmb_answer *ans
         struct fmb_answer cores;
         programs_end(programs, &cores);
         decision->cores = cores.verdict;
-        return begin_gap(decision, answer);
+        return begin_rest(decision, answer);
     }
     double inside[2];
     answer->verdict = programs_proof(programs)->verdict;
@@ -155,7 +168,7 @@ static bool round_step(struct support_decision *decision, struct fmb_answer *ans
     programs_end(programs, NULL);
     decision->by_nearest = false;
     if (measure(decision, answer))
-        return begin_gap(decision, answer);
+        return begin_rest(decision, answer);
     support_round_times_begin(&decision->pair, inside, &decision->ends, &decision->times);
     return false;
 }
@@ -182,7 +195,7 @@ bool support_decision_begin(const struct frame_pair *frames, unsigned want,
     if (answer->verdict == FMB_OVERLAPPING)
         left = answer_in_doubles(pair, left, &nearest->simplex, answer);
     if (answer->verdict == FMB_SEPARATED || (answer->verdict == FMB_OVERLAPPING && left == 0))
-        return begin_gap(out, answer);
+        return begin_rest(out, answer);
     if (effort != SUPPORT_QUICK) {
         /* The guess is a simplex that contains the origin after it was moved in a little. The
          * facet through which the ray leaves is close to it, so few steps are left. */
@@ -197,30 +210,40 @@ bool support_decision_begin(const struct frame_pair *frames, unsigned want,
     return false;
 }
 
-bool support_decision_begin_gap(const struct frame_pair *frames, enum fmb_verdict verdict,
-                                double farthest, bool bounded, struct support_decision *out,
-                                struct fmb_answer *answer)
+bool support_decision_begin_rest(const struct frame_pair *frames, unsigned want,
+                                 enum fmb_verdict verdict, double farthest, bool bounded,
+                                 struct support_decision *out, struct fmb_answer *answer)
 {
-    set_pair(frames, FMB_WANT_GAP, farthest, bounded, out);
+    set_pair(frames, want, farthest, bounded, out);
     answer->verdict = verdict;
+    out->searched = verdict != FMB_SEPARATED && out->pair.usable &&
+                    (out->pair.rounded || want & FMB_WANT_POINT);
     if (out->pair.rounded && verdict == FMB_SEPARATED)
         out->cores = FMB_SEPARATED;
-    else if (out->pair.rounded && out->pair.usable)
+    else if (out->searched)
         out->cores = support_search(&out->pair, INFINITY, &out->nearest);
-    return begin_gap(out, answer);
+    return begin_rest(out, answer);
 }
 
 bool support_decision_step(struct support_decision *decision, struct fmb_answer *answer)
 {
     if (decision->gap)
         return take_gap(decision, support_gap_step(decision->gap, &answer->gap), answer);
+    if (decision->pointing) {
+        if (!programs_step(decision->programs))
+            return false;
+        programs_nearest_point(decision->programs, answer->point);
+        programs_end(decision->programs, NULL);
+        decision->programs = NULL;
+        return true;
+    }
     if (decision->pair.rounded)
         return round_step(decision, answer);
     if (!programs_step(decision->programs))
         return false;
     programs_end(decision->programs, answer);
     decision->programs = NULL;
-    return begin_gap(decision, answer);
+    return begin_rest(decision, answer);
 }
 
 void support_decision_end(struct support_decision *decision)

@@ -22,6 +22,7 @@ struct support_decision {
     struct frame_pair frames; /* in the order of support_order() */
     bool swapped, searched;   /* searched: nearest is the result of a search */
     bool bounded;
+    bool pointing; /* programs looks for the point */
     unsigned want;
     double farthest;
     struct support_pair pair;
@@ -52,10 +53,11 @@ bool support_decision_begin(const struct frame_pair *frames, unsigned want,
                             enum support_effort effort, double farthest,
                             struct support_decision *out, struct fmb_answer *answer);
 
-/* The same for the gap alone. In: verdict, of the pair; bounded: as with SUPPORT_QUICK. */
-bool support_decision_begin_gap(const struct frame_pair *frames, enum fmb_verdict verdict,
-                                double farthest, bool bounded, struct support_decision *out,
-                                struct fmb_answer *answer);
+/* The same for the gap and the point alone. In: want, bits of FMB_WANT_GAP and FMB_WANT_POINT;
+ * verdict, of the pair; bounded: as with SUPPORT_QUICK. */
+bool support_decision_begin_rest(const struct frame_pair *frames, unsigned want,
+                                 enum fmb_verdict verdict, double farthest, bool bounded,
+                                 struct support_decision *out, struct fmb_answer *answer);
 
 /* Performs a step of a decision that is not complete. It takes some ten microseconds for numbers of
  * similar size, and less than a millisecond for any. Returns whether it is complete, with *answer
