@@ -164,7 +164,11 @@ bool oracle_agrees(const struct oracle_answer *truth, const struct pair *pair,
         return wrong(why, size, "box: there should be %s", truth->has_box ? "one" : "none");
     if (truth->has_contact && !contact_agrees(truth, pair, answer, limit, why, size))
         return false;
-    return !truth->has_box || box_agrees(truth, pair, answer, limit, why, size);
+    if (truth->has_box && !box_agrees(truth, pair, answer, limit, why, size))
+        return false;
+    const char *fault =
+        answer->has_point ? rounded_point_fault(pair, truth->verdict, answer->point) : NULL;
+    return !fault || wrong(why, size, "%s", fault);
 }
 
 static bool check(const struct pair *pair, unsigned want, const struct fmb_answer *answer,

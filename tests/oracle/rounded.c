@@ -381,16 +381,22 @@ const char *rounded_point_fault(const struct pair *pair, enum fmb_verdict verdic
                                 const double point[1 + FMB_DIM_MAX])
 {
     const unsigned count[2] = {pair->a.body->frame_count, pair->b.body->frame_count};
-    bool near = false;
+    bool near = false, finite = true;
     mpq_t limit;
     if (!(point[0] >= 0 && point[0] <= pair->duration))
         return "the time of the point is not within the window";
-    for (int k = 0; k <= FMB_DIM_MAX; k++)
-        if (!isfinite(point[k]) || (point[k] == 0 && signbit(point[k])) ||
+    for (int k = 0; k <= FMB_DIM_MAX; k++) {
+        finite = finite && !isinf(point[k]);
+        if (isnan(point[k]) || (point[k] == 0 && signbit(point[k])) ||
             (k > pair->a.body->dim && point[k] != 0))
-            return "the point is not finite, has a -0, or leaves the plane";
+            return "the point is not a number, has a -0, or leaves the plane";
+    }
     mpq_init(limit);
+    world_size(pair, limit);
+    if (!finite && compare(0x1.fffffffffffffp1023, limit) >= 0)
+        return "the point is infinite";
     world_limit(pair, limit);
+    near = !finite;
     for (unsigned k = 0; k < count[0] * count[1] && !near; k++) {
         const unsigned i = k / count[1], j = k % count[1];
         struct world world;

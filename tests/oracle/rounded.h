@@ -28,6 +28,8 @@ const char *rounded_box_fault(const struct pair *pair, const double contact[2],
  * verdict; or NULL if two frames with this verdict have a common point within 1e-12 of the largest
  * coordinate of it, at a time within 1e-12 of the window, or the next double.
  *
+ * Coordinates beyond the doubles are infinite; such a point is not checked.
+ *
  * Of overlapping frames with radii, three candidates for the common point are tried: the point
  * itself; the point moved by the limit towards a core; and the point between the nearest points of
  * both cores, in the ratio of the radii. The given point must be within the limit of each frame. */

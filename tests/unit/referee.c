@@ -75,16 +75,20 @@ bool referee_same(const struct fmb_answer *one, const struct fmb_answer *other)
     return one->verdict == other->verdict && one->has_contact == other->has_contact &&
            one->has_box == other->has_box &&
            (!one->has_contact || memcmp(one->contact, other->contact, sizeof one->contact) == 0) &&
-           (!one->has_box || memcmp(one->box, other->box, sizeof one->box) == 0);
+           (!one->has_box || memcmp(one->box, other->box, sizeof one->box) == 0) &&
+           one->has_point == other->has_point &&
+           (!one->has_point || memcmp(one->point, other->point, sizeof one->point) == 0);
 }
 
-/* On output: *answer, with the box, held against the truth. */
+/* On output: *answer, with the box and the point, held against the truth. */
 static void assert_truth(const struct never_wrong *method, const struct question *question,
                          const struct pair *pair, const struct oracle_answer *truth,
                          struct fmb_answer *answer)
 {
     char why[200];
-    decide(method, question, pair, FMB_WANT_BOX, answer);
+    decide(method, question, pair, FMB_WANT_BOX | FMB_WANT_POINT, answer);
+    if (answer->has_point != truth->has_contact)
+        fail_of(method, question, "a point, or none");
     if (!oracle_agrees(truth, pair, answer, method->limit, why, sizeof why))
         fail_of(method, question, why);
 }
@@ -94,11 +98,11 @@ static void assert_consistent(const struct never_wrong *method, const struct que
 {
     const struct pair reversed = {pair->b, pair->a, pair->duration};
     struct fmb_answer boxless, swapped;
-    decide(method, question, &reversed, FMB_WANT_BOX, &swapped);
+    decide(method, question, &reversed, FMB_WANT_BOX | FMB_WANT_POINT, &swapped);
     if (!referee_same(answer, &swapped))
         fail_of(method, question, "differs the other way round");
 
-    decide(method, question, pair, 0, &boxless);
+    decide(method, question, pair, FMB_WANT_POINT, &boxless);
     if (boxless.has_box)
         fail_of(method, question, "a box that was not requested");
     boxless.has_box = answer->has_box;

@@ -204,15 +204,15 @@ static void boxes_of_nearly_dependent_edges(void **state)
         struct question question;
         struct ready ready;
         struct fmb_prepared frame[2];
-        box_ends box;
+        struct fmb_answer answer;
         draw_dependent(&draw, &cell, &question);
         if (!prepare_contact(&question, &ready, frame))
             continue;
         met++;
-        if (!certified_box(&frame[0], &frame[1], question.duration, box))
+        if (certified_box(&frame[0], &frame[1], question.duration, FMB_WANT_BOX, &answer))
             continue;
         known++;
-        worst = fmax(worst, compare_box(&question, &ready.pair, frame, box));
+        worst = fmax(worst, compare_box(&question, &ready.pair, frame, answer.box));
     }
     printf("# %ld meet, boxes known of %ld; at most %.3g of the limit out\n", met, known, worst);
     assert_true(known > met / 2);

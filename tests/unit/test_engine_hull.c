@@ -30,7 +30,8 @@ static enum fmb_verdict expect_truth(const struct trial *trial)
         const struct fmb_method *method = fmb_method_at((size_t) m);
         const bool exact = strcmp(method->name, "exact") == 0;
         for (int order = 0; order < 2; order++)
-            reply[order] = trial_decide(trial, method, order, method->certain ? FMB_WANT_BOX : 0);
+            reply[order] = trial_decide(trial, method, order,
+                                        method->certain ? FMB_WANT_BOX | FMB_WANT_POINT : 0);
         if (!method->certain) {
             for (int order = 0; order < 2; order++)
                 if (has_one_frame(&trial->question) && reply[order].status != FMB_CANNOT_DECIDE)

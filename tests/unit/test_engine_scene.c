@@ -117,7 +117,8 @@ static void draw_world(struct draw *draw, size_t count, size_t most_frames, stru
         .placement_count = count,
         .duration = below(draw, 3),
         .want = (unsigned) (below(draw, 2) * FMB_WANT_TIMES + below(draw, 2) * FMB_WANT_BOX +
-                            (below(draw, 3) == 0) * FMB_WANT_GAP),
+                            (below(draw, 3) == 0) * FMB_WANT_GAP +
+                            (below(draw, 3) == 0) * FMB_WANT_POINT),
         .margin = below(draw, 3) ? 0 : 0.25 * below(draw, 12),
         .which = (enum fmb_pairs) below(draw, 3)};
     if (scene->which == FMB_PAIRS_ACROSS)
@@ -207,9 +208,11 @@ static size_t find_truth(const struct fmb_scene *scene, struct truth *out)
             continue;
         truth->number = number;
         memcpy(truth->pair, pair, sizeof pair);
-        fmb_decide(
-            method, &scene->placements[pair[0]], &scene->placements[pair[1]], scene->duration,
-            (scene->want & FMB_WANT_BOX) | (wants_gaps(scene) ? FMB_WANT_GAP : 0), &truth->answer);
+        fmb_decide(method, &scene->placements[pair[0]], &scene->placements[pair[1]],
+                   scene->duration,
+                   (scene->want & (FMB_WANT_BOX | FMB_WANT_POINT)) |
+                       (wants_gaps(scene) ? FMB_WANT_GAP : 0),
+                   &truth->answer);
         count += scene->which == FMB_PAIRS_LISTED || truth->answer.verdict != FMB_SEPARATED ||
                  is_near(scene, &truth->answer);
     }
@@ -252,6 +255,7 @@ static void check_answer(const struct fmb_scene *scene, const struct fmb_scene_a
     assert_int_equal(answers->verdicts[k], truth->answer.verdict);
     assert_true(!!(scene->want & FMB_WANT_TIMES) == !!answers->contacts);
     assert_true(!!(scene->want & FMB_WANT_BOX) == !!answers->boxes);
+    assert_true(!!(scene->want & FMB_WANT_POINT) == !!answers->points);
     assert_true(wants_gaps(scene) == !!answers->gaps);
     if (answers->gaps)
         check_gap(scene, &answers->gaps[k], &truth->answer);
@@ -261,6 +265,9 @@ static void check_answer(const struct fmb_scene *scene, const struct fmb_scene_a
         for (int end = 0; end < 2; end++)
             check_numbers(answers->boxes[k][end], truth->answer.box[end],
                           (size_t) scene->placements->body->dim, truth->answer.has_box);
+    if (answers->points)
+        check_numbers(answers->points[k], truth->answer.point, 1 + FMB_DIM_MAX,
+                      truth->answer.has_point);
 }
 
 static size_t near_pairs; /* so far */
@@ -443,7 +450,7 @@ static void every_method(void **state)
         if (!world.scene.method->boxes)
             world.scene.want &= ~(unsigned) FMB_WANT_BOX;
         if (!world.scene.method->certain)
-            world.scene.margin = 0, world.scene.want &= ~(unsigned) FMB_WANT_GAP;
+            world.scene.margin = 0, world.scene.want &= ~(unsigned) (FMB_WANT_GAP | FMB_WANT_POINT);
         if (!world.scene.method->certain && world.scene.which != FMB_PAIRS_LISTED)
             continue;
         check_scene(&world.scene, 0);
@@ -558,9 +565,6 @@ static void bad_scenes(void **state)
     expect_refusal(scene, FMB_CANNOT_DECIDE, "method: ");
     draw_good(FMB_PAIRS_ALL);
     scene->want |= FMB_WANT_CERTIFICATE;
-    expect_refusal(scene, FMB_UNKNOWN_WANT, "want: ");
-    draw_good(FMB_PAIRS_ALL);
-    scene->want |= FMB_WANT_POINT;
     expect_refusal(scene, FMB_UNKNOWN_WANT, "want: ");
     static const double margins[] = {-0x1p-1074, INFINITY, NAN};
     for (int i = 0; i < 3; i++) {

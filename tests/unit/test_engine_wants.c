@@ -14,7 +14,7 @@
 #include "trial.h"
 #include "wire.h"
 
-enum { ALL = FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP };
+enum { ALL = FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP | FMB_WANT_POINT };
 
 static struct answerer *answerer;
 static struct answer_job *job;
@@ -49,6 +49,7 @@ static void expect(const struct subject *subject, unsigned given, const struct f
     expected.has_contact = expected.has_contact && given & FMB_WANT_TIMES;
     expected.has_box = expected.has_box && given & FMB_WANT_BOX;
     expected.has_gap = expected.has_gap && given & FMB_WANT_GAP;
+    expected.has_point = expected.has_point && given & FMB_WANT_POINT;
     if (query_same_answer(&expected, answer))
         return;
     if (subject->question)
@@ -81,6 +82,7 @@ static void expect_batch(const struct subject *subject, unsigned want, bool list
     struct fmb_prepared frames[2];
     struct fmb_gap gap;
     double contact[1][2] = {{NAN}}, box[1][2][FMB_DIM_MAX] = {{{NAN}}};
+    double point[1][1 + FMB_DIM_MAX] = {{NAN}};
     unsigned char verdict;
     size_t open[1], count = 0;
     assert_int_equal(fmb_prepare(&subject->pair->a, 0, 1, &frames[0]), FMB_OK);
@@ -94,6 +96,7 @@ static void expect_batch(const struct subject *subject, unsigned want, bool list
                               .verdicts = &verdict,
                               .contacts = want & FMB_WANT_TIMES ? contact : NULL,
                               .boxes = want & FMB_WANT_BOX ? box : NULL,
+                              .points = want & FMB_WANT_POINT ? point : NULL,
                               .gaps = want & FMB_WANT_GAP ? &gap : NULL,
                               .open = listing ? open : NULL,
                               .open_count = listing ? &count : NULL};
@@ -107,9 +110,11 @@ static void expect_batch(const struct subject *subject, unsigned want, bool list
     struct fmb_answer answer = {.verdict = (enum fmb_verdict) verdict,
                                 .has_contact = !isnan(contact[0][0]),
                                 .has_box = !isnan(box[0][0][0]),
+                                .has_point = !isnan(point[0][0]),
                                 .has_gap = want & FMB_WANT_GAP};
     memcpy(answer.contact, contact, sizeof answer.contact);
     memcpy(answer.box, box, sizeof answer.box);
+    memcpy(answer.point, point, sizeof answer.point);
     if (answer.has_gap)
         answer.gap = gap;
     expect(subject, want, &answer, "batch");
@@ -199,6 +204,8 @@ static void expect_service(const struct subject *subject)
     const bool certified =
         pair_certificate(subject->pair, certificate, sizeof certificate, &length) == FMB_OK;
     for (unsigned want = 0; want <= (ALL | FMB_WANT_CERTIFICATE); want++) {
+        if (want & FMB_WANT_POINT)
+            continue;
         if (!(want & FMB_WANT_TIMES) && (certified || !(want & FMB_WANT_CERTIFICATE)))
             expect_pair_query(subject, of, want, certificate);
         if (!(want & FMB_WANT_CERTIFICATE))

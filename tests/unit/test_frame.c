@@ -429,8 +429,6 @@ static void decide_checks_first(void **state)
                          FMB_UNKNOWN_WANT);
         assert_int_equal(pair_decide(fmb_method_at(i), &pair, 0x80000001U, &answer),
                          FMB_UNKNOWN_WANT);
-        assert_int_equal(pair_decide(fmb_method_at(i), &pair, FMB_WANT_POINT, &answer),
-                         FMB_UNKNOWN_WANT);
         pair.duration = -1;
         assert_int_equal(pair_decide(fmb_method_at(i), &pair, 0, &answer), FMB_BAD_DURATION);
     }

@@ -377,9 +377,14 @@ struct tally {
 static bool box_of(const struct frame_pair *pair, double box[2][FMB_DIM_MAX])
 {
     struct fmb_prepared frame[2];
+    struct fmb_answer answer;
     prepared_set(pair->a, &frame[0]);
     prepared_set(pair->b, &frame[1]);
-    return certified_box(&frame[0], &frame[1], pair->duration, box);
+    const bool known =
+        certified_box(&frame[0], &frame[1], pair->duration, FMB_WANT_BOX, &answer) == 0;
+    if (known)
+        memcpy(box, answer.box, sizeof answer.box);
+    return known;
 }
 
 /* *answer has the interval and the box of the exact method, which those of doubles replace. */
